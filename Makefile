@@ -175,7 +175,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check robots lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-abi sources wrap deb check-deb release check-families check-ports check-long check-mutants check-map install-lib FORCE
+.PHONY: check-abi sources wrap deb check-deb release check-families check-cockpit check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -255,6 +255,16 @@ check-families: all ## clients of other servos (from PyPI) against the simulator
 	@GRCTL="$(call whole,$(GRCTL_RUN))" PYTHON=$(BUILD)/families/bin/python BUILD="$(BUILD)" \
 	    TEST_LOGS="$(BUILD)/logs" tests/run.sh tests/families/clients.sh
 
+COCKPIT_CLIENT := playwright==1.65.0
+COCKPIT_AXE := axe-core@4.10.3
+check-cockpit: all ## the cockpit's page in Chromium (Playwright from PyPI, axe-core from npm); PICTURES=DIR keeps pictures
+	-@tools/setup.sh --cockpit
+	-@python3 -m venv $(BUILD)/cockpit && $(BUILD)/cockpit/bin/pip install -q --disable-pip-version-check $(COCKPIT_CLIENT)
+	-@! command -v npm >/dev/null || npm install --silent --no-fund --no-audit --prefix $(BUILD)/cockpit $(COCKPIT_AXE)
+	@GRCTL="$(abspath $(GRCTL))" PYTHON=$(BUILD)/cockpit/bin/python PICTURES="$(PICTURES)" \
+	    AXE=$(BUILD)/cockpit/node_modules/axe-core/axe.min.js BUILD="$(BUILD)" TEST_TIMEOUT_S=1200 \
+	    TEST_LOGS="$(BUILD)/logs/cockpit" tests/run.sh tests/cockpit/page.sh
+
 check-tsan: ## the tests of what threads share under ThreadSanitizer
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' RING=link
 
@@ -277,6 +287,7 @@ check-long: ## all machines, packages, sabotage, fuzzing, the soak, scans of all
 	@$(MAKE) --no-print-directory check-deb
 	@$(MAKE) --no-print-directory check-wheel
 	@$(MAKE) --no-print-directory check-roots
+	@$(MAKE) --no-print-directory check-cockpit
 	@$(MAKE) --no-print-directory check-mutants COUNT=300
 	@$(MAKE) --no-print-directory check-map COUNT=
 	@$(MAKE) --no-print-directory fuzz FUZZ_S=300

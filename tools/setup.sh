@@ -3,7 +3,7 @@
 # Installs what is missing to build libgrobo, with the system's package manager.
 #
 # usage: tools/setup.sh [--demo | --check | --ci | --cross TARGET | --drivers | --ports |
-#                        --mutants | --packages] [--dry-run]
+#                        --mutants | --packages | --cockpit] [--dry-run]
 #   --demo     what a build and the demo need (default)
 #   --check    that, what `make check` needs, and the programs without which it skips checks
 #   --ci       that, and what the other stages of .ci/run need: clang with libFuzzer, valgrind,
@@ -12,6 +12,7 @@
 #   --drivers  what --check needs, and `make check-drivers`
 #   --mutants  what --check needs, and `make check-mutants`
 #   --packages what a build needs, and `make deb` and `make check-deb` (Debian only)
+#   --cockpit  what a build needs, and `make check-cockpit`
 #   --ports    what --check needs, and every target of `make check-ports`
 #   --dry-run  say what would be installed, touch nothing
 #
@@ -30,6 +31,7 @@ while [ $# -gt 0 ]; do
     --drivers) level=2 targets=drivers ;;
     --mutants) level=2 targets=mutants ;;
     --packages) targets=packages ;;
+    --cockpit) targets=cockpit ;;
     --ports)
         level=2 targets='arm64 armhf riscv64 s390x musl musl-arm64 win64 macos drivers baremetal'
         ;;
@@ -156,6 +158,13 @@ look_cross() {
             python3 python3 python python3 python3
         need objcopy 'to make mutants' have_command objcopy -- \
             binutils binutils binutils binutils binutils
+        ;;
+    cockpit)
+        need_debian chromium "to check the cockpit's page" have_command chromium -- chromium
+        need node "to check the page's modules" have_command node -- \
+            nodejs nodejs nodejs nodejs nodejs
+        need npm "to check that the page is accessible" have_command npm -- npm npm npm npm npm
+        need_debian "Python's venv" 'to install Playwright' have_venv -- python3-venv
         ;;
     packages)
         need_debian debhelper 'to build packages' have_command dh -- debhelper

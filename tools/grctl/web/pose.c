@@ -6,7 +6,7 @@
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 
-enum { METRE_DECIMALS = 5, TURN_DECIMALS = 6 };
+enum { METRE_DECIMALS = 5, TURN_DECIMALS = 6, INERTIA_DECIMALS = 9 };
 
 static const char *const sides[] = {"right", "left"};
 
@@ -117,10 +117,11 @@ static json_t *body_link_json(const grobo_body_link *l)
 {
     static const double straight[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     return json_pack(
-        "{s:s,s:i,s:i,s:o,s:o,s:o,s:o,s:o}", "name", l->name, "parent", l->parent, "joint",
+        "{s:s,s:i,s:i,s:o,s:o,s:o,s:o,s:o,s:o}", "name", l->name, "parent", l->parent, "joint",
         l->joint, "origin_m", list_json(l->offset_m, 3, METRE_DECIMALS), "rotation",
         list_json(straight, 9, 0), "axis", list_json(l->axis, 3, TURN_DECIMALS), "mass_kg",
-        app_json_number(l->mass_kg, 5), "com_m", list_json(l->com_m, 3, METRE_DECIMALS));
+        app_json_number(l->mass_kg, 5), "com_m", list_json(l->com_m, 3, METRE_DECIMALS),
+        "inertia_kgm2", list_json(l->inertia_kgm2, 9, INERTIA_DECIMALS));
 }
 
 json_t *pose_links_json(const app *a)

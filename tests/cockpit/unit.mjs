@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// The parts of the cockpit's page that need no browser. usage: node unit.mjs PAGE_FOLDER; prints TAP.
+import { readFileSync, readdirSync } from 'node:fs';
+import { pathToFileURL } from 'node:url';
+
+const folder = process.argv[2];
+const page = (name) => import(pathToFileURL(`${folder}/${name}.js`));
+let tests = 0, failed = 0;
+
+function near(a, b, tolerance = 1e-9) {
+    const flat = (v) => Array.isArray(v) ? v.flat(9) : [v];
+    const [x, y] = [flat(a), flat(b)];
+    if (x.length !== y.length || x.some((v, n) => !(Math.abs(v - y[n]) <= tolerance))) {
+        throw new Error(`${JSON.stringify(a)} is not ${JSON.stringify(b)}`);
+    }
+}
+
+function same(a, b) {
+    if (JSON.stringify(a) !== JSON.stringify(b)) {
+        throw new Error(`${JSON.stringify(a)} is not ${JSON.stringify(b)}`);
+    }
+}
+
+async function test(name, body) {
+    tests++;
+    try {
+        await body();
+        console.log(`ok ${tests} - ${name}`);
+    } catch (error) {
+        failed++;
+        console.log(`not ok ${tests} - ${name}\n# ${error.stack.replace(/\n/g, '\n# ')}`);
+    }
+}
+
+const m = await page('mat');
+const { makeBody, forward, stand, inertiaBox } = await page('body');
+
+await test('a rotation turns as the right hand does', () => {
+    near(m.turn(m.rotation([0, 0, 1], Math.PI / 2), [1, 0, 0]), [0, 1, 0]);
+    near(m.turn(m.rotation([1, 0, 0], Math.PI / 2), [0, 1, 0]), [0, 0, 1]);
+});
+await test('a rigid inverse takes a motion back', () => {
+    const t = m.mul(m.translation([1, 2, 3]), m.rotation(m.unit([1, 2, -1]), 0.7));
+    near(m.mul(t, m.rigidInverse(t)), m.identity(), 1e-12);
+});
+await test('the camera puts what it looks at in the middle', () => {
+    const view = m.mul(m.perspective(0.5, 1.5, 0.1, 10), m.lookAt([2, 1, 1], [0, 0, 0.2], [0, 0, 1]));
+    const c = m.project(view, [0, 0, 0.2]);
+    near([c[0] / c[3], c[1] / c[3]], [0, 0], 1e-12);
+    const up = m.project(view, [0, 0, 0.4]);
+    same(up[1] / up[3] > 0, true);
+});
+
+const joint = (name) => ({ name, joint: 0, limits_deg: [-90, 90] });
+const link = (parent, at, axis, n) => ({ name: `l${n}`, parent, joint: n, axis, mass: 0.1,
+                                         com: [0, 0, -0.05], frame: m.translation(at) });
+const legs = () => makeBody(
+    [{ ...link(-1, [0, 0, 0.3], [0, 1, 0], -1) }, link(0, [0, -0.05, 0], [0, 1, 0], 0),
+     link(1, [0, 0, -0.1], [0, 1, 0], 1), link(0, [0, 0.05, 0], [0, 1, 0], 2),
+     link(3, [0, 0, -0.1], [0, 1, 0], 3)],
+    [{ link: 2, sole: [0, 0, -0.1], half: [0.04, 0.02] },
+     { link: 4, sole: [0, 0, -0.1], half: [0.04, 0.02] }],
+    ['a', 'b', 'c', 'd'].map(joint));
+
+await test('links follow their joints', () => {
+    const at = forward(legs(), [Math.PI / 2, 0, 0, 0], m.identity());
+    near(m.origin(at[2]), [-0.1, -0.05, 0], 1e-12); // the shank points back
+    near(m.origin(at[4]), [0, 0.05, -0.1], 1e-12);
+});
+await test('a body stands with its lower foot flat on the ground', () => {
+    const body = legs(), q = [0.3, -0.1, 0.2, 0.4];
+    const at = forward(body, q, stand(body, q));
+    const soles = body.feet.map((foot) => [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([x, y]) => m.place(
+        at[foot.link], [x * 0.04, y * 0.02, -0.1])[2]));
+    same(soles.map((z) => z.every((v) => Math.abs(v) < 1e-9)), [true, false]);
+    same(Math.min(...soles[1]) > -0.02, true); // with the other flat, this one would be deeper
+});
+await test('a box has the inertia it was made of', () => {
+    const [a, b, c] = [0.02, 0.03, 0.05], mass = 0.2;
+    const inertia = [b * b + c * c, a * a + c * c, a * a + b * b].map((v) => mass / 3 * v);
+    near(inertiaBox(mass, inertia), [a, b, c], 1e-12);
+    same(inertiaBox(0, inertia), null);
+});
+await test('a robot without links is a row of pointers', () => {
+    const body = makeBody([], [], ['a', 'b', 'c'].map(joint));
+    same(body.linkOf, [1, 2, 3]);
+    same(body.links.every((l) => l.joint < 0 || l.hub.length > 0), true);
+});
+await test('solids are closed: their normals point outwards', async () => {
+    const { box, hub, ball, strut } = await page('shape');
+    for (const solid of [box([1, 2, 3], 0.2), hub([0, 0, 0], [0, 0, 1], 1, 0.5), ball([0, 0, 0], 1),
+                         strut([0, 0, -1], [0, 0, 1], 0.2)]) {
+        for (const { points, normal } of solid) {
+            same(points.every((p) => m.dot(p, normal) > 0), true);
+            near(m.length(normal), 1, 1e-9);
+            near(points.map((p) => m.dot(m.sub(p, points[0]), normal)), points.map(() => 0), 1e-9);
+        }
+    }
+});
+
+const { EventParser, pauseMs } = await page('feed');
+await test('events are cut from pieces of any size', () => {
+    const text = ': quiet\n\nevent: state\ndata: {"sequence": 1}\n\nid: 7\nevent: event\r\n' +
+                 'data: one\ndata: two\r\n\r\n';
+    const want = [{ type: 'state', id: null, data: '{"sequence": 1}' },
+                  { type: 'event', id: '7', data: 'one\ntwo' }];
+    for (const size of [1, 2, 3, 7, 1000]) {
+        const got = [], parser = new EventParser((event) => got.push(event));
+        for (let n = 0; n < text.length; n += size) {
+            parser.push(text.slice(n, n + size));
+        }
+        same(got, want);
+    }
+});
+await test('the pauses before another attempt grow and end', () => {
+    const pauses = [0, 1, 2, 3, 4, 50].map((n) => pauseMs(n, 0.5));
+    same(pauses.every((p, n) => n === 0 || p >= pauses[n - 1]), true);
+    same(pauses[5], 4000);
+});
+
+const { Lease } = await page('lease');
+const state = (holder, asked = null) => ({ holder: holder && { id: holder, name: 'Anna' },
+                                         asked: asked && { id: asked, name: 'Ben' } });
+await test('a lease is mine while the state names its id', () => {
+    const lease = new Lease();
+    same(lease.status(), 'free');
+    lease.taken({ lease: 'secret', id: 'a' }, 0);
+    same(lease.see(state(null), 30), null); // the state is older than the answer
+    same(lease.see(state('a'), 60), null);
+    same(lease.see(state('a'), 9000), null);
+    same([lease.status(), lease.secret()], ['mine', 'secret']);
+    same(lease.see(state('b'), 9030), 'lost');
+    same([lease.status(), lease.secret()], ['other', null]);
+});
+await test('a lease is lost when nobody holds it, and when it never came', () => {
+    const lease = new Lease();
+    lease.taken({ lease: 'secret', id: 'a' }, 0);
+    lease.see(state('a'), 10);
+    same(lease.see(state(null), 20), 'lost');
+    same(lease.status(), 'free');
+    lease.taken({ lease: 'secret', id: 'a' }, 100);
+    same(lease.see(state(null), 1900), null);
+    same(lease.see(state(null), 2200), 'lost');
+});
+await test('who asked drives when it is given, and asks no more when it is denied', () => {
+    const lease = new Lease();
+    lease.see(state('a'), 0);
+    same(lease.status(), 'other');
+    lease.asked({ lease: 'mine', id: 'b' }, 10);
+    same(lease.see(state('a', 'b'), 3000), null);
+    same(lease.status(), 'asked');
+    same(lease.see(state('b'), 3030), 'got');
+    same([lease.status(), lease.secret()], ['mine', 'mine']);
+    lease.see(state('c'), 3060);
+    lease.asked({ lease: 'other', id: 'd' }, 4000);
+    lease.see(state('c', 'd'), 4030);
+    lease.see(state('c'), 7000);
+    same(lease.status(), 'other');
+});
+
+const { Stopper, stopWords } = await page('stop');
+const { translate, JA } = await page('text');
+const t = (text, ...values) => translate('en', text, values);
+await test('a stop is told in words, joint by joint', () => {
+    const stop = { latched: true, kind: 'stop', trip: null, joint: null, by: 'Anna', confirmed: false,
+                   joints: ['stopped', 'moving', 'sent'] };
+    same(stopWords({ latched: false }, 0, [], t), null);
+    same(stopWords(stop, 0, ['A', 'B', 'C'], t),
+         { level: 'bad', text: 'Stopped by Anna: 1 of 3 joints stand; B moves' });
+    const done = { ...stop, confirmed: true, joints: ['stopped', 'stopped', 'stopped'] };
+    same(stopWords(done, 0, ['A', 'B', 'C'], t),
+         { level: 'ok', text: 'Stopped by Anna: all 3 joints stand, read back' });
+    same(stopWords(null, 1250, [], t).level, 'bad');
+    same(stopWords(null, 1250, [], t).text.includes('1.3 s: use the switch'), true);
+});
+await test('a stop goes both ways, and again until it is acknowledged', async () => {
+    const sent = [];
+    let answer = null;
+    const api = { stopPort: 1, aside: (path) => {
+        sent.push(path);
+        return new Promise(() => {});
+    }, post: (path) => {
+        sent.push(path);
+        return answer ? Promise.resolve() : Promise.reject(new Error('lost'));
+    } };
+    const stopper = new Stopper(api, () => 'Anna', () => {});
+    stopper.press();
+    same(sent, ['/stop', '/api/stop']);
+    await Promise.resolve();
+    same(stopper.unanswered() >= 0 && !stopper.answered, true);
+    answer = true;
+    stopper.again();
+    await new Promise((done) => setImmediate(done));
+    same(sent.length, 4);
+    same(stopper.answered, true);
+    stopper.again();
+    same(sent.length, 4);
+    same(stopper.timer, null);
+});
+
+const { Ring, columns, ticks } = await page('plots');
+await test('a ring keeps the newest, and a column its peaks', () => {
+    const ring = new Ring(1, 8);
+    for (let n = 0; n < 20; n++) {
+        ring.push(n * 10, [n === 15 ? 99 : n]);
+    }
+    const seen = [];
+    ring.each(0, 0, (time, value) => seen.push(value));
+    same(seen, [12, 13, 14, 99, 16, 17, 18, 19]);
+    const { low, high } = columns(ring, 0, 120, 200, 2);
+    near([low[0], high[0], low[1], high[1]], [12, 99, 16, 19]);
+});
+await test('a value that is not known is a gap', () => {
+    const ring = new Ring(1, 8);
+    ring.push(0, [null]);
+    ring.push(60, [5]);
+    const { low } = columns(ring, 0, 0, 100, 2);
+    same(Number.isNaN(low[0]), true);
+    near(low[1], 5);
+});
+await test('ticks are round', () => {
+    near(ticks(-50, 50, 4), [-50, 0, 50]);
+    near(ticks(0, 1, 5), [0, 0.2, 0.4, 0.6, 0.8, 1], 1e-9);
+});
+
+const { sample } = await page('play');
+await test('a pose between two samples is between them', () => {
+    const frames = { rate_hz: 10, angle_deg: [[0, null], [90, 5], [180, 5]], root: null };
+    near(sample(frames, 50, null).q[0], Math.PI / 4);
+    same(Number.isNaN(sample(frames, 50, null).q[1]), true);
+    near(sample(frames, 9999, null).q, [Math.PI, 5 * Math.PI / 180]);
+});
+
+const { Newest } = await page('api');
+await test('of many targets the newest is sent, one at a time', async () => {
+    const sent = [];
+    let open = null;
+    const newest = new Newest((value) => {
+        sent.push(value);
+        return new Promise((done) => {
+            open = done;
+        });
+    });
+    for (const value of [1, 2, 3, 4]) {
+        newest.push(value);
+    }
+    same(sent, [1]);
+    open();
+    await new Promise((done) => setImmediate(done));
+    same(sent, [1, 4]);
+});
+
+await test('every text of the page is there in Japanese', () => {
+    const missing = new Set();
+    for (const name of readdirSync(folder)) {
+        const text = readFileSync(`${folder}/${name}`, 'utf8');
+        const found = name.endsWith('.html')
+            ? [...text.matchAll(/ data-t>([^<]+)</g), ...text.matchAll(/data-t-label="([^"]+)"/g)]
+            : name === 'text.js' ? [] : [...text.matchAll(/\bt\(\s*'((?:[^'\\]|\\.)*)'/g)];
+        for (const [, key] of found) {
+            if (!(key in JA)) {
+                missing.add(key);
+            }
+        }
+    }
+    same([...missing], []);
+    for (const [key, value] of Object.entries(JA)) {
+        same((key.match(/\{\d\}/g) || []).sort(), (value.match(/\{\d\}/g) || []).sort());
+    }
+});
+
+console.log(`1..${tests}`);
+process.exit(failed ? 1 : 0);

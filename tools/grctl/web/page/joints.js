@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// The table of joints. The chosen joint has a slider: its ends are the joint's limits, and the robot
+// follows while it is dragged, if this page drives.
+
+import { Newest } from './api.js';
+import { element, setText } from './dom.js';
+
+const SIGNS = { on: '●', off: '○', brake: '◐' };
+
+export class Joints {
+    constructor(app) {
+        this.app = app;
+        this.body = document.querySelector('#joints tbody');
+        this.drawnAt = 0;
+        this.newest = new Newest(({ joint, value }) => this.jog(joint, value));
+        const all = (id, what) => document.getElementById(id).addEventListener('click', what);
+        all('stand', () => app.command('/api/move', { pose: 'init', time_ms: 3000 }, true));
+        all('torque-on', () => app.command('/api/torque', { joints: ['all'], mode: 'on' }, true));
+        all('torque-off', () => {
+            if (app.robot.arm || !app.robot.body || confirm(app.t('Without torque the robot sinks or falls. Hold it. Switch torque off?'))) {
+                app.command('/api/torque', { joints: ['all'], mode: 'off' });
+            }
+        });
+    }
+
+    setRobot(robot) {
+        this.rows = robot.joints.map((joint) => this.row(joint));
+        this.body.replaceChildren(...this.rows.map((row) => row.line), this.makeSlider());
+        this.slot.remove();
+    }
+
+    row(joint) {
+        const pick = element('button', { type: 'button', className: 'joint',
+                                         onclick: () => this.app.select(joint.joint) }, joint.name);
+        const cell = (kind) => element('td', { className: kind });
+        const cells = { angle: cell('num'), target: cell('num wide quiet'), current: cell('num'),
+                        heat: cell('num'), volt: cell('num wide'), torque: cell('torque') };
+        const head = element('th', { scope: 'row' }, pick);
+        return { joint, pick, cells, line: element('tr', {}, head, ...Object.values(cells)) };
+    }
+
+    makeSlider() {
+        const t = this.app.t;
+        this.slider = element('input', { type: 'range', step: 0.5 });
+        this.out = element('output');
+        this.ends = [element('span', { className: 'quiet' }), element('span', { className: 'quiet' })];
+        this.plot = element('input', { type: 'checkbox' });
+        this.plot.addEventListener('change', () => this.app.see.toggle(this.app.selected,
+                                                                       this.plot.checked));
+        const button = (text, what) => element('button', { type: 'button', onclick: what }, t(text));
+        const one = () => [this.app.name(this.app.selected)];
+        this.buttons = [
+            button('Torque on', () => this.app.command('/api/torque', { joints: one(), mode: 'on' }, true)),
+            button('Torque off', () => this.app.command('/api/torque', { joints: one(), mode: 'off' })),
+            button('Limp', () => this.app.command('/api/torque', { joints: one(), mode: 'limp' }, true)),
+            button('Hold', () => this.app.command('/api/torque', { joints: one(), mode: 'hold' }, true)),
+        ];
+        this.slider.addEventListener('input', () => this.drag());
+        this.slider.addEventListener('change', () => this.release());
+        this.slider.addEventListener('keydown', (event) => {
+            const step = { PageUp: 10, PageDown: -10, ArrowUp: 1, ArrowRight: 1, ArrowDown: -1,
+                           ArrowLeft: -1 }[event.key];
+            if (step && !event.altKey && !event.ctrlKey && !event.metaKey) {
+                event.preventDefault();
+                this.slider.value = Number(this.slider.value) + step;
+                this.drag();
+                this.release();
+            }
+        });
+        const box = element('div', { className: 'jog' },
+            element('div', { className: 'line' }, this.ends[0], this.slider, this.ends[1], this.out),
+            element('div', { className: 'line buttons' }, ...this.buttons,
+                    element('span', { className: 'gap' }),
+                    element('label', { className: 'check' }, this.plot, ' ', t('Plot'))));
+        this.slot = element('tr', { className: 'slot' }, element('td', { colSpan: 7 }, box));
+        return this.slot;
+    }
+
+    select(joint) {
+        this.rows.forEach((row, n) => {
+            row.line.classList.toggle('chosen', n === joint);
+            row.pick.setAttribute('aria-expanded', String(n === joint));
+        });
+        this.dragged = null;
+        if (joint < 0) {
+            this.slot.remove();
+            return;
+        }
+        const { name, limits_deg: limits } = this.rows[joint].joint;
+        this.slider.min = limits[0];
+        this.slider.max = limits[1];
+        this.slider.setAttribute('aria-label', this.app.t('{0}, degrees', name));
+        this.plot.checked = this.app.see.plots.chosen.includes(joint);
+        limits.forEach((v, n) => setText(this.ends[n], `${Math.round(v)}°`));
+        this.rows[joint].line.after(this.slot);
+        this.drawnAt = 0;
+    }
+
+    drag() {
+        const value = Number(this.slider.value), joint = this.app.selected;
+        const edge = value <= Number(this.slider.min) || value >= Number(this.slider.max);
+        if (edge && !this.atEdge && navigator.vibrate) {
+            navigator.vibrate(12);
+        }
+        this.atEdge = edge;
+        this.dragged = { joint, value, at: performance.now() };
+        this.show(value, edge);
+        this.newest.push({ joint, value });
+    }
+
+    release() {
+        if (this.dragged) {
+            this.dragged.until = performance.now() + 1500;
+        }
+    }
+
+    show(value, edge) {
+        const words = `${value.toFixed(1)}°` + (edge ? ` ${this.app.t('at its limit')}` : '');
+        setText(this.out, words);
+        this.out.classList.toggle('warn', edge);
+        this.slider.setAttribute('aria-valuetext', words);
+    }
+
+    async jog(joint, value) {
+        await this.app.command('/api/jog', { angle_deg: { [this.app.name(joint)]: value } }, true);
+    }
+
+    /** Ends a drag softly: the page is hidden, or the pointer was taken away. */
+    cancel() {
+        if (this.dragged && !this.dragged.until) {
+            this.dragged = null;
+            this.app.command('/api/halt');
+        }
+    }
+
+    draw(state, now) {
+        const joint = this.app.selected;
+        if (this.dragged && this.dragged.until && now > this.dragged.until) {
+            this.dragged = null;
+        }
+        if (joint >= 0 && !this.dragged) {
+            const angle = state.target_deg[joint] ?? state.angle_deg[joint];
+            if (angle !== null && Number(this.slider.value) !== angle) {
+                this.slider.value = angle;
+            }
+            this.show(angle || 0, false);
+        }
+        if (now - this.drawnAt > 240) {
+            this.drawnAt = now;
+            this.rows.forEach((row, n) => this.write(row, state, n));
+            const may = this.app.mayMove();
+            for (const node of [this.slider, ...this.buttons,
+                                ...document.querySelectorAll('#all-joints button')]) {
+                node.disabled = !may;
+            }
+            setText(document.getElementById('jog-hint'), this.app.whyNot() || '');
+        }
+    }
+
+    write({ cells, line }, state, n) {
+        const t = this.app.t, number = (v, digits) => v === null ? '–' : v.toFixed(digits);
+        const look = this.app.heatLevel(state.temperature_c[n]);
+        const old = state.age_ms[n] === null || state.age_ms[n] > 500 || state.status[n] !== 'ok';
+        line.classList.toggle('old', old);
+        setText(cells.angle, number(state.angle_deg[n], 1));
+        setText(cells.target, number(state.target_deg[n], 1));
+        setText(cells.current, number(state.current_ma[n], 0));
+        setText(cells.heat, number(state.temperature_c[n], 0) + (look ? ' ▲' : ''));
+        cells.heat.className = `num ${look}`;
+        setText(cells.volt, number(state.voltage_v[n], 2));
+        const torque = state.torque[n], limp = state.limp.includes(n);
+        const said = limp ? `◌ ${t('limp')}` : torque ? `${SIGNS[torque]} ${t(torque)}` : '–';
+        setText(cells.torque, said + (state.status[n] !== 'ok' && state.status[n] !== 'empty'
+            ? ` · ${state.status[n]}` : '') + (old && state.age_ms[n] > 500
+            ? ` · ${(state.age_ms[n] / 1000).toFixed(1)} s` : ''));
+    }
+}
