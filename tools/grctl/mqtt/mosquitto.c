@@ -4,13 +4,13 @@
  * that callback, before anything else can be opened with the same number. Nothing is freed in its
  * callbacks.
  */
+#include <mosquitto.h>
+#include <mqtt_protocol.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <event2/event.h>
 #include <event2/util.h>
-#include <mosquitto.h>
-#include <mqtt_protocol.h>
 
 #include <grobo/port.h>
 
@@ -138,8 +138,8 @@ static void connect_now(mqtt *m)
     const mqtt_config *c = &m->config;
     m->connecting = true;
     m->tried_us = grobo_now_us();
-    int result = mosquitto_connect_async(m->client, c->ca ? c->host : m->address, c->port,
-                                         c->keepalive_s);
+    int result =
+        mosquitto_connect_async(m->client, c->ca ? c->host : m->address, c->port, c->keepalive_s);
     if (result != MOSQ_ERR_SUCCESS) {
         lost(m, result == MOSQ_ERR_ERRNO ? "the broker cannot be reached"
                                          : mosquitto_strerror(result));
@@ -275,12 +275,12 @@ bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
     }
     int result = MOSQ_ERR_SUCCESS;
     if (expiry_s > 0) {
-        result = mosquitto_property_add_int32(
-            &properties, MQTT_PROP_MESSAGE_EXPIRY_INTERVAL, (uint32_t)expiry_s);
+        result = mosquitto_property_add_int32(&properties, MQTT_PROP_MESSAGE_EXPIRY_INTERVAL,
+                                              (uint32_t)expiry_s);
     }
     if (!result && message->response) {
-        result = mosquitto_property_add_string(&properties, MQTT_PROP_RESPONSE_TOPIC,
-                                               message->response);
+        result =
+            mosquitto_property_add_string(&properties, MQTT_PROP_RESPONSE_TOPIC, message->response);
     }
     if (!result && message->correlation_bytes) {
         result = mosquitto_property_add_binary(&properties, MQTT_PROP_CORRELATION_DATA,
@@ -346,8 +346,8 @@ static int set_up(mqtt *m)
         result = mosquitto_tls_set(client, c->ca, NULL, c->certificate, c->key, NULL);
     }
     if (!result && c->will_topic) {
-        result = mosquitto_will_set_v5(client, c->will_topic, (int)strlen(c->will), c->will, 1, true,
-                                       NULL);
+        result = mosquitto_will_set_v5(client, c->will_topic, (int)strlen(c->will), c->will, 1,
+                                       true, NULL);
     }
     mosquitto_connect_v5_callback_set(client, on_connect);
     mosquitto_disconnect_v5_callback_set(client, on_disconnect);

@@ -35,10 +35,10 @@ typedef struct mqtt_config {
     struct event_base *base;
     const char *host;
     int port;
-    const char *id;                      /* of the client */
-    const char *user, *password;         /* or NULL */
-    const char *ca, *certificate, *key;  /* files; ca NULL: no TLS */
-    const char *will_topic, *will;       /* what the broker says, retained, when we are gone; NULL */
+    const char *id;                     /* of the client */
+    const char *user, *password;        /* or NULL */
+    const char *ca, *certificate, *key; /* files; ca NULL: no TLS */
+    const char *will_topic, *will;      /* what the broker says, retained, when we are gone; NULL */
     int keepalive_s;
     void (*on_up)(void *ctx);
     void (*on_down)(void *ctx, const char *why);

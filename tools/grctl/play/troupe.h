@@ -36,7 +36,7 @@ typedef struct troupe {
     struct event *timer;
 } troupe;
 
-/* Seats for these robots, none open. names: borrowed. 0, or the exit status with the reason said. */
+/* Seats for these robots, none open. names: borrowed. 0 or the exit status. */
 int troupe_begin(troupe *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n);
 /* Connects with one robot, which may be moved then. seat_close() in either case. */
 int seat_open(troupe *t, int i);
