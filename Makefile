@@ -91,7 +91,7 @@ CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(call flags,--cflags,cmocka))
 CMOCKA_LIBS = $(call once,CMOCKA_LIBS,$(call flags,--libs,cmocka))
 JSON_CFLAGS = $(call once,JSON_CFLAGS,$(call flags,--cflags,jansson))
 JSON_LIBS = $(call once,JSON_LIBS,$(call flags,--libs,jansson))
-TOOL_LIBS = $(call once,TOOL_LIBS,$(JSON_LIBS) $(XML_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS) $(WEB_LIBS))
+TOOL_LIBS = $(call once,TOOL_LIBS,$(JSON_LIBS) $(XML_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS) $(WEB_LIBS) $(MQTT_LIBS))
 # The shell edits lines where libedit is there, else it reads them plainly.
 EDIT := $(if $(shell $(PKG_CONFIG) --exists libedit 2>/dev/null && echo yes),libedit,plain)
 EDIT_CFLAGS = $(if $(filter libedit,$(EDIT)),$(call once,EDIT_CFLAGS_FOUND,$(call flags,--cflags,libedit)))
@@ -99,6 +99,9 @@ EDIT_LIBS = $(if $(filter libedit,$(EDIT)),$(call flags,--libs,libedit))
 # The monitor draws with ncurses where it is there, else it is a table that is printed again.
 SCREEN := $(if $(shell $(PKG_CONFIG) --exists ncursesw 2>/dev/null && echo yes),ncurses,none)
 SCREEN_CFLAGS = $(if $(filter ncurses,$(SCREEN)),$(call once,SCREEN_CFLAGS_FOUND,$(filter -I%,$(call flags,--cflags,ncursesw))))
+# Fleets speak MQTT by libmosquitto where it is there.
+MQTT := $(if $(shell $(PKG_CONFIG) --exists libmosquitto 2>/dev/null && echo yes),mosquitto,none)
+MQTT_LIBS = $(if $(filter mosquitto,$(MQTT)),$(call flags,--libs,libmosquitto))
 SCREEN_LIBS = $(if $(filter ncurses,$(SCREEN)),$(call flags,--libs,ncursesw))
 # URDF is read by expat where it is there, else not at all.
 XML := $(if $(shell $(PKG_CONFIG) --exists expat 2>/dev/null && echo yes),expat,none)
@@ -117,10 +120,11 @@ HEAP := src/base/memory.c
 CORE_SRCS := $(filter-out $(HEAP),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
 OTHER_SRCS := $(sort $(HEAP) $(wildcard src/team/*.c) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))
-CHOSEN := tools/grctl/edit/% tools/grctl/screen/% tools/grctl/xml/% tools/grctl/web/%
+CHOSEN := tools/grctl/edit/% tools/grctl/screen/% tools/grctl/xml/% tools/grctl/web/% tools/grctl/mqtt/%
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out $(CHOSEN),\
     $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
-    tools/grctl/screen/$(SCREEN).c tools/grctl/xml/$(XML).c $(if $(filter none,$(WEB)),tools/grctl/web/none.c,\
+    tools/grctl/screen/$(SCREEN).c tools/grctl/xml/$(XML).c tools/grctl/mqtt/$(MQTT).c \
+    $(if $(filter none,$(WEB)),tools/grctl/web/none.c,\
     $(filter-out tools/grctl/web/none.c,$(wildcard tools/grctl/web/*.c)))))
 # LEFT_OUT, of a target: tests that its system cannot run, and what only they use.
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c $(LEFT_OUT),$(wildcard tests/support/*.c)) \
@@ -622,7 +626,7 @@ $(BUILD)/run/grctl: $(GRCTL)
 
 $(sort $(TEST_PROGRAMS) $(DRIVER_PROGRAMS)): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(JSON_LIBS) $(XML_LIBS) $(WEB_LIBS) $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(JSON_LIBS) $(XML_LIBS) $(WEB_LIBS) $(MQTT_LIBS) $(LIBS)
 
 $(FUZZ_REPLAYS): $(BUILD)/%$(EXE): $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(TOOL_LIB) \
     $(STATIC_LIB)

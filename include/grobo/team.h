@@ -46,7 +46,7 @@ typedef enum grobo_team_policy {
 typedef enum grobo_team_state {
     GROBO_TEAM_IDLE = 0, /**< takes part in no motion */
     GROBO_TEAM_PREPARES, /**< senses, switches torque on, approaches */
-    GROBO_TEAM_READY,    /**< is there; of a team: all are, and the time is told */
+    GROBO_TEAM_READY,    /**< is there; of a team: all are, and the time is told or waited for */
     GROBO_TEAM_PLAYS,    /**< begun */
     GROBO_TEAM_ENDED     /**< over; `result` says how */
 } grobo_team_state;
@@ -56,6 +56,7 @@ typedef enum grobo_team_event_kind {
     GROBO_TEAM_EVENT_START = 0, /**< the time is told: at_us; the motion begins then */
     GROBO_TEAM_EVENT_OUT,       /**< a member is out before its end: member, result */
     GROBO_TEAM_EVENT_PAUSED,    /**< the policy paused the others: member, result */
+    GROBO_TEAM_EVENT_READY,     /**< all are there, and wait for grobo_team_start_at() */
     GROBO_TEAM_EVENT_ENDED      /**< nobody plays any more: result, the first error of all */
 } grobo_team_event_kind;
 
@@ -115,7 +116,8 @@ GROBO_API int grobo_team_add(grobo_team *team, grobo_robot *robot);
 /**
  * Plays a motion with all members: grobo_robot_play() for each, a barrier, one start.
  * @param clips a clip a member, or the same for all where one_clip; as grobo_robot_play() has it.
- * @param options as there; copied. start_us: not before this; 0: as soon as all are ready.
+ * @param options as there; copied. start_us: not before this; 0: as soon as all are ready;
+ *        GROBO_START_LATER: they wait for grobo_team_start_at().
  * @return GROBO_OK, GROBO_ERR_EMPTY (no members), GROBO_ERR_STATE (a motion is under way),
  *         GROBO_ERR_ARG; else what the policy made of the members that refused: with
  *         GROBO_TEAM_CONTINUE the refusal of the last one when none is left, with the others the
@@ -123,6 +125,13 @@ GROBO_API int grobo_team_add(grobo_team *team, grobo_robot *robot);
  */
 GROBO_API int grobo_team_play(grobo_team *team, const grobo_clip *const *clips, bool one_clip,
                               const grobo_play_options *options, int64_t now_us);
+
+/**
+ * Tells all that are ready when to begin, where grobo_team_play() was given GROBO_START_LATER.
+ * @return 0, GROBO_ERR_STATE (not all are ready), GROBO_ERR_ARG, GROBO_ERR_STALE: that time is over
+ *         (they go on waiting).
+ */
+GROBO_API int grobo_team_start_at(grobo_team *team, int64_t start_us, int64_t now_us);
 
 /** grobo_robot_pause() for all that play. @return 0, or GROBO_ERR_STATE where none does. */
 GROBO_API int grobo_team_pause(grobo_team *team);

@@ -217,25 +217,53 @@ static void look_who_is_ready(grobo_team *team, int64_t now_us)
     }
 }
 
-/* All are there: one time for all. */
-static void start(grobo_team *team, int64_t now_us)
+/* One time for all that are there. */
+static void tell_start(grobo_team *team, int64_t start_us)
 {
-    int64_t soon_us = now_us + team->config.lead_us;
-    team->start_us = team->start_us > soon_us ? team->start_us : soon_us;
-    team->state = GROBO_TEAM_READY;
+    team->start_us = start_us;
+    team->acting++;
     for (int i = 0; i < team->n; i++) {
         member *m = &team->members[i];
         int result = GROBO_OK;
         if (m->is.state == GROBO_TEAM_READY) {
-            result = grobo_robot_start_at(m->is.robot, team->start_us);
+            result = grobo_robot_start_at(m->is.robot, start_us);
         }
         if (result < 0) {
             fall_out(team, i, result, true);
         }
     }
-    if (team->state == GROBO_TEAM_READY && !team->ending) {
+    team->acting--;
+    if (!team->ending && anybody(team)) {
         tell(team, GROBO_TEAM_EVENT_START, -1, GROBO_OK);
     }
+    end_team(team);
+}
+
+/* All are there. */
+static void be_ready(grobo_team *team, int64_t now_us)
+{
+    int64_t soon_us = now_us + team->config.lead_us;
+    team->state = GROBO_TEAM_READY;
+    if (team->start_us == GROBO_START_LATER) {
+        tell(team, GROBO_TEAM_EVENT_READY, -1, GROBO_OK);
+    } else {
+        tell_start(team, team->start_us > soon_us ? team->start_us : soon_us);
+    }
+}
+
+int grobo_team_start_at(grobo_team *team, int64_t start_us, int64_t now_us)
+{
+    if (team == NULL || start_us < 0 || start_us >= GROBO_START_LATER) {
+        return GROBO_ERR_ARG;
+    }
+    if (team->state != GROBO_TEAM_READY || team->start_us != GROBO_START_LATER) {
+        return GROBO_ERR_STATE;
+    }
+    if (start_us < now_us) {
+        return GROBO_ERR_STALE;
+    }
+    tell_start(team, start_us);
+    return GROBO_OK;
 }
 
 static void begin(grobo_team *team)
@@ -259,7 +287,7 @@ int64_t grobo_team_step(grobo_team *team, int64_t now_us)
     bool all = team->state == GROBO_TEAM_PREPARES && !team->ending && !team->held &&
                count(team, GROBO_TEAM_PREPARES) == 0;
     if (all) {
-        start(team, now_us);
+        be_ready(team, now_us);
     }
     if (team->state == GROBO_TEAM_READY && now_us >= team->start_us) {
         begin(team);
@@ -267,7 +295,8 @@ int64_t grobo_team_step(grobo_team *team, int64_t now_us)
     if (team->state == GROBO_TEAM_PREPARES) {
         return now_us + GROBO_TEAM_LOOK_US;
     }
-    return team->state == GROBO_TEAM_READY ? team->start_us : GROBO_NEVER_US;
+    bool told = team->state == GROBO_TEAM_READY && team->start_us != GROBO_START_LATER;
+    return told ? team->start_us : GROBO_NEVER_US;
 }
 
 /* ---- requests -------------------------------------------------------------------------------- */

@@ -320,6 +320,7 @@ static void a_team_refuses_null(void **state)
     REFUSES(grobo_team_add(team, NULL));
     REFUSES(grobo_team_play(NULL, &one, true, &play_options, 0));
     REFUSES(grobo_team_play(team, NULL, true, &play_options, 0));
+    REFUSES(grobo_team_start_at(NULL, 0, 0));
     REFUSES(grobo_team_pause(NULL));
     REFUSES(grobo_team_resume(NULL));
     REFUSES(grobo_team_stop(NULL, true));

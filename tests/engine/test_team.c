@@ -168,6 +168,31 @@ static void a_time_to_begin_is_kept(void **state)
     }
 }
 
+static void a_start_may_be_told_later(void **state)
+{
+    (void)state;
+    start(GROBO_TEAM_STOP_ALL);
+    const grobo_clip *one = &clips[0].clip;
+    const grobo_play_options options = {.start_us = GROBO_START_LATER};
+    int64_t now_us = rigs[0].now_us;
+    assert_int_equal(grobo_team_play(team, &one, true, &options, now_us), GROBO_OK);
+    look_us = 0;
+    assert_int_equal(grobo_team_start_at(team, now_us + 9000000, now_us), GROBO_ERR_STATE);
+    run_until(GROBO_TEAM_READY);
+    assert_non_null(last(GROBO_TEAM_EVENT_READY));
+    run(5000000);
+    now_us = rigs[0].now_us;
+    assert_int_equal(grobo_team_get_state(team), GROBO_TEAM_READY);
+    assert_int_equal(grobo_team_start_at(team, now_us - 1, now_us), GROBO_ERR_STALE);
+    assert_int_equal(grobo_team_start_at(team, now_us + 12345, now_us), GROBO_OK);
+    assert_int_equal(grobo_team_start_at(team, now_us + 12345, now_us), GROBO_ERR_STATE);
+    look_us = 0;
+    run_until(GROBO_TEAM_ENDED);
+    for (int i = 0; i < N; i++) {
+        assert_int_equal(began_us(&rigs[i]), now_us + 12345);
+    }
+}
+
 static void lose(int i)
 {
     grobo_robot_link_down(&rigs[i].robot, rigs[i].now_us);
@@ -368,6 +393,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(they_begin_together_however_far_they_are, end),
         cmocka_unit_test_teardown(a_time_to_begin_is_kept, end),
+        cmocka_unit_test_teardown(a_start_may_be_told_later, end),
         cmocka_unit_test_teardown(all_stop_when_one_is_lost, end),
         cmocka_unit_test_teardown(others_pause_and_go_on_without_the_lost_one, end),
         cmocka_unit_test_teardown(others_go_on_where_that_is_asked, end),

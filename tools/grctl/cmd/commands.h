@@ -41,6 +41,8 @@
     X(replay)                                                                                      \
     X(sim)                                                                                         \
     X(calibrate)                                                                                   \
+    X(agent)                                                                                       \
+    X(fleet)                                                                                       \
     X(shell)                                                                                       \
     X(completion)                                                                                  \
     X(help)                                                                                        \

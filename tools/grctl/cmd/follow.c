@@ -354,7 +354,7 @@ static int open_leader(pair *p)
     grobo_joint_mask all = GROBO_JOINTS_ALL(app_model(&p->leader.a)->n_joints);
     p->leader.a.reconnects = true;
     p->leader.is_open = true;
-    int status = conn_open_beside(c, &p->leader.a, &p->follower.c);
+    int status = conn_open_beside(c, &p->leader.a, p->follower.c.link);
     if (status) {
         return status;
     }

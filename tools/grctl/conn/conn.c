@@ -627,15 +627,15 @@ int conn_open_unchecked(conn *c, app *a)
     return open_device(c, a, false);
 }
 
-int conn_open_beside(conn *c, app *a, conn *first)
+int conn_open_beside(conn *c, app *a, conn_link *first)
 {
-    a->beside = first->link;
+    a->beside = first;
     return conn_open(c, a);
 }
 
-int conn_open_to_move_beside(conn *c, app *a, conn *first)
+int conn_open_to_move_beside(conn *c, app *a, conn_link *first)
 {
-    a->beside = first->link;
+    a->beside = first;
     return conn_open_to_move(c, a);
 }
 

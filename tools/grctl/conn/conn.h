@@ -101,12 +101,12 @@ int conn_open_unchecked(conn *c, app *a);
 int conn_open_to_move(conn *c, app *a);
 
 /*
- * The same as conn_open() for a second robot beside the first one: they have one loop, and a signal
- * is told to both. Closed before the first; signals are caught by the first.
+ * The same as conn_open() for one more robot beside a first link: they have one loop, and a signal
+ * is told to all. Closed before the first; signals are caught by the first.
  */
-int conn_open_beside(conn *c, app *a, conn *first);
+int conn_open_beside(conn *c, app *a, conn_link *first);
 /* The same for one that moves too: conn_open_to_move(). */
-int conn_open_to_move_beside(conn *c, app *a, conn *first);
+int conn_open_to_move_beside(conn *c, app *a, conn_link *first);
 
 /* Where an emergency stop is being carried out: until it is verified. Returns as conn_wait(). */
 int conn_end_estop(conn *c);

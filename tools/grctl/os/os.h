@@ -49,6 +49,8 @@ char *os_printed(void (*print)(FILE *to));
  * result is argv0 or static.
  */
 const char *os_own_program(const char *argv0);
+/* What this machine is called, "" where it has no name. */
+void os_host_name(char *name, size_t capacity);
 /* Suspends this process, as Ctrl-Z does without a handler; returns when it continues. */
 void os_suspend(void);
 

@@ -38,6 +38,14 @@ const char *os_own_program(const char *argv0)
     return access(self, X_OK) == 0 ? self : argv0;
 }
 
+void os_host_name(char *name, size_t capacity)
+{
+    if (gethostname(name, capacity) != 0) {
+        *name = '\0';
+    }
+    name[capacity - 1] = '\0';
+}
+
 bool os_is_terminal(FILE *stream)
 {
     return isatty(fileno(stream)) == 1;

@@ -81,6 +81,14 @@ int os_columns(FILE *stream)
     return info.srWindow.Right - info.srWindow.Left + 1;
 }
 
+void os_host_name(char *name, size_t capacity)
+{
+    DWORD size = (DWORD)capacity;
+    if (!GetComputerNameA(name, &size)) {
+        *name = '\0';
+    }
+}
+
 bool os_shows_utf8(void)
 {
     return GetConsoleOutputCP() == CP_UTF8;

@@ -1,0 +1,285 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Agents and a fleet over a real broker: orders, stops, a broker that hangs, dies and comes back,
+# and messages of strangers. CROWD=yes (make check-fleet): 100 robots of four agents too.
+. tests/support/cli.sh
+
+if ! command -v mosquitto >/dev/null || ! command -v mosquitto_pub >/dev/null; then
+    echo "1..0 # SKIP no mosquitto and mosquitto_pub here"
+    exit 0
+fi
+if "$GRCTL" fleet list --broker mqtt://127.0.0.1:1 2>&1 | grep -q 'no MQTT in it'; then
+    echo "1..0 # SKIP this grctl has no MQTT in it"
+    exit 0
+fi
+
+pids=
+end_fleet_test() {
+    for pid in $pids; do
+        kill -CONT "$pid" 2>/dev/null
+        kill "$pid" 2>/dev/null
+        wait "$pid" 2>/dev/null
+    done
+    end_cli_test
+}
+trap end_fleet_test EXIT
+
+# ---- a broker ------------------------------------------------------------------------------------
+
+port=$((20000 + $$ % 20000))
+broker=mqtt://127.0.0.1:$port
+cat >"$work/broker.conf" <<EOF2
+listener $port 127.0.0.1
+allow_anonymous true
+persistence false
+set_tcp_nodelay true
+max_packet_size 2000000
+log_type all
+EOF2
+begin_broker() {
+    mosquitto -c "$work/broker.conf" >>"$work/broker.log" 2>&1 &
+    broker_pid=$!
+    pids="$pids $broker_pid"
+    wait_for mosquitto_pub -p "$port" -t x -m x
+}
+begin_broker || { echo "Bail out! the broker did not start"; cat "$work/broker.log"; exit 1; }
+
+# ---- agents --------------------------------------------------------------------------------------
+
+mkdir -p "$work/config/grctl" "$work/motions"
+cp motions/greet.pseq "$work/motions"
+cat >"$work/config/grctl/config.yaml" <<EOF2
+groups: {one: [a, b], two: [c, d]}
+robots: {a: {device: sim}, b: {device: sim}, c: {device: sim}, d: {device: $work/none}}
+EOF2
+
+# begin_agent HOST: $agent is its process.
+begin_agent() {
+    "$GRCTL" -d "$1" agent --broker "$broker" --host "$1" --motions "$work/motions" \
+        >"$work/$1.out" 2>"$work/$1.err" &
+    agent=$!
+    pids="$pids $agent"
+}
+fleet() {
+    fleet_verb=$1
+    shift
+    "$GRCTL" fleet "$fleet_verb" --broker "$broker" "$@"
+}
+is_listed() {
+    fleet list | grep -q "^$1  *$2"
+}
+begin_agent one
+agent_one=$agent
+begin_agent two
+check "agents are listed" both wait_for is_listed one ONLINE --- wait_for is_listed two ONLINE
+check "a robot that is not there is said once" grep -q '^d: .*none: no such file' "$work/two.err"
+check_json "their robots and groups" \
+    '[(l["host"], [r["name"] for r in l["robots"]], l["groups"]) for l in
+      sorted(lines, key=lambda l: l["host"])] ==
+     [("one", ["a", "b"], ["all", "one"]), ("two", ["c", "d"], ["all", "two"])]' \
+    fleet list --json
+check_json "how they are" \
+    '{(l["host"], l["robot"]): l["state"]["up"] for l in lines} ==
+     {("one", "a"): True, ("one", "b"): True, ("two", "c"): True, ("two", "d"): False}' \
+    fleet status --json
+check "a broker that is not there" fails 1 'fleet: 127.0.0.1: ' \
+    "$GRCTL" fleet list --broker mqtt://127.0.0.1:1
+check "a broker that is none" fails 2 'is wanted' "$GRCTL" fleet list --broker http://x
+check "TLS wants certificates to check by" fails 2 '--ca names the file' \
+    "$GRCTL" fleet list --broker mqtts://127.0.0.1
+check "no such order" fails 2 'there are list, status' fleet dance
+check "an agent has robots of the configuration" fails 2 'agent: -d names a robot or a group' \
+    "$GRCTL" -d sim agent --broker "$broker"
+
+# ---- orders --------------------------------------------------------------------------------------
+
+sed 's/greet/other/' motions/greet.pseq >"$work/other.pseq"
+pushed() {
+    exits 0 fleet push "$work/other.pseq" && cmp "$work/other.pseq" "$work/motions/other.pseq"
+}
+check "a motion is put into their folders" pushed
+check "a motion that all play" both exits 0 fleet play other.pseq -s 400 --group one --- \
+    both says 'one/a: played' --- says 'one/b: played'
+check "what is not there is refused, with the host" fails 1 'one: prepare: .*none.pseq' \
+    fleet play none.pseq --group one
+check "one robot that is missing keeps all" both exits 1 fleet play greet.pseq --- \
+    grep -q 'two: prepare: d: is not there' "$work/err"
+check "nobody of that group" fails 1 'no agent of group three is online' \
+    fleet play greet.pseq --group three
+
+# plays [OPTIONS]: with group one, slowly; returns when it was begun.
+plays() {
+    "$GRCTL" fleet play greet.pseq --broker "$broker" -s 20 --group one "$@" >"$work/played" 2>"$work/said" </dev/null &
+    play=$!
+    written "$work/said" 'all begin in' && wait_for moves
+}
+moves() {
+    fleet status --json | grep -q '"play": *"playing"'
+}
+rests() {
+    ! moves && fleet status --json | grep -q '"play": *"idle"'
+}
+ended() {
+    wait "$play"
+    status_ended=$?
+    [ $status_ended -eq "$1" ] && return
+    echo "status $status_ended, not $1"
+    cat "$work/said"
+    return 1
+}
+interrupted() {
+    plays && kill -INT "$play" && ended 130 && wait_for rests
+}
+check "Ctrl-C calls it off" interrupted
+stopped() {
+    plays && exits 0 fleet "$1" --group one && complains_of a && complains_of b && ended 1
+}
+complains_of() {
+    grep -q "^one/$1: stopped" "$work/err"
+}
+check "an emergency stop is told robot by robot" stopped estop
+check "it stands" fails 1 'one: prepare: a stop of the group stands' \
+    fleet play greet.pseq --group one
+check "until it is taken back" exits 0 fleet reset --group one
+check "a soft stop" stopped stop
+check "stands as well" fails 1 'a stop of the group stands' fleet play greet.pseq --group one
+check "and is taken back" exits 0 fleet reset --group one
+leader_killed() {
+    plays "$@" && kill -9 "$play" && { wait "$play"; written "$work/one.err" "$lapsed"; }
+}
+lapsed='the permit lapsed: the motion stops'
+check "a motion stops softly when who leads it dies" both leader_killed --- wait_for rests
+lapsed='the permit lapsed: the motion goes on'
+goes_on() {
+    leader_killed --on-link-lost finish && moves && exits 0 fleet stop --group one &&
+        wait_for rests && exits 0 fleet reset --group one
+}
+check "or goes on, where that was said" goes_on
+
+# ---- the broker ----------------------------------------------------------------------------------
+
+hangs() {
+    : >"$work/one.err"
+    lapsed='the permit lapsed: the motion stops'
+    plays && kill -STOP "$broker_pid" && written "$work/one.err" "$lapsed"
+    hangs_status=$?
+    kill -CONT "$broker_pid"
+    wait "$play"
+    [ $hangs_status -eq 0 ] && wait_for rests
+}
+check "a broker that hangs stops a motion softly" hangs
+dies() {
+    : >"$work/one.err"
+    exits 1 fleet estop --group two && lapsed='the permit lapsed: the motion stops'
+    plays && kill -9 "$broker_pid" && written "$work/one.err" 'the broker is away' &&
+        written "$work/one.err" "$lapsed"
+}
+check "so does one that dies" dies
+begin_broker
+came_back() {
+    wait "$play"
+    wait_for is_listed one ONLINE && wait_for is_listed two ONLINE && rests
+}
+check "agents come back to it, and nothing moves" came_back
+check "a stop that it forgot still stands" fails 1 'two: prepare: a stop of the group stands' \
+    fleet play greet.pseq --group two
+check "it can be taken back" exits 0 fleet reset --group two --host two
+check "and robots play again" exits 0 fleet play greet.pseq -s 400 --group one
+
+# ---- strangers -----------------------------------------------------------------------------------
+
+id=00112233445566778899aabbccddeeff
+epoch=$(mosquitto_sub -p "$port" -C 1 -t grobo/v1/one/connection | sed 's/.*"epoch":"\([0-9a-f]*\).*/\1/')
+# says_to VERB JSON [OPTIONS]: as an order of $id.
+says_to() {
+    says_verb=$1 says_text=$2
+    shift 2
+    mosquitto_pub -V 5 -p "$port" -q 1 -t "grobo/v1/one/cmd/$says_verb" -m "$says_text" \
+        -D publish response-topic "grobo/v1/ack/$id" "$@"
+}
+# an_order EPOCH: of prepare.
+an_order() {
+    printf '{"v":1,"id":"%s","from":"%s","epoch":"%s","issued_us":1,"deadline_us":2,"file":"%s"}' \
+        "$id" "$id" "$1" "${2:-greet.pseq}"
+}
+# answers PATTERN COMMAND...: the next answer to $id is like that.
+answers() {
+    answers_pattern=$1
+    shift
+    mosquitto_sub -p "$port" -W 5 -C 1 -t "grobo/v1/ack/$id" >"$work/answer" &
+    answers_pid=$!
+    wait_for subscribed
+    "$@"
+    wait $answers_pid
+    grep -q -e "$answers_pattern" "$work/answer" || { cat "$work/answer"; return 1; }
+}
+subscribed() {
+    tail -n 20 "$work/broker.log" | grep -q "ack/$id (QoS"
+}
+refused() { # PATTERN COMMAND...: noted by the agent
+    : >"$work/one.err"
+    refused_pattern=$1
+    shift
+    "$@" && written "$work/one.err" "$refused_pattern"
+}
+check "an order of an earlier life" answers '"code":"stale".*another life' \
+    says_to prepare "$(an_order "$id")"
+check "one whose sender has no clock" answers '"code":"stale".*clock of its sender' \
+    says_to prepare "$(an_order "$epoch")"
+check "the same again is answered, not done" answers '"code":"stale".*clock of its sender' \
+    says_to prepare "$(an_order "$epoch")"
+check "rubbish" refused 'refused: it is no object' says_to prepare '{"v":1'
+check "an order without an id" refused 'refused: it has no id' says_to prepare '{"v":1}'
+check "an answer that would go elsewhere" refused 'its answer would go elsewhere' \
+    mosquitto_pub -V 5 -p "$port" -q 1 -t grobo/v1/one/cmd/prepare -m "$(an_order "$epoch")" \
+    -D publish response-topic grobo/v1/group/one/latch
+check "a retained order" refused 'a retained message is no order' \
+    mosquitto_pub -p "$port" -q 1 -r -t grobo/v1/one/cmd/prepare -m "$(an_order "$epoch")"
+large() {
+    head -c 1500000 /dev/zero | tr '\0' x >"$work/large"
+    mosquitto_pub -p "$port" -q 1 -t grobo/v1/one/cmd/put -f "$work/large" &&
+        fleet list | grep -q '^one  *ONLINE'
+}
+check "a message of 1.5 MB" large
+check "and all of that moved nothing" rests
+check "the agent is the same" kill -0 "$agent_one"
+
+# ---- leaving -------------------------------------------------------------------------------------
+
+leaves() {
+    kill -TERM "$agent_one" && wait_for is_listed one OFFLINE
+}
+check "an agent says goodbye" leaves
+broken() {
+    begin_agent one
+    wait_for is_listed one ONLINE && kill -9 "$agent" && wait_for is_listed one CONNECTIONBROKEN
+}
+check "the broker says it of one that died" broken
+
+# ---- a crowd -------------------------------------------------------------------------------------
+
+crowd() {
+    list=
+    robots=
+    for i in $(seq 25); do
+        list="$list${list:+, }r$i"
+        robots="$robots${robots:+, }r$i: {device: sim}"
+    done
+    printf 'groups: {%s}\nrobots: {%s}\n' \
+        "h1: [$list], h2: [$list], h3: [$list], h4: [$list]" "$robots" \
+        >"$work/config/grctl/config.yaml"
+    for host in h1 h2 h3 h4; do
+        begin_agent "$host"
+    done
+    for host in h1 h2 h3 h4; do
+        wait_for is_listed "$host" ONLINE || return 1
+    done
+    exits 0 fleet play greet.pseq -s 400 --spread 20 && [ "$(grep -c played "$work/out")" -eq 100 ]
+}
+if [ -n "${CROWD:-}" ]; then
+    kill "$(pgrep -P $$ -f 'agent --broker' | head -n 1)" 2>/dev/null
+    check "100 robots of four agents" crowd
+    check "all stop" exits 0 fleet estop
+fi
+
+done_testing

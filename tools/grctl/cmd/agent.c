@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/fleet/agent.h"
+#include "tools/grctl/fleet/broker.h"
+
+enum { OPT_HOST = BROKER_OPTIONS, OPT_GROUP, OPT_MOTIONS, OPTIONS };
+
+static const cli_option options[OPTIONS] = {
+    BROKER_OPTION_ROWS,
+    [OPT_HOST] = OPTION_TEXT("host", 0, "NAME", "what this machine is called (its own name)"),
+    [OPT_GROUP] =
+        OPTION_TEXT("group", 0, "NAME", "the group of its robots, beside all (that of -d)"),
+    [OPT_MOTIONS] = OPTION_TEXT("motions", 0, "FOLDER", "where motion files are (motions)"),
+};
+
+static int take_name(app *a, int option, const char *otherwise, const char *what, char *name)
+{
+    const cli_value *given = app_option(a, option);
+    const char *text = given->given ? given->text : otherwise;
+    if (!fleet_is_name(text)) {
+        return app_fail(a, EXIT_USAGE, "ARG", "%s '%s': letters, digits, _ and -, at most 63", what,
+                        text);
+    }
+    snprintf(name, FLEET_NAME_BYTES, "%s", text);
+    return EXIT_DONE;
+}
+
+static int check_robots(app *a)
+{
+    if (!a->group && !a->robot) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "agent: -d names a robot or a group of the configuration");
+    }
+    for (int i = 0; a->group && i < a->group->n; i++) {
+        if (!fleet_is_name(a->group->robot[i])) {
+            return app_fail(a, EXIT_USAGE, "ARG",
+                            "robot '%s': letters, digits, _ and - in a name for a fleet",
+                            a->group->robot[i]);
+        }
+    }
+    return EXIT_DONE;
+}
+
+static int serve(agent *g)
+{
+    while (!g->all.host.signal) {
+        for (int i = 0; i < g->all.n; i++) {
+            if (g->all.seats[i].c.signal) {
+                return EXIT_SIGNAL + g->all.seats[i].c.signal;
+            }
+        }
+        if (event_base_loop(g->all.host.base, EVLOOP_ONCE) != 0) {
+            return app_fail_error(g->a, EXIT_ROBOT, GROBO_ERR_IO, "agent");
+        }
+        agent_work(g);
+    }
+    return EXIT_SIGNAL + g->all.host.signal;
+}
+
+static int run(app *a)
+{
+    static agent g;
+    static broker b;
+    char host[FLEET_NAME_BYTES], group[FLEET_NAME_BYTES], own[FLEET_NAME_BYTES];
+    const cli_value *motions = app_option(a, OPT_MOTIONS);
+    fleet_host_name(own);
+    int status = broker_read(&b, a);
+    if (!status) {
+        status = check_robots(a);
+    }
+    if (!status) {
+        status = take_name(a, OPT_HOST, own, "host", host);
+    }
+    if (!status) {
+        status =
+            take_name(a, OPT_GROUP, a->group ? a->group->name : a->robot->name, "group", group);
+    }
+    if (status) {
+        return status;
+    }
+    status = agent_begin(&g, a, &b.config, host, group, motions->given ? motions->text : "motions");
+    return agent_end(&g, status ? status : serve(&g));
+}
+
+const cli_command cmd_agent = {
+    .name = "agent",
+    .arguments = "",
+    .summary = "lend the robots of this machine to a fleet",
+    .details =
+        "Connects to an MQTT 5 broker, says how the robots are, and does what 'grctl fleet' orders:\n"
+        "one connection, however many robots. -d names a robot or a group of the configuration.\n"
+        "\n"
+        "It moves nothing by itself. Without its broker it goes on trying, and a motion that is\n"
+        "played ends as was said when it began: it stops softly unless told otherwise. A robot that\n"
+        "is not there is tried again every 5 s. A stop of the group stands until it is taken back.\n"
+        "\n"
+        "GRCTL_MQTT_PASSWORD is the password of USER. docs/guide/fleet.md has the rights that the\n"
+        "broker should give, and what a stop over a network is not.\n",
+    .example = "  grctl -d stage agent --broker mqtt://stage.local\n",
+    COMMAND_OPTIONS(options),
+    .group = CLI_GROUP_TOGETHER,
+    .run = run,
+};

@@ -1,0 +1,457 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/fleet/broker.h"
+#include "tools/grctl/fleet/leader.h"
+
+enum {
+    OPT_GROUP = BROKER_OPTIONS,
+    OPT_HOST,
+    OPT_SPEED,
+    OPT_REPEAT,
+    OPT_MIRROR,
+    OPT_IF_LOST,
+    OPT_ON_LOST,
+    OPT_SPREAD,
+    OPTIONS
+};
+
+enum {
+    ANSWER_US = 3000000,
+    READY_US = 35000000,
+    STOPPED_US = 12000000,
+    STATE_US = 400000,
+    LEAD_US = 300000,
+    TRIPS = 20 /* the start is at least so many round trips ahead */
+};
+
+static const cli_option options[OPTIONS] = {
+    BROKER_OPTION_ROWS,
+    [OPT_GROUP] = OPTION_TEXT("group", 0, "NAME", "the robots of this group (all)"),
+    [OPT_HOST] = OPTION_TEXT("host", 0, "NAME", "those of this machine alone"),
+    [OPT_SPEED] = OPTION_WHOLE("speed", 's', "PCT", 1, 1000, "play: speed in percent (100)"),
+    [OPT_REPEAT] = OPTION_WHOLE("repeat", 'n', "N", 1, 1000000, "play: N times"),
+    [OPT_MIRROR] = OPTION_FLAG("mirror", 'm', "play: left for right"),
+    [OPT_IF_LOST] = OPTION_CHOICE("if-lost", 0, "stop|pause|continue",
+                                  "play: what the others do when a robot falls out (stop)"),
+    [OPT_ON_LOST] = OPTION_CHOICE("on-link-lost", 0, "stop|finish|exit",
+                                  "play: what robots do that hear no more of this command (stop)"),
+    [OPT_SPREAD] = OPTION_REAL("spread", 0, "MS", 0.1, 1000, "play: begin within this time (5)"),
+};
+
+static bool never(const leader *l)
+{
+    (void)l;
+    return false;
+}
+
+/* ---- answers --------------------------------------------------------------------------------- */
+
+/* Says who refused, or did not answer. The exit status. */
+static int say_answers(leader *l, const char *doing)
+{
+    int status = EXIT_DONE;
+    for (int i = 0; i < l->n; i++) {
+        const peer *p = &l->peers[i];
+        if (!p->chosen || json_is_true(json_object_get(p->answer, "ok"))) {
+            continue;
+        }
+        const char *code = fleet_text(p->answer, "code"), *why = fleet_text(p->answer, "message");
+        status = app_fail(l->a, EXIT_ROBOT, p->answer && code ? code : "TIMEOUT", "%s: %s: %s",
+                          p->host, doing, p->answer && why ? why : "no answer");
+    }
+    return status;
+}
+
+static int order(leader *l, const char *verb, json_t *body, int64_t bound_us)
+{
+    leader_order(l, verb, body);
+    (void)leader_wait(l, bound_us, leader_answered);
+    return say_answers(l, verb);
+}
+
+/* ---- list and status ------------------------------------------------------------------------- */
+
+static void list_one(const leader *l, const peer *p)
+{
+    size_t i;
+    json_t *robot;
+    const json_t *robots = json_object_get(p->facts, "robots");
+    if (l->a->json) {
+        app_print_json(json_pack("{s:s,s:s,s:O*,s:O*}", "host", p->host, "state", p->state,
+                                 "groups", json_object_get(p->facts, "groups"), "robots", robots));
+        return;
+    }
+    json_array_foreach(robots, i, robot)
+    {
+        const char *name = fleet_text(robot, "name"), *model = fleet_text(robot, "model");
+        app_print("%-20s  %-16s  %-16s  %s\n", p->host, p->state, name ? name : "",
+                  model && *model ? model : "-");
+    }
+}
+
+static int run_list(leader *l)
+{
+    if (!l->a->json) {
+        app_print("host                  connection        robot             model\n");
+    }
+    for (int i = 0; i < l->n; i++) {
+        if (*l->peers[i].state) {
+            list_one(l, &l->peers[i]);
+        }
+    }
+    return EXIT_DONE;
+}
+
+static int run_status(leader *l)
+{
+    leader_listen(l, "state");
+    (void)leader_wait(l, STATE_US, never);
+    if (!l->a->json) {
+        app_print("host                  robot             line  play          trip\n");
+    }
+    for (int i = 0; i < l->n; i++) {
+        const peer *p = &l->peers[i];
+        const char *name;
+        json_t *state;
+        json_object_foreach(p->states, name, state)
+        {
+            const char *play = fleet_text(state, "play"), *trip = fleet_text(state, "trip");
+            bool up = json_is_true(json_object_get(state, "up"));
+            if (l->a->json) {
+                app_print_json(
+                    json_pack("{s:s,s:s,s:O}", "host", p->host, "robot", name, "state", state));
+            } else {
+                app_print("%-20s  %-16s  %-4s  %-12s  %s\n", p->host, name, up ? "up" : "down",
+                          play ? play : "-", trip ? trip : "-");
+            }
+        }
+    }
+    return EXIT_DONE;
+}
+
+/* ---- stops ----------------------------------------------------------------------------------- */
+
+static bool all_told(const leader *l)
+{
+    for (int i = 0; i < l->n; i++) {
+        if (l->peers[i].chosen && !l->peers[i].stopped) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Each robot by itself: only what was read back is a success. */
+static int say_stopped(leader *l)
+{
+    int status = EXIT_DONE;
+    for (int i = 0; i < l->n; i++) {
+        const peer *p = &l->peers[i];
+        size_t k;
+        json_t *robot;
+        if (p->chosen && !p->stopped) {
+            status = app_fail(l->a, EXIT_ROBOT, "TIMEOUT",
+                              "%s: no answer; go there and use the switch", p->host);
+        }
+        json_array_foreach(json_object_get(p->stopped, "robots"), k, robot)
+        {
+            const char *name = fleet_text(robot, "name");
+            bool stopped = json_is_true(json_object_get(robot, "stopped"));
+            if (!p->chosen) {
+                continue;
+            }
+            if (!stopped) {
+                status =
+                    app_fail(l->a, EXIT_ROBOT, "BUSY", "%s/%s: NOT seen to stop; use its switch",
+                             p->host, name ? name : "");
+            } else {
+                app_note(l->a, "%s/%s: stopped", p->host, name ? name : "");
+            }
+        }
+    }
+    if (!status) {
+        app_done(l->a, "all stopped; 'grctl fleet reset' takes it back");
+    }
+    return status;
+}
+
+static int stop(leader *l, const char *how)
+{
+    leader_latch(l, how);
+    (void)leader_wait(l, STOPPED_US, all_told);
+    return say_stopped(l);
+}
+
+static int run_stop(leader *l)
+{
+    return stop(l, "stop");
+}
+
+static int run_estop(leader *l)
+{
+    return stop(l, "estop");
+}
+
+/* The latch first, then what the engines keep. */
+static int run_reset(leader *l)
+{
+    leader_latch(l, NULL);
+    (void)leader_wait(l, STATE_US, never);
+    int status = order(l, "reset", json_object(), ANSWER_US);
+    if (!status) {
+        app_done(l->a, "taken back; nothing moves");
+    }
+    return status;
+}
+
+/* ---- push ------------------------------------------------------------------------------------ */
+
+static json_t *text_of(app *a, const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    char *text = malloc(MQTT_PAYLOAD_MAX_BYTES / 2);
+    size_t n = file && text ? fread(text, 1, MQTT_PAYLOAD_MAX_BYTES / 2, file) : 0;
+    bool ok = file && text && !ferror(file) && n < MQTT_PAYLOAD_MAX_BYTES / 2;
+    json_t *string = ok ? json_stringn(text, n) : NULL;
+    if (!string) {
+        (void)app_fail(a, EXIT_FILE, "IO", "%s: a text file of less than 512 KiB is wanted", path);
+    }
+    if (file) {
+        fclose(file);
+    }
+    free(text);
+    return string;
+}
+
+static const char *name_of_file(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static int run_push(leader *l)
+{
+    int status = EXIT_DONE;
+    for (int i = 1; i < l->a->line.n_arguments && !status; i++) {
+        const char *path = l->a->line.argument[i];
+        json_t *text = text_of(l->a, path);
+        if (!text) {
+            return EXIT_FILE;
+        }
+        status = order(l, "put", json_pack("{s:s,s:o}", "file", name_of_file(path), "text", text),
+                       ANSWER_US);
+    }
+    if (!status) {
+        app_done(l->a, "there");
+    }
+    return status;
+}
+
+/* ---- play ------------------------------------------------------------------------------------ */
+
+static bool all_ended(const leader *l)
+{
+    for (int i = 0; i < l->n; i++) {
+        if (l->peers[i].chosen && !l->peers[i].ended) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static json_t *motion_of(const leader *l)
+{
+    static const char *const lost[] = {"stop", "pause", "continue"};
+    static const char *const on_lost[] = {"stop", "finish", "exit"};
+    const app *a = l->a;
+    return json_pack(
+        "{s:s,s:s,s:i,s:i,s:b,s:s,s:s,s:I}", "group", l->group, "file",
+        name_of_file(a->line.argument[1]), "speed_pct", (int)app_number(a, OPT_SPEED, 100),
+        "repeat", (int)app_number(a, OPT_REPEAT, 1), "mirror", app_option(a, OPT_MIRROR)->given > 0,
+        "if_lost", lost[app_option(a, OPT_IF_LOST)->given ? app_option(a, OPT_IF_LOST)->choice : 0],
+        "on_link_lost",
+        on_lost[app_option(a, OPT_ON_LOST)->given ? app_option(a, OPT_ON_LOST)->choice : 0],
+        "spread_us", (json_int_t)(app_number(a, OPT_SPREAD, 5) * 1000));
+}
+
+static int64_t slowest_us(const leader *l)
+{
+    int64_t slowest = 0;
+    for (int i = 0; i < l->n; i++) {
+        const peer *p = &l->peers[i];
+        slowest = p->chosen && p->took_us > slowest ? p->took_us : slowest;
+    }
+    return slowest;
+}
+
+static int say_ended(leader *l)
+{
+    int status = EXIT_DONE;
+    for (int i = 0; i < l->n; i++) {
+        const peer *p = &l->peers[i];
+        size_t k;
+        json_t *robot;
+        if (p->chosen && !p->ended) {
+            status =
+                app_fail(l->a, EXIT_ROBOT, "TIMEOUT", "%s: does not say how it ended", p->host);
+        }
+        json_array_foreach(json_object_get(p->ended, "robots"), k, robot)
+        {
+            const char *name = fleet_text(robot, "name"), *why = fleet_text(robot, "message");
+            bool ok = json_is_true(json_object_get(robot, "ok"));
+            if (l->a->json) {
+                app_print_json(json_pack("{s:s,s:s,s:b,s:s}", "host", p->host, "robot",
+                                         name ? name : "", "ok", ok, "message", why ? why : ""));
+            } else if (ok) {
+                app_print("%s/%s: played\n", p->host, name ? name : "");
+            } else {
+                status = app_fail(l->a, EXIT_ROBOT, "CANCELED", "%s/%s: %s", p->host,
+                                  name ? name : "", why ? why : "");
+            }
+            status = ok || status ? status : EXIT_ROBOT;
+        }
+    }
+    return status;
+}
+
+static int call_off(leader *l, int status)
+{
+    leader_order(l, "abort", json_object());
+    l->link.signal = 0;
+    (void)leader_wait(l, ANSWER_US, leader_answered);
+    return status;
+}
+
+static int run_play(leader *l)
+{
+    if (l->a->line.n_arguments != 2) {
+        return app_fail(l->a, EXIT_USAGE, "ARG", "fleet play: one file of the agents' folders");
+    }
+    l->permits = true;
+    int status = order(l, "prepare", motion_of(l), READY_US);
+    int signal = l->link.signal;
+    if ((status || signal) && !l->lost) {
+        return call_off(l, signal ? EXIT_SIGNAL + signal : status);
+    }
+    /* The answers to `prepare` waited for robots: a round trip is measured by another order. */
+    leader_order(l, "ping", json_object());
+    (void)leader_wait(l, ANSWER_US, leader_answered);
+    int64_t ahead_us = TRIPS * slowest_us(l) > LEAD_US ? TRIPS * slowest_us(l) : LEAD_US;
+    status = order(l, "start", json_pack("{s:I}", "at_us", (json_int_t)(grobo_now_us() + ahead_us)),
+                   ANSWER_US);
+    if (status) {
+        return call_off(l, status);
+    }
+    app_note(l->a, "all begin in %.1f s", (double)ahead_us / 1e6);
+    while (!leader_wait(l, 3600000000, all_ended) && !l->link.signal && !l->lost) {
+        continue;
+    }
+    signal = l->link.signal;
+    if (signal) {
+        (void)call_off(l, 0);
+        (void)leader_wait(l, ANSWER_US, all_ended);
+    }
+    if (l->lost) {
+        return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE",
+                        "fleet: the broker went away: the robots do as --on-link-lost says");
+    }
+    status = say_ended(l);
+    return signal ? EXIT_SIGNAL + signal : status;
+}
+
+/* ---- log ------------------------------------------------------------------------------------- */
+
+static void say_event(leader *l, const peer *p, json_t *event)
+{
+    const char *robot = fleet_text(event, "robot"), *kind = fleet_text(event, "kind");
+    const char *text = fleet_text(event, "message");
+    if (l->a->json) {
+        app_print_json(json_pack("{s:s,s:O}", "host", p->host, "event", event));
+    } else {
+        app_print("%s%s%s: %s %s\n", p->host, robot ? "/" : "", robot ? robot : "",
+                  kind ? kind : "", text ? text : "");
+    }
+    output_flush();
+}
+
+static int run_log(leader *l)
+{
+    l->on_event = say_event;
+    while (!l->link.signal) {
+        (void)leader_wait(l, 3600000000, never);
+    }
+    return EXIT_SIGNAL + l->link.signal;
+}
+
+/* ---- the command ----------------------------------------------------------------------------- */
+
+static const struct {
+    const char *word;
+    int (*run)(leader *l);
+    bool asks; /* agents must be there */
+} verbs[] = {{"list", run_list, false}, {"status", run_status, false}, {"play", run_play, true},
+             {"stop", run_stop, false}, {"estop", run_estop, false},   {"reset", run_reset, false},
+             {"push", run_push, true},  {"log", run_log, false}};
+
+static int run(app *a)
+{
+    static leader l;
+    static broker b;
+    const cli_value *group = app_option(a, OPT_GROUP), *host = app_option(a, OPT_HOST);
+    size_t v = 0;
+    while (v < sizeof verbs / sizeof verbs[0] && strcmp(verbs[v].word, a->line.argument[0]) != 0) {
+        v++;
+    }
+    if (v == sizeof verbs / sizeof verbs[0]) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "fleet %s: there are list, status, play, stop, estop, reset, push, log",
+                        a->line.argument[0]);
+    }
+    if ((group->given && !fleet_is_name(group->text)) ||
+        (host->given && !fleet_is_name(host->text))) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "fleet: letters, digits, _ and - in the name of a group or a host");
+    }
+    int status = broker_read(&b, a);
+    if (status) {
+        return status;
+    }
+    status = leader_begin(&l, a, &b.config, group->given ? group->text : FLEET_ALL,
+                          host->given ? host->text : NULL);
+    if (!status) {
+        int n = leader_choose(&l);
+        status = verbs[v].asks && n == 0
+                     ? app_fail(a, EXIT_ROBOT, "NOTFOUND", "fleet: no agent of group %s is online",
+                                l.group)
+                     : verbs[v].run(&l);
+    }
+    leader_end(&l);
+    return status;
+}
+
+const cli_command cmd_fleet = {
+    .name = "fleet",
+    COMMAND_ARGUMENTS("list|status|play|stop|estop|reset|push|log [FILE]...", 1, -1, CLI_ARG_FILE),
+    .summary = "ask the robots of many machines, over a broker",
+    .details =
+        "Speaks with every 'grctl agent' at the broker, or with a group or a machine of them.\n"
+        "\n"
+        "list, status, log  who is there; how the robots are; what happens, until Ctrl-C\n"
+        "push FILE...       puts motions into the folders of the agents\n"
+        "play FILE          all prepare, wait for each other, and begin at one time; FILE is a\n"
+        "                   name in the folders of the agents\n"
+        "stop, estop        a stop of the group that stands until 'reset': softly, or as an\n"
+        "                   emergency stop that is read back joint by joint\n"
+        "\n"
+        "A stop over a network is a convenience and no safety function: it may come late or never.\n"
+        "Keep the switches within reach.\n",
+    .example = "  grctl fleet list --broker mqtt://stage.local\n"
+               "  grctl fleet push motions/greet.pseq\n"
+               "  grctl fleet play greet.pseq --group stage\n",
+    COMMAND_OPTIONS(options),
+    .run = run,
+};

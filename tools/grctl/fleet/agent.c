@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/fleet/agent.h"
+#include "tools/grctl/fleet/orders.h"
+#include "tools/grctl/fleet/say.h"
+
+enum { TICK_US = 100000, LAST_EVERY = 10 /* ticks */, RETRY_US = 5000000 };
+
+/* ---- stops ----------------------------------------------------------------------------------- */
+
+/* Every robot of the group, in this call. */
+static void stop_now(agent *g, bool estop)
+{
+    for (int i = 0; i < g->all.n; i++) {
+        seat *s = &g->all.seats[i];
+        if (!s->is_open) {
+            continue;
+        }
+        if (estop) {
+            (void)grobo_robot_estop(s->c.robot);
+        } else {
+            (void)grobo_robot_stop(s->c.robot, false);
+        }
+    }
+    troupe_look(&g->all);
+}
+
+/* The retained stop of a group: it stands until who has its id takes it back. */
+static void take_latch(agent *g, const char *group, const mqtt_message *message)
+{
+    json_t *latch = message->size ? fleet_read(message->payload, message->size) : NULL;
+    const char *id = latch ? fleet_text(latch, "id") : NULL;
+    bool stopped = latch && json_is_true(json_object_get(latch, "stopped"));
+    if (!latch || !id || strlen(id) != FLEET_ID_BYTES - 1) {
+        json_decref(latch); /* what cannot be read changes nothing */
+        return;
+    }
+    if (!stopped) {
+        if (g->latched && strcmp(id, g->latch_id) == 0) {
+            g->latched = false;
+            json_decref(g->latch);
+            g->latch = NULL;
+            say_event(g, NULL, "released", "the stop of the group was taken back");
+        }
+        json_decref(latch);
+        return;
+    }
+    bool is_news = !g->latched || strcmp(id, g->latch_id) != 0;
+    g->latched = true;
+    snprintf(g->latch_id, sizeof g->latch_id, "%s", id);
+    snprintf(g->latch_group, sizeof g->latch_group, "%s", group);
+    json_decref(g->latch);
+    g->latch = latch;
+    if (is_news) {
+        const char *how = fleet_text(latch, "how");
+        stop_now(g, !how || strcmp(how, "stop") != 0);
+        g->telling = true;
+    }
+}
+
+static bool stands(const seat *s)
+{
+    return !s->is_open || !s->c.up ||
+           (grobo_robot_job(s->c.robot) == GROBO_JOB_NONE && !grobo_robot_moving(s->c.robot) &&
+            !grobo_robot_is_playing(s->c.robot));
+}
+
+/* Told once all stand, or could not be made to. */
+static void tell_stopped(agent *g)
+{
+    for (int i = 0; i < g->all.n; i++) {
+        if (!stands(&g->all.seats[i])) {
+            return;
+        }
+    }
+    g->telling = false;
+    say_stopped(g);
+}
+
+/* ---- the permit ------------------------------------------------------------------------------ */
+
+static void take_permit(agent *g, const char *group, const mqtt_message *message)
+{
+    json_t *permit = fleet_read(message->payload, message->size);
+    const char *leader = permit ? fleet_text(permit, "leader") : NULL;
+    if (leader && g->plays && strcmp(leader, g->play.is.from) == 0 &&
+        strcmp(group, g->permit_group) == 0) {
+        g->permit_us = grobo_now_us();
+    }
+    json_decref(permit);
+}
+
+/* As was said when it began; before it began it stops in any case. */
+static void let_go(agent *g)
+{
+    g->let_go = true;
+    say_event(g, NULL, "unpermitted",
+              !g->started                  ? "the permit lapsed before the start: it stops"
+              : g->on_lost == AGENT_FINISH ? "the permit lapsed: the motion goes on"
+              : g->on_lost == AGENT_EXIT   ? "the permit lapsed: the exit policy"
+                                           : "the permit lapsed: the motion stops");
+    if (g->started && g->on_lost == AGENT_FINISH) {
+        return;
+    }
+    (void)grobo_team_stop(g->all.team, false);
+    for (int i = 0; i < g->all.n && g->on_lost == AGENT_EXIT; i++) {
+        seat *s = &g->all.seats[i];
+        if (s->chosen && s->c.up) {
+            (void)grobo_robot_exit(s->c.robot, GROBO_EXIT_DEFAULT);
+        }
+    }
+    troupe_look(&g->all);
+}
+
+/* ---- what comes ------------------------------------------------------------------------------ */
+
+static void on_message(void *ctx, const mqtt_message *message)
+{
+    agent *g = ctx;
+    char part[4][FLEET_NAME_BYTES];
+    int n = fleet_parts(message->topic, part);
+    if (n == 3 && strcmp(part[0], "group") == 0 && strcmp(part[2], "latch") == 0) {
+        take_latch(g, part[1], message);
+    } else if (message->retained) {
+        say_event(g, NULL, "refused", "a retained message is no order");
+    } else if (n == 3 && strcmp(part[0], "group") == 0 && strcmp(part[2], "permit") == 0) {
+        take_permit(g, part[1], message);
+    } else if (n == 3 && strcmp(part[0], "time") == 0) {
+        orders_take_time(g, message);
+    } else if (n == 3 && strcmp(part[1], "cmd") == 0 && g->listens) {
+        orders_take(g, part[2], message);
+    }
+}
+
+static void subscribe(agent *g, const char *a, const char *b, const char *c, bool retained)
+{
+    char topic[FLEET_TOPIC_BYTES];
+    if (fleet_topic(topic, a, b, c, NULL)) {
+        (void)mqtt_subscribe(g->m, topic, 1, retained);
+    }
+}
+
+/* The latches first; orders when they have come. */
+static void on_up(void *ctx)
+{
+    agent *g = ctx;
+    app_note(g->a, "connected to the broker as %s", g->host);
+    subscribe(g, "group", FLEET_ALL, "latch", true);
+    subscribe(g, "group", g->group, "latch", true);
+    g->listens = false;
+    g->settled_us = grobo_now_us() + AGENT_SETTLE_US;
+    say_hello(g);
+    if (g->latch) {
+        say_latch(g); /* a broker may have forgotten it */
+    }
+}
+
+static void begin_listening(agent *g)
+{
+    subscribe(g, "group", FLEET_ALL, "permit", false);
+    subscribe(g, "group", g->group, "permit", false);
+    subscribe(g, "time", g->host, "pong", false);
+    subscribe(g, g->host, "cmd", "+", false);
+    g->listens = true;
+}
+
+static void on_down(void *ctx, const char *why)
+{
+    agent *g = ctx;
+    if (g->listens || g->settled_us) {
+        app_note(g->a, "the broker is away: %s", why);
+    }
+    g->listens = false;
+    g->settled_us = 0;
+    orders_forget(g);
+}
+
+static void on_refused(void *ctx, const char *why)
+{
+    agent *g = ctx;
+    app_note(g->a, "the broker refuses: %s", why);
+}
+
+static bool may_block(void *ctx)
+{
+    const agent *g = ctx;
+    for (int i = 0; i < g->all.n; i++) {
+        if (!stands(&g->all.seats[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void on_tick(evutil_socket_t fd, short what, void *ctx)
+{
+    agent *g = ctx;
+    int64_t now_us = grobo_now_us();
+    (void)fd;
+    (void)what;
+    if (!g->listens && g->settled_us && now_us >= g->settled_us) {
+        begin_listening(g);
+    }
+    if (g->plays && g->all.team && !g->let_go && now_us - g->permit_us > AGENT_PERMIT_US) {
+        let_go(g);
+    }
+    if (g->telling) {
+        tell_stopped(g);
+    }
+    orders_age(g, now_us);
+    g->seq++;
+    for (int i = 0; i < g->all.n; i++) {
+        say_state(g, &g->all.seats[i], g->seq % LAST_EVERY == 0);
+    }
+}
+
+/* ---- robots ---------------------------------------------------------------------------------- */
+
+static void on_robot(seat *s, const grobo_event *event)
+{
+    agent *g = s->all->ctx;
+    if (event->kind == GROBO_EVENT_TRIP) {
+        say_event(g, s, "trip", grobo_trip_name(event->u.trip.trip));
+    } else if (event->kind == GROBO_EVENT_LINK_DOWN || event->kind == GROBO_EVENT_LINK_UP) {
+        say_event(g, s, event->kind == GROBO_EVENT_LINK_UP ? "link_up" : "link_down", "");
+    }
+}
+
+/* One that is not there is no failure; it is said once. */
+static void open_robots(agent *g, bool first)
+{
+    char line[APP_LINE_BYTES];
+    for (int i = 0; i < g->all.n; i++) {
+        seat *s = &g->all.seats[i];
+        if (s->is_open) {
+            continue;
+        }
+        *line = '\0';
+        g->a->hushed = line;
+        int status = seat_open(&g->all, i);
+        if (status) {
+            (void)seat_close(s, status);
+        }
+        g->a->hushed = NULL;
+        s->a.hushed = NULL;
+        if (status && first) {
+            app_note(g->a, "%s; tried again every 5 s", *line ? line : s->name);
+        } else if (!status && !first) {
+            app_note(g->a, "%s is there", s->name);
+        }
+        if (!status && g->latched) {
+            (void)grobo_robot_latch(s->c.robot);
+        }
+    }
+}
+
+static void retry(agent *g)
+{
+    int64_t now_us = grobo_now_us();
+    if (now_us >= g->retry_us && !g->plays) {
+        open_robots(g, false);
+        g->retry_us = grobo_now_us() + RETRY_US;
+    }
+}
+
+/* A line that is lost for good is opened anew. */
+static void close_lost(agent *g)
+{
+    for (int i = 0; i < g->all.n && !g->plays; i++) {
+        seat *s = &g->all.seats[i];
+        if (s->is_open && s->c.link_error) {
+            (void)seat_close(s, EXIT_ROBOT);
+        }
+    }
+}
+
+void agent_work(agent *g)
+{
+    orders_work(g);
+    close_lost(g);
+    retry(g);
+}
+
+/* ---- an agent -------------------------------------------------------------------------------- */
+
+static int make_timer(agent *g)
+{
+    const struct timeval period = {0, TICK_US};
+    g->tick = event_new(g->all.host.base, -1, EV_PERSIST, on_tick, g);
+    return g->tick && event_add(g->tick, &period) == 0 ? EXIT_DONE : EXIT_ROBOT;
+}
+
+int agent_begin(agent *g, app *a, const mqtt_config *with, const char *host, const char *group,
+                const char *motions)
+{
+    static config_group one;
+    mqtt_config config = *with;
+    char topic[FLEET_TOPIC_BYTES];
+    const char *why;
+    memset(g, 0, sizeof *g);
+    g->a = a;
+    g->motions = motions;
+    snprintf(g->host, sizeof g->host, "%s", host);
+    snprintf(g->group, sizeof g->group, "%s", group);
+    fleet_make_id(g->epoch);
+    if (a->group) {
+        one = *a->group;
+    } else {
+        one.n = 1;
+        snprintf(one.robot[0], sizeof one.robot[0], "%s", a->robot->name);
+    }
+    int status = troupe_begin(&g->all, a, one.robot, one.n);
+    if (status) {
+        return status;
+    }
+    a->reconnects = true;
+    g->all.on_team = orders_on_team;
+    g->all.on_robot = on_robot;
+    g->all.ctx = g;
+    say_prepare(g);
+    config.base = g->all.host.base;
+    config.id = g->host;
+    (void)fleet_topic(topic, g->host, "connection", NULL, NULL);
+    config.will_topic = topic;
+    config.will = g->lost_text[0];
+    config.on_up = on_up;
+    config.on_down = on_down;
+    config.on_message = on_message;
+    config.on_refused = on_refused;
+    config.may_block = may_block;
+    config.ctx = g;
+    g->m = mqtt_new(&config, &why);
+    if (!g->m) {
+        return app_fail(a, EXIT_ROBOT, "IO", "agent: %s: %s", config.host, why);
+    }
+    open_robots(g, true);
+    g->retry_us = grobo_now_us() + RETRY_US;
+    mqtt_start(g->m);
+    return make_timer(g);
+}
+
+int agent_end(agent *g, int status)
+{
+    if (g->all.team) {
+        (void)grobo_team_stop(g->all.team, false);
+    }
+    for (int i = 0; i < g->all.n; i++) {
+        seat *s = &g->all.seats[i];
+        int left = seat_close(s, s->c.moving ? EXIT_SIGNAL : EXIT_DONE);
+        status = left > status && left != EXIT_SIGNAL ? left : status;
+    }
+    if (g->m) {
+        say_goodbye(g);
+    }
+    conn_forget(g->tick);
+    mqtt_free(g->m);
+    orders_free(g);
+    json_decref(g->latch);
+    if (g->all.seats) {
+        troupe_end(&g->all);
+    }
+    return status;
+}

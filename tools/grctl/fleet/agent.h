@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The robots of this machine for a fleet: says how they are, and does what is ordered over the
+ * broker. It moves nothing by itself: without its broker it keeps what it has, but for a motion,
+ * which goes on, stops or leaves as was said when it began.
+ *
+ * What comes is looked at in handlers of the loop. Stops are carried out there; orders wait until
+ * agent_work(), which may wait for a robot.
+ */
+#ifndef GRCTL_FLEET_AGENT_H
+#define GRCTL_FLEET_AGENT_H
+
+#include "tools/grctl/fleet/message.h"
+#include "tools/grctl/mqtt/mqtt.h"
+#include "tools/grctl/play/troupe.h"
+
+enum {
+    AGENT_PENDING = 16,       /* orders that wait for the clock of their sender, or their turn */
+    AGENT_LEADERS = 8,        /* whose clocks are known */
+    AGENT_PERMIT_US = 600000, /* without one for so long, what is played is let go */
+    AGENT_SETTLE_US = 200000, /* from the latches to the first order */
+    AGENT_CLOCK_AGE_US = 10000000 /* an offset that is older is measured again */
+};
+
+/* What becomes of a motion whose permit lapses. */
+typedef enum agent_lost { AGENT_STOP = 0, AGENT_FINISH, AGENT_EXIT } agent_lost;
+
+typedef struct agent_leader {
+    char id[FLEET_ID_BYTES];
+    fleet_clock clock;
+    int64_t used_us;
+    int64_t sent_us[FLEET_CLOCK_SAMPLES]; /* of the burst under way, by number */
+} agent_leader;
+
+typedef struct agent_order {
+    bool used, timed; /* timed: judged, and its turn comes */
+    fleet_order is;
+    char response[FLEET_TOPIC_BYTES];
+    unsigned char correlation[64];
+    size_t correlation_bytes;
+    int64_t came_us;
+} agent_order;
+
+typedef struct agent {
+    app *a;
+    troupe all;
+    mqtt *m;
+    const char *motions; /* the folder of motion files */
+    char host[FLEET_NAME_BYTES];
+    char group[FLEET_NAME_BYTES]; /* besides "all" */
+    char epoch[FLEET_ID_BYTES];
+    char lost_text[2][320]; /* connection: CONNECTIONBROKEN, ONLINE */
+    int64_t seq;
+    bool listens;       /* orders are taken */
+    int64_t settled_us; /* when they will be */
+    fleet_seen seen;
+    agent_leader leaders[AGENT_LEADERS];
+    agent_order orders[AGENT_PENDING];
+    /* the stop that stands, of a group */
+    bool latched;
+    char latch_id[FLEET_ID_BYTES];
+    char latch_group[FLEET_NAME_BYTES];
+    json_t *latch; /* to be said again where the broker forgot it */
+    bool telling;  /* how the stop went is still to be told */
+    /* what is played */
+    bool plays, started;
+    agent_order play; /* whose answer is due until all are ready */
+    char permit_group[FLEET_NAME_BYTES];
+    int64_t permit_us;
+    agent_lost on_lost;
+    bool let_go; /* its permit lapsed */
+    int64_t spread_us;
+    struct event *tick;
+    /* robots that are not there */
+    int64_t retry_us;
+} agent;
+
+/* Begins; a->group or the one robot of -d are its robots. 0 or the exit status. */
+int agent_begin(agent *g, app *a, const mqtt_config *broker, const char *host, const char *group,
+                const char *motions);
+/* What waits: orders, robots that may be there again, the end of a motion. */
+void agent_work(agent *g);
+/* Says goodbye, and leaves the robots. Returns the exit status. */
+int agent_end(agent *g, int status);
+
+#endif

@@ -1,0 +1,380 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "tools/grctl/fleet/leader.h"
+
+enum { CONNECT_US = 5000000, SEEN_US = 300000, ORDER_EXPIRY_S = 2 };
+
+/* ---- agents ---------------------------------------------------------------------------------- */
+
+static peer *peer_of(leader *l, const char *host)
+{
+    for (int i = 0; i < l->n; i++) {
+        if (strcmp(l->peers[i].host, host) == 0) {
+            return &l->peers[i];
+        }
+    }
+    if (l->n == LEADER_PEERS) {
+        return NULL;
+    }
+    peer *p = &l->peers[l->n++];
+    snprintf(p->host, sizeof p->host, "%s", host);
+    return p;
+}
+
+/* Keeps an object in place of the one before. */
+static void keep(json_t **where, json_t *object)
+{
+    json_decref(*where);
+    *where = json_incref(object);
+}
+
+static void take_connection(peer *p, const json_t *said)
+{
+    const char *state = fleet_text(said, "state"), *epoch = fleet_text(said, "epoch");
+    if (state && epoch) {
+        /* A will of an earlier life says nothing of this one. */
+        bool old =
+            strcmp(state, "CONNECTIONBROKEN") == 0 && *p->epoch && strcmp(p->epoch, epoch) != 0;
+        if (!old) {
+            snprintf(p->state, sizeof p->state, "%s", state);
+            snprintf(p->epoch, sizeof p->epoch, "%s", epoch);
+        }
+    }
+}
+
+static void take_event(leader *l, peer *p, json_t *event)
+{
+    const char *kind = fleet_text(event, "kind"), *id = fleet_text(event, "id");
+    if (kind && id && strcmp(kind, "ended") == 0 && strcmp(id, p->prepared) == 0) {
+        keep(&p->ended, event);
+    }
+    if (kind && id && strcmp(kind, "stopped") == 0) {
+        keep(&p->stopped, event);
+    }
+    if (l->on_event) {
+        l->on_event(l, p, event);
+    }
+}
+
+static void take_answer(leader *l, json_t *answer)
+{
+    const char *host = fleet_text(answer, "host"), *id = fleet_text(answer, "id");
+    peer *p = host && fleet_is_name(host) ? peer_of(l, host) : NULL;
+    if (p && id && *p->waiting && strcmp(p->waiting, id) == 0) {
+        keep(&p->answer, answer);
+        *p->waiting = '\0';
+        p->took_us = grobo_now_us() - p->asked_us;
+    }
+}
+
+/* An agent asks for our time. */
+static void take_ping(leader *l, const json_t *ping)
+{
+    const char *host = fleet_text(ping, "host");
+    char topic[FLEET_TOPIC_BYTES], text[160];
+    if (!host || !fleet_is_name(host) || !fleet_topic(topic, "time", host, "pong", NULL)) {
+        return;
+    }
+    int n = snprintf(text, sizeof text, "{\"v\":%d,\"leader\":\"%s\",\"n\":%lld,\"t_us\":%lld}",
+                     FLEET_VERSION, l->id, (long long)fleet_number(ping, "n", 0),
+                     (long long)grobo_now_us());
+    const mqtt_message pong = {.topic = topic, .payload = text, .size = (size_t)n};
+    (void)mqtt_publish(l->m, &pong, 0, 0);
+}
+
+static void take_of_host(leader *l, char part[4][FLEET_NAME_BYTES], int n, json_t *object)
+{
+    peer *p = peer_of(l, part[0]);
+    if (!p) {
+        return;
+    }
+    if (n == 2 && strcmp(part[1], "connection") == 0) {
+        take_connection(p, object);
+    } else if (n == 2 && strcmp(part[1], "factsheet") == 0) {
+        keep(&p->facts, object);
+    } else if (n == 2 && strcmp(part[1], "event") == 0) {
+        take_event(l, p, object);
+    } else if (n == 3 && (strcmp(part[2], "state") == 0 || strcmp(part[2], "last") == 0)) {
+        p->states = p->states ? p->states : json_object();
+        json_object_set(p->states, part[1], object);
+    }
+}
+
+static void on_message(void *ctx, const mqtt_message *message)
+{
+    leader *l = ctx;
+    char part[4][FLEET_NAME_BYTES];
+    int n = fleet_parts(message->topic, part);
+    json_t *object = fleet_read(message->payload, message->size);
+    if (!object || n < 2) {
+        json_decref(object);
+        return;
+    }
+    if (strcmp(part[0], "ack") == 0) {
+        take_answer(l, object);
+    } else if (strcmp(part[0], "time") == 0) {
+        take_ping(l, object);
+    } else if (strcmp(part[0], "group") == 0) {
+        if (n == 3 && strcmp(part[2], "latch") == 0 && strcmp(part[1], l->group) == 0) {
+            keep(&l->latch, object);
+        }
+    } else {
+        take_of_host(l, part, n, object);
+    }
+    json_decref(object);
+}
+
+/* ---- the connection -------------------------------------------------------------------------- */
+
+static void subscribe(leader *l, const char *a, const char *b, const char *c, bool retained)
+{
+    char topic[FLEET_TOPIC_BYTES];
+    if (fleet_topic(topic, a, b, c, NULL)) {
+        (void)mqtt_subscribe(l->m, topic, 1, retained);
+    }
+}
+
+static void on_up(void *ctx)
+{
+    leader *l = ctx;
+    l->up = true;
+    subscribe(l, "ack", l->id, NULL, false);
+    subscribe(l, "time", l->id, "ping", false);
+    subscribe(l, "group", l->group, "latch", true);
+    subscribe(l, "+", "factsheet", NULL, true);
+    subscribe(l, "+", "event", NULL, false);
+    subscribe(l, "+", "connection", NULL, true);
+}
+
+static void on_down(void *ctx, const char *why)
+{
+    leader *l = ctx;
+    l->lost = l->lost || (l->up && l->permits);
+    l->up = false;
+    l->why = why;
+}
+
+static void on_refused(void *ctx, const char *why)
+{
+    leader *l = ctx;
+    app_note(l->a, "the broker refuses: %s", why);
+}
+
+static void on_tick(evutil_socket_t fd, short what, void *ctx)
+{
+    leader *l = ctx;
+    char topic[FLEET_TOPIC_BYTES], text[160];
+    (void)fd;
+    (void)what;
+    if (!l->permits || !fleet_topic(topic, "group", l->group, "permit", NULL)) {
+        return;
+    }
+    int n = snprintf(text, sizeof text, "{\"v\":%d,\"leader\":\"%s\",\"seq\":%lld}", FLEET_VERSION,
+                     l->id, (long long)l->permit_seq++);
+    const mqtt_message permit = {.topic = topic, .payload = text, .size = (size_t)n};
+    (void)mqtt_publish(l->m, &permit, 0, 0);
+}
+
+static void on_time(evutil_socket_t fd, short what, void *ctx)
+{
+    (void)fd;
+    (void)what;
+    (void)ctx; /* it only ends a round of the loop */
+}
+
+bool leader_wait(leader *l, int64_t bound_us, bool (*done)(const leader *l))
+{
+    int64_t until_us = grobo_now_us() + bound_us;
+    struct event *timer = evtimer_new(l->link.base, on_time, NULL);
+    while (timer && !done(l) && !l->link.signal && !l->lost) {
+        int64_t rest_us = until_us - grobo_now_us();
+        const struct timeval rest = {.tv_sec = (int)(rest_us / 1000000),
+                                     .tv_usec = (int)(rest_us % 1000000)};
+        if (rest_us <= 0 || evtimer_add(timer, &rest) != 0 ||
+            event_base_loop(l->link.base, EVLOOP_ONCE) != 0) {
+            break;
+        }
+    }
+    conn_forget(timer);
+    return done(l);
+}
+
+static bool is_up(const leader *l)
+{
+    return l->up;
+}
+
+static bool never(const leader *l)
+{
+    (void)l;
+    return false;
+}
+
+static int connect_it(leader *l, const mqtt_config *with)
+{
+    const struct timeval period = {0, LEADER_PERMIT_US};
+    mqtt_config config = *with;
+    const char *why;
+    config.base = l->link.base;
+    config.id = l->id;
+    config.on_up = on_up;
+    config.on_down = on_down;
+    config.on_message = on_message;
+    config.on_refused = on_refused;
+    config.ctx = l;
+    l->m = mqtt_new(&config, &why);
+    if (!l->m) {
+        return app_fail(l->a, EXIT_ROBOT, "IO", "fleet: %s: %s", config.host, why);
+    }
+    l->tick = event_new(l->link.base, -1, EV_PERSIST, on_tick, l);
+    if (!l->tick || event_add(l->tick, &period) != 0) {
+        return app_fail_error(l->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "fleet");
+    }
+    mqtt_start(l->m);
+    if (!leader_wait(l, CONNECT_US, is_up)) {
+        return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE", "fleet: %s: %s", config.host,
+                        l->why ? l->why : "the broker does not answer");
+    }
+    (void)leader_wait(l, SEEN_US, never); /* what is retained comes first */
+    return EXIT_DONE;
+}
+
+int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group, const char *host)
+{
+    memset(l, 0, sizeof *l);
+    l->a = a;
+    l->group = group;
+    l->host = host;
+    fleet_make_id(l->id);
+    l->peers = calloc(LEADER_PEERS, sizeof *l->peers);
+    if (!l->peers || !fleet_topic(l->ack, "ack", l->id, NULL, NULL) ||
+        conn_link_init(&l->link) < 0) {
+        return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "fleet");
+    }
+    conn_link_watch(&l->link);
+    return connect_it(l, broker);
+}
+
+void leader_end(leader *l)
+{
+    conn_forget(l->tick);
+    mqtt_free(l->m);
+    for (int i = 0; i < l->n; i++) {
+        json_decref(l->peers[i].facts);
+        json_decref(l->peers[i].states);
+        json_decref(l->peers[i].answer);
+        json_decref(l->peers[i].ended);
+        json_decref(l->peers[i].stopped);
+    }
+    json_decref(l->latch);
+    free(l->peers);
+    conn_link_deinit(&l->link);
+}
+
+/* ---- orders ---------------------------------------------------------------------------------- */
+
+static bool is_of_group(const peer *p, const char *group)
+{
+    size_t i;
+    json_t *one;
+    json_array_foreach(json_object_get(p->facts, "groups"), i, one)
+    {
+        if (json_is_string(one) && strcmp(json_string_value(one), group) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int leader_choose(leader *l)
+{
+    int n = 0;
+    for (int i = 0; i < l->n; i++) {
+        peer *p = &l->peers[i];
+        p->chosen = strcmp(p->state, "ONLINE") == 0 && is_of_group(p, l->group) &&
+                    (!l->host || strcmp(l->host, p->host) == 0);
+        n += p->chosen;
+    }
+    return n;
+}
+
+static void send_order(leader *l, peer *p, const char *verb, const json_t *body)
+{
+    char topic[FLEET_TOPIC_BYTES];
+    json_t *order = json_deep_copy(body);
+    int64_t now_us = grobo_now_us();
+    fleet_make_id(p->waiting);
+    p->asked_us = now_us;
+    keep(&p->answer, NULL);
+    json_t *head = json_pack("{s:i,s:s,s:s,s:s,s:I,s:I}", "v", FLEET_VERSION, "id", p->waiting,
+                             "from", l->id, "epoch", p->epoch, "issued_us", (json_int_t)now_us,
+                             "deadline_us", (json_int_t)(now_us + FLEET_ORDER_LIFE_US));
+    if (strcmp(verb, "prepare") == 0) {
+        snprintf(p->prepared, sizeof p->prepared, "%s", p->waiting);
+        keep(&p->ended, NULL);
+    } else if (*p->prepared) {
+        json_object_set_new(head, "of", json_string(p->prepared));
+    }
+    json_object_update(order, head);
+    json_decref(head);
+    char *text = json_dumps(order, JSON_COMPACT);
+    if (text && fleet_topic(topic, p->host, "cmd", verb, NULL)) {
+        const mqtt_message message = {
+            .topic = topic, .payload = text, .size = strlen(text), .response = l->ack};
+        (void)mqtt_publish(l->m, &message, 1, ORDER_EXPIRY_S);
+    }
+    free(text);
+    json_decref(order);
+}
+
+void leader_order(leader *l, const char *verb, json_t *body)
+{
+    for (int i = 0; i < l->n; i++) {
+        if (l->peers[i].chosen) {
+            send_order(l, &l->peers[i], verb, body);
+        }
+    }
+    json_decref(body);
+}
+
+bool leader_answered(const leader *l)
+{
+    for (int i = 0; i < l->n; i++) {
+        if (l->peers[i].chosen && *l->peers[i].waiting) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void leader_latch(leader *l, const char *how)
+{
+    char topic[FLEET_TOPIC_BYTES], id[FLEET_ID_BYTES];
+    const char *before = l->latch ? fleet_text(l->latch, "id") : NULL;
+    if (how || !before) {
+        fleet_make_id(id);
+    } else {
+        snprintf(id, sizeof id, "%s", before);
+    }
+    json_t *latch = json_pack("{s:i,s:b,s:s,s:s,s:I}", "v", FLEET_VERSION, "stopped", how != NULL,
+                              "id", id, "by", l->id, "at_ms", (json_int_t)time(NULL) * 1000);
+    if (how) {
+        json_object_set_new(latch, "how", json_string(how));
+    }
+    char *text = json_dumps(latch, JSON_COMPACT);
+    if (text && fleet_topic(topic, "group", l->group, "latch", NULL)) {
+        const mqtt_message message = {
+            .topic = topic, .payload = text, .size = strlen(text), .retained = true};
+        (void)mqtt_publish(l->m, &message, 1, 0);
+    }
+    free(text);
+    json_decref(latch);
+}
+
+void leader_listen(leader *l, const char *what)
+{
+    subscribe(l, "+", "+", what, false);
+}

@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "tools/grctl/fleet/say.h"
+#include "tools/grctl/show/render.h"
+
+/* ---- in general ------------------------------------------------------------------------------ */
+
+static int64_t wall_ms(void)
+{
+    return (int64_t)time(NULL) * 1000;
+}
+
+/* Takes the reference of the object. */
+static void publish(agent *g, const char *topic, json_t *object, int qos, bool retained)
+{
+    char *text = object ? json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
+    if (text) {
+        const mqtt_message message = {
+            .topic = topic, .payload = text, .size = strlen(text), .retained = retained};
+        (void)mqtt_publish(g->m, &message, qos, 0);
+    }
+    free(text);
+    json_decref(object);
+}
+
+static void publish_here(agent *g, const char *a, const char *b, json_t *object, int qos,
+                         bool retained)
+{
+    char topic[FLEET_TOPIC_BYTES];
+    if (fleet_topic(topic, g->host, a, b, NULL)) {
+        publish(g, topic, object, qos, retained);
+    } else {
+        json_decref(object);
+    }
+}
+
+/* ---- the agent ------------------------------------------------------------------------------- */
+
+static json_t *connection(const agent *g, const char *state)
+{
+    return json_pack("{s:i,s:s,s:s,s:I}", "v", FLEET_VERSION, "state", state, "epoch", g->epoch,
+                     "at_ms", (json_int_t)wall_ms());
+}
+
+void say_prepare(agent *g)
+{
+    json_t *will = connection(g, "CONNECTIONBROKEN");
+    size_t n =
+        will ? json_dumpb(will, g->lost_text[0], sizeof g->lost_text[0] - 1, JSON_COMPACT) : 0;
+    g->lost_text[0][n < sizeof g->lost_text[0] ? n : 0] = '\0';
+    json_decref(will);
+}
+
+static json_t *joints_of(const seat *s)
+{
+    const grobo_model *model = app_model(&s->a);
+    json_t *list = json_array();
+    for (int j = 0; j < model->n_joints; j++) {
+        const grobo_joint *joint = &model->joints[j];
+        json_array_append_new(list,
+                              json_pack("{s:s,s:[o,o]}", "name", joint->name, "limits_deg",
+                                        app_json_number(grobo_deg_from_rad(joint->min_rad), 2),
+                                        app_json_number(grobo_deg_from_rad(joint->max_rad), 2)));
+    }
+    return list;
+}
+
+static json_t *factsheet(const agent *g)
+{
+    json_t *robots = json_array();
+    for (int i = 0; i < g->all.n; i++) {
+        const seat *s = &g->all.seats[i];
+        json_array_append_new(robots, json_pack("{s:s,s:s,s:o}", "name", s->name, "model",
+                                                s->is_open ? app_model(&s->a)->name : "", "joints",
+                                                s->is_open ? joints_of(s) : json_array()));
+    }
+    return json_pack("{s:i,s:s,s:[s,s],s:o}", "v", FLEET_VERSION, "epoch", g->epoch, "groups",
+                     FLEET_ALL, g->group, "robots", robots);
+}
+
+void say_hello(agent *g)
+{
+    publish_here(g, "factsheet", NULL, factsheet(g), 1, true);
+    publish_here(g, "connection", NULL, connection(g, "ONLINE"), 1, true);
+}
+
+void say_goodbye(agent *g)
+{
+    publish_here(g, "connection", NULL, connection(g, "OFFLINE"), 1, true);
+}
+
+void say_latch(agent *g)
+{
+    char topic[FLEET_TOPIC_BYTES];
+    if (fleet_topic(topic, "group", g->latch_group, "latch", NULL)) {
+        publish(g, topic, json_incref(g->latch), 1, true);
+    }
+}
+
+/* ---- robots ---------------------------------------------------------------------------------- */
+
+static json_t *angles_of(const seat *s)
+{
+    const grobo_model *model = app_model(&s->a);
+    grobo_joint_info info;
+    json_t *list = json_array();
+    for (int j = 0; j < model->n_joints; j++) {
+        bool known = grobo_robot_joint(s->c.robot, j, &info) == 0 &&
+                     (info.state.valid & GROBO_FIELD_ANGLE) != 0;
+        json_array_append_new(list,
+                              known ? app_json_number(grobo_deg_from_rad(info.state.angle_rad), 1)
+                                    : json_null());
+    }
+    return list;
+}
+
+static json_t *state_of(const agent *g, const seat *s)
+{
+    grobo_trip_info trip;
+    grobo_robot_tripped(s->c.robot, &trip);
+    json_t *state =
+        json_pack("{s:i,s:I,s:I,s:b,s:s,s:b,s:b}", "v", FLEET_VERSION, "seq", (json_int_t)g->seq,
+                  "t_us", (json_int_t)grobo_now_us(), "up", s->c.up && !s->c.link_error, "play",
+                  grobo_sequencer_state_name(grobo_robot_play_state(s->c.robot)), "moving",
+                  grobo_robot_moving(s->c.robot), "stopped", g->latched);
+    json_object_set_new(state, "trip",
+                        trip.trip == GROBO_TRIP_NONE ? json_null()
+                                                     : app_json_code(grobo_trip_name(trip.trip)));
+    json_object_set_new(state, "angles_deg", angles_of(s));
+    return state;
+}
+
+void say_state(agent *g, const seat *s, bool last_too)
+{
+    if (!mqtt_is_up(g->m)) {
+        return;
+    }
+    json_t *state = s->is_open ? state_of(g, s)
+                               : json_pack("{s:i,s:I,s:b}", "v", FLEET_VERSION, "seq",
+                                           (json_int_t)g->seq, "up", 0);
+    if (last_too) {
+        publish_here(g, s->name, "last", json_incref(state), 0, true);
+    }
+    publish_here(g, s->name, "state", state, 0, false);
+}
+
+void say_event(agent *g, const seat *s, const char *kind, const char *text)
+{
+    char id[FLEET_ID_BYTES];
+    fleet_make_id(id);
+    json_t *event = json_pack("{s:i,s:s,s:s,s:s,s:I}", "v", FLEET_VERSION, "id", id, "kind", kind,
+                              "message", text, "at_ms", (json_int_t)wall_ms());
+    if (s) {
+        json_object_set_new(event, "robot", json_string(s->name));
+    }
+    app_note(g->a, "%s%s%s%s%s", s ? s->name : "", s ? ": " : "", kind, *text ? ": " : "", text);
+    publish_here(g, "event", NULL, event, 1, false);
+}
+
+void say_stopped(agent *g)
+{
+    json_t *robots = json_array();
+    for (int i = 0; i < g->all.n; i++) {
+        const seat *s = &g->all.seats[i];
+        bool there = s->is_open && s->c.up && !s->c.link_error;
+        const char *how = fleet_text(g->latch, "how");
+        bool brakes = !how || strcmp(how, "stop") != 0;
+        bool sure = there && (brakes ? s->c.estop_ended && s->c.estop_result >= 0
+                                     : !grobo_robot_moving(s->c.robot));
+        json_array_append_new(
+            robots, json_pack("{s:s,s:b,s:b}", "name", s->name, "there", there, "stopped", sure));
+    }
+    publish_here(g, "event", NULL,
+                 json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "stopped", "id",
+                           g->latch_id, "robots", robots, "at_ms", (json_int_t)wall_ms()),
+                 1, false);
+}
+
+static json_t *results_of(const agent *g)
+{
+    json_t *robots = json_array();
+    for (int i = 0; i < g->all.n; i++) {
+        const seat *s = &g->all.seats[i];
+        grobo_team_member how;
+        if (s->member >= 0 && grobo_team_get(g->all.team, s->member, &how) == 0) {
+            json_array_append_new(
+                robots,
+                json_pack("{s:s,s:b,s:s}", "name", s->name, "ok", how.result == GROBO_OK, "message",
+                          how.result == GROBO_OK ? "" : grobo_error_text(how.result)));
+        }
+    }
+    return robots;
+}
+
+void say_ended(agent *g, const char *order)
+{
+    publish_here(g, "event", NULL,
+                 json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "ended", "id",
+                           order, "robots", results_of(g), "at_ms", (json_int_t)wall_ms()),
+                 1, false);
+}
+
+void say_answer(agent *g, const agent_order *order, const char *code, const char *message,
+                json_t *extra)
+{
+    json_t *answer = json_pack("{s:i,s:s,s:s,s:s,s:b}", "v", FLEET_VERSION, "id", order->is.id,
+                               "host", g->host, "epoch", g->epoch, "ok", code == NULL);
+    if (code) {
+        json_object_set_new(answer, "code", app_json_code(code));
+        json_object_set_new(answer, "message", json_string(message));
+    }
+    if (extra) {
+        json_object_update(answer, extra);
+        json_decref(extra);
+    }
+    char *text = json_dumps(answer, JSON_COMPACT);
+    if (text) {
+        const mqtt_message out = {.topic = order->response,
+                                  .payload = text,
+                                  .size = strlen(text),
+                                  .correlation = order->correlation,
+                                  .correlation_bytes = order->correlation_bytes};
+        (void)mqtt_publish(g->m, &out, 1, 0);
+        fleet_seen_end(&g->seen, order->is.id, text);
+    }
+    free(text);
+    json_decref(answer);
+}

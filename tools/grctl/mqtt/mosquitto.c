@@ -1,0 +1,420 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * libmosquitto on the loop. Its descriptor is closed before it tells of a loss, so both events go in
+ * that callback, before anything else can be opened with the same number. Nothing is freed in its
+ * callbacks.
+ */
+#include <mosquitto.h>
+#include <mqtt_protocol.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <event2/event.h>
+#include <event2/util.h>
+
+#include <grobo/port.h>
+
+#include "tools/grctl/mqtt/mqtt.h"
+
+enum { FIRST_MS = 100, LONGEST_MS = 5000, MISC_MS = 500, CONNECT_MS = 5000, AT_ONCE = 10 };
+
+struct mqtt {
+    mqtt_config config;
+    struct mosquitto *client;
+    struct event *readable, *writable, *misc, *again;
+    char address[256]; /* of the host: looked up once, but for TLS, which compares the name */
+    int pause_ms;
+    int64_t tried_us;
+    bool up, connecting;
+    size_t queued_bytes; /* published since the socket took all of it last */
+    unsigned dropped;
+};
+
+/* ---- the descriptor -------------------------------------------------------------------------- */
+
+static void forget_socket(mqtt *m)
+{
+    if (m->readable) {
+        event_free(m->readable);
+        event_free(m->writable);
+    }
+    m->readable = m->writable = NULL;
+}
+
+/* What any call of the library may have left to be written. */
+static void arm(mqtt *m)
+{
+    if (!m->writable) {
+        return;
+    }
+    if (mosquitto_want_write(m->client)) {
+        (void)event_add(m->writable, NULL);
+    } else {
+        m->queued_bytes = 0;
+    }
+}
+
+static struct timeval of_ms(int ms)
+{
+    return (struct timeval){.tv_sec = ms / 1000, .tv_usec = ms % 1000 * 1000};
+}
+
+/* The pause doubles, and is up to half longer by chance: 4000 agents do not come back together. */
+static void try_later(mqtt *m)
+{
+    unsigned char chance;
+    evutil_secure_rng_get_bytes(&chance, sizeof chance);
+    struct timeval pause = of_ms(m->pause_ms + m->pause_ms * chance / 512);
+    m->pause_ms = 2 * m->pause_ms < LONGEST_MS ? 2 * m->pause_ms : LONGEST_MS;
+    m->connecting = false;
+    (void)evtimer_add(m->again, &pause);
+}
+
+static void lost(mqtt *m, const char *why)
+{
+    bool was = m->up || m->connecting;
+    forget_socket(m);
+    m->up = false;
+    if (was) {
+        try_later(m);
+        m->config.on_down(m->config.ctx, why);
+    }
+}
+
+static void check(mqtt *m, int result)
+{
+    if (result != MOSQ_ERR_SUCCESS && m->readable) {
+        lost(m, mosquitto_strerror(result));
+    }
+    arm(m);
+}
+
+static void on_readable(evutil_socket_t fd, short what, void *ctx)
+{
+    mqtt *m = ctx;
+    (void)fd;
+    (void)what;
+    check(m, mosquitto_loop_read(m->client, AT_ONCE));
+}
+
+static void on_writable(evutil_socket_t fd, short what, void *ctx)
+{
+    mqtt *m = ctx;
+    (void)fd;
+    (void)what;
+    check(m, mosquitto_loop_write(m->client, AT_ONCE));
+}
+
+static void on_misc(evutil_socket_t fd, short what, void *ctx)
+{
+    mqtt *m = ctx;
+    (void)fd;
+    (void)what;
+    if (m->connecting && grobo_now_us() - m->tried_us > INT64_C(1000) * CONNECT_MS) {
+        lost(m, "the broker does not answer");
+    } else if (m->readable) {
+        check(m, mosquitto_loop_misc(m->client));
+    }
+}
+
+static void take_socket(mqtt *m)
+{
+    evutil_socket_t fd = mosquitto_socket(m->client);
+    if (fd < 0) {
+        lost(m, "no socket");
+        return;
+    }
+    m->readable = event_new(m->config.base, fd, EV_READ | EV_PERSIST, on_readable, m);
+    m->writable = event_new(m->config.base, fd, EV_WRITE, on_writable, m);
+    if (!m->readable || !m->writable || event_add(m->readable, NULL) != 0) {
+        lost(m, "not enough memory");
+        return;
+    }
+    arm(m);
+}
+
+static void connect_now(mqtt *m)
+{
+    const mqtt_config *c = &m->config;
+    m->connecting = true;
+    m->tried_us = grobo_now_us();
+    int result =
+        mosquitto_connect_async(m->client, c->ca ? c->host : m->address, c->port, c->keepalive_s);
+    if (result != MOSQ_ERR_SUCCESS) {
+        lost(m, result == MOSQ_ERR_ERRNO ? "the broker cannot be reached"
+                                         : mosquitto_strerror(result));
+        return;
+    }
+    take_socket(m);
+}
+
+static void on_again(evutil_socket_t fd, short what, void *ctx)
+{
+    mqtt *m = ctx;
+    (void)fd;
+    (void)what;
+    if (m->config.ca && m->config.may_block && !m->config.may_block(m->config.ctx)) {
+        struct timeval pause = of_ms(MISC_MS);
+        (void)evtimer_add(m->again, &pause);
+        return;
+    }
+    connect_now(m);
+}
+
+/* ---- what the library tells ------------------------------------------------------------------ */
+
+static void on_connect(struct mosquitto *client, void *ctx, int reason, int flags,
+                       const mosquitto_property *properties)
+{
+    mqtt *m = ctx;
+    (void)client;
+    (void)flags;
+    (void)properties;
+    if (reason != 0) { /* the loss follows */
+        m->config.on_down(m->config.ctx, mosquitto_reason_string(reason));
+        return;
+    }
+    m->up = true;
+    m->connecting = false;
+    m->pause_ms = FIRST_MS;
+    m->config.on_up(m->config.ctx);
+}
+
+static void on_disconnect(struct mosquitto *client, void *ctx, int reason,
+                          const mosquitto_property *properties)
+{
+    (void)client;
+    (void)properties;
+    lost(ctx, reason ? mosquitto_strerror(reason) : "the broker closed the connection");
+}
+
+static void on_publish(struct mosquitto *client, void *ctx, int id, int reason,
+                       const mosquitto_property *properties)
+{
+    mqtt *m = ctx;
+    (void)client;
+    (void)id;
+    (void)properties;
+    if (reason >= 128) {
+        m->config.on_refused(m->config.ctx, mosquitto_reason_string(reason));
+    }
+}
+
+static void on_subscribe(struct mosquitto *client, void *ctx, int id, int n, const int *granted,
+                         const mosquitto_property *properties)
+{
+    mqtt *m = ctx;
+    (void)client;
+    (void)id;
+    (void)properties;
+    for (int i = 0; i < n; i++) {
+        if (granted[i] >= 128) {
+            m->config.on_refused(m->config.ctx, mosquitto_reason_string(granted[i]));
+        }
+    }
+}
+
+static void on_message(struct mosquitto *client, void *ctx, const struct mosquitto_message *raw,
+                       const mosquitto_property *properties)
+{
+    mqtt *m = ctx;
+    char *response = NULL;
+    void *correlation = NULL;
+    uint16_t correlation_bytes = 0;
+    (void)client;
+    if (raw->payloadlen < 0 || raw->payloadlen > MQTT_PAYLOAD_MAX_BYTES) {
+        m->dropped++;
+        return;
+    }
+    (void)mosquitto_property_read_string(properties, MQTT_PROP_RESPONSE_TOPIC, &response, false);
+    (void)mosquitto_property_read_binary(properties, MQTT_PROP_CORRELATION_DATA, &correlation,
+                                         &correlation_bytes, false);
+    const mqtt_message message = {.topic = raw->topic,
+                                  .payload = raw->payloadlen ? raw->payload : "",
+                                  .size = (size_t)raw->payloadlen,
+                                  .retained = raw->retain,
+                                  .response = response,
+                                  .correlation = correlation,
+                                  .correlation_bytes = correlation_bytes};
+    m->config.on_message(m->config.ctx, &message);
+    free(response);
+    free(correlation);
+}
+
+/* ---- requests -------------------------------------------------------------------------------- */
+
+bool mqtt_possible(void)
+{
+    return true;
+}
+
+bool mqtt_is_up(const mqtt *m)
+{
+    return m && m->up;
+}
+
+unsigned mqtt_dropped(const mqtt *m)
+{
+    return m->dropped;
+}
+
+bool mqtt_has_more(const mqtt *m)
+{
+    return m->up && mosquitto_want_write(m->client);
+}
+
+bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
+{
+    mosquitto_property *properties = NULL;
+    if (!mqtt_is_up(m)) {
+        return false;
+    }
+    if (qos == 0 && m->queued_bytes > MQTT_QUEUE_MAX_BYTES) {
+        m->dropped++;
+        return false;
+    }
+    int result = MOSQ_ERR_SUCCESS;
+    if (expiry_s > 0) {
+        result = mosquitto_property_add_int32(&properties, MQTT_PROP_MESSAGE_EXPIRY_INTERVAL,
+                                              (uint32_t)expiry_s);
+    }
+    if (!result && message->response) {
+        result =
+            mosquitto_property_add_string(&properties, MQTT_PROP_RESPONSE_TOPIC, message->response);
+    }
+    if (!result && message->correlation_bytes) {
+        result = mosquitto_property_add_binary(&properties, MQTT_PROP_CORRELATION_DATA,
+                                               message->correlation,
+                                               (uint16_t)message->correlation_bytes);
+    }
+    if (!result) {
+        result = mosquitto_publish_v5(m->client, NULL, message->topic, (int)message->size,
+                                      message->payload, qos, message->retained, properties);
+    }
+    mosquitto_property_free_all(&properties);
+    m->queued_bytes += message->size;
+    arm(m);
+    return result == MOSQ_ERR_SUCCESS;
+}
+
+bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained)
+{
+    int options = MQTT_SUB_OPT_NO_LOCAL | MQTT_SUB_OPT_RETAIN_AS_PUBLISHED |
+                  (retained ? MQTT_SUB_OPT_SEND_RETAIN_ALWAYS : MQTT_SUB_OPT_SEND_RETAIN_NEVER);
+    bool done = mqtt_is_up(m) && mosquitto_subscribe_v5(m->client, NULL, filter, qos, options,
+                                                        NULL) == MOSQ_ERR_SUCCESS;
+    arm(m);
+    return done;
+}
+
+/* ---- a connection ---------------------------------------------------------------------------- */
+
+/* Of a host: the numeric address. */
+static bool look_up(mqtt *m, const char **why)
+{
+    static grobo_os_cause cause;
+    char device[300], numeric[sizeof m->address];
+    const char *host = m->config.host;
+    bool six = strchr(host, ':') != NULL;
+    snprintf(device, sizeof device, "tcp:%s%s%s:%d", six ? "[" : "", host, six ? "]" : "",
+             m->config.port);
+    if (grobo_port_resolve(device, numeric, sizeof numeric, &cause) < 0) {
+        *why = *cause.text ? cause.text : "no such host";
+        return false;
+    }
+    char *begin = numeric + strlen("tcp:"), *end = strrchr(begin, ':');
+    if (*begin == '[') {
+        begin++;
+        end--;
+    }
+    snprintf(m->address, sizeof m->address, "%.*s", (int)(end - begin), begin);
+    return true;
+}
+
+static int set_up(mqtt *m)
+{
+    const mqtt_config *c = &m->config;
+    struct mosquitto *client = m->client;
+    int result = mosquitto_int_option(client, MOSQ_OPT_PROTOCOL_VERSION, MQTT_PROTOCOL_V5);
+    if (!result) {
+        result = mosquitto_int_option(client, MOSQ_OPT_TCP_NODELAY, 1);
+    }
+    if (!result && c->user) {
+        result = mosquitto_username_pw_set(client, c->user, c->password);
+    }
+    if (!result && c->ca) {
+        result = mosquitto_tls_set(client, c->ca, NULL, c->certificate, c->key, NULL);
+    }
+    if (!result && c->will_topic) {
+        result = mosquitto_will_set_v5(client, c->will_topic, (int)strlen(c->will), c->will, 1,
+                                       true, NULL);
+    }
+    mosquitto_connect_v5_callback_set(client, on_connect);
+    mosquitto_disconnect_v5_callback_set(client, on_disconnect);
+    mosquitto_publish_v5_callback_set(client, on_publish);
+    mosquitto_subscribe_v5_callback_set(client, on_subscribe);
+    mosquitto_message_v5_callback_set(client, on_message);
+    return result;
+}
+
+static void destroy(mqtt *m)
+{
+    forget_socket(m);
+    if (m->misc) {
+        event_free(m->misc);
+    }
+    if (m->again) {
+        event_free(m->again);
+    }
+    mosquitto_destroy(m->client);
+    mosquitto_lib_cleanup();
+    free(m);
+}
+
+mqtt *mqtt_new(const mqtt_config *config, const char **why)
+{
+    mqtt *m = calloc(1, sizeof *m);
+    *why = "not enough memory";
+    if (!m) {
+        return NULL;
+    }
+    m->config = *config;
+    m->pause_ms = FIRST_MS;
+    mosquitto_lib_init();
+    m->client = mosquitto_new(config->id, true, m);
+    m->misc = event_new(config->base, -1, EV_PERSIST, on_misc, m);
+    m->again = evtimer_new(config->base, on_again, m);
+    int result = m->client && m->misc && m->again ? set_up(m) : MOSQ_ERR_NOMEM;
+    if (result != MOSQ_ERR_SUCCESS) {
+        *why = result == MOSQ_ERR_INVAL && config->ca ? "a certificate or key cannot be read"
+                                                      : mosquitto_strerror(result);
+    }
+    if (result != MOSQ_ERR_SUCCESS || (!config->ca && !look_up(m, why))) {
+        destroy(m);
+        return NULL;
+    }
+    return m;
+}
+
+void mqtt_start(mqtt *m)
+{
+    struct timeval period = of_ms(MISC_MS);
+    (void)event_add(m->misc, &period);
+    connect_now(m);
+}
+
+void mqtt_free(mqtt *m)
+{
+    if (!m) {
+        return;
+    }
+    bool was_up = m->up;
+    m->up = m->connecting = false;
+    if (was_up) {
+        (void)mosquitto_disconnect(m->client);
+        for (int i = 0; i < AT_ONCE && m->readable && mosquitto_want_write(m->client); i++) {
+            (void)mosquitto_loop_write(m->client, AT_ONCE);
+        }
+    }
+    destroy(m);
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+#include "tools/grctl/mqtt/mqtt.h"
+
+bool mqtt_possible(void)
+{
+    return false;
+}
+
+mqtt *mqtt_new(const mqtt_config *config, const char **why)
+{
+    (void)config;
+    *why = "this grctl was built without libmosquitto";
+    return NULL;
+}
+
+void mqtt_start(mqtt *m)
+{
+    (void)m;
+}
+
+bool mqtt_is_up(const mqtt *m)
+{
+    (void)m;
+    return false;
+}
+
+bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
+{
+    (void)m;
+    (void)message;
+    (void)qos;
+    (void)expiry_s;
+    return false;
+}
+
+bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained)
+{
+    (void)m;
+    (void)filter;
+    (void)qos;
+    (void)retained;
+    return false;
+}
+
+unsigned mqtt_dropped(const mqtt *m)
+{
+    (void)m;
+    return 0;
+}
+
+bool mqtt_has_more(const mqtt *m)
+{
+    (void)m;
+    return false;
+}
+
+void mqtt_free(mqtt *m)
+{
+    (void)m;
+}

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/cli/robot.h"
+#include "tools/grctl/play/troupe.h"
+
+void troupe_look(troupe *t)
+{
+    int64_t now_us = grobo_now_us();
+    int64_t at_us = t->team ? grobo_team_step(t->team, now_us) : GROBO_NEVER_US;
+    if (at_us != GROBO_NEVER_US) {
+        int64_t rest_us = at_us > now_us ? at_us - now_us : 0;
+        const struct timeval rest = {.tv_sec = (int)(rest_us / 1000000),
+                                     .tv_usec = (int)(rest_us % 1000000)};
+        (void)evtimer_add(t->timer, &rest);
+    }
+}
+
+static void on_timer(evutil_socket_t fd, short what, void *ctx)
+{
+    (void)fd;
+    (void)what;
+    troupe_look(ctx);
+}
+
+static void on_robot(conn *c, const grobo_event *event)
+{
+    seat *s = c->ctx;
+    troupe *t = s->all;
+    if (t->team && s->member >= 0) {
+        grobo_team_event(t->team, s->member, event);
+    }
+    if (t->on_robot) {
+        t->on_robot(s, event);
+    }
+    if (event->kind != GROBO_EVENT_JOINT) {
+        troupe_look(t);
+    }
+}
+
+int troupe_begin(troupe *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n)
+{
+    memset(t, 0, sizeof *t);
+    t->a = a;
+    t->seats = calloc((size_t)n, sizeof *t->seats);
+    int error = t->seats ? conn_link_init(&t->host) : GROBO_ERR_NOMEM;
+    if (!error) {
+        t->n = n;
+        t->timer = evtimer_new(t->host.base, on_timer, t);
+        error = t->timer ? GROBO_OK : GROBO_ERR_NOMEM;
+    }
+    if (error) {
+        return app_fail_error(a, EXIT_ROBOT, error, "%s", a->line.command->name);
+    }
+    conn_link_watch(&t->host);
+    for (int i = 0; i < n; i++) {
+        t->seats[i].all = t;
+        t->seats[i].name = names[i];
+        t->seats[i].member = -1;
+    }
+    return EXIT_DONE;
+}
+
+int seat_open(troupe *t, int i)
+{
+    seat *s = &t->seats[i];
+    s->a = *t->a;
+    snprintf(s->a.place, sizeof s->a.place, "%s: ", s->name);
+    int status = config_apply_member(&s->a, s->name, &s->robot);
+    if (!status) {
+        status = robot_choose(&s->a);
+    }
+    if (status) {
+        return status;
+    }
+    s->is_open = true;
+    status = conn_open_to_move_beside(&s->c, &s->a, &t->host);
+    s->c.ctx = s;
+    s->c.on_event = on_robot;
+    return status;
+}
+
+int seat_load(seat *s)
+{
+    playlist_free(&s->list);
+    s->a.clamps = app_option(&s->a, PLAY_CLAMP)->given > 0;
+    return playlist_load(&s->list, &s->a);
+}
+
+int seat_prepare(seat *s)
+{
+    conn *c = &s->c;
+    grobo_joint_mask all = GROBO_JOINTS_ALL(app_model(&s->a)->n_joints);
+    grobo_posture sensed;
+    int error =
+        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
+    if (error) {
+        return conn_fail(c, error, "play");
+    }
+    grobo_robot_posture(c->robot, GROBO_NEVER_US, &sensed);
+    return playlist_prepare(&s->list, &s->a, &sensed);
+}
+
+static int make_team(troupe *t, grobo_team_policy policy, const grobo_clip **clips)
+{
+    const grobo_team_config config = {GROBO_TEAM_CONFIG_INIT, .policy = policy,
+                                      .on_event = t->on_team, .ctx = t->ctx};
+    int error = grobo_team_new(&config, &t->team);
+    int n = 0;
+    for (int i = 0; !error && i < t->n; i++) {
+        seat *s = &t->seats[i];
+        if (s->chosen) {
+            clips[n++] = &s->list.clip[0];
+            s->member = grobo_team_add(t->team, s->c.robot);
+            error = s->member < 0 ? s->member : GROBO_OK;
+        }
+    }
+    return error;
+}
+
+int troupe_play(troupe *t, grobo_team_policy policy, const grobo_play_options *options)
+{
+    const grobo_clip *clips[CONFIG_GROUP_MAX];
+    int error = make_team(t, policy, clips);
+    if (!error) {
+        error = grobo_team_play(t->team, clips, false, options, grobo_now_us());
+    }
+    troupe_look(t);
+    return error;
+}
+
+void troupe_disband(troupe *t)
+{
+    grobo_team_free(t->team);
+    t->team = NULL;
+    for (int i = 0; i < t->n; i++) {
+        t->seats[i].member = -1;
+        t->seats[i].chosen = false;
+    }
+}
+
+int seat_close(seat *s, int status)
+{
+    if (s->is_open) {
+        s->c.on_event = NULL;
+        status = conn_close(&s->c, status);
+        s->is_open = false;
+    }
+    playlist_free(&s->list);
+    return status;
+}
+
+void troupe_end(troupe *t)
+{
+    troupe_disband(t);
+    conn_forget(t->timer);
+    conn_link_deinit(&t->host);
+    free(t->seats);
+    t->seats = NULL;
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/* Robots of the configuration on one loop, and a team of those that play a motion. */
+#ifndef GRCTL_TROUPE_H
+#define GRCTL_TROUPE_H
+
+#include <grobo/team.h>
+
+#include "tools/grctl/cli/config.h"
+#include "tools/grctl/conn/conn.h"
+#include "tools/grctl/play/play.h"
+
+/* One robot. What it says stands behind its name. */
+typedef struct seat {
+    struct troupe *all;
+    const char *name;
+    app a;
+    config_robot robot;
+    conn c;
+    playlist list;
+    bool is_open;
+    bool chosen; /* to be of the next team */
+    int member;  /* of the team, -1: none */
+    int status;  /* the exit status so far */
+} seat;
+
+typedef struct troupe {
+    app *a;
+    conn_link host; /* whose loop and signals all use */
+    seat *seats;
+    int n;
+    grobo_team *team; /* NULL: nothing is played */
+    grobo_team_event_fn on_team;
+    void (*on_robot)(seat *s, const grobo_event *event); /* besides, or NULL */
+    void *ctx;                                           /* of on_team */
+    /* private */
+    struct event *timer;
+} troupe;
+
+/* Seats for these robots, none open. names: borrowed. 0 or the exit status. */
+int troupe_begin(troupe *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n);
+/* Connects with one robot, which may be moved then. seat_close() in either case. */
+int seat_open(troupe *t, int i);
+/* Reads and checks the files of seat.a.line. 0 or the exit status. */
+int seat_load(seat *s);
+/* Makes the clips, from where the robot is. 0 or the exit status. */
+int seat_prepare(seat *s);
+/* Plays the first clip of every chosen seat. 0, or an error: see grobo_team_play(). */
+int troupe_play(troupe *t, grobo_team_policy policy, const grobo_play_options *options);
+/* Lets the team look at the time; after any request of it. */
+void troupe_look(troupe *t);
+/* Ends the team; what it played must be over, or be stopped by who asks. */
+void troupe_disband(troupe *t);
+/* As conn_close(). */
+int seat_close(seat *s, int status);
+void troupe_end(troupe *t);
+
+#endif
