@@ -132,6 +132,9 @@ objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 CORE_OBJS := $(call objects,$(CORE_SRCS))
 LIB_OBJS := $(CORE_OBJS) $(call objects,$(OTHER_SRCS))
 TOOL_OBJS := $(call objects,$(TOOL_SRCS))
+# The command's texts in other languages: a catalogue becomes a table.
+CATALOGUES := $(if $(TOOL_SRCS),$(wildcard tools/grctl/lang/*.po))
+TOOL_OBJS += $(CATALOGUES:%.po=$(BUILD)/%.o)
 TOOL_LIB := $(BUILD)/libgrctl.a
 SUPPORT_OBJS := $(call objects,$(SUPPORT_SRCS))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%$(EXE),$(TEST_SRCS))
@@ -160,7 +163,7 @@ include tools/baremetal/baremetal.mk
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all lib demo check robots lint lint-quick format test check-san check-tsan check-memcheck install uninstall
+.PHONY: help all lib demo check robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count plots captures cross check-cross check-drivers
 .PHONY: check-abi sources wrap deb check-deb release check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
@@ -197,6 +200,9 @@ lint-quick: ## the rules that sources alone can break; takes a second
 
 robots: $(ROBOTS) ## make the tables of src/robots from its files
 	@tools/robots/make.sh $(ROBOTS)
+
+messages: ## write the texts of the sources into the catalogues of grctl, for translation
+	@tools/lint/lang.sh --update
 
 format: ## write sources as clang-format 14 does; FILES="src/bus/bus.c" chooses
 	@tools/lint/format.sh --fix $(or $(FILES),$(shell find include src ports tools tests docs -name '*.[ch]'))
@@ -513,6 +519,13 @@ $(eval $(call compile,tools/robots,TOOL_INCLUDE))
 $(eval $(call compile,tools/grctl,TOOL_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS))
 $(eval $(call compile,docs/examples,WHOLE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
+
+$(BUILD)/%.c: %.po tools/grctl/lang/po.awk
+	@mkdir -p $(@D)
+	@LC_ALL=C awk -f tools/grctl/lang/po.awk $< >$@
+$(CATALOGUES:%.po=$(BUILD)/%.o): %.o: %.c $(BUILD)/.flags
+	$(say) CC $<
+	$(Q)$(CC) $(ALL_CPPFLAGS) $(TOOL_INCLUDE) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
 $(STATIC_LIB): $(LIB_OBJS)
 $(CORE_LIB): $(CORE_OBJS)

@@ -72,6 +72,7 @@ everything=$(texts)
     gate switch scan switch $library $library
     gate units scan units $headers
     gate help sh "$gates/help.sh"
+    gate lang sh "$gates/lang.sh"
     gate tree sh "$gates/tree.sh"
     gate seed-map sh "$gates/seed_map.sh"
     gate null sh "$gates/null.sh"

@@ -12,6 +12,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/robot.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"
 #include "tools/grctl/os/os.h"
 
@@ -37,7 +38,7 @@ typedef struct reader {
 static int complain(reader *r, const yaml_mark_t *at, const char *format, const char *what)
 {
     char text[256];
-    snprintf(text, sizeof text, format, what);
+    snprintf(text, sizeof text, lang_text(format), lang_text(what));
     if (!r->status) {
         r->status = app_fail(r->a, EXIT_FILE, "SYNTAX", "%s:%zu:%zu: %s", r->path, at->line + 1,
                              at->column + 1, text);
@@ -142,8 +143,8 @@ static int unknown_joint(reader *r, const char *name)
 {
     char text[2 * CONFIG_NAME_BYTES];
     const char *nearest = joints_nearest(r->model, name, strlen(name), false);
-    snprintf(text, sizeof text, "no joint called '%.*s'%s%s%s", CONFIG_NAME_BYTES, name,
-             nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
+    snprintf(text, sizeof text, _("no joint called '%.*s'%s%s%s"), CONFIG_NAME_BYTES, name,
+             nearest ? _("; did you mean ") : "", nearest ? nearest : "", nearest ? "?" : "");
     return complain(r, &r->event.start_mark, "%s", text);
 }
 
@@ -405,7 +406,7 @@ static int no_robot(reader *r, bool asked)
         return 0;
     }
     return app_fail(r->a, EXIT_FILE, "NOTFOUND", "%s: default '%s' is no robot of the file%s%s%s",
-                    r->default_path, r->wanted, *nearest ? "; did you mean '" : "", nearest,
+                    r->default_path, r->wanted, *nearest ? _("; did you mean '") : "", nearest,
                     *nearest ? "'?" : "");
 }
 

@@ -8,10 +8,11 @@
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/lang/lang.h"
 
 static int fail(app *a, const char *path, const char *cause)
 {
-    return app_fail(a, EXIT_FILE, "IO", "%s: cannot be written: %s", path, cause);
+    return app_fail(a, EXIT_FILE, "IO", "%s: cannot be written: %s", path, lang_text(cause));
 }
 
 /* libyaml counts characters, files bytes. */

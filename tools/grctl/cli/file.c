@@ -5,25 +5,26 @@
 #include <grobo/robot_file.h>
 
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/os/pipe.h"
 
 const char *file_write_error_text(int error)
 {
-    return error == GROBO_ERR_NOENT ? "no such folder" : file_error_text(error);
+    return error == GROBO_ERR_NOENT ? _("no such folder") : file_error_text(error);
 }
 
 const char *file_error_text(int error)
 {
     switch (error) {
     case GROBO_ERR_NOENT:
-        return "no such file";
+        return _("no such file");
     case GROBO_ERR_ISDIR:
-        return "is a directory, not a motion file";
+        return _("is a directory, not a motion file");
     case GROBO_ERR_EMPTY:
-        return "is empty";
+        return _("is empty");
     }
-    return grobo_error_text(error);
+    return app_error_text(error);
 }
 
 const grobo_model *file_model(const app *a, const grobo_motion *motion)
@@ -162,7 +163,7 @@ static int load_record(app *a, grobo_motion **motion)
 {
     int error = a->record ? grobo_motion_dup(a->record, motion) : GROBO_ERR_EMPTY;
     return error ? app_fail(a, EXIT_FILE, grobo_error_name(error), "@record: %s",
-                            a->link ? file_error_text(error) : "only a shell has a record")
+                            a->link ? file_error_text(error) : _("only a shell has a record"))
                  : 0;
 }
 
@@ -181,7 +182,7 @@ int file_load(app *a, const char *path, const grobo_read_options *options, grobo
     grobo_diagnostics *list = NULL;
     int error = grobo_diagnostics_new(&list, NULL);
     if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
     error = file_load_listed(a, path, options, list, motion);
     if (!error) {

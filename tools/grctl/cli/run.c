@@ -7,6 +7,7 @@
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/run.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
 /* A mistake ends parsing, but not the wish for JSON that stands behind it. */
@@ -40,7 +41,7 @@ static int fail(app *a, const char *complaint)
                     command ? command->name : "");
 }
 
-static const char echo_alone[] = "--echo needs --wiring bus: the board returns nothing";
+static const char echo_alone[] = N_("--echo needs --wiring bus: the board returns nothing");
 
 static bool is_echo_alone(const app *a)
 {
@@ -100,7 +101,7 @@ static int stop_first(app *a, const char *complaint, int (*prepare)(void *ctx, a
     }
     a->hushed = NULL;
     if (is_echo_alone(a)) {
-        complaint = complaint ? complaint : echo_alone;
+        complaint = complaint ? complaint : _(echo_alone);
         a->line.global[GLOBAL_ECHO].given = 0;
     }
     a->stops = true;
@@ -146,7 +147,7 @@ static int run_command(app *a, int (*prepare)(void *ctx, app *a), void *ctx)
         return status;
     }
     if (is_echo_alone(a)) {
-        return fail(a, echo_alone);
+        return fail(a, _(echo_alone));
     }
     if (prepare && (status = prepare(ctx, a)) != 0) {
         return status;
@@ -161,6 +162,7 @@ static int run_command(app *a, int (*prepare)(void *ctx, app *a), void *ctx)
 int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), void *ctx)
 {
     char complaint[512];
+    lang_keep_english(a->json || wants_json(argc, argv));
     bool ok = cli_parse(&a->line, argc, argv, complaint, sizeof complaint);
     const cli_command *command = a->line.command;
     bool json = a->json; /* of the shell */

@@ -117,7 +117,7 @@ static int run(app *a)
     }
     error = grobo_diagnostics_new(&list, NULL);
     if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
     for (int i = 0; i < a->line.n_arguments; i++) {
         if (is_passed_by(a, a->line.argument[i], list)) {

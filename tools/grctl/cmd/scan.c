@@ -332,7 +332,7 @@ static int question_suspects(conn *c, pass *p, bool *sure)
         }
         if (p->why[id] && !p->there[id] && !error) {
             app_note(c->a, "id %d answers, but: %s (two servos with one id?)", id,
-                     grobo_error_text(p->why[id]));
+                     app_error_text(p->why[id]));
         }
     }
     *sure = *sure && !has_suspects(p);
@@ -397,7 +397,7 @@ static int scan_all_bauds(conn *c, found *f)
         f->rate = i;
         int error = grobo_serial_set_baud(serial, baud_bps);
         if (error < 0) {
-            app_note(c->a, "%d bps: %s", baud_bps, grobo_error_text(error));
+            app_note(c->a, "%d bps: %s", baud_bps, app_error_text(error));
             continue;
         }
         error = scan_ids(c, f, baud_bps);
@@ -598,7 +598,7 @@ static int info(conn *c)
         }
         silent++;
         report_failed(&f, motor, baud_bps, error);
-        app_note(c->a, "motor %d (%s): %s", motor, joint_name(&f, motor), grobo_error_text(error));
+        app_note(c->a, "motor %d (%s): %s", motor, joint_name(&f, motor), app_error_text(error));
     }
     if (c->a->json) {
         app_print_json(json_pack("{s:s,s:s,s:s,s:o,s:o}", "robot", model->name, "device",
