@@ -424,15 +424,16 @@ check-deb: ## these for amd64 and arm64: lintian, and installed and purged in fr
 release: ## refuse where a step of a release is missing, else make the tarball
 	@GRCTL="$(GRCTL)" BUILD="$(BUILD)" tools/package/release.sh
 
-# What grctl prints of itself: FILE=ARGUMENTS. It takes a grctl that runs on this machine.
+# What grctl prints of itself: FILE=ARGUMENTS. It takes a grctl that runs on this machine. What is
+# below man/ja is in Japanese, whatever the language of who installs it.
 GRCTL_HERE ?= $(if $(CROSS_COMPILE),,$(GRCTL_RUN))
-PAGES := man/man1/grctl.1=help,--man bash-completion/completions/grctl=completion,bash \
+PAGES := man/man1/grctl.1=help,--man man/ja/man1/grctl.1=help,--man bash-completion/completions/grctl=completion,bash \
     zsh/site-functions/_grctl=completion,zsh fish/vendor_completions.d/grctl.fish=completion,fish
 JSON_PAGE := $(BUILD)/grctl-json.5
 comma := ,
 define install_page
 install -d "$(DESTDIR)$(DATADIR)/$(dir $(firstword $(subst =, ,$(page))))"
-	$(GRCTL_HERE) $(subst $(comma), ,$(lastword $(subst =, ,$(page)))) \
+	LC_ALL=$(if $(filter man/ja/%,$(page)),ja.UTF-8,C) $(GRCTL_HERE) $(subst $(comma), ,$(lastword $(subst =, ,$(page)))) \
 	    >"$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page)))"
 
 endef

@@ -22,7 +22,7 @@ static const cli_command *const commands[] = {GRCTL_COMMANDS(POINTER)};
 static void choose_language(void)
 {
     setlocale(LC_CTYPE, "");
-    if (lang_start(os_shows_utf8()) && !os_shows_utf8()) {
+    if (lang_start(lang_wanted(), os_shows_utf8()) && !os_shows_utf8()) {
         setlocale(LC_CTYPE, "C.UTF-8");
     }
 }

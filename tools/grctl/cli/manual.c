@@ -206,7 +206,7 @@ void cli_print_manual(FILE *to)
 {
     fputs(_(head), to);
     put_options(to, cli_global_options, GLOBAL_COUNT);
-    fputs(".Sh COMMANDS\n", to);
+    fputs(_(".Sh COMMANDS\n"), to);
     for (size_t i = 0; i < cli_n_commands; i++) {
         put_command(to, cli_commands[i]);
     }

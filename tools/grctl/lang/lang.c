@@ -10,7 +10,7 @@ static bool japanese, keeps_english;
 
 /* ---- which language ------------------------------------------------------------------------- */
 
-static const char *wanted(void)
+const char *lang_wanted(void)
 {
     static const char *const names[] = {"LC_ALL", "LC_MESSAGES", "LANG"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -39,9 +39,8 @@ static bool is_utf8(const char *charset)
     return n + 1 == sizeof name;
 }
 
-bool lang_start(bool utf8)
+bool lang_start(const char *locale, bool utf8)
 {
-    const char *locale = wanted(); /* ja, ja_JP, ja_JP.UTF-8@modifier */
     const char *charset = strchr(locale, '.');
     bool ja = strncmp(locale, "ja", 2) == 0 && (!locale[2] || strchr("_.@", locale[2]));
     japanese = ja && (charset ? is_utf8(charset + 1) : utf8);

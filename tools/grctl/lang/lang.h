@@ -27,12 +27,15 @@ typedef struct lang_entry {
 extern const lang_entry lang_ja[];
 extern const size_t lang_ja_count;
 
+/* The value of LC_ALL, LC_MESSAGES or LANG: of the first that is set and not empty, else "". */
+const char *lang_wanted(void);
+
 /*
- * Chooses the language by LC_ALL, LC_MESSAGES and LANG, of which the first that is set and not
- * empty counts. utf8: the character set of LC_CTYPE is UTF-8, which counts where the variable
- * names none. No other character set is written. Returns true if the language is Japanese.
+ * Chooses the language of a locale such as ja, ja_JP or ja_JP.UTF-8@modifier. It must be UTF-8: by
+ * its name, or where that has no character set, by utf8, which says so of LC_CTYPE.
+ * Returns true if the language is Japanese; else it is English.
  */
-bool lang_start(bool utf8);
+bool lang_start(const char *locale, bool utf8);
 
 /* English for as long as `english` holds: texts that become part of JSON. */
 void lang_keep_english(bool english);
