@@ -70,7 +70,7 @@ manual() {
 check "the manual" manual
 
 rendered() {
-    rendered_said=$(groff -ww -mdoc -Kutf8 -Tutf8 "$work/grctl.1" 2>&1 >"$work/out") &&
+    rendered_said=$(groff -ww -W break -mdoc -Kutf8 -Tutf8 "$work/grctl.1" 2>&1 >"$work/out") &&
         [ -z "$rendered_said" ] && says '初期姿勢へ動かす'
 }
 if [ -e /usr/share/groff/current/tmac/doc.tmac ] && command -v preconv >/dev/null 2>&1; then
