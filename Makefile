@@ -156,6 +156,7 @@ GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl$(EXE))
 GRCTL_RUN := $(if $(EMULATOR),$(BUILD)/run/grctl,$(GRCTL))
 SUPPORT_LIB := $(BUILD)/libsupport.a
 ROBOTS := $(BUILD)/tools/robots/robots
+PICTURE := $(BUILD)/tools/picture/picture$(EXE)
 
 VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
 
@@ -166,7 +167,7 @@ include tools/baremetal/baremetal.mk
 .PHONY: help all lib demo check robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count plots captures cross check-cross check-drivers
 .PHONY: check-abi sources wrap deb check-deb release check-families check-ports check-long check-mutants check-map install-lib FORCE
-.PHONY: firmware size check-firmware
+.PHONY: firmware size check-firmware picture
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -221,7 +222,7 @@ $(BUILD)/left_out.sh: FORCE
 	    done_testing >$@
 
 chosen = $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(if $(filter fuzz,$(RING)),$(FUZZ_REPLAYS)) \
-    $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES))
+    $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES) $(PICTURE))
 test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit engine" chooses
 	@$(TEST_BEGIN) GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) \
 	    $(cross_env) tests/run.sh \
@@ -260,6 +261,7 @@ check-long: ## all machines, packages, sabotage, fuzzing, the soak, scans of all
 	@$(MAKE) --no-print-directory check-ports
 	@$(MAKE) --no-print-directory check-deb
 	@$(MAKE) --no-print-directory check-wheel
+	@$(MAKE) --no-print-directory check-roots
 	@$(MAKE) --no-print-directory check-mutants COUNT=300
 	@$(MAKE) --no-print-directory check-map COUNT=
 	@$(MAKE) --no-print-directory fuzz FUZZ_S=300
@@ -303,6 +305,9 @@ bench-count: $(BUILD)/tests/bench/bench_work ## instructions against tests/bench
 
 plots: $(BUILD)/grctl ## draw motions/plots/*.svg again
 	@tools/plots.sh "$(call whole,$(BUILD)/grctl)"
+
+picture: $(PICTURE) ## draw docs/robot.svg again: a simulated GR001 plays
+	@tools/picture.sh "$(call whole,$(PICTURE))"
 
 captures: $(BUILD)/grctl ## make the screens of docs/guide/tour.md and the table of safety.md again
 	@GRCTL="$(call whole,$(GRCTL))" TOUR_WRITE=yes sh tests/cli/tour.sh
@@ -392,7 +397,7 @@ wrap: ## build/subprojects, for the Meson projects that take TARBALL=build/libgr
 	@sed -e 's|@VERSION@|$(VERSION)|' -e "s|@SHA256@|$$(sha256sum <$(TARBALL) | cut -d ' ' -f 1)|" \
 	    tools/package/meson/grobo.wrap.in >$(BUILD)/subprojects/grobo.wrap
 
-.PHONY: sources wrap python wheel check-wheel deb check-deb release
+.PHONY: sources wrap python wheel check-wheel deb check-deb check-roots release
 # The Python package as it is used from here (PYTHONPATH=build/python) and packed.
 PYTHON ?= python3
 PYTHON_DIR := $(BUILD)/python
@@ -420,6 +425,10 @@ deb: ## Debian packages in build/deb, for this machine or ARCH=arm64
 check-deb: ## these for amd64 and arm64: lintian, and installed and purged in fresh Debian and Ubuntu roots
 	-@tools/setup.sh --packages
 	@BUILD="$(BUILD)" TEST_TIMEOUT_S=3600 TEST_LOGS="$(BUILD)/logs/deb" tests/run.sh tests/package/deb.sh
+
+check-roots: ## README's commands, packages, CMake, Meson and pip in fresh Debian and Ubuntu roots
+	-@tools/setup.sh --packages
+	@BUILD="$(BUILD)" TEST_TIMEOUT_S=10800 TEST_LOGS="$(BUILD)/logs/roots" tests/run.sh tests/package/roots.sh
 
 release: ## refuse where a step of a release is missing, else make the tarball
 	@GRCTL="$(GRCTL)" BUILD="$(BUILD)" tools/package/release.sh
@@ -517,6 +526,7 @@ $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/common,SRC_INCLUDE))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
 $(eval $(call compile,tools/robots,TOOL_INCLUDE))
+$(eval $(call compile,tools/picture,TOOL_INCLUDE))
 $(eval $(call compile,tools/grctl,TOOL_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS))
 $(eval $(call compile,docs/examples,WHOLE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
@@ -561,6 +571,8 @@ $(BUILD)/grctl$(EXE): $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
 
 # Of the reader alone: it makes the tables that the library has.
 $(ROBOTS): $(BUILD)/tools/robots/main.o $(STATIC_LIB)
+$(PICTURE): $(BUILD)/tools/picture/main.o $(STATIC_LIB)
+$(ROBOTS) $(PICTURE):
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 

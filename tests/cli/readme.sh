@@ -1,18 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What README.md shows is true: its tour is run line by line, its program is built and run.
+# What README.md shows is true: its program is built and run; and the tour of docs/guide/tour.md,
+# line by line. tests/cli/demo.sh runs its first command, tests/export/python.sh its Python.
 . tests/support/cli.sh
+. tests/support/guide_blocks.sh
 
-# block MARK: the lines of the fenced block that follows the line <!-- MARK -->.
-block() {
-    awk -v mark="<!-- $1 -->" '
-        $0 == mark { wanted = 1; next }
-        wanted && /^```/ { if (inside) exit; inside = 1; next }
-        inside { print }' README.md
-}
-
-block tour >"$work/tour"
-block example >"$work/example.c"
+block docs/guide/tour.md tour >"$work/tour"
+block README.md example >"$work/example.c"
 root=$PWD
 build=$root/${BUILD:-build}
 
@@ -32,25 +26,45 @@ flags() {
 builds() {
     # Flags and compiler are lists of words.
     # shellcheck disable=SC2046
-    ${CC:-cc} -std=c11 -Wall -Wextra -Werror -o "$work/example" "$work/example.c" $(flags)
+    ${CC:-cc} -std=c11 -Wall -Wextra -Werror -o "$work/${1:-example}" "$work/${1:-example}.c" \
+        $(flags)
 }
 runs() {
-    exits 0 timeout 30 "$work/example" && says '^moved: ' && [ ! -s "$work/err" ]
+    exits 0 timeout 30 "$work/example" && [ ! -s "$work/err" ]
 }
 # On a robot behind a port it obeys the emergency stop of another program.
 obeys() {
     sed -i "s|\.device = \"sim\"|.device = \"$robot\"|" "$work/example.c" && builds &&
         exits 0 "$GRCTL" -d "$robot" estop || return 1
-    timeout 30 "$work/example" >"$work/out" 2>"$work/err"
-    ! says '^moved: ' && complains '^move: stopped for safety until reset$' &&
-        exits 0 "$GRCTL" -d "$robot" estop --reset && runs
+    exits 1 timeout 30 "$work/example" && exits 0 "$GRCTL" -d "$robot" estop --reset && runs
 }
 check "the program is there" grep -q '^int main' "$work/example.c"
+check "it has ten lines" [ "$(grep -c '[^{}]' "$work/example.c")" -eq 10 ]
+# A motion that is not there, and it fails: it looks at what it is told.
+fails_without() {
+    sed 's/greet/none/' "$work/example.c" >"$work/none.c" &&
+        builds none && exits 1 timeout 30 "$work/none"
+}
+status() {
+    sed -n 3p README.md | grep -q '^\*\*Status: .*no real robot has been driven yet\.\*\*$'
+}
+check "line 3 says the status" status
+screen() {
+    [ "$(wc -l <README.md)" -le 90 ]
+}
+check "it is short" screen
+links() {
+    grep -o '](\([^)#:]*\)[)#]' README.md | sed 's/](\(.*\)[)#]/\1/' | while read -r file; do
+        [ -e "$file" ] || { echo "no $file"; exit 1; }
+    done
+}
+check "what it links to is there" links
 if [ -n "${CROSS:-}" ]; then
     skip "it builds and runs" "the libraries are of another machine"
 elif command -v "${CC%% *}" >/dev/null 2>&1 || command -v cc >/dev/null 2>&1; then
     check "it builds" builds
-    check "it moves the simulated robot" runs
+    check "it plays on the simulated robot" runs
+    check "it fails without its motion" fails_without
     start_sim # out here, where its end is seen to
     check "it is refused after an emergency stop, until that is cleared" obeys
 else

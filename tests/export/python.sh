@@ -62,8 +62,32 @@ for file in tests/package/python/test_*.py; do
     name=${file##*/}
     run "${name%.py}"
 done
+played() {
+    awk '/^```python/ { open = 1; next } /^```/ { open = 0 } open' README.md >"$work/played.py" &&
+        grep -q play "$work/played.py" && "$python" "$work/played.py"
+}
+check 'what README.md shows' played
 check 'what its README shows' shown tools/python/README.md '^-45\.8'
 check 'what its guide shows' shown docs/guide/python.md '^R_ELBOW_P '
+plugin() {
+    awk '/^<!-- lerobot -->/ { there = 1 } there && /^```python/ { open = 1; next }
+        /^```/ { open = 0 } open' docs/guide/lerobot.md >"$work/plugin.py" &&
+        PYTHONPATH=$PYTHONPATH:tools/python/lerobot_robot_grobo:$stand_in \
+            "$python" "$work/plugin.py" >"$work/out" && grep -q "'elbow_flex.pos': 2" "$work/out"
+}
+stand_in=tests/package/python/lerobot_stand_in
+if "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))'; then
+    check 'what the guide for LeRobot shows' plugin
+else
+    skip 'what the guide for LeRobot shows' 'LeRobot needs Python 3.12, its stand-in 3.10'
+fi
+if "$python" -c 'import lerobot.robots' 2>/dev/null; then
+    GROBO_LEROBOT=real
+    export GROBO_LEROBOT
+    run test_lerobot
+else
+    skip 'the plugin in LeRobot itself' 'no lerobot'
+fi
 if "$python" -m mypy --version >/dev/null 2>&1; then
     check 'its types' sh -c 'cd "$2" && "$1" -m mypy --strict -p grobo' sh "$python" \
         "$work/built/python"

@@ -6,6 +6,7 @@
 set -u
 
 . tests/support/tap.sh
+. tests/support/root.sh
 build=${BUILD:-build}
 here=$(dpkg --print-architecture 2>/dev/null)
 work=$build/package
@@ -52,32 +53,11 @@ same_needs() {
 
 # ---- a fresh root --------------------------------------------------------------------------
 
-# make_root SUITE: kept as a tarball; unpacked into $root.
-make_root() {
-    # What a program is compiled with, and what Python itself leaves behind, is there before.
-    tools=gcc,libc6-dev,pkg-config,python3-cffi-backend
-    tarball=$work/roots/$1-$tools.tar
-    rm -rf "$root"
-    if [ ! -s "$tarball" ]; then
-        case $1 in
-        noble) set -- noble "$root" http://archive.ubuntu.com/ubuntu gutsy ;;
-        *) set -- "$1" "$root" http://deb.debian.org/debian ;;
-        esac
-        PATH=$PATH:/usr/sbin:/sbin debootstrap --variant=minbase \
-            --include="$tools" "$@" >"$work/debootstrap" 2>&1 ||
-            { tail -n 5 "$work/debootstrap"; return 1; }
-        tar -C "$root" -cf "$tarball.new" --exclude='./proc/*' --exclude='./sys/*' . &&
-            mv "$tarball.new" "$tarball" || return 1
-    else
-        mkdir "$root" && tar -C "$root" -xf "$tarball" || return 1
-    fi
-    cp /etc/resolv.conf "$root/etc/resolv.conf"
-    mkdir "$root/debs" && cp $(debs "$here") "$root/debs" && in_root apt-get -q update
-}
-
-in_root() {
-    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
-        DEBIAN_FRONTEND=noninteractive TMPDIR=/tmp chroot "$root" "$@"
+# What a program is compiled with, and what Python itself leaves behind, is there before.
+fresh_root() {
+    make_root "$1" gcc,libc6-dev,pkg-config,python3-cffi-backend || return 1
+    # shellcheck disable=SC2046
+    mkdir "$root/debs" && cp $(debs "$here") "$root/debs"
 }
 
 # Names only; what apt keeps for itself is not ours.
@@ -142,7 +122,7 @@ for suite in ${SUITES:-bookworm noble}; do
         skip "$suite" 'a fresh root is made by root'
         continue
     fi
-    if ! make_root "$suite" >"$work/why" 2>&1; then
+    if ! fresh_root "$suite" >"$work/why" 2>&1; then
         skip "$suite" "no fresh root: $(tail -n 1 "$work/why")"
         rm -rf "$root"
         continue

@@ -3,6 +3,8 @@
 # Builds the Debian packages of this tree, in BUILD/deb/ARCHITECTURE: `make deb`.
 #
 # usage: tools/package/deb.sh BUILD [ARCHITECTURE]     (of dpkg; without one: this machine's)
+# environment: DEBFULLNAME, DEBEMAIL: who maintains these packages. The address in debian/control
+#   is of a domain that nobody has (RFC 2606).
 #
 # The tree is copied, debian/ is laid into the copy, and its changelog is made: the version is the
 # headers', the time is that of the last commit, so that the same commit gives the same packages.
@@ -32,6 +34,11 @@ fi
 export SOURCE_DATE_EPOCH
 tar -cf - -T "$out/files" | tar -xf - -C "$tree"
 cp -R tools/package/debian "$tree/debian"
+if [ -n "${DEBEMAIL:-}" ]; then
+    awk -v who="${DEBFULLNAME:-libgrobo developers} <$DEBEMAIL>" \
+        '/^Maintainer:/ { $0 = "Maintainer: " who } { print }' \
+        tools/package/debian/control >"$tree/debian/control"
+fi
 maintainer=$(sed -n 's/^Maintainer: //p' "$tree/debian/control")
 cat >"$tree/debian/changelog" <<C
 libgrobo ($version-0upstream1) unstable; urgency=medium

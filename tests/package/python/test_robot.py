@@ -132,6 +132,52 @@ class Moving(unittest.TestCase):
             self.robot["NOSE"]
 
 
+class Others(unittest.TestCase):
+    """Robots beside GR001."""
+
+    def test_a_robot_of_the_library(self):
+        with grobo.connect("sim", robot="so101") as robot:
+            self.assertEqual(len(robot.joints), 6)
+            self.assertEqual(robot.description.name, "so101")
+            low, high = robot.description.limits["elbow_flex"]
+            self.assertTrue(low < 0 < high)
+            robot.move({"elbow_flex": 0.2}, time=0.2)
+            self.assertAlmostEqual(robot["elbow_flex"].angle, 0.2, delta=0.01)
+            with self.assertRaises(errors.Notfound):
+                robot["R_ELBOW_P"]
+
+    def test_a_motion_has_the_joints_of_its_robot(self):
+        motion = grobo.Motion.load("motions/so101-wave.yaml", grobo.Description("so101"))
+        self.assertIn("gripper", motion[0])
+        self.assertIn("gripper", motion.copy()[-1])
+
+    def test_a_robot_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "arm.yaml")
+            path.write_text(Path("src/robots/so101.yaml").read_text().replace("so101", "arm"))
+            with grobo.connect("sim", robot=path) as robot:
+                robot.move({"gripper": 0.1}, time=0.1)
+            path.write_text("name: [\n")
+            with self.assertRaises(errors.Syntax) as caught:
+                grobo.Description(path)
+            self.assertIn("arm.yaml", str(caught.exception))
+        with self.assertRaises(FileNotFoundError):
+            grobo.Description("./none.yaml")
+
+    def test_a_loop_of_ones_own_sends_targets(self):
+        with grobo.connect("sim", robot="so101", sense_interval=0.02) as robot:
+            with self.assertRaises(errors.Error):
+                robot.send({"elbow_flex": 0.1}, time=0.1)  # limp
+            robot.torque(True)
+            for step in range(10):
+                robot.send({"elbow_flex": 0.01 * step}, time=0.05)
+                time.sleep(0.02)
+            until(lambda: abs(robot.status().joints["elbow_flex"].angle - 0.09) < 0.005)
+            with self.assertRaises(errors.Limit) as caught:
+                robot.send({"elbow_flex": 9.0}, time=0.1)
+            self.assertEqual(caught.exception.joint, "elbow_flex")
+
+
 class Leaving(unittest.TestCase):
     def test_a_closed_robot_refuses_everything(self):
         with grobo.connect("sim") as robot:

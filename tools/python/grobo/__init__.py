@@ -11,12 +11,14 @@ there, so a busy interpreter delays nothing that moves.
 """
 
 from grobo._lib import version
+from grobo.description import Description
 from grobo.errors import Error
 from grobo.motion import Motion, Posture
 from grobo.robot import Exit, Joint, JointStatus, Robot, Status, Torque, connect
 
 __version__ = version()
 __all__ = [
+    "Description",
     "Error",
     "Exit",
     "Joint",

@@ -141,6 +141,10 @@ class Robot:
         """Moves joints; several moves of different joints may be under way."""
         await self._moved(posture(angles, time, self._robot._model))
 
+    def send(self, angles: Angles, *, time: float) -> None:
+        """Sends a target of a control loop; does not wait: grobo.Robot.send()."""
+        self._robot.send(angles, time=time)
+
     async def _moved(self, target: Any) -> None:
         job = self._robot._move(target)
         future: "asyncio.Future[int]" = self._loop.create_future()

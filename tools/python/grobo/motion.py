@@ -7,6 +7,7 @@ import os
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 
 from grobo._lib import ffi, lib, new, us
+from grobo.description import Description, first_error
 from grobo.errors import check, error
 
 numpy: Any = None
@@ -95,27 +96,38 @@ def posture(
 class Motion:
     """A motion in memory: postures, each reached some time after the one before."""
 
-    def __init__(self, kind: str = "postures", joints: int = 20, _owned: Any = None) -> None:
+    def __init__(
+        self, kind: str = "postures", joints: int = 20, _owned: Any = None, _model: Any = None
+    ) -> None:
+        self._model = _model or ffi.addressof(GR001)
         if _owned is None:
             made = ffi.new("grobo_motion **")
             check(lib.grobo_motion_new(made, KINDS.index(kind), joints, ffi.NULL), "motion")
             _owned = made[0]
         self._c = ffi.gc(_owned, lib.grobo_motion_free)
+        self._robot: Optional[Description] = None  # whose model it is
 
     @classmethod
-    def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Motion":
-        """Reads .m, .pseq, .mseq, .yaml or .seq; for anything wrong names the line."""
+    def load(
+        cls, path: Union[str, "os.PathLike[str]"], robot: Optional[Description] = None
+    ) -> "Motion":
+        """Reads .m, .pseq, .mseq, .yaml or .seq; for anything wrong names the line.
+
+        `robot`: whose joints the file names; without one GR001.
+        """
         made = ffi.new("grobo_motion **")
         problems = ffi.new("grobo_diagnostics **")
         check(lib.grobo_diagnostics_new(problems, ffi.NULL), "motion")
         found = ffi.gc(problems[0], lib.grobo_diagnostics_free)
         options = new("grobo_read_options")
-        options.model = ffi.addressof(GR001)
+        model = options.model = robot.model if robot else ffi.addressof(GR001)
         name = os.fspath(path)
         result = lib.grobo_motion_read_file(os.fsencode(name), options, found, made)
         if result < 0:
-            raise error(result, name, reason=_first_error(found))
-        return cls(_owned=made[0])
+            raise error(result, name, reason=first_error(found))
+        motion = cls(_owned=made[0], _model=model)
+        motion._robot = robot
+        return motion
 
     @classmethod
     def of(
@@ -134,12 +146,12 @@ class Motion:
 
     def append(self, angles: Union[Mapping[str, float], Sequence[float]], time: float) -> None:
         """Appends a posture that is reached `time` seconds after the last one."""
-        check(lib.grobo_motion_append(self._c, posture(angles, time, GR001)), "append")
+        check(lib.grobo_motion_append(self._c, posture(angles, time, self._model)), "append")
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes the file whose format its extension names."""
         options = new("grobo_write_options")
-        options.model = ffi.addressof(GR001)
+        options.model = self._model
         name = os.fspath(path)
         result = lib.grobo_motion_save(
             self._c, lib.grobo_files_os(), os.fsencode(name), options, ffi.NULL
@@ -172,7 +184,7 @@ class Motion:
     def mirror(self) -> "Motion":
         """A copy with left and right exchanged."""
         copy = self.copy()
-        check(lib.grobo_motion_mirror(copy._c, ffi.addressof(GR001)), "mirror")
+        check(lib.grobo_motion_mirror(copy._c, self._model), "mirror")
         return copy
 
     def reverse(self) -> "Motion":
@@ -190,7 +202,9 @@ class Motion:
     def copy(self) -> "Motion":
         made = ffi.new("grobo_motion **")
         check(lib.grobo_motion_dup(self._c, made), "copy")
-        return Motion(_owned=made[0])
+        copy = Motion(_owned=made[0], _model=self._model)
+        copy._robot = self._robot
+        return copy
 
     def __len__(self) -> int:
         return int(lib.grobo_motion_size(self._c))
@@ -200,20 +214,10 @@ class Motion:
         made = ffi.new("grobo_posture *")
         if n < 0 or lib.grobo_motion_get(self._c, n, made) < 0:
             raise IndexError(f"posture {n} of {len(self)}")
-        return Posture(made)
+        return Posture(made, self._model)
 
     def __iter__(self) -> Iterator[Posture]:
         return (self[n] for n in range(len(self)))
 
     def __repr__(self) -> str:
         return f"<Motion of {len(self)} {self.kind}, {self.length:g} s>"
-
-
-def _first_error(found: Any) -> Optional[str]:
-    problem = ffi.new("grobo_diagnostic *")
-    for i in range(lib.grobo_diagnostics_count(found)):
-        lib.grobo_diagnostics_get(found, i, problem)
-        if problem.severity == lib.GROBO_SEVERITY_ERROR:
-            text: str = ffi.string(problem.message).decode()
-            return f"line {problem.line}: {text}" if problem.line else text
-    return None

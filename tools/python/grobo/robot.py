@@ -18,7 +18,8 @@ from typing import (
 
 from grobo import errors
 from grobo._lib import ffi, has, lib, new, quick, us
-from grobo.motion import Motion, Posture, joint_names, posture
+from grobo.description import Description
+from grobo.motion import Motion, Posture, posture
 
 log = logging.getLogger("grobo")
 
@@ -161,7 +162,7 @@ class Robot:
     """A robot that is connected; close it, or use it in a `with` statement.
 
     `device`: a serial port, "tcp:HOST:PORT", "sim" (a simulator in this process), or "auto", the
-    first port on which a robot answers. `exit` says what the servos do when it is closed; None
+    first port on which a robot answers. `robot`: what it is, see grobo.Description. `exit` says what the servos do when it is closed; None
     leaves them as they are. `owner_timeout`: after so many seconds without a call of this program
     the exit policy is carried out; 0: never. `events`: how many events are kept, see grobo.aio.
     """
@@ -175,7 +176,12 @@ class Robot:
         owner_timeout: float = 0.0,
         reconnect: bool = False,
         events: int = 0,
+        robot: Union[str, "os.PathLike[str]", Description] = "gr001",
+        sense_interval: Optional[float] = None,
     ) -> None:
+        if not isinstance(robot, Description):
+            robot = Description(robot)
+        self.description = robot
         config = new("grobo_control_config")
         session = config.session
         if ffi.typeof(session).kind == "pointer":
@@ -185,6 +191,9 @@ class Robot:
         session.device = name
         session.reconnect = reconnect
         session.robot = robot_config
+        robot.configure(session)
+        if sense_interval is not None:
+            robot_config.sense_interval_us = us(sense_interval)
         robot_config.on_exit = exit or Exit.DEFAULT
         config.skip_exit = exit is None
         config.timeout_us = us(timeout)
@@ -194,11 +203,11 @@ class Robot:
                 raise errors.error(lib.GROBO_ERR_UNSUPPORTED, "events")
             config.events = events
         self.device = device
-        self._control = _Control(config, [name, robot_config, session])
+        self._control = _Control(config, [name, robot_config, session, robot])
         try:
             with self._control.use() as control:
-                self.joints = joint_names(lib.grobo_robot_driver(self._control.robot).model)
-                self._model = lib.grobo_robot_driver(self._control.robot).model
+                self.joints = robot.joints
+                self._model = robot.model
                 errors.check(lib.grobo_control_start_thread(control), "control thread")
                 errors.check(lib.grobo_control_connect(control, us(timeout)), device)
         except BaseException:
@@ -303,6 +312,17 @@ class Robot:
         with self._control.use():
             return self._check(lib.grobo_robot_move(self._control.robot, target), "move")
 
+    def send(self, angles: Angles, *, time: float) -> None:
+        """Sends a target and does not wait: for a control loop that calls this once a period.
+
+        The target is checked as that of move(), and replaces one that still waits for the line.
+        Joints must have torque, and have been read. `time`: seconds to get there, a little more than
+        a period.
+        """
+        target = posture(angles, time, self._model)
+        with self._control.use():
+            self._check(quick("grobo_robot_send", self._control.robot, target), "send")
+
     def play(
         self,
         motion: Union[Motion, str, "os.PathLike[str]"],
@@ -318,7 +338,7 @@ class Robot:
         `rate`: frames a second; without one a frame for each posture, and the servos fill the time.
         """
         if not isinstance(motion, Motion):
-            motion = Motion.load(Path(motion))
+            motion = Motion.load(Path(motion), self.description)
         options = new("grobo_play_options")
         options.speed_pct = round(speed * 100)
         options.mirror = mirror

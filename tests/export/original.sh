@@ -1,0 +1,56 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# docs/guide/from-original.md has each member of docs/seed-map.md, and its C compiles.
+set -u
+
+. tests/support/tap.sh
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+guide=docs/guide/from-original.md
+
+members() {
+    sed -n 's/^| \([A-Z][A-Z][0-9][0-9]\) |.*/\1/p' "$1"
+}
+all_members() {
+    members docs/seed-map.md >"$work/map" && members $guide >"$work/guide" &&
+        [ "$(wc -l <"$work/map")" -eq 190 ] && diff "$work/map" "$work/guide"
+}
+# The statement of each row uses a symbol of the map's row, or a field that it has.
+same_symbols() {
+    awk -F' [|] ' '
+    { sub(/^[|] /, "") }
+    FNR == NR { if ($1 ~ /^[A-Z][A-Z][0-9][0-9]$/) here[$1] = $3; next }
+    $1 in here {
+        n = split(here[$1], names, /[` ,]+/)
+        found = 0
+        for (i = 1; i <= n; i++) {
+            word = names[i]
+            sub(/^grobo_[a-z_0-9]*[.]/, "", word)
+            if (word != "" && index($3, word)) found = 1
+        }
+        if (!found) { print $1 ": " $3 " has none of " here[$1]; bad = 1 }
+    }
+    END { exit bad }' docs/seed-map.md $guide
+}
+sources() {
+    cat tests/export/original.c
+    sed -n 's/^| \([A-Z][A-Z][0-9][0-9]\) | `.*` | `\(.*\)` |$/void \1(void);\
+void \1(void)\
+{\
+    \2\
+}/p' $guide
+}
+compiles() {
+    sources >"$work/original.c" && [ "$(grep -c '(void);$' "$work/original.c")" -eq 190 ] &&
+        ${CC:-cc} -std=c11 -Wall -Wextra -Werror -Wno-unused-variable -Wno-unused-but-set-variable \
+            -Iinclude $(ls -d ports/*/include | sed 's/^/-I/' | head -n 1) -c \
+            -o "$work/original.o" "$work/original.c"
+}
+check 'it has each of the 190 members' all_members
+check 'each is served by what the map says' same_symbols
+if command -v "${CC:-cc}" >/dev/null 2>&1 || [ -n "${CC:-}" ]; then
+    check 'its C compiles' compiles
+else
+    skip 'its C compiles' 'no C compiler'
+fi
+done_testing

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: MIT
+class DeviceNotConnectedError(ConnectionError):
+    pass
+
+
+class DeviceAlreadyConnectedError(ConnectionError):
+    pass

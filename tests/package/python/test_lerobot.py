@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: MIT
+"""The plugin for LeRobot: by its documented interface against a stand-in of LeRobot, or the real
+one (GROBO_LEROBOT=real), and a simulator."""
+
+import math
+import os
+import re
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+HERE = Path(__file__).parent
+TOP = HERE.parents[2]
+PLUGIN = TOP / "tools/python/lerobot_robot_grobo"
+REAL = os.environ.get("GROBO_LEROBOT") == "real"
+sys.path.insert(0, str(PLUGIN))
+if not REAL:
+    if sys.version_info < (3, 10):
+        raise unittest.SkipTest("LeRobot needs Python 3.12, its stand-in 3.10")
+    sys.path.insert(0, str(HERE / "lerobot_stand_in"))
+
+import grobo  # noqa: E402
+import lerobot_robot_grobo  # noqa: E402
+from lerobot.robots import RobotConfig, make_robot_from_config  # noqa: E402
+from lerobot.utils.errors import DeviceAlreadyConnectedError, DeviceNotConnectedError  # noqa: E402
+from lerobot_robot_grobo import Grobo, GroboConfig  # noqa: E402
+
+PERIOD_S = 0.02
+
+
+def until(condition):
+    """Polls; the tests' own limit ends one that waits in vain."""
+    while not condition():
+        time.sleep(0.005)
+
+
+class Plugin(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def config(self, **options):
+        options = {"action_s": 0.04, **options}
+        return GroboConfig(port="sim", id="bench", calibration_dir=self.folder, **options)
+
+    def make(self, **options):
+        robot = make_robot_from_config(self.config(**options))
+        self.addCleanup(robot.disconnect)
+        return robot
+
+    def drive(self, robot, target, done):
+        """As LeRobot's loop: observe, act, each period."""
+        while True:
+            seen = robot.get_observation()
+            if done(seen):
+                return seen
+            robot.send_action(target)
+            time.sleep(PERIOD_S)
+
+    def test_is_found_by_its_name(self):
+        project = (PLUGIN / "pyproject.toml").read_text()
+        name = re.search(r'^name = "(.*)"', project, re.M).group(1)
+        self.assertEqual(name, lerobot_robot_grobo.__name__)
+        self.assertTrue(name.startswith("lerobot_robot_"))
+
+    def test_its_config_makes_it(self):
+        robot = self.make()
+        self.assertIsInstance(robot, Grobo)
+        self.assertIs(Grobo.config_class, GroboConfig)
+        self.assertTrue(issubclass(GroboConfig, RobotConfig))
+
+    def test_features_are_known_before_it_is_connected(self):
+        robot = self.make()
+        self.assertEqual(len(robot.action_features), 6)
+        self.assertIs(robot.action_features["elbow_flex.pos"], float)
+        self.assertEqual(robot.observation_features, robot.action_features)
+        self.assertFalse(robot.is_connected)
+        self.assertTrue(robot.is_calibrated)
+
+    def test_connecting_moves_nothing_and_holds(self):
+        robot = self.make()
+        robot.connect()
+        self.assertTrue(robot.is_connected)
+        joints = robot._robot.status().joints.values()
+        self.assertEqual({joint.torque for joint in joints}, {grobo.Torque.ON})
+        self.assertTrue(all(abs(joint.target - joint.angle) < 0.01 for joint in joints))
+        with self.assertRaises(DeviceAlreadyConnectedError):
+            robot.connect()
+
+    def test_actions_are_followed(self):
+        robot = self.make()
+        robot.connect()
+        target = {"elbow_flex.pos": 12.0, "gripper.pos": 20.0}
+        seen = self.drive(robot, target, lambda s: abs(s["elbow_flex.pos"] - 12) < 0.5)
+        self.assertEqual(set(seen), set(robot.observation_features))
+        self.drive(robot, target, lambda s: abs(s["gripper.pos"] - 20) < 0.5)
+
+    def test_what_is_returned_is_what_was_sent(self):
+        robot = self.make()
+        robot.connect()
+        high = math.degrees(robot._description.limits["elbow_flex"][1])
+        sent = robot.send_action({"elbow_flex.pos": 500.0, "wrist_flex.pos": 1.5})
+        self.assertAlmostEqual(sent["elbow_flex.pos"], high)
+        self.assertAlmostEqual(sent["wrist_flex.pos"], 1.5)
+        self.drive(robot, {"elbow_flex.pos": 500.0}, lambda s: s["elbow_flex.pos"] > high - 0.5)
+
+    def test_bad_actions_are_refused(self):
+        robot = self.make()
+        with self.assertRaises(DeviceNotConnectedError):
+            robot.send_action({"elbow_flex.pos": 0.0})
+        with self.assertRaises(DeviceNotConnectedError):
+            robot.get_observation()
+        robot.connect()
+        for action in ({"elbow.pos": 0.0}, {"elbow_flex": 0.0}):
+            with self.assertRaises(KeyError):
+                robot.send_action(action)
+        for bad in (math.nan, math.inf):
+            with self.assertRaises(ValueError):
+                robot.send_action({"elbow_flex.pos": bad})
+
+    def test_without_actions_it_stands(self):
+        robot = self.make()
+        robot.connect()
+        robot.send_action({"elbow_flex.pos": 2.0})
+        until(lambda: not robot._robot.status().moving)
+        status = robot._robot.status()
+        self.assertAlmostEqual(status.joints["elbow_flex"].target, math.radians(2), delta=0.001)
+        self.assertFalse(status.latched)
+
+    def test_an_emergency_stop_ends_the_loop(self):
+        robot = self.make()
+        robot.connect()
+        robot._robot.estop()
+        with self.assertRaises(grobo.errors.Latched):
+            robot.send_action({"elbow_flex.pos": 1.0})
+
+    def test_old_readings_are_no_observation(self):
+        robot = self.make(stale_s=0.0)
+        robot.connect()
+        with self.assertRaises(TimeoutError):
+            robot.get_observation()
+
+    def test_leaving_carries_out_the_policy(self):
+        robot = self.make(on_exit="off")
+        with robot:
+            inner = robot._robot
+            self.assertTrue(robot.is_connected)
+        self.assertFalse(robot.is_connected)
+        self.assertTrue(inner._control.closing)
+        robot.disconnect()  # again: nothing happens
+        with self.assertRaises(ValueError):
+            Grobo(self.config(on_exit="fall"))
+
+    def test_any_robot_file(self):
+        arm = self.folder / "arm.yaml"
+        arm.write_text((TOP / "src/robots/so101.yaml").read_text().replace("so101", "arm"))
+        robot = self.make(robot=str(arm))
+        robot.connect()
+        self.drive(robot, {"elbow_flex.pos": 3.0}, lambda s: abs(s["elbow_flex.pos"] - 3) < 0.5)
+        arm.write_text("name: arm\nfamily: none\n")
+        with self.assertRaises(grobo.errors.Syntax) as caught:
+            Grobo(self.config(robot=str(arm)))
+        self.assertIn("line 1", str(caught.exception))
+        with self.assertRaises(grobo.errors.Notfound):
+            Grobo(self.config(robot="so999"))
+
+    def test_a_humanoid(self):
+        robot = self.make(robot="gr001", sense_s=0.1, stale_s=2)
+        robot.connect()
+        self.assertEqual(len(robot.get_observation()), 20)
+        self.drive(robot, {"NECK_Y.pos": 5.0}, lambda s: abs(s["NECK_Y.pos"] - 5) < 0.5)
+
+    @unittest.skipIf(REAL, "with cameras of the stand-in")
+    def test_cameras_are_part_of_an_observation(self):
+        robot = self.make(cameras={"front": object()})
+        self.assertEqual(robot.observation_features["front"], (2, 3, 3))
+        robot.connect()
+        self.assertEqual(len(robot.get_observation()["front"]), 2)
+        robot.disconnect()
+        self.assertFalse(robot.cameras["front"].is_connected)
+
+
+if __name__ == "__main__":
+    unittest.main()

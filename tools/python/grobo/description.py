@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""What a robot is made of: one that comes with the library, or a file."""
+
+import os
+from typing import Any, Dict, List, Optional, Tuple, Union
+
+from grobo._lib import ffi, lib
+from grobo.errors import check, error
+
+
+class Description:
+    """A robot's joints, servos, line and limits.
+
+    `name`: a robot of the library ("gr001", "so101"), or a file where it has a slash or a dot, as
+    for grctl --robot.
+    """
+
+    def __init__(self, name: Union[str, "os.PathLike[str]"] = "gr001") -> None:
+        text = os.fspath(name)
+        shipped = isinstance(name, str) and not set(text) & {"/", os.sep, "."}
+        self._c = _shipped(text) if shipped else _read(text)
+        self.model = self._c.model
+        self._driver = ffi.new("grobo_driver *")
+        self._sim = ffi.new("grobo_robot_sim *")
+        check(lib.grobo_robot_def_driver(self._c, self._c.wiring, self._driver), text)
+        check(lib.grobo_robot_def_sim(self._c, self._c.wiring, self._sim), text)
+
+    @property
+    def name(self) -> str:
+        name: str = ffi.string(self._c.name).decode()
+        return name
+
+    @property
+    def joints(self) -> List[str]:
+        return [ffi.string(self.model.joints[j].name).decode() for j in range(self.model.n_joints)]
+
+    @property
+    def limits(self) -> Dict[str, Tuple[float, float]]:
+        """The range of each joint in radians."""
+        return {
+            name: (float(self.model.joints[j].min_rad), float(self.model.joints[j].max_rad))
+            for j, name in enumerate(self.joints)
+        }
+
+    def configure(self, session: Any) -> None:
+        """Has a session talk to this robot, which must live as long as it."""
+        session.driver = self._driver
+        session.sim = ffi.addressof(self._sim, "config")
+        session.baud_bps = self._c.baud_bps
+
+
+def _shipped(name: str) -> Any:
+    names, n = [], 0
+    while lib.grobo_robot_defs[n] != ffi.NULL:
+        names.append(ffi.string(lib.grobo_robot_defs[n].name).decode())
+        if names[-1] == name:
+            return lib.grobo_robot_defs[n]
+        n += 1
+    raise error(lib.GROBO_ERR_NOTFOUND, f"robot {name!r}", reason=", ".join(names))
+
+
+def _read(path: str) -> Any:
+    with open(path, "rb") as file:
+        def read(_: Any, buffer: Any, size: int) -> int:
+            data = file.read(size)
+            ffi.memmove(buffer, data, len(data))
+            return len(data)
+
+        reader = ffi.callback("int(void *, void *, size_t)", read, error=lib.GROBO_ERR_IO)
+        source = ffi.new("grobo_source *", {"read": reader})
+        problems = ffi.new("grobo_diagnostics **")
+        check(lib.grobo_diagnostics_new(problems, ffi.NULL), path)
+        found = ffi.gc(problems[0], lib.grobo_diagnostics_free)
+        made = ffi.new("grobo_robot_def **")
+        result = lib.grobo_robot_def_read(source, os.fsencode(path), found, ffi.NULL, made)
+        if result < 0:
+            raise error(result, path, reason=first_error(found))
+        return ffi.gc(made[0], lib.grobo_robot_def_free)
+
+
+def first_error(found: Any) -> Optional[str]:
+    problem = ffi.new("grobo_diagnostic *")
+    for i in range(lib.grobo_diagnostics_count(found)):
+        lib.grobo_diagnostics_get(found, i, problem)
+        if problem.severity == lib.GROBO_SEVERITY_ERROR:
+            text: str = ffi.string(problem.message).decode()
+            return f"line {problem.line}: {text}" if problem.line else text
+    return None

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: MIT
+"""The options of --robot.type=grobo."""
+
+from dataclasses import dataclass, field
+
+from lerobot.cameras import CameraConfig
+from lerobot.robots import RobotConfig
+
+
+@RobotConfig.register_subclass("grobo")
+@dataclass(kw_only=True)
+class GroboConfig(RobotConfig):
+    # A serial port, "tcp:HOST:PORT", "sim", or "auto".
+    port: str = "auto"
+    # A robot of the library ("so101"), or a robot file where it has a slash or a dot.
+    robot: str = "so101"
+    # What the servos do at the end: "hold", "sit", "off", or "default", the robot's own.
+    on_exit: str = "default"
+    # Seconds in which an action is reached: a little more than a period of LeRobot's loop.
+    action_s: float = 0.05
+    # Seconds between two readings of all joints, as far as the line allows.
+    sense_s: float = 0.02
+    # Seconds after which a reading is too old to be an observation.
+    stale_s: float = 0.5
+    cameras: dict[str, CameraConfig] = field(default_factory=dict)

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""A robot of libgrobo with the interface of LeRobot's robots.
+
+Observations and actions are degrees by "JOINT.pos". The thread of the library reads the joints;
+get_observation() takes what was read last and never waits for the line. An action is clipped to
+the limits of its joints here, and checked and timed by the library as any target; what is returned
+is what was sent. Between two actions nothing moves on: each ends at its own target.
+"""
+
+import math
+from functools import cached_property
+from typing import Any
+
+import grobo
+from lerobot.cameras import make_cameras_from_configs
+from lerobot.robots import Robot
+from lerobot.utils.errors import DeviceAlreadyConnectedError, DeviceNotConnectedError
+
+from lerobot_robot_grobo.config_grobo import GroboConfig
+
+
+class Grobo(Robot):
+    config_class = GroboConfig
+    name = "grobo"
+
+    def __init__(self, config: GroboConfig) -> None:
+        self._robot: grobo.Robot | None = None  # before anything may fail: __del__ asks for it
+        self.cameras: dict[str, Any] = {}
+        super().__init__(config)
+        self.config = config
+        self._description = grobo.Description(config.robot)
+        if config.on_exit.upper() not in grobo.Exit.__members__:
+            raise ValueError(f"on_exit {config.on_exit!r}: default, hold, sit or off")
+        self._exit = grobo.Exit[config.on_exit.upper()]
+        self.cameras = make_cameras_from_configs(config.cameras) if config.cameras else {}
+
+    # ---- what it has; also before it is connected --------------------------------------------
+
+    @cached_property
+    def action_features(self) -> dict[str, type]:
+        return {f"{joint}.pos": float for joint in self._description.joints}
+
+    @cached_property
+    def observation_features(self) -> dict[str, Any]:
+        features: dict[str, Any] = dict(self.action_features)
+        for name, camera in self.cameras.items():
+            if getattr(camera, "use_rgb", True):
+                features[name] = (camera.height, camera.width, 3)
+            if getattr(camera, "use_depth", False):
+                features[f"{name}_depth"] = (camera.height, camera.width, 1)
+        return features
+
+    # ---- connecting --------------------------------------------------------------------------
+
+    @property
+    def is_connected(self) -> bool:
+        return self._robot is not None and all(c.is_connected for c in self.cameras.values())
+
+    def connect(self, calibrate: bool = True) -> None:
+        """Opens the robot and switches torque on where it stands; nothing moves."""
+        if self._robot is not None:
+            raise DeviceAlreadyConnectedError(f"{self} is already connected")
+        self._robot = grobo.Robot(
+            self.config.port,
+            robot=self._description,
+            exit=self._exit,
+            sense_interval=self.config.sense_s,
+            reconnect=True,
+        )
+        try:
+            for camera in self.cameras.values():
+                camera.connect()
+            self.configure()
+        except BaseException:
+            self.disconnect()
+            raise
+
+    @property
+    def is_calibrated(self) -> bool:
+        return True
+
+    def calibrate(self) -> None:
+        """Nothing: `grctl calibrate` keeps the calibration in the servos."""
+
+    def configure(self) -> None:
+        """Torque comes on with each goal at the present angle."""
+        robot = self._connected()
+        robot.torque(True)
+        robot.angles()
+
+    def disconnect(self) -> None:
+        """Carries out the exit policy and closes."""
+        robot, self._robot = self._robot, None
+        try:
+            if robot is not None:
+                robot.close()
+        finally:
+            for camera in self.cameras.values():
+                if camera.is_connected:
+                    camera.disconnect()
+
+    # ---- each period -------------------------------------------------------------------------
+
+    def get_observation(self) -> dict[str, Any]:
+        seen: dict[str, Any] = {}
+        for name, joint in self._connected().status().joints.items():
+            if joint.degrees is None or joint.age is None or joint.age > self.config.stale_s:
+                raise TimeoutError(f"{self}: {name} was not read for {self.config.stale_s:g} s")
+            seen[f"{name}.pos"] = joint.degrees
+        for name, camera in self.cameras.items():
+            if getattr(camera, "use_rgb", True):
+                seen[name] = camera.read_latest()
+            if getattr(camera, "use_depth", False):
+                seen[f"{name}_depth"] = camera.read_latest_depth()
+        return seen
+
+    def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
+        robot = self._connected()
+        limits = self._description.limits
+        target = {}
+        for key, degrees in action.items():
+            joint = key.removesuffix(".pos")
+            if joint == key or joint not in limits:
+                raise KeyError(f"{self} has no {key!r}")
+            angle = math.radians(float(degrees))
+            if not math.isfinite(angle):
+                raise ValueError(f"{self}: {key} is {degrees}")
+            low, high = limits[joint]
+            target[joint] = min(max(angle, low), high)
+        robot.send(target, time=self.config.action_s)
+        return {f"{joint}.pos": math.degrees(angle) for joint, angle in target.items()}
+
+    def _connected(self) -> grobo.Robot:
+        if self._robot is None:
+            raise DeviceNotConnectedError(f"{self} is not connected")
+        return self._robot
