@@ -3,6 +3,7 @@
 # Help and messages in Japanese; what programs read is the same in every language.
 . tests/support/cli.sh
 . tests/support/terminal.sh
+. tests/support/guide_blocks.sh
 
 # ja COMMAND...: in Japanese, whether or not the system has such a locale.
 ja() {
@@ -48,8 +49,13 @@ is_aligned() {
         substr($0, 29, 2) != "  " || substr($0, 31, 1) == " " { print; bad = 1 }
         END { exit bad }' "$work/out"
 }
+# No line begins with a mark that belongs to the character before it.
+breaks_well() {
+    ! LC_ALL=C grep -e '^ *\(、\|。\|）\|」\|ー\|ッ\|ュ\|ョ\|ャ\)' "$work/out"
+}
 is_japanese() {
-    ja "$GRCTL" help "$1" >"$work/out" && says "^使い方: grctl $1" && ! too_wide && is_aligned
+    ja "$GRCTL" help "$1" >"$work/out" && says "^使い方: grctl $1" && ! too_wide && is_aligned &&
+        breaks_well
 }
 ja "$GRCTL" help >"$work/out"
 check "the overview fits" eval '! too_wide'
@@ -60,7 +66,6 @@ check "there are commands" [ "$(wc -l <"$work/commands")" -ge 30 ]
 while read -r command; do
     check "help $command" is_japanese "$command"
 done <"$work/commands"
-check "no line ends in the middle of a mark" eval 'ja "$GRCTL" help play | grep -v -q "^[、。）」ー]"'
 
 manual() {
     ja "$GRCTL" help --man >"$work/grctl.1" && grep -q '^.Sh 書式' "$work/grctl.1" &&
@@ -95,6 +100,22 @@ check "a file that is not there" complains_ja 3 'none.m: ファイルがあり�
     "$GRCTL" -d sim play "$work/none.m"
 check "a limit" complains_ja 4 'R_KNEE_P.*可動範囲 -130 から 0 の外です$' \
     "$GRCTL" -d sim move R_KNEE_P 30
+echo '1000 0 0 0 0 0 0 0 0 0 0 0 300 0 0 0 0 0 0 0 0' >"$work/bad.m"
+check "a code of the library is explained" complains_ja 4 \
+    'bad.m:1:[0-9]*: R_KNEE_P: 30 degrees, outside .* (可動範囲の外); --clamp を' \
+    "$GRCTL" -d sim play "$work/bad.m"
+# Each code of docs/spec.md is.
+codes() {
+    sed -n '/^## What is refused/,/^## Caps/p' docs/spec.md | grep '^| [a-z]' | cut -d '|' -f 2 |
+        tr -d ' ' | tr ',' '\n' | grep -v '^code$' >"$work/codes"
+    sed -n '/^Converting and writing note:/,/^$/p' docs/spec.md | grep -o '[a-z]*-[a-z-]*[a-z]' \
+        >>"$work/codes"
+    [ "$(wc -l <"$work/codes")" -ge 60 ] && while read -r code; do
+        grep -q -x -e "msgid \"\\[$code\\]\"" tools/grctl/lang/ja.po ||
+            { echo "no $code"; return 1; }
+    done <"$work/codes"
+}
+check "all are" codes
 check "a stop" eval 'ja exits 0 "$GRCTL" -d sim stop && complains "^停止しました"'
 check "a shell" eval 'printf "help q\nm nope 3\n" >"$work/script" &&
     ja exits 2 "$GRCTL" -d sim shell "$work/script" && says "^  q  quit" && says "シェルを終わる" &&
@@ -108,7 +129,8 @@ well() {
 check "doctor" well
 # What another wiring is told by is a message.
 elsewhere() {
-    ja exits 1 "$GRCTL" -d "$robot" doctor && says '^BAD   reply  .*では応答があります（線に直結）' &&
+    ja exits 1 "$GRCTL" -d "$robot" doctor &&
+        says '^BAD   reply  .*では応答があります（線に直結）' &&
         says "^ *-> grctl -d $robot --wiring bus "
 }
 check "doctor finds the other wiring in Japanese too" elsewhere
@@ -131,6 +153,42 @@ else
     skip "monitor and play on a screen" "$no_screen"
 fi
 
+# ---- the guides -------------------------------------------------------------------------------
+
+# tests/cli/guide.sh runs their commands; tests/cli/readme.sh and tests/export/python.sh run the
+# programs of README.md.
+guide=docs/guide/first-hour.ja.md
+same_program() {
+    block README.md "$1" >"$work/english" && block docs/README.ja.md "$1" >"$work/out" &&
+        [ -s "$work/out" ] && diff "$work/english" "$work/out"
+}
+check "the program of docs/README.ja.md is that of README.md" same_program example
+check "and its Python" same_program python
+# The messages that the guide shows are those of the commands above them, and name things.
+shown() {
+    ja "$GRCTL" -d sim move R_ELBW_P -45 2>"$work/out"
+    ja "$GRCTL" -d sim move R_KNEE_P 30 2>>"$work/out"
+    while read -r line; do
+        grep -q -x -F -e "$line" $guide || { echo "not shown: $line"; return 1; }
+    done <"$work/out"
+}
+check "what $guide shows" shown
+named() {
+    sed -n '/^| メッセージ/,/^$/s/^| `\(… \)*\([^`]*\)`.*/\2/p' $guide >"$work/named"
+    [ "$(wc -l <"$work/named")" -ge 5 ] && while read -r text; do
+        grep -q -F -e "$text" tools/grctl/lang/ja.po || { echo "no message has: $text"; return 1; }
+    done <"$work/named"
+}
+check "and the messages that it names" named
+links() {
+    for page in docs/README.ja.md $guide; do
+        grep -o '](\([^)#:]*\)[)#]' $page | sed 's/](\(.*\)[)#]/\1/' | while read -r file; do
+            [ -e "$(dirname $page)/$file" ] || { echo "$page: no $file"; exit 1; }
+        done || return 1
+    done
+}
+check "what they link to is there" links
+
 # ---- what programs read -----------------------------------------------------------------------
 
 # same STATUS COMMAND...: it prints the same, byte for byte, in both languages.
@@ -149,7 +207,6 @@ same_json() {
 check "joints" same 0 "$GRCTL" joints
 check "robots" same 0 "$GRCTL" robot show
 check "show" same 0 "$GRCTL" show motions/greet.pseq
-echo '10 100 999' >"$work/bad.m"
 check "check" same 3 "$GRCTL" check "$work/bad.m"
 check "plot" same 0 "$GRCTL" plot -o - motions/greet.pseq
 check "convert" same 0 "$GRCTL" convert --to yaml motions/greet.pseq -
@@ -170,7 +227,8 @@ check "of a script" same_json 2 "$GRCTL" -d sim --json shell "$work/script"
 json_line() { # a line of a shell may ask for JSON alone
     printf 'move nope 3 --json\nmove nope 3\n' >"$work/script"
     ja "$GRCTL" -d sim shell -k "$work/script" >"$work/out" 2>"$work/err"
-    says '"message":"[^"]*no joint called' && grep -q "script:2: 関節 'nope' はありません" "$work/err"
+    says '"message":"[^"]*no joint called' &&
+        grep -q "script:2: 関節 'nope' はありません" "$work/err"
 }
 check "a line of a shell" json_line
 

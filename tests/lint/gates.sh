@@ -54,7 +54,8 @@ compile() {
 speaks() {
     fresh
     mkdir -p tools/grctl/lang include/grobo src/robot src/play
-    cp "$gates"/../grctl/lang/*.awk "$gates/../grctl/lang/rules.txt" tools/grctl/lang
+    cp "$gates"/../grctl/lang/*.awk tools/grctl/lang
+    grep -v '^also ' "$gates/../grctl/lang/rules.txt" >tools/grctl/lang/rules.txt
     : >include/grobo/error.h
     : >src/robot/trip.c
     : >src/play/names.c
@@ -629,6 +630,11 @@ printf 'echo\n' >>a.sh
 check 'text: licence of a script' refuses 'no SPDX' awk -f "$gates/text.awk" a.sh
 printf '%s\n%0101d\n' "$licence" 0 >a.c
 check 'text: columns' refuses 'a.c:2: text: longer' awk -f "$gates/text.awk" a.c
+printf '%s\n%048d\n' "$licence" 0 | sed '2s/0/関/g' >a.c
+check 'text: 96 columns of wide characters' env LC_ALL=C awk -f "$gates/text.awk" a.c
+printf '%s\n%051d\n' "$licence" 0 | sed '2s/0/関/g' >a.c
+check 'text: 102 columns of them' refuses 'a.c:2: text: longer' \
+    env LC_ALL=C awk -f "$gates/text.awk" a.c
 
 printf 'BasedOnStyle: LLVM\n' >.clang-format
 printf 'int x ;\n' >a.c

@@ -62,7 +62,7 @@ everything=$(texts)
 
 # shellcheck disable=SC2086
 {
-    gate text awk -f "$gates/text.awk" $everything
+    gate text env LC_ALL=C awk -f "$gates/text.awk" $everything
     gate text final_newline $everything
     gate format sh "$gates/format.sh" $all
     gate banned scan banned $all

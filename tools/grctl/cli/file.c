@@ -50,19 +50,41 @@ int file_fits(app *a, const char *path, const grobo_motion *motion)
                     file_shown_name(path), n_joints, app_model(a)->name, has);
 }
 
+/* What a code means, where the language is not that of the library's text. */
+static void explain(const grobo_diagnostic *d, char *text, size_t capacity)
+{
+    char code[64];
+    snprintf(code, sizeof code, "[%s]", d->code);
+    const char *means = lang_text(code);
+    snprintf(text, capacity, means == code ? "" : " (%s)", means);
+}
+
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity)
 {
-    char place[32] = "";
+    char place[32] = "", means[128] = "";
     if (d->line && d->column) {
         snprintf(place, sizeof place, "%u:%u:", d->line, d->column);
     } else if (d->line) {
         snprintf(place, sizeof place, "%u:", d->line);
     }
-    snprintf(text, capacity, "%s:%s %s%s%s%s%s%s", d->file, place,
+    if (!with_code) {
+        explain(d, means, sizeof means);
+    }
+    snprintf(text, capacity, "%s:%s %s%s%s%s%s%s%s", d->file, place,
              d->severity == GROBO_SEVERITY_ERROR ? "" : grobo_severity_name(d->severity),
              d->severity == GROBO_SEVERITY_ERROR ? "" : ": ", d->message, with_code ? " [" : "",
-             with_code ? d->code : "", with_code ? "]" : "");
+             with_code ? d->code : "", with_code ? "]" : "", means);
     app_make_one_line(text);
+}
+
+void file_print(const app *a, const grobo_diagnostic *d, const char *color)
+{
+    char text[APP_LINE_BYTES], means[128] = "";
+    file_format(d, true, text, sizeof text);
+    if (a->tty_out) {
+        explain(d, means, sizeof means);
+    }
+    app_print("%s%s%s%s\n", color, text, *color ? "\033[0m" : "", means);
 }
 
 json_t *file_json(const grobo_diagnostics *list)

@@ -6,7 +6,13 @@
 
 # ---- rules -----------------------------------------------------------------------------------
 
-function read_rule(    rest, where) {
+function in_quotes(rest) {
+    sub(/^[^"]*"/, "", rest)
+    sub(/"$/, "", rest)
+    return rest
+}
+
+function read_rule(    where) {
     where = $NF ~ /\// ? $NF : ""
     if ($1 == "text" && $2 ~ /^\./) {
         translated[$2, where] = 1
@@ -16,16 +22,16 @@ function read_rule(    rest, where) {
         translated[$2 "#" $3, where] = 1
         format_at[$2, where] = $3
     } else if ($1 == "keep" && $2 ~ /^"/) {
-        rest = $0
-        sub(/^keep +"/, "", rest)
-        sub(/"$/, "", rest)
-        kept_text[rest] = 1
+        kept_text[in_quotes($0)] = 1
+    } else if ($1 == "also") {
+        printf "%s\t%s\n", $2, in_quotes($0)
+        seen[in_quotes($0)] = 1
     } else if ($1 == "keep" && $2 ~ /\//) {
         kept_files = kept_files (kept_files == "" ? "" : "|") $2
     } else if ($1 == "keep") {
         kept_in[$2, where] = 1
     } else {
-        printf "%s:%d: neither text nor keep\n", FILENAME, FNR >"/dev/stderr"
+        printf "%s:%d: neither text, also nor keep\n", FILENAME, FNR >"/dev/stderr"
         bad = 1
     }
 }
