@@ -281,7 +281,7 @@ static int stop_unknown(app *a, const char *name, const char *why)
 
 static const char *unknown_name(const app *a)
 {
-    static char text[2 * CONFIG_NAME_BYTES];
+    static char text[3 * CONFIG_NAME_BYTES];
     snprintf(text, sizeof text, _("no robot of the configuration, no device%s%s%s"),
              a->nearest_device ? _(" (did you mean '") : "",
              a->nearest_device ? a->nearest_device : "", a->nearest_device ? _("'?)") : "");

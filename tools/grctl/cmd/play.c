@@ -78,7 +78,7 @@ static void follow(conn *c, show *s, int joint)
 static void report_progress(conn *c, show *s)
 {
     grobo_play_progress p;
-    char text[96];
+    char text[128];
     grobo_robot_progress(c->robot, &p);
     if (c->a->json) {
         if (s->ticks % REPORT_EVERY == 0) {
