@@ -167,7 +167,7 @@ include tools/baremetal/baremetal.mk
 .PHONY: help all lib demo check robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count plots captures cross check-cross check-drivers
 .PHONY: check-abi sources wrap deb check-deb release check-families check-ports check-long check-mutants check-map install-lib FORCE
-.PHONY: firmware size check-firmware picture
+.PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -305,6 +305,13 @@ bench-count: $(BUILD)/tests/bench/bench_work ## instructions against tests/bench
 
 plots: $(BUILD)/grctl ## draw motions/plots/*.svg again
 	@tools/plots.sh "$(call whole,$(BUILD)/grctl)"
+
+site: ## the reference of headers and documents in build/site/html, man pages in build/site/man
+	@tools/site/make.sh "$(BUILD)/site"
+
+check-site: all ## that site and its links, and the blocks of code of all documents; part of make check
+	@BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs/site" tests/run.sh tests/export/site.sh \
+	    tests/export/blocks.sh tests/export/original.sh
 
 picture: $(PICTURE) ## draw docs/robot.svg again: a simulated GR001 plays
 	@tools/picture.sh "$(call whole,$(PICTURE))"

@@ -269,6 +269,10 @@ look_wanted() {
         cmake cmake cmake cmake cmake
     need meson 'to check the build files for it' have_command meson -- \
         meson meson meson meson meson
+    need doxygen 'to check the reference site' have_command doxygen -- \
+        doxygen doxygen doxygen doxygen doxygen
+    need glib 'to check the guide of loops' have_library glib-2.0 -- \
+        libglib2.0-dev glib2-devel glib2 glib-dev glib2-devel
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
     [ "$manager" != apt-get ] ||

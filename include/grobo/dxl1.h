@@ -43,13 +43,13 @@ typedef enum grobo_dxl1_code {
 } grobo_dxl1_code;
 
 /** Bits of a status' error, and of the registers alarm_led and shutdown. Feetech's are others. */
-#define GROBO_DXL1_VOLTAGE 0x01u
-#define GROBO_DXL1_ANGLE_LIMIT 0x02u /**< the goal is outside the limits */
-#define GROBO_DXL1_OVERHEATED 0x04u
-#define GROBO_DXL1_BAD_RANGE 0x08u
-#define GROBO_DXL1_BAD_SUM 0x10u
-#define GROBO_DXL1_OVERLOAD 0x20u
-#define GROBO_DXL1_BAD_INSTRUCTION 0x40u
+#define GROBO_DXL1_VOLTAGE 0x01u         /**< outside its limits */
+#define GROBO_DXL1_ANGLE_LIMIT 0x02u     /**< the goal is outside the limits */
+#define GROBO_DXL1_OVERHEATED 0x04u      /**< above its limit */
+#define GROBO_DXL1_BAD_RANGE 0x08u       /**< a value outside its register's range */
+#define GROBO_DXL1_BAD_SUM 0x10u         /**< of the instruction */
+#define GROBO_DXL1_OVERLOAD 0x20u        /**< the load is more than it can hold */
+#define GROBO_DXL1_BAD_INSTRUCTION 0x40u /**< unknown, or an action without a write */
 
 /** A frame taken apart, or to be put together. Fields that an instruction lacks are 0. */
 typedef struct grobo_dxl1_packet {

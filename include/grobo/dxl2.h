@@ -71,11 +71,11 @@ typedef enum grobo_dxl2_error {
 } grobo_dxl2_error;
 
 /** Bits of the registers shutdown and hardware_error. */
-#define GROBO_DXL2_VOLTAGE 0x01u
-#define GROBO_DXL2_OVERHEATED 0x04u
-#define GROBO_DXL2_ENCODER 0x08u
-#define GROBO_DXL2_SHOCK 0x10u
-#define GROBO_DXL2_OVERLOAD 0x20u
+#define GROBO_DXL2_VOLTAGE 0x01u    /**< outside its limits */
+#define GROBO_DXL2_OVERHEATED 0x04u /**< above its limit */
+#define GROBO_DXL2_ENCODER 0x08u    /**< the encoder of the motor fails */
+#define GROBO_DXL2_SHOCK 0x10u      /**< an electrical shock, or too little power */
+#define GROBO_DXL2_OVERLOAD 0x20u   /**< a load that lasts */
 
 /** Operating modes. */
 typedef enum grobo_dxl2_mode {

@@ -60,6 +60,7 @@ GROBO_BEGIN_DECLS
 /** The errors as an enum: GROBO_ERR_ARG, GROBO_ERR_NOMEM, ... */
 typedef enum grobo_error {
     GROBO_OK = 0, /**< success */
+/** Makes one of them. */
 #define GROBO_ERROR_ENUM(name, value, text) GROBO_ERR_##name = (value),
     GROBO_ERROR_LIST(GROBO_ERROR_ENUM)
 #undef GROBO_ERROR_ENUM

@@ -15,7 +15,9 @@
 #define GROBO_BEGIN_DECLS extern "C" {
 #define GROBO_END_DECLS }
 #else
+/** Before declarations: they are C's in C++ too. */
 #define GROBO_BEGIN_DECLS
+/** Behind them. */
 #define GROBO_END_DECLS
 #endif
 
@@ -26,6 +28,7 @@
 #define GROBO_API __declspec(dllimport)
 #endif
 #elif defined(__GNUC__)
+/** In every library. */
 #define GROBO_API __attribute__((visibility("default")))
 #else
 #define GROBO_API

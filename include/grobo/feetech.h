@@ -17,11 +17,11 @@
 GROBO_BEGIN_DECLS
 
 /** Bits of a status' error, and of the registers status, unload and led_alarm. */
-#define GROBO_FEETECH_VOLTAGE 0x01u
-#define GROBO_FEETECH_SENSOR 0x02u
-#define GROBO_FEETECH_OVERHEATED 0x04u
-#define GROBO_FEETECH_OVERCURRENT 0x08u
-#define GROBO_FEETECH_OVERLOAD 0x20u
+#define GROBO_FEETECH_VOLTAGE 0x01u     /**< outside its limits */
+#define GROBO_FEETECH_SENSOR 0x02u      /**< the sensor of the angle fails */
+#define GROBO_FEETECH_OVERHEATED 0x04u  /**< above its limit */
+#define GROBO_FEETECH_OVERCURRENT 0x08u /**< above its limit */
+#define GROBO_FEETECH_OVERLOAD 0x20u    /**< a load that lasts */
 
 /** Values of the register mode of STS and SMS. */
 typedef enum grobo_sts_mode {

@@ -24,10 +24,10 @@ GROBO_BEGIN_DECLS
 #define GROBO_ICS_EEPROM_BYTES 64
 /** Longest frame: the EEPROM. */
 #define GROBO_ICS_FRAME_MAX_BYTES 66
-/** Positions: 270 degrees, and the middle. */
+/** Positions: 270 degrees from the least to the largest. */
 #define GROBO_ICS_POSITION_MIN 3500
-#define GROBO_ICS_POSITION_MIDDLE 7500
-#define GROBO_ICS_POSITION_MAX 11500
+#define GROBO_ICS_POSITION_MIDDLE 7500 /**< 0 degrees */
+#define GROBO_ICS_POSITION_MAX 11500   /**< the largest */
 /** The position that takes the torque. */
 #define GROBO_ICS_FREE 0
 

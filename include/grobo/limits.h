@@ -3,8 +3,8 @@
  * @file limits.h
  * @brief Everything that grows has a cap, and the cap has a name here.
  *
- * A cap in an #ifndef may be lowered with -D when the core is built for a small machine; library
- * and users must then be compiled with the same value.
+ * A cap that is defined only where it is not yet may be lowered with -D when the core is built for
+ * a small machine; library and users must then be compiled with the same value.
  */
 #ifndef GROBO_LIMITS_H
 #define GROBO_LIMITS_H

@@ -209,7 +209,7 @@ typedef struct grobo_port_ops {
 
 /**
  * Serial ports: a path (/dev/ttyUSB0, a link in /dev/serial/by-id, a pty's slave), or on Win32
- * COM1, COM10, \\.\COM10. Static, thread safe.
+ * COM1, COM10 and the like, with or without the prefix of devices. Static, thread safe.
  */
 GROBO_CORE const grobo_port_ops *grobo_port_serial_ops(void);
 

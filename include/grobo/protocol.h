@@ -61,8 +61,8 @@ typedef struct grobo_packet {
 } grobo_packet;
 
 /** Packets that are believed, or-ed. What is not, is rubbish. */
-#define GROBO_ACCEPT_COMMANDS 0x1u
-#define GROBO_ACCEPT_RETURNS 0x2u
+#define GROBO_ACCEPT_COMMANDS 0x1u /**< of a host */
+#define GROBO_ACCEPT_RETURNS 0x2u  /**< of servos */
 /** Packets without a name, between others. */
 #define GROBO_ACCEPT_ACKS 0x4u
 

@@ -63,8 +63,8 @@ typedef enum grobo_register_role {
 } grobo_register_role;
 
 /** How negative numbers are written; a number above GROBO_SIGN_TWOS is the bit of the sign. */
-#define GROBO_SIGN_NONE 0u
-#define GROBO_SIGN_TWOS 1u
+#define GROBO_SIGN_NONE 0u /**< there are none */
+#define GROBO_SIGN_TWOS 1u /**< two's complement */
 
 /** What a register is, or-ed. */
 #define GROBO_REGISTER_W 0x1u    /**< may be written */

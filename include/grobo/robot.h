@@ -219,13 +219,16 @@ GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
 
 /** @name While playing: return 0, or GROBO_ERR_STATE if there is nothing to do that to. */
 /**@{*/
+/** Stops smoothly on the way, and holds. */
 GROBO_API int grobo_robot_pause(grobo_robot *robot);
+/** Continues a paused motion. */
 GROBO_API int grobo_robot_resume(grobo_robot *robot);
 /** Ends the motion: smoothly, or at the present posture at once. Also a move, what was only sent,
  *  and a raw frame that moves: their jobs end with GROBO_ERR_CANCELED. */
 GROBO_API int grobo_robot_stop(grobo_robot *robot, bool at_once);
+/** Continues at another time of the clip, softly. @param clip_us from its beginning */
 GROBO_API int grobo_robot_seek(grobo_robot *robot, int64_t clip_us);
-/** @param speed_pct 1..1000 */
+/** Plays faster or slower from here on. @param speed_pct 1..1000 */
 GROBO_API int grobo_robot_speed(grobo_robot *robot, int speed_pct);
 /**@}*/
 

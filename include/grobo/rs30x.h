@@ -320,13 +320,13 @@ GROBO_CORE int grobo_rs30x_peek(const uint8_t *bytes, size_t n, unsigned accept,
 /* ---- state of a servo ----------------------------------------------------------------------- */
 
 /** Which fields of a grobo_rs30x_state were in the block that was read; or-ed. */
-#define GROBO_RS30X_HAS_TORQUE 0x01u
-#define GROBO_RS30X_HAS_POSITION 0x02u
-#define GROBO_RS30X_HAS_TIME 0x04u
-#define GROBO_RS30X_HAS_SPEED 0x08u
-#define GROBO_RS30X_HAS_CURRENT 0x10u
-#define GROBO_RS30X_HAS_TEMPERATURE 0x20u
-#define GROBO_RS30X_HAS_VOLTAGE 0x40u
+#define GROBO_RS30X_HAS_TORQUE 0x01u      /**< state of the torque */
+#define GROBO_RS30X_HAS_POSITION 0x02u    /**< present angle */
+#define GROBO_RS30X_HAS_TIME 0x04u        /**< time since the goal */
+#define GROBO_RS30X_HAS_SPEED 0x08u       /**< present speed */
+#define GROBO_RS30X_HAS_CURRENT 0x10u     /**< present current */
+#define GROBO_RS30X_HAS_TEMPERATURE 0x20u /**< temperature */
+#define GROBO_RS30X_HAS_VOLTAGE 0x40u     /**< supply voltage */
 
 /** The present values of a servo, No.36 and No.42-53. Fields that were not read are 0. */
 typedef struct grobo_rs30x_state {

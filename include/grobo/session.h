@@ -45,8 +45,9 @@ GROBO_BEGIN_DECLS
  *  before ttyUSB10. */
 #define GROBO_SCAN_PORTS_MAX 32
 
-/** First and longest pause between two attempts to open a lost line again; they double. */
+/** First pause between two attempts to open a lost line again; they double. */
 #define GROBO_RECONNECT_FIRST_US 20000
+/** Longest such pause. */
 #define GROBO_RECONNECT_MAX_US 100000
 
 /** Where a session is. */

@@ -47,6 +47,7 @@ GROBO_BEGIN_DECLS
 
 /** The faults: GROBO_SIM_FAULT_DROP, ... */
 typedef enum grobo_sim_fault {
+/** Makes one of them. */
 #define GROBO_SIM_FAULT_ENUM(name, text, hits, does) GROBO_SIM_FAULT_##name,
     GROBO_SIM_FAULT_LIST(GROBO_SIM_FAULT_ENUM)
 #undef GROBO_SIM_FAULT_ENUM

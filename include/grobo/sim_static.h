@@ -14,8 +14,9 @@
 
 GROBO_BEGIN_DECLS
 
-/** Bytes of registers of a servo, and those of them that survive power-off. Private. */
+/** Bytes of registers of a servo. Private. */
 #define GROBO_SIM_REGISTER_BYTES 160
+/** Those of them that survive power-off. Private. */
 #define GROBO_SIM_KEPT_BYTES 64
 /** Longest write that a servo keeps until its action. Private. */
 #define GROBO_SIM_WRITE_BYTES 32
@@ -166,6 +167,7 @@ struct grobo_sim {
  */
 #define grobo_sim_init(sim, config, now_us)                                                        \
     grobo_sim_init_sized(sim, sizeof(grobo_sim), config, now_us)
+/** Of grobo_sim_init(). */
 GROBO_CORE int grobo_sim_init_sized(grobo_sim *sim, size_t sim_bytes,
                                     const grobo_sim_config *config, int64_t now_us);
 

@@ -246,6 +246,7 @@ struct grobo_robot {
  */
 #define grobo_robot_init(robot, driver, driver_ctx, config, now_us)                                \
     grobo_robot_init_sized(robot, sizeof(grobo_robot), driver, driver_ctx, config, now_us)
+/** Of grobo_robot_init(). */
 GROBO_CORE int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes,
                                       const grobo_driver *driver, void *driver_ctx,
                                       const grobo_robot_config *config, int64_t now_us);

@@ -66,8 +66,9 @@ GROBO_BEGIN_DECLS
 #define GROBO_CONTROL_PERIOD_US 10000
 /** Events that a control keeps at most. */
 #define GROBO_CONTROL_EVENTS_MAX 4096
-/** Bytes of the command buffer, and of the buffer of received bytes. */
+/** Bytes of the command buffer. */
 #define GROBO_CONTROL_COMMAND_BYTES GROBO_FRAME_MAX_BYTES
+/** Bytes of the buffer of received bytes. */
 #define GROBO_CONTROL_RECEIVE_BYTES 512
 
 /** A robot that any thread may call. */

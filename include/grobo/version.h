@@ -8,9 +8,13 @@
 
 #include <grobo/export.h>
 
+/** Changes with what breaks programs. */
 #define GROBO_VERSION_MAJOR 0
+/** Before 1.0 it does so too. */
 #define GROBO_VERSION_MINOR 1
+/** Changes with corrections alone. */
 #define GROBO_VERSION_PATCH 0
+/** All three. */
 #define GROBO_VERSION_STRING "0.1.0"
 
 /** major * 10000 + minor * 100 + patch, to compare with. */

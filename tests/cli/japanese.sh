@@ -164,6 +164,12 @@ same_program() {
 }
 check "the program of docs/README.ja.md is that of README.md" same_program example
 check "and its Python" same_program python
+same_commands() {
+    block README.md commands | sed 's/ *#.*//' >"$work/english" &&
+        block docs/README.ja.md commands | sed 's/ *#.*//' >"$work/out" && [ -s "$work/out" ] &&
+        diff "$work/english" "$work/out"
+}
+check "and its two commands" same_commands
 # The messages that the guide shows are those of the commands above them, and name things.
 shown() {
     ja "$GRCTL" -d sim move R_ELBW_P -45 2>"$work/out"

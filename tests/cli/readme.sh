@@ -29,8 +29,12 @@ builds() {
     ${CC:-cc} -std=c11 -Wall -Wextra -Werror -o "$work/${1:-example}" "$work/${1:-example}.c" \
         $(flags)
 }
-runs() {
+plays() {
     exits 0 timeout 30 "$work/example" && [ ! -s "$work/err" ]
+}
+# A machine that is away for 250 ms ends a motion, as it has to: then once more.
+runs() {
+    plays || plays
 }
 # On a robot behind a port it obeys the emergency stop of another program.
 obeys() {

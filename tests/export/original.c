@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the statements of docs/guide/from-original.md are about; original.sh puts them behind it, each
- * into a function of its own. */
+/* What the statements of docs/guide/from-original.md are about; original.sh puts them behind it,
+ * each into a function of its own. */
 #include <string.h>
 
 #include <grobo/grobo.h>

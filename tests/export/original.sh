@@ -43,12 +43,14 @@ void \1(void)\
 compiles() {
     sources >"$work/original.c" && [ "$(grep -c '(void);$' "$work/original.c")" -eq 190 ] &&
         ${CC:-cc} -std=c11 -Wall -Wextra -Werror -Wno-unused-variable -Wno-unused-but-set-variable \
-            -Iinclude $(ls -d ports/*/include | sed 's/^/-I/' | head -n 1) -c \
+            -Iinclude -Iports/posix/include -c \
             -o "$work/original.o" "$work/original.c"
 }
 check 'it has each of the 190 members' all_members
 check 'each is served by what the map says' same_symbols
-if command -v "${CC:-cc}" >/dev/null 2>&1 || [ -n "${CC:-}" ]; then
+if [ -n "${CROSS:-}" ]; then
+    skip 'its C compiles' 'the same for all machines'
+elif [ -n "${CC:-}" ] || command -v cc >/dev/null; then
     check 'its C compiles' compiles
 else
     skip 'its C compiles' 'no C compiler'

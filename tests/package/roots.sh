@@ -56,7 +56,8 @@ fresh_root() {
 }
 demo() {
     quiet in_live_root make -C /src demo &&
-        grep -q 'A simulated GR001 stands behind' "$work/said" && grep -q 'largest error' "$work/said" || { tail -n 5 "$work/said"; return 1; }
+        grep -q 'A simulated GR001 stands behind' "$work/said" &&
+        grep -q 'largest error' "$work/said" || { tail -n 5 "$work/said"; return 1; }
 }
 whole_check() {
     quiet in_live_root make -C /src -j2 check && tail -n 1 "$work/said" | grep -q ' 0 failed'

@@ -56,6 +56,21 @@ P
     [ "$(env -u PYTHONPATH "$work/venv/bin/python" "$work/five.py")" = "$version 20 False" ]
 }
 
+# LeRobot finds it by the name of its distribution, and imports that.
+plugin() {
+    cp -R tools/python/lerobot_robot_grobo "$work/plugin" &&
+        "$work/venv/bin/pip" install -q --disable-pip-version-check --no-deps \
+            --ignore-requires-python "$work/plugin" || return 1
+    cat >"$work/found.py" <<'P'
+import importlib, importlib.metadata
+for found in importlib.metadata.distributions():
+    if found.metadata["Name"].startswith("lerobot_robot_"):
+        print(importlib.import_module(found.metadata["Name"]).Grobo.name)
+P
+    [ "$(env PYTHONPATH=tests/package/python/lerobot_stand_in "$work/venv/bin/python" \
+        "$work/found.py")" = grobo ]
+}
+
 version=$(sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
 for processor in ${PROCESSORS:-x86_64 aarch64}; do
     check "$processor: made" made "$processor"
@@ -64,6 +79,7 @@ for processor in ${PROCESSORS:-x86_64 aarch64}; do
         check "$processor: the same again" same_again "$processor"
         check "$processor: installed" installs "$processor"
         check "$processor: plays a motion" plays
+        check "$processor: the plugin for LeRobot is found" plugin
     else
         check "$processor: of that machine" machine "$processor" \
             "$(echo "$processor" | sed 's/_/-/')"
