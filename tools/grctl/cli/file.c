@@ -56,7 +56,9 @@ static void explain(const grobo_diagnostic *d, char *text, size_t capacity)
     char code[64];
     snprintf(code, sizeof code, "[%s]", d->code);
     const char *means = lang_text(code);
-    snprintf(text, capacity, means == code ? "" : " (%s)", means);
+    if (means != code) {
+        snprintf(text, capacity, " (%s)", means);
+    }
 }
 
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity)
