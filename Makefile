@@ -148,6 +148,9 @@ CORE_OBJS := $(call objects,$(CORE_SRCS))
 LIB_OBJS := $(CORE_OBJS) $(call objects,$(OTHER_SRCS))
 PAGE_OBJ := $(if $(filter evhttp,$(WEB)),$(BUILD)/tools/grctl/web/page_files.o)
 TOOL_OBJS := $(call objects,$(TOOL_SRCS)) $(if $(TOOL_SRCS),$(PAGE_OBJ))
+# The command's texts in other languages: a catalogue becomes a table.
+CATALOGUES := $(if $(TOOL_SRCS),$(wildcard tools/grctl/lang/*.po))
+TOOL_OBJS += $(CATALOGUES:%.po=$(BUILD)/%.o)
 TOOL_LIB := $(BUILD)/libgrctl.a
 SUPPORT_OBJS := $(call objects,$(SUPPORT_SRCS))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%$(EXE),$(TEST_SRCS))
@@ -177,7 +180,7 @@ include tools/baremetal/baremetal.mk
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all lib demo cockpit check robots lint lint-quick format test check-san check-tsan check-memcheck install uninstall
+.PHONY: help all lib demo cockpit check robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-abi sources wrap deb check-deb release check-families check-cockpit check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
@@ -219,6 +222,9 @@ lint-quick: ## the rules that sources alone can break; takes a second
 
 robots: $(ROBOTS) ## make the tables of src/robots from its files
 	@tools/robots/make.sh $(ROBOTS)
+
+messages: ## write the texts of the sources into the catalogues of grctl, for translation
+	@tools/lint/lang.sh --update
 
 format: ## write sources as clang-format 14 does; FILES="src/bus/bus.c" chooses
 	@tools/lint/format.sh --fix $(or $(FILES),$(shell find include src ports tools tests docs -name '*.[ch]'))
@@ -475,15 +481,16 @@ check-roots: ## README's commands, packages, CMake, Meson and pip in fresh Debia
 release: ## refuse where a step of a release is missing, else make the tarball
 	@GRCTL="$(GRCTL)" BUILD="$(BUILD)" tools/package/release.sh
 
-# What grctl prints of itself: FILE=ARGUMENTS. It takes a grctl that runs on this machine.
+# What grctl prints of itself: FILE=ARGUMENTS. It takes a grctl that runs on this machine. What is
+# below man/ja is in Japanese, whatever the language of who installs it.
 GRCTL_HERE ?= $(if $(CROSS_COMPILE),,$(GRCTL_RUN))
-PAGES := man/man1/grctl.1=help,--man bash-completion/completions/grctl=completion,bash \
+PAGES := man/man1/grctl.1=help,--man man/ja/man1/grctl.1=help,--man bash-completion/completions/grctl=completion,bash \
     zsh/site-functions/_grctl=completion,zsh fish/vendor_completions.d/grctl.fish=completion,fish
 JSON_PAGE := $(BUILD)/grctl-json.5
 comma := ,
 define install_page
 install -d "$(DESTDIR)$(DATADIR)/$(dir $(firstword $(subst =, ,$(page))))"
-	$(GRCTL_HERE) $(subst $(comma), ,$(lastword $(subst =, ,$(page)))) \
+	LC_ALL=$(if $(filter man/ja/%,$(page)),ja.UTF-8,C) $(GRCTL_HERE) $(subst $(comma), ,$(lastword $(subst =, ,$(page)))) \
 	    >"$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page)))"
 
 endef
@@ -577,7 +584,10 @@ PAGE_FILES := $(wildcard tools/grctl/web/page/* tools/grctl/web/page/*/*)
 $(BUILD)/tools/grctl/web/page_files.c: tools/grctl/web/embed.sh $(PAGE_FILES)
 	@mkdir -p $(@D)
 	@tools/grctl/web/embed.sh tools/grctl/web/page >$@
-$(PAGE_OBJ): %.o: %.c $(BUILD)/.flags
+$(BUILD)/%.c: %.po tools/grctl/lang/po.awk
+	@mkdir -p $(@D)
+	@LC_ALL=C awk -f tools/grctl/lang/po.awk $< >$@
+$(PAGE_OBJ) $(CATALOGUES:%.po=$(BUILD)/%.o): %.o: %.c $(BUILD)/.flags
 	$(say) CC $<
 	$(Q)$(CC) $(ALL_CPPFLAGS) $(TOOL_INCLUDE) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 

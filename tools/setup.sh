@@ -271,6 +271,9 @@ look_wanted() {
         mandoc mandoc mandoc mandoc mandoc
     need groff 'to check the man page' have_mdoc -- groff-base groff groff groff groff
     [ "$manager" != apt-get ] ||
+        need 'the source of locales' 'to check numbers where they have commas' \
+            [ -e /usr/share/i18n/locales/de_DE ] -- locales
+    [ "$manager" != apt-get ] ||
         need clang-format 'to check the formatting' have_command clang-format-14 -- clang-format-14
     [ $level -ge 3 ] || return
     need cmake 'to check the build files for it' have_command cmake -- \

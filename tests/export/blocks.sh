@@ -44,6 +44,8 @@ is_run() {
     README.md:*:'<!-- example -->') ;;                # tests/cli/readme.sh
     README.md:*:'<!-- python -->') ;;                 # tests/export/python.sh
     README.md:*:'<!-- commands -->') ;;               # tests/cli/demo.sh, make check-roots
+    docs/README.ja.md:*:'<!-- run -->') ;;            # tests/cli/guide.sh
+    docs/README.ja.md:*) [ -n "$4" ] ;;               # tests/cli/japanese.sh: those of README.md
     docs/guide/python.md:* | tools/python/README.md:* | *:'<!-- lerobot -->') ;; # python.sh
     *:'<!-- asyncio -->') ;;                          # here
     *) case $2 in c) ;; text) ;; *) false ;; esac ;;

@@ -48,6 +48,63 @@ compile() {
     $cc -std=c11 -O2 ${2:-} -c -o "build/${1%.c}.o" "$1"
 }
 
+# ---- lang ----------------------------------------------------------------------------------
+
+# speaks TEXT TRANSLATION [CODE]: a tree whose one message has that translation.
+speaks() {
+    fresh
+    mkdir -p tools/grctl/lang include/grobo src/robot src/play
+    cp "$gates"/../grctl/lang/*.awk tools/grctl/lang
+    grep -v '^also ' "$gates/../grctl/lang/rules.txt" >tools/grctl/lang/rules.txt
+    : >include/grobo/error.h
+    : >src/robot/trip.c
+    : >src/play/names.c
+    sample tools/grctl/a.h <<C
+#define KEYS "  q   end\\n"
+C
+    sample tools/grctl/b.c <<C
+    app_fail(a, 1, "ARG", $1, name);
+    ${3:-}
+C
+    sample tools/grctl/lang/ja.po <<PO
+msgid ""
+msgstr ""
+"Language: ja\\n"
+
+msgid "%s: no\\n  q   end\\n"
+msgstr "$2"
+PO
+    sh "$gates/lang.sh"
+}
+right='"%s: no\n" KEYS'
+check 'lang: a translation fits' speaks "$right" '%s: いいえ\n  q   終わり\n'
+check 'lang: a text is missing' refuses 'ja.po:1: lang: missing, of tools/grctl/b.c: "yes"' \
+    speaks '"yes"' '%s\n'
+check 'lang: and what to do' refuses "'make messages' adds" speaks '"yes"' '%s\n'
+check 'lang: a text is left over' refuses 'ja.po:5: lang: no longer in the sources: "%s: no' \
+    speaks '"yes"' '%s\n'
+check 'lang: an empty one' refuses 'ja.po:5: lang: not translated' speaks "$right" ''
+check 'lang: another conversion' refuses 'lang: other conversions than %s' speaks "$right" '%d\n'
+check 'lang: one too many' refuses 'lang: other conversions' speaks "$right" '%s%s\n'
+check 'lang: one that prints nothing is one' speaks "$right" '%.0sいいえ\n'
+check 'lang: the last newline' refuses 'lang: one text ends with a newline' speaks "$right" '%s'
+check 'lang: an escape' refuses 'lang: an escape other than' speaks "$right" '%s\033\n'
+check 'lang: a sentence without a mark' \
+    refuses 'b.c:2: lang: "a sentence here" (puts#1) is not translated: mark it' \
+    speaks "$right" '%s\n' 'puts("a sentence here");'
+check 'lang: a word of a message' refuses 'b.c:2: lang: "left" (app_note#3) is not translated' \
+    speaks "$right" '%s\n' 'app_note(a, "%s", x ? "left" : n);'
+check 'lang: JSON is kept' speaks "$right" '%s\n' 'json_pack("{s:s}", "a sentence here", x);'
+renewed() {
+    speaks '"yes"' '%s\n' >/dev/null
+    sh "$gates/lang.sh" --update || return 1
+    grep -q '^msgid "yes"$' tools/grctl/lang/ja.po &&
+        grep -q '^#~ msgstr "%s\\n"$' tools/grctl/lang/ja.po &&
+        refuses 'not translated: "yes"' sh "$gates/lang.sh" &&
+        refuses 'the sources lost this text' sh "$gates/lang.sh"
+}
+check 'lang: a catalogue is made anew' renewed
+
 # ---- layers --------------------------------------------------------------------------------
 
 fresh
@@ -573,6 +630,11 @@ printf 'echo\n' >>a.sh
 check 'text: licence of a script' refuses 'no SPDX' awk -f "$gates/text.awk" a.sh
 printf '%s\n%0101d\n' "$licence" 0 >a.c
 check 'text: columns' refuses 'a.c:2: text: longer' awk -f "$gates/text.awk" a.c
+printf '%s\n%048d\n' "$licence" 0 | sed '2s/0/関/g' >a.c
+check 'text: 96 columns of wide characters' env LC_ALL=C awk -f "$gates/text.awk" a.c
+printf '%s\n%051d\n' "$licence" 0 | sed '2s/0/関/g' >a.c
+check 'text: 102 columns of them' refuses 'a.c:2: text: longer' \
+    env LC_ALL=C awk -f "$gates/text.awk" a.c
 
 printf 'BasedOnStyle: LLVM\n' >.clang-format
 printf 'int x ;\n' >a.c

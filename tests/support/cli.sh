@@ -11,6 +11,10 @@ known_as=${known_as%% *}
 known_as=${known_as##*/}
 [ -z "${NATIVE_GRCTL:-}" ] || known_as=grctl.exe
 unset GRCTL_DEVICE
+# Messages are compared in English; characters stay as they are.
+[ -z "${LC_ALL:-}" ] || export LC_CTYPE="$LC_ALL"
+unset LC_ALL
+export LC_MESSAGES=C
 # What grctl starts of itself goes to the emulator too.
 [ -z "${EMULATOR:-}" ] || [ -n "${NATIVE_GRCTL:-}" ] || export GRCTL_GUARD="$GRCTL"
 XDG_CONFIG_HOME=$work/config # not that of whoever runs the tests

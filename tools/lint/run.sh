@@ -62,7 +62,7 @@ everything=$(texts)
 
 # shellcheck disable=SC2086
 {
-    gate text awk -f "$gates/text.awk" $everything
+    gate text env LC_ALL=C awk -f "$gates/text.awk" $everything
     gate text final_newline $everything
     gate format sh "$gates/format.sh" $all
     gate banned scan banned $all
@@ -72,6 +72,7 @@ everything=$(texts)
     gate switch scan switch $library $library
     gate units scan units $headers
     gate help sh "$gates/help.sh"
+    gate lang sh "$gates/lang.sh"
     gate tree sh "$gates/tree.sh"
     gate seed-map sh "$gates/seed_map.sh"
     gate null sh "$gates/null.sh"

@@ -11,6 +11,7 @@ function page(path) {
     sub(/\.md$/, "", path)
     sub(/\/README$/, "_readme", path)
     sub(/^.*\//, "", path)
+    gsub(/\./, "-", path)
     return "page_" path
 }
 function slug(heading) {
@@ -79,6 +80,8 @@ fenced { print; next }
     gsub(/`/, "", plain)
     level = length($1)
     if (self ~ /index\.md$/ && level == 1) { print $0 " {#mainpage}"; next }
+    # A heading in Japanese has no name that a link could use.
+    if (level > 1 && slug(heading) !~ /[a-z]/) { print $1 " " plain; next }
     print $1 " " plain " {#" name (level == 1 ? "" : "_" slug(heading)) "}"
     next
 }

@@ -7,6 +7,7 @@
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
 static bool wants_color(const app *a, bool tty)
@@ -29,6 +30,7 @@ static bool wants_color(const app *a, bool tty)
 void app_settle(app *a)
 {
     a->json = app_global(a, GLOBAL_JSON)->given > 0;
+    lang_keep_english(a->json);
     a->verbosity = app_global(a, GLOBAL_QUIET)->given ? -1 : app_global(a, GLOBAL_VERBOSE)->given;
     a->tty_in = os_is_terminal(stdin);
     a->tty_out = os_is_terminal(stdout);
@@ -77,7 +79,7 @@ static int fail(app *a, int status, const char *code, grobo_trip trip, const cha
 {
     char text[APP_LINE_BYTES];
     int n = snprintf(text, sizeof text, "%s", a->place);
-    vsnprintf(text + n, sizeof text - (size_t)n, format, list);
+    vsnprintf(text + n, sizeof text - (size_t)n, lang_text(format), list);
     app_make_one_line(text);
     snprintf(a->failed, sizeof a->failed, "%s", code);
     if (a->hushed) {
@@ -117,9 +119,9 @@ int app_fail_error(app *a, int status, int error, const char *format, ...)
     char text[APP_LINE_BYTES];
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    vsnprintf(text, sizeof text, lang_text(format), list);
     va_end(list);
-    return app_fail(a, status, grobo_error_name(error), "%s: %s", text, grobo_error_text(error));
+    return app_fail(a, status, grobo_error_name(error), "%s: %s", text, app_error_text(error));
 }
 
 int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
@@ -149,19 +151,24 @@ int app_status_of(int error)
     return EXIT_ROBOT;
 }
 
+const char *app_error_text(int error)
+{
+    return lang_text(grobo_error_text(error));
+}
+
 const char *app_cause_text(int number)
 {
     switch (number) {
     case ENOENT:
     case ENOTDIR:
-        return "no such file";
+        return _("no such file");
     case EISDIR:
-        return grobo_error_text(GROBO_ERR_ISDIR);
+        return app_error_text(GROBO_ERR_ISDIR);
     case EACCES:
     case EPERM:
-        return grobo_error_text(GROBO_ERR_PERM);
+        return app_error_text(GROBO_ERR_PERM);
     case ENOSPC:
-        return grobo_error_text(GROBO_ERR_DISK);
+        return app_error_text(GROBO_ERR_DISK);
     }
     return strerror(number);
 }
@@ -172,7 +179,7 @@ static void say(const app *a, int least, const char *format, va_list list)
     if (a->verbosity < least) {
         return;
     }
-    vsnprintf(text, sizeof text, format, list);
+    vsnprintf(text, sizeof text, lang_text(format), list);
     app_make_one_line(text);
     output_complain("%s\n", text);
 }
@@ -208,7 +215,7 @@ void app_report(const app *a, json_t *object, const char *format, ...)
 
 void app_done(const app *a, const char *text)
 {
-    app_report(a, json_pack("{s:b}", "done", 1), "%s", text);
+    app_report(a, json_pack("{s:b}", "done", 1), "%s", lang_text(text));
 }
 
 static bool dropped; /* some of standard output */
@@ -225,8 +232,8 @@ void app_attach(const app *a)
 {
     output_dropped lost = output_attach();
     dropped |= lost.out > 0;
-    report_dropped(a, "output", lost.out);
-    report_dropped(a, "error", lost.err);
+    report_dropped(a, _("output"), lost.out);
+    report_dropped(a, _("error"), lost.err);
 }
 
 int app_finish(app *a, int status)

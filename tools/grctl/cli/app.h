@@ -97,7 +97,8 @@ void app_attach(const app *a);
  */
 int app_finish(app *a, int status);
 
-/* What errno says of a file, for a person. */
+/* What an error of the library, and what errno says of a file, for a person: in the language. */
+const char *app_error_text(int error);
 const char *app_cause_text(int number);
 
 /* A file name may hold anything; what is said of it stays one line without control characters. */

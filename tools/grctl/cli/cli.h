@@ -98,10 +98,11 @@ typedef enum cli_group {
 
 typedef struct cli_command {
     const char *name;
-    const char *arguments; /* "JOINT DEG [MS]" */
-    const char *summary;   /* one line, no full stop */
-    const char *details;   /* paragraphs for help and manual */
-    const char *example;   /* one command line a line, or NULL */
+    const char *arguments;     /* "JOINT DEG [MS]" */
+    const char *summary;       /* one line, no full stop */
+    const char *details;       /* paragraphs for help and manual */
+    const char *(*more)(void); /* an indented paragraph behind them, or NULL */
+    const char *example;       /* one command line a line, or NULL */
     const cli_option *options;
     size_t n_options;
     int min_arguments, max_arguments;

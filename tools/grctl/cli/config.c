@@ -12,6 +12,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/robot.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"
 #include "tools/grctl/os/os.h"
 
@@ -37,8 +38,8 @@ typedef struct reader {
 
 static int complain(reader *r, const yaml_mark_t *at, const char *format, const char *what)
 {
-    char text[256];
-    snprintf(text, sizeof text, format, what);
+    char text[384];
+    snprintf(text, sizeof text, lang_text(format), lang_text(what));
     if (!r->status) {
         r->status = app_fail(r->a, EXIT_FILE, "SYNTAX", "%s:%zu:%zu: %s", r->path, at->line + 1,
                              at->column + 1, text);
@@ -90,7 +91,7 @@ static int each_key(reader *r, int (*take)(reader *r, const char *key))
 static int take_option(reader *r, int global, cli_value *value)
 {
     const cli_option *o = &cli_global_options[global];
-    char complaint[128];
+    char complaint[256];
     if (next(r)) {
         return r->status;
     }
@@ -141,10 +142,10 @@ static int take_text(reader *r, char *text, size_t capacity)
 
 static int unknown_joint(reader *r, const char *name)
 {
-    char text[2 * CONFIG_NAME_BYTES];
+    char text[3 * CONFIG_NAME_BYTES];
     const char *nearest = joints_nearest(r->model, name, strlen(name), false);
-    snprintf(text, sizeof text, "no joint called '%.*s'%s%s%s", CONFIG_NAME_BYTES, name,
-             nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
+    snprintf(text, sizeof text, _("no joint called '%.*s'%s%s%s"), CONFIG_NAME_BYTES, name,
+             nearest ? _("; did you mean ") : "", nearest ? nearest : "", nearest ? "?" : "");
     return complain(r, &r->event.start_mark, "%s", text);
 }
 
@@ -456,7 +457,7 @@ static int no_robot(reader *r, bool asked)
         return 0;
     }
     return app_fail(r->a, EXIT_FILE, "NOTFOUND", "%s: default '%s' is no robot of the file%s%s%s",
-                    r->default_path, r->wanted, *nearest ? "; did you mean '" : "", nearest,
+                    r->default_path, r->wanted, *nearest ? _("; did you mean '") : "", nearest,
                     *nearest ? "'?" : "");
 }
 

@@ -8,11 +8,12 @@
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
 static int fail(app *a, const char *path, const char *cause)
 {
-    return app_fail(a, EXIT_FILE, "IO", "%s: cannot be written: %s", path, cause);
+    return app_fail(a, EXIT_FILE, "IO", "%s: cannot be written: %s", path, lang_text(cause));
 }
 
 /* libyaml counts characters, files bytes. */

@@ -5,25 +5,26 @@
 #include <grobo/robot_file.h>
 
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/os/pipe.h"
 
 const char *file_write_error_text(int error)
 {
-    return error == GROBO_ERR_NOENT ? "no such folder" : file_error_text(error);
+    return error == GROBO_ERR_NOENT ? _("no such folder") : file_error_text(error);
 }
 
 const char *file_error_text(int error)
 {
     switch (error) {
     case GROBO_ERR_NOENT:
-        return "no such file";
+        return _("no such file");
     case GROBO_ERR_ISDIR:
-        return "is a directory, not a motion file";
+        return _("is a directory, not a motion file");
     case GROBO_ERR_EMPTY:
-        return "is empty";
+        return _("is empty");
     }
-    return grobo_error_text(error);
+    return app_error_text(error);
 }
 
 const grobo_model *file_model(const app *a, const grobo_motion *motion)
@@ -49,19 +50,43 @@ int file_fits(app *a, const char *path, const grobo_motion *motion)
                     file_shown_name(path), n_joints, app_model(a)->name, has);
 }
 
+/* What a code means, where the language is not that of the library's text. */
+static void explain(const grobo_diagnostic *d, char *text, size_t capacity)
+{
+    char code[64];
+    snprintf(code, sizeof code, "[%s]", d->code);
+    const char *means = lang_text(code);
+    if (means != code) {
+        snprintf(text, capacity, " (%s)", means);
+    }
+}
+
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity)
 {
-    char place[32] = "";
+    char place[32] = "", means[128] = "";
     if (d->line && d->column) {
         snprintf(place, sizeof place, "%u:%u:", d->line, d->column);
     } else if (d->line) {
         snprintf(place, sizeof place, "%u:", d->line);
     }
-    snprintf(text, capacity, "%s:%s %s%s%s%s%s%s", d->file, place,
+    if (!with_code) {
+        explain(d, means, sizeof means);
+    }
+    snprintf(text, capacity, "%s:%s %s%s%s%s%s%s%s", d->file, place,
              d->severity == GROBO_SEVERITY_ERROR ? "" : grobo_severity_name(d->severity),
              d->severity == GROBO_SEVERITY_ERROR ? "" : ": ", d->message, with_code ? " [" : "",
-             with_code ? d->code : "", with_code ? "]" : "");
+             with_code ? d->code : "", with_code ? "]" : "", means);
     app_make_one_line(text);
+}
+
+void file_print(const app *a, const grobo_diagnostic *d, const char *color)
+{
+    char text[APP_LINE_BYTES], means[128] = "";
+    file_format(d, true, text, sizeof text);
+    if (a->tty_out) {
+        explain(d, means, sizeof means);
+    }
+    app_print("%s%s%s%s\n", color, text, *color ? "\033[0m" : "", means);
 }
 
 json_t *file_json(const grobo_diagnostics *list)
@@ -162,7 +187,7 @@ static int load_record(app *a, grobo_motion **motion)
 {
     int error = a->record ? grobo_motion_dup(a->record, motion) : GROBO_ERR_EMPTY;
     return error ? app_fail(a, EXIT_FILE, grobo_error_name(error), "@record: %s",
-                            a->link ? file_error_text(error) : "only a shell has a record")
+                            a->link ? file_error_text(error) : _("only a shell has a record"))
                  : 0;
 }
 
@@ -181,7 +206,7 @@ int file_load(app *a, const char *path, const grobo_read_options *options, grobo
     grobo_diagnostics *list = NULL;
     int error = grobo_diagnostics_new(&list, NULL);
     if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
     error = file_load_listed(a, path, options, list, motion);
     if (!error) {

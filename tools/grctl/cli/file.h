@@ -44,8 +44,13 @@ int file_save(const char *path, const void *bytes, size_t size);
 /* What a file is called in messages: "-" is standard input. */
 const char *file_shown_name(const char *path);
 
-/* One line of a diagnostic: "file:line:column: warning: message [code]". */
+/*
+ * One line of a diagnostic: "file:line:column: warning: message [code]"; without the code what that
+ * means stands behind it, where the language is not that of the message: the library's, English.
+ */
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity);
+/* Prints it with its code, as a result; on a terminal with what that means. color: "" for none. */
+void file_print(const app *a, const grobo_diagnostic *d, const char *color);
 
 /* Diagnostics as a list of JSON. */
 json_t *file_json(const grobo_diagnostics *list);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tools/grctl/cli/cli.h"
+#include "tools/grctl/lang/lang.h"
 
 enum { COLUMN = 26, WIDTH = 80 };
 
@@ -14,18 +15,21 @@ enum { COLUMN = 26, WIDTH = 80 };
 static const char *print_words(FILE *to, const char *text, int column, int indent)
 {
     bool first = true;
+    int blank = 0;
     while (*text && *text != '\n' && *text != ' ') {
-        size_t n = strcspn(text, " \n");
-        if (!first && column + 1 + (int)n > WIDTH) {
+        size_t n = lang_unit(text);
+        int columns = lang_columns(text, n);
+        if (!first && column + blank + columns > WIDTH) {
             fprintf(to, "\n%*s", indent, "");
             column = indent;
-            first = true;
+            blank = 0;
         }
-        fprintf(to, "%s%.*s", first ? "" : " ", (int)n, text);
-        column += !first + (int)n;
+        fprintf(to, "%*s%.*s", blank, "", (int)n, text);
+        column += blank + columns;
         first = false;
         text += n;
-        text += *text == ' ' || (*text == '\n' && text[1] != '\0');
+        blank = *text == ' ' || (*text == '\n' && text[1] != '\0');
+        text += blank;
     }
     putc('\n', to);
     return text;
@@ -63,12 +67,12 @@ static void print_option(FILE *to, const cli_option *o)
     } else {
         fprintf(to, "  %s\n  %-*s  ", left, COLUMN, "");
     }
-    print_words(to, o->help, COLUMN + 4, COLUMN + 4);
+    print_words(to, _(o->help), COLUMN + 4, COLUMN + 4);
 }
 
 static void print_global_options(FILE *to)
 {
-    fputs("\nGlobal options, before or after the command:\n", to);
+    fputs(_("\nGlobal options, before or after the command:\n"), to);
     for (size_t i = 0; i < GLOBAL_COUNT; i++) {
         print_option(to, &cli_global_options[i]);
     }
@@ -76,34 +80,38 @@ static void print_global_options(FILE *to)
 
 void cli_print_overview(FILE *to)
 {
-    fputs("grctl drives serial command-servo robots, first of all the GR001 humanoid.\n\n"
-          "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n",
+    fputs(_("grctl drives serial command-servo robots, first of all the GR001 humanoid.\n\n"
+            "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n"),
           to);
     for (size_t i = 0; i < cli_n_commands; i++) {
-        fprintf(to, "  %-15s%s\n", cli_commands[i]->name, cli_commands[i]->summary);
+        fprintf(to, "  %-15s%s\n", cli_commands[i]->name, _(cli_commands[i]->summary));
     }
     print_global_options(to);
     putc('\n', to);
     print_details(
-        to, "A joint is named by name (R_KNEE_P), motor (m12) or joint id (j3); a group by name "
-            "(all body right_arm left_arm arms right_leg left_leg legs) or by its number 0..7. "
-            "Angles are degrees, times milliseconds. 'grctl help COMMAND' says more.\n");
+        to, _("A joint is named by name (R_KNEE_P), motor (m12) or joint id (j3); a group by name "
+              "(all body right_arm left_arm arms right_leg left_leg legs) or by its number 0..7. "
+              "Angles are degrees, times milliseconds. 'grctl help COMMAND' says more.\n"));
 }
 
 void cli_print_command(FILE *to, const cli_command *command)
 {
-    fprintf(to, "grctl %s - %s\n\nusage: grctl %s%s%s%s\n\n", command->name, command->summary,
+    fprintf(to, _("grctl %s - %s\n\nusage: grctl %s%s%s%s\n\n"), command->name, _(command->summary),
             command->name, command->n_options ? " [OPTIONS]" : "", *command->arguments ? " " : "",
             command->arguments);
-    print_details(to, command->details);
+    print_details(to, _(command->details));
+    if (command->more) {
+        putc('\n', to);
+        print_details(to, command->more());
+    }
     if (command->n_options) {
-        fputs("\nOptions:\n", to);
+        fputs(_("\nOptions:\n"), to);
         for (size_t i = 0; i < command->n_options; i++) {
             print_option(to, &command->options[i]);
         }
     }
     print_global_options(to);
     if (command->example) {
-        fprintf(to, "\nExamples:\n%s", command->example);
+        fprintf(to, _("\nExamples:\n%s"), command->example);
     }
 }

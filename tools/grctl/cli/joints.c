@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/lang/lang.h"
 
 const char *joints_nearest(const grobo_model *model, const char *name, size_t length, bool groups)
 {
@@ -33,7 +34,7 @@ static int unknown(app *a, const char *what, const char *name, size_t length, bo
     size_t used = 0;
     for (int i = 0; i < model->n_groups && used < sizeof known; i++) {
         used += (size_t)snprintf(known + used, sizeof known - used, "%s%s",
-                                 i ? " " : ", groups are ", model->groups[i].name);
+                                 i ? " " : _(", groups are "), model->groups[i].name);
     }
     int joint = an_example(model);
     return app_fail(a, EXIT_USAGE, "NOTFOUND",
@@ -49,7 +50,7 @@ int joints_parse_all(app *a, int n, const char *const *names, grobo_joint_mask *
     for (int i = 0; i < n && !status; i++) {
         grobo_joint_mask found;
         if (grobo_model_find_joints(app_model(a), names[i], strlen(names[i]), &found) < 0) {
-            status = unknown(a, "joint or group", names[i], strlen(names[i]), true);
+            status = unknown(a, _("joint or group"), names[i], strlen(names[i]), true);
         } else {
             *joints |= found;
         }
@@ -83,7 +84,7 @@ int joints_parse_motion(app *a, const char *list, const grobo_model *model, int 
         if (number >= 0 && number < n_joints) {
             found = GROBO_JOINT_BIT(number);
         } else if (model && grobo_model_find_joints(model, list, length, &found) < 0) {
-            return unknown(a, "joint or group", list, length, true);
+            return unknown(a, _("joint or group"), list, length, true);
         } else if (!model) {
             return app_fail(a, EXIT_USAGE, "NOTFOUND",
                             "no joint called '%.*s'; those of a body we do not know are j0 to j%d",
@@ -110,7 +111,7 @@ int joints_parse_one(app *a, const char *name, size_t length, int *status)
                            "'%.*s' is a group; one joint is wanted, named as %s, m%d or j%d",
                            (int)length, name, like->name, like->motor, an_example(app_model(a)));
     } else {
-        *status = unknown(a, "joint", name, length, false);
+        *status = unknown(a, _("joint"), name, length, false);
     }
     return -1;
 }

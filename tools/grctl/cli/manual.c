@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tools/grctl/cli/cli.h"
+#include "tools/grctl/lang/lang.h"
 
 /* A blank behind the end of a sentence: roff wants the next one on a line of its own. */
 static bool ends_sentence(const char *text, size_t at)
@@ -95,7 +96,7 @@ static void put_options(FILE *to, const cli_option *options, size_t n)
             put_argument(to, o->value);
         }
         putc('\n', to);
-        put(to, o->help, strlen(o->help), false);
+        put(to, _(o->help), strlen(_(o->help)), false);
         putc('\n', to);
     }
     fputs(".El\n", to);
@@ -113,50 +114,54 @@ static void put_command(FILE *to, const cli_command *command)
         put_argument(to, command->arguments);
     }
     fputs("\n.Pp\n", to);
-    putc(toupper((unsigned char)*command->summary), to);
-    put(to, command->summary + 1, strlen(command->summary + 1), false);
-    fputs(".\n.Pp\n", to);
-    put_paragraphs(to, command->details);
+    const char *summary = _(command->summary);
+    putc(toupper((unsigned char)*summary), to);
+    put(to, summary + 1, strlen(summary + 1), false);
+    fputs(_(".\n.Pp\n"), to);
+    put_paragraphs(to, _(command->details));
+    if (command->more) {
+        put_paragraphs(to, command->more());
+    }
     if (command->n_options) {
         put_options(to, command->options, command->n_options);
     }
     if (command->example) {
-        fputs(".Pp\nExamples:\n", to);
+        fputs(_(".Pp\nExamples:\n"), to);
         put_literal(to, command->example, strlen(command->example));
     }
 }
 
 static const char head[] =
-    ".Dd November 21, 2026\n"
-    ".Dt GRCTL 1\n"
-    ".Os\n"
-    ".Sh NAME\n"
-    ".Nm grctl\n"
-    ".Nd drive serial command\\-servo robots\n"
-    ".Sh SYNOPSIS\n"
-    ".Nm grctl\n"
-    ".Op Ar GLOBAL OPTIONS\n"
-    ".Ar COMMAND\n"
-    ".Op Ar OPTIONS\n"
-    ".Op Ar ARGUMENTS\n"
-    ".Sh DESCRIPTION\n"
-    ".Nm\n"
-    "drives robots of serial command servos, first of all the GR001 humanoid,\n"
-    "for people at a terminal and for scripts.\n"
-    "Results go to standard output, everything said to a person goes to\n"
-    "standard error.\n"
-    "Unattended, nothing asks.\n"
-    ".Pp\n"
-    "A joint is named by name (R_KNEE_P), by motor (m12) or by joint id (j3);\n"
-    "a group by name\n"
-    "(all body right_arm left_arm arms right_leg left_leg legs)\n"
-    "or by its number 0 to 7.\n"
-    "Angles are degrees, times milliseconds.\n"
-    ".Pp\n"
-    "A long option may be cut short to a beginning that no other has.\n"
-    "These options are taken before and after the command:\n";
+    N_(".Dd November 21, 2026\n"
+       ".Dt GRCTL 1\n"
+       ".Os\n"
+       ".Sh NAME\n"
+       ".Nm grctl\n"
+       ".Nd drive serial command\\-servo robots\n"
+       ".Sh SYNOPSIS\n"
+       ".Nm grctl\n"
+       ".Op Ar GLOBAL OPTIONS\n"
+       ".Ar COMMAND\n"
+       ".Op Ar OPTIONS\n"
+       ".Op Ar ARGUMENTS\n"
+       ".Sh DESCRIPTION\n"
+       ".Nm\n"
+       "drives robots of serial command servos, first of all the GR001 humanoid,\n"
+       "for people at a terminal and for scripts.\n"
+       "Results go to standard output, everything said to a person goes to\n"
+       "standard error.\n"
+       "Unattended, nothing asks.\n"
+       ".Pp\n"
+       "A joint is named by name (R_KNEE_P), by motor (m12) or by joint id (j3);\n"
+       "a group by name\n"
+       "(all body right_arm left_arm arms right_leg left_leg legs)\n"
+       "or by its number 0 to 7.\n"
+       "Angles are degrees, times milliseconds.\n"
+       ".Pp\n"
+       "A long option may be cut short to a beginning that no other has.\n"
+       "These options are taken before and after the command:\n");
 
-static const char tail[] =
+static const char tail[] = N_(
     ".Sh ENVIRONMENT\n"
     ".Bl -tag -width GRCTL_DEVICE\n"
     ".It Ev GRCTL_DEVICE\n"
@@ -171,6 +176,9 @@ static const char tail[] =
     "the robot, by its name or file, where neither\n"
     ".Fl -robot\n"
     "nor the configuration names one\n"
+    ".It Ev LC_ALL , LC_MESSAGES , LANG\n"
+    "help and messages are in Japanese where the first of these that is set is ja with UTF\\-8;\n"
+    "results, files and JSON are the same in every language\n"
     ".It Ev NO_COLOR\n"
     "where it is set and not empty, there are no colours\n"
     ".El\n"
@@ -192,15 +200,15 @@ static const char tail[] =
     "stopped a motion\n"
     ".El\n"
     ".Sh SEE ALSO\n"
-    ".Xr grctl\\-json 5\n";
+    ".Xr grctl\\-json 5\n");
 
 void cli_print_manual(FILE *to)
 {
-    fputs(head, to);
+    fputs(_(head), to);
     put_options(to, cli_global_options, GLOBAL_COUNT);
-    fputs(".Sh COMMANDS\n", to);
+    fputs(_(".Sh COMMANDS\n"), to);
     for (size_t i = 0; i < cli_n_commands; i++) {
         put_command(to, cli_commands[i]);
     }
-    fputs(tail, to);
+    fputs(_(tail), to);
 }

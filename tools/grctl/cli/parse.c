@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "tools/grctl/cli/cli.h"
+#include "tools/grctl/lang/lang.h"
 
 typedef struct parser {
     cli_line *line;
@@ -27,7 +28,7 @@ static bool complain(parser *p, const char *format, ...)
     }
     p->mistaken = true;
     va_start(list, format);
-    vsnprintf(p->complaint, p->capacity, format, list);
+    vsnprintf(p->complaint, p->capacity, lang_text(format), list);
     va_end(list);
     return false;
 }
@@ -78,7 +79,7 @@ static bool take_number(parser *p, const cli_option *o, cli_value *v, const char
     if (!cli_read_number(text, &number) || (!o->real && number != floor(number)) ||
         number < o->min || number > o->max) {
         return complain(p, "--%s: '%s' is not a %s from %.10g to %.10g", o->name, text,
-                        o->real ? "number" : "whole number", o->min, o->max);
+                        o->real ? _("number") : _("whole number"), o->min, o->max);
     }
     v->number = number;
     return true;

@@ -3,6 +3,7 @@
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/progress.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
 /* The last columns stay free for the ^C that a terminal shows. */
@@ -33,7 +34,7 @@ void progress_draw(progress *p, double fraction, const char *text)
         return;
     }
     int room = os_columns(stderr) - FREE; /* it may have changed */
-    int bar = fraction < 0 ? 0 : room - 3 - (int)strlen(text);
+    int bar = fraction < 0 ? 0 : room - 3 - lang_columns(text, strlen(text));
     bar = bar > BAR_MOST ? BAR_MOST : bar;
     if (bar >= 8) {
         int full = (int)(fraction * bar + 0.5);
@@ -44,7 +45,7 @@ void progress_draw(progress *p, double fraction, const char *text)
         }
         at = append(line, at, p->blocks ? "  " : "] ");
     }
-    output_complain("\r%s%.*s\033[K", line, room > 0 ? room : 0, text);
+    output_complain("\r%s%.*s\033[K", line, (int)lang_fit(text, room > 0 ? room : 0), text);
     p->drawn = true;
 }
 

@@ -6,6 +6,7 @@
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/robot.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"
 #include "tools/grctl/os/os.h"
 
@@ -64,7 +65,7 @@ static const grobo_robot_def *find_file(const char *path, char *complaint, size_
         file_format(&d, false, complaint, capacity);
     } else {
         snprintf(complaint, capacity, "%s: %s", path,
-                 error == GROBO_ERR_ISDIR ? "is a folder, not a robot's file"
+                 error == GROBO_ERR_ISDIR ? _("is a folder, not a robot's file")
                                           : file_error_text(error));
     }
     grobo_diagnostics_free(list);
@@ -88,12 +89,14 @@ const grobo_robot_def *robot_find(const char *name, char *complaint, size_t capa
         cli_guess_try(&guess, grobo_robot_defs[i]->name);
     }
     if (guess.best) {
-        snprintf(complaint, capacity, "no robot called '%s'; did you mean %s?", name, guess.best);
+        snprintf(complaint, capacity, _("no robot called '%s'; did you mean %s?"), name,
+                 guess.best);
     } else {
-        snprintf(complaint, capacity,
-                 "no robot called '%s'; 'grctl robot list' has them, and a file is named with its "
-                 "folder: ./%s.yaml",
-                 name, name);
+        snprintf(
+            complaint, capacity,
+            _("no robot called '%s'; 'grctl robot list' has them, and a file is named with its "
+              "folder: ./%s.yaml"),
+            name, name);
     }
     return NULL;
 }

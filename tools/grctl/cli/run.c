@@ -8,6 +8,7 @@
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/run.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
 /* A mistake ends parsing, but not the wish for JSON that stands behind it. */
@@ -41,7 +42,7 @@ static int fail(app *a, const char *complaint)
                     command ? command->name : "");
 }
 
-static const char echo_alone[] = "--echo needs --wiring bus: the board returns nothing";
+static const char echo_alone[] = N_("--echo needs --wiring bus: the board returns nothing");
 
 static bool is_echo_alone(const app *a)
 {
@@ -131,7 +132,7 @@ static int stop_first(app *a, int argc, char *const *argv, const char *complaint
     if (a->group) { /* each says it itself */
         complaint = NULL;
     } else if (is_echo_alone(a)) {
-        complaint = complaint ? complaint : echo_alone;
+        complaint = complaint ? complaint : _(echo_alone);
         a->line.global[GLOBAL_ECHO].given = 0;
     }
     a->stops = true;
@@ -181,7 +182,7 @@ static int run_command(app *a, int argc, char *const *argv, int (*prepare)(void 
         return status;
     }
     if (!a->group && is_echo_alone(a)) {
-        return fail(a, echo_alone);
+        return fail(a, _(echo_alone));
     }
     if (prepare && (status = prepare(ctx, a)) != 0) {
         return status;
@@ -196,6 +197,7 @@ static int run_command(app *a, int argc, char *const *argv, int (*prepare)(void 
 int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), void *ctx)
 {
     char complaint[512];
+    lang_keep_english(a->json || wants_json(argc, argv));
     bool ok = cli_parse(&a->line, argc, argv, complaint, sizeof complaint);
     const cli_command *command = a->line.command;
     bool json = a->json; /* of the shell */

@@ -11,6 +11,7 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/homing/homing.h"
+#include "tools/grctl/lang/lang.h"
 
 enum { OPT_DRY_RUN, OPT_FROM, OPT_RESTORE, OPT_OUT };
 
@@ -52,7 +53,7 @@ static bool confirmed(const app *a, const config_robot *robot)
     if (!a->tty_in || app_global(a, GLOBAL_YES)->given) {
         return true;
     }
-    output_complain("write these trims of %s to %s? [y/N] ", robot->name, robot->path);
+    output_complain(_("write these trims of %s to %s? [y/N] "), robot->name, robot->path);
     answer = c = getchar();
     while (c != '\n' && c != EOF) {
         c = getchar();

@@ -87,14 +87,12 @@ static const char *color_of(const app *a, grobo_severity severity)
 
 static void print_text(const app *a, const grobo_diagnostics *list)
 {
-    char text[1024];
     grobo_diagnostic d;
     for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
         if (d.severity == GROBO_SEVERITY_NOTE && a->verbosity < 1) {
             continue;
         }
-        file_format(&d, true, text, sizeof text);
-        app_print("%s%s%s\n", color_of(a, d.severity), text, a->color_out ? "\033[0m" : "");
+        file_print(a, &d, color_of(a, d.severity));
     }
 }
 
@@ -117,7 +115,7 @@ static int run(app *a)
     }
     error = grobo_diagnostics_new(&list, NULL);
     if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
     for (int i = 0; i < a->line.n_arguments; i++) {
         if (is_passed_by(a, a->line.argument[i], list)) {

@@ -78,7 +78,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const fi
     grobo_diagnostics *list = NULL;
     grobo_motion *copy = NULL;
     grobo_diagnostic first = {.code = "NOMEM"};
-    char said[1024] = "no memory is left";
+    char said[1024] = "";
     int lost = grobo_diagnostics_new(&list, NULL);
     if (!lost) {
         lost = grobo_motion_read_memory(t->bytes ? t->bytes : "", t->size, &read, list, &copy);
@@ -232,7 +232,7 @@ static int run(app *a)
     }
     error = grobo_diagnostics_new(&list, NULL);
     if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
     error = file_load_listed(a, in, &read, list, &motion);
     if (!error) {

@@ -10,6 +10,7 @@
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/doctor/checkup.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
 
 enum { READ_BYTES = 30 /* the longest */, REQUEST_BYTES = 8 /* the shortest that is asked here */ };
@@ -67,7 +68,7 @@ static int find_answer(patient *p, int asked_bps)
             continue;
         }
         set_baud(a, baud_bps);
-        snprintf(said, sizeof said, "no reply at %d bps; asking at %d", asked_bps, baud_bps);
+        snprintf(said, sizeof said, _("no reply at %d bps; asking at %d"), asked_bps, baud_bps);
         progress_draw(&bar, (double)i / table->rate_count, said);
         bool found = ask(p, said);
         progress_clear(&bar);
@@ -88,13 +89,13 @@ static bool check_reply(patient *p, const char *device)
     int wiring = app_global(a, GLOBAL_WIRING)->choice;
     if (ask(p, said)) {
         checkup_found(&p->k, "reply", NULL, "the %s answers at %d bps",
-                      wiring == GROBO_WIRING_BOARD ? "board" : "robot", asked_bps);
+                      wiring == GROBO_WIRING_BOARD ? _("board") : _("robot"), asked_bps);
         return true;
     }
     if (p->c.signal) {
         return false;
     }
-    if (!strstr(said, "no robot answers")) {
+    if (!strstr(said, _("no robot answers"))) {
         checkup_found(&p->k, "reply",
                       strncmp(device, "tcp:", 4) == 0 ? "start a serial server there (ser2net), or "
                                                         "correct the address: -d tcp:HOST:PORT"
@@ -116,8 +117,8 @@ static bool check_reply(patient *p, const char *device)
     checkup_found(&p->k, "reply", fix, "nobody answers as asked, but somebody does at %d bps%s",
                   found_bps,
                   found_bps != asked_bps         ? ""
-                  : wiring == GROBO_WIRING_BOARD ? ", straight on the line"
-                                                 : ", through a board");
+                  : wiring == GROBO_WIRING_BOARD ? _(", straight on the line")
+                                                 : _(", through a board"));
     return true;
 }
 
@@ -143,15 +144,15 @@ static void say_silent(patient *p, const char *name, int joint, int error)
     const grobo_joint *j = &p->model->joints[joint];
     char fix[FIX_BYTES];
     if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
-        snprintf(fix, sizeof fix, "push its cable in; has it another id? grctl%s scan",
+        snprintf(fix, sizeof fix, _("push its cable in; has it another id? grctl%s scan"),
                  app_global(p->k.a, GLOBAL_WIRING)->choice ? " --wiring bus" : "");
         checkup_found(&p->k, name, fix, "%s does not answer", j->name);
     } else {
         snprintf(fix, sizeof fix,
-                 "unplug all servos but one of id %d, and: grctl servo-set %d id NEW --flash",
+                 _("unplug all servos but one of id %d, and: grctl servo-set %d id NEW --flash"),
                  j->motor, j->motor);
         checkup_found(&p->k, name, fix, "%s answers, but: %s; two servos with id %d?", j->name,
-                      grobo_error_text(error), j->motor);
+                      app_error_text(error), j->motor);
     }
 }
 
@@ -162,7 +163,7 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
     const grobo_joint *j = &p->model->joints[joint];
     bool rs30x = family_is(driver, "rs30x");
     char fix[FIX_BYTES];
-    snprintf(fix, sizeof fix, "let it cool down: grctl servo off m%d", j->motor);
+    snprintf(fix, sizeof fix, _("let it cool down: grctl servo off m%d"), j->motor);
     if (s->overheated) {
         checkup_found(&p->k, name, fix, "%s has cut its torque for heat (%d C)", j->name,
                       s->temperature_c);
@@ -171,13 +172,13 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
         checkup_found(&p->k, name, fix, "%s is hot: %d C, at most %d are good for it", j->name,
                       s->temperature_c, driver->limits.temperature_c);
     } else if (rs30x && (s->flags & GROBO_RS30X_STATUS_FLASH_ERROR)) {
-        snprintf(fix, sizeof fix, "write its settings again: grctl servo-set %d id %d --flash",
+        snprintf(fix, sizeof fix, _("write its settings again: grctl servo-set %d id %d --flash"),
                  j->motor, j->motor);
         checkup_found(&p->k, name, fix, "%s lost power while it wrote its flash", j->name);
     } else if (!rs30x && s->flags) {
         const grobo_servo_register *error =
             grobo_servo_register_of(family_servo(driver, j->motor), GROBO_ROLE_ERROR);
-        snprintf(fix, sizeof fix, "see what: grctl servo-get %d%s%s", j->motor, error ? " " : "",
+        snprintf(fix, sizeof fix, _("see what: grctl servo-get %d%s%s"), j->motor, error ? " " : "",
                  error ? error->name : "");
         checkup_found(&p->k, name, fix, "%s reports errors (%02Xh)", j->name, s->flags);
     } else {
@@ -212,14 +213,14 @@ static void check_model(patient *p, const char *name, int joint, const grobo_ser
     const grobo_servo_model *expected = family_numbered(driver, j->servo_model);
     if (j->servo_model && (!type || type->number != j->servo_model)) {
         checkup_found(&p->k, name, "put the right servo there; its speed and torque are others",
-                      "%s is %s, not %s", j->name, type ? type->name : "of an unknown model",
-                      expected ? expected->name : "that");
+                      "%s is %s, not %s", j->name, type ? type->name : _("of an unknown model"),
+                      expected ? expected->name : _("that"));
     } else {
         char volts[24] = "";
         if (s->valid & GROBO_FIELD_VOLTAGE) {
             snprintf(volts, sizeof volts, ", %.2f V", s->voltage_mv / 1e3);
         }
-        checkup_found(&p->k, name, "", "%s: %s, %d C%s", j->name, type ? type->name : "a servo",
+        checkup_found(&p->k, name, "", "%s: %s, %d C%s", j->name, type ? type->name : _("a servo"),
                       s->temperature_c, volts);
     }
 }
@@ -312,7 +313,7 @@ static bool choose_adapter(checkup *k, char *device)
     for (int i = 0; i < all.n_blocked && all.n_usb > 0; i++) {
         choose_fix(&all.blocked[i], fix, sizeof fix);
         checkup_found(k, "port", fix, "%s: %s", all.blocked[i].path,
-                      grobo_error_text(all.blocked[i].open_result));
+                      app_error_text(all.blocked[i].open_result));
     }
     if (all.n_usb + all.n_blocked > 0) {
         snprintf(device, GROBO_DEVICE_MAX_BYTES, "%s",
@@ -320,10 +321,10 @@ static bool choose_adapter(checkup *k, char *device)
         return true;
     }
     snprintf(fix, sizeof fix,
-             "plug the robot's cable in, or name its port: -d DEV; 'grctl ports' lists them");
+             _("plug the robot's cable in, or name its port: -d DEV; 'grctl ports' lists them"));
     if (all.n_uart > 0) {
         snprintf(fix, sizeof fix,
-                 "plug the robot's cable in, or where it is wired to this machine: -d %s",
+                 _("plug the robot's cable in, or where it is wired to this machine: -d %s"),
                  all.uart[0].path);
     }
     checkup_found(k, "device", fix, "no USB serial adapter is here");

@@ -16,6 +16,7 @@
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/lang/lang.h"
 
 enum { OPT_RESET };
 /*
@@ -59,7 +60,7 @@ static int fail(const target *t, int error, const char *format, ...)
     char text[APP_LINE_BYTES];
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    vsnprintf(text, sizeof text, lang_text(format), list);
     va_end(list);
     if (t->marked < 0) {
         return app_fail(t->a, EXIT_ROBOT, grobo_error_name(error),
@@ -77,7 +78,8 @@ static int succeed(const target *t, const char *by)
     if (t->marked < 0) {
         return fail(t, t->marked, "%s: stopped%s and verified, but not kept so", t->device, by);
     }
-    snprintf(text, sizeof text, "stopped%s and verified; 'grctl estop --reset' takes it back", by);
+    snprintf(text, sizeof text, _("stopped%s and verified; 'grctl estop --reset' takes it back"),
+             by);
     app_done(t->a, text);
     return EXIT_DONE;
 }
@@ -88,7 +90,7 @@ static int fail_verify(const target *t, const char *by, int error)
     return fail(t, error,
                 "%s: the stop was sent%s, but not every joint is seen to be stopped: %s; switch "
                 "the robot off",
-                t->device, by, grobo_error_text(error));
+                t->device, by, app_error_text(error));
 }
 
 static int fail_silent(const target *t)
@@ -103,15 +105,16 @@ static int fail_silent(const target *t)
     return fail(t, GROBO_ERR_BUSY,
                 "%s: NOT stopped: process %d has the port%s and has not answered in %d s; end it "
                 "('kill -9 %d') and repeat, or switch the robot off",
-                t->device, h->pid, h->resumed ? ", was resumed" : "", SILENT_US / 1000000, h->pid);
+                t->device, h->pid, h->resumed ? _(", was resumed") : "", SILENT_US / 1000000,
+                h->pid);
 }
 
 /* The port cannot be had: what its holder says. */
 static int report_holder(const target *t, int error)
 {
     const grobo_estop_holder *h = &t->holder;
-    char by[48];
-    snprintf(by, sizeof by, " by process %d, which has the port,", h->pid);
+    char by[96];
+    snprintf(by, sizeof by, _(" by process %d, which has the port,"), h->pid);
     switch (h->answer) {
     case GROBO_ESTOP_DONE:
         return succeed(t, by);
@@ -272,16 +275,16 @@ static int stop_unknown(app *a, const char *name, const char *why)
     bool others = stop_busy(a, false, NONE) != NONE;
     return app_fail(a, EXIT_ROBOT, grobo_error_name(GROBO_ERR_NOENT), "%s: %s; NOT stopped, %s",
                     name, why,
-                    others ? "but for the robots that programs of this user have"
-                           : "nothing was sent; see 'grctl ports'");
+                    others ? _("but for the robots that programs of this user have")
+                           : _("nothing was sent; see 'grctl ports'"));
 }
 
 static const char *unknown_name(const app *a)
 {
-    static char text[2 * CONFIG_NAME_BYTES];
-    snprintf(text, sizeof text, "no robot of the configuration, no device%s%s%s",
-             a->nearest_device ? " (did you mean '" : "",
-             a->nearest_device ? a->nearest_device : "", a->nearest_device ? "'?)" : "");
+    static char text[3 * CONFIG_NAME_BYTES];
+    snprintf(text, sizeof text, _("no robot of the configuration, no device%s%s%s"),
+             a->nearest_device ? _(" (did you mean '") : "",
+             a->nearest_device ? a->nearest_device : "", a->nearest_device ? _("'?)") : "");
     return text;
 }
 
@@ -300,7 +303,7 @@ static const char *find_device(const app *a, char *device)
     }
     int error = grobo_port_resolve(asked, device, GROBO_DEVICE_MAX_BYTES, &cause);
     if (error) {
-        return *cause.text ? cause.text : grobo_error_text(error);
+        return *cause.text ? cause.text : app_error_text(error);
     }
     return NULL;
 }
@@ -313,7 +316,7 @@ static int report_reset(app *a, const char *device, int error, const char *cause
     if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: cannot take the emergency stop back: %s", device,
-                        cause && *cause ? cause : grobo_error_text(error));
+                        cause && *cause ? cause : app_error_text(error));
     }
     app_done(a, "emergency stop taken back; torque stays as it is");
     if (!a->link && grobo_estop_ask(device, NULL, &holder) == GROBO_OK &&

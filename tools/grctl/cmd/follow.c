@@ -12,6 +12,7 @@
 
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/lang/lang.h"
 
 enum { OPT_RATE, OPT_FOR };
 enum {
@@ -69,13 +70,14 @@ typedef struct pair {
 static void say_state(const pair *p)
 {
     static const char *const names[] = {"lost", "approach", "follow"};
-    static const char *const texts[] = {"the leader is lost: the follower holds",
-                                        "the follower goes to the leader", "the follower follows"};
+    static const char *const texts[] = {N_("the leader is lost: the follower holds"),
+                                        N_("the follower goes to the leader"),
+                                        N_("the follower follows")};
     if (p->a->json) {
         app_print_json(json_pack("{s:s,s:I}", "state", names[p->state], "t_ms",
                                  (json_int_t)((grobo_now_us() - p->began_us) / 1000)));
     } else {
-        app_note(p->a, "%s", texts[p->state]);
+        app_note(p->a, "%s", _(texts[p->state]));
     }
 }
 

@@ -4,6 +4,7 @@
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/shell/shell.h"
 
 enum { OPT_MAN };
@@ -64,7 +65,7 @@ static int list_words(const asked *what, json_t *list)
                                             w->word, "arguments", w->arguments, "help", w->help));
         } else {
             app_print("  %-2s %s%s%s\n      %s\n", w->letter, w->word,
-                      *w->word && *w->arguments ? " " : "", w->arguments, w->help);
+                      *w->word && *w->arguments ? " " : "", w->arguments, _(w->help));
         }
     }
     return n;
@@ -127,7 +128,7 @@ static void print_overview(const app *a)
     if (!a->link) {
         return;
     }
-    app_print("\nLetters and words of this shell:\n");
+    app_print("%s", _("\nLetters and words of this shell:\n"));
     list_words(&all_words, NULL);
 }
 

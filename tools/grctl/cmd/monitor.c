@@ -8,6 +8,7 @@
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/monitor/monitor.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/screen/screen.h"
@@ -22,7 +23,7 @@ __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, cons
                  MONITOR_TEXT_BYTES - 1, m->said);
     }
     va_start(list, format);
-    vsnprintf(m->said, sizeof m->said, format, list);
+    vsnprintf(m->said, sizeof m->said, lang_text(format), list);
     va_end(list);
     m->bad = bad;
 }
@@ -31,10 +32,11 @@ __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, cons
 static void say_request(monitor *m, int result, const char *doing)
 {
     const char *busy = monitor_busy(m);
+    doing = lang_text(doing);
     if (result == GROBO_ERR_STATE) {
-        say(m, true, "%s: not now, the robot is busy: %s", doing, busy ? busy : "moving");
+        say(m, true, "%s: not now, the robot is busy: %s", doing, busy ? busy : _("moving"));
     } else if (result < 0) {
-        say(m, true, "%s: %s", doing, grobo_error_text(result));
+        say(m, true, "%s: %s", doing, app_error_text(result));
     } else {
         say(m, false, "%s", doing);
     }
@@ -228,7 +230,7 @@ static void take_play_key(monitor *m, int key)
     if (grobo_robot_is_playing(m->c.robot) || (key == 's' && busy)) {
         play_keys_take(&m->keys, key);
     } else if (key > 0 && key < 128 && strchr(" +=-s", key)) {
-        say(m, true, "nothing is playing%s%s", busy ? "; the robot is busy: " : "",
+        say(m, true, "nothing is playing%s%s", busy ? _("; the robot is busy: ") : "",
             busy ? busy : "");
     }
 }
@@ -298,7 +300,7 @@ static void queue_others(monitor *m)
         error = grobo_robot_enqueue(grobo_session_robot(m->c.session), &m->list.clip[i],
                                     &m->list.options[i]);
         if (error < 0) {
-            say(m, true, "%s: %s", m->list.path[i], grobo_error_text(error));
+            say(m, true, "%s: %s", m->list.path[i], app_error_text(error));
         }
     }
 }
@@ -315,7 +317,7 @@ static void say_end(monitor *m, const grobo_event_job *job)
         say(m, false, "%s: stopped", m->doing);
     } else if (job->result < 0) {
         say(m, true, "%s: %s%s%s", m->doing, joint, *joint ? ": " : "",
-            grobo_error_text(job->result));
+            app_error_text(job->result));
     } else if (job->kind == GROBO_JOB_PLAY) {
         queue_others(m);
     } else {
@@ -339,7 +341,7 @@ static void on_event(conn *c, const grobo_event *event)
         m->up_us = event->now_us;
         m->drops++;
     } else if (event->kind == GROBO_EVENT_TRIP) {
-        say(m, true, "stopped for safety: %s", grobo_trip_name(event->u.trip.trip));
+        say(m, true, "stopped for safety: %s", _(grobo_trip_name(event->u.trip.trip)));
     } else if (event->kind == GROBO_EVENT_PLAY) {
         say_play(m, event->u.play.to);
     } else if (event->kind == GROBO_EVENT_JOB) {

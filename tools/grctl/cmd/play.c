@@ -6,6 +6,7 @@
 
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/keys.h"
 #include "tools/grctl/play/keys.h"
 #include "tools/grctl/play/play.h"
@@ -79,7 +80,7 @@ static void follow(conn *c, show *s, int joint)
 static void report_progress(conn *c, show *s)
 {
     grobo_play_progress p;
-    char text[96];
+    char text[128];
     grobo_robot_progress(c->robot, &p);
     if (c->a->json) {
         if (s->ticks % REPORT_EVERY == 0) {
@@ -89,8 +90,8 @@ static void report_progress(conn *c, show *s)
         }
         return;
     }
-    snprintf(text, sizeof text, "%s %.1f of %.1f s, %.0f s left at %d %%",
-             grobo_sequencer_state_name(p.state), (double)p.t_us / 1e6, (double)p.total_us / 1e6,
+    snprintf(text, sizeof text, _("%s %.1f of %.1f s, %.0f s left at %d %%"),
+             _(grobo_sequencer_state_name(p.state)), (double)p.t_us / 1e6, (double)p.total_us / 1e6,
              ceil((double)(p.total_us - p.t_us) / 1e4 / s->keys.speed_pct), s->keys.speed_pct);
     progress_draw(&s->bar, p.total_us ? (double)p.t_us / (double)p.total_us : 0, text);
 }
@@ -116,10 +117,8 @@ static void on_key(void *ctx, int key)
 
 static void warn_unwatched(const conn *c, const grobo_event_unwatched *told)
 {
-    char rate[32] = "by keys";
-    if (told->rate_hz > 0) {
-        snprintf(rate, sizeof rate, "at %d Hz", told->rate_hz);
-    }
+    char rate[32];
+    snprintf(rate, sizeof rate, told->rate_hz > 0 ? _("at %d Hz") : _("by keys"), told->rate_hz);
     app_note(c->a,
              "play: unwatched %s: heat, current and lost torque may stop nothing "
              "(joints are watched up to %d Hz)",

@@ -188,7 +188,7 @@ static int draw(app *a, const order *o, const plot_data *data)
 {
     svg drawing;
     if (!plot_draw(&drawing, data, o->shown)) {
-        return app_fail(a, EXIT_ROBOT, "NOMEM", "%s", grobo_error_text(GROBO_ERR_NOMEM));
+        return app_fail(a, EXIT_ROBOT, "NOMEM", "%s", app_error_text(GROBO_ERR_NOMEM));
     }
     int status = picture_save(a, &drawing, o->out, o->format);
     if (!status) {

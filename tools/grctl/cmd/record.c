@@ -18,6 +18,7 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/wire.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/keys.h"
 #include "tools/grctl/play/keys.h"
 
@@ -177,7 +178,7 @@ static void draw(recorder *r)
         return;
     }
     grobo_robot_posture(r->c.robot, GROBO_NEVER_US, &now);
-    size_t at = (size_t)snprintf(text, sizeof text, "%zu kept", grobo_motion_size(r->motion));
+    size_t at = (size_t)snprintf(text, sizeof text, _("%zu kept"), grobo_motion_size(r->motion));
     furthest(r, &now, &joint);
     if (joint >= 0) {
         at += add_angle(r, &now, joint, text + at, sizeof text - at);
@@ -322,7 +323,7 @@ static void on_key(void *ctx, int key)
 static int tell_kept(const recorder *r, int error)
 {
     if (!error && !r->line.shown) {
-        app_note(r->c.a, "%zu kept", grobo_motion_size(r->motion));
+        app_note(r->c.a, _("%zu kept"), grobo_motion_size(r->motion));
     }
     return error;
 }
@@ -392,7 +393,7 @@ static void say_rate(const recorder *r)
     double line_hz = wire_taught_hz(grobo_robot_driver(r->c.robot), (int)conn_baud(r->c.a), n);
     if (rate_hz > line_hz) {
         app_note(r->c.a, "the line reads %s %.3g times a second: a higher --rate sees nothing more",
-                 n == 1 ? "the joint" : "each joint", line_hz);
+                 n == 1 ? _("the joint") : _("each joint"), line_hz);
     }
 }
 
@@ -413,7 +414,7 @@ static void say_how(const recorder *r, bool hears)
         app_note(r->c.a, "Ctrl-C saves and ends");
     } else {
         app_note(r->c.a, "space: keep a posture   d: drop the last   %ss: save and end",
-                 r->teaches ? "enter, p: play them   " : "");
+                 r->teaches ? _("enter, p: play them   ") : "");
     }
 }
 

@@ -6,6 +6,7 @@
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
 #include "tools/grctl/servo/registers.h"
 
@@ -245,14 +246,14 @@ static bool confirmed(conn *c, const change *what, int32_t before)
     change_text(what, before, text, sizeof text);
     if (needs_command(what)) {
         app_note(c->a, "servo %d: %s, and No.4-29 go to flash%s: keep its power on", what->id, text,
-                 changes_rate(c, what) ? ", then it restarts" : "");
+                 changes_rate(c, what) ? _(", then it restarts") : "");
     } else {
         app_note(c->a, "servo %d: %s, kept over power-off", what->id, text);
     }
     if (app_global(c->a, GLOBAL_YES)->given || !c->a->tty_in) {
         return true;
     }
-    output_complain("Write it? [y/N] ");
+    output_complain(_("Write it? [y/N] "));
     return fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y');
 }
 
@@ -299,17 +300,17 @@ static int keep_it(conn *c, const change *what)
 /* baud_bps: where the servo answers after its rate was written, 0 where nothing is to be said. */
 static void report(const conn *c, const change *what, int32_t before, int baud_bps)
 {
-    char text[4 * REGISTERS_TEXT_BYTES], where[32] = "";
+    char text[4 * REGISTERS_TEXT_BYTES], where[64] = "";
     bool ram = (what->reg->flags & GROBO_REGISTER_KEPT) == 0;
-    const char *kept = is_kept(what) ? needs_command(what) ? ", kept in flash" : ", kept"
-                       : ram         ? "; lost at power-off"
-                                     : "; lost at power-off without --flash";
+    const char *kept = is_kept(what) ? needs_command(what) ? _(", kept in flash") : _(", kept")
+                       : ram ? _("; lost at power-off")
+                                     : _("; lost at power-off without --flash");
     change_text(what, before, text, sizeof text);
     if (baud_bps) {
-        snprintf(where, sizeof where, "; it answers at %d bps", baud_bps);
+        snprintf(where, sizeof where, _("; it answers at %d bps"), baud_bps);
     }
     if (baud_bps && !is_kept(what) && baud_bps != new_bps(what)) {
-        kept = "; takes effect at a restart, and is lost there without --flash";
+        kept = _("; takes effect at a restart, and is lost there without --flash");
     }
     if (c->a->json) {
         app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b,s:o*}", "id", new_id(what), "name",
@@ -378,7 +379,7 @@ static int expect_loose(conn *c, const change *what)
     return app_fail(c->a, EXIT_SAFETY, "STATE",
                     "servo-set: servo %d holds, and would %s with another %s; first: grctl servo "
                     "off m%d",
-                    what->id, restarts ? "restart limp" : "jump", what->reg->name, what->id);
+                    what->id, restarts ? _("restart limp") : _("jump"), what->reg->name, what->id);
 }
 
 /* Two servos of one id answer together, and nobody could give one of them another. */
@@ -473,7 +474,7 @@ static int set_rate(conn *c, const change *what, int32_t before)
     if (error) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "servo-set: %s at %d bps: %s; nothing was written", conn_device(c),
-                        new_bps(what), grobo_error_text(error));
+                        new_bps(what), app_error_text(error));
     }
     int at_bps = move_rate(c, what, old_bps, &code);
     error = tune(c, old_bps);
@@ -490,7 +491,7 @@ static int set_rate(conn *c, const change *what, int32_t before)
         return app_fail(c->a, EXIT_ROBOT, "MISMATCH",
                         "servo %d answers at %d bps, and its baud is %d, not %d, after writing%s",
                         what->id, at_bps, code, what->value,
-                        needs_command(what) ? " and a restart" : "");
+                        needs_command(what) ? _(" and a restart") : "");
     }
     report(c, what, before, at_bps);
     return EXIT_DONE;

@@ -153,9 +153,7 @@ static int run_check(app *a, const char *path)
                         file_error_text(error));
     }
     for (size_t i = 0; !a->json && grobo_diagnostics_get(list, i, &d) == 0; i++) {
-        char text[APP_LINE_BYTES];
-        file_format(&d, true, text, sizeof text);
-        app_print("%s\n", text);
+        file_print(a, &d, "");
     }
     if (a->json) {
         app_print_json(json_pack("{s:b,s:o}", "ok", !error, "diagnostics", file_json(list)));

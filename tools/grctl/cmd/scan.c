@@ -146,7 +146,7 @@ static int scan_all_bauds(conn *c, found *f)
         f->rate = i;
         int error = grobo_serial_set_baud(serial, baud_bps);
         if (error < 0) {
-            app_note(c->a, "%d bps: %s", baud_bps, grobo_error_text(error));
+            app_note(c->a, "%d bps: %s", baud_bps, app_error_text(error));
             continue;
         }
         error = scan_ids(c, f, baud_bps);
@@ -317,7 +317,7 @@ static int info(conn *c)
         }
         silent++;
         report_failed(&f, motor, baud_bps, error);
-        app_note(c->a, "motor %d (%s): %s", motor, joint_name(&f, motor), grobo_error_text(error));
+        app_note(c->a, "motor %d (%s): %s", motor, joint_name(&f, motor), app_error_text(error));
     }
     if (c->a->json) {
         app_print_json(json_pack("{s:s,s:s,s:s,s:o,s:o}", "robot", model->name, "device",

@@ -8,6 +8,7 @@
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/guard.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/shell/shell.h"
 
 enum { OPT_KEEP_GOING };
@@ -43,7 +44,7 @@ static int refuse(shell *s, const char *why)
     shell_begin(s);
     shell_inherit(s);
     app_settle(&s->one);
-    return app_fail(&s->one, EXIT_USAGE, "ARG", "%s", why);
+    return app_fail(&s->one, EXIT_USAGE, "ARG", "%s", lang_text(why));
 }
 
 static int run_words(shell *s, int n, char **words)
@@ -52,7 +53,7 @@ static int run_words(shell *s, int n, char **words)
     const char *nearest = shell_nearest(words[0]);
     char why[128];
     if (!w && nearest && !cli_find_command(nearest)) {
-        snprintf(why, sizeof why, "no command '%.40s'; did you mean '%s'?", words[0], nearest);
+        snprintf(why, sizeof why, _("no command '%.40s'; did you mean '%s'?"), words[0], nearest);
         return refuse(s, why);
     }
     if (!w) {
@@ -127,7 +128,7 @@ static int run_script(shell *s, shell_script *in)
     }
     if (in->file && ferror(in->file)) { /* where nothing ran, the reason is still known */
         first = app_fail(s->a, EXIT_FILE, "IO", "%s: %s", s->file,
-                         s->line ? "it could not be read to its end" : app_cause_text(errno));
+                         s->line ? _("it could not be read to its end") : app_cause_text(errno));
     }
     return shell_noted ? EXIT_SIGNAL + (int)shell_noted : first;
 }
@@ -225,6 +226,7 @@ const cli_command cmd_shell = {
     COMMAND_ARGUMENTS("[FILE]", 0, 1, CLI_ARG_FILE),
     .summary = "many commands over one connection, typed or from a script",
     .details = shell_details,
+    .more = shell_words,
     .example = "  grctl shell\n  printf 'init\\nm R_ELBOW_P -45\\n' | grctl -d sim shell\n"
                "  grctl shell -k morning.txt\n",
     COMMAND_OPTIONS(options),

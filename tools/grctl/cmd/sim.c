@@ -262,8 +262,8 @@ static int add_robot(farm *f, int robot)
     error = grobo_sim_server_new(&config, &f->server[robot], &cause);
     if (error) {
         return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s",
-                        name_of_failed(&at, &cause), grobo_error_text(error),
-                        *cause.text ? ": " : "", cause.text);
+                        name_of_failed(&at, &cause), app_error_text(error), *cause.text ? ": " : "",
+                        cause.text);
     }
     f->n = robot + 1;
     if (faults &&

@@ -36,7 +36,7 @@ void auto_report(const app *a, const choice *all)
     for (int i = 0; i < all->n_blocked; i++) {
         choose_fix(&all->blocked[i], fix, sizeof fix);
         app_note(a, "auto: %s: %s; fix: %s", all->blocked[i].path,
-                 grobo_error_text(all->blocked[i].open_result), fix);
+                 app_error_text(all->blocked[i].open_result), fix);
     }
     for (int i = 0; i < all->n_uart && all->n_usb + all->n_blocked == 0; i++) {
         if (all->uart[i].open_result == GROBO_OK) {
@@ -46,7 +46,7 @@ void auto_report(const app *a, const choice *all)
         }
         choose_fix(&all->uart[i], fix, sizeof fix);
         app_note(a, "auto: %s: %s; fix: %s; then: -d %s", all->uart[i].path,
-                 grobo_error_text(all->uart[i].open_result), fix, all->uart[i].path);
+                 app_error_text(all->uart[i].open_result), fix, all->uart[i].path);
     }
 }
 

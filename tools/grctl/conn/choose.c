@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "tools/grctl/conn/choose.h"
+#include "tools/grctl/lang/lang.h"
 
 void choose_begin(choice *all)
 {
@@ -60,10 +61,10 @@ void choose_end(choice *all, const char *last)
 void choose_fix(const grobo_port_info *info, char *fix, size_t capacity)
 {
     if (info->open_result == GROBO_ERR_PERM) {
-        snprintf(fix, capacity, "sudo usermod -aG dialout $USER, and log in again");
+        snprintf(fix, capacity, _("sudo usermod -aG dialout $USER, and log in again"));
     } else if (info->owner_pid > 0) {
-        snprintf(fix, capacity, "end %s (pid %d)", info->owner_name, info->owner_pid);
+        snprintf(fix, capacity, _("end %s (pid %d)"), info->owner_name, info->owner_pid);
     } else {
-        snprintf(fix, capacity, "unplug it and plug it in again");
+        snprintf(fix, capacity, _("unplug it and plug it in again"));
     }
 }

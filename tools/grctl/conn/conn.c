@@ -10,6 +10,7 @@
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/guard.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
 const char *conn_requested(const app *a)
@@ -169,7 +170,7 @@ static void on_show(evutil_socket_t fd, short what, void *ctx)
         return;
     }
     if (in_time) {
-        snprintf(text, sizeof text, "%s: %.1f of %.1f s", w->doing, (double)took_us / 1e6,
+        snprintf(text, sizeof text, _("%s: %.1f of %.1f s"), w->doing, (double)took_us / 1e6,
                  (double)w->expected_us / 1e6);
     } else {
         snprintf(text, sizeof text, "%s: %.1f s", w->doing, (double)took_us / 1e6);
@@ -267,14 +268,14 @@ static const char *advice(int error, const char *device)
 {
     switch (error) {
     case GROBO_ERR_NOENT:
-        return is_tcp(device) ? "; does a serial server listen there?"
-                              : "; see 'grctl ports' for what there is";
+        return is_tcp(device) ? _("; does a serial server listen there?")
+                              : _("; see 'grctl ports' for what there is");
     case GROBO_ERR_PERM:
-        return "; may your user open it? it often takes membership of the group dialout";
+        return _("; may your user open it? it often takes membership of the group dialout");
     case GROBO_ERR_TIMEOUT:
-        return "; is the robot switched on, and its baud rate right?";
+        return _("; is the robot switched on, and its baud rate right?");
     case GROBO_ERR_NOTFOUND:
-        return "; is its cable in? see 'grctl ports', or try '-d sim'";
+        return _("; is its cable in? see 'grctl ports', or try '-d sim'");
     }
     return "";
 }
@@ -292,15 +293,15 @@ static const char *open_trouble(const conn *c, int error)
     const grobo_os_cause *cause = grobo_session_cause(c->session);
     switch (error) {
     case GROBO_ERR_NOTFOUND:
-        return "no robot answers on any USB adapter that may be opened";
+        return _("no robot answers on any USB adapter that may be opened");
     case GROBO_ERR_TIMEOUT:
-        return "no robot answers";
+        return _("no robot answers");
     case GROBO_ERR_TYPE:
-        return "is not a serial port";
+        return _("is not a serial port");
     case GROBO_ERR_NOENT: /* which way it cannot be reached */
-        return is_tcp(conn_device(c)) && *cause->text ? cause->text : grobo_error_text(error);
+        return is_tcp(conn_device(c)) && *cause->text ? cause->text : app_error_text(error);
     }
-    return grobo_error_text(error);
+    return app_error_text(error);
 }
 
 static int try_port(void *ctx, const grobo_port_info *info)
@@ -527,7 +528,7 @@ static void say_found(conn *c)
         auto_used(c->a, conn_device(c), conn_is_auto(c->a));
     }
     if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED) {
-        app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", grobo_error_text(answer));
+        app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", app_error_text(answer));
     }
 }
 
@@ -585,7 +586,7 @@ static int open_device(conn *c, app *a, bool check)
     int error = grobo_port_resolve(asked, device, sizeof device, &cause);
     if (error) {
         return app_fail(a, app_status_of(error), grobo_error_name(error), "%s: %s", asked,
-                        *cause.text ? cause.text : grobo_error_text(error));
+                        *cause.text ? cause.text : app_error_text(error));
     }
     if (a->moves) {
         guard_start(a, device, &c->link->guard);
@@ -715,14 +716,14 @@ static const char *policy_words(grobo_exit_policy policy)
 {
     switch (policy) {
     case GROBO_EXIT_OFF:
-        return "are off";
+        return _("are off");
     case GROBO_EXIT_SIT:
-        return "sat the robot down and are off";
+        return _("sat the robot down and are off");
     case GROBO_EXIT_HOLD:
     case GROBO_EXIT_DEFAULT:
         break;
     }
-    return "hold where they are";
+    return _("hold where they are");
 }
 
 /* Returns 0, or the exit status when it could not be done; that is said. */
@@ -731,7 +732,7 @@ static int carry_out_policy(conn *c, int status)
     int error = conn_end_estop(c); /* which comes before any policy */
     grobo_exit_policy policy = policy_now(c, status);
     if (error) {
-        return conn_fail_job(c, error, "the emergency stop could not be verified: ");
+        return conn_fail_job(c, error, _("the emergency stop could not be verified: "));
     }
     if (policy == GROBO_EXIT_DEFAULT || !c->up || c->link_error) {
         return EXIT_DONE;
@@ -743,7 +744,7 @@ static int carry_out_policy(conn *c, int status)
         return status; /* nobody asked for it, and why the command failed has been said */
     }
     if (error) {
-        return conn_fail_job(c, error, "the servos could not be left as asked: ");
+        return conn_fail_job(c, error, _("the servos could not be left as asked: "));
     }
     if (c->signal) {
         app_note(c->a, "interrupted: the servos %s", policy_words(policy));

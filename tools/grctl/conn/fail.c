@@ -5,6 +5,7 @@
  */
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
 
 enum { HEX_BYTES = 1024 };
@@ -62,11 +63,11 @@ static const char *trip_unit(grobo_trip trip)
     case GROBO_TRIP_VOLTAGE:
         return " mV";
     case GROBO_TRIP_LOST_REPLIES:
-        return " in a row";
+        return _(" in a row");
     case GROBO_TRIP_LIMIT:
         return " deg";
     case GROBO_TRIP_HOST_STALL:
-        return " ms late";
+        return _(" ms late");
     case GROBO_TRIP_NONE:
     case GROBO_TRIP_TORQUE_LOST:
     case GROBO_TRIP_NUMBER:
@@ -87,11 +88,11 @@ static int fail_trip(conn *c, const char *doing)
     }
     if (t->joint >= 0 && t->joint < model->n_joints) {
         return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s at motor %d (%s)", doing,
-                             grobo_trip_name(t->trip), value, model->joints[t->joint].motor,
+                             _(grobo_trip_name(t->trip)), value, model->joints[t->joint].motor,
                              model->joints[t->joint].name);
     }
     return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s", doing,
-                         grobo_trip_name(t->trip), value);
+                         _(grobo_trip_name(t->trip)), value);
 }
 
 bool conn_is_of_reply(int error)
@@ -108,13 +109,13 @@ static int fail_reply(conn *c, int error, int id, const char *prefix, const char
     char took[48] = "", bytes[8 * LAST_FRAME_BYTES];
     int status;
     if (last.frame) {
-        snprintf(took, sizeof took, " in %.1f ms after %d %s", (double)last.took_us / 1e3,
-                 last.attempts - 1, last.attempts == 2 ? "retry" : "retries");
+        snprintf(took, sizeof took, _(" in %.1f ms after %d %s"), (double)last.took_us / 1e3,
+                 last.attempts - 1, last.attempts == 2 ? _("retry") : _("retries"));
     }
     status =
         app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                  "%s: %s%s from %s%s; is its cable in? see 'grctl doctor'", conn_device(c), prefix,
-                 error == GROBO_ERR_TIMEOUT ? "no reply" : grobo_error_text(error), who, took);
+                 error == GROBO_ERR_TIMEOUT ? _("no reply") : app_error_text(error), who, took);
     if (last.frame) {
         last_frames_text(last.frame, bytes, sizeof bytes);
         app_detail(c->a, "%s", bytes);
@@ -192,9 +193,9 @@ int conn_fail_job(conn *c, int error, const char *prefix)
     char who[64];
     if (joint < 0 || joint >= model->n_joints) {
         return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s%s",
-                        conn_device(c), prefix, grobo_error_text(error));
+                        conn_device(c), prefix, app_error_text(error));
     }
-    snprintf(who, sizeof who, "motor %d (%s)", model->joints[joint].motor,
+    snprintf(who, sizeof who, _("motor %d (%s)"), model->joints[joint].motor,
              model->joints[joint].name);
     if (conn_is_of_reply(error) && c->job.failed == GROBO_JOINTS_ALL(model->n_joints)) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
@@ -229,7 +230,7 @@ int conn_fail(conn *c, int error, const char *doing)
     }
     if (c->link_error) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s while busy with %s",
-                        conn_device(c), grobo_error_text(error), doing);
+                        conn_device(c), app_error_text(error), doing);
     }
     if (c->trip.trip != GROBO_TRIP_NONE) {
         return fail_trip(c, doing);
@@ -244,7 +245,7 @@ int conn_fail_servo(conn *c, int error, int id)
     if ((c->signal && !c->a->stops) || c->link_error) {
         return conn_fail(c, error, "servo");
     }
-    snprintf(who, sizeof who, "servo %d", id);
+    snprintf(who, sizeof who, _("servo %d"), id);
     if (conn_is_of_reply(error)) {
         return fail_reply(c, error, id, "", who);
     }

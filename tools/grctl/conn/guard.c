@@ -8,6 +8,7 @@
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/conn/trims.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
 static const char *called = "grctl";
@@ -63,10 +64,10 @@ static void on_stop(void *ctx, grobo_guard_cause cause, int result)
     }
     if (result < 0) {
         fprintf(stderr,
-                "grctl was killed; not every joint is seen to stand: %s; switch the robot off\n",
-                grobo_error_text(result));
+                _("grctl was killed; not every joint is seen to stand: %s; switch the robot off\n"),
+                app_error_text(result));
     } else {
-        fprintf(stderr, "grctl was killed; its guard stopped the robot\n");
+        fprintf(stderr, _("grctl was killed; its guard stopped the robot\n"));
     }
     fflush(stderr);
 }
@@ -77,7 +78,7 @@ int guard_main(void)
                                                 .on_stop = on_stop};
     int error = grobo_guard_run(&program);
     if (error == GROBO_ERR_ARG || error == GROBO_ERR_UNSUPPORTED) {
-        fprintf(stderr, "grctl: guard: is started by grctl itself, to stop a robot\n");
+        fprintf(stderr, _("grctl: guard: is started by grctl itself, to stop a robot\n"));
     }
     return error == GROBO_ERR_ARG || error == GROBO_ERR_UNSUPPORTED ? EXIT_USAGE
            : error                                                  ? EXIT_ROBOT
@@ -107,7 +108,7 @@ void guard_start(const app *a, const char *device, grobo_guard **guard)
     }
     if (error && error != GROBO_ERR_UNSUPPORTED) {
         app_note(a, "no guard: %s; if grctl is killed, joints go on to their goals",
-                 grobo_error_text(error));
+                 app_error_text(error));
     }
 }
 

@@ -5,6 +5,7 @@
 #include <grobo/rs30x.h>
 
 #include "tools/grctl/conn/last_frames.h"
+#include "tools/grctl/lang/lang.h"
 
 static size_t append(uint8_t *to, size_t used, const uint8_t *bytes, size_t size)
 {
@@ -87,7 +88,7 @@ void last_frames_text(const last_frame *frame, char *text, size_t capacity)
         sent[0] = '\0';
     }
     if (frame->n_got == 0 || grobo_hex(got, sizeof got, frame->got, frame->n_got) < 0) {
-        snprintf(got, sizeof got, "nothing");
+        snprintf(got, sizeof got, _("nothing"));
     }
-    snprintf(text, capacity, "sent %s; received %s", sent, got);
+    snprintf(text, capacity, _("sent %s; received %s"), sent, got);
 }

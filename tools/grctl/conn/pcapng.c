@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "tools/grctl/conn/pcapng.h"
+#include "tools/grctl/lang/lang.h"
 
 enum {
     BLOCK_SECTION = 0x0A0D0D0A, /* the same in either byte order */
@@ -169,10 +170,10 @@ static int fail(pcapng_reader *r, int error, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    vsnprintf(r->problem, sizeof r->problem, format, list);
+    vsnprintf(r->problem, sizeof r->problem, lang_text(format), list);
     va_end(list);
     size_t used = strlen(r->problem);
-    snprintf(r->problem + used, sizeof r->problem - used, " (byte %llu)",
+    snprintf(r->problem + used, sizeof r->problem - used, _(" (byte %llu)"),
              (unsigned long long)r->at);
     r->error = error;
     return error;

@@ -12,6 +12,7 @@
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/decode/replay.h"
 #include "tools/grctl/decode/words.h"
+#include "tools/grctl/lang/lang.h"
 
 typedef enum danger {
     HARMLESS, /* reads */
@@ -118,7 +119,7 @@ static int ask(const plan *p)
                         "replay: %llu frames move joints of a real robot; say --yes if it may",
                         (unsigned long long)p->moves);
     }
-    output_complain("%llu frames move joints of the robot at %s. Send them? [y/N] ",
+    output_complain(_("%llu frames move joints of the robot at %s. Send them? [y/N] "),
                     (unsigned long long)p->moves, app_global(a, GLOBAL_DEVICE)->text);
     if (!fgets(answer, sizeof answer, stdin) || (answer[0] != 'y' && answer[0] != 'Y')) {
         return app_fail(a, EXIT_SAFETY, "UNSUPPORTED", "replay: nothing was sent");
@@ -166,7 +167,7 @@ static void show_progress(plan *p, int64_t at_us)
     if (p->last_us < 2000000) {
         return;
     }
-    snprintf(text, sizeof text, "replay: %.1f of %.1f s", (double)at_us / 1e6,
+    snprintf(text, sizeof text, _("replay: %.1f of %.1f s"), (double)at_us / 1e6,
              (double)p->last_us / 1e6);
     progress_draw(&p->bar, (double)at_us / (double)p->last_us, text);
 }
@@ -187,7 +188,7 @@ static void send_frame(void *ctx, const frame *f)
     }
     if (error && !is_reply_trouble(error)) {
         progress_clear(&p->bar);
-        snprintf(doing, sizeof doing, "replay: the frame at %.3f ms", (double)f->time_us / 1e3);
+        snprintf(doing, sizeof doing, _("replay: the frame at %.3f ms"), (double)f->time_us / 1e3);
         p->status = conn_fail(&p->c, error, doing);
     }
 }

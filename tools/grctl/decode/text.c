@@ -5,6 +5,7 @@
 
 #include "tools/grctl/decode/decoder.h"
 #include "tools/grctl/decode/hextext.h"
+#include "tools/grctl/lang/lang.h"
 
 enum { LINE_BYTES = 65536 };
 
@@ -20,7 +21,7 @@ static int fail(const reader *r, size_t column, const char *what, const char *wo
 {
     return app_fail(r->d->a, EXIT_FILE, "SYNTAX", "%s:%u:%zu: %s%.*s%s", r->in->name, r->line,
                     column + 1, *word ? "'" : "", hextext_word(word) > 20 ? 20 : hextext_word(word),
-                    word, what);
+                    word, lang_text(what));
 }
 
 /* A line without its end. 1, 0 at the end of the file, or the exit status, negative. */

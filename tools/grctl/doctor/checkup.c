@@ -3,6 +3,7 @@
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/doctor/checkup.h"
+#include "tools/grctl/lang/lang.h"
 
 void checkup_start(checkup *k, app *a)
 {
@@ -23,8 +24,9 @@ void checkup_found(void *ctx, const char *name, const char *fix, const char *for
     char message[APP_LINE_BYTES];
     va_list list;
     va_start(list, format);
-    vsnprintf(message, sizeof message, format, list);
+    vsnprintf(message, sizeof message, lang_text(format), list);
     va_end(list);
+    fix = fix ? lang_text(fix) : NULL;
     k->n++;
     k->failed += !ok;
     if (k->checks) {

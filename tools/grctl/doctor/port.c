@@ -50,7 +50,7 @@ static bool check_owner(checkup *k, const char *device)
         checkup_found(k, "owner", fix, "%s (pid %d) holds it", name, pid);
     } else {
         checkup_found(k, "open", "end the program that holds it, or plug it out and in",
-                      "%s: %s%s%s", device, grobo_error_text(error), *cause.text ? ": " : "",
+                      "%s: %s%s%s", device, app_error_text(error), *cause.text ? ": " : "",
                       cause.text);
     }
     return false;

@@ -3,11 +3,12 @@
 #include <string.h>
 
 #include "tools/grctl/homing/file.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
 
 static int complain(app *a, const char *path, const char *joint, const char *what)
 {
-    return app_fail(a, EXIT_FILE, "SYNTAX", "%s: %s: %s", path, joint, what);
+    return app_fail(a, EXIT_FILE, "SYNTAX", "%s: %s: %s", path, joint, lang_text(what));
 }
 
 static bool take(const json_t *one, const char *key, int32_t *value)
@@ -39,7 +40,7 @@ static int read_joint(app *a, const char *path, const json_t *one, int joint, bo
                         "needs whole numbers id, drive_mode, homing_offset, range_min, range_max");
     }
     if (id != moved->motor) {
-        snprintf(text, sizeof text, "id is %d; it is %d in %s", (int)id, moved->motor,
+        snprintf(text, sizeof text, _("id is %d; it is %d in %s"), (int)id, moved->motor,
                  robot_of(a)->name);
         return complain(a, path, moved->name, text);
     }
@@ -54,8 +55,8 @@ static int read_joint(app *a, const char *path, const json_t *one, int joint, bo
     if (!holds(grobo_servo_register_of(servo, GROBO_ROLE_MIN_POSITION), h->min) ||
         !holds(grobo_servo_register_of(servo, GROBO_ROLE_MAX_POSITION), h->max) ||
         (!any && (h->min >= servo->middle || h->max <= servo->middle))) {
-        snprintf(text, sizeof text, "range %d to %d is none of its servo, around %d", (int)h->min,
-                 (int)h->max, servo->middle);
+        snprintf(text, sizeof text, _("range %d to %d is none of its servo, around %d"),
+                 (int)h->min, (int)h->max, servo->middle);
         return complain(a, path, moved->name, text);
     }
     return 0;
@@ -71,7 +72,7 @@ static int read_all(app *a, const char *path, const json_t *file, bool any, homi
         int joint = grobo_model_find_joint(model, key, strlen(key));
         if (joint < 0 || strcmp(model->joints[joint].name, key) != 0) {
             char text[128];
-            snprintf(text, sizeof text, "%s has no such joint", robot_of(a)->name);
+            snprintf(text, sizeof text, _("%s has no such joint"), robot_of(a)->name);
             return complain(a, path, key, text);
         }
     }

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/monitor/monitor.h"
 #include "tools/grctl/screen/screen.h"
 #include "tools/grctl/show/render.h"
@@ -34,16 +35,16 @@ const char *monitor_busy(const monitor *m)
 {
     grobo_job_kind kind = grobo_robot_job(m->c.robot);
     if (kind == GROBO_JOB_ESTOP) {
-        return "emergency stop";
+        return _("emergency stop");
     }
     if (kind == GROBO_JOB_PLAY) {
-        return "getting ready to play";
+        return _("getting ready to play");
     }
     if (m->job) {
         return m->doing;
     }
     return grobo_robot_is_playing(m->c.robot)
-               ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot))
+               ? _(grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot)))
                : NULL;
 }
 
@@ -124,11 +125,12 @@ static void draw_joint(const monitor *m, int place, int column, int bar)
     }
     if (i.angle_age_us == GROBO_NEVER_US || i.angle_age_us > STALE_US) {
         if (i.status < 0 && i.status != GROBO_ERR_EMPTY) {
-            snprintf(text, sizeof text, " %.24s", grobo_error_text(i.status));
+            const char *why = _(grobo_error_text(i.status));
+            snprintf(text, sizeof text, " %.*s", (int)lang_fit(why, 24), why);
         } else if (i.angle_age_us == GROBO_NEVER_US) {
-            snprintf(text, sizeof text, " not read yet");
+            snprintf(text, sizeof text, _(" not read yet"));
         } else {
-            snprintf(text, sizeof text, " not read for %.0f s", (double)i.angle_age_us / 1e6);
+            snprintf(text, sizeof text, _(" not read for %.0f s"), (double)i.angle_age_us / 1e6);
         }
         screen_put(row, column + 13, SCREEN_BAD, text);
         return;
@@ -142,7 +144,7 @@ static void draw_joint(const monitor *m, int place, int column, int bar)
 static void draw_heads(int column, int bar)
 {
     screen_put(ROW_BODY - 1, column, SCREEN_DIM, " m joint        deg");
-    screen_put(ROW_BODY - 1, column + BEFORE_BAR, SCREEN_DIM, bar >= 6 ? "limits" : "");
+    screen_put(ROW_BODY - 1, column + BEFORE_BAR, SCREEN_DIM, bar >= 6 ? _("limits") : "");
     screen_put(ROW_BODY - 1, column + BEFORE_BAR + bar, SCREEN_DIM, "      C   mA");
 }
 
@@ -156,16 +158,17 @@ static void draw_title(const monitor *m, int columns)
     snprintf(text, sizeof text, "%s  %s", m->model->name, conn_device(&m->c));
     screen_put(ROW_TITLE, 0, SCREEN_BOLD, text);
     if (!m->c.up) {
-        snprintf(text, sizeof text, " LINE LOST for %.0f s, trying again ",
+        snprintf(text, sizeof text, _(" LINE LOST for %.0f s, trying again "),
                  (double)(grobo_now_us() - m->up_us) / 1e6);
     } else if (trip.trip == GROBO_TRIP_ESTOP) {
-        snprintf(text, sizeof text, " EMERGENCY STOP: R takes it back ");
+        snprintf(text, sizeof text, _(" EMERGENCY STOP: R takes it back "));
     } else if (trip.trip != GROBO_TRIP_NONE) {
-        snprintf(text, sizeof text, " STOPPED: %s: R takes it back ", grobo_trip_name(trip.trip));
+        snprintf(text, sizeof text, _(" STOPPED: %s: R takes it back "),
+                 _(grobo_trip_name(trip.trip)));
     } else {
         return;
     }
-    screen_put(ROW_TITLE, columns - (int)strlen(text), SCREEN_ALARM, text);
+    screen_put(ROW_TITLE, columns - lang_columns(text, strlen(text)), SCREEN_ALARM, text);
 }
 
 static void draw_link(const monitor *m)
@@ -185,7 +188,7 @@ static void draw_link(const monitor *m)
     screen_put(ROW_LINK, 0,
                low_mv && low_mv < limits->voltage_mv * 11 / 10 ? SCREEN_BAD : SCREEN_GOOD, text);
     snprintf(text, sizeof text,
-             "%llu replies, %llu timeouts, %llu retries, %llu bad sums; line lost %u times",
+             _("%llu replies, %llu timeouts, %llu retries, %llu bad sums; line lost %u times"),
              (unsigned long long)n->rx_frames, (unsigned long long)n->timeouts,
              (unsigned long long)n->retries, (unsigned long long)n->bad_sums, m->drops);
     screen_put(ROW_LINK, 9, n->timeouts || n->bad_sums ? SCREEN_WARN : SCREEN_PLAIN, text);
@@ -210,8 +213,8 @@ static void draw_play(const monitor *m, int columns)
                    : k < full ? "#"
                               : "-");
     }
-    snprintf(text, sizeof text, "%s %.1f of %.1f s at %d %%  %s",
-             grobo_sequencer_state_name(p.state), (double)p.t_us / 1e6, (double)p.total_us / 1e6,
+    snprintf(text, sizeof text, _("%s %.1f of %.1f s at %d %%  %s"),
+             _(grobo_sequencer_state_name(p.state)), (double)p.t_us / 1e6, (double)p.total_us / 1e6,
              m->keys.speed_pct, m->list.path[0]);
     screen_put(ROW_PLAY, width + GAP, busy ? SCREEN_WARN : SCREEN_PLAIN, busy ? busy : text);
 }
@@ -237,15 +240,15 @@ static void draw_log(const monitor *m, int rows)
 static void draw_help(const monitor *m, int rows)
 {
     static const char *const lines[] = {
-        "arrows 0-7 choose   t torque on/off   b brake   [ ] 1 deg   { } 5 deg   i init",
-        "e EMERGENCY STOP   R take it back   q quit",
+        N_("arrows 0-7 choose   t torque on/off   b brake   [ ] 1 deg   { } 5 deg   i init"),
+        N_("e EMERGENCY STOP   R take it back   q quit"),
     };
-    static const char *const play = "p play   space pause   + - speed   s stop";
+    static const char *const play = N_("p play   space pause   + - speed   s stop");
     int row = help_row(rows);
-    screen_put(row, 0, SCREEN_DIM, lines[0]);
-    screen_put(row + 1, 0, SCREEN_BOLD, lines[1]);
+    screen_put(row, 0, SCREEN_DIM, _(lines[0]));
+    screen_put(row + 1, 0, SCREEN_BOLD, _(lines[1]));
     if (m->list.n) {
-        screen_put(row + 2, 0, SCREEN_DIM, play);
+        screen_put(row + 2, 0, SCREEN_DIM, _(play));
     }
 }
 
@@ -254,8 +257,8 @@ void monitor_draw(const monitor *m)
     int rows, columns;
     screen_begin(&rows, &columns);
     if (rows < LEAST_ROWS || columns < LEAST_COLUMNS) {
-        screen_put(0, 0, SCREEN_WARN, "a larger window, please: 80x24");
-        screen_put(1, 0, SCREEN_BOLD, "e EMERGENCY STOP   q quit");
+        screen_put(0, 0, SCREEN_WARN, _("a larger window, please: 80x24"));
+        screen_put(1, 0, SCREEN_BOLD, _("e EMERGENCY STOP   q quit"));
         screen_end();
         return;
     }

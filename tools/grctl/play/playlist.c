@@ -6,6 +6,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/wire.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/play/play.h"
 
 /* Legs given by ikLinks are no matter for a warning where they are solved. */
@@ -59,8 +60,8 @@ static int check_one(app *a, const playlist *list, int i, grobo_slack_taken *sla
     }
     file_format(&d, false, text, sizeof text);
     return app_fail(a, EXIT_SAFETY, d.code, "%s; %s", text,
-                    is_limit(&d) ? "--clamp plays it at the limit"
-                                 : "a lower --speed gives it time");
+                    is_limit(&d) ? _("--clamp plays it at the limit")
+                                 : _("a lower --speed gives it time"));
 }
 
 /* One warning of angles that are played at a limit, one where the robot would fall. */

@@ -9,6 +9,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/robot.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/shell/shell.h"
 
 enum { CAPTURE_MS = 100, LONGEST_MS = 3600000, KNOWN_US = 2000000 };
@@ -181,7 +182,7 @@ static int do_reverse(shell *s, int n, char **words)
     (void)words;
     s->reverse = !s->reverse;
     app_report(&s->one, json_pack("{s:b}", "reverse", s->reverse), "the record plays %s",
-               s->reverse ? "backwards" : "forwards");
+               s->reverse ? _("backwards") : _("forwards"));
     return EXIT_DONE;
 }
 
@@ -367,42 +368,37 @@ static int do_connect(shell *s, int n, char **words)
 }
 
 /* letter, word, arguments, meaning, command or NULL, function or NULL */
-#define SHELL_WORDS(X)                                                                             \
-    X("q", "quit", "", "end the shell; so does Ctrl-D", NULL, do_quit)                             \
-    X("", "exit", "", "the same", NULL, do_quit)                                                   \
-    X("i", "Init", "[--time MS]", "go to the initial posture", "init", NULL)                       \
-    X("S", "On", "[JOINT|GROUP]...", "torque on", "servo on", NULL)                                \
-    X("s", "Off", "[JOINT|GROUP]...", "torque off: hold the robot", "servo off", NULL)             \
-    X("b", "Break", "[JOINT|GROUP]...", "brake", "servo brake", NULL)                              \
-    X("f", "Free", "[JOINT|GROUP]...", "free mode: joints follow the hand", NULL, do_free)         \
-    X("e", "End", "", "end free mode, or stop: joints hold", NULL, do_end)                         \
-    X("m", "", "JOINT DEG [MS]", "move one joint", NULL, do_move)                                  \
-    X("t", "", "[MS]", "time of moves and recorded postures (1000)", NULL, do_time)                \
-    X("p", "", "[JOINT|GROUP]...", "print the present posture", "status", NULL)                    \
-    X("C", "", "[JOINT|GROUP]...", "print currents and voltages", "status", NULL)                  \
-    X("r", "Push", "[MS]", "append the present posture to the record", NULL, do_push)              \
-    X("", "Rec", "[MS [EVERY]]", "append one every 100 ms, for a time or until Ctrl-C", NULL,      \
-      do_rec)                                                                                      \
-    X("c", "Clear", "", "empty the record", NULL, do_clear)                                        \
-    X("R", "DoRecord", "[OPTIONS]", "play the record, with the options of play", NULL, do_play)    \
-    X("", "Start", "[OPTIONS]", "the same", NULL, do_play)                                         \
-    X("", "Reverse", "", "from now on play the record the other way round", NULL, do_reverse)      \
-    X("", "PrintRecord", "", "print the record", "show @record", NULL)                             \
-    X("", "Save", "[FILE]", "save the record, without a name as MotionN.m", NULL, do_save)         \
-    X("l", "", "NAME", "load a motion into the record, by file or by name", NULL, do_load)         \
-    X("a", "", "[MS|NAME]", "append the present posture, or a motion, to the record", NULL,        \
-      do_append)                                                                                   \
-    X("", "connect", "[DEV]", "open the robot, or another one", NULL, do_connect)                  \
-    X("", "close", "", "close it; the next command opens it again", NULL, do_close)                \
-    X("", "wait", "MS", "let time pass", NULL, do_wait)
+static const shell_word table[] = {
+    {"q", "quit", "", N_("end the shell; so does Ctrl-D"), NULL, do_quit},
+    {"", "exit", "", N_("the same"), NULL, do_quit},
+    {"i", "Init", "[--time MS]", N_("go to the initial posture"), "init", NULL},
+    {"S", "On", "[JOINT|GROUP]...", N_("torque on"), "servo on", NULL},
+    {"s", "Off", "[JOINT|GROUP]...", N_("torque off: hold the robot"), "servo off", NULL},
+    {"b", "Break", "[JOINT|GROUP]...", N_("brake"), "servo brake", NULL},
+    {"f", "Free", "[JOINT|GROUP]...", N_("free mode: joints follow the hand"), NULL, do_free},
+    {"e", "End", "", N_("end free mode, or stop: joints hold"), NULL, do_end},
+    {"m", "", "JOINT DEG [MS]", N_("move one joint"), NULL, do_move},
+    {"t", "", "[MS]", N_("time of moves and recorded postures (1000)"), NULL, do_time},
+    {"p", "", "[JOINT|GROUP]...", N_("print the present posture"), "status", NULL},
+    {"C", "", "[JOINT|GROUP]...", N_("print currents and voltages"), "status", NULL},
+    {"r", "Push", "[MS]", N_("append the present posture to the record"), NULL, do_push},
+    {"", "Rec", "[MS [EVERY]]", N_("append one every 100 ms, for a time or until Ctrl-C"), NULL,
+     do_rec},
+    {"c", "Clear", "", N_("empty the record"), NULL, do_clear},
+    {"R", "DoRecord", "[OPTIONS]", N_("play the record, with the options of play"), NULL, do_play},
+    {"", "Start", "[OPTIONS]", N_("the same"), NULL, do_play},
+    {"", "Reverse", "", N_("from now on play the record the other way round"), NULL, do_reverse},
+    {"", "PrintRecord", "", N_("print the record"), "show @record", NULL},
+    {"", "Save", "[FILE]", N_("save the record, without a name as MotionN.m"), NULL, do_save},
+    {"l", "", "NAME", N_("load a motion into the record, by file or by name"), NULL, do_load},
+    {"a", "", "[MS|NAME]", N_("append the present posture, or a motion, to the record"), NULL,
+     do_append},
+    {"", "connect", "[DEV]", N_("open the robot, or another one"), NULL, do_connect},
+    {"", "close", "", N_("close it; the next command opens it again"), NULL, do_close},
+    {"", "wait", "MS", N_("let time pass"), NULL, do_wait},
+};
 
-#define ROW(letter, word, arguments, help, command, run)                                           \
-    {letter, word, arguments, help, command, run},
-static const shell_word table[] = {SHELL_WORDS(ROW)};
-
-#define PARAGRAPH(letter, word, arguments, help, command, run)                                     \
-    "  " letter " " word " " arguments "\n      " help "\n"
-const char shell_details[] =
+const char shell_details[] = N_(
     "Runs commands, one a line, over one connection that stays open between them: those of grctl\n"
     "without 'grctl', and the letters and words of the original programs below. Words are split\n"
     "at blanks, quotes and backslashes keep them together, # begins a comment. Commands come from\n"
@@ -415,8 +411,19 @@ const char shell_details[] =
     "Between two commands an open robot is watched: a lost line, an alarm of a servo, and an\n"
     "emergency stop by another grctl are told at once. They end a script like a command that\n"
     "fails, though its next line has not come; a prompt stays.\n\n"
-    "The record is a motion that grows by hand; every command takes it as the file @record.\n"
-    "\n" SHELL_WORDS(PARAGRAPH);
+    "The record is a motion that grows by hand; every command takes it as the file @record.\n");
+
+const char *shell_words(void)
+{
+    static char text[4096];
+    size_t used = 0;
+    for (size_t i = 0; i < sizeof table / sizeof table[0] && used < sizeof text; i++) {
+        const shell_word *w = &table[i];
+        used += (size_t)snprintf(text + used, sizeof text - used, "  %s %s %s\n      %s\n",
+                                 w->letter, w->word, w->arguments, _(w->help));
+    }
+    return text;
+}
 
 const shell_word *shell_word_row(size_t i)
 {

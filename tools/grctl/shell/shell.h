@@ -56,8 +56,9 @@ const shell_word *shell_word_row(size_t i);
 const shell_word *shell_word_find(const char *name);
 /* The command or word that is nearest to a name, or NULL; a command that it is comes first. */
 const char *shell_nearest(const char *name);
-/* The table as paragraphs, for help and manual. */
+/* What help and manual say of it, and the table behind that as paragraphs, in the language. */
 extern const char shell_details[];
+const char *shell_words(void);
 
 /* A line begins: nothing is known of it. */
 void shell_begin(shell *s);

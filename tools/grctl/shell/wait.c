@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Waiting for lines in the loop, so that the robot is looked after meanwhile. */
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/shell/shell.h"
 
 volatile sig_atomic_t shell_noted;
@@ -64,10 +65,10 @@ static void take(shell_script *in, char c)
         return;
     }
     if (c == '\0') {
-        in->wrong = "a NUL byte; is it text?";
+        in->wrong = _("a NUL byte; is it text?");
     }
     if (in->used == sizeof in->line - 1) {
-        in->wrong = "the line is too long";
+        in->wrong = _("the line is too long");
     } else {
         in->line[in->used++] = c;
     }

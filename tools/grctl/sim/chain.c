@@ -7,6 +7,7 @@
 #include <grobo/lx16a.h>
 #include <grobo/posture.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/sim/chain.h"
 
 /* No RS30x turns further than its registers CW_LIMIT and CCW_LIMIT allow. */
@@ -27,13 +28,13 @@ static int refuse(app *a, const char *item, size_t length, const char *why)
     char shown[64];
     snprintf(shown, sizeof shown, "%.*s", (int)(length < 40 ? length : 40), item);
     app_make_one_line(shown);
-    return app_fail(a, EXIT_USAGE, "ARG", "sim: --servo: '%s': %s", shown, why);
+    return app_fail(a, EXIT_USAGE, "ARG", "sim: --servo: '%s': %s", shown, lang_text(why));
 }
 
 static int refuse_type(app *a, const char *item, size_t length)
 {
     char why[512];
-    size_t used = (size_t)snprintf(why, sizeof why, "unknown type; known:");
+    size_t used = (size_t)snprintf(why, sizeof why, _("unknown type; known:"));
     for (size_t i = 0; grobo_sim_type_row(i) && used < sizeof why; i++) {
         used += (size_t)snprintf(why + used, sizeof why - used, " %s", grobo_sim_type_row(i)->name);
     }

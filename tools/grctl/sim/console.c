@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/sim/console.h"
 
 static grobo_sim *sim_of(const sim_console *console)
@@ -137,7 +138,7 @@ static const char *act_on_servos(const sim_console *console, size_t i)
 
 static void say_servo(const sim_console *console, int servo)
 {
-    static const char *const cables[] = {"", ", mute", ", cable out"};
+    static const char *const cables[] = {"", N_(", mute"), N_(", cable out")};
     static const char *const torques[] = {"off", "on", "brake"};
     grobo_sim_view v;
     if (grobo_sim_look(sim_of(console), servo, &v) < 0) {
@@ -145,8 +146,8 @@ static void say_servo(const sim_console *console, int servo)
     }
     app_note(console->a, "%3d  %-12s  %7.1f deg  to %7.1f  torque %-5s  %4d mA  %5.1f C%s%s%s",
              (int)v.id, console->model->joints[servo].name, v.angle_mdeg / 1e3, v.target_mdeg / 1e3,
-             torques[v.torque], (int)v.current_ma, v.temperature_c, cables[v.cable],
-             v.moving ? ", moving" : "", v.stalled ? ", stalled" : "");
+             torques[v.torque], (int)v.current_ma, v.temperature_c, _(cables[v.cable]),
+             v.moving ? _(", moving") : "", v.stalled ? _(", stalled") : "");
 }
 
 static const char *look(const sim_console *console)
@@ -168,7 +169,7 @@ static const char *choose_robot(sim_console *console)
 {
     double number;
     if (!read_number(console, 1, 1, console->n, &number)) {
-        return "robot N, one of those that run";
+        return _("robot N, one of those that run");
     }
     console->robot = (int)number - 1;
     return NULL;
@@ -201,7 +202,7 @@ static const char *plug(const sim_console *console)
         return "plug in|out";
     }
     int error = grobo_sim_server_plug(console->server[console->robot], in);
-    return error < 0 ? grobo_error_text(error) : NULL;
+    return error < 0 ? app_error_text(error) : NULL;
 }
 
 /* NULL: done. Else how the command is to be said. */
@@ -231,8 +232,8 @@ static const char *carry_out(sim_console *console)
         event_base_loopbreak(console->base);
         return NULL;
     }
-    return "robot fault silent cable block turn load temperature id voltage plug look quit; see "
-           "'grctl help sim'";
+    return _("robot fault silent cable block turn load temperature id voltage plug look quit; see "
+             "'grctl help sim'");
 }
 
 /* ---- lines ----------------------------------------------------------------------------------- */
@@ -263,7 +264,7 @@ static void on_line(sim_console *console)
     char said[SIM_CONSOLE_BYTES];
     snprintf(said, sizeof said, "%s", console->line);
     if (!split(console)) {
-        usage = "at most 4 words";
+        usage = _("at most 4 words");
     } else if (console->n_words == 0) {
         return;
     } else {

@@ -10,6 +10,7 @@
 #include <grobo/serial.h>
 
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/pipe.h"
 #include "tools/grctl/sim/state.h"
 
@@ -28,7 +29,7 @@ static grobo_sim *sim_of(const sim_state *s)
 
 static int fail(const sim_state *s, const char *why)
 {
-    return app_fail(s->a, EXIT_FILE, "IO", "sim: --state: %s: %s", s->path, why);
+    return app_fail(s->a, EXIT_FILE, "IO", "sim: --state: %s: %s", s->path, lang_text(why));
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -132,17 +133,17 @@ static const char *read_servo(const sim_state *s, int servo, const char *line)
     int32_t model = 0;
     (void)grobo_sim_get_register(sim_of(s), servo, GROBO_RS30X_MODEL, &model);
     if (low < 0 || high * 256 + low != model) {
-        return "another servo than the one to simulate";
+        return _("another servo than the one to simulate");
     }
     for (int i = 0; i < GROBO_SIM_FLASH_BYTES; i++) {
         int byte = line[4 + 3 * i] == ' ' ? read_byte(line + 5 + 3 * i) : -1;
         if (byte < 0) {
-            return "no registers in hexadecimal";
+            return _("no registers in hexadecimal");
         }
         flash[i] = (uint8_t)byte;
     }
     return grobo_sim_set_flash(sim_of(s), servo, flash) < 0
-               ? "a register has a value that no servo can have"
+               ? _("a register has a value that no servo can have")
                : NULL;
 }
 
@@ -152,7 +153,7 @@ static const char *read_text(const sim_state *s, const char *text, size_t size, 
     const char *wrong = NULL;
     *line = 1;
     if (size < sizeof head - 1 || memcmp(text, head, sizeof head - 1) != 0) {
-        return "is not a state of 'grctl sim'";
+        return _("is not a state of 'grctl sim'");
     }
     text += sizeof head - 1;
     size -= sizeof head - 1;
@@ -160,7 +161,7 @@ static const char *read_text(const sim_state *s, const char *text, size_t size, 
         const char *end = memchr(text, '\n', size);
         ++*line;
         if (!end || end - text != LINE_BYTES - 2) {
-            return end ? "is no line of a servo" : "is cut off";
+            return end ? _("is no line of a servo") : _("is cut off");
         }
         wrong = read_servo(s, i, text);
         size -= (size_t)(end + 1 - text);
@@ -168,7 +169,7 @@ static const char *read_text(const sim_state *s, const char *text, size_t size, 
     }
     if (!wrong && size > 0) {
         ++*line;
-        return "is of more servos than are to be simulated";
+        return _("is of more servos than are to be simulated");
     }
     return wrong;
 }
@@ -179,10 +180,10 @@ static int read_file(sim_state *s, FILE *file)
     char why[160];
     size_t size = fread(text, 1, sizeof text, file);
     int line = 1;
-    const char *wrong = ferror(file) ? "cannot be read" : NULL;
+    const char *wrong = ferror(file) ? _("cannot be read") : NULL;
     fclose(file);
     if (!wrong && size == sizeof text) {
-        wrong = "is not a state of 'grctl sim'";
+        wrong = _("is not a state of 'grctl sim'");
     }
     if (!wrong) {
         wrong = read_text(s, text, size, &line);
@@ -190,14 +191,14 @@ static int read_file(sim_state *s, FILE *file)
     if (!wrong) {
         return 0;
     }
-    snprintf(why, sizeof why, "line %d: %s; name another file", line, wrong);
+    snprintf(why, sizeof why, _("line %d: %s; name another file"), line, wrong);
     return fail(s, why);
 }
 
 static int load(sim_state *s)
 {
     if (os_is_folder(s->path)) {
-        return fail(s, grobo_error_text(GROBO_ERR_ISDIR));
+        return fail(s, app_error_text(GROBO_ERR_ISDIR));
     }
     if (pipe_is(s->path)) {
         return fail(s, "is not a regular file");
@@ -225,12 +226,12 @@ int sim_state_start(sim_state *s, app *a, struct event_base *base, grobo_sim_ser
         s->a = NULL;
         return app_fail(a, EXIT_FILE, status == EWOULDBLOCK ? "BUSY" : "IO", "sim: --state: %s: %s",
                         path,
-                        status == EWOULDBLOCK ? "another simulator has it; name another file"
+                        status == EWOULDBLOCK ? _("another simulator has it; name another file")
                                               : app_cause_text(status));
     }
     s->settle = evtimer_new(base, on_settle, s);
     if (!s->settle) {
-        return fail(s, grobo_error_text(GROBO_ERR_NOMEM));
+        return fail(s, app_error_text(GROBO_ERR_NOMEM));
     }
     return load(s);
 }

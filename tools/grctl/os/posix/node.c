@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"
 
 /* The Makefile says where `make install` puts it. */
@@ -37,11 +38,11 @@ static void say_forbidden(const char *device, const struct stat *s, node_found_f
     char fix[FIX_BYTES];
     const struct group *group = getgrgid(s->st_gid);
     if (!group || (s->st_mode & 060) != 060) {
-        snprintf(fix, sizeof fix, "sudo chmod a+rw %s", device);
+        snprintf(fix, sizeof fix, _("sudo chmod a+rw %s"), device);
     } else if (is_member(group)) {
-        snprintf(fix, sizeof fix, "log out and in again: you are in %s since", group->gr_name);
+        snprintf(fix, sizeof fix, _("log out and in again: you are in %s since"), group->gr_name);
     } else {
-        snprintf(fix, sizeof fix, "sudo usermod -aG %s %s; then log out and in again",
+        snprintf(fix, sizeof fix, _("sudo usermod -aG %s %s; then log out and in again"),
                  group->gr_name, user_name());
     }
     found(ctx, "permission", fix, "%s belongs to group %s, mode %03o: %s may not open it", device,
@@ -80,14 +81,14 @@ bool node_true_path(const char *device, char *path, size_t capacity)
 
 void node_end_program(char *fix, size_t capacity, int pid)
 {
-    snprintf(fix, capacity, "end that program, or: kill %d", pid);
+    snprintf(fix, capacity, _("end that program, or: kill %d"), pid);
 }
 
 void node_quicken(char *fix, size_t capacity, const char *path)
 {
     snprintf(fix, capacity,
-             "sudo cp %s /etc/udev/rules.d/, plug in again; "
-             "or: echo 1 | sudo tee /sys/bus/usb-serial/devices/%s/latency_timer",
-             access(rules, R_OK) == 0 ? rules : "tools/udev/60-grobo.rules (of the sources)",
+             _("sudo cp %s /etc/udev/rules.d/, plug in again; "
+               "or: echo 1 | sudo tee /sys/bus/usb-serial/devices/%s/latency_timer"),
+             access(rules, R_OK) == 0 ? rules : _("tools/udev/60-grobo.rules (of the sources)"),
              strrchr(path, '/') + 1);
 }

@@ -6,6 +6,7 @@
 
 #include <grobo/serial.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"
 
 bool node_look(const char *device, node_found_fn found, void *ctx)
@@ -41,12 +42,12 @@ bool node_true_path(const char *device, char *path, size_t capacity)
 /* Nothing else ends a program of another console: what it moves stays under way. */
 void node_end_program(char *fix, size_t capacity, int pid)
 {
-    snprintf(fix, capacity, "end that program; if nothing else helps: taskkill /f /pid %d", pid);
+    snprintf(fix, capacity, _("end that program; if nothing else helps: taskkill /f /pid %d"), pid);
 }
 
 void node_quicken(char *fix, size_t capacity, const char *path)
 {
     snprintf(fix, capacity,
-             "device manager, Ports, %s, Port Settings, Advanced: set the latency timer to 1 ms",
+             _("device manager, Ports, %s, Port Settings, Advanced: set the latency timer to 1 ms"),
              path);
 }
