@@ -552,28 +552,39 @@ static void refuse(http_request *r, wall_answer no)
     http_refuse(r, no.status, no.code, "%s", no.message);
 }
 
-static void judge(http_request *r)
+/* What is wrong with it by where it comes from, its path and what it may. */
+static wall_answer judge(http_request *r, wall_rule *rule)
+{
+    const wall *w = &port_of(r)->wall;
+    wall_request q = as_wall(r);
+    wall_answer no = wall_check_source(w, &q);
+    if (!no.status && (!split(r) || !r->server->config.rule(r->server->config.ctx, r, rule))) {
+        no = (wall_answer){404, "notfound", "there is no such path"};
+    }
+    return no.status ? no : wall_check_right(w, &q, *rule);
+}
+
+/* By how much there is of it. */
+static wall_answer judge_amount(http_request *r, wall_rule rule)
+{
+    size_t size;
+    http_body(r, &size);
+    if (size > HTTP_BODY_BYTES && rule != WALL_SAVE) {
+        return (wall_answer){413, "too_large", "the body is larger than 64 kB"};
+    }
+    if ((rule == WALL_ACT || rule == WALL_SAVE) && is_flood(r->server)) {
+        return (wall_answer){429, "too_many", "more than 100 requests a second"};
+    }
+    return (wall_answer){0};
+}
+
+static void serve_or_refuse(http_request *r)
 {
     http *h = r->server;
     wall_rule rule = WALL_PAGE;
-    wall_request q = as_wall(r);
-    wall_answer no = wall_check_source(&port_of(r)->wall, &q);
-    if (!no.status && !split(r)) {
-        no = (wall_answer){404, "notfound", "there is no such path"};
-    }
-    if (!no.status && !h->config.rule(h->config.ctx, r, &rule)) {
-        no = (wall_answer){404, "notfound", "there is no such path"};
-    }
+    wall_answer no = judge(r, &rule);
     if (!no.status) {
-        no = wall_check_right(&port_of(r)->wall, &q, rule);
-    }
-    size_t size;
-    http_body(r, &size);
-    if (!no.status && size > HTTP_BODY_BYTES && rule != WALL_SAVE) {
-        no = (wall_answer){413, "too_large", "the body is larger than 64 kB"};
-    }
-    if (!no.status && (rule == WALL_ACT || rule == WALL_SAVE) && is_flood(h)) {
-        no = (wall_answer){429, "too_many", "more than 100 requests a second"};
+        no = judge_amount(r, rule);
     }
     if (no.status == 401 && h->config.wrong_us > 0) { /* who guesses has to wait */
         r->refused_us = grobo_now_us();
@@ -613,7 +624,7 @@ static void on_request(struct evhttp_request *raw, void *ctx)
     r->next = p->of->waiting;
     p->of->waiting = r;
     snprintf(r->method, sizeof r->method, "%s", method_of(raw));
-    judge(r);
+    serve_or_refuse(r);
 }
 
 /* ---- the whole of it ------------------------------------------------------------------------- */
