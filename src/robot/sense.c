@@ -20,25 +20,30 @@
 
 /* ---- free mode ------------------------------------------------------------------------------- */
 
-/* Unless that waits already: where the line is full, each reading would ask again. */
+/* Unless that waits already: where the line is full, each reading would ask again. A servo that has
+ * no brake gives way without torque. */
 static void switch_once(grobo_robot *robot, grobo_joint_mask joint, grobo_torque mode)
 {
-    if (!grobo_i_slots_wait(robot, joint, GROBO_I_DEED_TORQUE, mode)) {
-        (void)grobo_i_gate_torque(robot, joint, mode, GROBO_I_WHOLE);
+    bool waits = grobo_i_slots_wait(robot, joint, GROBO_I_DEED_TORQUE, mode);
+    int result = waits ? GROBO_OK : grobo_i_gate_torque(robot, joint, mode, GROBO_I_WHOLE);
+    if (result == GROBO_ERR_UNSUPPORTED && mode == GROBO_TORQUE_BRAKE) {
+        switch_once(robot, joint, GROBO_TORQUE_OFF);
     }
 }
 
 /* True if something else than its servo turns a joint: it has torque, and moves farther from its
  * goal than it was when it was read last. A leg's current stays below its limit under a hand that
- * is not slow. */
+ * is not slow. A servo that tells no speed is taken to turn by its angle alone. */
 static bool is_turned(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_joint_state *state = &axis->state;
     double before_rad = axis->away_rad;
     axis->away_rad = fabs(state->angle_rad - state->goal_rad);
-    return state->torque == GROBO_TORQUE_ON && abs(state->speed_dps) >= GROBO_I_SLOW_DPS &&
-           !grobo_i_goal_holds(robot, joint) && axis->away_rad > before_rad;
+    bool turns = (state->valid & GROBO_FIELD_SPEED) == 0 ||
+                 abs(state->speed_dps) >= GROBO_I_SLOW_DPS;
+    return state->torque == GROBO_TORQUE_ON && turns && !grobo_i_goal_holds(robot, joint) &&
+           axis->away_rad > before_rad;
 }
 
 /* After each reading (protocol 5): above the joint's current, or turned, brake; slow, hold. To

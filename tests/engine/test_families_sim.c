@@ -233,6 +233,35 @@ static void a_servo_set_up_otherwise_is_made_limp(void **state)
     }
 }
 
+/* With a brake or without: a hand that overcomes a servo in free mode takes the joint along, and
+ * the joint stays where it was left. KRS servos do not tell their goal: they hold on. */
+static void a_hand_moves_a_free_joint(void **state)
+{
+    (void)state;
+    for (const family *f = family_row(0); f != NULL;
+         f = family_row((size_t)(f - family_row(0)) + 1)) {
+        if (f->table == &grobo_ics_table) {
+            continue;
+        }
+        family_start(&kit, f, &watched, NULL);
+        assert_int_equal(family_move(&kit, 0, 1000), GROBO_OK);
+        assert_int_equal(grobo_robot_free(&kit.robot, 0xF, true), GROBO_OK);
+        family_run(&kit, 500 * MS);
+        for (int deg = 20; deg <= 60; deg += 20) {
+            assert_int_equal(grobo_sim_set_angle(&kit.sim, 0, 1000 * deg, 300 * MS), GROBO_OK);
+            family_run(&kit, S);
+            double off_deg = fabs(family_angle_deg(&kit, 0) - deg);
+            if (off_deg > 4) {
+                fail_msg("%s: left at %d, stands at %.1f deg", f->name, deg,
+                         family_angle_deg(&kit, 0));
+            }
+            grobo_sim_view view;
+            assert_int_equal(grobo_sim_look(&kit.sim, 0, &view), GROBO_OK);
+            assert_int_equal(view.torque, GROBO_TORQUE_ON);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -244,6 +273,7 @@ int main(void)
         cmocka_unit_test(heat_stops_for_safety),
         cmocka_unit_test(a_joint_that_another_moves_is_not_sent_anywhere),
         cmocka_unit_test(a_limp_joint_is_not_sent_anywhere),
+        cmocka_unit_test(a_hand_moves_a_free_joint),
         cmocka_unit_test(a_drive_mode_without_time_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
