@@ -6,6 +6,7 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/fleet/broker.h"
 #include "tools/grctl/fleet/leader.h"
+#include "tools/grctl/lang/lang.h"
 
 enum {
     OPT_GROUP = BROKER_OPTIONS,
@@ -61,7 +62,7 @@ static int say_answers(leader *l, const char *doing)
         }
         const char *code = fleet_text(p->answer, "code"), *why = fleet_text(p->answer, "message");
         status = app_fail(l->a, EXIT_ROBOT, p->answer && code ? code : "TIMEOUT", "%s: %s: %s",
-                          p->host, doing, p->answer && why ? why : "no answer");
+                          p->host, doing, p->answer && why ? why : _("no answer"));
     }
     return status;
 }
