@@ -227,6 +227,8 @@ look() {
         libedit-dev libedit-devel libedit libedit-dev libedit-devel
     need ncurses 'to draw in grctl monitor' have_library ncursesw -- \
         libncurses-dev ncurses-devel ncurses ncurses-dev ncurses-devel
+    need libmosquitto 'for grctl agent and grctl fleet' have_library libmosquitto -- \
+        libmosquitto-dev mosquitto-devel mosquitto mosquitto-dev libmosquitto-devel
     need expat 'to read URDF in grctl robot import' have_library expat -- \
         libexpat1-dev expat-devel expat expat-dev libexpat-devel
     [ $level -ge 2 ] || return
@@ -267,6 +269,8 @@ look_wanted() {
         tshark wireshark-cli wireshark-cli tshark wireshark
     need ser2net 'to check a robot behind a serial server' have_command ser2net -- \
         ser2net ser2net ser2net ser2net ser2net
+    need mosquitto 'to check fleets' have_command mosquitto -- \
+        'mosquitto mosquitto-clients' mosquitto mosquitto 'mosquitto mosquitto-clients' mosquitto
     need mandoc 'to check the man page' have_command mandoc -- \
         mandoc mandoc mandoc mandoc mandoc
     need groff 'to check the man page' have_mdoc -- groff-base groff groff groff groff

@@ -109,7 +109,8 @@ check "nobody of that group" fails 1 'no agent of group three is online' \
 
 # plays [OPTIONS]: with group one, slowly; returns when it was begun.
 plays() {
-    "$GRCTL" fleet play greet.pseq --broker "$broker" -s 20 --group one "$@" >"$work/played" 2>"$work/said" </dev/null &
+    "$GRCTL" fleet play greet.pseq --broker "$broker" -s 20 --group one "$@" \
+        >"$work/played" 2>"$work/said" </dev/null &
     play=$!
     written "$work/said" 'all begin in' && wait_for moves
 }
@@ -189,7 +190,8 @@ check "and robots play again" exits 0 fleet play greet.pseq -s 400 --group one
 # ---- strangers -----------------------------------------------------------------------------------
 
 id=00112233445566778899aabbccddeeff
-epoch=$(mosquitto_sub -p "$port" -C 1 -t grobo/v1/one/connection | sed 's/.*"epoch":"\([0-9a-f]*\).*/\1/')
+epoch=$(mosquitto_sub -p "$port" -C 1 -t grobo/v1/one/connection |
+    sed 's/.*"epoch":"\([0-9a-f]*\).*/\1/')
 # says_to VERB JSON [OPTIONS]: as an order of $id.
 says_to() {
     says_verb=$1 says_text=$2

@@ -415,10 +415,9 @@ static int find(reader *r)
 /* Commands that speak to no robot: a bad configuration does not keep them from working. */
 static bool is_offline(const cli_command *command)
 {
-    static const char *const names[] = {"ports",  "check",  "show",  "plot",       "convert",
-                                        "decode", "sim",    "help",  "completion", "version",
-                                        "budget", "joints", "robot", "follow",     "setup",
-                                        "fleet"};
+    static const char *const names[] = {
+        "ports",      "check",   "show",   "plot",   "convert", "decode", "sim",   "help",
+        "completion", "version", "budget", "joints", "robot",   "follow", "setup", "fleet"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (strcmp(command->name, names[i]) == 0) {
             return true;

@@ -10,30 +10,37 @@ static int bad(app *a, const char *url)
                     "--broker %s: mqtt://[USER@]HOST[:PORT] or mqtts://... is wanted", url);
 }
 
-/* [USER@]HOST[:PORT]; an address of IPv6 stands in brackets. */
-static bool take_place(broker *b, const char *place)
+static bool take_port(broker *b, const char *text)
 {
-    const char *at = strrchr(place, '@');
-    const char *host = at ? at + 1 : place;
+    char *behind;
+    long port = strtol(text, &behind, 10);
+    b->config.port = (int)port;
+    return behind != text && *behind == '\0' && port > 0 && port < 65536;
+}
+
+/* HOST[:PORT]; an address of IPv6 stands in brackets. */
+static bool take_host(broker *b, const char *host)
+{
     bool six = *host == '[';
     const char *end = host + strcspn(host, six ? "]" : ":");
     const char *rest = six && *end ? end + 1 : end;
     host += six;
-    if (at && (size_t)(at - place) >= sizeof b->user) {
-        return false;
-    }
-    snprintf(b->user, sizeof b->user, "%.*s", at ? (int)(at - place) : 0, place);
     if (end <= host || (size_t)(end - host) >= sizeof b->host || (six && *end != ']')) {
         return false;
     }
     snprintf(b->host, sizeof b->host, "%.*s", (int)(end - host), host);
-    if (*rest == ':') {
-        char *behind;
-        long port = strtol(rest + 1, &behind, 10);
-        b->config.port = (int)port;
-        return behind != rest + 1 && *behind == '\0' && port > 0 && port < 65536;
+    return *rest == ':' ? take_port(b, rest + 1) : *rest == '\0';
+}
+
+/* [USER@]HOST[:PORT] */
+static bool take_place(broker *b, const char *place)
+{
+    const char *at = strrchr(place, '@');
+    if (at && (size_t)(at - place) >= sizeof b->user) {
+        return false;
     }
-    return *rest == '\0';
+    snprintf(b->user, sizeof b->user, "%.*s", at ? (int)(at - place) : 0, place);
+    return take_host(b, at ? at + 1 : place);
 }
 
 int broker_read(broker *b, app *a)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * libmosquitto on the loop. Its descriptor is closed before it tells of a loss, so both events go in
- * that callback, before anything else can be opened with the same number. Nothing is freed in its
- * callbacks.
+ * libmosquitto on the loop. Its descriptor is closed before it tells of a loss, so both events go
+ * in that callback, before anything else can be opened with the same number. Nothing is freed in
+ * its callbacks.
  */
 #include <mosquitto.h>
 #include <mqtt_protocol.h>
