@@ -441,10 +441,10 @@ const cli_command cmd_fleet = {
     .details =
         "Speaks with every 'grctl agent' at the broker, or with a group or a machine of them.\n"
         "\n"
-        "  list, status, log  who is there; how the robots are; what happens, until Ctrl-C\n"
+        "  list, status, log  who is there; how robots are; what happens, until Ctrl-C\n"
         "  push FILE...       puts motions into the folders of the agents\n"
-        "  play FILE          all prepare, wait for each other, and begin at one time; FILE\n"
-        "                     is a name in the folders of the agents\n"
+        "  play FILE          all prepare, wait for each other, and begin at one time;\n"
+        "                     FILE is a name in the folders of the agents\n"
         "  stop, estop        a stop of the group that stands until 'reset': softly, or as\n"
         "                     an emergency stop that is read back joint by joint\n"
         "  reset              takes that back; nothing moves\n"
