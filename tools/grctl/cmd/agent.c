@@ -89,12 +89,14 @@ const cli_command cmd_agent = {
     .arguments = "",
     .summary = "lend the robots of this machine to a fleet",
     .details =
-        "Connects to an MQTT 5 broker, says how the robots are, and does what 'grctl fleet' orders:\n"
-        "one connection, however many robots. -d names a robot or a group of the configuration.\n"
+        "Connects to an MQTT 5 broker, says how the robots are, and does what 'grctl fleet'\n"
+        "orders: one connection, however many robots. -d names a robot or a group of the\n"
+        "configuration.\n"
         "\n"
         "It moves nothing by itself. Without its broker it goes on trying, and a motion that is\n"
-        "played ends as was said when it began: it stops softly unless told otherwise. A robot that\n"
-        "is not there is tried again every 5 s. A stop of the group stands until it is taken back.\n"
+        "played ends as was said when it began: it stops softly unless told otherwise. A robot\n"
+        "that is not there is tried again every 5 s. A stop of the group stands until it is taken\n"
+        "back.\n"
         "\n"
         "GRCTL_MQTT_PASSWORD is the password of USER. docs/guide/fleet.md has the rights that the\n"
         "broker should give, and what a stop over a network is not.\n",

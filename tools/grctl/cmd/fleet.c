@@ -6,6 +6,7 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/fleet/broker.h"
 #include "tools/grctl/fleet/leader.h"
+#include "tools/grctl/lang/lang.h"
 
 enum {
     OPT_GROUP = BROKER_OPTIONS,
@@ -61,7 +62,7 @@ static int say_answers(leader *l, const char *doing)
         }
         const char *code = fleet_text(p->answer, "code"), *why = fleet_text(p->answer, "message");
         status = app_fail(l->a, EXIT_ROBOT, p->answer && code ? code : "TIMEOUT", "%s: %s: %s",
-                          p->host, doing, p->answer && why ? why : "no answer");
+                          p->host, doing, p->answer && why ? why : _("no answer"));
     }
     return status;
 }
@@ -435,20 +436,21 @@ static int run(app *a)
 
 const cli_command cmd_fleet = {
     .name = "fleet",
-    COMMAND_ARGUMENTS("list|status|play|stop|estop|reset|push|log [FILE]...", 1, -1, CLI_ARG_FILE),
+    COMMAND_ARGUMENTS("list|status|play|stop|estop|reset|push|log [FILE]", 1, -1, CLI_ARG_FILE),
     .summary = "ask the robots of many machines, over a broker",
     .details =
         "Speaks with every 'grctl agent' at the broker, or with a group or a machine of them.\n"
         "\n"
-        "list, status, log  who is there; how the robots are; what happens, until Ctrl-C\n"
-        "push FILE...       puts motions into the folders of the agents\n"
-        "play FILE          all prepare, wait for each other, and begin at one time; FILE is a\n"
-        "                   name in the folders of the agents\n"
-        "stop, estop        a stop of the group that stands until 'reset': softly, or as an\n"
-        "                   emergency stop that is read back joint by joint\n"
+        "  list, status, log  who is there; how robots are; what happens, until Ctrl-C\n"
+        "  push FILE...       puts motions into the folders of the agents\n"
+        "  play FILE          all prepare, wait for each other, and begin at one time;\n"
+        "                     FILE is a name in the folders of the agents\n"
+        "  stop, estop        a stop of the group that stands until 'reset': softly, or as\n"
+        "                     an emergency stop that is read back joint by joint\n"
+        "  reset              takes that back; nothing moves\n"
         "\n"
-        "A stop over a network is a convenience and no safety function: it may come late or never.\n"
-        "Keep the switches within reach.\n",
+        "A stop over a network is a convenience and no safety function: it may come late or\n"
+        "never. Keep the switches within reach.\n",
     .example = "  grctl fleet list --broker mqtt://stage.local\n"
                "  grctl fleet push motions/greet.pseq\n"
                "  grctl fleet play greet.pseq --group stage\n",

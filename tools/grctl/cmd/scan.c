@@ -6,6 +6,7 @@
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/scan/scan.h"
 
 enum { OPT_ALL_BAUD, OPT_FAMILY, OPT_FIRST, OPT_LAST };
@@ -225,7 +226,7 @@ static int run_families(app *a)
                           .all_rates = app_option(a, OPT_ALL_BAUD)->given > 0,
                           .first = (int)app_number(a, OPT_FIRST, 0),
                           .last = (int)app_number(a, OPT_LAST, SCAN_IDS - 1),
-                          .who = "scan: --family needs a line",
+                          .who = N_("scan: --family needs a line"),
                           .begins = begin_rate,
                           .ends = end_rate,
                           .ctx = &f};

@@ -135,33 +135,33 @@ static void setup_text(const grobo_driver *driver, int joint, const grobo_setup_
     const grobo_servo_model *servo = family_servo(driver, id);
     if (fault->low > fault->high) {
         snprintf(text, capacity,
-                 "its servo was never calibrated, %s is %d as from the factory; "
-                 "'grctl calibrate' does it",
+                 _("its servo was never calibrated, %s is %d as from the factory; "
+                   "'grctl calibrate' does it"),
                  name, (int)fault->found);
     } else if (fault->reg->role == GROBO_ROLE_MODEL) {
         const grobo_servo_model *other = family_numbered(driver, (uint16_t)fault->found);
-        snprintf(text, capacity, "its servo is %s (%d), not %s (%d); say so in the robot file",
-                 other ? other->name : "another", (int)fault->found, servo->name, servo->number);
+        snprintf(text, capacity, _("its servo is %s (%d), not %s (%d); say so in the robot file"),
+                 other ? other->name : _("another"), (int)fault->found, servo->name, servo->number);
     } else {
-        snprintf(text, capacity, "%s is %d, %d%s is wanted; 'grctl servo-set %d %s %d%s'%s", name,
-                 (int)fault->found, (int)(is_min ? fault->high : fault->low),
+        snprintf(text, capacity, _("%s is %d, %d%s is wanted; 'grctl servo-set %d %s %d%s'%s"),
+                 name, (int)fault->found, (int)(is_min ? fault->high : fault->low),
                  fault->low == fault->high ? ""
-                 : is_min                  ? " or less"
-                                           : " or more",
+                 : is_min                  ? _(" or less")
+                                           : _(" or more"),
                  id, name, (int)(is_min ? fault->high : fault->low),
                  servo->table->keeps == GROBO_KEEPS_LIMP ? "" : " --flash",
-                 calibrates && (is_min || is_max) ? " or 'grctl calibrate' sets it"
-                 : is_min || is_max               ? " sets it, or narrow limits_deg"
+                 calibrates && (is_min || is_max) ? _(" or 'grctl calibrate' sets it")
+                 : is_min || is_max               ? _(" sets it, or narrow limits_deg")
                  : fault->reg->role == GROBO_ROLE_OFFSET
-                     ? " sets it, or say 'calibrated: true' in the robot file"
-                     : " sets it");
+                     ? _(" sets it, or say 'calibrated: true' in the robot file")
+                     : _(" sets it"));
     }
 }
 
 static int fail_setup(conn *c, int joint, const char *prefix, const char *who)
 {
     grobo_joint_info info;
-    char text[256] = "";
+    char text[APP_LINE_BYTES] = "";
     const char *name = grobo_error_name(GROBO_ERR_SETUP);
     if (grobo_robot_joint(c->robot, joint, &info) < 0 || !info.state.setup.reg) {
         return app_fail(c->a, app_status_of(GROBO_ERR_SETUP), name, "%s: %s%s: %s", conn_device(c),

@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include "tools/grctl/fleet/leader.h"
+#include "tools/grctl/lang/lang.h"
 
 enum { CONNECT_US = 5000000, SEEN_US = 300000, ORDER_EXPIRY_S = 2 };
 
@@ -236,7 +237,7 @@ static int connect_it(leader *l, const mqtt_config *with)
     mqtt_start(l->m);
     if (!leader_wait(l, CONNECT_US, is_up)) {
         return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE", "fleet: %s: %s", config.host,
-                        l->why ? l->why : "the broker does not answer");
+                        l->why ? l->why : _("the broker does not answer"));
     }
     (void)leader_wait(l, SEEN_US, never); /* what is retained comes first */
     return EXIT_DONE;

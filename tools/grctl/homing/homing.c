@@ -379,8 +379,9 @@ static int by_hand(calibration *k)
         status = home(k);
     }
     if (!status) {
-        app_note(k->a, "%smove every joint to both of its ends, then press enter",
-                 any_offset(k) ? "that is the middle; now " : "");
+        app_note(k->a, any_offset(k) ? "that is the middle; now move every joint to both of its "
+                                       "ends, then press enter"
+                                     : "move every joint to both of its ends, then press enter");
         status = watch(k, true);
     }
     return status ? status : check_ranges(k);

@@ -14,6 +14,7 @@
 
 #include <grobo/port.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/mqtt/mqtt.h"
 
 enum { FIRST_MS = 100, LONGEST_MS = 5000, MISC_MS = 500, CONNECT_MS = 5000, AT_ONCE = 10 };
@@ -111,7 +112,7 @@ static void on_misc(evutil_socket_t fd, short what, void *ctx)
     (void)fd;
     (void)what;
     if (m->connecting && grobo_now_us() - m->tried_us > INT64_C(1000) * CONNECT_MS) {
-        lost(m, "the broker does not answer");
+        lost(m, _("the broker does not answer"));
     } else if (m->readable) {
         check(m, mosquitto_loop_misc(m->client));
     }
@@ -121,13 +122,13 @@ static void take_socket(mqtt *m)
 {
     evutil_socket_t fd = mosquitto_socket(m->client);
     if (fd < 0) {
-        lost(m, "no socket");
+        lost(m, _("no socket"));
         return;
     }
     m->readable = event_new(m->config.base, fd, EV_READ | EV_PERSIST, on_readable, m);
     m->writable = event_new(m->config.base, fd, EV_WRITE, on_writable, m);
     if (!m->readable || !m->writable || event_add(m->readable, NULL) != 0) {
-        lost(m, "not enough memory");
+        lost(m, _("not enough memory"));
         return;
     }
     arm(m);
@@ -141,7 +142,7 @@ static void connect_now(mqtt *m)
     int result =
         mosquitto_connect_async(m->client, c->ca ? c->host : m->address, c->port, c->keepalive_s);
     if (result != MOSQ_ERR_SUCCESS) {
-        lost(m, result == MOSQ_ERR_ERRNO ? "the broker cannot be reached"
+        lost(m, result == MOSQ_ERR_ERRNO ? _("the broker cannot be reached")
                                          : mosquitto_strerror(result));
         return;
     }
@@ -185,7 +186,7 @@ static void on_disconnect(struct mosquitto *client, void *ctx, int reason,
 {
     (void)client;
     (void)properties;
-    lost(ctx, reason ? mosquitto_strerror(reason) : "the broker closed the connection");
+    lost(ctx, reason ? mosquitto_strerror(reason) : _("the broker closed the connection"));
 }
 
 static void on_publish(struct mosquitto *client, void *ctx, int id, int reason,
@@ -319,7 +320,7 @@ static bool look_up(mqtt *m, const char **why)
     snprintf(device, sizeof device, "tcp:%s%s%s:%d", six ? "[" : "", host, six ? "]" : "",
              m->config.port);
     if (grobo_port_resolve(device, numeric, sizeof numeric, &cause) < 0) {
-        *why = *cause.text ? cause.text : "no such host";
+        *why = *cause.text ? cause.text : _("no such host");
         return false;
     }
     char *begin = numeric + strlen("tcp:"), *end = strrchr(begin, ':');
@@ -374,7 +375,7 @@ static void destroy(mqtt *m)
 mqtt *mqtt_new(const mqtt_config *config, const char **why)
 {
     mqtt *m = calloc(1, sizeof *m);
-    *why = "not enough memory";
+    *why = _("not enough memory");
     if (!m) {
         return NULL;
     }
@@ -386,7 +387,7 @@ mqtt *mqtt_new(const mqtt_config *config, const char **why)
     m->again = evtimer_new(config->base, on_again, m);
     int result = m->client && m->misc && m->again ? set_up(m) : MOSQ_ERR_NOMEM;
     if (result != MOSQ_ERR_SUCCESS) {
-        *why = result == MOSQ_ERR_INVAL && config->ca ? "a certificate or key cannot be read"
+        *why = result == MOSQ_ERR_INVAL && config->ca ? _("a certificate or key cannot be read")
                                                       : mosquitto_strerror(result);
     }
     if (result != MOSQ_ERR_SUCCESS || (!config->ca && !look_up(m, why))) {

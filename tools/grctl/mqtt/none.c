@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/mqtt/mqtt.h"
 
 bool mqtt_possible(void)
@@ -9,7 +10,7 @@ bool mqtt_possible(void)
 mqtt *mqtt_new(const mqtt_config *config, const char **why)
 {
     (void)config;
-    *why = "this grctl was built without libmosquitto";
+    *why = _("this grctl was built without libmosquitto");
     return NULL;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/scan/scan.h"
 
 /* One family at one rate: the line is opened for it. */
@@ -12,7 +13,7 @@ static int look_for(app *a, scan_search *s, const grobo_robot_family *family, sc
     *baud = (cli_value){.given = 1, .number = p->baud_bps};
     int status = conn_open_unchecked(&c, a);
     if (!status && grobo_session_sim(c.session)) {
-        status = app_fail(a, EXIT_USAGE, "ARG", "%s; 'grctl sim --servo' makes one", s->who);
+        status = app_fail(a, EXIT_USAGE, "ARG", "%s; 'grctl sim --servo' makes one", _(s->who));
     }
     int error = status ? 0 : scan_line(&c, p);
     if (error) {

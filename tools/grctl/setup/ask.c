@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/setup/ask.h"
 
 bool ask_can(app *a, const char *instead, int *status)
@@ -13,14 +14,14 @@ bool ask_can(app *a, const char *instead, int *status)
     *status = app_fail(a, EXIT_USAGE, "ARG",
                        "%s asks a person at a terminal; without one: %s, or --yes with an answer a "
                        "line on standard input",
-                       a->line.command->name, instead);
+                       a->line.command->name, _(instead));
     return false;
 }
 
 bool ask_line(const app *a, const char *question, const char *usual, char *answer)
 {
     output_flush();
-    output_complain("%s [%s] ", question, usual);
+    output_complain("%s [%s] ", _(question), usual);
     bool came = fgets(answer, ASK_BYTES, stdin) != NULL;
     if (came && !strchr(answer, '\n')) { /* longer than any answer */
         for (int c = getchar(); c != '\n' && c != EOF;) {

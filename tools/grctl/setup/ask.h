@@ -12,12 +12,13 @@ enum { ASK_BYTES = 256 };
 bool ask_can(app *a, const char *instead, int *status);
 
 /*
- * Asks; an empty line, and the end of standard input, is the answer that stands in the brackets.
- * A person who ends the input (Ctrl-D) means to end it all: false.
+ * Asks, and looks the question up in the person's language; an empty line, and the end of standard
+ * input, is the answer that stands in the brackets. A person who ends the input (Ctrl-D) means to
+ * end it all: false.
  */
 bool ask_line(const app *a, const char *question, const char *usual, char *answer);
 
-/* Whether the answer is yes; no by itself. */
+/* Whether the answer is yes; no by itself. The question as in ask_line(). */
 bool ask_yes(const app *a, const char *question);
 
 #endif

@@ -12,6 +12,7 @@
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/scan/scan.h"
 #include "tools/grctl/servo/registers.h"
 #include "tools/grctl/setup/ask.h"
@@ -44,20 +45,25 @@ typedef struct contact {
 
 typedef enum verdict { AS_ASSUMED, NOT_AS_ASSUMED, NOT_DONE } verdict;
 
-static const char *const verdicts[] = {"as assumed", "NOT as assumed", "not done"};
+static const char *const verdicts[] = {N_("as assumed"), N_("NOT as assumed"), N_("not done")};
 static const char *const words[] = {"as_assumed", "not_as_assumed", "not_done"};
 
+/* The report is in English; what the person reads is in that of the person. */
 __attribute__((format(printf, 4, 5))) static void note(contact *k, const char *name, verdict v,
                                                        const char *format, ...)
 {
-    char message[APP_LINE_BYTES];
-    va_list list;
+    char message[APP_LINE_BYTES], said[APP_LINE_BYTES];
+    va_list list, again;
     va_start(list, format);
+    va_copy(again, list);
     vsnprintf(message, sizeof message, format, list);
+    vsnprintf(said, sizeof said, _(format), again);
+    va_end(again);
     va_end(list);
     app_make_one_line(message);
+    app_make_one_line(said);
     k->n_bad += v == NOT_AS_ASSUMED;
-    app_note(k->a, "%-14s  %-14s  %s", verdicts[v], name, message);
+    app_note(k->a, "%-14s  %-14s  %s", _(verdicts[v]), name, said);
     int n = snprintf(k->text + k->used, sizeof k->text - k->used, "%-14s  %-14s  %s\n", verdicts[v],
                      name, message);
     k->used += n > 0 && (size_t)n < sizeof k->text - k->used ? (size_t)n : 0;
@@ -382,7 +388,8 @@ static int try_joint(contact *k)
     char question[APP_LINE_BYTES];
     double step_deg = STEP_DEG;
     snprintf(question, sizeof question,
-             "hold the robot. Switch the torque of %s on for a second? It should not move", name);
+             _("hold the robot. Switch the torque of %s on for a second? It should not move"),
+             name);
     if (!ask_yes(k->a, question)) {
         note(k, "torque_on", NOT_DONE, "the person did not want it");
         note(k, "move", NOT_DONE, "the person did not want it");
@@ -392,7 +399,7 @@ static int try_joint(contact *k)
     if (status) {
         return status;
     }
-    snprintf(question, sizeof question, "keep your hands off. Move %s by %.0f degrees and back?",
+    snprintf(question, sizeof question, _("keep your hands off. Move %s by %.0f degrees and back?"),
              name, STEP_DEG);
     if (k->n_bad > 0) {
         app_note(k->a, "something was not as assumed; better send the report first");

@@ -8,6 +8,7 @@
 
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/conn/servos.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"
 #include "tools/grctl/scan/scan.h"
 #include "tools/grctl/setup/found.h"
@@ -105,7 +106,7 @@ int found_look(app *a, const char *family, found_servos *all)
     const int first[] = {0, FOUND_IDS}, last[] = {FOUND_IDS - 1, SCAN_IDS - 1};
     int status = 0;
     scan_search what = {.family = family ? family : "all",
-                        .who = "servos are looked for on a line",
+                        .who = N_("servos are looked for on a line"),
                         .begins = begin_rate,
                         .ends = end_rate,
                         .ctx = &s};

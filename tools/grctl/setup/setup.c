@@ -9,6 +9,7 @@
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/doctor/checkup.h"
 #include "tools/grctl/homing/homing.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/setup/ask.h"
@@ -189,9 +190,9 @@ static int write_robot(guide *g, const found_servos *all)
 /* The robots of the library with these servos: one of them, or a file. */
 static int choose_robot(guide *g, const found_servos *all)
 {
-    char question[APP_LINE_BYTES] = "these may be", answer[ASK_BYTES], complaint[APP_LINE_BYTES];
+    char question[APP_LINE_BYTES], answer[ASK_BYTES], complaint[APP_LINE_BYTES];
     const char *first = NULL;
-    size_t n = strlen(question);
+    size_t n = (size_t)snprintf(question, sizeof question, "%s", _("these may be"));
     for (int i = 0; grobo_robot_defs[i]; i++) {
         if (found_fits(all, grobo_robot_defs[i])) {
             first = first ? first : grobo_robot_defs[i]->name;
@@ -202,7 +203,7 @@ static int choose_robot(guide *g, const found_servos *all)
     if (!first) {
         return write_robot(g, all);
     }
-    snprintf(question + n, sizeof question - n, " or another (new). Which?");
+    snprintf(question + n, sizeof question - n, "%s", _(" or another (new). Which?"));
     for (int i = 0; i < TRIES; i++) {
         if (!ask_line(g->a, question, first, answer)) {
             return gave_up(g);

@@ -7,6 +7,7 @@
 
 #include <yaml.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/sketch/sketch.h"
 
 enum { KEYS_MAX = 256 /* of a link: an alias may name one again and again */ };
@@ -23,7 +24,7 @@ typedef struct reader {
 static bool complain(reader *r, const yaml_node_t *at, const char *what)
 {
     snprintf(r->complaint, r->capacity, "%s:%u: %s", r->path, (unsigned)at->start_mark.line + 1,
-             what);
+             _(what));
     return false;
 }
 
@@ -84,7 +85,7 @@ static bool take_numbers(reader *r, const yaml_node_t *node, int n, double *to)
     }
     if (length_of(node) != n) {
         char what[64];
-        snprintf(what, sizeof what, "%d numbers are wanted", n);
+        snprintf(what, sizeof what, _("%d numbers are wanted"), n);
         return complain(r, node, what);
     }
     for (int i = 0; i < n; i++) {
@@ -259,7 +260,7 @@ static bool take_robot(reader *r)
 {
     const yaml_node_t *root = yaml_document_get_root_node(&r->document);
     if (!root || root->type != YAML_MAPPING_NODE) {
-        snprintf(r->complaint, r->capacity, "%s: is neither a URDF nor a body of Choreonoid",
+        snprintf(r->complaint, r->capacity, _("%s: is neither a URDF nor a body of Choreonoid"),
                  r->path);
         return false;
     }
@@ -292,7 +293,7 @@ bool sketch_read_body(sketch *s, const char *path, const char *bytes, size_t siz
     reader r = {.s = s, .path = path, .complaint = complaint, .capacity = capacity};
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser)) {
-        snprintf(complaint, capacity, "%s: not enough memory", path);
+        snprintf(complaint, capacity, _("%s: not enough memory"), path);
         return false;
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)bytes, size);
@@ -303,7 +304,7 @@ bool sketch_read_body(sketch *s, const char *path, const char *bytes, size_t siz
     } else {
         snprintf(complaint, capacity, "%s:%u:%u: %s", path, (unsigned)parser.problem_mark.line + 1,
                  (unsigned)parser.problem_mark.column + 1,
-                 parser.problem ? parser.problem : "is not YAML");
+                 parser.problem ? parser.problem : _("is not YAML"));
     }
     yaml_parser_delete(&parser);
     return fine;

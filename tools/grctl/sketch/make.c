@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/servo/family.h"
 #include "tools/grctl/sketch/make.h"
@@ -125,7 +126,7 @@ static int check_text(app *a, const char *text)
 {
     grobo_diagnostics *list = NULL;
     grobo_robot_def *def = NULL;
-    grobo_diagnostic d = {.message = "not enough memory"};
+    grobo_diagnostic d = {.message = _("not enough memory")};
     text_source source = {text};
     int error = grobo_diagnostics_new(&list, NULL);
     if (!error) {
@@ -195,7 +196,7 @@ static char *read_file(app *a, const char *path, size_t *size, int *status)
     char *bytes = file ? malloc(SKETCH_FILE_MAX_BYTES + 1) : NULL;
     if (!file) {
         *status = app_fail(a, EXIT_FILE, "IO", "%s: %s", path,
-                           os_is_folder(path) ? "is a folder" : app_cause_text(errno));
+                           os_is_folder(path) ? _("is a folder") : app_cause_text(errno));
         return NULL;
     }
     *size = bytes ? fread(bytes, 1, SKETCH_FILE_MAX_BYTES + 1, file) : 0;
@@ -205,7 +206,7 @@ static char *read_file(app *a, const char *path, size_t *size, int *status)
         return bytes;
     }
     *status = app_fail(a, EXIT_FILE, bytes && !failed ? "CAP" : "IO", "%s: %s", path,
-                       bytes && !failed ? "is longer than 4 MiB" : "cannot be read");
+                       bytes && !failed ? _("is longer than 4 MiB") : _("cannot be read"));
     free(bytes);
     return NULL;
 }

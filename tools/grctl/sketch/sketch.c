@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/sketch/sketch.h"
 
 enum { NAME_MAX_BYTES = GROBO_NAME_MAX_BYTES - 8 /* room for a number behind it */ };
@@ -106,12 +107,12 @@ static int find_parents(sketch *s, char *complaint, size_t capacity)
     for (int i = 0; i < s->n; i++) {
         sketch_part *part = &s->part[i];
         if (find_part(s, part->name) != i) {
-            snprintf(complaint, capacity, "two parts are called '%s'", part->name);
+            snprintf(complaint, capacity, _("two parts are called '%s'"), part->name);
             return -1;
         }
         if (!*part->parent && first >= 0) {
-            snprintf(complaint, capacity, "'%s' and '%s' both have no parent", s->part[first].name,
-                     part->name);
+            snprintf(complaint, capacity, _("'%s' and '%s' both have no parent"),
+                     s->part[first].name, part->name);
             return -1;
         }
         if (!*part->parent) {
@@ -120,13 +121,13 @@ static int find_parents(sketch *s, char *complaint, size_t capacity)
         }
         part->above = find_part(s, part->parent);
         if (part->above < 0) {
-            snprintf(complaint, capacity, "'%s' hangs on '%s', which is not there", part->name,
+            snprintf(complaint, capacity, _("'%s' hangs on '%s', which is not there"), part->name,
                      part->parent);
             return -1;
         }
     }
     if (first < 0) {
-        snprintf(complaint, capacity, s->n ? "no part is the first" : "it has no parts");
+        snprintf(complaint, capacity, s->n ? _("no part is the first") : _("it has no parts"));
     }
     return first;
 }
@@ -154,7 +155,7 @@ static bool walk(sketch *s, int first, char *complaint, size_t capacity)
             taken |= s->along[k] == i;
         }
         if (!taken) {
-            snprintf(complaint, capacity, "'%s' hangs on itself", s->part[i].name);
+            snprintf(complaint, capacity, _("'%s' hangs on itself"), s->part[i].name);
             break;
         }
     }
@@ -173,16 +174,16 @@ static bool check_parts(const sketch *s, char *complaint, size_t capacity)
             far |= fabs(part->origin_m[k]) > 100;
         }
         if (!isfinite(sum) || !isfinite(length) || far) {
-            snprintf(complaint, capacity, "'%s': a number is out of range", part->name);
+            snprintf(complaint, capacity, _("'%s': a number is out of range"), part->name);
             return false;
         }
         if (part->motion == SKETCH_TURNS && length < 1e-12) {
-            snprintf(complaint, capacity, "'%s': its axis has no direction", part->name);
+            snprintf(complaint, capacity, _("'%s': its axis has no direction"), part->name);
             return false;
         }
         if (part->motion == SKETCH_TURNS && part->limited &&
             part->limits_rad[0] >= part->limits_rad[1]) {
-            snprintf(complaint, capacity, "'%s': its lower limit is not below the upper one",
+            snprintf(complaint, capacity, _("'%s': its lower limit is not below the upper one"),
                      *part->joint ? part->joint : part->name);
             return false;
         }
@@ -218,8 +219,8 @@ bool sketch_order(sketch *s, char *complaint, size_t capacity)
     sort_joints(s);
     if (s->n_joints == 0 || s->n_joints > GROBO_JOINTS_MAX) {
         snprintf(complaint, capacity,
-                 s->n_joints ? "it has %d joints that turn; a robot's file has at most %d"
-                             : "it has no joint that turns",
+                 s->n_joints ? _("it has %d joints that turn; a robot's file has at most %d")
+                             : _("it has no joint that turns"),
                  s->n_joints, GROBO_JOINTS_MAX);
         return false;
     }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/sketch/sketch.h"
 #include "tools/grctl/xml/xml.h"
 
@@ -31,7 +32,8 @@ __attribute__((format(printf, 2, 3))) static void complain(reader *r, const char
     }
     int n = snprintf(r->complaint, r->capacity, "%s:%u: ", r->path, xml_line());
     va_start(list, format);
-    vsnprintf(r->complaint + n, n < (int)r->capacity ? r->capacity - (size_t)n : 0, format, list);
+    vsnprintf(r->complaint + n, n < (int)r->capacity ? r->capacity - (size_t)n : 0, _(format),
+              list);
     va_end(list);
 }
 
@@ -248,8 +250,8 @@ static bool join(sketch *s, const sketch *joints, char *complaint, size_t capaci
         }
         if (!link || *link->parent) {
             snprintf(complaint, capacity,
-                     link ? "joint '%s': '%s' has a parent already"
-                          : "joint '%s': there is no link '%s'",
+                     link ? _("joint '%s': '%s' has a parent already")
+                          : _("joint '%s': there is no link '%s'"),
                      joint->joint, joint->name);
             return false;
         }

@@ -3,6 +3,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/xml/xml.h"
 
 typedef struct reader {
@@ -37,7 +38,7 @@ static void on_begin(void *ctx, const XML_Char *name, const XML_Char **attribute
         return;
     }
     if (r->depth == XML_DEPTH_MAX) {
-        refuse(r, "elements are nested too deeply");
+        refuse(r, _("elements are nested too deeply"));
         return;
     }
     r->ear->begin(r->ear->ctx, r->depth++, name, (const char *const *)attributes);
@@ -60,14 +61,15 @@ static void on_doctype(void *ctx, const XML_Char *name, const XML_Char *system,
     (void)system;
     (void)public_id;
     (void)has_internal;
-    refuse(ctx, "a document type is not read");
+    refuse(ctx, _("a document type is not read"));
 }
 
 int xml_read(const char *bytes, size_t size, const xml_ear *ear, xml_trouble *trouble)
 {
     reader r = {.parser = XML_ParserCreate(NULL), .ear = ear};
     if (!r.parser) {
-        *trouble = (xml_trouble){.text = "not enough memory"};
+        *trouble = (xml_trouble){.text = ""};
+        snprintf(trouble->text, sizeof trouble->text, "%s", _("not enough memory"));
         return -1;
     }
     XML_SetUserData(r.parser, &r);

@@ -2,11 +2,12 @@
 /* Where expat was not there when grctl was built. */
 #include <stdio.h>
 
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/xml/xml.h"
 
 const char *xml_missing(void)
 {
-    return "this grctl was built without expat, which reads XML";
+    return _("this grctl was built without expat, which reads XML");
 }
 
 unsigned xml_line(void)
