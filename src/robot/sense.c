@@ -40,8 +40,8 @@ static bool is_turned(grobo_robot *robot, int joint)
     const grobo_joint_state *state = &axis->state;
     double before_rad = axis->away_rad;
     axis->away_rad = fabs(state->angle_rad - state->goal_rad);
-    bool turns = (state->valid & GROBO_FIELD_SPEED) == 0 ||
-                 abs(state->speed_dps) >= GROBO_I_SLOW_DPS;
+    bool turns =
+        (state->valid & GROBO_FIELD_SPEED) == 0 || abs(state->speed_dps) >= GROBO_I_SLOW_DPS;
     return state->torque == GROBO_TORQUE_ON && turns && !grobo_i_goal_holds(robot, joint) &&
            axis->away_rad > before_rad;
 }

@@ -79,7 +79,7 @@ check_json "their robots and groups" \
      [("one", ["a", "b"], ["all", "one"]), ("two", ["c", "d"], ["all", "two"])]' \
     fleet list --json
 check_json "how they are" \
-    '{(l["host"], l["robot"]): l["state"]["up"] for l in lines} ==
+    '{(l["host"], l["robot"]): l["up"] for l in lines} ==
      {("one", "a"): True, ("one", "b"): True, ("two", "c"): True, ("two", "d"): False}' \
     fleet status --json
 check "a broker that is not there" fails 1 'fleet: 127.0.0.1: ' \

@@ -218,7 +218,7 @@ check "as the schema says" fits shell,version
 rows names | sort -u >"$work/names"
 every_command() {
     for command in $("$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
-        case " sim shell monitor serve record teach " in
+        case " sim shell monitor serve agent fleet record teach " in
         *" $command "*) ;; # above
         *) grep -qx -e "$command" "$work/names" || { echo "$command has no row"; return 1; } ;;
         esac

@@ -123,8 +123,8 @@ static int run_status(leader *l)
             const char *play = fleet_text(state, "play"), *trip = fleet_text(state, "trip");
             bool up = json_is_true(json_object_get(state, "up"));
             if (l->a->json) {
-                app_print_json(
-                    json_pack("{s:s,s:s,s:O}", "host", p->host, "robot", name, "state", state));
+                app_print_json(json_pack("{s:s,s:s,s:b,s:s?,s:s?}", "host", p->host, "robot", name,
+                                         "up", up, "play", play, "trip", trip));
             } else {
                 app_print("%-20s  %-16s  %-4s  %-12s  %s\n", p->host, name, up ? "up" : "down",
                           play ? play : "-", trip ? trip : "-");
@@ -371,7 +371,8 @@ static void say_event(leader *l, const peer *p, json_t *event)
     const char *robot = fleet_text(event, "robot"), *kind = fleet_text(event, "kind");
     const char *text = fleet_text(event, "message");
     if (l->a->json) {
-        app_print_json(json_pack("{s:s,s:O}", "host", p->host, "event", event));
+        app_print_json(json_pack("{s:s,s:s?,s:s,s:s?}", "host", p->host, "robot", robot, "kind",
+                                 kind ? kind : "", "message", text));
     } else {
         app_print("%s%s%s: %s %s\n", p->host, robot ? "/" : "", robot ? robot : "",
                   kind ? kind : "", text ? text : "");
@@ -445,8 +446,8 @@ const cli_command cmd_fleet = {
         "  push FILE...       puts motions into the folders of the agents\n"
         "  play FILE          all prepare, wait for each other, and begin at one time;\n"
         "                     FILE is a name in the folders of the agents\n"
-        "  stop, estop        a stop of the group that stands until 'reset': softly, or as\n"
-        "                     an emergency stop that is read back joint by joint\n"
+        "  stop, estop        a stop of the group that stands until 'reset': softly, or\n"
+        "                     as an emergency stop, read back joint by joint\n"
         "  reset              takes that back; nothing moves\n"
         "\n"
         "A stop over a network is a convenience and no safety function: it may come late or\n"

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/output.h"
 #include "tools/grctl/fleet/agent.h"
 #include "tools/grctl/fleet/orders.h"
 #include "tools/grctl/fleet/say.h"
@@ -147,7 +147,11 @@ static void subscribe(agent *g, const char *a, const char *b, const char *c, boo
 static void on_up(void *ctx)
 {
     agent *g = ctx;
-    app_note(g->a, "connected to the broker as %s", g->host);
+    app_report(g->a,
+               json_pack("{s:b,s:s,s:s,s:s}", "connected", 1, "host", g->host, "group", g->group,
+                         "epoch", g->epoch),
+               "connected to the broker as %s", g->host);
+    output_flush();
     subscribe(g, "group", FLEET_ALL, "latch", true);
     subscribe(g, "group", g->group, "latch", true);
     g->listens = false;
