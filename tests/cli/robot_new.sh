@@ -36,6 +36,13 @@ start_told_sim --robot so101
 "$GRCTL" --robot so101 -d "$robot" --timeout 200 servo-set 2 max_position 3000 --flash 2>/dev/null
 check "limits are those of the servos" both exits 0 new --family feetech -b 1000000 --- \
     says 'id: 2, servo: STS3215, limits_deg: \[-180, 83.6\]'
+"$GRCTL" --robot so101 -d "$robot" --timeout 200 servo-set 3 offset 40 --flash 2>/dev/null
+offset_kept() {
+    exits 0 new --family feetech -b 1000000 -o "$work/kept.yaml" &&
+        grep -q '^calibrated: true' "$work/kept.yaml" &&
+        exits 0 "$GRCTL" --robot "$work/kept.yaml" -d "$robot" --timeout 200 move joint3 5
+}
+check "offsets that servos keep are a calibration" offset_kept
 stop_sim
 
 start_sim --servo 4=LX-16A,9=LX-16A

@@ -38,6 +38,9 @@ static void read_limits(conn *c, found_servo *one)
     int32_t is = 0;
     one->turns = one->servo->table == &grobo_dxl2_table && mode &&
                  servos_get(c, one->id, one->servo, mode, &is) == GROBO_OK && is == MODE_EXTENDED;
+    const grobo_servo_register *offset = grobo_servo_register_of(one->servo, GROBO_ROLE_OFFSET);
+    one->calibrated =
+        offset && servos_get(c, one->id, one->servo, offset, &is) == GROBO_OK && is != 0;
     if (one->turns) {
         return;
     }
@@ -224,7 +227,7 @@ void found_sketch(app *a, const found_servos *all, const char *name, sketch *s)
     char path[GROBO_DEVICE_MAX_BYTES] = "";
     s->n = 0;
     s->bare = true;
-    s->guessed_servos = s->guessed_ids = false;
+    s->guessed_servos = s->guessed_ids = s->calibrated = false;
     s->usb[0] = '\0';
     s->family = all->servo[0].family;
     s->baud_bps = all->servo[0].baud_bps;
@@ -242,6 +245,7 @@ void found_sketch(app *a, const found_servos *all, const char *name, sketch *s)
         part->id = one->id;
         part->servo = one->servo;
         part->turns = one->turns;
+        s->calibrated |= one->calibrated;
         part->limited = one->limited;
         part->limits_rad[0] = grobo_rad_from_deg(one->limits_deg[0]);
         part->limits_rad[1] = grobo_rad_from_deg(one->limits_deg[1]);

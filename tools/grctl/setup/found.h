@@ -11,6 +11,7 @@ typedef struct found_servo {
     bool told;                      /* its model */
     bool unknown;                   /* it tells one that nobody knows */
     bool turns;                     /* it is set up to count several turns */
+    bool calibrated;                /* it keeps an offset: its middle was found by hand */
     int id, baud_bps;
     bool limited; /* by its own registers: */
     double limits_deg[2];

@@ -133,6 +133,9 @@ char *sketch_text(sketch *s)
     if (*s->usb) {
         put(&to, "usb: [\"%s\"]\n", s->usb);
     }
+    if (s->calibrated) {
+        put(&to, "calibrated: true # its servos keep offsets\n");
+    }
     put(&to, "\njoints:\n");
     for (int i = 0; i < s->n_joints; i++) {
         put_joint(&to, sketch_joint(s, i));
