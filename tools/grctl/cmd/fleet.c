@@ -447,7 +447,7 @@ const cli_command cmd_fleet = {
         "  play FILE          all prepare, wait for each other, and begin at one time;\n"
         "                     FILE is a name in the folders of the agents\n"
         "  stop, estop        a stop of the group that stands until 'reset': softly, or\n"
-        "                     as an emergency stop, read back joint by joint\n"
+        "                     as an emergency stop that is read back joint by joint\n"
         "  reset              takes that back; nothing moves\n"
         "\n"
         "A stop over a network is a convenience and no safety function: it may come late or\n"
