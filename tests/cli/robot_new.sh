@@ -16,7 +16,7 @@ check "of every family" both exits 0 new -b 1000000 -o "$work/arm.yaml" --name a
 check "its file is a robot" fails 0 'arm: 6 joints, nothing wrong' \
     "$GRCTL" robot check "$work/arm.yaml"
 check "with its servos" \
-    grep -q 'id: 6, servo: XL330-M288, limits_deg: \[-180, 179.9\]}' "$work/arm.yaml"
+    grep -q 'id: 6, servo: XL330-M288, limits_deg: \[-90, 90\]}' "$work/arm.yaml"
 check "that count turns where they do" \
     grep -q 'id: 3, servo: XL330-M288, .*, turns: true}' "$work/arm.yaml"
 check "its rate" grep -q '^line: {baud: 1000000}$' "$work/arm.yaml"
@@ -35,7 +35,7 @@ stop_sim
 start_told_sim --robot so101
 "$GRCTL" --robot so101 -d "$robot" --timeout 200 servo-set 2 max_position 3000 --flash 2>/dev/null
 check "limits are those of the servos" both exits 0 new --family feetech -b 1000000 --- \
-    says 'id: 2, servo: STS3215, limits_deg: \[-180, 83.6\]'
+    says 'id: 2, servo: STS3215, limits_deg: \[-100, 83.6\]'
 "$GRCTL" --robot so101 -d "$robot" --timeout 200 servo-set 3 offset 40 --flash 2>/dev/null
 offset_kept() {
     exits 0 new --family feetech -b 1000000 -o "$work/kept.yaml" &&
