@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What agents and those who ask them say to each other: topics, and JSON of at most 1 MiB. See
- * docs/fleet.md. Everything that comes from the broker is hostile until it was read here.
+ * docs/guide/fleet.md. Everything that comes from the broker is hostile until it was read here.
  */
 #ifndef GRCTL_FLEET_MESSAGE_H
 #define GRCTL_FLEET_MESSAGE_H

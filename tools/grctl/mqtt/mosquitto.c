@@ -27,6 +27,7 @@ struct mqtt {
     int pause_ms;
     int64_t tried_us;
     bool up, connecting;
+    const char *refused; /* what the broker said before it closed the connection, or NULL */
     size_t queued_bytes; /* published since the socket took all of it last */
     unsigned dropped;
 };
@@ -78,7 +79,8 @@ static void lost(mqtt *m, const char *why)
     m->up = false;
     if (was) {
         try_later(m);
-        m->config.on_down(m->config.ctx, why);
+        m->config.on_down(m->config.ctx, m->refused ? m->refused : why);
+        m->refused = NULL;
     }
 }
 
@@ -143,6 +145,7 @@ static void connect_now(mqtt *m)
         mosquitto_connect_async(m->client, c->ca ? c->host : m->address, c->port, c->keepalive_s);
     if (result != MOSQ_ERR_SUCCESS) {
         lost(m, result == MOSQ_ERR_ERRNO ? _("the broker cannot be reached")
+                : result == MOSQ_ERR_TLS ? _("a certificate or key cannot be read")
                                          : mosquitto_strerror(result));
         return;
     }
@@ -172,7 +175,7 @@ static void on_connect(struct mosquitto *client, void *ctx, int reason, int flag
     (void)flags;
     (void)properties;
     if (reason != 0) { /* the loss follows */
-        m->config.on_down(m->config.ctx, mosquitto_reason_string(reason));
+        m->refused = mosquitto_reason_string(reason);
         return;
     }
     m->up = true;

@@ -1,0 +1,115 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# A broker that knows its users, by the list of docs/guide/fleet.md, over TLS: an agent speaks as
+# itself alone.
+. tests/support/cli.sh
+
+for tool in mosquitto mosquitto_pub mosquitto_passwd openssl; do
+    command -v $tool >/dev/null || { echo "1..0 # SKIP no $tool here"; exit 0; }
+done
+if "$GRCTL" fleet list --broker mqtt://127.0.0.1:1 2>&1 | grep -q 'no MQTT in it'; then
+    echo "1..0 # SKIP this grctl has no MQTT in it"
+    exit 0
+fi
+
+pids=
+end_rights_test() {
+    for pid in $pids; do
+        kill "$pid" 2>/dev/null
+        wait "$pid" 2>/dev/null
+    done
+    end_cli_test
+}
+trap end_rights_test EXIT
+
+# ---- a broker with certificates and users --------------------------------------------------------
+
+certify() (
+    cd "$work" || exit 1
+    openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 3 \
+        -subj /CN=test-ca -keyout "$1-ca.key" -out "$1-ca.crt" &&
+        openssl req -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -subj /CN=localhost \
+            -addext subjectAltName=DNS:localhost,IP:127.0.0.1 -keyout "$1.key" -out "$1.csr" &&
+        openssl x509 -req -in "$1.csr" -CA "$1-ca.crt" -CAkey "$1-ca.key" -CAcreateserial \
+            -days 3 -copy_extensions copy -out "$1.crt"
+) >"$work/openssl.log" 2>&1
+certify true && certify other || { echo "Bail out! no certificates"; exit 1; }
+
+for user in one two operator; do
+    [ -e "$work/users" ] && create= || create=-c
+    mosquitto_passwd $create -b "$work/users" $user "secret-of-$user" 2>/dev/null
+done
+# The list of the guide.
+awk '/^```/ { open = 0 } open { print } /^```text/ { open = 1 }' docs/guide/fleet.md >"$work/rights"
+port=$((20000 + $$ % 20000))
+cat >"$work/broker.conf" <<EOF2
+user root
+listener $port 127.0.0.1
+cafile $work/true-ca.crt
+certfile $work/true.crt
+keyfile $work/true.key
+allow_anonymous false
+password_file $work/users
+acl_file $work/rights
+persistence false
+EOF2
+mosquitto -c "$work/broker.conf" >"$work/broker.log" 2>&1 &
+pids=$!
+
+# as USER COMMAND...: with that user's password.
+as() {
+    as_user=$1
+    shift
+    env GRCTL_MQTT_PASSWORD="secret-of-$as_user" "$@"
+}
+# fleet USER VERB [OPTIONS]
+fleet() {
+    fleet_user=$1 fleet_verb=$2
+    shift 2
+    as "$fleet_user" "$GRCTL" fleet "$fleet_verb" --broker "mqtts://$fleet_user@127.0.0.1:$port" \
+        --ca "$work/true-ca.crt" "$@"
+}
+says_as() { # USER TOPIC PAYLOAD
+    mosquitto_pub -V 5 -h 127.0.0.1 -p "$port" --cafile "$work/true-ca.crt" -u "$1" \
+        -P "secret-of-$1" -q 1 -r -t "$2" -m "$3"
+}
+check "who may see all" wait_for exits 0 fleet operator list
+check "a wrong password" fails 1 '[Nn]ot authorized' env GRCTL_MQTT_PASSWORD=wrong \
+    "$GRCTL" fleet list --broker "mqtts://operator@127.0.0.1:$port" --ca "$work/true-ca.crt"
+check "a certificate of another" fails 1 'fleet: 127.0.0.1: ' \
+    as operator "$GRCTL" fleet list --broker "mqtts://operator@127.0.0.1:$port" \
+    --ca "$work/other-ca.crt"
+check "no TLS where it is wanted" fails 1 'fleet: 127.0.0.1: ' \
+    as operator "$GRCTL" fleet list --broker "mqtt://operator@127.0.0.1:$port"
+check "a file that is no certificate" fails 1 'a certificate or key cannot be read' \
+    as operator "$GRCTL" fleet list --broker "mqtts://operator@127.0.0.1:$port" --ca "$work/users"
+
+# ---- an agent ------------------------------------------------------------------------------------
+
+mkdir -p "$work/config/grctl"
+printf 'robots: {a: {device: sim}}\n' >"$work/config/grctl/config.yaml"
+as one "$GRCTL" -d a agent --broker "mqtts://one@127.0.0.1:$port" --ca "$work/true-ca.crt" \
+    --host one >"$work/agent.out" 2>"$work/agent.err" &
+pids="$pids $!"
+is_listed() {
+    fleet operator list | grep -q "^one  *$1"
+}
+check "an agent is there" wait_for is_listed ONLINE
+check "it plays" both exits 0 fleet operator play greet.pseq -s 400 --spread 50 --- \
+    says 'one/a: played'
+lie='{"v":1,"state":"OFFLINE","epoch":"00112233445566778899aabbccddeeff"}'
+stays() {
+    says_as two grobo/v1/one/connection "$lie" >/dev/null 2>&1
+    is_listed ONLINE
+}
+check "nobody else speaks as it" stays
+check "who it is allowed to may" both says_as operator grobo/v1/one/connection "$lie" --- \
+    is_listed OFFLINE
+unheard() {
+    says_as two grobo/v1/one/cmd/prepare '{"v":1}' >/dev/null 2>&1
+    says_as two grobo/v1/one/cmd/put '{"v":1}' >/dev/null 2>&1
+    ! grep -q refused "$work/agent.err"
+}
+check "nor orders it" unheard
+
+done_testing
