@@ -153,7 +153,9 @@ static bool free_path(const char *name, char *path, size_t capacity)
     *end = '\0';
     for (int number = 1; number < 100; number++) {
         char behind[8] = "";
-        snprintf(behind, sizeof behind, number > 1 ? "%d" : "", number);
+        if (number > 1) {
+            snprintf(behind, sizeof behind, "%d", number);
+        }
         int n = snprintf(path, capacity, "%s%s%s.yaml", config, name, behind);
         FILE *there = n > 0 && (size_t)n < capacity ? fopen(path, "rb") : NULL;
         if (!there) {
@@ -271,7 +273,9 @@ static void propose(const guide *g, char *name)
     quiet.hushed = hushed;
     for (int number = 1; number < 100; number++) {
         char behind[8] = "";
-        snprintf(behind, sizeof behind, number > 1 ? "%d" : "", number);
+        if (number > 1) {
+            snprintf(behind, sizeof behind, "%d", number);
+        }
         snprintf(name, ASK_BYTES, "%.40s%s", from, behind);
         for (char *c = name; *c; c++) {
             *c = *c == '.' ? '-' : *c;
