@@ -4,23 +4,13 @@
 
 #include <grobo/grobo.h>
 
-/* Name, limits and speed in radians, initial angle, ..., number of the servo (grobo/model.h). */
-static const grobo_joint joints[] = {
-    {.name = "PAN",
-     .min_rad = -1.5,
-     .max_rad = 1.5,
-     .max_speed_rad_s = 6.5,
-     .motor = 1,
-     .mirror = 0,
-     .mirror_sign = 1},
-    {.name = "TILT",
-     .min_rad = -0.8,
-     .max_rad = 0.8,
-     .max_speed_rad_s = 6.5,
-     .motor = 2,
-     .mirror = 1,
-     .mirror_sign = 1},
-};
+/* Limits and speed in radians, the number of the servo, its own mirror (grobo/model.h). */
+#define JOINT(called, i, most)                                                                     \
+    {                                                                                              \
+        .name = (called), .min_rad = -(most), .max_rad = (most), .max_speed_rad_s = 6.5,           \
+        .motor = (i) + 1, .mirror = (i), .mirror_sign = 1                                          \
+    }
+static const grobo_joint joints[] = {JOINT("PAN", 0, 1.5), JOINT("TILT", 1, 0.8)};
 static const grobo_model model = {.name = "HEAD", .joints = joints, .n_joints = 2};
 
 int main(int argc, char **argv)
