@@ -16,6 +16,17 @@ contact() {
         <"$work/answers" >"$work/out" 2>"$work/err"
     status_was "$contact_want" "$@"
 }
+# calmly ANSWERS PREFIX ...: nothing is otherwise than assumed. Half of the replies may be late on a
+# machine that is busy: once more then.
+calmly() {
+    for _ in 1 2 3 4 5 6; do
+        contact 0 "$@" >"$work/why" && return
+        grep -q '^NOT as assumed  *\(latency\|line\) ' "$work/err" || break
+        rm -f "$work/$2"[-.]*
+    done
+    cat "$work/why" "$work/err"
+    return 1
+}
 describe() {
     printf 'name: t\nfamily: %s\njoints:\n' "$1"
     printf '  - {name: turn, id: 1, servo: %s, limits_deg: [-90, 90]}\n' "$2"
@@ -28,7 +39,7 @@ for one in feetech:STS3215 feetech:SCS0009 dynamixel2:XL430-W250 dynamixel1:AX-1
     lx16a:LX-16A ics:KRS-3301; do
     describe "${one%:*}" "${one#*:}" >"$work/arm.yaml"
     start_sim --robot "$work/arm.yaml" || { echo "Bail out! the simulator did not start"; exit 1; }
-    check "$one, to the end" contact 0 'y\ny\nyes\n' "${one#*:}" --robot "$work/arm.yaml" \
+    check "$one, to the end" calmly 'y\ny\nyes\n' "${one#*:}" --robot "$work/arm.yaml" \
         -d "$robot" --timeout 500
     check "turns back where its limit is near" \
         grep -q '^as assumed  *move .* by -2 deg to 5[67]\.' "$work/${one#*:}.txt"
@@ -39,7 +50,7 @@ for one in feetech:STS3215 feetech:SCS0009 dynamixel2:XL430-W250 dynamixel1:AX-1
 done
 
 start_sim
-check "without a yes it reads only" contact 0 '\n' shy -d "$robot" --timeout 500
+check "without a yes it reads only" calmly '\n' shy -d "$robot" --timeout 500
 check "a board that stores and forwards" said '^as assumed  *board .*stores a frame'
 check "all servos" said '^as assumed  *ping .*20 of 20 servos answer'
 check "the rest is not done" \

@@ -229,10 +229,12 @@ static void measure_times(contact *k)
         note(k, "board", NOT_DONE, "there is none: servos are straight on the line");
         return;
     }
-    /* One that forwards bytes as they come would be done before that. */
-    note(k, "board", (double)took_us[0] > 0.95 * wire_us ? AS_ASSUMED : NOT_AS_ASSUMED,
-         "stores a frame and then forwards it: the quickest reply took %.2f ms, by reckoning %.2f",
-         (double)took_us[0] / 1e3, wire_us / 1e3);
+    /* One that forwards bytes as they come would be done before that. The quickest of all may be a
+     * program that was held up between sending and looking at the clock. */
+    int64_t quick_us = took_us[n / 10];
+    note(k, "board", (double)quick_us > 0.95 * wire_us ? AS_ASSUMED : NOT_AS_ASSUMED,
+         "stores a frame and then forwards it: a quick reply took %.2f ms, by reckoning %.2f",
+         (double)quick_us / 1e3, wire_us / 1e3);
 }
 
 static void look_for_echo(contact *k)
