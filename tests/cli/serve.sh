@@ -40,6 +40,18 @@ else
     skip "what is answered is what the OpenAPI file tells" "no python3-jsonschema"
 fi
 
+# Whoever starts it behind a file reads the link there while it runs.
+tells_at_once() {
+    "$GRCTL" -d sim serve --port 0 motions >"$work/link" &
+    serve_pid=$!
+    wait_for grep -q '^http://127.0.0.1:[0-9]*/#token=' "$work/link"
+    told=$?
+    kill $serve_pid
+    wait $serve_pid
+    return $told
+}
+check "the link is told at once" tells_at_once
+
 # A port that somebody has is an error, and no other is taken.
 taken() {
     python3 -c '

@@ -8,6 +8,7 @@
 
 #include <grobo/port.h>
 
+#include "tools/grctl/cli/output.h"
 #include "tools/grctl/web/serve.h"
 
 enum { COMMENT_US = 900000, TOKEN_LEAST = 16, WRONG_US = 300000 };
@@ -293,13 +294,14 @@ static void announce(const serve *s)
     if (s->a->json) {
         app_print_json(json_pack("{s:s,s:s,s:s}", "url", url, "stop_url", stop_url, "token",
                                  http_token(s->http)));
-        return;
+    } else {
+        if (http_is_open(s->http)) {
+            app_note(s->a, "serve: plain HTTP beyond this machine: whoever listens on that network "
+                           "reads the token; 'ssh -L' or a proxy with TLS is safer");
+        }
+        app_print("%s#token=%s\n", url, http_token(s->http));
     }
-    if (http_is_open(s->http)) {
-        app_note(s->a, "serve: plain HTTP beyond this machine: whoever listens on that network "
-                       "reads the token; 'ssh -L' or a proxy with TLS is safer");
-    }
-    app_print("%s#token=%s\n", url, http_token(s->http));
+    output_flush();
 }
 
 static void finish(serve *s)
