@@ -20,7 +20,7 @@ const char *file_error_text(int error)
     case GROBO_ERR_NOENT:
         return _("no such file");
     case GROBO_ERR_ISDIR:
-        return _("is a directory, not a motion file");
+        return _("is a directory, not a file");
     case GROBO_ERR_EMPTY:
         return _("is empty");
     }
