@@ -198,9 +198,10 @@ GROBO_API int grobo_session_post_exit(grobo_session *session, grobo_exit_policy 
 
 /**
  * True from a safety stop, or from the return of grobo_session_post_estop(), until the loop has
- * carried out a grobo_robot_reset() that came after it: whatever is asked for in between that
- * moves or switches torque on is refused. It says that a stop is certain, not that it has been
- * carried out: that is the end of the job GROBO_JOB_ESTOP, or grobo_robot_tripped() on the loop.
+ * carried out a grobo_robot_reset() that came after it: whatever is requested in between that
+ * moves or switches torque on is refused, or is stopped before anything of it leaves. True means
+ * that a stop is certain, not that it has been carried out: the end of the job GROBO_JOB_ESTOP
+ * says that, or grobo_robot_tripped() on the loop.
  */
 GROBO_API bool grobo_session_is_latched(const grobo_session *session);
 
