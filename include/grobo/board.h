@@ -25,7 +25,7 @@ GROBO_BEGIN_DECLS
 GROBO_API extern const grobo_protocol grobo_board_protocol;
 
 /** The protocol of RS30x servos over this wiring; NULL for an unknown one. */
-GROBO_API const grobo_protocol *grobo_wiring_protocol(grobo_wiring wiring);
+GROBO_CORE const grobo_protocol *grobo_wiring_protocol(grobo_wiring wiring);
 
 /** What a board frame is. */
 typedef enum grobo_board_kind {

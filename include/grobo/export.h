@@ -4,9 +4,9 @@
  * @brief Visibility and linkage of public names.
  *
  * What carries GROBO_API is the whole of the shared library's binary interface; src/libgrobo.map
- * lists it. What carries GROBO_CORE is in the static libraries alone: it works in storage of the
- * caller's, whose size changes from version to version (static.h). On Windows define GROBO_STATIC
- * when linking a static library.
+ * lists it. A function with GROBO_CORE is in the static libraries alone: it works in storage of
+ * the caller, whose size changes from version to version (static.h), or so few programs need it
+ * that it is not promised. On Windows define GROBO_STATIC when linking a static library.
  */
 #ifndef GROBO_EXPORT_H
 #define GROBO_EXPORT_H

@@ -6,8 +6,8 @@
  *
  * The rest of this library counts joints from 0 and has radians. What is here takes motors 1..20,
  * 0.1 degree and 10 ms, and does the same things through the same engine, with the same checks:
- * what moves or switches is a job of robot.h, and whoever pumps the engine does so afterwards (on
- * a session: grobo_session_pump(); with a control thread all of it inside grobo_control_call()).
+ * what moves or switches is a job of robot.h. A session sends it at once; a program that pumps its
+ * engine itself does so afterwards.
  * It works for every model; arrays in motor order are sorted by motor number.
  *
  * One thread at a time per engine.

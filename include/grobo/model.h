@@ -71,7 +71,7 @@ typedef struct grobo_model {
  * not negative, a torque limit of at most 100, a slack within its range.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
-GROBO_API int grobo_model_check(const grobo_model *model);
+GROBO_CORE int grobo_model_check(const grobo_model *model);
 
 /**
  * The angle at which a joint plays an angle of a motion file: the nearest limit where that is

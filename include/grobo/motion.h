@@ -363,8 +363,8 @@ GROBO_API void grobo_motion_clip_free(grobo_clip *clip);
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_UNSUPPORTED (no sample), GROBO_ERR_CAP, GROBO_ERR_NOMEM, or
  *   what the clip's sample() gave.
  */
-GROBO_API int grobo_motion_resample(const grobo_clip *clip, double rate_hz, const grobo_mem *mem,
-                                    grobo_motion **frames);
+GROBO_CORE int grobo_motion_resample(const grobo_clip *clip, double rate_hz, const grobo_mem *mem,
+                                     grobo_motion **frames);
 
 GROBO_END_DECLS
 

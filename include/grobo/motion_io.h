@@ -47,11 +47,10 @@ GROBO_API int grobo_diagnostics_new(grobo_diagnostics **list, const grobo_mem *m
 GROBO_API void grobo_diagnostics_free(grobo_diagnostics *list);
 /** Empties it. */
 GROBO_CORE void grobo_diagnostics_clear(grobo_diagnostics *list);
-/** Number of diagnostics kept. NULL has none. */
-GROBO_API size_t grobo_diagnostics_count(const grobo_diagnostics *list);
-/** Number of diagnostics of a severity that were added, kept or not. */
+/** Number of diagnostics of a severity that were added, kept or not. NULL has none. */
 GROBO_API size_t grobo_diagnostics_total(const grobo_diagnostics *list, grobo_severity severity);
-/** Diagnostic i in the order they were found. @return 0 or GROBO_ERR_ARG. */
+/** Diagnostic i of those that are kept, in the order they were found. @return 0, or GROBO_ERR_ARG:
+ *  there are not so many. */
 GROBO_API int grobo_diagnostics_get(const grobo_diagnostics *list, size_t i,
                                     grobo_diagnostic *diagnostic);
 /** Adds one; its texts are copied (a message is cut at 255 bytes). NULL list, or a severity that is
@@ -74,9 +73,8 @@ typedef enum grobo_motion_format {
 /** "m", "pseq", "mseq", "yaml"; "auto" for GROBO_FORMAT_AUTO, "unknown" for a number that is no
  *  format. Static. */
 GROBO_API const char *grobo_motion_format_name(grobo_motion_format format);
-/** The format called so ("seq" is yaml). @return it, or GROBO_ERR_NOTFOUND. */
-GROBO_API int grobo_motion_format_find(const char *name);
-/** What the extension of a path says, in any case; GROBO_FORMAT_AUTO where it says nothing. */
+/** The format that the extension of a path names, in any case (".seq" and ".yml" are yaml);
+ *  GROBO_FORMAT_AUTO for any other. */
 GROBO_API grobo_motion_format grobo_motion_format_of_path(const char *path);
 /** The kind of motion a format holds. GROBO_FORMAT_AUTO, and what is none, give
  *  GROBO_MOTION_KEYS. */

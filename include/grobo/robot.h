@@ -217,10 +217,9 @@ GROBO_API int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip,
 GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
                                   const grobo_play_options *options);
 
-/** True while a motion with GROBO_START_LATER (sequencer.h) has approached and waits. */
-GROBO_API bool grobo_robot_is_ready(const grobo_robot *robot);
 /**
- * Tells such a motion when to begin, on the clock of grobo_play_options.start_us.
+ * Sets when a motion with GROBO_START_LATER (sequencer.h) begins, which has approached and waits
+ * (grobo_play_progress.ready), on the clock of grobo_play_options.start_us.
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_STATE (it is not ready), GROBO_ERR_LATCHED, or
  *         GROBO_ERR_STALE: that time is over, and it goes on waiting.
  */

@@ -124,6 +124,7 @@ typedef struct grobo_play_progress {
     uint64_t step;    /**< frames of this pass handed out or skipped */
     uint64_t steps;   /**< frames of a whole pass: keys, or frames at the rate */
     unsigned queued;  /**< clips that wait */
+    bool ready;       /**< GROBO_START_LATER: it has approached, and waits for its start */
 } grobo_play_progress;
 
 /** Counters; monotonic, wrap. */

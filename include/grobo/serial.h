@@ -163,7 +163,7 @@ GROBO_API int grobo_serial_baud(const grobo_serial *serial);
  * @return GROBO_OK, GROBO_ERR_UNSUPPORTED, GROBO_ERR_PERM, GROBO_ERR_CLOSED, GROBO_ERR_UNPLUGGED,
  *   GROBO_ERR_IO.
  */
-GROBO_API int grobo_serial_set_low_latency(grobo_serial *serial);
+GROBO_CORE int grobo_serial_set_low_latency(grobo_serial *serial);
 
 /** What the driver of an open port said when it was last asked for that, or GROBO_ERR_CLOSED. */
 GROBO_API int grobo_serial_low_latency(const grobo_serial *serial);

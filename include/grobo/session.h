@@ -141,7 +141,7 @@ GROBO_API void grobo_session_close(grobo_session *session);
  * @return GROBO_OK, GROBO_ERR_ARG (NULL), GROBO_ERR_STATE (not closed), GROBO_ERR_CAP (name too
  *   long).
  */
-GROBO_API int grobo_session_set_device(grobo_session *session, const char *device);
+GROBO_CORE int grobo_session_set_device(grobo_session *session, const char *device);
 
 /**
  * Changes the engine's configuration (copied; NULL: all defaults), from now on and for every time
@@ -159,7 +159,7 @@ GROBO_API const char *grobo_session_device(const grobo_session *session);
 /** What the operating system said of the last failure. Never NULL; valid until the next call. */
 GROBO_API const grobo_os_cause *grobo_session_cause(const grobo_session *session);
 
-/** The engine, to be asked; requests made of it directly need grobo_session_pump() after. */
+/** The engine: every request and question of robot.h. Valid as long as the session. */
 GROBO_API grobo_robot *grobo_session_robot(grobo_session *session);
 
 /** The simulator of GROBO_DEVICE_SIM, from the first open on; else NULL. */
@@ -167,9 +167,6 @@ GROBO_API grobo_sim *grobo_session_sim(grobo_session *session);
 
 /** The serial port, which is closed for GROBO_DEVICE_SIM. It belongs to the session. */
 GROBO_API grobo_serial *grobo_session_serial(grobo_session *session);
-
-/** Lets the engine send what it has to, and asks it for its next deadline. */
-GROBO_API void grobo_session_pump(grobo_session *session);
 
 /** Bytes of both directions, in either kind of line, since the session was made. */
 GROBO_API void grobo_session_bytes(const grobo_session *session, uint64_t *tx_bytes,
@@ -201,9 +198,10 @@ GROBO_API int grobo_session_post_exit(grobo_session *session, grobo_exit_policy 
 
 /**
  * True from a safety stop, or from the return of grobo_session_post_estop(), until the loop has
- * carried out a grobo_robot_reset() that came after it: whatever is asked for in between that
- * moves or switches torque on is refused. It says that a stop is certain, not that it has been
- * carried out: that is the end of the job GROBO_JOB_ESTOP, or grobo_robot_tripped() on the loop.
+ * carried out a grobo_robot_reset() that came after it: whatever is requested in between that
+ * moves or switches torque on is refused, or is stopped before anything of it leaves. True means
+ * that a stop is certain, not that it has been carried out: the end of the job GROBO_JOB_ESTOP
+ * says that, or grobo_robot_tripped() on the loop.
  */
 GROBO_API bool grobo_session_is_latched(const grobo_session *session);
 

@@ -274,7 +274,7 @@ GROBO_CORE bool grobo_sim_hung_up(const grobo_sim *sim);
  * Takes the host's cable out (in = false) or puts it back. Out: bytes on the line are lost, the
  * servos go on; in: the line and the board start afresh.
  */
-GROBO_API void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us);
+GROBO_CORE void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us);
 
 /**
  * The host speaks at another rate from now on. Board wiring: at another rate than config.baud_bps

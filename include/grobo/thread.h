@@ -289,8 +289,6 @@ GROBO_API int grobo_control_set_period_us(grobo_control *control, int64_t period
 GROBO_API int64_t grobo_control_get_period_us(grobo_control *control);
 /** Sets how often it is played: 0 and 1 once, n times, -n times in reverse. @return GROBO_OK. */
 GROBO_API int grobo_control_set_motion_count(grobo_control *control, int count);
-/** The count as it was set; it has no error, so that a negative number is one in reverse. */
-GROBO_API int grobo_control_get_motion_count(grobo_control *control);
 /** Has the motion played from its end to its beginning. */
 GROBO_API void grobo_control_set_reverse(grobo_control *control, bool reverse);
 /** True when it is played in reverse: so set, or by a negative count. */
@@ -403,8 +401,6 @@ GROBO_API int grobo_control_set_motion(grobo_control *control, const grobo_motio
 /** A copy of the motion. At once. @param[out] motion owned by the caller. @return postures,
  *  GROBO_ERR_NOMEM. */
 GROBO_API int grobo_control_get_motion(grobo_control *control, grobo_motion **motion);
-/** Number of postures of the motion. At once. */
-GROBO_API size_t grobo_control_motion_size(grobo_control *control);
 /** Makes it an empty motion of postures. What is being played goes on. At once. */
 GROBO_API void grobo_control_clear_motion(grobo_control *control);
 /** Appends the posture sensed last, with the default time. At once. @return postures,
@@ -460,12 +456,6 @@ GROBO_API int grobo_control_do_nth_motion(grobo_control *control, size_t n);
  *   under way (grobo_control_wait() before), GROBO_ERR_UNWATCHED.
  */
 GROBO_API int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options);
-/**
- * Ends whatever moves the robot, and cancels what has not begun: grobo_robot_stop(). At once.
- * @param at_once false: smoothly.
- * @return GROBO_OK; GROBO_ERR_STATE where there is nothing to stop.
- */
-GROBO_API int grobo_control_stop_motion(grobo_control *control, bool at_once);
 /** Whether a motion is played or about to be. At once. */
 GROBO_API bool grobo_control_is_playing(grobo_control *control);
 

@@ -17,7 +17,7 @@
 /** All three. */
 #define GROBO_VERSION_STRING "0.1.0"
 
-/** major * 10000 + minor * 100 + patch, to compare with. */
+/** major * 10000 + minor * 100 + patch, for conditions of the preprocessor. */
 #define GROBO_VERSION_NUMBER                                                                       \
     (GROBO_VERSION_MAJOR * 10000 + GROBO_VERSION_MINOR * 100 + GROBO_VERSION_PATCH)
 
@@ -25,9 +25,6 @@ GROBO_BEGIN_DECLS
 
 /** GROBO_VERSION_STRING of the library at run time. Static string. Thread safe. */
 GROBO_API const char *grobo_version(void);
-
-/** GROBO_VERSION_NUMBER of the library at run time. Thread safe. */
-GROBO_API int grobo_version_number(void);
 
 GROBO_END_DECLS
 

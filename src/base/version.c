@@ -5,8 +5,3 @@ const char *grobo_version(void)
 {
     return GROBO_VERSION_STRING;
 }
-
-int grobo_version_number(void)
-{
-    return GROBO_VERSION_NUMBER;
-}

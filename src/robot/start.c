@@ -2,17 +2,6 @@
 /* A motion that waits for its start: for who begins several robots together. */
 #include "src/robot/robot.h"
 
-bool grobo_robot_is_ready(const grobo_robot *robot)
-{
-    if (robot == NULL) {
-        return false;
-    }
-    grobo_i_lock(robot);
-    bool ready = grobo_sequencer_is_ready(&robot->sequencer);
-    grobo_i_unlock(robot);
-    return ready;
-}
-
 int grobo_robot_start_at(grobo_robot *robot, int64_t start_us)
 {
     if (robot == NULL) {

@@ -208,8 +208,9 @@ static void look_who_is_ready(grobo_team *team, int64_t now_us)
 {
     for (int i = 0; i < team->n; i++) {
         member *m = &team->members[i];
-        bool ready = m->job == 0 && grobo_robot_is_ready(m->is.robot);
-        if (m->is.state == GROBO_TEAM_PREPARES && ready) {
+        grobo_play_progress progress;
+        grobo_robot_progress(m->is.robot, &progress);
+        if (m->is.state == GROBO_TEAM_PREPARES && m->job == 0 && progress.ready) {
             m->is.state = GROBO_TEAM_READY;
         } else if (m->is.state == GROBO_TEAM_PREPARES && now_us >= team->until_us) {
             fall_out(team, i, GROBO_ERR_TIMEOUT, true);

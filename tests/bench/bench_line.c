@@ -467,7 +467,6 @@ static int run_sessions(int lines, char **path)
     for (int i = 0; !in_background && i < lines; i++) {
         run.begun++;
         sense(sessions[i]);
-        grobo_session_pump(sessions[i]);
     }
     turn();
     return report(begin_us, begin_cpu_us);

@@ -358,9 +358,12 @@ static void a_start_in_the_past_is_refused(void **state)
     start(GROBO_TEAM_STOP_ALL);
     const grobo_play_options options = {.start_us = GROBO_START_LATER};
     assert_true(grobo_robot_play(&rigs[0].robot, &clips[0].clip, &options) > 0);
-    assert_false(grobo_robot_is_ready(&rigs[0].robot));
+    grobo_play_progress progress;
+    grobo_robot_progress(&rigs[0].robot, &progress);
+    assert_false(progress.ready);
     rig_run(&rigs[0], 5000000);
-    assert_true(grobo_robot_is_ready(&rigs[0].robot));
+    grobo_robot_progress(&rigs[0].robot, &progress);
+    assert_true(progress.ready);
     assert_int_equal(grobo_robot_start_at(&rigs[0].robot, rigs[0].now_us - 1), GROBO_ERR_STALE);
     assert_int_equal(grobo_robot_start_at(&rigs[0].robot, -1), GROBO_ERR_ARG);
     assert_int_equal(grobo_robot_start_at(&rigs[0].robot, rigs[0].now_us + 500), GROBO_OK);

@@ -108,7 +108,6 @@ static void send_goals(int taken_bytes)
     target.angle_rad[NECK] = grobo_rad_from_deg(40);
     budget_bytes = taken_bytes;
     assert_int_equal(grobo_robot_send(robot(), &target), GROBO_OK);
-    grobo_session_pump(session);
     assert_int_equal(n_written, taken_bytes);
 }
 
@@ -212,7 +211,6 @@ static void no_frame_is_taken_behind_one_that_has_not_left(void **state)
     grobo_posture target;
     grobo_posture_init_pose(&target, &grobo_gr001_model);
     assert_int_equal(grobo_robot_send(robot(), &target), GROBO_OK);
-    grobo_session_pump(session);
     assert_true(loop_run(base, 20000));
     assert_int_equal(n_written, GOALS);
     unsent_bytes = 0;

@@ -214,7 +214,7 @@ static void nothing_takes_a_descriptor(void **state)
     have_descriptors(false);
     assert_int_equal(grobo_thread_start(&other, wait_for_rest, &result), GROBO_OK);
     assert_int_equal(grobo_control_is_moving(control), 1);
-    assert_int_equal(grobo_control_stop_motion(control, true), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(grobo_control_robot(control), true), GROBO_OK);
     assert_int_equal(grobo_thread_join(other), GROBO_OK);
     assert_int_equal(result, GROBO_ERR_CANCELED);
     assert_int_equal(grobo_control_exit(control, GROBO_EXIT_HOLD, 0), GROBO_OK);

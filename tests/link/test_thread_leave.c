@@ -41,14 +41,14 @@ static void a_stop_waits_for_no_loop(void **state)
         stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
         move_for_long();
         hold_begin(&gate);
-        assert_int_equal(grobo_control_stop_motion(control, at_once), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(grobo_control_robot(control), at_once), GROBO_OK);
         hold_end(&gate);
         assert_int_equal(grobo_control_wait(control, LONG_US), GROBO_ERR_CANCELED);
         assert_false(grobo_control_is_latched(control));
 
         play_for_long();
         hold_begin(&gate);
-        assert_int_equal(grobo_control_stop_motion(control, at_once), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(grobo_control_robot(control), at_once), GROBO_OK);
         hold_end(&gate);
         assert_int_equal(grobo_control_wait(control, LONG_US), GROBO_ERR_CANCELED);
         assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
@@ -196,7 +196,7 @@ static void no_table_is_too_full_for_a_stop(void **state)
     move_for_long();
     hold_begin(&gate);
     have_no_slot(callers);
-    assert_int_equal(grobo_control_stop_motion(control, true), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(grobo_control_robot(control), true), GROBO_OK);
     assert_int_equal(grobo_control_exit(control, GROBO_EXIT_OFF, 0), GROBO_ERR_FULL);
     assert_int_equal(grobo_control_estop(control), GROBO_OK);
     hold_end(&gate);
@@ -216,7 +216,7 @@ static int leave_it(grobo_control *from)
 {
     return grobo_control_exit(from, (grobo_exit_policy)9, 0) == GROBO_ERR_ARG &&
            grobo_control_exit(from, GROBO_EXIT_OFF, 0) == GROBO_ERR_STATE &&
-           grobo_control_stop_motion(from, true) == GROBO_OK;
+           grobo_robot_stop(grobo_control_robot(from), true) == GROBO_OK;
 }
 
 static void a_callback_may_stop_and_leave(void **state)

@@ -73,6 +73,15 @@ void control_have_motion(int n)
     grobo_motion_free(motion);
 }
 
+int control_motion_size(grobo_control *of)
+{
+    grobo_motion *motion = NULL;
+    int n = grobo_control_get_motion(of, &motion);
+
+    grobo_motion_free(motion);
+    return n;
+}
+
 void control_assert_elbow_at(double angle_deg)
 {
     double angle_rad = -99;

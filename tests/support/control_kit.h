@@ -29,6 +29,9 @@ void control_come_up(void);
 /* A motion of .m's kind: the elbow at 2, 4, 6... degrees, each 40 ms after the one before. */
 void control_have_motion(int n);
 
+/* Postures of the current motion. */
+int control_motion_size(grobo_control *of);
+
 /* Reads the elbow's angle and compares. */
 void control_assert_elbow_at(double angle_deg);
 

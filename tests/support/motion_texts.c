@@ -99,9 +99,8 @@ char *written_as(const grobo_motion *motion, grobo_motion_format format,
 
 bool has_diagnostic(const grobo_diagnostics *list, const char *code, unsigned line, unsigned column)
 {
-    for (size_t i = 0; i < grobo_diagnostics_count(list); i++) {
-        grobo_diagnostic found;
-        assert_int_equal(grobo_diagnostics_get(list, i, &found), 0);
+    grobo_diagnostic found;
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &found) == 0; i++) {
         if (strcmp(found.code, code) == 0 && found.line == line &&
             (column == 0 || found.column == column)) {
             return true;

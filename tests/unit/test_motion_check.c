@@ -66,7 +66,8 @@ static void test_clean(void **state)
                           true);
 
     assert_int_equal(found.errors, 0);
-    assert_int_equal(grobo_diagnostics_count(found.list), 0);
+    grobo_diagnostic said;
+    assert_int_equal(grobo_diagnostics_get(found.list, 0, &said), GROBO_ERR_ARG);
     grobo_diagnostics_free(found.list);
 }
 
@@ -302,15 +303,15 @@ static void test_list_is_bounded(void **state)
         said.line = (uint32_t)i + 1;
         grobo_diagnostics_add(list, &said);
     }
-    assert_int_equal(grobo_diagnostics_count(list), GROBO_DIAGNOSTICS_MAX);
     assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR),
                      GROBO_DIAGNOSTICS_MAX + 10);
     assert_int_equal(grobo_diagnostics_get(list, 3, &said), 0);
     assert_string_equal(said.file, "a");
     assert_int_equal(said.line, 4);
+    assert_int_equal(grobo_diagnostics_get(list, GROBO_DIAGNOSTICS_MAX - 1, &said), 0);
     assert_int_equal(grobo_diagnostics_get(list, GROBO_DIAGNOSTICS_MAX, &said), GROBO_ERR_ARG);
     grobo_diagnostics_add(NULL, &said);
-    assert_int_equal(grobo_diagnostics_count(NULL), 0);
+    assert_int_equal(grobo_diagnostics_get(NULL, 0, &said), GROBO_ERR_ARG);
     assert_string_equal(grobo_severity_name(GROBO_SEVERITY_WARNING), "warning");
     assert_string_equal(grobo_severity_name((grobo_severity)3), "unknown");
     assert_string_equal(grobo_motion_format_name((grobo_motion_format)5), "unknown");

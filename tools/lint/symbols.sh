@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Gate: the shared library exports exactly what headers declare with GROBO_API.
+# Gate: the shared library exports exactly what headers declare with GROBO_API, and of functions
+# that docs/seed-map.md does not name 150 at most.
 #
 # usage: symbols.sh LIBRARY      compare
 #        symbols.sh --declared   print the declared names, one a line, of all libraries
@@ -53,6 +54,19 @@ declared API >"$work/declared"
 "$nm" -D --defined-only "$1" | awk 'NF == 3 && $2 != "A" { sub(/@.*/, "", $3); print $3 }' |
     sort -u >"$work/exported"
 bad=0
+# What a reader has to learn beside the members of the reference document.
+most=${SYMBOLS_MOST:-150}
+if [ -f docs/seed-map.md ]; then
+    "$nm" -D --defined-only "$1" | awk 'NF == 3 && $2 == "T" { sub(/@.*/, "", $3); print $3 }' |
+        sort -u >"$work/functions"
+    grep -ow 'grobo_[a-z0-9_]*' docs/seed-map.md | sort -u >"$work/seed"
+    beside=$(comm -23 "$work/functions" "$work/seed" | wc -l)
+    if [ "$beside" -gt "$most" ]; then
+        echo "$1:1: symbols: exports $beside functions that docs/seed-map.md does not name;" \
+            "at most $most: mark with GROBO_CORE what few programs need"
+        bad=1
+    fi
+fi
 map >"$work/map"
 if [ -f src/libgrobo.map ] && ! cmp -s "$work/map" src/libgrobo.map; then
     echo "src/libgrobo.map:1: symbols: not what the headers declare (tools/lint/symbols.sh --map)"

@@ -279,6 +279,13 @@ static void count_estops(grobo_session *session)
     }
 }
 
+/* Lets the engine send what it has to, and asks it for its next deadline. */
+static void pump(grobo_session *session)
+{
+    grobo_i_session_enter(session);
+    grobo_i_session_leave(session);
+}
+
 static void on_request(void *ctx)
 {
     grobo_session *session = ctx;
@@ -287,7 +294,7 @@ static void on_request(void *ctx)
     if (is_elsewhere(session)) {
         grobo_i_session_wake(session);
     } else {
-        grobo_session_pump(session);
+        pump(session);
     }
 }
 
@@ -572,15 +579,6 @@ int grobo_session_new(const grobo_session_config *config, grobo_session **sessio
     return GROBO_OK;
 }
 
-void grobo_session_pump(grobo_session *session)
-{
-    if (session == NULL) {
-        return;
-    }
-    grobo_i_session_enter(session);
-    grobo_i_session_leave(session);
-}
-
 void grobo_session_free(grobo_session *session)
 {
     if (session == NULL) {
@@ -615,7 +613,7 @@ int grobo_session_open(grobo_session *session)
             r = open_next(session);
         }
     }
-    grobo_session_pump(session);
+    pump(session);
     return r;
 }
 
@@ -651,7 +649,7 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
         (void)grobo_i_sized_take(&session->robot_config, sizeof session->robot_config, config);
         session->robot_config.bus = bus;
         configure(session, session->state == GROBO_SESSION_UP);
-        grobo_session_pump(session);
+        pump(session);
     }
     return r;
 }

@@ -253,7 +253,8 @@ int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
     return wait_outside(control, &wish);
 }
 
-/* ---- jobs --------------------------------------------------------------------------------- */
+/* ---- jobs ------------------------------------------------------------------------------------
+ * A job is the engine's: what is known of it here is its number, and how it has ended. */
 
 /* On the loop: how a job has ended. */
 static int result_of(grobo_control *control, int number)
@@ -266,6 +267,8 @@ static int result_of(grobo_control *control, int number)
                : GROBO_ERR_NOTFOUND;
 }
 
+/* Makes the request, again in each round while the engine refuses it beside what runs; then looks
+ * how the job has ended. */
 static int poll_job(grobo_control *control, void *arg)
 {
     control_job *job = arg;
@@ -289,27 +292,22 @@ static int poll_job(grobo_control *control, void *arg)
     return result;
 }
 
-static int poll_number(grobo_control *control, void *arg)
-{
-    const int *number = arg;
-
-    return result_of(control, *number);
-}
-
-int grobo_control_wait_job(grobo_control *control, int job, int64_t timeout_us)
-{
-    if (control == NULL || job == 0) {
-        return GROBO_ERR_ARG;
-    }
-    return job < 0 ? job : grobo_i_control_wait(control, poll_number, &job, timeout_us);
-}
-
 int grobo_i_control_job(grobo_control *control, control_job *job, int64_t timeout_us)
 {
     const call_wish wish = {
         .fn = poll_job, .arg = job, .job = job, .timeout_us = timeout_us, .urgent = job->urgent};
 
     return wait_outside(control, &wish);
+}
+
+int grobo_control_wait_job(grobo_control *control, int job, int64_t timeout_us)
+{
+    control_job known = {.number = job};
+
+    if (control == NULL || job == 0) {
+        return GROBO_ERR_ARG;
+    }
+    return job < 0 ? job : grobo_i_control_job(control, &known, timeout_us);
 }
 
 /* ---- the public functions ----------------------------------------------------------------- */

@@ -75,14 +75,6 @@ int grobo_control_get_motion(grobo_control *control, grobo_motion **motion)
     return r < 0 ? r : (int)grobo_motion_size(*motion);
 }
 
-size_t grobo_control_motion_size(grobo_control *control)
-{
-    if (control == NULL) {
-        return 0;
-    }
-    RETURN_LOCKED(control, size_t, grobo_motion_size(control->motion));
-}
-
 void grobo_control_clear_motion(grobo_control *control)
 {
     if (control == NULL) {
@@ -178,11 +170,6 @@ bool grobo_control_is_playing(grobo_control *control)
 }
 
 /* ---- stopping, waiting -------------------------------------------------------------------- */
-
-int grobo_control_stop_motion(grobo_control *control, bool at_once)
-{
-    return grobo_robot_stop(grobo_control_robot(control), at_once);
-}
 
 int grobo_control_post_stop(grobo_control *control, bool at_once)
 {

@@ -134,14 +134,6 @@ int grobo_control_set_motion_count(grobo_control *control, int count)
     return GROBO_OK;
 }
 
-int grobo_control_get_motion_count(grobo_control *control)
-{
-    if (control == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    RETURN_LOCKED(control, int, control->motion_count);
-}
-
 void grobo_control_set_reverse(grobo_control *control, bool reverse)
 {
     if (control == NULL) {

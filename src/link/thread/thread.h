@@ -31,7 +31,7 @@ typedef enum call_state {
     CALL_DONE
 } call_state;
 
-/* A job of the engine that a thread waits for. */
+/* A job of the engine that a thread waits for, on that thread's stack. */
 typedef struct control_job {
     int (*start)(grobo_control *control, struct control_job *job);
     bool urgent; /* must not be refused because too much is under way */

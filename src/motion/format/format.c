@@ -22,31 +22,20 @@ static bool same_word(const char *a, const char *b)
     return *a == *b;
 }
 
-int grobo_motion_format_find(const char *name)
-{
-    if (name == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    for (int format = GROBO_FORMAT_AUTO; format <= GROBO_FORMAT_YAML; format++) {
-        if (same_word(name, grobo_motion_format_name((grobo_motion_format)format))) {
-            return format;
-        }
-    }
-    if (same_word(name, "seq") || same_word(name, "yml")) {
-        return GROBO_FORMAT_YAML;
-    }
-    return GROBO_ERR_NOTFOUND;
-}
-
 grobo_motion_format grobo_motion_format_of_path(const char *path)
 {
-    if (path == NULL) {
+    const char *dot = path != NULL ? strrchr(path, '.') : NULL;
+
+    if (dot == NULL) {
         return GROBO_FORMAT_AUTO;
     }
-    const char *dot = strrchr(path, '.');
-    int format = dot != NULL ? grobo_motion_format_find(dot + 1) : GROBO_FORMAT_AUTO;
-
-    return format > 0 ? (grobo_motion_format)format : GROBO_FORMAT_AUTO;
+    for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
+        if (same_word(dot + 1, grobo_motion_format_name((grobo_motion_format)format))) {
+            return (grobo_motion_format)format;
+        }
+    }
+    return same_word(dot + 1, "seq") || same_word(dot + 1, "yml") ? GROBO_FORMAT_YAML
+                                                                  : GROBO_FORMAT_AUTO;
 }
 
 grobo_motion_kind grobo_motion_format_kind(grobo_motion_format format)

@@ -64,11 +64,6 @@ void grobo_diagnostics_free(grobo_diagnostics *list)
     }
 }
 
-size_t grobo_diagnostics_count(const grobo_diagnostics *list)
-{
-    return list != NULL ? list->count : 0;
-}
-
 size_t grobo_diagnostics_total(const grobo_diagnostics *list, grobo_severity severity)
 {
     return list != NULL && (unsigned)severity < SEVERITIES ? list->totals[severity] : 0;
@@ -76,7 +71,7 @@ size_t grobo_diagnostics_total(const grobo_diagnostics *list, grobo_severity sev
 
 int grobo_diagnostics_get(const grobo_diagnostics *list, size_t i, grobo_diagnostic *diagnostic)
 {
-    if (i >= grobo_diagnostics_count(list)) {
+    if (list == NULL || diagnostic == NULL || i >= list->count) {
         return GROBO_ERR_ARG;
     }
     const entry *found = &list->entries[i];

@@ -134,8 +134,11 @@ class Plugin(unittest.TestCase):
         robot = self.make()
         robot.connect()
         robot._robot.estop()
+        until = time.monotonic() + 10  # what is sent before the loop turns ends with the stop
         with self.assertRaises(grobo.errors.Latched):
-            robot.send_action({"elbow_flex.pos": 1.0})
+            while time.monotonic() < until:
+                robot.send_action({"elbow_flex.pos": 1.0})
+                time.sleep(0.01)
 
     def test_old_readings_are_no_observation(self):
         robot = self.make(stale_s=0.0)

@@ -95,7 +95,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const fi
             app_fail(a, EXIT_FILE, first.code, "%s; --lossy writes %s all the same", said, path);
         }
     }
-    if (lost < 0 && grobo_diagnostics_count(list) == 0) {
+    if (lost < 0 && grobo_diagnostics_get(list, 0, &first) < 0) {
         app_fail_error(a, EXIT_FILE, lost, "%s", path);
     }
     grobo_motion_free(copy);

@@ -193,7 +193,6 @@ static int send_moved(pair *p)
     p->all_us = all ? now_us : p->all_us;
     target.time_us = 2 * p->period_us;
     int error = grobo_robot_send(grobo_session_robot(p->follower.c.session), &target);
-    grobo_session_pump(p->follower.c.session);
     p->sent += error >= 0;
     return error;
 }
@@ -377,7 +376,6 @@ static int open_leader(pair *p)
     config.sense_position_only = true;
     config.lost_replies = -1;
     (void)grobo_session_configure(c->session, &config);
-    grobo_session_pump(c->session);
     p->limp = true;
     c->on_event = on_leader;
     return 0;

@@ -147,7 +147,7 @@ static int run_check(app *a, const char *path)
     if (!error) {
         error = robot_read(path, list, &def);
     }
-    if (error && grobo_diagnostics_count(list) == 0) {
+    if (error && grobo_diagnostics_get(list, 0, &d) < 0) {
         grobo_diagnostics_free(list);
         return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path,
                         file_error_text(error));

@@ -673,7 +673,6 @@ void conn_link_idle(conn_link *link, app *a)
     }
     c.robot = grobo_session_robot(link->session);
     conn_watch(&c, true);
-    grobo_session_pump(link->session);
 }
 
 /* ---- leaving -------------------------------------------------------------------------------- */

@@ -121,7 +121,6 @@ void serve_accept(serve *s, http_request *r, int result, const char *doing)
     if (result > 0) {
         json_object_set_new(body, "job", json_integer(result));
     }
-    grobo_session_pump(s->c.session);
     http_reply_json(r, 200, body);
 }
 

@@ -65,7 +65,6 @@ int stops_ask(serve *s, const char *by, bool estop)
     } else if (!t->estop) { /* again: a frame may have been lost */
         (void)grobo_robot_stop(grobo_session_robot(s->c.session), true);
     }
-    grobo_session_pump(s->c.session);
     if (news) {
         lease_end(&s->lease);
         s->player.epoch++; /* what was asked for and has not begun does not begin */
@@ -157,7 +156,6 @@ void stops_halt(serve *s)
     s->player.epoch++;
     if (s->c.up) {
         (void)grobo_robot_stop(grobo_session_robot(s->c.session), false);
-        grobo_session_pump(s->c.session);
     }
 }
 

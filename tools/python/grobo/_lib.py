@@ -32,8 +32,7 @@ def version() -> str:
 
 def _check_version() -> None:
     wanted = lib.GROBO_VERSION_MAJOR, lib.GROBO_VERSION_MINOR
-    number = lib.grobo_version_number()
-    if (number // 10000, number // 100 % 100) != wanted:
+    if tuple(map(int, version().split(".")[:2])) != wanted:
         raise ImportError(
             f"grobo: the library is version {version()}, this package needs "
             f"{wanted[0]}.{wanted[1]}; install both from one place, or set GROBO_LIBRARY"

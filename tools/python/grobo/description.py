@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What a robot is made of: one that comes with the library, or a file."""
 
+import itertools
 import os
 from typing import Any, Dict, List, Optional, Tuple, Union
 
@@ -80,8 +81,9 @@ def _read(path: str) -> Any:
 
 def first_error(found: Any) -> Optional[str]:
     problem = ffi.new("grobo_diagnostic *")
-    for i in range(lib.grobo_diagnostics_count(found)):
-        lib.grobo_diagnostics_get(found, i, problem)
+    for i in itertools.count():
+        if lib.grobo_diagnostics_get(found, i, problem) < 0:
+            return None
         if problem.severity == lib.GROBO_SEVERITY_ERROR:
             text: str = ffi.string(problem.message).decode()
             return f"line {problem.line}: {text}" if problem.line else text
