@@ -46,11 +46,6 @@ static int check_robots(app *a)
 static int serve(agent *g)
 {
     while (!g->all.host.signal) {
-        for (int i = 0; i < g->all.n; i++) {
-            if (g->all.seats[i].c.signal) {
-                return EXIT_SIGNAL + g->all.seats[i].c.signal;
-            }
-        }
         if (event_base_loop(g->all.host.base, EVLOOP_ONCE) != 0) {
             return app_fail_error(g->a, EXIT_ROBOT, GROBO_ERR_IO, "agent");
         }

@@ -72,20 +72,15 @@ static bool is_over(const troupe *t)
     return grobo_team_get_state(t->team) == GROBO_TEAM_ENDED;
 }
 
-static bool is_interrupted(const troupe *t)
-{
-    return t->host.signal || t->seats[0].c.signal;
-}
-
 /* A signal is told to all: it ends the motion smoothly, and conn_close() leaves each robot. */
 static int watch(troupe *t)
 {
-    while (!is_over(t) && !is_interrupted(t)) {
+    while (!is_over(t) && !t->host.signal) {
         if (event_base_loop(t->host.base, EVLOOP_ONCE) != 0) {
             return app_fail_error(t->a, EXIT_ROBOT, GROBO_ERR_IO, "play");
         }
     }
-    if (is_interrupted(t)) {
+    if (t->host.signal) {
         (void)grobo_team_stop(t->team, false);
     }
     return EXIT_DONE;
