@@ -6,20 +6,21 @@
 #include "tools/grctl/fleet/agent.h"
 #include "tools/grctl/fleet/orders.h"
 #include "tools/grctl/fleet/say.h"
+#include "tools/grctl/fleet/wire.h"
 
 enum { TICK_US = 100000, LAST_EVERY = 10 /* ticks */, RETRY_US = 5000000 };
 
 /* ---- stops ----------------------------------------------------------------------------------- */
 
 /* Every robot of the group, in this call. */
-static void stop_now(agent *g, bool estop)
+static void stop_now(agent *g)
 {
     for (int i = 0; i < g->all.n; i++) {
         seat *s = &g->all.seats[i];
         if (!s->is_open) {
             continue;
         }
-        if (estop) {
+        if (g->brakes) {
             (void)grobo_robot_estop(s->c.robot);
         } else {
             (void)grobo_robot_stop(s->c.robot, false);
@@ -54,9 +55,10 @@ static void take_latch(agent *g, const char *group, const mqtt_message *message)
     snprintf(g->latch_group, sizeof g->latch_group, "%s", group);
     json_decref(g->latch);
     g->latch = latch;
+    const char *how = fleet_text(latch, "how");
+    g->brakes = !how || strcmp(how, "stop") != 0;
     if (is_news) {
-        const char *how = fleet_text(latch, "how");
-        stop_now(g, !how || strcmp(how, "stop") != 0);
+        stop_now(g);
         g->telling = true;
     }
 }
@@ -135,14 +137,6 @@ static void on_message(void *ctx, const mqtt_message *message)
     }
 }
 
-static void subscribe(agent *g, const char *a, const char *b, const char *c, bool retained)
-{
-    char topic[FLEET_TOPIC_BYTES];
-    if (fleet_topic(topic, a, b, c, NULL)) {
-        (void)mqtt_subscribe(g->m, topic, 1, retained);
-    }
-}
-
 /* The latches first; orders when they have come. */
 static void on_up(void *ctx)
 {
@@ -152,8 +146,8 @@ static void on_up(void *ctx)
                          "epoch", g->epoch),
                "connected to the broker as %s", g->host);
     output_flush();
-    subscribe(g, "group", FLEET_ALL, "latch", true);
-    subscribe(g, "group", g->group, "latch", true);
+    wire_subscribe(g->m, "group", FLEET_ALL, "latch", true);
+    wire_subscribe(g->m, "group", g->group, "latch", true);
     g->listens = false;
     g->settled_us = grobo_now_us() + AGENT_SETTLE_US;
     say_hello(g);
@@ -164,10 +158,10 @@ static void on_up(void *ctx)
 
 static void begin_listening(agent *g)
 {
-    subscribe(g, "group", FLEET_ALL, "permit", false);
-    subscribe(g, "group", g->group, "permit", false);
-    subscribe(g, "time", g->host, "pong", false);
-    subscribe(g, g->host, "cmd", "+", false);
+    wire_subscribe(g->m, "group", FLEET_ALL, "permit", false);
+    wire_subscribe(g->m, "group", g->group, "permit", false);
+    wire_subscribe(g->m, "time", g->host, "pong", false);
+    wire_subscribe(g->m, g->host, "cmd", "+", false);
     g->listens = true;
 }
 
@@ -329,7 +323,7 @@ int agent_begin(agent *g, app *a, const mqtt_config *with, const char *host, con
     config.id = g->host;
     (void)fleet_topic(topic, g->host, "connection", NULL, NULL);
     config.will_topic = topic;
-    config.will = g->lost_text[0];
+    config.will = g->will;
     config.on_up = on_up;
     config.on_down = on_down;
     config.on_message = on_message;

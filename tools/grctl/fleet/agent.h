@@ -49,7 +49,7 @@ typedef struct agent {
     char host[FLEET_NAME_BYTES];
     char group[FLEET_NAME_BYTES]; /* besides "all" */
     char epoch[FLEET_ID_BYTES];
-    char lost_text[2][320]; /* connection: CONNECTIONBROKEN, ONLINE */
+    char will[320]; /* connection: CONNECTIONBROKEN */
     int64_t seq;
     bool listens;       /* orders are taken */
     int64_t settled_us; /* when they will be */
@@ -60,6 +60,7 @@ typedef struct agent {
     bool latched;
     char latch_id[FLEET_ID_BYTES];
     char latch_group[FLEET_NAME_BYTES];
+    bool brakes;   /* by an emergency stop, not softly */
     json_t *latch; /* to be said again where the broker forgot it */
     bool telling;  /* how the stop went is still to be told */
     /* what is played */

@@ -7,6 +7,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/fleet/orders.h"
 #include "tools/grctl/fleet/say.h"
+#include "tools/grctl/fleet/wire.h"
 
 enum { PENDING_US = 1000000, MOTION_NAME_BYTES = 128, WORDS = 16 };
 
@@ -49,14 +50,10 @@ static bool is_fresh(const agent_leader *l, int64_t now_us)
 
 static void ask_time(agent *g, agent_leader *l, int number)
 {
-    char topic[FLEET_TOPIC_BYTES], text[128];
     l->sent_us[number] = grobo_now_us();
-    int n = snprintf(text, sizeof text, "{\"v\":%d,\"host\":\"%s\",\"n\":%d}", FLEET_VERSION,
-                     g->host, number);
-    if (fleet_topic(topic, "time", l->id, "ping", NULL)) {
-        const mqtt_message ping = {.topic = topic, .payload = text, .size = (size_t)n};
-        (void)mqtt_publish(g->m, &ping, 0, 0);
-    }
+    (void)wire_tell(g->m, "time", l->id, "ping",
+                    json_pack("{s:i,s:s,s:i}", "v", FLEET_VERSION, "host", g->host, "n", number), 0,
+                    false);
 }
 
 /* ---- judging --------------------------------------------------------------------------------- */

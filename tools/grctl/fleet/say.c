@@ -1,40 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "tools/grctl/fleet/say.h"
+#include "tools/grctl/fleet/wire.h"
 #include "tools/grctl/show/render.h"
 
 /* ---- in general ------------------------------------------------------------------------------ */
 
-static int64_t wall_ms(void)
-{
-    return (int64_t)time(NULL) * 1000;
-}
-
-/* Takes the reference of the object. */
-static void publish(agent *g, const char *topic, json_t *object, int qos, bool retained)
-{
-    char *text = object ? json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
-    if (text) {
-        const mqtt_message message = {
-            .topic = topic, .payload = text, .size = strlen(text), .retained = retained};
-        (void)mqtt_publish(g->m, &message, qos, 0);
-    }
-    free(text);
-    json_decref(object);
-}
-
 static void publish_here(agent *g, const char *a, const char *b, json_t *object, int qos,
                          bool retained)
 {
-    char topic[FLEET_TOPIC_BYTES];
-    if (fleet_topic(topic, g->host, a, b, NULL)) {
-        publish(g, topic, object, qos, retained);
-    } else {
-        json_decref(object);
-    }
+    (void)wire_tell(g->m, g->host, a, b, object, qos, retained);
 }
 
 /* ---- the agent ------------------------------------------------------------------------------- */
@@ -42,15 +19,14 @@ static void publish_here(agent *g, const char *a, const char *b, json_t *object,
 static json_t *connection(const agent *g, const char *state)
 {
     return json_pack("{s:i,s:s,s:s,s:I}", "v", FLEET_VERSION, "state", state, "epoch", g->epoch,
-                     "at_ms", (json_int_t)wall_ms());
+                     "at_ms", (json_int_t)wire_wall_ms());
 }
 
 void say_prepare(agent *g)
 {
     json_t *will = connection(g, "CONNECTIONBROKEN");
-    size_t n =
-        will ? json_dumpb(will, g->lost_text[0], sizeof g->lost_text[0] - 1, JSON_COMPACT) : 0;
-    g->lost_text[0][n < sizeof g->lost_text[0] ? n : 0] = '\0';
+    size_t n = json_dumpb(will, g->will, sizeof g->will - 1, JSON_COMPACT);
+    g->will[n < sizeof g->will ? n : 0] = '\0';
     json_decref(will);
 }
 
@@ -94,10 +70,7 @@ void say_goodbye(agent *g)
 
 void say_latch(agent *g)
 {
-    char topic[FLEET_TOPIC_BYTES];
-    if (fleet_topic(topic, "group", g->latch_group, "latch", NULL)) {
-        publish(g, topic, json_incref(g->latch), 1, true);
-    }
+    (void)wire_tell(g->m, "group", g->latch_group, "latch", json_incref(g->latch), 1, true);
 }
 
 /* ---- robots ---------------------------------------------------------------------------------- */
@@ -152,7 +125,7 @@ void say_event(agent *g, const seat *s, const char *kind, const char *text)
     char id[FLEET_ID_BYTES];
     fleet_make_id(id);
     json_t *event = json_pack("{s:i,s:s,s:s,s:s,s:I}", "v", FLEET_VERSION, "id", id, "kind", kind,
-                              "message", text, "at_ms", (json_int_t)wall_ms());
+                              "message", text, "at_ms", (json_int_t)wire_wall_ms());
     if (s) {
         json_object_set_new(event, "robot", json_string(s->name));
     }
@@ -166,16 +139,14 @@ void say_stopped(agent *g)
     for (int i = 0; i < g->all.n; i++) {
         const seat *s = &g->all.seats[i];
         bool there = s->is_open && s->c.up && !s->c.link_error;
-        const char *how = fleet_text(g->latch, "how");
-        bool brakes = !how || strcmp(how, "stop") != 0;
-        bool sure = there && (brakes ? s->c.estop_ended && s->c.estop_result >= 0
-                                     : !grobo_robot_moving(s->c.robot));
+        bool sure = there && (g->brakes ? s->c.estop_ended && s->c.estop_result >= 0
+                                        : !grobo_robot_moving(s->c.robot));
         json_array_append_new(
             robots, json_pack("{s:s,s:b,s:b}", "name", s->name, "there", there, "stopped", sure));
     }
     publish_here(g, "event", NULL,
                  json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "stopped", "id",
-                           g->latch_id, "robots", robots, "at_ms", (json_int_t)wall_ms()),
+                           g->latch_id, "robots", robots, "at_ms", (json_int_t)wire_wall_ms()),
                  1, false);
 }
 
@@ -199,7 +170,7 @@ void say_ended(agent *g, const char *order)
 {
     publish_here(g, "event", NULL,
                  json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "ended", "id",
-                           order, "robots", results_of(g), "at_ms", (json_int_t)wall_ms()),
+                           order, "robots", results_of(g), "at_ms", (json_int_t)wire_wall_ms()),
                  1, false);
 }
 
