@@ -79,7 +79,7 @@ static void take_ping(leader *l, const json_t *ping)
         json_t *pong =
             json_pack("{s:i,s:s,s:I,s:I}", "v", FLEET_VERSION, "leader", l->id, "n",
                       (json_int_t)fleet_number(ping, "n", 0), "t_us", (json_int_t)grobo_now_us());
-        (void)wire_tell(l->m, "time", host, "pong", pong, 0, false);
+        (void)wire_tell(l->m, "time", host, "pong", pong, WIRE_ONCE);
     }
 }
 
@@ -162,7 +162,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
         (void)wire_tell(l->m, "group", l->group, "permit",
                         json_pack("{s:i,s:s,s:I}", "v", FLEET_VERSION, "leader", l->id, "seq",
                                   (json_int_t)l->permit_seq++),
-                        0, false);
+                        WIRE_ONCE);
     }
 }
 
@@ -347,7 +347,7 @@ void leader_latch(leader *l, const char *how)
     if (how) {
         json_object_set_new(latch, "how", json_string(how));
     }
-    (void)wire_tell(l->m, "group", l->group, "latch", latch, 1, true);
+    (void)wire_tell(l->m, "group", l->group, "latch", latch, WIRE_SURE | WIRE_KEPT);
 }
 
 void leader_listen(leader *l, const char *what)

@@ -52,8 +52,8 @@ static void ask_time(agent *g, agent_leader *l, int number)
 {
     l->sent_us[number] = grobo_now_us();
     (void)wire_tell(g->m, "time", l->id, "ping",
-                    json_pack("{s:i,s:s,s:i}", "v", FLEET_VERSION, "host", g->host, "n", number), 0,
-                    false);
+                    json_pack("{s:i,s:s,s:i}", "v", FLEET_VERSION, "host", g->host, "n", number),
+                    WIRE_ONCE);
 }
 
 /* ---- judging --------------------------------------------------------------------------------- */

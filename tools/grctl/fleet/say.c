@@ -8,10 +8,9 @@
 
 /* ---- in general ------------------------------------------------------------------------------ */
 
-static void publish_here(agent *g, const char *a, const char *b, json_t *object, int qos,
-                         bool retained)
+static void publish_here(agent *g, const char *a, const char *b, json_t *object, int how)
 {
-    (void)wire_tell(g->m, g->host, a, b, object, qos, retained);
+    (void)wire_tell(g->m, g->host, a, b, object, how);
 }
 
 /* ---- the agent ------------------------------------------------------------------------------- */
@@ -59,18 +58,19 @@ static json_t *factsheet(const agent *g)
 
 void say_hello(agent *g)
 {
-    publish_here(g, "factsheet", NULL, factsheet(g), 1, true);
-    publish_here(g, "connection", NULL, connection(g, "ONLINE"), 1, true);
+    publish_here(g, "factsheet", NULL, factsheet(g), WIRE_SURE | WIRE_KEPT);
+    publish_here(g, "connection", NULL, connection(g, "ONLINE"), WIRE_SURE | WIRE_KEPT);
 }
 
 void say_goodbye(agent *g)
 {
-    publish_here(g, "connection", NULL, connection(g, "OFFLINE"), 1, true);
+    publish_here(g, "connection", NULL, connection(g, "OFFLINE"), WIRE_SURE | WIRE_KEPT);
 }
 
 void say_latch(agent *g)
 {
-    (void)wire_tell(g->m, "group", g->latch_group, "latch", json_incref(g->latch), 1, true);
+    (void)wire_tell(g->m, "group", g->latch_group, "latch", json_incref(g->latch),
+                    WIRE_SURE | WIRE_KEPT);
 }
 
 /* ---- robots ---------------------------------------------------------------------------------- */
@@ -115,9 +115,9 @@ void say_state(agent *g, const seat *s, bool last_too)
                                : json_pack("{s:i,s:I,s:b}", "v", FLEET_VERSION, "seq",
                                            (json_int_t)g->seq, "up", 0);
     if (last_too) {
-        publish_here(g, s->name, "last", json_incref(state), 0, true);
+        publish_here(g, s->name, "last", json_incref(state), WIRE_KEPT);
     }
-    publish_here(g, s->name, "state", state, 0, false);
+    publish_here(g, s->name, "state", state, WIRE_ONCE);
 }
 
 void say_event(agent *g, const seat *s, const char *kind, const char *text)
@@ -130,7 +130,7 @@ void say_event(agent *g, const seat *s, const char *kind, const char *text)
         json_object_set_new(event, "robot", json_string(s->name));
     }
     app_note(g->a, "%s%s%s%s%s", s ? s->name : "", s ? ": " : "", kind, *text ? ": " : "", text);
-    publish_here(g, "event", NULL, event, 1, false);
+    publish_here(g, "event", NULL, event, WIRE_SURE);
 }
 
 void say_stopped(agent *g)
@@ -147,7 +147,7 @@ void say_stopped(agent *g)
     publish_here(g, "event", NULL,
                  json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "stopped", "id",
                            g->latch_id, "robots", robots, "at_ms", (json_int_t)wire_wall_ms()),
-                 1, false);
+                 WIRE_SURE);
 }
 
 static json_t *results_of(const agent *g)
@@ -171,7 +171,7 @@ void say_ended(agent *g, const char *order)
     publish_here(g, "event", NULL,
                  json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "ended", "id",
                            order, "robots", results_of(g), "at_ms", (json_int_t)wire_wall_ms()),
-                 1, false);
+                 WIRE_SURE);
 }
 
 void say_answer(agent *g, const agent_order *order, const char *code, const char *message,

@@ -33,14 +33,13 @@ bool wire_publish(mqtt *m, const mqtt_message *with, json_t *object, int qos, in
     return sent;
 }
 
-bool wire_tell(mqtt *m, const char *a, const char *b, const char *c, json_t *object, int qos,
-               bool retained)
+bool wire_tell(mqtt *m, const char *a, const char *b, const char *c, json_t *object, int how)
 {
     char topic[FLEET_TOPIC_BYTES];
-    const mqtt_message message = {.topic = topic, .retained = retained};
+    const mqtt_message message = {.topic = topic, .retained = (how & WIRE_KEPT) != 0};
     if (!fleet_topic(topic, a, b, c, NULL)) {
         json_decref(object);
         return false;
     }
-    return wire_publish(m, &message, object, qos, 0);
+    return wire_publish(m, &message, object, how & WIRE_SURE, 0);
 }
