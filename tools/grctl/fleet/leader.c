@@ -52,7 +52,7 @@ static void take_event(leader *l, peer *p, json_t *event)
     if (kind && id && strcmp(kind, "ended") == 0 && strcmp(id, p->prepared) == 0) {
         keep(&p->ended, event);
     }
-    if (kind && id && strcmp(kind, "stopped") == 0) {
+    if (kind && id && strcmp(kind, "stopped") == 0 && strcmp(id, l->stop) == 0) {
         keep(&p->stopped, event);
     }
     if (l->on_event) {
@@ -335,15 +335,14 @@ bool leader_answered(const leader *l)
 
 void leader_latch(leader *l, const char *how)
 {
-    char id[FLEET_ID_BYTES];
     const char *before = l->latch ? fleet_text(l->latch, "id") : NULL;
     if (how || !before) {
-        fleet_make_id(id);
+        fleet_make_id(l->stop);
     } else {
-        snprintf(id, sizeof id, "%s", before);
+        snprintf(l->stop, sizeof l->stop, "%s", before);
     }
     json_t *latch = json_pack("{s:i,s:b,s:s,s:s,s:I}", "v", FLEET_VERSION, "stopped", how != NULL,
-                              "id", id, "by", l->id, "at_ms", (json_int_t)wire_wall_ms());
+                              "id", l->stop, "by", l->id, "at_ms", (json_int_t)wire_wall_ms());
     if (how) {
         json_object_set_new(latch, "how", json_string(how));
     }

@@ -306,7 +306,8 @@ static bool prepare_one(seat *s, words *w, char *complaint, size_t capacity)
 /* Why it cannot be now; NULL: it can. */
 static const char *busy(const agent *g)
 {
-    return g->latched ? "a stop of the group stands" : g->plays ? "another motion is played" : NULL;
+    const char *latched = agent_latched(g);
+    return latched ? latched : g->plays ? "another motion is played" : NULL;
 }
 
 static void choose_ends(agent *g, const json_t *body)
@@ -366,10 +367,10 @@ static const char *prepare_all(agent *g, words *w, char *complaint, size_t capac
             return complaint;
         }
     }
-    return n == 0        ? "no such robot"
-           : g->latched  ? "a stop of the group stands"
-           : !g->listens ? "the broker went away"
-                         : NULL;
+    return n == 0             ? "no such robot"
+           : agent_latched(g) ? agent_latched(g)
+           : !g->listens      ? "the broker went away"
+                              : NULL;
 }
 
 static void prepare(agent *g, agent_order *order)
@@ -442,12 +443,16 @@ static void cancel(agent *g, agent_order *order)
 /* After the latch was taken back: what the engines keep latched too. Nothing moves. */
 static void reset(agent *g, agent_order *order)
 {
-    int error = g->latched ? GROBO_ERR_LATCHED : GROBO_OK;
+    const char *latched = agent_latched(g);
+    int error = latched ? GROBO_ERR_LATCHED : GROBO_OK;
     for (int i = 0; i < g->all.n && !error; i++) {
         seat *s = &g->all.seats[i];
         error = s->is_open ? grobo_robot_reset(s->c.robot) : GROBO_OK;
     }
-    answer(g, order, error ? grobo_error_name(error) : NULL, error ? grobo_error_text(error) : "");
+    answer(g, order, error ? grobo_error_name(error) : NULL,
+           latched ? latched
+           : error ? grobo_error_text(error)
+                   : "");
 }
 
 static void put(agent *g, agent_order *order)
@@ -538,7 +543,7 @@ static void end_play(agent *g)
         settles(g)) {
         return;
     }
-    answer_play(g, "canceled", g->latched ? "a stop of the group stands" : "it was stopped");
+    answer_play(g, "canceled", agent_latched(g) ? agent_latched(g) : "it was stopped");
     say_ended(g, g->play.is.id);
     for (int i = 0; i < g->all.n; i++) {
         g->all.seats[i].c.moving = g->all.seats[i].c.moving && !g->all.seats[i].chosen;

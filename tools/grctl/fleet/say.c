@@ -45,15 +45,18 @@ static json_t *joints_of(const seat *s)
 
 static json_t *factsheet(const agent *g)
 {
-    json_t *robots = json_array();
+    json_t *robots = json_array(), *groups = json_array();
     for (int i = 0; i < g->all.n; i++) {
         const seat *s = &g->all.seats[i];
         json_array_append_new(robots, json_pack("{s:s,s:s,s:o}", "name", s->name, "model",
                                                 s->is_open ? app_model(&s->a)->name : "", "joints",
                                                 s->is_open ? joints_of(s) : json_array()));
     }
-    return json_pack("{s:i,s:s,s:[s,s],s:o}", "v", FLEET_VERSION, "epoch", g->epoch, "groups",
-                     FLEET_ALL, g->group, "robots", robots);
+    for (int i = 0; i < g->n_groups; i++) {
+        json_array_append_new(groups, json_string(g->groups[i].name));
+    }
+    return json_pack("{s:i,s:s,s:o,s:o}", "v", FLEET_VERSION, "epoch", g->epoch, "groups", groups,
+                     "robots", robots);
 }
 
 void say_hello(agent *g)
@@ -67,9 +70,9 @@ void say_goodbye(agent *g)
     publish_here(g, "connection", NULL, connection(g, "OFFLINE"), WIRE_SURE | WIRE_KEPT);
 }
 
-void say_latch(agent *g)
+void say_latch(agent *g, const agent_group *group)
 {
-    (void)wire_tell(g->m, "group", g->latch_group, "latch", json_incref(g->latch),
+    (void)wire_tell(g->m, "group", group->name, "latch", json_incref(group->latch),
                     WIRE_SURE | WIRE_KEPT);
 }
 
@@ -98,7 +101,7 @@ static json_t *state_of(const agent *g, const seat *s)
         json_pack("{s:i,s:I,s:I,s:b,s:s,s:b,s:b}", "v", FLEET_VERSION, "seq", (json_int_t)g->seq,
                   "t_us", (json_int_t)grobo_now_us(), "up", s->c.up && !s->c.link_error, "play",
                   grobo_sequencer_state_name(grobo_robot_play_state(s->c.robot)), "moving",
-                  grobo_robot_moving(s->c.robot), "stopped", g->latched);
+                  grobo_robot_moving(s->c.robot), "stopped", agent_latched(g) != NULL);
     json_object_set_new(state, "trip",
                         trip.trip == GROBO_TRIP_NONE ? json_null()
                                                      : app_json_code(grobo_trip_name(trip.trip)));
@@ -133,20 +136,21 @@ void say_event(agent *g, const seat *s, const char *kind, const char *text)
     publish_here(g, "event", NULL, event, WIRE_SURE);
 }
 
-void say_stopped(agent *g)
+void say_stopped(agent *g, const agent_group *group)
 {
     json_t *robots = json_array();
     for (int i = 0; i < g->all.n; i++) {
         const seat *s = &g->all.seats[i];
         bool there = s->is_open && s->c.up && !s->c.link_error;
-        bool sure = there && (g->brakes ? s->c.estop_ended && s->c.estop_result >= 0
-                                        : !grobo_robot_moving(s->c.robot));
+        bool sure = there && (agent_brakes(group) ? s->c.estop_ended && s->c.estop_result >= 0
+                                                  : !grobo_robot_moving(s->c.robot));
         json_array_append_new(
             robots, json_pack("{s:s,s:b,s:b}", "name", s->name, "there", there, "stopped", sure));
     }
     publish_here(g, "event", NULL,
                  json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "stopped", "id",
-                           g->latch_id, "robots", robots, "at_ms", (json_int_t)wire_wall_ms()),
+                           fleet_text(group->latch, "id"), "robots", robots, "at_ms",
+                           (json_int_t)wire_wall_ms()),
                  WIRE_SURE);
 }
 
