@@ -53,10 +53,12 @@ groups: {one: [a, b], two: [c, d]}
 robots: {a: {device: sim}, b: {device: sim}, c: {device: sim}, d: {device: $work/none}}
 EOF2
 
-# begin_agent HOST: $agent is its process.
+# begin_agent HOST [OPTIONS]: $agent is its process.
 begin_agent() {
-    "$GRCTL" -d "$1" agent --broker "$broker" --host "$1" --motions "$work/motions" \
-        >"$work/$1.out" 2>"$work/$1.err" &
+    agent_host=$1
+    shift
+    "$GRCTL" -d "$agent_host" agent --broker "$broker" --host "$agent_host" \
+        --motions "$work/motions" "$@" >"$work/$agent_host.out" 2>"$work/$agent_host.err" &
     agent=$!
     pids="$pids $agent"
 }
@@ -70,13 +72,13 @@ is_listed() {
 }
 begin_agent one
 agent_one=$agent
-begin_agent two
+begin_agent two --label arms,left
 check "agents are listed" both wait_for is_listed one ONLINE --- wait_for is_listed two ONLINE
 check "a robot that is not there is said once" grep -q '^d: .*none: no such file' "$work/two.err"
 check_json "their robots and groups" \
     '[(l["host"], [r["name"] for r in l["robots"]], l["groups"]) for l in
       sorted(lines, key=lambda l: l["host"])] ==
-     [("one", ["a", "b"], ["all", "one"]), ("two", ["c", "d"], ["all", "two"])]' \
+     [("one", ["a", "b"], ["all", "one"]), ("two", ["c", "d"], ["all", "two", "arms", "left"])]' \
     fleet list --json
 check_json "how they are" \
     '{(l["host"], l["robot"]): l["up"] for l in lines} ==
@@ -90,6 +92,9 @@ check "TLS wants certificates to check by" fails 2 '--ca names the file' \
 check "no such order" fails 2 'there are list, status' fleet dance
 check "an agent has robots of the configuration" fails 2 'agent: -d names a robot or a group' \
     "$GRCTL" -d sim agent --broker "$broker"
+
+check "a label is a name" fails 2 "at most 8 names of letters" \
+    "$GRCTL" -d one agent --broker "$broker" --label a,b/c
 
 # ---- orders --------------------------------------------------------------------------------------
 
@@ -139,12 +144,26 @@ complains_of() {
     grep -q "^one/$1: stopped" "$work/err"
 }
 check "an emergency stop is told robot by robot" stopped estop
-check "it stands" fails 1 'one: prepare: a stop of the group stands' \
+check "it stands" fails 1 'one: prepare: a stop of group one stands' \
     fleet play greet.pseq --group one
 check "until it is taken back" exits 0 fleet reset --group one
 check "a soft stop" stopped stop
-check "stands as well" fails 1 'a stop of the group stands' fleet play greet.pseq --group one
+check "stands as well" fails 1 'a stop of group one stands' fleet play greet.pseq --group one
 check "and is taken back" exits 0 fleet reset --group one
+# A stop of all, one of the group, and that of the group taken back.
+two_stops() {
+    exits 1 fleet estop && exits 0 fleet stop --group one && exits 1 fleet reset --group one &&
+        complains 'one: reset: a stop of group all stands' || return 1
+    exits 1 fleet play greet.pseq --group one && complains 'a stop of group all stands' &&
+        exits 0 fleet reset && exits 0 fleet play greet.pseq -s 400 --group one
+}
+check "a stop of all stands when that of a group is taken back" two_stops
+labelled() {
+    exits 1 fleet stop --group arms && fails 1 'two: prepare: a stop of group arms stands' \
+        fleet play greet.pseq --group left && exits 0 fleet play greet.pseq -s 400 --group one &&
+        exits 0 fleet reset --group arms
+}
+check "a label is a group of its own" labelled
 leader_killed() {
     plays "$@" && kill -9 "$play" && { wait "$play"; written "$work/one.err" "$lapsed"; }
 }
@@ -182,7 +201,7 @@ came_back() {
     wait_for is_listed one ONLINE && wait_for is_listed two ONLINE && rests
 }
 check "agents come back to it, and nothing moves" came_back
-check "a stop that it forgot still stands" fails 1 'two: prepare: a stop of the group stands' \
+check "a stop that it forgot still stands" fails 1 'two: prepare: a stop of group two stands' \
     fleet play greet.pseq --group two
 check "it can be taken back" exits 0 fleet reset --group two --host two
 check "and robots play again" exits 0 fleet play greet.pseq -s 400 --group one

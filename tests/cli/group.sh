@@ -100,6 +100,30 @@ interrupted() {
 }
 check "Ctrl-C stops all" interrupted
 
+state_is() { # PATTERN: of $program, as ps has it
+    case $(ps -o stat= -p "$program") in
+    $1*) ;;
+    *) return 1 ;;
+    esac
+}
+ended_or_suspended() {
+    state_is Z || state_is T
+}
+# It is suspended once, when all stand: continued, it has nothing to be stopped for, and ends.
+suspended() {
+    begins && kill -TSTP "$program" && wait_for state_is T || return 1
+    kill -CONT "$program"
+    wait_for state_is '[!T]' && wait_for ended_or_suspended
+    state_is T && { echo 'suspended twice'; kill -KILL "$program"; }
+    wait "$program"
+    status_ended=$?
+    [ $status_ended -gt 128 ] && [ "$(kill -l $((status_ended - 128)))" = TSTP ] &&
+        ! grep 'stopped for safety' "$work/said" && all_hold && return
+    echo "status $status_ended"
+    return 1
+}
+check "Ctrl-Z stops all, then suspends" suspended
+
 stopped() {
     begins && exits 0 "$GRCTL" -d stage estop && each_says 'stopped.* and verified' err && ended 4
 }

@@ -5,13 +5,14 @@
 #include "tools/grctl/fleet/agent.h"
 #include "tools/grctl/fleet/broker.h"
 
-enum { OPT_HOST = BROKER_OPTIONS, OPT_GROUP, OPT_MOTIONS, OPTIONS };
+enum { OPT_HOST = BROKER_OPTIONS, OPT_GROUP, OPT_LABEL, OPT_MOTIONS, OPTIONS };
 
 static const cli_option options[OPTIONS] = {
     BROKER_OPTION_ROWS,
     [OPT_HOST] = OPTION_TEXT("host", 0, "NAME", "what this machine is called (its own name)"),
     [OPT_GROUP] =
         OPTION_TEXT("group", 0, "NAME", "the group of its robots, beside all (that of -d)"),
+    [OPT_LABEL] = OPTION_TEXT("label", 0, "NAME,...", "further groups of its robots, at most 8"),
     [OPT_MOTIONS] = OPTION_TEXT("motions", 0, "FOLDER", "where motion files are (motions)"),
 };
 
@@ -24,6 +25,25 @@ static int take_name(app *a, int option, const char *otherwise, const char *what
                         text);
     }
     snprintf(name, FLEET_NAME_BYTES, "%s", text);
+    return EXIT_DONE;
+}
+
+/* NAME,... */
+static int take_labels(app *a, agent *g)
+{
+    const cli_value *given = app_option(a, OPT_LABEL);
+    char name[FLEET_NAME_BYTES];
+    for (const char *at = given->given ? given->text : ""; *at; at += *at == ',') {
+        size_t length = strcspn(at, ",");
+        snprintf(name, sizeof name, "%.*s", length < sizeof name ? (int)length : 0, at);
+        if (!fleet_is_name(name) || g->n_groups == AGENT_GROUPS) {
+            return app_fail(a, EXIT_USAGE, "ARG",
+                            "--label '%s': at most 8 names of letters, digits, _ and - are wanted",
+                            given->text);
+        }
+        agent_join(g, name);
+        at += length;
+    }
     return EXIT_DONE;
 }
 
@@ -46,11 +66,6 @@ static int check_robots(app *a)
 static int serve(agent *g)
 {
     while (!g->all.host.signal) {
-        for (int i = 0; i < g->all.n; i++) {
-            if (g->all.seats[i].c.signal) {
-                return EXIT_SIGNAL + g->all.seats[i].c.signal;
-            }
-        }
         if (event_base_loop(g->all.host.base, EVLOOP_ONCE) != 0) {
             return app_fail_error(g->a, EXIT_ROBOT, GROBO_ERR_IO, "agent");
         }
@@ -63,24 +78,31 @@ static int run(app *a)
 {
     static agent g;
     static broker b;
-    char host[FLEET_NAME_BYTES], group[FLEET_NAME_BYTES], own[FLEET_NAME_BYTES];
+    char group[FLEET_NAME_BYTES], own[FLEET_NAME_BYTES];
     const cli_value *motions = app_option(a, OPT_MOTIONS);
+    memset(&g, 0, sizeof g);
+    g.motions = motions->given ? motions->text : "motions";
     fleet_host_name(own);
     int status = broker_read(&b, a);
     if (!status) {
         status = check_robots(a);
     }
     if (!status) {
-        status = take_name(a, OPT_HOST, own, "host", host);
+        status = take_name(a, OPT_HOST, own, "host", g.host);
     }
     if (!status) {
         status =
             take_name(a, OPT_GROUP, a->group ? a->group->name : a->robot->name, "group", group);
     }
+    if (!status) {
+        agent_join(&g, FLEET_ALL);
+        agent_join(&g, group);
+        status = take_labels(a, &g);
+    }
     if (status) {
         return status;
     }
-    status = agent_begin(&g, a, &b.config, host, group, motions->given ? motions->text : "motions");
+    status = agent_begin(&g, a, &b.config);
     return agent_end(&g, status ? status : serve(&g));
 }
 

@@ -8,6 +8,7 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/keys.h"
+#include "tools/grctl/play/frames.h"
 #include "tools/grctl/play/keys.h"
 #include "tools/grctl/play/play.h"
 #include "tools/grctl/show/render.h"
@@ -161,16 +162,11 @@ static json_t *deviation_json(deviation d)
 static json_t *summary_json(const conn *c, deviation following, deviation end)
 {
     const show *s = c->ctx;
-    grobo_robot_counters n;
-    grobo_jitter jitter;
-    conn_counters(c, &n);
-    grobo_robot_jitter(c->robot, &jitter);
-    return json_pack("{s:b,s:b,s:I,s:I,s:{s:I,s:I,s:I},s:o,s:o}", "done", 1, "watched",
-                     !s->unwatched, "frames", (json_int_t)n.motion_frames, "late_frames",
-                     (json_int_t)n.late_frames, "jitter_us", "p50", (json_int_t)jitter.p50_us,
-                     "p99", (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us,
-                     "max_error_deg", deviation_json(end), "max_following_deg",
-                     deviation_json(following));
+    json_t *summary = frames_json(c);
+    json_object_set_new(summary, "watched", json_boolean(!s->unwatched));
+    json_object_set_new(summary, "max_error_deg", deviation_json(end));
+    json_object_set_new(summary, "max_following_deg", deviation_json(following));
+    return summary;
 }
 
 static void print_deviation(const conn *c, const char *what, deviation d)
@@ -184,7 +180,6 @@ static void print_deviation(const conn *c, const char *what, deviation d)
 static void print_summary(const conn *c, deviation following)
 {
     grobo_robot_counters n;
-    grobo_jitter jitter;
     deviation end;
     end.deg = render_worst_error(c, &end.joint);
     if (c->a->json) {
@@ -192,14 +187,10 @@ static void print_summary(const conn *c, deviation following)
         return;
     }
     conn_counters(c, &n);
-    grobo_robot_jitter(c->robot, &jitter);
     if (app_option(c->a, PLAY_TABLE)->given) {
         render_reached(c);
     }
-    app_print("%llu frame%s, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
-              (unsigned long long)n.motion_frames, n.motion_frames == 1 ? "" : "s",
-              (unsigned long long)n.late_frames, (long long)jitter.p50_us, (long long)jitter.p99_us,
-              (long long)jitter.max_us);
+    frames_print(c, "");
     if (n.stretched) {
         app_print("%llu move%s too fast for a servo and got more time\n",
                   (unsigned long long)n.stretched, n.stretched == 1 ? " was" : "s were");

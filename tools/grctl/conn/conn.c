@@ -677,14 +677,35 @@ void conn_link_idle(conn_link *link, app *a)
 
 /* ---- leaving -------------------------------------------------------------------------------- */
 
-/* After Ctrl-Z: what moves stands before the process is suspended. */
+/* Has Ctrl-Z ended the command, and the process was not suspended yet? */
+static bool is_to_suspend(const conn *c)
+{
+    return c && c->signal == os_suspension && !c->suspended && c->up && !c->link_error;
+}
+
+/* After Ctrl-Z: every robot of the loop stands before the process is suspended, once. */
 static void suspend(conn *c)
 {
-    if (c->signal != os_suspension || !c->up || c->link_error) {
+    conn_link *first = c->a->beside ? c->a->beside : c->link;
+    if (!is_to_suspend(c)) {
         return;
     }
-    c->leaving = true;
-    (void)conn_wait(c, grobo_robot_exit(grobo_session_robot(c->session), GROBO_EXIT_HOLD));
+    for (const conn_link *link = first; link; link = link->beside) {
+        conn *u = link->user;
+        if (is_to_suspend(u)) {
+            u->leaving = true;
+            int job = grobo_robot_exit(grobo_session_robot(u->session), GROBO_EXIT_HOLD);
+            u->waiting_for = job > 0 ? job : 0;
+        }
+    }
+    for (const conn_link *link = first; link; link = link->beside) {
+        conn *u = link->user;
+        if (is_to_suspend(u)) {
+            (void)conn_wait_until(u, job_done);
+            u->waiting_for = 0;
+            u->suspended = true;
+        }
+    }
     conn_suspend();
 }
 

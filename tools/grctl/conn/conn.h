@@ -83,6 +83,7 @@ struct conn {
     bool up;        /* the line is open, and the robot has answered where that was asked */
     bool moving;    /* a motion is or may be under way; the exit policy ends it */
     bool leaving;   /* the exit policy is being carried out: signals wait */
+    bool suspended; /* by Ctrl-Z, when the robot stood */
 };
 
 /*

@@ -30,21 +30,30 @@ void conn_suspend(void)
     os_suspend();
 }
 
+static bool moves(const conn *c)
+{
+    return c->up && !c->link_error && (c->moving || grobo_robot_moving(c->robot));
+}
+
 /*
  * What moves is stopped first: that ends the command, as Ctrl-C does, and conn_close() suspends the
- * process when the robot stands. While nothing moves it is suspended at once, and continues.
+ * process when every robot of the loop stands. While none moves it is suspended at once, and
+ * continues.
  */
 static void on_suspend(evutil_socket_t number, short what, void *ctx)
 {
-    conn_link *link = ctx;
-    conn *c = link->user;
-    if (c && c->a->stops) {
-        return; /* in a moment it has ended */
+    bool any_moves = false, any_leaves = false;
+    for (const conn_link *link = ctx; link; link = link->beside) {
+        const conn *c = link->user;
+        if (c && c->a->stops) {
+            return; /* in a moment it has ended */
+        }
+        any_moves |= c && moves(c);
+        any_leaves |= c && c->leaving;
     }
-    bool moves = c && c->up && !c->link_error && (c->moving || grobo_robot_moving(c->robot));
-    if (!moves) {
+    if (!any_moves) {
         conn_suspend();
-    } else if (!c->leaving) {
+    } else if (!any_leaves) {
         on_signal(number, what, ctx);
     }
 }

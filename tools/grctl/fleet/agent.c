@@ -6,20 +6,52 @@
 #include "tools/grctl/fleet/agent.h"
 #include "tools/grctl/fleet/orders.h"
 #include "tools/grctl/fleet/say.h"
+#include "tools/grctl/fleet/wire.h"
 
 enum { TICK_US = 100000, LAST_EVERY = 10 /* ticks */, RETRY_US = 5000000 };
 
 /* ---- stops ----------------------------------------------------------------------------------- */
 
-/* Every robot of the group, in this call. */
-static void stop_now(agent *g, bool estop)
+void agent_join(agent *g, const char *group)
+{
+    for (int i = 0; i < g->n_groups; i++) {
+        if (strcmp(g->groups[i].name, group) == 0) {
+            return;
+        }
+    }
+    if (g->n_groups < AGENT_GROUPS) {
+        snprintf(g->groups[g->n_groups++].name, FLEET_NAME_BYTES, "%s", group);
+    }
+}
+
+const char *agent_latched(const agent *g)
+{
+    static char text[FLEET_NAME_BYTES + 32];
+    for (int i = 0; i < g->n_groups; i++) {
+        if (g->groups[i].latch) {
+            snprintf(text, sizeof text, "a stop of group %s stands", g->groups[i].name);
+            return text;
+        }
+    }
+    return NULL;
+}
+
+bool agent_brakes(const agent_group *group)
+{
+    const char *how = fleet_text(group->latch, "how");
+    return !how || strcmp(how, "stop") != 0;
+}
+
+/* Every robot, in this call. */
+static void stop_now(agent *g, bool brakes)
 {
     for (int i = 0; i < g->all.n; i++) {
         seat *s = &g->all.seats[i];
         if (!s->is_open) {
             continue;
         }
-        if (estop) {
+        if (brakes) {
+            s->c.estop_ended = false;
             (void)grobo_robot_estop(s->c.robot);
         } else {
             (void)grobo_robot_stop(s->c.robot, false);
@@ -29,36 +61,38 @@ static void stop_now(agent *g, bool estop)
 }
 
 /* The retained stop of a group: it stands until who has its id takes it back. */
-static void take_latch(agent *g, const char *group, const mqtt_message *message)
+static void take_latch(agent *g, agent_group *group, json_t *latch)
+{
+    const char *id = latch ? fleet_text(latch, "id") : NULL;
+    const char *before = group->latch ? fleet_text(group->latch, "id") : NULL;
+    bool known = id && before && strcmp(id, before) == 0;
+    if (!id || strlen(id) != FLEET_ID_BYTES - 1) {
+        return; /* what cannot be read changes nothing */
+    }
+    if (json_is_true(json_object_get(latch, "stopped"))) {
+        json_decref(group->latch);
+        group->latch = json_incref(latch);
+        if (!known) {
+            stop_now(g, agent_brakes(group));
+            group->telling = true;
+        }
+    } else if (known) {
+        json_decref(group->latch);
+        group->latch = NULL;
+        group->telling = false;
+        say_event(g, NULL, "released", "the stop of the group was taken back");
+    }
+}
+
+static void find_latch(agent *g, const char *name, const mqtt_message *message)
 {
     json_t *latch = message->size ? fleet_read(message->payload, message->size) : NULL;
-    const char *id = latch ? fleet_text(latch, "id") : NULL;
-    bool stopped = latch && json_is_true(json_object_get(latch, "stopped"));
-    if (!latch || !id || strlen(id) != FLEET_ID_BYTES - 1) {
-        json_decref(latch); /* what cannot be read changes nothing */
-        return;
-    }
-    if (!stopped) {
-        if (g->latched && strcmp(id, g->latch_id) == 0) {
-            g->latched = false;
-            json_decref(g->latch);
-            g->latch = NULL;
-            say_event(g, NULL, "released", "the stop of the group was taken back");
+    for (int i = 0; i < g->n_groups; i++) {
+        if (strcmp(g->groups[i].name, name) == 0) {
+            take_latch(g, &g->groups[i], latch);
         }
-        json_decref(latch);
-        return;
     }
-    bool is_news = !g->latched || strcmp(id, g->latch_id) != 0;
-    g->latched = true;
-    snprintf(g->latch_id, sizeof g->latch_id, "%s", id);
-    snprintf(g->latch_group, sizeof g->latch_group, "%s", group);
-    json_decref(g->latch);
-    g->latch = latch;
-    if (is_news) {
-        const char *how = fleet_text(latch, "how");
-        stop_now(g, !how || strcmp(how, "stop") != 0);
-        g->telling = true;
-    }
+    json_decref(latch);
 }
 
 static bool stands(const seat *s)
@@ -76,8 +110,12 @@ static void tell_stopped(agent *g)
             return;
         }
     }
-    g->telling = false;
-    say_stopped(g);
+    for (int i = 0; i < g->n_groups; i++) {
+        if (g->groups[i].telling) {
+            g->groups[i].telling = false;
+            say_stopped(g, &g->groups[i]);
+        }
+    }
 }
 
 /* ---- the permit ------------------------------------------------------------------------------ */
@@ -123,7 +161,7 @@ static void on_message(void *ctx, const mqtt_message *message)
     char part[4][FLEET_NAME_BYTES];
     int n = fleet_parts(message->topic, part);
     if (n == 3 && strcmp(part[0], "group") == 0 && strcmp(part[2], "latch") == 0) {
-        take_latch(g, part[1], message);
+        find_latch(g, part[1], message);
     } else if (message->retained) {
         say_event(g, NULL, "refused", "a retained message is no order");
     } else if (n == 3 && strcmp(part[0], "group") == 0 && strcmp(part[2], "permit") == 0) {
@@ -135,39 +173,34 @@ static void on_message(void *ctx, const mqtt_message *message)
     }
 }
 
-static void subscribe(agent *g, const char *a, const char *b, const char *c, bool retained)
-{
-    char topic[FLEET_TOPIC_BYTES];
-    if (fleet_topic(topic, a, b, c, NULL)) {
-        (void)mqtt_subscribe(g->m, topic, 1, retained);
-    }
-}
-
 /* The latches first; orders when they have come. */
 static void on_up(void *ctx)
 {
     agent *g = ctx;
     app_report(g->a,
-               json_pack("{s:b,s:s,s:s,s:s}", "connected", 1, "host", g->host, "group", g->group,
-                         "epoch", g->epoch),
+               json_pack("{s:b,s:s,s:s,s:s}", "connected", 1, "host", g->host, "group",
+                         g->groups[1].name, "epoch", g->epoch),
                "connected to the broker as %s", g->host);
     output_flush();
-    subscribe(g, "group", FLEET_ALL, "latch", true);
-    subscribe(g, "group", g->group, "latch", true);
+    for (int i = 0; i < g->n_groups; i++) {
+        wire_subscribe(g->m, "group", g->groups[i].name, "latch", true);
+    }
     g->listens = false;
     g->settled_us = grobo_now_us() + AGENT_SETTLE_US;
     say_hello(g);
-    if (g->latch) {
-        say_latch(g); /* a broker may have forgotten it */
-    }
 }
 
 static void begin_listening(agent *g)
 {
-    subscribe(g, "group", FLEET_ALL, "permit", false);
-    subscribe(g, "group", g->group, "permit", false);
-    subscribe(g, "time", g->host, "pong", false);
-    subscribe(g, g->host, "cmd", "+", false);
+    for (int i = 0; i < g->n_groups; i++) {
+        const agent_group *group = &g->groups[i];
+        wire_subscribe(g->m, "group", group->name, "permit", false);
+        if (group->latch) {
+            say_latch(g, group); /* a broker may have forgotten it */
+        }
+    }
+    wire_subscribe(g->m, "time", g->host, "pong", false);
+    wire_subscribe(g->m, g->host, "cmd", "+", false);
     g->listens = true;
 }
 
@@ -211,9 +244,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     if (g->plays && g->all.team && !g->let_go && now_us - g->permit_us > AGENT_PERMIT_US) {
         let_go(g);
     }
-    if (g->telling) {
-        tell_stopped(g);
-    }
+    tell_stopped(g);
     orders_age(g, now_us);
     g->seq++;
     for (int i = 0; i < g->all.n; i++) {
@@ -255,7 +286,7 @@ static void open_robots(agent *g, bool first)
         } else if (!status && !first) {
             app_note(g->a, "%s is there", s->name);
         }
-        if (!status && g->latched) {
+        if (!status && agent_latched(g)) {
             (void)grobo_robot_latch(s->c.robot);
         }
     }
@@ -297,18 +328,13 @@ static int make_timer(agent *g)
     return g->tick && event_add(g->tick, &period) == 0 ? EXIT_DONE : EXIT_ROBOT;
 }
 
-int agent_begin(agent *g, app *a, const mqtt_config *with, const char *host, const char *group,
-                const char *motions)
+int agent_begin(agent *g, app *a, const mqtt_config *with)
 {
     static config_group one;
     mqtt_config config = *with;
     char topic[FLEET_TOPIC_BYTES];
     const char *why;
-    memset(g, 0, sizeof *g);
     g->a = a;
-    g->motions = motions;
-    snprintf(g->host, sizeof g->host, "%s", host);
-    snprintf(g->group, sizeof g->group, "%s", group);
     fleet_make_id(g->epoch);
     if (a->group) {
         one = *a->group;
@@ -329,7 +355,7 @@ int agent_begin(agent *g, app *a, const mqtt_config *with, const char *host, con
     config.id = g->host;
     (void)fleet_topic(topic, g->host, "connection", NULL, NULL);
     config.will_topic = topic;
-    config.will = g->lost_text[0];
+    config.will = g->will;
     config.on_up = on_up;
     config.on_down = on_down;
     config.on_message = on_message;
@@ -362,7 +388,9 @@ int agent_end(agent *g, int status)
     conn_forget(g->tick);
     mqtt_free(g->m);
     orders_free(g);
-    json_decref(g->latch);
+    for (int i = 0; i < g->n_groups; i++) {
+        json_decref(g->groups[i].latch);
+    }
     if (g->all.seats) {
         troupe_end(&g->all);
     }

@@ -17,6 +17,7 @@
 enum {
     AGENT_PENDING = 16,       /* orders that wait for the clock of their sender, or their turn */
     AGENT_LEADERS = 8,        /* whose clocks are known */
+    AGENT_GROUPS = 10,        /* all, that of -d, and labels */
     AGENT_PERMIT_US = 600000, /* without one for so long, what is played is let go */
     AGENT_SETTLE_US = 200000, /* from the latches to the first order */
     AGENT_CLOCK_AGE_US = 10000000 /* an offset that is older is measured again */
@@ -24,6 +25,13 @@ enum {
 
 /* What becomes of a motion whose permit lapses. */
 typedef enum agent_lost { AGENT_STOP = 0, AGENT_FINISH, AGENT_EXIT } agent_lost;
+
+/* A group that its robots are of. Every group has a stop of its own. */
+typedef struct agent_group {
+    char name[FLEET_NAME_BYTES];
+    json_t *latch; /* the stop that stands, to be told again where the broker forgot it; or NULL */
+    bool telling;  /* how that went is still to be told */
+} agent_group;
 
 typedef struct agent_leader {
     char id[FLEET_ID_BYTES];
@@ -47,21 +55,16 @@ typedef struct agent {
     mqtt *m;
     const char *motions; /* the folder of motion files */
     char host[FLEET_NAME_BYTES];
-    char group[FLEET_NAME_BYTES]; /* besides "all" */
+    agent_group groups[AGENT_GROUPS]; /* the first is "all" */
+    int n_groups;
     char epoch[FLEET_ID_BYTES];
-    char lost_text[2][320]; /* connection: CONNECTIONBROKEN, ONLINE */
+    char will[320]; /* connection: CONNECTIONBROKEN */
     int64_t seq;
     bool listens;       /* orders are taken */
     int64_t settled_us; /* when they will be */
     fleet_seen seen;
     agent_leader leaders[AGENT_LEADERS];
     agent_order orders[AGENT_PENDING];
-    /* the stop that stands, of a group */
-    bool latched;
-    char latch_id[FLEET_ID_BYTES];
-    char latch_group[FLEET_NAME_BYTES];
-    json_t *latch; /* to be said again where the broker forgot it */
-    bool telling;  /* how the stop went is still to be told */
     /* what is played */
     bool plays, started;
     agent_order play; /* whose answer is due until all are ready */
@@ -75,9 +78,18 @@ typedef struct agent {
     int64_t retry_us;
 } agent;
 
-/* Begins; a->group or the one robot of -d are its robots. 0 or the exit status. */
-int agent_begin(agent *g, app *a, const mqtt_config *broker, const char *host, const char *group,
-                const char *motions);
+/* One more group; one that is known, or that there is no room for, changes nothing. */
+void agent_join(agent *g, const char *group);
+/* "a stop of group NAME stands", until the next call; NULL: none does. */
+const char *agent_latched(const agent *g);
+/* A stop that brakes at once, not softly. */
+bool agent_brakes(const agent_group *group);
+
+/*
+ * Begins; a->group or the one robot of -d are its robots. host, groups and motions were set before.
+ * 0 or the exit status.
+ */
+int agent_begin(agent *g, app *a, const mqtt_config *broker);
 /* What waits: orders, robots that may be there again, the end of a motion. */
 void agent_work(agent *g);
 /* Says goodbye, and leaves the robots. Returns the exit status. */

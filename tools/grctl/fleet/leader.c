@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "tools/grctl/fleet/leader.h"
+#include "tools/grctl/fleet/wire.h"
 #include "tools/grctl/lang/lang.h"
 
 enum { CONNECT_US = 5000000, SEEN_US = 300000, ORDER_EXPIRY_S = 2 };
@@ -52,7 +52,7 @@ static void take_event(leader *l, peer *p, json_t *event)
     if (kind && id && strcmp(kind, "ended") == 0 && strcmp(id, p->prepared) == 0) {
         keep(&p->ended, event);
     }
-    if (kind && id && strcmp(kind, "stopped") == 0) {
+    if (kind && id && strcmp(kind, "stopped") == 0 && strcmp(id, l->stop) == 0) {
         keep(&p->stopped, event);
     }
     if (l->on_event) {
@@ -75,15 +75,12 @@ static void take_answer(leader *l, json_t *answer)
 static void take_ping(leader *l, const json_t *ping)
 {
     const char *host = fleet_text(ping, "host");
-    char topic[FLEET_TOPIC_BYTES], text[160];
-    if (!host || !fleet_is_name(host) || !fleet_topic(topic, "time", host, "pong", NULL)) {
-        return;
+    if (host && fleet_is_name(host)) {
+        json_t *pong =
+            json_pack("{s:i,s:s,s:I,s:I}", "v", FLEET_VERSION, "leader", l->id, "n",
+                      (json_int_t)fleet_number(ping, "n", 0), "t_us", (json_int_t)grobo_now_us());
+        (void)wire_tell(l->m, "time", host, "pong", pong, WIRE_ONCE);
     }
-    int n = snprintf(text, sizeof text, "{\"v\":%d,\"leader\":\"%s\",\"n\":%lld,\"t_us\":%lld}",
-                     FLEET_VERSION, l->id, (long long)fleet_number(ping, "n", 0),
-                     (long long)grobo_now_us());
-    const mqtt_message pong = {.topic = topic, .payload = text, .size = (size_t)n};
-    (void)mqtt_publish(l->m, &pong, 0, 0);
 }
 
 static void take_of_host(leader *l, char part[4][FLEET_NAME_BYTES], int n, json_t *object)
@@ -130,24 +127,16 @@ static void on_message(void *ctx, const mqtt_message *message)
 
 /* ---- the connection -------------------------------------------------------------------------- */
 
-static void subscribe(leader *l, const char *a, const char *b, const char *c, bool retained)
-{
-    char topic[FLEET_TOPIC_BYTES];
-    if (fleet_topic(topic, a, b, c, NULL)) {
-        (void)mqtt_subscribe(l->m, topic, 1, retained);
-    }
-}
-
 static void on_up(void *ctx)
 {
     leader *l = ctx;
     l->up = true;
-    subscribe(l, "ack", l->id, NULL, false);
-    subscribe(l, "time", l->id, "ping", false);
-    subscribe(l, "group", l->group, "latch", true);
-    subscribe(l, "+", "factsheet", NULL, true);
-    subscribe(l, "+", "event", NULL, false);
-    subscribe(l, "+", "connection", NULL, true);
+    wire_subscribe(l->m, "ack", l->id, NULL, false);
+    wire_subscribe(l->m, "time", l->id, "ping", false);
+    wire_subscribe(l->m, "group", l->group, "latch", true);
+    wire_subscribe(l->m, "+", "factsheet", NULL, true);
+    wire_subscribe(l->m, "+", "event", NULL, false);
+    wire_subscribe(l->m, "+", "connection", NULL, true);
 }
 
 static void on_down(void *ctx, const char *why)
@@ -167,16 +156,14 @@ static void on_refused(void *ctx, const char *why)
 static void on_tick(evutil_socket_t fd, short what, void *ctx)
 {
     leader *l = ctx;
-    char topic[FLEET_TOPIC_BYTES], text[160];
     (void)fd;
     (void)what;
-    if (!l->permits || !fleet_topic(topic, "group", l->group, "permit", NULL)) {
-        return;
+    if (l->permits) {
+        (void)wire_tell(l->m, "group", l->group, "permit",
+                        json_pack("{s:i,s:s,s:I}", "v", FLEET_VERSION, "leader", l->id, "seq",
+                                  (json_int_t)l->permit_seq++),
+                        WIRE_ONCE);
     }
-    int n = snprintf(text, sizeof text, "{\"v\":%d,\"leader\":\"%s\",\"seq\":%lld}", FLEET_VERSION,
-                     l->id, (long long)l->permit_seq++);
-    const mqtt_message permit = {.topic = topic, .payload = text, .size = (size_t)n};
-    (void)mqtt_publish(l->m, &permit, 0, 0);
 }
 
 static void on_time(evutil_socket_t fd, short what, void *ctx)
@@ -321,14 +308,9 @@ static void send_order(leader *l, peer *p, const char *verb, const json_t *body)
     }
     json_object_update(order, head);
     json_decref(head);
-    char *text = json_dumps(order, JSON_COMPACT);
-    if (text && fleet_topic(topic, p->host, "cmd", verb, NULL)) {
-        const mqtt_message message = {
-            .topic = topic, .payload = text, .size = strlen(text), .response = l->ack};
-        (void)mqtt_publish(l->m, &message, 1, ORDER_EXPIRY_S);
-    }
-    free(text);
-    json_decref(order);
+    (void)fleet_topic(topic, p->host, "cmd", verb, NULL);
+    const mqtt_message message = {.topic = topic, .response = l->ack};
+    (void)wire_publish(l->m, &message, order, 1, ORDER_EXPIRY_S);
 }
 
 void leader_order(leader *l, const char *verb, json_t *body)
@@ -353,29 +335,21 @@ bool leader_answered(const leader *l)
 
 void leader_latch(leader *l, const char *how)
 {
-    char topic[FLEET_TOPIC_BYTES], id[FLEET_ID_BYTES];
     const char *before = l->latch ? fleet_text(l->latch, "id") : NULL;
     if (how || !before) {
-        fleet_make_id(id);
+        fleet_make_id(l->stop);
     } else {
-        snprintf(id, sizeof id, "%s", before);
+        snprintf(l->stop, sizeof l->stop, "%s", before);
     }
     json_t *latch = json_pack("{s:i,s:b,s:s,s:s,s:I}", "v", FLEET_VERSION, "stopped", how != NULL,
-                              "id", id, "by", l->id, "at_ms", (json_int_t)time(NULL) * 1000);
+                              "id", l->stop, "by", l->id, "at_ms", (json_int_t)wire_wall_ms());
     if (how) {
         json_object_set_new(latch, "how", json_string(how));
     }
-    char *text = json_dumps(latch, JSON_COMPACT);
-    if (text && fleet_topic(topic, "group", l->group, "latch", NULL)) {
-        const mqtt_message message = {
-            .topic = topic, .payload = text, .size = strlen(text), .retained = true};
-        (void)mqtt_publish(l->m, &message, 1, 0);
-    }
-    free(text);
-    json_decref(latch);
+    (void)wire_tell(l->m, "group", l->group, "latch", latch, WIRE_SURE | WIRE_KEPT);
 }
 
 void leader_listen(leader *l, const char *what)
 {
-    subscribe(l, "+", "+", what, false);
+    wire_subscribe(l->m, "+", "+", what, false);
 }

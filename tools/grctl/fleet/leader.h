@@ -21,7 +21,7 @@ typedef struct peer {
     char prepared[FLEET_ID_BYTES];
     json_t *answer;  /* of the last order, or NULL */
     json_t *ended;   /* of what was prepared, or NULL */
-    json_t *stopped; /* how its robots obeyed the latch, or NULL */
+    json_t *stopped; /* how its robots obeyed the latch that was published, or NULL */
     int64_t asked_us, took_us;
 } peer;
 
@@ -37,9 +37,10 @@ typedef struct leader {
     int n;
     bool up, seen; /* connected; what is retained has come */
     const char *why;
-    json_t *latch; /* of the group, or NULL */
-    bool permits;  /* a motion is led: then a broker that goes away ends every wait */
-    bool lost;     /* it did */
+    json_t *latch;             /* of the group, or NULL */
+    char stop[FLEET_ID_BYTES]; /* the id of the latch that was published last, or "" */
+    bool permits;              /* a motion is led: then a broker that goes away ends every wait */
+    bool lost;                 /* it did */
     int64_t permit_seq;
     struct event *tick;
     void (*on_event)(struct leader *l, const peer *p, json_t *event); /* or NULL */

@@ -7,6 +7,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/fleet/orders.h"
 #include "tools/grctl/fleet/say.h"
+#include "tools/grctl/fleet/wire.h"
 
 enum { PENDING_US = 1000000, MOTION_NAME_BYTES = 128, WORDS = 16 };
 
@@ -49,14 +50,10 @@ static bool is_fresh(const agent_leader *l, int64_t now_us)
 
 static void ask_time(agent *g, agent_leader *l, int number)
 {
-    char topic[FLEET_TOPIC_BYTES], text[128];
     l->sent_us[number] = grobo_now_us();
-    int n = snprintf(text, sizeof text, "{\"v\":%d,\"host\":\"%s\",\"n\":%d}", FLEET_VERSION,
-                     g->host, number);
-    if (fleet_topic(topic, "time", l->id, "ping", NULL)) {
-        const mqtt_message ping = {.topic = topic, .payload = text, .size = (size_t)n};
-        (void)mqtt_publish(g->m, &ping, 0, 0);
-    }
+    (void)wire_tell(g->m, "time", l->id, "ping",
+                    json_pack("{s:i,s:s,s:i}", "v", FLEET_VERSION, "host", g->host, "n", number),
+                    WIRE_ONCE);
 }
 
 /* ---- judging --------------------------------------------------------------------------------- */
@@ -309,7 +306,8 @@ static bool prepare_one(seat *s, words *w, char *complaint, size_t capacity)
 /* Why it cannot be now; NULL: it can. */
 static const char *busy(const agent *g)
 {
-    return g->latched ? "a stop of the group stands" : g->plays ? "another motion is played" : NULL;
+    const char *latched = agent_latched(g);
+    return latched ? latched : g->plays ? "another motion is played" : NULL;
 }
 
 static void choose_ends(agent *g, const json_t *body)
@@ -369,10 +367,10 @@ static const char *prepare_all(agent *g, words *w, char *complaint, size_t capac
             return complaint;
         }
     }
-    return n == 0        ? "no such robot"
-           : g->latched  ? "a stop of the group stands"
-           : !g->listens ? "the broker went away"
-                         : NULL;
+    return n == 0             ? "no such robot"
+           : agent_latched(g) ? agent_latched(g)
+           : !g->listens      ? "the broker went away"
+                              : NULL;
 }
 
 static void prepare(agent *g, agent_order *order)
@@ -445,12 +443,16 @@ static void cancel(agent *g, agent_order *order)
 /* After the latch was taken back: what the engines keep latched too. Nothing moves. */
 static void reset(agent *g, agent_order *order)
 {
-    int error = g->latched ? GROBO_ERR_LATCHED : GROBO_OK;
+    const char *latched = agent_latched(g);
+    int error = latched ? GROBO_ERR_LATCHED : GROBO_OK;
     for (int i = 0; i < g->all.n && !error; i++) {
         seat *s = &g->all.seats[i];
         error = s->is_open ? grobo_robot_reset(s->c.robot) : GROBO_OK;
     }
-    answer(g, order, error ? grobo_error_name(error) : NULL, error ? grobo_error_text(error) : "");
+    answer(g, order, error ? grobo_error_name(error) : NULL,
+           latched ? latched
+           : error ? grobo_error_text(error)
+                   : "");
 }
 
 static void put(agent *g, agent_order *order)
@@ -541,7 +543,7 @@ static void end_play(agent *g)
         settles(g)) {
         return;
     }
-    answer_play(g, "canceled", g->latched ? "a stop of the group stands" : "it was stopped");
+    answer_play(g, "canceled", agent_latched(g) ? agent_latched(g) : "it was stopped");
     say_ended(g, g->play.is.id);
     for (int i = 0; i < g->all.n; i++) {
         g->all.seats[i].c.moving = g->all.seats[i].c.moving && !g->all.seats[i].chosen;

@@ -1,40 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "tools/grctl/fleet/say.h"
+#include "tools/grctl/fleet/wire.h"
 #include "tools/grctl/show/render.h"
 
 /* ---- in general ------------------------------------------------------------------------------ */
 
-static int64_t wall_ms(void)
+static void publish_here(agent *g, const char *a, const char *b, json_t *object, int how)
 {
-    return (int64_t)time(NULL) * 1000;
-}
-
-/* Takes the reference of the object. */
-static void publish(agent *g, const char *topic, json_t *object, int qos, bool retained)
-{
-    char *text = object ? json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
-    if (text) {
-        const mqtt_message message = {
-            .topic = topic, .payload = text, .size = strlen(text), .retained = retained};
-        (void)mqtt_publish(g->m, &message, qos, 0);
-    }
-    free(text);
-    json_decref(object);
-}
-
-static void publish_here(agent *g, const char *a, const char *b, json_t *object, int qos,
-                         bool retained)
-{
-    char topic[FLEET_TOPIC_BYTES];
-    if (fleet_topic(topic, g->host, a, b, NULL)) {
-        publish(g, topic, object, qos, retained);
-    } else {
-        json_decref(object);
-    }
+    (void)wire_tell(g->m, g->host, a, b, object, how);
 }
 
 /* ---- the agent ------------------------------------------------------------------------------- */
@@ -42,15 +18,14 @@ static void publish_here(agent *g, const char *a, const char *b, json_t *object,
 static json_t *connection(const agent *g, const char *state)
 {
     return json_pack("{s:i,s:s,s:s,s:I}", "v", FLEET_VERSION, "state", state, "epoch", g->epoch,
-                     "at_ms", (json_int_t)wall_ms());
+                     "at_ms", (json_int_t)wire_wall_ms());
 }
 
 void say_prepare(agent *g)
 {
     json_t *will = connection(g, "CONNECTIONBROKEN");
-    size_t n =
-        will ? json_dumpb(will, g->lost_text[0], sizeof g->lost_text[0] - 1, JSON_COMPACT) : 0;
-    g->lost_text[0][n < sizeof g->lost_text[0] ? n : 0] = '\0';
+    size_t n = json_dumpb(will, g->will, sizeof g->will - 1, JSON_COMPACT);
+    g->will[n < sizeof g->will ? n : 0] = '\0';
     json_decref(will);
 }
 
@@ -70,34 +45,35 @@ static json_t *joints_of(const seat *s)
 
 static json_t *factsheet(const agent *g)
 {
-    json_t *robots = json_array();
+    json_t *robots = json_array(), *groups = json_array();
     for (int i = 0; i < g->all.n; i++) {
         const seat *s = &g->all.seats[i];
         json_array_append_new(robots, json_pack("{s:s,s:s,s:o}", "name", s->name, "model",
                                                 s->is_open ? app_model(&s->a)->name : "", "joints",
                                                 s->is_open ? joints_of(s) : json_array()));
     }
-    return json_pack("{s:i,s:s,s:[s,s],s:o}", "v", FLEET_VERSION, "epoch", g->epoch, "groups",
-                     FLEET_ALL, g->group, "robots", robots);
+    for (int i = 0; i < g->n_groups; i++) {
+        json_array_append_new(groups, json_string(g->groups[i].name));
+    }
+    return json_pack("{s:i,s:s,s:o,s:o}", "v", FLEET_VERSION, "epoch", g->epoch, "groups", groups,
+                     "robots", robots);
 }
 
 void say_hello(agent *g)
 {
-    publish_here(g, "factsheet", NULL, factsheet(g), 1, true);
-    publish_here(g, "connection", NULL, connection(g, "ONLINE"), 1, true);
+    publish_here(g, "factsheet", NULL, factsheet(g), WIRE_SURE | WIRE_KEPT);
+    publish_here(g, "connection", NULL, connection(g, "ONLINE"), WIRE_SURE | WIRE_KEPT);
 }
 
 void say_goodbye(agent *g)
 {
-    publish_here(g, "connection", NULL, connection(g, "OFFLINE"), 1, true);
+    publish_here(g, "connection", NULL, connection(g, "OFFLINE"), WIRE_SURE | WIRE_KEPT);
 }
 
-void say_latch(agent *g)
+void say_latch(agent *g, const agent_group *group)
 {
-    char topic[FLEET_TOPIC_BYTES];
-    if (fleet_topic(topic, "group", g->latch_group, "latch", NULL)) {
-        publish(g, topic, json_incref(g->latch), 1, true);
-    }
+    (void)wire_tell(g->m, "group", group->name, "latch", json_incref(group->latch),
+                    WIRE_SURE | WIRE_KEPT);
 }
 
 /* ---- robots ---------------------------------------------------------------------------------- */
@@ -125,7 +101,7 @@ static json_t *state_of(const agent *g, const seat *s)
         json_pack("{s:i,s:I,s:I,s:b,s:s,s:b,s:b}", "v", FLEET_VERSION, "seq", (json_int_t)g->seq,
                   "t_us", (json_int_t)grobo_now_us(), "up", s->c.up && !s->c.link_error, "play",
                   grobo_sequencer_state_name(grobo_robot_play_state(s->c.robot)), "moving",
-                  grobo_robot_moving(s->c.robot), "stopped", g->latched);
+                  grobo_robot_moving(s->c.robot), "stopped", agent_latched(g) != NULL);
     json_object_set_new(state, "trip",
                         trip.trip == GROBO_TRIP_NONE ? json_null()
                                                      : app_json_code(grobo_trip_name(trip.trip)));
@@ -142,9 +118,9 @@ void say_state(agent *g, const seat *s, bool last_too)
                                : json_pack("{s:i,s:I,s:b}", "v", FLEET_VERSION, "seq",
                                            (json_int_t)g->seq, "up", 0);
     if (last_too) {
-        publish_here(g, s->name, "last", json_incref(state), 0, true);
+        publish_here(g, s->name, "last", json_incref(state), WIRE_KEPT);
     }
-    publish_here(g, s->name, "state", state, 0, false);
+    publish_here(g, s->name, "state", state, WIRE_ONCE);
 }
 
 void say_event(agent *g, const seat *s, const char *kind, const char *text)
@@ -152,31 +128,30 @@ void say_event(agent *g, const seat *s, const char *kind, const char *text)
     char id[FLEET_ID_BYTES];
     fleet_make_id(id);
     json_t *event = json_pack("{s:i,s:s,s:s,s:s,s:I}", "v", FLEET_VERSION, "id", id, "kind", kind,
-                              "message", text, "at_ms", (json_int_t)wall_ms());
+                              "message", text, "at_ms", (json_int_t)wire_wall_ms());
     if (s) {
         json_object_set_new(event, "robot", json_string(s->name));
     }
     app_note(g->a, "%s%s%s%s%s", s ? s->name : "", s ? ": " : "", kind, *text ? ": " : "", text);
-    publish_here(g, "event", NULL, event, 1, false);
+    publish_here(g, "event", NULL, event, WIRE_SURE);
 }
 
-void say_stopped(agent *g)
+void say_stopped(agent *g, const agent_group *group)
 {
     json_t *robots = json_array();
     for (int i = 0; i < g->all.n; i++) {
         const seat *s = &g->all.seats[i];
         bool there = s->is_open && s->c.up && !s->c.link_error;
-        const char *how = fleet_text(g->latch, "how");
-        bool brakes = !how || strcmp(how, "stop") != 0;
-        bool sure = there && (brakes ? s->c.estop_ended && s->c.estop_result >= 0
-                                     : !grobo_robot_moving(s->c.robot));
+        bool sure = there && (agent_brakes(group) ? s->c.estop_ended && s->c.estop_result >= 0
+                                                  : !grobo_robot_moving(s->c.robot));
         json_array_append_new(
             robots, json_pack("{s:s,s:b,s:b}", "name", s->name, "there", there, "stopped", sure));
     }
     publish_here(g, "event", NULL,
                  json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "stopped", "id",
-                           g->latch_id, "robots", robots, "at_ms", (json_int_t)wall_ms()),
-                 1, false);
+                           fleet_text(group->latch, "id"), "robots", robots, "at_ms",
+                           (json_int_t)wire_wall_ms()),
+                 WIRE_SURE);
 }
 
 static json_t *results_of(const agent *g)
@@ -199,8 +174,8 @@ void say_ended(agent *g, const char *order)
 {
     publish_here(g, "event", NULL,
                  json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "ended", "id",
-                           order, "robots", results_of(g), "at_ms", (json_int_t)wall_ms()),
-                 1, false);
+                           order, "robots", results_of(g), "at_ms", (json_int_t)wire_wall_ms()),
+                 WIRE_SURE);
 }
 
 void say_answer(agent *g, const agent_order *order, const char *code, const char *message,

@@ -14,10 +14,10 @@ void say_goodbye(agent *g);
 void say_state(agent *g, const seat *s, bool last_too);
 /* Of a robot, or of the agent (NULL). */
 void say_event(agent *g, const seat *s, const char *kind, const char *text);
-/* How each robot obeyed a stop. */
-void say_stopped(agent *g);
-/* The latch that is known here. */
-void say_latch(agent *g);
+/* How each robot obeyed the stop of a group. */
+void say_stopped(agent *g, const agent_group *group);
+/* The stop of a group that is known here. */
+void say_latch(agent *g, const agent_group *group);
 /* The end of a motion. */
 void say_ended(agent *g, const char *order);
 /* To who ordered. Takes the reference of extra, which may be NULL. */

@@ -29,7 +29,6 @@ struct mqtt {
     bool up, connecting;
     const char *refused; /* what the broker said before it closed the connection, or NULL */
     size_t queued_bytes; /* published since the socket took all of it last */
-    unsigned dropped;
 };
 
 /* ---- the descriptor -------------------------------------------------------------------------- */
@@ -227,7 +226,6 @@ static void on_message(struct mosquitto *client, void *ctx, const struct mosquit
     uint16_t correlation_bytes = 0;
     (void)client;
     if (raw->payloadlen < 0 || raw->payloadlen > MQTT_PAYLOAD_MAX_BYTES) {
-        m->dropped++;
         return;
     }
     (void)mosquitto_property_read_string(properties, MQTT_PROP_RESPONSE_TOPIC, &response, false);
@@ -257,16 +255,6 @@ bool mqtt_is_up(const mqtt *m)
     return m && m->up;
 }
 
-unsigned mqtt_dropped(const mqtt *m)
-{
-    return m->dropped;
-}
-
-bool mqtt_has_more(const mqtt *m)
-{
-    return m->up && mosquitto_want_write(m->client);
-}
-
 bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
 {
     mosquitto_property *properties = NULL;
@@ -274,7 +262,6 @@ bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
         return false;
     }
     if (qos == 0 && m->queued_bytes > MQTT_QUEUE_MAX_BYTES) {
-        m->dropped++;
         return false;
     }
     int result = MOSQ_ERR_SUCCESS;

@@ -15,7 +15,7 @@ struct event_base;
 enum {
     MQTT_PORT = 1883,
     MQTT_TLS_PORT = 8883,
-    MQTT_PAYLOAD_MAX_BYTES = 1 << 20, /* what is longer is dropped and counted */
+    MQTT_PAYLOAD_MAX_BYTES = 1 << 20, /* what is longer is dropped */
     MQTT_QUEUE_MAX_BYTES = 1 << 18    /* QoS 0 is left out while the broker does not take this */
 };
 
@@ -60,10 +60,6 @@ bool mqtt_is_up(const mqtt *m);
 bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s);
 /* Every message of the filter from now on, and, where asked for, what is retained. */
 bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained);
-/* Messages dropped, for their size, or because the broker took nothing. */
-unsigned mqtt_dropped(const mqtt *m);
-/* True while something waits for the broker. */
-bool mqtt_has_more(const mqtt *m);
 /* Says goodbye, so that there is no will, and frees. NULL is fine. Not from a handler. */
 void mqtt_free(mqtt *m);
 

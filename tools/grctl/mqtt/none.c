@@ -43,18 +43,6 @@ bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained)
     return false;
 }
 
-unsigned mqtt_dropped(const mqtt *m)
-{
-    (void)m;
-    return 0;
-}
-
-bool mqtt_has_more(const mqtt *m)
-{
-    (void)m;
-    return false;
-}
-
 void mqtt_free(mqtt *m)
 {
     (void)m;

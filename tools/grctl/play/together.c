@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The robots of a group play a motion in step. */
 #include "tools/grctl/os/keys.h"
+#include "tools/grctl/play/frames.h"
 #include "tools/grctl/play/troupe.h"
 
 enum { KEY_ESTOP = 'e', KEY_STOP = 's', KEY_PAUSE = ' ' };
@@ -72,20 +73,15 @@ static bool is_over(const troupe *t)
     return grobo_team_get_state(t->team) == GROBO_TEAM_ENDED;
 }
 
-static bool is_interrupted(const troupe *t)
-{
-    return t->host.signal || t->seats[0].c.signal;
-}
-
 /* A signal is told to all: it ends the motion smoothly, and conn_close() leaves each robot. */
 static int watch(troupe *t)
 {
-    while (!is_over(t) && !is_interrupted(t)) {
+    while (!is_over(t) && !t->host.signal) {
         if (event_base_loop(t->host.base, EVLOOP_ONCE) != 0) {
             return app_fail_error(t->a, EXIT_ROBOT, GROBO_ERR_IO, "play");
         }
     }
-    if (is_interrupted(t)) {
+    if (t->host.signal) {
         (void)grobo_team_stop(t->team, false);
     }
     return EXIT_DONE;
@@ -133,22 +129,13 @@ static int play(act *c)
 
 static void report(const seat *s)
 {
-    grobo_robot_counters n;
-    grobo_jitter jitter;
-    conn_counters(&s->c, &n);
-    grobo_robot_jitter(s->c.robot, &jitter);
     if (s->a.json) {
-        app_print_json(json_pack("{s:s,s:b,s:I,s:I,s:{s:I,s:I,s:I}}", "name", s->name, "done", 1,
-                                 "frames", (json_int_t)n.motion_frames, "late_frames",
-                                 (json_int_t)n.late_frames, "jitter_us", "p50",
-                                 (json_int_t)jitter.p50_us, "p99", (json_int_t)jitter.p99_us, "max",
-                                 (json_int_t)jitter.max_us));
-        return;
+        json_t *summary = frames_json(&s->c);
+        json_object_set_new(summary, "name", json_string(s->name));
+        app_print_json(summary);
+    } else {
+        frames_print(&s->c, s->a.place);
     }
-    app_print("%s: %llu frame%s, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
-              s->name, (unsigned long long)n.motion_frames, n.motion_frames == 1 ? "" : "s",
-              (unsigned long long)n.late_frames, (long long)jitter.p50_us, (long long)jitter.p99_us,
-              (long long)jitter.max_us);
 }
 
 /* How it went for one; said only of who ended by itself. */
