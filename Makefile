@@ -182,7 +182,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-abi sources wrap deb check-deb release check-families check-cockpit check-ports check-long check-mutants check-map install-lib FORCE
+.PHONY: check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -274,6 +274,9 @@ check-cockpit: all ## the cockpit's page in Chromium (Playwright from PyPI, axe-
 	@GRCTL="$(abspath $(GRCTL))" PYTHON=$(BUILD)/cockpit/bin/python PICTURES="$(PICTURES)" \
 	    AXE=$(BUILD)/cockpit/node_modules/axe-core/axe.min.js BUILD="$(BUILD)" TEST_TIMEOUT_S=1200 \
 	    TEST_LOGS="$(BUILD)/logs/cockpit" tests/run.sh tests/cockpit/page.sh
+
+cockpit-soak: all ## grctl serve with good and bad clients for MINUTES=60: its memory stays flat
+	@GRCTL="$(abspath $(GRCTL))" python3 tests/cockpit/soak.py $(or $(MINUTES),60)
 
 check-tsan: ## the tests of what threads share under ThreadSanitizer
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' RING=link

@@ -1,21 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The cockpit's server: who may ask what, streams, motions, poses. Its clients are those of
-# tests/support/cockpit.py.
-. tests/support/cli.sh
-
-if "$GRCTL" -d sim serve nowhere 2>&1 | grep -q 'without evhttp'; then
-    echo "1..0 # SKIP this grctl has no evhttp"
-    exit
-fi
-if ! have_json; then
-    echo "1..0 # SKIP no python3 to ask the server with"
-    exit
-fi
-
-pages() {
-    python3 tests/support/cockpit.py "$1"
-}
+# The cockpit's server: who may ask what, streams, motions, poses.
+. tests/support/pages.sh
 
 has_jsonschema() {
     python3 -c 'import jsonschema' 2>/dev/null

@@ -1,20 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # The cockpit's server: who drives, what a stop does, what becomes of a page that is lost.
-. tests/support/cli.sh
-
-if "$GRCTL" -d sim serve nowhere 2>&1 | grep -q 'without evhttp'; then
-    echo "1..0 # SKIP this grctl has no evhttp"
-    exit
-fi
-if ! have_json; then
-    echo "1..0 # SKIP no python3 to ask the server with"
-    exit
-fi
-
-pages() {
-    python3 tests/support/cockpit.py "$1"
-}
+. tests/support/pages.sh
 
 check "move, play, pause, seek, speed, queue, limp, capture" pages driving
 check "what is based on an old state is refused" pages stale

@@ -993,4 +993,5 @@ def other_robot():
         page.fall_silent()
 
 
-globals()[sys.argv[1]]()
+if __name__ == "__main__":
+    globals()[sys.argv[1]]()

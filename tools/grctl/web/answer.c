@@ -123,19 +123,3 @@ void serve_accept(serve *s, http_request *r, int result, const char *doing)
     }
     http_reply_json(r, 200, body);
 }
-
-/* ---- bodies ---------------------------------------------------------------------------------- */
-
-json_t *serve_body(http_request *r)
-{
-    size_t size;
-    json_error_t error;
-    const char *text = http_body(r, &size);
-    json_t *body = size ? json_loadb(text, size, JSON_REJECT_DUPLICATES, &error) : json_object();
-    if (!json_is_object(body)) {
-        json_decref(body);
-        http_refuse(r, 400, "syntax", "the body is no JSON object");
-        return NULL;
-    }
-    return body;
-}

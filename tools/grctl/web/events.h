@@ -5,12 +5,15 @@
 
 #include <jansson.h>
 
+#include "tools/grctl/web/http.h"
+
 enum { EVENTS_KEPT = 256 };
 
-typedef struct serve serve;
-
 typedef struct events {
-    int last; /* id of the newest, 0: none */
+    http *to;             /* whose streams are told, NULL: there are none yet */
+    int64_t began_us;     /* the beginning of the clock that is told */
+    int64_t commented_us; /* when the last comment went to the streams */
+    int last;             /* id of the newest, 0: none */
     char *text[EVENTS_KEPT];
 } events;
 
@@ -18,10 +21,12 @@ typedef struct events {
  * Tells all streams, and keeps it. kind and level as the interface has them; `more` is what the
  * event has besides (the reference is taken), or NULL.
  */
-void events_tell(serve *s, const char *kind, const char *level, json_t *more, const char *format,
+void events_tell(events *e, const char *kind, const char *level, json_t *more, const char *format,
                  ...) __attribute__((format(printf, 5, 6)));
-/* Those behind an id, as a text of server-sent events to be freed; NULL: no memory. */
-char *events_since(const events *e, int id);
+/* Makes a stream of a request: with what happened behind its Last-Event-ID, then all to come. */
+void events_stream(const events *e, http_request *r);
+/* The state as it is now, for all streams; the reference is taken. Now and then a comment too. */
+void events_send_state(events *e, json_t *state);
 void events_free(events *e);
 
 #endif

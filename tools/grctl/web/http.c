@@ -496,6 +496,20 @@ const char *http_body(const http_request *r, size_t *size)
     return *size ? (const char *)evbuffer_pullup(body, -1) : "";
 }
 
+json_t *http_object(http_request *r)
+{
+    size_t size;
+    json_error_t error;
+    const char *text = http_body(r, &size);
+    json_t *body = size ? json_loadb(text, size, JSON_REJECT_DUPLICATES, &error) : json_object();
+    if (!json_is_object(body)) {
+        json_decref(body);
+        http_refuse(r, 400, "syntax", "the body is no JSON object");
+        return NULL;
+    }
+    return body;
+}
+
 wall_answer http_check_token(const http_request *r, const char *token)
 {
     return wall_check_token(&port_of(r)->wall, token);

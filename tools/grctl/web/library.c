@@ -281,8 +281,8 @@ static void tell_news(ask *q)
     json_array_foreach(q->news, i, one)
     {
         const char *name = json_string_value(json_array_get(one, 0));
-        events_tell(q->s, "file", "info", json_pack("{s:s}", "motion", name), "%s %s", name,
-                    json_string_value(json_array_get(one, 1)));
+        events_tell(&q->s->events, "file", "info", json_pack("{s:s}", "motion", name), "%s %s",
+                    name, json_string_value(json_array_get(one, 1)));
     }
 }
 

@@ -324,7 +324,7 @@ void player_on_event(serve *s, const grobo_event *event)
     }
     const char *level = event->u.play.error ? "error" : "info";
     const player_item *item = s->player.items;
-    events_tell(s, "play", level, NULL, "%s%s%s%s%s", item ? item->name : "motion", ": ",
+    events_tell(&s->events, "play", level, NULL, "%s%s%s%s%s", item ? item->name : "motion", ": ",
                 state_word(event->u.play.to), event->u.play.error ? ": " : "",
                 event->u.play.error ? grobo_error_text(event->u.play.error) : "");
 }

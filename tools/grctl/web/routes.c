@@ -5,6 +5,7 @@
 
 #include <grobo/port.h>
 
+#include "tools/grctl/web/door.h"
 #include "tools/grctl/web/page.h"
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
@@ -36,31 +37,6 @@ static const verb verbs[] = {
     {"/api/capture", verb_capture, NEEDS_LINE},
     {"/api/reset", verb_reset, 0},
 };
-
-/* ---- bodies ---------------------------------------------------------------------------------- */
-
-static const char *text_of(const json_t *body, const char *key)
-{
-    const char *text = json_string_value(json_object_get(body, key));
-    return text ? text : "";
-}
-
-/* Of a header, or, where a page cannot set one, of the body. */
-static const char *header_or_body(const http_request *r, const json_t *body, const char *header,
-                                  const char *key)
-{
-    const char *value = http_header(r, header);
-    return value ? value : text_of(body, key);
-}
-
-static bool has_token(http_request *r, const json_t *body)
-{
-    wall_answer no = http_check_token(r, header_or_body(r, body, "X-Grobo-Token", "token"));
-    if (no.status) {
-        http_refuse(r, no.status, no.code, "%s", no.message);
-    }
-    return !no.status;
-}
 
 /* ---- what a verb needs ----------------------------------------------------------------------- */
 
@@ -95,12 +71,6 @@ static bool is_granted(serve *s, http_request *r, const json_t *body, unsigned n
 
 /* ---- lease and stop -------------------------------------------------------------------------- */
 
-static const char *name_of(const json_t *body)
-{
-    const char *name = text_of(body, "name");
-    return *name ? name : "a script";
-}
-
 static json_t *lease_answer(const lease_page *page, bool held)
 {
     return json_pack("{s:b,s:s,s:s}", "held", held, "lease", page->secret, "id", page->id);
@@ -108,9 +78,9 @@ static json_t *lease_answer(const lease_page *page, bool held)
 
 static void take(serve *s, http_request *r, const json_t *body)
 {
-    const char *secret = header_or_body(r, body, "X-Grobo-Lease", "lease");
+    const char *secret = door_header_or_body(r, body, "X-Grobo-Lease", "lease");
     bool was_held = lease_is_held(&s->lease);
-    if (!lease_take(&s->lease, name_of(body), secret, s->options->takes_over, grobo_now_us())) {
+    if (!lease_take(&s->lease, door_name(body), secret, s->options->takes_over, grobo_now_us())) {
         refuse_lease(s, r);
         return;
     }
@@ -119,17 +89,17 @@ static void take(serve *s, http_request *r, const json_t *body)
             stops_halt(s);
         }
     }
-    events_tell(s, "lease", "info", NULL, "%s drives", s->lease.holder.name);
+    events_tell(&s->events, "lease", "info", NULL, "%s drives", s->lease.holder.name);
     http_reply_json(r, 200, lease_answer(&s->lease.holder, true));
 }
 
 static void ask(serve *s, http_request *r, const json_t *body)
 {
-    if (!lease_ask(&s->lease, name_of(body), grobo_now_us())) {
+    if (!lease_ask(&s->lease, door_name(body), grobo_now_us())) {
         http_refuse(r, 409, "state", "nobody drives: take it");
         return;
     }
-    events_tell(s, "lease", "info", NULL, "%s asks to drive", s->lease.asker.name);
+    events_tell(&s->events, "lease", "info", NULL, "%s asks to drive", s->lease.asker.name);
     json_t *answer = lease_answer(&s->lease.asker, false);
     json_object_set_new(answer, "granted_ms",
                         json_integer(serve_ms(s, s->lease.asker.since_us + LEASE_ASK_US)));
@@ -138,9 +108,9 @@ static void ask(serve *s, http_request *r, const json_t *body)
 
 static void serve_lease(serve *s, http_request *r, const json_t *body)
 {
-    const char *action = text_of(body, "action");
-    const char *secret = header_or_body(r, body, "X-Grobo-Lease", "lease");
-    if (!has_token(r, body)) {
+    const char *action = door_text(body, "action");
+    const char *secret = door_header_or_body(r, body, "X-Grobo-Lease", "lease");
+    if (!door_has_token(r, body)) {
         return;
     }
     if (strcmp(action, "take") == 0) {
@@ -157,7 +127,7 @@ static void serve_lease(serve *s, http_request *r, const json_t *body)
             refuse_lease(s, r);
             return;
         }
-        events_tell(s, "lease", "info", NULL, "%s",
+        events_tell(&s->events, "lease", "info", NULL, "%s",
                     !gives                     ? "to drive was refused"
                     : lease_is_held(&s->lease) ? "the lease was handed over"
                                                : "nobody drives");
@@ -171,10 +141,10 @@ static void serve_lease(serve *s, http_request *r, const json_t *body)
 static void serve_stop(serve *s, http_request *r, const json_t *body)
 {
     bool estop = strstr(r->path, "estop") != NULL;
-    if (http_is_open(r->server) && !has_token(r, body)) {
+    if (http_is_open(r->server) && !door_has_token(r, body)) {
         return;
     }
-    int result = stops_ask(s, name_of(body), estop);
+    int result = stops_ask(s, door_name(body), estop);
     if (result < 0 && result != GROBO_ERR_CLOSED) {
         serve_refuse(s, r, result, estop ? "estop" : "stop");
     } else if (r->second) {
@@ -186,10 +156,10 @@ static void serve_stop(serve *s, http_request *r, const json_t *body)
 
 static void serve_heartbeat(serve *s, http_request *r, const json_t *body)
 {
-    if (http_is_open(r->server) && !has_token(r, body)) {
+    if (http_is_open(r->server) && !door_has_token(r, body)) {
         return;
     }
-    const char *secret = text_of(body, "lease");
+    const char *secret = door_text(body, "lease");
     if (!lease_is_holder(&s->lease, secret)) {
         refuse_lease(s, r);
     } else if (!serve_is_fresh(s, json_object_get(body, "drawn"))) {
@@ -223,15 +193,8 @@ static void serve_state(serve *s, http_request *r, const json_t *body)
 
 static void serve_events(serve *s, http_request *r, const json_t *body)
 {
-    const char *last = http_header(r, "Last-Event-ID");
-    double id = -1;
     (void)body;
-    if (last && (!cli_read_number(last, &id) || !(id >= 0 && id <= 1e9))) {
-        id = -1;
-    }
-    char *text = events_since(&s->events, (int)id);
-    http_reply_stream(r, text && *text ? text : ": hello\n\n");
-    free(text);
+    events_stream(&s->events, r);
 }
 
 static void serve_motions(serve *s, http_request *r, const json_t *body)
@@ -352,7 +315,7 @@ void serve_request(void *ctx, http_request *r)
         page_serve(r);
         return;
     }
-    json_t *body = serve_body(r);
+    json_t *body = http_object(r);
     if (!body) {
         return;
     }

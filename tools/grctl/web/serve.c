@@ -8,10 +8,8 @@
 
 #include <grobo/port.h>
 
-#include "tools/grctl/cli/output.h"
+#include "tools/grctl/web/door.h"
 #include "tools/grctl/web/serve.h"
-
-enum { COMMENT_US = 900000, TOKEN_LEAST = 16, WRONG_US = 300000 };
 
 /* ---- jobs ------------------------------------------------------------------------------------ */
 
@@ -32,7 +30,7 @@ static void say_end(serve *s, const serve_job *j, const grobo_event_job *job)
     app *a = s->c.a, quiet = *a;
     bool ours = job->result == GROBO_ERR_CANCELED || job->result == GROBO_ERR_SUPERSEDED;
     if (job->result >= 0 || ours) {
-        events_tell(s, "job", "info", result_json(s, job), "%s: %s", j->doing,
+        events_tell(&s->events, "job", "info", result_json(s, job), "%s: %s", j->doing,
                     ours ? "stopped" : "done");
         return;
     }
@@ -41,7 +39,7 @@ static void say_end(serve *s, const serve_job *j, const grobo_event_job *job)
     s->c.job = *job;
     (void)conn_fail(&s->c, job->result, j->doing);
     s->c.a = a;
-    events_tell(s, "job", "error", result_json(s, job), "%s", said);
+    events_tell(&s->events, "job", "error", result_json(s, job), "%s", said);
 }
 
 static void answer_capture(serve *s, const serve_job *j, const grobo_event_job *job)
@@ -99,7 +97,7 @@ static void say_trip(serve *s)
         json_object_set_new(more, "joint", json_integer(s->c.trip.joint));
     }
     s->jogs = s->jog_waits = false;
-    events_tell(s, "trip", "error", more, "%s", said);
+    events_tell(&s->events, "trip", "error", more, "%s", said);
 }
 
 static void on_event(conn *c, const grobo_event *event)
@@ -118,13 +116,13 @@ static void on_event(conn *c, const grobo_event *event)
     case GROBO_EVENT_LINK_DOWN:
         s->jogs = s->jog_waits = s->moves = false;
         s->limp = 0;
-        events_tell(s, "link", "error", NULL, "the line is lost");
+        events_tell(&s->events, "link", "error", NULL, "the line is lost");
         break;
     case GROBO_EVENT_LINK_UP:
-        events_tell(s, "link", "info", NULL, "the line is up: %s", conn_device(c));
+        events_tell(&s->events, "link", "info", NULL, "the line is up: %s", conn_device(c));
         break;
     case GROBO_EVENT_UNWATCHED:
-        events_tell(s, "log", "warning", NULL, "this motion is played unwatched");
+        events_tell(&s->events, "log", "warning", NULL, "this motion is played unwatched");
         break;
     case GROBO_EVENT_JOINT:
         s->readings++;
@@ -144,12 +142,12 @@ static void lose_motion(serve *s)
     bool plays =
         grobo_robot_is_playing(s->c.robot) || grobo_robot_job(s->c.robot) == GROBO_JOB_PLAY;
     if (plays && s->player.on_lost == PLAYER_FINISH) {
-        events_tell(s, "lease", "warning", NULL,
+        events_tell(&s->events, "lease", "warning", NULL,
                     "the page that drives is lost: the motion goes on");
         return;
     }
     bool leaves = plays && s->player.on_lost == PLAYER_EXIT;
-    events_tell(s, "lease", "warning", NULL, "the page that drives is lost: %s",
+    events_tell(&s->events, "lease", "warning", NULL, "the page that drives is lost: %s",
                 leaves ? "the exit policy is carried out" : "the motion stops");
     stops_halt(s);
     if (leaves) {
@@ -162,7 +160,8 @@ static void look_after_lease(serve *s)
 {
     int64_t silent_us = lease_silent_us(&s->lease, grobo_now_us());
     if (silent_us > SERVE_JOG_LOST_US && s->jogs) {
-        events_tell(s, "lease", "warning", NULL, "the page that drives is silent: jogging stops");
+        events_tell(&s->events, "lease", "warning", NULL,
+                    "the page that drives is silent: jogging stops");
         stops_halt(s);
     }
     if (silent_us <= SERVE_PLAY_LOST_US) {
@@ -171,7 +170,7 @@ static void look_after_lease(serve *s)
     if (serve_is_moving(s)) {
         lose_motion(s);
     } else {
-        events_tell(s, "lease", "info", NULL, "the page that drove is gone");
+        events_tell(&s->events, "lease", "info", NULL, "the page that drove is gone");
     }
     lease_end(&s->lease);
 }
@@ -186,24 +185,6 @@ static void look_after_jog(serve *s)
 }
 
 /* ---- the loop -------------------------------------------------------------------------------- */
-
-static void send_state(serve *s)
-{
-    static const char head[] = "event: state\ndata: ";
-    json_t *state = serve_state_json(s);
-    char *data = json_dumps(state, JSON_COMPACT | JSON_REAL_PRECISION(12));
-    size_t n = data ? strlen(data) : 0;
-    char *text = malloc(sizeof head + n + 2);
-    if (data && text) {
-        memcpy(text, head, sizeof head - 1);
-        memcpy(text + sizeof head - 1, data, n);
-        memcpy(text + sizeof head - 1 + n, "\n\n", 2);
-        http_send(s->http, text, sizeof head - 1 + n + 2, true);
-    }
-    free(text);
-    free(data);
-    json_decref(state);
-}
 
 /* Bytes and readings since a second ago. */
 static void measure_load(serve *s, int64_t now_us)
@@ -226,7 +207,6 @@ static void measure_load(serve *s, int64_t now_us)
 
 static void on_tick(evutil_socket_t fd, short what, void *ctx)
 {
-    static const char comment[] = ": alive\n\n";
     serve *s = ctx;
     int64_t now_us = grobo_now_us();
     (void)fd;
@@ -239,11 +219,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     look_after_jog(s);
     if (http_streams(s->http) > 0) {
         library_look(s);
-        send_state(s);
-        if (now_us - s->quiet_us > COMMENT_US) {
-            s->quiet_us = now_us;
-            http_send(s->http, comment, sizeof comment - 1, false);
-        }
+        events_send_state(&s->events, serve_state_json(s));
     }
 }
 
@@ -255,25 +231,12 @@ static bool never(conn *c)
 
 static int start(serve *s)
 {
-    const char *complaint = NULL, *token = getenv("GRCTL_TOKEN");
-    http_config config = {.base = s->c.base,
-                          .address = s->options->listen,
-                          .port = s->options->port,
-                          .name = s->options->name,
-                          .token = token && *token ? token : NULL,
-                          .wrong_us = WRONG_US,
-                          .rule = serve_rule,
-                          .serve = serve_request,
-                          .ctx = s};
-    if (config.token && (strlen(token) < TOKEN_LEAST || strlen(token) >= WALL_TOKEN_BYTES)) {
-        return app_fail(s->a, EXIT_USAGE, "ARG", "serve: GRCTL_TOKEN has %d to %d characters",
-                        TOKEN_LEAST, WALL_TOKEN_BYTES - 1);
+    http_config config = {.base = s->c.base, .rule = serve_rule, .serve = serve_request, .ctx = s};
+    int status = door_open(s->a, s->options, &config, &s->events);
+    if (status) {
+        return status;
     }
-    int error = http_new(&config, &s->http, &complaint);
-    if (error) {
-        return app_fail(s->a, EXIT_ROBOT, grobo_error_name(error), "serve: port %u: %s",
-                        s->options->port, complaint);
-    }
+    s->http = s->events.to;
     s->tick = conn_every(&s->c, SERVE_STATE_US, on_tick, s);
     s->worker = worker_new(s->c.base);
     s->library = library_new(s->a, s->options->folder);
@@ -283,27 +246,6 @@ static int start(serve *s)
     return EXIT_DONE;
 }
 
-static void announce(const serve *s)
-{
-    const char *host = s->options->name     ? s->options->name
-                       : s->options->listen ? s->options->listen
-                                            : "127.0.0.1";
-    char url[256], stop_url[256];
-    snprintf(url, sizeof url, "http://%s:%u/", host, http_port(s->http));
-    snprintf(stop_url, sizeof stop_url, "http://%s:%u/", host, http_stop_port(s->http));
-    if (s->a->json) {
-        app_print_json(json_pack("{s:s,s:s,s:s}", "url", url, "stop_url", stop_url, "token",
-                                 http_token(s->http)));
-    } else {
-        if (http_is_open(s->http)) {
-            app_note(s->a, "serve: plain HTTP beyond this machine: whoever listens on that network "
-                           "reads the token; 'ssh -L' or a proxy with TLS is safer");
-        }
-        app_print("%s#token=%s\n", url, http_token(s->http));
-    }
-    output_flush();
-}
-
 static void finish(serve *s)
 {
     s->ending = true;
@@ -311,7 +253,7 @@ static void finish(serve *s)
     library_free(s->library);
     http_free(s->http);
     conn_forget(s->tick);
-    s->http = NULL;
+    s->http = s->events.to = NULL;
     events_free(&s->events);
 }
 
@@ -321,7 +263,7 @@ static int run(serve *s)
     c->ctx = s;
     c->on_event = on_event;
     s->model = grobo_robot_driver(c->robot)->model;
-    s->began_us = grobo_now_us();
+    s->began_us = s->events.began_us = grobo_now_us();
     s->load_pct = s->load_hz = NAN;
     grobo_robot_config config = serve_config(s);
     int error = grobo_session_configure(c->session, &config);
@@ -330,7 +272,7 @@ static int run(serve *s)
         return status;
     }
     on_tick(-1, 0, s); /* there is a state from the first request on */
-    announce(s);
+    door_announce(s->a, s->options, s->http);
     error = conn_wait_until(c, never);
     c->moving = c->up && serve_is_moving(s);
     c->on_event = NULL; /* nobody is told any more */

@@ -31,6 +31,7 @@ typedef struct serve_job {
     grobo_joint_mask joints;
 } serve_job;
 
+typedef struct serve serve;
 struct serve {
     conn c;
     app *a;
@@ -58,7 +59,6 @@ struct serve {
     uint64_t load_bytes;
     unsigned readings;
     double load_pct, load_hz; /* NAN: not known yet */
-    int64_t quiet_us;         /* when the last text went to the streams */
     bool ending;              /* a signal came: nothing more is begun */
 };
 
@@ -86,9 +86,6 @@ void serve_request(void *ctx, http_request *r);
 
 json_t *serve_robot_json(serve *s);
 json_t *serve_state_json(serve *s);
-
-/* The body of a request as an object; NULL: it was refused. *body is to be freed. */
-json_t *serve_body(http_request *r);
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 

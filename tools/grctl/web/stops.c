@@ -68,7 +68,8 @@ int stops_ask(serve *s, const char *by, bool estop)
     if (news) {
         lease_end(&s->lease);
         s->player.epoch++; /* what was asked for and has not begun does not begin */
-        events_tell(s, "stop", "warning", NULL, "%s by %s", estop ? "emergency stop" : "stop", by);
+        events_tell(&s->events, "stop", "warning", NULL, "%s by %s",
+                    estop ? "emergency stop" : "stop", by);
     }
     stops_look(s);
     return result;
@@ -108,7 +109,7 @@ void stops_on_event(serve *s, const grobo_event *event)
         bool was = unconfirmed(s) != 0;
         t->joints[event->u.joint.joint] = judge(s, event->u.joint.joint);
         if (was && unconfirmed(s) == 0) {
-            events_tell(s, "stop", "info", NULL, "every joint stands");
+            events_tell(&s->events, "stop", "info", NULL, "every joint stands");
         }
     }
     if (event->kind == GROBO_EVENT_LINK_UP) { /* whatever happened meanwhile */

@@ -184,7 +184,7 @@ void verb_jog_on(serve *s)
         s->jog_waits = false;
     } else if (job != GROBO_ERR_STATE && job != GROBO_ERR_FULL) {
         s->jogs = s->jog_waits = false;
-        events_tell(s, "job", "error",
+        events_tell(&s->events, "job", "error",
                     json_pack("{s:o}", "result", app_json_code(grobo_error_name(job))), "jog: %s",
                     grobo_error_text(job));
     }
@@ -300,7 +300,7 @@ void verb_reset(serve *s, http_request *r, json_t *body)
     (void)body;
     int error = stops_reset(s);
     if (!error) {
-        events_tell(s, "stop", "info", NULL, "stop taken back; nothing moves by itself");
+        events_tell(&s->events, "stop", "info", NULL, "stop taken back; nothing moves by itself");
     }
     serve_accept(s, r, error, "reset");
 }

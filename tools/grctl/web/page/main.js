@@ -16,6 +16,7 @@ import { openStream } from './stream.js';
 import { translate } from './text.js';
 
 const OLD_MS = 500;
+const SETTLED_MS = 400;
 const TABS = ['see', 'play', 'joints', 'more'];
 const PANELS = { see: 'see', play: 'motions', joints: 'joints', more: 'more' };
 const id = (name) => document.getElementById(name);
@@ -44,6 +45,7 @@ class App {
         this.selected = -1;
         this.look = setting('look') || 'torque';
         this.log = [];
+        this.leaseAsks = false;
         this.toMatrix = ({ p_m: p, rotation: r }) => [r[0], r[3], r[6], 0, r[1], r[4], r[7], 0,
                                                       r[2], r[5], r[8], 0, p[0], p[1], p[2], 1];
         this.stopper = new Stopper(this.api, () => this.userName(), () => this.schedule());
@@ -230,12 +232,18 @@ class App {
         return this.t('Take control to move the robot.');
     }
 
+    /** Does what the button says; that may be older than what is known by now. */
     async leaseButton() {
-        const status = this.lease.status(), name = this.userName();
+        if (id('lease').ariaDisabled !== 'false') {
+            return;
+        }
+        id('lease').ariaDisabled = 'true'; // until it is drawn again
+        this.leaseAsks = true;
+        const name = this.userName(), { says } = this.leaseSays;
         try {
-            if (status === 'mine') {
+            if (says === 'give') {
                 this.giveBack();
-            } else if (status === 'other') {
+            } else if (says === 'ask') {
                 this.lease.asked(await this.api.post('/api/lease', { action: 'ask', name }),
                                  performance.now());
             } else {
@@ -249,6 +257,7 @@ class App {
         } catch (error) {
             this.fail(error);
         }
+        this.leaseAsks = false;
         this.schedule();
     }
 
@@ -545,7 +554,7 @@ class App {
             : t('Nobody drives');
         let action = { mine: t('Give back'), free: t('Take control'), other: t('Ask for control'),
                        asked: t('Asked …') }[status];
-        let ready = Boolean(this.state) && !this.age();
+        let ready = status === 'mine' || Boolean(this.state) && !this.age();
         const askMs = this.robot ? this.robot.lease.ask_ms : 10000;
         if (status === 'asked') {
             const left = askMs + 300 - (performance.now() - lease.ask.at); // clocks differ a little
@@ -565,11 +574,21 @@ class App {
         }
         setText(id('driver'), words);
         setText(button, action);
-        button.disabled = !ready && status !== 'mine';
+        button.ariaDisabled = String(!this.settled(status) || !ready || this.leaseAsks);
         button.classList.toggle('strong', status !== 'mine' || Boolean(asker));
         id('lease-keep').hidden = !asker;
         setText(id('lease-keep'), t('Keep it'));
         document.body.classList.toggle('driving', status === 'mine');
+    }
+
+    /** Whether the button has said the same for a while: news may change it under a finger. */
+    settled(status) {
+        const now = performance.now();
+        const says = { mine: 'give', free: 'take', other: 'ask', asked: 'over' }[status];
+        if (!this.leaseSays || this.leaseSays.says !== says) {
+            this.leaseSays = { says, since: now };
+        }
+        return now - this.leaseSays.since >= SETTLED_MS;
     }
 
     drawLegend(state) {

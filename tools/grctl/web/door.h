@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/* The way into a page: its listeners and token as the options say, and the link that is printed. */
+#ifndef GRCTL_WEB_DOOR_H
+#define GRCTL_WEB_DOOR_H
+
+#include "tools/grctl/web/events.h"
+#include "tools/grctl/web/web.h"
+
+/*
+ * Fills in e->to, to be freed by http_free(), and what of `config` is an option; base, rule, serve
+ * and ctx are the caller's. 0, or the exit status with the reason said.
+ */
+int door_open(app *a, const web_options *options, http_config *config, events *e);
+/* The link, with its token. */
+void door_announce(const app *a, const web_options *options, const http *h);
+/* A key of a body that is text; "" where there is none. */
+const char *door_text(const json_t *body, const char *key);
+/* Where a page cannot set a header, its value stands in the body. */
+const char *door_header_or_body(const http_request *r, const json_t *body, const char *header,
+                                const char *key);
+/* Has it the token, in header or body? False: it was refused. */
+bool door_has_token(http_request *r, const json_t *body);
+/* Who asks, as said in the body. */
+const char *door_name(const json_t *body);
+
+#endif
