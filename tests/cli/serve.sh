@@ -17,6 +17,7 @@ check "a stream that sends something is dropped" pages greedy
 check "a stream that does not read is dropped, the others miss nothing" pages slow
 check "a stop comes through where all places are taken" pages crowd
 check "motions are listed, previewed, edited to the bit" pages motions
+check "key poses are mirrored, feet moved, motions saved elsewhere" pages making
 check "a motion that would fall says when" pages falls
 check "feet and waist are dragged" pages ik
 check "a robot that is no humanoid" pages other_robot

@@ -645,6 +645,407 @@ def a_name_of_a_file_is_text(browser, server):
         os.unlink(pathlib.Path(server.folder) / name)
 
 
+# ---- make -----------------------------------------------------------------------------------------
+
+
+def edit_motion(page, name):
+    """Opens a motion in the editor, with all that is folded there unfolded."""
+    page.click('#tab-make')
+    page.select_option('#make-open', name)
+    until(page, """name => cockpit.make.draft && cockpit.make.draft.name === name && cockpit.make.look
+        && !cockpit.make.looks.busy""", name)
+    page.evaluate("document.querySelectorAll('#make details').forEach((d) => { d.open = true; })")
+
+
+def fresh_look(page):
+    """The server has looked at the draft as it is."""
+    until(page, 'cockpit.make.look && cockpit.make.look.keys === cockpit.make.draft.keys')
+
+
+def row(page, name):
+    """The slider of a joint of the draft."""
+    return page.locator(f'#make-joints li:has(.joint:text-is("{name}")) input[type=range]')
+
+
+def joint_of(page, name):
+    return page.evaluate('name => cockpit.robot.joints.find((j) => j.name === name).joint', name)
+
+
+def key_deg(page, key, joint):
+    return page.evaluate('([k, j]) => cockpit.make.draft.keys[k].angle_deg[j]', [key, joint])
+
+
+def screen_of(page, joint):
+    """Where the middle of a joint's link is seen, in pixels of the page."""
+    box = page.locator('#view canvas').bounding_box()
+    at = page.evaluate("""joint => {
+        const f = cockpit.figure, n = f.body.linkOf[joint], p = f.at[n], c = f.body.links[n].com;
+        return f.onScreen([0, 1, 2].map((i) => p[i] * c[0] + p[4 + i] * c[1] + p[8 + i] * c[2] + p[12 + i]));
+    }""", joint)
+    return box['x'] + at[0], box['y'] + at[1]
+
+
+def file_lines(server, name):
+    return (pathlib.Path(server.folder) / name).read_bytes().split(b'\n')
+
+
+@test
+def a_pose_is_edited_undone_and_saved_as_a_new_file(browser, server):
+    page = browser.page(server.link)
+    begin = server.state()['angle_deg']
+    edit_motion(page, 'greet.pseq')
+    elbow = joint_of(page, 'R_ELBOW_P')
+    page.locator('.markers button').nth(4).click()
+    until(page, "document.getElementById('make-key-title').textContent === 'Key pose 5 of 10'")
+    assert key_deg(page, 4, elbow) == -30
+    row(page, 'R_ELBOW_P').focus()
+    page.keyboard.press('PageDown')
+    page.keyboard.press('ArrowDown')
+    until(page, "document.querySelector('.labels .chosen')?.textContent === 'R_ELBOW_P -41.0°'")
+    assert key_deg(page, 4, elbow) == -41
+    assert abs(page.evaluate('j => cockpit.figure.pose.q[j] * 180 / Math.PI', elbow) + 41) < 0.01
+    page.keyboard.press('Control+z')
+    assert key_deg(page, 4, elbow) == -40
+    page.keyboard.press('Control+z')
+    assert key_deg(page, 4, elbow) == -30 and not page.evaluate('cockpit.make.draft.changed()')
+    page.keyboard.press('Control+Shift+z')
+    page.click('#make-redo')
+    assert key_deg(page, 4, elbow) == -41
+    fresh_look(page)
+    until(page, "document.getElementById('make-verdict').textContent.startsWith('✓')")
+    page.fill('#make-as', 'greet-low')
+    page.click('#make-save-as')
+    until(page, "document.getElementById('make-told').textContent.startsWith('Saved as greet-low.pseq. ✓')")
+    differ = [b for a, b in zip(file_lines(server, 'greet.pseq'), file_lines(server, 'greet-low.pseq'))
+              if a != b]
+    assert len(differ) == 1 and b'-0.7155' in differ[0], differ
+    # It is that file now: what is changed next is saved over it, and what was done can be undone.
+    assert page.evaluate('cockpit.make.draft.name') == 'greet-low.pseq'
+    page.click('#make-undo')
+    assert key_deg(page, 4, elbow) == -40
+    page.click('#make-save')
+    until(page, "cockpit.make.draft.saved === cockpit.make.draft.keys && !cockpit.make.saving")
+    assert server.call('GET', '/api/motions/greet-low.pseq')['keys'][4]['angle_deg'][elbow] == -40
+    still(server, 0.2)
+    worst = max(abs(a - b) for a, b in zip(begin, server.state()['angle_deg']))
+    assert worst < 1, 'an edit moved the robot'
+
+
+@test
+def an_edit_is_told_of_limits_and_of_a_fall(browser, server):
+    page = browser.page(server.link)
+    edit_motion(page, 'bow.pseq')
+    page.locator('.markers button').nth(1).click()
+    row(page, 'L_ELBOW_P').focus()
+    page.keyboard.press('End')
+    until(page, "document.getElementById('make-verdict').textContent === '▲ L_ELBOW_P at its limit'")
+    until(page, "document.querySelector('.labels .chosen').textContent.endsWith('at its limit')")
+    limits = page.evaluate("cockpit.robot.joints.find((j) => j.name === 'L_ELBOW_P').limits_deg")
+    assert key_deg(page, 1, joint_of(page, 'L_ELBOW_P')) == limits[1]
+    number = page.locator('#make-joints li:has(.joint:text-is("L_ELBOW_P")) input[type=text]')
+    number.fill('999')
+    number.press('Enter')
+    assert key_deg(page, 1, joint_of(page, 'L_ELBOW_P')) == limits[1]
+    page.keyboard.press('Control+z')
+    for name in ('R_ANKLE_P', 'L_ANKLE_P'): # a lean that no sole holds
+        number = page.locator(f'#make-joints li:has(.joint:text-is("{name}")) input[type=text]')
+        number.fill('25' if name[0] == 'R' else '-25')
+        number.press('Enter')
+    until(page, "document.getElementById('make-verdict').textContent.startsWith('▲ would fall at')")
+    until(page, "cockpit.make.stance && cockpit.make.margin() < 0 && !cockpit.figure.pose.balance.inside")
+
+
+@test
+def a_joint_is_dragged_in_the_figure(browser, server):
+    page = browser.page(server.link)
+    edit_motion(page, 'greet.pseq')
+    page.locator('.markers button').nth(1).click()
+    joint = joint_of(page, 'L_SHOULDER_P')
+    yaw = page.evaluate('cockpit.figure.camera.yaw')
+    until(page, '!cockpit.figure.dirty')
+    before = page.evaluate('j => cockpit.make.degrees()[j]', joint)
+    x, y = screen_of(page, joint_of(page, 'L_ELBOW_P'))
+    page.evaluate('j => cockpit.select(j)', joint)
+    x, y = screen_of(page, joint)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y - 10, steps=8)
+    page.mouse.up()
+    until(page, '!cockpit.make.frozen')
+    after = key_deg(page, 1, joint)
+    note(f'60 pixels turned L_SHOULDER_P from {before:.1f} to {after} degrees')
+    assert abs(after - before) > 5, 'the drag turned nothing'
+    assert page.evaluate('cockpit.selected') == joint
+    assert page.evaluate('cockpit.figure.camera.yaw') == yaw, 'the drag turned the picture'
+    assert page.evaluate('cockpit.make.draft.before.length') == 1, 'a drag is one step'
+    page.keyboard.press('Control+z')
+    assert not page.evaluate('cockpit.make.draft.changed()')
+    page.mouse.move(40, 120)
+    box = page.locator('#view canvas').bounding_box()
+    page.mouse.move(box['x'] + 20, box['y'] + 60)
+    page.mouse.down()
+    page.mouse.move(box['x'] + 90, box['y'] + 60, steps=4)
+    page.mouse.up()
+    assert page.evaluate('cockpit.figure.camera.yaw') != yaw, 'beside the robot a drag turns the picture'
+
+
+@test
+def feet_and_waist_are_moved_by_handles(browser, server):
+    page = browser.page(server.link)
+    edit_motion(page, 'bow.pseq')
+    knee = joint_of(page, 'R_KNEE_P')
+    before = key_deg(page, 0, knee)
+    waist = page.evaluate('cockpit.figure.at[0][14]')
+    page.click('#make-nudge button:text-is("Down")')
+    page.click('#make-nudge button:text-is("Down")')
+    until(page, 'z => Math.abs(cockpit.figure.at[0][14] - (z - 0.01)) < 0.0005', waist)
+    assert key_deg(page, 0, knee) < before - 3, 'a lower waist bends the knees'
+    until(page, '!cockpit.make.ik.busy')
+    assert page.evaluate('cockpit.make.draft.before.length') == 2
+    # By the handle in the picture: 15 pixels up and down again is nearly the pose that was.
+    page.click('#make-handle button:text-is("Left foot")')
+    box = page.locator('#view canvas').bounding_box()
+    until(page, '!cockpit.figure.dirty')
+    link = page.evaluate("cockpit.robot.body.feet.find((f) => f.side === 'left').link")
+    x, y = page.evaluate("""n => cockpit.figure.onScreen(cockpit.figure.at[n].slice(12, 15))""", link)
+    left = joint_of(page, 'L_KNEE_P')
+    bent = key_deg(page, 0, left)
+    page.mouse.move(box['x'] + x, box['y'] + y)
+    page.mouse.down()
+    page.mouse.move(box['x'] + x, box['y'] + y - 15, steps=5)
+    until(page, '([j, was]) => cockpit.make.draft.keys[0].angle_deg[j] > was + 3', [left, bent])
+    page.mouse.up()
+    until(page, '!cockpit.make.ik.busy && !cockpit.make.frozen')
+    assert page.evaluate('cockpit.make.draft.before.length') == 3, 'a drag is one step'
+    # Out of reach is told, and leaves the pose as it is.
+    far = page.evaluate('JSON.stringify(cockpit.make.draft.keys)')
+    page.click('#make-handle button:text-is("Waist")')
+    page.evaluate("cockpit.make.moveHandle('waist', [0, 0, 3], cockpit.make.shown(), 'far')")
+    until(page, "document.getElementById('make-verdict').textContent === '▲ out of reach'")
+    assert page.evaluate('JSON.stringify(cockpit.make.draft.keys)') == far
+    # Where the figure stands by itself is where the server says that it stands.
+    page.click('#tab-see')
+    until(page, 'cockpit.state.body')
+    apart = page.evaluate("""import('./body.js').then(({ stand }) => {
+        const s = cockpit.state, here = stand(cockpit.figure.body, s.angle_deg.map((d) => d * Math.PI / 180));
+        return Math.max(...cockpit.toMatrix(s.body.root).map((v, n) => Math.abs(v - here[n])));
+    })""")
+    assert apart < 0.0005, f'{apart} m from where the server puts it'
+
+
+@test
+def legs_of_a_file_stay_targets(browser, server):
+    page = browser.page(server.link)
+    edit_motion(page, 'step.pseq')
+    page.click('#make-nudge button:text-is("Up")')
+    until(page, 'cockpit.make.draft.before.length === 1 && !cockpit.make.ik.busy')
+    fresh_look(page)
+    page.fill('#make-as', 'step-high.pseq')
+    page.click('#make-save-as')
+    until(page, "document.getElementById('make-told').textContent.startsWith('Saved as')")
+    was = server.call('GET', '/api/motions/step.pseq')['keys']
+    now = server.call('GET', '/api/motions/step-high.pseq')['keys']
+    assert now[1:] == was[1:]
+    waist = now[0]['links'][0]
+    assert abs(waist['p_m'][2] - was[0]['links'][0]['p_m'][2] - 0.005) < 1e-6, waist
+    assert waist['base'] and now[0]['links'][1:] == was[0]['links'][1:]
+    assert now[0]['angle_deg'] != was[0]['angle_deg']
+
+
+@test
+def keys_are_added_moved_copied_mirrored_and_deleted(browser, server):
+    page = browser.page(server.link)
+    edit_motion(page, 'greet.pseq')
+    times = 'cockpit.make.draft.keys.map((k) => k.time_ms)'
+    was = page.evaluate(times)
+    page.locator('#make-track input').focus()
+    page.locator('#make-track input').fill('2500')
+    until(page, "document.getElementById('make-key-title').textContent.startsWith('Between')")
+    page.click('#make-add')
+    assert page.evaluate(times) == was[:6] + [2500] + was[6:]
+    page.locator('.markers [aria-selected=true]').focus()
+    page.keyboard.press('Shift+ArrowRight')
+    assert page.evaluate(times)[6] == 2510
+    page.keyboard.press('ArrowLeft')
+    until(page, "cockpit.make.at === 2200 && document.activeElement.matches('.markers [aria-selected=true]')")
+    page.keyboard.press('Control+c')
+    page.locator('#make-track input').fill('4600')
+    page.keyboard.press('Control+v')
+    assert page.evaluate(times) == was[:6] + [2510, 2900, 3600, 4200, 4600, 5000]
+    copied = 'n => JSON.stringify(cockpit.make.draft.keys[n].angle_deg)'
+    assert page.evaluate(copied, 10) == page.evaluate(copied, 5)
+    page.click('#make-mirror')
+    arms = page.evaluate("""() => { const k = cockpit.make.draft.keys, js = cockpit.robot.joints;
+        return js.map((j) => [k[10].angle_deg[j.joint], k[5].angle_deg[j.mirror], j.mirror_sign]); }""")
+    assert all(a == (b if b is None else b * s) for a, b, s in arms), arms
+    marker = page.locator('.markers button').nth(11).bounding_box()
+    page.mouse.move(marker['x'] + 13, marker['y'] + 14)
+    page.mouse.down()
+    page.mouse.move(marker['x'] + 63, marker['y'] + 14, steps=4)
+    page.mouse.up()
+    assert page.evaluate(times)[11] > 5200
+    page.keyboard.press('Delete') # the marker has the focus
+    page.fill('#make-way', '1.5')
+    page.locator('#make-way').press('Enter')
+    until(page, "cockpit.make.draft.keys.length === 11")
+    now = page.evaluate(times)
+    assert now[10] - now[9] == 1500, now
+    for _ in range(7):
+        page.click('#make-undo')
+    assert page.evaluate(times) == was and not page.evaluate('cockpit.make.draft.changed()')
+    for _ in range(7):
+        page.click('#make-redo')
+    assert page.evaluate(times) == now
+    fresh_look(page)
+    page.fill('#make-as', 'keys')
+    page.click('#make-save-as')
+    until(page, "document.getElementById('make-told').textContent.startsWith('Saved as keys.pseq')")
+    assert [k['time_ms'] for k in server.call('GET', '/api/motions/keys.pseq')['keys']] == now
+
+
+@test
+def a_file_that_changed_elsewhere_is_not_written_over(browser, server):
+    path = pathlib.Path(server.folder) / 'mine.pseq'
+    shutil.copy(MOTIONS / 'bow.pseq', path)
+    page = browser.page(server.link)
+    until(page, "[...document.querySelectorAll('#make-open option')].some((o) => o.value === 'mine.pseq')")
+    edit_motion(page, 'mine.pseq')
+    page.locator('.markers button').nth(2).click()
+    row(page, 'NECK_Y').focus()
+    page.keyboard.press('PageUp')
+    path.write_bytes((MOTIONS / 'bow.pseq').read_bytes() + b'# somebody else\n')
+    theirs = path.read_bytes()
+    page.click('#make-save')
+    until(page, "document.getElementById('make-told').textContent.includes('has changed since it was opened')")
+    assert path.read_bytes() == theirs
+    page.fill('#make-as', 'bow.pseq')
+    page.click('#make-save-as')
+    until(page, "document.getElementById('make-told').textContent.includes('is there already')")
+    assert (pathlib.Path(server.folder) / 'bow.pseq').read_bytes() == (MOTIONS / 'bow.pseq').read_bytes()
+    page.fill('#make-as', '../out.pseq')
+    page.click('#make-save-as')
+    until(page, "document.getElementById('make-told').className === 'bad'")
+    assert not (pathlib.Path(server.folder).parent / 'out.pseq').exists()
+    browser.trouble[:] = [t for t in browser.trouble if '400 (Bad Request)' not in t]
+    page.once('dialog', lambda d: d.dismiss()) # what is not saved is not left by mistake
+    page.select_option('#make-open', 'greet.pseq')
+    assert page.evaluate('cockpit.make.draft.name') == 'mine.pseq'
+
+
+@test
+def frames_become_key_poses_and_key_poses_other_formats(browser, server):
+    page = browser.page(server.link)
+    page.click('#tab-make')
+    page.select_option('#make-open', 'greet.yaml')
+    until(page, 'cockpit.make.draft && cockpit.make.draft.keys.length === 26')
+    assert page.locator('#make-save').is_disabled()
+    fresh_look(page)
+    page.click('#make-save-as')
+    until(page, "document.getElementById('make-told').textContent.startsWith('Saved as greet-keys.pseq')")
+    assert server.call('GET', '/api/motions/greet-keys.pseq')['length_ms'] == 5000
+    for name, kind in (('out.m', 'postures'), ('out.yaml', 'frames')):
+        edit_motion(page, 'greet.pseq')
+        page.fill('#make-as', name)
+        page.click('#make-save-as')
+        words = 'Saved as' if kind == 'postures' else 'A copy was written as'
+        until(page, 'words => document.getElementById("make-told").textContent.startsWith(words)',
+              f'{words} {name}')
+        made = server.call('GET', f'/api/motions/{name}')
+        assert (made['kind'], made['length_ms'], made['check']['ok']) == (kind, 5000, True), (
+            made['kind'], made['length_ms'], made['check'])
+        assert page.evaluate('cockpit.make.draft.name') == ('out.m' if kind == 'postures' else 'greet.pseq')
+    page.click('#make-new')
+    until(page, 'cockpit.make.draft.name === null && cockpit.make.draft.keys.length === 1')
+
+
+@test
+def two_motions_are_compared(browser, server):
+    page = browser.page(server.link)
+    edit_motion(page, 'greet.pseq')
+    page.select_option('#make-other', 'greet.m')
+    until(page, "document.getElementById('make-difference').textContent !== ''")
+    close = page.locator('#make-difference').inner_text()
+    page.select_option('#make-other', 'wave_both.pseq')
+    until(page, "document.getElementById('make-difference').textContent.startsWith('5.0 s here, 4.2 s there.')")
+    first = page.locator('#make-compare tbody tr').first
+    name = first.locator('.joint').inner_text()
+    said = float(first.locator('td').first.inner_text().rstrip('°'))
+    one, two = (server.call('GET', f'/api/motions/{m}.pseq?rate=30')['frames']['angle_deg']
+                for m in ('greet', 'wave_both'))
+    joint = joint_of(page, name)
+    most = max((b[joint] - a[joint] for a, b in zip(one, two)), key=abs)
+    assert abs(most - said) < 0.06, (name, most, said)
+    worst = max(abs(b[j] - a[j]) for a, b in zip(one, two) for j in range(20))
+    assert abs(worst - abs(said)) < 0.06, 'the largest is first'
+    note(f'{close}; wave_both: {name} {said} degrees')
+    first.locator('.joint').click()
+    assert page.evaluate('cockpit.selected') == joint
+    until(page, "[...document.querySelectorAll('.labels span')].some((s) => s.textContent === 'wave_both.pseq')")
+
+
+@test
+def the_robot_is_made_limp_captured_and_shown_a_pose(browser, server):
+    page = browser.page(server.link)
+    edit_motion(page, 'greet.pseq')
+    until(page, "['show', 'limp', 'hold'].every((n) => document.getElementById(`make-${n}`).disabled)")
+    drive(page)
+    torque_on(page, server)
+    elbow = joint_of(page, 'L_ELBOW_P')
+    server.call('POST', '/api/move', {'angle_deg': {'L_ELBOW_P': 55}, 'time_ms': 300,
+                                      'sequence': server.state()['sequence']},
+                **{'X-Grobo-Lease': page.evaluate('cockpit.api.lease')})
+    server.wait(lambda s: abs(s['angle_deg'][elbow] - 55) < 1 and s['job'] is None, 'the elbow')
+    page.click('#tab-make')
+    page.select_option('#make-group', 'left_arm')
+    page.click('#make-limp')
+    server.wait(lambda s: elbow in s['limp'], 'a limp arm')
+    until(page, 'j => cockpit.state.limp.includes(j)', elbow)
+    page.locator('.markers button').nth(2).click()
+    knee = key_deg(page, 2, 3)
+    page.click('#make-capture')
+    until(page, 'j => cockpit.make.draft.keys[2].angle_deg[j] !== null', elbow)
+    assert abs(key_deg(page, 2, elbow) - 55) < 2
+    assert key_deg(page, 2, 3) == knee, 'joints with torque are not captured'
+    page.click('#make-capture-new')
+    until(page, 'cockpit.make.draft.keys.length === 11')
+    assert page.evaluate('cockpit.make.draft.keys[10].time_ms') == 6000
+    page.click('#make-hold')
+    server.wait(lambda s: not s['limp'] and s['job'] is None, 'an arm that holds')
+    torque_on(page, server)
+    page.click('#tab-make')
+    page.locator('.markers button').nth(1).click()
+    target = page.evaluate('cockpit.make.degrees()')
+    seconds = page.evaluate('cockpit.make.showTime()') / 1000
+    begin = server.state()['angle_deg']
+    fastest = max(abs(a - b) for a, b in zip(begin, target)) / seconds
+    assert fastest <= page.evaluate('cockpit.robot.safety.approach_dps') + 0.1, fastest
+    page.click('#make-show')
+    server.wait(lambda s: max(abs(a - b) for a, b in zip(s['angle_deg'], target)) < 2, 'the pose')
+    page.keyboard.press('Escape')
+    stopped(page)
+    assert page.locator('#make-show').is_disabled()
+
+
+@test
+def a_draft_lives_through_a_preview_and_other_views(browser, server):
+    page = browser.page(server.link)
+    edit_motion(page, 'greet.pseq')
+    page.click('#make-preview')
+    until(page, 'cockpit.make.at > 400 && cockpit.make.previewing')
+    page.evaluate('document.activeElement.blur()')
+    page.keyboard.press(' ')
+    until(page, '!cockpit.make.previewing')
+    still(server, 0.2)
+    row(page, 'NECK_Y').focus()
+    page.keyboard.press('PageUp')
+    page.click('#tab-play')
+    until(page, '!cockpit.figure.pose.draft')
+    assert page.locator('#maker').is_hidden()
+    page.click('#tab-make')
+    until(page, 'cockpit.figure.pose.draft && cockpit.make.draft.changed()')
+    assert page.locator('#make-changed').inner_text() == 'not saved'
+
+
 # ---- craft ----------------------------------------------------------------------------------------
 
 
@@ -678,7 +1079,7 @@ def it_weighs_less_than_150_kb_and_holds_nothing_inline(browser, server):
 def it_fits_three_sizes(browser, server):
     for size, (width, height) in SIZES.items():
         page = browser.page(server.link, size=size)
-        for tab in ('see', 'play', 'joints', 'more'):
+        for tab in ('see', 'play', 'joints', 'make', 'more'):
             page.click(f'#tab-{tab}')
             wide = page.evaluate('document.documentElement.scrollWidth')
             assert wide <= width, f'{size} {tab}: {wide} pixels wide'
@@ -720,7 +1121,7 @@ def axe_finds_nothing_serious(browser, server):
         for scheme in ('light', 'dark'):
             page = browser.page(server.link, context=browser.context(
                 size, color_scheme=scheme, bypass_csp=True))
-            for tab in ('see', 'play', 'joints', 'more'):
+            for tab in ('see', 'play', 'joints', 'make', 'more'):
                 page.click(f'#tab-{tab}')
                 if tab == 'joints':
                     page.click('.joint:text-is("R_KNEE_P")')
@@ -745,7 +1146,7 @@ def pictures_of_each_view(browser, server):
             page = browser.page(server.link, size=size, color_scheme=scheme)
             drive(page)
             torque_on(page, server)
-            for tab in ('see', 'play', 'joints', 'more'):
+            for tab in ('see', 'play', 'joints', 'make', 'more'):
                 if tab == 'play':
                     choose(page, 'greet.pseq')
                     page.click('#play')

@@ -74,6 +74,8 @@ await test('a body stands with its lower foot flat on the ground', () => {
         at[foot.link], [x * 0.04, y * 0.02, -0.1])[2]));
     same(soles.map((z) => z.every((v) => Math.abs(v) < 1e-9)), [true, false]);
     same(Math.min(...soles[1]) > -0.02, true); // with the other flat, this one would be deeper
+    const middle = (t) => m.place(t[body.feet[0].link], [0, 0, -0.1]).slice(0, 2);
+    near(middle(at), middle(forward(body, [], m.identity())), 1e-12); // as the server puts it
 });
 await test('a box has the inertia it was made of', () => {
     const [a, b, c] = [0.02, 0.03, 0.05], mass = 0.2;

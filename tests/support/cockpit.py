@@ -849,6 +849,113 @@ def motions():
     shutil.rmtree(folder)
 
 
+def making():
+    """What a person does who draws a motion: a copy elsewhere, poses mirrored, feet moved."""
+    folder = tempfile.mkdtemp()
+    for name in ("greet.pseq", "step.pseq", "greet.m", "greet.yaml"):
+        shutil.copy(os.path.join("motions", name), folder)
+    with open("motions/step.pseq", encoding="ascii") as f:
+        step_text = f.read().replace("isTouching: true", "isTouching: true\n          myKey: 7", 1)
+    with open(os.path.join(folder, "kept.pseq"), "w", encoding="ascii") as f:
+        f.write(step_text)
+    outside = os.path.join(tempfile.mkdtemp(), "outside.pseq")
+    shutil.copy("motions/bow.pseq", outside)
+    os.symlink(outside, os.path.join(folder, "link.pseq"))
+
+    def content(name):
+        with open(os.path.join(folder, name), "rb") as f:
+            return f.read()
+
+    with Server(motions=folder) as server:
+        page = Page(server)
+
+        def put(name, body, **headers):
+            named = {k.replace("_", "-"): v for k, v in headers.items()}
+            return page.call("PUT", "/api/motions/" + name, body, named)
+
+        def every(n):
+            return [{"from": i} for i in range(n)]
+
+        greet = page.get("/api/motions/greet.pseq")
+        base = {"motion": "greet.pseq", "etag": greet["etag"]}
+        # A copy of all keys is the file, to the bit; with one angle changed one line differs.
+        copy = put("copy.pseq", {"base": base, "keys": every(10)}, If_None_Match="*")
+        same((content("copy.pseq"), copy["notes"]), (content("greet.pseq"), []))
+        edit = {"base": base, "keys": every(10)}
+        edit["keys"][4]["angle_deg"] = {"R_ELBOW_P": -51.5}
+        put("copy.pseq", edit, If_Match=copy["etag"])
+        same(sum(a != b for a, b in zip(content("copy.pseq").split(b"\n"),
+                                        content("greet.pseq").split(b"\n"))), 1)
+        # Nothing is made of a file that has changed meanwhile, or that is none of the list.
+        old = {"motion": "greet.pseq", "etag": '"0000000000000000"'}
+        expect(409, "changed", put, "b.pseq", {"base": old, "keys": every(1)}, If_None_Match="*")
+        expect(409, "changed", page.post, "preview", motion="greet.pseq", etag=old["etag"],
+               edit={"keys": every(1)})
+        for name in ("link.pseq", "../greet.pseq", "nothing.pseq"):
+            expect(404, "noent", put, "b.pseq", {"base": {"motion": name}, "keys": every(1)},
+                   If_None_Match="*")
+        for bad in ({}, {"motion": 7}, 7, "greet.pseq"):
+            expect(400, "arg", put, "b.pseq", {"base": bad, "keys": every(1)}, If_None_Match="*")
+        assert not os.path.exists(os.path.join(folder, "b.pseq"))
+        # A new file in the place of a link that leads out of the folder does not follow it.
+        expect(409, "changed", put, "link.pseq", {"base": base, "keys": every(10)},
+               If_None_Match="*")
+        with open(outside, "rb") as f, open("motions/bow.pseq", "rb") as g:
+            same(f.read(), g.read(), "a file outside the folder was written")
+
+        # In the mirror: angles, targets of feet; what else is given counts after it.
+        joints = page.get("/api/robot")["joints"]
+        step = page.get("/api/motions/step.pseq")
+        keys = every(len(step["keys"]))
+        keys[2]["mirror"] = True
+        keys[2]["angle_deg"] = {"CHEST_P": 3}
+        put("mirrored.pseq", {"base": {"motion": "step.pseq"}, "keys": keys}, If_None_Match="*")
+        made = page.get("/api/motions/mirrored.pseq")["keys"]
+        same([k for i, k in enumerate(made) if i != 2],
+             [k for i, k in enumerate(step["keys"]) if i != 2])
+        for j in joints:
+            was = step["keys"][2]["angle_deg"][j["mirror"]]
+            wanted = 3 if j["name"] == "CHEST_P" else was and was * j["mirror_sign"]
+            same(made[2]["angle_deg"][j["joint"]], wanted, j["name"])
+        same(made[2]["links"][0]["p_m"], [0, -0.033, 0.15])
+        expect(400, "arg", put, "c.pseq", {"keys": [{"time_ms": 0, "mirror": True}]},
+               If_None_Match="*")
+
+        # A target that is moved keeps its flags and keys of other programs; others stay.
+        kept = page.get("/api/motions/kept.pseq")
+        keys = every(len(kept["keys"]))
+        keys[0]["links"] = [{"link": "WAIST"}, {"link": "R_ANKLE_R", "p_m": [0.03, -0.02, 0.02115]},
+                            {"link": "L_ANKLE_R"}]
+        put("kept.pseq", {"keys": keys}, If_Match=kept["etag"])
+        differ = [(a, b) for a, b in zip(step_text.encode().split(b"\n"),
+                                         content("kept.pseq").split(b"\n")) if a != b]
+        same([b.strip() for _, b in differ], [b"translation: [ 0.03, -0.02, 0.02115 ]"])
+
+        # Other formats: what they have no place for is told, and legs become angles.
+        m = put("copy.m", {"base": base, "keys": every(10)}, If_None_Match="*")
+        same((m["kind"], m["keys"], content("copy.m")), ("postures", 10, content("greet.m")))
+        same(page.get("/api/motions/copy.m")["keys"][4]["time_ms"], 1850)
+        yaml = put("copy.yaml", {"base": base, "keys": every(10)}, If_None_Match="*")
+        same((yaml["kind"], yaml["length_ms"], content("copy.yaml")),
+             ("frames", 5000.0, content("greet.yaml")))
+        legs = put("legs.yaml", {"base": {"motion": "step.pseq"}, "keys": every(len(step["keys"]))},
+                   If_None_Match="*")
+        same((legs["kind"], legs["check"]["ok"]), ("frames", True))
+        new = put("new.yaml", {"keys": [{"time_ms": 0, "angle_deg": {"CHEST_P": 5}},
+                                        {"time_ms": 400, "angle_deg": {"CHEST_P": 0}}]},
+                  If_None_Match="*")
+        same((new["kind"], new["length_ms"]), ("frames", 400.0))
+        for late_ms in (1.44e7, 1.9e8, 1e11): # 4 hours, 2 days, 3 years, in frames
+            expect(413, "cap", put, "long.yaml", {"keys": [
+                {"time_ms": 0, "angle_deg": {j["name"]: 5 for j in joints}},
+                {"time_ms": late_ms, "angle_deg": {j["name"]: 0 for j in joints}}]},
+                   If_None_Match="*")
+        expect(400, "unsupported", put, "d.pseq", {"base": {"motion": "greet.yaml"},
+                                                   "keys": every(3)}, If_None_Match="*")
+    shutil.rmtree(folder)
+    shutil.rmtree(os.path.dirname(outside))
+
+
 def falls():
     """A motion that would fall says when; the robot is not asked."""
     folder = tempfile.mkdtemp()
@@ -944,6 +1051,9 @@ def schema():
             fits("motion_whole", page.get("/api/motions/" + name))
         fits("motions", page.get("/api/motions"))
         fits("preview", page.post("preview", motion="step.pseq", speed_pct=50))
+        edit = {"base": {"motion": "step.pseq"}, "keys": [{"from": 0}, {"from": 1, "mirror": True}]}
+        fits("motion_edit", edit)
+        fits("motion", page.call("PUT", "/api/motions/new.m", edit, {"If-None-Match": "*"}))
         page.take().keep_beating()
         page.fall_silent()
         taken = page.post("lease", action="take", name="again")

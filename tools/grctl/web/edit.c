@@ -4,18 +4,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/play/play.h"
 #include "tools/grctl/web/edit.h"
+#include "tools/grctl/web/library.h"
 #include "tools/grctl/web/pose.h"
 
 /* What is made, and of what. */
 typedef struct making {
     const grobo_model *model;
     const grobo_motion *base;
+    grobo_motion *mirrored; /* base, left for right; NULL: nobody has asked for it yet */
     grobo_motion *motion;
     double before_s; /* time of the key before */
     edit_result *result;
     size_t key; /* the one that is read */
 } making;
+
+/* The key pose that one is made from; of NULL: it is new. */
+typedef struct source {
+    const grobo_motion *of;
+    size_t n;
+} source;
 
 static int complain(const making *m, int error, const char *what)
 {
@@ -91,53 +100,112 @@ static int read_info(const making *m, const json_t *key, grobo_key_info *info)
     return read_stationary(m, json_object_get(key, "stationary"), info);
 }
 
-static int read_link(const making *m, const json_t *from, grobo_ik_link *link)
+/* The link of a key that is called so, or, where it has no name, has that number. -1: none. */
+static int find_link(const source *from, const char *name)
 {
-    const char *name = json_string_value(json_object_get(from, "link"));
-    grobo_transform at = {{0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    memset(link, 0, sizeof *link);
-    link->index = -1;
-    if (!name || !json_object_get(from, "p_m") ||
-        !pose_read_placement(json_object_get(from, "p_m"), json_object_get(from, "rotation"),
-                             &at)) {
+    size_t n = 0;
+    const grobo_ik_link *links = from->of ? grobo_motion_ik_links(from->of, from->n, &n) : NULL;
+    for (size_t i = 0; i < n; i++) {
+        char number[16];
+        snprintf(number, sizeof number, "%d", links[i].index);
+        if (strcmp(*links[i].name ? links[i].name : number, name) == 0) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+static void read_flag(const json_t *from, const char *key, bool *flag)
+{
+    const json_t *given = json_object_get(from, key);
+    *flag = given ? json_is_true(given) : *flag;
+}
+
+/* was: the link that it is in the file, or NULL; what is not given stays as it is there. */
+static int read_link(const making *m, const json_t *from, const grobo_ik_link *was,
+                     grobo_ik_link *link)
+{
+    static const grobo_ik_link none = {.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .index = -1};
+    const json_t *p_m = json_object_get(from, "p_m");
+    grobo_transform at;
+    *link = was ? *was : none;
+    memcpy(at.p_m, link->translation_m, sizeof at.p_m);
+    memcpy(at.r, link->rotation, sizeof at.r);
+    if ((!p_m && !was) || !pose_read_placement(p_m, json_object_get(from, "rotation"), &at)) {
         return complain(m, GROBO_ERR_ARG, "a link has its name, p_m and rotation");
     }
-    snprintf(link->name, sizeof link->name, "%s", name);
+    if (!was) {
+        snprintf(link->name, sizeof link->name, "%s",
+                 json_string_value(json_object_get(from, "link")));
+    }
     memcpy(link->translation_m, at.p_m, sizeof at.p_m);
     memcpy(link->rotation, at.r, sizeof at.r);
-    link->is_base = json_is_true(json_object_get(from, "base"));
-    link->is_stationary = json_is_true(json_object_get(from, "stationary"));
-    link->is_touching = json_is_true(json_object_get(from, "touching"));
-    link->is_slave = json_is_true(json_object_get(from, "slave"));
+    read_flag(from, "base", &link->is_base);
+    read_flag(from, "stationary", &link->is_stationary);
+    read_flag(from, "touching", &link->is_touching);
+    read_flag(from, "slave", &link->is_slave);
     return GROBO_OK;
 }
 
-static int set_links(const making *m, const json_t *list, size_t n)
+/* The keys of other programs that a link had go along with it. */
+static int keep_of_links(const making *m, const source *from, const int *was, size_t count)
+{
+    size_t n = grobo_motion_size(m->motion) - 1;
+    grobo_kept kept;
+    int error = GROBO_OK;
+    for (size_t i = 0; !error && grobo_motion_get_kept(from->of, from->n, i, &kept) == 0; i++) {
+        for (size_t k = 0; k < count && kept.level == GROBO_KEPT_LINK; k++) {
+            if (was[k] == kept.link) {
+                kept.link = (uint8_t)k;
+                error = grobo_motion_keep(m->motion, n, &kept);
+                break;
+            }
+        }
+    }
+    return error;
+}
+
+static int set_links(const making *m, const json_t *list, const source *from)
 {
     grobo_ik_link links[GROBO_IK_LINKS_MAX];
-    size_t count = json_array_size(list);
+    int was[GROBO_IK_LINKS_MAX];
+    size_t count = json_array_size(list), n_old;
     if (count > GROBO_IK_LINKS_MAX) {
         return complain(m, GROBO_ERR_CAP, "too many links");
     }
     for (size_t i = 0; i < count; i++) {
-        int error = read_link(m, json_array_get(list, i), &links[i]);
+        const json_t *link = json_array_get(list, i);
+        const char *name = json_string_value(json_object_get(link, "link"));
+        was[i] = name ? find_link(from, name) : -1;
+        int error =
+            !name
+                ? complain(m, GROBO_ERR_ARG, "a link has its name, p_m and rotation")
+                : read_link(m, link,
+                            was[i] < 0 ? NULL
+                                       : &grobo_motion_ik_links(from->of, from->n, &n_old)[was[i]],
+                            &links[i]);
         if (error) {
             return error;
         }
     }
-    return grobo_motion_set_ik_links(m->motion, n, links, count);
+    int error =
+        grobo_motion_set_ik_links(m->motion, grobo_motion_size(m->motion) - 1, links, count);
+    if (!error && from->of) {
+        error = keep_of_links(m, from, was, count);
+    }
+    return error ? complain(m, error, grobo_error_text(error)) : GROBO_OK;
 }
 
 /* ---- a key ----------------------------------------------------------------------------------- */
 
 /* Links and the keys of other programs, as they are; those of links go where links are new. */
-static int copy_rest(const making *m, size_t from, size_t to, bool links)
+static int copy_rest(const making *m, const source *from, size_t to, bool links)
 {
     size_t n_links;
-    const grobo_ik_link *link = grobo_motion_ik_links(m->base, from, &n_links);
+    const grobo_ik_link *link = grobo_motion_ik_links(from->of, from->n, &n_links);
     grobo_kept kept;
     int error = links ? grobo_motion_set_ik_links(m->motion, to, link, n_links) : GROBO_OK;
-    for (size_t i = 0; !error && grobo_motion_get_kept(m->base, from, i, &kept) == 0; i++) {
+    for (size_t i = 0; !error && grobo_motion_get_kept(from->of, from->n, i, &kept) == 0; i++) {
         if (links || kept.level != GROBO_KEPT_LINK) {
             error = grobo_motion_keep(m->motion, to, &kept);
         }
@@ -145,20 +213,38 @@ static int copy_rest(const making *m, size_t from, size_t to, bool links)
     return error;
 }
 
-/* Its number in base; SIZE_MAX: it is new. False: there is none such. */
-static bool find_base(const making *m, const json_t *key, size_t *from)
+/* base, left for right, once for all keys that ask for it. */
+static int mirror_base(making *m)
+{
+    if (m->mirrored) {
+        return GROBO_OK;
+    }
+    int error = grobo_motion_dup(m->base, &m->mirrored);
+    if (!error && grobo_motion_joints(m->mirrored) < m->model->n_joints) {
+        error = grobo_motion_set_joints(m->mirrored, m->model->n_joints);
+    }
+    return error < 0 ? error : grobo_motion_mirror(m->mirrored, m->model);
+}
+
+/* What a key is made from. */
+static int find_source(making *m, const json_t *key, source *from)
 {
     const json_t *number = json_object_get(key, "from");
     json_int_t n = json_integer_value(number);
-    *from = SIZE_MAX;
-    if (!number) {
-        return true;
+    int error = GROBO_OK;
+    *from = (source){.of = NULL};
+    if (!number && json_is_object(key) && !json_is_true(json_object_get(key, "mirror"))) {
+        return GROBO_OK;
     }
     if (!json_is_integer(number) || !m->base || n < 0 || (size_t)n >= grobo_motion_size(m->base)) {
-        return false;
+        return complain(m, GROBO_ERR_ARG, "from is no key of the file");
     }
-    *from = (size_t)n;
-    return true;
+    *from = (source){.of = m->base, .n = (size_t)n};
+    if (json_is_true(json_object_get(key, "mirror"))) {
+        error = mirror_base(m);
+        from->of = m->mirrored;
+    }
+    return error ? complain(m, error, "it has a link that has no other side") : GROBO_OK;
 }
 
 static int append(making *m, const json_t *key, const grobo_posture *posture, double time_s)
@@ -175,22 +261,22 @@ static int append(making *m, const json_t *key, const grobo_posture *posture, do
     return error ? complain(m, error, grobo_error_text(error)) : GROBO_OK;
 }
 
-static int set_rest(making *m, const json_t *key, size_t from, const grobo_key_info *info)
+static int set_rest(making *m, const json_t *key, const source *from, const grobo_key_info *info)
 {
     size_t n = grobo_motion_size(m->motion) - 1;
     const json_t *name = json_object_get(key, "name"), *links = json_object_get(key, "links");
-    const char *text = name              ? json_string_value(name)
-                       : from < SIZE_MAX ? grobo_motion_key_name(m->base, from)
-                                         : "";
+    const char *text = name       ? json_string_value(name)
+                       : from->of ? grobo_motion_key_name(from->of, from->n)
+                                  : "";
     int error = text && *text ? grobo_motion_set_key_name(m->motion, n, text) : GROBO_OK;
     if (!error) {
         error = grobo_motion_set_key(m->motion, n, info);
     }
-    if (!error && from < SIZE_MAX) {
+    if (!error && from->of) {
         error = copy_rest(m, from, n, !links);
     }
     if (!error && links) {
-        return set_links(m, links, n);
+        return set_links(m, links, from);
     }
     return error ? complain(m, error, grobo_error_text(error)) : GROBO_OK;
 }
@@ -201,39 +287,42 @@ static int add_key(making *m, const json_t *key)
     grobo_posture posture;
     grobo_key_info info = {0};
     double time_s = json_number_value(time) / 1e3;
-    size_t from;
-    if (!json_is_object(key) || !find_base(m, key, &from)) {
-        return complain(m, GROBO_ERR_ARG, "from is no key of the file");
+    source from;
+    int error = find_source(m, key, &from);
+    if (error) {
+        return error;
     }
-    if (from == SIZE_MAX) {
+    if (!from.of) {
         grobo_posture_init(&posture, m->model->n_joints);
     } else {
-        grobo_motion_get(m->base, from, &posture);
-        grobo_motion_get_key(m->base, from, &info);
+        grobo_motion_get(from.of, from.n, &posture);
+        grobo_motion_get_key(from.of, from.n, &info);
         posture.n_joints = m->model->n_joints;
     }
-    if (!time && from < SIZE_MAX) {
-        grobo_motion_time_s(m->base, from, &time_s);
+    if (!time && from.of) {
+        grobo_motion_time_s(from.of, from.n, &time_s);
     } else if (!json_is_number(time)) {
         return complain(m, GROBO_ERR_ARG, "it has no time_ms");
     }
-    int error = read_angles(m, json_object_get(key, "angle_deg"), &posture);
+    error = read_angles(m, json_object_get(key, "angle_deg"), &posture);
     if (!error) {
         error = read_info(m, key, &info);
     }
     if (!error) {
         error = append(m, key, &posture, time_s);
     }
-    return error ? error : set_rest(m, key, from, &info);
+    return error ? error : set_rest(m, key, &from, &info);
 }
 
 /* An empty motion with what base has as a whole. */
 static int begin(making *m, grobo_motion_format format)
 {
     int error;
-    if (!m->base) {
-        return grobo_motion_new(&m->motion, grobo_motion_format_kind(format), m->model->n_joints,
-                                NULL);
+    if (!m->base) { /* postures or key poses: other kinds are made of those when they are written */
+        grobo_motion_kind kind = grobo_motion_format_kind(format);
+        return grobo_motion_new(&m->motion,
+                                kind == GROBO_MOTION_POSTURES ? kind : GROBO_MOTION_KEYS,
+                                m->model->n_joints, NULL);
     }
     error = grobo_motion_dup(m->base, &m->motion);
     if (!error) {
@@ -263,6 +352,7 @@ int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion 
     for (m.key = 0; !error && m.key < json_array_size(keys); m.key++) {
         error = add_key(&m, json_array_get(keys, m.key));
     }
+    grobo_motion_free(m.mirrored);
     if (error) {
         grobo_motion_free(m.motion);
         return error;
@@ -281,6 +371,9 @@ typedef struct heap {
 static int put(void *ctx, const void *bytes, size_t size)
 {
     heap *h = ctx;
+    if (h->size + size > LIBRARY_FILE_BYTES) {
+        return GROBO_ERR_CAP;
+    }
     if (h->size + size > h->room) {
         size_t room = 2 * (h->size + size);
         char *more = realloc(h->bytes, room);
@@ -295,13 +388,56 @@ static int put(void *ctx, const void *bytes, size_t size)
     return GROBO_OK;
 }
 
-int edit_write(const grobo_motion *motion, grobo_motion_format format, const grobo_model *model,
+/* Frames of many hours: refused before there is memory for them. A number has two bytes at least. */
+static bool is_too_long(const grobo_motion *motion, grobo_motion_format format)
+{
+    double length_s = (double)grobo_motion_length_us(motion, -1) / 1e6;
+    return format == GROBO_FORMAT_YAML && grobo_motion_get_kind(motion) != GROBO_MOTION_FRAMES &&
+           length_s * GROBO_MOTION_RATE_HZ * 2 * grobo_motion_joints(motion) > LIBRARY_FILE_BYTES;
+}
+
+/* Targets of legs become angles, where the format has no place for them. */
+static int solve_legs(app *a, const char *name, grobo_motion_format format,
+                      const grobo_motion *motion, grobo_motion **solved)
+{
+    double rate_hz = format == GROBO_FORMAT_YAML ? GROBO_MOTION_RATE_HZ : 0;
+    grobo_body *body = NULL;
+    *solved = NULL;
+    if (format == GROBO_FORMAT_PSEQ) {
+        return 0;
+    }
+    int status = body_make(a, PLAY_BODY, name, motion, rate_hz, &body);
+    if (!status && body) {
+        status = body_motion(a, name, body, rate_hz, solved);
+    }
+    grobo_body_free(body);
+    return status;
+}
+
+int edit_write(app *a, const char *name, const grobo_motion *motion, grobo_diagnostics *lost,
                char **bytes, size_t *size)
 {
+    grobo_motion_format format = grobo_motion_format_of_path(name);
+    bool same = grobo_motion_get_kind(motion) == grobo_motion_format_kind(format);
     heap h = {0};
     grobo_sink sink = {.write = put, .ctx = &h};
-    grobo_write_options how = {.model = model, .exact = format == GROBO_FORMAT_M};
-    int error = grobo_motion_write(motion, format, &how, &sink, NULL);
+    grobo_write_options how = {
+        .model = app_model(a), .name = name, .exact = same && format == GROBO_FORMAT_M};
+    grobo_motion *solved;
+    int error = GROBO_OK;
+    if (is_too_long(motion, format)) {
+        return GROBO_ERR_CAP;
+    }
+    if (solve_legs(a, name, format, motion, &solved)) {
+        error = GROBO_ERR_UNREACHABLE;
+    } else if (solved) {
+        (void)grobo_motion_set_name(solved, grobo_motion_name(motion));
+        (void)grobo_motion_set_target_body(solved, grobo_motion_target_body(motion));
+    }
+    if (!error) {
+        error = grobo_motion_write(solved ? solved : motion, format, &how, &sink, lost);
+    }
+    grobo_motion_free(solved);
     if (error < 0) {
         free(h.bytes);
         return error;

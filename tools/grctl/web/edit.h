@@ -7,6 +7,8 @@
 
 #include <grobo/motion_io.h>
 
+#include "tools/grctl/cli/app.h"
+
 typedef struct edit_result {
     grobo_motion *motion; /* the caller's */
     char complaint[256];  /* one line, where there is an error */
@@ -14,13 +16,16 @@ typedef struct edit_result {
 
 /*
  * A motion of the key poses that `edit` lists, which refer to those of `base`; base NULL: a new one
- * of this format. Returns 0 or an error.
+ * for this format. Returns 0 or an error.
  */
 int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion *base,
                grobo_motion_format format, edit_result *result);
 
-/* A motion as a file, to be freed with free(). */
-int edit_write(const grobo_motion *motion, grobo_motion_format format, const grobo_model *model,
+/*
+ * A motion as a file of the format that its name tells, to be freed with free(). The app's line is
+ * that of `play`. lost: gets what that format has no place for. Returns 0 or an error.
+ */
+int edit_write(app *a, const char *name, const grobo_motion *motion, grobo_diagnostics *lost,
                char **bytes, size_t *size);
 
 #endif

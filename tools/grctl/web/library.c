@@ -205,12 +205,27 @@ void library_drop(library_file *file)
     file->bytes = NULL;
 }
 
+/* Whether the folder has anything of that name: also a link that leads out of it, or nowhere. */
+static bool is_taken(const library *l, const char *name)
+{
+    DIR *folder = opendir(l->folder);
+    struct dirent *found;
+    bool taken = false;
+    while (folder && !taken && (found = readdir(folder)) != NULL) {
+        taken = strcmp(found->d_name, name) == 0;
+    }
+    if (folder) {
+        closedir(folder);
+    }
+    return taken;
+}
+
 int library_write(library *l, const char *name, const char *etag, const void *bytes, size_t size)
 {
     char path[GROBO_PATH_MAX_BYTES];
     library_file now;
     int error = library_read(l, name, &now);
-    bool same = etag ? error == GROBO_OK && strcmp(etag, now.etag) == 0 : error == GROBO_ERR_NOENT;
+    bool same = etag ? error == GROBO_OK && strcmp(etag, now.etag) == 0 : !is_taken(l, name);
     library_drop(&now);
     if (!same) {
         return GROBO_ERR_EXISTS;
@@ -260,12 +275,17 @@ static void refuse(ask *q, int status, const char *code, const char *message)
                      app_json_text(message)));
 }
 
-static void refuse_error(ask *q, int error)
+static void refuse_named(ask *q, const char *name, int error)
 {
     char text[LIBRARY_NAME_BYTES + 64];
     int status = error == GROBO_ERR_NOENT ? 404 : error == GROBO_ERR_CAP ? 413 : 422;
-    snprintf(text, sizeof text, "%s: %s", q->name, file_error_text(error));
+    snprintf(text, sizeof text, "%s: %s", name, file_error_text(error));
     refuse(q, status, grobo_error_name(error), text);
+}
+
+static void refuse_error(ask *q, int error)
+{
+    refuse_named(q, q->name, error);
 }
 
 static void work(worker_task *task)
@@ -506,8 +526,8 @@ void library_get_file(serve *s, http_request *r, const char *name)
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-/* Writes it, and tells what it is now. */
-static void save(ask *q, const void *bytes, size_t size)
+/* Writes it, and tells what it is now, and what of it the format has no place for. */
+static void save(ask *q, const void *bytes, size_t size, const grobo_diagnostics *lost)
 {
     int error = library_write(q->l, q->name, *q->match ? q->match : NULL, bytes, size);
     if (error == GROBO_ERR_EXISTS) {
@@ -519,25 +539,41 @@ static void save(ask *q, const void *bytes, size_t size)
         entry *e = find(q->l, q->name);
         if (e) {
             look_at(q->l, e);
-            answer(q, 200, entry_json(e));
+            json_t *told = entry_json(e), *notes = json_array();
+            grobo_diagnostic d;
+            for (size_t i = 0; grobo_diagnostics_get(lost, i, &d) == 0; i++) {
+                json_array_append_new(notes, app_json_text(d.message));
+            }
+            json_object_set_new(told, "notes", notes);
+            answer(q, 200, told);
         }
     }
 }
 
-/* The motion that an edit makes of a file, or of nothing. NULL: it is refused. */
-static grobo_motion *edited(ask *q, const json_t *edit, bool from_file)
+/* The file that keys are taken from, which is still what was read. 0: it is, or it is refused. */
+static int read_base(ask *q, const char *name, const char *etag, grobo_motion **base)
+{
+    grobo_read_options read = {.model = app_model(q->l->a), .name = name};
+    library_file file;
+    int error = library_read(q->l, name, &file);
+    if (!error && etag && strcmp(etag, file.etag) != 0) {
+        refuse(q, 409, "changed", "the file is not as it was read");
+    } else if (!error) {
+        error = grobo_motion_read_memory(file.bytes, file.size, &read, NULL, base);
+    }
+    library_drop(&file);
+    return error;
+}
+
+/* The motion that an edit makes of a file (name), or of nothing (NULL). NULL: it is refused. */
+static grobo_motion *edited(ask *q, const json_t *edit, const char *name, const char *etag)
 {
     edit_result made = {.motion = NULL};
-    grobo_read_options read = {.model = app_model(q->l->a), .name = q->name};
     grobo_motion *base = NULL;
-    library_file file = {.bytes = NULL};
-    int error = from_file ? library_read(q->l, q->name, &file) : GROBO_OK;
-    if (!error && from_file) {
-        error = grobo_motion_read_memory(file.bytes, file.size, &read, NULL, &base);
-    }
+    int error = name ? read_base(q, name, etag, &base) : GROBO_OK;
     if (error) {
-        refuse_error(q, error);
-    } else {
+        refuse_named(q, name, error);
+    } else if (!q->status) {
         error =
             edit_apply(edit, app_model(q->l->a), base, grobo_motion_format_of_path(q->name), &made);
         if (error) {
@@ -545,32 +581,51 @@ static grobo_motion *edited(ask *q, const json_t *edit, bool from_file)
                    made.complaint);
         }
     }
-    library_drop(&file);
     grobo_motion_free(base);
     return made.motion;
 }
 
-static void run_put(ask *q)
+static const char *text_in(const json_t *object, const char *key)
 {
+    return json_string_value(json_object_get(object, key));
+}
+
+/* With the line of `play`, whose options say how legs are solved: as they are by default. */
+static void write_edited(ask *q, const grobo_motion *made)
+{
+    analysis n;
     char *bytes = NULL;
     size_t size = 0;
-    q->body = json_loadb(q->sent, q->sent_size, JSON_REJECT_DUPLICATES, NULL);
-    if (!json_is_object(q->body)) {
-        refuse(q, 400, "syntax", "the body is no JSON object");
+    if (!analysis_begin(&n, q->l->a, q->name)) {
         return;
     }
-    grobo_motion *made = edited(q, q->body, *q->match != '\0');
-    if (!made) {
-        return;
-    }
-    int error =
-        edit_write(made, grobo_motion_format_of_path(q->name), app_model(q->l->a), &bytes, &size);
-    if (error) {
+    int error = edit_write(&n.app, q->name, made, n.found, &bytes, &size);
+    if (error == GROBO_ERR_UNREACHABLE) {
+        refuse(q, 422, n.app.failed, n.said);
+    } else if (error) {
         refuse_error(q, error);
     } else {
-        save(q, bytes, size);
+        save(q, bytes, size, n.found);
     }
     free(bytes);
+    analysis_end(&n);
+}
+
+static void run_put(ask *q)
+{
+    q->body = json_loadb(q->sent, q->sent_size, JSON_REJECT_DUPLICATES, NULL);
+    const json_t *base = json_object_get(q->body, "base");
+    if (!json_is_object(q->body) || (base && !text_in(base, "motion"))) {
+        refuse(q, 400, json_is_object(q->body) ? "arg" : "syntax",
+               base ? "base has the name of a motion" : "the body is no JSON object");
+        return;
+    }
+    bool from_file = *q->match != '\0' && !base;
+    grobo_motion *made = edited(q, q->body, from_file ? q->name : text_in(base, "motion"),
+                                from_file ? NULL : text_in(base, "etag"));
+    if (made) {
+        write_edited(q, made);
+    }
     grobo_motion_free(made);
 }
 
@@ -582,7 +637,7 @@ static void run_put_file(ask *q)
     }
     analysis_read(&n, q->sent, q->sent_size, false);
     if (n.motion) {
-        save(q, q->sent, q->sent_size);
+        save(q, q->sent, q->sent_size, NULL);
     } else {
         answer(q, 422,
                json_pack("{s:o}", "error",
@@ -639,7 +694,8 @@ static void run_preview(ask *q)
     const json_t *edit = json_object_get(q->body, "edit");
     library_file file = {.bytes = NULL};
     analysis n;
-    grobo_motion *made = edit ? edited(q, edit, *q->name != '\0') : NULL;
+    grobo_motion *made =
+        edit ? edited(q, edit, *q->name ? q->name : NULL, text_in(q->body, "etag")) : NULL;
     int error = edit ? GROBO_OK : library_read(q->l, q->name, &file);
     if (error) {
         refuse_error(q, error);

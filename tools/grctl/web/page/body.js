@@ -178,23 +178,21 @@ function sole(foot, at) {
 }
 
 /**
- * The root of a body that stands: the foot that is lower lies flat on the ground, and the middle
- * between the feet is the middle of the picture. The live robot's root comes from the server; this is
- * for poses of which only the angles are known.
+ * The root of a body that stands, as the server puts it: the sole of the lower foot lies flat on the
+ * ground, its middle below where it is with straight legs.
  */
 export function stand(body, q) {
     if (body.feet.length < 2) {
         return null;
     }
-    const loose = forward(body, q, m.identity());
+    const loose = forward(body, q, m.identity()), straight = forward(body, [], m.identity());
     const roots = body.feet.map((foot) => {
         const root = m.rigidInverse(m.mul(loose[foot.link], m.translation(foot.sole)));
         const depth = Math.min(...body.feet.map((other) => Math.min(
             ...sole(other, loose).map((p) => m.place(root, p)[2]))));
-        return { root, depth };
+        return { root, depth, foot };
     });
-    const root = (roots[0].depth >= roots[1].depth - 1e-4 ? roots[0] : roots[1]).root;
-    const middle = m.scale(body.feet.reduce((sum, foot) => m.add(
-        sum, m.place(m.mul(root, loose[foot.link]), foot.sole)), [0, 0, 0]), 0.5);
-    return m.mul(m.translation([-middle[0], -middle[1], 0]), root);
+    const { root, foot } = roots[0].depth >= roots[1].depth - 1e-4 ? roots[0] : roots[1];
+    const [x, y] = m.place(straight[foot.link], foot.sole);
+    return m.mul(m.translation([x, y, 0]), root);
 }

@@ -27,3 +27,23 @@ export function setText(node, text) {
 export function seconds(ms) {
     return (ms / 1000).toFixed(1);
 }
+
+/** Keys on a slider of degrees: arrows 1, page keys 10; `done` after each. */
+export function stepByKeys(slider, done) {
+    slider.addEventListener('keydown', (event) => {
+        const step = { PageUp: 10, PageDown: -10, ArrowUp: 1, ArrowRight: 1, ArrowDown: -1,
+                       ArrowLeft: -1 }[event.key];
+        if (step && !event.altKey && !event.ctrlKey && !event.metaKey) {
+            event.preventDefault();
+            slider.value = Number(slider.value) + step;
+            done();
+        }
+    });
+}
+
+/** A short tremor where the machine has one: a limit that a finger feels. */
+export function tremble() {
+    if (navigator.vibrate) {
+        navigator.vibrate(12);
+    }
+}

@@ -109,7 +109,8 @@ export class Figure {
     /**
      * @param host the element that holds the canvas and the labels
      * @param options { flat: never use WebGL, onPick: called with a joint or -1, onTouch: called when
-     * there is something to draw, above, below: elements that cover the figure }
+     * there is something to draw, onGrab: called with a point that is pressed, answers what it moves
+     * { move, end } or null, above, below: elements that cover the figure }
      */
     constructor(host, options) {
         this.host = host;
@@ -189,12 +190,14 @@ export class Figure {
 
     /**
      * @param pose { q: radians by joint (NaN: unknown), root, looks: by joint { colour, tint, shape,
-     * note }, faded, balance: { com, zmp, support, inside } }
+     * note }, faded, balance: { com, zmp, support, inside }, draft: it is drawn and not the robot,
+     * handles: { link, chosen } of a draft }
      */
     setPose(pose, ghost) {
         const key = JSON.stringify([pose.q.map((q) => Math.round(q * 2000)), pose.looks, pose.faded,
                                     pose.balance, ghost && ghost.q.map((q) => Math.round(q * 2000)),
-                                    ghost && ghost.bad, ghost && ghost.note]);
+                                    ghost && ghost.bad, ghost && ghost.note, pose.draft, pose.handles,
+                                    pose.draft && pose.root]);
         if (key !== this.key) {
             this.key = key;
             this.pose = pose;
@@ -253,6 +256,9 @@ export class Figure {
         body.links.forEach((link, n) => {
             const look = pose.looks[link.joint];
             let colour = link.joint < 0 || !look ? theme.part : mix(theme.part, look.colour, look.tint);
+            if (pose.draft) {
+                colour = mix(colour, theme.accent, 0.34);
+            }
             if (pose.faded || look && look.unknown) {
                 colour = mix(colour, theme.faded, 0.75);
             }
@@ -267,6 +273,12 @@ export class Figure {
             this.addBalance(scene, pose.balance);
         }
         this.addGhost(parts);
+        for (const { link, chosen } of pose.handles || []) {
+            const big = chosen ? 1.7 : 1.25, size = [big, 0, 0, 0, 0, big, 0, 0, 0, 0, big, 0, 0, 0, 0, 1];
+            parts.push({ solid: this.ballSolid, at: m.mul(m.translation(m.origin(this.at[link])), size),
+                         colour: mix(theme.accent, theme.text, chosen ? 0.55 : 0), joint: -1, flat: 0.4,
+                         through: true });
+        }
         if (this.selected >= 0) {
             this.addArc(scene);
         }
@@ -386,9 +398,8 @@ export class Figure {
     writeLabels() {
         const wanted = [];
         const say = (key, p, text, kind) => {
-            const c = m.project(this.camera.matrix, p);
-            wanted.push({ key, text, kind, x: (c[0] / c[3] + 1) / 2 * this.host.clientWidth,
-                          y: (1 - c[1] / c[3]) / 2 * this.host.clientHeight });
+            const [x, y] = this.onScreen(p);
+            wanted.push({ key, text, kind, x, y });
         };
         this.pose.looks.forEach((look, joint) => {
             const n = this.body.linkOf[joint];
@@ -432,10 +443,30 @@ export class Figure {
         });
     }
 
+    /** Where a point of the world is on the canvas, in pixels of the page. */
+    onScreen(p) {
+        const c = m.project(this.camera.matrix, p);
+        return [(c[0] / c[3] + 1) / 2 * this.host.clientWidth,
+                (1 - c[1] / c[3]) / 2 * this.host.clientHeight];
+    }
+
+    /** How far a point of the world goes, in the plane of the picture, that goes so many pixels. */
+    slideOf(p, dx, dy) {
+        const { eye, back } = this.camera, right = m.unit(m.cross([0, 0, 1], back));
+        const k = 2 * m.dot(m.sub(eye, p), back) * Math.tan(FOV / 2) / this.host.clientHeight;
+        return m.add(m.scale(right, dx * k), m.scale(m.cross(back, right), -dy * k));
+    }
+
     /** The joint under a point of the canvas, in pixels of the page; -1: none. */
     pick(x, y) {
+        const { joint, point } = this.hitAt(x, y);
+        return point ? joint : this.nearestHub(x, y, 22);
+    }
+
+    /** The joint of the link that is hit, -1 for none, and where it is hit; null: nothing is. */
+    hitAt(x, y) {
         if (!this.at) {
-            return -1;
+            return { joint: -1, point: null };
         }
         const w = this.host.clientWidth, h = this.host.clientHeight;
         const fx = (x / w * 2 - 1) * Math.tan(FOV / 2) * w / h;
@@ -453,16 +484,16 @@ export class Figure {
                 }
             }
         });
-        return best.far < Infinity ? best.joint : this.nearestHub(x, y, 22);
+        return { joint: best.joint, point: best.far < Infinity
+            ? m.add(eye, m.scale(along, best.far)) : null };
     }
 
     nearestHub(x, y, within) {
         let best = { far: within, joint: -1 };
         this.body.linkOf.forEach((n, joint) => {
-            if (n >= 0) {
-                const c = m.project(this.camera.matrix, m.origin(this.at[n]));
-                const far = Math.hypot((c[0] / c[3] + 1) / 2 * this.host.clientWidth - x,
-                                       (1 - c[1] / c[3]) / 2 * this.host.clientHeight - y);
+            if (n >= 0 && this.at) {
+                const [cx, cy] = this.onScreen(m.origin(this.at[n]));
+                const far = Math.hypot(cx - x, cy - y);
                 best = far < best.far ? { far, joint } : best;
             }
         });
@@ -471,11 +502,25 @@ export class Figure {
 
     listen(canvas) {
         const down = new Map();
-        let moved = 0;
+        let moved = 0, grip = null;
+        const inside = (event) => {
+            const box = canvas.getBoundingClientRect();
+            return [event.clientX - box.left, event.clientY - box.top];
+        };
+        const drop = () => {
+            if (grip) {
+                grip.end();
+                grip = null;
+            }
+        };
         canvas.addEventListener('pointerdown', (event) => {
             down.set(event.pointerId, [event.clientX, event.clientY]);
             canvas.setPointerCapture(event.pointerId);
             moved = down.size > 1 ? 99 : 0;
+            drop();
+            if (down.size === 1 && event.button === 0 && !event.shiftKey && this.options.onGrab) {
+                grip = this.options.onGrab(...inside(event));
+            }
         });
         canvas.addEventListener('pointermove', (event) => {
             const was = down.get(event.pointerId), now = [event.clientX, event.clientY];
@@ -484,7 +529,11 @@ export class Figure {
             }
             const dx = now[0] - was[0], dy = now[1] - was[1];
             moved += Math.abs(dx) + Math.abs(dy);
-            if (down.size === 2) {
+            if (grip) {
+                if (moved > 3) {
+                    grip.move(...inside(event));
+                }
+            } else if (down.size === 2) {
                 const other = [...down].find(([id]) => id !== event.pointerId)[1];
                 const before = Math.hypot(was[0] - other[0], was[1] - other[1]);
                 const after = Math.hypot(now[0] - other[0], now[1] - other[1]);
@@ -499,9 +548,10 @@ export class Figure {
             this.touch();
         });
         const up = (event) => {
-            if (down.delete(event.pointerId) && moved < 5 && event.type === 'pointerup') {
-                const box = canvas.getBoundingClientRect();
-                this.options.onPick(this.pick(event.clientX - box.left, event.clientY - box.top));
+            const taken = grip && grip.taken;
+            drop();
+            if (down.delete(event.pointerId) && !taken && moved < 5 && event.type === 'pointerup') {
+                this.options.onPick(this.pick(...inside(event)));
             }
         };
         canvas.addEventListener('pointerup', up);

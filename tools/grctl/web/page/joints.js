@@ -3,7 +3,7 @@
 // follows while it is dragged, if this page drives.
 
 import { Newest } from './api.js';
-import { element, setText } from './dom.js';
+import { element, setText, stepByKeys, tremble } from './dom.js';
 
 const SIGNS = { on: '●', off: '○', brake: '◐' };
 
@@ -57,15 +57,9 @@ export class Joints {
         ];
         this.slider.addEventListener('input', () => this.drag());
         this.slider.addEventListener('change', () => this.release());
-        this.slider.addEventListener('keydown', (event) => {
-            const step = { PageUp: 10, PageDown: -10, ArrowUp: 1, ArrowRight: 1, ArrowDown: -1,
-                           ArrowLeft: -1 }[event.key];
-            if (step && !event.altKey && !event.ctrlKey && !event.metaKey) {
-                event.preventDefault();
-                this.slider.value = Number(this.slider.value) + step;
-                this.drag();
-                this.release();
-            }
+        stepByKeys(this.slider, () => {
+            this.drag();
+            this.release();
         });
         const box = element('div', { className: 'jog' },
             element('div', { className: 'line' }, this.ends[0], this.slider, this.ends[1], this.out),
@@ -99,8 +93,8 @@ export class Joints {
     drag() {
         const value = Number(this.slider.value), joint = this.app.selected;
         const edge = value <= Number(this.slider.min) || value >= Number(this.slider.max);
-        if (edge && !this.atEdge && navigator.vibrate) {
-            navigator.vibrate(12);
+        if (edge && !this.atEdge) {
+            tremble();
         }
         this.atEdge = edge;
         this.dragged = { joint, value, at: performance.now() };

@@ -8,6 +8,7 @@ import { element, replace, setText } from './dom.js';
 import { Figure, fromHex, mix } from './figure.js';
 import { Joints } from './joints.js';
 import { Lease } from './lease.js';
+import { Make } from './make.js';
 import { DEG } from './mat.js';
 import { Play } from './play.js';
 import { See } from './see.js';
@@ -17,8 +18,8 @@ import { translate } from './text.js';
 
 const OLD_MS = 500;
 const SETTLED_MS = 400;
-const TABS = ['see', 'play', 'joints', 'more'];
-const PANELS = { see: 'see', play: 'motions', joints: 'joints', more: 'more' };
+const TABS = ['see', 'play', 'joints', 'make', 'more'];
+const PANELS = { see: 'see', play: 'motions', joints: 'joints', make: 'make', more: 'more' };
 const id = (name) => document.getElementById(name);
 
 /** A setting of this browser; a browser that keeps none has the default. */
@@ -53,11 +54,13 @@ class App {
             flat: new URLSearchParams(location.search).has('flat'),
             onPick: (joint) => this.select(joint === this.selected ? -1 : joint, true),
             onTouch: () => this.schedule(),
+            onGrab: (x, y) => this.make.active() ? this.make.hands.grab(x, y) : null,
             above: id('look'), below: id('legend'),
         });
         this.see = new See(this);
         this.joints = new Joints(this);
         this.play = new Play(this);
+        this.make = new Make(this);
         this.listen();
         this.translateAll();
         this.setTheme(setting('theme') || '');
@@ -95,6 +98,7 @@ class App {
         this.figure.setBody(makeBody(links, feet, robot.joints));
         this.see.setRobot(robot);
         this.joints.setRobot(robot);
+        this.make.setRobot(robot);
         await this.play.refresh().catch((error) => this.fail(error));
         this.schedule();
     }
@@ -346,7 +350,7 @@ class App {
 
     onKey(event) {
         const typing = event.target.matches('input:not([type=range]):not([type=checkbox]), select');
-        if (typing || event.ctrlKey || event.metaKey || event.altKey) {
+        if (this.make.onKey(event) || typing || event.ctrlKey || event.metaKey || event.altKey) {
             return;
         }
         if (event.key === ' ' && !event.target.matches('button, input, summary')) {
@@ -384,6 +388,9 @@ class App {
         }
         if (show && joint >= 0 && document.body.dataset.tab === 'joints') {
             this.joints.rows[joint].line.scrollIntoView({ block: 'nearest' });
+        }
+        if (show && joint >= 0 && document.body.dataset.tab === 'make') {
+            this.make.rows.reveal(joint);
         }
         this.schedule();
     }
@@ -435,9 +442,13 @@ class App {
         this.drawTop();
         this.drawStop();
         if (this.state && this.robot) {
-            this.figure.setPose(this.pose(), this.play.ghost(this.toMatrix) || this.target());
+            const draft = this.make.active();
+            this.figure.setPose(draft ? this.make.figurePose() : this.pose(),
+                                draft ? this.make.film()
+                                      : this.play.ghost(this.toMatrix) || this.target());
             this.figure.draw();
             this.play.draw(now);
+            this.make.draw(now);
             if (document.body.dataset.tab === 'see') {
                 this.see.draw(this.state, now);
             } else if (document.body.dataset.tab === 'joints') {
@@ -595,6 +606,10 @@ class App {
         const t = this.t, item = (cls, words) => element('span', {}, element('i', { className: cls }),
                                                          words);
         const n = (kind) => state.torque.filter((v) => v === kind).length;
+        if (this.make.active()) {
+            replace(id('legend'), ...this.make.legend(item));
+            return;
+        }
         const max = this.robot.safety.temperature_c || 70, most = this.robot.safety.current_ma || 800;
         const scales = {
             torque: [item('dot on', `${t('on')} ${n('on')}`), item('ring', `${t('off')} ${n('off')}`),

@@ -64,6 +64,7 @@ export class Play {
         const list = await this.app.api.get('/api/motions');
         this.files = list.motions;
         this.directory = list.directory;
+        this.app.make.setFiles(list.motions);
         this.writeFiles();
         if (this.name && !this.files.some((f) => f.name === this.name)) {
             this.name = this.look = null;
@@ -279,7 +280,7 @@ export class Play {
 
     write(live, now) {
         const t = this.app.t, may = this.app.mayMove(), length = this.length();
-        this.id('transport').hidden = !(live || this.name);
+        this.id('transport').hidden = !(live || this.name && document.body.dataset.tab !== 'make');
         if (live && !(this.dragging > now)) {
             this.at = live.t_ms;
             this.previewing = false;

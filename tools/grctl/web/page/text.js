@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The page in other languages: English text is the key. {0}, {1} are filled in.
 
+import { JA_MAKE } from './make_text.js';
+
 export const JA = {
+    ...JA_MAKE,
     'Figure of the robot': 'ロボットの図', 'What the colours show': '色の意味', Torque: 'トルク', Heat: '温度',
     Current: '電流', Limits: '可動範囲', 'Show the whole robot': '全体を表示',
     'Drag or arrow keys: turn. Pinch, wheel, + and -: zoom. 0: whole robot. Tap a joint to choose it.':
