@@ -32,6 +32,10 @@ GROBO_BEGIN_DECLS
 #ifndef GROBO_ROBOT_SLOTS
 #define GROBO_ROBOT_SLOTS (GROBO_JOINTS_MAX > 20 ? 44 : 12)
 #endif
+/** Bytes of these frames, each as long as it is. Three of the longest are kept for halts. */
+#ifndef GROBO_ROBOT_FRAMES_BYTES
+#define GROBO_ROBOT_FRAMES_BYTES (8 * GROBO_FRAME_MAX_BYTES)
+#endif
 /** Events that may wait for the callback at a time. */
 #define GROBO_ROBOT_EVENTS 32
 /** Bins of the jitter histogram: four an octave, from 1 us to 65 ms. */
@@ -92,8 +96,8 @@ typedef struct grobo_robot_slot {
     uint8_t use;      /* 0: free */
     uint8_t joint;
     uint8_t kind, part;      /* of a reading: grobo_sense_kind, exchanges before this one */
+    uint16_t room;           /* bytes of grobo_robot.frames that are its */
     grobo_joint_mask unread; /* of a reading of many joints, those that have not answered */
-    grobo_exchange exchange; /* last, its frame behind all else: see GROBO_I_SLOT_HEAD_BYTES */
 } grobo_robot_slot;
 
 /** A move of a joint, straight in time. Private. */
@@ -221,6 +225,9 @@ struct grobo_robot {
     grobo_joint_mask played_joints; /* sent where they go by the sequencer */
     grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
     uint8_t reply[GROBO_FRAME_MAX_BYTES];
+    grobo_exchange built;                     /* the frame that is being made */
+    uint8_t frames[GROBO_ROBOT_FRAMES_BYTES]; /* of the slots, one behind the other */
+    size_t frames_used;
     double fault_deg;
     int fault_joint;
     int last_number;

@@ -13,7 +13,12 @@
 
 #include <grobo/port.h>
 
-enum { NOTE_FOLDERS = 2, NOTE_NAME_BYTES = 240, NOTE_TEXT_BYTES = 2048 };
+enum {
+    NOTE_FOLDERS = 2,
+    NOTE_FOLDER_BYTES = 512,
+    NOTE_NAME_BYTES = 240,
+    NOTE_TEXT_BYTES = 2048
+};
 
 /* ---- notes: notes.c ------------------------------------------------------------------------- */
 
@@ -25,12 +30,20 @@ enum { NOTE_FOLDERS = 2, NOTE_NAME_BYTES = 240, NOTE_TEXT_BYTES = 2048 };
  */
 int grobo_i_note_write(const char *name, const char *text, grobo_os_cause *cause);
 
+/* The directories as they are now: who reads several notes looks once whom they belong to. An empty
+ * path: there is none that can be trusted. */
+typedef struct grobo_i_note_folders {
+    char path[NOTE_FOLDERS][NOTE_FOLDER_BYTES];
+} grobo_i_note_folders;
+void grobo_i_note_folders_find(grobo_i_note_folders *folders);
+
 /*
  * Reads a note of one directory; the text is cut to size. A note that is there but cannot be opened
  * (no free descriptor) is read as empty.
  * Returns GROBO_OK, or GROBO_ERR_NOENT where there is none that can be trusted.
  */
-int grobo_i_note_read(int folder, const char *name, char *text, size_t text_bytes);
+int grobo_i_note_read(const grobo_i_note_folders *in, int folder, const char *name, char *text,
+                      size_t text_bytes);
 
 /* Removes a note everywhere. GROBO_OK, also where there was none, or why one is left. */
 int grobo_i_note_remove(const char *name, grobo_os_cause *cause);

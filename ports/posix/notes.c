@@ -12,7 +12,7 @@
 #include "ports/common/notes.h"
 #include "ports/posix/posix.h"
 
-enum { FOLDER_BYTES = 512, PATH_BYTES = FOLDER_BYTES + NOTE_NAME_BYTES + 32 };
+enum { PATH_BYTES = NOTE_FOLDER_BYTES + NOTE_NAME_BYTES + 32 };
 
 static const char shared_parent[] = "/tmp";
 
@@ -50,11 +50,14 @@ static bool session_folder(char *path, bool make)
     if (run == NULL || run[0] != '/') {
         return false;
     }
-    int n = snprintf(path, FOLDER_BYTES, "%s/grobo", run);
+    static const char name[] = "/grobo";
+    size_t size = strlen(run);
 
-    if (n < 0 || n >= FOLDER_BYTES || !is_safe_parent(run)) {
+    if (size > NOTE_FOLDER_BYTES - sizeof name || !is_safe_parent(run)) {
         return false;
     }
+    memcpy(path, run, size);
+    memcpy(path + size, name, sizeof name);
     return is_private(path) || (make && make_private(path));
 }
 
@@ -74,12 +77,29 @@ static bool find_substitute(const char *base, char *path)
         int n = -1;
 
         if (strncmp(entry->d_name, prefix, size) == 0 && entry->d_name[size] == '.') {
-            n = snprintf(path, FOLDER_BYTES, "%s/%s", shared_parent, entry->d_name);
+            n = snprintf(path, NOTE_FOLDER_BYTES, "%s/%s", shared_parent, entry->d_name);
         }
-        found = n > 0 && n < FOLDER_BYTES && is_private(path);
+        found = n > 0 && n < NOTE_FOLDER_BYTES && is_private(path);
     }
     (void)closedir(parent);
     return found;
+}
+
+/* The plain name of the next one, in the end of `buf`: it is asked for twenty times a second. */
+static const char *shared_name(char buf[64])
+{
+    static const char prefix[] = "/grobo-";
+    const size_t in = sizeof shared_parent - 1, size = sizeof prefix - 1;
+    unsigned long uid = geteuid();
+    char *at = buf + 63;
+
+    *at = '\0';
+    do {
+        *--at = (char)('0' + uid % 10);
+        uid /= 10;
+    } while (uid > 0);
+    memcpy(at - size, prefix, size);
+    return memcpy(at - size - in, shared_parent, in);
 }
 
 /*
@@ -89,11 +109,11 @@ static bool find_substitute(const char *base, char *path)
  */
 static bool shared_folder(char *path, bool make)
 {
-    char base[64];
+    char buf[64];
+    const char *base = shared_name(buf);
     struct stat st;
 
-    snprintf(base, sizeof base, "%s/grobo-%lu", shared_parent, (unsigned long)geteuid());
-    snprintf(path, FOLDER_BYTES, "%s", base);
+    memcpy(path, base, strlen(base) + 1);
     if (is_private(base)) {
         return true;
     }
@@ -104,25 +124,51 @@ static bool shared_folder(char *path, bool make)
 
     if (find_substitute(base, path)) {
         if (!taken && rename(path, base) == 0) {
-            snprintf(path, FOLDER_BYTES, "%s", base);
+            snprintf(path, NOTE_FOLDER_BYTES, "%s", base);
         }
         return is_private(path);
     }
-    snprintf(path, FOLDER_BYTES, "%s%s", base, taken ? ".XXXXXX" : "");
+    snprintf(path, NOTE_FOLDER_BYTES, "%s%s", base, taken ? ".XXXXXX" : "");
     if (!make) {
         return false;
     }
     return taken ? mkdtemp(path) != NULL && is_private(path) : make_private(path);
 }
 
-/* The path of a name in a directory that can be trusted. */
+static bool find_folder(int folder, bool make, char *path)
+{
+    return folder == 0 ? session_folder(path, make) : shared_folder(path, make);
+}
+
+void grobo_i_note_folders_find(grobo_i_note_folders *folders)
+{
+    for (int i = 0; i < NOTE_FOLDERS; i++) {
+        if (!find_folder(i, false, folders->path[i])) {
+            folders->path[i][0] = '\0';
+        }
+    }
+}
+
+/* The path of a name in a directory. */
+static bool join(const char *in, const char *name, char *path)
+{
+    size_t folder = strlen(in), size = strlen(name) + 1;
+
+    if (folder == 0 || folder + 1 + size > PATH_BYTES) {
+        return false;
+    }
+    memcpy(path, in, folder);
+    path[folder] = '/';
+    memcpy(path + folder + 1, name, size);
+    return true;
+}
+
+/* The same in a directory that can be trusted. */
 static bool place(int folder, const char *name, bool make, char *path)
 {
-    char in[FOLDER_BYTES];
-    bool found = folder == 0 ? session_folder(in, make) : shared_folder(in, make);
-    int n = found ? snprintf(path, PATH_BYTES, "%s/%s", in, name) : -1;
+    char in[NOTE_FOLDER_BYTES];
 
-    return n > 0 && n < PATH_BYTES;
+    return find_folder(folder, make, in) && join(in, name, path);
 }
 
 /* ---- notes -------------------------------------------------------------------------------- */
@@ -199,14 +245,15 @@ static bool is_own(const struct stat *st)
     return S_ISREG(st->st_mode) && st->st_uid == geteuid() && (st->st_mode & 022) == 0;
 }
 
-int grobo_i_note_read(int folder, const char *name, char *text, size_t text_bytes)
+int grobo_i_note_read(const grobo_i_note_folders *in, int folder, const char *name, char *text,
+                      size_t text_bytes)
 {
     char path[PATH_BYTES];
     struct stat st;
     ssize_t got = 0;
     int fd;
 
-    if (!place(folder, name, false, path) || lstat(path, &st) != 0 || !is_own(&st)) {
+    if (!join(in->path[folder], name, path) || lstat(path, &st) != 0 || !is_own(&st)) {
         return GROBO_ERR_NOENT;
     }
     fd = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);

@@ -10,27 +10,44 @@
 #include "ports/common/notes.h"
 #include "ports/win32/win32.h"
 
-enum { PATH_BYTES = MAX_PATH + NOTE_NAME_BYTES + 32 };
+enum { PATH_BYTES = NOTE_FOLDER_BYTES + NOTE_NAME_BYTES + 32 };
 
 /* ---- notes -------------------------------------------------------------------------------- */
 
 /* There is one directory. */
-static bool place(const char *name, bool make, char *path)
+static bool find_folder(bool make, char *path)
 {
     char data[MAX_PATH];
-    int n;
 
     if (SHGetFolderPathA(NULL, CSIDL_LOCAL_APPDATA | CSIDL_FLAG_CREATE, NULL, SHGFP_TYPE_CURRENT,
                          data) != S_OK) {
         return false;
     }
-    n = snprintf(path, PATH_BYTES, "%s\\grobo", data);
-    if (n < 0 || n >= PATH_BYTES ||
-        (make && !CreateDirectoryA(path, NULL) && GetLastError() != ERROR_ALREADY_EXISTS)) {
-        return false;
+    int n = snprintf(path, NOTE_FOLDER_BYTES, "%s\\grobo", data);
+    return n > 0 && n < NOTE_FOLDER_BYTES &&
+           (!make || CreateDirectoryA(path, NULL) || GetLastError() == ERROR_ALREADY_EXISTS);
+}
+
+void grobo_i_note_folders_find(grobo_i_note_folders *folders)
+{
+    memset(folders, 0, sizeof *folders);
+    if (!find_folder(false, folders->path[0])) {
+        folders->path[0][0] = '\0';
     }
-    n = snprintf(path, PATH_BYTES, "%s\\grobo\\%s", data, name);
+}
+
+static bool join(const char *in, const char *name, char *path)
+{
+    int n = in[0] != '\0' ? snprintf(path, PATH_BYTES, "%s\\%s", in, name) : -1;
+
     return n > 0 && n < PATH_BYTES;
+}
+
+static bool place(const char *name, bool make, char *path)
+{
+    char in[NOTE_FOLDER_BYTES];
+
+    return find_folder(make, in) && join(in, name, path);
 }
 
 int grobo_i_note_write(const char *name, const char *text, grobo_os_cause *cause)
@@ -61,13 +78,14 @@ int grobo_i_note_write(const char *name, const char *text, grobo_os_cause *cause
     return 1;
 }
 
-int grobo_i_note_read(int folder, const char *name, char *text, size_t text_bytes)
+int grobo_i_note_read(const grobo_i_note_folders *in, int folder, const char *name, char *text,
+                      size_t text_bytes)
 {
     char path[PATH_BYTES];
     DWORD got = 0;
     HANDLE file;
 
-    if (folder != 0 || !place(name, false, path) ||
+    if (!join(in->path[folder], name, path) ||
         GetFileAttributesA(path) == INVALID_FILE_ATTRIBUTES) {
         return GROBO_ERR_NOENT;
     }

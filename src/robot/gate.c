@@ -716,7 +716,7 @@ static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
     const grobo_posture *to = &says->target.posture;
     grobo_joint_mask on = says->torqued[GROBO_TORQUE_ON];
     int joint = -1;
-    GROBO_ASSERT(slot->exchange.frame_bytes > 0);
+    GROBO_ASSERT(slot->txn.frame_bytes > 0);
     GROBO_ASSERT((to->set & ~grobo_i_all_joints(robot)) == 0 && (on & ~order->joints) == 0);
     GROBO_ASSERT(to->set == 0 || check_target(robot, to, &joint) == GROBO_OK);
     GROBO_ASSERT(!robot->trip.latched || on == 0);
@@ -729,6 +729,17 @@ static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
     }
 }
 
+/* The frame of a slot, where the judgement needs it. */
+static const grobo_exchange *waiting(const grobo_robot_slot *slot)
+{
+    grobo_exchange *frame = &slot->robot->built;
+    if (slot->order.deed == GROBO_I_DEED_RAW) {
+        frame->frame_bytes = slot->txn.frame_bytes;
+        memcpy(frame->frame, slot->txn.frame, slot->txn.frame_bytes);
+    }
+    return frame;
+}
+
 int grobo_i_gate_leave(grobo_robot_slot *slot)
 {
     grobo_robot *robot = slot->robot;
@@ -736,16 +747,16 @@ int grobo_i_gate_leave(grobo_robot_slot *slot)
     saying says;
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && robot->link);
     if (slot->order.deed == GROBO_I_DEED_NONE && slot->order.joints == 0) {
-        GROBO_ASSERT(slot->exchange.frame_bytes > 0);
         return GROBO_OK; /* a reading: it tells no joint anything */
     }
-    int result = is_passed(robot, slot) ? GROBO_ERR_STALE
-                                        : judge(robot, &slot->order, &slot->exchange, again, &says);
+    int result = is_passed(robot, slot)
+                     ? GROBO_ERR_STALE
+                     : judge(robot, &slot->order, waiting(slot), again, &says);
     if (result >= 0 && is_built(&slot->order)) {
         grobo_target target;
         aim(robot, &slot->order, &says, &target);
-        result = make_frame(robot, &slot->order, &says, &target, slot->order.part, &slot->exchange);
-        result = result == 0 ? GROBO_ERR_EMPTY : result;
+        result = make_frame(robot, &slot->order, &says, &target, slot->order.part, &robot->built);
+        result = result > 0 ? grobo_i_slot_renew(slot) : result == 0 ? GROBO_ERR_EMPTY : result;
     }
     if (result < 0) {
         return result;

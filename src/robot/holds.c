@@ -55,8 +55,9 @@ static void assert_slot(const grobo_robot *robot, const grobo_robot_slot *slot)
     }
     GROBO_ASSERT(robot->link);
     GROBO_ASSERT(slot->robot == robot);
-    GROBO_ASSERT(slot->exchange.frame_bytes > 0);
-    GROBO_ASSERT(slot->txn.frame == slot->exchange.frame);
+    GROBO_ASSERT(slot->txn.frame_bytes > 0 && slot->txn.frame_bytes <= slot->room);
+    GROBO_ASSERT(slot->txn.frame >= robot->frames &&
+                 slot->txn.frame + slot->room <= robot->frames + robot->frames_used);
     GROBO_ASSERT(!slot->reads || slot->joint < robot->driver->model->n_joints);
     GROBO_ASSERT(slot->use != GROBO_I_USE_JOB || grobo_i_job_has(slot));
     GROBO_ASSERT((slot->order.joints & ~grobo_i_all_joints(robot)) == 0);
@@ -97,15 +98,18 @@ static void assert_stop(const grobo_robot *robot)
 void grobo_i_robot_assert(const grobo_robot *robot)
 {
     int used = 0;
+    size_t bytes = 0;
     if (!GROBO_ASSERT_WALKS) {
         return;
     }
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         assert_slot(robot, &robot->slots[i]);
         used += robot->slots[i].use != GROBO_I_USE_FREE;
+        bytes += robot->slots[i].use != GROBO_I_USE_FREE ? robot->slots[i].room : 0;
         GROBO_ASSERT(robot->slots[i].use == GROBO_I_USE_FREE || i < robot->slots_end);
     }
     GROBO_ASSERT(used == grobo_bus_pending(&robot->bus));
+    GROBO_ASSERT(bytes == robot->frames_used && bytes <= sizeof robot->frames);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         assert_axis(robot, j);
     }

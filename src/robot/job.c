@@ -205,6 +205,12 @@ static int keep_asking(grobo_robot *robot)
     return has_frame(robot, robot->job, true) ? 1 : 0;
 }
 
+/* Jobs before this one give some back. */
+static int await_room(const grobo_robot *robot)
+{
+    return robot->job == robot->jobs ? GROBO_ERR_FULL : 1;
+}
+
 static int keep_reading(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
@@ -217,20 +223,20 @@ static int keep_reading(grobo_robot *robot)
     const grobo_driver *driver = robot->driver;
     grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_JOB);
     if (slot == NULL) {
-        return robot->job == robot->jobs ? GROBO_ERR_FULL : 1; /* those before it give some back */
+        return await_room(robot);
     }
     slot->joint = (uint8_t)grobo_i_lowest(job->todo);
     slot->reads = true;
     bool first = driver->all_first && !robot->axes[slot->joint].sensed;
     grobo_sense_kind kind = first ? GROBO_SENSE_ALL : job->sense;
     slot->kind = (uint8_t)kind;
-    int result = driver->sense(driver, robot->driver_ctx, slot->joint, kind, &slot->exchange);
+    int result = driver->sense(driver, robot->driver_ctx, slot->joint, kind, &robot->built);
     if (result < 0) {
         grobo_i_slot_drop(slot);
         return result;
     }
-    result = grobo_i_slot_send(slot, job->priority);
-    return result < 0 ? result : 1;
+    result = grobo_i_slot_send(slot, &robot->built, job->priority);
+    return result == GROBO_ERR_FULL ? await_room(robot) : result < 0 ? result : 1;
 }
 
 static int keep_draining(grobo_robot *robot)

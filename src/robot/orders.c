@@ -21,12 +21,12 @@ static int send_one(grobo_robot *robot, const grobo_robot_order *order, const wa
     slot->order = *order;
     slot->due_us = out->due_us;
     slot->job = out->due_us != GROBO_NEVER_US ? 0 : slot->job; /* the sequencer's, not a job's */
-    int result = grobo_i_gate_build(robot, order, &slot->exchange);
+    int result = grobo_i_gate_build(robot, order, &robot->built);
     if (result <= 0) {
         grobo_i_slot_drop(slot);
         return result;
     }
-    result = grobo_i_slot_send(slot, out->priority);
+    result = grobo_i_slot_send(slot, &robot->built, out->priority);
     if (result >= 0 && out->use == GROBO_I_USE_MOTION) {
         grobo_bus_cost cost;
         grobo_bus_cost_of(&robot->bus, &slot->txn, &cost);

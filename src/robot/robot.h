@@ -135,17 +135,16 @@ typedef enum grobo_i_deed {
     GROBO_I_DEED_COMMAND   /* a servo is busy with itself; `joints` restart without torque */
 } grobo_i_deed;
 
-/* A slot without the bytes of its frame, which nobody looks at before they are written, or when it
- * is over. To clear and to copy them too would be most of the memory that a transaction touches. */
-#define GROBO_I_SLOT_HEAD_BYTES                                                                    \
-    (offsetof(grobo_robot_slot, exchange) + offsetof(grobo_exchange, frame))
-
 /* The index of a free slot, or -1; there is always one for a halt. */
 int grobo_i_slot_find(const grobo_robot *robot, grobo_i_use use);
-/* Takes it, with a zeroed exchange (but for the bytes of the frame) and order, or NULL. */
+/* Takes it, with a zeroed order and grobo_robot.built (but for the bytes of the frame), or NULL. */
 grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use);
-/* Gives the slot's exchange to the bus; on error the slot is free again. */
-int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority);
+/* Gives the bus this frame, which is copied; on error the slot is free again. */
+int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
+                      grobo_priority priority);
+/* Puts grobo_robot.built in the place of the frame that waits. @return GROBO_OK, or GROBO_ERR_SPACE
+ * where it is longer than that was at first. */
+int grobo_i_slot_renew(grobo_robot_slot *slot);
 /* Gives a slot back that was not sent. */
 void grobo_i_slot_drop(grobo_robot_slot *slot);
 /* Takes back every frame of this use. */

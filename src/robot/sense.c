@@ -224,7 +224,7 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
     robot->round = 0;
     slot->many = true;
     slot->unread = all;
-    return driver->sense_many(driver, robot->driver_ctx, all, kind, &slot->exchange);
+    return driver->sense_many(driver, robot->driver_ctx, all, kind, &robot->built);
 }
 
 static int ask_next(grobo_robot *robot, grobo_robot_slot *slot)
@@ -234,7 +234,7 @@ static int ask_next(grobo_robot *robot, grobo_robot_slot *slot)
     slot->reads = true;
     slot->kind = (uint8_t)kind_of(robot, slot->joint);
     return driver->sense(driver, robot->driver_ctx, slot->joint, (grobo_sense_kind)slot->kind,
-                         &slot->exchange);
+                         &robot->built);
 }
 
 void grobo_i_sense_step(grobo_robot *robot)
@@ -253,7 +253,7 @@ void grobo_i_sense_step(grobo_robot *robot)
         grobo_i_slot_drop(slot);
         return;
     }
-    (void)grobo_i_slot_send(slot, GROBO_PRIORITY_SENSE);
+    (void)grobo_i_slot_send(slot, &robot->built, GROBO_PRIORITY_SENSE);
 }
 
 void grobo_i_sense_done(const grobo_robot_slot *slot, int result)

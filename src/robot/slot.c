@@ -40,7 +40,8 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
     }
     grobo_robot_slot *found = &robot->slots[at];
     GROBO_ASSERT(use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&found->txn));
-    memset(found, 0, GROBO_I_SLOT_HEAD_BYTES);
+    memset(found, 0, sizeof *found);
+    memset(&robot->built, 0, offsetof(grobo_exchange, frame));
     found->robot = robot;
     found->due_us = GROBO_NEVER_US;
     found->use = (uint8_t)use;
@@ -49,11 +50,82 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
     return found;
 }
 
+/* ---- their bytes ----------------------------------------------------------------------------- */
+
+/* A frame has as many bytes as it needs when it is given; when it leaves, never more. They lie one
+ * behind the other: who gives some back moves what is behind them. The bus finds a frame by its
+ * transaction, each time that it needs it. */
+static uint8_t *bytes_of(const grobo_robot_slot *slot)
+{
+    return slot->robot->frames + (slot->txn.frame - slot->robot->frames);
+}
+
+_Static_assert(GROBO_ROBOT_FRAMES_BYTES > SLOTS_TO_HALT * GROBO_FRAME_MAX_BYTES,
+               "frames that are no halts need room, too");
+
+/* Room for SLOTS_TO_HALT frames of any length is kept for halts: there is always some. */
+static bool has_room(const grobo_robot *robot, grobo_i_use use, size_t bytes)
+{
+    size_t kept = use == GROBO_I_USE_HALT ? 0 : (size_t)SLOTS_TO_HALT * GROBO_FRAME_MAX_BYTES;
+    for (int i = 0; i < robot->slots_end; i++) {
+        const grobo_robot_slot *slot = &robot->slots[i];
+        size_t had = slot->use == GROBO_I_USE_HALT ? slot->room : 0;
+        kept -= had < kept ? had : kept;
+    }
+    return bytes + kept <= sizeof robot->frames - robot->frames_used;
+}
+
+static void take_bytes(grobo_robot_slot *slot, const grobo_exchange *exchange)
+{
+    grobo_robot *robot = slot->robot;
+    GROBO_ASSERT(slot->room == 0);
+    slot->txn.frame = robot->frames + robot->frames_used;
+    slot->room = exchange->frame_bytes;
+    robot->frames_used += slot->room;
+    memcpy(bytes_of(slot), exchange->frame, slot->room);
+    slot->txn.frame_bytes = exchange->frame_bytes;
+    slot->txn.reply = exchange->reply;
+}
+
+static void give_bytes_back(grobo_robot_slot *slot)
+{
+    grobo_robot *robot = slot->robot;
+    uint8_t *gone = bytes_of(slot), *behind = gone + slot->room;
+    size_t n = robot->frames_used - (size_t)(behind - robot->frames);
+    GROBO_ASSERT(gone >= robot->frames && behind <= robot->frames + robot->frames_used);
+    robot->frames_used -= slot->room;
+    for (int i = 0; n > 0 && i < robot->slots_end; i++) {
+        grobo_robot_slot *other = &robot->slots[i];
+        if (other->room > 0 && other->txn.frame >= behind) {
+            other->txn.frame -= slot->room;
+        }
+    }
+    memmove(gone, behind, n);
+    slot->room = 0;
+}
+
+int grobo_i_slot_renew(grobo_robot_slot *slot)
+{
+    const grobo_exchange *next = &slot->robot->built;
+    if (next->frame_bytes > slot->room) {
+        return GROBO_ERR_SPACE;
+    }
+    memcpy(bytes_of(slot), next->frame, next->frame_bytes);
+    slot->txn.frame_bytes = next->frame_bytes;
+    slot->txn.reply = next->reply;
+    return GROBO_OK;
+}
+
+/* ---- to the bus and back --------------------------------------------------------------------- */
+
 void grobo_i_slot_drop(grobo_robot_slot *slot)
 {
     GROBO_ASSERT(!grobo_txn_is_pending(&slot->txn));
     grobo_robot *robot = slot->robot;
     slot->use = GROBO_I_USE_FREE;
+    if (slot->room > 0) {
+        give_bytes_back(slot);
+    }
     while (robot->slots_end > 0 && robot->slots[robot->slots_end - 1].use == GROBO_I_USE_FREE) {
         robot->slots_end--;
     }
@@ -77,10 +149,8 @@ static int on_leave(void *ctx, grobo_txn *txn)
     slot->refused = result < 0;
     if (result >= 0) {
         slot->robot->bus.config.margin_us = margin_of(slot); /* of this frame: it leaves now */
-        GROBO_ASSERT(slot->exchange.frame_bytes > 0);
+        GROBO_ASSERT(txn->frame_bytes > 0);
         slot->asked_us = txn->sent_us < 0 ? slot->robot->now_us : slot->asked_us;
-        txn->frame_bytes = slot->exchange.frame_bytes;
-        txn->reply = slot->exchange.reply;
     }
     return result;
 }
@@ -103,24 +173,26 @@ static void note_answer(grobo_robot *robot, const grobo_txn *txn, int result,
 
 static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
-    grobo_robot_slot slot;
-    memcpy(&slot, ctx, GROBO_I_SLOT_HEAD_BYTES);
+    grobo_robot_slot slot = *(const grobo_robot_slot *)ctx;
     GROBO_ASSERT(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);
     grobo_i_slot_drop(ctx);
     note_answer(slot.robot, txn, result, reply);
     slot.robot->over(&slot, result, reply);
 }
 
-int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority)
+int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
+                      grobo_priority priority)
 {
     const grobo_robot_config *config = &slot->robot->config;
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&slot->txn));
     bool had_its_chance = slot->reads && slot->robot->axes[slot->joint].lost > 0;
     /* Where several are asked the next round asks again. */
     bool once = slot->many || (had_its_chance && slot->use == GROBO_I_USE_SENSE);
-    slot->txn.frame = slot->exchange.frame;
-    slot->txn.frame_bytes = slot->exchange.frame_bytes;
-    slot->txn.reply = slot->exchange.reply;
+    if (!has_room(slot->robot, (grobo_i_use)slot->use, exchange->frame_bytes)) {
+        grobo_i_slot_drop(slot);
+        return GROBO_ERR_FULL;
+    }
+    take_bytes(slot, exchange);
     slot->txn.priority = priority;
     slot->txn.retries = once ? 0 : (uint8_t)config->retries;
     slot->txn.patient = slot->txn.retries > 0 && !had_its_chance;

@@ -79,10 +79,9 @@ static int ask(grobo_robot *robot, const grobo_exchange *exchange)
     if (slot == NULL) {
         return GROBO_ERR_FULL;
     }
-    slot->exchange = *exchange;
     slot->order = robot->job->order;
     slot->txn.start_by_us = robot->job->leave_by_us;
-    int result = grobo_i_slot_send(slot, robot->job->priority);
+    int result = grobo_i_slot_send(slot, exchange, robot->job->priority);
     return result < 0 ? result : GROBO_I_ASK;
 }
 
@@ -223,9 +222,9 @@ static void tell_plain(grobo_robot *robot, grobo_joint_mask joints, int64_t time
         if (slot == NULL) {
             break;
         }
-        more = build(robot->driver, robot->driver_ctx, joints, time_us, part, &slot->exchange);
+        more = build(robot->driver, robot->driver_ctx, joints, time_us, part, &robot->built);
         if (more > 0) {
-            more = grobo_i_slot_send(slot, robot->job->priority) < 0 ? 0 : 1;
+            more = grobo_i_slot_send(slot, &robot->built, robot->job->priority) < 0 ? 0 : 1;
         } else {
             grobo_i_slot_drop(slot);
         }

@@ -27,12 +27,12 @@ static int read_on(const grobo_robot_slot *before)
     slot->kind = before->kind;
     slot->part = (uint8_t)(before->part + 1);
     int more = driver->sense_more(driver, robot->driver_ctx, slot->joint,
-                                  (grobo_sense_kind)slot->kind, slot->part, &slot->exchange);
+                                  (grobo_sense_kind)slot->kind, slot->part, &robot->built);
     if (more <= 0) {
         grobo_i_slot_drop(slot);
         return more;
     }
-    more = grobo_i_slot_send(slot, before->txn.priority);
+    more = grobo_i_slot_send(slot, &robot->built, before->txn.priority);
     return more < 0 ? more : 1;
 }
 
@@ -68,8 +68,7 @@ void grobo_i_reply_came(grobo_robot_slot *slot, const grobo_packet *reply)
         return;
     }
     slot->unread &= ~GROBO_JOINT_BIT(joint);
-    grobo_robot_slot one; /* what is read may end the frame */
-    memcpy(&one, slot, GROBO_I_SLOT_HEAD_BYTES);
+    grobo_robot_slot one = *slot; /* what is read may end the frame */
     one.joint = (uint8_t)joint;
     (void)take_reading(&one, reply->refused ? GROBO_ERR_NACK : GROBO_OK, reply);
 }

@@ -266,7 +266,6 @@ static void a_setting_is_refused_by_name(void **state)
         take(order); /* its first attempt is why: a second may leave */
         assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
         slot->txn.sent_us = NOW - 5;
-        slot->exchange.frame_bytes = 1;
         assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
         slot->txn.sent_us = robot.axes[j].told_us = 0; /* where the clock may begin */
         assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
@@ -361,8 +360,8 @@ static void each_part_has_joints_of_its_own(void **state)
         grobo_exchange exchange;
         int result = grobo_i_gate_build(&robot, &order, &exchange);
         for (; leave(order) == GROBO_OK; order.part++) {
-            rig_frame frame = {.size = (uint8_t)slot->exchange.frame_bytes};
-            memcpy(frame.bytes, slot->exchange.frame, frame.size);
+            rig_frame frame = {.size = (uint8_t)slot->txn.frame_bytes};
+            memcpy(frame.bytes, slot->txn.frame, frame.size);
             const uint8_t *packet;
             assert_true(rig_packet(&frame, &packet) > 8);
             for (int i = 0; i < packet[6]; i++) {

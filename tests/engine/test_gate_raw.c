@@ -25,7 +25,8 @@ static int raw(const uint8_t *packet, int size, grobo_robot_order *order)
     int result = grobo_i_gate_raw(&robot, &exchange, order);
     if (result >= 0) {
         take(*order);
-        slot->exchange = exchange;
+        memcpy(robot.frames, exchange.frame, exchange.frame_bytes);
+        slot->txn.frame_bytes = exchange.frame_bytes;
     }
     return result;
 }

@@ -136,8 +136,8 @@ static void a_halt_finds_room(void **state)
     int taken = 0;
     grobo_robot_slot *slot;
     while ((slot = grobo_i_slot_take(&rig.robot, GROBO_I_USE_PLAIN)) != NULL) {
-        assert_int_equal(rig.driver->check(rig.driver, NULL, 0, &slot->exchange), 1);
-        assert_int_equal(grobo_i_slot_send(slot, GROBO_PRIORITY_SENSE), GROBO_OK);
+        assert_int_equal(rig.driver->check(rig.driver, NULL, 0, &rig.robot.built), 1);
+        assert_int_equal(grobo_i_slot_send(slot, &rig.robot.built, GROBO_PRIORITY_SENSE), GROBO_OK);
         taken++;
     }
     assert_true(taken >= 8); /* five small holds, a reading, a job's, a target */

@@ -251,8 +251,8 @@ static void a_trip_takes_back_targets_that_wait(void **state)
         start();
         grobo_robot_slot *slot = grobo_i_slot_take(&robot, GROBO_I_USE_MOTION);
         slot->order.joints = GROBO_JOINT_BIT(i / 2);
-        assert_int_equal(driver.sense(&driver, NULL, 0, GROBO_SENSE_ALL, &slot->exchange), 0);
-        assert_int_equal(grobo_i_slot_send(slot, GROBO_PRIORITY_MOTION), GROBO_OK);
+        assert_int_equal(driver.sense(&driver, NULL, 0, GROBO_SENSE_ALL, &robot.built), 0);
+        assert_int_equal(grobo_i_slot_send(slot, &robot.built, GROBO_PRIORITY_MOTION), GROBO_OK);
         grobo_i_trip(&robot, GROBO_TRIP_HOST_STALL, -1, 0, latched);
         assert_int_equal(slot->use, GROBO_I_USE_FREE);
     }

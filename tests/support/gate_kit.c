@@ -28,7 +28,13 @@ void take(grobo_robot_order order)
     assert_non_null(slot);
     slot->order = order;
     slot->txn.sent_us = -1;
-    memset(&slot->exchange, 0xA5, sizeof slot->exchange);
+    /* As if the longest frame waited: what leaves takes its place. */
+    slot->room = slot->txn.frame_bytes = GROBO_FRAME_MAX_BYTES;
+    slot->txn.frame = robot.frames + robot.frames_used;
+    robot.frames_used += slot->room;
+    assert_true(robot.frames_used <= sizeof robot.frames);
+    memset(robot.frames, 0xA5, sizeof robot.frames);
+    memset(&robot.built, 0xA5, sizeof robot.built);
     keep_axes();
 }
 
@@ -48,11 +54,11 @@ void expect_packet(const uint8_t *packet, int size)
     grobo_exchange be = {0};
     assert_true(size > 0);
     int n = grobo_frame_wrap(driver.protocol, packet, (size_t)size, be.frame, sizeof be.frame);
-    assert_int_equal(slot->exchange.frame_bytes, n);
-    assert_memory_equal(slot->exchange.frame, be.frame, (size_t)n);
+    assert_int_equal(slot->txn.frame_bytes, n);
+    assert_memory_equal(slot->txn.frame, be.frame, (size_t)n);
     assert_int_equal(driver.protocol->reply_to(be.frame, (size_t)n, &be.reply), 0);
-    assert_int_equal(slot->exchange.reply.kind, be.reply.kind);
-    assert_int_equal(slot->exchange.settle_us, 0);
+    assert_int_equal(slot->txn.reply.kind, be.reply.kind);
+    assert_int_equal(robot.built.settle_us, 0);
 }
 
 int far_goal = -1;

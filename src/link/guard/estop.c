@@ -26,25 +26,40 @@ static const char nameless[] = "none";
 
 /* ---- names of notes ----------------------------------------------------------------------- */
 
-/* Characters that no system takes in a file's name. A long name is cut and gets a sum. */
+static char *put(char *to, const char *text, size_t size)
+{
+    memcpy(to, text, size);
+    return to + size;
+}
+
+static bool fits_a_file(char c)
+{
+    return (unsigned char)c >= ' ' && c != '/' && c != '\\' && c != ':' && c != '*' && c != '?' &&
+           c != '"' && c != '<' && c != '>' && c != '|';
+}
+
+/* Without characters that no system takes in a file's name. A long name is cut and gets a sum.
+ * Plain copies: each session makes one of each of its names twenty times a second. */
 static void note_of(const char *kind, const char *name, char *note)
 {
     size_t size = strlen(name);
-    uint32_t sum = 2166136261u; /* FNV-1a */
+    char *at = put(note, kind, strlen(kind));
 
-    for (const char *c = name; *c != '\0'; c++) {
-        sum = (sum ^ (unsigned char)*c) * 16777619u;
-    }
+    *at++ = '-';
     if (size > NAME_PART) {
-        snprintf(note, NOTE_NAME_BYTES, "%s-%08" PRIx32 "-%s", kind, sum, name + size - NAME_PART);
-    } else {
-        snprintf(note, NOTE_NAME_BYTES, "%s-%s", kind, name);
-    }
-    for (char *c = note; *c != '\0'; c++) {
-        if ((unsigned char)*c < ' ' || strchr("/\\:*?\"<>|", *c) != NULL) {
-            *c = '!';
+        uint32_t sum = 2166136261u; /* FNV-1a */
+
+        for (const char *c = name; *c != '\0'; c++) {
+            sum = (sum ^ (unsigned char)*c) * 16777619u;
         }
+        at += snprintf(at, sizeof "00000000-", "%08" PRIx32 "-", sum);
+        name += size - NAME_PART;
+        size = NAME_PART;
     }
+    for (const char *c = name; c < name + size; c++) {
+        *at++ = fits_a_file(*c) ? *c : '!';
+    }
+    *at = '\0';
 }
 
 /* The id in a mark's text: its first line. */
@@ -111,11 +126,13 @@ static int set_mark(const char *note, const char *text, grobo_estop *stop, grobo
 /* The answers to marks that are replaced are of no use to anybody. */
 static void forget_answers(const char *note)
 {
+    grobo_i_note_folders in;
     char text[NOTE_TEXT_BYTES];
     char id[sizeof((grobo_estop *)0)->id];
 
+    grobo_i_note_folders_find(&in);
     for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
-        if (grobo_i_note_read(folder, note, text, sizeof text) >= 0) {
+        if (grobo_i_note_read(&in, folder, note, text, sizeof text) >= 0) {
             take_id(text, id);
             remove_answer(id);
         }
@@ -184,14 +201,16 @@ static int clear_group(const char *text, grobo_os_cause *cause)
 
 int grobo_i_estop_clear(const grobo_i_device_names *names, grobo_os_cause *cause)
 {
+    grobo_i_note_folders in;
     char note[NOTE_NAME_BYTES];
     char text[NOTE_TEXT_BYTES];
     int r = GROBO_OK;
 
+    grobo_i_note_folders_find(&in);
     for (int i = 0; i < names->n; i++) {
         note_of("estop", names->name[i], note);
         for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
-            if (grobo_i_note_read(folder, note, text, sizeof text) >= 0) {
+            if (grobo_i_note_read(&in, folder, note, text, sizeof text) >= 0) {
                 int error = clear_group(text, cause);
 
                 r = error < 0 ? error : r;
@@ -224,14 +243,16 @@ typedef bool mark_fn(void *ctx, const char *id);
 
 static bool each_mark(const grobo_i_device_names *names, mark_fn *fn, void *ctx)
 {
+    grobo_i_note_folders in;
     char note[NOTE_NAME_BYTES];
     char text[sizeof((grobo_estop *)0)->id + 1];
     char id[sizeof((grobo_estop *)0)->id];
 
+    grobo_i_note_folders_find(&in);
     for (int i = 0; i < names->n; i++) {
         note_of("estop", names->name[i], note);
         for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
-            if (grobo_i_note_read(folder, note, text, sizeof text) >= 0) {
+            if (grobo_i_note_read(&in, folder, note, text, sizeof text) >= 0) {
                 take_id(text, id);
                 if (fn(ctx, id)) {
                     return true;
@@ -262,13 +283,14 @@ bool grobo_estop_stands(const char *device)
 
 /* ---- who has the device ------------------------------------------------------------------- */
 
-static bool read_holder(int folder, const char *name, grobo_i_process *holder)
+static bool read_holder(const grobo_i_note_folders *in, int folder, const char *name,
+                        grobo_i_process *holder)
 {
     char note[NOTE_NAME_BYTES];
     char text[64];
 
     note_of("holder", name, note);
-    return grobo_i_note_read(folder, note, text, sizeof text) >= 0 &&
+    return grobo_i_note_read(in, folder, note, text, sizeof text) >= 0 &&
            sscanf(text, "%d %" SCNu64, &holder->pid, &holder->started) == 2 && holder->pid > 0;
 }
 
@@ -276,15 +298,17 @@ static bool read_holder(int folder, const char *name, grobo_i_process *holder)
 static bool find_holder(const grobo_i_device_names *names, const grobo_estop *stop,
                         grobo_estop_holder *holder)
 {
+    grobo_i_note_folders in;
     grobo_i_process process;
 
+    grobo_i_note_folders_find(&in);
     for (int i = 0; i < names->n; i++) {
         for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
             /* One that does not see the mark would go on with what it was doing. */
             bool wake = stop != NULL && (stop->places & 1u << folder) != 0;
             int r = GROBO_ERR_NOENT;
 
-            if (read_holder(folder, names->name[i], &process)) {
+            if (read_holder(&in, folder, names->name[i], &process)) {
                 r = grobo_i_process_look(&process, wake);
             }
             if (r != GROBO_ERR_NOENT) {
@@ -300,12 +324,14 @@ static bool find_holder(const grobo_i_device_names *names, const grobo_estop *st
 
 static bool read_answer(const char *id, int *answer, int *result)
 {
+    grobo_i_note_folders in;
     char note[NOTE_NAME_BYTES];
     char text[64];
 
+    grobo_i_note_folders_find(&in);
     note_of("answer", id, note);
     for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
-        if (grobo_i_note_read(folder, note, text, sizeof text) >= 0 &&
+        if (grobo_i_note_read(&in, folder, note, text, sizeof text) >= 0 &&
             sscanf(text, "%d %d", answer, result) == 2) {
             return true;
         }
@@ -362,6 +388,7 @@ void grobo_i_estop_watch_begin(grobo_i_estop_watch *watch, const char *device)
 
 void grobo_i_estop_watch_end(grobo_i_estop_watch *watch)
 {
+    grobo_i_note_folders in;
     char note[NOTE_NAME_BYTES];
     grobo_i_process self;
     grobo_i_process holder;
@@ -372,10 +399,11 @@ void grobo_i_estop_watch_end(grobo_i_estop_watch *watch)
     }
     grobo_i_estop_watch_answer(watch);
     grobo_i_process_self(&self);
+    grobo_i_note_folders_find(&in);
     for (int i = 0; i < watch->names.n; i++) {
         for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
             /* A connection may have several, and the last one is registered. */
-            if (read_holder(folder, watch->names.name[i], &holder) && holder.pid == self.pid) {
+            if (read_holder(&in, folder, watch->names.name[i], &holder) && holder.pid == self.pid) {
                 note_of("holder", watch->names.name[i], note);
                 (void)grobo_i_note_remove(note, &cause);
             }
