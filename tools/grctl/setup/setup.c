@@ -178,10 +178,10 @@ static int write_robot(guide *g, const found_servos *all)
         return gave_up(g);
     }
     found_sketch(g->a, all, name, &s);
-    if (!sketch_order(&s, complaint, sizeof complaint)) {
+    if (!sketch_order(&s, complaint, sizeof complaint) ||
+        !sketch_fit(&s, complaint, sizeof complaint)) {
         return app_fail(g->a, EXIT_ROBOT, "CAP", "setup: %s", complaint);
     }
-    sketch_fit(&s);
     if (!free_path(s.name, g->file, sizeof g->file)) {
         return app_fail(g->a, EXIT_FILE, "NOENT", "setup: there is no place for a robot's file");
     }
