@@ -173,8 +173,7 @@ look_cross() {
             python3-cffi
         need_debian lintian 'to check packages' have_command lintian -- lintian
         need_debian debootstrap 'to try packages' have_command /usr/sbin/debootstrap -- debootstrap
-        need_debian "Ubuntu's keys" 'to try packages' \
-            [ -e /usr/share/keyrings/ubuntu-archive-keyring.gpg ] -- ubuntu-keyring
+        need_debian "Ubuntu's keys" 'to try packages' have_ubuntu_keys -- ubuntu-keyring
         ;;
     drivers)
         need qemu-system-x86_64 'to boot a kernel' have_command qemu-system-x86_64 -- \
@@ -194,6 +193,12 @@ need_windows() {
 need_foreign() {
     need_debian "a compiler for $1" 'to build' have_command "$1-gcc" -- "gcc-$1"
     need_debian "$2" 'to run the tests' have_command "$2" -- qemu-user
+}
+
+# Not every Debian has a package of them; without them debootstrap cannot verify Ubuntu's.
+have_ubuntu_keys() {
+    [ -e /usr/share/keyrings/ubuntu-archive-keyring.gpg ] ||
+        ! apt-cache policy ubuntu-keyring 2>/dev/null | grep -q 'Candidate: [0-9]'
 }
 
 have_venv() {

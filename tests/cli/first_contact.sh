@@ -27,6 +27,21 @@ calmly() {
     cat "$work/why" "$work/err"
     return 1
 }
+# Where each family is assumed to answer: at once at the new rate, RS30x when they restart.
+rates_of() {
+    there='told to take \([0-9]*\) bps, answers at \1; and is back at'
+    here='told to take [0-9]* bps, answers at 115200; and is back at 115200$'
+    case $1 in
+    rs30x)
+        grep -q "^as assumed  *rate  .*$here" "$2" &&
+            grep -q "^as assumed  *rate_restart  .*$there 115200$" "$2"
+        ;;
+    lx16a) grep -q '^not done  *rate  .*one rate$' "$2" ;;
+    dynamixel2) grep -q "^as assumed  *rate  .*$there 57600$" "$2" ;;
+    ics) grep -q "^as assumed  *rate  .*$there 115200$" "$2" ;;
+    *) grep -q "^as assumed  *rate  .*$there 1000000$" "$2" ;;
+    esac || { cat "$2"; return 1; }
+}
 describe() {
     printf 'name: t\nfamily: %s\njoints:\n' "$1"
     printf '  - {name: turn, id: 1, servo: %s, limits_deg: [-90, 90]}\n' "$2"
@@ -39,8 +54,9 @@ for one in feetech:STS3215 feetech:SCS0009 dynamixel2:XL430-W250 dynamixel1:AX-1
     lx16a:LX-16A ics:KRS-3301; do
     describe "${one%:*}" "${one#*:}" >"$work/arm.yaml"
     start_sim --robot "$work/arm.yaml" || { echo "Bail out! the simulator did not start"; exit 1; }
-    check "$one, to the end" calmly 'y\ny\nyes\n' "${one#*:}" --robot "$work/arm.yaml" \
+    check "$one, to the end" calmly 'y\ny\nyes\ny\ny\n' "${one#*:}" --robot "$work/arm.yaml" \
         -d "$robot" --timeout 500
+    check "takes another rate and comes back" rates_of "${one%:*}" "$work/${one#*:}.txt"
     check "turns back where its limit is near" \
         grep -q '^as assumed  *move .* by -2 deg to 5[67]\.' "$work/${one#*:}.txt"
     check "and is as it was found" both exits 0 \
@@ -103,5 +119,72 @@ check "ended while it moves" cut_short
 check "has a report all the same" grep -q 'torque_on' "$work/short.txt"
 check "and holds" both exits 0 "$GRCTL" --robot so101 -d "$robot" --timeout 500 status elbow_flex \
     --- says '^ *3 .* on '
+stop_sim
+
+# Ctrl-C at a question, which is heard though a shell has it ignored by what it starts behind it;
+# nothing is asked any more, and there is a report.
+ctrl_c_at_a_question() {
+    mkfifo "$work/fifo"
+    "$GRCTL" --robot so101 -d sim first-contact --yes -o "$work/asked" <"$work/fifo" \
+        >"$work/out" 2>"$work/err" &
+    asked_pid=$!
+    exec 7>"$work/fifo"
+    written "$work/err" 'Switch the torque' && kill -INT $asked_pid
+    wait_for gone $asked_pid || kill -KILL $asked_pid
+    exec 7>&-
+    wait $asked_pid
+    status_was 130 first-contact && [ "$(grep -c '\[n\]' "$work/err")" -eq 1 ]
+}
+gone() {
+    ! kill -0 "$1" 2>/dev/null
+}
+check "Ctrl-C at a question ends it" ctrl_c_at_a_question
+check "with a report" grep -q '^not done  *move ' "$work/asked.txt"
+
+describe rs30x RS302CD >"$work/arm.yaml"
+start_sim --robot "$work/arm.yaml" --baud-at-once
+check "a rate that holds at once" contact 1 'n\ny\nn\n' at_once --robot "$work/arm.yaml" \
+    -d "$robot" --timeout 500
+check "is told" said '^NOT as assumed  *rate  .* 76800 bps, answers at 76800; and is back at 115200'
+check "behind it a restart, when it is wanted" said '^not done  *rate_restart '
+stop_sim
+
+# A flash write and a restart take 1.5 s each way: what comes when its trace begins comes between.
+start_told_sim --robot "$work/arm.yaml"
+restarting() {
+    printf 'n\nn\ny\n' >"$work/answers"
+    rm -f "$work/restart"[-.]*
+    "$GRCTL" --robot "$work/arm.yaml" -d "$robot" --timeout 500 first-contact --yes \
+        -o "$work/restart" <"$work/answers" >"$work/out" 2>"$work/err" &
+    restart_pid=$!
+    wait_for in_flash
+}
+in_flash() {
+    "$GRCTL" --robot "$work/arm.yaml" decode "$work/restart-rate_restart.pcapng" 2>/dev/null |
+        grep -q flash
+}
+ended_in_flash() {
+    restarting
+    kill -TERM $restart_pid
+    wait $restart_pid
+    status_was 143 first-contact
+}
+check "ended while the rate is another one" ended_in_flash
+check "it is back first" both grep -q 'rate_restart .* is back at 115200$' "$work/restart.txt" --- \
+    both exits 0 "$GRCTL" --robot "$work/arm.yaml" -d "$robot" --timeout 500 servo-get 2 baud --- \
+    says ' 115200 bps$'
+lost_in_flash() {
+    restarting
+    tell cable 2 out
+    wait $restart_pid
+    status_was 1 first-contact
+}
+check "one that is lost meanwhile" lost_in_flash
+check "is told" said '^NOT as assumed  *rate_restart .* not back at 115200 bps'
+check "and how it is found again" \
+    [ "$(grep -c '^a servo that is lost: .* --all-baud --first 2 --last 2' "$work/err")" -eq 3 ]
+tell cable 2 in
+check "there it is" both wait_for exits 0 "$GRCTL" --robot "$work/arm.yaml" -d "$robot" \
+    scan --all-baud --first 2 --last 2 --- says '^ *2 '
 stop_sim
 done_testing

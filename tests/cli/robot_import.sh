@@ -79,6 +79,43 @@ check_json "and has its joints" \
     "$GRCTL" --robot "$work/so101.yaml" joints --json
 check_json "and its parts" 'lines[0]["n_links"] == 8 and lines[0]["mass_kg"] == 0.632' \
     "$GRCTL" robot show "$work/so101.yaml" --json
+cat >"$work/geared.urdf" <<'END'
+<robot name="geared"><link name="base"/><link name="a"/><link name="b"/>
+<transmission name="t1"><type>transmission_interface/SimpleTransmission</type>
+  <joint name="turn"><hardwareInterface>position</hardwareInterface></joint>
+  <actuator name="m1"><mechanicalReduction> -2.5
+  </mechanicalReduction></actuator></transmission>
+<joint name="turn" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/>
+  <limit lower="-0.5" upper="0.9" velocity="1" effort="1"/></joint>
+<joint name="lift" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/>
+  <limit lower="0.2" upper="1.6" velocity="9" effort="1"/></joint>
+<ros2_control name="c" type="system"><joint name="turn"/><transmission name="t2">
+  <joint name="lift" role="j"><mechanical_reduction>4</mechanical_reduction><offset>0.0</offset>
+  </joint><actuator name="m2" role="a"/></transmission></ros2_control></robot>
+END
+check "gears of transmissions" both exits 0 take "$work/geared.urdf" --ids 1-2 \
+    -o "$work/geared.yaml" --family feetech --servo STS3215 --- grep -q \
+    'turn, .* sign: -1, gear: 2.5, speed_deg_s: 57.2958} # gear: 1 if' "$work/geared.yaml"
+check "those of ros2_control, with the servo's middle where it reaches" grep -q \
+    'lift, .* init_deg: 51.5662, zero_deg: -206.265, gear: 4} ' "$work/geared.yaml"
+check "move in their simulator" both exits 0 \
+    "$GRCTL" --robot "$work/geared.yaml" -d sim --json move lift 90 --- true
+# geared SED COMPLAINT
+geared() {
+    sed "$1" "$work/geared.urdf" >"$work/other.urdf"
+    fails 3 "$2" take "$work/other.urdf"
+}
+check "a gear that is in the servo" geared 's/>4</>345</' \
+    'lift: STS3215 does not reach its limits with a reduction of 345; take that out'
+check "an offset" geared 's/>0.0</>0.1</' ":11: transmission 't2': an offset is not read"
+check "no number" geared 's/-2.5/fast/' ":5: transmission 't1': 'fast' is not a number"
+check "no gear" geared 's/>4</>0</' "'t2': a reduction of 0.001 to 1000 is wanted"
+check "two motors for two joints" geared 's,<actuator name="m2" role="a"/>,<joint name="turn"/>,' \
+    "transmission 't2' is of 2 joints: a servo moves one"
+check "a joint that is not there" geared 's/joint name="lift" role/joint name="x" role/' \
+    "transmission 't2': there is no joint 'x'"
+check "two for a joint" geared 's/joint name="lift" role/joint name="turn" role/' \
+    "transmission 't2': 'turn' has another one already"
 sed 's/<axis/<axes>/' "$urdf" >"$work/broken.urdf"
 check "one that is broken" fails 3 'broken.urdf:[0-9]*:[0-9]*: mismatched tag' \
     take "$work/broken.urdf"

@@ -64,10 +64,20 @@ check "it has its port and rate" both exits 0 "$GRCTL" -d mine --timeout 500 sta
     says '^ *2  shoulder_lift'
 check "another one" answered 0 'new\ncrab\n\n' set_up -b 1000000
 check "gets a file" both exits 0 "$GRCTL" -d crab --timeout 500 status --- says '^ *2  joint2'
-check "which stays when it is undone" both exits 0 "$GRCTL" setup --undo --- \
-    [ -e "$work/config/grctl/crab.yaml" ]
+crab=$work/config/grctl/crab.yaml
 check "no other is written over it" answered 0 'new\ncrab\n\n' set_up -b 1000000
-check "but beside it" [ -e "$work/config/grctl/crab2.yaml" ]
+check "but beside it" [ -e "${crab%.yaml}2.yaml" ]
+check "undone, it is gone" both exits 0 "$GRCTL" setup --undo --- said 'crab2.yaml is removed$'
+check "and only it" both [ ! -e "${crab%.yaml}2.yaml" ] --- [ -e "$crab" ]
+check "a third one" answered 0 'new\nspider\n\n' set_up -b 1000000
+echo '# mine' >>"$work/config/grctl/spider.yaml"
+check_json "one that somebody changed stays" 'lines[0]["undone"] and not lines[0]["removed"] and
+    lines[0]["file"].endswith("spider.yaml")' "$GRCTL" --json setup --undo
+check "its file is there" grep -q '^# mine$' "$work/config/grctl/spider.yaml"
+check "a name that nobody may have" answered 2 'new\nant\na b\nsim\n../x\na:b\nx y\n' set_up \
+    -b 1000000
+check "leaves no file behind" both said 'ant.yaml is removed again$' --- \
+    [ ! -e "$work/config/grctl/ant.yaml" ]
 stop_sim
 
 start_sim

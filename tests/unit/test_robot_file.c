@@ -85,6 +85,23 @@ static const char whole[] =
     "  - {name: boom, parent: base, joint: lift, origin_m: [0, 0.1, -0.2],\n"
     "     origin_deg: [90, 0, -90], axis: [0, 0, -1], mass_kg: 0.25}\n";
 
+/* Behind a gear a joint turns slower than its servo. */
+static void a_gear_takes_speed(void **state)
+{
+    (void)state;
+    grobo_robot_def *def = NULL;
+    assert_int_equal(
+        read_def("name: arm\nfamily: feetech\njoints:\n"
+                 "  - {name: a, id: 1, servo: STS3215, limits_deg: [-9, 9]}\n"
+                 "  - {name: b, id: 2, servo: STS3215, limits_deg: [-9, 9], gear: 4}\n",
+                 NULL, &def),
+        GROBO_OK);
+    const grobo_joint *joints = def->model->joints;
+    assert_true(joints[1].max_speed_rad_s > 0);
+    assert_true(joints[0].max_speed_rad_s == 4 * joints[1].max_speed_rad_s);
+    grobo_robot_def_free(def);
+}
+
 static void a_whole_file_is_read(void **state)
 {
     (void)state;
@@ -384,6 +401,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_whole_file_is_read),
+        cmocka_unit_test(a_gear_takes_speed),
         cmocka_unit_test(what_is_not_said_is_the_familys),
         cmocka_unit_test(each_mistake_has_a_place),
         cmocka_unit_test(all_mistakes_are_told),

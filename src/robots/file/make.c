@@ -143,9 +143,10 @@ static void find_servo(const maker *m, int j, grobo_joint *joint)
     for (size_t i = 0; grobo_i_family_row(m->file->def.family, i, &servo); i++) {
         if (strcmp(servo.name, draft->servo) == 0) {
             joint->servo_model = servo.model;
-            joint->max_speed_rad_s = grobo_rad_from_deg(joint_has(m, j, "speed_deg_s")
-                                                            ? draft->speed_deg_s
-                                                            : OF_ITS_SPEED * servo.speed_deg_s);
+            double own_deg_s =
+                OF_ITS_SPEED * servo.speed_deg_s / (joint->gear > 0 ? joint->gear : 1);
+            joint->max_speed_rad_s =
+                grobo_rad_from_deg(joint_has(m, j, "speed_deg_s") ? draft->speed_deg_s : own_deg_s);
             return;
         }
         grobo_i_nearest_try(&nearest, draft->servo, servo.name);

@@ -82,7 +82,15 @@ typedef struct config_entry {
     const char *def;    /* a name, or a path that holds in any folder */
     int baud_bps;       /* 0: says nothing */
     const char *wiring; /* NULL: says nothing */
+    const char *file;   /* that was made for it, which config_undo() removes; NULL: none */
 } config_entry;
+
+/* What config_undo() did. */
+typedef struct config_undone {
+    char path[CONFIG_PATH_BYTES]; /* is as it was */
+    char file[CONFIG_PATH_BYTES]; /* config_entry.file, "": there was none */
+    bool removed;                 /* false: it stays, as it is not what was made */
+} config_undone;
 
 /* Whether a robot may be called so: 0, or the exit status with the reason said. */
 int config_check_name(app *a, const char *name);
@@ -93,9 +101,11 @@ int config_check_name(app *a, const char *name);
  */
 int config_add(app *a, const config_entry *entry, char *path, size_t capacity);
 
-/* Puts the file back as it was before the last config_add(), unless it has changed since. As
- * above. */
-int config_undo(app *a, char *path, size_t capacity);
+/*
+ * Puts the file back as it was before the last config_add(), unless it has changed since, and
+ * removes what was made for the robot, unless that has. As above.
+ */
+int config_undo(app *a, config_undone *undone);
 
 /* Writes the trims of the robot into its file: a temporary one takes its place. As above. */
 int config_write_trims(app *a, const config_robot *robot);

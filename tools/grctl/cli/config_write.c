@@ -231,16 +231,20 @@ static bool put_added(draft *to, const char *text, const config_entry *entry)
 static const char undo_name[] = "setup-undo";
 
 /* What config_undo() goes by. before NULL: there was no file. */
-static int keep_undo(app *a, const char *path, const char *before, const char *after)
+static int keep_undo(app *a, const char *path, const char *before, const char *after,
+                     const char *file)
 {
     char kept[CONFIG_PATH_BYTES];
-    json_t *record = json_pack("{s:s,s:s?,s:s}", "path", path, "before", before, "after", after);
+    char *made = file ? read_all(file) : NULL;
+    json_t *record = json_pack("{s:s,s:s?,s:s,s:s*,s:s*}", "path", path, "before", before, "after",
+                               after, "file", file, "made", made);
     char *text = record ? json_dumps(record, JSON_COMPACT) : NULL;
     int error = GROBO_ERR_NOENT;
     if (text && os_state_path(undo_name, kept, sizeof kept)) {
         error = file_save(kept, text, strlen(text));
     }
     free(text);
+    free(made);
     json_decref(record);
     return error ? fail(a, path, "what it was before cannot be kept") : 0;
 }
@@ -272,7 +276,7 @@ int config_add(app *a, const config_entry *entry, char *path, size_t capacity)
     } else if (!fits) {
         status = fail(a, path, "its robots stand in braces; add the robot by hand");
     } else {
-        status = keep_undo(a, path, before, made.text);
+        status = keep_undo(a, path, before, made.text, entry->file);
     }
     if (!status) {
         int error = file_save(path, made.text, made.used);
@@ -283,17 +287,23 @@ int config_add(app *a, const config_entry *entry, char *path, size_t capacity)
     return status;
 }
 
+/* Whether a file still has what setup wrote into it. */
+static bool is_as_made(const char *path, const char *made)
+{
+    char *now = made ? read_all(path) : NULL;
+    bool same = now && strcmp(now, made) == 0;
+    free(now);
+    return same;
+}
+
 static int put_back(app *a, const char *path, const char *before, const char *after)
 {
-    char *now = read_all(path);
-    if (!now || strcmp(now, after) != 0) {
-        free(now);
+    if (!is_as_made(path, after)) {
         return app_fail(a, EXIT_FILE, "STATE",
                         "%s has changed since setup wrote it; nothing is "
                         "undone",
                         path);
     }
-    free(now);
     if (!before) {
         return remove(path) == 0 ? 0 : fail(a, path, app_cause_text(errno));
     }
@@ -301,7 +311,7 @@ static int put_back(app *a, const char *path, const char *before, const char *af
     return error ? fail(a, path, file_error_text(error)) : 0;
 }
 
-int config_undo(app *a, char *path, size_t capacity)
+int config_undo(app *a, config_undone *undone)
 {
     char kept[CONFIG_PATH_BYTES];
     json_t *record = os_state_path(undo_name, kept, sizeof kept)
@@ -310,14 +320,18 @@ int config_undo(app *a, char *path, size_t capacity)
     const char *where = json_string_value(json_object_get(record, "path"));
     const char *before = json_string_value(json_object_get(record, "before"));
     const char *after = json_string_value(json_object_get(record, "after"));
+    const char *file = json_string_value(json_object_get(record, "file"));
+    const char *made = json_string_value(json_object_get(record, "made"));
     if (!where || !after) {
         json_decref(record);
         return app_fail(a, EXIT_USAGE, "NOENT",
                         "setup --undo: setup has written nothing that could be undone");
     }
-    snprintf(path, capacity, "%s", where);
     int status = put_back(a, where, before, after);
     if (!status) {
+        snprintf(undone->path, sizeof undone->path, "%s", where);
+        snprintf(undone->file, sizeof undone->file, "%s", file ? file : "");
+        undone->removed = file && is_as_made(file, made) && remove(file) == 0;
         (void)remove(kept);
     }
     json_decref(record);

@@ -5,6 +5,7 @@
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/change.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
@@ -178,16 +179,8 @@ static int run_get(app *a)
 
 /* ---- servo-set ------------------------------------------------------------------------------ */
 
-typedef struct change {
-    int id;
-    const grobo_servo_model *servo;
-    const grobo_servo_register *reg;
-    int32_t value;
-    bool flash;
-} change;
-
 /* "delay 1 (150 us) -> 2 (200 us)" */
-static void change_text(const change *what, int32_t before, char *text, size_t capacity)
+static void change_text(const servo_change *what, int32_t before, char *text, size_t capacity)
 {
     char was[REGISTERS_TEXT_BYTES], is[REGISTERS_TEXT_BYTES];
     registers_text(what->servo, what->reg, before, was, sizeof was);
@@ -200,51 +193,22 @@ static void change_text(const change *what, int32_t before, char *text, size_t c
     }
 }
 
-static bool keeps_as(const change *what, grobo_keeps keeps)
-{
-    return what->servo->table->keeps == keeps;
-}
-
-/* Whether it survives power-off. */
-static bool is_kept(const change *what)
-{
-    return (what->reg->flags & GROBO_REGISTER_KEPT) != 0 &&
-           (what->flash || keeps_as(what, GROBO_KEEPS_LIMP));
-}
-
-/* What RS30x need to keep it. */
-static bool needs_command(const change *what)
-{
-    return what->flash && keeps_as(what, GROBO_KEEPS_COMMAND);
-}
-
-static int new_bps(const change *what)
-{
-    return grobo_servo_baud_bps(what->servo, what->value);
-}
-
-/* Where the servo is after it was written. */
-static int new_id(const change *what)
-{
-    return what->reg->role == GROBO_ROLE_ID ? (int)what->value : what->id;
-}
-
 /* A rate that the line does not have. Only what it has can be asked through the board. */
-static bool changes_rate(const conn *c, const change *what)
+static bool changes_rate(const conn *c, const servo_change *what)
 {
-    return what->reg->role == GROBO_ROLE_BAUD && new_bps(what) != (int32_t)conn_baud(c->a) &&
+    return what->reg->role == GROBO_ROLE_BAUD && change_bps(what) != (int32_t)conn_baud(c->a) &&
            !app_driver(c->a)->protocol->relay;
 }
 
 /* What is asked on a terminal before anything is kept; true to go on. */
-static bool confirmed(conn *c, const change *what, int32_t before)
+static bool confirmed(conn *c, const servo_change *what, int32_t before)
 {
     char answer[8], text[4 * REGISTERS_TEXT_BYTES];
-    if (!is_kept(what)) {
+    if (!change_is_kept(what)) {
         return true;
     }
     change_text(what, before, text, sizeof text);
-    if (needs_command(what)) {
+    if (change_needs_command(what)) {
         app_note(c->a, "servo %d: %s, and No.4-29 go to flash%s: keep its power on", what->id, text,
                  changes_rate(c, what) ? _(", then it restarts") : "");
     } else {
@@ -257,72 +221,33 @@ static bool confirmed(conn *c, const change *what, int32_t before)
     return fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y');
 }
 
-/* Opens or closes what survives power-off, where the servo has a lock for that. */
-static int set_lock(conn *c, const change *what, int id, int closed)
-{
-    bool locks = what->flash && keeps_as(what, GROBO_KEEPS_LOCK);
-    return locks ? servos_put(c, id, what->servo,
-                              grobo_servo_register_of(what->servo, GROBO_ROLE_LOCK), closed)
-                 : GROBO_OK;
-}
-
-/* Some servos answer from their new id or at their new rate: that is read back. */
-static int write_it(conn *c, const change *what)
-{
-    bool moves = what->reg->role == GROBO_ROLE_ID || what->reg->role == GROBO_ROLE_BAUD;
-    int error = set_lock(c, what, what->id, 0);
-    if (error) {
-        return error;
-    }
-    error = servos_put(c, what->id, what->servo, what->reg, what->value);
-    if (moves && conn_is_of_reply(error)) {
-        return GROBO_OK;
-    }
-    if (error) {
-        (void)set_lock(c, what, what->id, 1);
-    }
-    return error;
-}
-
-static int command(conn *c, int id, grobo_servo_command what, const char *doing)
-{
-    return conn_wait_shown(c, grobo_robot_command(grobo_session_robot(c->session), id, what), doing,
-                           0);
-}
-
-/* Makes what was written last. */
-static int keep_it(conn *c, const change *what)
-{
-    return needs_command(what) ? command(c, new_id(what), GROBO_SERVO_FLASH, "flash")
-                               : set_lock(c, what, new_id(what), 1);
-}
-
 /* baud_bps: where the servo answers after its rate was written, 0 where nothing is to be said. */
-static void report(const conn *c, const change *what, int32_t before, int baud_bps)
+static void report(const conn *c, const servo_change *what, int32_t before, int baud_bps)
 {
     char text[4 * REGISTERS_TEXT_BYTES], where[64] = "";
     bool ram = (what->reg->flags & GROBO_REGISTER_KEPT) == 0;
-    const char *kept = is_kept(what) ? needs_command(what) ? _(", kept in flash") : _(", kept")
+    const char *kept = change_is_kept(what)
+                           ? change_needs_command(what) ? _(", kept in flash") : _(", kept")
                        : ram ? _("; lost at power-off")
-                                     : _("; lost at power-off without --flash");
+                             : _("; lost at power-off without --flash");
     change_text(what, before, text, sizeof text);
     if (baud_bps) {
         snprintf(where, sizeof where, _("; it answers at %d bps"), baud_bps);
     }
-    if (baud_bps && !is_kept(what) && baud_bps != new_bps(what)) {
+    if (baud_bps && !change_is_kept(what) && baud_bps != change_bps(what)) {
         kept = _("; takes effect at a restart, and is lost there without --flash");
     }
     if (c->a->json) {
-        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b,s:o*}", "id", new_id(what), "name",
+        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b,s:o*}", "id", change_id(what), "name",
                                  what->reg->name, "before", before, "value", what->value, "flash",
-                                 is_kept(what), "baud_bps",
+                                 change_is_kept(what), "baud_bps",
                                  baud_bps ? json_integer(baud_bps) : NULL));
     } else {
-        app_note(c->a, "servo %d: %s%s%s", new_id(what), text, kept, where);
+        app_note(c->a, "servo %d: %s%s%s", change_id(what), text, kept, where);
     }
 }
 
-static grobo_write_kind kind_of(const app *a, const change *what)
+static grobo_write_kind kind_of(const app *a, const servo_change *what)
 {
     const uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
     uint16_t from = what->reg->address;
@@ -335,7 +260,7 @@ static grobo_write_kind kind_of(const app *a, const change *what)
 }
 
 /* Whether a servo holds; of a joint its reading too, without which the engine refuses a setting. */
-static int read_torque(conn *c, const change *what, const grobo_servo_register *reg,
+static int read_torque(conn *c, const servo_change *what, const grobo_servo_register *reg,
                        int32_t *torque)
 {
     int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
@@ -355,11 +280,11 @@ static int read_torque(conn *c, const change *what, const grobo_servo_register *
 
 /* After a setting a goal may mean another angle: it is written to a servo without torque only. The
  * engine refuses it to a joint too, and to one that it has not read. */
-static int expect_loose(conn *c, const change *what)
+static int expect_loose(conn *c, const servo_change *what)
 {
     const grobo_servo_register *reg = grobo_servo_register_of(what->servo, GROBO_ROLE_TORQUE);
     int32_t torque = GROBO_TORQUE_OFF;
-    bool restarts = needs_command(what) && changes_rate(c, what);
+    bool restarts = change_needs_command(what) && changes_rate(c, what);
     if ((kind_of(c->a, what) != GROBO_WRITE_SETTING && !restarts) || !reg) {
         return EXIT_DONE;
     }
@@ -383,7 +308,7 @@ static int expect_loose(conn *c, const change *what)
 }
 
 /* Two servos of one id answer together, and nobody could give one of them another. */
-static int expect_free_id(conn *c, const change *what)
+static int expect_free_id(conn *c, const servo_change *what)
 {
     int32_t id;
     if (what->reg->role != GROBO_ROLE_ID || what->value == what->id) {
@@ -405,60 +330,11 @@ static int expect_free_id(conn *c, const change *what)
 
 /* ---- another baud rate: the servo is followed ------------------------------------------------ */
 
-/* The line, and the wait for a reply, at another rate. */
-static int tune(conn *c, int baud_bps)
-{
-    grobo_sim *sim = grobo_session_sim(c->session);
-    int error = sim ? grobo_sim_set_line_bps(sim, (uint32_t)baud_bps)
-                    : grobo_serial_set_baud(grobo_session_serial(c->session), baud_bps);
-    return error < 0 ? error : servos_wait(c, baud_bps, 1, SERVOS_PATIENT_US, 0, NULL);
-}
-
-/* At which of two rates the servo answers, or an error. The line stays there. */
-static int find_rate(conn *c, const change *what, int first_bps, int second_bps, int32_t *code)
-{
-    const int rates_bps[] = {first_bps, second_bps};
-    int error = GROBO_OK;
-    for (int i = 0; i < 2; i++) {
-        error = tune(c, rates_bps[i]);
-        if (!error) {
-            error = servos_get(c, what->id, what->servo, what->reg, code);
-        }
-        if (!error) {
-            return rates_bps[i];
-        }
-        if (!conn_is_of_reply(error)) {
-            break;
-        }
-    }
-    return error;
-}
-
-/* Writes the rate; with --flash keeps it and restarts a servo that needs that. Returns the rate at
- * which it answers then, and its register, or an error. */
-static int move_rate(conn *c, const change *what, int old_bps, int32_t *code)
-{
-    int error = write_it(c, what);
-    if (error) {
-        return error;
-    }
-    int at_bps = find_rate(c, what, old_bps, new_bps(what), code);
-    if (at_bps < 0 || *code != what->value) {
-        return at_bps;
-    }
-    error = keep_it(c, what);
-    if (!error && needs_command(what)) {
-        error = command(c, what->id, GROBO_SERVO_REBOOT, "restart");
-        at_bps = error ? error : find_rate(c, what, new_bps(what), old_bps, code);
-    }
-    return error ? error : at_bps;
-}
-
 /*
  * Whether a servo changes its rate at once or when it restarts, no manual at hand says: it is
  * looked for at both.
  */
-static int set_rate(conn *c, const change *what, int32_t before)
+static int set_rate(conn *c, const servo_change *what, int32_t before)
 {
     int old_bps = (int)conn_baud(c->a);
     int32_t code = 0;
@@ -467,31 +343,32 @@ static int set_rate(conn *c, const change *what, int32_t before)
                         "servo-set: the rate of a line behind TCP is not set from here; a servo "
                         "with another one could not be reached");
     }
-    int error = tune(c, new_bps(what)); /* before anything is written: the line must know it */
+    int error =
+        change_tune(c, change_bps(what)); /* before anything is written: the line must know it */
     if (!error) {
-        error = tune(c, old_bps);
+        error = change_tune(c, old_bps);
     }
     if (error) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "servo-set: %s at %d bps: %s; nothing was written", conn_device(c),
-                        new_bps(what), app_error_text(error));
+                        change_bps(what), app_error_text(error));
     }
-    int at_bps = move_rate(c, what, old_bps, &code);
-    error = tune(c, old_bps);
+    int at_bps = change_rate(c, what, old_bps, &code);
+    error = change_tune(c, old_bps);
     if (conn_is_of_reply(at_bps)) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(at_bps),
                         "servo %d answers neither at %d nor at %d bps after writing; look for it "
                         "with 'grctl scan --all-baud'",
-                        what->id, old_bps, new_bps(what));
+                        what->id, old_bps, change_bps(what));
     }
     if (at_bps < 0 || error < 0) {
         return conn_fail_servo(c, at_bps < 0 ? at_bps : error, what->id);
     }
-    if (code != what->value || (what->flash && at_bps != new_bps(what))) {
+    if (code != what->value || (what->flash && at_bps != change_bps(what))) {
         return app_fail(c->a, EXIT_ROBOT, "MISMATCH",
                         "servo %d answers at %d bps, and its baud is %d, not %d, after writing%s",
                         what->id, at_bps, code, what->value,
-                        needs_command(what) ? _(" and a restart") : "");
+                        change_needs_command(what) ? _(" and a restart") : "");
     }
     report(c, what, before, at_bps);
     return EXIT_DONE;
@@ -499,28 +376,28 @@ static int set_rate(conn *c, const change *what, int32_t before)
 
 /* ---- everything else ------------------------------------------------------------------------- */
 
-static int write_and_verify(conn *c, const change *what, int32_t before)
+static int write_and_verify(conn *c, const servo_change *what, int32_t before)
 {
     int32_t after = before;
-    int error = write_it(c, what);
+    int error = change_write(c, what);
     if (!error) {
-        error = keep_it(c, what);
+        error = change_keep(c, what);
     }
     if (!error) {
-        error = servos_get(c, new_id(what), what->servo, what->reg, &after);
+        error = servos_get(c, change_id(what), what->servo, what->reg, &after);
     }
     if (error) {
-        return conn_fail_servo(c, error, new_id(what));
+        return conn_fail_servo(c, error, change_id(what));
     }
     if (after != what->value) {
         return app_fail(c->a, EXIT_ROBOT, "MISMATCH", "servo %d: %s is %d, not %d, after writing",
-                        new_id(what), what->reg->name, after, what->value);
+                        change_id(what), what->reg->name, after, what->value);
     }
     report(c, what, before, 0);
     return EXIT_DONE;
 }
 
-static int set(conn *c, const change *what)
+static int set(conn *c, const servo_change *what)
 {
     int32_t before = 0;
     int error = expect_loose(c, what);
@@ -541,7 +418,7 @@ static int set(conn *c, const change *what)
 }
 
 /* In counts of the register; a baud rate may be given as it is, too. */
-static bool read_value(const change *what, const char *text, int32_t *counts)
+static bool read_value(const servo_change *what, const char *text, int32_t *counts)
 {
     double value;
     if (!cli_read_number(text, &value)) {
@@ -558,7 +435,7 @@ static bool read_value(const change *what, const char *text, int32_t *counts)
 }
 
 /* What the command line asks for, of the servo that what->servo is. */
-static int parse_change(app *a, change *what)
+static int parse_change(app *a, servo_change *what)
 {
     int status = 0;
     what->reg = find_register(a, what->servo, a->line.argument[1], &status);
@@ -584,7 +461,7 @@ static int parse_change(app *a, change *what)
         return app_fail(a, EXIT_USAGE, "ARG", "servo-set: flash does not keep register %s",
                         what->reg->name);
     }
-    if (what->reg->role == GROBO_ROLE_BAUD && new_bps(what) != GROBO_BAUD_DEFAULT_BPS &&
+    if (what->reg->role == GROBO_ROLE_BAUD && change_bps(what) != GROBO_BAUD_DEFAULT_BPS &&
         app_driver(a)->protocol->relay) {
         return app_fail(a, EXIT_SAFETY, "UNSUPPORTED",
                         "servo-set: the bus behind the board has %d bps; a servo with another "
@@ -597,7 +474,7 @@ static int parse_change(app *a, change *what)
 static int run_set(app *a)
 {
     conn c;
-    change what = {0};
+    servo_change what = {0};
     what.id = find_servo(a, &what.servo);
     int status = what.id < 0 ? -what.id : parse_change(a, &what);
     if (status) {

@@ -5,7 +5,7 @@
 enum { OPT_UNDO };
 
 static const cli_option options[] = {
-    [OPT_UNDO] = OPTION_FLAG("undo", 0, "put the configuration back as it was before"),
+    [OPT_UNDO] = OPTION_FLAG("undo", 0, "put the configuration back, remove a file that was made"),
 };
 
 static int run(app *a)
@@ -22,7 +22,8 @@ const cli_command cmd_setup = {
         "opened; looks who answers; takes the robot of grctl that has these servos, or writes a\n"
         "file of them; names it in ~/.config/grctl/config.yaml; reads its joints once; and\n"
         "offers to calibrate it. Nothing moves, and nothing is done as root. Each step says what\n"
-        "it has changed; --undo puts the configuration back. -d sim shows how it goes.\n"
+        "it has changed; --undo takes it back, the configuration and a robot's file, unless they\n"
+        "have changed since. -d sim shows how it goes.\n"
         "\n"
         "It needs a terminal. With --yes the answers are lines of standard input, and what is\n"
         "missing is as it stands in the brackets; no calibration then.\n",

@@ -122,6 +122,12 @@ void os_unlock_file(os_lock *lock);
 /* Has this stand in for standard input, unless it is a file, for which nobody has to wait. */
 bool os_input_take(FILE *from);
 
+/*
+ * Waits until there is something to read, or the end. Returns 0, or the number of one of os_endings
+ * that came meanwhile (where the system lets it be waited for; else it ends the process).
+ */
+int os_wait_to_read(void);
+
 typedef void (*os_input_fn)(void *ctx, const char *bytes, size_t size);
 
 typedef struct os_input {

@@ -4,11 +4,20 @@
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/lang/lang.h"
+#include "tools/grctl/os/os.h"
 #include "tools/grctl/setup/ask.h"
+
+static int ended_by;
+
+int ask_signal(void)
+{
+    return ended_by;
+}
 
 bool ask_can(app *a, const char *instead, int *status)
 {
     if (a->tty_in || app_global(a, GLOBAL_YES)->given) {
+        setvbuf(stdin, NULL, _IONBF, 0); /* what is buffered cannot be waited for */
         return true;
     }
     *status = app_fail(a, EXIT_USAGE, "ARG",
@@ -20,9 +29,13 @@ bool ask_can(app *a, const char *instead, int *status)
 
 bool ask_line(const app *a, const char *question, const char *usual, char *answer)
 {
-    output_flush();
-    output_complain("%s [%s] ", _(question), usual);
-    bool came = fgets(answer, ASK_BYTES, stdin) != NULL;
+    bool came = false;
+    if (!ended_by) {
+        output_flush();
+        output_complain("%s [%s] ", _(question), usual);
+        ended_by = os_wait_to_read();
+        came = !ended_by && fgets(answer, ASK_BYTES, stdin) != NULL;
+    }
     if (came && !strchr(answer, '\n')) { /* longer than any answer */
         for (int c = getchar(); c != '\n' && c != EOF;) {
             c = getchar();
@@ -37,7 +50,7 @@ bool ask_line(const app *a, const char *question, const char *usual, char *answe
     if (!came || !*answer) {
         snprintf(answer, ASK_BYTES, "%s", usual);
     }
-    return came || !a->tty_in;
+    return came || (!a->tty_in && !ended_by);
 }
 
 bool ask_yes(const app *a, const char *question)

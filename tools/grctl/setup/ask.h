@@ -14,9 +14,12 @@ bool ask_can(app *a, const char *instead, int *status);
 /*
  * Asks, and looks the question up in the person's language; an empty line, and the end of standard
  * input, is the answer that stands in the brackets. A person who ends the input (Ctrl-D) means to
- * end it all: false.
+ * end it all: false; so does Ctrl-C and its like, and nothing is asked any more.
  */
 bool ask_line(const app *a, const char *question, const char *usual, char *answer);
+
+/* The signal that ended a question; 0: none. */
+int ask_signal(void);
 
 /* Whether the answer is yes; no by itself. The question as in ask_line(). */
 bool ask_yes(const app *a, const char *question);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,10 +16,10 @@
 #include "tools/grctl/servo/registers.h"
 #include "tools/grctl/setup/ask.h"
 #include "tools/grctl/setup/contact.h"
+#include "tools/grctl/setup/contact_rate.h"
 
-enum { READS = 50, LOOKS = 5, LOOK_US = 100000, MOVE_US = 1000000, PATH_BYTES = 1024 };
+enum { READS = 50, LOOKS = 5, LOOK_US = 100000, MOVE_US = 1000000 };
 enum {
-    REPORT_BYTES = 65536,
     BLOCK_BYTES = 30,
     REQUEST_BYTES = 6 /* no request is shorter, but ICS */
 };
@@ -28,52 +27,11 @@ enum {
 #define STEP_DEG 2.0
 #define NEAR_DEG 1.0 /* of the gears' play and the servo's dead band */
 
-typedef struct contact {
-    app *a;
-    conn c;
-    char prefix[PATH_BYTES], trace[PATH_BYTES];
-    char text[REPORT_BYTES];
-    size_t used;
-    json_t *steps, *servos;
-    int joint, n_bad;
-    double before_deg;
-    bool was_on;
-    int64_t sent_us, came_us; /* of the last exchange */
-} contact;
-
 /* ---- the report ------------------------------------------------------------------------------ */
-
-typedef enum verdict { AS_ASSUMED, NOT_AS_ASSUMED, NOT_DONE } verdict;
-
-static const char *const verdicts[] = {N_("as assumed"), N_("NOT as assumed"), N_("not done")};
-static const char *const words[] = {"as_assumed", "not_as_assumed", "not_done"};
-
-/* The report is in English; what the person reads is in that of the person. */
-__attribute__((format(printf, 4, 5))) static void note(contact *k, const char *name, verdict v,
-                                                       const char *format, ...)
-{
-    char message[APP_LINE_BYTES], said[APP_LINE_BYTES];
-    va_list list, again;
-    va_start(list, format);
-    va_copy(again, list);
-    vsnprintf(message, sizeof message, format, list);
-    vsnprintf(said, sizeof said, _(format), again);
-    va_end(again);
-    va_end(list);
-    app_make_one_line(message);
-    app_make_one_line(said);
-    k->n_bad += v == NOT_AS_ASSUMED;
-    app_note(k->a, "%-14s  %-14s  %s", _(verdicts[v]), name, said);
-    int n = snprintf(k->text + k->used, sizeof k->text - k->used, "%-14s  %-14s  %s\n", verdicts[v],
-                     name, message);
-    k->used += n > 0 && (size_t)n < sizeof k->text - k->used ? (size_t)n : 0;
-    json_array_append_new(k->steps, json_pack("{s:s,s:s,s:o}", "name", name, "verdict", words[v],
-                                              "message", app_json_text(message)));
-}
 
 static int save(contact *k, const char *end, const char *text, size_t size)
 {
-    char path[PATH_BYTES + 8];
+    char path[CONTACT_PATH_BYTES + 8];
     snprintf(path, sizeof path, "%s%s", k->prefix, end);
     int error = file_save(path, text, size);
     return error ? app_fail(k->a, EXIT_FILE, grobo_error_name(error), "%s: %s", path,
@@ -104,34 +62,6 @@ static int write_report(contact *k)
     free(text);
     json_decref(all);
     return status;
-}
-
-/* ---- a line for each part -------------------------------------------------------------------- */
-
-static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                     size_t size)
-{
-    contact *k = c->ctx;
-    (void)bytes;
-    (void)size;
-    *(direction == GROBO_DIR_TX ? &k->sent_us : &k->came_us) = now_us;
-}
-
-/* Questions are asked while no line is open: each part opens it, with a trace of its own. */
-static int open_part(contact *k, const char *part, bool moves)
-{
-    snprintf(k->trace, sizeof k->trace, "%.900s-%s.pcapng", k->prefix, part);
-    k->a->line.global[GLOBAL_TRACE] = (cli_value){.given = 1, .text = k->trace};
-    int status = moves ? conn_open_to_move(&k->c, k->a) : conn_open(&k->c, k->a);
-    k->c.ctx = k;
-    k->c.on_bytes = on_bytes;
-    return status;
-}
-
-static int close_part(contact *k, int status)
-{
-    k->c.on_bytes = NULL;
-    return conn_close(&k->c, status);
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */
@@ -186,12 +116,12 @@ static void read_servos(contact *k)
         }
         json_array_append_new(k->servos, one);
     }
-    note(k, "ping", n_there == model->n_joints ? AS_ASSUMED : NOT_AS_ASSUMED,
-         "%d of %d servos answer", n_there, model->n_joints);
-    note(k, "models", n_other == 0 ? AS_ASSUMED : NOT_AS_ASSUMED,
-         "%d servos are of another model than the robot's file has", n_other);
-    note(k, "registers", n_registers > 0 ? AS_ASSUMED : NOT_AS_ASSUMED, "%d values were read",
-         n_registers);
+    contact_note(k, "ping", n_there == model->n_joints ? AS_ASSUMED : NOT_AS_ASSUMED,
+                 "%d of %d servos answer", n_there, model->n_joints);
+    contact_note(k, "models", n_other == 0 ? AS_ASSUMED : NOT_AS_ASSUMED,
+                 "%d servos are of another model than the robot's file has", n_other);
+    contact_note(k, "registers", n_registers > 0 ? AS_ASSUMED : NOT_AS_ASSUMED,
+                 "%d values were read", n_registers);
 }
 
 static int by_size(const void *a, const void *b)
@@ -217,24 +147,26 @@ static void measure_times(contact *k)
         }
     }
     if (n == 0) {
-        note(k, "latency", NOT_DONE, "nobody answers");
+        contact_note(k, "latency", NOT_DONE, "nobody answers");
         return;
     }
     qsort(took_us, (size_t)n, sizeof *took_us, by_size);
-    note(k, "latency", took_us[n / 2] - wire_us < 5000 ? AS_ASSUMED : NOT_AS_ASSUMED,
-         "%d replies of %d; from %.2f to %.2f ms, half within %.2f ms; the wire takes %.2f ms", n,
-         READS, (double)took_us[0] / 1e3, (double)took_us[n - 1] / 1e3,
-         (double)took_us[n / 2] / 1e3, wire_us / 1e3);
+    contact_note(
+        k, "latency", took_us[n / 2] - wire_us < 5000 ? AS_ASSUMED : NOT_AS_ASSUMED,
+        "%d replies of %d; from %.2f to %.2f ms, half within %.2f ms; the wire takes %.2f ms", n,
+        READS, (double)took_us[0] / 1e3, (double)took_us[n - 1] / 1e3, (double)took_us[n / 2] / 1e3,
+        wire_us / 1e3);
     if (!driver->protocol->relay) {
-        note(k, "board", NOT_DONE, "there is none: servos are straight on the line");
+        contact_note(k, "board", NOT_DONE, "there is none: servos are straight on the line");
         return;
     }
     /* One that forwards bytes as they come would be done before that. The quickest of all may be a
      * program that was held up between sending and looking at the clock. */
     int64_t quick_us = took_us[n / 10];
-    note(k, "board", (double)quick_us > 0.95 * wire_us ? AS_ASSUMED : NOT_AS_ASSUMED,
-         "stores a frame and then forwards it: a quick reply took %.2f ms, by reckoning %.2f",
-         (double)quick_us / 1e3, wire_us / 1e3);
+    contact_note(
+        k, "board", (double)quick_us > 0.95 * wire_us ? AS_ASSUMED : NOT_AS_ASSUMED,
+        "stores a frame and then forwards it: a quick reply took %.2f ms, by reckoning %.2f",
+        (double)quick_us / 1e3, wire_us / 1e3);
 }
 
 static void look_for_echo(contact *k)
@@ -242,38 +174,32 @@ static void look_for_echo(contact *k)
     const grobo_bus_stats *n = grobo_robot_get_bus_stats(k->c.robot);
     bool told = app_global(k->a, GLOBAL_ECHO)->given > 0;
     bool comes = n->replies > 0 && n->resync_bytes >= n->replies * REQUEST_BYTES / 2;
-    note(k, "echo", comes ? NOT_AS_ASSUMED : AS_ASSUMED,
-         told    ? "requests come back, and were expected to"
-         : comes ? "requests come back, which nobody expected: --wiring bus --echo"
-                 : "requests do not come back");
+    contact_note(k, "echo", comes ? NOT_AS_ASSUMED : AS_ASSUMED,
+                 told    ? "requests come back, and were expected to"
+                 : comes ? "requests come back, which nobody expected: --wiring bus --echo"
+                         : "requests do not come back");
     /* One in fifty may be lost to a busy machine. */
     bool good = n->bad_sums == 0 && n->timeouts <= n->tx_frames / 50;
-    note(k, "line", good ? AS_ASSUMED : NOT_AS_ASSUMED,
-         "%u frames, %u replies, %u came too late or not, %u had a wrong sum, %u bytes of rubbish",
-         (unsigned)n->tx_frames, (unsigned)n->replies, (unsigned)n->timeouts, (unsigned)n->bad_sums,
-         (unsigned)n->resync_bytes);
+    contact_note(
+        k, "line", good ? AS_ASSUMED : NOT_AS_ASSUMED,
+        "%u frames, %u replies, %u came too late or not, %u had a wrong sum, %u bytes of rubbish",
+        (unsigned)n->tx_frames, (unsigned)n->replies, (unsigned)n->timeouts, (unsigned)n->bad_sums,
+        (unsigned)n->resync_bytes);
 }
 
 static int read_only(contact *k)
 {
     app_note(k->a, "reading; nothing moves");
-    int status = open_part(k, "read", false);
+    int status = contact_open(k, "read", false);
     if (!status) {
         read_servos(k);
         measure_times(k);
         look_for_echo(k);
     }
-    return close_part(k, status);
+    return contact_close(k, status);
 }
 
 /* ---- one joint ------------------------------------------------------------------------------- */
-
-static int sense(contact *k, grobo_joint_info *is)
-{
-    int error = conn_wait(&k->c, grobo_robot_sense(grobo_session_robot(k->c.session),
-                                                   GROBO_JOINT_BIT(k->joint), GROBO_SENSE_FULL));
-    return error ? error : grobo_robot_joint(k->c.robot, k->joint, is);
-}
 
 static int switch_torque(contact *k, grobo_torque torque)
 {
@@ -290,7 +216,7 @@ static int go_to(contact *k, double deg, double *reached_deg)
     target.time_us = MOVE_US;
     int error = conn_wait(&k->c, grobo_robot_move(grobo_session_robot(k->c.session), &target));
     if (!error) {
-        error = sense(k, &is);
+        error = contact_sense(k, &is);
     }
     *reached_deg = error ? 0 : grobo_deg_from_rad(is.state.angle_rad);
     return error;
@@ -300,7 +226,7 @@ static int go_to(contact *k, double deg, double *reached_deg)
 static int begin_joint(contact *k)
 {
     grobo_joint_info is;
-    int error = sense(k, &is);
+    int error = contact_sense(k, &is);
     if (!error) {
         k->before_deg = grobo_deg_from_rad(is.state.angle_rad);
         k->was_on = is.state.torque != GROBO_TORQUE_OFF;
@@ -322,15 +248,15 @@ static int end_joint(contact *k, int error)
 static int test_torque(contact *k)
 {
     double most_deg = 0;
-    int status = open_part(k, "torque", true);
+    int status = contact_open(k, "torque", true);
     if (status) {
-        return close_part(k, status);
+        return contact_close(k, status);
     }
     int error = begin_joint(k);
     for (int i = 0; i < LOOKS && !error; i++) {
         grobo_joint_info is;
         error = conn_sleep_until(&k->c, grobo_now_us() + LOOK_US);
-        error = error ? error : sense(k, &is);
+        error = error ? error : contact_sense(k, &is);
         if (!error) {
             double off_deg = grobo_deg_from_rad(is.state.angle_rad) - k->before_deg;
             most_deg = fabs(off_deg) > fabs(most_deg) ? off_deg : most_deg;
@@ -338,19 +264,19 @@ static int test_torque(contact *k)
     }
     status = end_joint(k, error);
     if (!status) {
-        note(k, "torque_on", fabs(most_deg) < NEAR_DEG ? AS_ASSUMED : NOT_AS_ASSUMED,
-             "does not jump: %+.2f deg at most in %.1f s", most_deg, LOOKS * LOOK_US / 1e6);
+        contact_note(k, "torque_on", fabs(most_deg) < NEAR_DEG ? AS_ASSUMED : NOT_AS_ASSUMED,
+                     "does not jump: %+.2f deg at most in %.1f s", most_deg, LOOKS * LOOK_US / 1e6);
     }
-    return close_part(k, status);
+    return contact_close(k, status);
 }
 
 static int test_move(contact *k, double *step_deg)
 {
     const grobo_joint *joint = &app_model(k->a)->joints[k->joint];
     double there_deg = 0, back_deg = 0;
-    int status = open_part(k, "move", true);
+    int status = contact_open(k, "move", true);
     if (status) {
-        return close_part(k, status);
+        return contact_close(k, status);
     }
     int error = begin_joint(k);
     *step_deg =
@@ -361,11 +287,11 @@ static int test_move(contact *k, double *step_deg)
     if (!status) {
         bool near = fabs(there_deg - k->before_deg - *step_deg) < NEAR_DEG &&
                     fabs(back_deg - k->before_deg) < NEAR_DEG;
-        note(k, "move", near ? AS_ASSUMED : NOT_AS_ASSUMED,
-             "from %.2f by %+.0f deg to %.2f, and back to %.2f", k->before_deg, *step_deg,
-             there_deg, back_deg);
+        contact_note(k, "move", near ? AS_ASSUMED : NOT_AS_ASSUMED,
+                     "from %.2f by %+.0f deg to %.2f, and back to %.2f", k->before_deg, *step_deg,
+                     there_deg, back_deg);
     }
-    return close_part(k, status);
+    return contact_close(k, status);
 }
 
 static void ask_direction(contact *k, double step_deg)
@@ -377,11 +303,11 @@ static void ask_direction(contact *k, double step_deg)
     }
     bool fine = answer[0] == 'y' || answer[0] == 'Y';
     bool unseen = answer[0] == 'n' && strncmp(answer, "not", 3) == 0;
-    note(k, "seen",
-         fine     ? AS_ASSUMED
-         : unseen ? NOT_DONE
-                  : NOT_AS_ASSUMED,
-         "the person says of %+.0f deg: %.80s", step_deg, answer);
+    contact_note(k, "seen",
+                 fine     ? AS_ASSUMED
+                 : unseen ? NOT_DONE
+                          : NOT_AS_ASSUMED,
+                 "the person says of %+.0f deg: %.80s", step_deg, answer);
 }
 
 static int try_joint(contact *k)
@@ -393,9 +319,9 @@ static int try_joint(contact *k)
              _("hold the robot. Switch the torque of %s on for a second? It should not move"),
              name);
     if (!ask_yes(k->a, question)) {
-        note(k, "torque_on", NOT_DONE, "the person did not want it");
-        note(k, "move", NOT_DONE, "the person did not want it");
-        return EXIT_DONE;
+        contact_note(k, "torque_on", NOT_DONE, "the person did not want it");
+        contact_note(k, "move", NOT_DONE, "the person did not want it");
+        return contact_try_rates(k);
     }
     int status = test_torque(k);
     if (status) {
@@ -407,12 +333,13 @@ static int try_joint(contact *k)
         app_note(k->a, "something was not as assumed; better send the report first");
     }
     if (!ask_yes(k->a, question)) {
-        note(k, "move", NOT_DONE, "the person did not want it");
-        return EXIT_DONE;
+        contact_note(k, "move", NOT_DONE, "the person did not want it");
+        return contact_try_rates(k);
     }
     status = test_move(k, &step_deg);
     if (!status) {
         ask_direction(k, step_deg);
+        status = contact_try_rates(k);
     }
     return status;
 }
@@ -421,7 +348,7 @@ static int try_joint(contact *k)
 
 static int begin(contact *k, const contact_orders *orders)
 {
-    char path[PATH_BYTES + 8];
+    char path[CONTACT_PATH_BYTES + 8];
     snprintf(k->prefix, sizeof k->prefix, orders->out ? "%.900s" : "first-contact-%.900s",
              orders->out ? orders->out : robot_of(k->a)->name);
     snprintf(path, sizeof path, "%s.txt", k->prefix);
@@ -462,6 +389,6 @@ int contact_run(app *a, const contact_orders *orders)
     int written = k.steps && json_array_size(k.steps) > 0 ? write_report(&k) : 0;
     json_decref(k.steps);
     json_decref(k.servos);
-    status = status ? status : written;
+    status = ask_signal() ? EXIT_SIGNAL + ask_signal() : status ? status : written;
     return status ? status : k.n_bad ? EXIT_ROBOT : EXIT_DONE;
 }

@@ -288,10 +288,10 @@ int found_new(app *a, const char *family, const char *name, const char *out)
         app_note(a, "bytes came that are of no whole reply: some may be missing; see 'grctl scan'");
     }
     found_sketch(a, &all, name ? name : "robot", &s);
-    if (!sketch_order(&s, complaint, sizeof complaint)) {
+    if (!sketch_order(&s, complaint, sizeof complaint) ||
+        !sketch_fit(&s, complaint, sizeof complaint)) {
         return app_fail(a, EXIT_ROBOT, "CAP", "robot new: %s", complaint);
     }
-    sketch_fit(&s);
     json_t *fits = name_fitting(a, &all);
     status = sketch_write(a, &s, out, fits);
     json_decref(fits);

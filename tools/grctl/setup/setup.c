@@ -27,6 +27,7 @@ typedef struct guide {
     char config[CONFIG_PATH_BYTES];
     int baud_bps; /* 0: the robot's own */
     int n_read;   /* joints that answered */
+    bool named;   /* in the configuration */
 } guide;
 
 static void set_global(app *a, int global, const char *text)
@@ -36,7 +37,8 @@ static void set_global(app *a, int global, const char *text)
 
 static int gave_up(const guide *g)
 {
-    return app_fail(g->a, EXIT_USAGE, "CANCELED", "setup: ended; nothing more was changed");
+    int status = ask_signal() ? EXIT_SIGNAL + ask_signal() : EXIT_USAGE;
+    return app_fail(g->a, status, "CANCELED", "setup: ended; nothing more was changed");
 }
 
 /* ---- the port -------------------------------------------------------------------------------- */
@@ -176,10 +178,10 @@ static int write_robot(guide *g, const found_servos *all)
         return gave_up(g);
     }
     found_sketch(g->a, all, name, &s);
-    if (!sketch_order(&s, complaint, sizeof complaint)) {
+    if (!sketch_order(&s, complaint, sizeof complaint) ||
+        !sketch_fit(&s, complaint, sizeof complaint)) {
         return app_fail(g->a, EXIT_ROBOT, "CAP", "setup: %s", complaint);
     }
-    sketch_fit(&s);
     if (!free_path(s.name, g->file, sizeof g->file)) {
         return app_fail(g->a, EXIT_FILE, "NOENT", "setup: there is no place for a robot's file");
     }
@@ -309,12 +311,14 @@ static int give_name(guide *g)
                                 .device = g->device,
                                 .def = g->robot,
                                 .baud_bps = g->baud_bps,
+                                .file = *g->file ? g->file : NULL,
                                 .wiring = (grobo_wiring)wiring->choice == robot_of(g->a)->wiring
                                               ? NULL
                                           : wiring->choice ? "bus"
                                                            : "board"};
     status = config_add(g->a, &entry, g->config, sizeof g->config);
     if (!status) {
+        g->named = true;
         app_note(g->a, "%s names it %s now; 'grctl setup --undo' takes that back", g->config,
                  g->name);
     }
@@ -407,19 +411,28 @@ int setup_run(app *a)
     }
     if (!status) {
         report(&g);
-    } else if (*g.file) {
-        app_note(a, "the robot's file %s stays", g.file);
+    } else if (*g.file && !g.named && remove(g.file) == 0) { /* nothing could undo it later */
+        app_note(a, "the robot's file %s is removed again", g.file);
     }
     return status;
 }
 
 int setup_undo(app *a)
 {
-    char path[CONFIG_PATH_BYTES];
-    int status = config_undo(a, path, sizeof path);
-    if (!status) {
-        app_report(a, json_pack("{s:o,s:b}", "config", app_json_text(path), "undone", 1),
-                   "%s is as it was before", path);
+    static config_undone undone;
+    int status = config_undo(a, &undone);
+    if (status) {
+        return status;
     }
+    if (*undone.file && undone.removed) {
+        app_note(a, "the robot's file %s is removed", undone.file);
+    } else if (*undone.file) {
+        app_note(a, "the robot's file %s has changed since setup wrote it, and stays", undone.file);
+    }
+    app_report(a,
+               json_pack("{s:o,s:b,s:o?,s:b}", "config", app_json_text(undone.path), "undone", 1,
+                         "file", *undone.file ? app_json_text(undone.file) : NULL, "removed",
+                         undone.removed),
+               "%s is as it was before", undone.path);
     return status;
 }

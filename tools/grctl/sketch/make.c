@@ -236,7 +236,9 @@ static int describe(app *a, sketch *s, const char *path, const sketch_orders *or
     if (status) {
         return status;
     }
-    sketch_fit(s);
+    if (!sketch_fit(s, complaint, sizeof complaint)) {
+        return app_fail(a, EXIT_FILE, "LIMIT", "%s: %s", path, complaint);
+    }
     return sketch_write(a, s, orders->out, NULL);
 }
 

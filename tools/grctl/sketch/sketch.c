@@ -253,6 +253,8 @@ static bool reaches(const sketch *s, const sketch_part *part)
                                .motor = 1,
                                .mirror_sign = 1,
                                .turns = part->turns,
+                               .sign = part->gear < 0 ? -1 : 0,
+                               .gear = fabs(part->gear),
                                .zero_rad = part->zero_rad};
     const grobo_model one = {.name = "one", .joints = &joint, .n_joints = 1};
     grobo_driver driver;
@@ -265,18 +267,34 @@ static void note(sketch_part *part, const char *text)
     snprintf(part->note + used, sizeof part->note - used, "%s%s", used ? "; " : "", text);
 }
 
-/* As it is, else with the servo's middle in the middle of the range, else cut. */
-static void fit_joint(const sketch *s, sketch_part *part)
+/* Whether a joint with gears can reach what its description says. A reduction that it cannot have
+ * is that of the gears in the servo, which its angles are counted behind. */
+static bool fits_gear(const sketch_part *part, double half_rad)
 {
-    double half_rad = grobo_rad_from_deg(part->servo->span_deg / 2.0 - SPARE_DEG);
+    return !part->limited || part->gear == 0 || fabs(part->gear) == 1 ||
+           part->limits_rad[1] - part->limits_rad[0] <= 2 * half_rad;
+}
+
+/* As it is, else with the servo's middle in the middle of the range, else cut. False: its gear
+ * does not fit. */
+static bool fit_joint(const sketch *s, sketch_part *part)
+{
+    double reach = part->gear != 0 ? fabs(part->gear) : 1;
+    double half_rad = grobo_rad_from_deg(part->servo->span_deg / 2.0 - SPARE_DEG) / reach;
     double *limits = part->limits_rad;
     if (!part->limited) {
         limits[0] = -half_rad;
         limits[1] = half_rad;
         note(part, "limits: what the servo reaches; fill in");
     }
+    if (!fits_gear(part, half_rad)) {
+        return false;
+    }
+    if (reach != 1) {
+        note(part, "gear: 1 if the servo has it inside");
+    }
     if (!reaches(s, part)) {
-        part->zero_rad = -(limits[0] + limits[1]) / 2;
+        part->zero_rad = -(limits[0] + limits[1]) / 2 * (part->gear != 0 ? part->gear : 1);
     }
     if (!reaches(s, part)) {
         char text[64];
@@ -291,11 +309,21 @@ static void fit_joint(const sketch *s, sketch_part *part)
     if (limits[0] > 0 || limits[1] < 0) {
         part->init_rad = (limits[0] + limits[1]) / 2;
     }
+    return true;
 }
 
-void sketch_fit(sketch *s)
+bool sketch_fit(sketch *s, char *complaint, size_t capacity)
 {
     for (int i = 0; i < s->n_joints; i++) {
-        fit_joint(s, &s->part[s->joints[i]]);
+        sketch_part *part = &s->part[s->joints[i]];
+        if (!fit_joint(s, part)) {
+            snprintf(
+                complaint, capacity,
+                _("%s: %s does not reach its limits with a reduction of %g; take that out if the "
+                  "servo has it inside"),
+                part->called, part->servo->name, fabs(part->gear));
+            return false;
+        }
     }
+    return true;
 }

@@ -34,6 +34,7 @@ typedef struct sketch_part {
     bool limited;
     double limits_rad[2];
     double speed_rad_s; /* at most; 0: not told */
+    double gear;        /* turns of the servo for one of the joint, below 0: the other way; 0: 1 */
     double origin_m[3], origin_rad[3], axis[3], mass_kg;
     /* of a joint, set by who knows */
     int id;
@@ -73,8 +74,8 @@ bool sketch_order(sketch *s, char *complaint, size_t capacity);
 int sketch_joints(const sketch *s);
 sketch_part *sketch_joint(sketch *s, int i);
 
-/* Once joints have servos and ids: what each can reach. */
-void sketch_fit(sketch *s);
+/* Once joints have servos and ids: what each can reach. False with one line of complaint. */
+bool sketch_fit(sketch *s, char *complaint, size_t capacity);
 
 /* The file, to be freed; NULL: there is no memory. */
 char *sketch_text(sketch *s);

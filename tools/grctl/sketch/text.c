@@ -62,8 +62,15 @@ static void put_joint(paper *to, const sketch_part *part)
     if (part->zero_rad != 0) {
         put(to, ", zero_deg: %.6g", limit(part->zero_rad));
     }
+    double gear = part->gear != 0 ? fabs(part->gear) : 1;
+    if (part->gear < 0) {
+        put(to, ", sign: -1");
+    }
+    if (gear != 1) {
+        put(to, ", gear: %.6g", gear);
+    }
     double speed_dps = grobo_deg_from_rad(part->speed_rad_s);
-    if (speed_dps >= 1 && speed_dps < 0.8 * part->servo->speed_dps) {
+    if (speed_dps >= 1 && speed_dps < 0.8 * part->servo->speed_dps / gear) {
         put(to, ", speed_deg_s: %.6g", speed_dps);
     }
     put(to, part->turns ? ", turns: true}" : "}");

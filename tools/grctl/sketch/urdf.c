@@ -10,7 +10,29 @@
 #include "tools/grctl/xml/xml.h"
 
 /* What element the ear is in. */
-typedef enum place { ELSEWHERE, ROBOT, LINK, INERTIAL, JOINT } place;
+typedef enum place {
+    ELSEWHERE,
+    ROBOT,
+    LINK,
+    INERTIAL,
+    JOINT,
+    CONTROL,      /* ros2_control */
+    TRANSMISSION, /* in the robot or in that */
+    GEARED,       /* a transmission's joint or actuator */
+    REDUCTION,
+    OFFSET
+} place;
+
+/* Between a motor and a joint. Source: wiki.ros.org/urdf/XML/Transmission; of ros2_control:
+ * transmission_interface, simple_transmission_loader. */
+typedef struct transmission {
+    char name[SKETCH_TEXT_BYTES], joint[SKETCH_TEXT_BYTES];
+    int n_joints;
+    double reduction; /* turns of the motor for one of the joint */
+} transmission;
+
+#define GEAR_MIN 0.001 /* of a robot's file */
+#define GEAR_MAX 1000.0
 
 typedef struct reader {
     sketch *s;
@@ -22,6 +44,10 @@ typedef struct reader {
     const char *path;
     double soft_rad[2];
     bool soft;
+    transmission *now, *transmissions;
+    int n_transmissions;
+    char text[64]; /* of the number that is being read */
+    size_t text_used;
 } reader;
 
 __attribute__((format(printf, 2, 3))) static void complain(reader *r, const char *format, ...)
@@ -178,6 +204,106 @@ static void begin_link(reader *r, const char *const *all)
     take_text(r, all, "name", r->part->name);
 }
 
+/* ---- transmissions --------------------------------------------------------------------------- */
+
+static void begin_transmission(reader *r, const char *const *all)
+{
+    const char *name = attribute(all, "name");
+    if (r->n_transmissions == SKETCH_PARTS_MAX) {
+        complain(r, "more than %d transmissions", SKETCH_PARTS_MAX);
+        return;
+    }
+    r->now = &r->transmissions[r->n_transmissions++];
+    *r->now = (transmission){.reduction = 1};
+    snprintf(r->now->name, sizeof r->now->name, "%.80s", name ? name : "");
+}
+
+static bool is_reduction(const char *name)
+{
+    return strcmp(name, "mechanicalReduction") == 0 || strcmp(name, "mechanical_reduction") == 0;
+}
+
+static place begin_geared(reader *r, place in, const char *name, const char *const *all)
+{
+    if (!r->now) {
+        return ELSEWHERE;
+    }
+    r->text_used = 0;
+    if (is_reduction(name)) {
+        return REDUCTION;
+    }
+    if (strcmp(name, "offset") == 0) {
+        return OFFSET;
+    }
+    if (in == TRANSMISSION && strcmp(name, "joint") == 0) {
+        r->now->n_joints++;
+        take_text(r, all, "name", r->now->joint);
+        return GEARED;
+    }
+    return in == TRANSMISSION && strcmp(name, "actuator") == 0 ? GEARED : ELSEWHERE;
+}
+
+static void end_number(reader *r, bool is_offset)
+{
+    double number;
+    char *end = r->text + r->text_used;
+    while (end > r->text && strchr(" \t\r\n", end[-1])) {
+        end--;
+    }
+    *end = '\0';
+    const char *text = r->text + strspn(r->text, " \t\r\n");
+    if (!cli_read_number(text, &number)) {
+        complain(r, "transmission '%s': '%s' is not a number", r->now->name, text);
+    } else if (is_offset && number != 0) {
+        complain(r, "transmission '%s': an offset is not read", r->now->name);
+    } else if (!is_offset && !(fabs(number) >= GEAR_MIN && fabs(number) <= GEAR_MAX)) {
+        complain(r, "transmission '%s': a reduction of %g to %g is wanted", r->now->name, GEAR_MIN,
+                 GEAR_MAX);
+    } else if (!is_offset) {
+        r->now->reduction *= number;
+    }
+}
+
+static void end_transmission(reader *r)
+{
+    transmission *is = r->now;
+    r->now = NULL;
+    if (is && is->n_joints != 1) {
+        complain(r, "transmission '%s' is of %d joints: a servo moves one", is->name, is->n_joints);
+    }
+}
+
+static void on_text(void *ctx, const char *bytes, size_t size)
+{
+    reader *r = ctx;
+    for (size_t i = 0; i < size && r->text_used < sizeof r->text - 1; i++) {
+        r->text[r->text_used++] = bytes[i];
+    }
+}
+
+/* The gear of each joint. False with a complaint. */
+static bool gear(const reader *r, char *complaint, size_t capacity)
+{
+    for (int t = 0; t < r->n_transmissions; t++) {
+        const transmission *is = &r->transmissions[t];
+        sketch_part *joint = NULL;
+        for (int j = 0; j < r->joints->n && !joint; j++) {
+            joint = strcmp(r->joints->part[j].joint, is->joint) == 0 ? &r->joints->part[j] : NULL;
+        }
+        if (!joint || (joint->gear != 0 && joint->gear != is->reduction)) {
+            snprintf(complaint, capacity,
+                     joint ? _("transmission '%s': '%s' has another one already")
+                           : _("transmission '%s': there is no joint '%s'"),
+                     is->name, is->joint);
+            return false;
+        }
+        joint->gear = is->reduction;
+    }
+    return true;
+}
+
+/* ---- the robot ------------------------------------------------------------------------------- */
+
 static void begin_robot(reader *r, const char *name, const char *const *all)
 {
     r->at[0] = ROBOT;
@@ -199,8 +325,11 @@ static place begin_part(reader *r, const char *name, const char *const *all)
     } else if (strcmp(name, "joint") == 0) {
         begin_joint(r, all);
         return JOINT;
+    } else if (strcmp(name, "transmission") == 0) {
+        begin_transmission(r, all);
+        return TRANSMISSION;
     }
-    return ELSEWHERE;
+    return strcmp(name, "ros2_control") == 0 ? CONTROL : ELSEWHERE;
 }
 
 static void on_begin(void *ctx, int depth, const char *name, const char *const *all)
@@ -226,6 +355,18 @@ static void on_begin(void *ctx, int depth, const char *name, const char *const *
     case JOINT:
         take_joint(r, name, all);
         break;
+    case CONTROL:
+        if (strcmp(name, "transmission") == 0) {
+            begin_transmission(r, all);
+            r->at[depth] = TRANSMISSION;
+        }
+        break;
+    case TRANSMISSION:
+    case GEARED:
+        r->at[depth] = begin_geared(r, r->at[depth - 1], name, all);
+        break;
+    case REDUCTION:
+    case OFFSET:
     case ELSEWHERE:
         break;
     }
@@ -236,6 +377,10 @@ static void on_end(void *ctx, int depth)
     reader *r = ctx;
     if (r->at[depth] == JOINT) {
         end_joint(r);
+    } else if (r->at[depth] == TRANSMISSION) {
+        end_transmission(r);
+    } else if (r->now && (r->at[depth] == REDUCTION || r->at[depth] == OFFSET)) {
+        end_number(r, r->at[depth] == OFFSET);
     }
 }
 
@@ -267,10 +412,15 @@ bool sketch_read_urdf(sketch *s, const char *path, const char *bytes, size_t siz
                       size_t capacity)
 {
     static sketch joints;
+    static transmission transmissions[SKETCH_PARTS_MAX];
     char said[APP_LINE_BYTES] = "";
-    reader r = {
-        .s = s, .joints = &joints, .complaint = said, .capacity = sizeof said, .path = path};
-    const xml_ear ear = {on_begin, on_end, &r};
+    reader r = {.s = s,
+                .joints = &joints,
+                .complaint = said,
+                .capacity = sizeof said,
+                .path = path,
+                .transmissions = transmissions};
+    const xml_ear ear = {on_begin, on_text, on_end, &r};
     xml_trouble trouble;
     joints.n = 0;
     if (xml_missing()) {
@@ -288,5 +438,7 @@ bool sketch_read_urdf(sketch *s, const char *path, const char *bytes, size_t siz
         return false;
     }
     int n = snprintf(complaint, capacity, "%s: ", path);
-    return join(s, &joints, complaint + n, n < (int)capacity ? capacity - (size_t)n : 0);
+    complaint += n < (int)capacity ? n : (int)capacity;
+    capacity -= n < (int)capacity ? (size_t)n : capacity;
+    return gear(&r, complaint, capacity) && join(s, &joints, complaint, capacity);
 }

@@ -44,6 +44,14 @@ static void on_begin(void *ctx, const XML_Char *name, const XML_Char **attribute
     r->ear->begin(r->ear->ctx, r->depth++, name, (const char *const *)attributes);
 }
 
+static void on_text(void *ctx, const XML_Char *bytes, int size)
+{
+    reader *r = ctx;
+    if (!r->refused) {
+        r->ear->text(r->ear->ctx, bytes, (size_t)size);
+    }
+}
+
 static void on_end(void *ctx, const XML_Char *name)
 {
     reader *r = ctx;
@@ -74,6 +82,7 @@ int xml_read(const char *bytes, size_t size, const xml_ear *ear, xml_trouble *tr
     }
     XML_SetUserData(r.parser, &r);
     XML_SetElementHandler(r.parser, on_begin, on_end);
+    XML_SetCharacterDataHandler(r.parser, on_text);
     XML_SetStartDoctypeDeclHandler(r.parser, on_doctype);
     now = r.parser;
     bool whole = XML_Parse(r.parser, bytes, (int)size, XML_TRUE) == XML_STATUS_OK;

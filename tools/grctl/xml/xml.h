@@ -8,9 +8,11 @@
 
 enum { XML_DEPTH_MAX = 64, XML_TROUBLE_BYTES = 128 };
 
-/* Hears elements; attributes are names and values in turn, NULL behind the last. */
+/* Hears elements; attributes are names and values in turn, NULL behind the last. What stands in an
+ * element may come in pieces. */
 typedef struct xml_ear {
     void (*begin)(void *ctx, int depth, const char *name, const char *const *attributes);
+    void (*text)(void *ctx, const char *bytes, size_t size);
     void (*end)(void *ctx, int depth);
     void *ctx;
 } xml_ear;

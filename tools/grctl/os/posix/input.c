@@ -2,6 +2,7 @@
 /* Standard input: the descriptor is what a loop waits on. */
 #include <errno.h>
 #include <signal.h>
+#include <sys/select.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,6 +12,41 @@ static bool is_stream(int fd)
 {
     struct stat s;
     return fstat(fd, &s) == 0 && (S_ISFIFO(s.st_mode) || S_ISSOCK(s.st_mode));
+}
+
+static volatile sig_atomic_t ending;
+
+static void note_ending(int number)
+{
+    ending = number;
+}
+
+int os_wait_to_read(void)
+{
+    const struct sigaction action = {.sa_handler = note_ending};
+    struct sigaction before[OS_ENDINGS_MAX];
+    sigset_t endings, mask;
+    fd_set readable;
+    int n = -1;
+    sigemptyset(&endings);
+    for (int i = 0; i < os_n_endings; i++) {
+        sigaddset(&endings, os_endings[i]);
+    }
+    sigprocmask(SIG_BLOCK, &endings, &mask); /* but while it waits */
+    for (int i = 0; i < os_n_endings; i++) {
+        sigaction(os_endings[i], &action, &before[i]);
+    }
+    for (ending = 0; n < 0 && !ending;) { /* a stop and its end interrupt it too */
+        FD_ZERO(&readable);
+        FD_SET(STDIN_FILENO, &readable);
+        n = pselect(STDIN_FILENO + 1, &readable, NULL, NULL, NULL, &mask);
+        n = n < 0 && errno != EINTR ? 0 : n;
+    }
+    for (int i = 0; i < os_n_endings; i++) {
+        sigaction(os_endings[i], &before[i], NULL);
+    }
+    sigprocmask(SIG_SETMASK, &mask, NULL);
+    return ending;
 }
 
 bool os_input_take(FILE *from)

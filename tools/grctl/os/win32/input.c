@@ -66,6 +66,11 @@ static bool start(void)
     return false;
 }
 
+int os_wait_to_read(void)
+{
+    return 0;
+}
+
 bool os_input_take(FILE *from)
 {
     HANDLE handle = (HANDLE)_get_osfhandle(_fileno(from));
