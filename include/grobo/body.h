@@ -366,7 +366,7 @@ typedef struct grobo_body_check_options {
 GROBO_API int grobo_body_check(grobo_body *body, const grobo_body_check_options *options);
 
 /** Name of a problem, for text and JSON: "zmp-margin". Static string, never NULL. Thread safe. */
-GROBO_CORE const char *grobo_body_problem_name(grobo_body_problem problem);
+GROBO_API const char *grobo_body_problem_name(grobo_body_problem problem);
 
 GROBO_END_DECLS
 

@@ -40,7 +40,7 @@ typedef struct grobo_os_cause {
  * base of its own calls it first. Any number of times; thread safe.
  * @return GROBO_OK, GROBO_ERR_IO.
  */
-GROBO_CORE int grobo_port_start(void);
+GROBO_API int grobo_port_start(void);
 
 /* ---- clock -------------------------------------------------------------------------------- */
 
