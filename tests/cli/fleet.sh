@@ -4,25 +4,7 @@
 # and messages of strangers. CROWD=yes (make check-fleet): 100 robots of four agents too.
 . tests/support/cli.sh
 
-if ! command -v mosquitto >/dev/null || ! command -v mosquitto_pub >/dev/null; then
-    echo "1..0 # SKIP no mosquitto and mosquitto_pub here"
-    exit 0
-fi
-if "$GRCTL" fleet list --broker mqtt://127.0.0.1:1 2>&1 | grep -q 'no MQTT in it'; then
-    echo "1..0 # SKIP this grctl has no MQTT in it"
-    exit 0
-fi
-
-pids=
-end_fleet_test() {
-    for pid in $pids; do
-        kill -CONT "$pid" 2>/dev/null
-        kill "$pid" 2>/dev/null
-        wait "$pid" 2>/dev/null
-    done
-    end_cli_test
-}
-trap end_fleet_test EXIT
+needs_mqtt mosquitto_sub
 
 # ---- a broker ------------------------------------------------------------------------------------
 

@@ -5,16 +5,6 @@
 
 mkdir -p "$work/config/grctl"
 config=$work/config/grctl/config.yaml
-pids=
-
-end_group_test() {
-    for pid in $pids; do
-        kill "$pid" 2>/dev/null
-        wait "$pid" 2>/dev/null
-    done
-    end_cli_test
-}
-trap end_group_test EXIT
 
 # simulates NAME: a simulator behind $work/NAME; $pid is its process.
 simulates() {
