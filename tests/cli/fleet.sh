@@ -96,11 +96,15 @@ plays() {
     play=$!
     written "$work/said" 'all begin in' && wait_for moves
 }
+# looks: at what all do; an answer that came too late is none.
+looks() {
+    fleet status --json >"$work/look" && grep -q '"play": *"' "$work/look"
+}
 moves() {
-    fleet status --json | grep -q '"play": *"playing"'
+    looks && grep -q '"play": *"playing"' "$work/look"
 }
 rests() {
-    ! moves && fleet status --json | grep -q '"play": *"idle"'
+    looks && ! grep -q '"play": *"playing"' "$work/look" && grep -q '"play": *"idle"' "$work/look"
 }
 ended() {
     wait "$play"
@@ -190,7 +194,7 @@ an_order() {
 answers() {
     answers_pattern=$1
     shift
-    mosquitto_sub -p "$port" -W 5 -C 1 -t "grobo/v1/ack/$id" >"$work/answer" &
+    mosquitto_sub -p "$port" -W 30 -C 1 -t "grobo/v1/ack/$id" >"$work/answer" &
     answers_pid=$!
     wait_for subscribed
     "$@"
@@ -225,7 +229,10 @@ large() {
         fleet list | grep -q '^one  *ONLINE'
 }
 check "a message of 1.5 MB" large
-check "and all of that moved nothing" rests
+moved_nothing() {
+    wait_for looks && ! grep -q '"play": *"playing"' "$work/look"
+}
+check "and all of that moved nothing" moved_nothing
 check "the agent is the same" kill -0 "$agent_one"
 
 # ---- leaving -------------------------------------------------------------------------------------

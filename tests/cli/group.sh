@@ -111,7 +111,7 @@ loses_c() {
     begins "$@" && kill "$pid_c" && { wait "$pid_c"; written "$work/said" 'c is out'; }
 }
 goes_on() {
-    loses_c --if-lost continue --from 4800 && ended 1 &&
+    loses_c --if-lost continue --from 4000 && ended 1 &&
         grep -q '"name":"a","done":true' "$work/played" &&
         grep -q '"name":"b","done":true' "$work/played"
 }
