@@ -229,11 +229,13 @@ messages: ## write the texts of the sources into the catalogues of grctl, for tr
 format: ## write sources as clang-format 14 does; FILES="src/bus/bus.c" chooses
 	@tools/lint/format.sh --fix $(or $(FILES),$(shell find include src ports tools tests docs -name '*.[ch]'))
 
+# They take longest of those that mostly wait: `make test` tells the slowest.
+TEST_FIRST := servos play fleet serve_driving json guard registers estop test_play_line test_thread_motion
 # The programs and scripts of the chosen rings, as tests/run.sh wants them.
 in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
 # What tests of a build for another machine must know.
 cross_env = $(if $(CROSS),$(foreach v,CROSS EMULATOR SYSROOT CXX,$(v)="$($(v))") \
-    TEST_WRAPPER="$(or $(TEST_EMULATOR),$(EMULATOR))" TEST_TIMEOUT_S=300)
+    TEST_WRAPPER="$(or $(TEST_EMULATOR),$(EMULATOR))" TEST_TIMEOUT_S=600)
 corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
 
 left_out = $(if $(strip $(call in_rings,,$(LEFT_OUT))),$(BUILD)/left_out.sh)
@@ -245,7 +247,7 @@ $(BUILD)/left_out.sh: FORCE
 chosen = $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(if $(filter fuzz,$(RING)),$(FUZZ_REPLAYS)) \
     $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES) $(PICTURE))
 test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit engine" chooses
-	@$(TEST_BEGIN) GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) XML=$(XML) \
+	@$(TEST_BEGIN) GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" TEST_FIRST="$(TEST_FIRST)" EDIT=$(EDIT) SCREEN=$(SCREEN) XML=$(XML) \
 	    $(cross_env) tests/run.sh \
 	    $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(call in_rings,,$(TEST_SCRIPTS)) \
 	    $(if $(filter fuzz,$(RING)),$(corpora)) $(left_out) $(TEST_END)
@@ -279,7 +281,7 @@ cockpit-soak: all ## grctl serve with good and bad clients for MINUTES=60: its m
 	@GRCTL="$(abspath $(GRCTL))" python3 tests/cockpit/soak.py $(or $(MINUTES),60)
 
 check-tsan: ## the tests of what threads share under ThreadSanitizer
-	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' RING=link
+	@TEST_JOBS=2 $(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' RING=link
 
 check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' TEST_TIMEOUT_S=900 \

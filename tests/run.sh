@@ -7,17 +7,21 @@
 #   A program is an executable, or a shell script (*.sh, run by sh).
 #   PROGRAM@DIR replays the files of a corpus: PROGRAM gets the files of DIR as arguments.
 # environment:
-#   TEST_JOBS=2         how many at a time
-#   TEST_TIMEOUT_S=120  how long one may take
+#   TEST_JOBS=N         how many at a time. Without it as many as processors; beside them, first
+#                       among equals, three times as many of those in real time, which mostly wait
+#   TEST_TIMEOUT_S=300  how long one may take
 #   TEST_WRAPPER=       put before each program, such as 'valgrind -q --error-exitcode=99'
 #   TEST_LOGS=DIR       keep the logs there (default: a temporary directory)
+#   TEST_FIRST=         names of long programs, which begin first: else the others wait for them
+#   TEST_SLOWEST=5      how many of the slowest are told
 #
 # Counted as failed besides 'not ok': a crash, a time-out, an exit status other than 0 without a
-# 'not ok', fewer results than planned, and a program without any test.
+# 'not ok', fewer results than planned, a program without any test, and one that leaves processes
+# behind.
 set -u
 
-jobs=${TEST_JOBS:-2}
-limit_s=${TEST_TIMEOUT_S:-120}
+processors=$(getconf _NPROCESSORS_ONLN 2>/dev/null) || processors=2
+limit_s=${TEST_TIMEOUT_S:-300}
 wrapper=${TEST_WRAPPER:-}
 
 # Runs one program; its output goes to LOGS/NUMBER.log with a last line of our own.
@@ -41,21 +45,55 @@ run_one() {
     # shellcheck disable=SC2086
     *) set -- $wrapper "$program" "$@" ;;
     esac
-    CMOCKA_MESSAGE_OUTPUT=TAP timeout -k 5 "$limit_s" "$@" >"$logs/$number.log" 2>&1 </dev/null
+    begin=$(date +%s)
+    # timeout makes a process group of itself and all that begins below it.
+    # shellcheck disable=SC2016
+    CMOCKA_MESSAGE_OUTPUT=TAP sh -c 'echo $$ >"$0" && exec timeout -k 5 "$@"' \
+        "$logs/$number.group" "$limit_s" "$@" >"$logs/$number.log" 2>&1 </dev/null
     status=$?
-    # On a line of its own, whatever the program's last line was.
-    printf '\n@status %d\n' "$status" >>"$logs/$number.log"
+    took=$(($(date +%s) - begin))
+    end_group "$(cat "$logs/$number.group")"
+    # On lines of their own, whatever the program's last line was.
+    printf '\n@status %d\n@left %d\n@took %d\n' "$status" "$left" "$took" >>"$logs/$number.log"
+    times >>"$logs/$number.log"
 }
 
-if [ "${1:-}" = --one ]; then
+# end_group PID: what a program left behind; some of it ends by itself, as guards of the dead do.
+end_group() {
+    left=0
+    tries=50
+    while kill -s 0 -- "-$1" 2>/dev/null; do
+        tries=$((tries - 1))
+        if [ $tries -eq 0 ]; then
+            left=1
+            kill -s KILL -- "-$1"
+            return
+        fi
+        sleep 0.1
+    done
+}
+
+# --pool LOGS JOBS LIST [NICE...]: runs a list, its first ones first.
+case ${1:-} in
+--one)
     run_one "$2" "$3"
     exit 0
-fi
+    ;;
+--pool)
+    logs=$2
+    jobs=$3
+    list=$4
+    shift 4
+    sort -s -n -k 1,1 "$logs/$list" | cut -d ' ' -f 2- |
+        "$@" xargs -P "$jobs" -n 1 sh "$0" --one "$logs"
+    exit
+    ;;
+esac
 
 if [ -n "${TEST_LOGS:-}" ]; then
     logs=$TEST_LOGS
     mkdir -p "$logs" || exit 1
-    rm -f "$logs"/*.log
+    rm -f "$logs"/*.log "$logs/waiting" "$logs/working"
 else
     logs=$(mktemp -d) || exit 1
     trap 'rm -rf "$logs"' EXIT
@@ -75,9 +113,21 @@ for program in "$@"; do
     count=$((count + 1))
     printf '%d:%s\n' "$count" "$program"
 done >"$logs/programs"
-xargs -P "$jobs" -n 1 sh "$0" --one "$logs" <"$logs/programs"
 
-awk -v logs="$logs" -v limit_s="$limit_s" '
+# What runs in real time, and the rest. Under a wrapper all of it takes the processor all the time.
+awk -v logs="$logs" -v first=" ${TEST_FIRST:-} " -v one_pool="${TEST_JOBS:-}$wrapper" '
+{
+    name = $0
+    gsub(/^.*\/|\.sh$/, "", name)
+    print (index(first, " " name " ") ? 1 : 2) " " $0 >(logs "/" \
+        (one_pool == "" && /\/(cli|link|port)\// ? "waiting" : "working"))
+}' "$logs/programs"
+{
+    [ ! -s "$logs/waiting" ] || echo "$((3 * processors)) waiting"
+    [ ! -s "$logs/working" ] || echo "${TEST_JOBS:-$processors} working nice -n 5"
+} | xargs -P 2 -L 1 sh "$0" --pool "$logs"
+
+awk -v logs="$logs" -v limit_s="$limit_s" -v slow="${TEST_SLOWEST:-5}" '
 function problem(text) { failed++; bad = 1; notes = notes "  " text "\n" }
 
 # A result line: "ok 3 - name", "not ok 3 - name", "ok 3 # SKIP why", and of cmocka
@@ -115,6 +165,25 @@ function judge(status) {
     if (!bad && results == 0 && !skipped_all) {
         problem("holds no test")
     }
+    if (left) {
+        problem("left processes behind")
+    }
+}
+
+# What the shell calls 1m2.5s.
+function seconds(text,    parts) {
+    split(text, parts, "m")
+    return 60 * parts[1] + parts[2]
+}
+
+# The lines "@took SECONDS", the times of a shell, and those of what it ran.
+function note_times(line,    words) {
+    getline <log_file
+    getline said_times <log_file
+    split(said_times, words, " ")
+    took = substr(line, 7) + 0
+    times = times sprintf("%d slow  %s: %d s, the processor for %.1f s of them\n", took, shown, \
+        took, seconds(words[1]) + seconds(words[2]))
 }
 
 {
@@ -125,12 +194,20 @@ function judge(status) {
     shown = program
     log_file = logs "/" number ".log"
     output = notes = said = ""
-    bad = results = not_ok = skipped_all = 0
+    bad = results = not_ok = skipped_all = left = 0
     plan = -1
     status = 255
     while ((getline line < log_file) > 0) {
         if (line ~ /^@status /) {
             status = substr(line, 9) + 0
+            continue
+        }
+        if (line ~ /^@left /) {
+            left = substr(line, 7) + 0
+            continue
+        }
+        if (line ~ /^@took /) {
+            note_times(line)
             continue
         }
         output = output "  " line "\n"
@@ -160,6 +237,11 @@ function judge(status) {
 
 END {
     printf "%s", skips
+    if (NR > 1) {
+        slowest = "sort -rn | head -n " slow " | cut -d \" \" -f 2-"
+        printf "%s", times | slowest
+        close(slowest)
+    }
     printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped
     exit failed > 0
 }' "$logs/programs"

@@ -247,14 +247,27 @@ if [ -n "$missing" ]; then
     exit
 fi
 
+# as_told: its row is one of the guide's.
+as_told() {
+    block "$guide" deaths | awk -v head="$(printf '%-15s  %-4s  ' "$death" "$command")" \
+        -v wiring="$wiring" -v row="$(cat "$work/row")" '
+        index($0, head) == 1 && index($0, wiring) && index($0, row) { found = 1 }
+        END { exit !found }'
+}
+# On a busy machine a death comes late, and what was read until then is told too, or a move ends
+# before it is seen: once more then.
 case_of() {
-    mkdir "$here/$n"
     work=$here/$n
     sim_place="--link $work/robot"
     sim_pid=
     program=
     trap '[ -z "$program" ] || kill -s KILL $program 2>/dev/null; stop_sim' EXIT
-    died "$@" >"$work/log" 2>&1 && : >"$work/ok"
+    for _ in 1 2 3; do
+        rm -rf "$work"
+        mkdir "$work"
+        died "$@" >"$work.log" 2>&1 && : >"$work/ok"
+        [ "${TOUR_WRITE:-}" != yes ] && { [ ! -e "$work/ok" ] || ! as_told; } || break
+    done
 }
 n=0
 while IFS='|' read -r death command; do
@@ -299,7 +312,7 @@ while [ $i -lt $n ]; do
     for one in "$board" "$bus"; do
         name="$death of $command, $(cut -d '|' -f 3 "$here/name${one##*/}")"
         check "$name" test -e "$one/ok"
-        [ -e "$one/ok" ] || sed 's/^/# /' "$one/log"
+        [ -e "$one/ok" ] || sed 's/^/# /' "$one.log"
     done
     if cmp -s "$board/row" "$bus/row"; then
         row 'board, bus' "$(cat "$board/row")" "$(cat "$board/times") ms, $(cat "$bus/times") ms"

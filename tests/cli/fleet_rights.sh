@@ -4,23 +4,7 @@
 # itself alone.
 . tests/support/cli.sh
 
-for tool in mosquitto mosquitto_pub mosquitto_passwd openssl; do
-    command -v $tool >/dev/null || { echo "1..0 # SKIP no $tool here"; exit 0; }
-done
-if "$GRCTL" fleet list --broker mqtt://127.0.0.1:1 2>&1 | grep -q 'no MQTT in it'; then
-    echo "1..0 # SKIP this grctl has no MQTT in it"
-    exit 0
-fi
-
-pids=
-end_rights_test() {
-    for pid in $pids; do
-        kill "$pid" 2>/dev/null
-        wait "$pid" 2>/dev/null
-    done
-    end_cli_test
-}
-trap end_rights_test EXIT
+needs_mqtt mosquitto_passwd openssl
 
 # ---- a broker with certificates and users --------------------------------------------------------
 
@@ -88,8 +72,9 @@ check "a file that is no certificate" fails 1 'a certificate or key cannot be re
 
 mkdir -p "$work/config/grctl"
 printf 'robots: {a: {device: sim}}\n' >"$work/config/grctl/config.yaml"
-as one "$GRCTL" -d a agent --broker "mqtts://one@127.0.0.1:$port" --ca "$work/true-ca.crt" \
-    --host one >"$work/agent.out" 2>"$work/agent.err" &
+env GRCTL_MQTT_PASSWORD=secret-of-one "$GRCTL" -d a agent \
+    --broker "mqtts://one@127.0.0.1:$port" --ca "$work/true-ca.crt" --host one \
+    >"$work/agent.out" 2>"$work/agent.err" &
 pids="$pids $!"
 is_listed() {
     fleet operator list | grep -q "^one  *$1"

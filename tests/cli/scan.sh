@@ -5,6 +5,7 @@
 # without SCAN_MATRIX=all it is a part of it. SCAN_RUNS: how often each.
 . tests/support/cli.sh
 
+renice -n 5 -p $$ >/dev/null # it makes this machine busy, and other tests run beside it
 runs=${SCAN_RUNS:-1}
 burners=
 line_pid=

@@ -5,6 +5,7 @@
 set -u
 
 . tests/support/tap.sh
+. tests/support/built.sh
 here=$(pwd)
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -25,8 +26,9 @@ if [ -n "${SYSROOT:-}" ]; then
 fi
 
 make_target() {
+    [ -e "$work/built" ] || copy_build "${BUILD:-build}" "$work/built" tools || return 1
     env -u MAKEFLAGS -u MAKELEVEL -u PKG_CONFIG_SYSROOT_DIR -u PKG_CONFIG_PATH \
-        -u PKG_CONFIG_LIBDIR make --no-print-directory -C "$here" "$1" BUILD="${BUILD:-build}" \
+        -u PKG_CONFIG_LIBDIR make --no-print-directory -C "$here" "$1" BUILD="$work/built" \
         PREFIX=/opt/grobo DESTDIR="$tree" CROSS="${CROSS:-}"
 }
 

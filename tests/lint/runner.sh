@@ -15,13 +15,14 @@ program() {
     chmod +x "$1"
 }
 
+limit_s=60
 # ends STATUS LAST_LINE TEXT PROGRAM...: what the runner does with the programs.
 ends() {
     status=$1
     last=$2
     text=$3
     shift 3
-    said=$(TEST_LOGS= TEST_WRAPPER= TEST_TIMEOUT_S=1 sh "$runner" "$@")
+    said=$(TEST_LOGS= TEST_WRAPPER= TEST_TIMEOUT_S=$limit_s sh "$runner" "$@")
     got=$?
     printf '%s\n' "$said"
     [ "$got" = "$status" ] && [ "$(printf '%s\n' "$said" | tail -n 1)" = "$last" ] &&
@@ -67,6 +68,24 @@ S
 program two_groups <<'S'
 printf '1..1\nok 1 - a\n1..2\nok 1 - a\nok 2 - b\n'
 S
+program leaves <<'S'
+sleep 60 &
+echo $! >left.pid
+printf '1..1\nok 1 - a\n'
+S
+program lingers <<'S'
+sleep 0.5 &
+printf '1..1\nok 1 - a\n'
+S
+# It ends when three of it run at once.
+mkdir cli here
+for number in 1 2 3; do
+    program cli/$number <<'S'
+touch "here/${0##*/}"
+until [ -e here/1 ] && [ -e here/2 ] && [ -e here/3 ]; do sleep 0.03; done
+printf '1..1\nok 1 - a\n'
+S
+done
 program files <<'S'
 echo "1..$#"
 for f in "$@"; do echo "ok 1 - $f"; done
@@ -77,13 +96,26 @@ printf 'echo 1..1\necho ok 1 - from a script\n' >script.sh
 check 'all pass' ends 0 '5 passed, 0 failed, 0 skipped' 'pass' ./good ./two_groups
 check 'a failure shows what was printed' \
     ends 1 '3 passed, 1 failed, 0 skipped' '# 1 != 2' ./bad ./good
+check 'a process left behind is a failure' \
+    ends 1 '1 passed, 1 failed, 0 skipped' 'left processes behind' ./leaves
+nobody_left() {
+    ! kill -0 "$(cat left.pid)" 2>/dev/null
+}
+check 'and it is ended' wait_for nobody_left
+check 'one that ends by itself is none' ends 0 '1 passed, 0 failed, 0 skipped' pass ./lingers
+check 'the slowest are told' \
+    ends 0 '3 passed, 0 failed, 0 skipped' 'slow  ./lingers: ' ./lingers ./good
+check 'what waits does so beside the others' \
+    ends 0 '9 passed, 0 failed, 0 skipped' pass ./cli/1 ./cli/2 ./cli/3 ./good ./good ./good
 check 'a skip is told with its reason' \
     ends 0 '1 passed, 0 failed, 1 skipped' 'with_a_robot: no robot here' ./skips
 check 'a program may skip whole' ends 0 '0 passed, 0 failed, 1 skipped' 'no tool' ./skips_all
 check 'no output is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty
 check 'no test is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty_group
 check 'a crash is a failure' ends 1 '1 passed, 1 failed, 0 skipped' 'killed by signal 11' ./crash
+limit_s=1
 check 'no end is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'no end within 1 s' ./hang
+limit_s=60
 check 'fewer tests than planned is a failure' \
     ends 1 '2 passed, 1 failed, 0 skipped' '2 results for 3 planned' ./short
 check 'an exit status is a failure' ends 1 '1 passed, 1 failed, 0 skipped' 'exit status 3' ./status

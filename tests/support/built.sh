@@ -2,9 +2,16 @@
 # For scripts that make something of what is built: tests run side by side, and another PREFIX
 # compiles a file again, so each works in a copy.
 
-# copy_build FROM TO: the objects, and the flags that they were compiled with.
+# copy_build FROM TO [FOLDER...]: the objects of the library and of more folders, and the flags that
+# they were compiled with.
 copy_build() {
-    mkdir -p "$2" && cp -Rp "$1/src" "$1/ports" "$2" && cp -p "$1/.flags" "$2"
+    from=$1
+    to=$2
+    shift 2
+    mkdir -p "$to" && cp -p "$from/.flags" "$to" || return 1
+    for folder in src ports "$@"; do
+        cp -Rp "$from/$folder" "$to" || return 1
+    done
 }
 
 # make_in_copy DIR TARGET...: with the compiler and the flags of the copy, whatever the make above
