@@ -3,24 +3,8 @@
 # A broker that knows its users, by the list of docs/guide/fleet.md, over TLS: an agent speaks as
 # itself alone.
 . tests/support/cli.sh
-
-for tool in mosquitto mosquitto_pub mosquitto_passwd openssl; do
-    command -v $tool >/dev/null || { echo "1..0 # SKIP no $tool here"; exit 0; }
-done
-if "$GRCTL" fleet list --broker mqtt://127.0.0.1:1 2>&1 | grep -q 'no MQTT in it'; then
-    echo "1..0 # SKIP this grctl has no MQTT in it"
-    exit 0
-fi
-
-pids=
-end_rights_test() {
-    for pid in $pids; do
-        kill "$pid" 2>/dev/null
-        wait "$pid" 2>/dev/null
-    done
-    end_cli_test
-}
-trap end_rights_test EXIT
+. tests/support/fleet.sh
+need_fleet mosquitto_passwd openssl
 
 # ---- a broker with certificates and users --------------------------------------------------------
 
@@ -41,7 +25,6 @@ for user in one two operator; do
 done
 # The list of the guide.
 awk '/^```/ { open = 0 } open { print } /^```text/ { open = 1 }' docs/guide/fleet.md >"$work/rights"
-port=$((20000 + $$ % 20000))
 cat >"$work/broker.conf" <<EOF2
 user root
 listener $port 127.0.0.1
@@ -53,8 +36,7 @@ password_file $work/users
 acl_file $work/rights
 persistence false
 EOF2
-mosquitto -c "$work/broker.conf" >"$work/broker.log" 2>&1 &
-pids=$!
+begin_broker
 
 # as USER COMMAND...: with that user's password.
 as() {
