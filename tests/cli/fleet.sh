@@ -1,30 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Agents and a fleet over a real broker: orders, stops, a broker that hangs, dies and comes back,
-# and messages of strangers. CROWD=yes (make check-fleet): 100 robots of four agents too.
+# and messages of strangers. A crowd of robots is in tests/fleet/crowd.sh.
 . tests/support/cli.sh
-
-needs_mqtt mosquitto_sub
-
-# ---- a broker ------------------------------------------------------------------------------------
-
-port=$((20000 + $$ % 20000))
-broker=mqtt://127.0.0.1:$port
-cat >"$work/broker.conf" <<EOF2
-listener $port 127.0.0.1
-allow_anonymous true
-persistence false
-set_tcp_nodelay true
-max_packet_size 2000000
-log_type all
-EOF2
-begin_broker() {
-    mosquitto -c "$work/broker.conf" >>"$work/broker.log" 2>&1 &
-    broker_pid=$!
-    pids="$pids $broker_pid"
-    wait_for mosquitto_pub -p "$port" -t x -m x
-}
-begin_broker || { echo "Bail out! the broker did not start"; cat "$work/broker.log"; exit 1; }
+. tests/support/fleet.sh
+need_fleet
+begin_open_broker
 
 # ---- agents --------------------------------------------------------------------------------------
 
@@ -35,23 +16,6 @@ groups: {one: [a, b], two: [c, d]}
 robots: {a: {device: sim}, b: {device: sim}, c: {device: sim}, d: {device: $work/none}}
 EOF2
 
-# begin_agent HOST [OPTIONS]: $agent is its process.
-begin_agent() {
-    agent_host=$1
-    shift
-    "$GRCTL" -d "$agent_host" agent --broker "$broker" --host "$agent_host" \
-        --motions "$work/motions" "$@" >"$work/$agent_host.out" 2>"$work/$agent_host.err" &
-    agent=$!
-    pids="$pids $agent"
-}
-fleet() {
-    fleet_verb=$1
-    shift
-    "$GRCTL" fleet "$fleet_verb" --broker "$broker" "$@"
-}
-is_listed() {
-    fleet list | grep -q "^$1  *$2"
-}
 begin_agent one
 agent_one=$agent
 begin_agent two --label arms,left
@@ -181,7 +145,7 @@ dies() {
         written "$work/one.err" "$lapsed"
 }
 check "so does one that dies" dies
-begin_broker
+begin_open_broker
 came_back() {
     wait "$play"
     wait_for is_listed one ONLINE && wait_for is_listed two ONLINE && rests
@@ -248,10 +212,52 @@ large() {
         fleet list | grep -q '^one  *ONLINE'
 }
 check "a message of 1.5 MB" large
-moved_nothing() {
-    wait_for looks && ! grep -q '"play": *"playing"' "$work/look"
+
+# A stranger who has a clock: its orders are good but for one thing.
+orders() { # HOST VERB BODY [KEY=VALUE...]: the answers are in $work/out
+    python3 tests/support/mqtt.py "$port" order "$@" >"$work/out" 2>"$work/err" || {
+        cat "$work/err"
+        return 1
+    }
 }
-check "and all of that moved nothing" moved_nothing
+answered() { # EXPRESSION HOST VERB BODY...
+    answered_expression=$1
+    shift
+    orders "$@" && json "$answered_expression"
+}
+done_once() {
+    answered 'lines[0]["ok"] and lines[1] == lines[0]' one put '{"file":"x.m","text":"first"}' \
+        'twice={"file":"x.m","text":"second"}' && [ "$(cat "$work/motions/x.m")" = first ]
+}
+# While another plays: none of its orders and none of its permits is heard.
+two_at_once() {
+    plays && answered '"another motion is played" in lines[0]["message"]' one prepare \
+        '{"file":"greet.pseq"}' &&
+        answered '"nothing was prepared" in lines[0]["message"]' one start \
+            '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500 && moves
+    two_status=$?
+    kill -INT "$play"
+    ended 130 && wait_for rests && return $two_status
+}
+if have_json; then
+    check "an order that comes twice is done once" done_once
+    check "one that comes late" answered '"too late" in lines[0]["message"]' \
+        one put '{"file":"y.m","text":""}' issued_ms=-5000
+    check "one from the future" answered '"from the future" in lines[0]["message"]' \
+        one put '{"file":"y.m","text":""}' issued_ms=5000
+    check "one that would be valid for long" answered '"valid for too long" in lines[0]["message"]' \
+        one put '{"file":"y.m","text":""}' life_ms=60000
+    check "a start before its preparation" answered '"nothing was prepared" in lines[0]["message"]' \
+        one start '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500
+    check "a file of another folder" answered 'lines[0]["code"] == "arg"' \
+        one put '{"file":"../y.m","text":""}'
+    check "an order that there is not" answered 'lines[0]["code"] == "unsupported"' one dance '{}'
+    check "two who would lead" two_at_once
+    check "none of these was done" test ! -e "$work/motions/y.m"
+else
+    skip "a stranger who has a clock" "no python3 here"
+fi
+check "and all of that moved nothing" rests
 check "the agent is the same" kill -0 "$agent_one"
 
 # ---- leaving -------------------------------------------------------------------------------------
@@ -265,31 +271,5 @@ broken() {
     wait_for is_listed one ONLINE && kill -9 "$agent" && wait_for is_listed one CONNECTIONBROKEN
 }
 check "the broker says it of one that died" broken
-
-# ---- a crowd -------------------------------------------------------------------------------------
-
-crowd() {
-    list=
-    robots=
-    for i in $(seq 25); do
-        list="$list${list:+, }r$i"
-        robots="$robots${robots:+, }r$i: {device: sim}"
-    done
-    printf 'groups: {%s}\nrobots: {%s}\n' \
-        "h1: [$list], h2: [$list], h3: [$list], h4: [$list]" "$robots" \
-        >"$work/config/grctl/config.yaml"
-    for host in h1 h2 h3 h4; do
-        begin_agent "$host"
-    done
-    for host in h1 h2 h3 h4; do
-        wait_for is_listed "$host" ONLINE || return 1
-    done
-    exits 0 fleet play greet.pseq -s 400 --spread 20 && [ "$(grep -c played "$work/out")" -eq 100 ]
-}
-if [ -n "${CROWD:-}" ]; then
-    kill "$(pgrep -P $$ -f 'agent --broker' | head -n 1)" 2>/dev/null
-    check "100 robots of four agents" crowd
-    check "all stop" exits 0 fleet estop
-fi
 
 done_testing

@@ -3,8 +3,8 @@
 # A broker that knows its users, by the list of docs/guide/fleet.md, over TLS: an agent speaks as
 # itself alone.
 . tests/support/cli.sh
-
-needs_mqtt mosquitto_passwd openssl
+. tests/support/fleet.sh
+need_fleet mosquitto_passwd openssl
 
 # ---- a broker with certificates and users --------------------------------------------------------
 
@@ -25,7 +25,6 @@ for user in one two operator; do
 done
 # The list of the guide.
 awk '/^```/ { open = 0 } open { print } /^```text/ { open = 1 }' docs/guide/fleet.md >"$work/rights"
-port=$((20000 + $$ % 20000))
 cat >"$work/broker.conf" <<EOF2
 user root
 listener $port 127.0.0.1
@@ -37,8 +36,7 @@ password_file $work/users
 acl_file $work/rights
 persistence false
 EOF2
-mosquitto -c "$work/broker.conf" >"$work/broker.log" 2>&1 &
-pids=$!
+begin_broker
 
 # as USER COMMAND...: with that user's password.
 as() {

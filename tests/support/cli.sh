@@ -34,15 +34,6 @@ end_cli_test() {
 trap end_cli_test EXIT
 trap 'exit 1' INT TERM
 
-# needs_mqtt TOOL...: ends the test where a broker, one of these tools or MQTT in grctl is missing.
-needs_mqtt() {
-    for tool in mosquitto mosquitto_pub "$@"; do
-        command -v "$tool" >/dev/null || { echo "1..0 # SKIP no $tool here"; exit 0; }
-    done
-    ! "$GRCTL" fleet list --broker mqtt://127.0.0.1:1 2>&1 | grep -q 'no MQTT in it' ||
-        { echo "1..0 # SKIP this grctl has no MQTT in it"; exit 0; }
-}
-
 # known_pid PID: a pattern of the number that the system gives a program begun here: wine its own.
 known_pid() {
     [ -n "${NATIVE_GRCTL:-}" ] && echo '[0-9][0-9]*' || echo "$1"

@@ -165,6 +165,11 @@ static int say_stopped(leader *l)
             if (!p->chosen) {
                 continue;
             }
+            if (l->a->json) {
+                app_print_json(json_pack("{s:s,s:s,s:b,s:I}", "host", p->host, "robot",
+                                         name ? name : "", "stopped", stopped, "told_us",
+                                         (json_int_t)p->told_us));
+            }
             if (!stopped) {
                 status =
                     app_fail(l->a, EXIT_ROBOT, "BUSY", "%s/%s: NOT seen to stop; use its switch",
@@ -305,8 +310,10 @@ static int say_ended(leader *l)
             const char *name = fleet_text(robot, "name"), *why = fleet_text(robot, "message");
             bool ok = json_is_true(json_object_get(robot, "ok"));
             if (l->a->json) {
-                app_print_json(json_pack("{s:s,s:s,s:b,s:s}", "host", p->host, "robot",
-                                         name ? name : "", "ok", ok, "message", why ? why : ""));
+                app_print_json(json_pack("{s:s,s:s,s:b,s:s,s:O*,s:O*}", "host", p->host, "robot",
+                                         name ? name : "", "ok", ok, "message", why ? why : "",
+                                         "late_us", json_object_get(robot, "late_us"), "bound_us",
+                                         json_object_get(p->answer, "bound_us")));
             } else if (ok) {
                 app_print("%s/%s: played\n", p->host, name ? name : "");
             } else {

@@ -74,6 +74,7 @@ static void take_latch(agent *g, agent_group *group, json_t *latch)
         group->latch = json_incref(latch);
         if (!known) {
             stop_now(g, agent_brakes(group));
+            say_stopping(g, group);
             group->telling = true;
         }
     } else if (known) {

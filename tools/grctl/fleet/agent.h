@@ -73,6 +73,7 @@ typedef struct agent {
     agent_lost on_lost;
     bool let_go; /* its permit lapsed */
     int64_t spread_us;
+    int64_t start_us; /* by the clock of this machine */
     struct event *tick;
     /* robots that are not there */
     int64_t retry_us;

@@ -22,6 +22,7 @@ static peer *peer_of(leader *l, const char *host)
     }
     peer *p = &l->peers[l->n++];
     snprintf(p->host, sizeof p->host, "%s", host);
+    p->told_us = -1;
     return p;
 }
 
@@ -51,6 +52,9 @@ static void take_event(leader *l, peer *p, json_t *event)
     const char *kind = fleet_text(event, "kind"), *id = fleet_text(event, "id");
     if (kind && id && strcmp(kind, "ended") == 0 && strcmp(id, p->prepared) == 0) {
         keep(&p->ended, event);
+    }
+    if (kind && id && strcmp(kind, "stopping") == 0 && strcmp(id, l->stop) == 0) {
+        p->told_us = grobo_now_us() - l->stop_us;
     }
     if (kind && id && strcmp(kind, "stopped") == 0 && strcmp(id, l->stop) == 0) {
         keep(&p->stopped, event);
@@ -341,6 +345,7 @@ void leader_latch(leader *l, const char *how)
     } else {
         snprintf(l->stop, sizeof l->stop, "%s", before);
     }
+    l->stop_us = grobo_now_us();
     json_t *latch = json_pack("{s:i,s:b,s:s,s:s,s:I}", "v", FLEET_VERSION, "stopped", how != NULL,
                               "id", l->stop, "by", l->id, "at_ms", (json_int_t)wire_wall_ms());
     if (how) {

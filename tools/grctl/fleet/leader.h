@@ -23,6 +23,7 @@ typedef struct peer {
     json_t *ended;   /* of what was prepared, or NULL */
     json_t *stopped; /* how its robots obeyed the latch that was published, or NULL */
     int64_t asked_us, took_us;
+    int64_t told_us; /* from the latch to the news that its robots were told to stop; -1: none */
 } peer;
 
 typedef struct leader {
@@ -39,6 +40,7 @@ typedef struct leader {
     const char *why;
     json_t *latch;             /* of the group, or NULL */
     char stop[FLEET_ID_BYTES]; /* the id of the latch that was published last, or "" */
+    int64_t stop_us;           /* when */
     bool permits;              /* a motion is led: then a broker that goes away ends every wait */
     bool lost;                 /* it did */
     int64_t permit_seq;

@@ -420,7 +420,8 @@ static void start(agent *g, agent_order *order)
         answer(g, order, "speed", text);
         return;
     }
-    int error = grobo_team_start_at(g->all.team, at_us - offset_us, grobo_now_us());
+    g->start_us = at_us - offset_us;
+    int error = grobo_team_start_at(g->all.team, g->start_us, grobo_now_us());
     troupe_look(&g->all);
     if (error < 0) {
         answer(g, order, grobo_error_name(error),
@@ -428,7 +429,9 @@ static void start(agent *g, agent_order *order)
         return;
     }
     g->started = true;
-    say_answer(g, order, NULL, NULL, json_pack("{s:I}", "bound_us", (json_int_t)bound_us));
+    say_answer(g, order, NULL, NULL,
+               json_pack("{s:I,s:I}", "bound_us", (json_int_t)bound_us, "here_us",
+                         (json_int_t)g->start_us));
 }
 
 static void cancel(agent *g, agent_order *order)

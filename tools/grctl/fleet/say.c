@@ -136,6 +136,15 @@ void say_event(agent *g, const seat *s, const char *kind, const char *text)
     publish_here(g, "event", NULL, event, WIRE_SURE);
 }
 
+void say_stopping(agent *g, const agent_group *group)
+{
+    publish_here(g, "event", NULL,
+                 json_pack("{s:i,s:s,s:s,s:s,s:I}", "v", FLEET_VERSION, "kind", "stopping", "id",
+                           fleet_text(group->latch, "id"), "group", group->name, "at_ms",
+                           (json_int_t)wire_wall_ms()),
+                 WIRE_SURE);
+}
+
 void say_stopped(agent *g, const agent_group *group)
 {
     json_t *robots = json_array();
@@ -161,10 +170,13 @@ static json_t *results_of(const agent *g)
         const seat *s = &g->all.seats[i];
         grobo_team_member how;
         if (s->member >= 0 && grobo_team_get(g->all.team, s->member, &how) == 0) {
-            json_array_append_new(
-                robots,
+            json_t *robot =
                 json_pack("{s:s,s:b,s:s}", "name", s->name, "ok", how.result == GROBO_OK, "message",
-                          how.result == GROBO_OK ? "" : grobo_error_text(how.result)));
+                          how.result == GROBO_OK ? "" : grobo_error_text(how.result));
+            if (s->began_us && g->started) {
+                json_object_set_new(robot, "late_us", json_integer(s->began_us - g->start_us));
+            }
+            json_array_append_new(robots, robot);
         }
     }
     return robots;

@@ -14,7 +14,8 @@ void say_goodbye(agent *g);
 void say_state(agent *g, const seat *s, bool last_too);
 /* Of a robot, or of the agent (NULL). */
 void say_event(agent *g, const seat *s, const char *kind, const char *text);
-/* How each robot obeyed the stop of a group. */
+/* That every robot was told to stop; and how each robot obeyed the stop of a group. */
+void say_stopping(agent *g, const agent_group *group);
 void say_stopped(agent *g, const agent_group *group);
 /* The stop of a group that is known here. */
 void say_latch(agent *g, const agent_group *group);

@@ -28,6 +28,10 @@ static void on_robot(conn *c, const grobo_event *event)
 {
     seat *s = c->ctx;
     troupe *t = s->all;
+    bool begins = event->kind == GROBO_EVENT_PLAY && event->u.play.to == GROBO_SEQUENCER_PLAYING;
+    if (begins && s->began_us == 0) {
+        s->began_us = grobo_now_us();
+    }
     if (t->team && s->member >= 0) {
         grobo_team_event(t->team, s->member, event);
     }
@@ -112,6 +116,7 @@ static int make_team(troupe *t, grobo_team_policy policy, const grobo_clip **cli
         seat *s = &t->seats[i];
         if (s->chosen) {
             clips[n++] = &s->list.clip[0];
+            s->began_us = 0;
             s->member = grobo_team_add(t->team, s->c.robot);
             error = s->member < 0 ? s->member : GROBO_OK;
         }

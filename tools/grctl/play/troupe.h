@@ -18,9 +18,10 @@ typedef struct seat {
     conn c;
     playlist list;
     bool is_open;
-    bool chosen; /* to be of the next team */
-    int member;  /* of the team, -1: none */
-    int status;  /* the exit status so far */
+    bool chosen;      /* to be of the next team */
+    int member;       /* of the team, -1: none */
+    int64_t began_us; /* when its part of the motion began, 0: not yet */
+    int status;       /* the exit status so far */
 } seat;
 
 typedef struct troupe {

@@ -1,0 +1,52 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# For tests of agents and fleets: a broker of this test alone on a free port, and agents. Sourced
+# behind cli.sh. $broker is its address.
+
+need_fleet() {
+    for fleet_tool in mosquitto mosquitto_pub mosquitto_sub "$@"; do
+        command -v "$fleet_tool" >/dev/null || { echo "1..0 # SKIP no $fleet_tool here"; exit 0; }
+    done
+    if "$GRCTL" fleet list --broker mqtt://127.0.0.1:1 2>&1 | grep -q 'no MQTT in it'; then
+        echo "1..0 # SKIP this grctl has no MQTT in it"
+        exit 0
+    fi
+}
+
+port=$((20000 + $$ % 20000))
+broker=mqtt://127.0.0.1:$port
+
+# begin_broker: with $work/broker.conf, or without one of its own for anybody; $broker_pid is it.
+begin_broker() {
+    [ -e "$work/broker.conf" ] || printf '%s\n' "listener $port 127.0.0.1" 'allow_anonymous true' \
+        'persistence false' 'set_tcp_nodelay true' 'max_packet_size 2000000' 'log_type all' \
+        >"$work/broker.conf"
+    mosquitto -c "$work/broker.conf" >>"$work/broker.log" 2>&1 &
+    broker_pid=$!
+    pids="$pids $broker_pid"
+}
+begin_open_broker() {
+    begin_broker
+    wait_for mosquitto_pub -p "$port" -t x -m x && return
+    echo "Bail out! the broker did not start"
+    cat "$work/broker.log"
+    exit 1
+}
+
+# begin_agent HOST [OPTIONS]: $agent is its process; of the group of that name.
+begin_agent() {
+    agent_host=$1
+    shift
+    "$GRCTL" -d "$agent_host" agent --broker "$broker" --host "$agent_host" \
+        --motions "$work/motions" "$@" >"$work/$agent_host.out" 2>"$work/$agent_host.err" &
+    agent=$!
+    pids="$pids $agent"
+}
+fleet() {
+    fleet_verb=$1
+    shift
+    "$GRCTL" fleet "$fleet_verb" --broker "$broker" "$@"
+}
+is_listed() {
+    fleet list | grep -q "^$1  *$2"
+}

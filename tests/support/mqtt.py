@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: MIT
+"""A small MQTT 5 client for tests of fleets, by the socket alone.
+
+usage: mqtt.py PORT floor N         round trips of N messages by the broker alone, as JSON
+       mqtt.py PORT order HOST VERB BODY [KEY=VALUE...]
+                                    one order with a clock that its agent may compare; prints the
+                                    answer. id, from: 32 digits; issued_ms, life_ms: beside now;
+                                    at_ms: sets at_us; twice=BODY: the same id again, with that body
+       mqtt.py PORT still SECONDS   what robots do for so long: {"host/robot": [moved_deg, playing]}
+       mqtt.py PORT keep FILE       every message of grobo/v1/# as a line "topic payload", until it
+                                    is ended
+"""
+import json
+import os
+import select
+import socket
+import struct
+import sys
+import time
+
+ROOT = "grobo/v1/"
+
+
+def now_us():
+    return time.monotonic_ns() // 1000
+
+
+def text(value):
+    data = value.encode()
+    return struct.pack("!H", len(data)) + data
+
+
+def varint(value):
+    out = b""
+    while True:
+        value, low = value >> 7, value & 127
+        out += bytes([low | (128 if value else 0)])
+        if not value:
+            return out
+
+
+class Client:
+    def __init__(self, port):
+        self.socket = socket.create_connection(("127.0.0.1", port))
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.data = b""
+        self.number = 0
+        name = "test-" + os.urandom(8).hex()
+        self.send(0x10, text("MQTT") + b"\x05\x02" + struct.pack("!H", 0) + b"\0" + text(name))
+        self.wait(2)
+
+    def send(self, kind, body):
+        self.socket.sendall(bytes([kind]) + varint(len(body)) + body)
+
+    def subscribe(self, topic):
+        self.number += 1
+        self.send(0x82, struct.pack("!H", self.number) + b"\0" + text(topic) + b"\0")
+        self.wait(9)
+
+    def publish(self, topic, payload, qos=0, response=None, retain=False):
+        self.number += 1
+        properties = b"\x08" + text(response) if response else b""
+        if not isinstance(payload, bytes):
+            payload = json.dumps(payload).encode()
+        self.send(0x30 | qos << 1 | retain, text(topic) +
+                  (struct.pack("!H", self.number) if qos else b"") +
+                  varint(len(properties)) + properties + payload)
+
+    def packet(self, until_s):
+        """The next (kind, body), or None."""
+        while True:
+            length, shift, at = 0, 0, 1
+            while at < len(self.data) and self.data[at] & 128:
+                length |= (self.data[at] & 127) << shift
+                shift, at = shift + 7, at + 1
+            if at < len(self.data):
+                length |= self.data[at] << shift
+                if len(self.data) >= at + 1 + length:
+                    whole = self.data[0], self.data[at + 1:at + 1 + length]
+                    self.data = self.data[at + 1 + length:]
+                    return whole
+            rest = until_s - time.monotonic()
+            if rest <= 0 or not select.select([self.socket], [], [], rest)[0]:
+                return None
+            more = self.socket.recv(1 << 16)
+            if not more:
+                sys.exit("the broker closed the connection")
+            self.data += more
+
+    def wait(self, kind):
+        until_s = time.monotonic() + 30
+        while True:
+            packet = self.packet(until_s)
+            if packet is None:
+                sys.exit("no packet of kind %d" % kind)
+            if packet[0] >> 4 == kind:
+                return packet[1]
+
+    def message(self, wait_s):
+        """The next (topic, payload) of QoS 0, or None."""
+        until_s = time.monotonic() + wait_s
+        while True:
+            packet = self.packet(until_s)
+            if packet is None:
+                return None
+            kind, body = packet
+            if kind >> 4 != 3:
+                continue
+            size = struct.unpack("!H", body[:2])[0]
+            at, length, shift = 2 + size, 0, 0
+            while body[at] & 128:
+                length, shift, at = length | (body[at] & 127) << shift, shift + 7, at + 1
+            at += 1 + (length | body[at] << shift)
+            return body[2:2 + size].decode(), body[at:]
+
+
+def floor(client, n):
+    topic = "floor/" + os.urandom(8).hex()
+    took = []
+    client.subscribe(topic)
+    for _ in range(n):
+        began = now_us()
+        client.publish(topic, b"x" * 300, qos=1)
+        if client.message(10) is None:
+            sys.exit("nothing came back")
+        took.append(now_us() - began)
+    took.sort()
+    print(json.dumps({"p50_us": took[n // 2], "p99_us": took[n * 99 // 100], "max_us": took[-1]}))
+
+
+class Sender:
+    """Who orders one agent, and tells it the time."""
+
+    def __init__(self, client, host, name=None):
+        self.client, self.host = client, host
+        self.name = name or os.urandom(16).hex()
+        client.subscribe(ROOT + "ack/" + self.name)
+        client.subscribe(ROOT + "time/" + self.name + "/ping")
+        client.subscribe(ROOT + host + "/connection")
+        self.epoch = None
+        while self.epoch is None:
+            got = client.message(10) or sys.exit("no agent of that name")
+            if got[0].endswith("/connection"):
+                self.epoch = json.loads(got[1])["epoch"]
+
+    def order(self, verb, body, options):
+        issued = now_us() + int(float(options.get("issued_ms", 0)) * 1000)
+        head = {"v": 1, "id": options.get("id") or os.urandom(16).hex(), "from": self.name,
+                "epoch": self.epoch, "issued_us": issued,
+                "deadline_us": issued + int(float(options.get("life_ms", 2000)) * 1000)}
+        if "at_ms" in options:
+            body = dict(body, at_us=now_us() + int(float(options["at_ms"]) * 1000))
+        self.client.publish(ROOT + self.host + "/cmd/" + verb, dict(body, **head), qos=1,
+                            response=ROOT + "ack/" + self.name)
+        return head["id"]
+
+    def answer(self, number, wait_s=10):
+        until_s = time.monotonic() + wait_s
+        while time.monotonic() < until_s:
+            got = self.client.message(until_s - time.monotonic())
+            if got is None:
+                continue
+            said = json.loads(got[1])
+            if got[0].endswith("/ping"):
+                self.client.publish(ROOT + "time/" + said["host"] + "/pong",
+                                    {"v": 1, "leader": self.name, "n": said["n"],
+                                     "t_us": now_us()})
+            elif said.get("id") == number and "ok" in said:
+                return said
+        sys.exit("no answer")
+
+
+def order(client, host, verb, body, words):
+    options = dict(word.split("=", 1) for word in words)
+    sender = Sender(client, host, options.get("from"))
+    number = sender.order(verb, json.loads(body), options)
+    print(json.dumps(sender.answer(number)))
+    if "twice" in options:
+        options["id"] = number
+        sender.order(verb, json.loads(options["twice"]), options)
+        print(json.dumps(sender.answer(number)))
+
+
+def still(client, seconds):
+    client.subscribe(ROOT + "+/+/state")
+    seen, until_s = {}, time.monotonic() + seconds
+    while time.monotonic() < until_s:
+        got = client.message(until_s - time.monotonic())
+        if got is None:
+            break
+        said = json.loads(got[1])
+        angles = [a for a in said.get("angles_deg", []) if a is not None]
+        row = seen.setdefault("/".join(got[0].split("/")[2:4]), [angles, 0.0, False])
+        if len(row[0]) == len(angles) and angles:
+            row[1] = max(row[1], max(abs(a - b) for a, b in zip(row[0], angles)))
+        row[2] |= said.get("play") == "playing"
+    print(json.dumps({name: row[1:] for name, row in sorted(seen.items())}))
+
+
+def keep(client, path):
+    client.subscribe(ROOT + "#")
+    with open(path, "w", buffering=1) as out:
+        while True:
+            got = client.message(1)
+            if got:
+                out.write(got[0] + " " + got[1].decode("utf-8", "replace") + "\n")
+
+
+def main(words):
+    client = Client(int(words[0]))
+    if words[1] == "floor":
+        floor(client, int(words[2]))
+    elif words[1] == "order":
+        order(client, words[2], words[3], words[4], words[5:])
+    elif words[1] == "still":
+        still(client, float(words[2]))
+    else:
+        keep(client, words[2])
+
+
+main(sys.argv[1:])
