@@ -119,7 +119,8 @@ if have valgrind; then
             "$(difference 300 900 instructions)"
     done
     who=session
-    row S1 'the same without looks for stops' grobo "$(difference 300 900 instructions_without_looks)"
+    row S1 'the same without looks for stops' grobo \
+        "$(difference 300 900 instructions_without_looks)"
 else
     say 'no valgrind: no instructions are counted'
 fi
