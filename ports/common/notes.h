@@ -13,12 +13,7 @@
 
 #include <grobo/port.h>
 
-enum {
-    NOTE_FOLDERS = 2,
-    NOTE_FOLDER_BYTES = 512,
-    NOTE_NAME_BYTES = 240,
-    NOTE_TEXT_BYTES = 2048
-};
+enum { NOTE_FOLDERS = 2, NOTE_FOLDER_BYTES = 512, NOTE_NAME_BYTES = 240, NOTE_TEXT_BYTES = 2048 };
 
 /* ---- notes: notes.c ------------------------------------------------------------------------- */
 

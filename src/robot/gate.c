@@ -749,9 +749,8 @@ int grobo_i_gate_leave(grobo_robot_slot *slot)
     if (slot->order.deed == GROBO_I_DEED_NONE && slot->order.joints == 0) {
         return GROBO_OK; /* a reading: it tells no joint anything */
     }
-    int result = is_passed(robot, slot)
-                     ? GROBO_ERR_STALE
-                     : judge(robot, &slot->order, waiting(slot), again, &says);
+    int result = is_passed(robot, slot) ? GROBO_ERR_STALE
+                                        : judge(robot, &slot->order, waiting(slot), again, &says);
     if (result >= 0 && is_built(&slot->order)) {
         grobo_target target;
         aim(robot, &slot->order, &says, &target);

@@ -129,8 +129,14 @@ int32_t grobo_servo_register_get(const grobo_servo_model *model, const grobo_ser
         return 0;
     }
     uint32_t raw = 0;
-    for (int i = 0; i < reg->bytes; i++) {
-        raw |= (uint32_t)bytes[place(model, reg, i)] << 8 * i;
+    if (model->table->big_endian) {
+        for (int i = 0; i < reg->bytes; i++) {
+            raw = raw << 8 | bytes[i];
+        }
+    } else {
+        for (int i = reg->bytes; i > 0; i--) {
+            raw = raw << 8 | bytes[i - 1];
+        }
     }
     return with_sign(raw, reg);
 }

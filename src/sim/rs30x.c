@@ -220,13 +220,14 @@ static void bend(grobo_sim_servo *servo, const grobo_servo_register *reg)
 static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *reg, int32_t before)
 {
     grobo_sim_servo *servo = &sim->servo[index];
+    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
     if (reg->address == GROBO_RS30X_GOAL) {
         goal_written(sim, index);
         return;
     }
     bend(servo, reg);
     follow(servo);
-    int32_t value = grobo_i_sim_value(servo, (uint8_t)reg->address);
+    int32_t value = grobo_servo_register_get(model, reg, &servo->reg[reg->address]);
     if (reg->address == GROBO_RS30X_TORQUE) {
         servo->status &= (uint8_t)~GROBO_RS30X_STATUS_OVERHEATED;
         grobo_i_sim_torque(sim, index, (grobo_torque)before);

@@ -130,8 +130,7 @@ static void start_on(grobo_wiring wiring, int64_t sense_interval_us)
 
     rig.now_us = SECOND_US;
     (void)grobo_sim_init(&rig.sim, &sim, rig.now_us);
-    (void)grobo_robot_init(&rig.robot, grobo_gr001_driver(wiring), NULL, &config,
-                           rig.now_us);
+    (void)grobo_robot_init(&rig.robot, grobo_gr001_driver(wiring), NULL, &config, rig.now_us);
     grobo_robot_set_host(&rig.robot, &host);
     grobo_robot_link_up(&rig.robot, rig.now_us);
     run_us(SECOND_US);

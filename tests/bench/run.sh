@@ -118,6 +118,9 @@ if have valgrind; then
         row S1 'user instructions a transaction' "$(who_of $who)" \
             "$(difference 300 900 instructions)"
     done
+    who=session
+    row S1 'the same without looks for stops' grobo \
+        "$(difference 300 900 instructions_without_looks)"
 else
     say 'no valgrind: no instructions are counted'
 fi

@@ -225,8 +225,7 @@ static void a_reading_without_room_does_not_spin(void **state)
     grobo_robot_slot *slot;
     while ((slot = grobo_i_slot_take(&rig.robot, GROBO_I_USE_PLAIN)) != NULL) {
         assert_int_equal(
-            rig.driver->sense(rig.driver, NULL, NECK, GROBO_SENSE_FULL, &rig.robot.built),
-            0);
+            rig.driver->sense(rig.driver, NULL, NECK, GROBO_SENSE_FULL, &rig.robot.built), 0);
         assert_int_equal(grobo_i_slot_send(slot, &rig.robot.built, GROBO_PRIORITY_SENSE), GROBO_OK);
         last = slot;
     }

@@ -167,7 +167,8 @@ static void what_the_bus_does_not_take_is_free_again(void **state)
     (void)state;
     start();
     grobo_robot_slot *slot = grobo_i_slot_take(&robot, GROBO_I_USE_JOB);
-    assert_int_equal(grobo_i_slot_send(slot, &robot.built, GROBO_PRIORITY_USER), GROBO_ERR_ARG); /* no frame */
+    assert_int_equal(grobo_i_slot_send(slot, &robot.built, GROBO_PRIORITY_USER),
+                     GROBO_ERR_ARG); /* no frame */
     expect_used(0);
 }
 
@@ -244,102 +245,6 @@ static void an_answer_says_that_its_frame_has_left(void **state)
         slot->txn.pending_ = false;
         slot->txn.done(slot->txn.ctx, &slot->txn, rows[i].result, rows[i].kind < 0 ? NULL : &reply);
         assert_int_equal(robot.answered, rows[i].answered);
-    }
-}
-
-/* ---- their bytes ----------------------------------------------------------------------------- */
-
-/* A frame of so many bytes, all alike. @return the result; *into: its slot. */
-static int give(grobo_i_use use, size_t bytes, uint8_t all, grobo_robot_slot **into)
-{
-    grobo_robot_slot *slot = grobo_i_slot_take(&robot, use);
-    assert_non_null(slot);
-    memset(robot.built.frame, all, bytes);
-    robot.built.frame_bytes = (uint16_t)bytes;
-    *into = slot;
-    return grobo_i_slot_send(slot, &robot.built, GROBO_PRIORITY_USER);
-}
-
-static void expect_bytes(const grobo_robot_slot *slot, size_t bytes, uint8_t all)
-{
-    uint8_t be[GROBO_FRAME_MAX_BYTES];
-    memset(be, all, bytes);
-    assert_int_equal(slot->txn.frame_bytes, bytes);
-    assert_memory_equal(slot->txn.frame, be, bytes);
-}
-
-/* Whichever is over first: the others keep theirs, and the room is that of one again. */
-static void frames_keep_their_bytes_when_one_is_over(void **state)
-{
-    (void)state;
-    enum { FRAMES = 4 };
-    static const size_t bytes[FRAMES] = {3, 40, 1, 17};
-    for (int order = 0; order < FRAMES * FRAMES; order++) {
-        grobo_robot_slot *slot[FRAMES];
-        start();
-        for (int i = 0; i < FRAMES; i++) {
-            assert_int_equal(give(GROBO_I_USE_PLAIN, bytes[i], (uint8_t)(i + 1), &slot[i]), 0);
-        }
-        robot.over = do_nothing;
-        const int first = order % FRAMES, second = order / FRAMES;
-        assert_int_equal(grobo_bus_cancel(&robot.bus, &slot[first]->txn), GROBO_OK);
-        (void)grobo_bus_cancel(&robot.bus, &slot[second]->txn);
-        size_t left = 0;
-        for (int i = 0; i < FRAMES; i++) {
-            if (i != first && i != second) {
-                expect_bytes(slot[i], bytes[i], (uint8_t)(i + 1));
-                left += bytes[i];
-            }
-        }
-        assert_int_equal(robot.frames_used, left);
-        assert_int_equal(give(GROBO_I_USE_PLAIN, 9, 9, &slot[first]), 0);
-        expect_bytes(slot[first], 9, 9);
-        assert_int_equal(robot.frames_used, left + 9);
-    }
-}
-
-/* One that is longer than at first never leaves, and touches no other's. */
-static void a_frame_does_not_outgrow_its_room(void **state)
-{
-    (void)state;
-    grobo_robot_slot *slot, *other;
-    start();
-    assert_int_equal(give(GROBO_I_USE_PLAIN, 10, 1, &slot), 0);
-    assert_int_equal(give(GROBO_I_USE_PLAIN, 10, 2, &other), 0);
-    memset(robot.built.frame, 3, 11);
-    robot.built.frame_bytes = 11;
-    assert_int_equal(grobo_i_slot_renew(slot), GROBO_ERR_SPACE);
-    expect_bytes(slot, 10, 1);
-    robot.built.frame_bytes = 4;
-    assert_int_equal(grobo_i_slot_renew(slot), GROBO_OK);
-    expect_bytes(slot, 4, 3);
-    robot.built.frame_bytes = 10; /* at the next attempt: as many as at first */
-    assert_int_equal(grobo_i_slot_renew(slot), GROBO_OK);
-    expect_bytes(slot, 10, 3);
-    expect_bytes(other, 10, 2);
-}
-
-/* However long the frames are that wait, three of the longest find room if they are halts. */
-static void bytes_are_kept_for_halts(void **state)
-{
-    (void)state;
-    const size_t longest = GROBO_FRAME_MAX_BYTES;
-    const size_t others = sizeof robot.frames / longest - 3;
-    for (int halts = 0; halts <= 3; halts++) {
-        grobo_robot_slot *slot;
-        start();
-        for (int i = 0; i < halts; i++) {
-            assert_int_equal(give(GROBO_I_USE_HALT, longest, 7, &slot), GROBO_OK);
-        }
-        for (size_t i = 0; i < others; i++) {
-            assert_int_equal(give(GROBO_I_USE_PLAIN, longest, 1, &slot), GROBO_OK);
-        }
-        assert_int_equal(give(GROBO_I_USE_PLAIN, 1, 1, &slot), GROBO_ERR_FULL);
-        assert_int_equal(slot->use, GROBO_I_USE_FREE);
-        for (int i = halts; i < 3; i++) {
-            assert_int_equal(give(GROBO_I_USE_HALT, longest, 7, &slot), GROBO_OK);
-        }
-        assert_int_equal(give(GROBO_I_USE_HALT, 1, 7, &slot), GROBO_ERR_FULL);
     }
 }
 
@@ -1029,9 +934,6 @@ int main(void)
         cmocka_unit_test(small_frames_have_four_joints),
         cmocka_unit_test(a_halt_goes_to_what_moves),
         cmocka_unit_test(an_answer_says_that_its_frame_has_left),
-        cmocka_unit_test(frames_keep_their_bytes_when_one_is_over),
-        cmocka_unit_test(a_frame_does_not_outgrow_its_room),
-        cmocka_unit_test(bytes_are_kept_for_halts),
         cmocka_unit_test(a_halt_of_what_stands_is_not_sent),
         cmocka_unit_test(what_a_frame_was_for_decides_what_its_end_counts),
         cmocka_unit_test(a_stop_takes_back_what_waits_and_halts_what_is_not_played),

@@ -15,6 +15,7 @@
 #include <errno.h>
 
 #include "src/link/session/session.h"
+#include "src/robot/robot.h"
 
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_BOOL_LOCK_FREE == 2,
                "a signal handler may use what is lock-free only");
@@ -91,10 +92,13 @@ bool grobo_i_session_has_asked(const grobo_session *session)
 
 void grobo_i_session_note_latch(grobo_session *session)
 {
-    grobo_trip_info trip;
+    grobo_i_lock(&session->robot);
+    bool latched = session->robot.trip.latched;
+    grobo_i_unlock(&session->robot);
 
-    grobo_robot_tripped(&session->robot, &trip);
-    atomic_store(&session->latched, trip.latched);
+    if (atomic_load(&session->latched) != latched) { /* to store costs more, each transaction */
+        atomic_store(&session->latched, latched);
+    }
 }
 
 /* Takes the bits. */
@@ -102,6 +106,9 @@ static unsigned take(grobo_session *session)
 {
     unsigned asked = atomic_load(&session->asked);
 
+    if (asked == 0) {
+        return 0;
+    }
     do {
         if ((asked & ASK_ESTOP) != 0) {
             atomic_store(&session->latched, true);
