@@ -170,6 +170,7 @@ CMAKE_FILES := $(BUILD)/cmake/grobo-config.cmake $(BUILD)/cmake/grobo-config-ver
 GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl$(EXE))
 # What runs on this machine: grctl, or a script that gives it to the emulator.
 GRCTL_RUN := $(if $(EMULATOR),$(BUILD)/run/grctl,$(GRCTL))
+BARE := $(if $(TOOL_SRCS),$(BUILD)/bare/grctl$(EXE))
 SUPPORT_LIB := $(BUILD)/libsupport.a
 ROBOTS := $(BUILD)/tools/robots/robots
 PICTURE := $(BUILD)/tools/picture/picture$(EXE)
@@ -245,7 +246,7 @@ $(BUILD)/left_out.sh: FORCE
 	    done_testing >$@
 
 chosen = $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(if $(filter fuzz,$(RING)),$(FUZZ_REPLAYS)) \
-    $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES) $(PICTURE))
+    $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES) $(PICTURE) $(BARE))
 test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit engine" chooses
 	@$(TEST_BEGIN) GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" TEST_FIRST="$(TEST_FIRST)" EDIT=$(EDIT) SCREEN=$(SCREEN) XML=$(XML) \
 	    $(cross_env) tests/run.sh \
@@ -633,6 +634,13 @@ $(PICTURE): $(BUILD)/tools/picture/main.o $(STATIC_LIB)
 $(ROBOTS) $(PICTURE):
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+# With none of the libraries that it can do without: tests/export/optional.sh.
+$(BARE): $(call objects,$(patsubst %,tools/grctl/%.c,main edit/plain screen/none xml/none mqtt/none web/none)) \
+    $(TOOL_LIB) $(STATIC_LIB)
+	$(say) LD $@
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(JSON_LIBS) $(LIBS)
 
 $(BUILD)/run/grctl: $(GRCTL)
 	@mkdir -p $(@D)

@@ -38,7 +38,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         sketch_joint(&s, i)->id = i + 1;
         sketch_joint(&s, i)->servo = family_model(s.family, "STS3215");
     }
-    sketch_fit(&s);
+    if (!sketch_fit(&s, said, sizeof said)) {
+        MUST(*said);
+        return 0;
+    }
     char *text = sketch_text(&s);
     MUST(text == NULL || strlen(text) > 0);
     free(text);

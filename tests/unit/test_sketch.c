@@ -50,8 +50,7 @@ static char *text_of(const char *bytes, bool urdf, const char *family, const cha
         sketch_joint(&s, i)->id = i + 1;
         sketch_joint(&s, i)->servo = family_model(s.family, servo);
     }
-    sketch_fit(&s);
-    return sketch_text(&s);
+    return sketch_fit(&s, said, sizeof said) ? sketch_text(&s) : NULL;
 }
 
 static grobo_robot_def *def_of(const char *bytes, bool urdf, const char *family, const char *servo)

@@ -4,7 +4,7 @@
 # install libevent-dev:arm64 beside libevent-dev would remove the latter.)
 
 packages='libc6-dev libevent-dev libyaml-dev libjansson-dev libedit-dev libncurses-dev'
-packages="$packages libexpat1-dev libcmocka-dev"
+packages="$packages libexpat1-dev libmosquitto-dev libcmocka-dev"
 codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}") || codename=
 
 # private_apt FOLDER ARCHITECTURE SUITE: $apt is an apt-get for that machine and suite, with all

@@ -117,6 +117,13 @@ class Moving(unittest.TestCase):
         self.robot.reset()
         self.robot.move({"R_ELBOW_P": -0.2}, time=0.2)
 
+    def test_no_target_is_taken_right_behind_an_emergency_stop(self):
+        for _ in range(10):
+            self.robot.estop()
+            with self.assertRaises(errors.Latched):
+                self.robot.send({"R_ELBOW_P": 0.0}, time=0.1)
+            self.robot.reset()
+
     def test_what_is_refused_says_which_joint_and_which_value(self):
         with self.assertRaises(errors.Limit) as caught:
             self.robot.move({"R_ELBOW_P": 3.0})
