@@ -29,10 +29,11 @@ class Refused(Exception):
 
 
 class Server:
-    """`grctl serve`, until the end of the with statement."""
+    """`grctl serve`, until the end of the with statement. broker: of a fleet."""
 
-    def __init__(self, *words, motions=MOTIONS, device="sim", env=None):
-        self.words = [GRCTL, "--json", "-d", device, "serve", "--port", "0", *words, motions]
+    def __init__(self, *words, motions=MOTIONS, device="sim", env=None, broker=None):
+        of = ["serve", "--broker", broker] if broker else ["-d", device, "serve", motions]
+        self.words = [GRCTL, "--json", *of, "--port", "0", *words]
         self.env = dict(os.environ, **(env or {}))
 
     def __enter__(self):
@@ -898,44 +899,53 @@ def ik():
 
 # ---- the interface -----------------------------------------------------------------------------
 
-def schema():
-    """What is answered is what serve.openapi.json tells, and every path of it is there."""
-    import jsonschema
-    with open("docs/serve.openapi.json", encoding="utf-8") as f:
-        api = json.load(f)
+class Schemas:
+    """Judges values by the schemas of an OpenAPI file, in which nothing is answered that is not told."""
 
-    def strict(node):
-        """Nothing is answered that is not told."""
+    def __init__(self, path):
+        import jsonschema
+        self.library = jsonschema
+        with open(path, encoding="utf-8") as f:
+            self.api = json.load(f)
+        self.strict(self.api["components"]["schemas"])
+
+    def strict(self, node):
         if isinstance(node, dict):
             if node.get("type") == "object" and node.get("properties"):
                 node.setdefault("additionalProperties", False)
             for value in node.values():
-                strict(value)
+                self.strict(value)
         elif isinstance(node, list):
             for value in node:
-                strict(value)
+                self.strict(value)
 
-    strict(api["components"]["schemas"])
-
-    def fits(name, value):
+    def __call__(self, name, value):
         try:
-            jsonschema.validate(value, {"$ref": "#/components/schemas/" + name,
-                                        "components": api["components"]})
-        except jsonschema.ValidationError as error:
+            self.library.validate(value, {"$ref": "#/components/schemas/" + name,
+                                          "components": self.api["components"]})
+        except self.library.ValidationError as error:
             raise AssertionError(f"{name}: {error.json_path}: {error.message[:500]}") from error
 
+    def paths(self, page, names):
+        """Every path that is told is there."""
+        for path, methods in self.api["paths"].items():
+            port = page.server.stop_port if "servers" in methods else page.server.port
+            real = path.format(**names)
+            for method in methods:
+                if method in ("get", "post", "put") and path != "/api/events":
+                    status, _, _ = page.ask(method.upper(), real, {}, port=port)
+                    assert status not in (404, 405), f"{method} {path}: {status}"
+
+
+def schema():
+    """What is answered is what serve.openapi.json tells, and every path of it is there."""
+    fits = Schemas("docs/serve.openapi.json")
     folder = tempfile.mkdtemp()
     for name in ("greet.pseq", "greet.yaml", "step.pseq"):
         shutil.copy(os.path.join("motions", name), folder)
     with Server(motions=folder) as server:
         page = Page(server)
-        for path, methods in api["paths"].items():
-            port = server.stop_port if "servers" in methods else server.port
-            real = path.replace("{name}", "greet.pseq")
-            for method in methods:
-                if method in ("get", "post", "put") and path != "/api/events":
-                    status, _, _ = page.ask(method.upper(), real, {}, port=port)
-                    assert status not in (404, 405), f"{method} {path}: {status}"
+        fits.paths(page, {"name": "greet.pseq"})
         page.post("reset")
         fits("robot", page.get("/api/robot"))
         fits("state", page.state())

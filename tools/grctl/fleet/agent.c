@@ -255,6 +255,9 @@ static void open_robots(agent *g, bool first)
         } else if (!status && !first) {
             app_note(g->a, "%s is there", s->name);
         }
+        if (!status) {
+            grobo_session_pump(s->c.session); /* its joints are read from now on, at rest too */
+        }
         if (!status && g->latched) {
             (void)grobo_robot_latch(s->c.robot);
         }
