@@ -104,6 +104,13 @@ class Server:
             time.sleep(0.02)
         raise AssertionError(f'{what} did not come: {json.dumps(self.state())}')
 
+    def settle(self):
+        """The next test finds a robot that stands, with nobody driving."""
+        if self.state()['stop']['latched']:
+            self.call('POST', '/api/reset', {})
+        self.wait(lambda s: s['lease']['holder'] is None and not s['stop']['latched'] and
+                  s['play']['state'] not in ('playing', 'approaching', 'paused', 'stopping'), 'rest')
+
     def kill(self):
         self.process.send_signal(signal.SIGKILL)
         self.process.wait()
@@ -936,20 +943,11 @@ def pictures_of_each_view(browser, server):
     return None
 
 
-def settle(server):
-    """The next test finds a robot that stands, with nobody driving."""
-    state = server.state()
-    if state['stop']['latched']:
-        server.call('POST', '/api/reset', {})
-    server.wait(lambda s: s['lease']['holder'] is None and not s['stop']['latched'] and
-                s['play']['state'] not in ('playing', 'approaching', 'paused', 'stopping'), 'rest')
-
-
-def main():
+def main(of=Server):
     words = sys.argv[1:]
     chosen = [t for t in tests if not words or any(w in t.__name__ for w in words)]
     count = int(os.environ.get('FIRST', 0))
-    server = Server()
+    server = of()
     failed = False
     with sync_playwright() as play:
         browser = Browser(play)
@@ -979,10 +977,11 @@ def main():
             browser.tidy()
             browser.trouble.clear()
             with contextlib.suppress(AssertionError):
-                settle(server)
+                server.settle()
         browser.browser.close()
     server.close()
     sys.exit(1 if failed else 0)
 
 
-main()
+if __name__ == '__main__':
+    main()

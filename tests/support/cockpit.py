@@ -650,7 +650,7 @@ def latency():
         for n in range(count):
             page.take()
             page.target("play", motion="greet.pseq", loop=True)
-            page.wait("it moves", lambda s: s["moving"])
+            page.wait("it moves", lambda s: s["play"]["state"] == "playing" and s["play"]["t_ms"] > 20)
             time.sleep(random.uniform(0, 0.3))
             if n % 10 == 0:
                 deaf.append(Stream(server, buffer_bytes=4096))

@@ -11,7 +11,7 @@ import { translate } from './text.js';
 const OLD_MS = 1000;
 const NEAR_DEG = 3;
 const id = (name) => document.getElementById(name);
-const degrees = (value) => typeof value === 'number' ? value.toFixed(0).replace('-', '−') : '–';
+const degrees = (value, digits = 0) => typeof value === 'number' ? value.toFixed(digits).replace('-', '−') : '–';
 const keyOf = ({ host, robot }) => `${host}/${robot}`;
 
 /** How a robot is: { level: 'ok' | 'warn' | 'bad' | 'off', text }. */
@@ -358,7 +358,7 @@ class View {
             const left = Math.min(angle - min, max - angle);
             return element('tr', {}, element('th', { scope: 'row' }, joint.name || ''),
                 element('td', { className: `num${typeof angle === 'number' && left < NEAR_DEG ? ' warn' : ''}` },
-                    typeof angle === 'number' ? `${angle.toFixed(1)}°` : '–'),
+                    typeof angle === 'number' ? `${degrees(angle, 1)}°` : '–'),
                 element('td', { className: 'quiet' }, `${degrees(min)} … ${degrees(max)}°`));
         }));
         replace(id('log'), ...this.log.filter((e) => e.host === robot.host && (!e.robot || e.robot === robot.robot))
@@ -385,7 +385,7 @@ class View {
     }
 }
 
-if (self.document) {
+if (globalThis.document) {
     self.cockpit = new View(); // for tests, and for the curious
     self.cockpit.start();
 }
