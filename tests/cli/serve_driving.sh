@@ -9,6 +9,7 @@ check "a stop latches, is confirmed by each joint, is taken back" pages stopping
 check "a stop beside streams that stand still" pages latency
 check "jogging stops when the page is silent" pages lost_in_jog
 check "a motion whose page is lost does what was declared" pages lost_in_motion
+check "a lease given back while it moves is as good as lost" pages given_back
 check "a page that is killed is lost" pages killed
 check "the lease is asked for, refused, given, taken" pages takeover
 check "a server that ends leaves the robot as the exit policy says" pages left

@@ -58,7 +58,8 @@ def free_ports():
 class Server:
     """grctl serve with a simulator of its own and a copy of the motions."""
 
-    def __init__(self, *options, port=None, folder=None):
+    def __init__(self, *options, port=None, folder=None, device='sim'):
+        self.device = device
         self.own = folder is None
         self.folder = folder or tempfile.mkdtemp()
         if self.own:
@@ -72,7 +73,7 @@ class Server:
     def start(self):
         environment = dict(os.environ, GRCTL_TOKEN=TOKEN)
         self.process = subprocess.Popen(
-            [os.environ['GRCTL'], 'serve', '-d', 'sim', '--json', '--port', str(self.port),
+            [os.environ['GRCTL'], 'serve', '-d', self.device, '--json', '--port', str(self.port),
              *self.options, self.folder], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL,
             env=environment, text=True)
         line = self.process.stdout.readline()
@@ -102,6 +103,13 @@ class Server:
                     return state
             time.sleep(0.02)
         raise AssertionError(f'{what} did not come: {json.dumps(self.state())}')
+
+    def settle(self):
+        """The next test finds a robot that stands, with nobody driving."""
+        if self.state()['stop']['latched']:
+            self.call('POST', '/api/reset', {})
+        self.wait(lambda s: s['lease']['holder'] is None and not s['stop']['latched'] and
+                  s['play']['state'] not in ('playing', 'approaching', 'paused', 'stopping'), 'rest')
 
     def kill(self):
         self.process.send_signal(signal.SIGKILL)
@@ -187,6 +195,13 @@ def still(server, seconds=0.7):
     worst = max(abs(a - b) for a, b in zip(first['angle_deg'], last['angle_deg']))
     assert worst < 1.0, f'a joint moved {worst} degrees'
     assert last['play']['state'] not in ('playing', 'approaching'), last['play']
+
+
+def comes_to_rest(server):
+    """What was stopped softly stands, and what is told of it was read after that."""
+    server.wait(lambda s: not s['moving'] and s['job'] is None, 'a robot that stands')
+    time.sleep(0.5) # each joint is read 5 times a second
+    still(server)
 
 
 def pixels(page, part):
@@ -392,6 +407,114 @@ def a_frozen_page_loses_control_and_the_robot_stands(browser, server):
     assert page.evaluate('cockpit.api.lease') is None
 
 
+def events(server, words):
+    """Those that were told with these words."""
+    request = urllib.request.Request(server.url + 'api/events', headers={'Last-Event-ID': '0'})
+    with urllib.request.urlopen(request, timeout=10) as stream:
+        found = []
+        for line in stream:
+            if line.startswith(b'event: state'):
+                return [e for e in found if words in e['message']]
+            if line.startswith(b'data: '):
+                found.append(json.loads(line[6:]))
+    return []
+
+
+FREEZE = """ms => setTimeout(() => {
+    const end = performance.now() + ms;
+    while (performance.now() < end) { }
+}, 0)"""
+HIDE = """hidden => {
+    Object.defineProperty(document, 'hidden', { configurable: true, get: () => hidden });
+    Object.defineProperty(document, 'visibilityState',
+                          { configurable: true, get: () => hidden ? 'hidden' : 'visible' });
+    document.dispatchEvent(new Event('visibilitychange'));
+}"""
+
+
+@test
+def a_page_that_freezes_while_jogging_stops_softly(browser, server):
+    page = browser.page(server.link)
+    drive(page)
+    torque_on(page, server)
+    joint = page.evaluate("cockpit.robot.joints.find((j) => j.name === 'R_SHOULDER_P').joint")
+    begin = server.state()['angle_deg'][joint]
+    end = page.evaluate('joint => cockpit.robot.joints[joint].limits_deg[0]', joint)
+    before = events(server, '')[-1]['id']
+    page.evaluate("""target => cockpit.command('/api/jog',
+        { angle_deg: { R_SHOULDER_P: target }, time_ms: 8000 }, true)""", end)
+    server.wait(lambda s: s['angle_deg'][joint] < begin - 1, 'a jog')
+    at = server.state()['time_ms']
+    page.evaluate(FREEZE, 5000)
+    server.wait(lambda s: s['lease']['holder'] is None, 'a free lease')
+    stops = [e for e in events(server, 'jogging stops') if e['id'] > before]
+    assert len(stops) == 1, stops
+    note(f"jogging stopped {stops[0]['time_ms'] - at} ms after the page froze")
+    state = server.state()
+    assert end + 20 < state['angle_deg'][joint] < begin, state['angle_deg'][joint]
+    assert set(state['torque']) == {'on'}, 'it holds'
+    comes_to_rest(server)
+    until(page, "cockpit.lease.status() === 'free'")
+
+
+@test
+def a_page_that_freezes_while_playing_does_what_was_declared(browser, server):
+    for declared, words, end in (('stop', 'the motion stops', 'idle'),
+                                 ('finish', 'the motion goes on', 'finished'),
+                                 ('exit', 'the exit policy is carried out', 'idle')):
+        page = browser.page(server.link)
+        page.click('#tab-more')
+        page.select_option('#on-lost', declared)
+        drive(page)
+        torque_on(page, server)
+        choose(page, 'greet.pseq')
+        before = events(server, '')[-1]['id']
+        page.click('#play')
+        server.wait(lambda s: s['play']['state'] == 'playing', 'playing')
+        at = server.state()['time_ms']
+        page.evaluate(FREEZE, 4500)
+        server.wait(lambda s: s['lease']['holder'] is None, 'a free lease')
+        found = [e for e in events(server, words) if e['id'] > before]
+        assert len(found) == 1, (declared, found)
+        note(f"{declared}: {found[0]['time_ms'] - at} ms after the page froze")
+        server.wait(lambda s: s['play']['state'] == end and s['job'] is None, end)
+        assert set(server.state()['torque']) == {'on'}, declared
+        comes_to_rest(server)
+        page.close()
+
+
+@test
+def a_hidden_page_gives_control_back_and_its_motion_ends_as_declared(browser, server):
+    page = browser.page(server.link)
+    drive(page)
+    torque_on(page, server)
+    choose(page, 'greet.pseq')
+    page.check('#loop')
+    page.click('#play')
+    server.wait(lambda s: s['play']['state'] == 'playing', 'playing')
+    page.evaluate(HIDE, True)
+    server.wait(lambda s: s['lease']['holder'] is None, 'a free lease')
+    at = server.state()['time_ms']
+    server.wait(lambda s: s['clients'] == 0, 'a hidden page has no stream')
+    assert server.state()['play']['state'] == 'playing', 'the motion has 3 s'
+    server.wait(lambda s: s['play']['state'] == 'idle', 'its end')
+    note(f"the motion ended {server.state()['time_ms'] - at} ms after the page was hidden")
+    comes_to_rest(server)
+    page.evaluate(HIDE, False)
+    until(page, "cockpit.lease.status() === 'free' && cockpit.age() === 0")
+    drive(page)
+    page.click('#tab-play')
+    page.click('#play')
+    server.wait(lambda s: s['play']['state'] == 'playing', 'playing')
+    page.evaluate(HIDE, True)
+    server.wait(lambda s: s['lease']['holder'] is None, 'a free lease')
+    page.evaluate(HIDE, False)
+    until(page, "cockpit.lease.status() === 'free' && cockpit.age() === 0")
+    drive(page) # in time
+    page.wait_for_timeout(3500)
+    assert server.state()['play']['state'] == 'playing', 'who comes back in time drives on'
+
+
 @test
 def another_page_asks_and_gets_control(browser, server):
     one = browser.page(server.link)
@@ -473,6 +596,65 @@ def twenty_pages_have_one_stream_and_one_stop(browser, server):
     for page in pages:
         page.close()
     server.wait(lambda s: s['clients'] == 0, 'no stream')
+
+
+@test
+def twenty_browsers_have_a_stream_each(browser, server):
+    def used():
+        with open(f'/proc/{server.process.pid}/stat', encoding='ascii') as f:
+            fields = f.read().rsplit(')', 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+    def share(seconds=4):
+        before, at = used(), time.monotonic()
+        time.sleep(seconds)
+        return 100 * (used() - before) / (time.monotonic() - at)
+
+    alone = share()
+    pages = [browser.context('phone').new_page() for _ in range(20)]
+    for page in pages: # 20 figures in software are a load for a graphics card
+        page.goto(f'{server.url}?flat#token={TOKEN}', wait_until='commit', timeout=60000)
+        until(page, 'self.cockpit && cockpit.drawn > 0', limit_ms=60000)
+    server.wait(lambda s: s['clients'] == 20, 'twenty streams')
+    note(f'the server takes {alone:.1f} % of a core alone, {share():.1f} % with 20 browsers')
+    pages[3].locator('#stop').dispatch_event('pointerdown')
+    server.wait(lambda s: s['stop']['latched'], 'a stop')
+    for page in (pages[3], pages[11]):
+        until(page, 'cockpit.state.stop.latched && cockpit.state.stop.confirmed', limit_ms=60000)
+    note(f"in the crowd: pointer to answer {pages[3].evaluate('cockpit.stopper.took'):.0f} ms")
+
+
+@test
+def a_server_that_is_killed_in_a_motion_leaves_a_robot_that_stands(browser, server):
+    """The robot is behind a pty: what stops it is the guard."""
+    place = pathlib.Path(tempfile.mkdtemp()) / 'robot'
+    sim = subprocess.Popen([os.environ['GRCTL'], 'sim', '--link', str(place)], stdin=subprocess.DEVNULL,
+                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    sim.stdout.readline()
+    own = Server(device=str(place))
+    try:
+        page = browser.page(own.link)
+        drive(page)
+        torque_on(page, own)
+        choose(page, 'greet.pseq')
+        page.check('#loop')
+        page.click('#play')
+        own.wait(lambda s: s['play']['state'] == 'playing' and s['play']['t_ms'] > 300, 'playing')
+        own.kill()
+        until(page, "document.body.classList.contains('stale')")
+        assert not page.evaluate('cockpit.mayMove()')
+        own.start()
+        until(page, "!document.body.classList.contains('stale')")
+        comes_to_rest(own)
+        state = own.state()
+        assert state['play']['state'] == 'idle' and state['lease']['holder'] is None, state['play']
+        assert set(state['torque']) == {'on'}, 'the guard lets it hold'
+        until(page, "cockpit.lease.status() === 'free'")
+    finally:
+        own.close()
+        sim.terminate()
+        sim.wait(10)
+    browser.trouble[:] = [t for t in browser.trouble if 'ERR_' not in t]
 
 
 @test
@@ -1162,20 +1344,11 @@ def pictures_of_each_view(browser, server):
     return None
 
 
-def settle(server):
-    """The next test finds a robot that stands, with nobody driving."""
-    state = server.state()
-    if state['stop']['latched']:
-        server.call('POST', '/api/reset', {})
-    server.wait(lambda s: s['lease']['holder'] is None and not s['stop']['latched'] and
-                s['play']['state'] not in ('playing', 'approaching', 'paused', 'stopping'), 'rest')
-
-
-def main():
+def main(of=Server):
     words = sys.argv[1:]
     chosen = [t for t in tests if not words or any(w in t.__name__ for w in words)]
     count = int(os.environ.get('FIRST', 0))
-    server = Server()
+    server = of()
     failed = False
     with sync_playwright() as play:
         browser = Browser(play)
@@ -1205,10 +1378,11 @@ def main():
             browser.tidy()
             browser.trouble.clear()
             with contextlib.suppress(AssertionError):
-                settle(server)
+                server.settle()
         browser.browser.close()
     server.close()
     sys.exit(1 if failed else 0)
 
 
-main()
+if __name__ == '__main__':
+    main()

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The cockpit's page: its pure modules in node, all of it in Chromium against `grctl serve -d sim`.
+# The cockpit's page and that of a fleet: the pure modules in node, all of it in Chromium against
+# `grctl serve`.
 # PYTHON has Playwright installed, AXE is axe-core's axe.min.js; what is missing is skipped.
 . tests/support/tap.sh
 
@@ -25,10 +26,12 @@ elif ! "$PYTHON" -c 'import playwright' 2>/dev/null; then
     skip 'the page in a browser' 'the package playwright is not installed'
 else
     export CHROMIUM
-    FIRST=$tap_count "$PYTHON" tests/cockpit/browser.py "$@" >"$scratch/browser.tap"
-    cat "$scratch/browser.tap"
-    found=$(grep -Ec '^(not )?ok ' "$scratch/browser.tap")
-    tap_count=$((tap_count + found))
-    [ "$found" -gt 0 ] || check 'the browser starts' false
+    for part in browser fleet; do
+        FIRST=$tap_count "$PYTHON" -B "tests/cockpit/$part.py" "$@" >"$scratch/$part.tap"
+        cat "$scratch/$part.tap"
+        found=$(grep -Ec '^(not )?ok ' "$scratch/$part.tap")
+        tap_count=$((tap_count + found))
+        [ "$found" -gt 0 ] || [ $# -gt 0 ] || check "the browser starts for $part.py" false
+    done
 fi
 done_testing

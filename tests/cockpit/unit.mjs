@@ -252,6 +252,57 @@ await test('of many targets the newest is sent, one at a time', async () => {
     same(sent, [1, 4]);
 });
 
+const { howIs, nearest, fleetStopWords, isWanted } = await page('fleet');
+await test('a robot of a fleet is told by the worst that is known of it', () => {
+    const is = (more) => { const { level, text } = howIs({ link: 'up', trip: null, stopped: false, moving: false,
+                                                           play: 'idle', ...more }, (x) => x);
+                           return `${level} ${text}`; };
+    same(is({}), 'ok idle');
+    same(is({ moving: true }), 'ok moves');
+    same(is({ play: 'playing', moving: true }), 'ok playing');
+    same(is({ stopped: true, play: 'playing' }), 'warn stopped');
+    same(is({ stopped: true, moving: true }), 'warn stopping');
+    same(is({ trip: 'over_current', stopped: true }), 'bad over_current');
+    same(is({ link: 'silent', play: 'playing' }), 'bad no news');
+    same(is({ link: 'broken', stopped: true }), 'bad agent lost');
+    same(is({ link: 'away', trip: 'over_current' }), 'off signed off');
+});
+
+await test('the joint nearest to a limit, as far as joints are known', () => {
+    const joints = [{ name: 'a', limits_deg: [-90, 90] }, { name: 'b', limits_deg: [0, 100] },
+                    { name: 'c', limits_deg: [null, null] }];
+    same(nearest([0, 96, 5], joints), { name: 'b', left: 4 });
+    same(nearest([-88, null, 5], joints), { name: 'a', left: 2 });
+    same(nearest([null, null, null], joints), null);
+    same(nearest([], joints), null);
+});
+
+await test('a stop of a fleet is told in words', () => {
+    const t = (text, ...v) => text.replace(/\{(\d)\}/g, (_, n) => v[n]);
+    const state = (stops, confirmed) => ({ latch: { kind: 'stop' }, confirmed, robots: stops.map((stop) => ({ stop })) });
+    same(fleetStopWords(null, 0, t), null);
+    same(fleetStopWords({ latch: null, robots: [] }, 0, t), null);
+    same(fleetStopWords({ latch: null, robots: [] }, 300, t).level, 'warn');
+    same(fleetStopWords(null, 1200, t), { level: 'bad', text: 'STOP sent, no answer for 1.2 s: use the switches' });
+    same(fleetStopWords(state(['stopped', 'sent', 'away'], false), 0, t),
+         { level: 'warn', text: 'Stopped: 1 of 2 robots stand' });
+    same(fleetStopWords(state(['stopped', 'silent'], false), 0, t).level, 'bad');
+    same(fleetStopWords(state(['stopped', 'moving'], false), 900, t).level, 'bad');
+    same(fleetStopWords(state(['stopped', 'stopped', 'away'], true), 0, t),
+         { level: 'ok', text: 'Stopped: all 2 robots stand' });
+});
+
+await test('a filter takes words, a group, and what is in trouble', () => {
+    const robot = { host: 'Stage-1', robot: 'anna', motion: 'greet.pseq', trip: null };
+    const facts = { model: 'GR001', groups: ['all', 'stage'] };
+    const wanted = (want, level = 'ok') => isWanted(robot, facts, { text: '', group: '', trouble: false, ...want }, level);
+    same([wanted({}), wanted({ text: 'ANN' }), wanted({ text: 'gr001  greet' }), wanted({ text: 'stage ben' })],
+         [true, true, true, false]);
+    same([wanted({ group: 'stage' }), wanted({ group: 'lab' })], [true, false]);
+    same([wanted({ trouble: true }), wanted({ trouble: true }, 'bad'), wanted({ trouble: true }, 'off')],
+         [false, true, false]);
+});
+
 await test('every text of the page is there in Japanese', () => {
     const missing = new Set();
     for (const name of readdirSync(folder)) {

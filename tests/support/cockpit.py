@@ -5,10 +5,12 @@ something is not as docs/serve.md tells."""
 import http.client
 import json
 import os
+import random
 import re
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -29,10 +31,11 @@ class Refused(Exception):
 
 
 class Server:
-    """`grctl serve`, until the end of the with statement."""
+    """`grctl serve`, until the end of the with statement. broker: of a fleet."""
 
-    def __init__(self, *words, motions=MOTIONS, device="sim", env=None):
-        self.words = [GRCTL, "--json", "-d", device, "serve", "--port", "0", *words, motions]
+    def __init__(self, *words, motions=MOTIONS, device="sim", env=None, broker=None):
+        of = ["serve", "--broker", broker] if broker else ["-d", device, "serve", motions]
+        self.words = [GRCTL, "--json", *of, "--port", "0", *words]
         self.env = dict(os.environ, **(env or {}))
 
     def __enter__(self):
@@ -618,25 +621,100 @@ def stopping():
         page.fall_silent()
 
 
+def lines_of(trace):
+    """When each write to the robot left and what it was, by a trace (pcapng)."""
+    with open(trace, "rb") as f:
+        data = f.read()
+    at = 0
+    while at + 12 <= len(data):
+        kind, size = struct.unpack_from("<II", data, at)
+        if kind == 6 and at + size <= len(data):
+            _, high, low, n, _ = struct.unpack_from("<IIIII", data, at + 8)
+            option = at + 28 + (n + 3) // 4 * 4
+            if struct.unpack_from("<H", data, option)[0] == 2 and data[option + 4] & 3 == 2:
+                yield (high << 32 | low) / 1e6, data[at + 28:at + 28 + n]
+        at += max(size, 12)
+
+
 def latency():
-    """From a stop to the last servo's standing goal, beside streams that do not read."""
-    with Server() as server:
+    """From a stop to the last servo, beside streams that do not read: the write that tells all servos
+    to stand is the last one of a goal until something else is asked for. STOPS: how many."""
+    count = int(os.environ.get("STOPS", "20"))
+    trace = tempfile.mktemp()
+    server = Server()
+    server.words[1:1] = ["--trace", trace]
+    stops, answers, floor = [], [], []
+    with server:
         page = Page(server).take().keep_beating()
-        deaf = [Stream(server, buffer_bytes=4096) for _ in range(4)]
-        times = []
-        for _ in range(20):
+        deaf = [Stream(server, buffer_bytes=4096) for _ in range(8)]
+        for n in range(count):
             page.take()
             page.target("play", motion="greet.pseq", loop=True)
-            page.wait_played("playing")
+            page.wait("it moves", lambda s: s["play"]["state"] == "playing" and s["play"]["t_ms"] > 20)
+            time.sleep(random.uniform(0, 0.3))
+            if n % 10 == 0:
+                deaf.append(Stream(server, buffer_bytes=4096))
             began = time.monotonic()
+            page.state()
+            floor.append((time.monotonic() - began) * 1e3)
+            wall, began = time.time(), time.monotonic()
             same(page.ask("POST", "/stop", b"{}", {}, server.stop_port)[0], 204)
-            times.append((time.monotonic() - began) * 1e3)
+            answers.append((time.monotonic() - began) * 1e3)
             state = page.wait("confirmed", lambda s: s["stop"]["confirmed"])
             assert not state["moving"]
+            stops.append((wall, time.time()))
             page.post("reset")
-        times.sort()
-        print(f"# stop, request to answer: median {times[10]:.1f} ms, worst {times[-1]:.1f} ms")
         for s in deaf:
+            s.close()
+        page.fall_silent()
+    goals = [(at, line) for at, line in lines_of(trace) if line[:1] == b"S"]
+    os.unlink(trace)
+    times = []
+    for wall, confirmed in stops:
+        told = [at + len(line) * 10 / 115200 for at, line in goals if wall - 0.0005 < at < confirmed]
+        assert told, "a stop without a frame"
+        times.append((told[-1] - wall) * 1e3)
+
+    def words(values):
+        values = sorted(values)
+        return f"median {values[len(values) // 2]:.1f}, p99 {values[len(values) * 99 // 100]:.1f} ms"
+
+    print(f"# {count} stops, request to the last servo's last byte: {words(times)}; "
+          f"to the answer: {words(answers)}; floor, a state: {words(floor)}")
+
+
+def twenty():
+    """What 20 clients cost: the server's time of a core beside its own without them."""
+    def used(server):
+        with open(f"/proc/{server.process.pid}/stat", encoding="ascii") as f:
+            fields = f.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def share(server, streams, seconds=10):
+        over = time.monotonic() + seconds
+        before, n = used(server), [0] * len(streams)
+
+        def read(i):
+            while time.monotonic() < over:
+                n[i] += streams[i].next()[0] == "state"
+
+        for error in beside(*((read, i) for i in range(len(streams)))):
+            if error:
+                raise error
+        time.sleep(max(0, over - time.monotonic()))
+        return 100 * (used(server) - before) / seconds, min(n, default=0)
+
+    with Server() as server:
+        page = Page(server).take().keep_beating()
+        page.target("play", motion="greet.pseq", loop=True)
+        page.wait_played("playing")
+        alone, _ = share(server, [])
+        streams = [Stream(server) for _ in range(20)]
+        loaded, least = share(server, streams)
+        print(f"# while it plays: {alone:.1f} % of a core alone, {loaded:.1f} % with 20 pages, "
+              f"each of which got {least} states in 10 s or more")
+        assert least > 200, "states are missing"
+        for s in streams:
             s.close()
         page.fall_silent()
 
@@ -660,6 +738,38 @@ def lost_in_jog():
         same(set(state["torque"]), {"on"}, "it holds")
         other.wait_event("page that drove is gone")
         same(other.state()["lease"]["holder"], None)
+
+
+def given_back():
+    """A lease that is given back while something moves, and that nobody takes: as if lost."""
+    with Server() as server:
+        page, other = Page(server).take(), Page(server)
+        page.target("play", motion="greet.pseq", loop=True)
+        page.wait_played("playing")
+        page.post("lease", action="give")
+        given_ms = page.state()["time_ms"]
+        took = other.wait_event("page that drives is lost: the motion stops")["time_ms"] - given_ms
+        assert 2500 < took < 6000, f"{took} ms"
+        other.wait("it stands", lambda s: not s["moving"] and s["play"]["state"] == "idle")
+        same(set(other.state()["torque"]), {"on"}, "it holds")
+        page.lease = None
+        page.take().keep_beating()
+        page.target("play", motion="greet.pseq", repeat=3)
+        page.wait_played("playing")
+        page.post("lease", action="give")
+        page.fall_silent()
+        other.take().keep_beating()
+        other.wait("whoever takes it in time drives on",
+                   lambda s: s["time_ms"] > given_ms and s["play"]["t_ms"] > 4000)
+        same(other.state()["play"]["state"], "playing")
+        other.post("halt")
+        other.wait_played("idle", "finished")
+        other.target("play", motion="greet.pseq", on_lost="finish")
+        other.wait_played("playing")
+        other.post("lease", action="give")
+        other.fall_silent()
+        other.wait_event("lost: the motion goes on")
+        other.wait_played("finished")
 
 
 def lost_with(on_lost, message, end):
@@ -1005,44 +1115,53 @@ def ik():
 
 # ---- the interface -----------------------------------------------------------------------------
 
-def schema():
-    """What is answered is what serve.openapi.json tells, and every path of it is there."""
-    import jsonschema
-    with open("docs/serve.openapi.json", encoding="utf-8") as f:
-        api = json.load(f)
+class Schemas:
+    """Judges values by the schemas of an OpenAPI file, in which nothing is answered that is not told."""
 
-    def strict(node):
-        """Nothing is answered that is not told."""
+    def __init__(self, path):
+        import jsonschema
+        self.library = jsonschema
+        with open(path, encoding="utf-8") as f:
+            self.api = json.load(f)
+        self.strict(self.api["components"]["schemas"])
+
+    def strict(self, node):
         if isinstance(node, dict):
             if node.get("type") == "object" and node.get("properties"):
                 node.setdefault("additionalProperties", False)
             for value in node.values():
-                strict(value)
+                self.strict(value)
         elif isinstance(node, list):
             for value in node:
-                strict(value)
+                self.strict(value)
 
-    strict(api["components"]["schemas"])
-
-    def fits(name, value):
+    def __call__(self, name, value):
         try:
-            jsonschema.validate(value, {"$ref": "#/components/schemas/" + name,
-                                        "components": api["components"]})
-        except jsonschema.ValidationError as error:
+            self.library.validate(value, {"$ref": "#/components/schemas/" + name,
+                                          "components": self.api["components"]})
+        except self.library.ValidationError as error:
             raise AssertionError(f"{name}: {error.json_path}: {error.message[:500]}") from error
 
+    def paths(self, page, names):
+        """Every path that is told is there."""
+        for path, methods in self.api["paths"].items():
+            port = page.server.stop_port if "servers" in methods else page.server.port
+            real = path.format(**names)
+            for method in methods:
+                if method in ("get", "post", "put") and path != "/api/events":
+                    status, _, _ = page.ask(method.upper(), real, {}, port=port)
+                    assert status not in (404, 405), f"{method} {path}: {status}"
+
+
+def schema():
+    """What is answered is what serve.openapi.json tells, and every path of it is there."""
+    fits = Schemas("docs/serve.openapi.json")
     folder = tempfile.mkdtemp()
     for name in ("greet.pseq", "greet.yaml", "step.pseq"):
         shutil.copy(os.path.join("motions", name), folder)
     with Server(motions=folder) as server:
         page = Page(server)
-        for path, methods in api["paths"].items():
-            port = server.stop_port if "servers" in methods else server.port
-            real = path.replace("{name}", "greet.pseq")
-            for method in methods:
-                if method in ("get", "post", "put") and path != "/api/events":
-                    status, _, _ = page.ask(method.upper(), real, {}, port=port)
-                    assert status not in (404, 405), f"{method} {path}: {status}"
+        fits.paths(page, {"name": "greet.pseq"})
         page.post("reset")
         fits("robot", page.get("/api/robot"))
         fits("state", page.state())

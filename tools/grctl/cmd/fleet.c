@@ -187,7 +187,7 @@ static int say_stopped(leader *l)
 
 static int stop(leader *l, const char *how)
 {
-    leader_latch(l, how);
+    (void)leader_latch(l, how);
     (void)leader_wait(l, STOPPED_US, all_told);
     return say_stopped(l);
 }
@@ -205,7 +205,7 @@ static int run_estop(leader *l)
 /* The latch first, then what the engines keep. */
 static int run_reset(leader *l)
 {
-    leader_latch(l, NULL);
+    (void)leader_latch(l, NULL);
     (void)leader_wait(l, STATE_US, never);
     int status = order(l, "reset", json_object(), ANSWER_US);
     if (!status) {

@@ -26,6 +26,16 @@ static peer *peer_of(leader *l, const char *host)
     return p;
 }
 
+/* The state of a robot, with the time when it came. */
+static void take_state(peer *p, const char *robot, json_t *state)
+{
+    p->states = p->states ? p->states : json_object();
+    if (json_object_size(p->states) < LEADER_ROBOTS || json_object_get(p->states, robot)) {
+        json_object_set_new(state, "heard_us", json_integer(grobo_now_us()));
+        json_object_set(p->states, robot, state);
+    }
+}
+
 /* Keeps an object in place of the one before. */
 static void keep(json_t **where, json_t *object)
 {
@@ -95,13 +105,14 @@ static void take_of_host(leader *l, char part[4][FLEET_NAME_BYTES], int n, json_
     }
     if (n == 2 && strcmp(part[1], "connection") == 0) {
         take_connection(p, object);
+        l->news++;
     } else if (n == 2 && strcmp(part[1], "factsheet") == 0) {
         keep(&p->facts, object);
+        l->news++;
     } else if (n == 2 && strcmp(part[1], "event") == 0) {
         take_event(l, p, object);
     } else if (n == 3 && (strcmp(part[2], "state") == 0 || strcmp(part[2], "last") == 0)) {
-        p->states = p->states ? p->states : json_object();
-        json_object_set(p->states, part[1], object);
+        take_state(p, part[1], object);
     }
 }
 
@@ -141,6 +152,9 @@ static void on_up(void *ctx)
     wire_subscribe(l->m, "+", "factsheet", NULL, true);
     wire_subscribe(l->m, "+", "event", NULL, false);
     wire_subscribe(l->m, "+", "connection", NULL, true);
+    if (l->listens) {
+        wire_subscribe(l->m, "+", "+", l->listens, false);
+    }
 }
 
 static void on_down(void *ctx, const char *why)
@@ -154,6 +168,7 @@ static void on_down(void *ctx, const char *why)
 static void on_refused(void *ctx, const char *why)
 {
     leader *l = ctx;
+    l->refused++;
     app_note(l->a, "the broker refuses: %s", why);
 }
 
@@ -268,14 +283,14 @@ void leader_end(leader *l)
 
 /* ---- orders ---------------------------------------------------------------------------------- */
 
-static bool is_of_group(const peer *p, const char *group)
+bool leader_has(const leader *l, const peer *p)
 {
     size_t i;
     json_t *one;
     json_array_foreach(json_object_get(p->facts, "groups"), i, one)
     {
-        if (json_is_string(one) && strcmp(json_string_value(one), group) == 0) {
-            return true;
+        if (json_is_string(one) && strcmp(json_string_value(one), l->group) == 0) {
+            return !l->host || strcmp(l->host, p->host) == 0;
         }
     }
     return false;
@@ -286,8 +301,7 @@ int leader_choose(leader *l)
     int n = 0;
     for (int i = 0; i < l->n; i++) {
         peer *p = &l->peers[i];
-        p->chosen = strcmp(p->state, "ONLINE") == 0 && is_of_group(p, l->group) &&
-                    (!l->host || strcmp(l->host, p->host) == 0);
+        p->chosen = strcmp(p->state, "ONLINE") == 0 && leader_has(l, p);
         n += p->chosen;
     }
     return n;
@@ -337,7 +351,7 @@ bool leader_answered(const leader *l)
     return true;
 }
 
-void leader_latch(leader *l, const char *how)
+bool leader_latch(leader *l, const char *how)
 {
     const char *before = l->latch ? fleet_text(l->latch, "id") : NULL;
     if (how || !before) {
@@ -351,10 +365,16 @@ void leader_latch(leader *l, const char *how)
     if (how) {
         json_object_set_new(latch, "how", json_string(how));
     }
-    (void)wire_tell(l->m, "group", l->group, "latch", latch, WIRE_SURE | WIRE_KEPT);
+    bool done = wire_tell(l->m, "group", l->group, "latch", json_incref(latch), WIRE_SURE | WIRE_KEPT);
+    if (done) {
+        keep(&l->latch, latch); /* the broker tells us nothing of our own */
+    }
+    json_decref(latch);
+    return done;
 }
 
 void leader_listen(leader *l, const char *what)
 {
+    l->listens = what;
     wire_subscribe(l->m, "+", "+", what, false);
 }

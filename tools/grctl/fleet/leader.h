@@ -7,7 +7,7 @@
 #include "tools/grctl/fleet/message.h"
 #include "tools/grctl/mqtt/mqtt.h"
 
-enum { LEADER_PEERS = 1024, LEADER_PERMIT_US = 200000 };
+enum { LEADER_PEERS = 1024, LEADER_ROBOTS = 64, LEADER_PERMIT_US = 200000 };
 
 /* An agent. */
 typedef struct peer {
@@ -15,7 +15,7 @@ typedef struct peer {
     char epoch[FLEET_ID_BYTES];
     char state[FLEET_NAME_BYTES]; /* of its connection */
     json_t *facts;                /* or NULL */
-    json_t *states;               /* of its robots, by name */
+    json_t *states;               /* of its robots, by name; each with heard_us, of our clock */
     bool chosen;
     char waiting[FLEET_ID_BYTES]; /* the order whose answer is awaited, or "" */
     char prepared[FLEET_ID_BYTES];
@@ -41,6 +41,9 @@ typedef struct leader {
     json_t *latch;             /* of the group, or NULL */
     char stop[FLEET_ID_BYTES]; /* the id of the latch that was published last, or "" */
     int64_t stop_us;           /* when */
+    unsigned news;             /* how often agents said that they are there, or what they have */
+    unsigned refused;          /* how often the broker refused what we said */
+    const char *listens;       /* see leader_listen(), NULL: to no more */
     bool permits;              /* a motion is led: then a broker that goes away ends every wait */
     bool lost;                 /* it did */
     int64_t permit_seq;
@@ -52,6 +55,8 @@ typedef struct leader {
 int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group, const char *host);
 void leader_end(leader *l);
 
+/* Is it one of those that are asked? */
+bool leader_has(const leader *l, const peer *p);
 /* Chooses who is online; their number. */
 int leader_choose(leader *l);
 /* An order for each that is chosen. Takes the reference of body. */
@@ -60,8 +65,8 @@ void leader_order(leader *l, const char *verb, json_t *body);
 bool leader_wait(leader *l, int64_t bound_us, bool (*done)(const leader *l));
 /* Every chosen one has answered. */
 bool leader_answered(const leader *l);
-/* Publishes the latch of the group. how: "stop", "estop", NULL: takes it back. */
-void leader_latch(leader *l, const char *how);
+/* Publishes the latch of the group: "stop", "estop", NULL to take it back. False: it is not out. */
+bool leader_latch(leader *l, const char *how);
 /* More of what agents say: "state", "event". */
 void leader_listen(leader *l, const char *what);
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -93,6 +94,26 @@ static json_t *angles_of(const seat *s)
     return list;
 }
 
+/* Of all joints: the highest temperature and the lowest voltage. */
+static void add_worst(json_t *state, const seat *s)
+{
+    grobo_joint_info info;
+    double hottest_c = NAN, lowest_v = NAN;
+    for (int j = 0; j < app_model(&s->a)->n_joints; j++) {
+        if (grobo_robot_joint(s->c.robot, j, &info) != 0) {
+            continue;
+        }
+        if (info.state.valid & GROBO_FIELD_TEMPERATURE) {
+            hottest_c = fmax(hottest_c, info.state.temperature_c);
+        }
+        if (info.state.valid & GROBO_FIELD_VOLTAGE) {
+            lowest_v = fmin(lowest_v, info.state.voltage_mv / 1000.0);
+        }
+    }
+    json_object_set_new(state, "temperature_c", app_json_number(hottest_c, 0));
+    json_object_set_new(state, "voltage_v", app_json_number(lowest_v, 2));
+}
+
 static json_t *state_of(const agent *g, const seat *s)
 {
     grobo_trip_info trip;
@@ -105,7 +126,10 @@ static json_t *state_of(const agent *g, const seat *s)
     json_object_set_new(state, "trip",
                         trip.trip == GROBO_TRIP_NONE ? json_null()
                                                      : app_json_code(grobo_trip_name(trip.trip)));
+    const char *file = g->plays && s->chosen ? fleet_text(g->play.is.body, "file") : NULL;
+    json_object_set_new(state, "motion", file ? json_string(file) : json_null());
     json_object_set_new(state, "angles_deg", angles_of(s));
+    add_worst(state, s);
     return state;
 }
 

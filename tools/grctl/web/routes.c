@@ -127,6 +127,7 @@ static void serve_lease(serve *s, http_request *r, const json_t *body)
             refuse_lease(s, r);
             return;
         }
+        s->left_us = gives && !lease_is_held(&s->lease) ? grobo_now_us() : 0;
         events_tell(&s->events, "lease", "info", NULL, "%s",
                     !gives                     ? "to drive was refused"
                     : lease_is_held(&s->lease) ? "the lease was handed over"

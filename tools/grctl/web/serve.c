@@ -158,11 +158,19 @@ static void lose_motion(serve *s)
 
 static void look_after_lease(serve *s)
 {
-    int64_t silent_us = lease_silent_us(&s->lease, grobo_now_us());
+    int64_t now_us = grobo_now_us(), silent_us = lease_silent_us(&s->lease, now_us);
     if (silent_us > SERVE_JOG_LOST_US && s->jogs) {
         events_tell(&s->events, "lease", "warning", NULL,
                     "the page that drives is silent: jogging stops");
         stops_halt(s);
+    }
+    if (lease_is_held(&s->lease)) {
+        s->left_us = 0;
+    } else if (s->left_us && now_us - s->left_us > SERVE_PLAY_LOST_US) { /* and nobody came */
+        s->left_us = 0;
+        if (serve_is_moving(s)) {
+            lose_motion(s);
+        }
     }
     if (silent_us <= SERVE_PLAY_LOST_US) {
         return;

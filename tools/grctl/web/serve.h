@@ -44,6 +44,7 @@ struct serve {
     int64_t sequence_us[SERVE_SEQUENCES]; /* when the last ones were told */
     events events;
     lease lease;
+    int64_t left_us; /* when the lease was given back with something under way, 0: not */
     stops stops;
     worker *worker;
     library *library;

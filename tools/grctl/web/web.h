@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "tools/grctl/cli/app.h"
+#include "tools/grctl/fleet/broker.h"
 
 enum { WEB_PORT = 8717 };
 
@@ -20,5 +21,7 @@ typedef struct web_options {
 
 /* Serves until a signal comes. Returns the exit status. */
 int web_run(app *a, const web_options *options);
+/* The same of the robots at a broker: how those of a group are, and a stop for all of them. */
+int web_run_fleet(app *a, const web_options *options, const broker *b, const char *group);
 
 #endif

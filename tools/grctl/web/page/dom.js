@@ -47,3 +47,27 @@ export function tremble() {
         navigator.vibrate(12);
     }
 }
+
+/** A setting of this browser; a browser that keeps none has the default. */
+export function setting(key, value) {
+    try {
+        if (value !== undefined) {
+            localStorage.setItem(key, value);
+        }
+        return localStorage.getItem(key);
+    } catch (error) {
+        return null;
+    }
+}
+
+/** Texts of the page itself. @param t translator */
+export function translatePage(lang, t) {
+    document.documentElement.lang = lang;
+    for (const node of document.querySelectorAll('[data-t]')) {
+        node.textContent = t(node.textContent);
+    }
+    for (const node of document.querySelectorAll('[data-t-label]')) {
+        node.setAttribute('aria-label', t(node.dataset.tLabel));
+        node.title = node.matches('button') ? t(node.dataset.tLabel) : '';
+    }
+}

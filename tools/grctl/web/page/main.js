@@ -4,7 +4,7 @@
 
 import { Api, takeToken } from './api.js';
 import { makeBody } from './body.js';
-import { element, replace, setText } from './dom.js';
+import { element, replace, setText, setting, translatePage } from './dom.js';
 import { Figure, fromHex, mix } from './figure.js';
 import { Joints } from './joints.js';
 import { Lease } from './lease.js';
@@ -21,18 +21,6 @@ const SETTLED_MS = 400;
 const TABS = ['see', 'play', 'joints', 'make', 'more'];
 const PANELS = { see: 'see', play: 'motions', joints: 'joints', make: 'make', more: 'more' };
 const id = (name) => document.getElementById(name);
-
-/** A setting of this browser; a browser that keeps none has the default. */
-function setting(key, value) {
-    try {
-        if (value !== undefined) {
-            localStorage.setItem(key, value);
-        }
-        return localStorage.getItem(key);
-    } catch (error) {
-        return null;
-    }
-}
 
 class App {
     constructor() {
@@ -415,14 +403,7 @@ class App {
     }
 
     translateAll() {
-        document.documentElement.lang = this.lang;
-        for (const node of document.querySelectorAll('[data-t]')) {
-            node.textContent = this.t(node.textContent);
-        }
-        for (const node of document.querySelectorAll('[data-t-label]')) {
-            node.setAttribute('aria-label', this.t(node.dataset.tLabel));
-            node.title = node.matches('button') ? this.t(node.dataset.tLabel) : '';
-        }
+        translatePage(this.lang, this.t);
         document.querySelector('#view canvas').setAttribute('aria-label', this.t('The robot'));
     }
 

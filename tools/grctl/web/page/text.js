@@ -71,6 +71,22 @@ export const JA = {
     low_voltage: '電圧低下', lost_replies: '応答なし', torque_lost: 'トルク喪失',
     outside_limits: '可動範囲外', not_a_number: '不正な値', host_stalled: 'ホスト停止',
     emergency_stop: '非常停止', stop: '停止',
+    // the fleet
+    Fleet: 'フリート', Robots: 'ロボット', 'Name, host, model or motion': '名前、ホスト、機種、モーション',
+    Group: 'グループ', 'Trouble only': '異常のみ', Close: '閉じる', 'Open its cockpit': 'コックピットを開く',
+    'STOP all': 'すべて STOP',
+    'Stops all robots, also those that the filter hides. Over a network a stop may come late or never: the switches are on the robots.':
+        '絞り込みで隠れているものも含め、全ロボットを停止します。ネットワーク経由の停止は遅れたり届かないことがあります。電源スイッチは各ロボットにあります。',
+    'signed off': '退出', 'agent lost': 'エージェント消失', 'no news': '応答なし', 'not connected': '未接続', moves: '動作中',
+    'STOP sent, no answer for {0} s: use the switches':
+        'STOP を送信、{0} 秒間応答なし: 各ロボットのスイッチを切ってください',
+    'emergency stop': '非常停止', 'all {0} robots stand': '全 {0} 台の停止を確認',
+    '{0} of {1} robots stand': '{1} 台中 {0} 台が停止', 'use its switch': '本体のスイッチを切ってください',
+    '{0} joints, {1} is the nearest to a limit: {2}°': '{0} 関節、限界に最も近いのは {1}: {2}°',
+    '{0} joints, not read': '{0} 関節、未読', 'broker lost': 'ブローカと通信不能', 'every group': '全グループ',
+    '{0} robots': '{0} 台', 'No robot is like that.': '該当するロボットがありません。',
+    'No agent is at this broker.': 'このブローカにエージェントがいません。', State: '状態', Model: '機種',
+    Groups: 'グループ', Motion: 'モーション', Heard: '最終受信', never: 'なし', '{0} s ago': '{0} 秒前',
 };
 
 /** What the codes of the interface are called where their own name would not do. */

@@ -1,0 +1,29 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The view of a fleet, over a real broker with agents of simulated robots. Its clients are those of
+# tests/support/fleet_view.py.
+. tests/support/pages.sh
+
+fleet() {
+    PYTHONPATH=tests/support python3 -B tests/support/fleet_view.py "$1"
+}
+
+reason=$(PYTHONPATH=tests/support python3 -B -c \
+    'import fleet_view; print(fleet_view.is_possible() or "")') || exit 1
+if [ -n "$reason" ]; then
+    echo "1..0 # SKIP $reason"
+    exit
+fi
+
+check "robots are shown, who goes is seen to go" fleet shown
+check "a stop of all stands, is told robot by robot, is released" fleet stopping
+check "a stop while the broker is away goes out when it is back" fleet broker_away
+check "hosts, origins and tokens are judged as elsewhere" fleet walls
+check "what strangers say is bounded" fleet strangers
+if python3 -c 'import jsonschema' 2>/dev/null; then
+    check "what is answered is what the OpenAPI file tells" fleet schema
+else
+    skip "what is answered is what the OpenAPI file tells" "no python3-jsonschema"
+fi
+
+done_testing
