@@ -134,6 +134,9 @@ int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
     config_fill(&robot->config, robot->driver);
     robot->config.bus = bus; /* the line stays what it is */
     grobo_i_unlock(robot);
+    if (robot->host.wake) {
+        robot->host.wake(robot->host.ctx); /* readings may be due sooner */
+    }
     return GROBO_OK;
 }
 
