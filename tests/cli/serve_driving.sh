@@ -6,6 +6,7 @@
 check "move, play, pause, seek, speed, queue, limp, capture" pages driving
 check "what is based on an old state is refused" pages stale
 check "a stop latches, is confirmed by each joint, is taken back" pages stopping
+check "a stop on the way of a move, a jog, an approach" pages on_the_way
 check "a stop beside streams that stand still" pages latency
 check "jogging stops when the page is silent" pages lost_in_jog
 check "a motion whose page is lost does what was declared" pages lost_in_motion

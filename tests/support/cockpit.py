@@ -621,6 +621,34 @@ def stopping():
         page.fall_silent()
 
 
+def on_the_way():
+    """A stop in the middle of a slow move of one frame, of a jog and of an approach: each joint stays
+    where it was. The line is busy with readings nearly always, so the frame that stops has to wait."""
+    with Server() as server:
+        page, ways = Page(server).take(), ("move", "jog", "play")
+        page.keep_beating()
+        page.target("move", pose="init", time_ms=300)
+        page.wait_event("move: done")
+        for n in range(12):
+            way = ways[n % 3]
+            page.take()
+            page.target("move", angle_deg={"R_SHOULDER_P": -20}, time_ms=300)
+            page.wait("there", lambda s: abs(s["angle_deg"][14] + 20) < 1.5 and not s["moving"])
+            if way == "play":
+                page.target("play", motion="greet.pseq", speed_pct=20)
+            else:
+                page.target(way, angle_deg={"R_SHOULDER_P": -140}, time_ms=4000)
+            state = page.wait("it moves", lambda s: abs(s["angle_deg"][14] + 20) > 2)
+            where = state["angle_deg"][14]
+            same(page.ask("POST", "/stop", b"{}", {}, server.stop_port)[0], 204)
+            state = page.wait("confirmed", lambda s: s["stop"]["confirmed"])
+            time.sleep(0.3)  # what was not stopped would go on
+            last = page.state()["angle_deg"][14]
+            assert abs(last - where) < 30, f"{way}: from {where} to {last} after a stop"
+            page.post("reset")
+        page.fall_silent()
+
+
 def lines_of(trace):
     """When each write to the robot left and what it was, by a trace (pcapng)."""
     with open(trace, "rb") as f:

@@ -125,7 +125,9 @@ void stops_look(serve *s)
     if (!t->latched || !s->c.up) {
         return;
     }
-    if (!t->held && !t->estop) { /* the engine refuses too, from when it stands */
+    /* The engine refuses too, from when it stands: once it does, the frame that stops is refused
+     * as well where it still waits for the line. */
+    if (!t->held && !t->estop && !grobo_robot_moving(s->c.robot)) {
         t->held = grobo_robot_latch(s->c.robot) == GROBO_OK;
     }
     if (missing && !t->reading && grobo_now_us() - t->at_us > STOPS_ON_ITS_WAY_US) {
