@@ -775,6 +775,66 @@ def a_joint_is_dragged_in_the_figure(browser, server):
 
 
 @test
+def a_finger_turns_the_picture_before_it_turns_a_joint(browser, server):
+    page = browser.page(server.link, size='phone')
+    edit_motion(page, 'greet.pseq')
+    until(page, '!cockpit.figure.dirty')
+    joint = joint_of(page, 'L_SHOULDER_R')
+    finger = page.context.new_cdp_session(page)
+
+    def drag(x, y, dx):
+        for kind, points in (('touchStart', [(x, y)]), ('touchMove', [(x + dx / 2, y)]),
+                             ('touchMove', [(x + dx, y)]), ('touchEnd', [])):
+            finger.send('Input.dispatchTouchEvent', {
+                'type': kind, 'touchPoints': [{'x': a, 'y': b} for a, b in points]})
+
+    yaw = page.evaluate('cockpit.figure.camera.yaw')
+    drag(*screen_of(page, joint), 30)
+    until(page, 'yaw => cockpit.figure.camera.yaw !== yaw', yaw)
+    assert not page.evaluate('cockpit.make.draft.changed()')
+    page.evaluate('cockpit.figure.home()')
+    page.evaluate('j => cockpit.select(j)', joint)
+    until(page, '!cockpit.figure.dirty')
+    drag(*screen_of(page, joint), 30)
+    until(page, 'cockpit.make.draft.before.length === 1 && !cockpit.make.frozen')
+    assert page.evaluate('cockpit.figure.camera.yaw') == yaw
+    assert page.evaluate('cockpit.make.draft.key().angle_deg.map((v, j) => v !== '
+                         'cockpit.make.draft.base[0].angle_deg[j]).filter(Boolean).length') == 1
+
+
+@test
+def a_motion_of_an_arm_is_drawn_too(browser, server):
+    folder = tempfile.mkdtemp()
+    shutil.copy(MOTIONS / 'so101-wave.yaml', folder)
+    arm = Server('--robot', 'so101', folder=folder)
+    try:
+        page = browser.page(arm.link)
+        page.click('#tab-make')
+        page.click('#make-new')
+        until(page, "cockpit.make.draft && cockpit.figure.pose.draft")
+        assert page.locator('#make-handles').is_hidden()
+        first = page.evaluate('cockpit.robot.joints[1].name')
+        row(page, first).focus()
+        page.keyboard.press('PageUp')
+        page.click('#make-add')
+        page.keyboard.press('Control+z')
+        page.click('#make-redo')
+        fresh_look(page)
+        page.click('#make-save-as')
+        until(page, "document.getElementById('make-told').textContent.startsWith('Saved as new.pseq')")
+        keys = arm.call('GET', '/api/motions/new.pseq')['keys']
+        assert [k['time_ms'] for k in keys] == [0, 500] and keys[0]['angle_deg'] == keys[1]['angle_deg']
+        page.select_option('#make-open', 'so101-wave.yaml')
+        until(page, "cockpit.make.draft.keys.length > 10")
+        page.click('#make-more summary')
+        page.select_option('#make-other', 'new.pseq')
+        until(page, "document.getElementById('make-difference').textContent !== ''")
+    finally:
+        arm.close()
+        shutil.rmtree(folder)
+
+
+@test
 def feet_and_waist_are_moved_by_handles(browser, server):
     page = browser.page(server.link)
     edit_motion(page, 'bow.pseq')
