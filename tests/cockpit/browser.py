@@ -845,7 +845,7 @@ def feet_and_waist_are_moved_by_handles(browser, server):
     page.click('#make-nudge button:text-is("Down")')
     until(page, 'z => Math.abs(cockpit.figure.at[0][14] - (z - 0.01)) < 0.0005', waist)
     assert key_deg(page, 0, knee) < before - 3, 'a lower waist bends the knees'
-    until(page, '!cockpit.make.ik.busy')
+    until(page, '!cockpit.make.solving')
     assert page.evaluate('cockpit.make.draft.before.length') == 2
     # By the handle in the picture: 15 pixels up and down again is nearly the pose that was.
     page.click('#make-handle button:text-is("Left foot")')
@@ -860,7 +860,7 @@ def feet_and_waist_are_moved_by_handles(browser, server):
     page.mouse.move(box['x'] + x, box['y'] + y - 15, steps=5)
     until(page, '([j, was]) => cockpit.make.draft.keys[0].angle_deg[j] > was + 3', [left, bent])
     page.mouse.up()
-    until(page, '!cockpit.make.ik.busy && !cockpit.make.frozen')
+    until(page, '!cockpit.make.solving && !cockpit.make.frozen')
     assert page.evaluate('cockpit.make.draft.before.length') == 3, 'a drag is one step'
     # Out of reach is told, and leaves the pose as it is.
     far = page.evaluate('JSON.stringify(cockpit.make.draft.keys)')
@@ -883,7 +883,7 @@ def legs_of_a_file_stay_targets(browser, server):
     page = browser.page(server.link)
     edit_motion(page, 'step.pseq')
     page.click('#make-nudge button:text-is("Up")')
-    until(page, 'cockpit.make.draft.before.length === 1 && !cockpit.make.ik.busy')
+    until(page, 'cockpit.make.draft.before.length === 1 && !cockpit.make.solving')
     fresh_look(page)
     page.fill('#make-as', 'step-high.pseq')
     page.click('#make-save-as')
@@ -932,7 +932,7 @@ def keys_are_added_moved_copied_mirrored_and_deleted(browser, server):
     page.keyboard.press('Delete') # the marker has the focus
     page.fill('#make-way', '1.5')
     page.locator('#make-way').press('Enter')
-    until(page, "cockpit.make.draft.keys.length === 11")
+    until(page, "cockpit.make.draft.keys.length === 11 && cockpit.make.draft.before.length === 7")
     now = page.evaluate(times)
     assert now[10] - now[9] == 1500, now
     for _ in range(7):

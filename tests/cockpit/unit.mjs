@@ -312,6 +312,18 @@ await test('a drag is one step back, and what is undone is done again', () => {
     d.setAngles(id, { 0: 1 });
     same(d.redo(), false); // another way was taken
 });
+await test('what is done together is one step back', () => {
+    const d = draft(), was = d.keys;
+    d.together(() => {
+        d.setAngles(d.add(300, [1, 2, 3]), { 0: 4 });
+        d.setLinks(d.chosen, [waist]);
+    });
+    same([d.before.length, d.key().angle_deg[0]], [1, 4]);
+    d.together(() => d.undo());
+    same([d.keys === was, d.before.length], [true, 0]);
+    d.together(() => d.redo());
+    same([d.before.length, d.key().links.length], [1, 1]);
+});
 await test('keys keep their order and their distance', () => {
     const d = draft(), [a, b, c] = d.keys.map((k) => k.id);
     const times = () => d.keys.map((k) => k.time_ms);

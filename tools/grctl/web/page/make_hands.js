@@ -35,6 +35,9 @@ export class Hands {
     /** A press at a point of the figure. @returns { move, end } or null: it turns the picture */
     grab(x, y, touch) {
         const { figure } = this;
+        if (!figure.at) {
+            return null;
+        }
         const handle = this.handles().find((one) => {
             const [hx, hy] = figure.onScreen(origin(figure.at[one.link]));
             return Math.hypot(hx - x, hy - y) < 20;
