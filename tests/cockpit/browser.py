@@ -895,6 +895,15 @@ def legs_of_a_file_stay_targets(browser, server):
     assert abs(waist['p_m'][2] - was[0]['links'][0]['p_m'][2] - 0.005) < 1e-6, waist
     assert waist['base'] and now[0]['links'][1:] == was[0]['links'][1:]
     assert now[0]['angle_deg'] != was[0]['angle_deg']
+    # A knee that is turned moves its foot's target, and a foot that slips so is told.
+    page.locator('.markers button').nth(2).click()
+    row(page, 'R_KNEE_P').focus()
+    page.keyboard.press('PageDown')
+    moved = [a['link'] for a in page.evaluate('cockpit.make.draft.keys[2].links')
+             if a not in was[2]['links']]
+    assert moved == ['R_ANKLE_R'], moved
+    fresh_look(page)
+    until(page, "document.getElementById('make-verdict').textContent.startsWith('▲ out of balance from')")
 
 
 @test

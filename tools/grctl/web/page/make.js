@@ -541,12 +541,17 @@ export class Make {
         this.app.schedule();
     }
 
-    checked(check) {
-        const t = this.app.t;
-        return !check ? '' : check.refused ? `✕ ${check.refused.message}`
-            : check.falls_ms !== null ? t('▲ would fall at {0} s', seconds(check.falls_ms))
-            : check.warnings || check.errors ? t('▲ {0} warnings', check.warnings + check.errors)
-            : t('✓ stays within limits and balance');
+    /** What a check came to: { level, words }. */
+    checked(check, balance) {
+        const t = this.app.t, n = check ? check.warnings + check.errors : 0;
+        const lost = balance && !balance.assumed && balance.findings.find((f) => f.problem === 'zmp_margin'
+            ? f.worst < 0 : ['no_support', 'foot_slip'].includes(f.problem));
+        return !check ? { level: '', words: '' }
+            : check.refused ? { level: 'bad', words: `✕ ${check.refused.message}` }
+            : check.falls_ms !== null ? { level: 'bad', words: t('▲ would fall at {0} s', seconds(check.falls_ms)) }
+            : lost ? { level: 'warn', words: t('▲ out of balance from {0} s', seconds(lost.begin_ms)) }
+            : n ? { level: 'warn', words: t('▲ {0} warnings', n) }
+            : { level: 'ok', words: this.app.robot.body ? t('✓ stays within limits and balance') : t('✓ checked') };
     }
 
     async save() {
@@ -579,7 +584,7 @@ export class Make {
                 this.id('as').value = this.freeName(name.replace(/\.[^.]+$/, ''));
             }
             const said = [whole ? t('Saved as {0}.', name) : t('A copy was written as {0}.', name),
-                          this.checked(told.check), ...told.notes];
+                          this.checked(told.check, file.balance).words, ...told.notes];
             this.stale = false;
             this.tell(told.check && told.check.ok ? 'ok' : 'bad', said.join(' '));
         } catch (error) {
@@ -724,9 +729,13 @@ export class Make {
         if (other && other.frames.angle_deg.length) {
             return { ...sample(other.frames, this.at, app.toMatrix), note: other.name };
         }
-        const { state } = app;
-        return app.age() ? null : { q: state.angle_deg.map((v) => v === null ? NaN : v * DEG),
-                                    root: state.body ? app.toMatrix(state.body.root) : null };
+        const { state } = app, root = state.body ? app.toMatrix(state.body.root) : null, own = this.root();
+        if (root && own) { // a file has a world of its own: both stand in the same place
+            const pose = this.shown(), here = stand(app.figure.body, pose.q);
+            root[12] += own[12] - here[12];
+            root[13] += own[13] - here[13];
+        }
+        return app.age() ? null : { q: state.angle_deg.map((v) => v === null ? NaN : v * DEG), root };
     }
 
     legend(item) {
@@ -779,10 +788,11 @@ export class Make {
         this.id('changed').className = `pill ${this.stale || changed ? 'warn' : ''}`;
         this.id('save').disabled = !draft.name || !draft.changed() || !this.app.api.token || Boolean(this.saving);
         this.id('save-as').disabled = !this.app.api.token || Boolean(this.saving);
-        const check = this.look && this.look.check, verdict = this.id('verdict');
-        setText(verdict, this.felt ? `▲ ${this.felt}` : this.trouble ? `✕ ${this.trouble}` : this.checked(check));
-        verdict.className = this.felt ? 'warn' : this.trouble || check && (check.refused || check.falls_ms !== null)
-            ? 'bad' : check && (check.warnings || check.errors) ? 'warn' : 'ok';
+        const { level, words } = this.felt ? { level: 'warn', words: `▲ ${this.felt}` }
+            : this.trouble ? { level: 'bad', words: `✕ ${this.trouble}` }
+            : this.checked(this.look && this.look.check, this.look && this.look.balance);
+        setText(this.id('verdict'), words);
+        this.id('verdict').className = level;
     }
 
     writeKey() {
