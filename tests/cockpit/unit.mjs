@@ -303,6 +303,128 @@ await test('a filter takes words, a group, and what is in trouble', () => {
          [false, true, false]);
 });
 
+const { Draft, compare, keysOfFrames, mirrorKey } = await page('make_draft');
+const pair = [{ joint: 0, name: 'R', limits_deg: [-90, 10], init_deg: 0, mirror: 1, mirror_sign: -1 },
+              { joint: 1, name: 'L', limits_deg: [-10, 90], init_deg: 0, mirror: 0, mirror_sign: -1 },
+              { joint: 2, name: 'HEAD', limits_deg: [-45, 45], init_deg: 5, mirror: 2, mirror_sign: -1 }];
+const filed = (time, angles, more = {}) => ({ time_ms: time, name: '', angle_deg: angles, stationary: [],
+                                              links: [], zmp_m: null, max_transition_ms: 0, ...more });
+const waist = { link: 'WAIST', p_m: [0, 0.1, 0.2], rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], base: true,
+                stationary: false, touching: false, slave: false };
+const foot = { ...waist, link: 'R', base: false, rotation: [1, 2, 3, 4, 5, 6, 7, 8, 9] };
+const draft = () => new Draft(pair, { name: 'a.pseq', etag: '"1"', keys: [
+    filed(0, [1, 2.5, null]), filed(500, [-20, null, null], { links: [waist, foot], stationary: [0] }),
+    filed(1000, [5, 6, 7], { name: 'end', zmp_m: [0.1, 0.2, 0] })] });
+
+await test('of a draft only what differs from the file is written', () => {
+    const d = draft();
+    same(d.toEdit(), { keys: [{ from: 0 }, { from: 1 }, { from: 2 }] });
+    d.setAngles(d.keys[0].id, { 0: -30, 2: 99 });
+    d.setAngles(d.keys[2].id, { 1: null });
+    d.setTime(d.keys[1].id, 700);
+    d.setLinks(d.keys[1].id, [{ link: 'WAIST', p_m: [0, 0, 0.3], rotation: waist.rotation }]);
+    same(d.toEdit().keys[0], { from: 0, angle_deg: { R: -30, HEAD: 45 } });
+    same(d.toEdit().keys[1], { from: 1, time_ms: 700,
+                               links: [{ ...waist, p_m: [0, 0, 0.3] }, { link: 'R' }] });
+    same(d.toEdit().keys[2], { from: 2, angle_deg: { L: null } });
+    d.add(300, [1, 2, 3]);
+    same(d.toEdit().keys[1], { time_ms: 300, angle_deg: { R: 1, L: 2, HEAD: 3 } });
+});
+await test('a key in the mirror is left for right, and twice it is what it was', () => {
+    const d = draft(), id = d.keys[1].id;
+    d.mirror(id);
+    same(d.key(id).angle_deg, [null, 20, null]);
+    same(d.key(id).links.map((l) => l.link), ['WAIST', 'L']);
+    same(d.key(id).links[0].p_m, [0, -0.1, 0.2]);
+    same(d.key(id).links[1].rotation, [1, -2, 3, -4, 5, -6, 7, -8, 9]);
+    same(d.key(id).stationary, [1]);
+    same(d.toEdit().keys[1], { from: 1, mirror: true });
+    d.setAngles(id, { 2: 4 });
+    same(d.toEdit().keys[1], { from: 1, mirror: true, angle_deg: { HEAD: 4 } });
+    same(mirrorKey(mirrorKey(d.base[1], pair), pair), d.base[1]);
+    d.mirrorAll();
+    same(d.toEdit().keys[1], { from: 1, angle_deg: { HEAD: -4 } });
+});
+await test('a drag is one step back, and what is undone is done again', () => {
+    const d = draft(), id = d.keys[0].id, was = d.keys;
+    for (const deg of [2, 3, 4]) {
+        d.setAngles(id, { 0: deg }, 'drag');
+    }
+    d.rest();
+    d.setAngles(id, { 0: 9 }, 'drag');
+    same(d.before.length, 2);
+    same(d.undo(), true);
+    same(d.key(id).angle_deg[0], 4);
+    d.undo();
+    same(d.keys === was && !d.changed(), true);
+    same(d.undo(), false);
+    d.redo();
+    same(d.key(id).angle_deg[0], 4);
+    d.setAngles(id, { 0: 1 });
+    same(d.redo(), false); // another way was taken
+});
+await test('what is done together is one step back', () => {
+    const d = draft(), was = d.keys;
+    d.together(() => {
+        d.setAngles(d.add(300, [1, 2, 3]), { 0: 4 });
+        d.setLinks(d.chosen, [waist]);
+    });
+    same([d.before.length, d.key().angle_deg[0]], [1, 4]);
+    d.together(() => d.undo());
+    same([d.keys === was, d.before.length], [true, 0]);
+    d.together(() => d.redo());
+    same([d.before.length, d.key().links.length], [1, 1]);
+});
+await test('keys keep their order and their distance', () => {
+    const d = draft(), [a, b, c] = d.keys.map((k) => k.id);
+    const times = () => d.keys.map((k) => k.time_ms);
+    d.setTime(a, 600);
+    same([times(), d.index(a)], [[500, 600, 1000], 1]);
+    d.setTime(a, 1000); // taken: the next place
+    same(times(), [500, 1000, 1010]);
+    d.undo();
+    d.undo();
+    d.setTransition(b, 200);
+    same(times(), [0, 200, 700]);
+    d.setTransition(c, -50); // no key before the one before
+    same(times(), [0, 200, 210]);
+    d.paste(d.key(a), 200);
+    same(times(), [0, 200, 700, 710]);
+    for (let n = 0; n < 6; n++) {
+        d.remove(d.chosen);
+    }
+    same(d.keys.length, 1); // one is left
+});
+await test('between keys that set a joint there is a straight line', () => {
+    const d = draft();
+    near(d.at(750), [-7.5, 2.5 + 3.5 * 0.75, 7]);
+    near(new Draft(pair, { keys: [filed(0, [1, 2, null])] }).at(99), [1, 2, 5]);
+});
+await test('after saving, steps back refer to the file as it is', () => {
+    const d = draft(), [a, b] = d.keys.map((k) => k.id);
+    d.remove(b);
+    d.setAngles(a, { 0: -7 });
+    const written = d.keys;
+    d.setAngles(a, { 0: -8 }); // while it was saved
+    d.rebase({ name: 'b.pseq', etag: '"2"', keys: [filed(0, [-7, 2.5, null]), filed(1000, [5, 6, 7])] },
+             written);
+    same([d.name, d.etag, d.changed()], ['b.pseq', '"2"', true]);
+    same(d.toEdit(), { keys: [{ from: 0, angle_deg: { R: -8 } }, { from: 1, name: 'end',
+                                                                   zmp_m: [0.1, 0.2, 0] }] });
+    d.undo();
+    same([d.changed(), d.toEdit()], [false, { keys: [{ from: 0 }, { from: 1 }] }]);
+    d.undo();
+    d.undo(); // the key that was deleted, and is in the file no more
+    same(d.toEdit().keys[1], { time_ms: 500, angle_deg: { R: -20 }, stationary: [0], links: [waist, foot] });
+});
+await test('frames become key poses, and motions are compared', () => {
+    const frames = { rate_hz: 10, angle_deg: Array.from({ length: 11 }, (_, n) => [n, null, 0]) };
+    same(keysOfFrames(frames, 1000, 400).map((k) => [k.time_ms, k.angle_deg[0]]), [[0, 0], [400, 4], [1000, 10]]);
+    const other = { rate_hz: 10, angle_deg: Array.from({ length: 6 }, (_, n) => [n === 3 ? -1 : n, 5, 1]) };
+    same(compare(frames, other).map((d) => [d.joint, d.most, d.at_ms]), [[0, -4, 300], [2, 1, 0]]);
+    same(compare(frames, { rate_hz: 10, angle_deg: [] }), []);
+});
+
 await test('every text of the page is there in Japanese', () => {
     const missing = new Set();
     for (const name of readdirSync(folder)) {

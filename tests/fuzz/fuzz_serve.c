@@ -30,12 +30,13 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static struct event_base *base;
+static grobo_motion *drawn; /* what keys may be taken from */
 static http *server;
 static bool closed;
 
 static bool rule_of(void *ctx, const http_request *r, wall_rule *rule)
 {
-    static const char *const paths[] = {"/", "/read", "/stop", "/plain", "/act", "/save"};
+    static const char *const paths[] = {"/", "/read", "/stop", "/plain", "/act", "/save", "/draft"};
     (void)ctx;
     MUST(r->path[0] == '/' && strlen(r->path) < HTTP_PATH_BYTES);
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
@@ -48,12 +49,26 @@ static bool rule_of(void *ctx, const http_request *r, wall_rule *rule)
     return strcmp(r->path, "/stream") == 0;
 }
 
+static grobo_motion *edited(const json_t *body, const grobo_motion *from)
+{
+    edit_result made = {.motion = NULL};
+    char *bytes = NULL;
+    size_t size;
+    if (edit_apply(body, &grobo_gr001_model, from, GROBO_FORMAT_PSEQ, &made) < 0) {
+        return NULL;
+    }
+    MUST(grobo_motion_size(made.motion) == json_array_size(json_object_get(body, "keys")));
+    if (edit_write(made.motion, GROBO_FORMAT_PSEQ, &grobo_gr001_model, NULL, &bytes, &size) == 0) {
+        free(bytes);
+    }
+    return made.motion;
+}
+
 /* What passed the wall: as much as the interface reads of any body. */
 static void answer(void *ctx, http_request *r)
 {
     size_t size;
     const char *text = http_body(r, &size);
-    edit_result made = {.motion = NULL};
     (void)ctx;
     MUST(strcmp(http_header(r, "Host"), "evil.example") != 0);
     MUST(size <= HTTP_UPLOAD_BYTES);
@@ -64,14 +79,8 @@ static void answer(void *ctx, http_request *r)
         return;
     }
     json_t *body = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
-    if (edit_apply(body, &grobo_gr001_model, NULL, GROBO_FORMAT_PSEQ, &made) == GROBO_OK) {
-        char *bytes = NULL;
-        MUST(grobo_motion_size(made.motion) == json_array_size(json_object_get(body, "keys")));
-        if (edit_write(made.motion, GROBO_FORMAT_PSEQ, &grobo_gr001_model, &bytes, &size) == 0) {
-            free(bytes);
-        }
-        grobo_motion_free(made.motion);
-    }
+    grobo_motion_free(edited(body, NULL));
+    grobo_motion_free(edited(body, drawn));
     http_reply_json(r, 200, json_pack("{s:b}", "read", body != NULL));
     json_decref(body);
 }
@@ -82,6 +91,13 @@ static void start(void)
     http_config config = {.token = "0123456789abcdef", .rule = rule_of, .serve = answer};
     config.base = base = event_base_new();
     MUST(base && http_new(&config, &server, &complaint) == GROBO_OK);
+    json_t *keys =
+        json_pack("{s:[{s:i,s:{s:i},s:[{s:s,s:[i,i,f],s:b},{s:s,s:[i,i,i]}]},{s:i,s:s}]}", "keys",
+                  "time_ms", 0, "angle_deg", "CHEST_P", -5, "links", "link", "WAIST", "p_m", 0, 0,
+                  0.2, "base", 1, "link", "R_ANKLE_R", "p_m", 0, 0, 0, "time_ms", 500, "name", "b");
+    drawn = edited(keys, NULL);
+    json_decref(keys);
+    MUST(drawn);
 }
 
 /* The bytes with the port in its places. */

@@ -344,7 +344,9 @@ def sizes():
         host = f"Host: 127.0.0.1:{server.port}"
         text = raw(server.port, f"GET /api/state HTTP/1.1\r\n{host}\r\nX: {'y' * 9000}\r\n\r\n".encode())
         same(text.split()[1], "400", "9 kB of header")
-        for path, size, wanted in (("/api/ik", 65 * 1024, 413), ("/api/ik", 2 * 1024 * 1024, 413)):
+        for path, size, wanted in (("/api/ik", 65 * 1024, 413), ("/api/ik", 2 * 1024 * 1024, 413),
+                                   ("/api/preview", 65 * 1024, 400),
+                                   ("/api/preview", 2 * 1024 * 1024, 413)):
             body = b" " * size
             with socket.create_connection(("127.0.0.1", server.port), PATIENCE_S) as s:
                 s.sendall(f"POST {path} HTTP/1.1\r\n{host}\r\nX-Grobo-Token: {server.token}\r\n"
@@ -929,6 +931,14 @@ def motions():
         fast = page.post("preview", motion="greet.pseq", speed_pct=1000)
         same(fast["length_ms"], 5000.0)
         edit = {"keys": [{"from": 0}, {"from": 1, "angle_deg": {"R_ELBOW_P": -170}}]}
+        for bad in ({}, {"motion": 7}, {"motion": "greet.pseq", "rate_hz": 0},
+                    {"motion": "greet.pseq", "speed_pct": 2000}):
+            expect(400, "arg", page.post, "preview", **bad)
+        # A draft may be as large as what is saved.
+        long = {"keys": [{"time_ms": 20 * i, "angle_deg": {"CHEST_P": -1 - i % 2 / 1e9, "NECK_Y": i / 1e9}}
+                         for i in range(2000)]}
+        assert 100e3 < len(json.dumps(long)) < 1e6
+        same(page.post("preview", edit=long)["length_ms"], 39980.0)
         beyond = page.post("preview", motion="greet.pseq", edit=edit)
         same((beyond["check"]["ok"], beyond["check"]["refused"]["code"]), (False, "limit"))
 

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tools/grctl/play/play.h"
 #include "tools/grctl/web/edit.h"
 #include "tools/grctl/web/library.h"
 #include "tools/grctl/web/pose.h"
@@ -388,56 +387,15 @@ static int put(void *ctx, const void *bytes, size_t size)
     return GROBO_OK;
 }
 
-/* Frames of many hours: refused before there is memory for them. A number has two bytes at least. */
-static bool is_too_long(const grobo_motion *motion, grobo_motion_format format)
+int edit_write(const grobo_motion *motion, grobo_motion_format format, const grobo_model *model,
+               grobo_diagnostics *lost, char **bytes, size_t *size)
 {
-    double length_s = (double)grobo_motion_length_us(motion, -1) / 1e6;
-    return format == GROBO_FORMAT_YAML && grobo_motion_get_kind(motion) != GROBO_MOTION_FRAMES &&
-           length_s * GROBO_MOTION_RATE_HZ * 2 * grobo_motion_joints(motion) > LIBRARY_FILE_BYTES;
-}
-
-/* Targets of legs become angles, where the format has no place for them. */
-static int solve_legs(app *a, const char *name, grobo_motion_format format,
-                      const grobo_motion *motion, grobo_motion **solved)
-{
-    double rate_hz = format == GROBO_FORMAT_YAML ? GROBO_MOTION_RATE_HZ : 0;
-    grobo_body *body = NULL;
-    *solved = NULL;
-    if (format == GROBO_FORMAT_PSEQ) {
-        return 0;
-    }
-    int status = body_make(a, PLAY_BODY, name, motion, rate_hz, &body);
-    if (!status && body) {
-        status = body_motion(a, name, body, rate_hz, solved);
-    }
-    grobo_body_free(body);
-    return status;
-}
-
-int edit_write(app *a, const char *name, const grobo_motion *motion, grobo_diagnostics *lost,
-               char **bytes, size_t *size)
-{
-    grobo_motion_format format = grobo_motion_format_of_path(name);
-    bool same = grobo_motion_get_kind(motion) == grobo_motion_format_kind(format);
     heap h = {0};
     grobo_sink sink = {.write = put, .ctx = &h};
-    grobo_write_options how = {
-        .model = app_model(a), .name = name, .exact = same && format == GROBO_FORMAT_M};
-    grobo_motion *solved;
-    int error = GROBO_OK;
-    if (is_too_long(motion, format)) {
-        return GROBO_ERR_CAP;
-    }
-    if (solve_legs(a, name, format, motion, &solved)) {
-        error = GROBO_ERR_UNREACHABLE;
-    } else if (solved) {
-        (void)grobo_motion_set_name(solved, grobo_motion_name(motion));
-        (void)grobo_motion_set_target_body(solved, grobo_motion_target_body(motion));
-    }
-    if (!error) {
-        error = grobo_motion_write(solved ? solved : motion, format, &how, &sink, lost);
-    }
-    grobo_motion_free(solved);
+    grobo_write_options how = {.model = model,
+                               .exact = format == GROBO_FORMAT_M &&
+                                        grobo_motion_get_kind(motion) == GROBO_MOTION_POSTURES};
+    int error = grobo_motion_write(motion, format, &how, &sink, lost);
     if (error < 0) {
         free(h.bytes);
         return error;

@@ -7,8 +7,6 @@
 
 #include <grobo/motion_io.h>
 
-#include "tools/grctl/cli/app.h"
-
 typedef struct edit_result {
     grobo_motion *motion; /* the caller's */
     char complaint[256];  /* one line, where there is an error */
@@ -22,10 +20,10 @@ int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion 
                grobo_motion_format format, edit_result *result);
 
 /*
- * A motion as a file of the format that its name tells, to be freed with free(). The app's line is
- * that of `play`. lost: gets what that format has no place for. Returns 0 or an error.
+ * A motion as a file, to be freed with free(). lost: gets what the format has no place for; may be
+ * NULL. Returns 0 or an error: GROBO_ERR_CAP where the file would be larger than files are read.
  */
-int edit_write(app *a, const char *name, const grobo_motion *motion, grobo_diagnostics *lost,
-               char **bytes, size_t *size);
+int edit_write(const grobo_motion *motion, grobo_motion_format format, const grobo_model *model,
+               grobo_diagnostics *lost, char **bytes, size_t *size);
 
 #endif

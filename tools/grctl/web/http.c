@@ -583,10 +583,10 @@ static wall_answer judge_amount(http_request *r, wall_rule rule)
 {
     size_t size;
     http_body(r, &size);
-    if (size > HTTP_BODY_BYTES && rule != WALL_SAVE) {
+    if (size > HTTP_BODY_BYTES && rule != WALL_SAVE && rule != WALL_DRAFT) {
         return (wall_answer){413, "too_large", "the body is larger than 64 kB"};
     }
-    if ((rule == WALL_ACT || rule == WALL_SAVE) && is_flood(r->server)) {
+    if ((rule == WALL_ACT || rule == WALL_SAVE || rule == WALL_DRAFT) && is_flood(r->server)) {
         return (wall_answer){429, "too_many", "more than 100 requests a second"};
     }
     return (wall_answer){0};

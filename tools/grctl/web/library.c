@@ -12,6 +12,7 @@
 #include "tools/grctl/web/analyse.h"
 #include "tools/grctl/web/edit.h"
 #include "tools/grctl/web/library.h"
+#include "tools/grctl/web/make.h"
 #include "tools/grctl/web/serve.h"
 
 #define LOOK_US INT64_C(2000000)
@@ -350,6 +351,14 @@ static ask *new_ask(serve *s, http_request *r, const char *name, void (*run)(ask
     q->run = run;
     q->news = json_array();
     snprintf(q->name, sizeof q->name, "%s", name);
+    if (r) {
+        const char *bytes = http_body(r, &q->sent_size);
+        q->sent = malloc(q->sent_size + 1);
+        q->sent_size = q->sent ? q->sent_size : 0;
+        if (q->sent_size) {
+            memcpy(q->sent, bytes, q->sent_size);
+        }
+    }
     return q;
 }
 
@@ -524,6 +533,18 @@ void library_get_file(serve *s, http_request *r, const char *name)
     put(s, new_ask(s, r, name, run_get_file));
 }
 
+/* ---- what was sent: large, so that it is read here and not in the loop ----------------------- */
+
+/* False: it is refused. */
+static bool read_sent(ask *q)
+{
+    q->body = q->sent ? json_loadb(q->sent, q->sent_size, JSON_REJECT_DUPLICATES, NULL) : NULL;
+    if (!json_is_object(q->body)) {
+        refuse(q, 400, "syntax", "the body is no JSON object");
+    }
+    return !q->status;
+}
+
 /* ---- writing --------------------------------------------------------------------------------- */
 
 /* Writes it, and tells what it is now, and what of it the format has no place for. */
@@ -599,7 +620,7 @@ static void write_edited(ask *q, const grobo_motion *made)
     if (!analysis_begin(&n, q->l->a, q->name)) {
         return;
     }
-    int error = edit_write(&n.app, q->name, made, n.found, &bytes, &size);
+    int error = make_write(&n.app, q->name, made, n.found, &bytes, &size);
     if (error == GROBO_ERR_UNREACHABLE) {
         refuse(q, 422, n.app.failed, n.said);
     } else if (error) {
@@ -613,11 +634,12 @@ static void write_edited(ask *q, const grobo_motion *made)
 
 static void run_put(ask *q)
 {
-    q->body = json_loadb(q->sent, q->sent_size, JSON_REJECT_DUPLICATES, NULL);
+    if (!read_sent(q)) {
+        return;
+    }
     const json_t *base = json_object_get(q->body, "base");
-    if (!json_is_object(q->body) || (base && !text_in(base, "motion"))) {
-        refuse(q, 400, json_is_object(q->body) ? "arg" : "syntax",
-               base ? "base has the name of a motion" : "the body is no JSON object");
+    if (base && !text_in(base, "motion")) {
+        refuse(q, 400, "arg", "base has the name of a motion");
         return;
     }
     bool from_file = *q->match != '\0' && !base;
@@ -650,8 +672,6 @@ static void run_put_file(ask *q)
 void library_put(serve *s, http_request *r, const char *name, bool file)
 {
     const char *match = http_header(r, "If-Match"), *none = http_header(r, "If-None-Match");
-    size_t size;
-    const char *bytes = http_body(r, &size);
     if (!library_is_name(name)) {
         http_refuse(r, 400, "arg",
                     "a motion's name is a file's, with .pseq, .m, .mseq, .yaml or .seq");
@@ -667,11 +687,6 @@ void library_put(serve *s, http_request *r, const char *name, bool file)
         return;
     }
     snprintf(q->match, sizeof q->match, "%s", match ? match : "");
-    q->sent = malloc(size + 1);
-    q->sent_size = q->sent ? size : 0;
-    if (q->sent) {
-        memcpy(q->sent, bytes, size);
-    }
     put(s, q);
 }
 
@@ -689,8 +704,31 @@ static void set_options(ask *q, analysis *n)
     }
 }
 
+/* What a preview asks for. False: it is refused. */
+static bool read_preview(ask *q)
+{
+    if (!read_sent(q)) {
+        return false;
+    }
+    const char *name = text_in(q->body, "motion");
+    const json_t *rate = json_object_get(q->body, "rate_hz"),
+                 *speed = json_object_get(q->body, "speed_pct");
+    double speed_pct = speed ? json_number_value(speed) : 100;
+    q->rate_hz = rate ? json_number_value(rate) : 30;
+    if ((!name && !json_object_get(q->body, "edit")) || !(q->rate_hz >= 1 && q->rate_hz <= 100) ||
+        !(speed_pct >= 1 && speed_pct <= GROBO_PLAY_SPEED_MAX_PCT)) {
+        refuse(q, 400, "arg", "preview: motion or edit, speed_pct 1 to 1000, rate_hz 1 to 100");
+        return false;
+    }
+    snprintf(q->name, sizeof q->name, "%s", name ? name : "");
+    return true;
+}
+
 static void run_preview(ask *q)
 {
+    if (!read_preview(q)) {
+        return;
+    }
     const json_t *edit = json_object_get(q->body, "edit");
     library_file file = {.bytes = NULL};
     analysis n;
@@ -720,23 +758,7 @@ static void run_preview(ask *q)
     library_drop(&file);
 }
 
-void library_preview(serve *s, http_request *r, const json_t *body)
+void library_preview(serve *s, http_request *r)
 {
-    const char *name = json_string_value(json_object_get(body, "motion"));
-    const json_t *rate = json_object_get(body, "rate_hz"),
-                 *speed = json_object_get(body, "speed_pct");
-    double rate_hz = rate ? json_number_value(rate) : 30;
-    double speed_pct = speed ? json_number_value(speed) : 100;
-    if ((!name && !json_object_get(body, "edit")) || !(rate_hz >= 1 && rate_hz <= 100) ||
-        !(speed_pct >= 1 && speed_pct <= GROBO_PLAY_SPEED_MAX_PCT)) {
-        http_refuse(r, 400, "arg",
-                    "preview: motion or edit, speed_pct 1 to 1000, rate_hz 1 to 100");
-        return;
-    }
-    ask *q = new_ask(s, r, name ? name : "", run_preview);
-    if (q) {
-        q->body = json_deep_copy(body);
-        q->rate_hz = rate_hz;
-    }
-    put(s, q);
+    put(s, new_ask(s, r, "", run_preview));
 }

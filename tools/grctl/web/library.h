@@ -54,7 +54,7 @@ void library_list(serve *s, http_request *r);
 void library_get(serve *s, http_request *r, const char *name, double rate_hz);
 void library_get_file(serve *s, http_request *r, const char *name);
 void library_put(serve *s, http_request *r, const char *name, bool file);
-void library_preview(serve *s, http_request *r, const json_t *body);
+void library_preview(serve *s, http_request *r);
 /* Looks for what changed, now and then. */
 void library_look(serve *s);
 

@@ -206,7 +206,7 @@ static void serve_motions(serve *s, http_request *r, const json_t *body)
 
 static const plain plains[] = {
     {"/api/motions", WALL_READ, false, serve_motions},
-    {"/api/preview", WALL_ACT, false, library_preview},
+    {"/api/preview", WALL_DRAFT, false, NULL}, /* its body is read by the worker */
     {"/api/ik", WALL_ACT, false, pose_ik},
     {"/api/robot", WALL_READ, false, serve_robot},
     {"/api/state", WALL_READ, false, serve_state},
@@ -314,6 +314,10 @@ void serve_request(void *ctx, http_request *r)
     }
     if (!p && !v) {
         page_serve(r);
+        return;
+    }
+    if (p && !p->run) {
+        library_preview(s, r);
         return;
     }
     json_t *body = http_object(r);

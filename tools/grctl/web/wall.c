@@ -142,6 +142,7 @@ static bool is_type_allowed(const wall_request *r, wall_rule rule)
     case WALL_PLAIN:
         return is_type(type, "text/plain");
     case WALL_ACT:
+    case WALL_DRAFT:
         return false;
     case WALL_SAVE:
         return is_type(type, "application/octet-stream");

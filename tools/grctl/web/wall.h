@@ -25,7 +25,8 @@ typedef enum wall_rule {
     WALL_STOP,  /* POST that stops: as PLAIN, and it needs no content type */
     WALL_PLAIN, /* POST whose token may stand in its text/plain body: judged by who reads it */
     WALL_ACT,   /* POST that changes something */
-    WALL_SAVE   /* PUT */
+    WALL_SAVE,  /* PUT */
+    WALL_DRAFT  /* POST of a draft: as ACT, and as large as what is PUT */
 } wall_rule;
 
 typedef struct wall {

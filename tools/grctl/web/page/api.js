@@ -74,10 +74,14 @@ export class Api {
     }
 }
 
-/** Sends the newest of many targets: one request is under way, what comes meanwhile replaces itself. */
+/**
+ * Sends the newest of many targets: one request is under way, what comes meanwhile replaces itself.
+ * After each it rests for pauseMs: the server takes 100 a second of all pages.
+ */
 export class Newest {
-    constructor(send) {
+    constructor(send, pauseMs = 0) {
         this.send = send;
+        this.pauseMs = pauseMs;
         this.busy = false;
         this.next = undefined;
     }
@@ -92,6 +96,9 @@ export class Newest {
             const now = this.next;
             this.next = undefined;
             await this.send(now);
+            if (this.pauseMs) {
+                await new Promise((done) => setTimeout(done, this.pauseMs));
+            }
         }
         this.busy = false;
     }

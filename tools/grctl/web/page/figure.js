@@ -109,8 +109,8 @@ export class Figure {
     /**
      * @param host the element that holds the canvas and the labels
      * @param options { flat: never use WebGL, onPick: called with a joint or -1, onTouch: called when
-     * there is something to draw, onGrab: called with a point that is pressed, answers what it moves
-     * { move, end } or null, above, below: elements that cover the figure }
+     * there is something to draw, onGrab: called with a point that is pressed, and whether by a finger,
+     * answers what it moves { move, end } or null, above, below: elements that cover the figure }
      */
     constructor(host, options) {
         this.host = host;
@@ -519,7 +519,7 @@ export class Figure {
             moved = down.size > 1 ? 99 : 0;
             drop();
             if (down.size === 1 && event.button === 0 && !event.shiftKey && this.options.onGrab) {
-                grip = this.options.onGrab(...inside(event));
+                grip = this.options.onGrab(...inside(event), event.pointerType === 'touch');
             }
         });
         canvas.addEventListener('pointermove', (event) => {

@@ -42,7 +42,7 @@ class App {
             flat: new URLSearchParams(location.search).has('flat'),
             onPick: (joint) => this.select(joint === this.selected ? -1 : joint, true),
             onTouch: () => this.schedule(),
-            onGrab: (x, y) => this.make.active() ? this.make.hands.grab(x, y) : null,
+            onGrab: (x, y, touch) => this.make.active() ? this.make.hands.grab(x, y, touch) : null,
             above: id('look'), below: id('legend'),
         });
         this.see = new See(this);

@@ -17,6 +17,8 @@ const RATE_HZ = 30;
 const IMPORT_MS = 200; // frames of a file become key poses so far apart
 const MOST_KEYS = 3000; // of an answer: a file of more would lose the rest
 const NUDGE_M = 0.005;
+const PAUSE_MS = 60; // between two requests of a kind
+const FIELDS = ['at', 'way', 'key-name'];
 const FELT_MS = 2500; // a limit that was reached is told so long
 const NUDGES = [['Up', [0, 0, 1]], ['Down', [0, 0, -1]], ['Forward', [1, 0, 0]], ['Back', [-1, 0, 0]],
                 ['To its left', [0, 1, 0]], ['To its right', [0, -1, 0]]];
@@ -41,6 +43,8 @@ export class Make {
         this.other = null;
         this.copied = null;
         this.handle = null;
+        this.nudged = []; // that wait for the one before
+        this.nudges = 0;
         this.told = ['', ''];
         this.hands = new Hands(this);
         this.line = new Line(this.id('track'), app.t, {
@@ -48,9 +52,9 @@ export class Make {
             move: (id, ms) => this.edit(() => this.draft.setTime(id, ms, `move ${id}`)),
             moved: () => this.rest() });
         this.rows = new Rows(this.id('joints'), this);
-        this.looks = new Newest(() => this.preview());
-        this.ik = new Newest((job) => this.solve(job));
-        this.weighs = new Newest((pose) => this.weigh(pose));
+        this.looks = new Newest(() => this.preview(), PAUSE_MS);
+        this.ik = new Newest((job) => this.solve(job), PAUSE_MS / 2);
+        this.weighs = new Newest((pose) => this.weigh(pose), PAUSE_MS);
         this.listen();
     }
 
@@ -73,8 +77,15 @@ export class Make {
         this.id('as').addEventListener('keydown', (event) => event.key === 'Enter' && this.saveAs());
         change('at', () => this.field('at', (ms) => this.draft.setTime(this.draft.chosen, ms)));
         change('way', () => this.field('way', (ms) => this.draft.setTransition(this.draft.chosen, ms)));
-        change('key-name', () => this.edit(() => this.draft.setName(this.ensureKey(),
-                                                                    this.id('key-name').value)));
+        change('key-name', () => {
+            this.typing = null;
+            this.edit(() => this.draft.setName(this.ensureKey(), this.id('key-name').value));
+        });
+        for (const name of FIELDS) {
+            this.id(name).addEventListener('input', () => {
+                this.typing = name;
+            });
+        }
         click('limp', () => this.limp('limp'));
         click('hold', () => this.limp('hold'));
         click('capture', () => this.capture(false));
@@ -211,7 +222,7 @@ export class Make {
             return;
         }
         const was = this.draft.keys;
-        what();
+        this.draft.together(what);
         if (this.draft.keys !== was) {
             this.previewing = false;
             const key = this.draft.key();
@@ -231,16 +242,18 @@ export class Make {
     }
 
     rest() {
-        if (this.ik.busy) {
-            this.restLater = true;
+        this.restLater = this.solving || this.ik.next !== undefined;
+        if (this.restLater) {
             return;
         }
-        this.restLater = false;
         this.frozen = null;
         if (this.draft) {
             this.draft.rest();
         }
         this.settle();
+        if (this.nudged.length) {
+            this.nudge(this.nudged.shift());
+        }
     }
 
     /** Something else is shown: the pose is weighed, the page is drawn. */
@@ -307,7 +320,7 @@ export class Make {
                 what(ms);
             });
         }
-        this.fieldsKey = null;
+        this.fieldsKey = this.typing = null;
         this.app.schedule();
     }
 
@@ -417,11 +430,14 @@ export class Make {
     }
 
     nudge(way) {
+        if (this.solving || this.ik.next !== undefined) {
+            this.nudged.push(way);
+            return;
+        }
         const pose = this.shown(), handle = this.hands.handles().find((h) => h.name === this.handle);
         const at = this.hands.placed(pose)[handle.link];
-        this.nudges = (this.nudges || 0) + 1;
         this.moveHandle(this.handle, add([at[12], at[13], at[14]], way.map((v) => v * NUDGE_M)), pose,
-                        `nudge ${this.nudges}`);
+                        `nudge ${++this.nudges}`);
         this.rest();
     }
 
@@ -431,31 +447,37 @@ export class Make {
     }
 
     async solve({ name, p, pose, tag }) {
-        const { app, draft } = this, root = pose.root || stand(app.figure.body, pose.q);
+        const { app, draft } = this;
+        if (!draft) {
+            return;
+        }
+        const root = pose.root || stand(app.figure.body, pose.q);
+        this.solving = true;
         try {
             const made = await app.api.post('/api/ik', {
                 angle_deg: pose.q.map((v) => round(v / DEG, 6)), root: placement(root), handle: name,
                 p_m: p.map((v) => round(v, 6)) });
             if (draft === this.draft) {
-                this.takeSolved(name, made, pose, tag);
+                this.takeSolved(name, made, tag);
             }
         } catch (error) {
             app.fail(error);
         }
-        if (this.restLater && this.ik.next === undefined) {
-            this.ik.busy = false;
+        this.solving = false;
+        if (this.restLater) {
             this.rest();
         }
     }
 
-    takeSolved(name, made, pose, tag) {
+    takeSolved(name, made, tag) {
         const { draft } = this, angles = {};
         this.feel(made.reached ? null : this.app.t(made.limits.length ? 'at its limit' : 'out of reach'));
         if (!made.reached) {
             return;
         }
+        const now = this.degrees();
         made.angle_deg.forEach((v, j) => {
-            if (Math.abs(v - draft.at(this.at)[j]) > 0.001 || Math.abs(v - pose.q[j] / DEG) > 0.001) {
+            if (Math.abs(v - now[j]) > 0.001) {
                 angles[j] = round(v, 3);
             }
         });
@@ -493,7 +515,11 @@ export class Make {
     // ---- what the server says ------------------------------------------------------------------
 
     async preview() {
-        const { draft, app } = this, keys = draft.keys;
+        const { draft, app } = this;
+        if (!draft) {
+            return;
+        }
+        const { keys } = draft;
         const base = draft.name ? { motion: draft.name, etag: draft.etag } : {};
         try {
             const look = await app.api.post('/api/preview', { ...base, edit: draft.toEdit(), rate_hz: RATE_HZ });
@@ -515,12 +541,17 @@ export class Make {
         this.app.schedule();
     }
 
-    checked(check) {
-        const t = this.app.t;
-        return !check ? '' : check.refused ? `✕ ${check.refused.message}`
-            : check.falls_ms !== null ? t('▲ would fall at {0} s', seconds(check.falls_ms))
-            : check.warnings || check.errors ? t('▲ {0} warnings', check.warnings + check.errors)
-            : t('✓ stays within limits and balance');
+    /** What a check came to: { level, words }. */
+    checked(check, balance) {
+        const t = this.app.t, n = check ? check.warnings + check.errors : 0;
+        const lost = balance && !balance.assumed && balance.findings.find((f) => f.problem === 'zmp_margin'
+            ? f.worst < 0 : ['no_support', 'foot_slip'].includes(f.problem));
+        return !check ? { level: '', words: '' }
+            : check.refused ? { level: 'bad', words: `✕ ${check.refused.message}` }
+            : check.falls_ms !== null ? { level: 'bad', words: t('▲ would fall at {0} s', seconds(check.falls_ms)) }
+            : lost ? { level: 'warn', words: t('▲ out of balance from {0} s', seconds(lost.begin_ms)) }
+            : n ? { level: 'warn', words: t('▲ {0} warnings', n) }
+            : { level: 'ok', words: this.app.robot.body ? t('✓ stays within limits and balance') : t('✓ checked') };
     }
 
     async save() {
@@ -553,7 +584,7 @@ export class Make {
                 this.id('as').value = this.freeName(name.replace(/\.[^.]+$/, ''));
             }
             const said = [whole ? t('Saved as {0}.', name) : t('A copy was written as {0}.', name),
-                          this.checked(told.check), ...told.notes];
+                          this.checked(told.check, file.balance).words, ...told.notes];
             this.stale = false;
             this.tell(told.check && told.check.ok ? 'ok' : 'bad', said.join(' '));
         } catch (error) {
@@ -592,13 +623,12 @@ export class Make {
             }
         });
         this.edit(() => {
-            const pose = this.degrees();
-            const id = asNew ? draft.add(this.here() ? draft.length() + 1000 : this.at, pose)
+            const id = asNew ? draft.add(this.here() ? draft.length() + 1000 : this.at, this.degrees())
                              : this.ensureKey();
-            draft.setAngles(id, angles, asNew ? 'capture' : null);
-            this.setFeet(id, Object.keys(angles).map(Number), 'capture');
+            draft.setAngles(id, angles);
+            this.at = draft.key(id).time_ms;
+            this.setFeet(id, Object.keys(angles).map(Number));
         });
-        draft.rest();
         this.tell('', t('{0} joints were read from the robot.', Object.keys(angles).length));
     }
 
@@ -699,9 +729,13 @@ export class Make {
         if (other && other.frames.angle_deg.length) {
             return { ...sample(other.frames, this.at, app.toMatrix), note: other.name };
         }
-        const { state } = app;
-        return app.age() ? null : { q: state.angle_deg.map((v) => v === null ? NaN : v * DEG),
-                                    root: state.body ? app.toMatrix(state.body.root) : null };
+        const { state } = app, root = state.body ? app.toMatrix(state.body.root) : null, own = this.root();
+        if (root && own) { // a file has a world of its own: both stand in the same place
+            const pose = this.shown(), here = stand(app.figure.body, pose.q);
+            root[12] += own[12] - here[12];
+            root[13] += own[13] - here[13];
+        }
+        return app.age() ? null : { q: state.angle_deg.map((v) => v === null ? NaN : v * DEG), root };
     }
 
     legend(item) {
@@ -754,10 +788,11 @@ export class Make {
         this.id('changed').className = `pill ${this.stale || changed ? 'warn' : ''}`;
         this.id('save').disabled = !draft.name || !draft.changed() || !this.app.api.token || Boolean(this.saving);
         this.id('save-as').disabled = !this.app.api.token || Boolean(this.saving);
-        const check = this.look && this.look.check, verdict = this.id('verdict');
-        setText(verdict, this.felt ? `▲ ${this.felt}` : this.trouble ? `✕ ${this.trouble}` : this.checked(check));
-        verdict.className = this.felt ? 'warn' : this.trouble || check && (check.refused || check.falls_ms !== null)
-            ? 'bad' : check && (check.warnings || check.errors) ? 'warn' : 'ok';
+        const { level, words } = this.felt ? { level: 'warn', words: `▲ ${this.felt}` }
+            : this.trouble ? { level: 'bad', words: `✕ ${this.trouble}` }
+            : this.checked(this.look && this.look.check, this.look && this.look.balance);
+        setText(this.id('verdict'), words);
+        this.id('verdict').className = level;
     }
 
     writeKey() {
@@ -770,8 +805,10 @@ export class Make {
         const now = JSON.stringify(fields);
         if (now !== this.fieldsKey) {
             this.fieldsKey = now;
-            ['at', 'way', 'key-name'].forEach((name, i) => {
-                this.id(name).value = fields[i];
+            FIELDS.forEach((name, i) => { // what somebody types is left alone
+                if (name !== this.typing || document.activeElement !== this.id(name)) {
+                    this.id(name).value = fields[i];
+                }
             });
         }
         this.id('way').disabled = !key;
@@ -805,7 +842,7 @@ export class Make {
         const ctrl = event.ctrlKey || event.metaKey, marker = event.target.closest('.markers');
         const does = ctrl && !event.altKey ? {
             z: () => event.shiftKey ? this.redo() : this.undo(), y: () => this.redo(),
-            c: () => this.copy(), v: () => this.paste() }[event.key.toLowerCase()]
+            c: getSelection().isCollapsed ? () => this.copy() : null, v: () => this.paste() }[event.key.toLowerCase()]
             : marker ? this.markerKey(event) : event.key === ' ' && !event.target.matches('button, summary, input')
             ? () => this.togglePreview() : null;
         if (does) {

@@ -135,6 +135,16 @@ export class Draft {
         this.chosen = keys.some((key) => key.id === chosen) ? chosen : keys[0].id;
     }
 
+    /** Does several things that are one step back. */
+    together(what) {
+        const { keys, before } = this;
+        what();
+        const first = before.findIndex((step) => step.keys === keys);
+        if (first >= 0) {
+            before.length = first + 1;
+        }
+    }
+
     /** What comes next is a step of its own. */
     rest() {
         this.tag = null;

@@ -33,8 +33,11 @@ export class Hands {
     }
 
     /** A press at a point of the figure. @returns { move, end } or null: it turns the picture */
-    grab(x, y) {
+    grab(x, y, touch) {
         const { figure } = this;
+        if (!figure.at) {
+            return null;
+        }
         const handle = this.handles().find((one) => {
             const [hx, hy] = figure.onScreen(origin(figure.at[one.link]));
             return Math.hypot(hx - x, hy - y) < 20;
@@ -43,7 +46,7 @@ export class Hands {
             return this.grabHandle(handle, x, y);
         }
         const hit = figure.hitAt(x, y);
-        if (hit.joint < 0 || hit.joint !== this.make.app.selected && matchMedia('(pointer: coarse)').matches) {
+        if (hit.joint < 0 || touch && hit.joint !== this.make.app.selected) {
             return null; // a finger chooses first: it is put down to turn the picture too
         }
         return this.grabJoint(hit, x, y);

@@ -138,9 +138,10 @@ export class Line {
         pen.setTransform(scale, 0, 0, scale, 0, 0);
         pen.font = '11px system-ui, sans-serif';
         this.seconds(pen, css, h);
-        const range = this.bounds(view), y = (v) => 8 + (h - 30) * (1 - (v - range[0]) / (range[1] - range[0]));
+        const range = this.bounds(view);
+        const y = (v) => 8 + (h - 30) * (1 - (v - range[0]) / (range[1] - range[0]));
         if (view.joint >= 0) {
-            this.limits(pen, view, y, w);
+            this.limits(pen, view, range, y, w);
         }
         for (const key of view.draft.keys) {
             const chosen = key.id === view.draft.chosen;
@@ -192,8 +193,7 @@ export class Line {
         return [l - lack - (u - l) * 0.1, u + lack + (u - l) * 0.1];
     }
 
-    limits(pen, { joint, draft, css, look, other }, y, w) {
-        const range = this.bounds({ joint, draft, look, other });
+    limits(pen, { joint, draft, css }, range, y, w) {
         pen.textAlign = 'right';
         pen.textBaseline = 'middle';
         for (const v of range.map((r, n) => n ? r - (range[1] - range[0]) * 0.06
@@ -257,7 +257,7 @@ export class Line {
         pen.globalAlpha = 1;
     }
 
-    /** Where keys set the joint; hollow, where one only passes by. */
+    /** Where keys set the joint. */
     dots(pen, { draft, joint, css }, y) {
         for (const key of draft.keys) {
             const v = key.angle_deg[joint];

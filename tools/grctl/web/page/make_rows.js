@@ -13,6 +13,7 @@ export class Rows {
 
     setRobot(robot) {
         this.rows = robot.joints.map((joint) => this.row(joint));
+        this.drawn = null;
         this.list.replaceChildren(...this.rows.map((row) => row.line));
     }
 

@@ -26,6 +26,7 @@ export const JA_MAKE = {
     '{0} has too many key poses to be edited here.': '{0} はキーポーズが多すぎて、ここでは編集できません。',
     'Taken from the frames of {0}, a key pose every {1} s. Save it under another name.':
         '{0} のフレームから {1} 秒ごとにキーポーズを作りました。別名で保存してください。',
+    '▲ out of balance from {0} s': '▲ {0} 秒からバランスを失います',
     Undone: '元に戻しました', 'Done again': 'やり直しました', Copied: 'コピーしました', 'out of reach': '届かない',
     '{0} is not set by this key pose': 'このキーポーズでは {0} を指定しない',
     '(not set by this key pose)': '(このキーポーズでは指定なし)',
