@@ -43,8 +43,11 @@ static void give_up(grobo_robot *robot)
 {
     int silent = silent_joint(robot);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_way_is_short(&robot->axes[j])) {
-            grobo_i_axis_cut(&robot->axes[j]);
+        grobo_robot_axis *axis = &robot->axes[j];
+        if (grobo_i_way_is_short(axis)) {
+            grobo_i_axis_cut(axis);
+            axis->way.from_rad = axis->way.to_rad;
+            axis->way.from_us = axis->way.to_us = robot->now_us;
         }
     }
     grobo_i_gate_soften(robot);
