@@ -171,7 +171,8 @@ struct grobo_driver {
     int64_t watchdog_us; /**< what watchdog() is told whenever joints are to move, until the engine
                               leaves, or twice the interval of readings where that is longer; not
                               where there are none. 0: nothing */
-    bool goal_wakes;     /**< a goal switches torque on: joints without it get none but to hold */
+    bool goal_wakes;     /**< a goal switches torque on: joints without it get none but to hold, and
+                              none that may have restarted before they were read again */
     bool no_speed;       /**< its servos tell no speed: the engine takes that between two angles */
 
     /** Is the robot there? Parts are tried one after the other until one is answered. */

@@ -63,7 +63,8 @@ typedef struct grobo_robot_config {
     double approach_dps;             /**< deg/s of the first move, > 0; default the driver's */
     int64_t sense_interval_us;       /**< background: each joint once in this time, while playing in
                                           1 s at most; 1 is as fast as the wire allows; default 1 s;
-                                          GROBO_SENSE_NEVER: motions are played unwatched */
+                                          GROBO_SENSE_NEVER: motions are played unwatched; joints
+                                          that a goal switches on are heard all the same */
     bool sense_position_only;        /**< background reads angles only (cheaper): motions are played
                                           unwatched, heat and current stop nothing */
     bool manual_torque;              /**< move and play refuse joints without torque; default: they

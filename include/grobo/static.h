@@ -118,6 +118,7 @@ typedef struct grobo_robot_axis {
     int64_t gave_way_us;       /* in free mode: when a hand pushed or turned it last */
     int64_t current_since_us;  /* above its limit since; GROBO_NEVER_US: it is not */
     int64_t told_us;           /* when a frame that moves or switches it left last */
+    int64_t heard_us;          /* its servo, with torque, answered what it was asked then */
     grobo_robot_way way;       /* the move that the last frame sent it on */
     uint32_t last;             /* number of the target that left last; 0: what had none */
     uint32_t next;             /* number of the target that waits for the line; 0: none */
@@ -217,6 +218,7 @@ struct grobo_robot {
     int64_t sense_us;       /* when the background reads next */
     uint32_t motion;        /* number of the last target */
     int64_t renewed_us;     /* when the ways in segments were told further */
+    int64_t hear_us;        /* joints that were not heard for long are not asked before */
     uint32_t told_item;     /* clip of the sequencer of which it was said that none watches it */
     uint32_t motion_us;     /* wire time of the last motion frames */
     grobo_joint_mask round; /* joints still to be read in this background round */
@@ -224,6 +226,8 @@ struct grobo_robot {
     grobo_joint_mask clip_joints;   /* of the motion that is played, and those behind it */
     grobo_joint_mask played_joints; /* sent where they go by the sequencer */
     grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
+    grobo_joint_mask halts_owed;    /* they moved when they were to halt, and may have restarted */
+    grobo_joint_mask heard_round;   /* of the joints that were not heard for long */
     uint8_t reply[GROBO_FRAME_MAX_BYTES];
     grobo_exchange built;                     /* the frame that is being made */
     uint8_t frames[GROBO_ROBOT_FRAMES_BYTES]; /* of the slots, one behind the other */
@@ -235,6 +239,7 @@ struct grobo_robot {
     unsigned depth;        /* calls into the engine, one inside another */
     int acting;            /* number of the job whose step runs; 0: none */
     bool other_read;       /* in free mode: the last reading was of a joint that is not free */
+    bool heard_read;       /* the last reading was of a joint that was not heard for long */
     bool link;
     bool answered;      /* the last frame given out was: none of it waits any more */
     bool queue_may_go;  /* a job has ended since the queue was looked at */

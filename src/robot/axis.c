@@ -86,6 +86,19 @@ bool grobo_i_axis_is_on(const grobo_robot_axis *axis)
     return axis->torque_known && axis->state.torque == GROBO_TORQUE_ON;
 }
 
+bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
+{
+    return robot->driver->goal_wakes &&
+           robot->now_us - robot->axes[joint].heard_us > GROBO_I_RESTART_US;
+}
+
+void grobo_i_axis_cut(grobo_robot_axis *axis)
+{
+    axis->way.to_rad = grobo_i_way_at(&axis->way, axis->told_to_us);
+    axis->way.to_us = grobo_i_sooner(axis->way.to_us, axis->told_to_us);
+    axis->in_segments = false;
+}
+
 bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
 {
     bool limp = axis->torque_known && axis->state.torque != GROBO_TORQUE_ON;

@@ -13,8 +13,10 @@ static uint32_t cost_of(const grobo_bus *bus, const grobo_exchange *exchange)
     return cost.total_us;
 }
 
-/* Every joint to its initial angle, in as many frames as the driver needs. */
-static int motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us)
+/* Every joint to its initial angle, in as many frames as the driver needs. *answered: servos answer
+ * their goals. */
+static int motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us,
+                       bool *answered)
 {
     grobo_target target = {0};
     int more = 1;
@@ -26,6 +28,7 @@ static int motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *c
     for (int part = 0; more > 0 && part < GROBO_ROBOT_SLOTS; part++) {
         grobo_exchange exchange = {0};
         more = driver->posture(driver, ctx, &target, part, &exchange);
+        *answered = part == 0 ? exchange.reply.kind != GROBO_REPLY_NONE : *answered;
         *us += more > 0 ? cost_of(bus, &exchange) : 0;
     }
     return more;
@@ -62,15 +65,15 @@ static int reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *
 
 /*
  * With k whole readings between two frames, the largest rate is 1 / (motion + k readings), and k
- * readings a frame are enough where k * rate * GROBO_WATCH_US >= joints. The smallest k that is
+ * readings a frame are enough where k * rate * watch_us >= joints. The smallest k that is
  * enough gives the largest rate.
  */
-static uint16_t watched_rate(const grobo_budget *budget, uint32_t joints)
+static uint16_t watched_rate(const grobo_budget *budget, uint32_t joints, uint32_t watch_us)
 {
     for (uint32_t k = 1; k <= joints; k++) {
         uint32_t period_us = budget->motion_us + k * budget->reading_us;
         uint32_t hz = period_us == 0 ? GROBO_PLAY_RATE_MAX_HZ : SECOND_US / period_us;
-        if (k * hz * (GROBO_WATCH_US / SECOND_US) >= joints) {
+        if ((uint64_t)k * hz * watch_us >= (uint64_t)joints * SECOND_US) {
             return (uint16_t)(hz < GROBO_PLAY_RATE_MAX_HZ ? hz : GROBO_PLAY_RATE_MAX_HZ);
         }
     }
@@ -81,15 +84,17 @@ int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
                    grobo_budget *budget)
 {
     grobo_budget found;
-    int result = motion_cost(bus, driver, ctx, &found.motion_us);
+    bool answered = false;
+    int result = motion_cost(bus, driver, ctx, &found.motion_us, &answered);
     if (result >= 0) {
         result = reading_cost(bus, driver, ctx, &found.reading_us);
     }
     if (result < 0) {
         return result;
     }
-    found.watched_hz =
-        watched_rate(&found, driver->sense_many != NULL ? 1 : driver->model->n_joints);
+    uint32_t readings = driver->sense_many != NULL ? 1 : driver->model->n_joints;
+    uint32_t watch_us = driver->goal_wakes && !answered ? GROBO_I_RESTART_US : GROBO_WATCH_US;
+    found.watched_hz = watched_rate(&found, readings, watch_us);
     found.default_hz =
         found.watched_hz < GROBO_PLAY_RATE_HZ ? found.watched_hz : GROBO_PLAY_RATE_HZ;
     *budget = found;

@@ -224,24 +224,36 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
     return fmin(fmax(axis->next_rad, here_rad - most_rad), here_rad + most_rad);
 }
 
+/* Where the joints of an order are to go by now, but for those that it would wake. @return whether
+ * there are such. */
+static bool aim_goal(const grobo_robot *robot, const grobo_robot_order *order, bool soft,
+                     grobo_target *target)
+{
+    bool sleeps = false;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool last = axis->next == 0 && axis->last == order->number; /* again, or its next part */
+        bool meant = grobo_i_has(order->joints, j) && (axis->next == order->number || last);
+        if (meant && grobo_i_may_sleep(robot, j)) {
+            sleeps = true;
+        } else if (meant) {
+            target->posture.angle_rad[j] = order->rests ? rest_of(robot, j, soft) : axis->next_rad;
+            target->joint_time_us[j] = axis->next_time_us;
+            target->posture.set |= GROBO_JOINT_BIT(j);
+        }
+    }
+    return sleeps;
+}
+
 /* To its target, as far as no later one has taken its place; in more time where it leaves late. */
 static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
     if (robot->trip.latched && (!order->stops || robot->trip.trip == GROBO_TRIP_ESTOP)) {
         return GROBO_ERR_LATCHED;
     }
-    bool soft = robot->soft || order->soft;
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        const grobo_robot_axis *axis = &robot->axes[j];
-        bool last = axis->next == 0 && axis->last == order->number; /* again, or its next part */
-        if (grobo_i_has(order->joints, j) && (axis->next == order->number || last)) {
-            target->posture.angle_rad[j] = order->rests ? rest_of(robot, j, soft) : axis->next_rad;
-            target->joint_time_us[j] = axis->next_time_us;
-            target->posture.set |= GROBO_JOINT_BIT(j);
-        }
-    }
+    bool sleeps = aim_goal(robot, order, robot->soft || order->soft, target);
     if (target->posture.set == 0) {
-        return GROBO_ERR_STALE;
+        return sleeps ? GROBO_ERR_EMPTY : GROBO_ERR_STALE;
     }
     (void)clamp_target(robot, &target->posture); /* one may rest outside */
     int result = judge_joints(robot, target->posture.set);
@@ -259,7 +271,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
         const grobo_robot_axis *axis = &robot->axes[j];
         bool moves = axis->sensed && grobo_i_axis_moves(axis, robot->now_us) &&
                      (!robot->driver->goal_wakes || axis->wants_torque || grobo_i_axis_is_on(axis));
-        if (grobo_i_has(order->joints, j) && moves) {
+        if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
             target->posture.angle_rad[j] = grobo_i_axis_commanded(axis, rest_us);
             target->joint_time_us[j] = HALT_TIME_US;
             target->posture.set |= GROBO_JOINT_BIT(j);
@@ -382,6 +394,10 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
     grobo_i_gate_single(robot);
     for (int j = 0; j < driver->model->n_joints; j++) {
         double most_us = (double)target->joint_time_us[j] * RAW_TOLERANCE;
+        if (grobo_i_has(target->posture.set, j) && grobo_i_may_sleep(robot, j)) {
+            robot->fault_joint = j;
+            return GROBO_ERR_STALE;
+        }
         if (grobo_i_has(target->posture.set, j) &&
             most_us < time_of_way(robot, j, target->posture.angle_rad[j], robot->soft)) {
             robot->fault_joint = j;
@@ -398,6 +414,9 @@ static int judge_segment(grobo_robot *robot, const grobo_robot_order *order, gro
         return GROBO_ERR_LATCHED;
     }
     grobo_i_segments_aim(robot, order->joints, target);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        target->posture.set &= ~(grobo_i_may_sleep(robot, j) ? GROBO_JOINT_BIT(j) : 0);
+    }
     return target->posture.set == 0 ? GROBO_ERR_EMPTY : judge_joints(robot, target->posture.set);
 }
 
@@ -493,6 +512,22 @@ int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_r
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
+/* Where a way begins, which is gone at a speed by servos that are told no time. One that is behind
+ * comes to rest no later for that: a halt counts the way from where it was read. */
+static double begin_of(const grobo_robot *robot, const grobo_robot_order *order,
+                       const grobo_target *target, int joint)
+{
+    double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
+    double to_rad = target->posture.angle_rad[joint];
+    double behind_rad = robot->axes[joint].state.angle_rad - to_rad;
+    if (order->deed != GROBO_I_DEED_HALT || fabs(behind_rad) <= fabs(from_rad - to_rad)) {
+        return from_rad;
+    }
+    double most_rad = speed_limit(robot, joint, true) * (double)target->joint_time_us[joint] / 1e6;
+    double way_rad = fmin(fabs(behind_rad), fmax(most_rad, fabs(from_rad - to_rad)));
+    return to_rad + copysign(way_rad, behind_rad);
+}
+
 /* What the frames of an order ask for. */
 static void aim(const grobo_robot *robot, const grobo_robot_order *order, const saying *says,
                 grobo_target *target)
@@ -502,7 +537,7 @@ static void aim(const grobo_robot *robot, const grobo_robot_order *order, const 
         (void)grobo_i_segments_cut(robot, order, &says->target, target);
     }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        target->from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
+        target->from_rad[j] = begin_of(robot, order, target, j);
     }
 }
 
@@ -586,6 +621,7 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
             axis->way = (grobo_robot_way){from_rad, target->posture.angle_rad[j], now_us,
                                           now_us + target->joint_time_us[j]};
             axis->own_until_us = 0;
+            robot->halts_owed &= ~GROBO_JOINT_BIT(j);
             axis->has_target = true;
             axis->adrift = axis->held = axis->in_segments = axis->off_way = false;
             if (order->deed == GROBO_I_DEED_GOAL &&
@@ -603,6 +639,7 @@ static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
             grobo_i_axis_rest(&robot->axes[j], robot->now_us);
             robot->axes[j].own_until_us = 0;
             robot->axes[j].has_target = false;
+            robot->halts_owed &= ~GROBO_JOINT_BIT(j);
         }
     }
 }

@@ -126,6 +126,7 @@ void grobo_i_robot_assert(const grobo_robot *robot)
     GROBO_ASSERT(robot->acting == 0);
     GROBO_ASSERT(robot->link || !grobo_robot_is_playing(robot));
     GROBO_ASSERT(robot->events_head < GROBO_ROBOT_EVENTS && robot->events_n <= GROBO_ROBOT_EVENTS);
-    grobo_joint_mask told = robot->round | robot->other_round | robot->free_joints;
+    grobo_joint_mask told =
+        robot->round | robot->other_round | robot->heard_round | robot->free_joints;
     GROBO_ASSERT(((told | robot->played_joints) & ~grobo_i_all_joints(robot)) == 0);
 }

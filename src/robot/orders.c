@@ -176,17 +176,64 @@ void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints)
 
 /* ---- halting --------------------------------------------------------------------------------- */
 
-void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
+static void send_halt(grobo_robot *robot, grobo_joint_mask joints)
 {
     grobo_robot_order order = {.joints = joints,
                                .asked_us = robot->now_us,
                                .deed = GROBO_I_DEED_HALT,
                                .each = true,
                                .stops = true};
-    grobo_i_slots_cancel(robot, GROBO_I_USE_MOTION);
-    grobo_i_slots_cancel(robot, GROBO_I_USE_SEGMENT);
     (void)send_order(robot, order,
                      &(way_out){GROBO_I_USE_HALT, GROBO_PRIORITY_STOP, GROBO_NEVER_US});
+}
+
+/* When a joint that may have restarted may be halted: by then a servo that has would have said so.
+ * One that is still silent then may hear what it does not answer. */
+static int64_t may_halt_at(const grobo_robot *robot, int joint)
+{
+    bool sleeps = grobo_i_may_sleep(robot, joint);
+    return sleeps ? robot->axes[joint].heard_us + 3 * GROBO_I_RESTART_US : robot->now_us;
+}
+
+void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
+{
+    grobo_i_slots_cancel(robot, GROBO_I_USE_MOTION);
+    grobo_i_slots_cancel(robot, GROBO_I_USE_SEGMENT);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (grobo_i_has(joints, j) && may_halt_at(robot, j) > robot->now_us) {
+            robot->halts_owed |= GROBO_JOINT_BIT(j);
+            if (robot->axes[j].in_segments) {
+                grobo_i_axis_cut(&robot->axes[j]);
+            }
+        }
+    }
+    joints &= ~robot->halts_owed;
+    if (joints != 0) {
+        send_halt(robot, joints);
+    }
+}
+
+void grobo_i_gate_halt_owed(grobo_robot *robot)
+{
+    grobo_joint_mask joints = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        bool now = grobo_i_has(robot->halts_owed, j) && may_halt_at(robot, j) <= robot->now_us;
+        joints |= now ? GROBO_JOINT_BIT(j) : 0;
+    }
+    robot->halts_owed &= ~joints;
+    if (joints != 0) {
+        send_halt(robot, joints);
+    }
+}
+
+int64_t grobo_i_gate_halt_at(const grobo_robot *robot)
+{
+    int64_t at_us = GROBO_NEVER_US;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        bool owed = grobo_i_has(robot->halts_owed, j);
+        at_us = owed ? grobo_i_sooner(at_us, may_halt_at(robot, j)) : at_us;
+    }
+    return at_us;
 }
 
 /* ---- torque ---------------------------------------------------------------------------------- */

@@ -238,13 +238,14 @@ static void give_up(grobo_robot *robot, int error)
 void grobo_i_play_done(grobo_robot_slot *slot, int result)
 {
     grobo_robot *robot = slot->robot;
+    bool refused = slot->refused && result != GROBO_ERR_EMPTY; /* its joints are read first */
     robot->counters.motion_frames += result >= 0;
     if (slot->due_us != GROBO_NEVER_US) {
         count_played(slot, result);
-        if (slot->refused) {
+        if (refused) {
             give_up(robot, result);
         }
-    } else if (slot->refused) {
+    } else if (refused) {
         grobo_i_job_refused(slot, result);
     }
 }

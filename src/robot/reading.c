@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "src/base/instant.h"
 #include "src/robot/robot.h"
 
 static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
@@ -191,6 +192,24 @@ bool grobo_i_is_loss(int result)
            result == GROBO_ERR_CHECKSUM || result == GROBO_ERR_MISMATCH;
 }
 
+/* What a servo says shows that it does not restart; that it has torque, only a reading shows: the
+ * answer to a goal comes from one that the goal has woken, too. */
+static void note_heard(const grobo_robot_slot *slot, const grobo_joint_state *got)
+{
+    grobo_robot_axis *axis = &slot->robot->axes[slot->joint];
+    bool read = slot->reads || slot->many;
+    bool on = (got->valid & GROBO_FIELD_TORQUE) != 0 && got->torque == GROBO_TORQUE_ON;
+    if ((read && on) || slot->robot->now_us - axis->heard_us <= GROBO_I_RESTART_US) {
+        axis->heard_us = grobo_i_later(axis->heard_us, slot->asked_us);
+    }
+}
+
+static void note_silence(grobo_robot *robot, int joint)
+{
+    int64_t before_us = robot->now_us - GROBO_I_RESTART_US - 1;
+    robot->axes[joint].heard_us = grobo_i_sooner(robot->axes[joint].heard_us, before_us);
+}
+
 /* A driver may make anything of what comes off the wire. */
 static bool is_finite(const grobo_joint_state *got)
 {
@@ -218,9 +237,13 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
     if (result >= 0) {
         result = GROBO_OK;
         take_reading(robot, joint, slot->asked_us, got);
+        note_heard(slot, got);
     } else {
         robot->axes[joint].status = result;
-        robot->axes[joint].lost += grobo_i_is_loss(result);
+        if (grobo_i_is_loss(result)) {
+            robot->axes[joint].lost++;
+            note_silence(robot, joint);
+        }
         if (result == GROBO_ERR_SETUP) {
             take_no_angles(robot, joint, slot->asked_us, got);
         }

@@ -79,6 +79,14 @@ grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint);
 bool grobo_i_torque_is_limited(const grobo_robot *robot, int joint);
 /* True if it is known to have torque. */
 bool grobo_i_axis_is_on(const grobo_robot_axis *axis);
+/* A servo that restarts hears nothing for longer: KRS find out for 500 ms how they are to be driven
+ * (ICS 3.5 manual). Of the others the makers do not say. */
+#define GROBO_I_RESTART_US 400000
+/* True if its servo may have restarted since it was known to have torque, and its next goal would
+ * wake it, wherever it sank to: nothing came from it for so long, or a reply was lost. */
+bool grobo_i_may_sleep(const grobo_robot *robot, int joint);
+/* The way of a joint in segments ends where it was told to go. */
+void grobo_i_axis_cut(grobo_robot_axis *axis);
 /* True while a joint is on the way it was sent on, or a target waits for the line. */
 bool grobo_i_moving(const grobo_robot *robot, int64_t now_us);
 /* True if one of these moves though nothing was asked of it, nobody knows where to. */
@@ -261,8 +269,12 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *target, const gro
 /* Tells these joints more of the ways in segments that they are on. */
 void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints);
 /* Stops those of the joints that are being moved where they are, softly; targets that wait are
- * cancelled. */
+ * cancelled. One that may have restarted is owed its halt until it was heard, or is silent for
+ * longer than that takes. */
 void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints);
+/* Halts those that are owed it, where it is time; when it is. */
+void grobo_i_gate_halt_owed(grobo_robot *robot);
+int64_t grobo_i_gate_halt_at(const grobo_robot *robot);
 /* Joints in a frame; small frames get through a line that loses bytes. */
 typedef enum grobo_i_chunk { GROBO_I_WHOLE = GROBO_JOINTS_MAX, GROBO_I_SMALL = 4 } grobo_i_chunk;
 /* Takes up to `chunk` joints out of *joints. */

@@ -7,6 +7,7 @@
  * A joint whose segment was over before the next one left stands where it ended. Then the host was
  * away: the move is over, and does not continue by itself.
  */
+#include "src/base/instant.h"
 #include "src/robot/robot.h"
 
 static bool has_stopped(const grobo_robot_axis *axis, int64_t now_us)
@@ -20,6 +21,17 @@ static bool is_in_segments(const grobo_robot_axis *axis, int64_t now_us)
     return axis->in_segments;
 }
 
+/* The first of the joints that stopped because nothing came from their servos; -1: none. */
+static int silent_joint(const grobo_robot *robot)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (has_stopped(&robot->axes[j], robot->now_us) && grobo_i_may_sleep(robot, j)) {
+            return j;
+        }
+    }
+    return -1;
+}
+
 static bool goes_on(const grobo_robot_task *job)
 {
     return job->kind == GROBO_JOB_MOVE || job->kind == GROBO_JOB_PLAY ||
@@ -29,19 +41,24 @@ static bool goes_on(const grobo_robot_task *job)
 /* As where the host stalls in a motion: what moves is over, and nothing is latched. */
 static void give_up(grobo_robot *robot)
 {
+    int silent = silent_joint(robot);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_way_is_short(axis)) {
-            double stands_rad = grobo_i_way_at(&axis->way, axis->told_to_us);
-            axis->way = (grobo_robot_way){stands_rad, stands_rad, robot->now_us, robot->now_us};
-            axis->in_segments = false;
+            grobo_i_axis_cut(axis);
+            axis->way.from_rad = axis->way.to_rad;
+            axis->way.from_us = axis->way.to_us = robot->now_us;
         }
     }
-    robot->counters.stalls++;
     grobo_i_gate_soften(robot);
     if (grobo_robot_is_playing(robot)) {
         grobo_sequencer_reset(&robot->sequencer); /* what it sends next is from elsewhere */
     }
+    if (silent >= 0) {
+        grobo_i_trip(robot, GROBO_TRIP_LOST_REPLIES, silent, robot->axes[silent].lost, true);
+        return;
+    }
+    robot->counters.stalls++;
     grobo_i_trip(robot, GROBO_TRIP_HOST_STALL, -1,
                  (double)(robot->now_us - robot->renewed_us - GROBO_SEGMENT_RENEW_US) / 1000.0,
                  false);
@@ -51,6 +68,9 @@ static void give_up(grobo_robot *robot)
 
 void grobo_i_segments_step(grobo_robot *robot)
 {
+    if (robot->halts_owed != 0) {
+        grobo_i_gate_halt_owed(robot);
+    }
     if (!robot->in_segments) {
         return;
     }
@@ -68,11 +88,13 @@ void grobo_i_segments_step(grobo_robot *robot)
 
 int64_t grobo_i_segments_deadline(const grobo_robot *robot)
 {
+    int64_t at_us = grobo_i_gate_halt_at(robot);
     if (!robot->in_segments) {
-        return GROBO_NEVER_US;
+        return at_us;
     }
-    int64_t at_us = grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT) ? GROBO_NEVER_US
-                                                                   : grobo_i_segments_due(robot);
+    at_us = grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT)
+                ? at_us
+                : grobo_i_sooner(at_us, grobo_i_segments_due(robot));
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_way_is_short(axis) && axis->told_to_us < at_us) {

@@ -78,6 +78,36 @@ static void free_joint(grobo_robot *robot, int joint)
     }
 }
 
+/* ---- servos that a goal wakes ---------------------------------------------------------------- */
+
+/* Joints that hold are heard so often that none is taken to have restarted. */
+#define HEAR_US (GROBO_I_RESTART_US / 2)
+/* Who has not answered is asked again so late: some replies lost in a row are no short
+ * disturbance. */
+#define HEAR_AGAIN_US 40000
+
+static bool is_unheard(const grobo_robot_axis *axis, int64_t now_us)
+{
+    return grobo_i_axis_is_on(axis) && now_us - axis->heard_us >= HEAR_US;
+}
+
+static grobo_joint_mask unheard(const grobo_robot *robot)
+{
+    bool now = robot->driver->goal_wakes && robot->now_us >= robot->hear_us;
+    return now ? grobo_i_joints_that(robot, is_unheard) : 0;
+}
+
+/* When the first of them will be. */
+static int64_t unheard_at(const grobo_robot *robot)
+{
+    int64_t at_us = GROBO_NEVER_US;
+    for (int j = 0; robot->driver->goal_wakes && j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        at_us = grobo_i_axis_is_on(axis) ? grobo_i_sooner(at_us, axis->heard_us + HEAR_US) : at_us;
+    }
+    return grobo_i_later(at_us, robot->hear_us);
+}
+
 /* ---- the background -------------------------------------------------------------------------- */
 
 /* Not in the silence after a flash write or a restart. */
@@ -86,7 +116,8 @@ static bool background_wanted(const grobo_robot *robot)
     if (robot->job->kind == GROBO_JOB_COMMAND) {
         return false;
     }
-    return robot->config.sense_interval_us != GROBO_SENSE_NEVER || robot->free_joints != 0;
+    return robot->config.sense_interval_us != GROBO_SENSE_NEVER || robot->free_joints != 0 ||
+           unheard_at(robot) != GROBO_NEVER_US;
 }
 
 /* How often each joint is to be read. */
@@ -120,6 +151,13 @@ static int next_in_time(grobo_robot *robot, grobo_joint_mask *round, grobo_joint
         robot->sense_us = robot->now_us; /* the wire was too slow: no burst to catch up */
     }
     return next_of(round, all);
+}
+
+/* Where nothing is read in the background nothing is due but what was not heard for long. */
+static bool is_due(const grobo_robot *robot)
+{
+    bool never = robot->config.sense_interval_us == GROBO_SENSE_NEVER;
+    return robot->free_joints != 0 || (!never && robot->now_us >= robot->sense_us);
 }
 
 /* Joints that hold while others are free are watched in turn with them, and never twice. */
@@ -161,7 +199,8 @@ static int64_t hurry_at(const grobo_robot *robot)
     first.priority = GROBO_PRIORITY_MOTION;
     int64_t since_us = slot->txn.sent_us > slot->given_us ? slot->txn.sent_us : slot->given_us;
     int readings = slot->many ? 1 : robot->driver->model->n_joints;
-    int64_t late_us = since_us + GROBO_WATCH_US / HURRY_PART / readings;
+    int64_t watch_us = unheard(robot) != 0 ? GROBO_I_RESTART_US : GROBO_WATCH_US;
+    int64_t late_us = since_us + watch_us / HURRY_PART / readings;
     int64_t free_us = grobo_bus_free_at(&robot->bus, robot->now_us);
     int64_t may_us = grobo_i_bus_start_at(&robot->bus, &first, robot->now_us);
     return may_us > free_us && may_us > late_us ? may_us : late_us;
@@ -187,6 +226,9 @@ static void hurry(grobo_robot *robot)
 /* Of a joint in free mode everything, and of one that nothing is known of: it may be on a way. */
 static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
 {
+    if (robot->heard_read) {
+        return grobo_i_may_sleep(robot, joint) ? GROBO_SENSE_GOAL : GROBO_SENSE_POSITION;
+    }
     if (grobo_i_has(robot->free_joints, joint)) {
         return GROBO_SENSE_ALL;
     }
@@ -197,10 +239,15 @@ static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
     return robot->axes[joint].sensed ? GROBO_SENSE_FULL : GROBO_SENSE_ALL;
 }
 
-/* Which joint is read next. */
+/* Which joint is read next; in turn with the others one that was not heard for long. */
 static int next_reading(grobo_robot *robot)
 {
     grobo_joint_mask all = grobo_i_all_joints(robot);
+    grobo_joint_mask quiet = unheard(robot);
+    robot->heard_read = quiet != 0 && !(robot->heard_read && is_due(robot));
+    if (robot->heard_read) {
+        return next_of(&robot->heard_round, quiet);
+    }
     if (robot->free_joints == 0) {
         return next_in_time(robot, &robot->round, all);
     }
@@ -239,9 +286,9 @@ static int ask_next(grobo_robot *robot, grobo_robot_slot *slot)
 
 void grobo_i_sense_step(grobo_robot *robot)
 {
-    bool due = robot->free_joints != 0 || robot->now_us >= robot->sense_us;
     hurry(robot);
-    if (!due || !background_wanted(robot) || grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
+    if ((!is_due(robot) && unheard(robot) == 0) || !background_wanted(robot) ||
+        grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
         return;
     }
     grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_SENSE);
@@ -261,6 +308,8 @@ void grobo_i_sense_done(const grobo_robot_slot *slot, int result)
     grobo_robot *robot = slot->robot;
     int joint = slot->joint;
     bool is_free = !slot->many && grobo_i_has(robot->free_joints, joint);
+    robot->hear_us =
+        result < 0 && robot->heard_read ? robot->now_us + HEAR_AGAIN_US : robot->hear_us;
     if (result >= 0 && is_free) {
         free_joint(robot, joint);
     }
@@ -282,5 +331,9 @@ int64_t grobo_i_sense_deadline(const grobo_robot *robot)
     if (grobo_i_slot_find(robot, GROBO_I_USE_SENSE) < 0) {
         return GROBO_NEVER_US; /* the end of one that waits for the line makes room */
     }
-    return robot->free_joints != 0 ? robot->now_us : robot->sense_us;
+    bool never = robot->config.sense_interval_us == GROBO_SENSE_NEVER;
+    int64_t due_us = robot->free_joints != 0 ? robot->now_us
+                     : never                 ? GROBO_NEVER_US
+                                             : robot->sense_us;
+    return grobo_i_sooner(due_us, unheard_at(robot));
 }

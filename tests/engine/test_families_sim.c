@@ -3,6 +3,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -46,8 +47,6 @@ static void a_faulty_line_moves_nothing_wrong(void **state)
          f = family_row((size_t)(f - family_row(0)) + 1)) {
         grobo_robot_config config = watched;
         config.lost_replies = -1;
-        /* Frames of KRS have no sum: a flipped bit may read as heat, and stops the arm. */
-        config.temperature_c = f->table == &grobo_ics_table ? -1 : 0;
         family_start(&kit, f, &config, NULL);
         assert_int_equal(family_move(&kit, 0, 1000), GROBO_OK);
         assert_int_equal(grobo_sim_set_faults(&kit.sim, faults, strlen(faults)), 5);
@@ -262,9 +261,111 @@ static void a_hand_moves_a_free_joint(void **state)
     }
 }
 
+static int woken;
+
+static void count_woken(family_kit *k, const grobo_sim_event *event)
+{
+    (void)k;
+    woken += event->kind == GROBO_SIM_TORQUE && event->value == GROBO_TORQUE_ON;
+}
+
+/* The supply dips, and the arm sinks while its servos restart. */
+static void dip(void)
+{
+    woken = 0;
+    kit.on_sim = count_woken;
+    grobo_sim_set_supply(&kit.sim, GROBO_SIM_BROWN_OUT_MV - 500);
+    family_run(&kit, 20 * MS);
+    grobo_sim_set_supply(&kit.sim, kit.servos[0]->voltage_mv);
+    for (int j = 0; j < JOINTS; j++) {
+        assert_int_equal(grobo_sim_set_angle(&kit.sim, j, 0, 300 * MS), GROBO_OK);
+    }
+}
+
+/* What sank stays where it is, in every family: also where the next goal would switch the torque
+ * on, whoever sends it, and however seldom joints are read. */
+static void nothing_is_woken_after_a_dip(void **state)
+{
+    (void)state;
+    enum { MOVE, STREAM, STOP, WAYS };
+    static const int64_t intervals_us[] = {50 * MS, 500 * MS, GROBO_SENSE_NEVER};
+    for (int run = 0; run < WAYS * 3 * 2; run++) {
+        for (const family *f = family_row(0); f != NULL;
+             f = family_row((size_t)(f - family_row(0)) + 1)) {
+            int way = run % WAYS;
+            const grobo_robot_config config = {
+                GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = intervals_us[run / WAYS % 3],
+                .goals = run < WAYS * 3 ? GROBO_GOALS_SEGMENTS : GROBO_GOALS_WHOLE};
+            family_start(&kit, f, &config, NULL);
+            assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+            grobo_posture p = family_posture(&kit, -60, 5000);
+            assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+            family_run(&kit, S);
+            dip();
+            for (int i = 0; i < 150; i++) {
+                family_run(&kit, 20 * MS);
+                p = family_posture(&kit, 10 - 0.3 * i, 20);
+                (void)(way == STREAM ? grobo_robot_send(&kit.robot, &p)
+                       : way == STOP ? grobo_robot_stop(&kit.robot, true)
+                                     : 0);
+            }
+            if (woken > 0) {
+                fail_msg("%s: %d servos are woken, run %d", f->name, woken, run);
+            }
+        }
+    }
+}
+
+/* A reply that is lost is no dip: the arm goes on. */
+static void a_lost_reply_ends_no_way(void **state)
+{
+    (void)state;
+    for (const family *f = family_row(0); f != NULL;
+         f = family_row((size_t)(f - family_row(0)) + 1)) {
+        family_start(&kit, f, &watched, NULL);
+        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+        grobo_posture p = family_posture(&kit, -60, 2000);
+        int number = grobo_robot_move(&kit.robot, &p);
+        family_run(&kit, 500 * MS);
+        assert_int_equal(grobo_sim_set_cable(&kit.sim, 1, GROBO_SIM_CABLE_MUTE), GROBO_OK);
+        family_run(&kit, 70 * MS);
+        assert_int_equal(grobo_sim_set_cable(&kit.sim, 1, GROBO_SIM_CABLE_IN), GROBO_OK);
+        assert_int_equal(family_wait(&kit, number), GROBO_OK);
+        family_run(&kit, 200 * MS);
+        family_at(&kit, -60);
+    }
+}
+
+/* Servos that are told a speed and no time come to rest as soon as others, also where they were
+ * read to be behind the way that they were sent on: at a speed for the way that is left. */
+static void a_joint_that_is_behind_stops_in_time(void **state)
+{
+    (void)state;
+    static const char *const told_speeds[] = {"feetech", "dxl1"}; /* the first has ramps */
+    for (int i = 0; i < 2; i++) {
+        family_start(&kit, family_named(told_speeds[i]), &watched, NULL);
+        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+        grobo_posture p = family_posture(&kit, -60, 6000);
+        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+        family_run(&kit, 1500 * MS);
+        kit.most_dps = 0;
+        family_run(&kit, 100 * MS);
+        assert_true(kit.most_dps > 15 && kit.most_dps < 30);
+        for (int j = 0; j < JOINTS; j++) {
+            kit.robot.axes[j].state.angle_rad += 0.1;
+        }
+        assert_int_equal(grobo_robot_stop(&kit.robot, true), GROBO_OK);
+        family_run(&kit, 50 * MS);
+        assert_true(kit.most_dps > (i == 0 ? 24 : 55) && kit.most_dps < 70);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_is_woken_after_a_dip),
+        cmocka_unit_test(a_lost_reply_ends_no_way),
+        cmocka_unit_test(a_joint_that_is_behind_stops_in_time),
         cmocka_unit_test(a_servo_set_up_otherwise_is_made_limp),
         cmocka_unit_test(postures_are_played),
         cmocka_unit_test(a_faulty_line_moves_nothing_wrong),

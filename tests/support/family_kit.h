@@ -8,7 +8,7 @@
 #include <grobo/sim_static.h>
 #include <grobo/static.h>
 
-enum { FAMILY_JOINTS = 4, FAMILY_EVENTS = 64 };
+enum { FAMILY_JOINTS = 4, FAMILY_EVENTS = 64, FAMILY_SENT = 32 };
 
 typedef struct family {
     const char *name; /* of make soak FAMILY= */
@@ -37,7 +37,11 @@ typedef struct family_kit {
     unsigned n_done;
     grobo_trip trips[FAMILY_EVENTS];
     unsigned n_trips;
-    double most_dps; /* that a shaft was seen to turn */
+    double most_dps;                                  /* that a shaft was seen to turn */
+    uint8_t sent[FAMILY_SENT][GROBO_FRAME_MAX_BYTES]; /* the last frames, as a ring */
+    size_t sent_bytes[FAMILY_SENT];
+    unsigned n_sent;
+    bool made_up; /* the packet that servos heard last was none of these */
     /* Called at every look at the shafts, and at what servos do; NULL: not. */
     void (*on_look)(struct family_kit *kit);
     void (*on_sim)(struct family_kit *kit, const grobo_sim_event *event);
