@@ -59,7 +59,8 @@ fi
 check "another one there" fails 1 "^grctl: sim: $tcp: in use by another program" \
     "$GRCTL" sim --tcp "${tcp##*:}"
 check "behind the last port" fails 2 '65535 is the last' "$GRCTL" sim --tcp 65535 --robots 2
-check "by TCP too" both exits 0 "$GRCTL" -d "$tcp" --timeout 500 status m12 --- says 'R_KNEE_P  *-40\.0'
+check "by TCP too" both exits 0 "$GRCTL" -d "$tcp" --timeout 500 status m12 --- \
+    says 'R_KNEE_P  *-40\.0'
 check "one robot, whichever way" both exits 0 "$GRCTL" -d "$tcp" --timeout 500 servo on m12 --- \
     exits 0 on_robot status m12
 check "its torque is on" says ' on '
