@@ -66,6 +66,7 @@ end_group() {
         tries=$((tries - 1))
         if [ $tries -eq 0 ]; then
             left=1
+            ps -A -o pgid= -o args= | awk -v group="$1" '$1 == group' >>"$logs/$number.log"
             kill -s KILL -- "-$1"
             return
         fi

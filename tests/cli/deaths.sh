@@ -254,6 +254,10 @@ as_told() {
         index($0, head) == 1 && index($0, wiring) && index($0, row) { found = 1 }
         END { exit !found }'
 }
+end_case() {
+    [ -z "$program" ] || kill -s KILL $program 2>/dev/null
+    stop_sim
+}
 # On a busy machine a death comes late, and what was read until then is told too, or a move ends
 # before it is seen: once more then.
 case_of() {
@@ -261,8 +265,9 @@ case_of() {
     sim_place="--link $work/robot"
     sim_pid=
     program=
-    trap '[ -z "$program" ] || kill -s KILL $program 2>/dev/null; stop_sim' EXIT
+    trap end_case EXIT
     for _ in 1 2 3; do
+        end_case
         rm -rf "$work"
         mkdir "$work"
         died "$@" >"$work.log" 2>&1 && : >"$work/ok"

@@ -9,7 +9,7 @@ on_robot() {
     "$GRCTL" -d "$robot" "$@"
 }
 braked() {
-    exits 0 on_robot status && says '^ *12  R_KNEE_P .* brake '
+    exits 0 on_robot --timeout 500 status && says '^ *12  R_KNEE_P .* brake '
 }
 
 # while_running PATTERN COMMAND...: an emergency stop once it has said that; its status in $ended.

@@ -212,7 +212,7 @@ start_sim
 all_closed() {
     grctl -d "$robot" status <&- >&- 2>&-
     [ $? -eq 1 ] || return 1
-    exits 0 grctl -d "$robot" status && says 'L_ELBOW_P'
+    exits 0 grctl -d "$robot" --timeout 500 status && says "L_ELBOW_P"
 }
 check "all three closed, on a port" all_closed
 stop_sim

@@ -46,7 +46,7 @@ until_screen 'playing'
 keys e
 check "e is the emergency stop" until_screen 'play: emergency stop; .*estop --reset'
 check "that is its status" until_screen '^status 4'
-check "it is braked" both exits 0 "$GRCTL" -d "$robot" status m5 --- says ' brake '
+check "it is braked" both exits 0 on_robot status m5 --- says ' brake '
 check "other commands know" fails 4 "stopped by 'grctl estop'" "$GRCTL" -d "$robot" init
 check "until it is taken back" exits 0 "$GRCTL" -d "$robot" estop --reset
 on_screen kill-server

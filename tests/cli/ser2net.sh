@@ -35,8 +35,9 @@ answers() {
 }
 
 check "it answers" answers
-check "a motion" exits 0 "$GRCTL" -d "$device" play motions/greet.pseq
-check "doctor" both exits 0 "$GRCTL" -d "$device" doctor --- says '^ok .*all 20 answer'
+check "a motion" exits 0 "$GRCTL" -d "$device" --timeout 500 play motions/greet.pseq
+check "doctor" both exits 0 "$GRCTL" -d "$device" --timeout 500 doctor --- \
+    says '^ok .*all 20 answer'
 "$GRCTL" -d "$device" -v play --repeat 9 motions/greet.pseq >"$work/played" 2>&1 &
 player=$!
 check "another one" written "$work/played" 'robot found'

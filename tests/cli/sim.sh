@@ -59,8 +59,9 @@ fi
 check "another one there" fails 1 "^grctl: sim: $tcp: in use by another program" \
     "$GRCTL" sim --tcp "${tcp##*:}"
 check "behind the last port" fails 2 '65535 is the last' "$GRCTL" sim --tcp 65535 --robots 2
-check "by TCP too" both exits 0 "$GRCTL" -d "$tcp" status m12 --- says 'R_KNEE_P  *-40\.0'
-check "one robot, whichever way" both exits 0 "$GRCTL" -d "$tcp" servo on m12 --- \
+check "by TCP too" both exits 0 "$GRCTL" -d "$tcp" --timeout 500 status m12 --- \
+    says 'R_KNEE_P  *-40\.0'
+check "one robot, whichever way" both exits 0 "$GRCTL" -d "$tcp" --timeout 500 servo on m12 --- \
     exits 0 on_robot status m12
 check "its torque is on" says ' on '
 stop_sim
@@ -91,7 +92,7 @@ fi
 number=0
 for device in $(many_devices); do
     number=$((number + 1))
-    check "number $number answers" exits 0 "$GRCTL" -d "$device" status m1
+    check "number $number answers" exits 0 "$GRCTL" -d "$device" --timeout 500 status m1
 done
 check "all three" [ $number -eq 3 ]
 stop_sim

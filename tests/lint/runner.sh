@@ -97,7 +97,7 @@ check 'all pass' ends 0 '5 passed, 0 failed, 0 skipped' 'pass' ./good ./two_grou
 check 'a failure shows what was printed' \
     ends 1 '3 passed, 1 failed, 0 skipped' '# 1 != 2' ./bad ./good
 check 'a process left behind is a failure' \
-    ends 1 '1 passed, 1 failed, 0 skipped' 'left processes behind' ./leaves
+    ends 1 '1 passed, 1 failed, 0 skipped' 'sleep 60' ./leaves
 nobody_left() {
     ! kill -0 "$(cat left.pid)" 2>/dev/null
 }

@@ -109,14 +109,17 @@ loop='event_.*|evutil_.*|bufferevent_.*'
 outside() {
     # A fortified function (__printf_chk) counts as what the source calls.
     grep -E "^($1) " "$work/outside" | sed 's/ __\(.*\)_chk$/ \1/' | grep -vE " ($helpers)\$" |
-        while read -r file symbol; do
-            if printf '%s\n' "$symbol" | grep -qE '^grobo_'; then
-                echo "$file:1: layers: $symbol is defined nowhere"
-            elif printf '%s\n' "$symbol" | grep -qE "^($3)\$" ||
-                { [ -n "$2" ] && ! printf '%s\n' "$symbol" | grep -qE "^($2)\$"; }; then
-                echo "$file:1: layers: ${file%/*} may not use $symbol"
-            fi
-        done | sort -u >"$work/found"
+        awk -v allowed="^(${2:-.*})\$" -v denied="^($3)\$" '
+            $2 ~ /^grobo_/ {
+                print $1 ":1: layers: " $2 " is defined nowhere"
+                next
+            }
+            $2 ~ denied || $2 !~ allowed {
+                folder = $1
+                sub(/\/[^\/]*$/, "", folder)
+                print $1 ":1: layers: " folder " may not use " $2
+            }' |
+        sort -u >"$work/found"
     if [ -s "$work/found" ]; then
         cat "$work/found"
         bad=1

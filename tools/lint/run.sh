@@ -9,6 +9,9 @@ set -u
 
 gates=$(dirname "$0")
 failed=
+slow=
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
 
 # The names of the project's files have no blanks; the lists below are split on purpose.
 # shellcheck disable=SC2046
@@ -43,8 +46,26 @@ named_tests() {
     awk -f "$gates/strip.awk" -f "$gates/named_tests.awk" -f "$gates/$rules.awk" "$@"
 }
 
+# beside NAME COMMAND...: a gate that takes long, while the others run; see gather().
+beside() {
+    slow="$slow $1"
+    (
+        name=$1
+        shift
+        "$@" >"$work/$name" 2>&1 || echo "$name" >>"$work/$name.failed"
+    ) &
+}
+gather() {
+    wait
+    for name in $slow; do
+        cat "$work/$name"
+        [ ! -e "$work/$name.failed" ] || failed="$failed $name"
+    done
+}
+
 # Files whose last byte is not a newline.
 final_newline() {
+    [ "$(tail -q -c 1 "$@" 2>/dev/null | tr -cd '\n' | wc -c)" -ne $# ] || return 0
     status=0
     for file in "$@"; do
         if [ -n "$(tail -c 1 "$file")" ]; then
@@ -61,10 +82,14 @@ library=$(printf '%s\n' "$all" | grep -E '^(include|src|ports)/')
 everything=$(texts)
 
 # shellcheck disable=SC2086
+beside format sh "$gates/format.sh" $all
+if [ "$1" = --all ]; then
+    beside headers sh "$gates/headers.sh"
+fi
+# shellcheck disable=SC2086
 {
     gate text env LC_ALL=C awk -f "$gates/text.awk" $everything
     gate text final_newline $everything
-    gate format sh "$gates/format.sh" $all
     gate banned scan banned $all
     gate platform scan platform $all
     gate size scan size $all
@@ -79,11 +104,12 @@ everything=$(texts)
     gate safety named_tests safety docs/guide/safety.md
 }
 if [ "$1" = --all ]; then
-    gate headers sh "$gates/headers.sh"
     gate layers sh "$gates/layers.sh" "$2"
     gate robots sh tools/robots/make.sh --check "$2/tools/robots/robots"
     gate symbols sh "$gates/symbols.sh" "$2/libgrobo.so.0"
 fi
+
+gather
 
 if [ -n "$failed" ]; then
     echo "lint: failed:$(printf '%s\n' $failed | sort -u | tr '\n' ' ' | sed 's/^/ /; s/ $//')" >&2
