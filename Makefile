@@ -182,7 +182,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-abi sources wrap deb check-deb release check-families check-cockpit check-ports check-long check-mutants check-map install-lib FORCE
+.PHONY: check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -264,6 +264,12 @@ check-families: all ## clients of other servos (from PyPI) against the simulator
 	@$(BUILD)/families/bin/pip install -q --disable-pip-version-check --no-deps $(FAMILY_LEROBOT) || true
 	@GRCTL="$(call whole,$(GRCTL_RUN))" PYTHON=$(BUILD)/families/bin/python BUILD="$(BUILD)" \
 	    TEST_LOGS="$(BUILD)/logs" tests/run.sh tests/families/clients.sh
+
+check-fleet: all ## a crowd of simulated robots at a real broker; HOSTS=4 EACH=25 RUNS=12, TIMES=assert
+	-@tools/setup.sh --check
+	@GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" TEST_TIMEOUT_S=1200 TEST_LOGS="$(BUILD)/logs/fleet" \
+	    tests/run.sh tests/cli/fleet.sh tests/cli/fleet_rights.sh tests/fleet/crowd.sh; \
+	    status=$$?; sed -n 's/^# /  /p' $(BUILD)/logs/fleet/*crowd*; exit $$status
 
 COCKPIT_CLIENT := playwright==1.65.0
 COCKPIT_AXE := axe-core@4.10.3
