@@ -246,9 +246,11 @@ if have_json; then
     check "one from the future" answered '"from the future" in lines[0]["message"]' \
         one put '{"file":"y.m","text":""}' issued_ms=5000
     check "one that would be valid for long" \
-        answered '"valid for too long" in lines[0]["message"]' one put '{"file":"y.m","text":""}' life_ms=60000
+        answered '"valid for too long" in lines[0]["message"]' \
+        one put '{"file":"y.m","text":""}' life_ms=60000
     check "a start before its preparation" \
-        answered '"nothing was prepared" in lines[0]["message"]' one start '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500
+        answered '"nothing was prepared" in lines[0]["message"]' \
+        one start '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500
     check "a file of another folder" answered 'lines[0]["code"] == "arg"' \
         one put '{"file":"../y.m","text":""}'
     check "an order that there is not" answered 'lines[0]["code"] == "unsupported"' one dance '{}'
