@@ -524,10 +524,11 @@ install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -d "$(DESTDIR)$(BINDIR)"
 	$(if $(GRCTL),install -m 755 $(GRCTL) "$(DESTDIR)$(BINDIR)")
 	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
-	install -d "$(DESTDIR)$(DATADIR)/man/man5" "$(DESTDIR)$(DATADIR)/grobo/udev" \
+	install -d "$(DESTDIR)$(DATADIR)/man/man5" "$(DESTDIR)$(DATADIR)/grobo/udev" "$(DESTDIR)$(DATADIR)/grobo/systemd" \
 	    "$(DESTDIR)$(DATADIR)/grobo/wireshark"
 	install -m 644 $(JSON_PAGE) "$(DESTDIR)$(DATADIR)/man/man5"
-	install -m 644 docs/grctl.schema.json docs/robot.schema.json docs/serve.openapi.json "$(DESTDIR)$(DATADIR)/grobo"
+	install -m 644 docs/grctl.schema.json docs/robot.schema.json docs/serve.openapi.json docs/fleet.schema.json "$(DESTDIR)$(DATADIR)/grobo"
+	install -m 644 tools/systemd/grctl-agent@.service "$(DESTDIR)$(DATADIR)/grobo/systemd"
 	install -m 644 tools/udev/60-grobo.rules "$(DESTDIR)$(DATADIR)/grobo/udev"
 	install -m 644 tools/wireshark/grobo.lua "$(DESTDIR)$(DATADIR)/grobo/wireshark"
 

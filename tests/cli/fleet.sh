@@ -16,6 +16,16 @@ groups: {one: [a, b], two: [c, d]}
 robots: {a: {device: sim}, b: {device: sim}, c: {device: sim}, d: {device: $work/none}}
 EOF2
 
+keeps_all=
+keep_all() { # what is said; another one for a broker that came back
+    python3 tests/support/mqtt.py "$port" keep "$work/kept.$1" >"$work/keep.out" 2>&1 3>&- &
+    echo $! >>"$work/pids"
+}
+if python3 -c 'import jsonschema' 2>/dev/null; then
+    keeps_all=yes
+    keep_all 1
+    wait_for test -e "$work/kept.1"
+fi
 begin_agent one
 agent_one=$agent
 begin_agent two --label arms,left
@@ -146,6 +156,7 @@ dies() {
 }
 check "so does one that dies" dies
 begin_open_broker
+[ -z "$keeps_all" ] || keep_all 2
 came_back() {
     wait "$play"
     wait_for is_listed one ONLINE && wait_for is_listed two ONLINE && rests
@@ -273,5 +284,17 @@ broken() {
     wait_for is_listed one ONLINE && kill -9 "$agent" && wait_for is_listed one CONNECTIONBROKEN
 }
 check "the broker says it of one that died" broken
+
+# ---- the schema ----------------------------------------------------------------------------------
+
+fit() {
+    cat "$work/kept.1" "$work/kept.2" >"$work/kept"
+    python3 tests/support/mqtt.py 0 fits "$work/kept"
+}
+if [ -n "$keeps_all" ]; then
+    check "all that was said is as docs/fleet.schema.json says" fit
+else
+    skip "all that was said is as docs/fleet.schema.json says" "no python3-jsonschema"
+fi
 
 done_testing
