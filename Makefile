@@ -183,7 +183,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports check-long check-mutants check-map install-lib FORCE
+.PHONY: check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -267,6 +267,12 @@ check-families: all ## clients of other servos (from PyPI) against the simulator
 	@$(BUILD)/families/bin/pip install -q --disable-pip-version-check --no-deps $(FAMILY_LEROBOT) || true
 	@GRCTL="$(call whole,$(GRCTL_RUN))" PYTHON=$(BUILD)/families/bin/python BUILD="$(BUILD)" \
 	    TEST_LOGS="$(BUILD)/logs" tests/run.sh tests/families/clients.sh
+
+check-fleet: all ## a crowd of simulated robots at a real broker; HOSTS=4 EACH=25 RUNS=12, TIMES=assert
+	-@tools/setup.sh --check
+	@GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" TEST_TIMEOUT_S=1200 TEST_LOGS="$(BUILD)/logs/fleet" \
+	    tests/run.sh tests/cli/fleet.sh tests/cli/fleet_rights.sh tests/fleet/crowd.sh; \
+	    status=$$?; sed -n 's/^# /  /p' $(BUILD)/logs/fleet/*crowd*; exit $$status
 
 COCKPIT_CLIENT := playwright==1.65.0
 COCKPIT_AXE := axe-core@4.10.3
@@ -524,10 +530,11 @@ install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -d "$(DESTDIR)$(BINDIR)"
 	$(if $(GRCTL),install -m 755 $(GRCTL) "$(DESTDIR)$(BINDIR)")
 	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
-	install -d "$(DESTDIR)$(DATADIR)/man/man5" "$(DESTDIR)$(DATADIR)/grobo/udev" \
+	install -d "$(DESTDIR)$(DATADIR)/man/man5" "$(DESTDIR)$(DATADIR)/grobo/udev" "$(DESTDIR)$(DATADIR)/grobo/systemd" \
 	    "$(DESTDIR)$(DATADIR)/grobo/wireshark"
 	install -m 644 $(JSON_PAGE) "$(DESTDIR)$(DATADIR)/man/man5"
-	install -m 644 docs/grctl.schema.json docs/robot.schema.json docs/serve.openapi.json docs/serve-fleet.openapi.json "$(DESTDIR)$(DATADIR)/grobo"
+	install -m 644 docs/grctl.schema.json docs/robot.schema.json docs/serve.openapi.json docs/serve-fleet.openapi.json docs/fleet.schema.json "$(DESTDIR)$(DATADIR)/grobo"
+	install -m 644 tools/systemd/grctl-agent@.service "$(DESTDIR)$(DATADIR)/grobo/systemd"
 	install -m 644 tools/udev/60-grobo.rules "$(DESTDIR)$(DATADIR)/grobo/udev"
 	install -m 644 tools/wireshark/grobo.lua "$(DESTDIR)$(DATADIR)/grobo/wireshark"
 

@@ -70,10 +70,9 @@ check "a file that is no certificate" fails 1 'a certificate or key cannot be re
 
 mkdir -p "$work/config/grctl"
 printf 'robots: {a: {device: sim}}\n' >"$work/config/grctl/config.yaml"
-env GRCTL_MQTT_PASSWORD=secret-of-one "$GRCTL" -d a agent \
-    --broker "mqtts://one@127.0.0.1:$port" --ca "$work/true-ca.crt" --host one \
-    >"$work/agent.out" 2>"$work/agent.err" &
-pids="$pids $!"
+GRCTL_MQTT_PASSWORD=secret-of-one "$GRCTL" -d a agent --broker "mqtts://one@127.0.0.1:$port" \
+    --ca "$work/true-ca.crt" --host one >"$work/agent.out" 2>"$work/agent.err" &
+echo $! >>"$work/pids"
 is_listed() {
     fleet operator list | grep -q "^one  *$1"
 }

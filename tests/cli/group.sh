@@ -10,7 +10,7 @@ config=$work/config/grctl/config.yaml
 simulates() {
     "$GRCTL" sim --link "$work/$1" >"$work/$1.out" 2>"$work/$1.err" &
     pid=$!
-    pids="$pids $pid"
+    echo "$pid" >>"$work/pids"
     wait_for test -e "$work/$1"
 }
 if ! "$GRCTL" sim --help | grep -q -e --link; then

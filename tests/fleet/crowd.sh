@@ -42,8 +42,9 @@ all_listed() { # STATE
 }
 check "$HOSTS agents with $EACH robots each" wait_for all_listed ONLINE
 
+exec 3>&1
 report() { # WORDS...: a line of the output that is no check
-    echo "# $*"
+    echo "# $*" >&3
 }
 # ticks PID: of the processor; kilobytes PID: resident.
 ticks() {
@@ -60,7 +61,7 @@ sum() { # FUNCTION PID...
     done | awk '{ s += $1 } END { print s }'
 }
 floor() {
-    mqtt floor 500 >"$work/floor" && report "bare round trip by the broker ($1): $(cat "$work/floor")"
+    mqtt floor 500 >"$work/floor" && report "bare round trip, $1: $(cat "$work/floor")"
 }
 check "a round trip by the broker alone" floor "robots stand"
 
@@ -69,21 +70,108 @@ check "a round trip by the broker alone" floor "robots stand"
 # The last result, as Python sees it: late is the first frame behind the start, by each agent's
 # clock; that clock is known to bound.
 begin_together() {
-    exits 0 fleet play greet.pseq --json -s 400 --spread 20 || return 1
-    python3 - "$work/out" "$all" "${TIMES:-report}" <<'EOF2'
+    exits 0 fleet play greet.pseq --json -s 400 --spread 20 --on-link-lost finish || return 1
+    python3 - "$work/out" "$all" "${TIMES:-report}" 2>&1 >&3 <<'EOF2'
 import json, sys
 rows = [json.loads(line) for line in open(sys.argv[1])]
 late = sorted(row["late_us"] for row in rows)
 bound = max(row["bound_us"] for row in rows)
 n = len(rows)
 p99 = late[n * 99 // 100] if n < 100 else late[int(n * 0.99) - 1]
-print("# start of %d robots: %d to %d us behind the time told (p50 %d, p99 %d); clocks known to %d us"
-      % (n, late[0], late[-1], late[n // 2], p99, bound))
+print("# start of %d robots: %d to %d us behind the time told (p50 %d, p99 %d); clocks known to"
+      " %d us" % (n, late[0], late[-1], late[n // 2], p99, bound))
 assert n == int(sys.argv[2]) and all(row["ok"] for row in rows), "not all played"
 assert late[0] >= 0, "one began before the time"
 assert sys.argv[3] != "assert" or p99 - late[0] + bound < 5000, "the spread is 5 ms or more"
 EOF2
 }
 check "all begin together and play to the end" begin_together
+
+# ---- they stop together --------------------------------------------------------------------------
+
+# plays: slowly, until it is stopped; $play is its process.
+plays() {
+    "$GRCTL" fleet play greet.pseq --broker "$broker" -s 20 --spread 20 >"$work/played" \
+        2>"$work/said" </dev/null &
+    play=$!
+    written "$work/said" 'all begin in' && wait_for all_play
+}
+all_play() {
+    [ "$(fleet status --json | grep -c '"play":"playing"')" -eq "$all" ]
+}
+# Every robot says by itself that it was seen to stop, with its torque as the stop has it.
+stop_once() {
+    plays && exits 0 fleet estop --json || return 1
+    grep '"stopped":true' "$work/out" >>"$work/stops"
+    [ "$(grep -c '"stopped":true' "$work/out")" -eq "$all" ] || return 1
+    wait "$play"
+    exits 0 fleet reset
+}
+stop_often() {
+    : >"$work/stops"
+    for _ in $(seq "$RUNS"); do
+        stop_once || return 1
+    done
+    python3 - "$work/stops" "${TIMES:-report}" 2>&1 >&3 <<'EOF2'
+import json, sys
+told = sorted(json.loads(line)["told_us"] for line in open(sys.argv[1]))
+n = len(told)
+p99 = told[int(n * 0.99) - 1]
+print("# emergency stop in a motion: until the agent has told its robots and said so, p50 %d us, "
+      "p99 %d us, longest %d us (%d robots and stops)" % (told[n // 2], p99, told[-1], n))
+assert told[0] >= 0, "an agent did not say that it stops"
+assert sys.argv[2] != "assert" or p99 < 50000, "50 ms or more"
+EOF2
+}
+check "$RUNS emergency stops in the midst of a motion" stop_often
+
+# ---- the broker dies -----------------------------------------------------------------------------
+
+# seconds of the processor and memory, while they play.
+cost() {
+    clock=$(getconf CLK_TCK)
+    # shellcheck disable=SC2086
+    agents_before=$(sum ticks $agents)
+    broker_before=$(ticks "$broker_pid")
+    mqtt still 5 >"$work/still" || return 1
+    # shellcheck disable=SC2086
+    report "$(awk -v a="$agents_before" -v b="$(sum ticks $agents)" -v c="$broker_before" \
+        -v d="$(ticks "$broker_pid")" -v hz="$clock" -v n="$all" -v kb="$(sum kilobytes $agents)" \
+        -v bkb="$(kilobytes "$broker_pid")" 'BEGIN {
+            printf "while playing, a robot: %.2f %% of a core and %.0f KiB in its agent ", \
+                (b - a) / hz / 5 * 100 / n, kb / n
+            printf "(simulator in it), %.3f %% of a core in the broker of %.1f MiB", \
+                (d - c) / hz / 5 * 100 / n, bkb / 1024
+        }')"
+}
+all_say() { # PATTERN
+    for h in $hosts; do
+        grep -q "$1" "$work/$h.err" || return 1
+    done
+}
+dies() {
+    for h in $hosts; do
+        : >"$work/$h.err"
+    done
+    plays && cost && floor "robots play" && kill -9 "$broker_pid" &&
+        wait_for all_say 'the permit lapsed: the motion stops' && begin_open_broker &&
+        wait_for all_listed ONLINE
+    dies_status=$?
+    wait "$play"
+    [ $dies_status -eq 0 ] || tail -n 3 "$work/said" "$work"/h*.err
+    return $dies_status
+}
+check "the broker is killed in the midst of a motion: each agent stops its robots" dies
+nothing_moves() {
+    mqtt still 3 >"$work/still" && python3 - "$work/still" "$all" <<'EOF2'
+import json, sys
+rows = json.load(open(sys.argv[1]))
+assert len(rows) == int(sys.argv[2]), len(rows)
+moved = {name: row for name, row in rows.items() if row[0] > 0.5 or row[1]}
+assert not moved, moved
+EOF2
+}
+check "it comes back, and for 3 s no robot moves" nothing_moves
+check "then they play again" begin_together
 
 done_testing

@@ -21,14 +21,16 @@ XDG_CONFIG_HOME=$work/config # not that of whoever runs the tests
 XDG_STATE_HOME=$work/state
 export XDG_CONFIG_HOME XDG_STATE_HOME
 
-pids= # what a test begins besides, a process of its own each, is ended with it
+# What a test begins besides, a process of its own each, is ended with it. A check is a shell of its
+# own, so a file knows them.
+: >"$work/pids"
 end_cli_test() {
     stop_sim
-    for ended_pid in $pids; do
+    while read -r ended_pid; do
         kill "$ended_pid" 2>/dev/null
         kill -CONT "$ended_pid" 2>/dev/null
         wait "$ended_pid" 2>/dev/null
-    done
+    done <"$work/pids"
     rm -rf "$work"
 }
 trap end_cli_test EXIT

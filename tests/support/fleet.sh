@@ -21,9 +21,9 @@ begin_broker() {
     [ -e "$work/broker.conf" ] || printf '%s\n' "listener $port 127.0.0.1" 'allow_anonymous true' \
         'persistence false' 'set_tcp_nodelay true' 'max_packet_size 2000000' 'log_type all' \
         >"$work/broker.conf"
-    mosquitto -c "$work/broker.conf" >>"$work/broker.log" 2>&1 &
+    mosquitto -c "$work/broker.conf" >>"$work/broker.log" 2>&1 3>&- &
     broker_pid=$!
-    pids="$pids $broker_pid"
+    echo $broker_pid >>"$work/pids"
 }
 begin_open_broker() {
     begin_broker
@@ -38,9 +38,9 @@ begin_agent() {
     agent_host=$1
     shift
     "$GRCTL" -d "$agent_host" agent --broker "$broker" --host "$agent_host" \
-        --motions "$work/motions" "$@" >"$work/$agent_host.out" 2>"$work/$agent_host.err" &
+        --motions "$work/motions" "$@" >"$work/$agent_host.out" 2>"$work/$agent_host.err" 3>&- &
     agent=$!
-    pids="$pids $agent"
+    echo $agent >>"$work/pids"
 }
 fleet() {
     fleet_verb=$1

@@ -9,6 +9,8 @@ usage: mqtt.py PORT floor N         round trips of N messages by the broker alon
        mqtt.py PORT still SECONDS   what robots do for so long: {"host/robot": [moved_deg, playing]}
        mqtt.py PORT keep FILE       every message of grobo/v1/# as a line "topic payload", until it
                                     is ended
+       mqtt.py 0 fits FILE          these lines are as docs/fleet.schema.json says, but for orders
+                                    of strangers; prints how many of each kind
 """
 import json
 import os
@@ -206,7 +208,39 @@ def keep(client, path):
                 out.write(got[0] + " " + got[1].decode("utf-8", "replace") + "\n")
 
 
+def kind_of(topic):
+    part = topic[len(ROOT):].split("/")
+    return "cmd_" + part[2] if part[1:2] == ["cmd"] else "ack" if part[0] == "ack" else part[-1]
+
+
+def fits(path):
+    import jsonschema
+    schema = json.load(open("docs/fleet.schema.json"))
+    checks = {name: jsonschema.Draft202012Validator(dict(schema, **{"$ref": "#/$defs/" + name}))
+              for name in schema["$defs"]}
+    seen, wrong = dict.fromkeys(checks, 0), []
+    for line in open(path):
+        topic, text = line.rstrip("\n").split(" ", 1)
+        kind = kind_of(topic)
+        try:
+            errors = [e.message for e in checks[kind].iter_errors(json.loads(text))]
+        except (ValueError, KeyError) as error:
+            errors = [repr(error)]
+        if not errors:
+            seen[kind] += 1
+        elif not kind.startswith("cmd_"):
+            wrong.append("%s: %s" % (line[:300], errors[0][:200]))
+    print(json.dumps(seen))
+    if wrong:
+        sys.exit("\n".join(wrong[:5]))
+    if not all(seen.values()):
+        sys.exit("not all kinds were seen")
+
+
 def main(words):
+    if words[1] == "fits":
+        fits(words[2])
+        return
     client = Client(int(words[0]))
     if words[1] == "floor":
         floor(client, int(words[2]))

@@ -6,7 +6,7 @@
 #include "tools/grctl/fleet/wire.h"
 #include "tools/grctl/lang/lang.h"
 
-enum { CONNECT_US = 5000000, SEEN_US = 300000, ORDER_EXPIRY_S = 2 };
+enum { CONNECT_US = 5000000, SEEN_US = 200000, ORDER_EXPIRY_S = 2 };
 
 /* ---- agents ---------------------------------------------------------------------------------- */
 
@@ -121,6 +121,7 @@ static void on_message(void *ctx, const mqtt_message *message)
     leader *l = ctx;
     char part[4][FLEET_NAME_BYTES];
     int n = fleet_parts(message->topic, part);
+    l->kept += message->retained;
     json_t *object = fleet_read(message->payload, message->size);
     if (!object || n < 2) {
         json_decref(object);
@@ -220,6 +221,29 @@ static bool never(const leader *l)
     return false;
 }
 
+/* An agent that is there and has not said yet of which groups it is. */
+static bool anybody_unknown(const leader *l)
+{
+    for (int i = 0; i < l->n; i++) {
+        if (strcmp(l->peers[i].state, "ONLINE") == 0 && !l->peers[i].facts) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Until nothing of what the broker retains has come for a while: nobody is left out of a stop. */
+static void hear_retained(leader *l)
+{
+    int64_t until_us = grobo_now_us() + CONNECT_US;
+    unsigned before;
+    do {
+        before = l->kept;
+        (void)leader_wait(l, SEEN_US, never);
+    } while ((l->kept != before || anybody_unknown(l)) && l->up && !l->link.signal &&
+             grobo_now_us() < until_us);
+}
+
 static int connect_it(leader *l, const mqtt_config *with)
 {
     const struct timeval period = {0, LEADER_PERMIT_US};
@@ -245,7 +269,7 @@ static int connect_it(leader *l, const mqtt_config *with)
         return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE", "fleet: %s: %s", config.host,
                         l->why ? l->why : _("the broker does not answer"));
     }
-    (void)leader_wait(l, SEEN_US, never); /* what is retained comes first */
+    hear_retained(l);
     return EXIT_DONE;
 }
 

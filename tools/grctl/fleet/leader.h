@@ -36,7 +36,8 @@ typedef struct leader {
     const char *host;  /* or a host alone (NULL) */
     peer *peers;
     int n;
-    bool up, seen; /* connected; what is retained has come */
+    bool up;
+    unsigned kept; /* retained messages that have come */
     const char *why;
     json_t *latch;             /* of the group, or NULL */
     char stop[FLEET_ID_BYTES]; /* the id of the latch that was published last, or "" */
