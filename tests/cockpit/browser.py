@@ -28,7 +28,7 @@ ARGUMENTS = """--no-sandbox --disable-quic --no-first-run --disable-background-n
     --disable-component-update --disable-sync --use-angle=swiftshader
     --enable-unsafe-swiftshader""".split()
 SIZES = {'desktop': (1366, 768), 'tablet': (820, 1180), 'phone': (390, 844)}
-LIMIT_MS = 10000
+LIMIT_MS = 30000
 TOKEN = '00112233445566778899aabbccddeeff'
 MOTIONS = pathlib.Path('motions')
 
