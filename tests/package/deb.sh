@@ -7,20 +7,7 @@ set -u
 
 . tests/support/tap.sh
 . tests/support/root.sh
-build=${BUILD:-build}
-here=$(dpkg --print-architecture 2>/dev/null)
-work=$build/package
-mkdir -p "$work/roots" || exit 1
-root=
-trap '[ -z "$root" ] || rm -rf "$root"' EXIT
-
-for command in dh lintian debootstrap; do
-    if ! PATH=$PATH:/usr/sbin command -v $command >/dev/null; then
-        skip 'Debian packages' "no $command (tools/setup.sh --packages installs it)"
-        done_testing
-        exit 0
-    fi
-done
+needs_roots 'Debian packages' dh lintian debootstrap
 
 debs() {
     find "$build/deb/$1" -name '*.deb' ! -name '*dbgsym*'

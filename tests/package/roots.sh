@@ -8,20 +8,7 @@ set -u
 
 . tests/support/tap.sh
 . tests/support/root.sh
-build=${BUILD:-build}
-here=$(dpkg --print-architecture 2>/dev/null)
-work=$build/package
-mkdir -p "$work" || exit 1
-root=
-trap '[ -z "$root" ] || rm -rf "$root"' EXIT
-
-for command in dh debootstrap unshare git; do
-    if ! PATH=$PATH:/usr/sbin command -v $command >/dev/null; then
-        skip 'fresh roots' "no $command (tools/setup.sh --packages installs it)"
-        done_testing
-        exit 0
-    fi
-done
+needs_roots 'fresh roots' dh debootstrap unshare git
 if [ "$(id -u)" -ne 0 ] || ! unshare -m true 2>/dev/null; then
     skip 'fresh roots' 'a fresh root with devices is made by root'
     done_testing

@@ -1,7 +1,27 @@
 # SPDX-License-Identifier: MIT
 # For tests that need a fresh Debian or Ubuntu: a root of its own, made by debootstrap. It takes
 # root rights and a network.
-# set before: work, a directory that keeps $work/roots; root, where it is to stand
+# Sets: build; here, this machine's architecture; work, a directory that keeps $work/roots. A test
+# sets root, where one is to stand: it is removed at the end.
+build=${BUILD:-build}
+here=$(dpkg --print-architecture 2>/dev/null)
+work=$build/package
+mkdir -p "$work/roots" || exit 1
+root=
+trap '[ -z "$root" ] || rm -rf "$root"' EXIT
+
+# needs_roots WHAT TOOL...: leaves WHAT out where a tool is missing.
+needs_roots() {
+    what=$1
+    shift
+    for command in "$@"; do
+        if ! PATH=$PATH:/usr/sbin command -v "$command" >/dev/null; then
+            skip "$what" "no $command (tools/setup.sh --packages installs it)"
+            done_testing
+            exit 0
+        fi
+    done
+}
 
 # make_root SUITE PACKAGES: kept as a tarball; unpacked into $root, with its lists of packages.
 make_root() {

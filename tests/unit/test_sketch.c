@@ -18,19 +18,6 @@
 static sketch s;
 static char said[1024];
 
-typedef struct text_source {
-    const char *at;
-} text_source;
-
-static int read_text(void *ctx, void *buffer, size_t size)
-{
-    text_source *source = ctx;
-    size_t left = strlen(source->at), n = left < size ? left : size;
-    memcpy(buffer, source->at, n);
-    source->at += n;
-    return (int)n;
-}
-
 /* All joints with servos of one kind. NULL: refused, see said. */
 static char *text_of(const char *bytes, bool urdf, const char *family, const char *servo)
 {
@@ -58,8 +45,7 @@ static grobo_robot_def *def_of(const char *bytes, bool urdf, const char *family,
     grobo_robot_def *def = NULL;
     char *text = text_of(bytes, urdf, family, servo);
     assert_non_null(text);
-    text_source source = {text};
-    int error = grobo_robot_def_read(&(grobo_source){read_text, &source}, "x", NULL, NULL, &def);
+    int error = sketch_read_back(text, NULL, &def);
     if (error) {
         print_error("%s", text);
     }

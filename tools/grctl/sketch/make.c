@@ -121,17 +121,21 @@ static int read_text(void *ctx, void *buffer, size_t size)
     return (int)n;
 }
 
+int sketch_read_back(const char *text, grobo_diagnostics *list, grobo_robot_def **def)
+{
+    text_source source = {text};
+    return grobo_robot_def_read(&(grobo_source){read_text, &source}, "robot", list, NULL, def);
+}
+
 /* What the reader of robot files says of it. Returns 0, or the exit status with that said. */
 static int check_text(app *a, const char *text)
 {
     grobo_diagnostics *list = NULL;
     grobo_robot_def *def = NULL;
     grobo_diagnostic d = {.message = _("not enough memory")};
-    text_source source = {text};
     int error = grobo_diagnostics_new(&list, NULL);
     if (!error) {
-        error =
-            grobo_robot_def_read(&(grobo_source){read_text, &source}, "robot", list, NULL, &def);
+        error = sketch_read_back(text, list, &def);
     }
     if (error) {
         (void)grobo_diagnostics_get(list, 0, &d);

@@ -79,6 +79,8 @@ bool sketch_fit(sketch *s, char *complaint, size_t capacity);
 
 /* The file, to be freed; NULL: there is no memory. */
 char *sketch_text(sketch *s);
+/* That text as a robot: as of grobo_robot_def_read(). */
+int sketch_read_back(const char *text, grobo_diagnostics *list, grobo_robot_def **def);
 
 /* Reads a URDF, or Choreonoid's body. False with one line of complaint: "FILE:LINE: ...". */
 bool sketch_read_urdf(sketch *s, const char *path, const char *bytes, size_t size, char *complaint,
