@@ -229,12 +229,12 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
 static bool aim_goal(const grobo_robot *robot, const grobo_robot_order *order, bool soft,
                      grobo_target *target)
 {
-    bool sleeps = false;
+    bool wakes = robot->driver->goal_wakes, sleeps = false;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool last = axis->next == 0 && axis->last == order->number; /* again, or its next part */
         bool meant = grobo_i_has(order->joints, j) && (axis->next == order->number || last);
-        if (meant && grobo_i_may_sleep(robot, j)) {
+        if (meant && wakes && grobo_i_may_sleep(robot, j)) {
             sleeps = true;
         } else if (meant) {
             target->posture.angle_rad[j] = order->rests ? rest_of(robot, j, soft) : axis->next_rad;
@@ -414,7 +414,7 @@ static int judge_segment(grobo_robot *robot, const grobo_robot_order *order, gro
         return GROBO_ERR_LATCHED;
     }
     grobo_i_segments_aim(robot, order->joints, target);
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+    for (int j = 0; robot->driver->goal_wakes && j < robot->driver->model->n_joints; j++) {
         target->posture.set &= ~(grobo_i_may_sleep(robot, j) ? GROBO_JOINT_BIT(j) : 0);
     }
     return target->posture.set == 0 ? GROBO_ERR_EMPTY : judge_joints(robot, target->posture.set);
@@ -514,18 +514,15 @@ int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_r
 
 /* Where a way begins, which is gone at a speed by servos that are told no time. One that is behind
  * comes to rest no later for that: a halt counts the way from where it was read. */
-static double begin_of(const grobo_robot *robot, const grobo_robot_order *order,
-                       const grobo_target *target, int joint)
+static double begin_of_halt(const grobo_robot *robot, const grobo_target *target, int joint)
 {
-    double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
     double to_rad = target->posture.angle_rad[joint];
+    double way_rad = fabs(target->from_rad[joint] - to_rad);
     double behind_rad = robot->axes[joint].state.angle_rad - to_rad;
-    if (order->deed != GROBO_I_DEED_HALT || fabs(behind_rad) <= fabs(from_rad - to_rad)) {
-        return from_rad;
-    }
     double most_rad = speed_limit(robot, joint, true) * (double)target->joint_time_us[joint] / 1e6;
-    double way_rad = fmin(fabs(behind_rad), fmax(most_rad, fabs(from_rad - to_rad)));
-    return to_rad + copysign(way_rad, behind_rad);
+    return fabs(behind_rad) <= way_rad
+               ? target->from_rad[joint]
+               : to_rad + copysign(fmin(fabs(behind_rad), fmax(most_rad, way_rad)), behind_rad);
 }
 
 /* What the frames of an order ask for. */
@@ -537,7 +534,10 @@ static void aim(const grobo_robot *robot, const grobo_robot_order *order, const 
         (void)grobo_i_segments_cut(robot, order, &says->target, target);
     }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        target->from_rad[j] = begin_of(robot, order, target, j);
+        target->from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
+        if (order->deed == GROBO_I_DEED_HALT) {
+            target->from_rad[j] = begin_of_halt(robot, target, j);
+        }
     }
 }
 

@@ -237,7 +237,9 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
     if (result >= 0) {
         result = GROBO_OK;
         take_reading(robot, joint, slot->asked_us, got);
-        note_heard(slot, got);
+        if (robot->driver->goal_wakes) {
+            note_heard(slot, got);
+        }
     } else {
         robot->axes[joint].status = result;
         if (grobo_i_is_loss(result)) {

@@ -88,7 +88,7 @@ void grobo_i_segments_step(grobo_robot *robot)
 
 int64_t grobo_i_segments_deadline(const grobo_robot *robot)
 {
-    int64_t at_us = grobo_i_gate_halt_at(robot);
+    int64_t at_us = robot->halts_owed != 0 ? grobo_i_gate_halt_at(robot) : GROBO_NEVER_US;
     if (!robot->in_segments) {
         return at_us;
     }

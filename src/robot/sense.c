@@ -335,5 +335,5 @@ int64_t grobo_i_sense_deadline(const grobo_robot *robot)
     int64_t due_us = robot->free_joints != 0 ? robot->now_us
                      : never                 ? GROBO_NEVER_US
                                              : robot->sense_us;
-    return grobo_i_sooner(due_us, unheard_at(robot));
+    return robot->driver->goal_wakes ? grobo_i_sooner(due_us, unheard_at(robot)) : due_us;
 }
