@@ -84,8 +84,9 @@ GROBO_CORE grobo_motion_format grobo_motion_kind_format(grobo_motion_kind kind);
 
 /* ---- reading ------------------------------------------------------------------------------ */
 
-/** Options of reading. All zero (or NULL): the defaults. */
+/** Options of reading. Zero (or NULL): the defaults. */
 typedef struct grobo_read_options {
+    size_t size;                /**< GROBO_READ_OPTIONS_INIT */
     grobo_motion_format format; /**< AUTO: by extension, else by content */
     const grobo_model *model;   /**< order of .m: its motors; NULL, or more angles in the file
                                      than it has motors: joint order */
@@ -96,6 +97,8 @@ typedef struct grobo_read_options {
                                      first GROBO_MOTION_POSITIONS_MAX postures */
     bool keep_going;            /**< after an error look for more; the result is an error still */
 } grobo_read_options;
+/** Begins an initializer of one. */
+#define GROBO_READ_OPTIONS_INIT GROBO_SIZED(grobo_read_options)
 
 /** Where bytes come from. */
 typedef struct grobo_source {
@@ -133,8 +136,9 @@ typedef struct grobo_slack_taken {
     uint32_t line;    /**< line of the first one, 0: unknown */
 } grobo_slack_taken;
 
-/** Options of grobo_motion_check(). All zero (or NULL): the defaults. */
+/** Options of grobo_motion_check(). Zero (or NULL): the defaults. */
 typedef struct grobo_check_options {
+    size_t size;                /**< GROBO_CHECK_OPTIONS_INIT */
     const char *name;           /**< the file's name in diagnostics; NULL: "" */
     int64_t default_us;         /**< for steps without time; 0: GROBO_MOTION_DEFAULT_US */
     const grobo_posture *start; /**< what .mseq counts from; NULL: the model's initial posture */
@@ -146,6 +150,8 @@ typedef struct grobo_check_options {
      */
     grobo_slack_taken *slack;
 } grobo_check_options;
+/** Begins an initializer of one. */
+#define GROBO_CHECK_OPTIONS_INIT GROBO_SIZED(grobo_check_options)
 
 /**
  * Looks for everything that would go wrong in play on a robot: angles outside limits, moves too
@@ -160,8 +166,9 @@ GROBO_API int grobo_motion_check(const grobo_motion *motion, const grobo_model *
 
 /* ---- converting --------------------------------------------------------------------------- */
 
-/** Options of converting and writing. All zero (or NULL): the defaults. */
+/** Options of converting and writing. Zero (or NULL): the defaults. */
 typedef struct grobo_write_options {
+    size_t size;                /**< GROBO_WRITE_OPTIONS_INIT */
     grobo_motion_format format; /**< of grobo_motion_save(); AUTO: by the path's extension, else the
                                      one that holds the motion's kind */
     const grobo_model *model;   /**< motor order of .m (as in reading), and `start` if NULL below */
@@ -180,6 +187,8 @@ typedef struct grobo_write_options {
                                      see grobo_motion_may_save() */
     const char *name;           /**< the file's name in diagnostics; NULL: the path or "" */
 } grobo_write_options;
+/** Begins an initializer of one. */
+#define GROBO_WRITE_OPTIONS_INIT GROBO_SIZED(grobo_write_options)
 
 /**
  * A motion of another kind with the same postures at the same times. What that kind cannot hold

@@ -75,8 +75,10 @@ typedef enum grobo_play_mode {
 /** grobo_play_options.start_us of a motion whose start is told after its approach. */
 #define GROBO_START_LATER (GROBO_NEVER_US / 2)
 
-/** How to play a clip. All zero: once, by keys, forward, at its own speed. */
+/** How to play a clip. Zero: once, by keys, forward, at its own speed. A sequencer does not look at
+ *  `size`; grobo_robot_play() and whatever plays by it do. */
 typedef struct grobo_play_options {
+    size_t size; /**< GROBO_PLAY_OPTIONS_INIT */
     grobo_play_mode mode;
     bool reverse;            /**< from the last posture to the first */
     bool mirror;             /**< left for right, by the model's table */
@@ -98,6 +100,8 @@ typedef struct grobo_play_options {
                                   no frame makes way for a reading. Heat, current and lost torque
                                   may then stop nothing before the motion ends */
 } grobo_play_options;
+/** Begins an initializer of one. */
+#define GROBO_PLAY_OPTIONS_INIT GROBO_SIZED(grobo_play_options)
 
 /** How often grobo_play_options.repeat plays a clip: at least once. Thread safe. */
 GROBO_CORE int32_t grobo_play_passes(int32_t repeat);
@@ -124,7 +128,8 @@ typedef struct grobo_play_progress {
     uint64_t step;    /**< frames of this pass handed out or skipped */
     uint64_t steps;   /**< frames of a whole pass: keys, or frames at the rate */
     unsigned queued;  /**< clips that wait */
-    bool ready;       /**< GROBO_START_LATER: it has approached, and waits for its start */
+    bool ready;       /**< grobo_robot_progress(), of GROBO_START_LATER: it has approached, and
+                           waits for its start */
 } grobo_play_progress;
 
 /** Counters; monotonic, wrap. */

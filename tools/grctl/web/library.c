@@ -528,7 +528,8 @@ static void save(ask *q, const void *bytes, size_t size)
 static grobo_motion *edited(ask *q, const json_t *edit, bool from_file)
 {
     edit_result made = {.motion = NULL};
-    grobo_read_options read = {.model = app_model(q->l->a), .name = q->name};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(q->l->a),
+                               .name = q->name};
     grobo_motion *base = NULL;
     library_file file = {.bytes = NULL};
     int error = from_file ? library_read(q->l, q->name, &file) : GROBO_OK;
