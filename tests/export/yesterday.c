@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A program that was compiled when structures of configuration and options had two fields less, with the library
- * of today. Behind each structure is a fence: what a library takes from there, it refuses.
+ * A program that was compiled when structures of configuration and options had two fields less,
+ * with the library of today. Behind each structure is a fence: what a library takes from there, it
+ * refuses.
  */
 #include <stdio.h>
 #include <string.h>
@@ -69,6 +70,32 @@ static int with_motions(grobo_motion *motion)
     return result;
 }
 
+static int play(grobo_control *control, const grobo_posture *posture)
+{
+    FENCED(grobo_play_options, playing, GROBO_PLAY_OPTIONS_INIT);
+    grobo_motion *motion = NULL;
+
+    int result = grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL);
+    if (result >= 0) {
+        result = grobo_motion_append(motion, posture);
+    }
+    if (result >= 0) {
+        result = with_motions(motion);
+    }
+    if (result >= 0) {
+        result = grobo_control_set_motion(control, motion);
+    }
+    if (result >= 0) {
+        result = grobo_control_play_motion(control, &playing.config);
+    }
+    if (result >= 0) {
+        result = grobo_control_wait(control, 0);
+    }
+    grobo_motion_free(motion);
+    printf("%d ", (int)sizeof playing.config);
+    return result;
+}
+
 int main(void)
 {
     FENCED(grobo_robot_config, robot, GROBO_ROBOT_CONFIG_INIT);
@@ -76,8 +103,6 @@ int main(void)
     FENCED(grobo_session_config, session, GROBO_SESSION_CONFIG_INIT);
     FENCED(grobo_control_config, control, GROBO_CONTROL_CONFIG_INIT);
     FENCED(grobo_serial_config, serial, GROBO_SERIAL_CONFIG_INIT);
-    FENCED(grobo_play_options, playing, GROBO_PLAY_OPTIONS_INIT);
-    grobo_motion *motion = NULL;
     grobo_serial *port = NULL;
     grobo_control *robot_of = NULL;
     grobo_posture target;
@@ -105,30 +130,13 @@ int main(void)
             robot_of, grobo_robot_move(grobo_control_robot(robot_of), &target), 0);
     }
     if (result >= 0) {
-        result = grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL);
+        result = play(robot_of, &target);
     }
-    if (result >= 0) {
-        result = grobo_motion_append(motion, &target);
-    }
-    if (result >= 0) {
-        result = with_motions(motion);
-    }
-    if (result >= 0) {
-        result = grobo_control_set_motion(robot_of, motion);
-    }
-    if (result >= 0) {
-        result = grobo_control_play_motion(robot_of, &playing.config);
-    }
-    if (result >= 0) {
-        result = grobo_control_wait(robot_of, 0);
-    }
-    grobo_motion_free(motion);
     if (result < 0 || strcmp(grobo_control_name(robot_of), "yesterday's") != 0) {
         return fail("move", result);
     }
     grobo_control_free(robot_of);
-    printf("%d %d %d %d %d %d\n", (int)sizeof playing.config, (int)sizeof robot.config,
-           (int)sizeof sim.config, (int)sizeof session.config, (int)sizeof control.config,
-           (int)sizeof serial.config);
+    printf("%d %d %d %d %d\n", (int)sizeof robot.config, (int)sizeof sim.config,
+           (int)sizeof session.config, (int)sizeof control.config, (int)sizeof serial.config);
     return 0;
 }
