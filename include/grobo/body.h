@@ -341,7 +341,7 @@ typedef struct grobo_body_balance_frame {
     bool standing[2]; /**< right, left */
 } grobo_body_balance_frame;
 
-/** What is looked for, and who is told. All zero: balance only, tolerances as given, nobody. */
+/** What is looked for, and the callbacks. Zero: balance only, tolerances as given, no callback. */
 typedef struct grobo_body_check_options {
     size_t size;              /**< GROBO_BODY_CHECK_OPTIONS_INIT */
     const grobo_model *robot; /**< limits and speeds of the joints; NULL: not checked */
@@ -363,7 +363,7 @@ typedef struct grobo_body_check_options {
 #define GROBO_BODY_CHECK_OPTIONS_INIT GROBO_SIZED(grobo_body_check_options)
 
 /**
- * Solves every frame and tells whether the robot will fall. Feet without targets have no support to
+ * Solves every frame and finds whether the robot will fall. Feet without targets have no support to
  * be checked against; then limits and speeds alone are. The ZMP is that of the motion started from
  * rest, by differences between frames: frames 0.01 s apart or more are sensible. Times in findings
  * are those of the motion, whatever its speed.

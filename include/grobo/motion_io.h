@@ -4,7 +4,7 @@
  * @brief Motion files: read, check, convert and write .m, .pseq, .mseq and .yaml (.seq).
  *
  * Files are untrusted: every size has a cap in limits.h, a document is streamed and never held as
- * a tree, and what is wrong with it is said with line and column. docs/spec.md is the manual of
+ * a tree, and what is wrong with it is reported with line and column. docs/spec.md is the manual of
  * the formats. Nothing here depends on the locale. Calls on different motions and lists may run
  * in different threads.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
@@ -110,7 +110,7 @@ typedef struct grobo_source {
 /**
  * Reads a motion file.
  * @param[out] motion owned by the caller; untouched on error.
- * @param list what was said about the file is added to it; NULL: nobody listens.
+ * @param list diagnostics of the file are added to it; NULL: none are kept.
  * @return 0; GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR (on Windows GROBO_ERR_PERM too),
  *   GROBO_ERR_IO for the file itself;
  *   GROBO_ERR_SYNTAX (malformed), GROBO_ERR_TYPE (another kind of file), GROBO_ERR_NAN,
@@ -192,7 +192,7 @@ typedef struct grobo_write_options {
 
 /**
  * A motion of another kind with the same postures at the same times. What that kind cannot hold
- * is said in the list (severity note): ikLinks, ZMP, joints that are not set, steps of 10 s.
+ * is noted in the list (severity note): ikLinks, ZMP, joints that are not set, steps of 10 s.
  * @param[out] converted owned by the caller; a copy where the kind is the same.
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_STATE (frames without rate), GROBO_ERR_CAP, NOMEM.
  */
@@ -204,7 +204,7 @@ GROBO_API int grobo_motion_convert(const grobo_motion *motion, grobo_motion_kind
  * Whether a copy, read back from a file that source was written to with the same options, plays
  * what source plays: every posture at its time with every joint it sets (.m: within what whole
  * numbers can hold), and frames at a rate where the source is at their times. What cannot be in
- * the file's format at all (ikLinks, ZMP, names) is said when it is written, and not here.
+ * the file's format at all (ikLinks, ZMP, names) is reported when it is written, and not here.
  * @param options of the writing; NULL: the defaults
  * @param list each joint that differs, where it differs first, and a time that does: errors.
  * @return how many differences were found, GROBO_ERR_NOMEM, or what grobo_motion_clip() gives.
