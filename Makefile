@@ -183,7 +183,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports check-long check-mutants check-map install-lib FORCE
+.PHONY: check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports check-long check-mutants check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -414,6 +414,17 @@ check-mutants: ## sabotage the core in COUNT=300 ways that SEED=1 chooses: a tes
 	    --compile '$(CC) $(ALL_CPPFLAGS) -DGROBO_WALKS $(SRC_INCLUDE) -std=c11 -fPIC -O2' --link '$(CC)' \
 	    --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
 	    --scope tests/mutants/scope --survivors tests/mutants/survivors --named tests/mutants/named
+
+ASSERT_TESTS := $(MUTANT_TESTS) $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/link/test_thread% \
+    tests/link/test_session% tests/link/test_serial% tests/link/test_control%,$(TEST_SRCS)))
+check-asserts: ## sabotage what the assertions of bus, sequencer, engine and loop state: each must end a test
+	-@tools/setup.sh --mutants
+	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 WALKS=-DGROBO_WALKS $(ASSERT_TESTS) $(MUTANT_LIBS)
+	@nice python3 tests/mutants/asserts.py $(if $(ONLY),--only "$(ONLY)") --rows tests/mutants/asserts \
+	    --of "src/bus/ src/play/ src/robot/ src/link/" --work $(MUTANT_DIR)/work \
+	    --sources "$(CORE_SRCS) $(OTHER_SRCS)" --tests "$(ASSERT_TESTS)" \
+	    --compile '$(CC) $(ALL_CPPFLAGS) -DGROBO_WALKS $(SRC_INCLUDE) $(OS_FLAGS) $(EVENT_CFLAGS) $(YAML_CFLAGS) -std=c11 -fPIC -O2' \
+	    --link '$(CC)' --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' $(if $(JOBS),--jobs $(JOBS))
 
 MAP_TESTS := $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/unit/% tests/engine/% \
     tests/link/% tests/port/%,$(TEST_SRCS)))

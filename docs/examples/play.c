@@ -10,7 +10,7 @@ int main(int argc, char **argv)
                                           .device = argc > 2 ? argv[2] : "sim"};
     const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session,
                                          .motion_dir = "motions"};
-    const grobo_play_options options = {.speed_pct = 200};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .speed_pct = 200};
     grobo_control *control;
     if (grobo_control_new(&config, &control) < 0) {
         return 1;

@@ -25,7 +25,8 @@ int main(int argc, char **argv)
         }
     }
     /* Each approaches its first posture by then, and waits. */
-    const grobo_play_options options = {.start_us = grobo_now_us() + 2000000, .speed_pct = 300};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
+                                        .start_us = grobo_now_us() + 2000000, .speed_pct = 300};
     for (int i = 0; result >= 0 && i < 2; i++) {
         result = grobo_control_play_motion(robots[i], &options);
     }

@@ -226,14 +226,17 @@ typedef enum grobo_body_balance {
     GROBO_BODY_BALANCE_COMPAT11 = 2 /**< as Choreonoid 1.1 did, which made the robot's motions */
 } grobo_body_balance;
 
-/** Options; all zero is: exact, none, file, off, 100 Hz. */
+/** Options; zero is: exact, none, file, off, 100 Hz. grobo_body_init() does not look at `size`. */
 typedef struct grobo_body_options {
+    size_t size; /**< GROBO_BODY_OPTIONS_INIT */
     grobo_body_ik ik;
     grobo_body_step step;
     grobo_body_zmp_source zmp;
     grobo_body_balance balance;
     double rate_hz; /**< frames a second, up to 10000; 0: 100 */
 } grobo_body_options;
+/** Begins an initializer of one. */
+#define GROBO_BODY_OPTIONS_INIT GROBO_SIZED(grobo_body_options)
 
 /** What is to be solved. Nothing of it but `model` is used after the call it is given to. */
 typedef struct grobo_body_setup {
@@ -338,8 +341,9 @@ typedef struct grobo_body_balance_frame {
     bool standing[2]; /**< right, left */
 } grobo_body_balance_frame;
 
-/** What is looked for, and who is told. All zero: balance only, tolerances as given, nobody. */
+/** What is looked for, and the callbacks. Zero: balance only, tolerances as given, no callback. */
 typedef struct grobo_body_check_options {
+    size_t size;              /**< GROBO_BODY_CHECK_OPTIONS_INIT */
     const grobo_model *robot; /**< limits and speeds of the joints; NULL: not checked */
     double margin_m;          /**< the ZMP shall be so far inside; 0: anywhere inside */
     double slip_m;            /**< how far a standing foot may move; 0: 0.001 */
@@ -355,9 +359,11 @@ typedef struct grobo_body_check_options {
     void (*finding)(void *ctx, const grobo_body_finding *finding);
     void *ctx; /**< handed back */
 } grobo_body_check_options;
+/** Begins an initializer of one. */
+#define GROBO_BODY_CHECK_OPTIONS_INIT GROBO_SIZED(grobo_body_check_options)
 
 /**
- * Solves every frame and tells whether the robot will fall. Feet without targets have no support to
+ * Solves every frame and finds whether the robot will fall. Feet without targets have no support to
  * be checked against; then limits and speeds alone are. The ZMP is that of the motion started from
  * rest, by differences between frames: frames 0.01 s apart or more are sensible. Times in findings
  * are those of the motion, whatever its speed.

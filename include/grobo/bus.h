@@ -5,7 +5,7 @@
  *
  * A transaction is a frame and the reply to it. The bus keeps the transactions that wait, by
  * priority, and has one on the wire at a time. It gives bytes to send, takes bytes received, and
- * says when it wants to be called next; it has no descriptor, clock or allocation.
+ * returns when it must be called next; it has no descriptor, clock or allocation.
  *
  * A pump does, whenever bytes came or the deadline passed, always in this order:
  * @code
@@ -112,7 +112,7 @@ struct grobo_txn {
                                   time, where neither timeout_us nor margin_us says otherwise. Not
                                   a stop or motion, and not into the reserved span. For where a
                                   stall at the other end is more likely than a dead servo */
-    grobo_priority priority; /**< who goes first */
+    grobo_priority priority; /**< what goes first */
     grobo_reply reply;       /**< what must come back */
     uint32_t timeout_us;     /**< time from the first byte sent to the reply; 0: computed */
     uint8_t attempts_;       /**< private: begun */

@@ -3,7 +3,7 @@
  * @file driver.h
  * @brief What a robot of one's own fills in: a const table of functions and data.
  *
- * The engine (robot.h) decides what is sent and when; the driver says how it looks on the wire.
+ * The engine (robot.h) decides what is sent and when; the driver knows how it looks on the wire.
  * Every function is pure apart from `ctx`: no I/O, no waiting, no allocation. They run inside the
  * engine's calls, so they must not call the engine back.
  *
@@ -67,7 +67,7 @@ typedef struct grobo_setup_fault {
 /** One reading of one joint. Plain data; a field means something only where `valid` has its bit. */
 typedef struct grobo_joint_state {
     double angle_rad;      /**< present angle */
-    double goal_rad;       /**< where the servo was told to go */
+    double goal_rad;       /**< the goal that the servo has */
     int64_t goal_time_us;  /**< and in which time; 0: as fast as it can. Valid with goal_rad */
     int64_t time_us;       /**< since its present move began */
     int32_t speed_dps;     /**< degrees a second */
@@ -76,7 +76,7 @@ typedef struct grobo_joint_state {
     int16_t temperature_c; /**< degrees Celsius */
     uint16_t valid;        /**< GROBO_FIELD_... bits */
     grobo_torque torque;   /**< as read, not as asked */
-    bool overheated;       /**< the servo says that it was too hot and has cut its torque */
+    bool overheated;       /**< the servo reports that it was too hot and has cut its torque */
     uint8_t flags;         /**< of the reply, in bits of its family (GROBO_RS30X_STATUS_...) */
     bool torque_limited;   /**< its torque limit is its joint's, or lower */
     double low_rad;        /**< range of a calibrated joint, by the limits that its servo keeps */
@@ -173,7 +173,7 @@ struct grobo_driver {
                               where there are none. 0: nothing */
     bool goal_wakes;     /**< a goal switches torque on: joints without it get none but to hold, and
                               none that may have restarted before they were read again */
-    bool no_speed;       /**< its servos tell no speed: the engine takes that between two angles */
+    bool no_speed;       /**< its servos report no speed: the engine takes that between two angles */
 
     /** Is the robot there? Parts are tried one after the other until one is answered. */
     int (*check)(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);
@@ -271,7 +271,7 @@ GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *m
  * turns, or 5. All joints are read in one frame. Torque on does not move a servo whose goal is
  * where it stands; whether it keeps an old goal depends on its firmware, so that the engine always
  * sets it. An error of its register shutdown cuts the torque until a reboot. No brake: torque is on
- * or off, and an emergency stop holds unless it is to let go.
+ * or off, and an emergency stop holds unless it is to release.
  * Its bus watchdog is the dead-man: a servo that nothing was sent to for watchdog_us, 0.5 s, stops
  * where it is and keeps its torque; a move, a play or a torque on clears that.
  * Limits: 65 deg C, 5 lost replies, 60 deg/s for the first move; exit policy hold; an arm.
@@ -311,10 +311,10 @@ GROBO_API int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *m
  * echo. grobo_joint.servo_model is a number of grobo_ics_table. Goals have no time: the servo's
  * speed is set before each goal, and taken for a part of its top speed. One frame moves or reads
  * one servo: a robot may have at most 18 joints. A goal is answered with where the joint is, and
- * switches the torque on. Servos tell neither speed nor goal.
+ * switches the torque on. Servos report neither speed nor goal.
  * @return 0, GROBO_ERR_ARG: a bad model, a servo that is not known, a joint beyond its reach or of
  *         several turns; GROBO_ERR_UNSUPPORTED: a servo with ICS 3.5, which cannot tell where it is
- *         but by being moved or let go.
+ *         but by being moved or released.
  */
 GROBO_API int grobo_ics_driver_init(grobo_driver *driver, const grobo_model *model);
 

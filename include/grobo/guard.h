@@ -11,7 +11,7 @@
  * stays on, unless the exit policy of the moment is GROBO_EXIT_OFF: then it goes off after that.
  * GROBO_EXIT_SIT takes longer than a guard has, so the robot holds. A robot under an emergency stop
  * is stopped that way again. On Linux the guard also stops what moves when the program is stopped
- * (SIGSTOP) for about 100 ms: the session then tells GROBO_ERR_STALLED when the program continues.
+ * (SIGSTOP) for about 100 ms: the session reports GROBO_ERR_STALLED when the program continues.
  *
  * @code
  *   grobo_guard *guard = NULL;
@@ -107,7 +107,7 @@ typedef struct grobo_guard_program {
                                   const void *data, size_t bytes, void **driver_ctx);
     /**
      * The robot was stopped, and the port is released; `result` is GROBO_OK when every joint was
-     * read and stands, else the first error. NULL: not told.
+     * read and stands, else the first error. NULL: no report.
      */
     void (*on_stop)(void *ctx, grobo_guard_cause cause, int result);
     void *ctx; /**< borrowed, handed to these */

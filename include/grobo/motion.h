@@ -330,13 +330,16 @@ typedef enum grobo_motion_style {
                                      the listed joints set, straight lines between (the servo's) */
 } grobo_motion_style;
 
-/** Options of grobo_motion_clip(). All zero: the defaults. */
+/** Options of grobo_motion_clip(). Zero (or NULL): the defaults. */
 typedef struct grobo_clip_options {
+    size_t size;                /**< GROBO_CLIP_OPTIONS_INIT */
     grobo_motion_style style;   /**< key poses only; the other kinds have straight lines */
     int64_t default_us;         /**< for steps without time; 0: GROBO_MOTION_DEFAULT_US */
     const grobo_posture *start; /**< the sensed posture, used during the call: what .mseq counts
                                      from; may be NULL */
 } grobo_clip_options;
+/** Begins an initializer of one. */
+#define GROBO_CLIP_OPTIONS_INIT GROBO_SIZED(grobo_clip_options)
 
 /**
  * A playable view. Key mode: every posture with the joints it lists. Sampled: key poses by the

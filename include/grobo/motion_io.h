@@ -4,7 +4,7 @@
  * @brief Motion files: read, check, convert and write .m, .pseq, .mseq and .yaml (.seq).
  *
  * Files are untrusted: every size has a cap in limits.h, a document is streamed and never held as
- * a tree, and what is wrong with it is said with line and column. docs/spec.md is the manual of
+ * a tree, and what is wrong with it is reported with line and column. docs/spec.md is the manual of
  * the formats. Nothing here depends on the locale. Calls on different motions and lists may run
  * in different threads.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
@@ -84,8 +84,9 @@ GROBO_CORE grobo_motion_format grobo_motion_kind_format(grobo_motion_kind kind);
 
 /* ---- reading ------------------------------------------------------------------------------ */
 
-/** Options of reading. All zero (or NULL): the defaults. */
+/** Options of reading. Zero (or NULL): the defaults. */
 typedef struct grobo_read_options {
+    size_t size;                /**< GROBO_READ_OPTIONS_INIT */
     grobo_motion_format format; /**< AUTO: by extension, else by content */
     const grobo_model *model;   /**< order of .m: its motors; NULL, or more angles in the file
                                      than it has motors: joint order */
@@ -96,6 +97,8 @@ typedef struct grobo_read_options {
                                      first GROBO_MOTION_POSITIONS_MAX postures */
     bool keep_going;            /**< after an error look for more; the result is an error still */
 } grobo_read_options;
+/** Begins an initializer of one. */
+#define GROBO_READ_OPTIONS_INIT GROBO_SIZED(grobo_read_options)
 
 /** Where bytes come from. */
 typedef struct grobo_source {
@@ -107,7 +110,7 @@ typedef struct grobo_source {
 /**
  * Reads a motion file.
  * @param[out] motion owned by the caller; untouched on error.
- * @param list what was said about the file is added to it; NULL: nobody listens.
+ * @param list diagnostics of the file are added to it; NULL: none are kept.
  * @return 0; GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR (on Windows GROBO_ERR_PERM too),
  *   GROBO_ERR_IO for the file itself;
  *   GROBO_ERR_SYNTAX (malformed), GROBO_ERR_TYPE (another kind of file), GROBO_ERR_NAN,
@@ -133,8 +136,9 @@ typedef struct grobo_slack_taken {
     uint32_t line;    /**< line of the first one, 0: unknown */
 } grobo_slack_taken;
 
-/** Options of grobo_motion_check(). All zero (or NULL): the defaults. */
+/** Options of grobo_motion_check(). Zero (or NULL): the defaults. */
 typedef struct grobo_check_options {
+    size_t size;                /**< GROBO_CHECK_OPTIONS_INIT */
     const char *name;           /**< the file's name in diagnostics; NULL: "" */
     int64_t default_us;         /**< for steps without time; 0: GROBO_MOTION_DEFAULT_US */
     const grobo_posture *start; /**< what .mseq counts from; NULL: the model's initial posture */
@@ -146,6 +150,8 @@ typedef struct grobo_check_options {
      */
     grobo_slack_taken *slack;
 } grobo_check_options;
+/** Begins an initializer of one. */
+#define GROBO_CHECK_OPTIONS_INIT GROBO_SIZED(grobo_check_options)
 
 /**
  * Looks for everything that would go wrong in play on a robot: angles outside limits, moves too
@@ -160,8 +166,9 @@ GROBO_API int grobo_motion_check(const grobo_motion *motion, const grobo_model *
 
 /* ---- converting --------------------------------------------------------------------------- */
 
-/** Options of converting and writing. All zero (or NULL): the defaults. */
+/** Options of converting and writing. Zero (or NULL): the defaults. */
 typedef struct grobo_write_options {
+    size_t size;                /**< GROBO_WRITE_OPTIONS_INIT */
     grobo_motion_format format; /**< of grobo_motion_save(); AUTO: by the path's extension, else the
                                      one that holds the motion's kind */
     const grobo_model *model;   /**< motor order of .m (as in reading), and `start` if NULL below */
@@ -180,10 +187,12 @@ typedef struct grobo_write_options {
                                      see grobo_motion_may_save() */
     const char *name;           /**< the file's name in diagnostics; NULL: the path or "" */
 } grobo_write_options;
+/** Begins an initializer of one. */
+#define GROBO_WRITE_OPTIONS_INIT GROBO_SIZED(grobo_write_options)
 
 /**
  * A motion of another kind with the same postures at the same times. What that kind cannot hold
- * is said in the list (severity note): ikLinks, ZMP, joints that are not set, steps of 10 s.
+ * is noted in the list (severity note): ikLinks, ZMP, joints that are not set, steps of 10 s.
  * @param[out] converted owned by the caller; a copy where the kind is the same.
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_STATE (frames without rate), GROBO_ERR_CAP, NOMEM.
  */
@@ -195,7 +204,7 @@ GROBO_API int grobo_motion_convert(const grobo_motion *motion, grobo_motion_kind
  * Whether a copy, read back from a file that source was written to with the same options, plays
  * what source plays: every posture at its time with every joint it sets (.m: within what whole
  * numbers can hold), and frames at a rate where the source is at their times. What cannot be in
- * the file's format at all (ikLinks, ZMP, names) is said when it is written, and not here.
+ * the file's format at all (ikLinks, ZMP, names) is reported when it is written, and not here.
  * @param options of the writing; NULL: the defaults
  * @param list each joint that differs, where it differs first, and a time that does: errors.
  * @return how many differences were found, GROBO_ERR_NOMEM, or what grobo_motion_clip() gives.

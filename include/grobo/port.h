@@ -4,7 +4,7 @@
  * @brief What the library asks of an operating system: clock, thread, lock, byte ports.
  *
  * A port is a folder (ports/posix, ports/win32) that brings grobo/port_os.h with the types and
- * implements everything declared here. ports/README.md tells how to write another one.
+ * implements everything declared here. ports/README.md explains how to write another one.
  *
  * Nothing here knows an event loop. A byte port hands out a socket that a loop can wait on: on
  * POSIX the descriptor itself, on Win32 one end of a socket pair that a thread of the port pumps
@@ -46,7 +46,7 @@ GROBO_API int grobo_port_start(void);
 
 /**
  * Now, in microseconds of a monotonic clock with an arbitrary start. Never negative, never goes
- * back, goes on while the system's date is changed. Thread safe.
+ * back, and is not affected when the system's date is changed. Thread safe.
  */
 GROBO_API int64_t grobo_now_us(void);
 
@@ -135,7 +135,7 @@ typedef struct grobo_port_ops {
      * Opens a device: raw, 8 data bits, no parity, 1 stop bit, no flow control, for this process
      * alone, what was received before is dropped. The storage needs no preparation.
      * @return GROBO_OK; or one of these, and there is nothing to close: GROBO_ERR_NOENT,
-     *   GROBO_ERR_PERM, GROBO_ERR_BUSY (cause names the holder where the system tells),
+     *   GROBO_ERR_PERM, GROBO_ERR_BUSY (cause names the holder where it is known),
      *   GROBO_ERR_ISDIR, GROBO_ERR_TYPE (no serial port), GROBO_ERR_UNSUPPORTED (baud rate),
      *   GROBO_ERR_ARG (malformed name), GROBO_ERR_UNPLUGGED (the node is there, the device not),
      *   GROBO_ERR_NOMEM (the system has no memory or no handle left),
@@ -200,9 +200,9 @@ typedef struct grobo_port_ops {
     grobo_handle (*handle)(const grobo_port *port);
 
     /**
-     * Bytes that the system has taken by write() and that have not left, as far as it tells.
+     * Bytes that the system has taken by write() and that have not left, as far as it is known.
      * Of a connection: more than it may have on its way before an acknowledgement is due.
-     * @return count; 0 also where the system does not tell. NULL: it never does.
+     * @return count; 0 also where it is not known. NULL: it never is.
      */
     int (*unsent)(const grobo_port *port);
 } grobo_port_ops;
@@ -299,9 +299,9 @@ typedef struct grobo_port_info {
     char path[GROBO_DEVICE_MAX_BYTES];  /**< what to open: /dev/ttyUSB0, COM3 */
     char by_id[GROBO_DEVICE_MAX_BYTES]; /**< the name that stays when it is plugged in elsewhere */
     char driver[64];                    /**< ftdi_sio, cdc_acm, serial8250 */
-    char manufacturer[64];              /**< as the USB device says */
-    char product[64];                   /**< as the USB device says */
-    char serial_number[64];             /**< as the USB device says */
+    char manufacturer[64];              /**< from the USB device */
+    char product[64];                   /**< from the USB device */
+    char serial_number[64];             /**< from the USB device */
     int usb_vendor;                     /**< USB vendor id, -1 for no USB device */
     int usb_product;                    /**< USB product id, -1 for no USB device */
     int latency_ms;                     /**< the FTDI driver's latency timer, -1 unknown */
@@ -336,7 +336,7 @@ GROBO_CORE int grobo_port_identity(const char *device, char *name, size_t name_b
  * A process that has a device open: who holds the lock of it, else the first found that has it
  * open and is not the caller.
  * @param[out] name the process's name, NUL-terminated, cut to size; untouched where none.
- * @return its pid, 0 where there is none or the system does not tell.
+ * @return its pid, 0 where there is none or it is not known.
  */
 GROBO_CORE int grobo_port_owner(const char *device, char *name, size_t name_bytes);
 

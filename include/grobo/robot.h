@@ -14,11 +14,11 @@
  * session.h does that on an event_base, a test in virtual time. Requests and questions take no
  * time: theirs is the pump's, or that of the clock that grobo_robot_set_host() brings.
  *
- * What the engine does is asked for by requests and told by one callback, grobo_event. Requests
+ * The engine is asked by requests, and reports by one callback, grobo_event. Requests
  * return at once. Most are jobs: each has a number > 0, and each ends with exactly one
  * GROBO_EVENT_JOB of that number. Jobs run side by side where they do not disturb each other:
  * - Moves of different joints run together. A new move of a joint takes it from the move before,
- *   which goes on with its other joints and ends with GROBO_ERR_SUPERSEDED.
+ *   which continues with its other joints and ends with GROBO_ERR_SUPERSEDED.
  * - Readings run beside everything but what has the robot for itself: the check, the preparation
  *   of a play, flash and restart, a stored motion, the exit, the emergency stop.
  * - Moves and readings that cannot begin yet wait in their order (GROBO_ROBOT_QUEUE of them, then
@@ -27,7 +27,7 @@
  * - Torque off and brake, stop, exit and the emergency stop take the place of what is in their way.
  * - All others are refused with GROBO_ERR_STATE while their joints are busy.
  * Playing is not a job: grobo_robot_play() prepares as a job, then the sequencer runs beside the
- * jobs until GROBO_EVENT_PLAY tells its end.
+ * jobs until GROBO_EVENT_PLAY reports its end.
  *
  * Safety, on every path, judged as the bytes leave, by grobo_robot_tx():
  * - Every target is finite and within the joint's limits (refused, or clamped if so configured).
@@ -63,14 +63,14 @@ GROBO_BEGIN_DECLS
 /** How long they wait at most. */
 #define GROBO_ROBOT_QUEUE_US 2000000
 
-/** A robot engine. What is in it is told by static.h, for programs that keep it themselves. */
+/** A robot engine. static.h completes it, for programs that keep it themselves. */
 typedef struct grobo_robot grobo_robot;
 
-/** Who is told of events; on_event may be NULL. */
+/** Sets the callback of events; on_event may be NULL. */
 GROBO_API void grobo_robot_on_event(grobo_robot *robot, grobo_event_fn on_event, void *ctx);
 
 /**
- * Changes the configuration (copied; NULL: all defaults); what is under way goes on under the new
+ * Changes the configuration (copied; NULL: all defaults); what is under way continues under the new
  * one, and the line's physics stay as they are.
  * @return 0 or GROBO_ERR_ARG, then nothing changed.
  */
@@ -79,7 +79,7 @@ GROBO_API int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config
 /* ---- requests --------------------------------------------------------------------------------
  * All return a job number > 0 or an error: GROBO_ERR_CLOSED (link down), GROBO_ERR_STATE (not
  * beside what runs, see above), GROBO_ERR_LATCHED (tripped, for what would move or switch torque
- * on), GROBO_ERR_UNSUPPORTED (not in the driver), and what is said at each. */
+ * on), GROBO_ERR_UNSUPPORTED (not in the driver), and the errors of each. */
 
 /** Is the robot there? Result GROBO_ERR_TIMEOUT if nothing answers. */
 GROBO_API int grobo_robot_check(grobo_robot *robot);
@@ -113,7 +113,7 @@ GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target);
 GROBO_API int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target);
 
 /**
- * Sends a target once and lets go: no job, no event, nothing read before or after. For a control
+ * Sends a target once: no job, no event, nothing read before or after. For a control
  * loop of the caller's own, which calls it once a period; a target that still waits for the line
  * is replaced. The first ones go there at the approach speed. Joints must have been sensed and
  * hold (a sense and a torque job, once). The target is checked and timed as any other.
@@ -136,7 +136,7 @@ GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target);
  */
 GROBO_API int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size);
 /**
- * The same for who waits until until_us only: no attempt leaves after that; the job ends with
+ * The same with a deadline, until_us: no attempt leaves after that; the job ends with
  * GROBO_ERR_STALE then.
  */
 GROBO_CORE int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
@@ -200,7 +200,7 @@ GROBO_API int grobo_robot_cancel(grobo_robot *robot);
  * Plays a clip: senses, switches torque on (unless manual_torque), goes softly to its first
  * posture, plays. The job GROBO_JOB_PLAY ends when the servos are known to be on their way there,
  * or could not be brought on it.
- * @param clip copied; what its ctx points to must live until GROBO_EVENT_PLAY tells the end.
+ * @param clip copied; what its ctx points to must live until GROBO_EVENT_PLAY reports the end.
  * @param options copied; NULL for all defaults. approach_deg_s 0 is the configuration's, rate_hz 0
  *        that of grobo_robot_budget(). A rate above watched_hz is refused with
  *        GROBO_ERR_UNWATCHED unless `unwatched`; then GROBO_EVENT_UNWATCHED comes when it begins.
@@ -221,7 +221,7 @@ GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
  * Sets when a motion with GROBO_START_LATER (sequencer.h) begins, which has approached and waits
  * (grobo_play_progress.ready), on the clock of grobo_play_options.start_us.
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_STATE (it is not ready), GROBO_ERR_LATCHED, or
- *         GROBO_ERR_STALE: that time is over, and it goes on waiting.
+ *         GROBO_ERR_STALE: that time is over, and it keeps waiting.
  */
 GROBO_API int grobo_robot_start_at(grobo_robot *robot, int64_t start_us);
 
@@ -282,7 +282,7 @@ GROBO_API bool grobo_robot_settling(const grobo_robot *robot);
 /** Kind of a job that runs, the oldest in general; GROBO_JOB_NONE for none. */
 GROBO_API grobo_job_kind grobo_robot_job(const grobo_robot *robot);
 
-/** True while the job of this number runs or waits, or its end has not been told. */
+/** True while the job of this number runs or waits, or its end has not been reported. */
 GROBO_API bool grobo_robot_is_pending(const grobo_robot *robot, int number);
 
 /** The latched stop, or trip GROBO_TRIP_NONE. */

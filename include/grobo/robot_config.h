@@ -29,8 +29,8 @@ typedef enum grobo_estop_torque {
 } grobo_estop_torque;
 
 /**
- * How long moves are sent. Without its host a servo continues to the goal that it was told last: a
- * whole goal is reached, a joint that is told segments stops at the end of one. For a humanoid
+ * How long moves are sent. Without its host a servo continues to the goal that it received last: a
+ * whole goal is reached, a joint that gets segments stops at the end of one. For a humanoid
  * whole goals are safer: half a crouch falls.
  */
 typedef enum grobo_goals {

@@ -30,7 +30,7 @@ typedef enum grobo_job_kind {
     GROBO_JOB_EXIT,
     GROBO_JOB_ESTOP,
     GROBO_JOB_SETTLE /**< the engine's own, after a motion: its last posture is read back, and
-                          repeated where it was lost; makes way for any request, tells nothing */
+                          repeated where it was lost; any request ends it, and it reports nothing */
 } grobo_job_kind;
 
 /** Why the engine stopped by itself. */

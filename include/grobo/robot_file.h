@@ -23,8 +23,8 @@ typedef struct grobo_robot_family {
     const char *name;                       /**< "feetech": as a file names it */
     const grobo_servo_table *const *tables; /**< NULL behind the last; NULL: RS30x, which the
                                                  simulator has by grobo_sim_type_row() */
-    uint32_t baud_bps;                      /**< of a file that says nothing */
-    grobo_wiring wiring;                    /**< of a file that says nothing */
+    uint32_t baud_bps;                      /**< where a file has none */
+    grobo_wiring wiring;                    /**< where a file has none */
     /** Fills a driver, as grobo_feetech_driver_init() does.
      *  @return 0, or GROBO_ERR_UNSUPPORTED: it has no such wiring, or GROBO_ERR_ARG */
     int (*init)(grobo_driver *driver, const grobo_model *model, grobo_wiring wiring);
@@ -76,7 +76,7 @@ GROBO_API extern const grobo_robot_def *const grobo_robot_defs[];
  * Reads the description of a robot. Every mistake is in the list, with its line and column.
  * @param source where the bytes of the file come from
  * @param name the file's name in diagnostics
- * @param list what was said is added to it; NULL: nobody listens
+ * @param list diagnostics are added to it; NULL: none are kept
  * @param mem of the description and of reading; NULL: the C library's
  * @param[out] def to be freed with grobo_robot_def_free(); untouched on error.
  * @return 0; GROBO_ERR_SYNTAX (a mistake), GROBO_ERR_NAN, GROBO_ERR_CAP (a cap of limits.h),

@@ -72,11 +72,13 @@ typedef enum grobo_play_mode {
     GROBO_PLAY_RATE = 1 /**< frames at a fixed rate */
 } grobo_play_mode;
 
-/** grobo_play_options.start_us of a motion whose start is told after its approach. */
+/** grobo_play_options.start_us of a motion whose start is set after its approach. */
 #define GROBO_START_LATER (GROBO_NEVER_US / 2)
 
-/** How to play a clip. All zero: once, by keys, forward, at its own speed. */
+/** How to play a clip. Zero: once, by keys, forward, at its own speed. A sequencer does not look at
+ *  `size`; grobo_robot_play() and whatever plays by it do. */
 typedef struct grobo_play_options {
+    size_t size; /**< GROBO_PLAY_OPTIONS_INIT */
     grobo_play_mode mode;
     bool reverse;            /**< from the last posture to the first */
     bool mirror;             /**< left for right, by the model's table */
@@ -95,9 +97,11 @@ typedef struct grobo_play_options {
     grobo_joint_mask also;   /**< grobo_robot_play(): joints of clips to be queued behind this one,
                                   read and switched on with its own */
     bool unwatched;          /**< for a robot: a rate above grobo_budget.watched_hz is accepted, and
-                                  no frame makes way for a reading. Heat, current and lost torque
+                                  no reading goes before a frame. Heat, current and lost torque
                                   may then stop nothing before the motion ends */
 } grobo_play_options;
+/** Begins an initializer of one. */
+#define GROBO_PLAY_OPTIONS_INIT GROBO_SIZED(grobo_play_options)
 
 /** How often grobo_play_options.repeat plays a clip: at least once. Thread safe. */
 GROBO_CORE int32_t grobo_play_passes(int32_t repeat);
@@ -124,7 +128,8 @@ typedef struct grobo_play_progress {
     uint64_t step;    /**< frames of this pass handed out or skipped */
     uint64_t steps;   /**< frames of a whole pass: keys, or frames at the rate */
     unsigned queued;  /**< clips that wait */
-    bool ready;       /**< GROBO_START_LATER: it has approached, and waits for its start */
+    bool ready;       /**< grobo_robot_progress(), of GROBO_START_LATER: it has approached, and
+                           waits for its start */
 } grobo_play_progress;
 
 /** Counters; monotonic, wrap. */
@@ -217,33 +222,33 @@ GROBO_CORE int grobo_sequencer_enqueue(grobo_sequencer *seq, const grobo_clip *c
 
 /**
  * Holds: one frame brings the robot to rest a little further on its way within stop_us; playing
- * goes on from there. While APPROACHING or PLAYING.
- * @return 0, GROBO_ERR_STATE, or what the clip said (then FAILED).
+ * continues from there. While APPROACHING or PLAYING.
+ * @return 0, GROBO_ERR_STATE, or the error of the clip (then FAILED).
  */
 GROBO_CORE int grobo_sequencer_pause(grobo_sequencer *seq, int64_t now_us);
 
-/** Goes on after a pause. @return 0, GROBO_ERR_STATE, or what the clip said (then FAILED). */
+/** Continues after a pause. @return 0, GROBO_ERR_STATE, or the error of the clip (then FAILED). */
 GROBO_CORE int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us);
 
 /**
  * Ends playing and empties the queue; while APPROACHING, PLAYING, PAUSED or STOPPING.
  * @param at_once false: as grobo_sequencer_pause(), over within stop_us. true: hold at the present
  *        posture within one time unit.
- * @return 0, GROBO_ERR_STATE, or what the clip said (then FAILED).
+ * @return 0, GROBO_ERR_STATE, or the error of the clip (then FAILED).
  */
 GROBO_CORE int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us);
 
 /**
  * Moves to a position of the present pass, softly; PAUSED stays PAUSED until resumed.
  * @param pos_us 0..total. While APPROACHING, PLAYING or PAUSED.
- * @return 0, GROBO_ERR_STATE, GROBO_ERR_ARG, or what the clip said (then FAILED).
+ * @return 0, GROBO_ERR_STATE, GROBO_ERR_ARG, or the error of the clip (then FAILED).
  */
 GROBO_CORE int grobo_sequencer_seek(grobo_sequencer *seq, int64_t pos_us, int64_t now_us);
 
 /**
  * Sets the speed of the present clip from now on; while APPROACHING, PLAYING or PAUSED.
  * Approaches keep their speed.
- * @return 0, GROBO_ERR_STATE, GROBO_ERR_ARG, or what the clip said (then FAILED).
+ * @return 0, GROBO_ERR_STATE, GROBO_ERR_ARG, or the error of the clip (then FAILED).
  */
 GROBO_CORE int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_us);
 
@@ -253,7 +258,7 @@ GROBO_CORE bool grobo_sequencer_is_ready(const grobo_sequencer *seq);
 /**
  * Tells such a motion when to begin.
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_STATE (it is not ready), or GROBO_ERR_STALE: that time is
- *         over, and it goes on waiting.
+ *         over, and it keeps waiting.
  */
 GROBO_CORE int grobo_sequencer_start_at(grobo_sequencer *seq, int64_t start_us, int64_t now_us);
 
@@ -266,7 +271,7 @@ GROBO_CORE void grobo_sequencer_reset(grobo_sequencer *seq);
 /**
  * Hands out what is due at now_us. Call again until it returns 0.
  * @param[out] frame untouched unless 1 is returned
- * @return 1 a frame, 0 nothing due, or what the clip said, once, on the way to FAILED.
+ * @return 1 a frame, 0 nothing due, or the error of the clip, once, on the way to FAILED.
  */
 GROBO_CORE int grobo_sequencer_next(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame);
 

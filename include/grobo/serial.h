@@ -14,7 +14,7 @@
  * Synchronous mode: no callback is ever called, functions wait, with a limit, and return what
  * happened.
  *
- * A port that is gone is closed at once, and said so once: by GROBO_SERIAL_UNPLUGGED in
+ * A lost port is closed at once, and reported once: by GROBO_SERIAL_UNPLUGGED in
  * asynchronous mode, by GROBO_ERR_UNPLUGGED of the call in synchronous mode. It may be opened
  * again when it is back.
  *
@@ -82,7 +82,7 @@ typedef void (*grobo_serial_data_fn)(grobo_serial *serial, const uint8_t *bytes,
                                      void *ctx);
 
 /**
- * Something happened (asynchronous mode), told from the loop, never from inside a function of
+ * Something happened (asynchronous mode), reported from the loop, never from inside a function of
  * this header. `error` is GROBO_OK, or the GROBO_ERR_* of UNPLUGGED and FAILED, whose cause
  * grobo_serial_cause() has.
  */
@@ -105,7 +105,7 @@ typedef struct grobo_serial_config {
     grobo_serial_mode mode;   /**< ASYNC needs base and on_data */
     size_t tx_queue_bytes;    /**< 0: GROBO_SERIAL_QUEUE_BYTES, which is the most as well */
     grobo_serial_data_fn on_data;   /**< needed in ASYNC mode */
-    grobo_serial_event_fn on_event; /**< NULL: not told */
+    grobo_serial_event_fn on_event; /**< or NULL */
     grobo_serial_tap_fn on_tap;     /**< NULL: no trace */
     void *ctx;                      /**< borrowed, handed to the callbacks */
     const grobo_mem *mem;           /**< borrowed allocator; NULL: the C library's */
@@ -165,7 +165,7 @@ GROBO_API int grobo_serial_baud(const grobo_serial *serial);
  */
 GROBO_CORE int grobo_serial_set_low_latency(grobo_serial *serial);
 
-/** What the driver of an open port said when it was last asked for that, or GROBO_ERR_CLOSED. */
+/** What the driver of an open port answered to that last, or GROBO_ERR_CLOSED. */
 GROBO_API int grobo_serial_low_latency(const grobo_serial *serial);
 
 /* ---- open and close ----------------------------------------------------------------------- */
@@ -176,8 +176,8 @@ GROBO_API int grobo_serial_low_latency(const grobo_serial *serial);
  * for a connection when it stands; bytes may be sent before. In synchronous mode a connection is
  * waited for, at most 2 s.
  * @return GROBO_OK, GROBO_ERR_STATE (open already), GROBO_ERR_ARG (no device, malformed name),
- *   GROBO_ERR_TIMEOUT (no connection), GROBO_ERR_NOMEM, or what grobo_port_ops.open says;
- *   grobo_serial_cause() tells why.
+ *   GROBO_ERR_TIMEOUT (no connection), GROBO_ERR_NOMEM, or as grobo_port_ops.open;
+ *   grobo_serial_cause() has the reason.
  */
 GROBO_API int grobo_serial_open(grobo_serial *serial);
 
@@ -194,7 +194,7 @@ GROBO_API bool grobo_serial_is_open(const grobo_serial *serial);
 /** The operating system's handle, GROBO_HANDLE_NULL when closed. It belongs to the port. */
 GROBO_API grobo_handle grobo_serial_handle(const grobo_serial *serial);
 
-/** What the operating system said of the last failure. Never NULL; valid until the next call. */
+/** The operating system's reason of the last failure. Never NULL; valid until the next call. */
 GROBO_API const grobo_os_cause *grobo_serial_cause(const grobo_serial *serial);
 
 /** Copies the counters. */
@@ -233,7 +233,7 @@ GROBO_API int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
  * them). Synchronous mode: waits until the system has taken all.
  * @return size; GROBO_ERR_FULL (asynchronous: no room for all), GROBO_ERR_TIMEOUT (synchronous:
  *   the line takes nothing for 1 s; part may have left), GROBO_ERR_CLOSED, GROBO_ERR_UNPLUGGED,
- *   GROBO_ERR_IO. In asynchronous mode a port found lost here tells so by its event.
+ *   GROBO_ERR_IO. In asynchronous mode a port found lost here reports it by its event.
  */
 GROBO_API int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t size);
 
@@ -241,8 +241,8 @@ GROBO_API int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t 
 GROBO_CORE size_t grobo_serial_pending(const grobo_serial *serial);
 
 /**
- * These, and those that the system has taken and not put on the line yet, as far as it tells (Linux
- * tells of serial ports and connections; 0 of a pseudo-terminal, and on Windows).
+ * These, and those that the system has taken and not put on the line yet, as far as it is known
+ * (Linux knows it of serial ports and connections; 0 of a pseudo-terminal, and on Windows).
  */
 GROBO_CORE size_t grobo_serial_unsent(const grobo_serial *serial);
 

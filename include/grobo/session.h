@@ -59,14 +59,14 @@ typedef enum grobo_session_state {
     GROBO_SESSION_WAITING     /**< the line is lost, the next attempt has its time */
 } grobo_session_state;
 
-/** What is told of a session. */
+/** What a session reports. */
 typedef enum grobo_session_event {
     GROBO_SESSION_EVENT_UP,       /**< a robot is there, for the first time or again */
-    GROBO_SESSION_EVENT_LOST,     /**< the line was up and is gone; error says how */
-    GROBO_SESSION_EVENT_FAILED,   /**< grobo_session_open() came to nothing; error says why */
+    GROBO_SESSION_EVENT_LOST,     /**< the line was up and is lost; error: why */
+    GROBO_SESSION_EVENT_FAILED,   /**< grobo_session_open() failed; error: why */
     GROBO_SESSION_EVENT_UNGUARDED /**< the guard has ended (GROBO_ERR_CLOSED) or cannot guard this
-                                       robot (GROBO_ERR_UNSUPPORTED); told once, the session stays
-                                       as it is */
+                                       robot (GROBO_ERR_UNSUPPORTED); reported once, the session
+                                       stays as it is */
 } grobo_session_event;
 
 /** A robot on a loop. */
@@ -74,8 +74,8 @@ typedef struct grobo_session grobo_session;
 
 /**
  * Something happened to the line; always from the loop. After LOST without `reconnect`, and after
- * FAILED, the session is closed. grobo_session_cause() says more. LOST with GROBO_ERR_STALLED: this
- * process was stopped (SIGSTOP) while joints moved, and its guard stopped the robot.
+ * FAILED, the session is closed. grobo_session_cause() has details. LOST with GROBO_ERR_STALLED:
+ * this process was stopped (SIGSTOP) while joints moved, and its guard stopped the robot.
  */
 typedef void (*grobo_session_event_fn)(grobo_session *session, grobo_session_event event, int error,
                                        void *ctx);
@@ -129,7 +129,7 @@ GROBO_API void grobo_session_free(grobo_session *session);
  * returned. FAILED comes with GROBO_ERR_TIMEOUT where nobody answers, for GROBO_DEVICE_AUTO with
  * GROBO_ERR_NOTFOUND, and within 2 s a port.
  * @return GROBO_OK, GROBO_ERR_STATE (not closed), GROBO_ERR_NOTFOUND (GROBO_DEVICE_AUTO: no
- *   serial port to try), GROBO_ERR_NOMEM, or what grobo_serial_open() says.
+ *   serial port to try), GROBO_ERR_NOMEM, or as grobo_serial_open().
  */
 GROBO_API int grobo_session_open(grobo_session *session);
 
@@ -156,7 +156,7 @@ GROBO_API grobo_session_state grobo_session_get_state(const grobo_session *sessi
 /** The device in use: what was configured; for GROBO_DEVICE_AUTO the port that is open. */
 GROBO_API const char *grobo_session_device(const grobo_session *session);
 
-/** What the operating system said of the last failure. Never NULL; valid until the next call. */
+/** The operating system's reason of the last failure. Never NULL; valid until the next call. */
 GROBO_API const grobo_os_cause *grobo_session_cause(const grobo_session *session);
 
 /** The engine: every request and question of robot.h. Valid as long as the session. */

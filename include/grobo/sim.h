@@ -66,7 +66,7 @@ GROBO_CORE int grobo_sim_fault_find(const char *name, size_t length);
 
 /* ---- events --------------------------------------------------------------------------------- */
 
-/** What a hook is told about. `servo` is -1 where none is meant. */
+/** What a hook gets. `servo` is -1 where none is meant. */
 typedef enum grobo_sim_event_kind {
     GROBO_SIM_FRAME,     /**< board: a whole frame; value: grobo_board_kind, bytes: its packet */
     GROBO_SIM_PACKET,    /**< a whole command packet on the servos' bus; bytes: the packet */
@@ -80,8 +80,8 @@ typedef enum grobo_sim_event_kind {
     GROBO_SIM_REFUSED,   /**< a servo could not process a packet */
     GROBO_SIM_MISSED,    /**< a servo that is busy missed a packet; value: grobo_sim_busy */
     GROBO_SIM_STALLED,   /**< a packet on the servos' bus stalled and was forgotten; bytes: of it */
-    GROBO_SIM_SLOT,      /**< the board was told to play a motion; value: its number */
-    GROBO_SIM_SCENARIO,  /**< the board was told to play a scenario; value: its number */
+    GROBO_SIM_SLOT,      /**< the board was asked to play a motion; value: its number */
+    GROBO_SIM_SCENARIO,  /**< the board was asked to play a scenario; value: its number */
     GROBO_SIM_COLLISION, /**< two talked at once on the servos' bus; value: 1: a servo and the
                               host or board, 0: two servos */
     GROBO_SIM_INJECTED   /**< a fault struck; value: grobo_sim_fault */
@@ -105,7 +105,7 @@ typedef struct grobo_sim_event {
 } grobo_sim_event;
 
 /**
- * Called at each event. What comes over the wires is told in order of time; what a servo does on
+ * Called at each event. What comes over wires is reported in order of time; what a servo does on
  * its own (overheating, end of a flash write) when somebody next speaks to it or looks at it.
  */
 typedef void (*grobo_sim_hook)(const grobo_sim_event *event, void *ctx);
@@ -129,7 +129,7 @@ GROBO_CORE const grobo_sim_type *grobo_sim_type_named(const char *name, size_t l
 /** How the servos of a family talk, what they remember and do. Private. */
 typedef struct grobo_sim_family grobo_sim_family;
 
-/** Futaba RS30x. A simulator knows them without being told. */
+/** Futaba RS30x. A simulator needs no type for them. */
 GROBO_API extern const grobo_sim_family grobo_sim_rs30x;
 /** Models of grobo_dxl2_table. */
 GROBO_API extern const grobo_sim_family grobo_sim_dxl2;
@@ -229,14 +229,14 @@ typedef struct grobo_sim_view {
 
 /** Registers No.4-29 of an RS30x, those that flash keeps. */
 #define GROBO_SIM_FLASH_BYTES 26
-/** A simulated robot. What is in it is told by sim_static.h, for who keeps it themselves. */
+/** A simulated robot. sim_static.h completes it, for programs that keep it themselves. */
 typedef struct grobo_sim grobo_sim;
 
 /**
  * The host writes. With pacing the bytes take their time on the wire, one after another, before
  * the board has them.
  * @return bytes taken: fewer than n when the wire's queue is full (write the rest later, as after
- *         a short write; deadline tells when); n when the port is gone (they are lost)
+ *         a short write; deadline has the time); n when the port is gone (they are lost)
  */
 GROBO_CORE size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_us);
 

@@ -48,8 +48,8 @@ GROBO_BEGIN_DECLS
 typedef struct grobo_robot_host {
     /** The time of requests and questions, by the pump's clock. NULL: that of its last call. */
     int64_t (*clock)(void *ctx);
-    /** A request was made: there may be a frame to send, an event to tell or a sooner deadline.
-     *  With this function no request tells events, only the pump does. Called without the lock. */
+    /** A request was made: there may be a frame to send, an event to report or a sooner deadline.
+     *  Where it is set no request reports events, only the pump does. Called without the lock. */
     void (*wake)(void *ctx);
     /** May a latched stop be taken back? @return 0, or the error of grobo_robot_reset(). */
     int (*may_reset)(void *ctx);
@@ -289,7 +289,7 @@ GROBO_CORE void grobo_robot_step(grobo_robot *robot, int64_t now_us);
 
 /**
  * grobo_robot_rx() and grobo_robot_step() at once, for bytes that are all that had come by now_us.
- * Events are told behind both, so that no callback keeps time from passing at now_us.
+ * Events are reported behind both, so that no callback keeps time from passing at now_us.
  */
 GROBO_CORE void grobo_robot_rx_step(grobo_robot *robot, const uint8_t *bytes, size_t size,
                                     int64_t now_us);

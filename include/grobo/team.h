@@ -4,7 +4,7 @@
  * @brief Several robots as one: they begin a motion together, and stop together.
  *
  * A team owns no robot, line, clock or thread. Robots are added to it, and their owner hands it
- * what they tell and lets it look at the time:
+ * their events and the time:
  * @code
  *   grobo_team_event(team, member, event);     // from the callback of each robot
  *   wake_up_at(grobo_team_step(team, now));    // after any event or request, and at that time
@@ -12,9 +12,9 @@
  * Their clocks must be one: sessions on one loop, or engines that one program pumps.
  *
  * A motion begins by a barrier: each robot approaches its first posture and waits; when all are
- * there, all are told the same time. A robot that trips, loses its line, is stopped by somebody
+ * there, all get the same start time. A robot that trips, loses its line, is stopped by somebody
  * else or is not there in time is out of the motion; grobo_team_policy says what the others do.
- * It holds nobody up: the others are asked in the same call that told of it.
+ * The others do not wait for it: they are asked in the call that reported it.
  *
  * Stops go to every member, whether it takes part or not. They are requests of each engine
  * (robot.h), so each is the next frame on the line of its robot.
@@ -38,46 +38,46 @@ GROBO_BEGIN_DECLS
 /** What the others do when a robot falls out of a motion. */
 typedef enum grobo_team_policy {
     GROBO_TEAM_STOP_ALL = 0, /**< they stop smoothly, as soon as one is out */
-    GROBO_TEAM_PAUSE_ALL,    /**< they pause; grobo_team_resume() goes on without it */
-    GROBO_TEAM_CONTINUE      /**< they go on without it */
+    GROBO_TEAM_PAUSE_ALL,    /**< they pause; grobo_team_resume() continues without it */
+    GROBO_TEAM_CONTINUE      /**< they continue without it */
 } grobo_team_policy;
 
 /** Where a team, or a member of it, is. */
 typedef enum grobo_team_state {
     GROBO_TEAM_IDLE = 0, /**< takes part in no motion */
     GROBO_TEAM_PREPARES, /**< senses, switches torque on, approaches */
-    GROBO_TEAM_READY,    /**< is there; of a team: all are, and the time is told or waited for */
+    GROBO_TEAM_READY,    /**< is there; of a team: all are, and the time is set or waited for */
     GROBO_TEAM_PLAYS,    /**< begun */
-    GROBO_TEAM_ENDED     /**< over; `result` says how */
+    GROBO_TEAM_ENDED     /**< over; `result`: how */
 } grobo_team_state;
 
-/** What a team tells. */
+/** What a team reports. */
 typedef enum grobo_team_event_kind {
-    GROBO_TEAM_EVENT_START = 0, /**< the time is told: at_us; the motion begins then */
+    GROBO_TEAM_EVENT_START = 0, /**< the time is set: at_us; the motion begins then */
     GROBO_TEAM_EVENT_OUT,       /**< a member is out before its end: member, result */
     GROBO_TEAM_EVENT_PAUSED,    /**< the policy paused the others: member, result */
     GROBO_TEAM_EVENT_READY,     /**< all are there, and wait for grobo_team_start_at() */
-    GROBO_TEAM_EVENT_ENDED      /**< nobody plays any more: result, the first error of all */
+    GROBO_TEAM_EVENT_ENDED      /**< no member plays any more: result, the first error of all */
 } grobo_team_event_kind;
 
 /** What grobo_team_config.on_event gets. Borrowed: valid during the call only. */
 typedef struct grobo_team_event_info {
     grobo_team_event_kind kind;
-    int member;    /**< who, or -1 */
+    int member;    /**< its number, or -1 */
     int result;    /**< GROBO_OK or why */
     int64_t at_us; /**< START: when it begins */
 } grobo_team_event_info;
 
-/** A team is told of by this. */
+/** The callback of a team. */
 typedef void (*grobo_team_event_fn)(void *ctx, const grobo_team_event_info *event);
 
 /** What a team is made of. Zero means default. */
 typedef struct grobo_team_config {
-    size_t size;                  /**< GROBO_TEAM_CONFIG_INIT */
-    grobo_team_policy policy;     /**< when a robot falls out */
-    int64_t prepare_us;           /**< time for the approaches, 0: 30 s; who is not ready then is
+    size_t size;              /**< GROBO_TEAM_CONFIG_INIT */
+    grobo_team_policy policy; /**< when a robot falls out */
+    int64_t prepare_us; /**< time for the approaches, 0: 30 s; a robot that is not ready then is
                                         out with GROBO_ERR_TIMEOUT */
-    int64_t lead_us;              /**< from the last one ready to the start, 0: 100 ms */
+    int64_t lead_us;    /**< from the last one ready to the start, 0: 100 ms */
     grobo_team_event_fn on_event; /**< or NULL */
     void *ctx;                    /**< borrowed, handed to on_event */
     const grobo_mem *mem;         /**< borrowed allocator; NULL: the C library's */
@@ -150,7 +150,7 @@ GROBO_API int grobo_team_stop(grobo_team *team, bool at_once);
  */
 GROBO_API int grobo_team_estop(grobo_team *team);
 
-/** What a member's engine told; from its callback. Events of who takes no part are ignored. */
+/** An event of a member's engine; from its callback. Events of idle members are ignored. */
 GROBO_API void grobo_team_event(grobo_team *team, int member, const grobo_event *event);
 
 /** Looks at the time. @return when it must be called again at the latest, or GROBO_NEVER_US. */

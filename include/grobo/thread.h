@@ -12,14 +12,14 @@
  * grobo_control_svc().
  *
  * Every function may be called from any thread at any time, grobo_control_free() being the
- * exception. They come in three kinds, told at each:
+ * exception. Each is of one of three kinds:
  * - **At once**: kept under a lock for a few instructions. Also in callbacks.
  * - **Handed over**: done by the thread that runs the loop, between two of its events; the caller
  *   waits for that, at most the configured timeout_us: then GROBO_ERR_TIMEOUT, and nothing was
  *   done. Also in callbacks, where it is done at once.
  * - **Waits**: handed over, then waits for the robot's answer, at most the timeout given (0:
  *   timeout_us, GROBO_NEVER_US: for ever). GROBO_ERR_TIMEOUT of such a call gives
- *   up waiting; what the robot has begun goes on. Requests of several threads that need the
+ *   up waiting; what the robot has begun continues. Requests of several threads that need the
  *   robot's attention queue and are served in the order of their calls. In a callback waiting
  *   would be for ever: GROBO_ERR_STATE, and nothing is done.
  *
@@ -32,10 +32,10 @@
  * must not wait for a lock whose owner calls here and waits. One that takes longer than
  * GROBO_CALLBACK_SLOW_US is reported by the event GROBO_EVENT_SLOW_CALLBACK.
  *
- * Besides what is said at each, handed-over and waiting calls may return GROBO_ERR_FULL
+ * Besides their own errors, handed-over and waiting calls may return GROBO_ERR_FULL
  * (GROBO_CONTROL_CALLS_MAX are under way; some more for a stop or an exit), GROBO_ERR_CLOSED
  * (the robot is not connected) and GROBO_ERR_UNPLUGGED (the line was lost while the call waited:
- * nobody waits for a robot that is gone). Callbacks run on the thread that runs the loop, without
+ * no call waits for a robot that is gone). Callbacks run on the thread that runs the loop, without
  * any lock held.
  *
  * Joints count from 0 in joint order. The exit policy of the robot's configuration is carried out,
@@ -133,7 +133,7 @@ GROBO_API int grobo_control_start_thread(grobo_control *control);
  */
 GROBO_API int grobo_control_stop_thread(grobo_control *control);
 
-/** True from a start of the thread until it is told to stop. At once. */
+/** True from a start of the thread until it is asked to stop. At once. */
 GROBO_API bool grobo_control_is_active(grobo_control *control);
 
 /**
@@ -199,7 +199,7 @@ GROBO_API grobo_serial *grobo_control_serial(grobo_control *control);
 
 /* ---- looking on ------------------------------------------------------------------------------
  * For programs that want no code of theirs on the loop: other languages, event loops of their own.
- * Events are kept in a ring, and a descriptor tells that there are some; a snapshot says all that
+ * Events are kept in a ring, and a descriptor is readable while some are; a snapshot has all that
  * is known. */
 
 /** An event as it is kept. */
@@ -207,7 +207,7 @@ typedef struct grobo_control_event {
     size_t size;              /**< GROBO_CONTROL_EVENT_INIT */
     uint64_t lost;            /**< events lost between the one taken before and this one */
     bool of_line;             /**< true: `line` and `error`; false: `event` */
-    grobo_session_event line; /**< of the line: as grobo_session_event_fn is told */
+    grobo_session_event line; /**< of the line: as grobo_session_event_fn gets it */
     int error;                /**< of the line */
     grobo_event event;        /**< of the engine; job.data is in `data` below */
     uint8_t data[GROBO_FRAME_MAX_BYTES]; /**< job.size bytes of it are set */
@@ -217,7 +217,7 @@ typedef struct grobo_control_event {
 
 /**
  * Takes the oldest event. `grobo_control_config.events` are kept of jobs, plays, trips and the
- * line, and as many readings and rounds besides; where either is full its oldest makes way and is
+ * line, and as many readings and rounds besides; where either is full its oldest is dropped and
  * counted, so that a flood of readings displaces nothing else, and the newest are always there.
  * What happened before a close can be taken until grobo_control_free(). At once.
  * @param[in,out] event its `size` is set; job.data points into it.
@@ -259,7 +259,7 @@ typedef struct grobo_snapshot {
  */
 GROBO_API int grobo_control_snapshot(grobo_control *control, grobo_snapshot *snapshot);
 
-/* ---- facts and settings: all at once unless said otherwise ---------------------------------- */
+/* ---- facts and settings: at once unless stated otherwise  ---------------------------------- */
 
 /** The robot's name. Valid as long as the control. */
 GROBO_API const char *grobo_control_name(const grobo_control *control);
@@ -300,7 +300,7 @@ GROBO_API bool grobo_control_is_reverse(grobo_control *control);
 GROBO_API int grobo_control_set_device(grobo_control *control, const char *device);
 /** Copies the name of the device in use. Handed over. @return its length, GROBO_ERR_SPACE. */
 GROBO_API int grobo_control_get_device(grobo_control *control, char *device, size_t device_bytes);
-/** Opens the port; the loop goes on to check who is there. Handed over. @return as
+/** Opens the port; the loop then checks whether a robot answers. Handed over. @return as
  *  grobo_session_open(). */
 GROBO_API int grobo_control_open_port(grobo_control *control);
 /**
@@ -317,7 +317,7 @@ GROBO_API int grobo_control_connect(grobo_control *control, int64_t timeout_us);
 GROBO_API int grobo_control_check_connection(grobo_control *control, int64_t timeout_us);
 /** True while a robot is connected. At once. */
 GROBO_API bool grobo_control_is_connected(grobo_control *control);
-/** What the operating system said of the line's last failure. Handed over. @return GROBO_OK. */
+/** The operating system's reason of the line's last failure. Handed over. @return GROBO_OK. */
 GROBO_API int grobo_control_get_cause(grobo_control *control, grobo_os_cause *cause);
 
 /* ---- servos --------------------------------------------------------------------------------- */
@@ -368,7 +368,7 @@ GROBO_API int grobo_control_set_motion_time_us(grobo_control *control, int64_t t
 /**
  * Has the robot move to the target posture: grobo_robot_retarget() of the move under way, so that a
  * program may set targets at its own rate, or where that has other joints grobo_robot_move(), which
- * waits behind what it cannot run beside. How it ends is told by grobo_control_wait() and by the
+ * waits behind what it cannot run beside. grobo_control_wait() returns how it ends, and so does the
  * job event. At once.
  * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no joint is set), or as grobo_robot_move():
  *   GROBO_ERR_STATE where a motion is played that sets these joints, GROBO_ERR_LATCHED.
@@ -401,7 +401,7 @@ GROBO_API int grobo_control_set_motion(grobo_control *control, const grobo_motio
 /** A copy of the motion. At once. @param[out] motion owned by the caller. @return postures,
  *  GROBO_ERR_NOMEM. */
 GROBO_API int grobo_control_get_motion(grobo_control *control, grobo_motion **motion);
-/** Makes it an empty motion of postures. What is being played goes on. At once. */
+/** Makes it an empty motion of postures. What is being played continues. At once. */
 GROBO_API void grobo_control_clear_motion(grobo_control *control);
 /** Appends the posture sensed last, with the default time. At once. @return postures,
  *  GROBO_ERR_STALE (nothing was sensed), or as grobo_motion_append(). */
@@ -449,7 +449,7 @@ GROBO_API int grobo_control_do_nth_motion(grobo_control *control, size_t n);
 
 /**
  * Has the motion as it is now played, with the count, direction and default time that are set. How
- * it ends is told by grobo_control_wait() and by events. At once.
+ * it ends is returned by grobo_control_wait() and reported by events. At once.
  * @param options the rest (mode, rate, speed, mirror, ...), copied; NULL: by keys, as it is.
  * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no posture), GROBO_ERR_NOMEM, or as
  *   grobo_motion_clip() and grobo_robot_play(): GROBO_ERR_STATE where a motion is played or a move

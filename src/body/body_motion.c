@@ -4,6 +4,7 @@
 
 #include <grobo/body_motion.h>
 
+#include "src/base/sized.h"
 #include "src/body/body.h"
 #include "src/body/vec.h"
 
@@ -168,8 +169,11 @@ int grobo_body_new(grobo_body **body, const grobo_body_model *model, const grobo
     }
     struct key_block block = {.mem = mem != NULL ? mem : grobo_mem_default()};
     grobo_body_setup setup = {.model = model, .n_keys = grobo_motion_size(motion)};
-    int result;
+    int result = grobo_i_sized_take(&setup.options, sizeof setup.options, options);
 
+    if (result < 0) {
+        return result;
+    }
     if (grobo_motion_get_kind(motion) != GROBO_MOTION_KEYS) {
         return GROBO_ERR_TYPE;
     }
@@ -178,9 +182,6 @@ int grobo_body_new(grobo_body **body, const grobo_body_model *model, const grobo
     }
     if (grobo_body_model_check(model) < 0) {
         return GROBO_ERR_ARG;
-    }
-    if (options != NULL) {
-        setup.options = *options;
     }
     result = make_block(&block, model, motion);
     if (result < 0) {

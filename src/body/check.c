@@ -2,6 +2,7 @@
 /* The lint of a walk. */
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/body/body.h"
 #include "src/body/polygon.h"
 #include "src/body/vec.h"
@@ -257,12 +258,17 @@ int grobo_body_check(grobo_body *body, const grobo_body_check_options *options)
     if (body == NULL || options == NULL) {
         return GROBO_ERR_ARG;
     }
-    struct checking now = {.body = body, .options = options};
-    const double speed = options->speed_pct > 0 ? options->speed_pct / 100.0 : 1;
+    grobo_body_check_options how;
+    const int taken = grobo_i_sized_take(&how, sizeof how, options);
+    if (taken < 0) {
+        return taken;
+    }
+    struct checking now = {.body = body, .options = &how};
+    const double speed = how.speed_pct > 0 ? how.speed_pct / 100.0 : 1;
     grobo_momentum last = {{0, 0, 0}, {0, 0, 0}};
     struct moment moment[2];
 
-    if (options->robot != NULL && options->robot->n_joints != body->model->n_joints) {
+    if (how.robot != NULL && how.robot->n_joints != body->model->n_joints) {
         return GROBO_ERR_ARG;
     }
     now.rate_hz = body->options.rate_hz * speed;

@@ -42,7 +42,6 @@ void grobo_sequencer_progress(const grobo_sequencer *seq, int64_t now_us,
     progress->error = seq->error;
     progress->item = seq->n_items;
     progress->queued = seq->queue_n;
-    progress->ready = grobo_sequencer_is_ready(seq);
     if (seq->n_items == 0) {
         return;
     }

@@ -84,8 +84,10 @@ int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
     grobo_i_begin(robot);
     grobo_play_options chosen;
     grobo_joint_mask joints = 0;
-    grobo_i_play_options(robot, options, &chosen);
-    int result = robot->trip.latched ? GROBO_ERR_LATCHED : grobo_i_play_rate(robot, &chosen);
+    int result = grobo_i_play_options(robot, options, &chosen);
+    if (result >= 0) {
+        result = robot->trip.latched ? GROBO_ERR_LATCHED : grobo_i_play_rate(robot, &chosen);
+    }
     if (result >= 0) {
         result = grobo_i_play_joints(robot, clip, &chosen, &joints);
     }

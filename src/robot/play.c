@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/robot/robot.h"
 
 void grobo_i_play_tell(grobo_robot *robot)
@@ -60,12 +61,12 @@ int grobo_i_play_joints(const grobo_robot *robot, const grobo_clip *clip,
     return result;
 }
 
-void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
-                          grobo_play_options *chosen)
+int grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
+                         grobo_play_options *chosen)
 {
-    *chosen = (grobo_play_options){0};
-    if (options != NULL) {
-        *chosen = *options;
+    int result = grobo_i_sized_take(chosen, sizeof *chosen, options);
+    if (result < 0) {
+        return result;
     }
     if (chosen->approach_deg_s == 0) {
         chosen->approach_deg_s =
@@ -74,6 +75,7 @@ void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *op
     if (chosen->default_time_us == 0) {
         chosen->default_time_us = robot->config.default_time_us;
     }
+    return GROBO_OK;
 }
 
 int grobo_i_play_rate(const grobo_robot *robot, grobo_play_options *chosen)

@@ -251,9 +251,10 @@ bool grobo_robot_is_playing(const grobo_robot *robot)
 
 void grobo_robot_progress(const grobo_robot *robot, grobo_play_progress *progress)
 {
-    if (robot != NULL) {
+    if (robot != NULL && progress != NULL) {
         grobo_i_lock(robot);
         grobo_sequencer_progress(&robot->sequencer, grobo_i_now(robot), progress);
+        progress->ready = grobo_sequencer_is_ready(&robot->sequencer);
         grobo_i_unlock(robot);
     }
 }

@@ -267,8 +267,8 @@ int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_pla
     grobo_i_begin(robot);
     grobo_play_options chosen;
     grobo_joint_mask joints = 0;
-    grobo_i_play_options(robot, options, &chosen);
-    int result = admit_clip(robot, clip, &chosen, &joints);
+    int result = grobo_i_play_options(robot, options, &chosen);
+    result = result < 0 ? result : admit_clip(robot, clip, &chosen, &joints);
     if (result < 0) {
         return refuse(robot, result);
     }

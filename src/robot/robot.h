@@ -375,8 +375,8 @@ void grobo_i_play_done(grobo_robot_slot *slot, int result);
 /* Tells a new state of the sequencer. */
 void grobo_i_play_tell(grobo_robot *robot);
 /* What a caller leaves open is as the robot is configured. */
-void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
-                          grobo_play_options *chosen);
+int grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
+                         grobo_play_options *chosen);
 /* Fills in the rate, and refuses one that leaves no time to watch the joints. `unwatched` remains
  * only where it is needed. @return 0, GROBO_ERR_UNWATCHED, or an error of the driver. */
 int grobo_i_play_rate(const grobo_robot *robot, grobo_play_options *chosen);

@@ -316,8 +316,9 @@ static bool are_there(const grobo_team *team, const grobo_clip *const *clips, bo
 int grobo_team_play(grobo_team *team, const grobo_clip *const *clips, bool one_clip,
                     const grobo_play_options *options, int64_t now_us)
 {
-    grobo_play_options how = {0};
-    if (team == NULL || !are_there(team, clips, one_clip)) {
+    grobo_play_options how;
+    if (team == NULL || !are_there(team, clips, one_clip) ||
+        grobo_i_sized_take(&how, sizeof how, options) < 0) {
         return GROBO_ERR_ARG;
     }
     if (team->n == 0) {
@@ -325,9 +326,6 @@ int grobo_team_play(grobo_team *team, const grobo_clip *const *clips, bool one_c
     }
     if (is_under_way(team)) {
         return GROBO_ERR_STATE;
-    }
-    if (options != NULL) {
-        how = *options;
     }
     team->start_us = how.start_us;
     team->until_us = now_us + team->config.prepare_us;

@@ -20,11 +20,13 @@ struct row {
 };
 
 static const struct row rows[] = {
-    {"exact IK", {.rate_hz = RATE_HZ}},
-    {"numeric IK", {.ik = GROBO_BODY_IK_NUMERIC, .rate_hz = RATE_HZ}},
-    {"exact IK, balancer", {.balance = GROBO_BODY_BALANCE_ON, .rate_hz = RATE_HZ}},
+    {"exact IK", {GROBO_BODY_OPTIONS_INIT, .rate_hz = RATE_HZ}},
+    {"numeric IK", {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC, .rate_hz = RATE_HZ}},
+    {"exact IK, balancer",
+     {GROBO_BODY_OPTIONS_INIT, .balance = GROBO_BODY_BALANCE_ON, .rate_hz = RATE_HZ}},
     {"numeric IK, balancer of 1.1",
-     {.ik = GROBO_BODY_IK_NUMERIC, .balance = GROBO_BODY_BALANCE_COMPAT11, .rate_hz = RATE_HZ}},
+     {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC, .balance = GROBO_BODY_BALANCE_COMPAT11,
+      .rate_hz = RATE_HZ}},
 };
 
 static double now_ms(void)

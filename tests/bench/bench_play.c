@@ -164,8 +164,9 @@ static void on_line(grobo_session *session, grobo_session_event event, int error
                              .length_us = (SPAN_S + 1) * INT64_C(1000000),
                              .n_keys = SPAN_S + 2,
                              .n_joints = 20};
-    const grobo_play_options options = {
-        .mode = GROBO_PLAY_RATE, .rate_hz = (uint16_t)(1000000 / period_us), .unwatched = true};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                        .rate_hz = (uint16_t)(1000000 / period_us),
+                                        .unwatched = true};
 
     (void)error;
     if (event != GROBO_SESSION_EVENT_UP ||

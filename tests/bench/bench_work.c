@@ -244,7 +244,8 @@ static void prepare_play(void)
                              .length_us = INT64_C(3600) * SECOND_US,
                              .n_keys = 3601,
                              .n_joints = 20};
-    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                        .rate_hz = 50, .unwatched = true};
 
     start(SECOND_US);
     (void)grobo_robot_play(&rig.robot, &clip, &options);
@@ -352,7 +353,8 @@ static void prepare_walk(void)
 
 static void walk(long n)
 {
-    const grobo_body_options options = {.balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .balance = GROBO_BODY_BALANCE_ON,
+                                        .rate_hz = 100};
 
     for (; n > 0; n--) {
         grobo_body *body = NULL;

@@ -128,7 +128,8 @@ int main(void)
                              .length_us = (int64_t)600 * SECOND_US,
                              .n_keys = 601,
                              .n_joints = JOINTS};
-    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                        .rate_hz = 50, .unwatched = true};
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT};
     mcu_start();
     make_wave();

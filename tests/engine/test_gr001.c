@@ -364,7 +364,7 @@ static void a_record_is_made_by_hand_and_played(void **state)
     assert_true(posture.set == GROBO_JOINTS_ALL(20));
     assert_true(fabs(grobo_deg_from_rad(posture.angle_rad[NECK]) + 30) < 0.06);
 
-    grobo_play_options back = {.repeat = -1};
+    grobo_play_options back = {GROBO_PLAY_OPTIONS_INIT, .repeat = -1};
     rig_forget(&rig);
     rig_expect(&rig, grobo_gr001_play_record(motion, &rig.robot, &back, &clip), 0);
     assert_int_equal(grobo_gr001_play_record(motion, &rig.robot, NULL, &clip), GROBO_ERR_STATE);

@@ -99,8 +99,9 @@ static void all_are_played_and_watched(void **state)
                              .n_keys = 2,
                              .length_us = 2000000};
     for (int i = 0; i < 2; i++) {
-        const grobo_play_options options = {
-            .mode = i == 0 ? GROBO_PLAY_KEY : GROBO_PLAY_RATE, .rate_hz = 4, .unwatched = true};
+        const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
+                                            .mode = i == 0 ? GROBO_PLAY_KEY : GROBO_PLAY_RATE,
+                                            .rate_hz = 4, .unwatched = true};
         start(i == 0, &reading);
         rig_expect(&rig, grobo_robot_play(&rig.robot, &sway, &options), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);

@@ -30,7 +30,7 @@ static grobo_bus_cost cost;
 static const grobo_driver *driver;
 static grobo_robot robot;
 static grobo_posture posture;
-static grobo_play_options play_options;
+static grobo_play_options play_options = {GROBO_PLAY_OPTIONS_INIT};
 static grobo_hrpsys hrpsys;
 static grobo_joint_mask joints;
 static const char *const names[] = {"CHEST", NULL};

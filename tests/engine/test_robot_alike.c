@@ -63,7 +63,8 @@ static void send_raw(void)
 
 static void play(void)
 {
-    grobo_play_options options = {.mode = pick(2) ? GROBO_PLAY_RATE : GROBO_PLAY_KEY,
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
+                                  .mode = pick(2) ? GROBO_PLAY_RATE : GROBO_PLAY_KEY,
                                   .rate_hz = (uint16_t)(10 + pick(50)),
                                   .repeat = 1 + (int32_t)pick(3),
                                   .mirror = pick(4) == 0,

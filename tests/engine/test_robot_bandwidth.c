@@ -78,8 +78,8 @@ static void start(const use *u)
     rig.on_event = on_event;
     rig_power(&rig);
     if (u->frames_hz > 0) {
-        grobo_play_options options = {
-            .mode = GROBO_PLAY_RATE, .rate_hz = (uint16_t)u->frames_hz, .unwatched = true};
+        grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                      .rate_hz = (uint16_t)u->frames_hz, .unwatched = true};
         rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
         rig_run(&rig, SECOND_US);

@@ -85,7 +85,7 @@ static void frames_at_a_rate_leave_on_their_grid(void **state)
 {
     (void)state;
     static rig_frame frames[256];
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 30};
     start(NULL);
     play(&options);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
@@ -108,7 +108,7 @@ static void frames_at_a_rate_leave_on_their_grid(void **state)
 static int64_t first_leaves_at(double neck_deg, int64_t start_us)
 {
     static rig_frame frames[64];
-    const grobo_play_options options = {.start_us = start_us};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .start_us = start_us};
     start(&quiet);
     rig_power(&rig);
     const grobo_posture turned = rig_posture(&rig, NECK, neck_deg, 1000);
@@ -132,7 +132,8 @@ static void robots_begin_together_however_far_they_approach(void **state)
 static void gaps_between_frames_are_read_in(void **state)
 {
     (void)state;
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30, .repeat = 5};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 30,
+                                  .repeat = 5};
     grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     start(&busy);
     play(&options);
@@ -271,7 +272,8 @@ static void a_short_stall_skips_a_long_one_stops(void **state)
 {
     (void)state;
     static rig_frame frames[256];
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 50,
+                                  .unwatched = true};
     start(&quiet);
     play(&options);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
@@ -372,8 +374,8 @@ static void an_approach_is_judged_by_its_own_readings(void **state)
 {
     (void)state;
     static const rig_key reach[] = {{0, {{NECK, 0}}}, {1000, {{HIP, -90}}}};
-    grobo_play_options options = {
-        .mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true, .repeat = 3};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 50,
+                                  .unwatched = true, .repeat = 3};
     start(&quiet);
     rig_clip_init(&clip, reach, 2);
     for (int j = 0; j < 20; j++) {

@@ -286,7 +286,7 @@ static void the_head_turns_while_an_arm_plays(void **state)
     (void)state;
     for (grobo_play_mode mode = GROBO_PLAY_KEY; mode <= GROBO_PLAY_RATE; mode++) {
         rig_clip clip;
-        const grobo_play_options options = {.mode = mode};
+        const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = mode};
         begin();
         rig_clip_init(&clip, arm, 3);
         clip.only = elbow;

@@ -21,7 +21,7 @@ static void start_playing(const grobo_robot_config *config)
 {
     rig_start(&rig, config, NULL);
     rig_clip_init(&clip, sway, 4);
-    grobo_play_options options = {.repeat = 100};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .repeat = 100};
     rig_power(&rig);
     rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
@@ -316,8 +316,8 @@ static void emergency_stop_waits_for_no_silent_servo(void **state)
 static void nothing_queued_follows_an_emergency_stop(void **state)
 {
     (void)state;
-    grobo_play_options options = {
-        .mode = GROBO_PLAY_RATE, .rate_hz = 60, .unwatched = true}; /* too much */
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 60,
+                                  .unwatched = true}; /* too much */
     rig_start(&rig, &watching, NULL);
     rig_clip_init(&clip, sway, 4);
     rig_power(&rig);

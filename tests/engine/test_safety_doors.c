@@ -97,7 +97,7 @@ static void a_second_file_moves_what_was_made_ready(void **state)
     assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, NULL), 1);
     assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), GROBO_ERR_STATE);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
-    grobo_play_options options = {.also = GROBO_JOINT_BIT(R_KNEE)};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .also = GROBO_JOINT_BIT(R_KNEE)};
     rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
     assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), 1);
     assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);

@@ -79,19 +79,19 @@ static int by_keys(void)
 
 static int at_a_rate(void)
 {
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 30};
     return play(beyond, &options);
 }
 
 static int backwards(void)
 {
-    grobo_play_options options = {.reverse = true};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .reverse = true};
     return play(beyond, &options);
 }
 
 static int mirrored(void)
 {
-    grobo_play_options options = {.mirror = true};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mirror = true};
     return play(below, &options);
 }
 
@@ -211,10 +211,9 @@ static void no_control_of_a_motion_makes_it_too_fast(void **state)
     static const rig_key back[] = {{0, {{NECK, 50}, {R_KNEE, -100}}}, {100, {{NECK, -50}}}};
     uint64_t stretched = 0;
     for (int i = 0; i < 2 * 8 * 8; i++) {
-        grobo_play_options options = {.mode = i % 2 ? GROBO_PLAY_RATE : GROBO_PLAY_KEY,
-                                      .rate_hz = 30,
-                                      .repeat = 20,
-                                      .reverse = i % 5 == 0};
+        grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
+                                      .mode = i % 2 ? GROBO_PLAY_RATE : GROBO_PLAY_KEY,
+                                      .rate_hz = 30, .repeat = 20, .reverse = i % 5 == 0};
         rig_start(&rig, &quiet, NULL);
         rig_clip_init(&clip, wild, 4);
         rig_clip_init(&other, back, 2);

@@ -24,7 +24,7 @@ static const rig_key waits_then_turns[] = {
 /* Plays at a rate at which there is no room on the line beside the frames. */
 static void play_on_full_line(const grobo_robot_config *config)
 {
-    const grobo_play_options full = {.mode = GROBO_PLAY_RATE,
+    const grobo_play_options full = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
                                      .rate_hz = rig_wiring == GROBO_WIRING_BOARD ? 50 : 100,
                                      .unwatched = true};
     rig_start(&rig, config, NULL);
@@ -140,7 +140,8 @@ static void a_stop_cancels_a_raw_goal_that_waits(void **state)
 static void a_stop_halts_what_a_raw_goal_moves_beside_a_motion(void **state)
 {
     (void)state;
-    const grobo_play_options slow = {.mode = GROBO_PLAY_RATE, .rate_hz = 10};
+    const grobo_play_options slow = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                     .rate_hz = 10};
     rig_start(&rig, &quiet, NULL);
     rig_clip_init(&clip, waits_then_turns, 3);
     clip.only = GROBO_JOINT_BIT(NECK);
@@ -162,7 +163,8 @@ static void a_stop_halts_what_a_raw_goal_moves_beside_a_motion(void **state)
 static void a_stop_halts_what_was_sent_before_a_motion(void **state)
 {
     (void)state;
-    const grobo_play_options slow = {.mode = GROBO_PLAY_RATE, .rate_hz = 10};
+    const grobo_play_options slow = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                     .rate_hz = 10};
     rig_start_at(&rig, 0, &quiet);
     rig_clip_init(&clip, waits_then_turns, 3);
     clip.only = GROBO_JOINT_BIT(NECK);

@@ -162,7 +162,7 @@ static void a_dead_host_stops_an_approach(void **state)
     (void)state;
     static const rig_key far[] = {{0, {{NECK, 45}}}, {9000, {{NECK, -45}}}};
     for (int mode = GROBO_PLAY_KEY; mode <= GROBO_PLAY_RATE; mode++) {
-        grobo_play_options options = {.mode = (grobo_play_mode)mode};
+        grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = (grobo_play_mode)mode};
         start(NULL, NULL);
         rig_clip_init(&clip, far, 2);
         (void)grobo_robot_play(&rig.robot, &clip.clip, &options);
@@ -459,7 +459,7 @@ static void a_motion_takes_the_place_of_its_approach(void **state)
     for (int i = 0; i < 2; i++) {
         grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
                                      .goals = i == 0 ? GROBO_GOALS_WHOLE : GROBO_GOALS_DEFAULT};
-        grobo_play_options options = {.mode = GROBO_PLAY_RATE};
+        grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE};
         start(&config, NULL);
         rig_clip_init(&clip, far, 3);
         assert_true(grobo_robot_play(&rig.robot, &clip.clip, &options) > 0);

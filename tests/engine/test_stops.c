@@ -238,7 +238,8 @@ static void a_smooth_stop_is_no_longer_after_a_reset(void **state)
     (void)state;
     static const rig_key leap[] = {
         {0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}, {4000, {{SHOULDER, -100}}}};
-    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                        .rate_hz = 30};
     for (int pauses = 0; pauses < 2; pauses++) {
         start_at(0);
         rig_clip_init(&clip, leap, 3);
@@ -503,7 +504,7 @@ static void a_clip_that_breaks_stops_the_robot(void **state)
 {
     (void)state;
     static const rig_key jump[] = {{0, {{NECK, -45}}}, {33, {{NECK, 45}}}, {1000, {{NECK, 45}}}};
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 30};
     start_at(-45);
     rig_clip_init(&clip, jump, 3);
     clip.only = GROBO_JOINT_BIT(NECK);
@@ -538,7 +539,8 @@ static void a_target_that_makes_no_frame_ends_what_asked_for_it(void **state)
     (void)state;
     for (int way = 0; way < 3; way++) {
         grobo_driver driver = *grobo_gr001_driver(rig_wiring);
-        grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 20};
+        grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                      .rate_hz = 20};
         sound_posture = driver.posture;
         driver.posture = posture_that_fails;
         goals_left = UINT_MAX;

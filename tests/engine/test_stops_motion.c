@@ -23,7 +23,7 @@ enum { STOP, STOP_AT_ONCE, EXIT, TRIP, PAUSE, WAYS };
 
 static void begin_to_play(grobo_play_mode mode)
 {
-    grobo_play_options options = {.mode = mode, .rate_hz = 30};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = mode, .rate_hz = 30};
     rig_clip_init(&clip, rise, 3);
     clip.only = GROBO_JOINT_BIT(NECK);
     rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
@@ -93,7 +93,8 @@ static void a_stop_begins_where_a_joint_is_that_is_behind(void **state)
     (void)state;
     static const rig_key leap[] = {
         {0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}, {4000, {{SHOULDER, -100}}}};
-    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                        .rate_hz = 30};
     for (int way = 0; way < WAYS; way++) {
         rig_start_at(&rig, 0, &quiet);
         rig_clip_init(&clip, leap, 3);
@@ -153,7 +154,7 @@ static void a_stop_reaches_a_joint_of_the_clip_before(void **state)
     static const rig_key leap[] = {{0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}};
     static rig_clip next;
     for (int way = 0; way <= PAUSE; way++) {
-        const grobo_play_options options = {.also = GROBO_JOINT_BIT(NECK)};
+        const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .also = GROBO_JOINT_BIT(NECK)};
         rig_start_at(&rig, -45, &quiet);
         rig_clip_init(&clip, leap, 2);
         rig_clip_init(&next, rise, 3);
@@ -578,7 +579,8 @@ static int sample_that_breaks(void *ctx, int64_t t_us, grobo_posture *posture)
 static void nothing_of_a_broken_clip_leaves_any_more(void **state)
 {
     (void)state;
-    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 150, .unwatched = true};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                        .rate_hz = 150, .unwatched = true};
     for (int ms = 0; ms < 40; ms++) {
         rig_start_at(&rig, -45, &quiet);
         rig_clip_init(&clip, rise, 3);
@@ -609,8 +611,9 @@ static void a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion(void **stat
     (void)state;
     const bool by_board = rig_wiring == GROBO_WIRING_BOARD;
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 100000};
-    const grobo_play_options options = {
-        .mode = GROBO_PLAY_RATE, .rate_hz = by_board ? 33 : 66, .repeat = 100, .unwatched = true};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                        .rate_hz = by_board ? 33 : 66, .repeat = 100,
+                                        .unwatched = true};
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
     grobo_rs30x_goal goals[20];
     rig_start_at(&rig, -45, &config);

@@ -157,7 +157,8 @@ static void a_time_to_begin_is_kept(void **state)
     (void)state;
     start(GROBO_TEAM_STOP_ALL);
     const grobo_clip *one = &clips[0].clip;
-    const grobo_play_options options = {.start_us = rigs[0].now_us + 7000000};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
+                                        .start_us = rigs[0].now_us + 7000000};
     assert_int_equal(grobo_team_play(team, &one, true, &options, rigs[0].now_us), GROBO_OK);
     look_us = 0;
     run_until(GROBO_TEAM_PLAYS);
@@ -173,7 +174,7 @@ static void a_start_may_be_told_later(void **state)
     (void)state;
     start(GROBO_TEAM_STOP_ALL);
     const grobo_clip *one = &clips[0].clip;
-    const grobo_play_options options = {.start_us = GROBO_START_LATER};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .start_us = GROBO_START_LATER};
     int64_t now_us = rigs[0].now_us;
     assert_int_equal(grobo_team_play(team, &one, true, &options, now_us), GROBO_OK);
     look_us = 0;
@@ -356,7 +357,7 @@ static void a_start_in_the_past_is_refused(void **state)
 {
     (void)state;
     start(GROBO_TEAM_STOP_ALL);
-    const grobo_play_options options = {.start_us = GROBO_START_LATER};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .start_us = GROBO_START_LATER};
     assert_true(grobo_robot_play(&rigs[0].robot, &clips[0].clip, &options) > 0);
     grobo_play_progress progress;
     grobo_robot_progress(&rigs[0].robot, &progress);

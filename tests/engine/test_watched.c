@@ -71,7 +71,7 @@ static void start_playing(const grobo_robot_config *config, const grobo_sim_conf
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
 }
 
-static const grobo_play_options at_default = {.mode = GROBO_PLAY_RATE};
+static const grobo_play_options at_default = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE};
 
 static grobo_budget budget_now(void)
 {
@@ -161,7 +161,8 @@ static void play_at_watched_rate(uint32_t baud_bps, const grobo_budget *budget)
 {
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .bus.baud_bps = baud_bps};
     grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .baud_bps = baud_bps};
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = budget->watched_hz};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                  .rate_hz = budget->watched_hz};
     rig_start_driver(&rig, driver, &config, &sim);
     grobo_clip nod = {.key = nod_key,
                       .sample = nod_sample,
@@ -420,7 +421,7 @@ static void a_rate_that_leaves_no_time_is_refused(void **state)
 {
     (void)state;
     start_playing(NULL, NULL, &at_default);
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE,
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
                                   .rate_hz = (uint16_t)(budget_now().watched_hz + 1)};
     assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, &options), GROBO_ERR_UNWATCHED);
     assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
@@ -440,8 +441,8 @@ static void an_unwatched_motion_says_so_and_waits_for_no_reading(void **state)
     (void)state;
     rig_start(&rig, NULL, NULL);
     int fast_hz = (int)(1e6 / budget_now().motion_us); /* all that the line carries */
-    grobo_play_options options = {
-        .mode = GROBO_PLAY_RATE, .rate_hz = (uint16_t)fast_hz, .unwatched = true};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                  .rate_hz = (uint16_t)fast_hz, .unwatched = true};
     grobo_jitter jitter;
     start_playing(NULL, NULL, &options);
     assert_int_equal(rig_count(&rig, GROBO_EVENT_UNWATCHED), 1);

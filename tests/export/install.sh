@@ -95,7 +95,7 @@ yesterdays_headers() {
     mkdir -p "$work/yesterday/grobo"
     for header in "$tree"/opt/grobo/include/grobo/*.h; do
         awk '
-        /size_t size; .*_CONFIG_INIT/ { print; n = 0; inside = 1; next }
+        /size_t size; .*_(CONFIG|OPTIONS)_INIT/ { print; n = 0; inside = 1; next }
         inside && /^}/ {
             for (i = 1; i <= n - 2; i++) {
                 print field[i]

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A program that was compiled when configuration structures had two fields less, with the library
- * of today. Behind each structure is a fence: what a library takes from there, it refuses.
+ * A program that was compiled when structures of configuration and options had two fields less,
+ * with the library of today. Behind each structure is a fence: what a library takes from there, it
+ * refuses.
  */
 #include <stdio.h>
 #include <string.h>
@@ -19,6 +20,80 @@ static int fail(const char *what, int result)
 {
     fprintf(stderr, "%s: %s\n", what, grobo_error_text(result));
     return 1;
+}
+
+static int swallow(void *ctx, const void *data, size_t size)
+{
+    (void)ctx, (void)data, (void)size;
+    return GROBO_OK;
+}
+
+/* What takes options of motions. */
+static int with_motions(grobo_motion *motion)
+{
+    FENCED(grobo_clip_options, clips, GROBO_CLIP_OPTIONS_INIT);
+    FENCED(grobo_read_options, reading, GROBO_READ_OPTIONS_INIT);
+    FENCED(grobo_check_options, checking, GROBO_CHECK_OPTIONS_INIT);
+    FENCED(grobo_write_options, writing, GROBO_WRITE_OPTIONS_INIT);
+    FENCED(grobo_body_options, solving, GROBO_BODY_OPTIONS_INIT);
+    FENCED(grobo_body_check_options, balance, GROBO_BODY_CHECK_OPTIONS_INIT);
+    static const char text[] = "type: PoseSeq\nname: t\nrefs:\n"
+                               "- { time: 0, refer: { type: Pose, joints: [ 0 ], q: [ 0 ] } }\n";
+    const grobo_sink sink = {swallow, NULL};
+    grobo_motion *keys = NULL;
+    grobo_body *body = NULL;
+    grobo_clip clip;
+
+    int result = grobo_motion_clip(motion, &clips.config, &clip);
+    if (result >= 0) {
+        grobo_motion_clip_free(&clip);
+        result = grobo_motion_check(motion, &grobo_gr001_model, &checking.config, NULL);
+    }
+    if (result >= 0) {
+        result = grobo_motion_write(motion, GROBO_FORMAT_M, &writing.config, &sink, NULL);
+    }
+    if (result >= 0) {
+        result = grobo_motion_read_memory(text, sizeof text - 1, &reading.config, NULL, &keys);
+    }
+    if (result >= 0) {
+        result = grobo_body_new(&body, &grobo_gr001_body, keys, &solving.config, NULL);
+    }
+    if (result >= 0) {
+        result = grobo_body_check(body, &balance.config);
+    }
+    grobo_body_free(body);
+    grobo_motion_free(keys);
+    printf("%d %d %d ", (int)sizeof clips.config, (int)sizeof reading.config,
+           (int)sizeof checking.config);
+    printf("%d %d %d ", (int)sizeof writing.config, (int)sizeof solving.config,
+           (int)sizeof balance.config);
+    return result;
+}
+
+static int play(grobo_control *control, const grobo_posture *posture)
+{
+    FENCED(grobo_play_options, playing, GROBO_PLAY_OPTIONS_INIT);
+    grobo_motion *motion = NULL;
+
+    int result = grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL);
+    if (result >= 0) {
+        result = grobo_motion_append(motion, posture);
+    }
+    if (result >= 0) {
+        result = with_motions(motion);
+    }
+    if (result >= 0) {
+        result = grobo_control_set_motion(control, motion);
+    }
+    if (result >= 0) {
+        result = grobo_control_play_motion(control, &playing.config);
+    }
+    if (result >= 0) {
+        result = grobo_control_wait(control, 0);
+    }
+    grobo_motion_free(motion);
+    printf("%d ", (int)sizeof playing.config);
+    return result;
 }
 
 int main(void)
@@ -53,6 +128,9 @@ int main(void)
         grobo_posture_init_pose(&target, &grobo_gr001_model);
         result = grobo_control_wait_job(
             robot_of, grobo_robot_move(grobo_control_robot(robot_of), &target), 0);
+    }
+    if (result >= 0) {
+        result = play(robot_of, &target);
     }
     if (result < 0 || strcmp(grobo_control_name(robot_of), "yesterday's") != 0) {
         return fail("move", result);

@@ -116,8 +116,9 @@ static void see_finding(void *ctx, const grobo_body_finding *finding)
 static void play(grobo_body *body)
 {
     int frames = grobo_body_frame_count(body);
-    const grobo_body_check_options checks = {
-        .robot = &grobo_gr001_model, .finding = see_finding, .ctx = &frames};
+    const grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
+                                             .robot = &grobo_gr001_model, .finding = see_finding,
+                                             .ctx = &frames};
 
     for (int i = 0; i < frames; i++) {
         double q_rad[GROBO_JOINTS_MAX];

@@ -62,9 +62,8 @@ static inline void check_play(const grobo_motion *motion)
 static inline grobo_motion *read_bytes(const uint8_t *data, size_t size, grobo_motion_format format,
                                        bool keep_going)
 {
-    grobo_read_options options = {.format = format,
-                                  .model = &grobo_gr001_model,
-                                  .keep_going = keep_going,
+    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = format,
+                                  .model = &grobo_gr001_model, .keep_going = keep_going,
                                   .keep_positions = keep_going};
     grobo_motion *motion = NULL;
     grobo_diagnostics *list = NULL;

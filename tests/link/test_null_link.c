@@ -38,7 +38,7 @@ static grobo_estop_holder holder;
 static grobo_robot robot;
 static grobo_posture posture;
 static FILE *stream;
-static grobo_play_options play_options;
+static grobo_play_options play_options = {GROBO_PLAY_OPTIONS_INIT};
 static grobo_guard_config guard_config = {GROBO_GUARD_CONFIG_INIT};
 static struct event_base *base;
 static grobo_timer *timer;

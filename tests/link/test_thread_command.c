@@ -46,7 +46,8 @@ static int times_sent(void)
 /* 4 s in which the frames of a motion leave no room for anything else. */
 static void fill_line(grobo_control *control)
 {
-    const grobo_play_options full = {.mode = GROBO_PLAY_RATE, .rate_hz = 53, .unwatched = true};
+    const grobo_play_options full = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                     .rate_hz = 53, .unwatched = true};
     grobo_motion *motion;
     grobo_posture posture;
 

@@ -388,7 +388,8 @@ static int ask_to_play(grobo_control *from, void *arg)
 
 static void every_repetition_is_counted(void **state)
 {
-    const grobo_play_options at_a_rate = {.mode = GROBO_PLAY_RATE, .rate_hz = 20};
+    const grobo_play_options at_a_rate = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                          .rate_hz = 20};
     int most = 3 * 4;
     int left;
 
@@ -420,8 +421,9 @@ static void every_repetition_is_counted(void **state)
 
 static void a_negative_count_plays_in_reverse(void **state)
 {
-    const grobo_play_options at_a_rate = {.mode = GROBO_PLAY_RATE};
-    const grobo_play_options too_fast = {.mode = GROBO_PLAY_RATE, .rate_hz = 1000};
+    const grobo_play_options at_a_rate = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE};
+    const grobo_play_options too_fast = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                         .rate_hz = 1000};
 
     (void)state;
     control_come_up();

@@ -40,7 +40,8 @@ const char full_pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR00
 
 grobo_motion *motion_of(const char *text, grobo_motion_format format)
 {
-    grobo_read_options options = {.format = format, .model = &grobo_gr001_model, .name = "text"};
+    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = format,
+                                  .model = &grobo_gr001_model, .name = "text"};
     grobo_motion *motion = NULL;
     grobo_diagnostics *list = NULL;
 

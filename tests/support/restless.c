@@ -99,7 +99,8 @@ static void ask_move(restless *u)
 static grobo_play_options any_options(restless *u)
 {
     static const uint16_t rates_hz[] = {20, 30, 39, 50, 60};
-    grobo_play_options options = {.mode = restless_pick(u, 2) ? GROBO_PLAY_RATE : GROBO_PLAY_KEY,
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
+                                  .mode = restless_pick(u, 2) ? GROBO_PLAY_RATE : GROBO_PLAY_KEY,
                                   .rate_hz = rates_hz[restless_pick(u, 5)],
                                   .repeat = 1 + (int32_t)restless_pick(u, 3),
                                   .reverse = restless_pick(u, 8) == 0,

@@ -158,8 +158,8 @@ void assert_stopped(int estops)
 
 void play_for_long(void)
 {
-    const grobo_play_options fast = {
-        .mode = GROBO_PLAY_RATE, .rate_hz = 100, .unwatched = true, .stop_us = STOP_US};
+    const grobo_play_options fast = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
+                                     .rate_hz = 100, .unwatched = true, .stop_us = STOP_US};
     int64_t end_us = grobo_now_us() + LONG_US / 2;
     int before;
 

@@ -46,8 +46,8 @@ static int check(const struct script *script, const grobo_body_options *options,
                  struct watch *watch)
 {
     struct run run;
-    grobo_body_check_options checks = {
-        .robot = &grobo_gr001_model, .frame = see_frame, .finding = see_finding, .ctx = watch};
+    grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT, .robot = &grobo_gr001_model,
+                                       .frame = see_frame, .finding = see_finding, .ctx = watch};
     int found;
 
     memset(watch, 0, sizeof *watch);
@@ -73,7 +73,8 @@ static void script_slow_step(struct script *script)
 
 static void the_balancer_brings_the_zmp_to_the_desired_one(void **state)
 {
-    grobo_body_options options = {.zmp = GROBO_BODY_ZMP_AUTO, .rate_hz = 100};
+    grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .zmp = GROBO_BODY_ZMP_AUTO,
+                                  .rate_hz = 100};
     struct script script;
     struct watch off, on;
 
@@ -91,8 +92,8 @@ static void the_balancer_brings_the_zmp_to_the_desired_one(void **state)
  * of the body's speeds must not depend on the link they are told from. */
 static void the_balancer_works_from_any_base(void **state)
 {
-    const grobo_body_options options = {
-        .zmp = GROBO_BODY_ZMP_AUTO, .balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .zmp = GROBO_BODY_ZMP_AUTO,
+                                        .balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100};
     struct script script;
     struct run waist, foot;
 
@@ -125,7 +126,7 @@ static void the_balancer_works_from_any_base(void **state)
  * says when. */
 static void the_lint_tells_a_fall(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     struct script script;
     struct watch watch;
 
@@ -149,7 +150,7 @@ static void the_lint_tells_a_fall(void **state)
 /* The same lean eight times as fast: inertia counts 64 times, and the servos hurry. */
 static void the_lint_knows_the_speed(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const uint16_t speeds_pct[] = {0, 100, 800};
     int findings[3][2];
     struct script script;
@@ -167,10 +168,9 @@ static void the_lint_knows_the_speed(void **state)
     for (int i = 0; i < 3; i++) {
         struct watch watch;
         struct run run;
-        grobo_body_check_options checks = {.robot = &grobo_gr001_model,
-                                           .finding = see_finding,
-                                           .ctx = &watch,
-                                           .speed_pct = speeds_pct[i]};
+        grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
+                                           .robot = &grobo_gr001_model, .finding = see_finding,
+                                           .ctx = &watch, .speed_pct = speeds_pct[i]};
 
         memset(&watch, 0, sizeof watch);
         run_start(&run, &grobo_gr001_body, &script, &options);
@@ -193,7 +193,7 @@ static void last_frame(void *ctx, const grobo_body_balance_frame *frame)
 /* Balance is judged with the chest where it is played: at its limit. */
 static void the_lint_takes_slack(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const double chest_rad[] = {0, 0.01, 0.01, 0.03};
     const bool takes[] = {false, true, false, true};
     double com_m[4];
@@ -201,10 +201,9 @@ static void the_lint_takes_slack(void **state)
     (void)state;
     for (int i = 0; i < 4; i++) {
         grobo_body_balance_frame frame;
-        grobo_body_check_options checks = {.robot = &grobo_gr001_model,
-                                           .frame = last_frame,
-                                           .takes_slack = takes[i],
-                                           .ctx = &frame};
+        grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
+                                           .robot = &grobo_gr001_model, .frame = last_frame,
+                                           .takes_slack = takes[i], .ctx = &frame};
         struct script script;
         struct run run;
 
@@ -224,7 +223,7 @@ static void the_lint_takes_slack(void **state)
 
 static void the_lint_tells_what_else_is_wrong(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     struct script script;
     struct watch watch;
 

@@ -64,7 +64,7 @@ static grobo_motion *read_bow(const char *height)
     char text[sizeof bow + 32];
     char *place;
     grobo_motion *motion = NULL;
-    const grobo_read_options options = {.format = GROBO_FORMAT_PSEQ};
+    const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = GROBO_FORMAT_PSEQ};
 
     memcpy(text, bow, sizeof bow);
     place = strstr(text, "%s");
@@ -76,7 +76,7 @@ static grobo_motion *read_bow(const char *height)
 
 static void a_file_and_a_script_give_the_same(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 50};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 50};
     grobo_motion *motion = read_bow("0.13");
     grobo_body *body = NULL;
     struct script script;
@@ -166,7 +166,8 @@ static void a_clip_stops_where_a_leg_does_not_reach(void **state)
 
 static void frames_are_the_body_s(void **state)
 {
-    const grobo_body_options options = {.balance = GROBO_BODY_BALANCE_ON, .rate_hz = 30};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .balance = GROBO_BODY_BALANCE_ON,
+                                        .rate_hz = 30};
     grobo_motion *motion = read_bow("0.13");
     grobo_motion *frames = NULL;
     grobo_body *body = NULL;

@@ -29,23 +29,22 @@ struct mode {
 };
 
 /* The frames have nine digits or more: 5e-9 rad is their rounding. */
-static struct mode plain = {"plain", {.ik = GROBO_BODY_IK_NUMERIC}, 1e-8};
+static struct mode plain = {"plain", {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC}, 1e-8};
 /* The analytic reference solves its offsets approximately: 9e-5 rad off the exact answer. */
-static struct mode plain_grobot = {"plain_grobot", {.ik = GROBO_BODY_IK_EXACT}, 1e-4};
-static struct mode as_the_gui = {
-    "default",
-    {.ik = GROBO_BODY_IK_NUMERIC, .step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO},
-    1e-8};
+static struct mode plain_grobot = {
+    "plain_grobot", {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_EXACT}, 1e-4};
+static struct mode as_the_gui = {"default",
+                                 {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC,
+                                  .step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO},
+                                 1e-8};
 static struct mode balancer = {"balancer",
-                               {.ik = GROBO_BODY_IK_NUMERIC,
-                                .step = GROBO_BODY_STEP_STEALTHY,
-                                .zmp = GROBO_BODY_ZMP_AUTO,
+                               {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC,
+                                .step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO,
                                 .balance = GROBO_BODY_BALANCE_ON},
                                1e-7};
 static struct mode compat11 = {"compat11",
-                               {.ik = GROBO_BODY_IK_NUMERIC,
-                                .zmp = GROBO_BODY_ZMP_AUTO,
-                                .balance = GROBO_BODY_BALANCE_COMPAT11},
+                               {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC,
+                                .zmp = GROBO_BODY_ZMP_AUTO, .balance = GROBO_BODY_BALANCE_COMPAT11},
                                1e-7};
 
 /* Largest difference to the frames of an open file; every frame must be there, none beyond. */

@@ -29,7 +29,7 @@ static void foot_of(const grobo_body_model *model, const double *q_rad,
 
 static void a_foot_without_new_keys_does_not_move(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     struct script script;
     struct run run;
 
@@ -119,11 +119,10 @@ static void mirrored(const grobo_body_options *options)
 
 static void mirrored_input_gives_mirrored_output(void **state)
 {
-    const grobo_body_options exact = {.rate_hz = 50};
-    const grobo_body_options numeric = {.ik = GROBO_BODY_IK_NUMERIC,
+    const grobo_body_options exact = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 50};
+    const grobo_body_options numeric = {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC,
                                         .step = GROBO_BODY_STEP_STEALTHY,
-                                        .zmp = GROBO_BODY_ZMP_AUTO,
-                                        .rate_hz = 50};
+                                        .zmp = GROBO_BODY_ZMP_AUTO, .rate_hz = 50};
 
     (void)state;
     mirrored(&exact);
@@ -135,7 +134,7 @@ static void a_larger_robot_does_the_same(void **state)
 {
     /* at keys: between them a change below 1e-3 m is none, which does not scale */
     const int frames[] = {0, 30, 50, 70, 100};
-    const grobo_body_options options = {.rate_hz = 50};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 50};
     struct body_scaled scaled;
     struct script script, large;
     struct run run, other;
@@ -169,7 +168,7 @@ static void a_larger_robot_does_the_same(void **state)
 /* A waist too high for the legs: they keep their own keys' angles, and it is reported. */
 static void unreachable_targets_are_told(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 20};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 20};
     struct script script;
     struct run run;
     int missed = 0;
@@ -205,7 +204,8 @@ static void unreachable_targets_are_told(void **state)
 static void a_foot_can_be_the_base(void **state)
 {
     for (int ik = GROBO_BODY_IK_EXACT; ik <= GROBO_BODY_IK_NUMERIC; ik++) {
-        const grobo_body_options options = {.ik = (grobo_body_ik)ik, .rate_hz = 50};
+        const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .ik = (grobo_body_ik)ik,
+                                            .rate_hz = 50};
         struct script script, from_foot;
         struct run run, other;
 
@@ -236,7 +236,7 @@ static void a_foot_can_be_the_base(void **state)
 /* Without a waist target the waist follows from the base foot. */
 static void the_waist_is_told_without_a_target(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 50};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 50};
     struct script script;
     struct run run;
     double q[JOINTS];
@@ -261,7 +261,7 @@ static void the_waist_is_told_without_a_target(void **state)
 /* What waits for its first key is at that key's place: a foot stands there. */
 static void a_foot_stands_before_its_first_key(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 10};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 10};
     struct script script;
     struct run run;
     double q[JOINTS];
@@ -285,7 +285,7 @@ static void a_foot_stands_before_its_first_key(void **state)
  * target where one is not. */
 static void a_slave_foot_follows_its_joints(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 50};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 50};
     struct script script;
     struct run run;
     double q[JOINTS];
@@ -321,7 +321,8 @@ static void a_slave_foot_follows_its_joints(void **state)
  * touches down slower than the cubic alone would. */
 static void a_stealthy_step_does_not_slide(void **state)
 {
-    const grobo_body_options options = {.step = GROBO_BODY_STEP_STEALTHY, .rate_hz = 1000};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .step = GROBO_BODY_STEP_STEALTHY,
+                                        .rate_hz = 1000};
     struct script script;
     struct run run;
     double top_m = 0, before_m = 0, fastest_m_s = 0;
@@ -358,7 +359,8 @@ static void a_stealthy_step_does_not_slide(void **state)
 /* The desired ZMP lies under the standing foot while the other swings. */
 static void automatic_zmp_is_under_the_standing_foot(void **state)
 {
-    const grobo_body_options options = {.zmp = GROBO_BODY_ZMP_AUTO, .rate_hz = 50};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .zmp = GROBO_BODY_ZMP_AUTO,
+                                        .rate_hz = 50};
     struct script script;
     struct run run;
     double q[JOINTS];
@@ -387,7 +389,7 @@ static void automatic_zmp_is_under_the_standing_foot(void **state)
  * where the transition is short, constant outside. */
 static void joints_keep_their_own_keys(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     struct script script;
     struct run run;
     double q[JOINTS];
@@ -422,10 +424,9 @@ static void joints_keep_their_own_keys(void **state)
 /* A frame is the same whichever was asked for before it. */
 static void frames_come_in_any_order(void **state)
 {
-    const grobo_body_options options = {.step = GROBO_BODY_STEP_STEALTHY,
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .step = GROBO_BODY_STEP_STEALTHY,
                                         .zmp = GROBO_BODY_ZMP_AUTO,
-                                        .balance = GROBO_BODY_BALANCE_ON,
-                                        .rate_hz = 50};
+                                        .balance = GROBO_BODY_BALANCE_ON, .rate_hz = 50};
     struct script script;
     struct run run;
     double forward[151][JOINTS], q[JOINTS];
@@ -450,7 +451,8 @@ static void frames_come_in_any_order(void **state)
 
 static void ik_can_be_off(void **state)
 {
-    const grobo_body_options options = {.ik = GROBO_BODY_IK_OFF, .rate_hz = 50};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_OFF,
+                                        .rate_hz = 50};
     struct script script;
     struct run run;
     double q[JOINTS];

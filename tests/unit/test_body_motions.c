@@ -23,12 +23,14 @@ static void say(void *ctx, const grobo_body_finding *finding)
 static void stands(const char *path)
 {
     static const grobo_body_options options[] = {
-        {.rate_hz = 100},
-        {.step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO, .rate_hz = 50},
-        {.balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100},
+        {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100},
+        {GROBO_BODY_OPTIONS_INIT, .step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO,
+         .rate_hz = 50},
+        {GROBO_BODY_OPTIONS_INIT, .balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100},
     };
-    const grobo_body_check_options checks = {
-        .robot = &grobo_gr001_model, .margin_m = MARGIN_M, .finding = say};
+    const grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
+                                             .robot = &grobo_gr001_model, .margin_m = MARGIN_M,
+                                             .finding = say};
     grobo_motion *motion = NULL;
 
     assert_int_equal(grobo_motion_read_file(path, NULL, NULL, &motion), 0);

@@ -154,7 +154,7 @@ static void angles_are_unwrapped(void **state)
 
 static void the_base_is_the_latest_that_says_so(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 10};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 10};
     struct script script;
     struct run run;
     grobo_body_report first, later;
@@ -197,7 +197,7 @@ enum { P_SLAVE = 1, P_TOUCH = 2, N_SLAVE = 4, N_TOUCH = 8 };
 /* The knee's weight of its own key at a time between two keys of its foot at 0 and 1 s. */
 static double own_weight(unsigned how, double time_s)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const double own_rad = -0.2;
     double q[2][JOINTS];
 
@@ -278,8 +278,9 @@ static void zmp_key(struct script *script, double x, double y)
 #define SOLE_X (FOOT_X - 0.005)
 #define SOLE_Y (FOOT_Y + 0.01)
 
-static const grobo_body_options automatic = {
-    .step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO, .rate_hz = 100};
+static const grobo_body_options automatic = {GROBO_BODY_OPTIONS_INIT,
+                                             .step = GROBO_BODY_STEP_STEALTHY,
+                                             .zmp = GROBO_BODY_ZMP_AUTO, .rate_hz = 100};
 
 /* The author's ZMP comes too late before the lift, and too early after the landing: the foot
  * rests on the ground the longer. */
@@ -419,7 +420,7 @@ static void an_author_s_zmp_keys_are_held(void **state)
 
 static void a_leg_gives_up_the_least_of_a_shift(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const double shift[2] = {0.06, 0.08};
     struct script script;
     struct run run;
@@ -455,7 +456,7 @@ static void a_leg_gives_up_the_least_of_a_shift(void **state)
 /* A foot between full contact and its joints' own keys follows the shift by its blending ratio. */
 static void a_slave_foot_follows_the_shifted_waist(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const double shift[2] = {0.004, 0.006};
     struct script script;
     struct run run;
@@ -489,7 +490,7 @@ static void a_slave_foot_follows_the_shifted_waist(void **state)
  * joints' keys have it, and the waist is where that leg puts it; the base foot does not move. */
 static void a_waist_shifted_beyond_its_base_foot(void **state)
 {
-    const grobo_body_options options = {.rate_hz = 100};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const double shift[2] = {0.06, 0.08};
     struct script script;
     struct run run;

@@ -22,8 +22,9 @@ typedef struct checked {
 /* slack: NULL: none is taken. */
 static checked check_with(const char *text, bool positions, grobo_slack_taken *slack)
 {
-    const grobo_check_options how = {.slack = slack};
-    grobo_read_options options = {.model = &grobo_gr001_model, .keep_positions = positions};
+    const grobo_check_options how = {GROBO_CHECK_OPTIONS_INIT, .slack = slack};
+    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model,
+                                  .keep_positions = positions};
     checked found;
     grobo_motion *motion = NULL;
 
@@ -244,7 +245,7 @@ static void test_speed_it_is_played_at(void **state)
                   GROBO_FORMAT_PSEQ);
 
     for (size_t i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
-        grobo_check_options how = {.speed_pct = speeds[i].speed_pct};
+        grobo_check_options how = {GROBO_CHECK_OPTIONS_INIT, .speed_pct = speeds[i].speed_pct};
         grobo_diagnostics *list = NULL;
         assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
         assert_int_equal(grobo_motion_check(motion, &grobo_gr001_model, &how, list),

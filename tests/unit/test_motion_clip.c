@@ -106,7 +106,8 @@ static void test_seed_style(void **state)
 {
     (void)state;
     grobo_motion *motion = motion_of(curve, GROBO_FORMAT_AUTO);
-    grobo_clip clip = clip_of(motion, &(grobo_clip_options){.style = GROBO_STYLE_SEED});
+    grobo_clip clip =
+        clip_of(motion, &(grobo_clip_options){GROBO_CLIP_OPTIONS_INIT, .style = GROBO_STYLE_SEED});
 
     assert_near(sample(&clip, 0.5, 0), 0.5, 1e-12);
     assert_near(sample(&clip, 2.25, 0), 2.75, 1e-12);
@@ -145,7 +146,8 @@ static void test_postures(void **state)
     (void)state;
     grobo_motion *motion =
         motion_of("500 0 100\n1000 10 100\n500 20 100\n700 40 100\n", GROBO_FORMAT_M);
-    grobo_clip clip = clip_of(motion, &(grobo_clip_options){.default_us = 300000});
+    grobo_clip clip =
+        clip_of(motion, &(grobo_clip_options){GROBO_CLIP_OPTIONS_INIT, .default_us = 300000});
     double ddeg = atan(1) / 450;
     grobo_posture posture;
     int64_t at_us;
@@ -185,11 +187,13 @@ static void test_increments(void **state)
     grobo_motion_clip_free(&clip);
 
     (void)grobo_posture_init(&start, 2);
-    assert_int_equal(grobo_motion_clip(motion, &(grobo_clip_options){.start = &start}, &clip),
-                     GROBO_ERR_ARG);
+    assert_int_equal(
+        grobo_motion_clip(motion, &(grobo_clip_options){GROBO_CLIP_OPTIONS_INIT, .start = &start},
+                          &clip),
+        GROBO_ERR_ARG);
     (void)grobo_posture_set_rad(&start, 0, 1);
     (void)grobo_posture_set_rad(&start, 1, -1);
-    clip = clip_of(motion, &(grobo_clip_options){.start = &start});
+    clip = clip_of(motion, &(grobo_clip_options){GROBO_CLIP_OPTIONS_INIT, .start = &start});
     assert_false(clip.relative);
     assert_int_equal(clip.key(clip.ctx, 2, &posture, &at_us), 0);
     assert_near(posture.angle_rad[0], 1.4, 1e-15);
@@ -289,7 +293,7 @@ static void test_allocations(void **state)
     (void)state;
     counted_mem counter = {0};
     grobo_mem mem = counted_mem_of(&counter);
-    grobo_read_options options = {.mem = &mem};
+    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem};
     grobo_motion *motion = NULL;
     grobo_clip clip;
 

@@ -121,8 +121,8 @@ static void test_allocations_fail(void **state)
             counted_mem counter = {.fail_at = n};
             grobo_mem mem = counted_mem_of(&counter);
             grobo_diagnostics *list = NULL;
-            grobo_read_options options = {
-                .mem = &mem, .keep_positions = true, .model = &grobo_gr001_model};
+            grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem,
+                                          .keep_positions = true, .model = &grobo_gr001_model};
             result = grobo_diagnostics_new(&list, &mem);
             if (result == 0) {
                 result = read_result(samples[i], &options, list);
@@ -144,7 +144,7 @@ static void test_cut_anywhere(void **state)
             counted_mem counter = {0};
             grobo_mem mem = counted_mem_of(&counter);
             grobo_diagnostics *list = NULL;
-            grobo_read_options options = {.mem = &mem};
+            grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem};
             grobo_motion *motion = NULL;
             char *exact = malloc(cut > 0 ? cut : 1);
             memcpy(exact, samples[i], cut);
@@ -166,7 +166,7 @@ static bool refused(const char *text)
 {
     counted_mem counter = {0};
     grobo_mem mem = counted_mem_of(&counter);
-    grobo_read_options options = {.mem = &mem};
+    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem};
     grobo_motion *motion = NULL;
     grobo_diagnostics *list = NULL;
     grobo_diagnostic first;

@@ -49,7 +49,9 @@ static void test_save_through_a_link(void **state)
     put_file(in_folder("b.m"), "500  20\n");
     assert_int_equal(symlink(in_folder("b.m"), in_folder("link.m")), 0);
     assert_int_equal(grobo_motion_save(motion, grobo_files_os(), in_folder("link.m"),
-                                       &(grobo_write_options){.model = &grobo_gr001_model}, NULL),
+                                       &(grobo_write_options){GROBO_WRITE_OPTIONS_INIT,
+                                                              .model = &grobo_gr001_model},
+                                       NULL),
                      0);
     assert_int_equal(lstat(in_folder("link.m"), &status), 0);
     assert_true(S_ISLNK(status.st_mode));
@@ -62,7 +64,7 @@ static void test_save_through_a_link_to_no_file(void **state)
 {
     (void)state;
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
-    grobo_write_options options = {.model = &grobo_gr001_model};
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
     struct stat status;
     char open_end[32], text[16] = "";
     int ends[2];

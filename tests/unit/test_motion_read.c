@@ -40,7 +40,7 @@ static void test_m(void **state)
 static void test_m_of_other_robots(void **state)
 {
     (void)state;
-    grobo_read_options options = {.format = GROBO_FORMAT_M};
+    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = GROBO_FORMAT_M};
     grobo_motion *motion = NULL;
     char text[1000] = "10";
     size_t used = 2;
@@ -69,7 +69,7 @@ static void test_m_refused(void **state)
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         grobo_diagnostics *list = NULL;
-        grobo_read_options options = {.format = GROBO_FORMAT_M};
+        grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = GROBO_FORMAT_M};
         assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
         assert_int_equal(read_result(bad[i].text, &options, list), GROBO_ERR_SYNTAX);
         assert_true(has_diagnostic(list, bad[i].code, bad[i].line, bad[i].column));
@@ -85,8 +85,10 @@ static void test_m_line_too_long(void **state)
 
     memset(text, '1', size);
     text[size] = '\0';
-    assert_int_equal(read_result(text, &(grobo_read_options){.format = GROBO_FORMAT_M}, NULL),
-                     GROBO_ERR_CAP);
+    assert_int_equal(
+        read_result(text, &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .format = GROBO_FORMAT_M},
+                    NULL),
+        GROBO_ERR_CAP);
     free(text);
 }
 
@@ -185,7 +187,7 @@ static void test_pose(void **state)
 static void test_positions(void **state)
 {
     (void)state;
-    grobo_read_options options = {.keep_positions = true};
+    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .keep_positions = true};
     grobo_motion *motion = NULL;
     uint32_t line = 0, column = 0;
 
@@ -277,8 +279,9 @@ static void test_keep_going(void **state)
     grobo_diagnostics *list = NULL;
 
     assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
-    assert_int_equal(read_result(text, &(grobo_read_options){.keep_going = true}, list),
-                     GROBO_ERR_SYNTAX);
+    assert_int_equal(
+        read_result(text, &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .keep_going = true}, list),
+        GROBO_ERR_SYNTAX);
     assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR), 6);
     assert_true(has_diagnostic(list, "type", 4, 11) && has_diagnostic(list, "type", 4, 58) &&
                 has_diagnostic(list, "type", 4, 61) && has_diagnostic(list, "key-missing", 5, 3) &&
@@ -481,8 +484,8 @@ static void test_memory_of_a_long_file(void **state)
     }
     counted_mem counter = {0};
     grobo_mem mem = counted_mem_of(&counter);
-    grobo_read_options options = {
-        .mem = &mem, .keep_positions = true, .model = &grobo_gr001_model, .format = GROBO_FORMAT_M};
+    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem, .keep_positions = true,
+                                  .model = &grobo_gr001_model, .format = GROBO_FORMAT_M};
     grobo_motion *motion = NULL;
     uint32_t at_line, at_column;
 
@@ -513,13 +516,22 @@ static void test_format_by_content_and_name(void **state)
     assert_int_equal(grobo_motion_format_of_path("walk.yml"), GROBO_FORMAT_YAML);
     assert_int_equal(grobo_motion_format_of_path("walk.nope"), GROBO_FORMAT_AUTO);
     assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
-    assert_int_equal(read_result(key_poses, &(grobo_read_options){.name = "a.yaml"}, list), 0);
+    assert_int_equal(read_result(key_poses,
+                                 &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .name = "a.yaml"},
+                                 list),
+                     0);
     assert_true(has_diagnostic(list, "format", 1, 7));
     assert_int_equal(
-        read_result(key_poses, &(grobo_read_options){.format = GROBO_FORMAT_YAML}, list),
+        read_result(key_poses,
+                    &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .format = GROBO_FORMAT_YAML},
+                    list),
         GROBO_ERR_TYPE);
-    assert_int_equal(read_result("100 1 2\n", &(grobo_read_options){.name = "a.txt"}, list), 0);
-    assert_int_equal(read_result("", &(grobo_read_options){.name = "a.m"}, list), 0);
+    assert_int_equal(read_result("100 1 2\n",
+                                 &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .name = "a.txt"},
+                                 list),
+                     0);
+    assert_int_equal(
+        read_result("", &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .name = "a.m"}, list), 0);
     assert_int_equal(read_result("", NULL, list), GROBO_ERR_SYNTAX);
     grobo_diagnostics_free(list);
 }
@@ -553,7 +565,8 @@ static void test_source_fails(void **state)
     for (int format = GROBO_FORMAT_AUTO; format <= GROBO_FORMAT_YAML; format++) {
         int left = 3;
         grobo_motion *motion = NULL;
-        grobo_read_options options = {.format = (grobo_motion_format)format};
+        grobo_read_options options = {GROBO_READ_OPTIONS_INIT,
+                                      .format = (grobo_motion_format)format};
         assert_int_equal(
             grobo_motion_read(&(grobo_source){failing_read, &left}, &options, NULL, &motion),
             GROBO_ERR_UNPLUGGED);

@@ -16,7 +16,8 @@
 #include "tests/support/os.h"
 
 static const char saved[] = "500  10 -20\n1000  1 2\n";
-static const grobo_write_options in_motor_order = {.model = &grobo_gr001_model};
+static const grobo_write_options in_motor_order = {GROBO_WRITE_OPTIONS_INIT,
+                                                   .model = &grobo_gr001_model};
 
 static int remove_folder(void **state)
 {
@@ -35,7 +36,7 @@ static int remove_folder(void **state)
 /* The file read again for a model, which must give what was saved. */
 static grobo_motion *again_as(const char *path, const grobo_model *model, const grobo_motion *same)
 {
-    const grobo_read_options options = {.model = model};
+    const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = model};
     grobo_motion *again = NULL;
 
     assert_int_equal(grobo_motion_read_file(path, &options, NULL, &again), 0);
@@ -158,7 +159,8 @@ static void test_save_keeps_other_formats(void **state)
     assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
     for (int h = 0; h < 3; h++) {
         for (int f = 0; f < 4; f++) {
-            grobo_write_options options = {.model = &grobo_gr001_model, .format = formats[f]};
+            grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model,
+                                           .format = formats[f]};
             int wanted = h == f && h < 2 ? 0 : GROBO_ERR_EXISTS;
             put_file(path, held[h]);
             assert_int_equal(grobo_motion_may_save(grobo_files_os(), path, formats[f]), wanted);
@@ -186,7 +188,7 @@ static void test_save_next(void **state)
 {
     (void)state;
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
-    grobo_write_options options = {.model = &grobo_gr001_model};
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
     char path[512] = "";
 
     put_file(in_folder("Motion2.m"), "mine");

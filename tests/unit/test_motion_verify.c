@@ -64,7 +64,10 @@ static double difference(grobo_motion *motion, grobo_joint_mask joints,
     double most_rad = 0;
 
     grobo_motion_start(motion, &grobo_gr001_model, &start);
-    assert_int_equal(grobo_motion_clip(motion, &(grobo_clip_options){.start = &start}, &clip), 0);
+    assert_int_equal(
+        grobo_motion_clip(motion, &(grobo_clip_options){GROBO_CLIP_OPTIONS_INIT, .start = &start},
+                          &clip),
+        0);
     for (int k = 0; k < KEYS; k++) {
         int64_t at_us = (int64_t)((first_s + k * KEY_S) * 1e6 + 0.5);
         assert_int_equal(clip.sample(clip.ctx, at_us, &at), 0);
@@ -81,7 +84,8 @@ static double difference(grobo_motion *motion, grobo_joint_mask joints,
 
 static grobo_motion *through(grobo_motion *motion, grobo_motion_format format, bool exact)
 {
-    const grobo_write_options options = {.model = &grobo_gr001_model, .exact = exact};
+    const grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model,
+                                         .exact = exact};
     char *text = written_as(motion, format, &options, NULL);
     grobo_motion *copy = motion_of(text, format);
     assert_int_equal(grobo_motion_verify(motion, copy, &options, NULL), 0);

@@ -455,7 +455,7 @@ static void test_allocations_fail(void **state)
         for (size_t n = 1; result < 0; n++) {
             counted_mem counter = {0};
             grobo_mem mem = counted_mem_of(&counter);
-            grobo_read_options options = {.mem = &mem};
+            grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem};
             grobo_motion *motion = NULL, *before = NULL;
             assert_int_equal(grobo_motion_read_memory(keys, strlen(keys), &options, NULL, &motion),
                              0);

@@ -205,7 +205,7 @@ static void test_m_layout(void **state)
 {
     (void)state;
     static const char file[] = "500  10 -20.5 0\n1000  1 2 3\n";
-    grobo_write_options options = {.model = &grobo_gr001_model};
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
     grobo_motion *motion = motion_of(file, GROBO_FORMAT_M);
     char *text = written_as(motion, GROBO_FORMAT_M, &options, NULL);
 
@@ -283,7 +283,7 @@ static grobo_motion *converted(const grobo_motion *motion, grobo_motion_kind kin
 static void test_every_pair(void **state)
 {
     (void)state;
-    const grobo_write_options exact = {.exact = true};
+    const grobo_write_options exact = {GROBO_WRITE_OPTIONS_INIT, .exact = true};
     static const char *const files[] = {
         "0  10 -20 30\n400  15 -20 31\n1000  40 0 0\n",
         "type: PoseSeq\nname: t\nrefs:\n"
@@ -353,13 +353,15 @@ static void test_conversion_fills_joints(void **state)
     (void)grobo_posture_init(&start, 4);
     (void)grobo_posture_set_rad(&start, 2, 7);
     grobo_motion *postures =
-        converted(motion, GROBO_MOTION_POSTURES, &(grobo_write_options){.start = &start}, list);
+        converted(motion, GROBO_MOTION_POSTURES,
+                  &(grobo_write_options){GROBO_WRITE_OPTIONS_INIT, .start = &start}, list);
     assert_true(angle_of(postures, 0, 1) == 2.0 && angle_of(postures, 2, 0) == 1.0);
     assert_true(angle_of(postures, 0, 2) == 7.0);
     assert_true(has_diagnostic(list, "joints-unset", 0, 0));
     assert_true(has_diagnostic(list, "step-default", 5, 0));
-    grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES,
-                                     &(grobo_write_options){.start = &start, .exact = true}, list);
+    grobo_motion *frames = converted(
+        motion, GROBO_MOTION_FRAMES,
+        &(grobo_write_options){GROBO_WRITE_OPTIONS_INIT, .start = &start, .exact = true}, list);
     assert_true(angle_of(frames, 0, 2) == 7.0);
     assert_true(grobo_motion_has_frame_times(frames));
     grobo_motion_free(postures);
@@ -372,19 +374,22 @@ static void test_conversion_at_a_rate(void **state)
 {
     (void)state;
     grobo_motion *motion = motion_of("0  0\n1000  100\n", GROBO_FORMAT_M);
-    grobo_write_options options = {.rate_hz = 10};
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .rate_hz = 10};
     grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES, &options, NULL);
 
     /* The first posture takes the default time; the end is not on a frame. */
     assert_int_equal(grobo_motion_size(frames), 14);
     assert_true(grobo_motion_frame_rate(frames) == 10.0);
     grobo_motion *finer =
-        converted(frames, GROBO_MOTION_FRAMES, &(grobo_write_options){.rate_hz = 20}, NULL);
+        converted(frames, GROBO_MOTION_FRAMES,
+                  &(grobo_write_options){GROBO_WRITE_OPTIONS_INIT, .rate_hz = 20}, NULL);
     assert_int_equal(grobo_motion_size(finer), 27);
     grobo_motion *bad = NULL;
-    assert_int_equal(grobo_motion_convert(motion, GROBO_MOTION_FRAMES,
-                                          &(grobo_write_options){.rate_hz = -1}, NULL, &bad),
-                     GROBO_ERR_ARG);
+    assert_int_equal(
+        grobo_motion_convert(motion, GROBO_MOTION_FRAMES,
+                             &(grobo_write_options){GROBO_WRITE_OPTIONS_INIT, .rate_hz = -1}, NULL,
+                             &bad),
+        GROBO_ERR_ARG);
     assert_null(bad);
     grobo_motion_free(motion);
     grobo_motion_free(frames);
@@ -427,7 +432,7 @@ static void test_frames_are_resampled(void **state)
 static void test_empty_motions_are_written(void **state)
 {
     (void)state;
-    const grobo_write_options options = {.model = &grobo_gr001_model};
+    const grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
 
     for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
         for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
@@ -453,7 +458,7 @@ static void test_allocations_fail(void **state)
         for (size_t n = 1; result < 0; n++) {
             counted_mem counter = {0};
             grobo_mem mem = counted_mem_of(&counter);
-            grobo_read_options options = {.mem = &mem};
+            grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem};
             grobo_motion *motion = NULL, *made = NULL;
             assert_int_equal(
                 grobo_motion_read_memory(pose_file, strlen(pose_file), &options, NULL, &motion), 0);
@@ -494,7 +499,8 @@ static void test_real_key_poses_byte_for_byte(void **state)
 static void test_real_files_there_and_back(void **state)
 {
     (void)state;
-    grobo_write_options options = {.model = &grobo_gr001_model, .exact = true};
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model,
+                                   .exact = true};
 
     for (size_t i = 0; i < sizeof real_names / sizeof real_names[0]; i++) {
         grobo_motion *motion = NULL;

@@ -94,8 +94,8 @@ static void look(int64_t now_us)
 
 static int play(const char *path, int64_t *now_us)
 {
-    const grobo_read_options how = {.model = &grobo_gr001_model};
-    const grobo_play_options options = {.mode = GROBO_PLAY_RATE};
+    const grobo_read_options how = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE};
     grobo_motion *motion;
     grobo_clip clip;
     int result = grobo_motion_read_file(path, &how, NULL, &motion);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
 
@@ -147,13 +148,10 @@ static int prepare_play(grobo_control *control, grobo_play_options *options)
 
 int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options)
 {
-    grobo_play_options wanted = {.repeat = 0};
+    grobo_play_options wanted;
 
-    if (control == NULL) {
+    if (control == NULL || grobo_i_sized_take(&wanted, sizeof wanted, options) < 0) {
         return GROBO_ERR_ARG;
-    }
-    if (options != NULL) {
-        wanted = *options;
     }
     grobo_i_control_lock(control);
     int r = prepare_play(control, &wanted);
@@ -338,8 +336,8 @@ int grobo_control_load_motion_format(grobo_control *control, grobo_motion_format
     }
     char path[GROBO_PATH_MAX_BYTES];
     char file[GROBO_PATH_MAX_BYTES];
-    const grobo_read_options options = {
-        .format = format, .model = control->driver->model, .mem = control->mem};
+    const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = format,
+                                        .model = control->driver->model, .mem = control->mem};
     grobo_motion *motion = NULL;
     int r = GROBO_ERR_ARG;
 
@@ -409,6 +407,7 @@ int grobo_control_save_motion(grobo_control *control, grobo_motion_format format
     }
     char used[GROBO_PATH_MAX_BYTES];
     const grobo_write_options options = {
+        GROBO_WRITE_OPTIONS_INIT,
         .format = format,
         .model = control->driver->model,
         .default_us = grobo_control_get_default_time_us(control),

@@ -86,7 +86,8 @@ static void end_play(grobo_control *control, int result)
 int grobo_i_control_play(grobo_control *control, const grobo_play_options *options)
 {
     grobo_robot *robot = control_robot(control);
-    grobo_clip_options clip_options = {.default_us = options->default_time_us};
+    grobo_clip_options clip_options = {GROBO_CLIP_OPTIONS_INIT,
+                                       .default_us = options->default_time_us};
     grobo_posture start;
 
     /* By keys the sequencer counts a motion of increments from where the robot is then. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/motion/change/convert.h"
 #include "src/motion/play/clip.h"
 #include "src/motion/store/columns.h"
@@ -394,7 +395,8 @@ static int begin(conversion *conv, grobo_motion_kind kind)
 {
     const grobo_motion *from = conv->from;
     const grobo_write_options *options = conv->options;
-    grobo_clip_options how = {.style = options->style, .default_us = options->default_us};
+    grobo_clip_options how = {GROBO_CLIP_OPTIONS_INIT, .style = options->style,
+                              .default_us = options->default_us};
 
     grobo_i_start(from, options->model, options->start, &conv->start);
     how.start = &conv->start;
@@ -453,7 +455,8 @@ int grobo_motion_resolve(grobo_motion *motion, const grobo_posture *start)
     if (motion->kind != GROBO_MOTION_STEPS) {
         return 0;
     }
-    int result = grobo_i_clip_keys(motion, &(grobo_clip_options){.start = start}, &view);
+    int result = grobo_i_clip_keys(
+        motion, &(grobo_clip_options){GROBO_CLIP_OPTIONS_INIT, .start = start}, &view);
     if (result < 0) {
         return result;
     }
@@ -492,11 +495,13 @@ int grobo_motion_convert(const grobo_motion *motion, grobo_motion_kind kind,
     if (motion == NULL || converted == NULL) {
         return GROBO_ERR_ARG;
     }
-    static const grobo_write_options defaults;
-    conversion conv = {.from = motion, .list = list};
+    grobo_write_options how;
+    conversion conv = {.from = motion, .options = &how, .list = list};
 
-    conv.options = options != NULL ? options : &defaults;
-    double rate_hz = conv.options->rate_hz;
+    if (grobo_i_sized_take(&how, sizeof how, options) < 0) {
+        return GROBO_ERR_ARG;
+    }
+    double rate_hz = how.rate_hz;
     if (kind < GROBO_MOTION_POSTURES || kind > GROBO_MOTION_FRAMES || !isfinite(rate_hz) ||
         rate_hz < 0) {
         return GROBO_ERR_ARG;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "src/base/sized.h"
 #include "src/motion/play/clip.h"
 #include "src/motion/store/diagnostics.h"
 
@@ -152,18 +153,22 @@ int grobo_motion_verify(const grobo_motion *source, const grobo_motion *copy,
     if (source == NULL || copy == NULL) {
         return GROBO_ERR_ARG;
     }
-    static const grobo_write_options defaults;
+    grobo_write_options wanted;
     verification v = {
         .source = source, .copy = copy, .list = list, .near_rad = NEAR_RAD, .near_s = NEAR_S};
     grobo_posture start;
 
-    v.options = options != NULL ? options : &defaults;
+    if (grobo_i_sized_take(&wanted, sizeof wanted, options) < 0) {
+        return GROBO_ERR_ARG;
+    }
+    v.options = &wanted;
     if (copy->kind == GROBO_MOTION_POSTURES && !v.options->exact) {
         v.near_rad = WHOLE_RAD;
         v.near_s = WHOLE_S;
     }
     grobo_i_start(source, v.options->model, v.options->start, &start);
-    grobo_clip_options how = {v.options->style, v.options->default_us, &start};
+    grobo_clip_options how = {GROBO_CLIP_OPTIONS_INIT, .style = wanted.style,
+                              .default_us = wanted.default_us, .start = &start};
     int result = grobo_motion_clip(source, &how, &v.source_view);
     if (result < 0) {
         return result;

@@ -89,7 +89,7 @@ static int convert_for(const grobo_motion *motion, const grobo_motion *other, gr
     bool at_rate = motion->kind == GROBO_MOTION_FRAMES && !motion->frame_times;
     grobo_joint_mask joints = joints_of(other);
     grobo_posture end;
-    grobo_write_options how = {.start = &end, .exact = true};
+    grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT, .start = &end, .exact = true};
 
     if (other->n_joints > motion->n_joints) {
         return GROBO_ERR_ARG;

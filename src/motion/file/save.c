@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/motion/store/container.h"
 #include "src/motion/store/diagnostics.h"
 
@@ -30,8 +31,8 @@ int grobo_motion_may_save(const grobo_files *files, const char *path, grobo_moti
     if (!files->holds(path)) {
         return 0;
     }
-    int result =
-        grobo_motion_read_file(path, &(grobo_read_options){.format = format}, NULL, &there);
+    int result = grobo_motion_read_file(
+        path, &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .format = format}, NULL, &there);
     grobo_motion_free(there);
     return result < 0 && result != GROBO_ERR_NOMEM ? GROBO_ERR_EXISTS : result;
 }
@@ -62,12 +63,12 @@ int grobo_motion_save(const grobo_motion *motion, const grobo_files *files, cons
     if (files == NULL || path == NULL || motion == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_write_options named = {.name = path};
+    grobo_write_options named;
 
-    if (options != NULL) {
-        named = *options;
-        named.name = options->name != NULL ? options->name : path;
+    if (grobo_i_sized_take(&named, sizeof named, options) < 0) {
+        return GROBO_ERR_ARG;
     }
+    named.name = named.name != NULL ? named.name : path;
     if (named.format == GROBO_FORMAT_AUTO) {
         named.format = grobo_motion_format_of_path(path);
     }
@@ -186,7 +187,7 @@ int grobo_motion_print(const grobo_motion *motion, const grobo_model *model, FIL
     if (stream == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_write_options options = {.model = model};
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = model};
     grobo_sink sink = {write_stream, stream};
 
     return grobo_motion_write(motion, GROBO_FORMAT_M, &options, &sink, NULL);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/base/memory.h"
+#include "src/base/sized.h"
 #include "src/motion/format/read.h"
 
 enum { BUFFER_BYTES = 64 * 1024 };
@@ -66,10 +67,8 @@ int grobo_motion_read(const grobo_source *source, const grobo_read_options *opti
     }
     grobo_i_reader reader = {.list = list, .input = {.source = source, .size = BUFFER_BYTES}};
 
-    if (options != NULL) {
-        reader.options = *options;
-    }
-    if (reader.options.format < GROBO_FORMAT_AUTO || reader.options.format > GROBO_FORMAT_YAML) {
+    if (grobo_i_sized_take(&reader.options, sizeof reader.options, options) < 0 ||
+        reader.options.format < GROBO_FORMAT_AUTO || reader.options.format > GROBO_FORMAT_YAML) {
         return GROBO_ERR_ARG;
     }
     reader.file = reader.options.name != NULL ? reader.options.name : "";
@@ -151,12 +150,12 @@ int grobo_motion_read_file(const char *path, const grobo_read_options *options,
     if (path == NULL || motion == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_read_options named = {.name = path};
+    grobo_read_options named;
 
-    if (options != NULL) {
-        named = *options;
-        named.name = options->name != NULL ? options->name : path;
+    if (grobo_i_sized_take(&named, sizeof named, options) < 0) {
+        return GROBO_ERR_ARG;
     }
+    named.name = named.name != NULL ? named.name : path;
     FILE *stream = fopen(path, "rb");
     if (stream == NULL) {
         int result = error_of_errno();

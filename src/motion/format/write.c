@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "src/base/sized.h"
 #include "src/motion/change/convert.h"
 #include "src/motion/format/write.h"
 
@@ -24,12 +25,13 @@ int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
     if (sink == NULL || motion == NULL) {
         return GROBO_ERR_ARG;
     }
-    static const grobo_write_options defaults;
+    grobo_write_options how;
     grobo_i_out out;
-    grobo_i_writing writing = {options != NULL ? options : &defaults, list, &out};
+    grobo_i_writing writing = {&how, list, &out};
     grobo_motion *converted = NULL;
 
-    if (format < GROBO_FORMAT_AUTO || format > GROBO_FORMAT_YAML) {
+    if (grobo_i_sized_take(&how, sizeof how, options) < 0 || format < GROBO_FORMAT_AUTO ||
+        format > GROBO_FORMAT_YAML) {
         return GROBO_ERR_ARG;
     }
     if (format == GROBO_FORMAT_AUTO) {

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/motion/play/clip.h"
 #include "src/motion/store/diagnostics.h"
 #include "src/motion/text/number.h"
@@ -466,19 +467,23 @@ int grobo_motion_check(const grobo_motion *motion, const grobo_model *model,
     if (motion == NULL || model == NULL) {
         return GROBO_ERR_ARG;
     }
-    static const grobo_check_options defaults;
+    grobo_check_options wanted;
     check c;
 
+    if (grobo_i_sized_take(&wanted, sizeof wanted, options) < 0) {
+        return GROBO_ERR_ARG;
+    }
     memset(&c, 0, sizeof c);
     c.motion = motion;
     c.model = model;
-    c.options = options != NULL ? options : &defaults;
+    c.options = &wanted;
     c.list = list;
     c.speed = c.options->speed_pct > 0 ? c.options->speed_pct / 100.0 : 1;
     c.file = c.options->name;
     c.n_joints = motion->n_joints < model->n_joints ? motion->n_joints : model->n_joints;
     grobo_posture start = start_of(&c);
-    grobo_clip_options how = {c.options->style, c.options->default_us, &start};
+    grobo_clip_options how = {GROBO_CLIP_OPTIONS_INIT, .style = wanted.style,
+                              .default_us = wanted.default_us, .start = &start};
     int result = grobo_motion_clip(motion, &how, &c.view);
     if (result < 0) {
         return result;

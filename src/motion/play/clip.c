@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/base/memory.h"
+#include "src/base/sized.h"
 #include "src/motion/play/clip.h"
 
 static bool counts_steps(const grobo_motion *motion)
@@ -345,15 +346,17 @@ int grobo_motion_clip(const grobo_motion *motion, const grobo_clip_options *opti
     if (motion == NULL || clip == NULL) {
         return GROBO_ERR_ARG;
     }
-    static const grobo_clip_options defaults;
+    grobo_clip_options how;
     grobo_clip made;
 
-    options = options != NULL ? options : &defaults;
-    int result = grobo_i_clip_keys(motion, options, &made);
+    int result = grobo_i_sized_take(&how, sizeof how, options);
+    if (result >= 0) {
+        result = grobo_i_clip_keys(motion, &how, &made);
+    }
     if (result < 0) {
         return result;
     }
-    result = grobo_i_clip_fill(&made, options->start);
+    result = grobo_i_clip_fill(&made, how.start);
     if (result < 0) {
         grobo_motion_clip_free(&made);
         return result;

@@ -223,6 +223,7 @@ static double fall_rate(const grobo_motion *motion)
 static int look_at(finder *f, grobo_body *body)
 {
     grobo_body_check_options look = {
+        GROBO_BODY_CHECK_OPTIONS_INIT,
         .robot = &grobo_gr001_model,
         .margin_m = f->how->what & CHECK_BALANCE ? margin_least_m : 0,
         .speed_pct = f->how->speed_pct,

@@ -20,11 +20,12 @@ static int fail(app *a, const char *path, int error)
 /* What --like names: a file as Choreonoid's window shows it by default; as 1.1 made motions for the
  * real robot; and as later versions make them. See docs/guide/whole-body.md. */
 static const grobo_body_options likes[] = {
-    {.ik = GROBO_BODY_IK_NUMERIC, .step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO},
-    {.ik = GROBO_BODY_IK_NUMERIC,
-     .zmp = GROBO_BODY_ZMP_AUTO,
+    {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC, .step = GROBO_BODY_STEP_STEALTHY,
+     .zmp = GROBO_BODY_ZMP_AUTO},
+    {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC, .zmp = GROBO_BODY_ZMP_AUTO,
      .balance = GROBO_BODY_BALANCE_COMPAT11},
-    {.ik = GROBO_BODY_IK_NUMERIC, .zmp = GROBO_BODY_ZMP_AUTO, .balance = GROBO_BODY_BALANCE_ON},
+    {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC, .zmp = GROBO_BODY_ZMP_AUTO,
+     .balance = GROBO_BODY_BALANCE_ON},
 };
 
 /* The option's word; `preset` where it is not given, or --balance without a word. */
@@ -38,7 +39,7 @@ int body_options_read(app *a, int base, double rate_hz, grobo_body_options *opti
 {
     static const grobo_body_zmp_source zmps[] = {GROBO_BODY_ZMP_AUTO, GROBO_BODY_ZMP_FILE};
     const cli_value *like = app_option(a, base + BODY_LIKE);
-    grobo_body_options o = {.rate_hz = 0};
+    grobo_body_options o = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 0};
     int zmp = choice(a, base + BODY_ZMP, -1);
     if (like->given) {
         o = likes[like->choice];
@@ -108,8 +109,8 @@ static void note_finding(void *ctx, const grobo_body_finding *finding)
 int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *slack)
 {
     refusal r = {.clamps = a->clamps, .slack = slack};
-    grobo_body_check_options how = {
-        .robot = &grobo_gr001_model, .finding = note_finding, .ctx = &r};
+    grobo_body_check_options how = {GROBO_BODY_CHECK_OPTIONS_INIT, .robot = &grobo_gr001_model,
+                                    .finding = note_finding, .ctx = &r};
     int error = grobo_body_check(body, &how);
     if (error < 0) {
         return fail(a, path, error);

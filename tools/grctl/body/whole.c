@@ -73,14 +73,14 @@ static int stand_on_feet(grobo_motion *keys)
  * no acceleration but in their corners. */
 static int to_keys(const grobo_motion *motion, grobo_motion **keys)
 {
-    grobo_write_options how = {.model = &grobo_gr001_model};
+    grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
     return grobo_motion_convert(motion, GROBO_MOTION_KEYS, &how, NULL, keys);
 }
 
 int whole_body(const app *a, grobo_body **body, const grobo_motion *motion,
                const grobo_body_options *options, bool *standing)
 {
-    const grobo_body_options as_they_are = {.rate_hz = options->rate_hz};
+    const grobo_body_options as_they_are = {GROBO_BODY_OPTIONS_INIT, .rate_hz = options->rate_hz};
     grobo_motion *keys = NULL;
     *standing = !whole_applies(a, motion, options);
     if (!*standing) {

@@ -154,7 +154,7 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
               grobo_motion **motion)
 {
     grobo_source source = {.read = read_stream, .ctx = stdin};
-    grobo_read_options named = options ? *options : (grobo_read_options){0};
+    grobo_read_options named = options ? *options : (grobo_read_options){GROBO_READ_OPTIONS_INIT};
     if (strcmp(path, "-") != 0 && os_is_folder(path)) {
         return GROBO_ERR_ISDIR;
     }

@@ -49,10 +49,11 @@ static bool is_passed_by(const app *a, const char *path, grobo_diagnostics *list
 /* Everything about one file goes to the list: reading it, then playing it on the model. */
 static void check_file(const app *a, const char *path, const order *o, grobo_diagnostics *list)
 {
-    grobo_read_options read = {.model = app_model(a), .keep_positions = true, .keep_going = true};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(a),
+                               .keep_positions = true, .keep_going = true};
     const char *name = file_shown_name(path);
     grobo_slack_taken slack = {.n = 0};
-    grobo_check_options check = {.name = name, .slack = &slack};
+    grobo_check_options check = {GROBO_CHECK_OPTIONS_INIT, .name = name, .slack = &slack};
     check_whole_how how = {.path = name, .what = o->what, .slack = &slack};
     grobo_motion *motion = NULL;
     size_t before = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);

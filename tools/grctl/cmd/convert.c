@@ -74,7 +74,8 @@ static int put_out(const file_text *t, const char *path)
 static int verify(app *a, const grobo_motion *motion, const char *path, const file_text *t,
                   const grobo_write_options *how)
 {
-    grobo_read_options read = {.model = how->model, .format = how->format, .name = path};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = how->model, .format = how->format,
+                               .name = path};
     grobo_diagnostics *list = NULL;
     grobo_motion *copy = NULL;
     grobo_diagnostic first = {.code = "NOMEM"};
@@ -207,8 +208,9 @@ static int run(app *a)
 {
     const char *in = a->line.argument[0], *out = a->line.argument[1];
     grobo_motion_format to = format_of(a, OPT_TO);
-    grobo_read_options read = {.model = app_model(a), .format = format_of(a, OPT_FROM)};
-    grobo_write_options how = {.model = app_model(a),
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(a),
+                               .format = format_of(a, OPT_FROM)};
+    grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT, .model = app_model(a),
                                .name = file_shown_name(in), /* notes tell places in IN */
                                .rate_hz = app_number(a, OPT_RATE, 0),
                                .exact = app_option(a, OPT_EXACT)->given > 0};

@@ -107,7 +107,7 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
 {
     char path[GROBO_PATH_MAX_BYTES];
     const char *colon = strrchr(spec, ':');
-    grobo_read_options read = {.model = app_model(a)};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(a)};
     grobo_motion *motion = NULL;
     double number = 1;
     size_t length = strlen(spec);

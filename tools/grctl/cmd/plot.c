@@ -164,7 +164,7 @@ static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject
                  grobo_body_options body)
 {
     grobo_posture start;
-    grobo_clip_options plain = {.start = &start};
+    grobo_clip_options plain = {GROBO_CLIP_OPTIONS_INIT, .start = &start};
     bool standing;
     grobo_motion_start(motion, subject->model, &start);
     int error = whole_open(a, &w->played, motion, &plain, &body);
@@ -236,7 +236,7 @@ static int plot(app *a, const order *o, const grobo_motion *motion)
 static int run(app *a)
 {
     static order o;
-    grobo_read_options read = {.model = app_model(a)};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(a)};
     grobo_motion *motion = NULL;
     memset(&o, 0, sizeof o);
     int status = settle(a, &o);

@@ -519,7 +519,7 @@ static int save(recorder *r)
 {
     app *a = r->c.a;
     const char *out = app_option(a, OPT_OUT)->text;
-    grobo_write_options how = {.model = app_model(a)};
+    grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT, .model = app_model(a)};
     char path[GROBO_PATH_MAX_BYTES];
     const char *name = path + 2; /* behind ./ */
     size_t n = grobo_motion_size(r->motion);

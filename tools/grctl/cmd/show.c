@@ -21,7 +21,7 @@ static int choose_rows(app *a, show_rows *rows)
 {
     grobo_body_options body;
     grobo_posture start;
-    grobo_clip_options plain = {.start = &start};
+    grobo_clip_options plain = {GROBO_CLIP_OPTIONS_INIT, .start = &start};
     rows->n = grobo_motion_size(rows->motion);
     rows->rate_hz = app_number(a, OPT_RATE, 0);
     int error = body_options_read(a, OPT_BODY, rows->rate_hz, &body);
@@ -202,7 +202,7 @@ static int show(app *a, show_rows *rows)
 static int run(app *a)
 {
     static show_rows rows;
-    grobo_read_options read = {.model = app_model(a)};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(a)};
     grobo_motion *motion = NULL;
     int status = file_load(a, a->line.argument[0], &read, &motion);
     if (status) {

@@ -47,8 +47,8 @@ static int check_one(app *a, const playlist *list, int i, grobo_slack_taken *sla
                      grobo_diagnostics *found)
 {
     uint16_t speed_pct = list->options[i].speed_pct; /* beyond 100 % moves may be stretched */
-    grobo_check_options how = {
-        .name = list->path[i], .speed_pct = speed_pct < 100 ? speed_pct : 100, .slack = slack};
+    grobo_check_options how = {GROBO_CHECK_OPTIONS_INIT, .name = list->path[i],
+                               .speed_pct = speed_pct < 100 ? speed_pct : 100, .slack = slack};
     grobo_diagnostic d;
     char text[1024];
     int error = grobo_motion_check(list->motion[i], app_model(a), &how, found);
@@ -105,6 +105,7 @@ static int find_rate(app *a, grobo_budget *line)
 static void set_options(grobo_play_options *o, const app *a, grobo_motion_kind kind)
 {
     bool keyed = kind == GROBO_MOTION_POSTURES || kind == GROBO_MOTION_STEPS;
+    *o = (grobo_play_options){GROBO_PLAY_OPTIONS_INIT};
     if (app_option(a, PLAY_KEY)->given) {
         keyed = true;
     }
@@ -197,7 +198,8 @@ int playlist_load(playlist *list, app *a)
     }
     int status = find_rate(a, &line);
     for (int i = 0; !status && i < a->line.n_arguments; i++) {
-        grobo_read_options read = {.model = app_model(a), .keep_positions = true};
+        grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(a),
+                                   .keep_positions = true};
         grobo_motion *motion = NULL;
         status = file_load(a, a->line.argument[i], &read, &motion);
         if (!status) {
@@ -265,7 +267,7 @@ static void play_within_slack(playlist_view *view, grobo_clip *clip)
 
 int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
 {
-    grobo_clip_options how = {.start = start};
+    grobo_clip_options how = {GROBO_CLIP_OPTIONS_INIT, .start = start};
     for (int i = 0; i < list->n; i++) {
         int error = 0;
         if (list->body[i]) {

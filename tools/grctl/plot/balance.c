@@ -71,7 +71,8 @@ static void see_frame(void *ctx, const grobo_body_balance_frame *frame)
 
 int plot_balance_collect(plot_balance *balance, grobo_body *body, bool assumed)
 {
-    grobo_body_check_options how = {.frame = see_frame, .ctx = balance};
+    grobo_body_check_options how = {GROBO_BODY_CHECK_OPTIONS_INIT, .frame = see_frame,
+                                    .ctx = balance};
     memset(balance, 0, sizeof *balance);
     balance->capacity = (size_t)grobo_body_frame_count(body);
     balance->points = calloc(balance->capacity, sizeof *balance->points);

@@ -118,7 +118,7 @@ static int do_clear(shell *s, int n, char **words)
 static int read_motion(shell *s, const char *name, grobo_motion **motion)
 {
     char path[GROBO_PATH_MAX_BYTES];
-    grobo_read_options read = {.model = app_model(&s->one)};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(&s->one)};
     if (grobo_motion_find(grobo_files_os(), ".", name, path, sizeof path) == 0 ||
         grobo_motion_find(grobo_files_os(), "motions", name, path, sizeof path) == 0) {
         return file_load(&s->one, path, &read, motion);
@@ -189,7 +189,7 @@ static int do_reverse(shell *s, int n, char **words)
 static int do_save(shell *s, int n, char **words)
 {
     char path[GROBO_PATH_MAX_BYTES];
-    grobo_write_options write = {.model = app_model(&s->one)};
+    grobo_write_options write = {GROBO_WRITE_OPTIONS_INIT, .model = app_model(&s->one)};
     const char *line[] = {"convert", "@record", n > 1 ? words[1] : ""};
     if (n > 1) {
         return run_text(s, 3, line);

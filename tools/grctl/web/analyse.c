@@ -104,10 +104,11 @@ static void look_at_balance(analysis *n, bool told)
     double length_s = (double)grobo_motion_length_us(n->motion, -1) / 1e6;
     double rate_hz =
         length_s * BALANCE_HZ <= BALANCE_FRAMES_MAX ? BALANCE_HZ : BALANCE_FRAMES_MAX / length_s;
-    grobo_body_options options = {.rate_hz = rate_hz};
+    grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = rate_hz};
     double speed_pct = app_number(&n->app, PLAY_SPEED, 100);
     balancing b = {.n = n, .every = (size_t)(length_s * rate_hz / BALANCE_TOLD_MAX) + 1};
-    grobo_body_check_options look = {.robot = app_model(&n->app),
+    grobo_body_check_options look = {GROBO_BODY_CHECK_OPTIONS_INIT,
+                                     .robot = app_model(&n->app),
                                      .speed_pct = (uint16_t)(speed_pct < 100 ? speed_pct : 100),
                                      .takes_slack = true,
                                      .frame = see_frame,
@@ -133,9 +134,9 @@ static void look_at_balance(analysis *n, bool told)
 static void check(analysis *n, bool balance)
 {
     grobo_slack_taken slack = {.n = 0};
-    grobo_check_options how = {.name = path_of(n), .slack = &slack};
+    grobo_check_options how = {GROBO_CHECK_OPTIONS_INIT, .name = path_of(n), .slack = &slack};
     check_whole_how legs = {.path = path_of(n), .what = CHECK_LEGS, .slack = &slack};
-    grobo_body_options body = {.rate_hz = 0};
+    grobo_body_options body = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 0};
     grobo_posture start;
     grobo_motion *copy = NULL;
     (void)grobo_motion_check(n->motion, app_model(&n->app), &how, n->found);
@@ -163,10 +164,8 @@ void analysis_take(analysis *n, grobo_motion *motion, bool balance)
 
 void analysis_read(analysis *n, const void *bytes, size_t size, bool balance)
 {
-    grobo_read_options read = {.model = app_model(&n->app),
-                               .name = path_of(n),
-                               .keep_positions = true,
-                               .keep_going = true};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(&n->app),
+                               .name = path_of(n), .keep_positions = true, .keep_going = true};
     grobo_motion *motion = NULL;
     int error = grobo_motion_read_memory(bytes, size, &read, n->found, &motion);
     if (error) {

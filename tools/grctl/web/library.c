@@ -574,7 +574,7 @@ static void save(ask *q, const void *bytes, size_t size, const grobo_diagnostics
 /* The file that keys are taken from, which is still what was read. 0: it is, or it is refused. */
 static int read_base(ask *q, const char *name, const char *etag, grobo_motion **base)
 {
-    grobo_read_options read = {.model = app_model(q->l->a), .name = name};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(q->l->a), .name = name};
     library_file file;
     int error = library_read(q->l, name, &file);
     if (!error && etag && strcmp(etag, file.etag) != 0) {

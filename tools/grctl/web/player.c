@@ -110,8 +110,8 @@ static void free_items(player *p)
 static void work(worker_task *task)
 {
     load *l = (load *)task;
-    grobo_read_options read = {
-        .model = app_model(&l->app), .name = l->item->name, .keep_positions = true};
+    grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = app_model(&l->app),
+                               .name = l->item->name, .keep_positions = true};
     grobo_motion *motion = NULL;
     library_file file;
     int error = library_read(l->s->library, l->item->name, &file);

@@ -58,7 +58,7 @@ int pipe_read(const char *path, const grobo_read_options *options, grobo_diagnos
 {
     pipe_source pipe = {.fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
     grobo_source source = {.read = read_pipe, .ctx = &pipe};
-    grobo_read_options named = options ? *options : (grobo_read_options){0};
+    grobo_read_options named = options ? *options : (grobo_read_options){GROBO_READ_OPTIONS_INIT};
     if (pipe.fd < 0) {
         return errno == EACCES ? GROBO_ERR_PERM : GROBO_ERR_IO;
     }
