@@ -306,7 +306,7 @@ def the_table_and_the_plots_tell_what_the_state_says(browser, server):
     until(page, """angle => Math.abs(document.querySelector('tr.chosen td').textContent - angle) < 0.3
         """, angle)
     page.click('#tab-see')
-    until(page, "document.querySelector('#plots canvas').getAttribute('aria-label').includes('R_KNEE_P')")
+    until(page, "document.querySelector('#plots canvas').getAttribute('aria-label')?.includes('R_KNEE_P')")
     label = page.locator('#plots canvas').first.get_attribute('aria-label')
     assert f'{angle:.1f} °' in label, label
     assert page.locator('#line dt').count() >= 8

@@ -14,6 +14,8 @@ export const JA = {
     More: 'その他', 'Last minute': '直近1分', 'Add a joint to the plots': 'グラフに関節を追加',
     'Add a joint …': '関節を追加…', 'Remove {0} from the plots': '{0} をグラフから外す', Line: '通信',
     'Go to the initial pose': '初期姿勢へ', 'Torque on': 'トルクを入れる', 'Torque off': 'トルクを切る',
+    'Tap a joint of the figure, or add one here, to see its last minute.':
+        '図の関節をタップするか、ここで追加すると、直近1分が表示されます。',
     Joint: '関節', Angle: '角度', Target: '目標', 'Your name, for the others': '名前 (ほかの人に表示)',
     Language: '言語', Appearance: '外観', 'As the system': 'システムに合わせる', Dark: '暗い', Light: '明るい',
     'If this page is lost, a motion': 'このページとの接続が切れたら、モーションは',
