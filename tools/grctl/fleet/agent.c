@@ -189,6 +189,7 @@ static void on_up(void *ctx)
     g->listens = false;
     g->settled_us = grobo_now_us() + AGENT_SETTLE_US;
     say_hello(g);
+    say_kept(g);
 }
 
 static void begin_listening(agent *g)
@@ -351,6 +352,10 @@ int agent_begin(agent *g, app *a, const mqtt_config *with)
     g->all.on_team = orders_on_team;
     g->all.on_robot = on_robot;
     g->all.ctx = g;
+    snprintf(topic, sizeof topic, "agent-%s.events", g->host);
+    if (!os_state_path(topic, g->spool, sizeof g->spool)) {
+        *g->spool = '\0';
+    }
     say_prepare(g);
     config.base = g->all.host.base;
     config.id = g->host;
