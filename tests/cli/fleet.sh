@@ -159,6 +159,7 @@ dies() {
         written "$work/one.err" "$lapsed"
 }
 check "so does one that dies" dies
+check "what happens meanwhile is kept" written "$work/state/grctl/agent-one.events" unpermitted
 begin_open_broker
 [ -z "$keeps_all" ] || keep_all 2
 came_back() {
@@ -166,6 +167,7 @@ came_back() {
     wait_for is_listed one ONLINE && wait_for is_listed two ONLINE && rests
 }
 check "agents come back to it, and nothing moves" came_back
+check "and was told to it" test ! -e "$work/state/grctl/agent-one.events"
 check "a stop that it forgot still stands" fails 1 'two: prepare: a stop of group two stands' \
     fleet play greet.pseq --group two
 check "it can be taken back" exits 0 fleet reset --group two --host two

@@ -12,36 +12,6 @@ enum { TICK_US = 100000, LAST_EVERY = 10 /* ticks */, RETRY_US = 5000000 };
 
 /* ---- stops ----------------------------------------------------------------------------------- */
 
-void agent_join(agent *g, const char *group)
-{
-    for (int i = 0; i < g->n_groups; i++) {
-        if (strcmp(g->groups[i].name, group) == 0) {
-            return;
-        }
-    }
-    if (g->n_groups < AGENT_GROUPS) {
-        snprintf(g->groups[g->n_groups++].name, FLEET_NAME_BYTES, "%s", group);
-    }
-}
-
-const char *agent_latched(const agent *g)
-{
-    static char text[FLEET_NAME_BYTES + 32];
-    for (int i = 0; i < g->n_groups; i++) {
-        if (g->groups[i].latch) {
-            snprintf(text, sizeof text, "a stop of group %s stands", g->groups[i].name);
-            return text;
-        }
-    }
-    return NULL;
-}
-
-bool agent_brakes(const agent_group *group)
-{
-    const char *how = fleet_text(group->latch, "how");
-    return !how || strcmp(how, "stop") != 0;
-}
-
 /* Every robot, in this call. */
 static void stop_now(agent *g, bool brakes)
 {
@@ -189,6 +159,7 @@ static void on_up(void *ctx)
     g->listens = false;
     g->settled_us = grobo_now_us() + AGENT_SETTLE_US;
     say_hello(g);
+    say_kept(g);
 }
 
 static void begin_listening(agent *g)
@@ -351,6 +322,10 @@ int agent_begin(agent *g, app *a, const mqtt_config *with)
     g->all.on_team = orders_on_team;
     g->all.on_robot = on_robot;
     g->all.ctx = g;
+    snprintf(topic, sizeof topic, "agent-%s.events", g->host);
+    if (!os_state_path(topic, g->spool, sizeof g->spool)) {
+        *g->spool = '\0';
+    }
     say_prepare(g);
     config.base = g->all.host.base;
     config.id = g->host;

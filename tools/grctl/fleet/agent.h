@@ -58,7 +58,8 @@ typedef struct agent {
     agent_group groups[AGENT_GROUPS]; /* the first is "all" */
     int n_groups;
     char epoch[FLEET_ID_BYTES];
-    char will[320]; /* connection: CONNECTIONBROKEN */
+    char spool[1000]; /* where events wait for the broker, "" where no file can be had */
+    char will[320];   /* connection: CONNECTIONBROKEN */
     int64_t seq;
     bool listens;       /* orders are taken */
     int64_t settled_us; /* when they will be */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tools/grctl/fleet/say.h"
+#include "tools/grctl/fleet/spool.h"
 #include "tools/grctl/fleet/wire.h"
 #include "tools/grctl/show/render.h"
 
@@ -12,6 +13,31 @@
 static void publish_here(agent *g, const char *a, const char *b, json_t *object, int how)
 {
     (void)wire_tell(g->m, g->host, a, b, object, how);
+}
+
+/* While the broker is away it waits on disk. Takes the reference. */
+static void tell_event(agent *g, json_t *event)
+{
+    if (mqtt_is_up(g->m)) {
+        publish_here(g, "event", NULL, event, WIRE_SURE);
+        return;
+    }
+    if (*g->spool) {
+        (void)spool_add(g->spool, event);
+    }
+    json_decref(event);
+}
+
+static void take_kept(void *ctx, json_t *event)
+{
+    publish_here(ctx, "event", NULL, json_incref(event), WIRE_SURE);
+}
+
+void say_kept(agent *g)
+{
+    if (*g->spool) {
+        spool_empty(g->spool, take_kept, g);
+    }
 }
 
 /* ---- the agent ------------------------------------------------------------------------------- */
@@ -157,16 +183,14 @@ void say_event(agent *g, const seat *s, const char *kind, const char *text)
         json_object_set_new(event, "robot", json_string(s->name));
     }
     app_note(g->a, "%s%s%s%s%s", s ? s->name : "", s ? ": " : "", kind, *text ? ": " : "", text);
-    publish_here(g, "event", NULL, event, WIRE_SURE);
+    tell_event(g, event);
 }
 
 void say_stopping(agent *g, const agent_group *group)
 {
-    publish_here(g, "event", NULL,
-                 json_pack("{s:i,s:s,s:s,s:s,s:I}", "v", FLEET_VERSION, "kind", "stopping", "id",
-                           fleet_text(group->latch, "id"), "group", group->name, "at_ms",
-                           (json_int_t)wire_wall_ms()),
-                 WIRE_SURE);
+    tell_event(g, json_pack("{s:i,s:s,s:s,s:s,s:I}", "v", FLEET_VERSION, "kind", "stopping", "id",
+                            fleet_text(group->latch, "id"), "group", group->name, "at_ms",
+                            (json_int_t)wire_wall_ms()));
 }
 
 void say_stopped(agent *g, const agent_group *group)
@@ -180,11 +204,9 @@ void say_stopped(agent *g, const agent_group *group)
         json_array_append_new(
             robots, json_pack("{s:s,s:b,s:b}", "name", s->name, "there", there, "stopped", sure));
     }
-    publish_here(g, "event", NULL,
-                 json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "stopped", "id",
-                           fleet_text(group->latch, "id"), "robots", robots, "at_ms",
-                           (json_int_t)wire_wall_ms()),
-                 WIRE_SURE);
+    tell_event(g, json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "stopped", "id",
+                            fleet_text(group->latch, "id"), "robots", robots, "at_ms",
+                            (json_int_t)wire_wall_ms()));
 }
 
 static json_t *results_of(const agent *g)
@@ -208,10 +230,8 @@ static json_t *results_of(const agent *g)
 
 void say_ended(agent *g, const char *order)
 {
-    publish_here(g, "event", NULL,
-                 json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "ended", "id",
-                           order, "robots", results_of(g), "at_ms", (json_int_t)wire_wall_ms()),
-                 WIRE_SURE);
+    tell_event(g, json_pack("{s:i,s:s,s:s,s:o,s:I}", "v", FLEET_VERSION, "kind", "ended", "id",
+                            order, "robots", results_of(g), "at_ms", (json_int_t)wire_wall_ms()));
 }
 
 void say_answer(agent *g, const agent_order *order, const char *code, const char *message,

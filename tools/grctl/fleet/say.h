@@ -10,6 +10,8 @@ void say_prepare(agent *g);
 /* That it is there, and which robots it has: both retained. */
 void say_hello(agent *g);
 void say_goodbye(agent *g);
+/* The events that waited on disk for the broker. */
+void say_kept(agent *g);
 /* The state of a robot; also the retained one. */
 void say_state(agent *g, const seat *s, bool last_too);
 /* Of a robot, or of the agent (NULL). */
