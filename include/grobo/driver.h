@@ -173,7 +173,7 @@ struct grobo_driver {
                               where there are none. 0: nothing */
     bool goal_wakes;     /**< a goal switches torque on: joints without it get none but to hold, and
                               none that may have restarted before they were read again */
-    bool no_speed;       /**< its servos report no speed: the engine takes that between two angles */
+    bool no_speed; /**< its servos report no speed: the engine takes that between two angles */
 
     /** Is the robot there? Parts are tried one after the other until one is answered. */
     int (*check)(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);

@@ -392,8 +392,7 @@ int edit_write(const grobo_motion *motion, grobo_motion_format format, const gro
 {
     heap h = {0};
     grobo_sink sink = {.write = put, .ctx = &h};
-    grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT,
-                               .model = model,
+    grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT, .model = model,
                                .exact = format == GROBO_FORMAT_M &&
                                         grobo_motion_get_kind(motion) == GROBO_MOTION_POSTURES};
     int error = grobo_motion_write(motion, format, &how, &sink, lost);
