@@ -178,7 +178,7 @@ def stopping():
         assert not any(view.robots(state)[r]["moving"] for r in "abc"), state
         fleet.running.pop("play").wait(PATIENCE_S)
         status, why = fleet.order("play", "greet.pseq", "--group", "stage")
-        assert status == 1 and "a stop of the group stands" in why, why
+        assert status == 1 and "a stop of group all stands" in why, why
         same(view.post("stop", name="again")["done"], True, "it is one stop")
         view.post("estop", name="harder")
         view.wait("as an emergency stop", lambda s: s["latch"] and s["latch"]["kind"] == "estop" and

@@ -130,9 +130,10 @@ static int play(act *c)
 static void report(const seat *s)
 {
     if (s->a.json) {
-        json_t *summary = frames_json(&s->c);
-        json_object_set_new(summary, "name", json_string(s->name));
-        app_print_json(summary);
+        json_t *summary = frames_json(&s->c), *named = json_pack("{s:s}", "name", s->name);
+        json_object_update(named, summary);
+        json_decref(summary);
+        app_print_json(named);
     } else {
         frames_print(&s->c, s->a.place);
     }
