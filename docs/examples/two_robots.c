@@ -25,10 +25,9 @@ int main(int argc, char **argv)
         }
     }
     /* Each approaches its first posture by then, and waits. */
-    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
-                                        .start_us = grobo_now_us() + 2000000, .speed_pct = 300};
+    const grobo_play_options how = {GROBO_PLAY_OPTIONS_INIT, .start_us = grobo_now_us() + 2000000};
     for (int i = 0; result >= 0 && i < 2; i++) {
-        result = grobo_control_play_motion(robots[i], &options);
+        result = grobo_control_play_motion(robots[i], &how);
     }
     for (int i = 0; result >= 0 && i < 2; i++) {
         result = grobo_control_wait(robots[i], GROBO_NEVER_US);
