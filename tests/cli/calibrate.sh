@@ -28,6 +28,8 @@ turned() {
 }
 # by_hand TORQUE: begins it, and lets the torque go that there is; enter is a line to descriptor 7.
 by_hand() {
+    : >"$work/said"
+    : >"$work/told"
     (cd "$work" && exec "$GRCTL" -v -d "$robot" --timeout 500 calibrate -o so101.json) \
         <"$work/keys" >"$work/told" 2>"$work/said" &
     calibrate_pid=$!
@@ -183,6 +185,7 @@ start_dxl() {
     start_told_sim
 }
 dxl_calibrated() {
+    : >"$work/said"
     (cd "$work" && "$GRCTL" -d "$robot" --timeout 500 calibrate) <"$work/keys" >"$work/told" \
         2>"$work/said" &
     calibrate_pid=$!

@@ -124,6 +124,7 @@ stop_sim
 # Ctrl-C at a question, which is heard though a shell has it ignored by what it starts behind it;
 # nothing is asked any more, and there is a report.
 ctrl_c_at_a_question() {
+    : >"$work/err"
     mkfifo "$work/fifo"
     "$GRCTL" --robot so101 -d sim first-contact --yes -o "$work/asked" <"$work/fifo" \
         >"$work/out" 2>"$work/err" &

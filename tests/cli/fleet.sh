@@ -74,6 +74,7 @@ check "nobody of that group" fails 1 'no agent of group three is online' \
 
 # plays [OPTIONS]: with group one, slowly; returns when it was begun.
 plays() {
+    : >"$work/said" # what one before said is not taken for its words
     "$GRCTL" fleet play greet.pseq --broker "$broker" -s 20 --group one "$@" \
         >"$work/played" 2>"$work/said" </dev/null &
     play=$!

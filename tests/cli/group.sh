@@ -66,6 +66,7 @@ check "one file at a time" fails 2 'a group plays one file' \
     "$GRCTL" -d stage play motions/greet.pseq motions/greet.pseq
 
 begins() { # how it goes on is in $work/played
+    : >"$work/played" # what one before said is not taken for its words
     "$GRCTL" -d stage --timeout 500 --json -v play -s 20 "$@" motions/greet.pseq \
         >"$work/played" 2>"$work/said" </dev/null &
     program=$!

@@ -69,6 +69,7 @@ check "standard error too: what its queue cannot hold is counted" complains_on
 
 prints_on() {
     full=65536
+    : >"$work/said"
     pause_reader $full
     "$GRCTL" -d "$robot" --timeout 500 -v status --watch --interval 20 >&8 2>"$work/said" 8>&- &
     player=$!

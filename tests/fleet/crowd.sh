@@ -91,6 +91,7 @@ check "all begin together and play to the end" begin_together
 
 # plays: slowly, until it is stopped; $play is its process.
 plays() {
+    : >"$work/said"
     "$GRCTL" fleet play greet.pseq --broker "$broker" -s 20 --spread 20 >"$work/played" \
         2>"$work/said" </dev/null &
     play=$!

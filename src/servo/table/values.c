@@ -99,7 +99,7 @@ int32_t grobo_i_table_ticks(const grobo_joint *joint, const grobo_servo_model *s
                             double angle_rad)
 {
     double ticks = grobo_joint_to_servo(joint, angle_rad) / tick_rad(servo) + servo->middle;
-    return (int32_t)floor(ticks + 0.5);
+    return (int32_t)floor(fmin(fmax(ticks, INT32_MIN), INT32_MAX - 1) + 0.5);
 }
 
 double grobo_i_table_step_rad(const grobo_driver *self)
