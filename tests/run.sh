@@ -124,7 +124,7 @@ awk -v logs="$logs" -v first=" ${TEST_FIRST:-} " -v one_pool="${TEST_JOBS:-}$wra
         (one_pool == "" && /\/(cli|link|port)\// ? "waiting" : "working"))
 }' "$logs/programs"
 {
-    [ ! -s "$logs/waiting" ] || echo "$((3 * processors)) waiting"
+    [ ! -s "$logs/waiting" ] || echo "$((2 * processors)) waiting"
     [ ! -s "$logs/working" ] || echo "${TEST_JOBS:-$processors} working nice -n 5"
 } | xargs -P 2 -L 1 sh "$0" --pool "$logs"
 
