@@ -119,11 +119,8 @@ void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host)
     }
 }
 
-int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
+int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
 {
-    if (robot == NULL) {
-        return GROBO_ERR_ARG;
-    }
     grobo_robot_config taken;
     if (config_take(&taken, config) < 0) {
         return GROBO_ERR_ARG;
@@ -134,10 +131,19 @@ int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
     config_fill(&robot->config, robot->driver);
     robot->config.bus = bus; /* the line stays what it is */
     grobo_i_unlock(robot);
-    if (robot->host.wake) {
+    return GROBO_OK;
+}
+
+int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
+{
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    int result = grobo_i_robot_configure(robot, config);
+    if (result >= 0 && robot->host.wake != NULL) {
         robot->host.wake(robot->host.ctx); /* readings may be due sooner */
     }
-    return GROBO_OK;
+    return result;
 }
 
 static void tell_kind(grobo_robot *robot, grobo_event_kind kind)

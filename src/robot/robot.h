@@ -96,6 +96,11 @@ bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *
 /* True if all of these are known to have torque. */
 bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
 
+/* ---- robot.c --------------------------------------------------------------------------------- */
+
+/* grobo_robot_configure() for who pumps afterwards: nobody is woken, so nothing leaves by it. */
+int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config);
+
 /* ---- query.c --------------------------------------------------------------------------------- */
 
 /* Around whatever is told or asked of the engine, where several threads may; see

@@ -7,6 +7,7 @@
 #include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"
 #include "src/link/session/session.h"
+#include "src/robot/robot.h"
 
 /* ---- closing ------------------------------------------------------------------------------ */
 
@@ -19,7 +20,7 @@ static void configure(grobo_session *session, bool up)
         config.sense_interval_us = GROBO_SENSE_NEVER;
     }
     /* Cannot fail: the configuration was good at grobo_session_new(). */
-    (void)grobo_robot_configure(&session->robot, &config);
+    (void)grobo_i_robot_configure(&session->robot, &config);
 }
 
 /* Takes the line away from the engine, which tells what that ends. */
@@ -640,7 +641,7 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
     if (session == NULL) {
         return GROBO_ERR_ARG;
     }
-    int r = grobo_robot_configure(&session->robot, config);
+    int r = grobo_i_robot_configure(&session->robot, config);
 
     if (r >= 0) {
         grobo_bus_config bus = session->robot_config.bus;
