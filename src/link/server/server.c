@@ -281,7 +281,14 @@ static int open_pty(grobo_sim_server *server, grobo_os_cause *cause)
     if (r >= 0) {
         r = end_begin(e);
     }
-    return r < 0 ? r : grobo_port_pty_path(e->port, server->device, sizeof server->device);
+    if (r >= 0) {
+        r = grobo_port_pty_path(e->port, server->device, sizeof server->device);
+    }
+    if (r >= 0 && server->link[0] != '\0') {
+        /* The number may have been another terminal's: this robot is stopped by its link. */
+        (void)grobo_estop_clear(server->device, NULL);
+    }
+    return r;
 }
 
 static void on_caller(evutil_socket_t fd, short what, void *arg)
