@@ -8,7 +8,7 @@
 #   PROGRAM@DIR replays the files of a corpus: PROGRAM gets the files of DIR as arguments.
 # environment:
 #   TEST_JOBS=N         how many at a time. Without it as many as processors; beside them, first
-#                       among equals, five for two processors of those in real time, which mostly wait
+#                       among equals, five for every two of those in real time, which wait
 #   TEST_TIMEOUT_S=300  how long one may take
 #   TEST_WRAPPER=       put before each program, such as 'valgrind -q --error-exitcode=99'
 #   TEST_LOGS=DIR       keep the logs there (default: a temporary directory)
