@@ -78,6 +78,7 @@ typedef struct grobo_robot_order {
     bool moves;              /* a stop must cancel it */
     bool stops;              /* leaves after a latched stop as well */
     bool rests;              /* ends a motion: joints come to rest near where they are by then */
+    bool owed;               /* a halt from before a latch that sends nothing */
 } grobo_robot_order;
 
 /** A frame under way. Private. */

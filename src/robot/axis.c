@@ -92,6 +92,11 @@ bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
            robot->now_us - robot->axes[joint].heard_us > GROBO_I_RESTART_US;
 }
 
+bool grobo_i_may_halt(const grobo_robot *robot)
+{
+    return robot->trip.trip != GROBO_TRIP_ESTOP || robot->holds_at_stop;
+}
+
 void grobo_i_axis_cut(grobo_robot_axis *axis)
 {
     axis->way.to_rad = grobo_i_way_at(&axis->way, axis->told_to_us);

@@ -263,7 +263,7 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
 static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
-    if (robot->trip.trip == GROBO_TRIP_ESTOP && !robot->holds_at_stop) {
+    if (!grobo_i_may_halt(robot) && !order->owed) {
         return GROBO_ERR_LATCHED;
     }
     int64_t rest_us = grobo_i_later(order->asked_us + HALT_AHEAD_US, robot->now_us + HALT_LEAST_US);

@@ -545,6 +545,7 @@ int grobo_robot_estop(grobo_robot *robot)
     (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
     grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
     robot->counters.estops++;
+    robot->halts_owed = 0;
     robot->stop_owed = true;
     int number = robot->link ? grobo_i_estop_start(robot) : GROBO_ERR_CLOSED;
     grobo_i_end(robot);
@@ -559,6 +560,9 @@ int grobo_robot_latch(grobo_robot *robot)
     grobo_i_begin(robot);
     int result = grobo_i_in_motion(robot) ? GROBO_ERR_STATE : GROBO_OK;
     if (result >= 0 && robot->trip.trip != GROBO_TRIP_ESTOP) {
+        for (int i = 0; i < robot->slots_end; i++) { /* what was to stop before does */
+            robot->slots[i].order.owed = robot->slots[i].use == GROBO_I_USE_HALT;
+        }
         grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
     }
     grobo_i_end(robot);

@@ -85,6 +85,9 @@ bool grobo_i_axis_is_on(const grobo_robot_axis *axis);
 /* True if its servo may have restarted since it was known to have torque, and its next goal would
  * wake it, wherever it sank to: nothing came from it for so long, or a reply was lost. */
 bool grobo_i_may_sleep(const grobo_robot *robot, int joint);
+/* False behind an emergency stop, which halts nobody where it takes the torque; of halts from before
+ * it those alone leave that grobo_robot_latch() has found waiting. */
+bool grobo_i_may_halt(const grobo_robot *robot);
 /* The way of a joint in segments ends where it was told to go. */
 void grobo_i_axis_cut(grobo_robot_axis *axis);
 /* True while a joint is on the way it was sent on, or a target waits for the line. */

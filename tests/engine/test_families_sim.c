@@ -336,6 +336,40 @@ static void a_lost_reply_ends_no_way(void **state)
     }
 }
 
+/* A stop is asked for, and latched at once: what was to stop does, also a servo that may just have
+ * restarted, and whose halt has to wait for that. */
+static void a_latch_lets_a_stop_leave_that_waits(void **state)
+{
+    (void)state;
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS,
+                                       .goals = GROBO_GOALS_WHOLE, .lost_replies = -1};
+    for (int silent = 0; silent < 2; silent++) {
+        for (const family *f = family_row(0); f != NULL;
+             f = family_row((size_t)(f - family_row(0)) + 1)) {
+            family_start(&kit, f, &config, NULL);
+            assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+            grobo_posture p = family_posture(&kit, -60, 8000);
+            assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+            family_run(&kit, S);
+            for (int j = 0; silent && j < JOINTS; j++) {
+                assert_int_equal(grobo_sim_set_cable(&kit.sim, j, GROBO_SIM_CABLE_MUTE), GROBO_OK);
+            }
+            family_run(&kit, 500 * MS);
+            double then_deg = family_angle_deg(&kit, 0);
+            assert_int_equal(grobo_robot_stop(&kit.robot, true), GROBO_OK);
+            assert_int_equal(grobo_robot_latch(&kit.robot), GROBO_OK);
+            for (int j = 0; j < JOINTS; j++) {
+                assert_int_equal(grobo_sim_set_cable(&kit.sim, j, GROBO_SIM_CABLE_IN), GROBO_OK);
+            }
+            family_run(&kit, 5 * (int64_t)S);
+            if (fabs(family_angle_deg(&kit, 0) - then_deg) > (silent ? 12 : 4)) {
+                fail_msg("%s%s: stopped at %.1f deg, stands at %.1f", f->name,
+                         silent ? ", silent" : "", then_deg, family_angle_deg(&kit, 0));
+            }
+        }
+    }
+}
+
 /* Servos that are told a speed and no time come to rest as soon as others, also where they were
  * read to be behind the way that they were sent on: at a speed for the way that is left. */
 static void a_joint_that_is_behind_stops_in_time(void **state)
@@ -365,6 +399,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_is_woken_after_a_dip),
         cmocka_unit_test(a_lost_reply_ends_no_way),
+        cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
         cmocka_unit_test(a_joint_that_is_behind_stops_in_time),
         cmocka_unit_test(a_servo_set_up_otherwise_is_made_limp),
         cmocka_unit_test(postures_are_played),

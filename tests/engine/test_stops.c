@@ -180,6 +180,27 @@ static void a_stop_cancels_what_waits_for_the_line(void **state)
     }
 }
 
+/* A stop is asked for, and latched at once: what was to stop does, and what is asked for behind the
+ * latch does not leave. */
+static void a_latch_lets_a_stop_leave_that_waits(void **state)
+{
+    (void)state;
+    start_at(-40);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 5000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_run(&rig, 1000000);
+    assert_true(grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL) > 0);
+    rig_run(&rig, 2000); /* its first request is out */
+    assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+    assert_int_equal(grobo_robot_latch(&rig.robot), GROBO_OK);
+    rig.halts_at_estop = true; /* those from before */
+    rig_run(&rig, 200000);
+    rig.halts_at_estop = false;
+    assert_true(rig_angle_deg(&rig, NECK) < -20);
+    expect_rest();
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_LATCHED);
+}
+
 /* A servo that does not answer is waited for by whoever asked, not by the stop. */
 static void a_stop_does_not_wait_for_a_silent_servo(void **state)
 {
@@ -581,6 +602,7 @@ int main(void)
         cmocka_unit_test(three_low_readings_in_a_row_trip),
         cmocka_unit_test(current_trips_when_it_was_high_for_a_second),
         cmocka_unit_test(a_stop_cancels_what_waits_for_the_line),
+        cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
         cmocka_unit_test(a_stop_does_not_wait_for_a_silent_servo),
         cmocka_unit_test(a_stopped_joint_never_goes_back),
         cmocka_unit_test(a_smooth_stop_is_no_longer_after_a_reset),
