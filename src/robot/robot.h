@@ -113,6 +113,9 @@ void grobo_i_unlock(const grobo_robot *robot);
 /* The time of a request or a question. */
 int64_t grobo_i_now(const grobo_robot *robot);
 
+/* True if requests that move are refused: behind a latched stop, and one that is on its way here. */
+bool grobo_i_is_latched(const grobo_robot *robot);
+
 /* True if a frame waits that the wire has time for now. */
 bool grobo_i_has_frame(const grobo_robot *robot, int64_t now_us);
 

@@ -299,6 +299,11 @@ static void on_request(void *ctx)
     }
 }
 
+static bool on_stopped(void *ctx)
+{
+    return grobo_session_is_latched(ctx);
+}
+
 /* One that was set since the last look is obeyed, not cleared. */
 static int on_reset(void *ctx)
 {
@@ -329,6 +334,7 @@ static void set_host(grobo_session *session)
     const grobo_robot_host host = {
         .clock = on_clock,
         .wake = on_request,
+        .is_stopped = on_stopped,
         .may_reset = on_reset,
         .lock = shared ? on_lock : NULL,
         .unlock = shared ? on_unlock : NULL,
