@@ -119,11 +119,14 @@ void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host)
     }
 }
 
-int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
+int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config, bool senses)
 {
     grobo_robot_config taken;
     if (config_take(&taken, config) < 0) {
         return GROBO_ERR_ARG;
+    }
+    if (!senses) {
+        taken.sense_interval_us = GROBO_SENSE_NEVER;
     }
     grobo_i_lock(robot);
     grobo_bus_config bus = robot->config.bus;
@@ -139,7 +142,7 @@ int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    int result = grobo_i_robot_configure(robot, config);
+    int result = grobo_i_robot_configure(robot, config, true);
     if (result >= 0 && robot->host.wake != NULL) {
         robot->host.wake(robot->host.ctx); /* readings may be due sooner */
     }

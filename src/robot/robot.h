@@ -101,8 +101,9 @@ bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
 
 /* ---- robot.c --------------------------------------------------------------------------------- */
 
-/* grobo_robot_configure() for who pumps afterwards: nobody is woken, so nothing leaves by it. */
-int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config);
+/* grobo_robot_configure() for who pumps afterwards: nobody is woken, so nothing leaves by it.
+ * Without `senses` nothing is read in the background, whatever it says. */
+int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config, bool senses);
 
 /* ---- query.c --------------------------------------------------------------------------------- */
 

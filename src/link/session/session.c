@@ -14,13 +14,8 @@
 /* Until a robot has answered, nothing is sent to whoever is there but the check. */
 static void configure(grobo_session *session, bool up)
 {
-    grobo_robot_config config = session->robot_config;
-
-    if (!up) {
-        config.sense_interval_us = GROBO_SENSE_NEVER;
-    }
-    /* Cannot fail: the configuration was good at grobo_session_new(). */
-    (void)grobo_i_robot_configure(&session->robot, &config);
+    /* Cannot fail: the configuration was taken before. */
+    (void)grobo_i_robot_configure(&session->robot, &session->robot_config, up);
 }
 
 /* Takes the line away from the engine, which tells what that ends. */
@@ -647,7 +642,7 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
     if (session == NULL) {
         return GROBO_ERR_ARG;
     }
-    int r = grobo_i_robot_configure(&session->robot, config);
+    int r = grobo_i_robot_configure(&session->robot, config, session->state == GROBO_SESSION_UP);
 
     if (r >= 0) {
         grobo_bus_config bus = session->robot_config.bus;
@@ -655,7 +650,6 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
         /* Cannot fail: the engine has taken it. */
         (void)grobo_i_sized_take(&session->robot_config, sizeof session->robot_config, config);
         session->robot_config.bus = bus;
-        configure(session, session->state == GROBO_SESSION_UP);
         pump(session);
     }
     return r;
