@@ -127,6 +127,8 @@ typedef struct grobo_robot_axis {
     uint32_t last;             /* number of the target that left last; 0: what had none */
     uint32_t next;             /* number of the target that waits for the line; 0: none */
     double next_rad;           /* that target */
+    double seen_rad;           /* where it was, by a reading asked for since it was told last */
+    int64_t seen_us;           /* when that was asked for */
     double away_rad;           /* in free mode: how far from its goal when it was read last */
     int64_t next_time_us;      /* and its time, so far */
     int status;                /* of the last reading */

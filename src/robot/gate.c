@@ -272,7 +272,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
         bool moves = axis->sensed && grobo_i_axis_moves(axis, robot->now_us) &&
                      (!robot->driver->goal_wakes || axis->wants_torque || grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
-            target->posture.angle_rad[j] = grobo_i_axis_commanded(axis, rest_us);
+            target->posture.angle_rad[j] = grobo_i_axis_reached(robot, j, rest_us);
             target->joint_time_us[j] = HALT_TIME_US;
             target->posture.set |= GROBO_JOINT_BIT(j);
         }

@@ -66,6 +66,12 @@ int64_t grobo_i_axis_until(const grobo_robot_axis *axis);
 bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us);
 /* Where it was last asked to go, whether that frame has left or waits. */
 double grobo_i_axis_target(const grobo_robot_axis *axis);
+/* An angle this far from the way that a joint was sent on is not of a joint on that way: more than
+ * what the fastest one does while a frame is on its way. */
+#define GROBO_I_OFF_WAY_RAD (12 * 0.017453292519943295)
+/* The same, but not further than the joint can have come since it was read: one that is too weak for
+ * its way is far behind it. */
+double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t now_us);
 /* Takes the sensed angle for where a joint is, nothing being asked of it. */
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
 /* Takes what was read for where a joint is: at the angle, or on the move the servo told of. */

@@ -336,6 +336,59 @@ static void a_lost_reply_ends_no_way(void **state)
     }
 }
 
+/* How far the first joint goes on behind a stop so many milliseconds into a fast move, and how far
+ * back again. */
+static void stop_at(const family *f, int ms, uint32_t supply_pct, double *on_deg, double *back_deg)
+{
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS,
+                                       .voltage_mv = -1};
+    family_start(&kit, f, &config, NULL);
+    assert_int_equal(family_move(&kit, 85, 2000), GROBO_OK);
+    grobo_sim_set_supply(&kit.sim, kit.servos[0]->voltage_mv * supply_pct / 100);
+    grobo_posture p = family_posture(&kit, -60, 10);
+    assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+    family_run(&kit, ms * MS);
+    (void)grobo_robot_stop(&kit.robot, true); /* the fastest are there */
+    double then_deg = family_angle_deg(&kit, 0), last_deg = then_deg;
+    *back_deg = 0;
+    for (int i = 0; i < 200; i++) {
+        family_run(&kit, 5 * MS);
+        *back_deg = fmax(*back_deg, family_angle_deg(&kit, 0) - last_deg);
+        last_deg = fmin(family_angle_deg(&kit, 0), last_deg);
+    }
+    *on_deg = then_deg - last_deg;
+}
+
+/* A weak supply: joints fall back behind ways that they cannot go. They stop where they are, and not
+ * where the way is by then; nor is one thrown back that keeps up, or begins softly. */
+static void a_weak_joint_stops_where_it_is(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        double on_deg; /* 50 ms at the speed, and what it takes to get there */
+    } rows[] = {{"dxl2", 16}, {"feetech", 22}, {"dxl1", 19}, {"lx16a", 20}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        for (int ms = 350; ms <= 450; ms += 10) {
+            double on_deg, back_deg;
+            stop_at(family_named(rows[i].name), ms, 66, &on_deg, &back_deg);
+            if (on_deg > rows[i].on_deg || back_deg > 2) {
+                fail_msg("%s at %d ms: %.1f deg on, %.1f back", rows[i].name, ms, on_deg, back_deg);
+            }
+        }
+    }
+    for (const family *f = family_row(0); f != NULL;
+         f = family_row((size_t)(f - family_row(0)) + 1)) {
+        for (int ms = 50; ms <= 800; ms += 30) {
+            double on_deg, back_deg;
+            stop_at(f, ms, 100, &on_deg, &back_deg);
+            if (back_deg > 0.2) {
+                fail_msg("%s at %d ms: %.1f deg back", f->name, ms, back_deg);
+            }
+        }
+    }
+}
+
 /* A stop is asked for, and latched at once: what was to stop does, also a servo that may just have
  * restarted, and whose halt has to wait for that. */
 static void a_latch_lets_a_stop_leave_that_waits(void **state)
@@ -399,6 +452,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_is_woken_after_a_dip),
         cmocka_unit_test(a_lost_reply_ends_no_way),
+        cmocka_unit_test(a_weak_joint_stops_where_it_is),
         cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
         cmocka_unit_test(a_joint_that_is_behind_stops_in_time),
         cmocka_unit_test(a_servo_set_up_otherwise_is_made_limp),

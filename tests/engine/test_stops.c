@@ -253,6 +253,31 @@ static void a_stopped_joint_never_goes_back(void **state)
     }
 }
 
+/* A weak supply: the joint falls back behind a way that it cannot go. It stops where it is. */
+static void a_weak_joint_stops_where_it_is(void **state)
+{
+    (void)state;
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = GROBO_SENSE_NEVER, .voltage_mv = -1};
+    for (int ms = 300; ms <= 400; ms += 20) {
+        rig_start(&rig, &config, NULL);
+        rig_power(&rig);
+        grobo_posture target = rig_posture(&rig, SHOULDER, -100, 1000);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+        grobo_sim_set_supply(&rig.sim, 7400 * 2 / 3);
+        target = rig_posture(&rig, SHOULDER, 100, 10);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+        rig_run(&rig, ms * 1000);
+        read_joint(SHOULDER);
+        double then_deg = rig_angle_deg(&rig, SHOULDER);
+        assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+        rig_run(&rig, 200000);
+        double on_deg = rig_angle_deg(&rig, SHOULDER) - then_deg;
+        assert_true(on_deg > 0 && on_deg < 22); /* the way is 56 to 68 degrees further */
+        expect_rest();
+    }
+}
+
 /* A reset makes what begins behind it slow; the end of a motion does not take longer by that. */
 static void a_smooth_stop_is_no_longer_after_a_reset(void **state)
 {
@@ -605,6 +630,7 @@ int main(void)
         cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
         cmocka_unit_test(a_stop_does_not_wait_for_a_silent_servo),
         cmocka_unit_test(a_stopped_joint_never_goes_back),
+        cmocka_unit_test(a_weak_joint_stops_where_it_is),
         cmocka_unit_test(a_smooth_stop_is_no_longer_after_a_reset),
         cmocka_unit_test(a_joint_sent_while_torque_comes_on_is_stopped_where_it_is),
         cmocka_unit_test(a_stop_sends_no_joint_that_has_no_torque),
