@@ -275,6 +275,14 @@ static void check_servos(maker *m)
                                    m->draft->joint[j].servo);
             continue;
         }
+        bool calibrated = joint.calibrated;
+        joint.calibrated = false;
+        if (result == GROBO_ERR_ARG && calibrated &&
+            def->family->init(&m->driver, &one, def->wiring) == GROBO_OK) {
+            (void)complain(m, place_of(m, "calibrated"), "calibrated",
+                           "servos of family %s keep no calibration", def->family->name);
+            return;
+        }
         bool limited = joint.torque_limit_pct > 0;
         joint.torque_limit_pct = 0;
         if (result == GROBO_ERR_ARG && limited &&

@@ -446,7 +446,7 @@ int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        if (model->joints[j].torque_limit_pct > 0) {
+        if (model->joints[j].torque_limit_pct > 0 || model->joints[j].calibrated) {
             return GROBO_ERR_ARG; /* a reading does not show it */
         }
     }

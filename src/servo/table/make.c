@@ -38,7 +38,8 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
     for (int j = 0; j < model->n_joints; j++) {
         const grobo_joint *joint = &model->joints[j];
         const grobo_servo_model *servo = grobo_i_table_servo(made, j);
-        if (servo == NULL || !reaches(joint, servo, joint->min_rad) ||
+        bool kept = !joint->calibrated || !family->offset_trims; /* where its middle is */
+        if (servo == NULL || !kept || !reaches(joint, servo, joint->min_rad) ||
             !reaches(joint, servo, joint->max_rad)) {
             return GROBO_ERR_ARG;
         }

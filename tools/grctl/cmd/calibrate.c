@@ -141,6 +141,12 @@ static int run(app *a)
                         "calibrate: the servos of %s keep no calibration; it has trims",
                         robot_of(a)->name);
     }
+    if (!a->robot && !homing_fits(a)) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "calibrate: the servos of %s keep no calibration, and -d names no robot of "
+                        "~/.config/grctl/config.yaml, where it has trims",
+                        robot_of(a)->name);
+    }
     if (!a->robot) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "calibrate: -d must name a robot of ~/.config/grctl/config.yaml; see "
