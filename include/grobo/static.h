@@ -51,8 +51,8 @@ typedef struct grobo_robot_host {
     /** A request was made: there may be a frame to send, an event to report or a sooner deadline.
      *  Where it is set no request reports events, only the pump does. Called without the lock. */
     void (*wake)(void *ctx);
-    /** Was an emergency stop asked for that the pump has not carried out? Then what moves is refused
-     *  as behind one that was. Called with the lock. */
+    /** Was an emergency stop asked for that the pump has not carried out? Then what moves is
+     *  refused as behind one that was. Called with the lock. */
     bool (*is_stopped)(void *ctx);
     /** May a latched stop be taken back? @return 0, or the error of grobo_robot_reset(). */
     int (*may_reset)(void *ctx);

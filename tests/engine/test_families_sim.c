@@ -359,8 +359,8 @@ static void stop_at(const family *f, int ms, uint32_t supply_pct, double *on_deg
     *on_deg = then_deg - last_deg;
 }
 
-/* A weak supply: joints fall back behind ways that they cannot go. They stop where they are, and not
- * where the way is by then; nor is one thrown back that keeps up, or begins softly. */
+/* A weak supply: joints fall back behind ways that they cannot go. They stop where they are, and
+ * not where the way is by then; nor is one thrown back that keeps up, or begins softly. */
 static void a_weak_joint_stops_where_it_is(void **state)
 {
     (void)state;

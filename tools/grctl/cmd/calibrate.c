@@ -123,6 +123,18 @@ static int measure(app *a, config_robot *after)
     return conn_close(&c, status);
 }
 
+static int fail_unnamed(app *a)
+{
+    return homing_fits(a)
+               ? app_fail(a, EXIT_USAGE, "ARG",
+                          "calibrate: -d must name a robot of ~/.config/grctl/config.yaml; see "
+                          "'grctl help calibrate'")
+               : app_fail(a, EXIT_USAGE, "ARG",
+                          "calibrate: the servos of %s keep no calibration, and -d names no robot "
+                          "of ~/.config/grctl/config.yaml, where it has trims",
+                          robot_of(a)->name);
+}
+
 static int run(app *a)
 {
     double deg;
@@ -141,16 +153,8 @@ static int run(app *a)
                         "calibrate: the servos of %s keep no calibration; it has trims",
                         robot_of(a)->name);
     }
-    if (!a->robot && !homing_fits(a)) {
-        return app_fail(a, EXIT_USAGE, "ARG",
-                        "calibrate: the servos of %s keep no calibration, and -d names no robot of "
-                        "~/.config/grctl/config.yaml, where it has trims",
-                        robot_of(a)->name);
-    }
     if (!a->robot) {
-        return app_fail(a, EXIT_USAGE, "ARG",
-                        "calibrate: -d must name a robot of ~/.config/grctl/config.yaml; see "
-                        "'grctl help calibrate'");
+        return fail_unnamed(a);
     }
     if (a->line.n_arguments == 1) {
         return app_fail(a, EXIT_USAGE, "ARG", "calibrate needs JOINT DEG, or neither");
