@@ -66,7 +66,7 @@ def rustypot_sts(port):
     import rustypot
 
     arm = rustypot.Sts3215PyController(port, 1000000, PATIENCE_MS / 1000)
-    assert arm.scan([1, 2, 3, 4]) == {1: 777, 2: 777, 3: 777}
+    arrives(lambda: arm.scan([1, 2, 3, 4]), {1: 777, 2: 777, 3: 777})
     assert arm.sync_read_present_position([1, 2, 3]) == [0.0] * 3
 
 
@@ -124,9 +124,9 @@ class Absent(types.ModuleType):
         return type(name, (), {})
 
 
-def lerobot_so101(port):
+def lerobot_bus(port):
     sys.modules.update({name: Absent(name) for name in Absent.NAMES})
-    from lerobot.motors import Motor, MotorCalibration, MotorNormMode
+    from lerobot.motors import Motor, MotorNormMode
     from lerobot.motors.feetech import FeetechMotorsBus
 
     names = ["shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll", "gripper"]
@@ -138,6 +138,13 @@ def lerobot_so101(port):
     bus = FeetechMotorsBus(port=port, motors=motors)
     patient(bus.port_handler)
     bus.connect()
+    return bus, names
+
+
+def lerobot_so101(port):
+    bus, names = lerobot_bus(port)
+    from lerobot.motors import MotorCalibration
+
     bus.disable_torque()
     bus.configure_motors()
     homes = bus.set_half_turn_homings()
@@ -163,6 +170,53 @@ def lerobot_so101(port):
     bus.sync_write("Goal_Position", {n: 60.0 if n == "gripper" else 10.0 for n in names})
     arrives(lambda: round(bus.sync_read("Present_Position")["elbow_flex"]), 10)
     bus.disconnect()
+
+
+SERVOS = 6
+RATE_S = 3
+
+
+def busy_pct(reads, data_bytes, took_s):
+    """How much of the time the wire of 1 Mbps was busy: a request for all, and a status of each."""
+    return reads * ((8 + SERVOS) + SERVOS * (6 + data_bytes)) * 10e-6 / took_s * 100
+
+
+def rate_of(read, data_bytes):
+    began, n = time.monotonic(), 0
+    while time.monotonic() < began + RATE_S:
+        read()
+        n += 1
+    took_s = time.monotonic() - began
+    return n / took_s, busy_pct(n, data_bytes, took_s)
+
+
+def rates(port):
+    """Whole arms read a second: LeRobot, rustypot and ours, one after the other."""
+    import rustypot
+
+    bus, _ = lerobot_bus(port)
+    told = {"LeRobot": rate_of(lambda: bus.sync_read("Present_Position", normalize=False), 2)}
+    bus.disconnect()
+    arm = rustypot.Sts3215PyController(port, 1000000, PATIENCE_MS / 1000)
+    ids = list(range(1, SERVOS + 1))
+    told["rustypot"] = rate_of(lambda: arm.sync_read_present_position(ids), 2)
+    del arm
+
+    import grobo
+    from grobo._lib import lib
+
+    with grobo.connect(port, robot="so101", sense_interval=1e-6) as robot:
+        stats = lib.grobo_robot_get_bus_stats(robot._control.robot)
+        time.sleep(0.5)
+        began, frames, line = time.monotonic(), stats.tx_frames, stats.tx_bytes + stats.rx_bytes
+        time.sleep(RATE_S)
+        took_s = time.monotonic() - began
+        line = stats.tx_bytes + stats.rx_bytes - line
+        told["grobo"] = (stats.tx_frames - frames) / took_s, line * 10e-6 / took_s * 100
+    for who, (hz, pct) in told.items():
+        print(f"{who}: {hz:.0f} reads of the arm a second, the wire busy for {pct:.1f} % of the time")
+    busy = os.getloadavg()[0] > os.cpu_count()
+    assert busy or told["grobo"][1] >= 95, told
 
 
 def arrives(position, goal):
