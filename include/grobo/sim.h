@@ -108,7 +108,7 @@ typedef struct grobo_sim_event {
  * Called at each event. What comes over wires is reported in order of time; what a servo does on
  * its own (overheating, end of a flash write) when somebody next speaks to it or looks at it.
  */
-typedef void (*grobo_sim_hook)(const grobo_sim_event *event, void *ctx);
+typedef void (*grobo_sim_hook)(void *ctx, const grobo_sim_event *event);
 
 /* ---- servos --------------------------------------------------------------------------------- */
 

@@ -75,7 +75,7 @@ GROBO_BEGIN_DECLS
 typedef struct grobo_control grobo_control;
 
 /** Something to be done on the loop. @return what grobo_control_call() shall return. */
-typedef int (*grobo_control_fn)(grobo_control *control, void *arg);
+typedef int (*grobo_control_fn)(void *arg, grobo_control *control);
 
 /** What a control is made of. Zero means default. */
 typedef struct grobo_control_config {

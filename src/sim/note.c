@@ -4,7 +4,7 @@
 void grobo_i_sim_tell(grobo_sim *sim, const grobo_sim_event *event)
 {
     if (sim->config.hook != NULL) {
-        sim->config.hook(event, sim->config.hook_ctx);
+        sim->config.hook(sim->config.hook_ctx, event);
     }
 }
 

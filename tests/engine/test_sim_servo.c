@@ -25,7 +25,7 @@ typedef struct heard {
     int packets;
 } heard;
 
-static void hear(const grobo_sim_event *event, void *ctx)
+static void hear(void *ctx, const grobo_sim_event *event)
 {
     heard *last = ctx;
     if (event->kind == GROBO_SIM_PACKET) {

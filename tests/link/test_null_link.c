@@ -63,14 +63,14 @@ static grobo_control_event control_event = {GROBO_CONTROL_EVENT_INIT};
 static grobo_snapshot snapshot = {GROBO_SNAPSHOT_INIT};
 static grobo_control *made_control;
 
-static void on_timer(grobo_timer *from, int64_t late_us, void *ctx)
+static void on_timer(void *ctx, grobo_timer *from, int64_t late_us)
 {
     (void)from;
     (void)late_us;
     (void)ctx;
 }
 
-static int on_control(grobo_control *from, void *arg)
+static int on_control(void *arg, grobo_control *from)
 {
     (void)from;
     (void)arg;

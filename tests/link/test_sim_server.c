@@ -44,7 +44,7 @@ typedef struct {
     int events[4];
 } client;
 
-static void on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx)
+static void on_data(void *ctx, grobo_serial *serial, const uint8_t *bytes, size_t size)
 {
     client *c = ctx;
 
@@ -57,7 +57,7 @@ static void on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, voi
     }
 }
 
-static void on_event(grobo_serial *serial, grobo_serial_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_serial *serial, grobo_serial_event event, int error)
 {
     client *c = ctx;
 

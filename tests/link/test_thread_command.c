@@ -22,8 +22,8 @@ static struct {
     size_t size;
 } sent;
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     (void)now_us;
     (void)ctx;

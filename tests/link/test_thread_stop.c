@@ -84,7 +84,7 @@ static void the_next_frame_is_the_stop(void **state)
 }
 
 /* The robot has just been found, and a frame that reads a joint is about to leave. */
-static void stop_when_up(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void stop_when_up(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     (void)error;
     (void)ctx;

@@ -42,7 +42,7 @@ static int tear_down(void **state)
 /* Does something with the engine on the thread that runs it, and waits until it is done. */
 typedef int (*engine_fn)(grobo_robot *robot);
 
-static int on_engine(grobo_control *from, void *arg)
+static int on_engine(void *arg, grobo_control *from)
 {
     grobo_session *session = grobo_control_session(from);
     const engine_fn *fn = arg;

@@ -72,7 +72,7 @@ static void note_sent(family_kit *kit, const uint8_t *bytes, size_t n)
     kit->sent_bytes[kit->n_sent++ % FAMILY_SENT] = n;
 }
 
-static void on_sim(const grobo_sim_event *event, void *ctx)
+static void on_sim(void *ctx, const grobo_sim_event *event)
 {
     family_kit *kit = ctx;
     if (event->kind == GROBO_SIM_PACKET) {

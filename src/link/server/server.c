@@ -67,7 +67,7 @@ static void tap(const grobo_sim_server *server, grobo_direction direction, int64
                 const uint8_t *bytes, size_t size)
 {
     if (server->config.on_tap != NULL) {
-        server->config.on_tap(direction, now_us, bytes, size, server->config.ctx);
+        server->config.on_tap(server->config.ctx, direction, now_us, bytes, size);
     }
 }
 
@@ -425,7 +425,7 @@ void grobo_sim_server_pump(grobo_sim_server *server)
     (void)grobo_timer_set(server->timer, next_look_us(server));
 }
 
-static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     grobo_sim_server *server = ctx;
 

@@ -376,7 +376,7 @@ static void on_leave(grobo_session *session)
     }
 }
 
-static void on_serial(grobo_serial *serial, grobo_serial_event event, int error, void *ctx)
+static void on_serial(void *ctx, grobo_serial *serial, grobo_serial_event event, int error)
 {
     grobo_session *session = ctx;
 
@@ -429,7 +429,7 @@ static void try_again(grobo_session *session)
     }
 }
 
-static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     grobo_session *session = ctx;
 

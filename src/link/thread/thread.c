@@ -39,7 +39,7 @@ static void look_for_owner(grobo_control *control, int64_t now_us)
     }
 }
 
-static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     grobo_control *control = ctx;
     int64_t now_us = grobo_now_us();
@@ -58,7 +58,7 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
     if (control->on_svc != NULL) {
         int64_t since_us = grobo_i_session_enter_callback(control->session);
 
-        (void)control->on_svc(control, control->user.ctx);
+        (void)control->on_svc(control->user.ctx, control);
         grobo_i_session_leave_callback(control->session, GROBO_CALLBACK_SVC, since_us);
     }
 }

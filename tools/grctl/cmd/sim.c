@@ -89,8 +89,8 @@ typedef struct farm {
 } farm;
 
 /* A trace is told as the host sees it: what the robot receives, the host has sent. */
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     watched *w = ctx;
     if (direction == GROBO_DIR_RX) {
@@ -100,7 +100,7 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
                 size);
 }
 
-static void on_sim(const grobo_sim_event *event, void *ctx)
+static void on_sim(void *ctx, const grobo_sim_event *event)
 {
     watched *w = ctx;
     sim_strict_event(&w->strict, event);

@@ -29,7 +29,7 @@ bool conn_is_auto(const app *a)
 
 /* ---- what comes from the loop --------------------------------------------------------------- */
 
-static void on_session(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_session(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     conn_link *link = ctx;
     (void)session;
@@ -90,8 +90,8 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     conn_link *link = ctx;
     conn *c = link->user;
