@@ -267,11 +267,11 @@ GROBO_CORE void grobo_serial_discard_output(grobo_serial *serial);
  * A packet as hex, "FA AF 03", NUL-terminated. No port is needed. Thread safe.
  * @return the length of the text; GROBO_ERR_SPACE when text_bytes < 3 * size (1 for size 0).
  */
-GROBO_API int grobo_hex(char *text, size_t text_bytes, const void *bytes, size_t size);
+GROBO_API int grobo_hex(const void *bytes, size_t size, char *text, size_t text_bytes);
 
 /** A packet as one line of hex into a stream that the caller gives. @return GROBO_OK,
  *  GROBO_ERR_IO. */
-GROBO_API int grobo_hex_print(FILE *stream, const void *bytes, size_t size);
+GROBO_API int grobo_hex_print(const void *bytes, size_t size, FILE *stream);
 
 GROBO_END_DECLS
 

@@ -517,7 +517,7 @@ GROBO_API int grobo_control_exit(grobo_control *control, grobo_exit_policy polic
 /** The exit alone, without waiting: see grobo_session_post_exit(). Safe in a signal handler.
  *  @return GROBO_OK, GROBO_ERR_ARG. */
 GROBO_API int grobo_control_post_exit(grobo_control *control, grobo_exit_policy policy);
-/** The stop of grobo_control_stop_motion() alone, without waiting: see grobo_session_post_stop().
+/** Stops what moves, as grobo_robot_stop(), without waiting: see grobo_session_post_stop().
  *  Safe in a signal handler. @return GROBO_OK, GROBO_ERR_ARG. */
 GROBO_API int grobo_control_post_stop(grobo_control *control, bool at_once);
 

@@ -7,7 +7,8 @@
  * _bytes _pct. A time is int64_t microseconds of one monotonic clock of the caller's choice, never
  * negative and below INT64_MAX / 1000 (292 years).
  *
- * A function takes its object first and its out-parameters last. A callback gets its context
+ * A function takes its object first and its out-parameters last. The time of a pump stands behind
+ * its bytes, the timeout of a call that waits behind everything. A callback gets its context
  * (`void *ctx`) first, then the object that calls it; a function of a driver's table gets the
  * driver, then the context.
  */

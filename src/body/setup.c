@@ -410,8 +410,8 @@ static void compute_slopes(grobo_body *body)
     grobo_i_track_slopes(&body->zmp, 3);
 }
 
-int grobo_body_init(grobo_body **body, const grobo_body_setup *setup, void *workspace,
-                    size_t workspace_bytes)
+int grobo_body_init(const grobo_body_setup *setup, void *workspace, size_t workspace_bytes,
+                    grobo_body **body)
 {
     struct arena arena = {workspace, 0};
     struct counts counts;

@@ -159,8 +159,8 @@ int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bool on)
 
 /* ---- angles --------------------------------------------------------------------------------- */
 
-int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, double *angle_rad, size_t capacity,
-                                   int64_t max_age_us)
+int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, int64_t max_age_us,
+                                   double *angle_rad, size_t capacity)
 {
     if (hrpsys == NULL) {
         return GROBO_ERR_ARG;

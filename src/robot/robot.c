@@ -161,7 +161,7 @@ void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size, int64
     }
     grobo_i_enter(robot, now_us);
     if (robot->link) {
-        grobo_bus_rx(&robot->bus, robot->now_us, bytes, size);
+        grobo_bus_rx(&robot->bus, bytes, size, robot->now_us);
     }
     grobo_i_leave(robot);
 }
@@ -177,7 +177,7 @@ int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t no
     if (now_us > robot->now_us) {
         robot->now_us = now_us;
     }
-    int size = robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
+    int size = robot->link ? grobo_bus_tx(&robot->bus, buf, capacity, robot->now_us) : 0;
     if (size > 0) {
         robot->left_us = robot->now_us;
         robot->answered = false;
@@ -216,7 +216,7 @@ void grobo_robot_rx_step(grobo_robot *robot, const uint8_t *bytes, size_t size, 
     }
     grobo_i_enter(robot, now_us);
     if (robot->link) {
-        grobo_bus_rx(&robot->bus, robot->now_us, bytes, size);
+        grobo_bus_rx(&robot->bus, bytes, size, robot->now_us);
         step(robot);
     }
     grobo_i_leave(robot);

@@ -114,7 +114,7 @@ static void listen(grobo_sim *sim, int64_t t_ns)
         if (grobo_board_parser_next(&sim->board, sim->now_us, &frame) > 0) {
             take_frame(sim, &frame, t_ns);
         } else if (sim->fifo_used > 0) {
-            (void)grobo_board_parser_feed(&sim->board, sim->now_us, &sim->fifo[sim->fifo_head], 1);
+            (void)grobo_board_parser_feed(&sim->board, &sim->fifo[sim->fifo_head], 1, sim->now_us);
             sim->fifo_head = (uint16_t)((sim->fifo_head + 1) % GROBO_SIM_FIFO_BYTES);
             GROBO_ASSERT(sim->fifo_used <= GROBO_SIM_FIFO_BYTES);
             sim->fifo_used--;
@@ -145,7 +145,7 @@ bool grobo_i_sim_board_listens(const grobo_sim *sim)
 void grobo_i_sim_board_hear_frame(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
 {
     GROBO_ASSERT(grobo_i_sim_board_listens(sim));
-    (void)grobo_board_parser_feed(&sim->board, sim->now_us, bytes, n);
+    (void)grobo_board_parser_feed(&sim->board, bytes, n, sim->now_us);
     listen(sim, t_ns);
 }
 

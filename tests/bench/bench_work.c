@@ -302,7 +302,7 @@ static void prepare_file(grobo_motion_kind kind)
     grobo_motion *motion = NULL;
     grobo_posture posture;
 
-    (void)grobo_motion_new(&motion, kind, 20, NULL);
+    (void)grobo_motion_new(kind, 20, NULL, &motion);
     if (kind == GROBO_MOTION_FRAMES) {
         (void)grobo_motion_set_frame_rate(motion, 100);
     }
@@ -360,7 +360,7 @@ static void walk(long n)
         grobo_body *body = NULL;
         double q_rad[GROBO_JOINTS_MAX];
 
-        if (grobo_body_new(&body, &grobo_gr001_body, step, &options, NULL) >= 0) {
+        if (grobo_body_new(&grobo_gr001_body, step, &options, NULL, &body) >= 0) {
             for (int i = 0; i < grobo_body_frame_count(body); i++) {
                 (void)grobo_body_frame(body, i, q_rad, NULL);
             }

@@ -110,7 +110,7 @@ static void what_is_not_owed_any_more_is_credited_to_nobody(void **state)
     uint8_t both[20] = "\xFD\xDF\x02\x00\x2A\x02\x01\x16\x00\x3D"  /* 22 */
                        "\xFD\xDF\x01\x00\x2A\x02\x01\x0B\x00\x23"; /* 11 */
     p.chunk_count = 0;
-    grobo_bus_rx(&p.bus, at_us, both, sizeof both);
+    grobo_bus_rx(&p.bus, both, sizeof both, at_us);
     assert_int_equal(p.ended_count, 1);
     assert_ptr_equal(p.ended[0].txn, &b.txn);
     peer_position_at(&p, at_us + GROBO_BUS_QUIET_US + READ_US, 1, 33);
@@ -305,7 +305,7 @@ static void receive(polling *p)
     while (p->under_way > 0 && p->arrives_us[0] <= p->now_us) {
         memmove(p->arrives_us, p->arrives_us + 1, sizeof p->arrives_us - sizeof p->arrives_us[0]);
         p->under_way--;
-        grobo_bus_rx(&p->bus, p->now_us, reply, sizeof reply);
+        grobo_bus_rx(&p->bus, reply, sizeof reply, p->now_us);
     }
 }
 
@@ -325,7 +325,7 @@ static double poll(const grobo_bus_config *config, uint32_t late_us, bool lose)
     while (p.ended < WARM_UP + POLLS) {
         receive(&p);
         grobo_bus_step(&p.bus, p.now_us);
-        if (grobo_bus_tx(&p.bus, p.now_us, buf, sizeof buf) > 0) {
+        if (grobo_bus_tx(&p.bus, buf, sizeof buf, p.now_us) > 0) {
             answer(&p, late_us, lose);
         }
         if (p.ended < WARM_UP) {

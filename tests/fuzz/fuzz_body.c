@@ -161,7 +161,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     void *workspace = malloc(needed);
 
     want(workspace != NULL);
-    want(grobo_body_init(&body, &setup, workspace, needed) == 0);
+    want(grobo_body_init(&setup, workspace, needed, &body) == 0);
     if (grobo_body_frame_count(body) <= FRAMES_MAX) {
         play(body);
     }

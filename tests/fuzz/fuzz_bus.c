@@ -111,7 +111,7 @@ static void answer(run *r, size_t n)
                                        2};
     int built = grobo_rs30x_build(&packet, b + size, sizeof b - size);
     size += (size_t)built;
-    grobo_bus_rx(&r->bus, r->now_us, b, n < size ? n : size);
+    grobo_bus_rx(&r->bus, b, n < size ? n : size, r->now_us);
 }
 
 static void check_books(const run *r)
@@ -131,7 +131,7 @@ static void pump(run *r)
     int i = 0;
     do {
         grobo_bus_step(&r->bus, r->now_us);
-        int n = grobo_bus_tx(&r->bus, r->now_us, buf, sizeof buf);
+        int n = grobo_bus_tx(&r->bus, buf, sizeof buf, r->now_us);
         CHECK(n >= 0);
         check_books(r);
         CHECK(i++ < PUMP_MAX);
@@ -146,7 +146,7 @@ static void operate(run *r, uint8_t what, uint8_t number)
         submit(r, number);
         break;
     case 1:
-        grobo_bus_rx(&r->bus, r->now_us, &number, 1);
+        grobo_bus_rx(&r->bus, &number, 1, r->now_us);
         break;
     case 2:
         answer(r, number);

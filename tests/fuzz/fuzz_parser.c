@@ -96,7 +96,7 @@ static void run_frames(const input *in)
     grobo_board_parser_init(&parser, 0);
     while (fed < in->n) {
         size_t piece = in->n - fed < in->piece ? in->n - fed : in->piece;
-        size_t took = grobo_board_parser_feed(&parser, now_us, in->bytes + fed, piece);
+        size_t took = grobo_board_parser_feed(&parser, in->bytes + fed, piece, now_us);
         fed += took;
         drain_frames(&parser, now_us);
         size_t pending = (size_t)(parser.framer.used - parser.framer.taken);

@@ -42,7 +42,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     grobo_robot_def *def = NULL;
     grobo_diagnostics *list = NULL;
     grobo_driver driver;
-    MUST(grobo_diagnostics_new(&list, NULL) == 0);
+    MUST(grobo_diagnostics_new(NULL, &list) == 0);
     int error = grobo_robot_def_read(&(grobo_source){read_bytes, &from}, "", list, NULL, &def);
     MUST((error == 0) == (def != NULL));
     MUST((error == 0) == (grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) == 0));

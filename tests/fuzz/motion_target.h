@@ -44,7 +44,7 @@ static inline void check_play(const grobo_motion *motion)
     grobo_posture posture;
     grobo_clip clip;
 
-    MUST(grobo_diagnostics_new(&list, NULL) == 0);
+    MUST(grobo_diagnostics_new(NULL, &list) == 0);
     MUST(grobo_motion_check(motion, &grobo_gr001_model, NULL, list) >= 0);
     grobo_diagnostics_free(list);
     MUST(grobo_motion_clip(motion, NULL, &clip) == 0);
@@ -68,7 +68,7 @@ static inline grobo_motion *read_bytes(const uint8_t *data, size_t size, grobo_m
     grobo_motion *motion = NULL;
     grobo_diagnostics *list = NULL;
 
-    MUST(grobo_diagnostics_new(&list, NULL) == 0);
+    MUST(grobo_diagnostics_new(NULL, &list) == 0);
     int result = grobo_motion_read_memory(data, size, &options, list, &motion);
     MUST((result == 0) == (motion != NULL));
     MUST(result == 0 || grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) > 0);

@@ -51,7 +51,7 @@ static void fill_line(grobo_control *control)
     grobo_motion *motion;
     grobo_posture posture;
 
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), GROBO_OK);
     grobo_posture_init_pose(&posture, &grobo_gr001_model);
     for (int i = 0; i < 2; i++) {
         posture.time_us = 4000000 * i;

@@ -241,7 +241,7 @@ static void have_increments(void)
     grobo_motion *steps = NULL;
     grobo_posture posture;
 
-    assert_int_equal(grobo_motion_new(&steps, GROBO_MOTION_STEPS, 20, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_STEPS, 20, NULL, &steps), 0);
     (void)grobo_posture_init(&posture, 20);
     (void)grobo_posture_set_deg(&posture, ELBOW, 3);
     posture.time_us = 300000;
@@ -316,7 +316,7 @@ static void the_default_time_is_what_is_played(void **state)
 
     (void)state;
     assert_int_equal(default_us, GROBO_POSTURE_TIME_US);
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), 0);
     (void)grobo_posture_init(&posture, 20);
     (void)grobo_posture_set_deg(&posture, ELBOW, 0);
     posture.time_us = 0;

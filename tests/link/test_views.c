@@ -100,7 +100,7 @@ static int hrpsys_step(grobo_robot *robot)
 {
     double angle_rad[20];
     (void)robot;
-    int known = grobo_hrpsys_read_joint_angles(&hrpsys, angle_rad, 20, GROBO_NEVER_US);
+    int known = grobo_hrpsys_read_joint_angles(&hrpsys, GROBO_NEVER_US, angle_rad, 20);
     assert_int_equal(known, 20);
     angle_rad[NECK] = grobo_rad_from_deg(5);
     assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, angle_rad, 20), GROBO_OK);

@@ -61,7 +61,7 @@ void control_have_motion(int n)
     grobo_motion *motion;
     grobo_posture posture;
 
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), GROBO_OK);
     assert_int_equal(grobo_posture_init(&posture, 20), GROBO_OK);
     posture.set = EVERY_JOINT;
     posture.time_us = 40000;

@@ -45,7 +45,7 @@ static int read_def(const char *text, const grobo_mem *mem, grobo_robot_def **de
 static int set_up(void **state)
 {
     (void)state;
-    return grobo_diagnostics_new(&list, NULL);
+    return grobo_diagnostics_new(NULL, &list);
 }
 
 static int tear_down(void **state)

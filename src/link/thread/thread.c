@@ -324,8 +324,8 @@ static int make_parts(grobo_control *control, const grobo_control_config *config
     }
     if (r >= 0) {
         set_postures(control);
-        r = grobo_motion_new(&control->motion, GROBO_MOTION_POSTURES,
-                             control->driver->model->n_joints, control->mem);
+        r = grobo_motion_new(GROBO_MOTION_POSTURES, control->driver->model->n_joints, control->mem,
+                             &control->motion);
     }
     return r;
 }

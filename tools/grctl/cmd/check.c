@@ -114,7 +114,7 @@ static int run(app *a)
     if (error) {
         return error;
     }
-    error = grobo_diagnostics_new(&list, NULL);
+    error = grobo_diagnostics_new(NULL, &list);
     if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }

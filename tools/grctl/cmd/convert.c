@@ -80,7 +80,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const fi
     grobo_motion *copy = NULL;
     grobo_diagnostic first = {.code = "NOMEM"};
     char said[1024] = "";
-    int lost = grobo_diagnostics_new(&list, NULL);
+    int lost = grobo_diagnostics_new(NULL, &list);
     if (!lost) {
         lost = grobo_motion_read_memory(t->bytes ? t->bytes : "", t->size, &read, list, &copy);
     }
@@ -232,7 +232,7 @@ static int run(app *a)
     if (error) {
         return error;
     }
-    error = grobo_diagnostics_new(&list, NULL);
+    error = grobo_diagnostics_new(NULL, &list);
     if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }

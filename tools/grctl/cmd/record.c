@@ -227,7 +227,7 @@ static int make_clip(recorder *r)
 {
     grobo_motion *copy;
     int error =
-        grobo_motion_new(&copy, GROBO_MOTION_POSTURES, grobo_motion_joints(r->motion), NULL);
+        grobo_motion_new(GROBO_MOTION_POSTURES, grobo_motion_joints(r->motion), NULL, &copy);
     if (error < 0) {
         return error;
     }
@@ -579,7 +579,7 @@ static int prepare(recorder *r, app *a)
     if (status) {
         return status;
     }
-    if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, app_model(a)->n_joints, NULL) < 0) {
+    if (grobo_motion_new(GROBO_MOTION_POSTURES, app_model(a)->n_joints, NULL, &r->motion) < 0) {
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "%s", name_of(r));
     }
     return 0;

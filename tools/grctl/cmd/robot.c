@@ -143,7 +143,7 @@ static int run_check(app *a, const char *path)
     grobo_diagnostics *list = NULL;
     grobo_robot_def *def = NULL;
     grobo_diagnostic d;
-    int error = grobo_diagnostics_new(&list, NULL);
+    int error = grobo_diagnostics_new(NULL, &list);
     if (!error) {
         error = robot_read(path, list, &def);
     }

@@ -128,7 +128,7 @@ static int solve_and_check(app *a, playlist *list, int i, const grobo_budget *li
     grobo_slack_taken slack = {.n = 0};
     grobo_diagnostics *found = NULL;
     int status = body_make(a, PLAY_BODY, list->path[i], list->motion[i], rate_hz, &list->body[i]);
-    int error = status ? 0 : grobo_diagnostics_new(&found, NULL);
+    int error = status ? 0 : grobo_diagnostics_new(NULL, &found);
     if (error) {
         return fail(a, list->path[i], error);
     }

@@ -133,7 +133,7 @@ static int check_text(app *a, const char *text)
     grobo_diagnostics *list = NULL;
     grobo_robot_def *def = NULL;
     grobo_diagnostic d = {.message = _("not enough memory")};
-    int error = grobo_diagnostics_new(&list, NULL);
+    int error = grobo_diagnostics_new(NULL, &list);
     if (!error) {
         error = sketch_read_back(text, list, &def);
     }

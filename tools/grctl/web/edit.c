@@ -319,9 +319,8 @@ static int begin(making *m, grobo_motion_format format)
     int error;
     if (!m->base) { /* postures or key poses: other kinds are made of those when they are written */
         grobo_motion_kind kind = grobo_motion_format_kind(format);
-        return grobo_motion_new(&m->motion,
-                                kind == GROBO_MOTION_POSTURES ? kind : GROBO_MOTION_KEYS,
-                                m->model->n_joints, NULL);
+        return grobo_motion_new(kind == GROBO_MOTION_POSTURES ? kind : GROBO_MOTION_KEYS,
+                                m->model->n_joints, NULL, &m->motion);
     }
     error = grobo_motion_dup(m->base, &m->motion);
     if (!error) {
