@@ -234,7 +234,7 @@ int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t *bytes)
     struct arena arena = {NULL, 0};
     struct counts counts;
     grobo_body body;
-    const int result = measure(setup, &counts, &body);
+    const int result = bytes == NULL ? GROBO_ERR_ARG : measure(setup, &counts, &body);
 
     if (result < 0) {
         return result;
@@ -418,7 +418,7 @@ int grobo_body_init(const grobo_body_setup *setup, void *workspace, size_t works
     grobo_body made;
     grobo_body *at = workspace;
     size_t needed = 0;
-    int result = grobo_body_workspace_bytes(setup, &needed);
+    int result = body == NULL ? GROBO_ERR_ARG : grobo_body_workspace_bytes(setup, &needed);
 
     if (result < 0) {
         return result;

@@ -133,7 +133,7 @@ static void hrpsys_refuses_null(void **state)
     REFUSES(grobo_hrpsys_read_joint_angles(&hrpsys, 0, NULL, sizeof bytes));
     REFUSES(grobo_hrpsys_write_joint_commands(NULL, reals, 1));
     REFUSES(grobo_hrpsys_write_joint_commands(&hrpsys, NULL, 1));
-    REFUSES(grobo_hrpsys_set_period_us(NULL, 0));
+    REFUSES(grobo_hrpsys_set_period_us(NULL, 10000));
     REFUSES(grobo_hrpsys_one_step(NULL));
     REFUSES(grobo_hrpsys_check_emergency(NULL, text, sizeof bytes, ints));
     REFUSES(grobo_hrpsys_check_emergency(&hrpsys, NULL, sizeof bytes, ints));

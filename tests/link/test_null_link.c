@@ -326,7 +326,7 @@ static void thread_refuses_null_in_its_first_functions(void **state)
     assert_true(grobo_control_get_default_time_us(NULL) == 0);
     REFUSES(grobo_control_set_sense_interval_us(NULL, 0));
     assert_true(grobo_control_get_sense_interval_us(NULL) == 0);
-    REFUSES(grobo_control_set_period_us(NULL, 0));
+    REFUSES(grobo_control_set_period_us(NULL, 10000));
 }
 
 static void thread_refuses_null_in_its_second_functions(void **state)

@@ -38,7 +38,8 @@ static grobo_body_stand stand;
 static const double *const poses[3] = {reals, reals, reals};
 static grobo_body_velocity velocity;
 static grobo_momentum momentum;
-static grobo_body_setup setup;
+static const grobo_body_key one_key;
+static const grobo_body_setup setup = {.model = &grobo_gr001_body, .keys = &one_key, .n_keys = 1};
 static grobo_body *made_body;
 static grobo_body *body;
 static grobo_body_report report;
@@ -391,6 +392,7 @@ static void motion_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_motion_get_kept(NULL, 1, 0, &kept));
     REFUSES(grobo_motion_get_kept(motion, 1, 0, NULL));
     REFUSES(grobo_motion_keep(NULL, 1, &kept));
+    REFUSES(grobo_motion_keep(NULL, GROBO_MOTION_TOP, &kept));
     REFUSES(grobo_motion_keep(motion, 1, NULL));
     assert_int_equal(grobo_motion_line(NULL, 1), 0);
 }

@@ -449,7 +449,7 @@ int grobo_control_free(grobo_control *control)
 
 int grobo_control_set_period_us(grobo_control *control, int64_t period_us)
 {
-    if (!is_period(period_us)) {
+    if (control == NULL || !is_period(period_us)) {
         return GROBO_ERR_ARG;
     }
     grobo_i_control_lock(control);
