@@ -80,7 +80,7 @@ class Trip(run.Bench):
         """Path and line of the assertion that ended the test, None, or HANGS."""
         try:
             done = subprocess.run([program, test], env=env, cwd=self.options.root, check=False,
-                                  preexec_fn=run.limit(CPU_LIMIT_S), timeout=4 * CPU_LIMIT_S,
+                                  preexec_fn=run.limit(CPU_LIMIT_S), timeout=20 * CPU_LIMIT_S,
                                   errors="replace", stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         except subprocess.TimeoutExpired:

@@ -289,6 +289,19 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
     return 0;
 }
 
+int playlist_prepare_sensed(playlist *list, conn *c)
+{
+    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    grobo_posture sensed;
+    int error =
+        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
+    if (error) {
+        return conn_fail(c, error, "play");
+    }
+    grobo_robot_posture(c->robot, GROBO_NEVER_US, &sensed);
+    return playlist_prepare(list, c->a, &sensed);
+}
+
 void playlist_free(playlist *list)
 {
     for (int i = 0; i < list->n; i++) {

@@ -94,16 +94,7 @@ int seat_load(seat *s)
 
 int seat_prepare(seat *s)
 {
-    conn *c = &s->c;
-    grobo_joint_mask all = GROBO_JOINTS_ALL(app_model(&s->a)->n_joints);
-    grobo_posture sensed;
-    int error =
-        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
-    if (error) {
-        return conn_fail(c, error, "play");
-    }
-    grobo_robot_posture(c->robot, GROBO_NEVER_US, &sensed);
-    return playlist_prepare(&s->list, &s->a, &sensed);
+    return playlist_prepare_sensed(&s->list, &s->c);
 }
 
 static int make_team(troupe *t, grobo_team_policy policy, const grobo_clip **clips)
