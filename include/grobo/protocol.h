@@ -9,8 +9,8 @@
  * GR001's board), grobo_dxl2_protocol, grobo_dxl1_protocol, grobo_feetech_protocol,
  * grobo_lx16a_protocol and grobo_ics_protocol, each in the header of its family.
  *
- * No function of a table is given NULL. n is the number of bytes, cap the room of a buffer; builders
- * return the bytes written, or GROBO_ERR_SPACE.
+ * No function of a table is given NULL. n is the number of bytes, cap the room of a buffer. What
+ * builds a frame returns its bytes, or GROBO_ERR_SPACE.
  */
 #ifndef GROBO_PROTOCOL_H
 #define GROBO_PROTOCOL_H
