@@ -180,6 +180,28 @@ static void a_hold_that_is_used_again_owes_nothing_from_before(void **state)
     assert_in_range(p.sent[GROBO_BUS_HOLDS].at_us, failed_us + 5 * MS, failed_us + 6 * MS);
 }
 
+/* An ACK has no name: however soon replies have come, the next one is not asked for before. */
+static void an_ack_that_is_owed_holds_the_next_for_all_of_the_time(void **state)
+{
+    (void)state;
+    enum { READS = 200 };
+    peer p;
+    request read, a, b;
+    start(&p, false);
+    p.obliging = true;
+    for (int i = 0; i < READS; i++) {
+        peer_submit_read(&p, &read, 1, 0);
+        peer_run(&p, p.now_us + 20 * MS);
+    }
+    peer_submit_ping(&p, &a, 1, 0);
+    peer_submit_ping(&p, &b, 1, 0);
+    peer_run(&p, p.now_us + S);
+    assert_ptr_equal(p.ended[READS].txn, &a.txn);
+    assert_int_equal(p.ended[READS].result, GROBO_ERR_TIMEOUT);
+    int64_t held_us = p.sent[READS + 1].at_us - p.ended[READS].at_us;
+    assert_in_range(held_us, GROBO_BUS_HOLD_US, GROBO_BUS_HOLD_US + MS);
+}
+
 /* ---- echo ------------------------------------------------------------------------------------ */
 
 /* What the adapter hands over late, all of it: the echo and the reply of the request before. */
@@ -421,6 +443,7 @@ int main(void)
         cmocka_unit_test(a_doubled_reply_is_not_taken_for_the_one_that_is_owed),
         cmocka_unit_test(two_owed_replies_are_both_waited_for),
         cmocka_unit_test(a_hold_that_is_used_again_owes_nothing_from_before),
+        cmocka_unit_test(an_ack_that_is_owed_holds_the_next_for_all_of_the_time),
         cmocka_unit_test(an_echo_is_found_behind_a_late_echo_and_a_late_reply),
         cmocka_unit_test(late_packets_are_no_broken_echo),
         cmocka_unit_test(a_late_reply_before_the_echo_of_the_next_attempt_is_believed),
