@@ -312,6 +312,7 @@ check-long: ## all machines, packages, sabotage, fuzzing, the soak, scans of all
 	@$(MAKE) --no-print-directory check-cockpit
 	@$(MAKE) --no-print-directory check-mutants COUNT=300
 	@$(MAKE) --no-print-directory check-map COUNT=
+	@$(MAKE) --no-print-directory check-asserts
 	@$(MAKE) --no-print-directory fuzz FUZZ_S=300
 	@$(MAKE) --no-print-directory soak SEEDS=6
 	@GRCTL="$(abspath $(GRCTL))" SCAN_MATRIX=all SCAN_RUNS=20 TEST_TIMEOUT_S=14400 tests/run.sh tests/cli/scan.sh

@@ -78,7 +78,6 @@ static bool has_room(const grobo_robot *robot, grobo_i_use use, size_t bytes)
 static void take_bytes(grobo_robot_slot *slot, const grobo_exchange *exchange)
 {
     grobo_robot *robot = slot->robot;
-    GROBO_ASSERT(slot->room == 0);
     slot->txn.frame = robot->frames + robot->frames_used;
     slot->room = exchange->frame_bytes;
     robot->frames_used += slot->room;
