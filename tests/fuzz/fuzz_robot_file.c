@@ -1,21 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Any bytes as a robot's file: refused with a word, or a robot that can be driven and simulated. */
 #include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/robot_file.h>
 #include <grobo/sim_static.h>
 
-#define MUST(condition)                                                                            \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#include "tests/fuzz/target.h"
 
 typedef struct bytes {
     const uint8_t *at;

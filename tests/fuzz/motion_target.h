@@ -4,17 +4,10 @@
 #define TESTS_FUZZ_MOTION_TARGET_H
 
 #include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
 
 #include <grobo/motion_io.h>
 
-#define MUST(condition)                                                                            \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
+#include "tests/fuzz/target.h"
 
 /* Angles and times are numbers, links too, and of no more joints than the motion has. */
 static inline void check_numbers(const grobo_motion *motion)
