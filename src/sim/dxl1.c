@@ -378,12 +378,6 @@ static int32_t bps(const grobo_sim *sim, int index)
     return rate_of(servo, grobo_i_dxl_get(servo, GROBO_ROLE_BAUD));
 }
 
-static bool knows(const grobo_servo_model *model)
-{
-    return model->table == &grobo_dxl1_table || model->table == &grobo_sts_table ||
-           model->table == &grobo_scs_table;
-}
-
 static void restart(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
@@ -823,17 +817,18 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
     return n < 0 ? n : GROBO_OK;
 }
 
-const grobo_sim_family grobo_sim_dxl1 = {.knows = knows,
-                                         .measure = measure,
-                                         .packet = packet,
-                                         .factory = factory,
-                                         .boot = restart,
-                                         .cut = cut,
-                                         .starts = starts,
-                                         .refresh = refresh,
-                                         .bps = bps,
-                                         .next_us = next_us,
-                                         .act = act,
-                                         .broken = broken,
-                                         .get = grobo_i_dxl_look,
-                                         .set = set};
+const grobo_sim_family grobo_sim_dxl1 = {
+    .tables = {&grobo_dxl1_table, &grobo_sts_table, &grobo_scs_table},
+    .measure = measure,
+    .packet = packet,
+    .factory = factory,
+    .boot = restart,
+    .cut = cut,
+    .starts = starts,
+    .refresh = refresh,
+    .bps = bps,
+    .next_us = next_us,
+    .act = act,
+    .broken = broken,
+    .get = grobo_i_dxl_look,
+    .set = set};

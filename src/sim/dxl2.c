@@ -254,11 +254,6 @@ static int32_t bps(const grobo_sim *sim, int index)
     return grobo_servo_baud_bps(servo->model, grobo_i_dxl_get(servo, GROBO_ROLE_BAUD));
 }
 
-static bool knows(const grobo_servo_model *model)
-{
-    return model->table == &grobo_dxl2_table;
-}
-
 static void restart(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
@@ -807,7 +802,7 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
     return n < 0 ? n : GROBO_OK;
 }
 
-const grobo_sim_family grobo_sim_dxl2 = {.knows = knows,
+const grobo_sim_family grobo_sim_dxl2 = {.tables = {&grobo_dxl2_table},
                                          .measure = measure,
                                          .packet = packet,
                                          .factory = factory,

@@ -12,9 +12,9 @@
 struct grobo_sim_family {
     /* Rate of the line where nothing else is asked for; 0: 1 Mbps. */
     uint32_t usual_bps;
-    bool parity; /* of the line where the first servo is of this family */
-    /* Whether a model is one of its; NULL for RS30x, which have none. */
-    bool (*knows)(const grobo_servo_model *model);
+    bool parity;                        /* of the line where the first servo is of this family */
+    const grobo_servo_table *tables[4]; /* of its models, NULL behind the last */
+    int32_t turns_mdeg; /* as far as it can tell, without a stop to either side; 0: a wheel's way */
     /* Size of the command packet that n > 0 bytes start with, whatever its sum; 0: more is needed;
      * negative: none. good: a packet with a wrong sum is none either. */
     int (*measure)(const uint8_t *bytes, size_t n, bool good);
@@ -48,5 +48,8 @@ struct grobo_sim_family {
     /* Whether it may have these bytes as its flash; NULL: it has none. */
     bool (*flash_fits)(const uint8_t *flash);
 };
+
+/* An RS30x by its number; one that is not known is the first of the table. */
+const grobo_servo_model *grobo_i_sim_rs30x_model(uint16_t number);
 
 #endif

@@ -110,11 +110,6 @@ static int32_t bps(const grobo_sim *sim, int index)
     return rate_of(grobo_i_dxl_get(&sim->servo[index], GROBO_ROLE_BAUD));
 }
 
-static bool knows(const grobo_servo_model *model)
-{
-    return model->table == &grobo_ics_table;
-}
-
 static void put(grobo_sim_servo *servo, const char *name, int32_t value)
 {
     grobo_i_dxl_hold(servo, grobo_i_dxl_row(servo, name), value);
@@ -334,7 +329,7 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
 
 const grobo_sim_family grobo_sim_ics = {.usual_bps = 115200,
                                         .parity = true,
-                                        .knows = knows,
+                                        .tables = {&grobo_ics_table},
                                         .measure = measure,
                                         .packet = packet,
                                         .factory = factory,

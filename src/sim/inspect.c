@@ -83,8 +83,8 @@ int grobo_sim_set_id(grobo_sim *sim, int index, int id)
     if (servo == NULL) {
         return GROBO_ERR_ARG;
     }
-    const grobo_servo_register *reg = grobo_servo_register_of(servo->model, GROBO_ROLE_ID);
-    return servo->family->set(sim, index, reg != NULL ? reg->address : GROBO_RS30X_ID, id);
+    return servo->family->set(sim, index,
+                              grobo_servo_register_of(servo->model, GROBO_ROLE_ID)->address, id);
 }
 
 int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH_BYTES])

@@ -135,11 +135,6 @@ static int32_t bps(const grobo_sim *sim, int index)
     return BPS;
 }
 
-static bool knows(const grobo_servo_model *model)
-{
-    return model->table == &grobo_lx16a_table;
-}
-
 static void restart(grobo_sim *sim, int index)
 {
     grobo_i_dxl_boot(sim, index);
@@ -339,7 +334,7 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
 }
 
 const grobo_sim_family grobo_sim_lx16a = {.usual_bps = BPS,
-                                          .knows = knows,
+                                          .tables = {&grobo_lx16a_table},
                                           .measure = measure,
                                           .packet = packet,
                                           .factory = factory,

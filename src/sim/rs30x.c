@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "src/base/bytes.h"
+#include "src/sim/dxl.h"
 #include "src/sim/family.h"
 #include "src/sim/note.h"
 #include "src/sim/power.h"
-#include "src/sim/registers.h"
 #include "src/sim/servo.h"
 #include "src/sim/shaft.h"
 
@@ -15,6 +15,34 @@
 #define ALARM_BELOW_LIMIT_C 10
 /* Copper loss of RS301CR. An assumption (docs/simulator.md). */
 #define HEAT_C_PER_MA2 8.5e-5
+
+/* As far as register POSITION can tell. */
+#define TURNS_MDEG 3276700
+
+const grobo_servo_model *grobo_i_sim_rs30x_model(uint16_t number)
+{
+    const grobo_servo_model *model = grobo_servo_model_numbered(&grobo_rs30x_table, number);
+    return model != NULL ? model : &grobo_rs30x_table.models[0];
+}
+
+/* Lacks what came with RS303MR: No.22, 23, 60-127, answers to all (manual of RS301CR/RS302CD). */
+static bool is_early(const grobo_sim_servo *servo)
+{
+    return servo->model->number == GROBO_RS30X_RS301CR ||
+           servo->model->number == GROBO_RS30X_RS302CD;
+}
+
+/* The register that an address begins or continues, if the servo has it. */
+static const grobo_servo_register *row_at(const grobo_sim_servo *servo, int address)
+{
+    return grobo_servo_register_at(servo->model, (uint16_t)address);
+}
+
+/* Sets a register, to the end of its range where the value is beyond. */
+static void hold(grobo_sim_servo *servo, int address, int64_t value)
+{
+    grobo_i_dxl_hold(servo, row_at(servo, address), value);
+}
 
 /* ---- the shaft's side ---------------------------------------------------------------------- */
 
@@ -34,14 +62,16 @@ static int32_t ddeg_of_mdeg(const grobo_sim_servo *servo, int32_t mdeg)
 /* The plant after a change of registers. */
 static void follow(grobo_sim_servo *servo)
 {
-    const grobo_sim_type *type = grobo_i_sim_type_of(servo);
+    const grobo_servo_model *model = servo->model;
+    /* The manual's 0.11 s for 60 degrees is no whole number of degrees a second. */
+    int32_t speed_mdeg_s = model->speed_dps == 545 ? 545455 : model->speed_dps * 1000;
     int32_t goal_ddeg = wide(servo, GROBO_RS30X_GOAL);
     servo->plant = (grobo_sim_plant){
         .heat_c_per_ma2 = HEAT_C_PER_MA2,
         .goal_mdeg = (servo->reg[GROBO_RS30X_REVERSE] ? -goal_ddeg : goal_ddeg) * 100,
-        .speed_mdeg_s = type->speed_mdeg_s,
-        .stall_ma = type->stall_ma,
-        .most_ma = type->stall_ma * servo->reg[GROBO_RS30X_MAX_TORQUE] / 100,
+        .speed_mdeg_s = speed_mdeg_s,
+        .stall_ma = model->current_ma,
+        .most_ma = model->current_ma * servo->reg[GROBO_RS30X_MAX_TORQUE] / 100,
         .limit_c = wide(servo, GROBO_RS30X_TEMPERATURE_LIMIT),
         .nominal_mv = 7400,
         .torque = servo->reg[GROBO_RS30X_TORQUE],
@@ -62,14 +92,14 @@ static bool starts(grobo_sim *sim, int index, int32_t here_mdeg)
     if (sim->config.jump_on_torque) {
         return true;
     }
-    grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, ddeg_of_mdeg(servo, here_mdeg));
+    hold(servo, GROBO_RS30X_GOAL, ddeg_of_mdeg(servo, here_mdeg));
     follow(servo);
     return false;
 }
 
 static int32_t rate_of(const grobo_sim_servo *servo)
 {
-    return grobo_servo_baud_bps(grobo_i_sim_rs30x_model(servo), servo->reg[GROBO_RS30X_BAUD]);
+    return grobo_servo_baud_bps(servo->model, servo->reg[GROBO_RS30X_BAUD]);
 }
 
 static int32_t bps(const grobo_sim *sim, int index)
@@ -84,31 +114,25 @@ static void refresh(grobo_sim *sim, int index)
     grobo_i_sim_settle(sim, index);
     int64_t now_us = sim->now_us;
     int32_t here_ddeg = ddeg_of_mdeg(servo, grobo_i_sim_angle_mdeg(servo, now_us));
-    grobo_i_sim_hold(servo, GROBO_RS30X_POSITION, here_ddeg);
-    grobo_i_sim_hold(servo, GROBO_RS30X_TIME, grobo_i_sim_move_age_us(servo, now_us) / 10000);
-    grobo_i_sim_hold(servo, GROBO_RS30X_SPEED, grobo_i_sim_speed_dps(servo, now_us));
-    grobo_i_sim_hold(servo, GROBO_RS30X_CURRENT, grobo_i_sim_current_ma(servo, now_us));
-    grobo_i_sim_hold(servo, GROBO_RS30X_TEMPERATURE, lround(servo->temperature_c));
-    grobo_i_sim_hold(servo, GROBO_RS30X_VOLTAGE, grobo_i_sim_supply_mv(sim) / 10);
+    hold(servo, GROBO_RS30X_POSITION, here_ddeg);
+    hold(servo, GROBO_RS30X_TIME, grobo_i_sim_move_age_us(servo, now_us) / 10000);
+    hold(servo, GROBO_RS30X_SPEED, grobo_i_sim_speed_dps(servo, now_us));
+    hold(servo, GROBO_RS30X_CURRENT, grobo_i_sim_current_ma(servo, now_us));
+    hold(servo, GROBO_RS30X_TEMPERATURE, lround(servo->temperature_c));
+    hold(servo, GROBO_RS30X_VOLTAGE, grobo_i_sim_supply_mv(sim) / 10);
 }
 
 /* ---- flash --------------------------------------------------------------------------------- */
 
-/* The register that an address begins or continues, if the servo has it. */
-static const grobo_servo_register *row_at(const grobo_sim_servo *servo, int address)
-{
-    return grobo_servo_register_at(grobo_i_sim_rs30x_model(servo), (uint16_t)address);
-}
-
 /* No.4-29 as they leave the factory. */
 static void factory_block(grobo_sim_servo *servo)
 {
-    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    const grobo_servo_model *model = servo->model;
     const grobo_servo_register *reg;
     memset(&servo->reg[GROBO_RS30X_ID], 0, GROBO_SIM_FLASH_BYTES);
     for (size_t i = 0; (reg = grobo_servo_register_row(model, i)) != NULL; i++) {
         if (reg->address >= GROBO_RS30X_ID && (reg->flags & GROBO_REGISTER_KEPT) != 0) {
-            grobo_i_sim_hold(servo, (uint8_t)reg->address, reg->factory);
+            grobo_i_dxl_hold(servo, reg, reg->factory);
         }
     }
 }
@@ -121,16 +145,19 @@ static void to_flash(grobo_sim_servo *servo)
 static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    uint16_t model = sim->config.model->joints[index].servo_model;
-    int code = grobo_servo_baud_code(&grobo_rs30x_table.models[0], (int32_t)baud_bps);
+    const grobo_servo_model *const *named = sim->config.servos;
+    uint16_t number = named != NULL && named[index] != NULL
+                          ? named[index]->number
+                          : sim->config.model->joints[index].servo_model;
+    int code = grobo_servo_baud_code(servo->model, (int32_t)baud_bps);
     if (code < 0) {
         return false;
     }
-    grobo_i_sim_hold(servo, GROBO_RS30X_MODEL, model == 0 ? GROBO_RS30X_RS301CR : model);
-    grobo_i_sim_hold(servo, GROBO_RS30X_FIRMWARE, grobo_i_sim_rs30x_model(servo)->firmware);
+    hold(servo, GROBO_RS30X_MODEL, number == 0 ? servo->model->number : number);
+    hold(servo, GROBO_RS30X_FIRMWARE, servo->model->firmware);
     factory_block(servo);
-    grobo_i_sim_hold(servo, GROBO_RS30X_ID, id);
-    grobo_i_sim_hold(servo, GROBO_RS30X_BAUD, code);
+    hold(servo, GROBO_RS30X_ID, id);
+    hold(servo, GROBO_RS30X_BAUD, code);
     to_flash(servo);
     return true;
 }
@@ -141,7 +168,7 @@ static void boot(grobo_sim *sim, int index)
     memcpy(&servo->reg[GROBO_RS30X_ID], servo->flash, GROBO_SIM_FLASH_BYTES);
     servo->baud_bps = rate_of(servo);
     memset(&servo->reg[GROBO_RS30X_GOAL], 0, GROBO_REGISTERS - GROBO_RS30X_GOAL);
-    grobo_i_sim_hold(servo, GROBO_RS30X_MAX_TORQUE, row_at(servo, GROBO_RS30X_MAX_TORQUE)->factory);
+    hold(servo, GROBO_RS30X_MAX_TORQUE, row_at(servo, GROBO_RS30X_MAX_TORQUE)->factory);
     servo->status &= GROBO_RS30X_STATUS_FLASH_ERROR;
     follow(servo);
 }
@@ -210,9 +237,9 @@ static bool bends(const grobo_servo_register *reg)
 static void bend(grobo_sim_servo *servo, const grobo_servo_register *reg)
 {
     if (reg->address == GROBO_RS30X_MAX_TORQUE) {
-        grobo_i_sim_hold(servo, GROBO_RS30X_MAX_TORQUE, servo->reg[GROBO_RS30X_MAX_TORQUE]);
+        hold(servo, GROBO_RS30X_MAX_TORQUE, servo->reg[GROBO_RS30X_MAX_TORQUE]);
     } else if (reg->address == GROBO_RS30X_BAUD && servo->reg[GROBO_RS30X_BAUD] > reg->max) {
-        grobo_i_sim_hold(servo, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
+        hold(servo, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
     }
 }
 
@@ -220,7 +247,7 @@ static void bend(grobo_sim_servo *servo, const grobo_servo_register *reg)
 static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *reg, int32_t before)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    const grobo_servo_model *model = servo->model;
     if (reg->address == GROBO_RS30X_GOAL) {
         goal_written(sim, index);
         return;
@@ -234,7 +261,7 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
         return;
     }
     if (reg->address == GROBO_RS30X_REVERSE && value != before) {
-        grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, -wide(servo, GROBO_RS30X_GOAL));
+        hold(servo, GROBO_RS30X_GOAL, -wide(servo, GROBO_RS30X_GOAL));
         follow(servo);
     }
     grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_REGISTER,
@@ -252,7 +279,7 @@ typedef struct hits {
 
 static void find_hits(const grobo_sim_servo *servo, int address, size_t n, hits *hit)
 {
-    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    const grobo_servo_model *model = servo->model;
     hit->n = 0;
     for (int a = address; a < address + (int)n;) {
         const grobo_servo_register *reg = grobo_servo_register_at(model, (uint16_t)a);
@@ -267,7 +294,7 @@ static void find_hits(const grobo_sim_servo *servo, int address, size_t n, hits 
 static bool may_write(const grobo_sim_servo *servo, const hits *hit, int address,
                       const uint8_t *bytes, size_t n)
 {
-    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    const grobo_servo_model *model = servo->model;
     uint8_t after[GROBO_REGISTERS];
     memcpy(after, servo->reg, sizeof after);
     memcpy(&after[address], bytes, n);
@@ -286,7 +313,7 @@ static void store(grobo_sim *sim, int index, const hits *hit, int address, const
                   size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    const grobo_servo_model *model = servo->model;
     const int end = address + (int)n;
     uint8_t before[GROBO_REGISTERS];
     memcpy(before, servo->reg, sizeof before);
@@ -357,7 +384,7 @@ static int wanted(const grobo_sim_servo *servo, const grobo_sim_event *raw, grob
 {
     uint8_t own[GROBO_RS30X_PACKET_MAX_BYTES];
     uint8_t id = servo->reg[GROBO_RS30X_ID];
-    if (grobo_i_sim_type_of(servo)->early || raw->bytes[2] != GROBO_RS30X_ID_ALL) {
+    if (is_early(servo) || raw->bytes[2] != GROBO_RS30X_ID_ALL) {
         return grobo_rs30x_reply_to(raw->bytes, raw->n_bytes, want);
     }
     memcpy(own, raw->bytes, raw->n_bytes);
@@ -371,8 +398,7 @@ static void answer(grobo_sim *sim, int index, const grobo_sim_event *raw, bool d
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_reply want;
     int result = wanted(servo, raw, &want);
-    bool lacks =
-        (raw->bytes[3] & 0xF) == GROBO_RS30X_WANT_60_127 && grobo_i_sim_type_of(servo)->early;
+    bool lacks = (raw->bytes[3] & 0xF) == GROBO_RS30X_WANT_60_127 && is_early(servo);
     if (result < 0 || lacks) {
         servo->status |= GROBO_RS30X_STATUS_REFUSED;
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, raw->bytes[4]);
@@ -473,16 +499,6 @@ static const grobo_servo_register *register_from(const grobo_sim_servo *servo, i
     return reg != NULL && reg->address == address ? reg : NULL;
 }
 
-static int get(grobo_sim *sim, int index, int address, int32_t *value)
-{
-    const grobo_servo_register *reg = register_from(&sim->servo[index], address);
-    if (reg == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    *value = grobo_i_sim_value(&sim->servo[index], (uint8_t)reg->address);
-    return 0;
-}
-
 static int set(grobo_sim *sim, int index, int address, int32_t value)
 {
     const grobo_servo_register *reg = register_from(&sim->servo[index], address);
@@ -490,8 +506,7 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
         return GROBO_ERR_ARG; /* what is measured */
     }
     uint8_t bytes[2];
-    int n =
-        grobo_servo_register_put(grobo_i_sim_rs30x_model(&sim->servo[index]), reg, value, bytes);
+    int n = grobo_servo_register_put(sim->servo[index].model, reg, value, bytes);
     if (n < 0) {
         return n;
     }
@@ -502,6 +517,8 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
 }
 
 const grobo_sim_family grobo_sim_rs30x = {.usual_bps = 115200,
+                                          .tables = {&grobo_rs30x_table},
+                                          .turns_mdeg = TURNS_MDEG,
                                           .measure = measure,
                                           .packet = packet,
                                           .factory = factory,
@@ -511,6 +528,6 @@ const grobo_sim_family grobo_sim_rs30x = {.usual_bps = 115200,
                                           .starts = starts,
                                           .refresh = refresh,
                                           .bps = bps,
-                                          .get = get,
+                                          .get = grobo_i_dxl_look,
                                           .set = set,
                                           .flash_fits = flash_fits};

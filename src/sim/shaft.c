@@ -70,12 +70,8 @@ int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us)
         at = at < servo->stop_min_mdeg ? servo->stop_min_mdeg : at;
         return (int32_t)lround(at > servo->stop_max_mdeg ? servo->stop_max_mdeg : at);
     }
-    int64_t way = (int64_t)servo->to_mdeg - servo->from_mdeg;
-    if (servo->model != NULL) { /* a wheel's way is beyond the integers */
-        return servo->from_mdeg +
-               (int32_t)lround((double)way * (double)done_us / (double)servo->move_us);
-    }
-    return servo->from_mdeg + round_div(way * done_us, servo->move_us);
+    double way = (double)servo->to_mdeg - servo->from_mdeg; /* a wheel's is beyond the integers */
+    return servo->from_mdeg + (int32_t)lround(way * (double)done_us / (double)servo->move_us);
 }
 
 double grobo_i_sim_speed_mdeg_s(const grobo_sim_servo *servo, int64_t t_us)

@@ -28,8 +28,6 @@
 #define BUS_BPS 115200
 /* What nearly every robot of other servos uses. */
 #define OTHERS_BPS 1000000
-/* As far as register POSITION can tell. */
-#define NO_STOP_MDEG 3276700
 /* As far as a wheel turns. */
 #define WHEEL_MDEG 1500000000
 
@@ -373,6 +371,16 @@ static int32_t start_mdeg(grobo_sim *sim, const grobo_sim_servo *servo, const gr
            (int32_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, (uint32_t)span_mdeg + 1);
 }
 
+static bool knows(const grobo_sim_family *family, const grobo_servo_model *model)
+{
+    const grobo_servo_table *const *table = family->tables;
+    while (*table != NULL && *table != model->table) {
+        table++;
+    }
+    return *table != NULL;
+}
+
+/* NULL: no family that was given has the servo. */
 static const grobo_sim_family *family_of(const grobo_sim_config *config, int index)
 {
     const grobo_servo_model *model = config->servos != NULL ? config->servos[index] : NULL;
@@ -380,7 +388,7 @@ static const grobo_sim_family *family_of(const grobo_sim_config *config, int ind
         return &grobo_sim_rs30x;
     }
     const grobo_sim_family *const *family = config->families;
-    while (family != NULL && *family != NULL && !(*family)->knows(model)) {
+    while (family != NULL && *family != NULL && !knows(*family, model)) {
         family++;
     }
     return family != NULL ? *family : NULL;
@@ -407,6 +415,12 @@ static int init_servo(grobo_sim *sim, int index)
     const grobo_joint *joint = &sim->config.model->joints[index];
     servo->family = family_of(&sim->config, index);
     servo->model = sim->config.servos != NULL ? sim->config.servos[index] : NULL;
+    if (servo->model == NULL) {
+        servo->model = grobo_i_sim_rs30x_model(joint->servo_model);
+    }
+    if (sim->config.wiring == GROBO_WIRING_BOARD && servo->family != &grobo_sim_rs30x) {
+        return GROBO_ERR_ARG;
+    }
     if (servo->family == NULL || ear_of(sim, servo->family) == NULL) {
         return GROBO_ERR_UNSUPPORTED;
     }
@@ -415,7 +429,8 @@ static int init_servo(grobo_sim *sim, int index)
     servo->stop_max_mdeg = shaft_mdeg(joint, reversed ? joint->min_rad : joint->max_rad);
     servo->from_mdeg = servo->to_mdeg = start_mdeg(sim, servo, joint);
     if (sim->config.no_stops) {
-        servo->stop_max_mdeg = servo->model == NULL ? NO_STOP_MDEG : WHEEL_MDEG;
+        servo->stop_max_mdeg =
+            servo->family->turns_mdeg != 0 ? servo->family->turns_mdeg : WHEEL_MDEG;
         servo->stop_min_mdeg = -servo->stop_max_mdeg;
     }
     servo->start_us = servo->due_us = servo->settled_us = sim->now_us;
@@ -455,8 +470,7 @@ int grobo_sim_init_sized(grobo_sim *sim, size_t sim_bytes, const grobo_sim_confi
     }
     use_defaults(&with);
     if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
-        with.ambient_c > 60 ||
-        (with.wiring == GROBO_WIRING_BOARD && (with.echo || with.servos != NULL))) {
+        with.ambient_c > 60 || (with.wiring == GROBO_WIRING_BOARD && with.echo)) {
         return GROBO_ERR_ARG;
     }
     if (with.model->n_joints > GROBO_SIM_SERVOS_MAX) {

@@ -266,7 +266,6 @@ static void sim_refuses_null_in_its_first_functions(void **state)
 {
     (void)state;
     REFUSES(grobo_sim_fault_find(NULL, 4));
-    assert_null(grobo_sim_type_named(NULL, 4));
     REFUSES(grobo_sim_init_sized(&sim, sizeof sim - 1, NULL, 0));
     REFUSES(grobo_sim_init(NULL, &sim_config, 1000));
     assert_int_equal(grobo_sim_rx(NULL, bytes, 1, 1000), 0);

@@ -170,7 +170,7 @@ static int run_check(app *a, const char *path)
 static void list_servos(const app *a, const grobo_robot_family *family, json_t *list)
 {
     const grobo_servo_table *table;
-    for (size_t i = 0; (table = family_table(family, i)) != NULL; i++) {
+    for (size_t i = 0; (table = family->tables[i]) != NULL; i++) {
         for (int m = 0; m < table->model_count; m++) {
             const grobo_servo_model *servo = &table->models[m];
             if (!a->json) {

@@ -144,8 +144,8 @@ static grobo_sim_config sim_config(const farm *f, int robot)
             GROBO_SIM_CONFIG_INIT,
             .model = f->model,
             .wiring = wiring->given ? (grobo_wiring)wiring->choice : GROBO_WIRING_BUS,
-            .servos = f->chain.only_rs30x ? NULL : f->chain.servos,
-            .families = f->chain.families,
+            .servos = f->chain.servos,
+            .families = config.families,
             .baud_bps = baud->given ? (uint32_t)baud->number : 0,
         };
     }
@@ -159,17 +159,23 @@ static grobo_sim_config sim_config(const farm *f, int robot)
     return config;
 }
 
-/* How the servos talk, where all are of one family that is not RS30x; else NULL. */
-static const dialect *dialect_of(const farm *f)
+/* The table of all servos; NULL: they are of several. */
+static const grobo_servo_table *table_of(const farm *f)
 {
     const grobo_sim_config config = sim_config(f, 0);
-    const grobo_servo_model *first = config.servos ? config.servos[0] : NULL;
-    for (int i = 0; first && i < config.model->n_joints; i++) {
-        if (!config.servos[i] || config.servos[i]->table != first->table) {
+    for (int i = 1; i < config.model->n_joints; i++) {
+        if (config.servos[i]->table != config.servos[0]->table) {
             return NULL;
         }
     }
-    return dialect_of_servo(first);
+    return config.servos[0]->table;
+}
+
+/* How the servos talk, where all are of one family that is not RS30x; else NULL. */
+static const dialect *dialect_of(const farm *f)
+{
+    const grobo_servo_table *table = table_of(f);
+    return table ? dialect_of_servo(&table->models[0]) : NULL;
 }
 
 static int open_trace(farm *f, int robot)
@@ -359,7 +365,7 @@ static int serve(farm *f)
 static int check_families(const farm *f)
 {
     const app *a = f->a;
-    if (app_option(a, OPT_SERVO)->given ? f->chain.only_rs30x : !f->robot.config.servos) {
+    if (table_of(f) == &grobo_rs30x_table) {
         return 0;
     }
     if (app_option(a, OPT_STRICT)->given && !dialect_of(f)) {

@@ -25,7 +25,7 @@ static size_t word_of(const char *list, int i, const char **word)
 
 static int give_servos(app *a, sketch *s, const sketch_orders *orders)
 {
-    const grobo_servo_table *table = family_table(s->family, 0);
+    const grobo_servo_table *table = s->family->tables[0];
     bool one = orders->servos && !strchr(orders->servos, ',');
     for (int i = 0; i < sketch_joints(s); i++) {
         const char *word = table->models[0].name;

@@ -258,7 +258,7 @@ static bool reaches(const sketch *s, const sketch_part *part)
                                .zero_rad = part->zero_rad};
     const grobo_model one = {.name = "one", .joints = &joint, .n_joints = 1};
     grobo_driver driver;
-    return s->family->init(&driver, &one, s->family->wiring) >= 0;
+    return s->family->init[s->family->wiring](&driver, &one) >= 0;
 }
 
 static void note(sketch_part *part, const char *text)
