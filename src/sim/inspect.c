@@ -2,6 +2,7 @@
 /* What a test, or a person at the simulator, sees and changes behind the robot's back. */
 #include <string.h>
 
+#include "src/sim/dxl.h"
 #include "src/sim/family.h"
 #include "src/sim/power.h"
 #include "src/sim/servo.h"
@@ -74,7 +75,7 @@ int grobo_sim_get_register(grobo_sim *sim, int index, int address, int32_t *valu
         return GROBO_ERR_ARG;
     }
     servo->family->refresh(sim, index);
-    return servo->family->get(sim, index, address, value);
+    return grobo_i_dxl_look(servo, address, value);
 }
 
 int grobo_sim_set_id(grobo_sim *sim, int index, int id)

@@ -528,6 +528,5 @@ const grobo_sim_family grobo_sim_rs30x = {.usual_bps = 115200,
                                           .starts = starts,
                                           .refresh = refresh,
                                           .bps = bps,
-                                          .get = grobo_i_dxl_look,
                                           .set = set,
                                           .flash_fits = flash_fits};
