@@ -175,6 +175,11 @@ static void position(grobo_sim *sim, int index, const grobo_ics_packet *packet)
     }
 }
 
+static const grobo_i_item *item_of(const grobo_ics_packet *packet)
+{
+    return grobo_i_item_of(grobo_i_ics_items, GROBO_I_ICS_CODE(packet->command, packet->item));
+}
+
 static void read_eeprom(grobo_sim *sim, int index, const grobo_ics_packet *packet)
 {
     uint8_t nibbles[GROBO_ICS_EEPROM_BYTES];
@@ -191,7 +196,7 @@ static void read_eeprom(grobo_sim *sim, int index, const grobo_ics_packet *packe
 static void read(grobo_sim *sim, int index, const grobo_ics_packet *packet)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_ics_item *item = grobo_i_ics_item_of(packet->item, false);
+    const grobo_i_item *item = item_of(packet);
     bool lacks = packet->item == GROBO_ICS_POSITION_ITEM && !grobo_ics_tells_position(servo->model);
     if (item == NULL || lacks) {
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->item);
@@ -222,7 +227,7 @@ static void write_eeprom(grobo_sim *sim, int index, const uint8_t *nibbles)
 static void write(grobo_sim *sim, int index, const grobo_ics_packet *packet)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_ics_item *item = grobo_i_ics_item_of(packet->item, true);
+    const grobo_i_item *item = item_of(packet);
     if (packet->item == GROBO_ICS_EEPROM) {
         if (packet->data[0] << 4 != (GROBO_I_ICS_FIXED & 0xF0)) {
             grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->item);

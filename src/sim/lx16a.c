@@ -18,9 +18,9 @@ enum { BPS = 115200, WHEEL_FULL = 1000 };
 /* Before a reply. The maker prints none; an assumption. */
 #define THINK_NS 300000
 
-static const grobo_i_lx16a_item *item(uint8_t command)
+static const grobo_i_item *item(uint8_t command)
 {
-    return grobo_i_lx16a_item_of(command);
+    return grobo_i_item_of(grobo_i_lx16a_items, command);
 }
 
 /* ---- positions ------------------------------------------------------------------------------- */
@@ -131,13 +131,13 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-static bool in_item(const grobo_servo_register *reg, const grobo_i_lx16a_item *what)
+static bool in_item(const grobo_servo_register *reg, const grobo_i_item *what)
 {
     return reg->address >= what->address && reg->address < what->address + what->bytes;
 }
 
 /* Values outside of their range become its end; a range that ends before it begins is none. */
-static bool take(grobo_sim_servo *servo, const grobo_i_lx16a_item *what, const uint8_t *data)
+static bool take(grobo_sim_servo *servo, const grobo_i_item *what, const uint8_t *data)
 {
     const grobo_servo_register *reg;
     bool pair = what->write == GROBO_LX16A_LIMITS || what->write == GROBO_LX16A_VOLTAGES;
@@ -183,7 +183,7 @@ static void stop(grobo_sim *sim, int index)
 }
 
 /* The values of the item are new. */
-static void took_effect(grobo_sim *sim, int index, const grobo_i_lx16a_item *what)
+static void took_effect(grobo_sim *sim, int index, const grobo_i_item *what)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     if (what->write == GROBO_LX16A_MOVE) {
@@ -203,7 +203,7 @@ static void took_effect(grobo_sim *sim, int index, const grobo_i_lx16a_item *wha
 static bool without_value(grobo_sim *sim, int index, uint8_t command)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_lx16a_item *next = item(GROBO_LX16A_WAIT), *goal = item(GROBO_LX16A_MOVE);
+    const grobo_i_item *next = item(GROBO_LX16A_WAIT), *goal = item(GROBO_LX16A_MOVE);
     switch (command) {
     case GROBO_LX16A_START:
         if (servo->kept_bytes > 0) {
@@ -231,7 +231,7 @@ static bool without_value(grobo_sim *sim, int index, uint8_t command)
 static void carry_out(grobo_sim *sim, int index, const grobo_lx16a_packet *packet)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_lx16a_item *what = item(packet->command);
+    const grobo_i_item *what = item(packet->command);
     bool wheel = servo->plant.wheel && packet->command == GROBO_LX16A_MOVE;
     if (packet->data_bytes == 0 && without_value(sim, index, packet->command)) {
         return;
@@ -250,7 +250,7 @@ static void answer(grobo_sim *sim, int index, const grobo_lx16a_packet *asked)
 {
     uint8_t bytes[GROBO_LX16A_FRAME_MAX_BYTES];
     const grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_lx16a_item *what = item(asked->command);
+    const grobo_i_item *what = item(asked->command);
     refresh(sim, index);
     const grobo_lx16a_packet reply = {servo->plant.id, asked->command, &servo->reg[what->address],
                                       what->bytes};
@@ -291,8 +291,9 @@ static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, s
 {
     grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_register *reg = grobo_servo_register_at(servo->model, (uint16_t)address);
-    const grobo_i_lx16a_item *what;
-    for (unsigned k = 0; (what = grobo_i_lx16a_item_row(k)) != NULL && !in_item(reg, what); k++) {
+    const grobo_i_item *what = grobo_i_lx16a_items;
+    while (!in_item(reg, what)) {
+        what++;
     }
     uint8_t data[4];
     memcpy(data, &servo->reg[what->address], what->bytes);

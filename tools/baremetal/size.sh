@@ -42,8 +42,8 @@ families='bus/several servo/dxl1/driver servo/dxl1/packet servo/dxl1/protocol se
     servo/dxl2/driver servo/dxl2/packet servo/dxl2/protocol servo/dxl2/table
     servo/feetech/driver servo/feetech/protocol servo/feetech/scs servo/feetech/sts
      servo/ics/driver servo/ics/packet servo/ics/protocol servo/ics/table servo/lx16a/driver
-     servo/lx16a/packet servo/lx16a/protocol servo/lx16a/table servo/registers
-     servo/table/driver servo/table/inspect servo/table/make servo/table/reading
+     servo/lx16a/packet servo/lx16a/protocol servo/lx16a/table servo/item servo/registers
+     servo/table/driver servo/table/inspect servo/table/items servo/table/make servo/table/reading
      servo/table/setup servo/table/values robots/driver robots/family_dxl1 robots/family_dxl2
      robots/family_feetech robots/family_ics robots/family_lx16a robots/family_rs30x robots/koch
      robots/koch_leader robots/openmanipulator_x robots/pan_tilt robots/shipped robots/so101

@@ -46,3 +46,22 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
     made->angle_step_rad = grobo_i_table_step_rad(made);
     return grobo_driver_check(made);
 }
+
+int grobo_i_table_give(grobo_driver *driver, const grobo_driver *made, int result)
+{
+    if (result < 0 || driver == NULL) {
+        return result < 0 ? result : GROBO_ERR_ARG;
+    }
+    *driver = *made;
+    return GROBO_OK;
+}
+
+int grobo_i_table_finish(const grobo_driver *self, int size, grobo_exchange *exchange)
+{
+    if (size < 0) {
+        return size;
+    }
+    exchange->frame_bytes = (uint16_t)size;
+    int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
+    return reply < 0 ? reply : GROBO_OK;
+}
