@@ -28,6 +28,7 @@ ARGUMENTS = """--no-sandbox --disable-quic --no-first-run --disable-background-n
     --disable-component-update --disable-sync --use-angle=swiftshader
     --enable-unsafe-swiftshader""".split()
 SIZES = {'desktop': (1366, 768), 'tablet': (820, 1180), 'phone': (390, 844)}
+AXE = os.environ.get('AXE', '')
 LIMIT_MS = 30000
 TOKEN = '00112233445566778899aabbccddeeff'
 MOTIONS = pathlib.Path('motions')
@@ -180,6 +181,24 @@ def choose(page, name):
     page.click('#tab-play')
     page.click(f'.file:has(b:text-is("{name}"))')
     until(page, 'name => cockpit.play.look && cockpit.play.look.name === name', name)
+
+
+def nothing_serious(page, where):
+    """What axe-core finds in the page."""
+    page.evaluate(pathlib.Path(AXE).read_text(encoding='utf-8'))
+    bad = page.evaluate("""axe.run({ resultTypes: ['violations'] }).then((r) => r.violations
+        .filter((v) => ['serious', 'critical'].includes(v.impact)).map((v) => [v.id,
+        v.nodes.map((n) => n.target.join(' ') + ': ' + (n.any[0] || n.all[0] || n.none[0] || {}).message)]))""")
+    assert not bad, f'{where}: {json.dumps(bad, indent=1)}'
+
+
+def loops(page, server, at_ms=0):
+    """The page plays greet again and again, and is so far in it at least."""
+    torque_on(page, server)
+    choose(page, 'greet.pseq')
+    page.check('#loop')
+    page.click('#play')
+    server.wait(lambda s: s['play']['state'] == 'playing' and s['play']['t_ms'] >= at_ms, 'playing')
 
 
 def stopped(page):
@@ -487,11 +506,7 @@ def a_page_that_freezes_while_playing_does_what_was_declared(browser, server):
 def a_hidden_page_gives_control_back_and_its_motion_ends_as_declared(browser, server):
     page = browser.page(server.link)
     drive(page)
-    torque_on(page, server)
-    choose(page, 'greet.pseq')
-    page.check('#loop')
-    page.click('#play')
-    server.wait(lambda s: s['play']['state'] == 'playing', 'playing')
+    loops(page, server)
     page.evaluate(HIDE, True)
     server.wait(lambda s: s['lease']['holder'] is None, 'a free lease')
     at = server.state()['time_ms']
@@ -635,11 +650,7 @@ def a_server_that_is_killed_in_a_motion_leaves_a_robot_that_stands(browser, serv
     try:
         page = browser.page(own.link)
         drive(page)
-        torque_on(page, own)
-        choose(page, 'greet.pseq')
-        page.check('#loop')
-        page.click('#play')
-        own.wait(lambda s: s['play']['state'] == 'playing' and s['play']['t_ms'] > 300, 'playing')
+        loops(page, own, 300)
         own.kill()
         until(page, "document.body.classList.contains('stale')")
         assert not page.evaluate('cockpit.mayMove()')
@@ -799,11 +810,7 @@ def space_pauses_a_slider_seeks_and_the_rest_is_played(browser, server):
 def escape_stops_a_motion_and_no_motion_follows(browser, server):
     page = browser.page(server.link)
     drive(page)
-    torque_on(page, server)
-    choose(page, 'greet.pseq')
-    page.check('#loop')
-    page.click('#play')
-    server.wait(lambda s: s['play']['state'] == 'playing' and s['play']['t_ms'] > 200, 'playing')
+    loops(page, server, 200)
     page.keyboard.press('Escape')
     stopped(page)
     still(server)
@@ -1364,8 +1371,7 @@ def it_speaks_japanese(browser, server):
 
 @test
 def axe_finds_nothing_serious(browser, server):
-    axe = os.environ.get('AXE', '')
-    if not os.path.exists(axe):
+    if not os.path.exists(AXE):
         return 'axe-core is not installed'
     for size in ('desktop', 'phone'):
         for scheme in ('light', 'dark'):
@@ -1379,12 +1385,7 @@ def axe_finds_nothing_serious(browser, server):
                     edit_motion(page, 'greet.pseq')
                     page.select_option('#make-other', 'bow.pseq')
                 page.wait_for_timeout(400)
-                page.evaluate(pathlib.Path(axe).read_text())
-                found = page.evaluate("""axe.run({ resultTypes: ['violations'] }).then((r) =>
-                    r.violations.map((v) => [v.impact, v.id, v.nodes.map((n) => n.target.join(' ') +
-                    ': ' + (n.any[0] || n.all[0] || n.none[0] || {}).message)]))""")
-                bad = [v for v in found if v[0] in ('serious', 'critical')]
-                assert not bad, f'{size} {scheme} {tab}: {json.dumps(bad, indent=1)}'
+                nothing_serious(page, f'{size} {scheme} {tab}')
     return None
 
 
