@@ -96,7 +96,8 @@ read present_position of servo 1; sum DF right; reply: 8 bytes
 servo 1 returns present_position 0.0 deg; sum E8 right
 unknown instruction 28 to servo 1; sum D3 right; no reply
 TEXT
-check 'Hiwonder: of all, only the ids are answered' decodes --family lx16a 5555FE031CE2 5555FE030EF0 <<'TEXT'
+check 'Hiwonder: of all, only the ids are answered' decodes --family lx16a \
+    5555FE031CE2 5555FE030EF0 <<'TEXT'
 read present_position of all servos; sum E2 right; no reply
 read id of all servos; sum F0 right; reply: of each that is there
 TEXT
