@@ -18,6 +18,14 @@ static grobo_sim_servo *servo_at(grobo_sim *sim, int index)
     return &sim->servo[index];
 }
 
+static int has_flash(grobo_sim *sim, int index)
+{
+    const grobo_sim_servo *servo = servo_at(sim, index);
+    return servo == NULL                       ? GROBO_ERR_ARG
+           : servo->family->flash_fits == NULL ? GROBO_ERR_UNSUPPORTED
+                                               : GROBO_OK;
+}
+
 /* ---- looking --------------------------------------------------------------------------------- */
 
 int grobo_sim_servos(const grobo_sim *sim)
@@ -90,18 +98,11 @@ int grobo_sim_set_id(grobo_sim *sim, int index, int id)
 
 int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH_BYTES])
 {
-    if (flash == NULL) {
-        return GROBO_ERR_ARG;
+    int result = flash == NULL ? GROBO_ERR_ARG : has_flash(sim, index);
+    if (result == GROBO_OK) {
+        memcpy(flash, sim->servo[index].flash, GROBO_SIM_FLASH_BYTES);
     }
-    const grobo_sim_servo *servo = servo_at(sim, index);
-    if (servo == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    if (servo->family->flash_fits == NULL) {
-        return GROBO_ERR_UNSUPPORTED;
-    }
-    memcpy(flash, servo->flash, GROBO_SIM_FLASH_BYTES);
-    return 0;
+    return result;
 }
 
 /* ---- changing -------------------------------------------------------------------------------- */
@@ -114,21 +115,14 @@ int grobo_sim_set_register(grobo_sim *sim, int index, int address, int32_t value
 
 int grobo_sim_set_flash(grobo_sim *sim, int index, const uint8_t flash[GROBO_SIM_FLASH_BYTES])
 {
-    if (flash == NULL) {
-        return GROBO_ERR_ARG;
+    int result = flash == NULL ? GROBO_ERR_ARG : has_flash(sim, index);
+    if (result == GROBO_OK && !sim->servo[index].family->flash_fits(flash)) {
+        result = GROBO_ERR_LIMIT;
     }
-    const grobo_sim_servo *servo = servo_at(sim, index);
-    if (servo == NULL) {
-        return GROBO_ERR_ARG;
+    if (result == GROBO_OK) {
+        grobo_i_sim_exchange_flash(sim, index, flash);
     }
-    if (servo->family->flash_fits == NULL) {
-        return GROBO_ERR_UNSUPPORTED;
-    }
-    if (!servo->family->flash_fits(flash)) {
-        return GROBO_ERR_LIMIT;
-    }
-    grobo_i_sim_exchange_flash(sim, index, flash);
-    return 0;
+    return result;
 }
 
 int grobo_sim_set_angle(grobo_sim *sim, int index, int32_t angle_mdeg, int64_t time_us)
