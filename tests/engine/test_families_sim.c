@@ -21,8 +21,7 @@ static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT, .sense_inter
 static void postures_are_played(void **state)
 {
     (void)state;
-    for (const family *f = family_row(0); f != NULL;
-         f = family_row((size_t)(f - family_row(0)) + 1)) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
         family_at(&kit, 30);
@@ -43,8 +42,7 @@ static void a_faulty_line_moves_nothing_wrong(void **state)
 {
     (void)state;
     static const char faults[] = "drop=0.002,flip=0.002,silent=0.01,rubbish=0.02,split=0.05";
-    for (const family *f = family_row(0); f != NULL;
-         f = family_row((size_t)(f - family_row(0)) + 1)) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         grobo_robot_config config = watched;
         config.lost_replies = -1;
         family_start(&kit, f, &config, NULL);
@@ -71,8 +69,7 @@ static void a_faulty_line_moves_nothing_wrong(void **state)
 static void an_emergency_stop_stops(void **state)
 {
     (void)state;
-    for (const family *f = family_row(0); f != NULL;
-         f = family_row((size_t)(f - family_row(0)) + 1)) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
         grobo_posture p = family_posture(&kit, -60, 3000);
@@ -97,8 +94,7 @@ static void an_emergency_stop_stops(void **state)
 static void without_its_host_an_arm_stops(void **state)
 {
     (void)state;
-    for (const family *f = family_row(0); f != NULL;
-         f = family_row((size_t)(f - family_row(0)) + 1)) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 40, 1000), GROBO_OK);
         grobo_posture p = family_posture(&kit, -50, 4000);
@@ -114,8 +110,7 @@ static void without_its_host_an_arm_stops(void **state)
 static void heat_stops_for_safety(void **state)
 {
     (void)state;
-    for (const family *f = family_row(0); f != NULL;
-         f = family_row((size_t)(f - family_row(0)) + 1)) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 20, 1000), GROBO_OK);
         assert_int_equal(grobo_sim_set_temperature(&kit.sim, 2, 68), GROBO_OK);
@@ -130,8 +125,7 @@ static void heat_stops_for_safety(void **state)
 static void a_limp_joint_is_not_sent_anywhere(void **state)
 {
     (void)state;
-    for (const family *f = family_row(0); f != NULL;
-         f = family_row((size_t)(f - family_row(0)) + 1)) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 20, 1000), GROBO_OK);
         int number = grobo_robot_torque(&kit.robot, GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_OFF);
@@ -161,8 +155,7 @@ static void a_limp_joint_is_not_sent_anywhere(void **state)
 static void a_joint_that_another_moves_is_not_sent_anywhere(void **state)
 {
     (void)state;
-    for (const family *f = family_row(0); f != NULL;
-         f = family_row((size_t)(f - family_row(0)) + 1)) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         static const grobo_robot_config quiet = {GROBO_ROBOT_CONFIG_INIT,
                                                  .sense_interval_us = GROBO_SENSE_NEVER};
         family_start(&kit, f, &quiet, NULL);
@@ -237,8 +230,7 @@ static void a_servo_set_up_otherwise_is_made_limp(void **state)
 static void a_hand_moves_a_free_joint(void **state)
 {
     (void)state;
-    for (const family *f = family_row(0); f != NULL;
-         f = family_row((size_t)(f - family_row(0)) + 1)) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         if (f->table == &grobo_ics_table) {
             continue;
         }
@@ -290,8 +282,7 @@ static void nothing_is_woken_after_a_dip(void **state)
     enum { MOVE, STREAM, STOP, WAYS };
     static const int64_t intervals_us[] = {50 * MS, 500 * MS, GROBO_SENSE_NEVER};
     for (int run = 0; run < WAYS * 3 * 2; run++) {
-        for (const family *f = family_row(0); f != NULL;
-             f = family_row((size_t)(f - family_row(0)) + 1)) {
+        for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
             int way = run % WAYS;
             const grobo_robot_config config = {
                 GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = intervals_us[run / WAYS % 3],
@@ -320,8 +311,7 @@ static void nothing_is_woken_after_a_dip(void **state)
 static void a_lost_reply_ends_no_way(void **state)
 {
     (void)state;
-    for (const family *f = family_row(0); f != NULL;
-         f = family_row((size_t)(f - family_row(0)) + 1)) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
         grobo_posture p = family_posture(&kit, -60, 2000);

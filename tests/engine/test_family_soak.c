@@ -481,12 +481,11 @@ int main(void)
     uint32_t first = number("GROBO_SOAK_FROM", is_long ? 0 : 1);
     uint32_t only = number("GROBO_SOAK_LINE", LINES);
     const char *length = getenv("GROBO_SOAK_MINUTES");
-    const family *f;
     size_t n = 0;
     minutes = length != NULL && length[0] != '\0' ? strtod(length, NULL)
               : is_long                           ? 30
                                                   : 1.0 / LINES;
-    for (size_t i = 0; (f = family_row(i)) != NULL; i++) {
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         bool meant =
             only_family == NULL || only_family[0] == '\0' || strcmp(only_family, f->name) == 0;
         for (uint32_t seed = first; meant && seed < first + seeds; seed++) {
