@@ -14,10 +14,7 @@
 static void emit(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t start_ns)
 {
     int64_t at_ns = start_ns > sim->out.free_ns ? start_ns : sim->out.free_ns;
-    for (size_t i = 0; i < n; i++) {
-        at_ns += sim->line_byte_ns;
-        grobo_i_sim_to_host(sim, bytes[i], at_ns);
-    }
+    grobo_i_sim_to_host(sim, bytes, n, at_ns + sim->line_byte_ns);
 }
 
 static void reply(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
@@ -149,14 +146,15 @@ void grobo_i_sim_board_hear_frame(grobo_sim *sim, const uint8_t *bytes, size_t n
     listen(sim, t_ns);
 }
 
-void grobo_i_sim_board_got(grobo_sim *sim, uint8_t byte, int64_t t_ns)
+void grobo_i_sim_board_got(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
 {
     if (sim->board_state != GROBO_SIM_BOARD_WAITING) {
-        sim->stats.stray_bytes++;
+        sim->stats.stray_bytes += (uint32_t)n;
         return;
     }
-    GROBO_ASSERT(sim->got_used < sim->want);
-    sim->got[sim->got_used++] = byte;
+    GROBO_ASSERT(sim->got_used + n <= sim->want);
+    memcpy(&sim->got[sim->got_used], bytes, n);
+    sim->got_used = (uint8_t)(sim->got_used + n);
     sim->board_at_ns = t_ns + (int64_t)sim->config.board_silence_us * 1000;
     if (sim->got_used == sim->want) {
         reply(sim, sim->got, sim->got_used, t_ns);

@@ -25,6 +25,14 @@ static int32_t wide(const grobo_sim_servo *servo, uint8_t address)
     return grobo_i_get_i16(&servo->reg[address]);
 }
 
+/* What is measured, in as many values as two bytes have, from `least` on. */
+static void show(grobo_sim_servo *servo, uint8_t address, int64_t value, int64_t least)
+{
+    int64_t most = least + UINT16_MAX;
+    int64_t shown = value < least ? least : value > most ? most : value;
+    grobo_i_put_u16(&servo->reg[address], (uint16_t)(shown & UINT16_MAX));
+}
+
 static int32_t ddeg_of_mdeg(const grobo_sim_servo *servo, int32_t mdeg)
 {
     int32_t ddeg = (mdeg < 0 ? mdeg - 50 : mdeg + 50) / 100;
@@ -84,12 +92,12 @@ static void refresh(grobo_sim *sim, int index)
     grobo_i_sim_settle(sim, index);
     int64_t now_us = sim->now_us;
     int32_t here_ddeg = ddeg_of_mdeg(servo, grobo_i_sim_angle_mdeg(servo, now_us));
-    grobo_i_sim_hold(servo, GROBO_RS30X_POSITION, here_ddeg);
-    grobo_i_sim_hold(servo, GROBO_RS30X_TIME, grobo_i_sim_move_age_us(servo, now_us) / 10000);
-    grobo_i_sim_hold(servo, GROBO_RS30X_SPEED, grobo_i_sim_speed_dps(servo, now_us));
-    grobo_i_sim_hold(servo, GROBO_RS30X_CURRENT, grobo_i_sim_current_ma(servo, now_us));
-    grobo_i_sim_hold(servo, GROBO_RS30X_TEMPERATURE, lround(servo->temperature_c));
-    grobo_i_sim_hold(servo, GROBO_RS30X_VOLTAGE, grobo_i_sim_supply_mv(sim) / 10);
+    show(servo, GROBO_RS30X_POSITION, here_ddeg, INT16_MIN);
+    show(servo, GROBO_RS30X_TIME, grobo_i_sim_move_age_us(servo, now_us) / 10000, 0);
+    show(servo, GROBO_RS30X_SPEED, grobo_i_sim_speed_dps(servo, now_us), INT16_MIN);
+    show(servo, GROBO_RS30X_CURRENT, grobo_i_sim_current_ma(servo, now_us), 0);
+    show(servo, GROBO_RS30X_TEMPERATURE, lround(servo->temperature_c), INT16_MIN);
+    show(servo, GROBO_RS30X_VOLTAGE, grobo_i_sim_supply_mv(sim) / 10, 0);
 }
 
 /* ---- flash --------------------------------------------------------------------------------- */
@@ -216,24 +224,24 @@ static void bend(grobo_sim_servo *servo, const grobo_servo_register *reg)
     }
 }
 
-/* Lets a register's new value take effect. */
-static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *reg, int32_t before)
+/* Lets a register's new value take effect; `before`: its bytes till now. */
+static void took_effect(grobo_sim *sim, int index, const grobo_servo_model *model,
+                        const grobo_servo_register *reg, const uint8_t *before)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
     if (reg->address == GROBO_RS30X_GOAL) {
         goal_written(sim, index);
         return;
     }
     bend(servo, reg);
     follow(servo);
-    int32_t value = grobo_servo_register_get(model, reg, &servo->reg[reg->address]);
     if (reg->address == GROBO_RS30X_TORQUE) {
         servo->status &= (uint8_t)~GROBO_RS30X_STATUS_OVERHEATED;
-        grobo_i_sim_torque(sim, index, (grobo_torque)before);
+        grobo_i_sim_torque(sim, index, (grobo_torque)*before);
         return;
     }
-    if (reg->address == GROBO_RS30X_REVERSE && value != before) {
+    int32_t value = grobo_servo_register_get(model, reg, &servo->reg[reg->address]);
+    if (reg->address == GROBO_RS30X_REVERSE && servo->reg[GROBO_RS30X_REVERSE] != *before) {
         grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, -wide(servo, GROBO_RS30X_GOAL));
         follow(servo);
     }
@@ -246,16 +254,17 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
 
 /* What a write hits: registers, found once. Bytes of none are reserved, and may be written. */
 typedef struct hits {
+    const grobo_servo_model *model;
     const grobo_servo_register *reg[GROBO_REGISTERS];
     int n;
 } hits;
 
 static void find_hits(const grobo_sim_servo *servo, int address, size_t n, hits *hit)
 {
-    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    hit->model = grobo_i_sim_rs30x_model(servo);
     hit->n = 0;
     for (int a = address; a < address + (int)n;) {
-        const grobo_servo_register *reg = grobo_servo_register_at(model, (uint16_t)a);
+        const grobo_servo_register *reg = grobo_servo_register_at(hit->model, (uint16_t)a);
         a = reg == NULL ? a + 1 : reg->address + reg->bytes;
         if (reg != NULL) {
             hit->reg[hit->n++] = reg;
@@ -267,16 +276,19 @@ static void find_hits(const grobo_sim_servo *servo, int address, size_t n, hits 
 static bool may_write(const grobo_sim_servo *servo, const hits *hit, int address,
                       const uint8_t *bytes, size_t n)
 {
-    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
     uint8_t after[GROBO_REGISTERS];
     memcpy(after, servo->reg, sizeof after);
     memcpy(&after[address], bytes, n);
     for (int i = 0; i < hit->n; i++) {
         const grobo_servo_register *reg = hit->reg[i];
-        int32_t value = grobo_servo_register_get(model, reg, &after[reg->address]);
-        if ((reg->flags & GROBO_REGISTER_W) == 0 ||
-            (!bends(reg) && (value < reg->min || value > reg->max))) {
+        if ((reg->flags & GROBO_REGISTER_W) == 0) {
             return false;
+        }
+        if (!bends(reg)) {
+            int32_t value = grobo_servo_register_get(hit->model, reg, &after[reg->address]);
+            if (value < reg->min || value > reg->max) {
+                return false;
+            }
         }
     }
     return true;
@@ -286,7 +298,6 @@ static void store(grobo_sim *sim, int index, const hits *hit, int address, const
                   size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
     const int end = address + (int)n;
     uint8_t before[GROBO_REGISTERS];
     memcpy(before, servo->reg, sizeof before);
@@ -298,7 +309,7 @@ static void store(grobo_sim *sim, int index, const hits *hit, int address, const
     }
     for (int i = 0; i < hit->n; i++) {
         const grobo_servo_register *reg = hit->reg[i];
-        took_effect(sim, index, reg, grobo_servo_register_get(model, reg, &before[reg->address]));
+        took_effect(sim, index, hit->model, reg, &before[reg->address]);
     }
 }
 
@@ -409,10 +420,11 @@ static void short_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *pa
     command(sim, index, packet->flags);
 }
 
-static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *packet)
+/* From a part of it on: the first that speaks to this servo. */
+static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *packet, size_t from)
 {
     uint8_t id = sim->servo[index].reg[GROBO_RS30X_ID];
-    for (size_t i = 0; i < packet->count; i++) {
+    for (size_t i = from; i < packet->count; i++) {
         const uint8_t *part = packet->data + i * packet->length;
         if (part[0] == id) {
             (void)write(sim, index, packet->address, part + 1, packet->length - 1u);
@@ -420,36 +432,37 @@ static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *pac
     }
 }
 
-/* The ids that a packet speaks to. */
-static void note_ids(const grobo_rs30x_packet *packet, bool *ids)
+/* The ids that a packet speaks to: the number of the first part that does, from 1; 0: none. */
+static void note_ids(const grobo_rs30x_packet *packet, uint8_t *ids)
 {
     bool all = packet->kind == GROBO_RS30X_SHORT && packet->id == GROBO_RS30X_ID_ALL;
     memset(ids, all, UINT8_MAX + 1);
     if (packet->kind == GROBO_RS30X_SHORT) {
-        ids[packet->id] = true;
+        ids[packet->id] = 1;
         return;
     }
-    for (size_t i = 0; i < packet->count; i++) {
-        ids[packet->data[i * packet->length]] = true;
+    for (size_t i = packet->count; i > 0; i--) {
+        ids[packet->data[(i - 1) * packet->length]] = (uint8_t)i;
     }
 }
 
 static void packet(grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_rs30x_packet parts;
-    bool sum_ok, ids[UINT8_MAX + 1];
+    bool sum_ok;
+    uint8_t ids[UINT8_MAX + 1];
     (void)grobo_rs30x_peek(raw->bytes, raw->n_bytes, GROBO_ACCEPT_COMMANDS, &parts, &sum_ok);
     note_ids(&parts, ids);
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_sim_servo *servo = &sim->servo[i];
-        if (servo->family != &grobo_sim_rs30x || !ids[servo->reg[GROBO_RS30X_ID]] ||
-            !grobo_i_sim_hears(sim, i, raw)) {
+        uint8_t first = ids[servo->reg[GROBO_RS30X_ID]];
+        if (servo->family != &grobo_sim_rs30x || first == 0 || !grobo_i_sim_hears(sim, i, raw)) {
             continue;
         }
         if (parts.kind == GROBO_RS30X_SHORT) {
             short_packet(sim, i, &parts, raw);
         } else {
-            long_packet(sim, i, &parts);
+            long_packet(sim, i, &parts, first - 1u);
         }
     }
 }

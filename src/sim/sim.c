@@ -102,10 +102,18 @@ static void said(grobo_sim *sim, int64_t t_ns)
         return;
     }
     if (sim->config.wiring == GROBO_WIRING_BUS) {
-        grobo_i_sim_to_host(sim, byte, t_ns);
+        grobo_i_sim_to_host(sim, &byte, 1, t_ns);
     } else {
-        grobo_i_sim_board_got(sim, byte, t_ns);
+        grobo_i_sim_board_got(sim, &byte, 1, t_ns);
     }
+}
+
+/* Some that nobody disturbs are over: reply_run(). */
+static void said_all(grobo_sim *sim, int run, int64_t t_ns)
+{
+    uint8_t bytes[sizeof sim->talk[0].byte];
+    grobo_i_sim_talk_take_run(sim, (size_t)run, bytes);
+    grobo_i_sim_board_got(sim, bytes, (size_t)run, t_ns);
 }
 
 /* ---- time ---------------------------------------------------------------------------------- */
@@ -131,8 +139,10 @@ static bool step_once(grobo_sim *sim, int64_t limit_ns)
     sim->now_ns = t_ns;
     sim->now_us = grobo_i_sim_us(t_ns);
     if (talk_ns == t_ns) {
-        for (; said_run > 0; said_run--) {
-            said(sim, t_ns - (said_run - 1) * sim->bus_byte_ns);
+        if (said_run > 1) {
+            said_all(sim, said_run, t_ns);
+        } else {
+            said(sim, t_ns);
         }
     } else if (in_ns == t_ns) {
         arrive(sim, come_run, t_ns);
@@ -309,10 +319,7 @@ size_t grobo_sim_tx(grobo_sim *sim, uint8_t *buf, size_t cap, int64_t now_us)
         return 0;
     }
     grobo_sim_step(sim, now_us);
-    size_t n = 0;
-    while (n < cap && grobo_i_sim_wire_next(&sim->out) <= sim->now_ns) {
-        buf[n++] = grobo_i_sim_wire_take(&sim->out);
-    }
+    size_t n = grobo_i_sim_wire_read(&sim->out, buf, cap, sim->now_ns);
     sim->stats.tx_bytes += (uint32_t)n;
     return n;
 }

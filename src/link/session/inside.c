@@ -41,12 +41,12 @@ void grobo_i_session_leave_callback(grobo_session *session, grobo_callback callb
 
 void grobo_i_session_report_slow(grobo_session *session)
 {
-    const grobo_event event = {
-        .kind = GROBO_EVENT_SLOW_CALLBACK, .now_us = grobo_now_us(), .u.slow = session->slow};
-
     if (session->slow.count == 0) {
         return;
     }
+    const grobo_event event = {
+        .kind = GROBO_EVENT_SLOW_CALLBACK, .now_us = grobo_now_us(), .u.slow = session->slow};
+
     session->slow = (grobo_event_slow){.count = 0};
     if (session->config.on_robot != NULL) {
         /* Not measured: a report of a report would have no end. */
