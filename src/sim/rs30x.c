@@ -188,12 +188,6 @@ static void goal_written(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     int32_t goal_ddeg = wide(servo, GROBO_RS30X_GOAL);
-    int32_t cw_ddeg = wide(servo, GROBO_RS30X_CW_LIMIT);
-    int32_t ccw_ddeg = wide(servo, GROBO_RS30X_CCW_LIMIT);
-    goal_ddeg = goal_ddeg > cw_ddeg ? cw_ddeg : goal_ddeg;
-    goal_ddeg = goal_ddeg < ccw_ddeg ? ccw_ddeg : goal_ddeg;
-    grobo_i_put_i16(&servo->reg[GROBO_RS30X_GOAL], (int16_t)goal_ddeg);
-    follow(servo);
     int32_t time_cs = wide(servo, GROBO_RS30X_GOAL_TIME);
     if (servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
         servo->due_us = sim->now_us + (int64_t)time_cs * 10000;
@@ -207,17 +201,25 @@ static void goal_written(grobo_sim *sim, int index)
                                              .value2 = time_cs});
 }
 
-/* Registers that take any value and make of it what they can, so that none is refused. */
+/* Registers that take any value and make of it what they can (bend()), so that none is refused. */
 static bool bends(const grobo_servo_register *reg)
 {
     return reg->address == GROBO_RS30X_GOAL || reg->address == GROBO_RS30X_MAX_TORQUE ||
            reg->address == GROBO_RS30X_BAUD;
 }
 
-/* The manual on those beside the goal: over 100 % is 100 %, an unknown rate is 115200 bps. */
+/* A goal outside of the limits is the limit. The manual on the others: over 100 % is 100 %, an
+ * unknown rate is 115200 bps. */
 static void bend(grobo_sim_servo *servo, const grobo_servo_register *reg)
 {
-    if (reg->address == GROBO_RS30X_MAX_TORQUE) {
+    if (reg->address == GROBO_RS30X_GOAL) {
+        int32_t goal_ddeg = wide(servo, GROBO_RS30X_GOAL);
+        int32_t cw_ddeg = wide(servo, GROBO_RS30X_CW_LIMIT);
+        int32_t ccw_ddeg = wide(servo, GROBO_RS30X_CCW_LIMIT);
+        goal_ddeg = goal_ddeg > cw_ddeg ? cw_ddeg : goal_ddeg;
+        goal_ddeg = goal_ddeg < ccw_ddeg ? ccw_ddeg : goal_ddeg;
+        grobo_i_put_i16(&servo->reg[GROBO_RS30X_GOAL], (int16_t)goal_ddeg);
+    } else if (reg->address == GROBO_RS30X_MAX_TORQUE) {
         grobo_i_sim_hold(servo, GROBO_RS30X_MAX_TORQUE, servo->reg[GROBO_RS30X_MAX_TORQUE]);
     } else if (reg->address == GROBO_RS30X_BAUD && servo->reg[GROBO_RS30X_BAUD] > reg->max) {
         grobo_i_sim_hold(servo, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
@@ -233,8 +235,6 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_model *mode
         goal_written(sim, index);
         return;
     }
-    bend(servo, reg);
-    follow(servo);
     if (reg->address == GROBO_RS30X_TORQUE) {
         servo->status &= (uint8_t)~GROBO_RS30X_STATUS_OVERHEATED;
         grobo_i_sim_torque(sim, index, (grobo_torque)*before);
@@ -252,16 +252,21 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_model *mode
                                              .value2 = value});
 }
 
-/* What a write hits: registers, found once. Bytes of none are reserved, and may be written. */
+/* What writes of a packet hit: registers of a model, found once. Bytes of none are reserved, and may
+ * be written. */
 typedef struct hits {
-    const grobo_servo_model *model;
+    const grobo_servo_model *model; /* NULL: not looked for yet */
     const grobo_servo_register *reg[GROBO_REGISTERS];
     int n;
 } hits;
 
 static void find_hits(const grobo_sim_servo *servo, int address, size_t n, hits *hit)
 {
-    hit->model = grobo_i_sim_rs30x_model(servo);
+    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    if (hit->model == model) {
+        return;
+    }
+    hit->model = model;
     hit->n = 0;
     for (int a = address; a < address + (int)n;) {
         const grobo_servo_register *reg = grobo_servo_register_at(hit->model, (uint16_t)a);
@@ -308,19 +313,25 @@ static void store(grobo_sim *sim, int index, const hits *hit, int address, const
         memcpy(&servo->reg[from], &bytes[from - address], (size_t)(to - from));
     }
     for (int i = 0; i < hit->n; i++) {
+        if (bends(hit->reg[i])) {
+            bend(servo, hit->reg[i]);
+        }
+    }
+    follow(servo);
+    for (int i = 0; i < hit->n; i++) {
         const grobo_servo_register *reg = hit->reg[i];
         took_effect(sim, index, hit->model, reg, &before[reg->address]);
     }
 }
 
-static bool write(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+/* All writes of a packet have one address and length. */
+static bool write(grobo_sim *sim, int index, hits *hit, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    hits hit;
     if (address + (int)n <= GROBO_REGISTERS) {
-        find_hits(servo, address, n, &hit);
-        if (may_write(servo, &hit, address, bytes, n)) {
-            store(sim, index, &hit, address, bytes, n);
+        find_hits(servo, address, n, hit);
+        if (may_write(servo, hit, address, bytes, n)) {
+            store(sim, index, hit, address, bytes, n);
             return true;
         }
     }
@@ -410,24 +421,25 @@ static void command(grobo_sim *sim, int index, uint8_t flags)
 }
 
 static void short_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *packet,
-                         const grobo_sim_event *raw)
+                         const grobo_sim_event *raw, hits *hit)
 {
     bool done = true;
     if (packet->count == 1 && packet->data_bytes > 0 && packet->address < GROBO_REGISTERS) {
-        done = write(sim, index, packet->address, packet->data, packet->data_bytes);
+        done = write(sim, index, hit, packet->address, packet->data, packet->data_bytes);
     }
     answer(sim, index, raw, done);
     command(sim, index, packet->flags);
 }
 
 /* From a part of it on: the first that speaks to this servo. */
-static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *packet, size_t from)
+static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *packet, size_t from,
+                        hits *hit)
 {
     uint8_t id = sim->servo[index].reg[GROBO_RS30X_ID];
     for (size_t i = from; i < packet->count; i++) {
         const uint8_t *part = packet->data + i * packet->length;
         if (part[0] == id) {
-            (void)write(sim, index, packet->address, part + 1, packet->length - 1u);
+            (void)write(sim, index, hit, packet->address, part + 1, packet->length - 1u);
         }
     }
 }
@@ -451,6 +463,7 @@ static void packet(grobo_sim *sim, const grobo_sim_event *raw)
     grobo_rs30x_packet parts;
     bool sum_ok;
     uint8_t ids[UINT8_MAX + 1];
+    hits hit = {.model = NULL, .n = 0};
     (void)grobo_rs30x_peek(raw->bytes, raw->n_bytes, GROBO_ACCEPT_COMMANDS, &parts, &sum_ok);
     note_ids(&parts, ids);
     for (int i = 0; i < sim->n_servos; i++) {
@@ -460,9 +473,9 @@ static void packet(grobo_sim *sim, const grobo_sim_event *raw)
             continue;
         }
         if (parts.kind == GROBO_RS30X_SHORT) {
-            short_packet(sim, i, &parts, raw);
+            short_packet(sim, i, &parts, raw, &hit);
         } else {
-            long_packet(sim, i, &parts, first - 1u);
+            long_packet(sim, i, &parts, first - 1u, &hit);
         }
     }
 }
@@ -508,7 +521,7 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
     if (n < 0) {
         return n;
     }
-    hits hit;
+    hits hit = {.model = NULL, .n = 0};
     find_hits(&sim->servo[index], address, (size_t)n, &hit);
     store(sim, index, &hit, address, bytes, (size_t)n);
     return 0;

@@ -306,10 +306,7 @@ size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_
     size_t room = grobo_sim_rx_room(sim);
     n = n < room ? n : room;
     int64_t at_ns = sim->in.free_ns > sim->now_ns ? sim->in.free_ns : sim->now_ns;
-    for (size_t i = 0; i < n; i++) {
-        at_ns += sim->line_byte_ns;
-        (void)grobo_i_sim_wire_put(&sim->in, bytes[i], at_ns);
-    }
+    grobo_i_sim_wire_write(&sim->in, bytes, n, at_ns, sim->line_byte_ns);
     return n;
 }
 

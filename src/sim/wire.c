@@ -16,6 +16,22 @@ bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
     return true;
 }
 
+void grobo_i_sim_wire_write(grobo_sim_wire *wire, const uint8_t *bytes, size_t n, int64_t at_ns,
+                            int64_t byte_ns)
+{
+    GROBO_ASSERT(wire->used + n <= GROBO_SIM_WIRE_BYTES);
+    wire->head = wire->used > 0 ? wire->head : 0; /* in one piece: grobo_i_sim_sound() */
+    size_t at = (size_t)(wire->head + wire->used) % GROBO_SIM_WIRE_BYTES;
+    for (size_t i = 0; i < n; i++) {
+        at_ns += byte_ns;
+        wire->byte[at] = bytes[i];
+        wire->at_ns[at] = at_ns;
+        at = at + 1 < GROBO_SIM_WIRE_BYTES ? at + 1 : 0;
+    }
+    wire->used = (uint16_t)(wire->used + n);
+    wire->free_ns = n > 0 ? at_ns : wire->free_ns;
+}
+
 uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire)
 {
     GROBO_ASSERT(wire->used > 0 && wire->head < GROBO_SIM_WIRE_BYTES);
