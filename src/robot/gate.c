@@ -442,17 +442,16 @@ static int judge_alone(const grobo_robot *robot)
     return moves ? GROBO_ERR_STATE : GROBO_OK;
 }
 
-static saying nothing_said(const grobo_robot *robot)
+static void say_nothing(const grobo_robot *robot, saying *says)
 {
-    saying says = {.torqued = {0}};
-    (void)grobo_posture_init(&says.target.posture, robot->driver->model->n_joints);
-    return says;
+    memset(says, 0, sizeof *says);
+    (void)grobo_posture_init(&says->target.posture, robot->driver->model->n_joints);
 }
 
 static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo_exchange *exchange,
                  bool again, saying *says)
 {
-    *says = nothing_said(robot);
+    say_nothing(robot, says);
     switch ((grobo_i_deed)order->deed) {
     case GROBO_I_DEED_NONE:
         return GROBO_OK;
@@ -489,7 +488,8 @@ int grobo_i_gate_judge(grobo_robot *robot, const grobo_robot_order *order,
 int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_robot_order *order)
 {
     const grobo_driver *driver = robot->driver;
-    saying says = nothing_said(robot);
+    saying says;
+    say_nothing(robot, &says);
     int result = driver->inspect == NULL
                      ? GROBO_ERR_UNSUPPORTED
                      : driver->inspect(driver, robot->driver_ctx, exchange->frame,

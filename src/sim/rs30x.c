@@ -310,7 +310,9 @@ static void store(grobo_sim *sim, int index, const hits *hit, int address, const
         const grobo_servo_register *reg = hit->reg[i];
         int from = reg->address > address ? reg->address : address;
         int to = reg->address + reg->bytes < end ? reg->address + reg->bytes : end;
-        memcpy(&servo->reg[from], &bytes[from - address], (size_t)(to - from));
+        for (int a = from; a < to; a++) {
+            servo->reg[a] = bytes[a - address];
+        }
     }
     for (int i = 0; i < hit->n; i++) {
         if (bends(hit->reg[i])) {
@@ -431,12 +433,34 @@ static void short_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *pa
     command(sim, index, packet->flags);
 }
 
-/* From a part of it on: the first that speaks to this servo. */
-static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *packet, size_t from,
-                        hits *hit)
+/* The ids that a packet speaks to. */
+typedef struct spoken_to {
+    uint8_t first[UINT8_MAX + 1]; /* by id, the number of the first part that does, from 1; 0: none */
+    bool twice;                   /* more than one part speaks to one of them */
+} spoken_to;
+
+static void note_ids(const grobo_rs30x_packet *packet, spoken_to *ids)
+{
+    bool all = packet->kind == GROBO_RS30X_SHORT && packet->id == GROBO_RS30X_ID_ALL;
+    memset(ids->first, all, sizeof ids->first);
+    ids->twice = false;
+    if (packet->kind == GROBO_RS30X_SHORT) {
+        ids->first[packet->id] = 1;
+        return;
+    }
+    for (size_t i = packet->count; i > 0; i--) {
+        uint8_t *first = &ids->first[packet->data[(i - 1) * packet->length]];
+        ids->twice = ids->twice || *first != 0;
+        *first = (uint8_t)i;
+    }
+}
+
+static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *packet,
+                        const spoken_to *ids, hits *hit)
 {
     uint8_t id = sim->servo[index].reg[GROBO_RS30X_ID];
-    for (size_t i = from; i < packet->count; i++) {
+    size_t end = ids->twice ? packet->count : ids->first[id];
+    for (size_t i = ids->first[id] - 1u; i < end; i++) {
         const uint8_t *part = packet->data + i * packet->length;
         if (part[0] == id) {
             (void)write(sim, index, hit, packet->address, part + 1, packet->length - 1u);
@@ -444,38 +468,24 @@ static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *pac
     }
 }
 
-/* The ids that a packet speaks to: the number of the first part that does, from 1; 0: none. */
-static void note_ids(const grobo_rs30x_packet *packet, uint8_t *ids)
-{
-    bool all = packet->kind == GROBO_RS30X_SHORT && packet->id == GROBO_RS30X_ID_ALL;
-    memset(ids, all, UINT8_MAX + 1);
-    if (packet->kind == GROBO_RS30X_SHORT) {
-        ids[packet->id] = 1;
-        return;
-    }
-    for (size_t i = packet->count; i > 0; i--) {
-        ids[packet->data[(i - 1) * packet->length]] = (uint8_t)i;
-    }
-}
-
 static void packet(grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_rs30x_packet parts;
     bool sum_ok;
-    uint8_t ids[UINT8_MAX + 1];
+    spoken_to ids;
     hits hit = {.model = NULL, .n = 0};
     (void)grobo_rs30x_peek(raw->bytes, raw->n_bytes, GROBO_ACCEPT_COMMANDS, &parts, &sum_ok);
-    note_ids(&parts, ids);
+    note_ids(&parts, &ids);
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_sim_servo *servo = &sim->servo[i];
-        uint8_t first = ids[servo->reg[GROBO_RS30X_ID]];
-        if (servo->family != &grobo_sim_rs30x || first == 0 || !grobo_i_sim_hears(sim, i, raw)) {
+        if (servo->family != &grobo_sim_rs30x || ids.first[servo->reg[GROBO_RS30X_ID]] == 0 ||
+            !grobo_i_sim_hears(sim, i, raw)) {
             continue;
         }
         if (parts.kind == GROBO_RS30X_SHORT) {
             short_packet(sim, i, &parts, raw, &hit);
         } else {
-            long_packet(sim, i, &parts, first - 1u, &hit);
+            long_packet(sim, i, &parts, &ids, &hit);
         }
     }
 }
