@@ -227,7 +227,7 @@ static int64_t deadline(const grobo_robot *robot, int64_t now_us)
     if (!robot->link) {
         return GROBO_NEVER_US;
     }
-    if (robot->events_n > 0 || robot->told_state != grobo_robot_play_state(robot)) {
+    if (robot->events_n > 0 || robot->told_state != grobo_sequencer_get_state(&robot->sequencer)) {
         return now_us; /* to be told by the next step */
     }
     int64_t at_us = grobo_bus_deadline(&robot->bus, now_us);
