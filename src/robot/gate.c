@@ -113,11 +113,10 @@ static double speed_limit(const grobo_robot *robot, int joint, bool soft)
 #define HALT_TIME_US 100000
 
 /* The least time from where the joint is now, in microseconds. */
-static double time_of_way(const grobo_robot *robot, int joint, const grobo_target *target,
-                          bool soft)
+static double time_of_way(const grobo_robot *robot, int joint, double to_rad, bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double from_rad = target->from_rad[joint], to_rad = target->posture.angle_rad[joint];
+    double from_rad = grobo_i_axis_commanded(axis, robot->now_us);
     /* Angles are rounded on the wire: that much further is not faster. */
     double way_rad = fmax(fabs(to_rad - from_rad) - robot->driver->angle_step_rad, 0);
     double time_us = way_rad / speed_limit(robot, joint, soft) * 1e6;
@@ -126,11 +125,10 @@ static double time_of_way(const grobo_robot *robot, int joint, const grobo_targe
 }
 
 /* The same in the wire's unit; GROBO_NEVER_US where the wire has no time that is long enough. */
-static int64_t time_needed(const grobo_robot *robot, int joint, const grobo_target *target,
-                           bool soft)
+static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad, bool soft)
 {
     int64_t step_us = robot->driver->time_step_us;
-    double needed_us = time_of_way(robot, joint, target, soft);
+    double needed_us = time_of_way(robot, joint, to_rad, soft);
     double steps = fmax(ceil(needed_us / (double)step_us), 1);
     double most = (double)(robot->driver->time_max_us / step_us);
     return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
@@ -139,11 +137,11 @@ static int64_t time_needed(const grobo_robot *robot, int joint, const grobo_targ
 /* True where this time, a multiple of the wire's unit, is surely enough at full speed: without the
  * divisions of time_needed(), which are most of what a frame costs a processor that has none. What
  * is closer than the rounding of both is left to that. */
-static bool is_ample(const grobo_robot *robot, int joint, const grobo_target *target, double time_s)
+static bool is_ample(const grobo_robot *robot, int joint, double to_rad, double time_s)
 {
     double most_rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
-    double way_rad = fabs(target->posture.angle_rad[joint] - target->from_rad[joint]);
-    return way_rad <= most_rad_s * time_s;
+    double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
+    return fabs(to_rad - from_rad) <= most_rad_s * time_s;
 }
 
 /* What is_ample() takes for a time: the part of it that a lower speed limit leaves. */
@@ -152,13 +150,6 @@ static double ample_s(const grobo_robot *robot, int64_t time_us)
     const double rounding = 1 - 1e-6;
     bool on_wire = time_us <= robot->driver->time_max_us;
     return on_wire ? (double)time_us * robot->config.speed_limit_pct * (rounding * 1e-8) : -1;
-}
-
-void grobo_i_gate_from(const grobo_robot *robot, grobo_target *target)
-{
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        target->from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
-    }
 }
 
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
@@ -172,12 +163,13 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
         if (!grobo_i_has(target->posture.set, j)) {
             continue;
         }
+        double to_rad = target->posture.angle_rad[j];
         if (target->joint_time_us[j] != asked_us) {
             asked_us = target->joint_time_us[j];
             asked_s = on_grid && !soft ? ample_s(robot, asked_us) : -1;
         }
-        bool ample = asked_s > 0 && is_ample(robot, j, target, asked_s);
-        int64_t needed_us = ample ? 0 : time_needed(robot, j, target, soft);
+        bool ample = asked_s > 0 && is_ample(robot, j, to_rad, asked_s);
+        int64_t needed_us = ample ? 0 : time_needed(robot, j, to_rad, soft);
         if (needed_us == GROBO_NEVER_US) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
@@ -377,6 +369,9 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
     const grobo_driver *driver = robot->driver;
     const grobo_target *target = &says->target;
     grobo_joint_mask on;
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        says->target.from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
+    }
     int result = driver->inspect(driver, robot->driver_ctx, exchange->frame, exchange->frame_bytes,
                                  &says->target, says->torqued);
     if (result >= 0) {
@@ -397,7 +392,6 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
         return result;
     }
     grobo_i_gate_single(robot);
-    grobo_i_gate_from(robot, &says->target); /* whatever the driver has made of it */
     for (int j = 0; j < driver->model->n_joints; j++) {
         double most_us = (double)target->joint_time_us[j] * RAW_TOLERANCE;
         if (grobo_i_has(target->posture.set, j) && grobo_i_may_sleep(robot, j)) {
@@ -405,7 +399,7 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
             return GROBO_ERR_STALE;
         }
         if (grobo_i_has(target->posture.set, j) &&
-            most_us < time_of_way(robot, j, target, robot->soft)) {
+            most_us < time_of_way(robot, j, target->posture.angle_rad[j], robot->soft)) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
         }
@@ -452,7 +446,6 @@ static void say_nothing(const grobo_robot *robot, saying *says)
 {
     memset(says, 0, sizeof *says);
     (void)grobo_posture_init(&says->target.posture, robot->driver->model->n_joints);
-    grobo_i_gate_from(robot, &says->target);
 }
 
 static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo_exchange *exchange,
@@ -540,8 +533,11 @@ static void aim(const grobo_robot *robot, const grobo_robot_order *order, const 
     if (order->deed == GROBO_I_DEED_GOAL) {
         (void)grobo_i_segments_cut(robot, order, &says->target, target);
     }
-    for (int j = 0; order->deed == GROBO_I_DEED_HALT && j < robot->driver->model->n_joints; j++) {
-        target->from_rad[j] = begin_of_halt(robot, target, j);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        target->from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
+        if (order->deed == GROBO_I_DEED_HALT) {
+            target->from_rad[j] = begin_of_halt(robot, target, j);
+        }
     }
 }
 

@@ -120,7 +120,6 @@ static int await_line(grobo_robot *robot, const grobo_robot_order *order,
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         target.joint_time_us[j] = asked_us;
     }
-    grobo_i_gate_from(robot, &target);
     int result = grobo_i_gate_time(robot, order, &target);
     for (int j = 0; result >= 0 && j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(order->joints, j)) {

@@ -238,9 +238,7 @@ int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order,
                        grobo_exchange *exchange);
 /* The targets of this order wait no more: they have left, or never will. */
 void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order);
-/* Notes in a target where all joints are now. */
-void grobo_i_gate_from(const grobo_robot *robot, grobo_target *target);
-/* Gives every joint of a target as much more time as it needs from there.
+/* Gives every joint of a target as much more time as it needs from where it is now.
  * @return 0, or GROBO_ERR_SPEED where the wire has no time that is long enough. */
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target);
 /* Checks numbers and limits of a target; clamps if so configured. The fault is kept for
