@@ -87,9 +87,7 @@ static int begin(grobo_robot *robot, const grobo_robot_wish *wish)
     int number = grobo_i_job_start(
         robot, wish->kind, moves ? grobo_i_script_move : grobo_i_script_sense, wish->number);
     robot->job->joints = wish->joints;
-    if (moves) { /* a reading has none, and these are half a kibibyte */
-        robot->job->target = wish->target;
-    }
+    robot->job->target = wish->target;
     robot->job->sense = wish->sense;
     grobo_i_job_run(robot);
     return number;

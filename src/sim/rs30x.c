@@ -435,8 +435,9 @@ static void short_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *pa
 
 /* The ids that a packet speaks to. */
 typedef struct spoken_to {
-    uint8_t first[UINT8_MAX + 1]; /* by id, the number of the first part that does, from 1; 0: none */
-    bool twice;                   /* more than one part speaks to one of them */
+    uint8_t
+        first[UINT8_MAX + 1]; /* by id, the number of the first part that does, from 1; 0: none */
+    bool twice;               /* more than one part speaks to one of them */
 } spoken_to;
 
 static void note_ids(const grobo_rs30x_packet *packet, spoken_to *ids)

@@ -105,7 +105,8 @@ void grobo_i_sim_to_host(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t
 const uint8_t *grobo_i_sim_sound(const grobo_sim *sim)
 {
     const grobo_sim_wire *in = &sim->in;
-    return is_sound(sim) && in->head + in->used <= GROBO_SIM_WIRE_BYTES ? &in->byte[in->head] : NULL;
+    return is_sound(sim) && in->head + in->used <= GROBO_SIM_WIRE_BYTES ? &in->byte[in->head]
+                                                                        : NULL;
 }
 
 void grobo_i_sim_wire_drop(grobo_sim_wire *wire, size_t n)
