@@ -38,7 +38,7 @@ static int joints_of_part(const grobo_model *model, grobo_joint_mask joints, int
 {
     uint8_t joint_of[GROBO_SERVO_ID_MAX + 1]; /* by motor, the joint + 1; 0: none */
     int highest = -1, skip = part * capacity, n = 0;
-    if (grobo_joints_count(joints) <= skip) {
+    if (skip > 0 && grobo_joints_count(joints) <= skip) {
         return 0;
     }
     memset(joint_of, 0, sizeof joint_of);
