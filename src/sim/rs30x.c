@@ -184,6 +184,18 @@ static bool flash_fits(const uint8_t *flash)
 
 /* ---- writing ------------------------------------------------------------------------------- */
 
+static void tell(grobo_sim *sim, grobo_sim_event_kind kind, int index, int32_t value,
+                 int32_t value2)
+{
+    if (sim->config.hook != NULL) { /* looked at first: this is done at each goal */
+        grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = kind,
+                                                 .time_us = sim->now_us,
+                                                 .servo = index,
+                                                 .value = value,
+                                                 .value2 = value2});
+    }
+}
+
 static void goal_written(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
@@ -194,11 +206,7 @@ static void goal_written(grobo_sim *sim, int index)
         grobo_i_sim_drive(sim, index);
         servo->begun_us = sim->now_us;
     }
-    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_GOAL,
-                                             .time_us = sim->now_us,
-                                             .servo = index,
-                                             .value = goal_ddeg,
-                                             .value2 = time_cs});
+    tell(sim, GROBO_SIM_GOAL, index, goal_ddeg, time_cs);
 }
 
 /* Registers that take any value and make of it what they can (bend()), so that none is refused. */
@@ -240,17 +248,17 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_model *mode
         grobo_i_sim_torque(sim, index, (grobo_torque)*before);
         return;
     }
-    int32_t value = grobo_servo_register_get(model, reg, &servo->reg[reg->address]);
     if (reg->address == GROBO_RS30X_REVERSE && servo->reg[GROBO_RS30X_REVERSE] != *before) {
         grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, -wide(servo, GROBO_RS30X_GOAL));
         follow(servo);
     }
-    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_REGISTER,
-                                             .time_us = sim->now_us,
-                                             .servo = index,
-                                             .value = reg->address,
-                                             .value2 = value});
+    if (sim->config.hook != NULL) {
+        tell(sim, GROBO_SIM_REGISTER, index, reg->address,
+             grobo_servo_register_get(model, reg, &servo->reg[reg->address]));
+    }
 }
+
+enum { REGISTER_BYTES_MAX = 4 };
 
 /* What writes of a packet hit: registers of a model, found once. Bytes of none are reserved, and may
  * be written. */
@@ -281,16 +289,19 @@ static void find_hits(const grobo_sim_servo *servo, int address, size_t n, hits 
 static bool may_write(const grobo_sim_servo *servo, const hits *hit, int address,
                       const uint8_t *bytes, size_t n)
 {
-    uint8_t after[GROBO_REGISTERS];
-    memcpy(after, servo->reg, sizeof after);
-    memcpy(&after[address], bytes, n);
+    const int end = address + (int)n;
     for (int i = 0; i < hit->n; i++) {
         const grobo_servo_register *reg = hit->reg[i];
         if ((reg->flags & GROBO_REGISTER_W) == 0) {
             return false;
         }
         if (!bends(reg)) {
-            int32_t value = grobo_servo_register_get(hit->model, reg, &after[reg->address]);
+            uint8_t after[REGISTER_BYTES_MAX];
+            for (int k = 0; k < reg->bytes; k++) { /* a write may hit a part of it */
+                int at = reg->address + k;
+                after[k] = at >= address && at < end ? bytes[at - address] : servo->reg[at];
+            }
+            int32_t value = grobo_servo_register_get(hit->model, reg, after);
             if (value < reg->min || value > reg->max) {
                 return false;
             }

@@ -339,6 +339,66 @@ static void long_packets_reach_those_named(void **state)
     assert_int_equal(simkit_events(&kit, GROBO_SIM_GOAL, NULL), 3);
 }
 
+/* Another servo stands between the two parts; the later one is the one that counts. */
+static void one_is_spoken_to_twice(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 00 00 1E 05 03 05 64 00 64 00 02 9C FF 64 00 05 F4 01 32 00", 0);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 5), GROBO_RS30X_GOAL), 500);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 5), GROBO_RS30X_GOAL_TIME), 50);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 2), GROBO_RS30X_GOAL), -100);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_GOAL, NULL), 3);
+    simkit_forget(&kit);
+    simkit_packet(&kit, "FA AF 00 00 1E 05 02 05 64 00 64 00 05 F4 01 00 40", 0); /* refused */
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 5), GROBO_RS30X_GOAL), 100);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 1);
+}
+
+/* Only later models keep "silence_torque": in one packet it is written and it is reserved. */
+static void one_packet_is_another_to_each_model(void **state)
+{
+    (void)state;
+    static const uint16_t models[] = {GROBO_RS30X_RS301CR, GROBO_RS30X_RS303MR, GROBO_RS30X_RS301CR,
+                                      GROBO_RS30X_RS303MR};
+    static const char *const names[] = {"A", "B", "C", "D"};
+    grobo_joint joints[4];
+    const grobo_model model = {.name = "mixed", .joints = joints, .n_joints = 4};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &model,
+                                     .wiring = GROBO_WIRING_BUS};
+    for (int i = 0; i < 4; i++) {
+        joints[i] = (grobo_joint){.name = names[i],
+                                  .min_rad = -1,
+                                  .max_rad = 1,
+                                  .max_speed_rad_s = 1,
+                                  .servo_model = models[i],
+                                  .motor = (uint8_t)(i + 1),
+                                  .mirror = (uint8_t)i,
+                                  .mirror_sign = 1};
+    }
+    simkit_start(&kit, &config);
+    simkit_packet(&kit, "FA AF 00 00 16 02 04 01 11 02 12 03 13 04 14", 0);
+    for (int i = 0; i < 4; i++) {
+        bool keeps = models[i] == GROBO_RS30X_RS303MR;
+        assert_int_equal(kit.sim.servo[i].reg[22], keeps ? 0x11 + i : 0);
+    }
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 0);
+}
+
+/* The high byte of a goal time alone: in range or not with the low one that is there. */
+static void a_part_of_a_register_is_judged_with_the_rest(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 00 20 02 01 FF 00", 0);
+    simkit_packet(&kit, "FA AF 01 00 21 01 01 3F", 0);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_GOAL_TIME), 0x3FFF);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 0);
+    simkit_packet(&kit, "FA AF 01 00 21 01 01 40", 0);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_GOAL_TIME), 0x3FFF);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 1);
+}
+
 static void an_id_changes_at_once(void **state)
 {
     (void)state;
@@ -470,6 +530,9 @@ int main(void)
         cmocka_unit_test(all_are_meant_by_255_and_none_replies),
         cmocka_unit_test(a_later_model_answers_what_all_are_asked),
         cmocka_unit_test(long_packets_reach_those_named),
+        cmocka_unit_test(one_is_spoken_to_twice),
+        cmocka_unit_test(one_packet_is_another_to_each_model),
+        cmocka_unit_test(a_part_of_a_register_is_judged_with_the_rest),
         cmocka_unit_test(an_id_changes_at_once),
         cmocka_unit_test(two_with_one_id_collide),
         cmocka_unit_test(wrong_sums_are_ignored),
