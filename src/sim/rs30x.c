@@ -260,8 +260,8 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_model *mode
 
 enum { REGISTER_BYTES_MAX = 4 };
 
-/* What writes of a packet hit: registers of a model, found once. Bytes of none are reserved, and may
- * be written. */
+/* What writes of a packet hit: registers of a model, found once. Bytes of none are reserved, and
+ * may be written. */
 typedef struct hits {
     const grobo_servo_model *model; /* NULL: not looked for yet */
     const grobo_servo_register *reg[GROBO_REGISTERS];

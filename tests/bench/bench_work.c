@@ -224,7 +224,7 @@ static void silence_rows(void)
     silence_rows_of(GROBO_WIRING_BOARD, " through the board");
 }
 
-/* ---- one reading, in the engine alone ---------------------------------------------------------- */
+/* ---- one reading, in the engine alone -------------------------------------------------------- */
 
 static grobo_driver one_servo;
 static long ended_well;

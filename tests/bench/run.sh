@@ -78,8 +78,8 @@ instructions() {
         awk '/Collected/ { print $4 }'
 }
 
-# Rows of a scenario: what a transaction takes, by the difference of two runs; ours without the looks
-# for emergency stops, too, which are made by the clock: callgrind is 50 times as slow, and a
+# Rows of a scenario: what a transaction takes, by the difference of two runs; ours without the
+# looks for emergency stops, too, which are made by the clock: callgrind is 50 times as slow, and a
 # transaction sees 50 times as many of them.
 instruction_rows() {
     scenario=$1 measure=$2 few=$3 many=$4
@@ -250,8 +250,10 @@ plot() {
     awk -f tests/bench/plot.awk -v scenario="$2" -v part="$3" -v x="$4" -v title="$5" "$rows" \
         >"$build/bench-$1.svg"
 }
-plot robots S5 ' robots: user instructions a transaction' 'robots in one thread' 'User instructions a transaction'
-plot joints S11 ' joints: play and simulated robot, us a frame' 'joints' 'Play and simulated robot, us a frame'
+plot robots S5 ' robots: user instructions a transaction' 'robots in one thread' \
+    'User instructions a transaction'
+plot joints S11 ' joints: play and simulated robot, us a frame' 'joints' \
+    'Play and simulated robot, us a frame'
 plot frames S9 ' frames, us a frame' 'frames of 20 joints' 'Reading yaml, us a frame'
 say "took $(($(date +%s) - began_s)) s"
 exit $status
