@@ -259,12 +259,13 @@ check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	    RING='$(filter-out lint export,$(RING))'
 
 FAMILY_CLIENTS := dynamixel-sdk==4.1.0 rustypot==1.13.1 feetech-servo-sdk==1.0.0 feetech-cli==0.1.8 \
-    deepdiff draccus tqdm numpy huggingface-hub
-# Its motors alone: the rest of it wants torch.
+    deepdiff draccus tqdm numpy huggingface-hub cffi
+# Its motors and robots alone: the rest of it wants torch.
 FAMILY_LEROBOT := lerobot==0.4.4
 check-families: all ## clients of other servos (from PyPI) against the simulator
 	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q --disable-pip-version-check $(FAMILY_CLIENTS)
 	@$(BUILD)/families/bin/pip install -q --disable-pip-version-check --no-deps $(FAMILY_LEROBOT) || true
+	-@$(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/families/bin/python)"
 	@GRCTL="$(call whole,$(GRCTL_RUN))" PYTHON=$(BUILD)/families/bin/python BUILD="$(BUILD)" \
 	    TEST_LOGS="$(BUILD)/logs" tests/run.sh tests/families/clients.sh
 

@@ -2,7 +2,10 @@
 """Independent clients against the simulator: clients.py CLIENT PORT. An assertion tells what differs."""
 import sys
 import time
-import types
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
+from lerobot_alone import import_alone  # noqa: E402
 
 
 def dynamixel_sdk_2(port):
@@ -102,19 +105,8 @@ def feetech_cli(port):
     assert "9" in run_feetech(port, "scan")
 
 
-class Absent(types.ModuleType):
-    """LeRobot's motors need none of these, but their package asks for them."""
-
-    NAMES = ("torch", "accelerate", "datasets", "datasets.utils", "datasets.utils.logging")
-
-    def __getattr__(self, name):
-        if name.startswith("__"):
-            raise AttributeError(name)
-        return type(name, (), {})
-
-
 def lerobot_so101(port):
-    sys.modules.update({name: Absent(name) for name in Absent.NAMES})
+    import_alone()
     from lerobot.motors import Motor, MotorCalibration, MotorNormMode
     from lerobot.motors.feetech import FeetechMotorsBus
 
