@@ -281,11 +281,11 @@ check 'no such file' refuses 3 './none: no such file$' ./none
 check 'a folder' refuses 3 ': is a directory$' "$work"
 printf 'FA AF\n03 0x1G\n' >"$work/bad"
 check 'bad hex in a file, behind what is good' both exits 3 "$GRCTL" decode "$work/bad" --- \
-    both complains "$work/bad:2:6: '1G' is no byte in hex" --- says 'FA AF'
+    both complains "$work/bad:2:6: '1G' is not a byte in hex" --- says 'FA AF'
 printf '\177ELF\1\2\3' >"$work/binary"
 check 'a binary' refuses 3 "$work/binary:1:1: neither hex nor a pcapng trace" "$work/binary"
 printf '{"hex": "41 0"}\n' >"$work/bad-json"
-check 'bad hex in JSON' refuses 3 "$work/bad-json:1:1: '0' is no byte in hex" "$work/bad-json"
+check 'bad hex in JSON' refuses 3 "$work/bad-json:1:1: '0' is not a byte in hex" "$work/bad-json"
 printf '{"hex": \n' >"$work/worse-json"
 check 'malformed JSON' refuses 3 'malformed JSON' "$work/worse-json"
 check 'an error as JSON' sh -c '"$GRCTL" decode --json XY 2>/dev/null |

@@ -82,7 +82,7 @@ exec 5>&-
 robot=$work/none
 check "no such device" finds 'is not there' "'grctl ports'"
 robot=$work
-check "a directory" finds 'is no serial port' "'grctl ports'"
+check "a directory" finds 'is not a serial port' "'grctl ports'"
 robot=tcp:127.0.0.1:1
 check "nobody listens" finds 'tcp:127.0.0.1:1' 'start a serial server there'
 

@@ -61,7 +61,7 @@ check_json "joints as JSON" \
 check "a joint that is none, in joints" fails 2 'did you mean R_KNEE_P?$' "$GRCTL" joints R_KNE_P
 check "a word for a device, misspelled" fails 1 "^grctl: sin: .*(did you mean 'sim'?)$" \
     "$GRCTL" -d sin status
-check "a file without a name" fails 2 'an empty name is no file' "$GRCTL" play ''
+check "a file without a name" fails 2 'the file name is empty' "$GRCTL" play ''
 check "an option without a value" fails 2 'output needs a value: OUT' "$GRCTL" plot -o '' x
 check "a posture of no file" fails 2 "'@:2' is not @FILE or @FILE:N" "$GRCTL" pose @:2
 check "a device without a name" fails 2 'device needs a value: DEV' "$GRCTL" -d '' status

@@ -136,12 +136,12 @@ else
 fi
 
 keys e
-check "emergency stop" until_screen 'EMERGENCY STOP: R takes it back'
+check "emergency stop" until_screen 'EMERGENCY STOP: R releases it'
 check "all are braked" until_screen '^ 5>ELBOW_P .* bra .* 8 ELBOW_P .* bra '
 keys i
 check "nothing moves then" until_screen 'an emergency stop stands'
 keys R
-check "it is taken back" until_screen 'stop taken back'
+check "it is taken back" until_screen 'stop released'
 keys q
 check "q quits" until_screen '^status 0'
 check "the terminal is as it was" until_screen ' icanon'

@@ -170,7 +170,7 @@ static int run(app *a)
 const cli_command cmd_calibrate = {
     .name = "calibrate",
     COMMAND_ARGUMENTS("[JOINT DEG]", 0, 2, CLI_ARG_JOINT),
-    .summary = "tell servos where their middle is, or write trims",
+    .summary = "set the middle of servos, or write trims",
     .details =
         "Servos of Feetech (STS) and DYNAMIXEL (X) keep where their middle is. Press enter,\n"
         "and torque goes off; put every joint into the middle of its range and press enter,\n"

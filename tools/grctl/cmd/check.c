@@ -145,7 +145,7 @@ static int run(app *a)
 const cli_command cmd_check = {
     .name = "check",
     COMMAND_ARGUMENTS("FILE...", 1, -1, CLI_ARG_FILE),
-    .summary = "what is wrong with motion files",
+    .summary = "check motion files",
     .details =
         "Reads motion files (.m .pseq .mseq .yaml .seq) and says every problem with its\n"
         "line and column: what is malformed, angles outside a joint's limits, moves too\n"

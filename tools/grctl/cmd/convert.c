@@ -225,8 +225,7 @@ static int run(app *a)
                         "convert: --exact and --integers cannot be used together");
     }
     if (to == GROBO_FORMAT_AUTO) {
-        return app_fail(a, EXIT_USAGE, "ARG",
-                        "%s: its name tells no format; give --to " FILE_FORMATS, out);
+        return app_fail(a, EXIT_USAGE, "ARG", "%s: unknown file type; use --to " FILE_FORMATS, out);
     }
     int error = refuse_out(a, out, to);
     if (error) {

@@ -180,7 +180,7 @@ static int say_stopped(leader *l)
         }
     }
     if (!status) {
-        app_done(l->a, "all stopped; 'grctl fleet reset' takes it back");
+        app_done(l->a, "all stopped; 'grctl fleet reset' releases the stop");
     }
     return status;
 }
@@ -209,7 +209,7 @@ static int run_reset(leader *l)
     (void)leader_wait(l, STATE_US, never);
     int status = order(l, "reset", json_object(), ANSWER_US);
     if (!status) {
-        app_done(l->a, "taken back; nothing moves");
+        app_done(l->a, "released; nothing moves");
     }
     return status;
 }
@@ -455,7 +455,7 @@ const cli_command cmd_fleet = {
         "                     FILE is a name in the folders of the agents\n"
         "  stop, estop        a stop of the group that stands until 'reset': softly, or\n"
         "                     as an emergency stop that is read back joint by joint\n"
-        "  reset              takes that back; nothing moves\n"
+        "  reset              releases the stop; nothing moves\n"
         "\n"
         "A stop over a network is a convenience and no safety function: it may come late or\n"
         "never. Keep the switches within reach.\n",

@@ -52,7 +52,7 @@ static bool may_move(monitor *m)
     if (!grobo_estop_stands(conn_device(&m->c))) {
         return true;
     }
-    say(m, true, "an emergency stop stands: R takes it back");
+    say(m, true, "an emergency stop stands: R releases it");
     return false;
 }
 
@@ -194,7 +194,7 @@ static void start_play(monitor *m)
 static void reset(monitor *m)
 {
     int error = grobo_robot_reset(grobo_session_robot(m->c.session));
-    say_request(m, error, "stop taken back; nothing moves by itself");
+    say_request(m, error, "stop released; nothing moves by itself");
     m->c.trip = (grobo_trip_info){0};
 }
 
@@ -457,7 +457,7 @@ static int run(app *a)
 const cli_command cmd_monitor = {
     .name = "monitor",
     COMMAND_ARGUMENTS("[FILE]...", 0, -1, CLI_ARG_FILE),
-    .summary = "full-screen live view, with keys",
+    .summary = "show all joints live on the full screen, with keys",
     .details =
         "Shows all joints between their limits, their torque, temperature and current, the\n"
         "battery and the line, 20 times a second. Nothing moves until a key says so. A line that\n"
@@ -467,7 +467,7 @@ const cli_command cmd_monitor = {
         "  t, b     torque on or off; brake\n"
         "  [ ]      one degree down, up; { } five\n"
         "  i        to the initial posture\n"
-        "  p        play the files\n" PLAY_KEYS_HELP "  R        take a stop back\n"
+        "  p        play the files\n" PLAY_KEYS_HELP "  R        release a stop\n"
         "  q        quit; what moves is stopped first\n"
         "\n"
         "Without a terminal that can show it (or with --json) it is 'status --watch'.\n",

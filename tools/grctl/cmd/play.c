@@ -257,7 +257,7 @@ static int after_estop(conn *c, int error)
         return conn_fail(c, error, "estop");
     }
     return app_fail_trip(c->a, GROBO_TRIP_ESTOP,
-                         "play: emergency stop; 'grctl estop --reset' takes it back");
+                         "play: emergency stop; 'grctl estop --reset' releases it");
 }
 
 /* Plays to the end, then reads where the joints are. */

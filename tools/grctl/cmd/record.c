@@ -569,8 +569,8 @@ static int prepare(recorder *r, app *a)
     r->last_moved = -1;
     if (out && grobo_motion_format_of_path(out) == GROBO_FORMAT_AUTO) {
         return app_fail(a, EXIT_USAGE, "ARG",
-                        "%s: -o %s: its name tells no format; .m, .pseq, .mseq or .yaml",
-                        name_of(r), out);
+                        "%s: -o %s: unknown file type; use .m, .pseq, .mseq or .yaml", name_of(r),
+                        out);
     }
     int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &r->joints);
     if (!status) {
@@ -619,7 +619,7 @@ static int run_teach(app *a)
 const cli_command cmd_record = {
     .name = "record",
     COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
-    .summary = "record a motion that a hand shows",
+    .summary = "record a motion by moving the robot by hand",
     .details =
         "All joints, or those named, give way to a hand that turns them and hold when it lets go.\n"
         "A joint without torque stays so: it is limp and nothing is switched on. --limp switches\n"

@@ -240,7 +240,7 @@ static int run(app *a)
 const cli_command cmd_robot = {
     .name = "robot",
     COMMAND_ARGUMENTS("list|show|check|servos|import|new [NAME|FILE]", 1, 2, CLI_ARG_ROBOT),
-    .summary = "robots that are known, and files of others",
+    .summary = "list known robots, write and check files of others",
     .details =
         "list: the robots that come with grctl. show: what one of them is, or a file says, or the\n"
         "robot of --robot. check: everything that is wrong with a file, with line and column; the\n"

@@ -269,7 +269,7 @@ static int add_robot(farm *f, int robot)
     if (faults &&
         grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0) {
         return app_fail(f->a, EXIT_USAGE, "ARG",
-                        "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02; see "
+                        "sim: --fault: '%s' is not a list such as drop=0.01,flip=0.02; see "
                         "'grctl help sim'",
                         faults);
     }
@@ -411,7 +411,7 @@ static int run(app *a)
 const cli_command cmd_sim = {
     .name = "sim",
     .arguments = "",
-    .summary = "a simulated robot behind a pty, for any program",
+    .summary = "simulate a robot behind a pty, for any program",
     .details =
         "Runs a simulated robot (GR001, or that of --robot), or a chain of servos, until a\n"
         "signal. Prints the path of its pty, one line a robot, when it can be opened; where\n"

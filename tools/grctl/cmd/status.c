@@ -73,7 +73,7 @@ static int run(app *a)
 const cli_command cmd_status = {
     .name = "status",
     COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
-    .summary = "angle, torque, current, temperature and voltage of the joints",
+    .summary = "print angle, torque, current, temperature, voltage of joints",
     .details = "Reads every joint, or those named, and prints what it reports. A joint that does\n"
                "not answer is shown with the reason and makes the exit status 1; the others are\n"
                "shown all the same. Nothing moves.\n",

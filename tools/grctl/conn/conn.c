@@ -49,7 +49,7 @@ static void on_session(grobo_session *session, grobo_session_event event, int er
     case GROBO_SESSION_EVENT_UNGUARDED:
         if (link->user) {
             app_note(link->user->a,
-                     "the guard has ended: if grctl is killed, joints go on to their goals");
+                     "the guard has ended: if grctl is killed, joints continue to their goals");
         }
         break;
     }
@@ -659,7 +659,7 @@ int conn_open_to_move(conn *c, app *a)
     conn_watch(c, true);
     if (grobo_estop_stands(conn_device(c))) {
         return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LATCHED),
-                        "%s: stopped by 'grctl estop'; 'grctl estop --reset' takes it back",
+                        "%s: stopped by 'grctl estop'; 'grctl estop --reset' releases it",
                         conn_device(c));
     }
     return EXIT_DONE;

@@ -51,7 +51,7 @@ static void take_latch(agent *g, agent_group *group, json_t *latch)
         json_decref(group->latch);
         group->latch = NULL;
         group->telling = false;
-        say_event(g, NULL, "released", "the stop of the group was taken back");
+        say_event(g, NULL, "released", "the stop of the group was released");
     }
 }
 

@@ -191,7 +191,7 @@ int playlist_load(playlist *list, app *a)
     grobo_budget line;
     memset(list, 0, sizeof *list);
     if (app_option(a, PLAY_RATE)->given && app_option(a, PLAY_KEY)->given) {
-        return app_fail(a, EXIT_USAGE, "ARG", "play: --rate and --key exclude each other");
+        return app_fail(a, EXIT_USAGE, "ARG", "play: --rate and --key cannot be used together");
     }
     if (a->line.n_arguments > PLAY_FILES_MAX) {
         return app_fail(a, EXIT_USAGE, "ARG", "play: more than %d files", PLAY_FILES_MAX);

@@ -319,8 +319,8 @@ static int try_joint(contact *k)
              _("hold the robot. Switch the torque of %s on for a second? It should not move"),
              name);
     if (!ask_yes(k->a, question)) {
-        contact_note(k, "torque_on", NOT_DONE, "the person did not want it");
-        contact_note(k, "move", NOT_DONE, "the person did not want it");
+        contact_note(k, "torque_on", NOT_DONE, "the person declined");
+        contact_note(k, "move", NOT_DONE, "the person declined");
         return contact_try_rates(k);
     }
     int status = test_torque(k);
@@ -333,7 +333,7 @@ static int try_joint(contact *k)
         app_note(k->a, "something was not as assumed; better send the report first");
     }
     if (!ask_yes(k->a, question)) {
-        contact_note(k, "move", NOT_DONE, "the person did not want it");
+        contact_note(k, "move", NOT_DONE, "the person declined");
         return contact_try_rates(k);
     }
     status = test_move(k, &step_deg);

@@ -157,7 +157,7 @@ static int ask_and_try(contact *k, const char *name, const servo_change *there, 
                  : _("keep the power on. Set %s from %d to %d bps and back?"),
              joint, old_bps, change_bps(there));
     if (!ask_yes(k->a, question)) {
-        contact_note(k, name, NOT_DONE, "the person did not want it");
+        contact_note(k, name, NOT_DONE, "the person declined");
         return EXIT_DONE;
     }
     int status = contact_open(k, name, false);

@@ -161,7 +161,7 @@ static const char *read_text(const sim_state *s, const char *text, size_t size, 
         const char *end = memchr(text, '\n', size);
         ++*line;
         if (!end || end - text != LINE_BYTES - 2) {
-            return end ? _("is no line of a servo") : _("is cut off");
+            return end ? _("is not a line of a servo") : _("is cut off");
         }
         wrong = read_servo(s, i, text);
         size -= (size_t)(end + 1 - text);
