@@ -101,7 +101,7 @@ write servo 1: position 0.0 deg; reply: 3 bytes
 servo 1 returns present_position 0.0 deg
 free servo 1; reply: 3 bytes
 TEXT
-check 'a family that is none' refuses 2 'is none of rs30x' --family futaba 00
+check 'a family that is none' refuses 2 "invalid value 'futaba' (rs30x" --family futaba 00
 check_json 'a request in JSON' 'lines[0]["packet"]["action"] == "read" and
     lines[0]["packet"]["servos"][0]["address"] == 132 and lines[0]["reply"]["bytes"] == 15' \
     "$GRCTL" decode --json --family dynamixel2 FFFFFD00010700028400 04001D15

@@ -87,7 +87,7 @@ robot=tcp:127.0.0.1:1
 check "nobody listens" finds 'tcp:127.0.0.1:1' 'start a serial server there'
 
 start_sim --baud 57600
-check "another baud rate" finds 'somebody does at 57600 bps' "-b 57600"
+check "another baud rate" finds 'there is one at 57600 bps' "-b 57600"
 stop_sim
 start_sim --wiring bus
 check "another wiring" finds 'straight on the line' "--wiring bus"

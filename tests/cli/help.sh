@@ -71,7 +71,7 @@ check "a value missing" fails 2 'device needs a value' "$GRCTL" status --device
 check "a value too many" fails 2 'json takes no value' "$GRCTL" status --json=yes
 check "a number that is none" fails 2 "'fast' is not a whole number" "$GRCTL" -b fast status
 check "a number too large" fails 2 "'99999999' is not" "$GRCTL" -b 99999999 status
-check "a choice that is none" fails 2 "'string' is none of board|bus" \
+check "a choice that is none" fails 2 "invalid value 'string' (board|bus)" \
     "$GRCTL" --wiring string status
 check "an argument missing" fails 2 'move needs JOINT DEG' "$GRCTL" move R_KNEE_P
 check "an argument too many" fails 2 "'x' is one argument too many" "$GRCTL" version x
