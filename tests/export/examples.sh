@@ -30,7 +30,8 @@ idea follow followed
 idea own_model 'HEAD: success'
 idea robot_file 'SO-101 follower: success'
 idea pump 'there after [0-9]* ms'
-check 'a stabilizer: it moves with the gripper level' short stabilizer 'wrist_flex -0\.5 rad: success'
+check 'a stabilizer: it moves with the gripper level' short stabilizer \
+    'wrist_flex -0\.5 rad: success'
 ideas="$ideas stabilizer"
 no_other() {
     for file in docs/examples/*.c; do
