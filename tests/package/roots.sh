@@ -41,7 +41,11 @@ fresh_root() {
     make_root "$1" make,ca-certificates && mkdir "$root/src" &&
         git ls-files -co --exclude-standard | tar -cf - -T - | tar -xf - -C "$root/src"
 }
+# A machine that is away for 250 ms ends a motion, as it has to: then once more.
 demo() {
+    plays_demo || { grep -q 'host stalled' "$work/said" && plays_demo; }
+}
+plays_demo() {
     quiet in_live_root make -C /src demo &&
         grep -q 'A simulated GR001 stands behind' "$work/said" &&
         grep -q 'largest error' "$work/said" || { tail -n 5 "$work/said"; return 1; }
