@@ -35,11 +35,13 @@ if [ "$(id -u)" -eq 0 ] && command -v setpriv >/dev/null 2>&1; then
 fi
 # shark FILE OPTIONS...: what tshark says; its complaints fail the test.
 shark() {
-    install -m 644 "$1" "$work/shark.pcapng" && install -m 644 $dissector "$work/shark.lua" || return
+    install -m 644 "$1" "$work/shark.pcapng" &&
+        install -m 644 $dissector "$work/shark.lua" || return
     shift
     # $as_user is a list of words.
     # shellcheck disable=SC2086
-    $as_user tshark -X "lua_script:$work/shark.lua" -r "$work/shark.pcapng" "$@" 2>"$work/shark.err"
+    $as_user tshark -X "lua_script:$work/shark.lua" -r "$work/shark.pcapng" "$@" \
+        2>"$work/shark.err"
     shark_status=$?
     # What it says to root, and of the folders of a home that is none, is not about us.
     grep -v 'Running as user\|^$' "$work/shark.err" >&2
@@ -185,8 +187,10 @@ as_plugin() {
     "$work/home/"*) ;;
     *) echo "not in the home: $folder"; return 1 ;;
     esac
-    mkdir -p "$folder" && install -m 644 "$dissector" "$folder" && chmod 644 "$work/move" || return 1
-    env HOME="$work/home" $as_user tshark -r "$work/move" -Y 'grobo.kind == check' 2>/dev/null >"$work/out" &&
+    mkdir -p "$folder" && install -m 644 "$dissector" "$folder" && chmod 644 "$work/move" ||
+        return 1
+    env HOME="$work/home" $as_user tshark -r "$work/move" -Y 'grobo.kind == check' \
+        2>/dev/null >"$work/out" &&
         says 'check'
 }
 check 'as a plugin' as_plugin

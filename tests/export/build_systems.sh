@@ -1,53 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# A program in C and the same in C++ find the library in each way that a build system offers: an
-# installed tree that was moved (pkg-config, CMake, Meson), and its source taken along (CMake's
-# add_subdirectory and FetchContent, Meson's wrap).
+# A program in C and the same in C++ find the library by pkg-config and CMake: an installed tree that
+# was moved, and its source taken along (add_subdirectory, FetchContent). Meson: meson.sh.
 set -u
-
-. tests/support/tap.sh
-. tests/support/built.sh
-here=$(pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-built=${BUILD:-build}
-unset BUILD MAKEFLAGS MAKELEVEL MFLAGS
-CFLAGS=-O0
-CXXFLAGS=-O0
-export CFLAGS CXXFLAGS
-
-if [ -n "${CROSS:-}${EMULATOR:-}" ]; then
-    skip 'build systems' 'only for this machine'
-    done_testing
-    exit 0
-fi
-
-quiet() {
-    "$@" >"$work/out" 2>&1 || { tail -n 40 "$work/out"; return 1; }
-}
-
-# says PROGRAM...: each says what it was made to say.
-says() {
-    for program in "$@"; do
-        [ "$("$program")" = 'no reply in time' ] || { echo "$program"; return 1; }
-    done
-}
-
-installs() {
-    copy_build "$built" "$work/built" &&
-        make_in_copy "$work/built" install-lib DESTDIR="$work/stage" PREFIX=/opt/grobo &&
-        mv "$work/stage/opt/grobo" "$work/moved"
-}
-
-# project FOLDER: an empty one with both programs.
-project() {
-    mkdir -p "$work/$1" && cp "$here/tests/export/consumer.c" "$work/$1/c.c" &&
-        cp "$here/tests/export/consumer.c" "$work/$1/cxx.cpp"
-}
+. tests/support/consumers.sh
 
 # ---- pkg-config ----------------------------------------------------------------------------
-
-export PKG_CONFIG_PATH="$work/moved/lib/pkgconfig"
 
 by_pkg_config() {
     cat >"$work/core.c" <<'C'
@@ -131,44 +89,6 @@ cmake_fetched() {
         diff "$work/listed" "$work/exported"
 }
 
-# ---- Meson ---------------------------------------------------------------------------------
-
-meson_project() {
-    project "$1" && cat >"$work/$1/meson.build" <<'M'
-project('consumer', 'c', 'cpp', default_options: ['c_std=c11', 'cpp_std=c++11'])
-grobo = dependency('grobo', version: '>= 0.1')
-executable('c', 'c.c', dependencies: grobo)
-executable('cxx', 'cxx.cpp', dependencies: grobo)
-M
-}
-
-meson_builds() {
-    folder=$1
-    shift
-    quiet meson setup "$work/$folder/b" "$work/$folder" "$@" &&
-        quiet meson compile -C "$work/$folder/b" -j 2
-}
-
-meson_installed() {
-    meson_project meson && meson_builds meson && LD_LIBRARY_PATH=$work/moved/lib says \
-        "$work/meson/b/c" "$work/meson/b/cxx"
-}
-
-meson_wrapped() {
-    meson_project wrapped && make --no-print-directory wrap BUILD="$work/wrap" TARBALL="$tarball" &&
-        mv "$work/wrap/subprojects" "$work/wrapped" &&
-        PKG_CONFIG_PATH='' meson_builds wrapped --force-fallback-for=grobo &&
-        says "$work/wrapped/b/c" "$work/wrapped/b/cxx"
-}
-
-# The tree as it stands, as a release is packed.
-pack() {
-    version=$(sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
-    tarball=$work/libgrobo-$version.tar.gz
-    tar -czf "$tarball" --exclude=./build* --exclude=./.git \
-        --transform "s,^\.,libgrobo-$version," ./include ./src ./ports ./tools ./Makefile
-}
-
 check 'an installed tree, moved' installs
 check 'pkg-config: grobo-core needs nothing else' by_pkg_config
 pack
@@ -180,11 +100,5 @@ if command -v cmake >/dev/null; then
     check 'CMake: FetchContent, shared, exports what the map lists' cmake_fetched
 else
     skip 'CMake' 'no cmake (tools/setup.sh --ci installs it)'
-fi
-if command -v meson >/dev/null && command -v ninja >/dev/null; then
-    check 'Meson: dependency' meson_installed
-    check 'Meson: wrap' meson_wrapped
-else
-    skip 'Meson' 'no meson (tools/setup.sh --ci installs it)'
 fi
 done_testing
