@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# A program in C and the same in C++ find the library by pkg-config and CMake: an installed tree that
-# was moved, and its source taken along (add_subdirectory, FetchContent). Meson: meson.sh.
+# A program in C and the same in C++ find the library by pkg-config and CMake: an installed tree,
+# moved, and its source taken along (add_subdirectory, FetchContent). Meson has meson.sh.
 set -u
 . tests/support/consumers.sh
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# A program in C and the same in C++ find the library by Meson: installed and moved, and by its wrap.
+# A program in C and the same in C++ find the library by Meson: installed and moved, and by a wrap.
 set -u
 . tests/support/consumers.sh
 
