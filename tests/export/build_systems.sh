@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # A program in C and the same in C++ find the library by pkg-config and CMake: an installed tree,
-# moved, and its source taken along (add_subdirectory, FetchContent). Meson has meson.sh.
+# moved, and its source taken along (add_subdirectory). fetch_content.sh and meson.sh do the rest.
 set -u
 . tests/support/consumers.sh
 
@@ -24,29 +24,6 @@ C
 }
 
 # ---- CMake ---------------------------------------------------------------------------------
-
-# cmake_project FOLDER LINES...: how the library is found, on lines of its own.
-cmake_project() {
-    folder=$1
-    shift
-    project "$folder" || return 1
-    {
-        printf '%s\n' 'cmake_minimum_required(VERSION 3.16)' 'project(consumer C CXX)' \
-            'set(CMAKE_C_STANDARD 11)' 'set(CMAKE_CXX_STANDARD 11)' \
-            'add_executable(c c.c)' 'add_executable(cxx cxx.cpp)' "$@"
-    } >"$work/$folder/CMakeLists.txt"
-}
-
-# cmake_builds FOLDER OPTION...
-cmake_builds() {
-    folder=$1
-    shift
-    quiet cmake -S "$work/$folder" -B "$work/$folder/b" "$@" &&
-        quiet cmake --build "$work/$folder/b" -j 2 && says "$work/$folder/b/c" "$work/$folder/b/cxx"
-}
-
-link_c='target_link_libraries(c PRIVATE grobo::grobo)'
-link_cxx='target_link_libraries(cxx PRIVATE grobo::grobo)'
 
 cmake_installed() {
     cmake_project found 'find_package(grobo 0.1 REQUIRED)' "$link_c" "$link_cxx" &&
@@ -77,27 +54,13 @@ cmake_source() {
         cmake_builds source
 }
 
-cmake_fetched() {
-    cmake_project fetched 'include(FetchContent)' \
-        "FetchContent_Declare(grobo URL $tarball SOURCE_SUBDIR tools/package)" \
-        'set(BUILD_SHARED_LIBS ON)' 'FetchContent_MakeAvailable(grobo)' "$link_c" "$link_cxx" &&
-        cmake_builds fetched &&
-        readelf -d "$work/fetched/b/c" | grep -q 'NEEDED.*libgrobo\.so\.0' &&
-        nm -D --defined-only "$(find "$work/fetched/b" -name 'libgrobo.so.0')" |
-        sed -n 's/.* [TDBR] //p' | cut -d @ -f 1 | sort -u >"$work/exported" &&
-        sed -n 's/^ *\(grobo_.*\);/\1/p' src/libgrobo.map | sort >"$work/listed" &&
-        diff "$work/listed" "$work/exported"
-}
-
 check 'an installed tree, moved' installs
 check 'pkg-config: grobo-core needs nothing else' by_pkg_config
-pack
 if command -v cmake >/dev/null; then
     check 'CMake: find_package' cmake_installed
     check 'CMake: the static libraries' cmake_static
     check 'CMake: find_package refuses what does not fit' cmake_refuses
     check 'CMake: add_subdirectory' cmake_source
-    check 'CMake: FetchContent, shared, exports what the map lists' cmake_fetched
 else
     skip 'CMake' 'no cmake (tools/setup.sh --ci installs it)'
 fi

@@ -50,3 +50,26 @@ pack() {
     tar -czf "$tarball" --exclude=./build* --exclude=./.git \
         --transform "s,^\.,libgrobo-$version," ./include ./src ./ports ./tools ./Makefile
 }
+
+# cmake_project FOLDER LINES...: how the library is found, on lines of its own.
+cmake_project() {
+    folder=$1
+    shift
+    project "$folder" || return 1
+    {
+        printf '%s\n' 'cmake_minimum_required(VERSION 3.16)' 'project(consumer C CXX)' \
+            'set(CMAKE_C_STANDARD 11)' 'set(CMAKE_CXX_STANDARD 11)' \
+            'add_executable(c c.c)' 'add_executable(cxx cxx.cpp)' "$@"
+    } >"$work/$folder/CMakeLists.txt"
+}
+
+# cmake_builds FOLDER OPTION...
+cmake_builds() {
+    folder=$1
+    shift
+    quiet cmake -S "$work/$folder" -B "$work/$folder/b" "$@" &&
+        quiet cmake --build "$work/$folder/b" -j 2 && says "$work/$folder/b/c" "$work/$folder/b/cxx"
+}
+
+link_c='target_link_libraries(c PRIVATE grobo::grobo)'
+link_cxx='target_link_libraries(cxx PRIVATE grobo::grobo)'
