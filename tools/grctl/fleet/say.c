@@ -105,19 +105,25 @@ void say_latch(agent *g, const agent_group *group)
 
 /* ---- robots ---------------------------------------------------------------------------------- */
 
-static json_t *angles_of(const seat *s)
+/* The angles read last, and the age of the oldest of them: while a motion is played a line may have
+ * little time for readings. */
+static void add_angles(json_t *state, const seat *s)
 {
     const grobo_model *model = app_model(&s->a);
     grobo_joint_info info;
     json_t *list = json_array();
+    int64_t oldest_us = -1;
     for (int j = 0; j < model->n_joints; j++) {
         bool known = grobo_robot_joint(s->c.robot, j, &info) == 0 &&
                      (info.state.valid & GROBO_FIELD_ANGLE) != 0;
         json_array_append_new(list,
                               known ? app_json_number(grobo_deg_from_rad(info.state.angle_rad), 1)
                                     : json_null());
+        oldest_us = known && info.angle_age_us > oldest_us ? info.angle_age_us : oldest_us;
     }
-    return list;
+    json_object_set_new(state, "angles_deg", list);
+    json_object_set_new(state, "angles_age_ms",
+                        oldest_us < 0 ? json_null() : json_integer(oldest_us / 1000));
 }
 
 /* Of all joints: the highest temperature and the lowest voltage. */
@@ -154,7 +160,7 @@ static json_t *state_of(const agent *g, const seat *s)
                                                      : app_json_code(grobo_trip_name(trip.trip)));
     const char *file = g->plays && s->chosen ? fleet_text(g->play.is.body, "file") : NULL;
     json_object_set_new(state, "motion", file ? json_string(file) : json_null());
-    json_object_set_new(state, "angles_deg", angles_of(s));
+    add_angles(state, s);
     add_worst(state, s);
     return state;
 }
