@@ -1216,6 +1216,33 @@ def frames_become_key_poses_and_key_poses_other_formats(browser, server):
 
 
 @test
+def frames_are_edited_in_place(browser, server):
+    path = pathlib.Path(server.folder) / 'mine.yaml'
+    shutil.copy(MOTIONS / 'greet.yaml', path)
+    was = path.read_bytes().split(b'\n')
+    page = browser.page(server.link)
+    until(page, "[...document.querySelectorAll('#make-open option')].some((o) => o.value === 'mine.yaml')")
+    page.click('#tab-make')
+    page.select_option('#make-open', 'mine.yaml')
+    until(page, "cockpit.make.draft && cockpit.make.draft.name === 'mine.yaml'")
+    page.locator('.markers button').nth(5).click() # at 1 s
+    for press in ('PageUp', 'PageUp'):
+        row(page, 'NECK_Y').focus()
+        page.keyboard.press(press)
+        fresh_look(page)
+        assert page.locator('#make-save').is_enabled()
+        page.click('#make-save')
+        until(page, "document.getElementById('make-told').textContent.startsWith('Saved as mine.yaml')")
+        until(page, "document.getElementById('make-save').disabled")
+    now = path.read_bytes().split(b'\n')
+    differ = [n for n, (a, b) in enumerate(zip(was, now)) if a != b]
+    assert len(now) == len(was) and len(differ) == 19 and differ[-1] - differ[0] == 18, differ
+    for n in differ: # one joint of 0.82 to 1.18 s
+        assert sum(a != b for a, b in zip(was[n].split(b','), now[n].split(b','))) == 1, now[n]
+    assert page.evaluate('cockpit.make.draft.frames')
+
+
+@test
 def two_motions_are_compared(browser, server):
     page = browser.page(server.link)
     edit_motion(page, 'greet.pseq')

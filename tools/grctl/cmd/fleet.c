@@ -49,6 +49,47 @@ static bool never(const leader *l)
     return false;
 }
 
+/* ---- who is asked ---------------------------------------------------------------------------- */
+
+/* The groups that agents are of, for who mistyped one: ", a, b". */
+static bool name_groups(const leader *l, char *text, size_t capacity)
+{
+    size_t at = 0, k;
+    json_t *one, *groups = json_object();
+    const char *name;
+    for (int i = 0; i < l->n; i++) {
+        json_array_foreach(json_object_get(l->peers[i].facts, "groups"), k, one)
+        {
+            if (json_is_string(one) && fleet_is_name(json_string_value(one))) {
+                json_object_set_new(groups, json_string_value(one), json_null());
+            }
+        }
+    }
+    bool known = json_object_get(groups, l->group) != NULL;
+    *text = '\0';
+    json_object_foreach(groups, name, one)
+    {
+        if (at + strlen(name) + sizeof ", " < capacity) {
+            at += (size_t)snprintf(text + at, capacity - at, ", %s", name);
+        }
+    }
+    json_decref(groups);
+    return known;
+}
+
+/* Nobody is there to be asked; what follows from that. */
+static int fail_nobody(const leader *l, const char *so)
+{
+    char groups[512];
+    if (!name_groups(l, groups, sizeof groups) && *groups) {
+        return app_fail(l->a, EXIT_ROBOT, "NOTFOUND",
+                        "fleet: no agent is of group %s; there are %s%s", l->group,
+                        groups + strlen(", "), so);
+    }
+    return app_fail(l->a, EXIT_ROBOT, "NOTFOUND", "fleet: no agent of group %s%s%s is online%s",
+                    l->group, l->host ? " at " : "", l->host ? l->host : "", so);
+}
+
 /* ---- answers --------------------------------------------------------------------------------- */
 
 /* Says who refused, or did not answer. The exit status. */
@@ -76,6 +117,13 @@ static int order(leader *l, const char *verb, json_t *body, int64_t bound_us)
 
 /* ---- list and status ------------------------------------------------------------------------- */
 
+/* Is it asked for? Nobody knows of which groups one is that never said it. */
+static bool is_shown(const leader *l, const peer *p)
+{
+    return *p->state && (leader_has(l, p) || (!p->facts && strcmp(l->group, FLEET_ALL) == 0 &&
+                                              (!l->host || strcmp(l->host, p->host) == 0)));
+}
+
 static void list_one(const leader *l, const peer *p)
 {
     size_t i;
@@ -100,7 +148,7 @@ static int run_list(leader *l)
         app_print("host                  connection        robot             model\n");
     }
     for (int i = 0; i < l->n; i++) {
-        if (*l->peers[i].state) {
+        if (is_shown(l, &l->peers[i])) {
             list_one(l, &l->peers[i]);
         }
     }
@@ -118,7 +166,7 @@ static int run_status(leader *l)
         const peer *p = &l->peers[i];
         const char *name;
         json_t *state;
-        json_object_foreach(p->states, name, state)
+        json_object_foreach(is_shown(l, p) ? p->states : NULL, name, state)
         {
             const char *play = fleet_text(state, "play"), *trip = fleet_text(state, "trip");
             bool up = json_is_true(json_object_get(state, "up"));
@@ -185,9 +233,15 @@ static int say_stopped(leader *l)
     return status;
 }
 
+/* Said in any case, for agents that are not seen; but then nobody was seen to stop. */
 static int stop(leader *l, const char *how)
 {
+    int n = leader_choose(l);
     (void)leader_latch(l, how);
+    if (n == 0) {
+        (void)leader_wait(l, STATE_US, never); /* until it is out */
+        return fail_nobody(l, _(": nothing was seen to stop; use the switches"));
+    }
     (void)leader_wait(l, STOPPED_US, all_told);
     return say_stopped(l);
 }
@@ -207,6 +261,9 @@ static int run_reset(leader *l)
 {
     (void)leader_latch(l, NULL);
     (void)leader_wait(l, STATE_US, never);
+    if (leader_choose(l) == 0) {
+        return fail_nobody(l, "");
+    }
     int status = order(l, "reset", json_object(), ANSWER_US);
     if (!status) {
         app_done(l->a, "taken back; nothing moves");
@@ -434,8 +491,7 @@ static int run(app *a)
     if (!status) {
         int n = leader_choose(&l);
         status = verbs[v].asks && n == 0
-                     ? app_fail(a, EXIT_ROBOT, "NOTFOUND", "fleet: no agent of group %s is online",
-                                l.group)
+                     ? fail_nobody(&l, "")
                      : verbs[v].run(&l);
     }
     leader_end(&l);
@@ -454,7 +510,8 @@ const cli_command cmd_fleet = {
         "  play FILE          all prepare, wait for each other, and begin at one time;\n"
         "                     FILE is a name in the folders of the agents\n"
         "  stop, estop        a stop of the group that stands until 'reset': softly, or\n"
-        "                     as an emergency stop that is read back joint by joint\n"
+        "                     as an emergency stop that is read back joint by joint;\n"
+        "                     always of the whole group, whatever --host says\n"
         "  reset              takes that back; nothing moves\n"
         "\n"
         "A stop over a network is a convenience and no safety function: it may come late or\n"
