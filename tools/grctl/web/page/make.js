@@ -211,7 +211,7 @@ export class Make {
                     name, IMPORT_MS / 1000)
                 : t('Taken from the frames of {0}, a key pose every {1} s. Save it under another name.',
                     name, IMPORT_MS / 1000));
-            this.take(draft, look, this.freeName(`${stem}-keys`));
+            this.take(draft, stays ? { ...look, keys: draft.keys } : look, this.freeName(`${stem}-keys`));
             if (!stays) {
                 this.looks.push(draft.keys);
             }
