@@ -163,9 +163,9 @@ dies() {
     return $dies_status
 }
 check "the broker is killed in the midst of a motion: each agent stops its robots" dies
-# A line that plays has little time for readings: angles heard first may be older than the stop. None
-# may be further from where its robot rests than the motion goes (60 degrees a second) in that time
-# and the stop; from there on nothing moves.
+# A line that plays has little time for readings: angles heard first may be older than the stop.
+# None may be further from where its robot rests than the motion goes (60 degrees a second) in that
+# time and the stop; from there on nothing moves.
 nothing_moves() {
     mqtt still 3 "$all" >"$work/still" && python3 - "$work/still" "$all" 2>&1 >&3 <<'EOF2'
 import json, sys

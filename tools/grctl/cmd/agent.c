@@ -14,8 +14,9 @@ static const cli_option options[OPTIONS] = {
         OPTION_TEXT("group", 0, "NAME", "the group of its robots, beside all (that of -d)"),
     [OPT_LABEL] = OPTION_TEXT("label", 0, "NAME,...", "further groups of its robots, at most 8"),
     [OPT_MOTIONS] = OPTION_TEXT("motions", 0, "FOLDER", "where motion files are (motions)"),
-    [OPT_COCKPIT] = OPTION_TEXT("cockpit", 0, "URL", "a page of each robot, % for its name: a link "
-                                                     "in the view of the fleet"),
+    [OPT_COCKPIT] = OPTION_TEXT("cockpit", 0, "URL",
+                                "a page of each robot, its name for %: a link "
+                                "in the view of the fleet"),
 };
 
 static int take_name(app *a, int option, const char *otherwise, const char *what, char *name)

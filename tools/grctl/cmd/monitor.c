@@ -13,7 +13,14 @@
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/screen/screen.h"
 
-enum { DRAW_US = 50000, SENSE_US = 300000, NUDGE_MS = 300, INIT_MS = 3000, GROUP_KEYS = 8 };
+enum {
+    DRAW_US = 50000,
+    SENSE_US = 300000,
+    NUDGE_MS = 300,
+    INIT_MS = 3000,
+    GROUP_KEYS = 8,
+    GROUP_US = 500000
+};
 
 __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, const char *format, ...)
 {
@@ -437,6 +444,13 @@ static int run_plain(app *a)
 static int run(app *a)
 {
     static monitor m;
+    if (a->group && a->line.n_arguments) {
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "monitor: a group is watched; to play, grctl -d %s play", a->group->name);
+    }
+    if (a->group) {
+        return monitor_group(a, GROUP_US);
+    }
     memset(&m, 0, sizeof m);
     int status = a->line.n_arguments ? playlist_load(&m.list, a) : EXIT_DONE;
     if (!status && (a->json || !screen_possible())) {
@@ -470,7 +484,11 @@ const cli_command cmd_monitor = {
         "  p        play the files\n" PLAY_KEYS_HELP "  R        take a stop back\n"
         "  q        quit; what moves is stopped first\n"
         "\n"
+        "Of a group (-d stage) each robot has a line; the keys are e, an emergency stop of all,\n"
+        "and q.\n"
+        "\n"
         "Without a terminal that can show it (or with --json) it is 'status --watch'.\n",
     .example = "  grctl monitor\n  grctl -d sim monitor motions/greet.pseq\n",
+    .group = CLI_GROUP_TOGETHER,
     .run = run,
 };

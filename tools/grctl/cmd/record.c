@@ -638,10 +638,13 @@ const cli_command cmd_record = {
         "  space   keep the posture as it is now\n"
         "  d       drop the last one\n"
         "  s, q    save and end\n"
+        "\n"
+        "Of a group (-d stage) the first robot leads: its motion is recorded.\n"
         "\n" ENDS_HELP,
     .example = "  grctl record\n  grctl record --key -o wave.pseq right_arm\n"
                "  grctl record --limp arms\n",
     COMMAND_OPTIONS(options),
+    .group = CLI_GROUP_FIRST,
     .run = run_record,
 };
 
@@ -666,5 +669,6 @@ const cli_command cmd_teach = {
     .example = "  grctl teach\n  grctl teach -o wave.pseq right_arm\n",
     .options = options,
     .n_options = TEACH_OPTIONS,
+    .group = CLI_GROUP_FIRST,
     .run = run_teach,
 };

@@ -250,14 +250,7 @@ static void open_robots(agent *g, bool first)
         if (s->is_open) {
             continue;
         }
-        *line = '\0';
-        g->a->hushed = line;
-        int status = seat_open(&g->all, i);
-        if (status) {
-            (void)seat_close(s, status);
-        }
-        g->a->hushed = NULL;
-        s->a.hushed = NULL;
+        int status = seat_try(&g->all, i, line);
         if (status && first) {
             app_note(g->a, "%s; tried again every 5 s", *line ? line : s->name);
         } else if (!status && !first) {

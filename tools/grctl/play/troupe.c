@@ -85,6 +85,19 @@ int seat_open(troupe *t, int i)
     return status;
 }
 
+int seat_try(troupe *t, int i, char why[APP_LINE_BYTES])
+{
+    seat *s = &t->seats[i];
+    *why = '\0';
+    t->a->hushed = why;
+    int status = seat_open(t, i);
+    if (status) {
+        (void)seat_close(s, status);
+    }
+    t->a->hushed = s->a.hushed = NULL;
+    return status;
+}
+
 int seat_load(seat *s)
 {
     playlist_free(&s->list);
