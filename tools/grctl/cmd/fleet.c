@@ -610,15 +610,15 @@ static int run(app *a)
 
 const cli_command cmd_fleet = {
     .name = "fleet",
-    COMMAND_ARGUMENTS("list|status|play|stop|estop|reset|push|log [FILE]...", 1, -1, CLI_ARG_FILE),
+    COMMAND_ARGUMENTS("list|status|play|stop|estop|reset|push|log [FILE]", 1, -1, CLI_ARG_FILE),
     .summary = "ask the robots of many machines, over a broker",
     .details =
         "Speaks with every 'grctl agent' at the broker, or with a group or a machine of them.\n"
         "\n"
         "  list, status, log  who is there; how robots are; what happens, until Ctrl-C\n"
         "  push FILE...       puts motions into the folders of the agents\n"
-        "  play FILE...       all prepare, wait for each other, and begin at one time; one\n"
-        "                     FILE after the other, names in the folders of the agents\n"
+        "  play FILE...       all prepare, wait for each other, and begin at one time;\n"
+        "                     FILEs are names in the folders of the agents, played in turn\n"
         "  stop, estop        a stop of the group that stands until 'reset': softly, or\n"
         "                     as an emergency stop that is read back joint by joint;\n"
         "                     always of the whole group, whatever --host says\n"
