@@ -618,7 +618,7 @@ const cli_command cmd_fleet = {
         "  list, status, log  who is there; how robots are; what happens, until Ctrl-C\n"
         "  push FILE...       puts motions into the folders of the agents\n"
         "  play FILE...       all prepare, wait for each other, and begin at one time;\n"
-        "                     FILEs are names in the folders of the agents, played in turn\n"
+        "                     names in the folders of the agents, played in turn\n"
         "  stop, estop        a stop of the group that stands until 'reset': softly, or\n"
         "                     as an emergency stop that is read back joint by joint;\n"
         "                     always of the whole group, whatever --host says\n"
