@@ -231,7 +231,8 @@ format: ## write sources as clang-format 14 does; FILES="src/bus/bus.c" chooses
 	@tools/lint/format.sh --fix $(or $(FILES),$(shell find include src ports tools tests docs -name '*.[ch]'))
 
 # They take longest of those that mostly wait: `make test` tells the slowest.
-TEST_FIRST := servos play fleet serve_driving json guard registers estop test_play_line test_thread_motion
+TEST_FIRST := first_contact servos serve_driving group fleet play registers json guard shell_waiting \
+    test_play_line test_thread_motion
 # The programs and scripts of the chosen rings, as tests/run.sh wants them.
 in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
 # What tests of a build for another machine must know.
@@ -259,13 +260,15 @@ check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	    RING='$(filter-out lint export,$(RING))'
 
 FAMILY_CLIENTS := dynamixel-sdk==4.1.0 rustypot==1.13.1 feetech-servo-sdk==1.0.0 feetech-cli==0.1.8 \
-    deepdiff draccus tqdm numpy huggingface-hub
-# Its motors alone: the rest of it wants torch.
+    deepdiff draccus tqdm numpy huggingface-hub cffi
+# Its motors and robots alone: the rest of it wants torch.
 FAMILY_LEROBOT := lerobot==0.4.4
 check-families: all ## clients of other servos (from PyPI) against the simulator
 	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q --disable-pip-version-check $(FAMILY_CLIENTS)
 	@$(BUILD)/families/bin/pip install -q --disable-pip-version-check --no-deps $(FAMILY_LEROBOT) || true
+	-@$(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/families/bin/python)"
 	@GRCTL="$(call whole,$(GRCTL_RUN))" PYTHON=$(BUILD)/families/bin/python BUILD="$(BUILD)" \
+	    PYTHONPATH="$(abspath $(PYTHON_DIR))" \
 	    TEST_LOGS="$(BUILD)/logs" tests/run.sh tests/families/clients.sh
 
 check-fleet: all ## a crowd of simulated robots at a real broker; HOSTS=4 EACH=25 RUNS=12, TIMES=assert
@@ -312,6 +315,7 @@ check-long: ## all machines, packages, sabotage, fuzzing, the soak, scans of all
 	@$(MAKE) --no-print-directory check-cockpit
 	@$(MAKE) --no-print-directory check-mutants COUNT=300
 	@$(MAKE) --no-print-directory check-map COUNT=
+	@$(MAKE) --no-print-directory check-asserts
 	@$(MAKE) --no-print-directory fuzz FUZZ_S=300
 	@$(MAKE) --no-print-directory soak SEEDS=6
 	@GRCTL="$(abspath $(GRCTL))" SCAN_MATRIX=all SCAN_RUNS=20 TEST_TIMEOUT_S=14400 tests/run.sh tests/cli/scan.sh

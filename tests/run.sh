@@ -8,7 +8,7 @@
 #   PROGRAM@DIR replays the files of a corpus: PROGRAM gets the files of DIR as arguments.
 # environment:
 #   TEST_JOBS=N         how many at a time. Without it as many as processors; beside them, first
-#                       among equals, three times as many of those in real time, which mostly wait
+#                       among equals, five for every two of those in real time, which wait
 #   TEST_TIMEOUT_S=300  how long one may take
 #   TEST_WRAPPER=       put before each program, such as 'valgrind -q --error-exitcode=99'
 #   TEST_LOGS=DIR       keep the logs there (default: a temporary directory)
@@ -124,7 +124,7 @@ awk -v logs="$logs" -v first=" ${TEST_FIRST:-} " -v one_pool="${TEST_JOBS:-}$wra
         (one_pool == "" && /\/(cli|link|port)\// ? "waiting" : "working"))
 }' "$logs/programs"
 {
-    [ ! -s "$logs/waiting" ] || echo "$((2 * processors)) waiting"
+    [ ! -s "$logs/waiting" ] || echo "$(((5 * processors + 1) / 2)) waiting"
     [ ! -s "$logs/working" ] || echo "${TEST_JOBS:-$processors} working nice -n 5"
 } | xargs -P 2 -L 1 sh "$0" --pool "$logs"
 

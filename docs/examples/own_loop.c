@@ -6,7 +6,7 @@
 
 #include <grobo/grobo.h>
 
-static void on_line(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_line(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     grobo_robot *robot = grobo_session_robot(session);
     if (event != GROBO_SESSION_EVENT_UP || grobo_robot_torque(robot, 1, GROBO_TORQUE_ON) < 0) {

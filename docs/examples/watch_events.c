@@ -14,7 +14,7 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-static void on_line(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_line(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     (void)ctx;
     printf("line %s: %s%s\n", grobo_session_device(session),

@@ -117,8 +117,8 @@ GROBO_CORE void grobo_board_parser_init(grobo_board_parser *parser, uint32_t sta
  * Takes bytes that arrived at now_us. Use as grobo_rs30x_parser_feed.
  * @return bytes taken; 0 of n > 0 only while next has something left to do
  */
-GROBO_CORE size_t grobo_board_parser_feed(grobo_board_parser *parser, int64_t now_us,
-                                          const uint8_t *bytes, size_t n);
+GROBO_CORE size_t grobo_board_parser_feed(grobo_board_parser *parser, const uint8_t *bytes,
+                                          size_t n, int64_t now_us);
 
 /**
  * Hands out the next frame. frame->packet points into the parser, valid until the next call of

@@ -270,12 +270,12 @@ GROBO_CORE int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t 
 /**
  * Makes a body ready at its first frame. With the balancer this solves the whole motion several
  * times; without, it only sorts keys and frames are solved as they are asked for.
- * @param[out] body points into the workspace; untouched on error
  * @param workspace aligned as malloc() aligns; to be kept while the body is in use
+ * @param[out] body points into the workspace; untouched on error
  * @return 0, GROBO_ERR_SPACE, or as grobo_body_workspace_bytes().
  */
-GROBO_CORE int grobo_body_init(grobo_body **body, const grobo_body_setup *setup, void *workspace,
-                               size_t workspace_bytes);
+GROBO_CORE int grobo_body_init(const grobo_body_setup *setup, void *workspace,
+                               size_t workspace_bytes, grobo_body **body);
 
 /** Number of frames, at least 1. With the balancer they last one second beyond the last key. */
 GROBO_CORE int grobo_body_frame_count(const grobo_body *body);

@@ -22,17 +22,17 @@ GROBO_API bool grobo_body_wanted(const grobo_body_model *model, const grobo_moti
 /**
  * Makes a body that solves a motion's key poses. Link targets are found by name, or by index where
  * no link has it; others than waist and feet, and joints beyond the model's, are ignored.
- * @param[out] body owned by the caller: grobo_body_free(). Untouched on error.
  * @param model borrowed for the body's life
  * @param motion used during the call only
  * @param options may be NULL: all zero
  * @param mem borrowed for the body's life; NULL: the C library's
+ * @param[out] body owned by the caller: grobo_body_free(). Untouched on error.
  * @return 0, GROBO_ERR_TYPE (no key poses), GROBO_ERR_EMPTY (no key), GROBO_ERR_NOMEM, or as
  * grobo_body_init().
  */
-GROBO_API int grobo_body_new(grobo_body **body, const grobo_body_model *model,
-                             const grobo_motion *motion, const grobo_body_options *options,
-                             const grobo_mem *mem);
+GROBO_API int grobo_body_new(const grobo_body_model *model, const grobo_motion *motion,
+                             const grobo_body_options *options, const grobo_mem *mem,
+                             grobo_body **body);
 
 /** Frees a body that grobo_body_new() made; NULL is nothing. */
 GROBO_API void grobo_body_free(grobo_body *body);

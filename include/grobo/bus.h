@@ -9,9 +9,9 @@
  *
  * A pump does, whenever bytes came or the deadline passed, always in this order:
  * @code
- *   grobo_bus_rx(&bus, now, bytes, n);              // what has arrived, first
+ *   grobo_bus_rx(&bus, bytes, n, now);              // what has arrived, first
  *   grobo_bus_step(&bus, now);                      // timeouts, replies that need none
- *   n = grobo_bus_tx(&bus, now, buf, sizeof buf);   // > 0: write buf, all of it, in order
+ *   n = grobo_bus_tx(&bus, buf, sizeof buf, now);   // > 0: write buf, all of it, in order
  *   wake_up_at(grobo_bus_deadline(&bus, now));      // <= now: again at once
  * @endcode
  *
@@ -277,7 +277,7 @@ GROBO_CORE int grobo_bus_raise(grobo_bus *bus, grobo_txn *txn, grobo_priority pr
 GROBO_CORE int grobo_bus_cancel_all(grobo_bus *bus, unsigned priority_bits, int result);
 
 /** Takes n bytes that arrived; callbacks may run. now_us must not run backwards. */
-GROBO_CORE void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n);
+GROBO_CORE void grobo_bus_rx(grobo_bus *bus, const uint8_t *bytes, size_t n, int64_t now_us);
 
 /** Lets time pass: ends what is over or too late; callbacks may run. */
 GROBO_CORE void grobo_bus_step(grobo_bus *bus, int64_t now_us);
@@ -288,7 +288,7 @@ GROBO_CORE void grobo_bus_step(grobo_bus *bus, int64_t now_us);
  * @return bytes put into buf, all of one frame; 0 when nothing may start now; GROBO_ERR_SPACE when
  *         the frame is longer than cap (GROBO_FRAME_MAX_BYTES is always enough)
  */
-GROBO_CORE int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap);
+GROBO_CORE int grobo_bus_tx(grobo_bus *bus, uint8_t *buf, size_t cap, int64_t now_us);
 
 /** When to call step and tx next, though no byte comes; GROBO_NEVER_US: no need. */
 GROBO_CORE int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us);

@@ -7,9 +7,9 @@
  * Every function is pure apart from `ctx`: no I/O, no waiting, no allocation. They run inside the
  * engine's calls, so they must not call the engine back.
  *
- * A robot of RS30x servos needs data only: grobo_rs30x_driver_init() fills a whole table from a
- * model and a protocol, and single functions may then be replaced. Another kind of servo or board
- * replaces all of them, and brings a protocol of its own (protocol.h).
+ * A robot of servos that the library knows needs data only: grobo_rs30x_driver_init() and its like
+ * below fill a whole table from a model, and single functions may then be replaced. Another kind
+ * of servo or board replaces all of them, and brings a protocol of its own (protocol.h).
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_DRIVER_H

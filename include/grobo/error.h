@@ -4,7 +4,7 @@
  * @brief The one result convention: int, >= 0 is success or a count, < 0 is one of these.
  *
  * Out-parameters are untouched when a call fails. The cause that an operating system gave is kept
- * by the object that met it (grobo_serial_os_error() and the like); callers never read errno.
+ * by the object that met it (grobo_serial_cause() and the like); callers never read errno.
  *
  * NULL where something must be is GROBO_ERR_ARG; for no bytes at all it may stand. What returns no
  * such result does nothing then, and returns 0, false or NULL, as a deadline GROBO_NEVER_US.

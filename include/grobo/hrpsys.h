@@ -10,7 +10,7 @@
  * @code
  *   grobo_hrpsys_servo_name(&h, "all", true);          // a job: wait for its end
  *   for (each period) {
- *       grobo_hrpsys_read_joint_angles(&h, angle_rad, 20, max_age_us);
+ *       grobo_hrpsys_read_joint_angles(&h, max_age_us, angle_rad, 20);
  *       ...
  *       grobo_hrpsys_write_joint_commands(&h, command_rad, 20);
  *       grobo_hrpsys_one_step(&h);
@@ -117,8 +117,8 @@ GROBO_API int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bo
  * @param max_age_us GROBO_NEVER_US: any age.
  * @return number of joints that have an angle, or GROBO_ERR_SPACE (capacity < joints).
  */
-GROBO_API int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, double *angle_rad,
-                                             size_t capacity, int64_t max_age_us);
+GROBO_API int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, int64_t max_age_us,
+                                             double *angle_rad, size_t capacity);
 
 /**
  * writeJointCommands: the targets of the next oneStep. Nothing is sent.

@@ -31,7 +31,7 @@ typedef struct grobo_timer grobo_timer;
  * Called when a deadline has come. The timer is not armed any more; it may be set again or freed
  * in here. `late_us` >= 0 is how long ago the deadline was.
  */
-typedef void (*grobo_timer_fn)(grobo_timer *timer, int64_t late_us, void *ctx);
+typedef void (*grobo_timer_fn)(void *ctx, grobo_timer *timer, int64_t late_us);
 
 /**
  * Makes a timer that is not armed.

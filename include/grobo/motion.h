@@ -88,13 +88,13 @@ typedef struct grobo_motion grobo_motion;
 
 /**
  * Makes an empty motion.
- * @param[out] motion owned by the caller: grobo_motion_free().
  * @param n_joints 0..GROBO_JOINTS_MAX; see grobo_motion_set_joints()
  * @param mem borrowed for the motion's life; NULL: the C library's
+ * @param[out] motion owned by the caller: grobo_motion_free().
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_CAP or GROBO_ERR_NOMEM.
  */
-GROBO_API int grobo_motion_new(grobo_motion **motion, grobo_motion_kind kind, int n_joints,
-                               const grobo_mem *mem);
+GROBO_API int grobo_motion_new(grobo_motion_kind kind, int n_joints, const grobo_mem *mem,
+                               grobo_motion **motion);
 /** Frees a motion and all it has; NULL is nothing. */
 GROBO_API void grobo_motion_free(grobo_motion *motion);
 /** A deep copy, with the same allocator. @return 0 or GROBO_ERR_NOMEM. */

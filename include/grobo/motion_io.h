@@ -42,7 +42,7 @@ typedef struct grobo_diagnostic {
 typedef struct grobo_diagnostics grobo_diagnostics;
 
 /** Makes an empty list; mem as everywhere. @return 0 or GROBO_ERR_NOMEM. */
-GROBO_API int grobo_diagnostics_new(grobo_diagnostics **list, const grobo_mem *mem);
+GROBO_API int grobo_diagnostics_new(const grobo_mem *mem, grobo_diagnostics **list);
 /** Frees a list; NULL is nothing. */
 GROBO_API void grobo_diagnostics_free(grobo_diagnostics *list);
 /** Empties it. */

@@ -3,10 +3,14 @@
  * @file protocol.h
  * @brief How servos talk, as a table: what the bus (bus.h) asks a family of servos.
  *
- * The bus knows when something is sent and what it waits for; a protocol knows what bytes are. A
- * table is const data and pure functions, so that one serves any number of lines and threads. Those
- * there are: grobo_rs30x_protocol (rs30x.h), and grobo_board_protocol (board.h) for the same
- * servos behind GR001's board.
+ * The bus knows when something is sent and what it waits for; a protocol knows what bytes mean. A
+ * table is const data and pure functions, so that one serves any number of lines and threads. The
+ * library has grobo_rs30x_protocol (rs30x.h), grobo_board_protocol (board.h: the same servos behind
+ * GR001's board), grobo_dxl2_protocol, grobo_dxl1_protocol, grobo_feetech_protocol,
+ * grobo_lx16a_protocol and grobo_ics_protocol, each in the header of its family.
+ *
+ * No function of a table is given NULL. n is the number of bytes, cap the room of a buffer. What
+ * builds a frame returns its bytes, or GROBO_ERR_SPACE.
  */
 #ifndef GROBO_PROTOCOL_H
 #define GROBO_PROTOCOL_H

@@ -5,7 +5,9 @@
  *
  * A table holds the registers of a series and its models; one row may serve some of the models
  * only. Tables are const data: grobo_rs30x_table (rs30x.h), grobo_dxl2_table (dxl2.h),
- * grobo_dxl1_table (dxl1.h), grobo_sts_table and grobo_scs_table (feetech.h).
+ * grobo_dxl1_table (dxl1.h), grobo_sts_table and grobo_scs_table (feetech.h), grobo_lx16a_table
+ * (lx16a.h), grobo_ics_table (ics.h). All functions are pure and thread safe.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_REGISTERS_H
 #define GROBO_REGISTERS_H

@@ -177,8 +177,9 @@ GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy);
 GROBO_API int grobo_robot_estop(grobo_robot *robot);
 
 /**
- * Latches as grobo_robot_estop() does, and sends nothing: for a robot that another program has
- * stopped. @return 0, or GROBO_ERR_STATE while a move or a motion runs.
+ * Latches as grobo_robot_estop() does, and sends nothing but the halts that wait for the line, as
+ * behind grobo_robot_stop(): for a robot that another program has stopped.
+ * @return 0, or GROBO_ERR_STATE while a move or a motion runs.
  */
 GROBO_CORE int grobo_robot_latch(grobo_robot *robot);
 

@@ -20,14 +20,13 @@ GROBO_BEGIN_DECLS
 
 /** A family of servos: one way to talk, and the models that talk so. */
 typedef struct grobo_robot_family {
-    const char *name;                       /**< "feetech": as a file names it */
-    const grobo_servo_table *const *tables; /**< NULL behind the last; NULL: RS30x, which the
-                                                 simulator has by grobo_sim_type_row() */
-    uint32_t baud_bps;                      /**< where a file has none */
-    grobo_wiring wiring;                    /**< where a file has none */
-    /** Fills a driver, as grobo_feetech_driver_init() does.
-     *  @return 0, or GROBO_ERR_UNSUPPORTED: it has no such wiring, or GROBO_ERR_ARG */
-    int (*init)(grobo_driver *driver, const grobo_model *model, grobo_wiring wiring);
+    const char *name;                   /**< "feetech": as a file names it */
+    const grobo_servo_table *tables[3]; /**< of its models, NULL behind the last */
+    uint32_t baud_bps;                  /**< where a file has none */
+    grobo_wiring wiring;                /**< where a file has none */
+    /** Fills a driver, as grobo_feetech_driver_init() does, by grobo_wiring; NULL: it cannot be
+     *  wired so. */
+    int (*init[2])(grobo_driver *driver, const grobo_model *model);
 } grobo_robot_family;
 
 /** The families that a file may name, NULL behind the last. */

@@ -78,20 +78,20 @@ typedef struct grobo_serial_counters {
 typedef struct grobo_serial grobo_serial;
 
 /** Bytes received (asynchronous mode). `bytes` is valid during the call; size > 0. */
-typedef void (*grobo_serial_data_fn)(grobo_serial *serial, const uint8_t *bytes, size_t size,
-                                     void *ctx);
+typedef void (*grobo_serial_data_fn)(void *ctx, grobo_serial *serial, const uint8_t *bytes,
+                                     size_t size);
 
 /**
  * Something happened (asynchronous mode), reported from the loop, never from inside a function of
  * this header. `error` is GROBO_OK, or the GROBO_ERR_* of UNPLUGGED and FAILED, whose cause
  * grobo_serial_cause() has.
  */
-typedef void (*grobo_serial_event_fn)(grobo_serial *serial, grobo_serial_event event, int error,
-                                      void *ctx);
+typedef void (*grobo_serial_event_fn)(void *ctx, grobo_serial *serial, grobo_serial_event event,
+                                      int error);
 
 /** Every byte that goes in or out, for a trace, in either mode; must not call this header. */
-typedef void (*grobo_serial_tap_fn)(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                                    size_t size, void *ctx);
+typedef void (*grobo_serial_tap_fn)(void *ctx, grobo_direction direction, int64_t now_us,
+                                    const uint8_t *bytes, size_t size);
 
 /** What a port is made of. All zero is a valid one: synchronous, no device yet. */
 typedef struct grobo_serial_config {
@@ -267,11 +267,11 @@ GROBO_CORE void grobo_serial_discard_output(grobo_serial *serial);
  * A packet as hex, "FA AF 03", NUL-terminated. No port is needed. Thread safe.
  * @return the length of the text; GROBO_ERR_SPACE when text_bytes < 3 * size (1 for size 0).
  */
-GROBO_API int grobo_hex(char *text, size_t text_bytes, const void *bytes, size_t size);
+GROBO_API int grobo_hex(const void *bytes, size_t size, char *text, size_t text_bytes);
 
 /** A packet as one line of hex into a stream that the caller gives. @return GROBO_OK,
  *  GROBO_ERR_IO. */
-GROBO_API int grobo_hex_print(FILE *stream, const void *bytes, size_t size);
+GROBO_API int grobo_hex_print(const void *bytes, size_t size, FILE *stream);
 
 GROBO_END_DECLS
 

@@ -77,8 +77,8 @@ typedef struct grobo_session grobo_session;
  * FAILED, the session is closed. grobo_session_cause() has details. LOST with GROBO_ERR_STALLED:
  * this process was stopped (SIGSTOP) while joints moved, and its guard stopped the robot.
  */
-typedef void (*grobo_session_event_fn)(grobo_session *session, grobo_session_event event, int error,
-                                       void *ctx);
+typedef void (*grobo_session_event_fn)(void *ctx, grobo_session *session, grobo_session_event event,
+                                       int error);
 
 /** What a session is made of. Zero means default. */
 typedef struct grobo_session_config {

@@ -108,28 +108,14 @@ typedef struct grobo_sim_event {
  * Called at each event. What comes over wires is reported in order of time; what a servo does on
  * its own (overheating, end of a flash write) when somebody next speaks to it or looks at it.
  */
-typedef void (*grobo_sim_hook)(const grobo_sim_event *event, void *ctx);
+typedef void (*grobo_sim_hook)(void *ctx, const grobo_sim_event *event);
 
 /* ---- servos --------------------------------------------------------------------------------- */
-
-/** A servo that can be simulated: a row of a table. docs/simulator.md has the sources. */
-typedef struct grobo_sim_type {
-    const char *name;     /**< "RS301CR" */
-    uint16_t model;       /**< register MODEL; of a joint: its servo_model */
-    uint16_t stall_ma;    /**< current at a stop */
-    int32_t speed_mdeg_s; /**< 0.001 degree a second, without load at 7.4 V */
-    bool early;           /**< lacks what came with RS303MR: No.22, 23, 60-127, answers to all */
-} grobo_sim_type;
-
-/** The row of the table, NULL behind its end. Static storage; thread safe. */
-GROBO_CORE const grobo_sim_type *grobo_sim_type_row(size_t index);
-/** The servo called name[0..length-1], in any case; NULL for none. Static storage; thread safe. */
-GROBO_CORE const grobo_sim_type *grobo_sim_type_named(const char *name, size_t length);
 
 /** How the servos of a family talk, what they remember and do. Private. */
 typedef struct grobo_sim_family grobo_sim_family;
 
-/** Futaba RS30x. A simulator needs no type for them. */
+/** Models of grobo_rs30x_table. */
 GROBO_API extern const grobo_sim_family grobo_sim_rs30x;
 /** Models of grobo_dxl2_table. */
 GROBO_API extern const grobo_sim_family grobo_sim_dxl2;
@@ -154,8 +140,9 @@ typedef struct grobo_sim_config {
     size_t size;              /**< GROBO_SIM_CONFIG_INIT */
     const grobo_model *model; /**< NULL: GR001. Borrowed for the life of the simulator */
     grobo_wiring wiring;      /**< default: board */
-    const grobo_servo_model *const *servos;  /**< bus: of each joint, NULL: an RS30x, the joint's
-                                                 servo_model; NULL: all are RS30x. Borrowed */
+    const grobo_servo_model *const *servos;  /**< of each joint, NULL: an RS30x, the joint's
+                                                 servo_model; NULL: all are RS30x, as a board needs
+                                                 them. Borrowed */
     const grobo_sim_family *const *families; /**< of those servos, NULL behind the last. Borrowed */
     uint32_t baud_bps; /**< board: its host port; bus: the servos' line. 115200, or what servos of
                             the first one's family have as a rule */

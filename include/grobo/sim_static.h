@@ -69,7 +69,7 @@ typedef struct grobo_sim_servo {
     uint16_t kept_address;
     uint8_t kept_bytes; /* 0: none */
     const grobo_sim_family *family;
-    const grobo_servo_model *model;        /* NULL: an RS30x */
+    const grobo_servo_model *model;
     grobo_sim_plant plant;                 /* follows the registers */
     uint8_t reg[GROBO_SIM_REGISTER_BYTES]; /* present values are filled in when read */
     uint8_t flash[GROBO_SIM_KEPT_BYTES];   /* registers that survive power-off */

@@ -51,6 +51,9 @@ typedef struct grobo_robot_host {
     /** A request was made: there may be a frame to send, an event to report or a sooner deadline.
      *  Where it is set no request reports events, only the pump does. Called without the lock. */
     void (*wake)(void *ctx);
+    /** Was an emergency stop asked for that the pump has not carried out? Then what moves is
+     *  refused as behind one that was. Called with the lock. */
+    bool (*is_stopped)(void *ctx);
     /** May a latched stop be taken back? @return 0, or the error of grobo_robot_reset(). */
     int (*may_reset)(void *ctx);
     /** Where several threads use the engine: held during every call, but not during callbacks. A
@@ -78,6 +81,7 @@ typedef struct grobo_robot_order {
     bool moves;              /* a stop must cancel it */
     bool stops;              /* leaves after a latched stop as well */
     bool rests;              /* ends a motion: joints come to rest near where they are by then */
+    bool owed;               /* a halt from before a latch that sends nothing */
 } grobo_robot_order;
 
 /** A frame under way. Private. */
@@ -123,6 +127,8 @@ typedef struct grobo_robot_axis {
     uint32_t last;             /* number of the target that left last; 0: what had none */
     uint32_t next;             /* number of the target that waits for the line; 0: none */
     double next_rad;           /* that target */
+    double seen_rad;           /* where it was, by a reading asked for since it was told last */
+    int64_t seen_us;           /* when that was asked for */
     double away_rad;           /* in free mode: how far from its goal when it was read last */
     int64_t next_time_us;      /* and its time, so far */
     int status;                /* of the last reading */

@@ -75,7 +75,7 @@ GROBO_BEGIN_DECLS
 typedef struct grobo_control grobo_control;
 
 /** Something to be done on the loop. @return what grobo_control_call() shall return. */
-typedef int (*grobo_control_fn)(grobo_control *control, void *arg);
+typedef int (*grobo_control_fn)(void *arg, grobo_control *control);
 
 /** What a control is made of. Zero means default. */
 typedef struct grobo_control_config {
@@ -517,7 +517,7 @@ GROBO_API int grobo_control_exit(grobo_control *control, grobo_exit_policy polic
 /** The exit alone, without waiting: see grobo_session_post_exit(). Safe in a signal handler.
  *  @return GROBO_OK, GROBO_ERR_ARG. */
 GROBO_API int grobo_control_post_exit(grobo_control *control, grobo_exit_policy policy);
-/** The stop of grobo_control_stop_motion() alone, without waiting: see grobo_session_post_stop().
+/** Stops what moves, as grobo_robot_stop(), without waiting: see grobo_session_post_stop().
  *  Safe in a signal handler. @return GROBO_OK, GROBO_ERR_ARG. */
 GROBO_API int grobo_control_post_stop(grobo_control *control, bool at_once);
 

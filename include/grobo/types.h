@@ -6,6 +6,11 @@
  * Units are in the names: _us _ms _s _deg _rad _ddeg (0.1 degree, the wire's unit) _ma _mv _bps
  * _bytes _pct. A time is int64_t microseconds of one monotonic clock of the caller's choice, never
  * negative and below INT64_MAX / 1000 (292 years).
+ *
+ * A function takes its object first and its out-parameters last. The time of a pump stands behind
+ * its bytes, the timeout of a call that waits behind everything. A callback gets its context
+ * (`void *ctx`) first, then the object that calls it; a function of a driver's table gets the
+ * driver, then the context.
  */
 #ifndef GROBO_TYPES_H
 #define GROBO_TYPES_H

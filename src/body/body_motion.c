@@ -151,7 +151,7 @@ static int solve_block(grobo_body **body, const grobo_body_setup *setup, const g
     if (workspace == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    result = grobo_body_init(body, setup, workspace, bytes);
+    result = grobo_body_init(setup, workspace, bytes, body);
     if (result < 0) {
         (void)resize(mem, workspace, bytes, 0);
         return result;
@@ -161,8 +161,8 @@ static int solve_block(grobo_body **body, const grobo_body_setup *setup, const g
     return 0;
 }
 
-int grobo_body_new(grobo_body **body, const grobo_body_model *model, const grobo_motion *motion,
-                   const grobo_body_options *options, const grobo_mem *mem)
+int grobo_body_new(const grobo_body_model *model, const grobo_motion *motion,
+                   const grobo_body_options *options, const grobo_mem *mem, grobo_body **body)
 {
     if (body == NULL || motion == NULL) {
         return GROBO_ERR_ARG;
@@ -263,7 +263,7 @@ int grobo_body_frames(grobo_body *body, const grobo_mem *mem, grobo_motion **fra
     }
     grobo_motion *made = NULL;
     int unreached = 0;
-    int result = grobo_motion_new(&made, GROBO_MOTION_FRAMES, body->model->n_joints, mem);
+    int result = grobo_motion_new(GROBO_MOTION_FRAMES, body->model->n_joints, mem, &made);
 
     if (result >= 0) {
         result = grobo_motion_set_frame_rate(made, body->options.rate_hz);

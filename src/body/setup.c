@@ -234,7 +234,7 @@ int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t *bytes)
     struct arena arena = {NULL, 0};
     struct counts counts;
     grobo_body body;
-    const int result = measure(setup, &counts, &body);
+    const int result = bytes == NULL ? GROBO_ERR_ARG : measure(setup, &counts, &body);
 
     if (result < 0) {
         return result;
@@ -410,15 +410,15 @@ static void compute_slopes(grobo_body *body)
     grobo_i_track_slopes(&body->zmp, 3);
 }
 
-int grobo_body_init(grobo_body **body, const grobo_body_setup *setup, void *workspace,
-                    size_t workspace_bytes)
+int grobo_body_init(const grobo_body_setup *setup, void *workspace, size_t workspace_bytes,
+                    grobo_body **body)
 {
     struct arena arena = {workspace, 0};
     struct counts counts;
     grobo_body made;
     grobo_body *at = workspace;
     size_t needed = 0;
-    int result = grobo_body_workspace_bytes(setup, &needed);
+    int result = body == NULL ? GROBO_ERR_ARG : grobo_body_workspace_bytes(setup, &needed);
 
     if (result < 0) {
         return result;

@@ -177,7 +177,7 @@ static bool may_leave(grobo_bus *bus, grobo_txn *txn)
     return result >= 0;
 }
 
-int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap)
+int grobo_bus_tx(grobo_bus *bus, uint8_t *buf, size_t cap, int64_t now_us)
 {
     if (bus == NULL || buf == NULL) {
         return GROBO_ERR_ARG;

@@ -213,18 +213,18 @@ static size_t take_bytes(grobo_bus *bus, const uint8_t *bytes, size_t n)
     return took;
 }
 
-void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
+void grobo_bus_rx(grobo_bus *bus, const uint8_t *bytes, size_t n, int64_t now_us)
 {
     if (bus == NULL || (bytes == NULL && n > 0)) {
         return;
     }
     bus->now_us = now_us;
     bus->stats.rx_bytes += (uint32_t)n;
-    while (n > 0) {
-        size_t took = take_bytes(bus, bytes, n);
-        GROBO_ASSERT(took > 0 && took <= n);
+    const uint8_t *end = bytes + n;
+    while (bytes < end) {
+        size_t took = take_bytes(bus, bytes, (size_t)(end - bytes));
+        GROBO_ASSERT(took > 0 && bytes + took <= end);
         bytes += took;
-        n -= took;
     }
     grobo_i_bus_assert(bus);
 }

@@ -250,12 +250,15 @@ int grobo_posture_mirror(grobo_posture *posture, const grobo_model *model)
     return 0;
 }
 
+/* Most are, and need not be rounded, which keeps the order. No infinity is. */
+static inline bool is_between(const grobo_joint *joint, double angle_rad)
+{
+    return angle_rad >= joint->min_rad && angle_rad <= joint->max_rad && isfinite(angle_rad);
+}
+
 /* On the wire's grid: a limit read from a file in degrees is kept however it was rounded. */
 static bool within_limits(const grobo_joint *joint, double angle_rad)
 {
-    if (angle_rad >= joint->min_rad && angle_rad <= joint->max_rad) {
-        return true; /* most are: rounding keeps the order */
-    }
     int16_t ddeg = grobo_ddeg_from_rad(angle_rad);
     return ddeg >= grobo_ddeg_from_rad(joint->min_rad) &&
            ddeg <= grobo_ddeg_from_rad(joint->max_rad);
@@ -268,7 +271,7 @@ int grobo_posture_check(const grobo_posture *posture, const grobo_model *model, 
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        if (!is_set(posture, j)) {
+        if (!is_set(posture, j) || is_between(&model->joints[j], posture->angle_rad[j])) {
             continue;
         }
         int result = 0;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Where a joint is, by what it was sent to and by what was read last. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"
@@ -39,6 +40,29 @@ double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
 int64_t grobo_i_axis_until(const grobo_robot_axis *axis)
 {
     return axis->off_way ? axis->own_until_us : axis->way.to_us;
+}
+
+/* A servo slower than this part of its way is too weak for it; one that begins softly keeps up. */
+#define WEAK_PART 0.9
+
+static bool is_weak(const grobo_robot_axis *axis)
+{
+    double way_rad = fabs(axis->way.to_rad - axis->way.from_rad);
+    double time_s = (double)(axis->way.to_us - axis->way.from_us) / 1e6;
+    double speed_rad_s = grobo_rad_from_deg(abs(axis->state.speed_dps));
+    return (axis->state.valid & GROBO_FIELD_SPEED) != 0 && !axis->off_way &&
+           speed_rad_s * time_s < WEAK_PART * way_rad;
+}
+
+double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t now_us)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double way_rad = grobo_i_axis_commanded(axis, now_us);
+    double most_rad = robot->driver->model->joints[joint].max_speed_rad_s *
+                      (double)(now_us - axis->seen_us) / 1e6;
+    double left_rad = way_rad - axis->seen_rad;
+    bool behind = is_weak(axis) && fabs(left_rad) - most_rad > GROBO_I_OFF_WAY_RAD;
+    return behind ? axis->seen_rad + copysign(most_rad, left_rad) : way_rad;
 }
 
 grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint)
@@ -90,6 +114,11 @@ bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
 {
     return robot->driver->goal_wakes &&
            robot->now_us - robot->axes[joint].heard_us > GROBO_I_RESTART_US;
+}
+
+bool grobo_i_may_halt(const grobo_robot *robot)
+{
+    return robot->trip.trip != GROBO_TRIP_ESTOP || robot->holds_at_stop;
 }
 
 void grobo_i_axis_cut(grobo_robot_axis *axis)

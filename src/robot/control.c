@@ -34,8 +34,9 @@ int grobo_robot_resume(grobo_robot *robot)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    int result = robot->trip.latched ? GROBO_ERR_LATCHED
-                                     : grobo_sequencer_resume(&robot->sequencer, robot->now_us);
+    int result = grobo_i_is_latched(robot)
+                     ? GROBO_ERR_LATCHED
+                     : grobo_sequencer_resume(&robot->sequencer, robot->now_us);
     return controlled(robot, result);
 }
 
@@ -86,7 +87,7 @@ int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
     grobo_joint_mask joints = 0;
     int result = grobo_i_play_options(robot, options, &chosen);
     if (result >= 0) {
-        result = robot->trip.latched ? GROBO_ERR_LATCHED : grobo_i_play_rate(robot, &chosen);
+        result = grobo_i_is_latched(robot) ? GROBO_ERR_LATCHED : grobo_i_play_rate(robot, &chosen);
     }
     if (result >= 0) {
         result = grobo_i_play_joints(robot, clip, &chosen, &joints);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The queue of events. */
-#include "src/base/assert.h"
 #include "src/robot/robot.h"
 
 void grobo_i_tell(grobo_robot *robot, const grobo_event *event)
@@ -10,7 +9,6 @@ void grobo_i_tell(grobo_robot *robot, const grobo_event *event)
         robot->counters.lost_events++;
         return;
     }
-    GROBO_ASSERT(robot->events_n < GROBO_ROBOT_EVENTS);
     grobo_event *place =
         &robot->events[(robot->events_head + robot->events_n) % GROBO_ROBOT_EVENTS];
     *place = *event;

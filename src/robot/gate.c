@@ -263,7 +263,7 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
 static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
-    if (robot->trip.trip == GROBO_TRIP_ESTOP && !robot->holds_at_stop) {
+    if (!grobo_i_may_halt(robot) && !order->owed) {
         return GROBO_ERR_LATCHED;
     }
     int64_t rest_us = grobo_i_later(order->asked_us + HALT_AHEAD_US, robot->now_us + HALT_LEAST_US);
@@ -272,7 +272,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
         bool moves = axis->sensed && grobo_i_axis_moves(axis, robot->now_us) &&
                      (!robot->driver->goal_wakes || axis->wants_torque || grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
-            target->posture.angle_rad[j] = grobo_i_axis_commanded(axis, rest_us);
+            target->posture.angle_rad[j] = grobo_i_axis_reached(robot, j, rest_us);
             target->joint_time_us[j] = HALT_TIME_US;
             target->posture.set |= GROBO_JOINT_BIT(j);
         }
@@ -442,17 +442,22 @@ static int judge_alone(const grobo_robot *robot)
     return moves ? GROBO_ERR_STATE : GROBO_OK;
 }
 
-static saying nothing_said(const grobo_robot *robot)
+/* Joints that the model has not got are looked at by nobody: a microcontroller clears bytes one by
+ * one. */
+static void say_nothing(const grobo_robot *robot, saying *says)
 {
-    saying says = {.torqued = {0}};
-    (void)grobo_posture_init(&says.target.posture, robot->driver->model->n_joints);
-    return says;
+    grobo_target *target = &says->target;
+    const size_t n = robot->driver->model->n_joints;
+    (void)grobo_posture_init(&target->posture, (int)n);
+    memset(target->joint_time_us, 0, n * sizeof target->joint_time_us[0]);
+    memset(target->from_rad, 0, n * sizeof target->from_rad[0]);
+    memset(says->torqued, 0, sizeof says->torqued);
 }
 
 static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo_exchange *exchange,
                  bool again, saying *says)
 {
-    *says = nothing_said(robot);
+    say_nothing(robot, says);
     switch ((grobo_i_deed)order->deed) {
     case GROBO_I_DEED_NONE:
         return GROBO_OK;
@@ -489,7 +494,8 @@ int grobo_i_gate_judge(grobo_robot *robot, const grobo_robot_order *order,
 int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_robot_order *order)
 {
     const grobo_driver *driver = robot->driver;
-    saying says = nothing_said(robot);
+    saying says;
+    say_nothing(robot, &says);
     int result = driver->inspect == NULL
                      ? GROBO_ERR_UNSUPPORTED
                      : driver->inspect(driver, robot->driver_ctx, exchange->frame,
@@ -525,20 +531,20 @@ static double begin_of_halt(const grobo_robot *robot, const grobo_target *target
                : to_rad + copysign(fmin(fabs(behind_rad), fmax(most_rad, way_rad)), behind_rad);
 }
 
-/* What the frames of an order ask for. */
-static void aim(const grobo_robot *robot, const grobo_robot_order *order, const saying *says,
-                grobo_target *target)
+/* What the frames of an order ask for: what it says, or the part of it that goes first. */
+static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order *order,
+                               saying *says, grobo_target *part)
 {
-    *target = says->target;
-    if (order->deed == GROBO_I_DEED_GOAL) {
-        (void)grobo_i_segments_cut(robot, order, &says->target, target);
-    }
+    bool cut =
+        order->deed == GROBO_I_DEED_GOAL && grobo_i_segments_cut(robot, order, &says->target, part);
+    grobo_target *target = cut ? part : &says->target;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         target->from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
         if (order->deed == GROBO_I_DEED_HALT) {
             target->from_rad[j] = begin_of_halt(robot, target, j);
         }
     }
+    return target;
 }
 
 /* Part `part` of it; the only calls of these two functions of a driver. */
@@ -572,16 +578,17 @@ static void says_all(const grobo_robot *robot, const grobo_robot_order *order, s
 int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order, grobo_exchange *exchange)
 {
     saying says;
-    grobo_target target;
+    grobo_target part;
+    const grobo_target *target = &says.target;
     grobo_exchange next;
     int result = judge(robot, order, NULL, false, &says);
     if (result >= 0) {
         says_all(robot, order, &says);
-        aim(robot, order, &says, &target);
-        result = make_frame(robot, order, &says, &target, order->part, exchange);
+        target = aim(robot, order, &says, &part);
+        result = make_frame(robot, order, &says, target, order->part, exchange);
     }
     bool several = order->part == 0 && grobo_joints_count(order->joints) > 1;
-    if (result > 0 && several && make_frame(robot, order, &says, &target, 1, &next) > 0) {
+    if (result > 0 && several && make_frame(robot, order, &says, target, 1, &next) > 0) {
         return GROBO_ERR_CAP;
     }
     return result;
@@ -789,9 +796,9 @@ int grobo_i_gate_leave(grobo_robot_slot *slot)
     int result = is_passed(robot, slot) ? GROBO_ERR_STALE
                                         : judge(robot, &slot->order, waiting(slot), again, &says);
     if (result >= 0 && is_built(&slot->order)) {
-        grobo_target target;
-        aim(robot, &slot->order, &says, &target);
-        result = make_frame(robot, &slot->order, &says, &target, slot->order.part, &robot->built);
+        grobo_target part;
+        const grobo_target *target = aim(robot, &slot->order, &says, &part);
+        result = make_frame(robot, &slot->order, &says, target, slot->order.part, &robot->built);
         result = result > 0 ? grobo_i_slot_renew(slot) : result == 0 ? GROBO_ERR_EMPTY : result;
     }
     if (result < 0) {

@@ -73,7 +73,6 @@ static void assert_job(const grobo_robot *robot, const grobo_robot_task *job)
     }
     GROBO_ASSERT(robot->link);
     GROBO_ASSERT(job->script != NULL && job->number > 0);
-    GROBO_ASSERT(job->activity <= GROBO_I_WAIT);
     GROBO_ASSERT((job->todo & ~grobo_i_all_joints(robot)) == 0);
     GROBO_ASSERT((job->failed & ~grobo_i_all_joints(robot)) == 0);
     GROBO_ASSERT((job->joints & job->superseded) == 0);

@@ -159,8 +159,8 @@ int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bool on)
 
 /* ---- angles --------------------------------------------------------------------------------- */
 
-int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, double *angle_rad, size_t capacity,
-                                   int64_t max_age_us)
+int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, int64_t max_age_us,
+                                   double *angle_rad, size_t capacity)
 {
     if (hrpsys == NULL) {
         return GROBO_ERR_ARG;
@@ -188,7 +188,7 @@ int grobo_hrpsys_write_joint_commands(grobo_hrpsys *hrpsys, const double *angle_
 
 int grobo_hrpsys_set_period_us(grobo_hrpsys *hrpsys, int64_t period_us)
 {
-    if (period_us < 1 || period_us > GROBO_PLAY_TIME_MAX_US) {
+    if (hrpsys == NULL || period_us < 1 || period_us > GROBO_PLAY_TIME_MAX_US) {
         return GROBO_ERR_ARG;
     }
     hrpsys->command.time_us = period_us;

@@ -307,8 +307,10 @@ void grobo_i_job_run(grobo_robot *robot)
         return; /* whoever runs comes by */
     }
     for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
-        robot->job = &robot->jobs[i];
-        run(robot);
+        if (robot->jobs[i].kind != GROBO_JOB_NONE) {
+            robot->job = &robot->jobs[i];
+            run(robot);
+        }
     }
     robot->job = robot->jobs;
 }
@@ -327,9 +329,6 @@ void grobo_i_jobs_close_up(grobo_robot *robot)
 
 static int64_t deadline_of(const grobo_robot *robot, const grobo_robot_task *job)
 {
-    if (job->kind == GROBO_JOB_NONE) {
-        return GROBO_NEVER_US;
-    }
     bool asks = job->activity == GROBO_I_ASK || job->activity == GROBO_I_READ;
     int64_t at_us = job->activity == GROBO_I_WAIT ? job->until_us : GROBO_NEVER_US;
     /* Drained frames and a job just begun have no event of their own: look again at once. */
@@ -344,7 +343,9 @@ int64_t grobo_i_job_deadline(const grobo_robot *robot)
 {
     int64_t at_us = GROBO_NEVER_US;
     for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
-        at_us = grobo_i_sooner(at_us, deadline_of(robot, &robot->jobs[i]));
+        if (robot->jobs[i].kind != GROBO_JOB_NONE) {
+            at_us = grobo_i_sooner(at_us, deadline_of(robot, &robot->jobs[i]));
+        }
     }
     return at_us;
 }

@@ -176,13 +176,14 @@ void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints)
 
 /* ---- halting --------------------------------------------------------------------------------- */
 
-static void send_halt(grobo_robot *robot, grobo_joint_mask joints)
+static void send_halt(grobo_robot *robot, grobo_joint_mask joints, bool owed)
 {
     grobo_robot_order order = {.joints = joints,
                                .asked_us = robot->now_us,
                                .deed = GROBO_I_DEED_HALT,
                                .each = true,
-                               .stops = true};
+                               .stops = true,
+                               .owed = owed};
     (void)send_order(robot, order,
                      &(way_out){GROBO_I_USE_HALT, GROBO_PRIORITY_STOP, GROBO_NEVER_US});
 }
@@ -199,6 +200,9 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
 {
     grobo_i_slots_cancel(robot, GROBO_I_USE_MOTION);
     grobo_i_slots_cancel(robot, GROBO_I_USE_SEGMENT);
+    if (!grobo_i_may_halt(robot)) {
+        return;
+    }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(joints, j) && may_halt_at(robot, j) > robot->now_us) {
             robot->halts_owed |= GROBO_JOINT_BIT(j);
@@ -209,7 +213,7 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
     }
     joints &= ~robot->halts_owed;
     if (joints != 0) {
-        send_halt(robot, joints);
+        send_halt(robot, joints, false);
     }
 }
 
@@ -222,7 +226,7 @@ void grobo_i_gate_halt_owed(grobo_robot *robot)
     }
     robot->halts_owed &= ~joints;
     if (joints != 0) {
-        send_halt(robot, joints);
+        send_halt(robot, joints, true);
     }
 }
 

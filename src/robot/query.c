@@ -22,6 +22,12 @@ int64_t grobo_i_now(const grobo_robot *robot)
     return now_us > robot->now_us ? now_us : robot->now_us;
 }
 
+bool grobo_i_is_latched(const grobo_robot *robot)
+{
+    const grobo_robot_host *host = &robot->host;
+    return robot->trip.latched || (host->is_stopped != NULL && host->is_stopped(host->ctx));
+}
+
 bool grobo_i_has_frame(const grobo_robot *robot, int64_t now_us)
 {
     const grobo_bus *bus = &robot->bus;

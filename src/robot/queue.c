@@ -38,7 +38,7 @@ int grobo_i_admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask join
     }
     grobo_i_make_way(robot);
     grobo_i_jobs_close_up(robot);
-    if (moves && robot->trip.latched) {
+    if (moves && grobo_i_is_latched(robot)) {
         return GROBO_ERR_LATCHED;
     }
     bool apart = !grobo_i_job_is_shared(kind) && grobo_i_jobs_any(robot, NULL);

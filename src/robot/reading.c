@@ -76,10 +76,6 @@ static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
     axis->adrift = moves && !axis->has_target && axis->own_until_us <= robot->now_us;
 }
 
-/* A reading this far from the way that a joint was sent on is not of a joint on that way: more than
- * what the fastest one does while a frame is on its way. */
-#define OFF_WAY_RAD (12 * 0.017453292519943295)
-
 /* True if the servo has told since the last frame that its goal is another one; or did so before
  * this reading, and does not move but on the way it told of then. */
 static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis,
@@ -108,7 +104,7 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
     double now_rad = grobo_i_way_at(&axis->way, robot->now_us);
     double beside_rad = fmin(fabs(got->angle_rad - then_rad), fabs(got->angle_rad - now_rad));
     return axis->has_target && !axis->in_segments && abs(got->speed_dps) < GROBO_I_SLOW_DPS &&
-           beside_rad > OFF_WAY_RAD;
+           beside_rad > GROBO_I_OFF_WAY_RAD;
 }
 
 /* What a reading tells of where the joint is by now. */
@@ -118,6 +114,8 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
     grobo_robot_axis *axis = &robot->axes[joint];
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
         axis->sensed = true;
+        axis->seen_rad = got->angle_rad;
+        axis->seen_us = asked_us;
         take_move(robot, joint, got);
         axis->off_way = is_off_way(robot, joint, asked_us, got);
         if (!axis->has_target) {

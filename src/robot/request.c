@@ -143,10 +143,10 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
     }
     grobo_i_begin(robot);
     grobo_robot_wish wish = {.kind = GROBO_JOB_MOVE, .joints = target->set, .target = *target};
-    int result = !robot->link           ? GROBO_ERR_CLOSED
-                 : robot->trip.latched  ? GROBO_ERR_LATCHED
-                 : wish.target.set == 0 ? GROBO_ERR_ARG
-                                        : grobo_i_gate_target(robot, &wish.target);
+    int result = !robot->link                ? GROBO_ERR_CLOSED
+                 : grobo_i_is_latched(robot) ? GROBO_ERR_LATCHED
+                 : wish.target.set == 0      ? GROBO_ERR_ARG
+                                             : grobo_i_gate_target(robot, &wish.target);
     if (result >= 0) {
         wish.joints = wish.target.set;
         result = grobo_i_queue_ask(robot, &wish);
@@ -173,7 +173,7 @@ static int admit_target(const grobo_robot *robot, const grobo_posture *target)
     if (!robot->link) {
         return GROBO_ERR_CLOSED;
     }
-    if (robot->trip.latched) {
+    if (grobo_i_is_latched(robot)) {
         return GROBO_ERR_LATCHED;
     }
     if (target->set == 0) {
@@ -326,7 +326,7 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
         result = grobo_i_gate_raw(robot, &exchange, &order);
     }
     if (result >= 0) {
-        result = admit(robot, GROBO_JOB_RAW, order.joints, false);
+        result = admit(robot, GROBO_JOB_RAW, order.joints, order.moves);
     }
     if (result < 0) {
         return refuse(robot, result);
@@ -545,6 +545,7 @@ int grobo_robot_estop(grobo_robot *robot)
     (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
     grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
     robot->counters.estops++;
+    robot->halts_owed = 0;
     robot->stop_owed = true;
     int number = robot->link ? grobo_i_estop_start(robot) : GROBO_ERR_CLOSED;
     grobo_i_end(robot);
@@ -559,6 +560,9 @@ int grobo_robot_latch(grobo_robot *robot)
     grobo_i_begin(robot);
     int result = grobo_i_in_motion(robot) ? GROBO_ERR_STATE : GROBO_OK;
     if (result >= 0 && robot->trip.trip != GROBO_TRIP_ESTOP) {
+        for (int i = 0; i < robot->slots_end; i++) { /* what was to stop before does */
+            robot->slots[i].order.owed = robot->slots[i].use == GROBO_I_USE_HALT;
+        }
         grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
     }
     grobo_i_end(robot);

@@ -119,11 +119,14 @@ void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host)
     }
 }
 
-int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
+int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config, bool senses)
 {
     grobo_robot_config taken;
     if (config_take(&taken, config) < 0) {
         return GROBO_ERR_ARG;
+    }
+    if (!senses) {
+        taken.sense_interval_us = GROBO_SENSE_NEVER;
     }
     grobo_i_lock(robot);
     grobo_bus_config bus = robot->config.bus;
@@ -139,7 +142,7 @@ int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    int result = grobo_i_robot_configure(robot, config);
+    int result = grobo_i_robot_configure(robot, config, true);
     if (result >= 0 && robot->host.wake != NULL) {
         robot->host.wake(robot->host.ctx); /* readings may be due sooner */
     }
@@ -161,7 +164,7 @@ void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size, int64
     }
     grobo_i_enter(robot, now_us);
     if (robot->link) {
-        grobo_bus_rx(&robot->bus, robot->now_us, bytes, size);
+        grobo_bus_rx(&robot->bus, bytes, size, robot->now_us);
     }
     grobo_i_leave(robot);
 }
@@ -177,7 +180,7 @@ int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t no
     if (now_us > robot->now_us) {
         robot->now_us = now_us;
     }
-    int size = robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
+    int size = robot->link ? grobo_bus_tx(&robot->bus, buf, capacity, robot->now_us) : 0;
     if (size > 0) {
         robot->left_us = robot->now_us;
         robot->answered = false;
@@ -216,7 +219,7 @@ void grobo_robot_rx_step(grobo_robot *robot, const uint8_t *bytes, size_t size, 
     }
     grobo_i_enter(robot, now_us);
     if (robot->link) {
-        grobo_bus_rx(&robot->bus, robot->now_us, bytes, size);
+        grobo_bus_rx(&robot->bus, bytes, size, robot->now_us);
         step(robot);
     }
     grobo_i_leave(robot);
@@ -227,7 +230,7 @@ static int64_t deadline(const grobo_robot *robot, int64_t now_us)
     if (!robot->link) {
         return GROBO_NEVER_US;
     }
-    if (robot->events_n > 0 || robot->told_state != grobo_robot_play_state(robot)) {
+    if (robot->events_n > 0 || robot->told_state != grobo_sequencer_get_state(&robot->sequencer)) {
         return now_us; /* to be told by the next step */
     }
     int64_t at_us = grobo_bus_deadline(&robot->bus, now_us);

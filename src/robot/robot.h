@@ -66,6 +66,12 @@ int64_t grobo_i_axis_until(const grobo_robot_axis *axis);
 bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us);
 /* Where it was last asked to go, whether that frame has left or waits. */
 double grobo_i_axis_target(const grobo_robot_axis *axis);
+/* An angle this far from the way that a joint was sent on is not of a joint on that way: more than
+ * what the fastest one does while a frame is on its way. */
+#define GROBO_I_OFF_WAY_RAD (12 * 0.017453292519943295)
+/* Where its way is, but not further than it can have come since it was read: one that is too weak
+ * for its way is far behind it. */
+double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t now_us);
 /* Takes the sensed angle for where a joint is, nothing being asked of it. */
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
 /* Takes what was read for where a joint is: at the angle, or on the move the servo told of. */
@@ -85,6 +91,9 @@ bool grobo_i_axis_is_on(const grobo_robot_axis *axis);
 /* True if its servo may have restarted since it was known to have torque, and its next goal would
  * wake it, wherever it sank to: nothing came from it for so long, or a reply was lost. */
 bool grobo_i_may_sleep(const grobo_robot *robot, int joint);
+/* False behind an emergency stop, which halts nobody where it takes the torque; of halts from
+ * before it those alone leave that grobo_robot_latch() has found waiting. */
+bool grobo_i_may_halt(const grobo_robot *robot);
 /* The way of a joint in segments ends where it was told to go. */
 void grobo_i_axis_cut(grobo_robot_axis *axis);
 /* True while a joint is on the way it was sent on, or a target waits for the line. */
@@ -98,8 +107,9 @@ bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
 
 /* ---- robot.c --------------------------------------------------------------------------------- */
 
-/* grobo_robot_configure() for who pumps afterwards: nobody is woken, so nothing leaves by it. */
-int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config);
+/* grobo_robot_configure() for who pumps afterwards: nobody is woken, so nothing leaves by it.
+ * Without `senses` nothing is read in the background, whatever it says. */
+int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config, bool senses);
 
 /* ---- query.c --------------------------------------------------------------------------------- */
 
@@ -109,6 +119,9 @@ void grobo_i_lock(const grobo_robot *robot);
 void grobo_i_unlock(const grobo_robot *robot);
 /* The time of a request or a question. */
 int64_t grobo_i_now(const grobo_robot *robot);
+
+/* True if requests that move are refused: behind a latched stop, and one that is on its way. */
+bool grobo_i_is_latched(const grobo_robot *robot);
 
 /* True if a frame waits that the wire has time for now. */
 bool grobo_i_has_frame(const grobo_robot *robot, int64_t now_us);

@@ -78,7 +78,6 @@ static bool has_room(const grobo_robot *robot, grobo_i_use use, size_t bytes)
 static void take_bytes(grobo_robot_slot *slot, const grobo_exchange *exchange)
 {
     grobo_robot *robot = slot->robot;
-    GROBO_ASSERT(slot->room == 0);
     slot->txn.frame = robot->frames + robot->frames_used;
     slot->room = exchange->frame_bytes;
     robot->frames_used += slot->room;
@@ -149,7 +148,6 @@ static int on_leave(void *ctx, grobo_txn *txn)
     slot->refused = result < 0;
     if (result >= 0) {
         slot->robot->bus.config.margin_us = margin_of(slot); /* of this frame: it leaves now */
-        GROBO_ASSERT(txn->frame_bytes > 0);
         slot->asked_us = txn->sent_us < 0 ? slot->robot->now_us : slot->asked_us;
     }
     return result;

@@ -8,7 +8,7 @@ int grobo_robot_start_at(grobo_robot *robot, int64_t start_us)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    int result = robot->trip.latched
+    int result = grobo_i_is_latched(robot)
                      ? GROBO_ERR_LATCHED
                      : grobo_sequencer_start_at(&robot->sequencer, start_us, robot->now_us);
     grobo_i_end(robot);

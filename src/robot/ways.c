@@ -9,7 +9,6 @@
  */
 #include <math.h>
 
-#include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
 
@@ -98,7 +97,6 @@ void grobo_i_segments_begin(grobo_robot *robot, int joint)
     if (grobo_i_ways_renewed(robot) == 0) {
         robot->renewed_us = robot->now_us;
     }
-    GROBO_ASSERT(axis->has_target);
     axis->in_segments = robot->in_segments = true;
     axis->told_to_us = robot->now_us + most_us(robot);
 }

@@ -4,10 +4,13 @@
 int grobo_robot_def_driver(const grobo_robot_def *def, grobo_wiring wiring, grobo_driver *driver)
 {
     grobo_driver made;
-    if (def == NULL || driver == NULL) {
+    if (def == NULL || driver == NULL || (unsigned)wiring > GROBO_WIRING_BUS) {
         return GROBO_ERR_ARG;
     }
-    int result = def->family->init(&made, def->model, wiring);
+    if (def->family->init[wiring] == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    int result = def->family->init[wiring](&made, def->model);
     if (result < 0) {
         return result;
     }

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/dxl1.h>
 
-#include "src/robots/bus_family.h"
+#include "src/robots/robots.h"
 
-GROBO_I_BUS_FAMILY(grobo_i_family_dynamixel1, "dynamixel1", grobo_dxl1_driver_init, 1000000,
-                   &grobo_dxl1_table);
+const grobo_robot_family grobo_i_family_dynamixel1 = {
+    .name = "dynamixel1",
+    .tables = {&grobo_dxl1_table},
+    .baud_bps = 1000000,
+    .wiring = GROBO_WIRING_BUS,
+    .init = {[GROBO_WIRING_BUS] = grobo_dxl1_driver_init}};

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/dxl2.h>
 
-#include "src/robots/bus_family.h"
+#include "src/robots/robots.h"
 
-GROBO_I_BUS_FAMILY(grobo_i_family_dynamixel2, "dynamixel2", grobo_dxl2_driver_init, 57600,
-                   &grobo_dxl2_table);
+const grobo_robot_family grobo_i_family_dynamixel2 = {
+    .name = "dynamixel2",
+    .tables = {&grobo_dxl2_table},
+    .baud_bps = 57600,
+    .wiring = GROBO_WIRING_BUS,
+    .init = {[GROBO_WIRING_BUS] = grobo_dxl2_driver_init}};

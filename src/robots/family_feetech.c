@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/feetech.h>
 
-#include "src/robots/bus_family.h"
+#include "src/robots/robots.h"
 
-GROBO_I_BUS_FAMILY(grobo_i_family_feetech, "feetech", grobo_feetech_driver_init, 1000000,
-                   &grobo_sts_table, &grobo_scs_table);
+const grobo_robot_family grobo_i_family_feetech = {
+    .name = "feetech",
+    .tables = {&grobo_sts_table, &grobo_scs_table},
+    .baud_bps = 1000000,
+    .wiring = GROBO_WIRING_BUS,
+    .init = {[GROBO_WIRING_BUS] = grobo_feetech_driver_init}};

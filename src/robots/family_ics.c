@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/ics.h>
 
-#include "src/robots/bus_family.h"
+#include "src/robots/robots.h"
 
-GROBO_I_BUS_FAMILY(grobo_i_family_ics, "ics", grobo_ics_driver_init, 115200, &grobo_ics_table);
+const grobo_robot_family grobo_i_family_ics = {
+    .name = "ics",
+    .tables = {&grobo_ics_table},
+    .baud_bps = 115200,
+    .wiring = GROBO_WIRING_BUS,
+    .init = {[GROBO_WIRING_BUS] = grobo_ics_driver_init}};

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/lx16a.h>
 
-#include "src/robots/bus_family.h"
+#include "src/robots/robots.h"
 
-GROBO_I_BUS_FAMILY(grobo_i_family_lx16a, "lx16a", grobo_lx16a_driver_init, 115200,
-                   &grobo_lx16a_table);
+const grobo_robot_family grobo_i_family_lx16a = {
+    .name = "lx16a",
+    .tables = {&grobo_lx16a_table},
+    .baud_bps = 115200,
+    .wiring = GROBO_WIRING_BUS,
+    .init = {[GROBO_WIRING_BUS] = grobo_lx16a_driver_init}};

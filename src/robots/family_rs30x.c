@@ -3,16 +3,19 @@
 
 #include "src/robots/robots.h"
 
-static int init(grobo_driver *driver, const grobo_model *model, grobo_wiring wiring)
+static int init_board(grobo_driver *driver, const grobo_model *model)
 {
-    switch (wiring) {
-    case GROBO_WIRING_BOARD:
-        return grobo_rs30x_driver_init(driver, model, &grobo_board_protocol);
-    case GROBO_WIRING_BUS:
-        return grobo_rs30x_driver_init(driver, model, &grobo_rs30x_protocol);
-    }
-    return GROBO_ERR_ARG;
+    return grobo_rs30x_driver_init(driver, model, &grobo_board_protocol);
+}
+
+static int init_bus(grobo_driver *driver, const grobo_model *model)
+{
+    return grobo_rs30x_driver_init(driver, model, &grobo_rs30x_protocol);
 }
 
 const grobo_robot_family grobo_i_family_rs30x = {
-    .name = "rs30x", .baud_bps = 115200, .wiring = GROBO_WIRING_BUS, .init = init};
+    .name = "rs30x",
+    .tables = {&grobo_rs30x_table},
+    .baud_bps = 115200,
+    .wiring = GROBO_WIRING_BUS,
+    .init = {[GROBO_WIRING_BOARD] = init_board, [GROBO_WIRING_BUS] = init_bus}};

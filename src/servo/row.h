@@ -5,10 +5,16 @@
 
 #include <grobo/registers.h>
 
+/* Flags of a row: what is measured, what may be written, what is kept, both. */
+enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
+
 #define ROW(name, address, bytes, sign, flags, role, unit, min, max, factory, groups)              \
     {                                                                                              \
         name, unit, (min), (max), (factory), (address), (bytes), (sign), (flags),                  \
             GROBO_ROLE_##role, (groups)                                                            \
     }
+
+/* A list of a table, and how long it is. */
+#define LIST(field, count, list) .field = (list), .count = sizeof(list) / sizeof(list)[0]
 
 #endif

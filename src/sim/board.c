@@ -14,10 +14,7 @@
 static void emit(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t start_ns)
 {
     int64_t at_ns = start_ns > sim->out.free_ns ? start_ns : sim->out.free_ns;
-    for (size_t i = 0; i < n; i++) {
-        at_ns += sim->line_byte_ns;
-        grobo_i_sim_to_host(sim, bytes[i], at_ns);
-    }
+    grobo_i_sim_to_host(sim, bytes, n, at_ns + sim->line_byte_ns);
 }
 
 static void reply(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
@@ -114,7 +111,7 @@ static void listen(grobo_sim *sim, int64_t t_ns)
         if (grobo_board_parser_next(&sim->board, sim->now_us, &frame) > 0) {
             take_frame(sim, &frame, t_ns);
         } else if (sim->fifo_used > 0) {
-            (void)grobo_board_parser_feed(&sim->board, sim->now_us, &sim->fifo[sim->fifo_head], 1);
+            (void)grobo_board_parser_feed(&sim->board, &sim->fifo[sim->fifo_head], 1, sim->now_us);
             sim->fifo_head = (uint16_t)((sim->fifo_head + 1) % GROBO_SIM_FIFO_BYTES);
             GROBO_ASSERT(sim->fifo_used <= GROBO_SIM_FIFO_BYTES);
             sim->fifo_used--;
@@ -145,18 +142,19 @@ bool grobo_i_sim_board_listens(const grobo_sim *sim)
 void grobo_i_sim_board_hear_frame(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
 {
     GROBO_ASSERT(grobo_i_sim_board_listens(sim));
-    (void)grobo_board_parser_feed(&sim->board, sim->now_us, bytes, n);
+    (void)grobo_board_parser_feed(&sim->board, bytes, n, sim->now_us);
     listen(sim, t_ns);
 }
 
-void grobo_i_sim_board_got(grobo_sim *sim, uint8_t byte, int64_t t_ns)
+void grobo_i_sim_board_got(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
 {
     if (sim->board_state != GROBO_SIM_BOARD_WAITING) {
-        sim->stats.stray_bytes++;
+        sim->stats.stray_bytes += (uint32_t)n;
         return;
     }
-    GROBO_ASSERT(sim->got_used < sim->want);
-    sim->got[sim->got_used++] = byte;
+    GROBO_ASSERT(sim->got_used + n <= sim->want);
+    memcpy(&sim->got[sim->got_used], bytes, n);
+    sim->got_used = (uint8_t)(sim->got_used + n);
     sim->board_at_ns = t_ns + (int64_t)sim->config.board_silence_us * 1000;
     if (sim->got_used == sim->want) {
         reply(sim, sim->got, sim->got_used, t_ns);

@@ -75,7 +75,7 @@ void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
         return;
     }
     if (sim->config.echo) {
-        grobo_i_sim_to_host(sim, byte, t_ns);
+        grobo_i_sim_to_host(sim, &byte, 1, t_ns);
     }
     bool still = t_ns - sim->bus_heard_ns > SERVO_STALL_NS;
     sim->bus_heard_ns = t_ns;

@@ -213,7 +213,7 @@ void grobo_i_dxl_refresh(grobo_sim *sim, int index, double speed_mdeg_s, double 
 {
     grobo_sim_servo *servo = &sim->servo[index];
     int64_t battery_mv = grobo_i_sim_supply_mv(sim);
-    int64_t own_mv = battery_mv * servo->model->voltage_mv / (int64_t)sim->config.supply_mv;
+    int64_t own_mv = grobo_i_dxl_own_mv(sim, servo, battery_mv);
     double effort = grobo_i_dxl_effort(sim, index);
     grobo_i_dxl_put(servo, GROBO_ROLE_PRESENT_SPEED,
                     lround(grobo_i_sim_speed_mdeg_s(servo, sim->now_us) / speed_mdeg_s));
@@ -254,9 +254,8 @@ static const grobo_servo_register *begins(const grobo_sim_servo *servo, int addr
     return reg != NULL && reg->address == address ? reg : NULL;
 }
 
-int grobo_i_dxl_look(grobo_sim *sim, int index, int address, int32_t *value)
+int grobo_i_dxl_look(const grobo_sim_servo *servo, int address, int32_t *value)
 {
-    const grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_register *reg = begins(servo, address);
     if (reg == NULL) {
         return GROBO_ERR_ARG;
@@ -265,11 +264,64 @@ int grobo_i_dxl_look(grobo_sim *sim, int index, int address, int32_t *value)
     return GROBO_OK;
 }
 
-int grobo_i_dxl_bytes(const grobo_sim_servo *servo, int address, int32_t value, uint8_t *bytes)
+int grobo_i_dxl_set(grobo_sim *sim, int index, int address, int32_t value)
 {
+    const grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_register *reg = begins(servo, address);
+    uint8_t bytes[4];
     if (reg == NULL || (reg->flags & GROBO_REGISTER_W) == 0) {
         return GROBO_ERR_ARG;
     }
-    return grobo_servo_register_put(servo->model, reg, value, bytes);
+    int n = grobo_servo_register_put(servo->model, reg, value, bytes);
+    return n < 0 ? n : servo->family->store(sim, index, address, bytes, (size_t)n);
+}
+
+/* ---- what families do alike ---------------------------------------------------------------- */
+
+void grobo_i_dxl_tell(grobo_sim *sim, int index, const grobo_servo_register *reg, int32_t value)
+{
+    bool goal = reg->role == GROBO_ROLE_GOAL;
+    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = goal ? GROBO_SIM_GOAL : GROBO_SIM_REGISTER,
+                                             .time_us = sim->now_us,
+                                             .servo = index,
+                                             .value = goal ? value : reg->address,
+                                             .value2 = goal ? 0 : value});
+}
+
+int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, uint8_t id,
+                       const grobo_sim_event *raw)
+{
+    for (int i = 0; i < sim->n_servos; i++) {
+        if (sim->servo[i].family == family && sim->servo[i].plant.id == id &&
+            grobo_i_sim_hears(sim, i, raw)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int64_t grobo_i_dxl_own_mv(const grobo_sim *sim, const grobo_sim_servo *servo, int64_t battery_mv)
+{
+    return battery_mv * servo->model->voltage_mv / (int64_t)sim->config.supply_mv;
+}
+
+bool grobo_i_dxl_fed(const grobo_sim *sim, const grobo_sim_servo *servo, int count_mv)
+{
+    int64_t counts = grobo_i_dxl_own_mv(sim, servo, sim->supply_mv) / count_mv;
+    return counts >= grobo_i_dxl_get(servo, GROBO_ROLE_MIN_VOLTAGE) &&
+           counts <= grobo_i_dxl_get(servo, GROBO_ROLE_MAX_VOLTAGE);
+}
+
+void grobo_i_dxl_one_turn(const grobo_sim *sim, grobo_sim_servo *servo, bool reverse)
+{
+    int32_t turn = grobo_i_dxl_turn(servo);
+    int32_t ticks = grobo_i_dxl_ticks(servo, reverse, grobo_i_sim_angle_mdeg(servo, sim->now_us));
+    servo->turns_ticks = turn > 0 ? ticks - grobo_i_dxl_wrap(ticks, turn) : 0;
+}
+
+int32_t grobo_i_dxl_within(const grobo_sim_servo *servo, int32_t goal)
+{
+    int32_t min = grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION);
+    int32_t max = grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
+    return goal < min ? min : goal > max ? max : goal;
 }

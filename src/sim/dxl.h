@@ -47,9 +47,23 @@ int32_t grobo_i_dxl_wrap(int32_t x, int32_t turn);
 double grobo_i_dxl_effort(const grobo_sim *sim, int servo);
 
 /* For inspection. */
-int grobo_i_dxl_look(grobo_sim *sim, int servo, int address, int32_t *value);
-/* The bytes of a value for a register that begins at an address, or an error. */
-int grobo_i_dxl_bytes(const grobo_sim_servo *servo, int address, int32_t value, uint8_t *bytes);
+int grobo_i_dxl_look(const grobo_sim_servo *servo, int address, int32_t *value);
+int grobo_i_dxl_set(grobo_sim *sim, int servo, int address, int32_t value);
+
+/* Tells what a register got. */
+void grobo_i_dxl_tell(grobo_sim *sim, int servo, const grobo_servo_register *reg, int32_t value);
+/* The servo of a family that has this id and hears a packet; negative: none. */
+int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, uint8_t id,
+                       const grobo_sim_event *raw);
+
+/* What the battery's voltage is for a servo: each has a supply of its own kind. */
+int64_t grobo_i_dxl_own_mv(const grobo_sim *sim, const grobo_sim_servo *servo, int64_t battery_mv);
+/* Whether its supply is within the registers that bound it, whose counts are so many mV. */
+bool grobo_i_dxl_fed(const grobo_sim *sim, const grobo_sim_servo *servo, int count_mv);
+/* Turns before now are forgotten. */
+void grobo_i_dxl_one_turn(const grobo_sim *sim, grobo_sim_servo *servo, bool reverse);
+/* A goal that is beyond the limits becomes that limit. */
+int32_t grobo_i_dxl_within(const grobo_sim_servo *servo, int32_t goal);
 
 /*
  * Servos of a list answer one after another: each listens to those before it and speaks after its

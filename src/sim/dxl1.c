@@ -22,6 +22,7 @@
 #define AX_OVERLOAD_EFFORT 0.8
 #define STS_COUNT_MA 6.5
 #define MX_COUNT_MA 4.5
+#define COUNT_MV 100
 #define LOCK_CLOSED 1
 
 typedef enum dxl1_series { AX, MX, STS, SCS } dxl1_series;
@@ -128,22 +129,11 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
     return ticks - servo->turns_ticks;
 }
 
-static void one_turn(const grobo_sim *sim, grobo_sim_servo *servo)
-{
-    int32_t turn = grobo_i_dxl_turn(servo);
-    int32_t ticks =
-        grobo_i_dxl_ticks(servo, reverses(servo), grobo_i_sim_angle_mdeg(servo, sim->now_us));
-    servo->turns_ticks = turn > 0 ? ticks - grobo_i_dxl_wrap(ticks, turn) : 0;
-}
-
 static int32_t within_limits(const grobo_sim_servo *servo, int32_t goal)
 {
-    int32_t min = grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION);
-    int32_t max = grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
-    if (!is_feetech(servo) || min >= max) {
-        return goal;
-    }
-    return goal < min ? min : goal > max ? max : goal;
+    bool bounds = is_feetech(servo) && grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION) <
+                                           grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
+    return bounds ? grobo_i_dxl_within(servo, goal) : goal;
 }
 
 static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
@@ -243,13 +233,6 @@ static void follow(grobo_sim *sim, int index)
     }
 }
 
-static bool starts(grobo_sim *sim, int index, int32_t here_mdeg)
-{
-    (void)here_mdeg;
-    sim->servo[index].plant.goal_mdeg = goal_mdeg(sim, &sim->servo[index]);
-    return true;
-}
-
 /* The registers changed: torque, force and motion are what they say now. */
 static void go(grobo_sim *sim, int index, bool new_goal)
 {
@@ -259,12 +242,7 @@ static void go(grobo_sim *sim, int index, bool new_goal)
     if (servo->plant.torque != before) {
         grobo_i_sim_torque(sim, index, before);
     } else if (new_goal && servo->plant.torque == GROBO_TORQUE_ON) {
-        servo->due_us = sim->now_us + servo->plant.time_us;
-        servo->plant.goal_mdeg = goal_mdeg(sim, servo);
-        if (!servo->by_hand) {
-            grobo_i_sim_drive(sim, index);
-        }
-        servo->begun_us = sim->now_us;
+        grobo_i_sim_set_out(sim, index);
     }
 }
 
@@ -299,9 +277,7 @@ static void cut(grobo_sim *sim, int index, bool hot)
 /* States that come and go by themselves. */
 static void see_states(const grobo_sim *sim, grobo_sim_servo *servo)
 {
-    int64_t dv = (int64_t)sim->supply_mv * servo->model->voltage_mv / sim->config.supply_mv / 100;
-    bool fed = dv >= grobo_i_dxl_get(servo, GROBO_ROLE_MIN_VOLTAGE) &&
-               dv <= grobo_i_dxl_get(servo, GROBO_ROLE_MAX_VOLTAGE);
+    bool fed = grobo_i_dxl_fed(sim, servo, COUNT_MV);
     bool hot = servo->temperature_c >= grobo_i_dxl_get(servo, GROBO_ROLE_TEMPERATURE_LIMIT);
     unsigned states = (fed ? 0 : GROBO_DXL1_VOLTAGE) | (hot ? GROBO_DXL1_OVERHEATED : 0);
     servo->status =
@@ -378,17 +354,11 @@ static int32_t bps(const grobo_sim *sim, int index)
     return rate_of(servo, grobo_i_dxl_get(servo, GROBO_ROLE_BAUD));
 }
 
-static bool knows(const grobo_servo_model *model)
-{
-    return model->table == &grobo_dxl1_table || model->table == &grobo_sts_table ||
-           model->table == &grobo_scs_table;
-}
-
 static void restart(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_dxl_boot(sim, index);
-    one_turn(sim, servo);
+    grobo_i_dxl_one_turn(sim, servo, reverses(servo));
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
     follow(sim, index);
@@ -499,14 +469,10 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
         grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 1);
     }
     go(sim, index, moves(servo, reg));
-    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = goal ? GROBO_SIM_GOAL : GROBO_SIM_REGISTER,
-                                             .time_us = sim->now_us,
-                                             .servo = index,
-                                             .value = goal ? value : reg->address,
-                                             .value2 = goal ? 0 : value});
+    grobo_i_dxl_tell(sim, index, reg, value);
 }
 
-static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_register *reg;
@@ -517,13 +483,14 @@ static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, 
             took_effect(sim, index, reg);
         }
     }
+    return GROBO_OK;
 }
 
 static uint8_t write(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     uint8_t error = judge(&sim->servo[index], address, bytes, n);
     if (error == 0 && address + (int)n <= GROBO_SIM_REGISTER_BYTES) {
-        store(sim, index, address, bytes, n);
+        (void)store(sim, index, address, bytes, n);
     } else {
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, address);
     }
@@ -619,7 +586,7 @@ static bool extra(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     if (packet->instruction == GROBO_DXL1_RESET_TURNS) {
-        one_turn(sim, servo);
+        grobo_i_dxl_one_turn(sim, servo, reverses(servo));
     } else if (packet->instruction == GROBO_DXL1_CALIBRATE) {
         bool given = packet->data_bytes == 2;
         calibrate(sim, index, given ? grobo_i_get_u16(packet->data) : servo->model->middle);
@@ -682,22 +649,11 @@ static void for_one(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
 
 /* ---- packets for several ------------------------------------------------------------------- */
 
-static int hearer(grobo_sim *sim, uint8_t id, const grobo_sim_event *raw)
-{
-    for (int i = 0; i < sim->n_servos; i++) {
-        if (sim->servo[i].family == &grobo_sim_dxl1 && sim->servo[i].plant.id == id &&
-            grobo_i_sim_hears(sim, i, raw)) {
-            return i;
-        }
-    }
-    return -1;
-}
-
 /* One of a list answers, if its series has the instruction. */
 static void read_one(grobo_sim *sim, const grobo_sim_event *raw, grobo_i_dxl_round *round,
                      dxl1_series series, const grobo_dxl1_packet *one)
 {
-    int index = hearer(sim, one->id, raw);
+    int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, one->id, raw);
     if (index < 0 || series_of(&sim->servo[index]) != series) {
         grobo_i_dxl_silence(sim, round, GROBO_DXL1_OVERHEAD_BYTES + (size_t)one->length);
     } else {
@@ -729,7 +685,7 @@ static void sync_write(grobo_sim *sim, const grobo_dxl1_packet *packet, const gr
 {
     size_t each = 1 + (size_t)packet->length;
     for (size_t at = 0; packet->length > 0 && at + each <= packet->data_bytes; at += each) {
-        int index = hearer(sim, packet->data[at], raw);
+        int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, packet->data[at], raw);
         if (index >= 0) {
             (void)write(sim, index, packet->address, packet->data + at + 1, packet->length);
         }
@@ -741,7 +697,7 @@ static void ping_all(grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_i_dxl_round turn = {0};
     for (int id = 0; id <= GROBO_DXL1_ID_MAX; id++) {
-        int index = hearer(sim, (uint8_t)id, raw);
+        int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, (uint8_t)id, raw);
         grobo_i_dxl_round once = {0};
         if (index >= 0) {
             answer(sim, index, series_of(&sim->servo[index]) == STS ? &turn : &once, 0, NULL, 0);
@@ -798,7 +754,7 @@ static void broken(grobo_sim *sim, const uint8_t *bytes, size_t n)
                                  .servo = -1,
                                  .bytes = bytes,
                                  .n_bytes = n};
-    int index = hearer(sim, bytes[2], &raw);
+    int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, bytes[2], &raw);
     grobo_i_dxl_round round = {0};
     if (index >= 0 && !is_feetech(&sim->servo[index]) && answers(&sim->servo[index], false)) {
         answer(sim, index, &round, GROBO_DXL1_BAD_SUM, NULL, 0);
@@ -811,29 +767,18 @@ static int measure(const uint8_t *bytes, size_t n, bool good)
     return size == GROBO_ERR_CHECKSUM && !good ? 4 + bytes[3] : size;
 }
 
-/* ---- inspection ---------------------------------------------------------------------------- */
-
-static int set(grobo_sim *sim, int index, int address, int32_t value)
-{
-    uint8_t bytes[4];
-    int n = grobo_i_dxl_bytes(&sim->servo[index], address, value, bytes);
-    if (n > 0) {
-        store(sim, index, address, bytes, (size_t)n);
-    }
-    return n < 0 ? n : GROBO_OK;
-}
-
-const grobo_sim_family grobo_sim_dxl1 = {.knows = knows,
-                                         .measure = measure,
-                                         .packet = packet,
-                                         .factory = factory,
-                                         .boot = restart,
-                                         .cut = cut,
-                                         .starts = starts,
-                                         .refresh = refresh,
-                                         .bps = bps,
-                                         .next_us = next_us,
-                                         .act = act,
-                                         .broken = broken,
-                                         .get = grobo_i_dxl_look,
-                                         .set = set};
+const grobo_sim_family grobo_sim_dxl1 = {
+    .tables = {&grobo_dxl1_table, &grobo_sts_table, &grobo_scs_table},
+    .measure = measure,
+    .packet = packet,
+    .factory = factory,
+    .boot = restart,
+    .cut = cut,
+    .goal_mdeg = goal_mdeg,
+    .refresh = refresh,
+    .bps = bps,
+    .next_us = next_us,
+    .act = act,
+    .broken = broken,
+    .set = grobo_i_dxl_set,
+    .store = store};

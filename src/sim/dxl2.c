@@ -15,10 +15,11 @@
 #include "src/sim/servo.h"
 #include "src/sim/shaft.h"
 
-/* Counts: 0.229 rpm, 214.577 rev/min2, and of the watchdog 20 ms. */
+/* Counts: 0.229 rpm, 214.577 rev/min2, of the watchdog 20 ms, of a voltage 0.1 V. */
 #define SPEED_MDEG_S 1374.0
 #define ACCEL_MDEG_S2 21457.7
 #define WATCHDOG_US 20000
+#define COUNT_MV 100
 /* A motor that works this hard for this long is overloaded. An assumption. */
 #define OVERLOAD_EFFORT 0.8
 #define OVERLOAD_US 1000000
@@ -57,14 +58,6 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
         return grobo_i_dxl_wrap(ticks, grobo_i_dxl_turn(servo)) + (counts ? offset : 0);
     }
     return ticks - servo->turns_ticks + offset;
-}
-
-/* Turns before now are forgotten. */
-static void one_turn(const grobo_sim *sim, grobo_sim_servo *servo)
-{
-    int32_t ticks =
-        grobo_i_dxl_ticks(servo, reverses(servo), grobo_i_sim_angle_mdeg(servo, sim->now_us));
-    servo->turns_ticks = ticks - grobo_i_dxl_wrap(ticks, grobo_i_dxl_turn(servo));
 }
 
 /* The shaft's angle at the goal: as far from here as the goal is from the present position. */
@@ -125,27 +118,6 @@ static void follow(grobo_sim *sim, int index)
     }
 }
 
-static void drive(grobo_sim *sim, int index)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    if (servo->plant.torque != GROBO_TORQUE_ON) {
-        return;
-    }
-    servo->due_us = sim->now_us + servo->plant.time_us;
-    servo->plant.goal_mdeg = goal_mdeg(sim, servo);
-    if (!servo->by_hand) {
-        grobo_i_sim_drive(sim, index);
-    }
-    servo->begun_us = sim->now_us;
-}
-
-static bool starts(grobo_sim *sim, int index, int32_t here_mdeg)
-{
-    (void)here_mdeg;
-    sim->servo[index].plant.goal_mdeg = goal_mdeg(sim, &sim->servo[index]);
-    return true;
-}
-
 static void cut(grobo_sim *sim, int index, bool hot)
 {
     grobo_sim_servo *servo = &sim->servo[index];
@@ -180,13 +152,6 @@ static void refresh(grobo_sim *sim, int index)
 
 /* ---- what a servo does by itself ----------------------------------------------------------- */
 
-static bool is_fed(const grobo_sim *sim, const grobo_sim_servo *servo)
-{
-    int64_t dv = (int64_t)sim->supply_mv * servo->model->voltage_mv / sim->config.supply_mv / 100;
-    return dv >= grobo_i_dxl_get(servo, GROBO_ROLE_MIN_VOLTAGE) &&
-           dv <= grobo_i_dxl_get(servo, GROBO_ROLE_MAX_VOLTAGE);
-}
-
 static int64_t overload_us(const grobo_sim_servo *servo)
 {
     bool works = servo->stalled && servo->plant.torque == GROBO_TORQUE_ON &&
@@ -209,7 +174,7 @@ static int64_t next_us(const grobo_sim *sim, int index)
     if (!servo->powered) {
         return GROBO_NEVER_US;
     }
-    if ((servo->status & GROBO_DXL2_VOLTAGE) == 0 && !is_fed(sim, servo)) {
+    if ((servo->status & GROBO_DXL2_VOLTAGE) == 0 && !grobo_i_dxl_fed(sim, servo, COUNT_MV)) {
         return sim->now_us;
     }
     int64_t load_us = overload_us(servo), dog_us = watchdog_us(servo);
@@ -231,7 +196,7 @@ static void fail(grobo_sim *sim, int index, unsigned error)
 static void act(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    if ((servo->status & GROBO_DXL2_VOLTAGE) == 0 && !is_fed(sim, servo)) {
+    if ((servo->status & GROBO_DXL2_VOLTAGE) == 0 && !grobo_i_dxl_fed(sim, servo, COUNT_MV)) {
         fail(sim, index, GROBO_DXL2_VOLTAGE);
     } else if (overload_us(servo) <= sim->now_us) {
         fail(sim, index, GROBO_DXL2_OVERLOAD);
@@ -254,11 +219,6 @@ static int32_t bps(const grobo_sim *sim, int index)
     return grobo_servo_baud_bps(servo->model, grobo_i_dxl_get(servo, GROBO_ROLE_BAUD));
 }
 
-static bool knows(const grobo_servo_model *model)
-{
-    return model->table == &grobo_dxl2_table;
-}
-
 static void restart(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
@@ -266,7 +226,7 @@ static void restart(grobo_sim *sim, int index)
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
                     grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
-    one_turn(sim, servo);
+    grobo_i_dxl_one_turn(sim, servo, reverses(servo));
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
     servo->heard_us = sim->now_us;
@@ -394,7 +354,7 @@ static void mode_written(grobo_sim *sim, int index)
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
                     grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
-    one_turn(sim, servo);
+    grobo_i_dxl_one_turn(sim, servo, reverses(servo));
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
 }
@@ -410,18 +370,14 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
     follow(sim, index);
     if (reg->role == GROBO_ROLE_TORQUE) {
         grobo_i_sim_torque(sim, index, before);
-    } else if (is_goal(reg) && (reg->role == GROBO_ROLE_GOAL || servo->plant.wheel)) {
-        drive(sim, index);
+    } else if (servo->plant.torque == GROBO_TORQUE_ON && is_goal(reg) &&
+               (reg->role == GROBO_ROLE_GOAL || servo->plant.wheel)) {
+        grobo_i_sim_set_out(sim, index);
     }
-    bool goal = reg->role == GROBO_ROLE_GOAL;
-    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = goal ? GROBO_SIM_GOAL : GROBO_SIM_REGISTER,
-                                             .time_us = sim->now_us,
-                                             .servo = index,
-                                             .value = goal ? value : reg->address,
-                                             .value2 = goal ? 0 : value});
+    grobo_i_dxl_tell(sim, index, reg, value);
 }
 
-static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_register *reg;
@@ -431,13 +387,14 @@ static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, 
             took_effect(sim, index, reg);
         }
     }
+    return GROBO_OK;
 }
 
 static uint8_t write(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     uint8_t error = judge(&sim->servo[index], address, bytes, n);
     if (error == GROBO_DXL2_DONE) {
-        store(sim, index, address, bytes, n);
+        (void)store(sim, index, address, bytes, n);
     } else {
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, address);
     }
@@ -531,7 +488,7 @@ static uint8_t forget_turns(grobo_sim *sim, int index, const grobo_dxl2_packet *
     if (grobo_i_sim_moving(&sim->servo[index], sim->now_us)) {
         return GROBO_DXL2_FAILED;
     }
-    one_turn(sim, &sim->servo[index]);
+    grobo_i_dxl_one_turn(sim, &sim->servo[index], reverses(&sim->servo[index]));
     return GROBO_DXL2_DONE;
 }
 
@@ -648,15 +605,11 @@ static bool next_item(const grobo_dxl2_packet *packet, size_t *at, item *found)
 
 static int hearer(grobo_sim *sim, uint8_t id, const grobo_sim_event *raw)
 {
-    for (int i = 0; i < sim->n_servos; i++) {
-        grobo_sim_servo *servo = &sim->servo[i];
-        if (servo->family == &grobo_sim_dxl2 && servo->plant.id == id &&
-            grobo_i_sim_hears(sim, i, raw)) {
-            servo->heard_us = sim->now_us;
-            return i;
-        }
+    int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl2, id, raw);
+    if (index >= 0) {
+        sim->servo[index].heard_us = sim->now_us;
     }
-    return -1;
+    return index;
 }
 
 static void read_each(grobo_sim *sim, const grobo_dxl2_packet *packet, const grobo_sim_event *raw)
@@ -795,28 +748,16 @@ static int measure(const uint8_t *bytes, size_t n, bool good)
     return size == GROBO_ERR_CHECKSUM && !good ? 7 + grobo_i_get_u16(bytes + 5) : size;
 }
 
-/* ---- inspection ---------------------------------------------------------------------------- */
-
-static int set(grobo_sim *sim, int index, int address, int32_t value)
-{
-    uint8_t bytes[4];
-    int n = grobo_i_dxl_bytes(&sim->servo[index], address, value, bytes);
-    if (n > 0) {
-        store(sim, index, address, bytes, (size_t)n);
-    }
-    return n < 0 ? n : GROBO_OK;
-}
-
-const grobo_sim_family grobo_sim_dxl2 = {.knows = knows,
+const grobo_sim_family grobo_sim_dxl2 = {.tables = {&grobo_dxl2_table},
                                          .measure = measure,
                                          .packet = packet,
                                          .factory = factory,
                                          .boot = restart,
                                          .cut = cut,
-                                         .starts = starts,
+                                         .goal_mdeg = goal_mdeg,
                                          .refresh = refresh,
                                          .bps = bps,
                                          .next_us = next_us,
                                          .act = act,
-                                         .get = grobo_i_dxl_look,
-                                         .set = set};
+                                         .set = grobo_i_dxl_set,
+                                         .store = store};

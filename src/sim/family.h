@@ -12,9 +12,9 @@
 struct grobo_sim_family {
     /* Rate of the line where nothing else is asked for; 0: 1 Mbps. */
     uint32_t usual_bps;
-    bool parity; /* of the line where the first servo is of this family */
-    /* Whether a model is one of its; NULL for RS30x, which have none. */
-    bool (*knows)(const grobo_servo_model *model);
+    bool parity;                        /* of the line where the first servo is of this family */
+    const grobo_servo_table *tables[4]; /* of its models, NULL behind the last */
+    int32_t turns_mdeg; /* as far as it can tell, without a stop to either side; 0: a wheel's way */
     /* Size of the command packet that n > 0 bytes start with, whatever its sum; 0: more is needed;
      * negative: none. good: a packet with a wrong sum is none either. */
     int (*measure)(const uint8_t *bytes, size_t n, bool good);
@@ -29,7 +29,9 @@ struct grobo_sim_family {
     void (*saved)(grobo_sim *sim, int servo, bool whole);
     /* The torque goes by itself: registers say so. hot: for the temperature. */
     void (*cut)(grobo_sim *sim, int servo, bool hot);
-    /* The torque came on: true to drive to the goal, false when here became the goal. */
+    /* The shaft's angle at the goal of its registers. NULL: the plant always has it. */
+    int32_t (*goal_mdeg)(const grobo_sim *sim, const grobo_sim_servo *servo);
+    /* The torque came on: true to drive to the goal, as where NULL; false: here became the goal. */
     bool (*starts)(grobo_sim *sim, int servo, int32_t here_mdeg);
     /* Fills in the present values. */
     void (*refresh)(grobo_sim *sim, int servo);
@@ -41,12 +43,15 @@ struct grobo_sim_family {
     void (*act)(grobo_sim *sim, int servo);
     /* Bytes have the form of a packet and a wrong sum; NULL: nothing follows. */
     void (*broken)(grobo_sim *sim, const uint8_t *bytes, size_t n);
-    /* For inspection: GROBO_ERR_ARG where no register begins at the address. set: as the factory
-     * would, with what follows from it. */
-    int (*get)(grobo_sim *sim, int servo, int address, int32_t *value);
+    /* For inspection, as the factory would, with what follows from it: a register gets a value
+     * (GROBO_ERR_ARG where none begins at the address); and for grobo_i_dxl_set(), its bytes. */
     int (*set)(grobo_sim *sim, int servo, int address, int32_t value);
+    int (*store)(grobo_sim *sim, int servo, int address, const uint8_t *bytes, size_t n);
     /* Whether it may have these bytes as its flash; NULL: it has none. */
     bool (*flash_fits)(const uint8_t *flash);
 };
+
+/* An RS30x by its number; one that is not known is the first of the table. */
+const grobo_servo_model *grobo_i_sim_rs30x_model(uint16_t number);
 
 #endif

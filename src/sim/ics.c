@@ -45,8 +45,9 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
            grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
 }
 
-static int32_t goal_mdeg(const grobo_sim_servo *servo)
+static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
 {
+    (void)sim;
     int32_t position =
         grobo_i_dxl_get(servo, GROBO_ROLE_GOAL) + grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
     return (int32_t)lround((reversed(servo, position) - servo->model->middle) *
@@ -65,13 +66,6 @@ static void follow(grobo_sim *sim, int index)
     plant->most_ma =
         plant->stall_ma * grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE_LIMIT) / CURRENT_FULL;
     plant->limit_c = NEVER_CUTS_C;
-}
-
-static bool starts(grobo_sim *sim, int index, int32_t here_mdeg)
-{
-    (void)here_mdeg;
-    sim->servo[index].plant.goal_mdeg = goal_mdeg(&sim->servo[index]);
-    return true;
 }
 
 /* The torque is what the value says now. */
@@ -108,11 +102,6 @@ static void refresh(grobo_sim *sim, int index)
 static int32_t bps(const grobo_sim *sim, int index)
 {
     return rate_of(grobo_i_dxl_get(&sim->servo[index], GROBO_ROLE_BAUD));
-}
-
-static bool knows(const grobo_servo_model *model)
-{
-    return model->table == &grobo_ics_table;
 }
 
 static void put(grobo_sim_servo *servo, const char *name, int32_t value)
@@ -166,34 +155,29 @@ static void answer(grobo_sim *sim, int index, grobo_ics_packet reply)
 static void position(grobo_sim *sim, int index, const grobo_ics_packet *packet)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    int32_t min = grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION);
-    int32_t max = grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
-    int32_t goal = packet->value;
     refresh(sim, index);
     grobo_ics_packet reply = *packet;
     reply.value = (uint16_t)grobo_i_dxl_get(servo, GROBO_ROLE_POSITION);
     answer(sim, index, reply);
-    bool on = goal != GROBO_ICS_FREE;
+    bool on = packet->value != GROBO_ICS_FREE;
     if (on) {
-        grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, goal < min ? min : goal > max ? max : goal);
+        grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, grobo_i_dxl_within(servo, packet->value));
     }
     bool was_on = servo->plant.torque == GROBO_TORQUE_ON;
     grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, on);
     go(sim, index);
     if (on && was_on) {
-        servo->due_us = sim->now_us;
-        servo->plant.goal_mdeg = goal_mdeg(servo);
-        if (!servo->by_hand) {
-            grobo_i_sim_drive(sim, index);
-        }
-        servo->begun_us = sim->now_us;
+        grobo_i_sim_set_out(sim, index);
     }
     if (on) {
-        grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_GOAL,
-                                                 .time_us = sim->now_us,
-                                                 .servo = index,
-                                                 .value = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL)});
+        grobo_i_dxl_tell(sim, index, grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL),
+                         grobo_i_dxl_get(servo, GROBO_ROLE_GOAL));
     }
+}
+
+static const grobo_i_item *item_of(const grobo_ics_packet *packet)
+{
+    return grobo_i_item_of(grobo_i_ics_items, GROBO_I_ICS_CODE(packet->command, packet->item));
 }
 
 static void read_eeprom(grobo_sim *sim, int index, const grobo_ics_packet *packet)
@@ -212,7 +196,7 @@ static void read_eeprom(grobo_sim *sim, int index, const grobo_ics_packet *packe
 static void read(grobo_sim *sim, int index, const grobo_ics_packet *packet)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_ics_item *item = grobo_i_ics_item_of(packet->item, false);
+    const grobo_i_item *item = item_of(packet);
     bool lacks = packet->item == GROBO_ICS_POSITION_ITEM && !grobo_ics_tells_position(servo->model);
     if (item == NULL || lacks) {
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->item);
@@ -243,7 +227,7 @@ static void write_eeprom(grobo_sim *sim, int index, const uint8_t *nibbles)
 static void write(grobo_sim *sim, int index, const grobo_ics_packet *packet)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_ics_item *item = grobo_i_ics_item_of(packet->item, true);
+    const grobo_i_item *item = item_of(packet);
     if (packet->item == GROBO_ICS_EEPROM) {
         if (packet->data[0] << 4 != (GROBO_I_ICS_FIXED & 0xF0)) {
             grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->item);
@@ -253,14 +237,11 @@ static void write(grobo_sim *sim, int index, const grobo_ics_packet *packet)
         write_eeprom(sim, index, packet->data);
         return;
     }
-    grobo_i_dxl_hold(servo, grobo_servo_register_at(servo->model, item->address), packet->value);
+    const grobo_servo_register *reg = grobo_servo_register_at(servo->model, item->address);
+    grobo_i_dxl_hold(servo, reg, packet->value);
     answer(sim, index, *packet);
     go(sim, index);
-    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_REGISTER,
-                                             .time_us = sim->now_us,
-                                             .servo = index,
-                                             .value = item->address,
-                                             .value2 = packet->value});
+    grobo_i_dxl_tell(sim, index, reg, packet->value);
 }
 
 /* All servos take it: it is for a line with one. */
@@ -317,31 +298,27 @@ static int measure(const uint8_t *bytes, size_t n, bool good)
 
 /* ---- inspection ------------------------------------------------------------------------------ */
 
-static int set(grobo_sim *sim, int index, int address, int32_t value)
+static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    uint8_t bytes[4];
-    int n = grobo_i_dxl_bytes(servo, address, value, bytes);
-    if (n > 0) {
-        memcpy(&servo->reg[address], bytes, (size_t)n);
-        if (address < EEPROM) {
-            memcpy(&servo->flash[address], bytes, (size_t)n);
-        }
-        go(sim, index);
+    memcpy(&servo->reg[address], bytes, n);
+    if (address < EEPROM) {
+        memcpy(&servo->flash[address], bytes, n);
     }
-    return n < 0 ? n : GROBO_OK;
+    go(sim, index);
+    return GROBO_OK;
 }
 
 const grobo_sim_family grobo_sim_ics = {.usual_bps = 115200,
                                         .parity = true,
-                                        .knows = knows,
+                                        .tables = {&grobo_ics_table},
                                         .measure = measure,
                                         .packet = packet,
                                         .factory = factory,
                                         .boot = restart,
                                         .cut = cut,
-                                        .starts = starts,
+                                        .goal_mdeg = goal_mdeg,
                                         .refresh = refresh,
                                         .bps = bps,
-                                        .get = grobo_i_dxl_look,
-                                        .set = set};
+                                        .set = grobo_i_dxl_set,
+                                        .store = store};

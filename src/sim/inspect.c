@@ -2,6 +2,7 @@
 /* What a test, or a person at the simulator, sees and changes behind the robot's back. */
 #include <string.h>
 
+#include "src/sim/dxl.h"
 #include "src/sim/family.h"
 #include "src/sim/power.h"
 #include "src/sim/servo.h"
@@ -15,6 +16,14 @@ static grobo_sim_servo *servo_at(grobo_sim *sim, int index)
     }
     grobo_i_sim_settle(sim, index);
     return &sim->servo[index];
+}
+
+static int has_flash(grobo_sim *sim, int index)
+{
+    const grobo_sim_servo *servo = servo_at(sim, index);
+    return servo == NULL                       ? GROBO_ERR_ARG
+           : servo->family->flash_fits == NULL ? GROBO_ERR_UNSUPPORTED
+                                               : GROBO_OK;
 }
 
 /* ---- looking --------------------------------------------------------------------------------- */
@@ -74,7 +83,7 @@ int grobo_sim_get_register(grobo_sim *sim, int index, int address, int32_t *valu
         return GROBO_ERR_ARG;
     }
     servo->family->refresh(sim, index);
-    return servo->family->get(sim, index, address, value);
+    return grobo_i_dxl_look(servo, address, value);
 }
 
 int grobo_sim_set_id(grobo_sim *sim, int index, int id)
@@ -83,24 +92,17 @@ int grobo_sim_set_id(grobo_sim *sim, int index, int id)
     if (servo == NULL) {
         return GROBO_ERR_ARG;
     }
-    const grobo_servo_register *reg = grobo_servo_register_of(servo->model, GROBO_ROLE_ID);
-    return servo->family->set(sim, index, reg != NULL ? reg->address : GROBO_RS30X_ID, id);
+    return servo->family->set(sim, index,
+                              grobo_servo_register_of(servo->model, GROBO_ROLE_ID)->address, id);
 }
 
 int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH_BYTES])
 {
-    if (flash == NULL) {
-        return GROBO_ERR_ARG;
+    int result = flash == NULL ? GROBO_ERR_ARG : has_flash(sim, index);
+    if (result == GROBO_OK) {
+        memcpy(flash, sim->servo[index].flash, GROBO_SIM_FLASH_BYTES);
     }
-    const grobo_sim_servo *servo = servo_at(sim, index);
-    if (servo == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    if (servo->family->flash_fits == NULL) {
-        return GROBO_ERR_UNSUPPORTED;
-    }
-    memcpy(flash, servo->flash, GROBO_SIM_FLASH_BYTES);
-    return 0;
+    return result;
 }
 
 /* ---- changing -------------------------------------------------------------------------------- */
@@ -113,21 +115,14 @@ int grobo_sim_set_register(grobo_sim *sim, int index, int address, int32_t value
 
 int grobo_sim_set_flash(grobo_sim *sim, int index, const uint8_t flash[GROBO_SIM_FLASH_BYTES])
 {
-    if (flash == NULL) {
-        return GROBO_ERR_ARG;
+    int result = flash == NULL ? GROBO_ERR_ARG : has_flash(sim, index);
+    if (result == GROBO_OK && !sim->servo[index].family->flash_fits(flash)) {
+        result = GROBO_ERR_LIMIT;
     }
-    const grobo_sim_servo *servo = servo_at(sim, index);
-    if (servo == NULL) {
-        return GROBO_ERR_ARG;
+    if (result == GROBO_OK) {
+        grobo_i_sim_exchange_flash(sim, index, flash);
     }
-    if (servo->family->flash_fits == NULL) {
-        return GROBO_ERR_UNSUPPORTED;
-    }
-    if (!servo->family->flash_fits(flash)) {
-        return GROBO_ERR_LIMIT;
-    }
-    grobo_i_sim_exchange_flash(sim, index, flash);
-    return 0;
+    return result;
 }
 
 int grobo_sim_set_angle(grobo_sim *sim, int index, int32_t angle_mdeg, int64_t time_us)

@@ -18,9 +18,9 @@ enum { BPS = 115200, WHEEL_FULL = 1000 };
 /* Before a reply. The maker prints none; an assumption. */
 #define THINK_NS 300000
 
-static const grobo_i_lx16a_item *item(uint8_t command)
+static const grobo_i_item *item(uint8_t command)
 {
-    return grobo_i_lx16a_item_of(command);
+    return grobo_i_item_of(grobo_i_lx16a_items, command);
 }
 
 /* ---- positions ------------------------------------------------------------------------------- */
@@ -31,8 +31,9 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
     return grobo_i_dxl_ticks(servo, false, angle_mdeg) - grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
 }
 
-static int32_t goal_mdeg(const grobo_sim_servo *servo)
+static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
 {
+    (void)sim;
     int32_t ticks =
         grobo_i_dxl_get(servo, GROBO_ROLE_GOAL) + grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
     return (int32_t)lround((ticks - servo->model->middle) * grobo_i_dxl_tick_mdeg(servo));
@@ -57,33 +58,17 @@ static void follow(grobo_sim *sim, int index)
                                     grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_SPEED) / WHEEL_FULL);
 }
 
-/* Torque without a goal goes to the last one, as fast as it can: the worst that is possible. */
-static bool starts(grobo_sim *sim, int index, int32_t here_mdeg)
-{
-    (void)here_mdeg;
-    sim->servo[index].plant.goal_mdeg = goal_mdeg(&sim->servo[index]);
-    return true;
-}
-
 /* The values changed: torque and motion are what they say now. */
 static void go(grobo_sim *sim, int index, bool moves)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_torque before = (grobo_torque)servo->plant.torque;
     follow(sim, index);
-    if (moves) {
-        servo->due_us = sim->now_us + servo->plant.time_us;
-        servo->plant.goal_mdeg = goal_mdeg(servo);
-    }
     if (servo->plant.torque != before) {
         grobo_i_sim_torque(sim, index, before);
     }
     if (moves && servo->plant.torque == GROBO_TORQUE_ON) {
-        servo->due_us = sim->now_us + servo->plant.time_us;
-        if (!servo->by_hand) {
-            grobo_i_sim_drive(sim, index);
-        }
-        servo->begun_us = sim->now_us;
+        grobo_i_sim_set_out(sim, index);
     }
 }
 
@@ -94,17 +79,12 @@ static void cut(grobo_sim *sim, int index, bool hot)
     follow(sim, index);
 }
 
-static int64_t supply_mv(const grobo_sim *sim, const grobo_sim_servo *servo)
-{
-    return (int64_t)sim->supply_mv * servo->model->voltage_mv / sim->config.supply_mv;
-}
-
 static void refresh(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_sim_settle(sim, index);
     grobo_i_dxl_refresh(sim, index, 1, 0);
-    grobo_i_dxl_put(servo, GROBO_ROLE_VOLTAGE, supply_mv(sim, servo));
+    grobo_i_dxl_put(servo, GROBO_ROLE_VOLTAGE, grobo_i_dxl_own_mv(sim, servo, sim->supply_mv));
     grobo_i_dxl_put(servo, GROBO_ROLE_POSITION,
                     position_at(servo, grobo_i_sim_angle_mdeg(servo, sim->now_us)));
 }
@@ -113,11 +93,9 @@ static void refresh(grobo_sim *sim, int index)
 static int64_t next_us(const grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
-    int64_t mv = supply_mv(sim, servo);
-    bool fed = mv >= grobo_i_dxl_get(servo, GROBO_ROLE_MIN_VOLTAGE) &&
-               mv <= grobo_i_dxl_get(servo, GROBO_ROLE_MAX_VOLTAGE);
-    return servo->powered && !fed && servo->plant.torque == GROBO_TORQUE_ON ? sim->now_us
-                                                                            : GROBO_NEVER_US;
+    bool lets_go =
+        servo->powered && servo->plant.torque == GROBO_TORQUE_ON && !grobo_i_dxl_fed(sim, servo, 1);
+    return lets_go ? sim->now_us : GROBO_NEVER_US;
 }
 
 static void act(grobo_sim *sim, int index)
@@ -133,11 +111,6 @@ static int32_t bps(const grobo_sim *sim, int index)
     (void)sim;
     (void)index;
     return BPS;
-}
-
-static bool knows(const grobo_servo_model *model)
-{
-    return model->table == &grobo_lx16a_table;
 }
 
 static void restart(grobo_sim *sim, int index)
@@ -158,13 +131,13 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-static bool in_item(const grobo_servo_register *reg, const grobo_i_lx16a_item *what)
+static bool in_item(const grobo_servo_register *reg, const grobo_i_item *what)
 {
     return reg->address >= what->address && reg->address < what->address + what->bytes;
 }
 
 /* Values outside of their range become its end; a range that ends before it begins is none. */
-static bool store(grobo_sim_servo *servo, const grobo_i_lx16a_item *what, const uint8_t *data)
+static bool take(grobo_sim_servo *servo, const grobo_i_item *what, const uint8_t *data)
 {
     const grobo_servo_register *reg;
     bool pair = what->write == GROBO_LX16A_LIMITS || what->write == GROBO_LX16A_VOLTAGES;
@@ -184,14 +157,13 @@ static bool store(grobo_sim_servo *servo, const grobo_i_lx16a_item *what, const 
     return true;
 }
 
-/* A goal is drawn to the limits, and brings the torque by itself. Neither is printed. */
+/* A goal is drawn to the limits, and brings the torque by itself; torque without a goal goes to the
+ * last one. None is printed: the worst that is possible. */
 static void move(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    int32_t goal = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL);
-    int32_t min = grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION);
-    int32_t max = grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
-    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, goal < min ? min : goal > max ? max : goal);
+    int32_t goal = grobo_i_dxl_within(servo, grobo_i_dxl_get(servo, GROBO_ROLE_GOAL));
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, goal);
     grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 1);
     go(sim, index, true);
     grobo_i_sim_tell(sim,
@@ -211,7 +183,7 @@ static void stop(grobo_sim *sim, int index)
 }
 
 /* The values of the item are new. */
-static void took_effect(grobo_sim *sim, int index, const grobo_i_lx16a_item *what)
+static void took_effect(grobo_sim *sim, int index, const grobo_i_item *what)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     if (what->write == GROBO_LX16A_MOVE) {
@@ -231,7 +203,7 @@ static void took_effect(grobo_sim *sim, int index, const grobo_i_lx16a_item *wha
 static bool without_value(grobo_sim *sim, int index, uint8_t command)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_lx16a_item *next = item(GROBO_LX16A_WAIT), *goal = item(GROBO_LX16A_MOVE);
+    const grobo_i_item *next = item(GROBO_LX16A_WAIT), *goal = item(GROBO_LX16A_MOVE);
     switch (command) {
     case GROBO_LX16A_START:
         if (servo->kept_bytes > 0) {
@@ -259,13 +231,13 @@ static bool without_value(grobo_sim *sim, int index, uint8_t command)
 static void carry_out(grobo_sim *sim, int index, const grobo_lx16a_packet *packet)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_lx16a_item *what = item(packet->command);
+    const grobo_i_item *what = item(packet->command);
     bool wheel = servo->plant.wheel && packet->command == GROBO_LX16A_MOVE;
     if (packet->data_bytes == 0 && without_value(sim, index, packet->command)) {
         return;
     }
     if (what == NULL || what->write != packet->command || wheel ||
-        packet->data_bytes != what->bytes || !store(servo, what, packet->data)) {
+        packet->data_bytes != what->bytes || !take(servo, what, packet->data)) {
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->command);
         return;
     }
@@ -278,7 +250,7 @@ static void answer(grobo_sim *sim, int index, const grobo_lx16a_packet *asked)
 {
     uint8_t bytes[GROBO_LX16A_FRAME_MAX_BYTES];
     const grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_i_lx16a_item *what = item(asked->command);
+    const grobo_i_item *what = item(asked->command);
     refresh(sim, index);
     const grobo_lx16a_packet reply = {servo->plant.id, asked->command, &servo->reg[what->address],
                                       what->bytes};
@@ -315,40 +287,35 @@ static int measure(const uint8_t *bytes, size_t n, bool good)
 
 /* ---- inspection ------------------------------------------------------------------------------ */
 
-static int set(grobo_sim *sim, int index, int address, int32_t value)
+static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_servo_register *reg =
-        address < 0 ? NULL : grobo_servo_register_at(servo->model, (uint16_t)address);
-    uint8_t bytes[4];
-    int n = grobo_i_dxl_bytes(servo, address, value, bytes);
-    for (unsigned k = 0; n > 0; k++) {
-        const grobo_i_lx16a_item *what = grobo_i_lx16a_item_row(k);
-        if (in_item(reg, what)) {
-            uint8_t data[4];
-            memcpy(data, &servo->reg[what->address], what->bytes);
-            memcpy(data + (address - what->address), bytes, (size_t)n);
-            if (!store(servo, what, data)) {
-                return GROBO_ERR_LIMIT;
-            }
-            took_effect(sim, index, what);
-            return GROBO_OK;
-        }
+    const grobo_servo_register *reg = grobo_servo_register_at(servo->model, (uint16_t)address);
+    const grobo_i_item *what = grobo_i_lx16a_items;
+    while (!in_item(reg, what)) {
+        what++;
     }
-    return n;
+    uint8_t data[4];
+    memcpy(data, &servo->reg[what->address], what->bytes);
+    memcpy(data + (address - what->address), bytes, n);
+    if (!take(servo, what, data)) {
+        return GROBO_ERR_LIMIT;
+    }
+    took_effect(sim, index, what);
+    return GROBO_OK;
 }
 
 const grobo_sim_family grobo_sim_lx16a = {.usual_bps = BPS,
-                                          .knows = knows,
+                                          .tables = {&grobo_lx16a_table},
                                           .measure = measure,
                                           .packet = packet,
                                           .factory = factory,
                                           .boot = restart,
                                           .cut = cut,
-                                          .starts = starts,
+                                          .goal_mdeg = goal_mdeg,
                                           .refresh = refresh,
                                           .bps = bps,
                                           .next_us = next_us,
                                           .act = act,
-                                          .get = grobo_i_dxl_look,
-                                          .set = set};
+                                          .set = grobo_i_dxl_set,
+                                          .store = store};

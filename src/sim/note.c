@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/sim/note.h"
 
-void grobo_i_sim_tell(grobo_sim *sim, const grobo_sim_event *event)
-{
-    if (sim->config.hook != NULL) {
-        sim->config.hook(event, sim->config.hook_ctx);
-    }
-}
-
 void grobo_i_sim_note(grobo_sim *sim, grobo_sim_event_kind kind, int servo, int32_t value)
 {
     grobo_i_sim_tell(

@@ -9,7 +9,13 @@
 
 #include <grobo/sim_static.h>
 
-void grobo_i_sim_tell(grobo_sim *sim, const grobo_sim_event *event);
+static inline void grobo_i_sim_tell(grobo_sim *sim, const grobo_sim_event *event)
+{
+    if (sim->config.hook != NULL) {
+        sim->config.hook(sim->config.hook_ctx, event);
+    }
+}
+
 /* Tells an event without bytes, now. */
 void grobo_i_sim_note(grobo_sim *sim, grobo_sim_event_kind kind, int servo, int32_t value);
 

@@ -70,12 +70,8 @@ int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us)
         at = at < servo->stop_min_mdeg ? servo->stop_min_mdeg : at;
         return (int32_t)lround(at > servo->stop_max_mdeg ? servo->stop_max_mdeg : at);
     }
-    int64_t way = (int64_t)servo->to_mdeg - servo->from_mdeg;
-    if (servo->model != NULL) { /* a wheel's way is beyond the integers */
-        return servo->from_mdeg +
-               (int32_t)lround((double)way * (double)done_us / (double)servo->move_us);
-    }
-    return servo->from_mdeg + round_div(way * done_us, servo->move_us);
+    double way = (double)servo->to_mdeg - servo->from_mdeg; /* a wheel's is beyond the integers */
+    return servo->from_mdeg + (int32_t)lround(way * (double)done_us / (double)servo->move_us);
 }
 
 double grobo_i_sim_speed_mdeg_s(const grobo_sim_servo *servo, int64_t t_us)
@@ -247,6 +243,17 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
     GROBO_ASSERT(servo->move_us >= 0 && servo->move_us <= servo->plan_us);
 }
 
+void grobo_i_sim_set_out(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    servo->due_us = sim->now_us + servo->plant.time_us;
+    servo->plant.goal_mdeg = servo->family->goal_mdeg(sim, servo);
+    if (!servo->by_hand) {
+        grobo_i_sim_drive(sim, index);
+    }
+    servo->begun_us = sim->now_us;
+}
+
 void grobo_i_sim_go_on(grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
@@ -269,7 +276,11 @@ void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
         grobo_i_sim_halt(sim, index);
     }
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
-    bool starts = on && servo->family->starts(sim, index, here_mdeg);
+    const grobo_sim_family *family = servo->family;
+    if (on && family->goal_mdeg != NULL) {
+        servo->plant.goal_mdeg = family->goal_mdeg(sim, servo);
+    }
+    bool starts = on && (family->starts == NULL || family->starts(sim, index, here_mdeg));
     if (starts && !servo->by_hand) { /* from under a hand at the end of its way */
         servo->due_us = sim->now_us;
         grobo_i_sim_drive(sim, index);

@@ -16,6 +16,8 @@ int32_t grobo_i_sim_mdeg_of_rad(double angle_rad);
 /* Moves towards the goal of the plant from here on; stops and stays here. */
 void grobo_i_sim_drive(grobo_sim *sim, int servo);
 void grobo_i_sim_halt(grobo_sim *sim, int servo);
+/* Moves to the goal of its registers in the plant's time, but from under a hand later. */
+void grobo_i_sim_set_out(grobo_sim *sim, int servo);
 /* What the servo does goes on from where it is, under what has changed. */
 void grobo_i_sim_go_on(grobo_sim *sim, int servo);
 /* Torque goes from what it was to the value in its plant. */

@@ -28,8 +28,6 @@
 #define BUS_BPS 115200
 /* What nearly every robot of other servos uses. */
 #define OTHERS_BPS 1000000
-/* As far as register POSITION can tell. */
-#define NO_STOP_MDEG 3276700
 /* As far as a wheel turns. */
 #define WHEEL_MDEG 1500000000
 
@@ -102,10 +100,18 @@ static void said(grobo_sim *sim, int64_t t_ns)
         return;
     }
     if (sim->config.wiring == GROBO_WIRING_BUS) {
-        grobo_i_sim_to_host(sim, byte, t_ns);
+        grobo_i_sim_to_host(sim, &byte, 1, t_ns);
     } else {
-        grobo_i_sim_board_got(sim, byte, t_ns);
+        grobo_i_sim_board_got(sim, &byte, 1, t_ns);
     }
+}
+
+/* Some that nobody disturbs are over: reply_run(). */
+static void said_all(grobo_sim *sim, int run, int64_t t_ns)
+{
+    uint8_t bytes[sizeof sim->talk[0].byte];
+    grobo_i_sim_talk_take_run(sim, (size_t)run, bytes);
+    grobo_i_sim_board_got(sim, bytes, (size_t)run, t_ns);
 }
 
 /* ---- time ---------------------------------------------------------------------------------- */
@@ -131,8 +137,10 @@ static bool step_once(grobo_sim *sim, int64_t limit_ns)
     sim->now_ns = t_ns;
     sim->now_us = grobo_i_sim_us(t_ns);
     if (talk_ns == t_ns) {
-        for (; said_run > 0; said_run--) {
-            said(sim, t_ns - (said_run - 1) * sim->bus_byte_ns);
+        if (said_run > 1) {
+            said_all(sim, said_run, t_ns);
+        } else {
+            said(sim, t_ns);
         }
     } else if (in_ns == t_ns) {
         arrive(sim, come_run, t_ns);
@@ -296,10 +304,7 @@ size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_
     size_t room = grobo_sim_rx_room(sim);
     n = n < room ? n : room;
     int64_t at_ns = sim->in.free_ns > sim->now_ns ? sim->in.free_ns : sim->now_ns;
-    for (size_t i = 0; i < n; i++) {
-        at_ns += sim->line_byte_ns;
-        (void)grobo_i_sim_wire_put(&sim->in, bytes[i], at_ns);
-    }
+    grobo_i_sim_wire_write(&sim->in, bytes, n, at_ns, sim->line_byte_ns);
     return n;
 }
 
@@ -309,10 +314,7 @@ size_t grobo_sim_tx(grobo_sim *sim, uint8_t *buf, size_t cap, int64_t now_us)
         return 0;
     }
     grobo_sim_step(sim, now_us);
-    size_t n = 0;
-    while (n < cap && grobo_i_sim_wire_next(&sim->out) <= sim->now_ns) {
-        buf[n++] = grobo_i_sim_wire_take(&sim->out);
-    }
+    size_t n = grobo_i_sim_wire_read(&sim->out, buf, cap, sim->now_ns);
     sim->stats.tx_bytes += (uint32_t)n;
     return n;
 }
@@ -373,6 +375,16 @@ static int32_t start_mdeg(grobo_sim *sim, const grobo_sim_servo *servo, const gr
            (int32_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, (uint32_t)span_mdeg + 1);
 }
 
+static bool knows(const grobo_sim_family *family, const grobo_servo_model *model)
+{
+    const grobo_servo_table *const *table = family->tables;
+    while (*table != NULL && *table != model->table) {
+        table++;
+    }
+    return *table != NULL;
+}
+
+/* NULL: no family that was given has the servo. */
 static const grobo_sim_family *family_of(const grobo_sim_config *config, int index)
 {
     const grobo_servo_model *model = config->servos != NULL ? config->servos[index] : NULL;
@@ -380,7 +392,7 @@ static const grobo_sim_family *family_of(const grobo_sim_config *config, int ind
         return &grobo_sim_rs30x;
     }
     const grobo_sim_family *const *family = config->families;
-    while (family != NULL && *family != NULL && !(*family)->knows(model)) {
+    while (family != NULL && *family != NULL && !knows(*family, model)) {
         family++;
     }
     return family != NULL ? *family : NULL;
@@ -407,6 +419,12 @@ static int init_servo(grobo_sim *sim, int index)
     const grobo_joint *joint = &sim->config.model->joints[index];
     servo->family = family_of(&sim->config, index);
     servo->model = sim->config.servos != NULL ? sim->config.servos[index] : NULL;
+    if (servo->model == NULL) {
+        servo->model = grobo_i_sim_rs30x_model(joint->servo_model);
+    }
+    if (sim->config.wiring == GROBO_WIRING_BOARD && servo->family != &grobo_sim_rs30x) {
+        return GROBO_ERR_ARG;
+    }
     if (servo->family == NULL || ear_of(sim, servo->family) == NULL) {
         return GROBO_ERR_UNSUPPORTED;
     }
@@ -415,7 +433,8 @@ static int init_servo(grobo_sim *sim, int index)
     servo->stop_max_mdeg = shaft_mdeg(joint, reversed ? joint->min_rad : joint->max_rad);
     servo->from_mdeg = servo->to_mdeg = start_mdeg(sim, servo, joint);
     if (sim->config.no_stops) {
-        servo->stop_max_mdeg = servo->model == NULL ? NO_STOP_MDEG : WHEEL_MDEG;
+        servo->stop_max_mdeg =
+            servo->family->turns_mdeg != 0 ? servo->family->turns_mdeg : WHEEL_MDEG;
         servo->stop_min_mdeg = -servo->stop_max_mdeg;
     }
     servo->start_us = servo->due_us = servo->settled_us = sim->now_us;
@@ -455,8 +474,7 @@ int grobo_sim_init_sized(grobo_sim *sim, size_t sim_bytes, const grobo_sim_confi
     }
     use_defaults(&with);
     if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
-        with.ambient_c > 60 ||
-        (with.wiring == GROBO_WIRING_BOARD && (with.echo || with.servos != NULL))) {
+        with.ambient_c > 60 || (with.wiring == GROBO_WIRING_BOARD && with.echo)) {
         return GROBO_ERR_ARG;
     }
     if (with.model->n_joints > GROBO_SIM_SERVOS_MAX) {

@@ -134,6 +134,15 @@ int64_t grobo_i_sim_talks_end(const grobo_sim *sim)
     return end_ns;
 }
 
+static void end_where_over(grobo_sim *sim, int index)
+{
+    grobo_sim_talk *talk = &sim->talk[index];
+    if (talk->said == talk->used) {
+        sim->n_talks--;
+        memmove(talk, talk + 1, (size_t)(sim->n_talks - index) * sizeof *talk);
+    }
+}
+
 bool grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns, uint8_t *taken)
 {
     int first = next_talk(sim);
@@ -149,10 +158,16 @@ bool grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns, uint8_t *taken)
     if (clashed) {
         collided(sim, with_master);
     }
-    if (talk->said == talk->used) {
-        sim->n_talks--;
-        memmove(talk, talk + 1, (size_t)(sim->n_talks - first) * sizeof *talk);
-    }
+    end_where_over(sim, first);
     *taken = byte;
     return !clashed || !sim->parity;
+}
+
+void grobo_i_sim_talk_take_run(grobo_sim *sim, size_t n, uint8_t *taken)
+{
+    grobo_sim_talk *talk = &sim->talk[0];
+    GROBO_ASSERT(sim->n_talks == 1 && talk->said + n <= talk->used);
+    memcpy(taken, &talk->byte[talk->said], n);
+    talk->said = (uint16_t)(talk->said + n);
+    end_where_over(sim, 0);
 }

@@ -14,6 +14,8 @@ bool grobo_i_sim_talk_into(grobo_sim *sim, uint8_t *byte, int64_t t_ns);
  */
 int64_t grobo_i_sim_talk_next(const grobo_sim *sim);
 bool grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns, uint8_t *taken);
+/* The next n bytes of the only talk, which nobody disturbs. */
+void grobo_i_sim_talk_take_run(grobo_sim *sim, size_t n, uint8_t *taken);
 /* When the first of the talks is over, or GROBO_NEVER_US. */
 int64_t grobo_i_sim_talks_end(const grobo_sim *sim);
 

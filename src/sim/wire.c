@@ -16,6 +16,22 @@ bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
     return true;
 }
 
+void grobo_i_sim_wire_write(grobo_sim_wire *wire, const uint8_t *bytes, size_t n, int64_t at_ns,
+                            int64_t byte_ns)
+{
+    GROBO_ASSERT(wire->used + n <= GROBO_SIM_WIRE_BYTES);
+    wire->head = wire->used > 0 ? wire->head : 0; /* in one piece: grobo_i_sim_sound() */
+    size_t at = (size_t)(wire->head + wire->used) % GROBO_SIM_WIRE_BYTES;
+    for (size_t i = 0; i < n; i++) {
+        at_ns += byte_ns;
+        wire->byte[at] = bytes[i];
+        wire->at_ns[at] = at_ns;
+        at = at + 1 < GROBO_SIM_WIRE_BYTES ? at + 1 : 0;
+    }
+    wire->used = (uint16_t)(wire->used + n);
+    wire->free_ns = n > 0 ? at_ns : wire->free_ns;
+}
+
 uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire)
 {
     GROBO_ASSERT(wire->used > 0 && wire->head < GROBO_SIM_WIRE_BYTES);
@@ -23,6 +39,17 @@ uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire)
     wire->head = (uint16_t)((wire->head + 1) % GROBO_SIM_WIRE_BYTES);
     wire->used--;
     return byte;
+}
+
+size_t grobo_i_sim_wire_read(grobo_sim_wire *wire, uint8_t *buf, size_t cap, int64_t now_ns)
+{
+    size_t n = 0;
+    for (size_t at = wire->head; n < cap && n < wire->used && wire->at_ns[at] <= now_ns; n++) {
+        buf[n] = wire->byte[at];
+        at = at + 1 < GROBO_SIM_WIRE_BYTES ? at + 1 : 0;
+    }
+    grobo_i_sim_wire_drop(wire, n);
+    return n;
 }
 
 int64_t grobo_i_sim_wire_next(const grobo_sim_wire *wire)
@@ -52,25 +79,34 @@ static int64_t handed_over_ns(grobo_sim *sim, int64_t at_ns)
     return sim->hand_over_ns;
 }
 
-void grobo_i_sim_to_host(grobo_sim *sim, uint8_t byte, int64_t at_ns)
+/* True where no byte between the host and the robot suffers. */
+static bool is_sound(const grobo_sim *sim)
 {
-    if (sim->gone) {
-        return;
+    return at_rate(sim) && sim->fault_below[GROBO_SIM_FAULT_DROP] == 0 &&
+           sim->fault_below[GROBO_SIM_FAULT_FLIP] == 0;
+}
+
+void grobo_i_sim_to_host(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t at_ns)
+{
+    const bool sound = is_sound(sim);
+    for (size_t i = 0; i < n && !sim->gone; i++, at_ns += sim->line_byte_ns) {
+        uint8_t byte = bytes[i];
+        if (!sound) {
+            misread(sim, &byte);
+        }
+        if ((sound || grobo_i_sim_crosses(sim, &byte)) &&
+            !grobo_i_sim_wire_put(&sim->out, byte, handed_over_ns(sim, at_ns))) {
+            sim->stats.overflows++;
+        }
+        sim->out.free_ns = at_ns; /* the adapter waits, the line does not */
     }
-    misread(sim, &byte);
-    if (grobo_i_sim_crosses(sim, &byte) &&
-        !grobo_i_sim_wire_put(&sim->out, byte, handed_over_ns(sim, at_ns))) {
-        sim->stats.overflows++;
-    }
-    sim->out.free_ns = at_ns; /* the adapter waits, the line does not */
 }
 
 const uint8_t *grobo_i_sim_sound(const grobo_sim *sim)
 {
     const grobo_sim_wire *in = &sim->in;
-    bool sound = at_rate(sim) && sim->fault_below[GROBO_SIM_FAULT_DROP] == 0 &&
-                 sim->fault_below[GROBO_SIM_FAULT_FLIP] == 0;
-    return sound && in->head + in->used <= GROBO_SIM_WIRE_BYTES ? &in->byte[in->head] : NULL;
+    return is_sound(sim) && in->head + in->used <= GROBO_SIM_WIRE_BYTES ? &in->byte[in->head]
+                                                                        : NULL;
 }
 
 void grobo_i_sim_wire_drop(grobo_sim_wire *wire, size_t n)

@@ -7,7 +7,12 @@
 
 /* A byte that is over at at_ns; false when there is no room for it. */
 bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns);
+/* Bytes that there is room for, byte_ns each, the first from at_ns on. */
+void grobo_i_sim_wire_write(grobo_sim_wire *wire, const uint8_t *bytes, size_t n, int64_t at_ns,
+                            int64_t byte_ns);
 uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire);
+/* Takes those that are over by now. */
+size_t grobo_i_sim_wire_read(grobo_sim_wire *wire, uint8_t *buf, size_t cap, int64_t now_ns);
 /* When the next byte is over, or GROBO_NEVER_US. */
 int64_t grobo_i_sim_wire_next(const grobo_sim_wire *wire);
 /* The next byte of the host as it arrives; false when it is lost. */
@@ -16,8 +21,8 @@ bool grobo_i_sim_from_host(grobo_sim *sim, uint8_t *byte);
  * else. They are taken with grobo_i_sim_wire_drop(). */
 const uint8_t *grobo_i_sim_sound(const grobo_sim *sim);
 void grobo_i_sim_wire_drop(grobo_sim_wire *wire, size_t n);
-/* A byte for the host that is over at at_ns. */
-void grobo_i_sim_to_host(grobo_sim *sim, uint8_t byte, int64_t at_ns);
+/* Bytes for the host, one behind the other: the first is over at at_ns. */
+void grobo_i_sim_to_host(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t at_ns);
 /* The host's cable is out: what is on the line is lost. */
 void grobo_i_sim_cut(grobo_sim *sim);
 

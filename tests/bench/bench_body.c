@@ -60,7 +60,7 @@ static double body_ms(const grobo_motion *motion, const grobo_body_options *opti
         grobo_body *body = NULL;
         double q_rad[GROBO_JOINTS_MAX];
 
-        if (grobo_body_new(&body, &grobo_gr001_body, motion, options, NULL) < 0) {
+        if (grobo_body_new(&grobo_gr001_body, motion, options, NULL, &body) < 0) {
             return -1;
         }
         for (int i = 0; i < grobo_body_frame_count(body); i++) {

@@ -400,7 +400,7 @@ static void sense(grobo_session *session)
     }
 }
 
-static void on_line(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_line(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     (void)session;
     (void)ctx;
@@ -514,7 +514,7 @@ static void on_cycle(void *ctx, const grobo_event *event)
     }
 }
 
-static void on_cycle_line(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_cycle_line(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     (void)error;
     (void)ctx;

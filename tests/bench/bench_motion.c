@@ -57,7 +57,7 @@ static grobo_motion *make_motion(grobo_motion_kind kind, size_t size)
     grobo_motion *motion = NULL;
     grobo_posture posture;
 
-    if (grobo_motion_new(&motion, kind, JOINTS, NULL) < 0 ||
+    if (grobo_motion_new(kind, JOINTS, NULL, &motion) < 0 ||
         grobo_posture_init(&posture, JOINTS) < 0) {
         return NULL;
     }

@@ -156,7 +156,7 @@ typedef struct playing {
     bool failed;
 } playing;
 
-static void on_line(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_line(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     playing *p = ctx;
     const grobo_clip clip = {.key = wave_key,

@@ -121,19 +121,27 @@ static void run_us(int64_t span_us)
     }
 }
 
-static void start_on(grobo_wiring wiring, int64_t sense_interval_us)
+static void start_with(const grobo_driver *driver, grobo_wiring wiring, int64_t sense_interval_us)
 {
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
                                        .sense_interval_us = sense_interval_us};
-    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .wiring = wiring};
+    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .wiring = wiring, .model = driver->model};
     const grobo_robot_host host = {.clock = rig_clock};
 
     rig.now_us = SECOND_US;
-    (void)grobo_sim_init(&rig.sim, &sim, rig.now_us);
-    (void)grobo_robot_init(&rig.robot, grobo_gr001_driver(wiring), NULL, &config, rig.now_us);
+    if (grobo_sim_init(&rig.sim, &sim, rig.now_us) < 0 ||
+        grobo_robot_init(&rig.robot, driver, NULL, &config, rig.now_us) < 0) {
+        fputs("bench_work: no robot\n", stderr);
+        exit(1);
+    }
     grobo_robot_set_host(&rig.robot, &host);
     grobo_robot_link_up(&rig.robot, rig.now_us);
     run_us(SECOND_US);
+}
+
+static void start_on(grobo_wiring wiring, int64_t sense_interval_us)
+{
+    start_with(grobo_gr001_driver(wiring), wiring, sense_interval_us);
 }
 
 static void start(int64_t sense_interval_us)
@@ -216,6 +224,60 @@ static void silence_rows(void)
     silence_rows_of(GROBO_WIRING_BOARD, " through the board");
 }
 
+/* ---- one reading, in the engine alone -------------------------------------------------------- */
+
+static grobo_driver one_servo;
+static long ended_well;
+
+static void on_reading(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    ended_well += event->kind == GROBO_EVENT_JOB && event->u.job.result == GROBO_OK;
+}
+
+static void prepare_reading(void)
+{
+    static const grobo_joint joint = {.name = "J",
+                                      .min_rad = -1,
+                                      .max_rad = 1,
+                                      .max_speed_rad_s = 1,
+                                      .motor = 1,
+                                      .mirror_sign = 1};
+    static const grobo_model model = {.name = "one servo", .joints = &joint, .n_joints = 1};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = GROBO_SENSE_NEVER};
+    const grobo_robot_host host = {.clock = rig_clock};
+
+    rig.now_us = SECOND_US;
+    (void)grobo_rs30x_driver_init(&one_servo, &model, &grobo_rs30x_protocol);
+    (void)grobo_robot_init(&rig.robot, &one_servo, NULL, &config, rig.now_us);
+    grobo_robot_set_host(&rig.robot, &host);
+    grobo_robot_on_event(&rig.robot, on_reading, NULL);
+    grobo_robot_link_up(&rig.robot, rig.now_us);
+    grobo_robot_step(&rig.robot, rig.now_us);
+}
+
+/* A job each: asked for, sent, answered a millisecond later, told. */
+static void readings(long n)
+{
+    static const uint8_t reply[] = {0xFD, 0xDF, 1, 0, 0x2A, 2, 1, 0, 0, 1 ^ 0x2A ^ 2 ^ 1};
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+
+    ended_well = 0;
+    for (long i = 0; i < n; i++) {
+        (void)grobo_robot_sense(&rig.robot, 1, GROBO_SENSE_POSITION);
+        (void)grobo_robot_tx(&rig.robot, frame, sizeof frame, rig.now_us);
+        rig.now_us += 1000;
+        grobo_robot_rx(&rig.robot, reply, sizeof reply, rig.now_us);
+        grobo_robot_step(&rig.robot, rig.now_us);
+        (void)grobo_robot_deadline(&rig.robot, rig.now_us);
+    }
+    if (ended_well != n) {
+        fprintf(stderr, "bench_work: %ld of %ld readings answered\n", ended_well, n);
+        exit(1);
+    }
+}
+
 /* A wave of all joints. */
 static int wave_sample(void *ctx, int64_t t_us, grobo_posture *posture)
 {
@@ -237,22 +299,82 @@ static int wave_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
     return wave_sample(ctx, *at_us, posture);
 }
 
-static void prepare_play(void)
+static void play(const grobo_clip *wave, uint16_t rate_hz)
 {
-    const grobo_clip clip = {.key = wave_key,
-                             .sample = wave_sample,
-                             .length_us = INT64_C(3600) * SECOND_US,
-                             .n_keys = 3601,
-                             .n_joints = 20};
     const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
-                                        .rate_hz = 50, .unwatched = true};
+                                        .rate_hz = rate_hz, .unwatched = true};
+    grobo_clip clip = *wave;
 
-    start(SECOND_US);
+    clip.length_us = INT64_C(3600) * SECOND_US;
+    clip.n_keys = 3601;
     (void)grobo_robot_play(&rig.robot, &clip, &options);
     run_us(5 * SECOND_US);
     if (grobo_robot_play_state(&rig.robot) != GROBO_SEQUENCER_PLAYING) {
         fputs("bench_work: it does not play\n", stderr);
         exit(1);
+    }
+}
+
+static void prepare_play(void)
+{
+    start(SECOND_US);
+    play(&(grobo_clip){.key = wave_key, .sample = wave_sample, .n_joints = 20}, 50);
+}
+
+/* ---- the same by number of joints ------------------------------------------------------------ */
+
+static char joint_name[GROBO_JOINTS_MAX][8];
+static grobo_joint joint_of[GROBO_JOINTS_MAX];
+static grobo_model chain = {.name = "chain", .joints = joint_of};
+static grobo_driver chain_driver;
+
+static int chain_sample(void *ctx, int64_t t_us, grobo_posture *posture)
+{
+    (void)ctx;
+    int r = grobo_posture_init(posture, chain.n_joints);
+
+    for (int j = 0; j < chain.n_joints; j++) {
+        (void)grobo_posture_set_deg(posture, j, (double)llabs(t_us % 4000000 - 2000000) / 200000.0);
+    }
+    return r;
+}
+
+static int chain_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
+{
+    *at_us = (int64_t)i * SECOND_US;
+    return chain_sample(ctx, *at_us, posture);
+}
+
+/* Engine and simulated robot together; 20 frames a second, since those of 64 joints take the wire
+ * 30 ms. */
+static void joints_rows(void)
+{
+    static const uint8_t counts[] = {1, 2, 5, 10, 20, 40, GROBO_JOINTS_MAX};
+    enum { RATE_HZ = 20, SPAN_S = 20 };
+
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
+        (void)snprintf(joint_name[j], sizeof joint_name[j], "J%d", j);
+        joint_of[j] = (grobo_joint){.name = joint_name[j],
+                                    .min_rad = -1,
+                                    .max_rad = 1,
+                                    .max_speed_rad_s = 5,
+                                    .motor = (uint8_t)(j + 1),
+                                    .mirror = (uint8_t)j,
+                                    .mirror_sign = 1};
+    }
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        char measure[64];
+
+        chain.n_joints = counts[i];
+        (void)grobo_rs30x_driver_init(&chain_driver, &chain, &grobo_rs30x_protocol);
+        start_with(&chain_driver, GROBO_WIRING_BUS, SECOND_US);
+        play(&(grobo_clip){.key = chain_key, .sample = chain_sample, .n_joints = chain.n_joints},
+             RATE_HZ);
+        const double begin_us = bench_cpu_us();
+        run_us((int64_t)SPAN_S * SECOND_US);
+        (void)snprintf(measure, sizeof measure, "%d joints: play and simulated robot, us a frame",
+                       counts[i]);
+        bench_row("S11", measure, "grobo", (bench_cpu_us() - begin_us) / (SPAN_S * RATE_HZ));
     }
 }
 
@@ -302,7 +424,7 @@ static void prepare_file(grobo_motion_kind kind)
     grobo_motion *motion = NULL;
     grobo_posture posture;
 
-    (void)grobo_motion_new(&motion, kind, 20, NULL);
+    (void)grobo_motion_new(kind, 20, NULL, &motion);
     if (kind == GROBO_MOTION_FRAMES) {
         (void)grobo_motion_set_frame_rate(motion, 100);
     }
@@ -360,7 +482,7 @@ static void walk(long n)
         grobo_body *body = NULL;
         double q_rad[GROBO_JOINTS_MAX];
 
-        if (grobo_body_new(&body, &grobo_gr001_body, step, &options, NULL) >= 0) {
+        if (grobo_body_new(&grobo_gr001_body, step, &options, NULL, &body) >= 0) {
             for (int i = 0; i < grobo_body_frame_count(body); i++) {
                 (void)grobo_body_frame(body, i, q_rad, NULL);
             }
@@ -378,6 +500,8 @@ static const struct piece {
     long n;
     double seconds; /* > 0: rows tell seconds of virtual time in a second, else ns a piece */
 } pieces[] = {
+    {"reading", "S1", "a reading by a job, in the engine alone, ns", prepare_reading, readings,
+     100000, 0},
     {"goals", "S10", "build a pose frame, ns", prepare_codec, goals, 200000, 0},
     {"build", "S10", "build a pose frame from angles, ns", prepare_codec, build, 200000, 0},
     {"parse", "S10", "parse a pose frame, ns", prepare_codec, parse, 200000, 0},
@@ -437,6 +561,7 @@ int main(int argc, char **argv)
     }
     if (argc == 1) {
         silence_rows();
+        joints_rows();
     }
     return argc == 1 ? 0 : 2;
 }

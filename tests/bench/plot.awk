@@ -2,7 +2,7 @@
 # Draws rows of tests/bench as an SVG: cost against work, both axes logarithmic.
 #
 # usage: awk -f plot.awk -v scenario=S5 -v part='us a frame' -v title=... -v x=... ROWS
-# The work is the first number of a measure, among those of the scenario that hold `part`.
+# The work is the first number of a measure, among those of the scenario that end in `part`.
 
 BEGIN {
     FS = "\t"
@@ -13,7 +13,7 @@ BEGIN {
     split("#1f5fa8 #777777 #b5541c", colour, " ")
 }
 
-$1 == scenario && index($2, part) {
+$1 == scenario && substr($2, length($2) - length(part) + 1) == part {
     measure = $2
     gsub(/[^0-9]+/, " ", measure)
     split(measure, number, " ")

@@ -65,7 +65,7 @@ END {
                 more = more (more == "" ? "" : ",") quoted(by[2]) ":" median(values[name])
             }
         }
-        if (part[1] ~ /^S[12]$/) {
+        if (part[1] ~ /^S[12]$/ && least != "") {
             for (p = 1; p <= 4; p++) {
                 if (!((keys[i], peer[p]) in values)) {
                     others = others (others == "" ? "" : ", ") peer[p] " not here"

@@ -177,6 +177,11 @@ check "the file must say so" fails 2 "calibrated: true" "$GRCTL" --robot pan-til
 check "another robot has trims" fails 2 'keep no calibration' \
     "$GRCTL" --robot gr001 -d sim calibrate --from "$work/so101.json"
 
+printf 'name: lx\nfamily: lx16a\njoints:\n%s\n' \
+    '  - {name: a, id: 1, servo: LX-16A, limits_deg: [-90, 90]}' >"$work/lx.yaml"
+check "so has one of Hiwonder, and it is said where" fails 2 'keep no calibration.*trims' \
+    "$GRCTL" --robot "$work/lx.yaml" -d sim calibrate
+
 # A DYNAMIXEL adds its offset.
 start_dxl() {
     stop_sim

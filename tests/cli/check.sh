@@ -158,7 +158,7 @@ check "a target out of reach" reaches
 check "nothing to balance" both exits 0 "$GRCTL" check --balance "$work/nothing.pseq" \
     --- says 'balance-unknown'
 check "a balancer that is none is a file" found 3 '^sideways: no such file' --balance sideways
-check "unless it is told apart" fails 2 "'sideways' is none of off|on|compat11" \
+check "unless it is told apart" fails 2 "invalid value 'sideways' (off|on|compat11)" \
     "$GRCTL" check --balance=sideways motions/step.pseq
 check "with the balancer" fails 0 'nothing wrong' "$GRCTL" check --balance on motions/step.pseq
 

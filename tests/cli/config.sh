@@ -78,7 +78,7 @@ check_json "calibrate measures" \
     "$GRCTL" calibrate --json --timeout 500
 check_json "then the posture is the initial one" \
     'lines[0]["joints"][0]["angle_deg"] == -40' "$GRCTL" status R_KNEE_P --json
-check "calibrate without a robot" fails 2 'must name a robot' on_robot calibrate
+check "calibrate without a robot" fails 2 'keep no calibration, and -d names no robot of' on_robot calibrate
 check "a joint without degrees" fails 2 'needs JOINT DEG' "$GRCTL" calibrate m5
 
 offset() {
@@ -131,7 +131,7 @@ check "a trim that is none" bad '2:46: degrees' <<'EOF'
 robots:
   kitchen: {device: /dev/x, trim: {R_KNEE_P: far}}
 EOF
-check "a wiring that is none" bad "2:37: .*none of board" <<'EOF'
+check "a wiring that is none" bad "2:37: .*(board|bus)" <<'EOF'
 robots:
   kitchen: {device: /dev/x, wiring: string}
 EOF
@@ -156,7 +156,7 @@ check "it does not keep others from working" exits 0 "$GRCTL" check motions/gree
 written <<'EOF'
 default: attic
 EOF
-check "a default that is none" fails 3 "config/grctl/config.yaml: default 'attic' is no robot" \
+check "a default that is none" fails 3 "config/grctl/config.yaml: default 'attic' is not a robot" \
     "$GRCTL" status
 written <<'EOF'
 # nothing yet

@@ -58,7 +58,7 @@ streams() {
 check "- is standard input and output" streams
 check "--to says it when the name does not" both convert --to m $greet "$work/greet.txt" \
     --- cmp "$work/greet.txt" "$work/direct.m"
-check "nobody says it" fails 2 'its name tells no format; give --to m|pseq|mseq|yaml' \
+check "nobody says it" fails 2 'unknown file type; use --to m|pseq|mseq|yaml' \
     "$GRCTL" convert $greet "$work/greet.txt"
 check "content tells when the name does not" both convert "$work/greet.txt" "$work/again.m" \
     --- alike postures "$work/greet.txt" "$work/again.m"

@@ -96,12 +96,17 @@ read present_position of servo 1; sum DF right; reply: 8 bytes
 servo 1 returns present_position 0.0 deg; sum E8 right
 unknown instruction 28 to servo 1; sum D3 right; no reply
 TEXT
+check 'Hiwonder: of all, only the ids are answered' decodes --family lx16a \
+    5555FE031CE2 5555FE030EF0 <<'TEXT'
+read present_position of all servos; sum E2 right; no reply
+read id of all servos; sum F0 right; reply: of each that is there
+TEXT
 check 'Kondo: there is no sum' decodes --family ics 813A4C 013A4C 810000 <<'TEXT'
 write servo 1: position 0.0 deg; reply: 3 bytes
 servo 1 returns present_position 0.0 deg
 free servo 1; reply: 3 bytes
 TEXT
-check 'a family that is none' refuses 2 'is none of rs30x' --family futaba 00
+check 'a family that is none' refuses 2 "invalid value 'futaba' (rs30x" --family futaba 00
 check_json 'a request in JSON' 'lines[0]["packet"]["action"] == "read" and
     lines[0]["packet"]["servos"][0]["address"] == 132 and lines[0]["reply"]["bytes"] == 15' \
     "$GRCTL" decode --json --family dynamixel2 FFFFFD00010700028400 04001D15
@@ -281,11 +286,11 @@ check 'no such file' refuses 3 './none: no such file$' ./none
 check 'a folder' refuses 3 ': is a directory$' "$work"
 printf 'FA AF\n03 0x1G\n' >"$work/bad"
 check 'bad hex in a file, behind what is good' both exits 3 "$GRCTL" decode "$work/bad" --- \
-    both complains "$work/bad:2:6: '1G' is no byte in hex" --- says 'FA AF'
+    both complains "$work/bad:2:6: '1G' is not a byte in hex" --- says 'FA AF'
 printf '\177ELF\1\2\3' >"$work/binary"
 check 'a binary' refuses 3 "$work/binary:1:1: neither hex nor a pcapng trace" "$work/binary"
 printf '{"hex": "41 0"}\n' >"$work/bad-json"
-check 'bad hex in JSON' refuses 3 "$work/bad-json:1:1: '0' is no byte in hex" "$work/bad-json"
+check 'bad hex in JSON' refuses 3 "$work/bad-json:1:1: '0' is not a byte in hex" "$work/bad-json"
 printf '{"hex": \n' >"$work/worse-json"
 check 'malformed JSON' refuses 3 'malformed JSON' "$work/worse-json"
 check 'an error as JSON' sh -c '"$GRCTL" decode --json XY 2>/dev/null |

@@ -82,12 +82,12 @@ exec 5>&-
 robot=$work/none
 check "no such device" finds 'is not there' "'grctl ports'"
 robot=$work
-check "a directory" finds 'is no serial port' "'grctl ports'"
+check "a directory" finds 'is not a serial port' "'grctl ports'"
 robot=tcp:127.0.0.1:1
 check "nobody listens" finds 'tcp:127.0.0.1:1' 'start a serial server there'
 
 start_sim --baud 57600
-check "another baud rate" finds 'somebody does at 57600 bps' "-b 57600"
+check "another baud rate" finds 'there is one at 57600 bps' "-b 57600"
 stop_sim
 start_sim --wiring bus
 check "another wiring" finds 'straight on the line' "--wiring bus"

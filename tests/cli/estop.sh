@@ -99,9 +99,9 @@ if have_full_screen; then
     keys t
     until_screen '^torque on: done'
     exits 0 on_robot estop
-    check "monitor" until_screen 'EMERGENCY STOP: R takes it back'
+    check "monitor" until_screen 'EMERGENCY STOP: R releases it'
     keys R
-    check "and takes it back" until_screen 'stop taken back'
+    check "and takes it back" until_screen 'stop released'
     keys q
     until_screen '^>'
     on_screen kill-server

@@ -29,8 +29,8 @@ calmly() {
 }
 # Where each family is assumed to answer: at once at the new rate, RS30x when they restart.
 rates_of() {
-    there='told to take \([0-9]*\) bps, answers at \1; and is back at'
-    here='told to take [0-9]* bps, answers at 115200; and is back at 115200$'
+    there='set to \([0-9]*\) bps, answers at \1, and again at'
+    here='set to [0-9]* bps, answers at 115200, and again at 115200$'
     case $1 in
     rs30x)
         grep -q "^as assumed  *rate  .*$here" "$2" &&
@@ -146,7 +146,7 @@ describe rs30x RS302CD >"$work/arm.yaml"
 start_sim --robot "$work/arm.yaml" --baud-at-once
 check "a rate that holds at once" contact 1 'n\ny\nn\n' at_once --robot "$work/arm.yaml" \
     -d "$robot" --timeout 500
-check "is told" said '^NOT as assumed  *rate  .* 76800 bps, answers at 76800; and is back at 115200'
+check "is told" said '^NOT as assumed  *rate  .* 76800 bps, answers at 76800, and again at 115200'
 check "behind it a restart, when it is wanted" said '^not done  *rate_restart '
 stop_sim
 
@@ -171,7 +171,7 @@ ended_in_flash() {
     status_was 143 first-contact
 }
 check "ended while the rate is another one" ended_in_flash
-check "it is back first" both grep -q 'rate_restart .* is back at 115200$' "$work/restart.txt" --- \
+check "it is back first" both grep -q 'rate_restart .* again at 115200$' "$work/restart.txt" --- \
     both exits 0 "$GRCTL" --robot "$work/arm.yaml" -d "$robot" --timeout 500 servo-get 2 baud --- \
     says ' 115200 bps$'
 lost_in_flash() {
@@ -183,7 +183,7 @@ lost_in_flash() {
 check "one that is lost meanwhile" lost_in_flash
 check "is told" said '^NOT as assumed  *rate_restart .* not back at 115200 bps'
 check "and how it is found again" \
-    [ "$(grep -c '^a servo that is lost: .* --all-baud --first 2 --last 2' "$work/err")" -eq 3 ]
+    [ "$(grep -c '^if the servo is lost: .* --all-baud --first 2 --last 2' "$work/err")" -eq 3 ]
 tell cable 2 in
 check "there it is" both wait_for exits 0 "$GRCTL" --robot "$work/arm.yaml" -d "$robot" \
     scan --all-baud --first 2 --last 2 --- says '^ *2 '

@@ -28,7 +28,7 @@ if python3 -c 'import jsonschema' 2>/dev/null; then
 fi
 begin_agent one
 agent_one=$agent
-begin_agent two --label arms,left
+begin_agent two --label arms,left --cockpit 'https://stage.local/%/'
 check "agents are listed" both wait_for is_listed one ONLINE --- wait_for is_listed two ONLINE
 check "a robot that is not there is said once" grep -q '^d: .*none: no such file' "$work/two.err"
 check_json "their robots and groups" \
@@ -36,6 +36,9 @@ check_json "their robots and groups" \
       sorted(lines, key=lambda l: l["host"])] ==
      [("one", ["a", "b"], ["all", "one"]), ("two", ["c", "d"], ["all", "two", "arms", "left"])]' \
     fleet list --json
+check_json "and a page of each, where there is one" \
+    '[[r.get("cockpit") for r in l["robots"]] for l in sorted(lines, key=lambda l: l["host"])] ==
+     [[None, None], ["https://stage.local/c/", "https://stage.local/d/"]]' fleet list --json
 check_json "how they are" \
     '{(l["host"], l["robot"]): l["up"] for l in lines} ==
      {("one", "a"): True, ("one", "b"): True, ("two", "c"): True, ("two", "d"): False}' \
@@ -49,6 +52,8 @@ check "no such order" fails 2 'there are list, status' fleet dance
 check "an agent has robots of the configuration" fails 2 'agent: -d names a robot or a group' \
     "$GRCTL" -d sim agent --broker "$broker"
 
+check "a page is a link" fails 2 "--cockpit 'javascript:x': http:// or https://" \
+    "$GRCTL" -d one agent --broker "$broker" --cockpit javascript:x
 check "a label is a name" fails 2 "at most 8 names of letters" \
     "$GRCTL" -d one agent --broker "$broker" --label a,b/c
 
@@ -59,18 +64,53 @@ plays_through() {
     fleet play "$@" -s 400 --on-link-lost finish
 }
 sed 's/greet/other/' motions/greet.pseq >"$work/other.pseq"
+# Two files, the first at a time that is told: all are ready before it, and none begins before it.
+at_a_time() {
+    at_s=$(($(date +%s) + 12))
+    exits 0 plays_through greet.pseq other.pseq --group one --at "$(date -d "@$at_s" +%H:%M:%S)" &&
+        [ "$(date +%s)" -ge $((at_s + 2)) ] && [ "$(grep -c 'one/a: played' "$work/out")" -eq 2 ] &&
+        grep -q 'all are ready; they begin in' "$work/err"
+}
 pushed() {
     exits 0 fleet push "$work/other.pseq" && cmp "$work/other.pseq" "$work/motions/other.pseq"
 }
 check "a motion is put into their folders" pushed
 check "a motion that all play" both exits 0 plays_through other.pseq --group one --- \
     both says 'one/a: played' --- says 'one/b: played'
+check "two, at a time that is told" at_a_time
+check "a time that is none" fails 2 "--at '25:00': HH:MM or HH:MM:SS is wanted" \
+    fleet play greet.pseq --group one --at 25:00
+watched() {
+    "$GRCTL" fleet status --watch --broker "$broker" >"$work/watched" &
+    watcher=$!
+    echo $watcher >>"$work/pids"
+    wait_for seen_twice && kill -INT $watcher
+    wait $watcher
+    [ $? -eq 130 ]
+}
+seen_twice() {
+    [ "$(grep -c '^one  *a  *up  ' "$work/watched")" -ge 2 ]
+}
+check "status again and again" watched
 check "what is not there is refused, with the host" fails 1 'one: prepare: .*none.pseq' \
     fleet play none.pseq --group one
 check "one robot that is missing keeps all" both exits 1 fleet play greet.pseq --- \
     grep -q 'two: prepare: d: is not there' "$work/err"
-check "nobody of that group" fails 1 'no agent of group three is online' \
+check "nobody of that group" fails 1 'no agent is of group three; there are all, .*left' \
     fleet play greet.pseq --group three
+check "nobody at that host" fails 1 'no agent of group one at two is online' \
+    fleet play greet.pseq --group one --host two
+# A name that is mistyped stops nobody: that is no success.
+mistyped() {
+    exits 1 fleet stop --group tree &&
+        complains 'no agent is of group tree; there are all, .*left.*: nothing was seen to stop' &&
+        exits 1 fleet reset --group tree && complains 'no agent is of group tree'
+}
+check "a stop of a group that there is not" mistyped
+check_json "one group is listed" '[l["host"] for l in lines] == ["two"]' \
+    fleet list --group arms --json
+check_json "its robots are shown" '[l["robot"] for l in lines] == ["c", "d"]' \
+    fleet status --group arms --json
 
 # plays [OPTIONS]: with group one, slowly; returns when it was begun.
 plays() {
@@ -153,6 +193,26 @@ hangs() {
     [ $hangs_status -eq 0 ] && wait_for rests
 }
 check "a broker that hangs stops a motion softly" hangs
+# What it has not taken is not lost with it.
+hangs_and_dies() {
+    : >"$work/one.err"
+    lapsed='the permit lapsed: the motion stops'
+    plays && kill -STOP "$broker_pid" && written "$work/one.err" "$lapsed" &&
+        kill -9 "$broker_pid" && written "$work/state/grctl/agent-one.events" unpermitted
+    hangs_status=$?
+    wait "$play"
+    return $hangs_status
+}
+check "what happens while it hangs is kept when it dies" hangs_and_dies
+: >"$work/broker.log"
+begin_open_broker
+[ -z "$keeps_all" ] || keep_all 2
+back_again() {
+    wait_for is_listed one ONLINE && wait_for is_listed two ONLINE &&
+        wait_for test ! -e "$work/state/grctl/agent-one.events" &&
+        written "$work/broker.log" "Received PUBLISH from one .*'grobo/v1/one/event'"
+}
+check "and told to the next" back_again
 dies() {
     : >"$work/one.err"
     exits 1 fleet estop --group two && lapsed='the permit lapsed: the motion stops'
@@ -162,7 +222,7 @@ dies() {
 check "so does one that dies" dies
 check "what happens meanwhile is kept" written "$work/state/grctl/agent-one.events" unpermitted
 begin_open_broker
-[ -z "$keeps_all" ] || keep_all 2
+[ -z "$keeps_all" ] || keep_all 3
 came_back() {
     wait "$play"
     wait_for is_listed one ONLINE && wait_for is_listed two ONLINE && rests
@@ -269,6 +329,8 @@ if have_json; then
     check "a start before its preparation" \
         answered '"nothing was prepared" in lines[0]["message"]' \
         one start '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500
+    check "a group that it is not of" answered '"none of this agent" in lines[0]["message"]' \
+        one prepare '{"file":"greet.pseq","group":"two"}'
     check "a file of another folder" answered 'lines[0]["code"] == "arg"' \
         one put '{"file":"../y.m","text":""}'
     check "an order that there is not" answered 'lines[0]["code"] == "unsupported"' one dance '{}'
@@ -295,7 +357,7 @@ check "the broker says it of one that died" broken
 # ---- the schema ----------------------------------------------------------------------------------
 
 fit() {
-    cat "$work/kept.1" "$work/kept.2" >"$work/kept"
+    cat "$work/kept.1" "$work/kept.2" "$work/kept.3" >"$work/kept"
     python3 tests/support/mqtt.py 0 fits "$work/kept"
 }
 if [ -n "$keeps_all" ]; then

@@ -51,6 +51,53 @@ check "a robot that is not there makes it fail" both exits 1 "$GRCTL" -d ghosts 
     grep -q '^nobody: grctl: nobody: no such file' "$work/err"
 check "but the others are asked" grep -q '^a: .*R_SHOULDER_P' "$work/out"
 
+# watches WORDS...: $watcher; what it shows is in $work/seen, and it hears the keys of descriptor 7.
+mkfifo "$work/keys"
+watches() {
+    : >"$work/seen"
+    "$GRCTL" --timeout 500 "$@" <"$work/keys" >"$work/seen" 2>"$work/said" &
+    watcher=$!
+    echo "$watcher" >>"$work/pids"
+    exec 7>"$work/keys"
+}
+watcher_ended() { # STATUS
+    exec 7>&-
+    wait "$watcher"
+    watcher_status=$?
+    [ $watcher_status -eq "$1" ] && return
+    echo "status $watcher_status, not $1"
+    cat "$work/said"
+    return 1
+}
+all_stopped() {
+    [ "$(tail -n 3 "$work/seen" | grep -c '^[abc] .* stopped, read back$')" -eq 3 ]
+}
+monitored() {
+    watches -d stage monitor && written "$work/seen" '^c  *stands .*/20 .* V  *-$' &&
+        printf e >&7 && wait_for all_stopped && printf q >&7 && watcher_ended 0
+}
+check "monitor shows each, and stops all" monitored
+watched() {
+    watches -d ghosts status --watch -i 100 && written "$work/seen" '^a  *stands ' &&
+        written "$work/seen" '^nobody  *not there$' && kill -INT "$watcher" && watcher_ended 130 &&
+        grep -q 'nobody: .*tried again every 5 s' "$work/said"
+}
+check "status --watch too, with one that is not there" watched
+watched_json() {
+    watches -d stage --json monitor && written "$work/seen" '"name": *"c"' &&
+        kill -INT "$watcher" && watcher_ended 130
+}
+check "as JSON, a line each" watched_json
+check "a monitor of all plays nothing" fails 2 'to play, grctl -d stage play' \
+    "$GRCTL" -d stage monitor motions/greet.pseq
+recorded() {
+    watches -d stage record -o "$work/led.m" &&
+        written "$work/said" 'record: a, the first of stage' &&
+        written "$work/said" 'save and end' && printf s >&7 && watcher_ended 0 &&
+        test -s "$work/led.m"
+}
+check "of a group the first leads, and is recorded" recorded
+
 # ---- together ------------------------------------------------------------------------------------
 
 check "a motion of all" both exits 0 \

@@ -61,7 +61,7 @@ check_json "joints as JSON" \
 check "a joint that is none, in joints" fails 2 'did you mean R_KNEE_P?$' "$GRCTL" joints R_KNE_P
 check "a word for a device, misspelled" fails 1 "^grctl: sin: .*(did you mean 'sim'?)$" \
     "$GRCTL" -d sin status
-check "a file without a name" fails 2 'an empty name is no file' "$GRCTL" play ''
+check "a file without a name" fails 2 'the file name is empty' "$GRCTL" play ''
 check "an option without a value" fails 2 'output needs a value: OUT' "$GRCTL" plot -o '' x
 check "a posture of no file" fails 2 "'@:2' is not @FILE or @FILE:N" "$GRCTL" pose @:2
 check "a device without a name" fails 2 'device needs a value: DEV' "$GRCTL" -d '' status
@@ -71,7 +71,7 @@ check "a value missing" fails 2 'device needs a value' "$GRCTL" status --device
 check "a value too many" fails 2 'json takes no value' "$GRCTL" status --json=yes
 check "a number that is none" fails 2 "'fast' is not a whole number" "$GRCTL" -b fast status
 check "a number too large" fails 2 "'99999999' is not" "$GRCTL" -b 99999999 status
-check "a choice that is none" fails 2 "'string' is none of board|bus" \
+check "a choice that is none" fails 2 "invalid value 'string' (board|bus)" \
     "$GRCTL" --wiring string status
 check "an argument missing" fails 2 'move needs JOINT DEG' "$GRCTL" move R_KNEE_P
 check "an argument too many" fails 2 "'x' is one argument too many" "$GRCTL" version x

@@ -123,7 +123,7 @@ as_other=
 check "an unknown device" fails 1 '^grctl: /dev/none: no such file or device; see .grctl ports' \
     grctl -d /dev/none play "$greet"
 check "a device without a name" fails 2 'device needs a value' grctl -d '' play "$greet"
-check "a device that is no serial port" fails 1 '/dev/null: is not a serial port' \
+check "a device that is not a serial port" fails 1 '/dev/null: is not a serial port' \
     grctl -d /dev/null play "$greet"
 check "a server that is none" fails 1 'tcp:127.0.0.1:1: connect: Connection refused' \
     grctl -d tcp:127.0.0.1:1 play "$greet"

@@ -74,9 +74,10 @@ manual() {
 }
 check "the manual" manual
 
+# groff 1.23 misses a string of its own where a heading begins with a letter that is not of ASCII.
 rendered() {
-    rendered_said=$(groff -ww -W break -mdoc -Kutf8 -Tutf8 "$work/grctl.1" 2>&1 >"$work/out") &&
-        [ -z "$rendered_said" ] && says '初期姿勢へ動かす'
+    groff -ww -W break -mdoc -Kutf8 -Tutf8 "$work/grctl.1" 2>"$work/err" >"$work/out" &&
+        ! grep -v "macro 'doc-str-tmp2' not defined" "$work/err" && says '初期姿勢へ動かす'
 }
 if [ -e /usr/share/groff/current/tmac/doc.tmac ] && command -v preconv >/dev/null 2>&1; then
     check "groff renders it without warnings" rendered

@@ -58,7 +58,7 @@ check "--zmp file is kept" differ show '--balance on --zmp file' '--balance on'
 check "check takes presets" exits 0 "$GRCTL" check --balance --like robot "$step"
 check "and keeps the preset's balancer at --balance without a word" fails 2 'cannot be used' \
     "$GRCTL" check --like robot --ik off "$step" --balance
-check "a preset that is none" fails 2 "'me' is none of choreonoid|choreonoid-1.1|robot" \
+check "a preset that is none" fails 2 "invalid value 'me' (choreonoid|choreonoid-1.1|robot)" \
     "$GRCTL" show --like me "$step"
 idle() {
     exits 0 "$GRCTL" convert --balance on motions/greet.pseq "$work/greet.yaml" &&

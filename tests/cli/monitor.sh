@@ -114,7 +114,7 @@ check "the line comes back" until_screen '^ 5>ELBOW_P .* on '
 check "and is told of" until_screen 'line lost 1 times'
 
 on_screen resize-window -x 50 -y 12
-check "too small a window" until_screen 'a larger window, please'
+check "too small a window" until_screen 'terminal too small'
 on_screen resize-window -x 120 -y 40
 check "a large one: longer bars" until_screen 'NECK_Y  *[-0-9.]* .\{25,\} on '
 check "and what was said before" until_screen '^play: stopped'
@@ -136,12 +136,12 @@ else
 fi
 
 keys e
-check "emergency stop" until_screen 'EMERGENCY STOP: R takes it back'
+check "emergency stop" until_screen 'EMERGENCY STOP: R releases it'
 check "all are braked" until_screen '^ 5>ELBOW_P .* bra .* 8 ELBOW_P .* bra '
 keys i
 check "nothing moves then" until_screen 'an emergency stop stands'
 keys R
-check "it is taken back" until_screen 'stop taken back'
+check "it is taken back" until_screen 'stop released'
 keys q
 check "q quits" until_screen '^status 0'
 check "the terminal is as it was" until_screen ' icanon'

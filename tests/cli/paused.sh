@@ -119,9 +119,9 @@ monitors_on() {
     keys C-s
     exits 0 on_robot estop && complains 'which has the port, and verified' || return 1
     keys C-q
-    until_screen 'EMERGENCY STOP: R takes it back' || return 1
+    until_screen 'EMERGENCY STOP: R releases it' || return 1
     keys R
-    until_screen 'stop taken back' && keys q && until_screen '^>'
+    until_screen 'stop released' && keys q && until_screen '^>'
 }
 if have_full_screen; then
     open_screen

@@ -152,7 +152,7 @@ from() {
 }
 check "from the last key pose on" from
 check "from beyond the end" fails 2 'beyond the end' "$GRCTL" play --dry-run --from 6000 "$greet"
-check "--rate and --key" fails 2 'exclude each other' "$GRCTL" play --key --rate 9 "$greet"
+check "--rate and --key" fails 2 'cannot be used together' "$GRCTL" play --key --rate 9 "$greet"
 
 # The same motion in each format: a .m and an .mseq frame a line; a .yaml at its own rate.
 for format in m mseq yaml; do

@@ -100,7 +100,7 @@ start_record --key
 key q
 finish
 check "nothing was shown" grep -q 'nothing was recorded' "$work/err"
-check "a name without a format" fails 2 'its name tells no format' \
+check "a name without a format" fails 2 'unknown file type' \
     on_robot record -o wave
 check "a joint that is none" fails 2 'no joint or group' on_robot record tail
 cp motions/greet.pseq "$work/greet.m"

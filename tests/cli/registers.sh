@@ -162,7 +162,7 @@ check "where it is found" both exits 0 of "$work/krs.yaml" scan --all-baud --las
     says '^  2  Kondo KRS .* 625000 bps'
 check "and back" exits 0 of "$work/krs.yaml" -b 625000 servo-set 2 baud 115200
 check "doctor tells no voltage" both exits 0 of "$work/krs.yaml" doctor -v --- \
-    says 'do not tell their voltage'
+    says 'do not report their voltage'
 stop_sim
 check "ICS 3.5 does not tell where it stands" both \
     exits 3 "$GRCTL" robot check "$work/krs35.yaml" --- \

@@ -89,7 +89,7 @@ years() {
 }
 check 'a clock that jumped is not waited for' both years --- \
     fails 3 'a trace of more than a day is not replayed' "$GRCTL" replay "$work/years"
-check 'no trace' fails 3 'is no pcapng file' "$GRCTL" replay tests/cli/replay.sh
+check 'no trace' fails 3 'is not a pcapng file' "$GRCTL" replay tests/cli/replay.sh
 make_trace </dev/null >"$work/empty"
 check 'nothing in it' fails 3 'nothing went over the line' "$GRCTL" replay "$work/empty"
 head -c 199 "$work/others" >"$work/cut"

@@ -36,7 +36,7 @@ check_json "servo brake" 'lines[0]["joints"][0]["torque"] == "brake"' \
     on_robot --json servo brake m5
 check_json "servo off" 'lines[0]["joints"][0]["torque"] == "off"' \
     on_robot --json servo off R_ELBOW_P
-check "servo up" fails 2 "'up' is none of on, off, brake" on_robot servo up
+check "servo up" fails 2 "'up' is not one of on, off, brake" on_robot servo up
 
 check_json "move gets there, and switches torque on" \
     'abs(lines[0]["joints"][0]["angle_deg"] + 60) <= 0.1 and lines[0]["max_error_deg"] <= 0.1' \

@@ -153,7 +153,7 @@ goes_first() {
 check "nothing goes before it" goes_first
 check "nothing moves then" fails 4 "stopped by 'grctl estop'" on_robot move m5 0
 check "brakes are on" both exits 0 on_robot status m5 --- says ' brake '
-check "estop --reset" both exits 0 on_robot estop --reset --- said '^emergency stop taken back'
+check "estop --reset" both exits 0 on_robot estop --reset --- said '^emergency stop released'
 check "it moves again" exits 0 on_robot move m5 -20 300
 
 check "budget" both exits 0 "$GRCTL" budget --- says '^motion, 20 joints  *110 B  *0 B  *18.92 ms$'

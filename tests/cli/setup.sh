@@ -22,7 +22,7 @@ set_up() {
 check "nobody to ask" fails 2 "asks a person at a terminal; without one: 'grctl ports'" \
     "$GRCTL" setup
 check "nothing to undo" fails 2 'nothing that could be undone' "$GRCTL" setup --undo
-check "no port" both exits 1 "$GRCTL" -d "$work/nowhere" setup --yes --- said 'mend that'
+check "no port" both exits 1 "$GRCTL" -d "$work/nowhere" setup --yes --- said 'fix this'
 
 
 check "a simulated robot" answered 0 '' "$GRCTL" -d sim --robot so101 setup --yes

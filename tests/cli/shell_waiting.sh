@@ -212,7 +212,7 @@ else
     until_screen 'R_ELBOW_P .* brake '
 fi
 keys 'estop --reset' Enter
-until_screen 'taken back'
+until_screen 'released'
 tell plug out
 check "a lost line is told" until_screen ': device is gone$'
 tell plug in

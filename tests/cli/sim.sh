@@ -176,9 +176,9 @@ named() {
 }
 check "the console names servos of a chain" named
 
-check "a fault that is none" fails 2 "'gremlin=1' is no list" timeout 5 "$GRCTL" sim \
+check "a fault that is none" fails 2 "'gremlin=1' is not a list" timeout 5 "$GRCTL" sim \
     --fault gremlin=1
-check "a rate above 1" fails 2 "is no list" timeout 5 "$GRCTL" sim --fault drop=2
-check "a start that is none" fails 2 'none of init|zero|limp' timeout 5 "$GRCTL" sim --start high
+check "a rate above 1" fails 2 "is not a list" timeout 5 "$GRCTL" sim --fault drop=2
+check "a start that is none" fails 2 '(init|zero|limp)' timeout 5 "$GRCTL" sim --start high
 check "too many robots" fails 2 'from 1 to 16' timeout 5 "$GRCTL" sim --robots 17
 done_testing

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The page of a fleet in Chromium against `grctl serve --broker`, a real broker and agents of
 simulated robots. Prints TAP. usage and environment: as browser.py."""
-import json
 import os
 import pathlib
 import re
@@ -10,7 +9,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'support'))
 os.environ.setdefault('LC_ALL', 'C.UTF-8')
 
-from browser import SIZES, main, note, test, tests, until  # noqa: E402
+from browser import AXE, SIZES, main, note, nothing_serious, test, tests, until  # noqa: E402
 from cockpit import Server as Serve  # noqa: E402
 from fleet_view import Fleet, View, is_possible  # noqa: E402
 
@@ -141,6 +140,7 @@ def what_strangers_say_is_text_and_their_links_are_links(browser, server):
 
 @test
 def a_broker_that_is_away_is_seen_and_the_stop_goes_out_later(browser, server):
+    browser.expects('503', 'unreachable')
     page = open_page(browser, server)
     server.fleet.end('broker', 9)
     until(page, "document.getElementById('link').textContent === 'broker lost'")
@@ -149,7 +149,6 @@ def a_broker_that_is_away_is_seen_and_the_stop_goes_out_later(browser, server):
     server.fleet.begin_broker()
     until(page, "document.getElementById('stop-words').textContent === 'Stopped: 3 of 4 robots stand'",
           limit_ms=30000)
-    browser.trouble[:] = [t for t in browser.trouble if '503' not in t and 'unreachable' not in t]
 
 
 @test
@@ -183,8 +182,7 @@ def it_fits_three_sizes(browser, server):
 
 @test
 def axe_finds_nothing_serious(browser, server):
-    axe = os.environ.get('AXE', '')
-    if not os.path.exists(axe):
+    if not os.path.exists(AXE):
         return 'axe-core is not installed'
     for size in ('desktop', 'phone'):
         for scheme in ('light', 'dark'):
@@ -194,11 +192,7 @@ def axe_finds_nothing_serious(browser, server):
                 if chosen:
                     page.click('.robot:has(b:text-is("a"))')
                     until(page, "document.getElementById('one-name').textContent === 'a · host-stage'")
-                page.evaluate(pathlib.Path(axe).read_text(encoding='utf-8'))
-                bad = page.evaluate("""axe.run({ resultTypes: ['violations'] }).then((r) => r.violations
-                    .filter((v) => ['serious', 'critical'].includes(v.impact)).map((v) => [v.id,
-                    v.nodes.map((n) => n.target.join(' ') + ': ' + (n.any[0] || n.all[0] || n.none[0] || {}).message)]))""")
-                assert not bad, f'{size} {scheme}: {json.dumps(bad, indent=1)}'
+                nothing_serious(page, f'{size} {scheme}')
     return None
 
 

@@ -425,6 +425,27 @@ await test('frames become key poses, and motions are compared', () => {
     same(compare(frames, { rate_hz: 10, angle_deg: [] }), []);
 });
 
+await test('of frames a key names what is elsewhere than in the file', () => {
+    const keys = [0, 200, 400].map((ms) => ({ time_ms: ms, angle_deg: [ms / 100, 1, null] }));
+    const d = new Draft(pair, { name: 'a.yaml', etag: '"1"', keys }, true);
+    const times = [{ time_ms: 0 }, { time_ms: 200 }, { time_ms: 400 }];
+    same(d.toEdit(), { keys: times });
+    d.setAngles(d.keys[1].id, { 1: 5 });
+    same(d.toEdit().keys, [times[0], { time_ms: 200, angle_deg: { L: 5 } }, times[2]]);
+    d.add(300, [3, 3, 0]); // as it is seen there
+    same(d.toEdit().keys[2], { time_ms: 300 });
+    d.setAngles(d.keys[2].id, { 0: 4 });
+    same(d.toEdit().keys[2], { time_ms: 300, angle_deg: { R: 4 } });
+    d.setTime(d.keys[2].id, 320); // what was seen was elsewhere
+    same(d.toEdit().keys[2], { time_ms: 320, angle_deg: { R: 4, L: 3, HEAD: 0 } });
+    same(d.toEdit(false).keys[1], { time_ms: 200, angle_deg: { R: 2, L: 5 } });
+    d.rebase({ name: 'a.yaml', etag: '"2"', keys: d.keys }, d.keys);
+    same(d.toEdit().keys.every((key) => !('angle_deg' in key)), true);
+    d.undo();
+    d.undo();
+    same(d.toEdit().keys[2], { time_ms: 300, angle_deg: { R: 3, L: 3, HEAD: 0 } });
+});
+
 await test('every text of the page is there in Japanese', () => {
     const missing = new Set();
     for (const name of readdirSync(folder)) {

@@ -77,13 +77,13 @@ static void only_one_is_on_the_wire(void **state)
     peer_init(&p, NULL);
     submit_read(&p, &a, 1, GROBO_PRIORITY_USER);
     peer_submit_goal(&p, &b, 2, GROBO_PRIORITY_STOP);
-    assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, 13), GROBO_ERR_SPACE); /* nothing lost by it */
-    assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, FRAME), 14);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, 13, 0), GROBO_ERR_SPACE); /* nothing lost by it */
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, 0), 14);
     assert_int_equal(buf[4], 2);
-    assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, FRAME), 0);
-    assert_int_equal(grobo_bus_tx(&p.bus, 100 * MS, buf, FRAME), 0);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, 0), 0);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, 100 * MS), 0);
     grobo_bus_step(&p.bus, 100 * MS);
-    assert_int_equal(grobo_bus_tx(&p.bus, 100 * MS, buf, FRAME), 11);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, 100 * MS), 11);
 }
 
 static void a_silent_servo_costs_its_attempts_and_no_more(void **state)

@@ -77,8 +77,8 @@ static void a_frame_may_fill_the_buffer(void **state)
     static uint8_t longest[GROBO_FRAME_MAX_BYTES];
     peer_init(&p, NULL);
     submit_read(&p, &r, 1, 0, GROBO_PRIORITY_USER);
-    assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, 10), GROBO_ERR_SPACE);
-    assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, 11), 11);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, 10, 0), GROBO_ERR_SPACE);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, 11, 0), 11);
     peer_init(&p, NULL);
     peer_read(&p, &r, 1, 2, GROBO_PRIORITY_USER);
     r.txn.frame = longest;
@@ -286,7 +286,7 @@ static void what_may_start_by_now_starts(void **state)
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
     grobo_bus_step(&p.bus, S);
     assert_int_equal(p.ended_count, 0);
-    assert_int_equal(grobo_bus_tx(&p.bus, S, buf, FRAME), 11);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, S), 11);
 }
 
 /* The last attempt of a patient read beside a span kept for motion; how long it was given. */
@@ -389,7 +389,7 @@ static void nothing_is_remembered_behind_the_last(void **state)
         .until_us = 60LL * S, .key = grobo_i_bus_key(&txn.reply), .owed = 1};
     memory.behind = stranger;
     assert_int_equal(grobo_bus_submit(&memory.bus, &txn), GROBO_OK);
-    assert_int_equal(grobo_bus_tx(&memory.bus, 0, (uint8_t[FRAME]){0}, FRAME), n);
+    assert_int_equal(grobo_bus_tx(&memory.bus, (uint8_t[FRAME]){0}, FRAME, 0), n);
     grobo_bus_step(&memory.bus, S);
     assert_false(grobo_txn_is_pending(&txn)); /* its reply is lost, and remembered */
     assert_memory_equal(&memory.behind, &stranger, sizeof stranger);

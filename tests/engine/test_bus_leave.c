@@ -128,7 +128,7 @@ static void one_that_is_submitted_again_and_again_does_not_spin(void **state)
     leave.refuse_from = 1;
     peer_submit_goal(&p, &r, 3, GROBO_PRIORITY_USER);
     r.txn.leave = on_leave;
-    assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, sizeof buf), 0);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, sizeof buf, 0), 0);
     assert_int_equal(leave.asked, 1);
     assert_int_equal(grobo_bus_deadline(&p.bus, 0), 0);
     assert_int_equal(grobo_bus_cancel(&p.bus, &r.txn), GROBO_OK);

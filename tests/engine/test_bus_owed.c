@@ -110,7 +110,7 @@ static void what_is_not_owed_any_more_is_credited_to_nobody(void **state)
     uint8_t both[20] = "\xFD\xDF\x02\x00\x2A\x02\x01\x16\x00\x3D"  /* 22 */
                        "\xFD\xDF\x01\x00\x2A\x02\x01\x0B\x00\x23"; /* 11 */
     p.chunk_count = 0;
-    grobo_bus_rx(&p.bus, at_us, both, sizeof both);
+    grobo_bus_rx(&p.bus, both, sizeof both, at_us);
     assert_int_equal(p.ended_count, 1);
     assert_ptr_equal(p.ended[0].txn, &b.txn);
     peer_position_at(&p, at_us + GROBO_BUS_QUIET_US + READ_US, 1, 33);
@@ -135,6 +135,71 @@ static void a_doubled_reply_is_not_taken_for_the_one_that_is_owed(void **state)
     peer_run(&p, S);
     assert_int_equal(p.ended[1].value, 33);
     assert_int_equal(p.sent[2].at_us, second_us + READ_US + 200);
+}
+
+/* Every attempt that failed is owed a reply: the same question waits for all of them. */
+static void two_owed_replies_are_both_waited_for(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, false);
+    peer_submit_read(&p, &a, 1, 1);
+    peer_submit_read(&p, &b, 1, 0);
+    int64_t failed_us = 2 * READ_FAILED + GROBO_BUS_QUIET_US;
+    peer_position_at(&p, failed_us + 5 * MS, 1, 11);
+    peer_position_at(&p, failed_us + 10 * MS, 1, 12);
+    peer_position_at(&p, failed_us + 10 * MS + READ_US + MS, 1, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_TIMEOUT);
+    assert_ptr_equal(p.ended[1].txn, &b.txn);
+    assert_int_equal(p.ended[1].value, 22);
+    assert_int_equal(p.sent_count, 3);
+    assert_in_range(p.sent[2].at_us, failed_us + 10 * MS, failed_us + 11 * MS);
+}
+
+/* One more question than there is room for is failed, and takes the place of the oldest: what was
+ * owed to that one is not owed to it. */
+static void a_hold_that_is_used_again_owes_nothing_from_before(void **state)
+{
+    (void)state;
+    peer p;
+    request lost[GROBO_BUS_HOLDS], again;
+    start(&p, false);
+    for (int i = 0; i < GROBO_BUS_HOLDS; i++) { /* the first hold is for an ACK: one too few */
+        peer_submit_read(&p, &lost[i], (uint8_t)(1 + i), 0);
+    }
+    peer_submit_read(&p, &again, GROBO_BUS_HOLDS, 0);
+    int64_t failed_us = GROBO_BUS_HOLDS * (READ_FAILED + GROBO_BUS_QUIET_US) - GROBO_BUS_QUIET_US;
+    peer_position_at(&p, failed_us + 5 * MS, GROBO_BUS_HOLDS, 11);
+    peer_position_at(&p, failed_us + 5 * MS + READ_US + MS, GROBO_BUS_HOLDS, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.ended_count, GROBO_BUS_HOLDS + 1);
+    assert_int_equal(p.ended[GROBO_BUS_HOLDS - 1].result, GROBO_ERR_TIMEOUT);
+    assert_int_equal(p.ended[GROBO_BUS_HOLDS].value, 22);
+    assert_in_range(p.sent[GROBO_BUS_HOLDS].at_us, failed_us + 5 * MS, failed_us + 6 * MS);
+}
+
+/* An ACK has no name: however soon replies have come, the next one is not asked for before. */
+static void an_ack_that_is_owed_holds_the_next_for_all_of_the_time(void **state)
+{
+    (void)state;
+    enum { READS = 200 };
+    peer p;
+    request read, a, b;
+    start(&p, false);
+    p.obliging = true;
+    for (int i = 0; i < READS; i++) {
+        peer_submit_read(&p, &read, 1, 0);
+        peer_run(&p, p.now_us + 20 * MS);
+    }
+    peer_submit_ping(&p, &a, 1, 0);
+    peer_submit_ping(&p, &b, 1, 0);
+    peer_run(&p, p.now_us + S);
+    assert_ptr_equal(p.ended[READS].txn, &a.txn);
+    assert_int_equal(p.ended[READS].result, GROBO_ERR_TIMEOUT);
+    int64_t held_us = p.sent[READS + 1].at_us - p.ended[READS].at_us;
+    assert_in_range(held_us, GROBO_BUS_HOLD_US, GROBO_BUS_HOLD_US + MS);
 }
 
 /* ---- echo ------------------------------------------------------------------------------------ */
@@ -305,7 +370,7 @@ static void receive(polling *p)
     while (p->under_way > 0 && p->arrives_us[0] <= p->now_us) {
         memmove(p->arrives_us, p->arrives_us + 1, sizeof p->arrives_us - sizeof p->arrives_us[0]);
         p->under_way--;
-        grobo_bus_rx(&p->bus, p->now_us, reply, sizeof reply);
+        grobo_bus_rx(&p->bus, reply, sizeof reply, p->now_us);
     }
 }
 
@@ -325,7 +390,7 @@ static double poll(const grobo_bus_config *config, uint32_t late_us, bool lose)
     while (p.ended < WARM_UP + POLLS) {
         receive(&p);
         grobo_bus_step(&p.bus, p.now_us);
-        if (grobo_bus_tx(&p.bus, p.now_us, buf, sizeof buf) > 0) {
+        if (grobo_bus_tx(&p.bus, buf, sizeof buf, p.now_us) > 0) {
             answer(&p, late_us, lose);
         }
         if (p.ended < WARM_UP) {
@@ -376,6 +441,9 @@ int main(void)
         cmocka_unit_test(a_late_refusal_is_credited_too),
         cmocka_unit_test(what_is_not_owed_any_more_is_credited_to_nobody),
         cmocka_unit_test(a_doubled_reply_is_not_taken_for_the_one_that_is_owed),
+        cmocka_unit_test(two_owed_replies_are_both_waited_for),
+        cmocka_unit_test(a_hold_that_is_used_again_owes_nothing_from_before),
+        cmocka_unit_test(an_ack_that_is_owed_holds_the_next_for_all_of_the_time),
         cmocka_unit_test(an_echo_is_found_behind_a_late_echo_and_a_late_reply),
         cmocka_unit_test(late_packets_are_no_broken_echo),
         cmocka_unit_test(a_late_reply_before_the_echo_of_the_next_attempt_is_believed),

@@ -203,8 +203,8 @@ static void deliver(soak *s)
         memmove(s->chunks, s->chunks + 1, (size_t)--s->chunk_count * sizeof c);
         s->owner = c.owner;
         size_t first = draw(s, (uint32_t)c.n + 1);
-        grobo_bus_rx(&s->bus, s->now_us, c.bytes, first);
-        grobo_bus_rx(&s->bus, s->now_us, c.bytes + first, c.n - first);
+        grobo_bus_rx(&s->bus, c.bytes, first, s->now_us);
+        grobo_bus_rx(&s->bus, c.bytes + first, c.n - first, s->now_us);
         s->owner = 0;
     }
 }
@@ -248,7 +248,7 @@ static void run(soak *s)
             submit_pose(s);
         }
         grobo_bus_step(&s->bus, s->now_us);
-        if (grobo_bus_tx(&s->bus, s->now_us, buf, sizeof buf) > 0) {
+        if (grobo_bus_tx(&s->bus, buf, sizeof buf, s->now_us) > 0) {
             if (s->bus.active != &s->pose.txn) {
                 answer(s, (const request *)s->bus.active);
             }

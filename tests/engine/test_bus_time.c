@@ -145,16 +145,16 @@ static void deadlines_say_when_to_come_back(void **state)
     peer_read(&p, &r, 1, 18, GROBO_PRIORITY_SENSE);
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
     assert_int_equal(grobo_bus_deadline(&p.bus, 5 * MS), 5 * MS);
-    assert_int_equal(grobo_bus_tx(&p.bus, 5 * MS, buf, FRAME), 11);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, 5 * MS), 11);
     assert_int_equal(grobo_bus_deadline(&p.bus, 5 * MS), 5 * MS + 6264 + 4 * MS);
     grobo_bus_step(&p.bus, 5 * MS + 6264 + 4 * MS - 1);
     assert_int_equal(p.bus.stats.timeouts, 0);
     grobo_bus_step(&p.bus, 5 * MS + 6264 + 4 * MS);
     assert_int_equal(p.bus.stats.timeouts, 1);
     assert_int_equal(grobo_bus_deadline(&p.bus, 15264), 15264 + GROBO_BUS_QUIET_US);
-    assert_int_equal(grobo_bus_tx(&p.bus, 15264, buf, FRAME), 0);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, 15264), 0);
     r.txn.timeout_us = 7 * MS;
-    assert_int_equal(grobo_bus_tx(&p.bus, 20 * MS, buf, FRAME), 11);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, 20 * MS), 11);
     assert_int_equal(grobo_bus_deadline(&p.bus, 20 * MS), 27 * MS);
 }
 
@@ -168,7 +168,7 @@ static void a_late_pump_still_takes_what_came_in_time(void **state)
     peer_init(&p, NULL);
     peer_read(&p, &r, 1, 2, GROBO_PRIORITY_SENSE);
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
-    assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, FRAME), 11);
+    assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, 0), 11);
     peer_position_at(&p, 0, 1, 42);
     p.now_us = S;
     peer_run(&p, S);

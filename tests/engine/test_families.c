@@ -367,6 +367,13 @@ static void a_joint_that_was_never_calibrated_does_not_move(void **state)
     }
 }
 
+static void faulty(int joint, double angle_deg)
+{
+    double value_deg = NAN;
+    assert_int_equal(grobo_robot_fault(&bus.robot, &value_deg), joint);
+    assert_float_equal(value_deg, angle_deg, 1e-6);
+}
+
 /* Its limits are those of its servo, where they are narrower than the robot's. */
 static void a_calibrated_joint_goes_as_far_as_its_servo(void **state)
 {
@@ -383,7 +390,9 @@ static void a_calibrated_joint_goes_as_far_as_its_servo(void **state)
         at(0, 40);
         at(1, 20);
         assert_int_equal(moved_to(60, 20, 10), GROBO_ERR_LIMIT);
+        faulty(0, 60);
         assert_int_equal(moved_to(40, 40, 10), GROBO_ERR_LIMIT); /* mounted the other way round */
+        faulty(1, 40);
         assert_int_equal(moved_to(40, -40, 10), GROBO_OK);
         at(0, 40);
         table_put(&bus, 0, GROBO_ROLE_MIN_POSITION, bus.servo[0].servo->middle);

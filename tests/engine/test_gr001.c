@@ -350,7 +350,7 @@ static void a_record_is_made_by_hand_and_played(void **state)
     grobo_posture posture;
     grobo_clip clip;
     start();
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), 0);
     assert_int_equal(record(motion, 0), GROBO_ERR_STALE);
     assert_int_equal(grobo_gr001_play_record(motion, &rig.robot, NULL, &clip), GROBO_ERR_EMPTY);
     turn(20);

@@ -118,7 +118,7 @@ static void groups_have_names_of_their_own(void **state)
 
 static int read_angles(double *angles, size_t capacity, int64_t max_age_us)
 {
-    return grobo_hrpsys_read_joint_angles(&hrpsys, angles, capacity, max_age_us);
+    return grobo_hrpsys_read_joint_angles(&hrpsys, max_age_us, angles, capacity);
 }
 
 static void angles_not_read_are_no_numbers(void **state)

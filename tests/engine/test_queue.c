@@ -346,6 +346,19 @@ static void what_waits_begins_in_its_order(void **state)
     }
 }
 
+/* Event number `at` tells that the job of this joint ended before it began. */
+static void expect_ended(int at, int number, grobo_job_kind kind, int joint, int result)
+{
+    const grobo_event *event =
+        &robot.events[(robot.events_head + (unsigned)at) % GROBO_ROBOT_EVENTS];
+    assert_int_equal(event->kind, GROBO_EVENT_JOB);
+    assert_int_equal(event->u.job.number, number);
+    assert_int_equal(event->u.job.kind, kind);
+    assert_int_equal(event->u.job.result, result);
+    assert_int_equal(event->u.job.joint, -1);
+    assert_true(event->u.job.failed == GROBO_JOINT_BIT(joint));
+}
+
 /* Or, in its turn, with the reason why it may not begin; those behind it go on. */
 static void what_has_waited_too_long_ends(void **state)
 {
@@ -362,13 +375,7 @@ static void what_has_waited_too_long_ends(void **state)
             expect_begun(0, 51, GROBO_JOB_SENSE, other_of(j));
             assert_int_equal(robot.jobs[1].kind, GROBO_JOB_NONE);
             assert_int_equal(robot.events_n, 1);
-            const grobo_event *event = &robot.events[robot.events_head];
-            assert_int_equal(event->kind, GROBO_EVENT_JOB);
-            assert_int_equal(event->u.job.number, 50);
-            assert_int_equal(event->u.job.kind, GROBO_JOB_MOVE);
-            assert_int_equal(event->u.job.result, late ? GROBO_ERR_STALE : GROBO_ERR_STATE);
-            assert_int_equal(event->u.job.joint, -1);
-            assert_true(event->u.job.failed == GROBO_JOINT_BIT(j));
+            expect_ended(0, 50, GROBO_JOB_MOVE, j, late ? GROBO_ERR_STALE : GROBO_ERR_STATE);
         }
     }
 }
@@ -385,14 +392,8 @@ static void a_trip_ends_all_that_waits(void **state)
         assert_int_equal(robot.queued, 0);
         assert_int_equal(robot.events_n, 1 + QUEUE);
         for (int i = 0; i < QUEUE; i++) {
-            unsigned at = (robot.events_head + 1 + (unsigned)i) % GROBO_ROBOT_EVENTS;
-            const grobo_event *event = &robot.events[at];
-            assert_int_equal(event->kind, GROBO_EVENT_JOB);
-            assert_int_equal(event->u.job.number, 50 + i);
-            assert_int_equal(event->u.job.kind, i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE);
-            assert_int_equal(event->u.job.result, latched ? GROBO_ERR_LATCHED : GROBO_ERR_CANCELED);
-            assert_int_equal(event->u.job.joint, -1);
-            assert_true(event->u.job.failed == GROBO_JOINT_BIT(i));
+            expect_ended(1 + i, 50 + i, i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE, i,
+                         latched ? GROBO_ERR_LATCHED : GROBO_ERR_CANCELED);
         }
     }
 }

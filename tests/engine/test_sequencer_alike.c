@@ -22,18 +22,12 @@ static const sample_key mixed[] = {{130 * MS, ALL, {0.1, 0.2, 0.3}},
                                    {310 * MS, RIGHT, {0, -0.4, 0}},
                                    {470 * MS, ALL, {-0.2, 0.1, 0.9}}};
 
-static void random_options(grobo_play_options *options, uint32_t *seed)
+static grobo_play_options random_options(uint32_t *seed)
 {
-    memset(options, 0, sizeof *options);
-    options->mode = next_random(seed) % 2 ? GROBO_PLAY_KEY : GROBO_PLAY_RATE;
-    options->reverse = next_random(seed) % 2;
-    options->mirror = next_random(seed) % 2;
-    options->repeat = (int32_t)(next_random(seed) % 5) - 2;
-    options->speed_pct = (uint16_t)(next_random(seed) % 500);
-    options->rate_hz = (uint16_t)(next_random(seed) % 100);
-    options->from_us = next_random(seed) % 600000;
-    options->default_time_us = next_random(seed) % 200000;
-    options->stop_us = next_random(seed) % 400000;
+    grobo_play_options options = sample_options(seed, 100, 600000);
+    options.default_time_us = next_random(seed) % 200000;
+    options.stop_us = next_random(seed) % 400000;
+    return options;
 }
 
 static void random_command(uint32_t *seed)
@@ -59,14 +53,14 @@ static void random_command(uint32_t *seed)
         break;
     case 6:
     case 7:
-        random_options(&options, seed);
+        options = random_options(seed);
         (void)grobo_sequencer_enqueue(&pump.seq, &other.clip, &options);
         break;
     case 8:
         if (pump.state == GROBO_SEQUENCER_FAILED) {
             grobo_sequencer_reset(&pump.seq);
         }
-        random_options(&options, seed);
+        options = random_options(seed);
         (void)there_and_back_again(options);
         break;
     default:
@@ -85,7 +79,7 @@ static void live(uint32_t seed, int64_t origin_us, int more)
     sample_clip_init(&clip, mixed, 5);
     sample_clip_init(&other, there_and_back, 3);
     pump.now_us = origin_us;
-    random_options(&options, &random);
+    options = random_options(&random);
     (void)grobo_sequencer_play(&pump.seq, &clip.clip, &options, &from, origin_us);
     for (int i = 0; i < 30; i++) {
         bool stalls = next_random(&random) % 4 == 0;

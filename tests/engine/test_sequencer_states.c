@@ -133,18 +133,6 @@ static void arguments_of_commands_are_checked(void **state)
 
 /* ---- anything in any order ---- */
 
-static void random_option(grobo_play_options *options, uint32_t *seed)
-{
-    memset(options, 0, sizeof *options);
-    options->mode = next_random(seed) % 2 ? GROBO_PLAY_KEY : GROBO_PLAY_RATE;
-    options->reverse = next_random(seed) % 2;
-    options->mirror = next_random(seed) % 2;
-    options->repeat = (int32_t)(next_random(seed) % 5) - 2;
-    options->speed_pct = (uint16_t)(next_random(seed) % 500);
-    options->rate_hz = (uint16_t)(next_random(seed) % 200);
-    options->from_us = next_random(seed) % 3000000;
-}
-
 /*
  * Commands, stalls and service in any order. The pump asserts what always holds; here: what is
  * sent lies between what the clip and the start have, as everything in between is a mixture.
@@ -159,7 +147,7 @@ static void whatever_happens_frames_stay_in_bounds(void **state)
         there_and_back_start(&by_key, 0.0);
         grobo_sequencer_reset(&pump.seq);
         (void)sample_pump_take(&pump);
-        random_option(&options, &seed);
+        options = sample_options(&seed, 200, 3000000);
         assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, &options, &from, 0), 0);
         for (int i = 0; i < 40; i++) {
             uint32_t what = next_random(&seed) % (3 * COMMANDS);

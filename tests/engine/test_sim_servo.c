@@ -9,6 +9,8 @@
 
 #include <cmocka.h>
 
+#include <grobo/lx16a.h>
+
 #include "tests/support/simkit.h"
 #include "tests/support/vectors.h"
 
@@ -25,7 +27,7 @@ typedef struct heard {
     int packets;
 } heard;
 
-static void hear(const grobo_sim_event *event, void *ctx)
+static void hear(void *ctx, const grobo_sim_event *event)
 {
     heard *last = ctx;
     if (event->kind == GROBO_SIM_PACKET) {
@@ -339,6 +341,66 @@ static void long_packets_reach_those_named(void **state)
     assert_int_equal(simkit_events(&kit, GROBO_SIM_GOAL, NULL), 3);
 }
 
+/* Another servo stands between the two parts; the later one is the one that counts. */
+static void one_is_spoken_to_twice(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 00 00 1E 05 03 05 64 00 64 00 02 9C FF 64 00 05 F4 01 32 00", 0);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 5), GROBO_RS30X_GOAL), 500);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 5), GROBO_RS30X_GOAL_TIME), 50);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 2), GROBO_RS30X_GOAL), -100);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_GOAL, NULL), 3);
+    simkit_forget(&kit);
+    simkit_packet(&kit, "FA AF 00 00 1E 05 02 05 64 00 64 00 05 F4 01 00 40", 0); /* refused */
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 5), GROBO_RS30X_GOAL), 100);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 1);
+}
+
+/* Only later models keep "silence_torque": in one packet it is written and it is reserved. */
+static void one_packet_is_another_to_each_model(void **state)
+{
+    (void)state;
+    static const uint16_t models[] = {GROBO_RS30X_RS301CR, GROBO_RS30X_RS303MR, GROBO_RS30X_RS301CR,
+                                      GROBO_RS30X_RS303MR};
+    static const char *const names[] = {"A", "B", "C", "D"};
+    grobo_joint joints[4];
+    const grobo_model model = {.name = "mixed", .joints = joints, .n_joints = 4};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &model,
+                                     .wiring = GROBO_WIRING_BUS};
+    for (int i = 0; i < 4; i++) {
+        joints[i] = (grobo_joint){.name = names[i],
+                                  .min_rad = -1,
+                                  .max_rad = 1,
+                                  .max_speed_rad_s = 1,
+                                  .servo_model = models[i],
+                                  .motor = (uint8_t)(i + 1),
+                                  .mirror = (uint8_t)i,
+                                  .mirror_sign = 1};
+    }
+    simkit_start(&kit, &config);
+    simkit_packet(&kit, "FA AF 00 00 16 02 04 01 11 02 12 03 13 04 14", 0);
+    for (int i = 0; i < 4; i++) {
+        bool keeps = models[i] == GROBO_RS30X_RS303MR;
+        assert_int_equal(kit.sim.servo[i].reg[22], keeps ? 0x11 + i : 0);
+    }
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 0);
+}
+
+/* The high byte of a goal time alone: in range or not with the low one that is there. */
+static void a_part_of_a_register_is_judged_with_the_rest(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 00 20 02 01 FF 00", 0);
+    simkit_packet(&kit, "FA AF 01 00 21 01 01 3F", 0);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_GOAL_TIME), 0x3FFF);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 0);
+    simkit_packet(&kit, "FA AF 01 00 21 01 01 40", 0);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_GOAL_TIME), 0x3FFF);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 1);
+}
+
 static void an_id_changes_at_once(void **state)
 {
     (void)state;
@@ -407,8 +469,7 @@ static void every_type_is_what_its_row_says(void **state)
     grobo_model model = {.name = "chain", .joints = joints};
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &model,
                                      .wiring = GROBO_WIRING_BUS, .no_stops = true};
-    const grobo_sim_type *type;
-    for (; (type = grobo_sim_type_row(model.n_joints)) != NULL; model.n_joints++) {
+    for (; model.n_joints < grobo_rs30x_table.model_count; model.n_joints++) {
         int i = model.n_joints;
         assert_true(i < GROBO_SIM_SERVOS_MAX);
         snprintf(names[i], sizeof names[i], "S%d", i);
@@ -416,23 +477,16 @@ static void every_type_is_what_its_row_says(void **state)
                                   .min_rad = -2.6,
                                   .max_rad = 2.6,
                                   .max_speed_rad_s = 1,
-                                  .servo_model = type->model,
+                                  .servo_model = grobo_rs30x_table.models[i].number,
                                   .motor = (uint8_t)(i + 1),
                                   .mirror = (uint8_t)i,
                                   .mirror_sign = 1};
-        assert_ptr_equal(grobo_sim_type_named(type->name, strlen(type->name)), type);
-        const grobo_servo_model *servo = grobo_servo_model_named(&grobo_rs30x_table, type->name);
-        assert_int_equal(servo->number, type->model);
     }
     assert_true(model.n_joints >= 4);
-    assert_null(grobo_sim_type_named("RS301", 5));
-    assert_null(grobo_sim_type_named("RS301CRX", 8));
-    assert_ptr_equal(grobo_sim_type_named("rs304md", 7), grobo_sim_type_row(3));
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
     for (int i = 0; i < model.n_joints; i++) {
-        type = grobo_sim_type_row((size_t)i);
-        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_MODEL), type->model);
+        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_MODEL), joints[i].servo_model);
         const grobo_servo_register *reg;
         for (size_t k = 0;
              (reg = grobo_servo_register_row(&grobo_rs30x_table.models[i], k)) != NULL; k++) {
@@ -441,19 +495,36 @@ static void every_type_is_what_its_row_says(void **state)
         }
         assert_int_equal(grobo_sim_set_register(&kit.sim, i, GROBO_RS30X_GOAL, 1000), 0);
         kit.now_us += 100000;
-        assert_in_range(simkit_look(&kit, i).angle_mdeg, type->speed_mdeg_s / 10 - 1,
-                        type->speed_mdeg_s / 10 + 1);
+        const int32_t way_mdeg = i % 2 == 0 ? 54545 : 37500; /* 0.11 and 0.16 s for 60 degrees */
+        assert_in_range(simkit_look(&kit, i).angle_mdeg, way_mdeg - 1, way_mdeg + 1);
         char hex[64];
         snprintf(hex, sizeof hex, "FA AF %02X 0D 00 00 01", (unsigned)i + 1);
         simkit_packet(&kit, hex, 76);
-        assert_int_equal(kit.n_got, type->early ? 0 : 76);
+        assert_int_equal(kit.n_got, i < 2 ? 0 : 76);
     }
+}
+
+/* Behind a board too an RS30x may be named by its model; nothing else relays there. */
+static void a_board_has_servos_of_its_own_only(void **state)
+{
+    (void)state;
+    const grobo_servo_model *servos[GROBO_SIM_SERVOS_MAX];
+    const grobo_sim_family *const families[] = {&grobo_sim_rs30x, &grobo_sim_lx16a, NULL};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .servos = servos, .families = families};
+    for (int j = 0; j < grobo_gr001_model.n_joints; j++) {
+        servos[j] = grobo_servo_model_named(&grobo_rs30x_table, "RS304MD");
+    }
+    simkit_start(&kit, &config);
+    assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_MODEL), GROBO_RS30X_RS304MD);
+    servos[1] = &grobo_lx16a_table.models[0];
+    assert_int_equal(grobo_sim_init(&kit.sim, &config, 0), GROBO_ERR_ARG);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_type_is_what_its_row_says),
+        cmocka_unit_test(a_board_has_servos_of_its_own_only),
         cmocka_unit_test(every_vector_is_understood),
         cmocka_unit_test(blocks_come_as_their_nibble_says),
         cmocka_unit_test(every_reply_has_its_sum),
@@ -470,6 +541,9 @@ int main(void)
         cmocka_unit_test(all_are_meant_by_255_and_none_replies),
         cmocka_unit_test(a_later_model_answers_what_all_are_asked),
         cmocka_unit_test(long_packets_reach_those_named),
+        cmocka_unit_test(one_is_spoken_to_twice),
+        cmocka_unit_test(one_packet_is_another_to_each_model),
+        cmocka_unit_test(a_part_of_a_register_is_judged_with_the_rest),
         cmocka_unit_test(an_id_changes_at_once),
         cmocka_unit_test(two_with_one_id_collide),
         cmocka_unit_test(wrong_sums_are_ignored),

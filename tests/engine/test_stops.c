@@ -180,6 +180,27 @@ static void a_stop_cancels_what_waits_for_the_line(void **state)
     }
 }
 
+/* A stop is asked for, and latched at once: what was to stop does, and what is asked for behind the
+ * latch does not leave. */
+static void a_latch_lets_a_stop_leave_that_waits(void **state)
+{
+    (void)state;
+    start_at(-40);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 5000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_run(&rig, 1000000);
+    assert_true(grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL) > 0);
+    rig_run(&rig, 2000); /* its first request is out */
+    assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+    assert_int_equal(grobo_robot_latch(&rig.robot), GROBO_OK);
+    rig.halts_at_estop = true; /* those from before */
+    rig_run(&rig, 200000);
+    rig.halts_at_estop = false;
+    assert_true(rig_angle_deg(&rig, NECK) < -20);
+    expect_rest();
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_LATCHED);
+}
+
 /* A servo that does not answer is waited for by whoever asked, not by the stop. */
 static void a_stop_does_not_wait_for_a_silent_servo(void **state)
 {
@@ -228,6 +249,31 @@ static void a_stopped_joint_never_goes_back(void **state)
         assert_true(last_deg - asked_deg <= 90 * 55.0 / ms + 0.2);
         assert_true(last_deg - asked_deg >= 90 * 45.0 / ms - 0.2);
         assert_true(last_deg < 44);
+        expect_rest();
+    }
+}
+
+/* A weak supply: the joint falls back behind a way that it cannot go. It stops where it is. */
+static void a_weak_joint_stops_where_it_is(void **state)
+{
+    (void)state;
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = GROBO_SENSE_NEVER, .voltage_mv = -1};
+    for (int ms = 300; ms <= 400; ms += 20) {
+        rig_start(&rig, &config, NULL);
+        rig_power(&rig);
+        grobo_posture target = rig_posture(&rig, SHOULDER, -100, 1000);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+        grobo_sim_set_supply(&rig.sim, 7400 * 2 / 3);
+        target = rig_posture(&rig, SHOULDER, 100, 10);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+        rig_run(&rig, ms * 1000);
+        read_joint(SHOULDER);
+        double then_deg = rig_angle_deg(&rig, SHOULDER);
+        assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+        rig_run(&rig, 200000);
+        double on_deg = rig_angle_deg(&rig, SHOULDER) - then_deg;
+        assert_true(on_deg > 0 && on_deg < 22); /* the way is 56 to 68 degrees further */
         expect_rest();
     }
 }
@@ -581,8 +627,10 @@ int main(void)
         cmocka_unit_test(three_low_readings_in_a_row_trip),
         cmocka_unit_test(current_trips_when_it_was_high_for_a_second),
         cmocka_unit_test(a_stop_cancels_what_waits_for_the_line),
+        cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
         cmocka_unit_test(a_stop_does_not_wait_for_a_silent_servo),
         cmocka_unit_test(a_stopped_joint_never_goes_back),
+        cmocka_unit_test(a_weak_joint_stops_where_it_is),
         cmocka_unit_test(a_smooth_stop_is_no_longer_after_a_reset),
         cmocka_unit_test(a_joint_sent_while_torque_comes_on_is_stopped_where_it_is),
         cmocka_unit_test(a_stop_sends_no_joint_that_has_no_torque),

@@ -1,53 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# A program in C and the same in C++ find the library in each way that a build system offers: an
-# installed tree that was moved (pkg-config, CMake, Meson), and its source taken along (CMake's
-# add_subdirectory and FetchContent, Meson's wrap).
+# A program in C and the same in C++ find the library by pkg-config and CMake: an installed tree,
+# moved, and its source taken along (add_subdirectory). fetch_content.sh and meson.sh do the rest.
 set -u
-
-. tests/support/tap.sh
-. tests/support/built.sh
-here=$(pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-built=${BUILD:-build}
-unset BUILD MAKEFLAGS MAKELEVEL MFLAGS
-CFLAGS=-O0
-CXXFLAGS=-O0
-export CFLAGS CXXFLAGS
-
-if [ -n "${CROSS:-}${EMULATOR:-}" ]; then
-    skip 'build systems' 'only for this machine'
-    done_testing
-    exit 0
-fi
-
-quiet() {
-    "$@" >"$work/out" 2>&1 || { tail -n 40 "$work/out"; return 1; }
-}
-
-# says PROGRAM...: each says what it was made to say.
-says() {
-    for program in "$@"; do
-        [ "$("$program")" = 'no reply in time' ] || { echo "$program"; return 1; }
-    done
-}
-
-installs() {
-    copy_build "$built" "$work/built" &&
-        make_in_copy "$work/built" install-lib DESTDIR="$work/stage" PREFIX=/opt/grobo &&
-        mv "$work/stage/opt/grobo" "$work/moved"
-}
-
-# project FOLDER: an empty one with both programs.
-project() {
-    mkdir -p "$work/$1" && cp "$here/tests/export/consumer.c" "$work/$1/c.c" &&
-        cp "$here/tests/export/consumer.c" "$work/$1/cxx.cpp"
-}
+. tests/support/consumers.sh
 
 # ---- pkg-config ----------------------------------------------------------------------------
-
-export PKG_CONFIG_PATH="$work/moved/lib/pkgconfig"
 
 by_pkg_config() {
     cat >"$work/core.c" <<'C'
@@ -66,29 +24,6 @@ C
 }
 
 # ---- CMake ---------------------------------------------------------------------------------
-
-# cmake_project FOLDER LINES...: how the library is found, on lines of its own.
-cmake_project() {
-    folder=$1
-    shift
-    project "$folder" || return 1
-    {
-        printf '%s\n' 'cmake_minimum_required(VERSION 3.16)' 'project(consumer C CXX)' \
-            'set(CMAKE_C_STANDARD 11)' 'set(CMAKE_CXX_STANDARD 11)' \
-            'add_executable(c c.c)' 'add_executable(cxx cxx.cpp)' "$@"
-    } >"$work/$folder/CMakeLists.txt"
-}
-
-# cmake_builds FOLDER OPTION...
-cmake_builds() {
-    folder=$1
-    shift
-    quiet cmake -S "$work/$folder" -B "$work/$folder/b" "$@" &&
-        quiet cmake --build "$work/$folder/b" -j 2 && says "$work/$folder/b/c" "$work/$folder/b/cxx"
-}
-
-link_c='target_link_libraries(c PRIVATE grobo::grobo)'
-link_cxx='target_link_libraries(cxx PRIVATE grobo::grobo)'
 
 cmake_installed() {
     cmake_project found 'find_package(grobo 0.1 REQUIRED)' "$link_c" "$link_cxx" &&
@@ -119,72 +54,14 @@ cmake_source() {
         cmake_builds source
 }
 
-cmake_fetched() {
-    cmake_project fetched 'include(FetchContent)' \
-        "FetchContent_Declare(grobo URL $tarball SOURCE_SUBDIR tools/package)" \
-        'set(BUILD_SHARED_LIBS ON)' 'FetchContent_MakeAvailable(grobo)' "$link_c" "$link_cxx" &&
-        cmake_builds fetched &&
-        readelf -d "$work/fetched/b/c" | grep -q 'NEEDED.*libgrobo\.so\.0' &&
-        nm -D --defined-only "$(find "$work/fetched/b" -name 'libgrobo.so.0')" |
-        sed -n 's/.* [TDBR] //p' | cut -d @ -f 1 | sort -u >"$work/exported" &&
-        sed -n 's/^ *\(grobo_.*\);/\1/p' src/libgrobo.map | sort >"$work/listed" &&
-        diff "$work/listed" "$work/exported"
-}
-
-# ---- Meson ---------------------------------------------------------------------------------
-
-meson_project() {
-    project "$1" && cat >"$work/$1/meson.build" <<'M'
-project('consumer', 'c', 'cpp', default_options: ['c_std=c11', 'cpp_std=c++11'])
-grobo = dependency('grobo', version: '>= 0.1')
-executable('c', 'c.c', dependencies: grobo)
-executable('cxx', 'cxx.cpp', dependencies: grobo)
-M
-}
-
-meson_builds() {
-    folder=$1
-    shift
-    quiet meson setup "$work/$folder/b" "$work/$folder" "$@" &&
-        quiet meson compile -C "$work/$folder/b" -j 2
-}
-
-meson_installed() {
-    meson_project meson && meson_builds meson && LD_LIBRARY_PATH=$work/moved/lib says \
-        "$work/meson/b/c" "$work/meson/b/cxx"
-}
-
-meson_wrapped() {
-    meson_project wrapped && make --no-print-directory wrap BUILD="$work/wrap" TARBALL="$tarball" &&
-        mv "$work/wrap/subprojects" "$work/wrapped" &&
-        PKG_CONFIG_PATH='' meson_builds wrapped --force-fallback-for=grobo &&
-        says "$work/wrapped/b/c" "$work/wrapped/b/cxx"
-}
-
-# The tree as it stands, as a release is packed.
-pack() {
-    version=$(sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
-    tarball=$work/libgrobo-$version.tar.gz
-    tar -czf "$tarball" --exclude=./build* --exclude=./.git \
-        --transform "s,^\.,libgrobo-$version," ./include ./src ./ports ./tools ./Makefile
-}
-
 check 'an installed tree, moved' installs
 check 'pkg-config: grobo-core needs nothing else' by_pkg_config
-pack
 if command -v cmake >/dev/null; then
     check 'CMake: find_package' cmake_installed
     check 'CMake: the static libraries' cmake_static
     check 'CMake: find_package refuses what does not fit' cmake_refuses
     check 'CMake: add_subdirectory' cmake_source
-    check 'CMake: FetchContent, shared, exports what the map lists' cmake_fetched
 else
     skip 'CMake' 'no cmake (tools/setup.sh --ci installs it)'
-fi
-if command -v meson >/dev/null && command -v ninja >/dev/null; then
-    check 'Meson: dependency' meson_installed
-    check 'Meson: wrap' meson_wrapped
-else
-    skip 'Meson' 'no meson (tools/setup.sh --ci installs it)'
 fi
 done_testing

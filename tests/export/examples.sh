@@ -3,17 +3,6 @@
 # The programs under docs/examples do what they say.
 . tests/support/tap.sh
 
-own_robot() {
-    # The emulator, where there is one, is a command with its options.
-    output=$(${EMULATOR:-} "$BUILD/docs/examples/own_robot") || return 1
-    expected='BASE     motor 11    45.0 deg
-SHOULDER motor 12    20.0 deg
-ELBOW    motor 13    30.0 deg
-WRIST    motor 14   -50.0 deg'
-    [ "$output" = "$expected" ] || { printf '%s\n' "$output"; return 1; }
-}
-check "a robot of one's own: reaches, with the gripper level" own_robot
-
 # short NAME LINE...: the program ends well, prints these lines among others (patterns), and has at
 # most 40 lines itself.
 short() {
@@ -39,10 +28,14 @@ idea own_loop 'torque of joint 0: success'
 idea threads 'move: success' 'looked 5 times'
 idea follow followed
 idea own_model 'HEAD: success'
+idea robot_file 'SO-101 follower: success'
 idea pump 'there after [0-9]* ms'
+check 'a stabilizer: it moves with the gripper level' short stabilizer \
+    'wrist_flex -0\.5 rad: success'
+ideas="$ideas stabilizer"
 no_other() {
     for file in docs/examples/*.c; do
-        case "$ideas own_robot " in
+        case "$ideas " in
         *" $(basename "$file" .c) "*) ;;
         *) echo "$file is not run"; return 1 ;;
         esac
@@ -50,7 +43,7 @@ no_other() {
 }
 check 'every example is run' no_other
 
-# guide_is_true PROGRAM GUIDE: each C block of the guide stands in the program, word for word.
+# guide_is_true PROGRAM... GUIDE: each C block of the guide stands in a program, word for word.
 guide_is_true() {
     awk '
     FILENAME ~ /\.c$/ { program = program $0 "\n"; next }
@@ -66,10 +59,10 @@ guide_is_true() {
     }
     inside { block = block $0 "\n" }
     END { exit bad || blocks == 0 }
-    ' "$1" "$2"
+    ' "$@"
 }
 check "a robot of one's own: the guide shows what is built" guide_is_true \
-    docs/examples/own_robot.c docs/guide/own-robot.md
+    docs/examples/own_model.c docs/examples/stabilizer.c docs/guide/own-robot.md
 check "a microcontroller: the guide shows what is built" guide_is_true \
     docs/examples/firmware/player.c docs/guide/bare-metal.md
 

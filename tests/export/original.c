@@ -31,4 +31,4 @@ extern FILE *stream;
 extern uint8_t bytes[256];
 extern size_t n;
 extern char text[256];
-int function(grobo_control *of, void *arg);
+int function(void *arg, grobo_control *of);

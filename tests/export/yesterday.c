@@ -56,7 +56,7 @@ static int with_motions(grobo_motion *motion)
         result = grobo_motion_read_memory(text, sizeof text - 1, &reading.config, NULL, &keys);
     }
     if (result >= 0) {
-        result = grobo_body_new(&body, &grobo_gr001_body, keys, &solving.config, NULL);
+        result = grobo_body_new(&grobo_gr001_body, keys, &solving.config, NULL, &body);
     }
     if (result >= 0) {
         result = grobo_body_check(body, &balance.config);
@@ -75,7 +75,7 @@ static int play(grobo_control *control, const grobo_posture *posture)
     FENCED(grobo_play_options, playing, GROBO_PLAY_OPTIONS_INIT);
     grobo_motion *motion = NULL;
 
-    int result = grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL);
+    int result = grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion);
     if (result >= 0) {
         result = grobo_motion_append(motion, posture);
     }

@@ -30,4 +30,25 @@ against scservo_sdk 1=STS3215,2=STS3215,3=STS3215 feetech
 against scservo_sdk 1=SCS0009 feetech_scs
 against feetech_cli 1=STS3215,2=STS3215,3=STS3215 feetech_cli
 against lerobot 1=STS3215,2=STS3215,3=STS3215,4=STS3215,5=STS3215,6=STS3215 lerobot_so101
+plugin() {
+    PYTHONPATH=${BUILD:-build}/python GROBO_LEROBOT=real "$PYTHON" -X dev \
+        tests/package/python/test_lerobot.py 2>&1
+}
+if "$PYTHON" -c 'import cffi, lerobot' 2>/dev/null; then
+    check "the plugin in LeRobot itself" plugin
+else
+    skip "the plugin in LeRobot itself" "no lerobot or cffi"
+fi
+rates() {
+    "$PYTHON" tests/families/clients.py rates "$robot" >"$work/rates"
+}
+
+if "$PYTHON" -c 'import grobo, lerobot, rustypot' 2>/dev/null; then
+    start_sim --robot so101
+    check "an arm is read as fast as the wire allows, beside others" rates
+    sed 's/^/# /' "$work/rates"
+    stop_sim
+else
+    skip "an arm is read beside others" "a package is not installed"
+fi
 done_testing

@@ -118,7 +118,7 @@ static void on_master(evutil_socket_t fd, short what, void *arg)
     }
 }
 
-static void on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx)
+static void on_data(void *ctx, grobo_serial *serial, const uint8_t *bytes, size_t size)
 {
     (void)serial;
     (void)ctx;
@@ -130,7 +130,7 @@ static void on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, voi
     }
 }
 
-static void on_event(grobo_serial *serial, grobo_serial_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_serial *serial, grobo_serial_event event, int error)
 {
     (void)serial;
     (void)ctx;
@@ -142,7 +142,7 @@ static void on_event(grobo_serial *serial, grobo_serial_event event, int error, 
     }
 }
 
-static void on_late(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_late(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     (void)timer;
     (void)late_us;

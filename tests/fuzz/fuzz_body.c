@@ -4,13 +4,12 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <grobo/body.h>
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#include "tests/fuzz/target.h"
 
 enum { KEYS_MAX = 16, TARGETS = 3, JOINTS = 20, FRAMES_MAX = 300 };
 
@@ -99,18 +98,11 @@ static void next_key(struct bytes *bytes, struct keys *keys, size_t n, double be
     }
 }
 
-static void want(bool good)
-{
-    if (!good) {
-        abort();
-    }
-}
-
 static void see_finding(void *ctx, const grobo_body_finding *finding)
 {
     const int *frames = ctx;
 
-    want(*frames > 0 && finding->begin_s <= finding->worst_s && finding->worst_s <= finding->end_s);
+    MUST(*frames > 0 && finding->begin_s <= finding->worst_s && finding->worst_s <= finding->end_s);
 }
 
 static void play(grobo_body *body)
@@ -124,13 +116,13 @@ static void play(grobo_body *body)
         double q_rad[GROBO_JOINTS_MAX];
         grobo_body_report report;
 
-        want(grobo_body_frame(body, i, q_rad, &report) == 0);
+        MUST(grobo_body_frame(body, i, q_rad, &report) == 0);
         for (int j = 0; j < JOINTS; j++) {
-            want(isfinite(q_rad[j]));
+            MUST(isfinite(q_rad[j]));
         }
-        want(isfinite(report.root.p_m[0]) && isfinite(report.root.r[8]));
+        MUST(isfinite(report.root.p_m[0]) && isfinite(report.root.r[8]));
     }
-    want(grobo_body_check(body, &checks) >= 0);
+    MUST(grobo_body_check(body, &checks) >= 0);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -160,8 +152,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     void *workspace = malloc(needed);
 
-    want(workspace != NULL);
-    want(grobo_body_init(&body, &setup, workspace, needed) == 0);
+    MUST(workspace != NULL);
+    MUST(grobo_body_init(&setup, workspace, needed, &body) == 0);
     if (grobo_body_frame_count(body) <= FRAMES_MAX) {
         play(body);
     }

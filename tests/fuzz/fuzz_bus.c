@@ -5,18 +5,13 @@
  * Input: byte 0 the configuration (bit 0 servo bus, bit 1 echo, bit 2 overlap), then operations of
  * two bytes each: what, and with which number.
  */
-#include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "src/bus/framer.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define CHECK(condition) ((condition) ? (void)0 : abort())
+#include "tests/fuzz/target.h"
 
 enum { REQUESTS = 8, FRAME = GROBO_RS30X_PACKET_MAX_BYTES, PUMP_MAX = 1000 };
 
@@ -38,17 +33,17 @@ static void ended(void *ctx, grobo_txn *txn, int result, const grobo_packet *rep
 {
     run *r = ctx;
     r->ended++;
-    CHECK(!grobo_txn_is_pending(txn));
-    CHECK(result <= 0);
+    MUST(!grobo_txn_is_pending(txn));
+    MUST(result <= 0);
     if (reply != NULL) {
         size_t size =
             reply->kind == GROBO_PACKET_RETURN ? reply->data_bytes + GROBO_RS30X_OVERHEAD_BYTES : 1;
-        CHECK(result == GROBO_ERR_NACK || size == txn->reply.bytes);
+        MUST(result == GROBO_ERR_NACK || size == txn->reply.bytes);
         r->believed_bytes += size;
     }
     if (result == GROBO_ERR_TIMEOUT && txn->retries == 2) { /* once more, from the callback */
         txn->retries = 1;
-        CHECK(grobo_bus_submit(&r->bus, txn) == GROBO_OK);
+        MUST(grobo_bus_submit(&r->bus, txn) == GROBO_OK);
         r->submitted++;
     }
 }
@@ -61,7 +56,7 @@ static void submit(run *r, uint8_t number)
     uint8_t packet[16];
     int n;
     if (grobo_txn_is_pending(&q->txn)) {
-        CHECK(grobo_bus_submit(&r->bus, &q->txn) == GROBO_ERR_BUSY);
+        MUST(grobo_bus_submit(&r->bus, &q->txn) == GROBO_ERR_BUSY);
         return;
     }
     switch (number >> 6) {
@@ -76,12 +71,12 @@ static void submit(run *r, uint8_t number)
         break;
     }
     n = grobo_frame_wrap(r->protocol, packet, (size_t)n, q->frame, FRAME);
-    CHECK(grobo_txn_init(&q->txn, r->protocol, q->frame, (size_t)n) == GROBO_OK);
+    MUST(grobo_txn_init(&q->txn, r->protocol, q->frame, (size_t)n) == GROBO_OK);
     q->txn.priority = (grobo_priority)(number >> 3 & 3);
     q->txn.start_by_us = number % 11 == 0 ? r->now_us + 5000 : 0;
     q->txn.done = ended;
     q->txn.ctx = r;
-    CHECK(grobo_bus_submit(&r->bus, &q->txn) == GROBO_OK);
+    MUST(grobo_bus_submit(&r->bus, &q->txn) == GROBO_OK);
     r->submitted++;
 }
 
@@ -111,7 +106,7 @@ static void answer(run *r, size_t n)
                                        2};
     int built = grobo_rs30x_build(&packet, b + size, sizeof b - size);
     size += (size_t)built;
-    grobo_bus_rx(&r->bus, r->now_us, b, n < size ? n : size);
+    grobo_bus_rx(&r->bus, b, n < size ? n : size, r->now_us);
 }
 
 static void check_books(const run *r)
@@ -119,9 +114,9 @@ static void check_books(const run *r)
     const grobo_bus_stats *s = &r->bus.stats;
     size_t pending = grobo_i_framer_pending(&r->bus.framer);
     size_t known = r->believed_bytes + s->late_bytes + s->resync_bytes + pending;
-    CHECK(r->bus.config.echo ? known <= s->rx_bytes : known == s->rx_bytes);
-    CHECK(r->submitted - r->ended == (uint32_t)grobo_bus_pending(&r->bus));
-    CHECK((r->bus.active == NULL) == (r->bus.phase == GROBO_BUS_IDLE));
+    MUST(r->bus.config.echo ? known <= s->rx_bytes : known == s->rx_bytes);
+    MUST(r->submitted - r->ended == (uint32_t)grobo_bus_pending(&r->bus));
+    MUST((r->bus.active == NULL) == (r->bus.phase == GROBO_BUS_IDLE));
 }
 
 /* Until the bus wants to be called later, which it must at some time. */
@@ -131,10 +126,10 @@ static void pump(run *r)
     int i = 0;
     do {
         grobo_bus_step(&r->bus, r->now_us);
-        int n = grobo_bus_tx(&r->bus, r->now_us, buf, sizeof buf);
-        CHECK(n >= 0);
+        int n = grobo_bus_tx(&r->bus, buf, sizeof buf, r->now_us);
+        MUST(n >= 0);
         check_books(r);
-        CHECK(i++ < PUMP_MAX);
+        MUST(i++ < PUMP_MAX);
     } while (grobo_bus_deadline(&r->bus, r->now_us) <= r->now_us);
 }
 
@@ -146,7 +141,7 @@ static void operate(run *r, uint8_t what, uint8_t number)
         submit(r, number);
         break;
     case 1:
-        grobo_bus_rx(&r->bus, r->now_us, &number, 1);
+        grobo_bus_rx(&r->bus, &number, 1, r->now_us);
         break;
     case 2:
         answer(r, number);
@@ -181,13 +176,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     r.protocol = (data[0] & 1) != 0 ? &grobo_rs30x_protocol : &grobo_board_protocol;
     const grobo_bus_config config = {
         .protocol = r.protocol, .echo = (data[0] & 3) == 3, .overlap = (data[0] & 4) != 0};
-    CHECK(grobo_bus_init(&r.bus, &config) == GROBO_OK);
+    MUST(grobo_bus_init(&r.bus, &config) == GROBO_OK);
     for (size_t i = 1; i + 1 < size; i += 2) {
         operate(&r, data[i], data[i + 1]);
         pump(&r);
     }
     (void)grobo_bus_cancel_all(&r.bus, GROBO_PRIORITY_ALL, GROBO_ERR_CLOSED);
-    CHECK(grobo_bus_pending(&r.bus) == 0);
-    CHECK(grobo_bus_deadline(&r.bus, r.now_us) == GROBO_NEVER_US);
+    MUST(grobo_bus_pending(&r.bus) == 0);
+    MUST(grobo_bus_deadline(&r.bus, r.now_us) == GROBO_NEVER_US);
     return 0;
 }

@@ -3,20 +3,10 @@
  * A topic and a payload of a stranger at the broker: refused, or an order whose fields are within
  * their bounds. The first line of the bytes is the topic.
  */
-#include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "tests/fuzz/target.h"
 #include "tools/grctl/fleet/message.h"
-
-#define MUST(condition)                                                                            \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { FIRST_BYTES = 512 };
 

@@ -2,8 +2,6 @@
 /* Any bytes as a .m file: refused with a place, or a motion that can be played. */
 #include "tests/fuzz/motion_target.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     return run_reader(data, size, GROBO_FORMAT_M);

@@ -5,8 +5,6 @@
 
 #include "tests/fuzz/motion_target.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
 typedef struct bytes {
     uint8_t *data;
     size_t size;

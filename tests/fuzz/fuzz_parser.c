@@ -5,16 +5,12 @@
  * Input: byte 0 what is accepted (bits 0-2) and whether the line ends after each piece (bit 7);
  * byte 1 size of a piece minus 1; byte 2 milliseconds between pieces; then the bytes.
  */
-#include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/board.h>
 #include <grobo/rs30x.h>
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define CHECK(condition) ((condition) ? (void)0 : abort())
+#include "tests/fuzz/target.h"
 
 enum { OPTIONS = 3 };
 
@@ -30,8 +26,8 @@ typedef struct input {
 static void check_sum(const grobo_framer *framer, size_t fed, size_t pending)
 {
     const grobo_framer_stats *s = &framer->stats;
-    CHECK((size_t)s->frame_bytes + s->dropped_bytes + pending == fed);
-    CHECK(s->bad_sums <= s->dropped_bytes);
+    MUST((size_t)s->frame_bytes + s->dropped_bytes + pending == fed);
+    MUST(s->bad_sums <= s->dropped_bytes);
 }
 
 static size_t drain_packets(grobo_rs30x_parser *parser)
@@ -41,15 +37,15 @@ static size_t drain_packets(grobo_rs30x_parser *parser)
     uint8_t built[GROBO_RS30X_PACKET_MAX_BYTES];
     while (grobo_rs30x_parser_next(parser, &p) > 0) {
         int n = grobo_rs30x_build(&p, built, sizeof built);
-        CHECK(n > 0);
-        CHECK(p.data == NULL || memcmp(p.data - 7, built, (size_t)n) == 0);
+        MUST(n > 0);
+        MUST(p.data == NULL || memcmp(p.data - 7, built, (size_t)n) == 0);
         heard += (size_t)n;
         grobo_reply reply;
         int r = grobo_rs30x_reply_to(built, (size_t)n, &reply);
-        CHECK(r < 0 || (size_t)r == reply.bytes);
+        MUST(r < 0 || (size_t)r == reply.bytes);
         grobo_rs30x_state state;
         if (p.kind == GROBO_RS30X_RETURN) {
-            CHECK(grobo_rs30x_state_decode(p.address, p.data, p.data_bytes, &state) <= 7);
+            MUST(grobo_rs30x_state_decode(p.address, p.data, p.data_bytes, &state) <= 7);
         }
     }
     return heard;
@@ -64,7 +60,7 @@ static void run_packets(const input *in)
     while (fed < in->n) {
         size_t piece = in->n - fed < in->piece ? in->n - fed : in->piece;
         size_t took = grobo_rs30x_parser_feed(&parser, in->bytes + fed, piece);
-        CHECK(took > 0 && took <= piece);
+        MUST(took > 0 && took <= piece);
         fed += took;
         if (in->end_each) {
             grobo_rs30x_parser_end(&parser);
@@ -74,8 +70,8 @@ static void run_packets(const input *in)
     }
     grobo_rs30x_parser_end(&parser);
     heard += drain_packets(&parser);
-    CHECK(grobo_rs30x_parser_pending(&parser) == 0);
-    CHECK(parser.framer.stats.frame_bytes == heard);
+    MUST(grobo_rs30x_parser_pending(&parser) == 0);
+    MUST(parser.framer.stats.frame_bytes == heard);
     check_sum(&parser.framer, fed, 0);
 }
 
@@ -83,8 +79,8 @@ static void drain_frames(grobo_board_parser *parser, int64_t now_us)
 {
     grobo_board_frame f;
     while (grobo_board_parser_next(parser, now_us, &f) > 0) {
-        CHECK(f.packet_bytes <= GROBO_RELAY_MAX_BYTES);
-        CHECK((f.packet_bytes > 0) == (f.kind == GROBO_BOARD_SEND || f.kind == GROBO_BOARD_ASK));
+        MUST(f.packet_bytes <= GROBO_RELAY_MAX_BYTES);
+        MUST((f.packet_bytes > 0) == (f.kind == GROBO_BOARD_SEND || f.kind == GROBO_BOARD_ASK));
     }
 }
 
@@ -96,16 +92,16 @@ static void run_frames(const input *in)
     grobo_board_parser_init(&parser, 0);
     while (fed < in->n) {
         size_t piece = in->n - fed < in->piece ? in->n - fed : in->piece;
-        size_t took = grobo_board_parser_feed(&parser, now_us, in->bytes + fed, piece);
+        size_t took = grobo_board_parser_feed(&parser, in->bytes + fed, piece, now_us);
         fed += took;
         drain_frames(&parser, now_us);
         size_t pending = (size_t)(parser.framer.used - parser.framer.taken);
-        CHECK(took > 0 || pending == 0);
+        MUST(took > 0 || pending == 0);
         check_sum(&parser.framer, fed, pending);
         now_us += in->step_us;
     }
     drain_frames(&parser, now_us + GROBO_BOARD_STALL_US);
-    CHECK(grobo_board_parser_deadline(&parser) == GROBO_NEVER_US);
+    MUST(grobo_board_parser_deadline(&parser) == GROBO_NEVER_US);
     check_sum(&parser.framer, fed, 0);
 }
 

@@ -3,24 +3,18 @@
  * posture that fits the model and has finite angles only. */
 #include <math.h>
 #include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/model.h>
 #include <grobo/posture.h>
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#include "tests/fuzz/target.h"
 
 static void check_accepted(const grobo_posture *posture, const grobo_model *model, int n)
 {
-    if (n > model->n_joints || (posture->set & ~GROBO_JOINTS_ALL(model->n_joints)) != 0) {
-        abort();
-    }
+    MUST(n <= model->n_joints && (posture->set & ~GROBO_JOINTS_ALL(model->n_joints)) == 0);
     for (int j = 0; j < model->n_joints; j++) {
-        if ((posture->set & GROBO_JOINT_BIT(j)) != 0 && !isfinite(posture->angle_rad[j])) {
-            abort();
-        }
+        MUST((posture->set & GROBO_JOINT_BIT(j)) == 0 || isfinite(posture->angle_rad[j]));
     }
 }
 
@@ -30,15 +24,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     grobo_posture posture;
     grobo_posture before;
     memset(&posture, 0, sizeof posture);
-    if (grobo_posture_init(&posture, model->n_joints) < 0) {
-        abort();
-    }
+    MUST(grobo_posture_init(&posture, model->n_joints) >= 0);
     before = posture;
     int result = grobo_posture_parse(&posture, model, (const char *)data, size);
     if (result >= 0) {
         check_accepted(&posture, model, result);
-    } else if (!grobo_posture_equal(&posture, &before) || posture.time_us != before.time_us) {
-        abort();
+    } else {
+        MUST(grobo_posture_equal(&posture, &before) && posture.time_us == before.time_us);
     }
     return 0;
 }

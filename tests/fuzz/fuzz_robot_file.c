@@ -1,21 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Any bytes as a robot's file: refused with a word, or a robot that can be driven and simulated. */
 #include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/robot_file.h>
 #include <grobo/sim_static.h>
 
-#define MUST(condition)                                                                            \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#include "tests/fuzz/target.h"
 
 typedef struct bytes {
     const uint8_t *at;
@@ -42,7 +33,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     grobo_robot_def *def = NULL;
     grobo_diagnostics *list = NULL;
     grobo_driver driver;
-    MUST(grobo_diagnostics_new(&list, NULL) == 0);
+    MUST(grobo_diagnostics_new(NULL, &list) == 0);
     int error = grobo_robot_def_read(&(grobo_source){read_bytes, &from}, "", list, NULL, &def);
     MUST((error == 0) == (def != NULL));
     MUST((error == 0) == (grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) == 0));

@@ -4,7 +4,6 @@
  * answered once, what a handler sees is within its bounds, and the connection ends. Where the bytes
  * say PORT! there stands the number of the port, so that a request can pass the wall.
  */
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,18 +15,10 @@
 
 #include <grobo/port.h>
 
+#include "tests/fuzz/target.h"
 #include "tools/grctl/web/edit.h"
 #include "tools/grctl/web/http.h"
 #include "tools/grctl/web/library.h"
-
-#define MUST(condition)                                                                            \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static struct event_base *base;
 static grobo_motion *drawn; /* what keys may be taken from */

@@ -1,20 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Any bytes as a URDF or a body of Choreonoid: refused, or the text of a robot's file. */
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "tests/fuzz/target.h"
 #include "tools/grctl/servo/family.h"
 #include "tools/grctl/sketch/sketch.h"
-
-#define MUST(condition)                                                                            \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

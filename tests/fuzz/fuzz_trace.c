@@ -2,15 +2,12 @@
 /* Traces, which anybody may have written: reading ends, every byte of a chunk comes out as part of
  * some frame exactly once, and every frame can be said in words that fit. */
 #include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "tests/fuzz/target.h"
 #include "tools/grctl/conn/pcapng.h"
 #include "tools/grctl/decode/ledger.h"
 #include "tools/grctl/decode/words.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 typedef struct input {
     const uint8_t *data;
@@ -38,14 +35,10 @@ static void on_frame(void *ctx, const frame *f)
     heard *h = ctx;
     int64_t asked_us;
     h->bytes += f->size;
-    if (f->size == 0 || f->end_us < f->time_us) {
-        abort();
-    }
+    MUST(f->size > 0 && f->end_us >= f->time_us);
     words_say(f, true, "", text, sizeof text);
     json_decref(words_json(f));
-    if (strlen(text) < 4 || text[strlen(text) - 1] != '\n') {
-        abort();
-    }
+    MUST(strlen(text) >= 4 && text[strlen(text) - 1] == '\n');
     if (f->side == FRAMES_HOST && f->sum_ok) {
         ledger_ask(&h->asked, f);
     } else if (f->side == FRAMES_ROBOT) {
@@ -56,9 +49,7 @@ static void on_frame(void *ctx, const frame *f)
 static void on_settled(void *ctx, const ledger_entry *entry)
 {
     (void)ctx;
-    if (entry->answer[0].state == LEDGER_WAITING || entry->size == 0) {
-        abort();
-    }
+    MUST(entry->answer[0].state != LEDGER_WAITING && entry->size > 0);
 }
 
 static void run(const uint8_t *data, size_t size, const dialect *d)
@@ -88,16 +79,12 @@ static void run(const uint8_t *data, size_t size, const dialect *d)
         now_us += chunk.time_us & 0xFFFF; /* time that goes on */
         frames_feed(&sides[side], now_us, chunk.bytes, chunk.size);
     }
-    if ((result < 0) != (*reader.problem != '\0')) {
-        abort();
-    }
+    MUST((result < 0) == (*reader.problem != '\0'));
     for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
         frames_end(&sides[side]);
     }
     ledger_end(&h.asked);
-    if (h.bytes != fed) {
-        abort();
-    }
+    MUST(h.bytes == fed);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

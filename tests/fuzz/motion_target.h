@@ -4,17 +4,10 @@
 #define TESTS_FUZZ_MOTION_TARGET_H
 
 #include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
 
 #include <grobo/motion_io.h>
 
-#define MUST(condition)                                                                            \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
+#include "tests/fuzz/target.h"
 
 /* Angles and times are numbers, links too, and of no more joints than the motion has. */
 static inline void check_numbers(const grobo_motion *motion)
@@ -44,7 +37,7 @@ static inline void check_play(const grobo_motion *motion)
     grobo_posture posture;
     grobo_clip clip;
 
-    MUST(grobo_diagnostics_new(&list, NULL) == 0);
+    MUST(grobo_diagnostics_new(NULL, &list) == 0);
     MUST(grobo_motion_check(motion, &grobo_gr001_model, NULL, list) >= 0);
     grobo_diagnostics_free(list);
     MUST(grobo_motion_clip(motion, NULL, &clip) == 0);
@@ -68,7 +61,7 @@ static inline grobo_motion *read_bytes(const uint8_t *data, size_t size, grobo_m
     grobo_motion *motion = NULL;
     grobo_diagnostics *list = NULL;
 
-    MUST(grobo_diagnostics_new(&list, NULL) == 0);
+    MUST(grobo_diagnostics_new(NULL, &list) == 0);
     int result = grobo_motion_read_memory(data, size, &options, list, &motion);
     MUST((result == 0) == (motion != NULL));
     MUST(result == 0 || grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) > 0);

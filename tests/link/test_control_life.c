@@ -18,7 +18,7 @@ static int rounds; /* of on_svc */
 static int exits;  /* exit policies that were carried out */
 static int inside, together, calls;
 
-static int on_svc(grobo_control *from, void *arg)
+static int on_svc(void *arg, grobo_control *from)
 {
     assert_ptr_equal(from, control);
     assert_ptr_equal(arg, &rounds);
@@ -48,7 +48,7 @@ static void make(void)
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
 }
 
-static int rounds_so_far(grobo_control *from, void *arg)
+static int rounds_so_far(void *arg, grobo_control *from)
 {
     (void)from;
     (void)arg;
@@ -70,7 +70,7 @@ static int torque_on(void)
 }
 
 /* On the loop: whether its thread is this one. */
-static int is_self(grobo_control *from, void *arg)
+static int is_self(void *arg, grobo_control *from)
 {
     const grobo_thread *thread = arg;
 
@@ -188,7 +188,7 @@ static void the_loop_runs_on_a_thread_of_ones_own(void **state)
 }
 
 /* Would be entered by two at a time if callers were not kept apart. */
-static int count_call(grobo_control *from, void *arg)
+static int count_call(void *arg, grobo_control *from)
 {
     (void)from;
     (void)arg;

@@ -33,7 +33,7 @@ static grobo_sim_server *server;
 static char device[GROBO_DEVICE_MAX_BYTES];
 static seen at;
 
-static void on_event(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     seen *s = ctx;
 
@@ -56,8 +56,8 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     seen *s = ctx;
 

@@ -44,8 +44,8 @@ static int guard_pid;
 static size_t bytes_sent; /* to the robot */
 static char device[256];  /* of the robot */
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     (void)now_us;
     (void)bytes;

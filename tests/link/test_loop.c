@@ -19,7 +19,7 @@ typedef struct {
     int64_t earliest_us; /* least (now - deadline) seen */
 } ticker;
 
-static void on_tick(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_tick(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     ticker *t = ctx;
     int64_t since_us = grobo_now_us() - t->next_us;
@@ -76,7 +76,7 @@ static void a_base_with_a_coarse_clock_is_never_early_either(void **state)
     run_ticks(base);
 }
 
-static void free_in_callback(grobo_timer *timer, int64_t late_us, void *ctx)
+static void free_in_callback(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     (void)late_us;
     ++*(int *)ctx;
@@ -139,7 +139,7 @@ static void set_anew(evutil_socket_t socket, short what, void *ctx)
     }
 }
 
-static void end_busy_loop(grobo_timer *timer, int64_t late_us, void *ctx)
+static void end_busy_loop(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     busy_loop *busy = ctx;
 

@@ -63,14 +63,14 @@ static grobo_control_event control_event = {GROBO_CONTROL_EVENT_INIT};
 static grobo_snapshot snapshot = {GROBO_SNAPSHOT_INIT};
 static grobo_control *made_control;
 
-static void on_timer(grobo_timer *from, int64_t late_us, void *ctx)
+static void on_timer(void *ctx, grobo_timer *from, int64_t late_us)
 {
     (void)from;
     (void)late_us;
     (void)ctx;
 }
 
-static int on_control(grobo_control *from, void *arg)
+static int on_control(void *arg, grobo_control *from)
 {
     (void)from;
     (void)arg;
@@ -89,7 +89,7 @@ static int set_up(void **state)
     assert_int_equal(grobo_session_new(&session_config, &session), GROBO_OK);
     control_config.session = &control_session;
     assert_int_equal(grobo_control_new(&control_config, &control), GROBO_OK);
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), GROBO_OK);
     assert_int_equal(
         grobo_robot_init(&robot, grobo_gr001_driver(GROBO_WIRING_BOARD), NULL, NULL, 0), GROBO_OK);
     grobo_posture_init_pose(&posture, &grobo_gr001_model);
@@ -213,10 +213,10 @@ static void serial_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_serial_waiting(NULL));
     REFUSES(grobo_serial_discard(NULL));
     grobo_serial_discard_output(NULL);
-    REFUSES(grobo_hex(NULL, sizeof bytes, bytes, 1));
-    REFUSES(grobo_hex(text, sizeof bytes, NULL, 1));
-    REFUSES(grobo_hex_print(NULL, bytes, 1));
-    REFUSES(grobo_hex_print(stream, NULL, 1));
+    REFUSES(grobo_hex(bytes, 1, NULL, sizeof bytes));
+    REFUSES(grobo_hex(NULL, 1, text, sizeof bytes));
+    REFUSES(grobo_hex_print(bytes, 1, NULL));
+    REFUSES(grobo_hex_print(NULL, 1, stream));
 }
 
 static void session_refuses_null_in_its_first_functions(void **state)
@@ -326,7 +326,7 @@ static void thread_refuses_null_in_its_first_functions(void **state)
     assert_true(grobo_control_get_default_time_us(NULL) == 0);
     REFUSES(grobo_control_set_sense_interval_us(NULL, 0));
     assert_true(grobo_control_get_sense_interval_us(NULL) == 0);
-    REFUSES(grobo_control_set_period_us(NULL, 0));
+    REFUSES(grobo_control_set_period_us(NULL, 10000));
 }
 
 static void thread_refuses_null_in_its_second_functions(void **state)

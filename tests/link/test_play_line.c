@@ -180,7 +180,7 @@ static int64_t stall_us;
 static grobo_timer *wake;
 static int64_t awake_us; /* when the child went on */
 
-static void on_wake(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_wake(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     (void)timer;
     (void)late_us;
@@ -246,7 +246,7 @@ static bool goal_set[MOTORS];
 static int32_t start_mdeg[MOTORS];
 static int torque_on;
 
-static void on_sim(const grobo_sim_event *event, void *ctx)
+static void on_sim(void *ctx, const grobo_sim_event *event)
 {
     (void)ctx;
     if (event->kind == GROBO_SIM_GOAL) {

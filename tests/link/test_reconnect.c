@@ -41,7 +41,7 @@ static void on_robot(const grobo_event *event)
     }
 }
 
-static void on_sim(const grobo_sim_event *event, void *ctx)
+static void on_sim(void *ctx, const grobo_sim_event *event)
 {
     (void)ctx;
     if (event->kind == GROBO_SIM_PACKET) {

@@ -40,7 +40,7 @@ static struct {
     size_t tapped[2]; /* by grobo_direction */
 } seen;
 
-static void on_data(grobo_serial *from, const uint8_t *bytes, size_t size, void *ctx)
+static void on_data(void *ctx, grobo_serial *from, const uint8_t *bytes, size_t size)
 {
     assert_ptr_equal(ctx, &seen);
     assert_true(size > 0);
@@ -59,7 +59,7 @@ static void on_data(grobo_serial *from, const uint8_t *bytes, size_t size, void 
     }
 }
 
-static void on_event(grobo_serial *from, grobo_serial_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_serial *from, grobo_serial_event event, int error)
 {
     assert_ptr_equal(ctx, &seen);
     seen.events[event]++;
@@ -77,8 +77,8 @@ static void on_event(grobo_serial *from, grobo_serial_event event, int error, vo
     }
 }
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     assert_ptr_equal(ctx, &seen);
     assert_true(now_us > 0);

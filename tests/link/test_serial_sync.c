@@ -465,14 +465,14 @@ static void hex_is_written_to_buffer_and_stream(void **state)
     FILE *stream = tmpfile();
 
     (void)state;
-    assert_int_equal(grobo_hex(text, 8, packet, sizeof packet), GROBO_ERR_SPACE);
+    assert_int_equal(grobo_hex(packet, sizeof packet, text, 8), GROBO_ERR_SPACE);
     assert_string_equal(text, "unchange");
-    assert_int_equal(grobo_hex(text, sizeof text, packet, sizeof packet), 8);
+    assert_int_equal(grobo_hex(packet, sizeof packet, text, sizeof text), 8);
     assert_string_equal(text, "FA AF 03");
-    assert_int_equal(grobo_hex(text, 1, packet, 0), 0);
+    assert_int_equal(grobo_hex(packet, 0, text, 1), 0);
     assert_string_equal(text, "");
     assert_non_null(stream);
-    assert_int_equal(grobo_hex_print(stream, packet, sizeof packet), GROBO_OK);
+    assert_int_equal(grobo_hex_print(packet, sizeof packet, stream), GROBO_OK);
     rewind(stream);
     assert_non_null(fgets(read_back, sizeof read_back, stream));
     assert_string_equal(read_back, "FA AF 03\n");

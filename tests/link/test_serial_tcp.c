@@ -67,7 +67,7 @@ static void accept_peer(test_line *peer)
     assert_int_equal(fcntl(peer->fd, F_SETFL, O_NONBLOCK), 0);
 }
 
-static void on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx)
+static void on_data(void *ctx, grobo_serial *serial, const uint8_t *bytes, size_t size)
 {
     (void)serial;
     (void)ctx;
@@ -77,7 +77,7 @@ static void on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, voi
     event_base_loopbreak(base);
 }
 
-static void on_event(grobo_serial *serial, grobo_serial_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_serial *serial, grobo_serial_event event, int error)
 {
     (void)serial;
     (void)ctx;

@@ -12,6 +12,9 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
+#include <grobo/robot_file.h>
+
+#include "src/link/session/session.h"
 #include "tests/support/counted_mem.h"
 #include "tests/support/folder.h"
 #include "tests/support/line.h"
@@ -388,6 +391,63 @@ static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **
     assert_int_equal(seen.fails, 0);
 }
 
+static size_t asked_till_up;
+
+static void note_asked(grobo_session *from)
+{
+    (void)from;
+    asked_till_up = seen.taps[GROBO_DIR_TX];
+}
+
+/* Until the robot has answered nothing is asked but who it is, whatever is configured meanwhile; a
+ * configuration that is refused changes nothing. */
+static void who_is_checked_is_not_read(void **state)
+{
+    static const grobo_robot_config eager = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
+    static const grobo_robot_config bad = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = -2};
+    const grobo_robot_def *const *arm = grobo_robot_defs;
+    grobo_driver driver;
+    grobo_robot_sim sim;
+
+    (void)state;
+    while (strcmp((*arm)->name, "so101") != 0) {
+        arm++;
+    }
+    assert_int_equal(grobo_robot_def_driver(*arm, GROBO_WIRING_BUS, &driver), GROBO_OK);
+    assert_int_equal(grobo_robot_def_sim(*arm, GROBO_WIRING_BUS, &sim), GROBO_OK);
+    size_t asked[2];
+    for (int configures = 0; configures < 2; configures++) {
+        session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim",
+                                                .driver = &driver, .sim = &sim.config});
+        seen.then_line = note_asked;
+        assert_int_equal(grobo_session_open(session), GROBO_OK);
+        for (int j = 0; j + 1 < driver.model->n_joints; j++) { /* one after the other is asked */
+            assert_int_equal(
+                grobo_sim_set_cable(grobo_session_sim(session), j, GROBO_SIM_CABLE_MUTE), GROBO_OK);
+        }
+        while (grobo_session_get_state(session) != GROBO_SESSION_CHECKING) {
+            assert_int_equal(event_base_loop(base, EVLOOP_ONCE), 0);
+        }
+        if (configures) {
+            assert_int_equal(grobo_session_configure(session, &eager), GROBO_OK);
+            assert_int_equal(grobo_session_configure(session, &bad), GROBO_ERR_ARG);
+        }
+        while (grobo_session_get_state(session) == GROBO_SESSION_CHECKING) {
+            assert_true(grobo_bus_pending(&session->robot.bus) <= 1); /* nor waits a reading */
+            assert_int_equal(event_base_loop(base, EVLOOP_ONCE), 0);
+        }
+        assert_int_equal(seen.ups, 1 + configures);
+        asked[configures] = asked_till_up;
+        loop_run_for(base, 50000);
+        assert_true(seen.taps[GROBO_DIR_TX] > asked_till_up); /* now it is read */
+        grobo_session_free(session);
+        seen.taps[GROBO_DIR_TX] = 0;
+    }
+    session = NULL;
+    assert_true(asked[0] > 5);
+    assert_int_equal(asked[1], asked[0]);
+}
+
 static void without_reconnect_a_lost_port_is_closed(void **state)
 {
     grobo_sim_server *server =
@@ -524,6 +584,7 @@ int main(void)
         ON_LOOP(a_lost_port_is_found_again),
         ON_LOOP(a_simulator_that_hung_up_is_plugged_in_again),
         ON_LOOP(an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found),
+        ON_LOOP(who_is_checked_is_not_read),
         ON_LOOP(without_reconnect_a_lost_port_is_closed),
         ON_LOOP(it_may_be_freed_in_its_event),
         ON_LOOP(it_may_be_freed_in_an_event_of_the_engine),

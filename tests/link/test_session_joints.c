@@ -17,7 +17,7 @@
 static struct event_base *base;
 static int ends, result;
 
-static void on_event(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     (void)session;
     (void)ctx;

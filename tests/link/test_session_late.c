@@ -23,7 +23,7 @@ static grobo_session *session;
 static grobo_timer *answer;
 static int ups;
 
-static void on_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_session *from, grobo_session_event event, int error)
 {
     (void)from;
     (void)ctx;
@@ -55,7 +55,7 @@ static void on_request(evutil_socket_t fd, short what, void *ctx)
 }
 
 /* Returns when the answer lies before the session. */
-static void on_answer(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_answer(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     struct pollfd near = {.fd = grobo_serial_handle(grobo_session_serial(session)),
                           .events = POLLIN};

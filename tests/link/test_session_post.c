@@ -67,7 +67,7 @@ static void have_descriptors(bool any)
 
 /* ---- a control ---------------------------------------------------------------------------- */
 
-static int on_svc(grobo_control *from, void *ctx)
+static int on_svc(void *ctx, grobo_control *from)
 {
     (void)from;
     (void)ctx;
@@ -142,7 +142,7 @@ static void a_handler_never_waits(void **state)
 }
 
 /* In a callback of the loop, or anywhere in it: a thread has signals sent to this one meanwhile. */
-static int raise_it(grobo_control *from, void *arg)
+static int raise_it(void *arg, grobo_control *from)
 {
     (void)from;
     (void)arg;
@@ -405,7 +405,7 @@ static void be_slow(grobo_callback callback)
     }
 }
 
-static int slow_svc(grobo_control *from, void *ctx)
+static int slow_svc(void *ctx, grobo_control *from)
 {
     (void)from;
     (void)ctx;
@@ -426,8 +426,8 @@ static void slow_robot(void *ctx, const grobo_event *event)
     be_slow(GROBO_CALLBACK_ROBOT);
 }
 
-static void slow_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                     void *ctx)
+static void slow_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                     size_t size)
 {
     (void)direction;
     (void)now_us;
@@ -437,7 +437,7 @@ static void slow_tap(grobo_direction direction, int64_t now_us, const uint8_t *b
     be_slow(GROBO_CALLBACK_TAP);
 }
 
-static void slow_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
+static void slow_event(void *ctx, grobo_session *from, grobo_session_event event, int error)
 {
     (void)from;
     (void)event;
@@ -446,7 +446,7 @@ static void slow_event(grobo_session *from, grobo_session_event event, int error
     be_slow(GROBO_CALLBACK_EVENT);
 }
 
-static int slow_call(grobo_control *from, void *arg)
+static int slow_call(void *arg, grobo_control *from)
 {
     (void)from;
     (void)arg;
@@ -454,7 +454,7 @@ static int slow_call(grobo_control *from, void *arg)
     return 0;
 }
 
-static int ask_reports(grobo_control *from, void *arg)
+static int ask_reports(void *arg, grobo_control *from)
 {
     const int *callback = arg;
 

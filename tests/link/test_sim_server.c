@@ -17,6 +17,7 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
+#include <grobo/estop.h>
 #include <grobo/sim_static.h>
 
 #include "tests/support/counted_mem.h"
@@ -44,7 +45,7 @@ typedef struct {
     int events[4];
 } client;
 
-static void on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx)
+static void on_data(void *ctx, grobo_serial *serial, const uint8_t *bytes, size_t size)
 {
     client *c = ctx;
 
@@ -57,7 +58,7 @@ static void on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, voi
     }
 }
 
-static void on_event(grobo_serial *serial, grobo_serial_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_serial *serial, grobo_serial_event event, int error)
 {
     client *c = ctx;
 
@@ -249,6 +250,47 @@ static void the_link_follows_the_terminal(void **state)
     assert_null(server);
     assert_int_equal(rmdir(link), 0);
     folder_remove(NULL, 0);
+}
+
+static void behind_a_link_a_stop_of_the_terminal_was_meant_for_another(void **state)
+{
+    (void)folder_set_up(state);
+    const char *link = in_folder("gr001");
+    grobo_sim_server *server = loop_serve(
+        base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .base = base, .link = link});
+    char device[64];
+
+    (void)snprintf(device, sizeof device, "%s", grobo_sim_server_device(server));
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    /* The numbers of terminals are given again, and most often this one is the lowest. */
+    assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
+    assert_int_equal(grobo_estop_set(link, NULL, NULL), GROBO_OK);
+    assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
+    assert_false(grobo_estop_stands(grobo_sim_server_device(server)));
+    assert_true(grobo_estop_stands(link));
+
+    assert_int_equal(grobo_estop_clear(link, NULL), GROBO_OK);
+    assert_int_equal(grobo_estop_clear(device, NULL), GROBO_OK);
+    grobo_sim_server_free(server);
+    folder_remove(NULL, 0);
+}
+
+/* Whoever has no link knows the terminal alone: a stop while it was away holds. */
+static void without_a_link_a_stop_of_the_terminal_stays(void **state)
+{
+    (void)state;
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .base = base});
+    char device[64];
+
+    (void)snprintf(device, sizeof device, "%s", grobo_sim_server_device(server));
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
+    assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
+    assert_true(grobo_estop_stands(device));
+
+    assert_int_equal(grobo_estop_clear(device, NULL), GROBO_OK);
+    grobo_sim_server_free(server);
 }
 
 static void a_fault_hangs_up_and_the_port_comes_back(void **state)
@@ -614,6 +656,8 @@ int main(void)
         ON_LOOP(a_program_at_another_speed_is_not_understood),
         ON_LOOP(many_robots_live_in_one_process),
         ON_LOOP(the_link_follows_the_terminal),
+        ON_LOOP(behind_a_link_a_stop_of_the_terminal_was_meant_for_another),
+        ON_LOOP(without_a_link_a_stop_of_the_terminal_stays),
         ON_LOOP(a_fault_hangs_up_and_the_port_comes_back),
         ON_LOOP(tcp_serves_one_caller_at_a_time),
         ON_LOOP(both_ends_reach_one_board),

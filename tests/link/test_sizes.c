@@ -194,7 +194,7 @@ static int verify(const void *options)
 static int make_body(const void *options)
 {
     grobo_body *made = NULL;
-    int r = grobo_body_new(&made, &grobo_gr001_body, keys, options, NULL);
+    int r = grobo_body_new(&grobo_gr001_body, keys, options, NULL, &made);
     grobo_body_free(made);
     return r;
 }
@@ -329,9 +329,9 @@ static int set_up(void **state)
     base = grobo_loop_new();
     grobo_posture_init_pose(&posture, &grobo_gr001_model);
     posture.time_us = 100000;
-    return base == NULL || grobo_motion_new(&keys, GROBO_MOTION_KEYS, 20, NULL) < 0 ||
+    return base == NULL || grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &keys) < 0 ||
            grobo_motion_append(keys, &posture) < 0 ||
-           grobo_body_new(&body, &grobo_gr001_body, keys, NULL, NULL) < 0 ||
+           grobo_body_new(&grobo_gr001_body, keys, NULL, NULL, &body) < 0 ||
            grobo_control_new(&control, &control_of) < 0;
 }
 

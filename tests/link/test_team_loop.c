@@ -52,7 +52,7 @@ static void on_timer(evutil_socket_t fd, short what, void *ctx)
     look();
 }
 
-static void on_line(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_line(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     (void)session;
     assert_int_equal(error, GROBO_OK);
@@ -67,8 +67,8 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     seat *s = ctx;
     (void)bytes;

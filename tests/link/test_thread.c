@@ -88,7 +88,7 @@ static void settings_are_kept(void **state)
     assert_false(grobo_control_is_reverse(control));
 }
 
-static int rx_bytes(grobo_control *from, void *arg)
+static int rx_bytes(void *arg, grobo_control *from)
 {
     uint64_t tx;
     uint64_t rx;
@@ -98,7 +98,7 @@ static int rx_bytes(grobo_control *from, void *arg)
     return (int)rx;
 }
 
-static int goal_time_cs(grobo_control *from, void *arg)
+static int goal_time_cs(void *arg, grobo_control *from)
 {
     int32_t value = -1;
 
@@ -199,7 +199,7 @@ static void postures_are_kept(void **state)
 /* ---- the line ----------------------------------------------------------------------------- */
 
 /* Asserts nothing itself: it may run on another thread than the test. */
-static int serial_is_closed(grobo_control *from, void *arg)
+static int serial_is_closed(void *arg, grobo_control *from)
 {
     grobo_serial *serial = grobo_control_serial(from);
 
@@ -277,7 +277,7 @@ static void servo_states(void **state)
     assert_int_equal(grobo_control_get_servo_state(control, 20), GROBO_ERR_ARG);
 }
 
-static int turn_elbow(grobo_control *from, void *arg)
+static int turn_elbow(void *arg, grobo_control *from)
 {
     const int32_t *angle_mdeg = arg;
 
@@ -285,7 +285,7 @@ static int turn_elbow(grobo_control *from, void *arg)
                                0);
 }
 
-static int cut_elbow(grobo_control *from, void *arg)
+static int cut_elbow(void *arg, grobo_control *from)
 {
     (void)arg;
     return grobo_sim_set_cable(grobo_session_sim(grobo_control_session(from)), ELBOW,

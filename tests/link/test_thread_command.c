@@ -22,8 +22,8 @@ static struct {
     size_t size;
 } sent;
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     (void)now_us;
     (void)ctx;
@@ -51,7 +51,7 @@ static void fill_line(grobo_control *control)
     grobo_motion *motion;
     grobo_posture posture;
 
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), GROBO_OK);
     grobo_posture_init_pose(&posture, &grobo_gr001_model);
     for (int i = 0; i < 2; i++) {
         posture.time_us = 4000000 * i;

@@ -40,7 +40,7 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-static void on_event(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     chronicle *all = ctx;
     (void)session;
@@ -383,7 +383,7 @@ typedef struct gate {
     bool held, open;
 } gate;
 
-static int hold(grobo_control *from, void *arg)
+static int hold(void *arg, grobo_control *from)
 {
     gate *self = arg;
     (void)from;

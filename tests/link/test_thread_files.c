@@ -34,7 +34,7 @@ static void have_every_joint(void)
     grobo_motion *motion;
     grobo_posture posture;
 
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), GROBO_OK);
     assert_int_equal(grobo_posture_init(&posture, 20), GROBO_OK);
     posture.time_us = STEP_US;
     for (int n = 0; n < POSTURES; n++) {
@@ -124,7 +124,7 @@ static void what_cannot_be_loaded_leaves_nothing(void **state)
     char path[8];
 
     (void)state;
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), GROBO_OK);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), GROBO_OK);
     control_have_motion(2);
     assert_int_equal(grobo_control_load_motion(control, "none", list), GROBO_ERR_NOENT);
     assert_int_equal(control_motion_size(control), 0);

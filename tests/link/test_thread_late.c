@@ -23,7 +23,7 @@ static test_line line;
  * Runs in the round in which grobo_control_receive() asks, before it: the answer comes, but the
  * loop does not get to read it before the silence has lasted too long.
  */
-static int hold_up(grobo_control *control, void *arg)
+static int hold_up(void *arg, grobo_control *control)
 {
     struct pollfd near = {.fd = grobo_serial_handle(grobo_control_serial(control)),
                           .events = POLLIN};
@@ -77,7 +77,7 @@ static void what_has_come_is_read_before_there_is_silence(void **state)
 static bool trickles;
 
 /* The beginning of a reply, which is no answer yet: the command continues to wait. */
-static int send_a_byte(grobo_control *control, void *arg)
+static int send_a_byte(void *arg, grobo_control *control)
 {
     const uint8_t noise = 0xFD;
 

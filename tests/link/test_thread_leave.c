@@ -15,7 +15,7 @@ static int leave_off(grobo_control *from)
     return grobo_control_exit(from, GROBO_EXIT_OFF, 0);
 }
 
-static int post_nothing(grobo_control *from, void *arg)
+static int post_nothing(void *arg, grobo_control *from)
 {
     (void)from;
     (void)arg;
@@ -81,7 +81,7 @@ static void calls_give_up_in_the_configured_time(void **state)
 /* A function that is not over when its caller's time is: the caller waits for its return only. */
 static hold other_gate;
 
-static int hold_and_go_on(grobo_control *from, void *arg)
+static int hold_and_go_on(void *arg, grobo_control *from)
 {
     (void)from;
     (void)arg;

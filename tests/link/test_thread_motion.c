@@ -18,7 +18,7 @@
 
 /* ---- the target --------------------------------------------------------------------------- */
 
-static int engine_target(grobo_control *from, void *arg)
+static int engine_target(void *arg, grobo_control *from)
 {
     return grobo_robot_target(grobo_session_robot(grobo_control_session(from)), arg);
 }
@@ -62,7 +62,7 @@ static void a_target_is_sent_once(void **state)
     assert_true(grobo_posture_near(&posture, &init, grobo_rad_from_deg(0.6)));
 }
 
-static int frames_sent(grobo_control *from, void *arg)
+static int frames_sent(void *arg, grobo_control *from)
 {
     grobo_robot *robot = grobo_session_robot(grobo_control_session(from));
 
@@ -101,7 +101,7 @@ static void each_target_of_a_stream_is_sent(void **state)
 }
 
 /* Asks for a move behind a reading that is under way: it has to wait for its turn. */
-static int ask_behind_a_reading(grobo_control *from, void *arg)
+static int ask_behind_a_reading(void *arg, grobo_control *from)
 {
     int r = grobo_robot_sense(grobo_session_robot(grobo_control_session(from)), EVERY_JOINT,
                               GROBO_SENSE_FULL);
@@ -241,7 +241,7 @@ static void have_increments(void)
     grobo_motion *steps = NULL;
     grobo_posture posture;
 
-    assert_int_equal(grobo_motion_new(&steps, GROBO_MOTION_STEPS, 20, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_STEPS, 20, NULL, &steps), 0);
     (void)grobo_posture_init(&posture, 20);
     (void)grobo_posture_set_deg(&posture, ELBOW, 3);
     posture.time_us = 300000;
@@ -298,7 +298,7 @@ static void an_emptied_motion_takes_postures(void **state)
     }
 }
 
-static int total_ms(grobo_control *from, void *arg)
+static int total_ms(void *arg, grobo_control *from)
 {
     grobo_play_progress progress;
 
@@ -316,7 +316,7 @@ static void the_default_time_is_what_is_played(void **state)
 
     (void)state;
     assert_int_equal(default_us, GROBO_POSTURE_TIME_US);
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), 0);
     (void)grobo_posture_init(&posture, 20);
     (void)grobo_posture_set_deg(&posture, ELBOW, 0);
     posture.time_us = 0;
@@ -339,7 +339,7 @@ static void the_default_time_is_what_is_played(void **state)
 
 /* ---- playing ------------------------------------------------------------------------------ */
 
-static int passes_of(grobo_control *from, void *arg)
+static int passes_of(void *arg, grobo_control *from)
 {
     grobo_play_progress progress;
 
@@ -348,7 +348,7 @@ static int passes_of(grobo_control *from, void *arg)
     return progress.passes;
 }
 
-static int play_state(grobo_control *from, void *arg)
+static int play_state(void *arg, grobo_control *from)
 {
     (void)arg;
     return (int)grobo_robot_play_state(grobo_session_robot(grobo_control_session(from)));
@@ -379,7 +379,7 @@ static void the_motion_is_played(void **state)
 }
 
 /* On the loop, where nothing has begun yet. */
-static int ask_to_play(grobo_control *from, void *arg)
+static int ask_to_play(void *arg, grobo_control *from)
 {
     int r = grobo_control_play_motion(from, arg);
 

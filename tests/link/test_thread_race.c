@@ -244,7 +244,7 @@ static void a_thread_of_the_callers_may_be_the_control_thread(void **state)
 
 /* ---- the loop by hand --------------------------------------------------------------------- */
 
-static int count(grobo_control *from, void *arg)
+static int count(void *arg, grobo_control *from)
 {
     int *n = arg;
 
@@ -288,7 +288,7 @@ static void what_is_posted_is_done_once(void **state)
 }
 
 /* Posts another; n[0] is how many were taken, n[1] how many were called. */
-static int post_another(grobo_control *of, void *arg)
+static int post_another(void *arg, grobo_control *of)
 {
     int *n = arg;
 
@@ -369,7 +369,7 @@ static void call_back(grobo_control *from, int at)
     check(at + 13, grobo_control_set_default_time_us(from, 50000) == GROBO_OK);
 }
 
-static int on_svc(grobo_control *from, void *ctx)
+static int on_svc(void *ctx, grobo_control *from)
 {
     check(1, ctx == &seen);
     seen.rounds++;
@@ -390,7 +390,7 @@ static void on_robot(void *ctx, const grobo_event *event)
     call_back(control, 200);
 }
 
-static void on_event(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     check(5, ctx == &seen);
     check(6, session == grobo_control_session(control));
@@ -399,14 +399,14 @@ static void on_event(grobo_session *session, grobo_session_event event, int erro
     call_back(control, 300);
 }
 
-static int copy_seen(grobo_control *from, void *arg)
+static int copy_seen(void *arg, grobo_control *from)
 {
     (void)from;
     memcpy(arg, &seen, sizeof seen);
     return 0;
 }
 
-static int order_stop(grobo_control *from, void *arg)
+static int order_stop(void *arg, grobo_control *from)
 {
     (void)arg;
     (void)from;
@@ -451,7 +451,7 @@ static void callbacks_may_call(void **state)
 }
 
 /* The other control's callback: its own way out is barred, and so is that of the first. */
-static int on_inner(grobo_control *inner, void *ctx)
+static int on_inner(void *ctx, grobo_control *inner)
 {
     grobo_control *outer = *(grobo_control **)ctx;
     double angle_rad;
@@ -464,7 +464,7 @@ static int on_inner(grobo_control *inner, void *ctx)
     return 0;
 }
 
-static int ask_other(grobo_control *outer, void *arg)
+static int ask_other(void *arg, grobo_control *outer)
 {
     grobo_control *inner = arg;
     double angle_rad;

@@ -7,6 +7,8 @@
 
 #include <cmocka.h>
 
+#include <grobo/board.h>
+
 #include "tests/support/stop_kit.h"
 
 /* ---- emergency stops ---------------------------------------------------------------------- */
@@ -29,6 +31,42 @@ static void an_emergency_stop_stands_while_a_callback_blocks(void **state)
     assert_false(grobo_control_is_latched(control));
     assert_int_equal(grobo_control_set_servo_state(control, ELBOW, GROBO_TORQUE_ON, 0),
                      GROBO_TORQUE_ON);
+    stop_kit_end();
+}
+
+/* Whoever asks for a motion behind it is told so at once, and not by the loop that drops it. */
+static void nothing_that_moves_is_taken_behind_an_emergency_stop(void **state)
+{
+    (void)state;
+    static const grobo_rs30x_goal far = {5, 100, 1000};
+    uint8_t raw[GROBO_FRAME_MAX_BYTES];
+    int n = grobo_frame_goals(grobo_wiring_protocol(GROBO_WIRING_BOARD), &far, 1, raw, sizeof raw);
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
+    grobo_robot *robot = grobo_control_robot(control);
+    grobo_posture target;
+    (void)grobo_posture_init(&target, 20);
+    (void)grobo_posture_set_deg(&target, ELBOW, 5);
+    hold_begin(&gate);
+    int taken = grobo_robot_send(robot, &target);
+    int stopped = grobo_control_estop(control);
+    const int behind[] = {grobo_robot_send(robot, &target),
+                          grobo_robot_move(robot, &target),
+                          grobo_robot_retarget(robot, &target),
+                          grobo_robot_torque(robot, EVERY_JOINT, GROBO_TORQUE_ON),
+                          grobo_robot_free(robot, EVERY_JOINT, true),
+                          grobo_robot_stored(robot, GROBO_STORED_SLOT, 1),
+                          grobo_robot_resume(robot),
+                          grobo_robot_start_at(robot, 0),
+                          grobo_robot_raw(robot, raw, (size_t)n)};
+    hold_end(&gate);
+    assert_int_equal(taken, GROBO_OK);
+    assert_int_equal(stopped, GROBO_OK);
+    for (size_t i = 0; i < sizeof behind / sizeof behind[0]; i++) {
+        assert_int_equal(behind[i], GROBO_ERR_LATCHED);
+    }
+    assert_stopped(1);
+    assert_int_equal(grobo_control_reset(control), GROBO_OK);
+    assert_true(grobo_robot_torque(robot, EVERY_JOINT, GROBO_TORQUE_ON) > 0);
     stop_kit_end();
 }
 
@@ -84,7 +122,7 @@ static void the_next_frame_is_the_stop(void **state)
 }
 
 /* The robot has just been found, and a frame that reads a joint is about to leave. */
-static void stop_when_up(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void stop_when_up(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     (void)error;
     (void)ctx;
@@ -232,6 +270,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_emergency_stop_stands_while_a_callback_blocks),
+        cmocka_unit_test(nothing_that_moves_is_taken_behind_an_emergency_stop),
         cmocka_unit_test(an_emergency_stop_needs_no_lock_of_the_programs),
         cmocka_unit_test(several_emergency_stops_are_one),
         cmocka_unit_test(the_next_frame_is_the_stop),

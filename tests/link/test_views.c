@@ -42,7 +42,7 @@ static int tear_down(void **state)
 /* Does something with the engine on the thread that runs it, and waits until it is done. */
 typedef int (*engine_fn)(grobo_robot *robot);
 
-static int on_engine(grobo_control *from, void *arg)
+static int on_engine(void *arg, grobo_control *from)
 {
     grobo_session *session = grobo_control_session(from);
     const engine_fn *fn = arg;
@@ -100,7 +100,7 @@ static int hrpsys_step(grobo_robot *robot)
 {
     double angle_rad[20];
     (void)robot;
-    int known = grobo_hrpsys_read_joint_angles(&hrpsys, angle_rad, 20, GROBO_NEVER_US);
+    int known = grobo_hrpsys_read_joint_angles(&hrpsys, GROBO_NEVER_US, angle_rad, 20);
     assert_int_equal(known, 20);
     angle_rad[NECK] = grobo_rad_from_deg(5);
     assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, angle_rad, 20), GROBO_OK);

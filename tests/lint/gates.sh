@@ -483,6 +483,9 @@ check 'platform: a header of Linux' \
 printf '#ifdef __linux__\n#endif\n' | sample ports/posix/a.c
 check 'platform: a conditional on Linux' \
     refuses 'ports/posix/a.c:1: platform: only Linux' scan platform ports/posix/a.c
+printf 'bool nearer;\nbool near = x < 1;\n' | sample tools/grctl/a.c
+check 'platform: a name that Windows takes' \
+    refuses 'tools/grctl/a.c:2: platform: near and far' scan platform tools/grctl/a.c
 
 # ---- size ----------------------------------------------------------------------------------
 

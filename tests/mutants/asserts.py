@@ -19,6 +19,7 @@ import argparse
 import concurrent.futures
 import os
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -27,7 +28,9 @@ sys.dont_write_bytecode = True
 import mutate  # noqa: E402
 import run  # noqa: E402
 
-CPU_LIMIT_S = 20
+CPU_LIMIT_S = 6
+HANGS_MAX = 4  # tests that a sabotage may keep busy for so long before it is given up
+HANGS = ()
 MACRO = re.compile(r"GROBO_ASSERT\(")
 # Line and function are the compiler's; the text would be that of the macros behind it.
 SAID = re.compile(r"([^\s:]+):(\d+): (\w+): Assertion ")
@@ -74,14 +77,16 @@ class Trip(run.Bench):
         self.hits_of = {}
 
     def tripped(self, program, test, env):
-        """Path, line and function of the assertion that ended the test, or None."""
+        """Path and line of the assertion that ended the test, None, or HANGS."""
         try:
             done = subprocess.run([program, test], env=env, cwd=self.options.root, check=False,
-                                  preexec_fn=run.limit(CPU_LIMIT_S), timeout=4 * CPU_LIMIT_S,
+                                  preexec_fn=run.limit(CPU_LIMIT_S), timeout=20 * CPU_LIMIT_S,
                                   errors="replace", stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         except subprocess.TimeoutExpired:
-            return None
+            return HANGS
+        if done.returncode == -signal.SIGXCPU:
+            return HANGS
         found = SAID.findall(done.stderr)
         return (found[-1][0], int(found[-1][1])) if found else None
 
@@ -90,7 +95,7 @@ class Trip(run.Bench):
         obj = self.make(mutant)
         if obj is None:
             return None, "does not compile, or changes nothing"
-        program, seen = obj[:-2], set()
+        program, seen, hangs = obj[:-2], set(), 0
         in_link = mutant.path.startswith("src/link/")
         before = self.killers.get("assert " + mutant.anchor)
         order = sorted((t for t in self.tests if (t in self.near) == in_link),
@@ -101,6 +106,11 @@ class Trip(run.Bench):
             for test in order:
                 at = self.tripped(program, test, env)
                 if at is None:
+                    continue
+                if at is HANGS:
+                    hangs += 1
+                    if hangs == HANGS_MAX:
+                        return None, f"hangs in {HANGS_MAX} tests"
                     continue
                 path = mutant.path if at[0] == "<stdin>" else at[0]
                 if path == assertion.path and at[1] in assertion.lines:

@@ -41,14 +41,22 @@ fresh_root() {
     make_root "$1" make,ca-certificates && mkdir "$root/src" &&
         git ls-files -co --exclude-standard | tar -cf - -T - | tar -xf - -C "$root/src"
 }
+# A machine that is away for 250 ms ends a motion, as it has to: then once more.
 demo() {
+    plays_demo || { grep -q 'host stalled' "$work/said" && plays_demo; }
+}
+plays_demo() {
     quiet in_live_root make -C /src demo &&
         grep -q 'A simulated GR001 stands behind' "$work/said" &&
         grep -q 'largest error' "$work/said" || { tail -n 5 "$work/said"; return 1; }
 }
+# The whole of it is kept; what failed is shown.
 whole_check() {
-    quiet in_live_root make -C /src --no-print-directory -j2 check &&
-        cp "$work/said" "$work/check-$suite" && tail -n 1 "$work/said" | grep -q ' 0 failed'
+    in_live_root make -C /src --no-print-directory -j2 check >"$work/check-$suite" 2>&1 &&
+        tail -n 1 "$work/check-$suite" | grep -q ' 0 failed' && return
+    grep -e '^FAIL' -e '^  not ok' -A 5 "$work/check-$suite"
+    tail -n 1 "$work/check-$suite"
+    return 1
 }
 
 # ---- the packages --------------------------------------------------------------------------

@@ -94,7 +94,7 @@ void run_start(struct run *run, const grobo_body_model *model, const struct scri
 
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), 0);
     run->workspace = malloc(bytes);
-    assert_int_equal(grobo_body_init(&run->body, &setup, run->workspace, bytes), 0);
+    assert_int_equal(grobo_body_init(&setup, run->workspace, bytes, &run->body), 0);
 }
 
 void run_finish(struct run *run)

@@ -108,7 +108,7 @@ static void answer(peer *p, uint8_t id)
 static void send_next(peer *p)
 {
     uint8_t b[GROBO_RS30X_PACKET_MAX_BYTES];
-    int n = grobo_bus_tx(&p->bus, p->now_us, b, sizeof b);
+    int n = grobo_bus_tx(&p->bus, b, sizeof b, p->now_us);
     assert_true(n >= 0);
     if (n == 0) {
         return;
@@ -126,7 +126,7 @@ static void receive(peer *p)
         peer_chunk chunk = p->chunks[0];
         p->chunk_count--;
         memmove(p->chunks, p->chunks + 1, (size_t)p->chunk_count * sizeof chunk);
-        grobo_bus_rx(&p->bus, p->now_us, chunk.bytes, chunk.n);
+        grobo_bus_rx(&p->bus, chunk.bytes, chunk.n, p->now_us);
     }
 }
 

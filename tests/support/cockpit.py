@@ -1098,10 +1098,36 @@ def making():
                 {"time_ms": 0, "angle_deg": {j["name"]: 5 for j in joints}},
                 {"time_ms": late_ms, "angle_deg": {j["name"]: 0 for j in joints}}]},
                    If_None_Match="*")
-        expect(400, "unsupported", put, "d.pseq", {"base": {"motion": "greet.yaml"},
-                                                   "keys": every(3)}, If_None_Match="*")
+        frames(page, put, content)
     shutil.rmtree(folder)
     shutil.rmtree(os.path.dirname(outside))
+
+
+def frames(page, put, content):
+    """Frames are moved around the keys that name a joint; the others stay to the last digit."""
+    file = page.get("/api/motions/copy.yaml")
+    same((file["kind"], file["keys"]), ("frames", []))
+    was = content("copy.yaml").split(b"\n")
+    keys = [{"time_ms": 1000}, {"time_ms": 1200, "angle_deg": {"CHEST_P": -10}}, {"time_ms": 1600}]
+    look = page.post("preview", motion="copy.yaml", edit={"keys": keys}, rate_hz=50)
+    told = put("copy.yaml", {"keys": keys}, If_Match=file["etag"])
+    same((told["kind"], told["length_ms"]), ("frames", 5000.0))
+    chest = [j["name"] for j in page.get("/api/robot")["joints"]].index("CHEST_P")
+    saved = page.get("/api/motions/copy.yaml?rate=50")["frames"]["angle_deg"]
+    same(look["frames"]["angle_deg"], saved)
+    moved = [row[chest] for row in saved]
+    same([round(moved[n], 1) for n in (50, 55, 60, 70, 80)], [0.0, -5.0, -10.0, -5.0, 0.0])
+    lines = [(a, b) for a, b in zip(was, content("copy.yaml").split(b"\n")) if a != b]
+    same(len(lines), 29) # those of 1.02 to 1.58 s
+    for a, b in lines:
+        same(sum(x != y for x, y in zip(a.split(b","), b.split(b","))), 1, "one joint of each")
+    base = {"base": {"motion": "copy.yaml"}}
+    for code, bad in (("arg", [{"time_ms": 5100}]), ("arg", [{"from": 0}]),
+                      ("arg", [{"time_ms": 50}, {"time_ms": 40}]),
+                      ("notfound", [{"time_ms": 0, "angle_deg": {"NOSE": 1}}]),
+                      ("arg", [{"time_ms": 0, "angle_deg": {"CHEST_P": "x"}}]),
+                      ("unsupported", [{"time_ms": 0, "links": []}])):
+        expect(400, code, put, "d.yaml", {**base, "keys": bad}, If_None_Match="*")
 
 
 def falls():

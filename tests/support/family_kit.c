@@ -27,20 +27,19 @@ static const family families[] = {
     {"ics", &grobo_ics_table, "KRS-3301", grobo_ics_driver_init, 0.5, 115200, true},
 };
 
-const family *family_row(size_t index)
+const family *family_next(const family *before)
 {
-    return index < sizeof families / sizeof families[0] ? &families[index] : NULL;
+    const family *next = before == NULL ? families : before + 1;
+    return next < families + sizeof families / sizeof families[0] ? next : NULL;
 }
 
 const family *family_named(const char *name)
 {
-    const family *f;
-    for (size_t i = 0; (f = family_row(i)) != NULL; i++) {
-        if (strcmp(f->name, name) == 0) {
-            return f;
-        }
+    const family *f = family_next(NULL);
+    while (f != NULL && strcmp(f->name, name) != 0) {
+        f = family_next(f);
     }
-    return NULL;
+    return f;
 }
 
 static void on_event(void *ctx, const grobo_event *event)
@@ -72,7 +71,7 @@ static void note_sent(family_kit *kit, const uint8_t *bytes, size_t n)
     kit->sent_bytes[kit->n_sent++ % FAMILY_SENT] = n;
 }
 
-static void on_sim(const grobo_sim_event *event, void *ctx)
+static void on_sim(void *ctx, const grobo_sim_event *event)
 {
     family_kit *kit = ctx;
     if (event->kind == GROBO_SIM_PACKET) {

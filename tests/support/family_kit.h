@@ -20,8 +20,8 @@ typedef struct family {
     bool echo;
 } family;
 
-/* Every family with a simulated servo, NULL behind the last. */
-const family *family_row(size_t index);
+/* Every family with a simulated servo: the first behind NULL, NULL behind the last. */
+const family *family_next(const family *before);
 const family *family_named(const char *name);
 
 typedef struct family_kit {

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # For tests of agents and fleets: a broker of this test alone on a free port, and agents. Sourced
-# behind cli.sh. $broker is its address.
+# behind cli.sh. $port, $broker: where.
 
 need_fleet() {
     for fleet_tool in mosquitto mosquitto_pub mosquitto_sub "$@"; do
@@ -11,10 +11,20 @@ need_fleet() {
         echo "1..0 # SKIP this grctl has no MQTT in it"
         exit 0
     fi
+    find_port
+    broker=mqtt://127.0.0.1:$port
 }
 
-port=$((20000 + $$ % 20000))
-broker=mqtt://127.0.0.1:$port
+# find_port: $port is one that nobody listens at, outside of those that the system gives to clients:
+# they would connect with themselves while the broker is away.
+find_port() {
+    for find_n in 1 2 3 4 5 6 7 8 9; do
+        port=$((12000 + ($$ + find_n * 4999) % 20000))
+        timeout 5 mosquitto_pub -p "$port" -t x -m x 2>&1 | grep -qi refused && return
+    done
+    echo "Bail out! no port is free"
+    exit 1
+}
 
 # begin_broker: with $work/broker.conf, or without one of its own for anybody; $broker_pid is it.
 begin_broker() {

@@ -68,7 +68,7 @@ static void end_program(const char *why)
     exit(9);
 }
 
-static void on_line(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_line(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     grobo_posture target;
 

@@ -70,8 +70,14 @@ void judge_stop_asked(judge *w, grobo_joint_mask joints, bool smooth)
     w->rest_looked =
         w->by_estop; /* that takes as long as the line needs, and is judged at its end */
     w->rest_us = w->rig->now_us;
-    for (int j = 0; j < GROBO_JOINTS_MAX; j++) { /* others may be stopped, too */
+    judge_halts_asked(w); /* others may be stopped, too */
+}
+
+void judge_halts_asked(judge *w)
+{
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
         w->axes[j].halt_owed = w->rig->now_us < w->axes[j].to_us + FLIGHT_US;
+        w->axes[j].halts_until_us = w->axes[j].halt_owed ? w->rig->now_us + FLIGHT_US : 0;
     }
 }
 
@@ -241,14 +247,15 @@ static void check_rest(judge *w, int joint, int32_t ddeg)
 }
 
 /* Of a joint in free mode: a person moves it, a goal may only hold it where it is. A joint that was
- * stopped on its way and then given to the person still gets the one goal that stops it. */
+ * stopped on its way and then given to the person still gets the goal that stops it, and one for
+ * each stop that was asked for at once. */
 static void check_free(judge *w, int joint, int32_t ddeg)
 {
     grobo_sim_view view = judge_view(w, joint);
     double way_deg = fabs(ddeg / 10.0 - view.angle_mdeg / 1000.0);
     bool is_free = (w->rig->robot.free_joints & GROBO_JOINT_BIT(joint)) != 0;
-    double may_deg = w->axes[joint].halt_owed ? AHEAD_DEG + ahead_deg(w, joint, &view)
-                                              : judge_hold_deg(w, joint);
+    bool halts = w->axes[joint].halt_owed || w->rig->now_us < w->axes[joint].halts_until_us;
+    double may_deg = halts ? AHEAD_DEG + ahead_deg(w, joint, &view) : judge_hold_deg(w, joint);
     if (is_free && !w->resting && way_deg > may_deg && !judge_excused(w, joint)) {
         fail_msg("%s, in free mode, is sent to where it is not: %.1f deg", judge_name(w, joint),
                  way_deg);

@@ -36,6 +36,7 @@ typedef struct judge_axis {
     bool sent;               /* since the line was last there */
     bool by_raw;             /* sent where it is going by a raw frame */
     bool halt_owed;          /* a stop was asked for while it moved: one goal may leave for that */
+    int64_t halts_until_us;  /* and one for each stop that was asked for beside it, until then */
     bool parted;             /* a goal was lost, and the joint is not where it was sent */
     double from_deg, to_deg; /* the way that it was sent on last, */
     int64_t from_us, to_us;  /* taken to begin when the frame left */
@@ -96,6 +97,8 @@ void judge_job_began(judge *w, int number, grobo_job_kind kind);
 void judge_motion_asked(judge *w);
 /* A stop of these joints was asked for and accepted; a smooth one goes on a little. */
 void judge_stop_asked(judge *w, grobo_joint_mask joints, bool smooth);
+/* What moves is halted, by a request that ends no motion of others. */
+void judge_halts_asked(judge *w);
 /* Raw frames that wait must not leave any more: those that move, or all. */
 void judge_raws_stopped(judge *w, bool all);
 /* grobo_robot_raw() gave this result. */

@@ -17,7 +17,7 @@ typedef struct bounded_wait {
     bool passed;
 } bounded_wait;
 
-static void on_end_of_wait(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_end_of_wait(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     bounded_wait *w = ctx;
 

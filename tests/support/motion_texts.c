@@ -45,7 +45,7 @@ grobo_motion *motion_of(const char *text, grobo_motion_format format)
     grobo_motion *motion = NULL;
     grobo_diagnostics *list = NULL;
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     int result = grobo_motion_read_memory(text, strlen(text), &options, list, &motion);
     grobo_diagnostic first;
     if (result < 0 && grobo_diagnostics_get(list, 0, &first) == 0) {

@@ -6,7 +6,10 @@ usage: mqtt.py PORT floor N         round trips of N messages by the broker alon
                                     one order with a clock that its agent may compare; prints the
                                     answer. id, from: 32 digits; issued_ms, life_ms: beside now;
                                     at_ms: sets at_us; twice=BODY: the same id again, with that body
-       mqtt.py PORT still SECONDS   what robots do for so long: {"host/robot": [moved_deg, playing]}
+       mqtt.py PORT still SECONDS N what N robots do until each has stood for so long (30 s more at
+                                    most), by "host/robot": whether it came to rest, how far it
+                                    moved from there, whether it was busy then, how far that is
+                                    from the posture heard first, and how old that one was
        mqtt.py PORT keep FILE       every message of grobo/v1/# as a line "topic payload", until it
                                     is ended
        mqtt.py 0 fits FILE          these lines are as docs/fleet.schema.json says, but for orders
@@ -183,20 +186,56 @@ def order(client, host, verb, body, words):
         print(json.dumps(sender.answer(number)))
 
 
-def still(client, seconds):
+class Rest:
+    """A robot that should stand. Its angles may be old when it is heard of first: what counts is how
+    it goes on from the first posture that was read wholly after it was told to be at rest."""
+
+    def __init__(self):
+        self.first = self.rest_us = self.posture = self.posture_us = self.now_us = None
+        self.came = self.moved = self.old_ms = 0
+        self.busy = False
+
+    def take(self, said):
+        angles, self.now_us = said["angles_deg"], said["t_us"]
+        if self.first is None:
+            self.first, self.old_ms = angles, said["angles_age_ms"]
+        busy = said["moving"] or said["play"] == "playing"
+        if self.posture:
+            self.moved = max(self.moved, farthest(self.posture, angles))
+            self.busy |= busy
+        elif busy:
+            self.rest_us = None
+        elif self.rest_us is None:
+            self.rest_us = self.now_us
+        elif self.now_us - 1000 * said["angles_age_ms"] > self.rest_us:
+            self.posture, self.posture_us = angles, self.now_us
+            self.came = farthest(self.first, angles)
+
+    def stood_for(self, seconds):
+        return self.posture and self.now_us - self.posture_us >= seconds * 1e6
+
+    def row(self):
+        return {"rests": self.posture is not None, "moved_deg": self.moved, "busy": self.busy,
+                "came_deg": self.came, "old_ms": self.old_ms}
+
+
+def farthest(a, b):
+    return max(abs(x - y) for x, y in zip(a, b) if x is not None and y is not None)
+
+
+def still(client, seconds, n):
     client.subscribe(ROOT + "+/+/state")
-    seen, until_s = {}, time.monotonic() + seconds
+    seen, until_s = {}, time.monotonic() + seconds + 30
     while time.monotonic() < until_s:
         got = client.message(until_s - time.monotonic())
         if got is None:
             break
         said = json.loads(got[1])
-        angles = [a for a in said.get("angles_deg", []) if a is not None]
-        row = seen.setdefault("/".join(got[0].split("/")[2:4]), [angles, 0.0, False])
-        if len(row[0]) == len(angles) and angles:
-            row[1] = max(row[1], max(abs(a - b) for a, b in zip(row[0], angles)))
-        row[2] |= said.get("play") == "playing"
-    print(json.dumps({name: row[1:] for name, row in sorted(seen.items())}))
+        if said.get("angles_age_ms") is not None:
+            seen.setdefault("/".join(got[0].split("/")[2:4]), Rest()).take(said)
+        if len(seen) == n and all(robot.stood_for(seconds) for robot in seen.values()):
+            break
+    print(json.dumps({name: robot.row() for name, robot in sorted(seen.items())}))
 
 
 def keep(client, path):
@@ -247,7 +286,7 @@ def main(words):
     elif words[1] == "order":
         order(client, words[2], words[3], words[4], words[5:])
     elif words[1] == "still":
-        still(client, float(words[2]))
+        still(client, float(words[2]), int(words[3]))
     else:
         keep(client, words[2])
 

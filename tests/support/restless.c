@@ -288,6 +288,8 @@ static void ask_stop(restless *u)
     judge_raws_stopped(&u->judge, false);
     if (result >= 0 && job != GROBO_JOB_EXIT) {
         judge_stop_asked(&u->judge, rig_all(u->rig), !at_once);
+    } else if (result >= 0) {
+        judge_halts_asked(&u->judge);
     }
     end_stream(u);
 }
@@ -299,6 +301,8 @@ static void ask_cancel(restless *u)
     restless_told(u, GROBO_JOB_NONE, result, RESTLESS_NOTHING);
     if (result >= 0 && job == GROBO_JOB_MOVE) {
         judge_stop_asked(&u->judge, u->moved, false);
+    } else if (result >= 0) {
+        judge_halts_asked(&u->judge);
     }
     end_stream(u);
 }

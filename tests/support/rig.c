@@ -254,7 +254,7 @@ static void note_event(void *ctx, const grobo_event *event)
     }
 }
 
-static void note_sim(const grobo_sim_event *event, void *ctx)
+static void note_sim(void *ctx, const grobo_sim_event *event)
 {
     grobo_test_rig *rig = ctx;
     witness_heard(&rig->witness, event);

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "tests/support/next_random.h"
 #include "tests/support/sample_clip.h"
 
 static const grobo_joint joints[SAMPLE_JOINTS] = {
@@ -171,4 +172,17 @@ void sample_pump_stall(sample_pump *pump, int64_t time_us)
 {
     pump->now_us += time_us;
     (void)sample_pump_take(pump);
+}
+
+grobo_play_options sample_options(uint32_t *seed, unsigned rate_hz, unsigned from_us)
+{
+    grobo_play_options options = {0};
+    options.mode = next_random(seed) % 2 ? GROBO_PLAY_KEY : GROBO_PLAY_RATE;
+    options.reverse = next_random(seed) % 2;
+    options.mirror = next_random(seed) % 2;
+    options.repeat = (int32_t)(next_random(seed) % 5) - 2;
+    options.speed_pct = (uint16_t)(next_random(seed) % 500);
+    options.rate_hz = (uint16_t)(next_random(seed) % rate_hz);
+    options.from_us = next_random(seed) % from_us;
+    return options;
 }

@@ -59,6 +59,9 @@ int sample_pump_take(sample_pump *pump);
 /* Lives through every deadline up to and including until_us. */
 void sample_pump_run(sample_pump *pump, int64_t until_us);
 
+/* Options by chance: rates and starting points below these. */
+grobo_play_options sample_options(uint32_t *seed, unsigned rate_hz, unsigned from_us);
+
 /* Lets time pass without serving anybody, then serves. */
 void sample_pump_stall(sample_pump *pump, int64_t time_us);
 

@@ -17,7 +17,7 @@ struct event_base *base;
 grobo_session *session;
 session_seen seen;
 
-static void on_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
+static void on_event(void *ctx, grobo_session *from, grobo_session_event event, int error)
 {
     assert_ptr_equal(ctx, &seen);
     seen.error = error;
@@ -56,8 +56,8 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     assert_ptr_equal(ctx, &seen);
     assert_true(now_us > 0);

@@ -10,7 +10,7 @@
 #include "tests/support/simkit.h"
 #include "tests/support/vectors.h"
 
-static void note(const grobo_sim_event *event, void *ctx)
+static void note(void *ctx, const grobo_sim_event *event)
 {
     simkit *kit = ctx;
     if (kit->n_events < SIMKIT_EVENTS) {

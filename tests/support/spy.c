@@ -41,8 +41,8 @@ static void note(spy *s, int64_t now_us)
     }
 }
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     spy *s = ctx;
     if (direction != GROBO_DIR_RX) {

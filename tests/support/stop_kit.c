@@ -16,7 +16,7 @@ int (*in_callback)(grobo_control *from);
 int callback_result;
 grobo_mutex users;
 
-static int on_svc(grobo_control *from, void *ctx)
+static int on_svc(void *ctx, grobo_control *from)
 {
     int (*asked)(grobo_control *);
 
@@ -54,8 +54,8 @@ static void on_robot(void *ctx, const grobo_event *event)
 
 /* A packet for the servos is behind two bytes of the board: its address is the seventh byte, and
  * the ninth how many servos it writes to, 0 for a reading. */
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     (void)now_us;
     (void)ctx;
@@ -117,14 +117,14 @@ void move_for_long(void)
     assert_int_equal(grobo_control_is_moving(control), 1);
 }
 
-int copy_seen(grobo_control *from, void *arg)
+int copy_seen(void *arg, grobo_control *from)
 {
     (void)from;
     memcpy(arg, &saw, sizeof saw);
     return 0;
 }
 
-int tripped(grobo_control *from, void *arg)
+int tripped(void *arg, grobo_control *from)
 {
     grobo_trip_info trip;
 
@@ -133,7 +133,7 @@ int tripped(grobo_control *from, void *arg)
     return trip.latched;
 }
 
-int begin_to_listen(grobo_control *from, void *arg)
+int begin_to_listen(void *arg, grobo_control *from)
 {
     (void)from;
     (void)arg;

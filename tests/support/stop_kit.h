@@ -37,9 +37,9 @@ void stop_kit_start(grobo_control_config config);
 void stop_kit_end(void);
 
 /* For grobo_control_call(): copies `saw`; whether a stop is latched; sets `listen`. */
-int copy_seen(grobo_control *from, void *arg);
-int tripped(grobo_control *from, void *arg);
-int begin_to_listen(grobo_control *from, void *arg);
+int copy_seen(void *arg, grobo_control *from);
+int tripped(void *arg, grobo_control *from);
+int begin_to_listen(void *arg, grobo_control *from);
 
 /* Return when a move, or a motion, is under way that lasts longer than any test. */
 void move_for_long(void);

@@ -225,7 +225,7 @@ static void hear(grobo_board_parser *parser, int64_t now_us, heard *h)
 static void push(grobo_board_parser *parser, int64_t now_us, const uint8_t *b, size_t n, heard *h)
 {
     for (size_t took; n > 0; b += took, n -= took) {
-        took = grobo_board_parser_feed(parser, now_us, b, n);
+        took = grobo_board_parser_feed(parser, b, n, now_us);
         hear(parser, now_us, h);
     }
 }

@@ -94,7 +94,7 @@ static void a_file_and_a_script_give_the_same(void **state)
     script_target(&script, WAIST, 0, 0, 0.15);
 
     assert_true(grobo_body_wanted(&grobo_gr001_body, motion));
-    assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, motion, &options, NULL), 0);
+    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, &options, NULL, &body), 0);
     grobo_motion_free(motion);
     run_start(&run, &grobo_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame_count(body), 101);
@@ -121,7 +121,7 @@ static void a_clip_plays_the_body(void **state)
     double q[JOINTS];
 
     (void)state;
-    assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, motion, NULL, NULL), 0);
+    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), 0);
     grobo_motion_free(motion);
     grobo_body_clip(body, true, &clip);
     assert_int_equal(clip.length_us, 2000000);
@@ -150,7 +150,7 @@ static void a_clip_stops_where_a_leg_does_not_reach(void **state)
     int unreached;
 
     (void)state;
-    assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, motion, NULL, NULL), 0);
+    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), 0);
     grobo_motion_free(motion);
     grobo_body_clip(body, true, &clip);
     assert_int_equal(clip.sample(clip.ctx, 100000, &posture), 0);
@@ -173,7 +173,7 @@ static void frames_are_the_body_s(void **state)
     grobo_body *body = NULL;
 
     (void)state;
-    assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, motion, &options, NULL), 0);
+    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, &options, NULL, &body), 0);
     grobo_motion_free(motion);
     assert_int_equal(grobo_body_frames(body, NULL, &frames), 0);
     assert_int_equal(grobo_motion_get_kind(frames), GROBO_MOTION_FRAMES);
@@ -201,12 +201,12 @@ static void other_motions_are_refused(void **state)
     grobo_body *body = NULL;
 
     (void)state;
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_KEYS, 20, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &motion), 0);
     assert_false(grobo_body_wanted(&grobo_gr001_body, motion));
-    assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, motion, NULL, NULL), GROBO_ERR_EMPTY);
+    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), GROBO_ERR_EMPTY);
     grobo_motion_free(motion);
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_FRAMES, 20, NULL), 0);
-    assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, motion, NULL, NULL), GROBO_ERR_TYPE);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_FRAMES, 20, NULL, &motion), 0);
+    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), GROBO_ERR_TYPE);
     grobo_motion_free(motion);
     grobo_body_free(NULL);
 }
@@ -223,7 +223,7 @@ static void each_allocation_may_fail(void **state)
         const grobo_mem mem = counted_mem_of(&counter);
         grobo_motion *frames = NULL;
         grobo_body *body = NULL;
-        int result = grobo_body_new(&body, &grobo_gr001_body, motion, NULL, &mem);
+        int result = grobo_body_new(&grobo_gr001_body, motion, NULL, &mem, &body);
 
         if (result == 0) {
             result = grobo_body_frames(body, &mem, &frames);

@@ -86,7 +86,7 @@ static bool agrees(const char *csv, const char *motion, double rate_hz, const st
     assert_non_null(golden);
     options.rate_hz = rate_hz;
     assert_int_equal(grobo_motion_read_file(shared_file(motion), NULL, NULL, &keys), 0);
-    assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, keys, &options, NULL), 0);
+    assert_int_equal(grobo_body_new(&grobo_gr001_body, keys, &options, NULL, &body), 0);
     grobo_motion_free(keys);
     worst = compare(body, golden);
     grobo_body_free(body);

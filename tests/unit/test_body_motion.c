@@ -511,10 +511,10 @@ static void bad_setups_are_refused(void **state)
     assert_int_equal(bytes, 77);
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), 0);
     workspace = malloc(bytes);
-    assert_int_equal(grobo_body_init(&body, &setup, workspace, bytes - 1), GROBO_ERR_SPACE);
-    assert_int_equal(grobo_body_init(&body, &setup, workspace + 1, bytes), GROBO_ERR_ARG);
+    assert_int_equal(grobo_body_init(&setup, workspace, bytes - 1, &body), GROBO_ERR_SPACE);
+    assert_int_equal(grobo_body_init(&setup, workspace + 1, bytes, &body), GROBO_ERR_ARG);
     assert_null(body);
-    assert_int_equal(grobo_body_init(&body, &setup, workspace, bytes), 0);
+    assert_int_equal(grobo_body_init(&setup, workspace, bytes, &body), 0);
     assert_non_null(body);
     free(workspace);
 }
@@ -544,7 +544,7 @@ static void what_was_on_the_stack_does_not_matter(void **state)
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), 0);
     void *workspace = malloc(bytes);
     assert_true(dirty_the_stack() > 0);
-    assert_int_equal(grobo_body_init(&body, &setup, workspace, bytes), 0);
+    assert_int_equal(grobo_body_init(&setup, workspace, bytes, &body), 0);
     free(workspace);
 }
 

@@ -37,7 +37,7 @@ static void stands(const char *path)
     for (size_t i = 0; i < sizeof options / sizeof options[0]; i++) {
         grobo_body *body = NULL;
 
-        assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, motion, &options[i], NULL), 0);
+        assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, &options[i], NULL, &body), 0);
         assert_int_equal(grobo_body_check(body, &checks), 0);
         grobo_body_free(body);
     }

@@ -33,7 +33,7 @@ static grobo_motion *counting(grobo_motion_kind kind, int n_joints, size_t size)
 {
     grobo_motion *motion = NULL;
 
-    assert_int_equal(grobo_motion_new(&motion, kind, n_joints, NULL), 0);
+    assert_int_equal(grobo_motion_new(kind, n_joints, NULL, &motion), 0);
     for (size_t n = 0; n < size; n++) {
         grobo_posture posture = posture_of(n_joints, (double)n, n > 0 ? 1000000 : 0);
         assert_int_equal(grobo_motion_append(motion, &posture), 0);
@@ -54,14 +54,14 @@ static void test_new_refuses(void **state)
     (void)state;
     grobo_motion *motion = NULL;
 
-    assert_int_equal(grobo_motion_new(&motion, (grobo_motion_kind)9, 1, NULL), GROBO_ERR_ARG);
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_KEYS, -1, NULL), GROBO_ERR_ARG);
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_KEYS, GROBO_JOINTS_MAX + 1, NULL),
+    assert_int_equal(grobo_motion_new((grobo_motion_kind)9, 1, NULL, &motion), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, -1, NULL, &motion), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, GROBO_JOINTS_MAX + 1, NULL, &motion),
                      GROBO_ERR_CAP);
     assert_null(motion);
     grobo_motion_free(NULL);
     for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
-        assert_int_equal(grobo_motion_new(&motion, (grobo_motion_kind)kind, 7, NULL), 0);
+        assert_int_equal(grobo_motion_new((grobo_motion_kind)kind, 7, NULL, &motion), 0);
         assert_int_equal(grobo_motion_get_kind(motion), kind);
         assert_int_equal(grobo_motion_joints(motion), 7);
         assert_int_equal(grobo_motion_size(motion), 0);
@@ -333,7 +333,7 @@ static grobo_motion *rich(const grobo_mem *mem)
                               {.index = 6, .name = "R_ANKLE_R", .has_parting_direction = true}};
     grobo_key_info info = {.max_transition_s = 0.5, .stationary = 6, .has_zmp = true};
 
-    if (grobo_motion_new(&motion, GROBO_MOTION_KEYS, 20, mem) < 0) {
+    if (grobo_motion_new(GROBO_MOTION_KEYS, 20, mem, &motion) < 0) {
         return NULL;
     }
     if (grobo_motion_set_name(motion, "rich") < 0 || grobo_motion_append(motion, &posture) < 0 ||
@@ -427,7 +427,7 @@ static void test_memory_of_a_long_motion(void **state)
     grobo_motion *motion = NULL;
     grobo_posture posture = posture_of(20, 0, 1000);
 
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_KEYS, 20, &mem), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, &mem, &motion), 0);
     for (int n = 0; n < SIZE; n++) {
         assert_int_equal(grobo_motion_append(motion, &posture), 0);
     }
@@ -460,7 +460,7 @@ static void test_memory_of_a_conversion(void **state)
         grobo_motion *motion = NULL, *made = NULL;
         grobo_posture posture = posture_of(20, 0, cases[i].step_us);
 
-        assert_int_equal(grobo_motion_new(&motion, cases[i].from, 20, &mem), 0);
+        assert_int_equal(grobo_motion_new(cases[i].from, 20, &mem, &motion), 0);
         if (cases[i].from == GROBO_MOTION_FRAMES) {
             assert_int_equal(grobo_motion_set_frame_rate(motion, 1e6 / cases[i].step_us), 0);
         }

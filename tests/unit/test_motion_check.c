@@ -28,7 +28,7 @@ static checked check_with(const char *text, bool positions, grobo_slack_taken *s
     checked found;
     grobo_motion *motion = NULL;
 
-    assert_int_equal(grobo_diagnostics_new(&found.list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &found.list), 0);
     assert_int_equal(grobo_motion_read_memory(text, strlen(text), &options, found.list, &motion),
                      0);
     found.errors = grobo_motion_check(motion, &grobo_gr001_model, &how, found.list);
@@ -247,7 +247,7 @@ static void test_speed_it_is_played_at(void **state)
     for (size_t i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
         grobo_check_options how = {GROBO_CHECK_OPTIONS_INIT, .speed_pct = speeds[i].speed_pct};
         grobo_diagnostics *list = NULL;
-        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
         assert_int_equal(grobo_motion_check(motion, &grobo_gr001_model, &how, list),
                          speeds[i].errors);
         grobo_diagnostics_free(list);
@@ -298,7 +298,7 @@ static void test_list_is_bounded(void **state)
     grobo_diagnostics *list = NULL;
     grobo_diagnostic said = {.file = "a", .code = "x", .message = "m", .line = 1};
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     for (int i = 0; i < GROBO_DIAGNOSTICS_MAX + 10; i++) {
         said.file = i % 2 ? "a" : "b";
         said.line = (uint32_t)i + 1;

@@ -236,7 +236,7 @@ static void test_frames_without_rate(void **state)
     grobo_posture posture;
     grobo_clip clip;
 
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_FRAMES, 1, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_FRAMES, 1, NULL, &motion), 0);
     (void)grobo_posture_init(&posture, 1);
     assert_int_equal(grobo_motion_append(motion, &posture), 0);
     assert_int_equal(grobo_motion_clip(motion, NULL, &clip), GROBO_ERR_STATE);
@@ -271,7 +271,7 @@ static void test_resample_is_exact_on_frames(void **state)
     grobo_motion *motion = NULL, *frames = NULL;
     grobo_posture posture;
 
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_FRAMES, 1, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_FRAMES, 1, NULL, &motion), 0);
     assert_int_equal(grobo_motion_set_frame_rate(motion, 30), 0);
     (void)grobo_posture_init(&posture, 1);
     for (int i = 0; i < 2000; i++) {

@@ -123,7 +123,7 @@ static void test_allocations_fail(void **state)
             grobo_diagnostics *list = NULL;
             grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem,
                                           .keep_positions = true, .model = &grobo_gr001_model};
-            result = grobo_diagnostics_new(&list, &mem);
+            result = grobo_diagnostics_new(&mem, &list);
             if (result == 0) {
                 result = read_result(samples[i], &options, list);
             }
@@ -148,7 +148,7 @@ static void test_cut_anywhere(void **state)
             grobo_motion *motion = NULL;
             char *exact = malloc(cut > 0 ? cut : 1);
             memcpy(exact, samples[i], cut);
-            assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+            assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
             int result = grobo_motion_read_memory(exact, cut, &options, list, &motion);
             assert_true(result == 0 || grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) > 0);
             grobo_motion_free(motion);
@@ -171,7 +171,7 @@ static bool refused(const char *text)
     grobo_diagnostics *list = NULL;
     grobo_diagnostic first;
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     int result = grobo_motion_read_memory(text, strlen(text), &options, list, &motion);
     if (result < 0) {
         assert_int_equal(grobo_diagnostics_get(list, 0, &first), 0);
@@ -299,7 +299,7 @@ static void test_edge_files(void **state)
         (void)snprintf(path, sizeof path, "%s", shared_file(name));
         grobo_diagnostics *list = NULL;
         grobo_motion *motion = NULL;
-        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
         int result = grobo_motion_read_file(path, NULL, list, &motion);
         bool refuse = strncmp(expected, "refuse", 6) == 0;
         bool warn = strstr(expected, "warn") != NULL;

@@ -70,7 +70,7 @@ static void test_m_refused(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         grobo_diagnostics *list = NULL;
         grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = GROBO_FORMAT_M};
-        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
         assert_int_equal(read_result(bad[i].text, &options, list), GROBO_ERR_SYNTAX);
         assert_true(has_diagnostic(list, bad[i].code, bad[i].line, bad[i].column));
         grobo_diagnostics_free(list);
@@ -253,7 +253,7 @@ static void test_pose_refused(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof bad_poses / sizeof bad_poses[0]; i++) {
         grobo_diagnostics *list = NULL;
-        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
         int result = read_result(bad_poses[i].text, NULL, list);
         if (result != bad_poses[i].result ||
             !has_diagnostic(list, bad_poses[i].code, bad_poses[i].line, bad_poses[i].column)) {
@@ -278,7 +278,7 @@ static void test_keep_going(void **state)
         "- 7\n";
     grobo_diagnostics *list = NULL;
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     assert_int_equal(
         read_result(text, &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .keep_going = true}, list),
         GROBO_ERR_SYNTAX);
@@ -401,7 +401,7 @@ static void test_body_motion_refused(void **state)
 #undef PART
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         grobo_diagnostics *list = NULL;
-        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
         int result = read_result(bad[i].text, NULL, list);
         if (result != GROBO_ERR_SYNTAX ||
             !has_diagnostic(list, bad[i].code, bad[i].line, bad[i].column)) {
@@ -440,7 +440,7 @@ static void test_unusable_links_are_skipped(void **state)
     grobo_kept kept;
     size_t count = 0;
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     assert_int_equal(read_result(text, NULL, list), 0);
     assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING), 3);
     assert_true(has_diagnostic(list, "link-skipped", 5, 3) &&
@@ -465,7 +465,7 @@ static void test_key_poses_of_another_type(void **state)
     static const char text[] = "type: Foo\nname: t\nrefs: [ { time: 0, refer: { type: Pose } } ]\n";
     grobo_diagnostics *list = NULL;
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     assert_int_equal(read_result(text, NULL, list), 0);
     assert_true(has_diagnostic(list, "top-type", 1, 7));
     grobo_diagnostics_free(list);
@@ -515,7 +515,7 @@ static void test_format_by_content_and_name(void **state)
     assert_int_equal(grobo_motion_format_of_path("x.auto"), GROBO_FORMAT_AUTO);
     assert_int_equal(grobo_motion_format_of_path("walk.yml"), GROBO_FORMAT_YAML);
     assert_int_equal(grobo_motion_format_of_path("walk.nope"), GROBO_FORMAT_AUTO);
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     assert_int_equal(read_result(key_poses,
                                  &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .name = "a.yaml"},
                                  list),

@@ -105,7 +105,7 @@ static void test_save_refused(void **state)
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
     grobo_diagnostics *list = NULL;
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     assert_int_equal(grobo_motion_save(motion, grobo_files_os(), folder, NULL, list),
                      GROBO_ERR_ISDIR);
     assert_int_equal(grobo_motion_save(motion, grobo_files_os(), in_folder("none/a.m"), NULL, list),
@@ -156,7 +156,7 @@ static void test_save_keeps_other_formats(void **state)
     grobo_diagnostics *list = NULL;
 
     (void)state;
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     for (int h = 0; h < 3; h++) {
         for (int f = 0; f < 4; f++) {
             grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model,

@@ -30,7 +30,7 @@ static grobo_motion *random_motion(grobo_motion_kind kind, grobo_joint_mask join
     while ((joints & GROBO_JOINT_BIT(n_joints - 1)) == 0) {
         n_joints--;
     }
-    assert_int_equal(grobo_motion_new(&motion, kind, n_joints, NULL), 0);
+    assert_int_equal(grobo_motion_new(kind, n_joints, NULL, &motion), 0);
     for (int k = 0; k < KEYS; k++) {
         grobo_posture posture;
         (void)grobo_posture_init(&posture, n_joints);
@@ -188,7 +188,7 @@ static void test_losses_are_noticed(void **state)
     for (size_t i = 0; i < sizeof copies / sizeof copies[0]; i++) {
         grobo_motion *copy = motion_of(copies[i].text, GROBO_FORMAT_M);
         grobo_diagnostics *list = NULL;
-        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
         int lost = grobo_motion_verify(motion, copy, NULL, list);
         assert_int_equal(lost, grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR));
         assert_int_equal(lost > 0, copies[i].code != NULL);
@@ -220,7 +220,7 @@ static void test_losses_of_frames_are_noticed(void **state)
     grobo_motion *frames = frames_of(motion);
     grobo_posture posture;
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     assert_int_equal(grobo_motion_verify(motion, frames, NULL, list), 0);
     assert_int_equal(grobo_motion_get(frames, 20, &posture), 0);
     posture.angle_rad[12] += 0.001; /* CHEST_P is motor 1 */

@@ -25,7 +25,7 @@ static grobo_motion *frames_of(double rate_hz, int count, double first_rad)
     grobo_motion *motion = NULL;
     grobo_posture posture;
 
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_FRAMES, 1, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_FRAMES, 1, NULL, &motion), 0);
     assert_int_equal(grobo_motion_set_frame_rate(motion, rate_hz), 0);
     (void)grobo_posture_init(&posture, 1);
     for (int i = 0; i < count; i++) {
@@ -107,7 +107,7 @@ static grobo_motion *any_of(grobo_motion_kind kind, double rate_hz)
     grobo_motion *motion = NULL;
     grobo_posture posture;
 
-    assert_int_equal(grobo_motion_new(&motion, kind, 2, NULL), 0);
+    assert_int_equal(grobo_motion_new(kind, 2, NULL, &motion), 0);
     if (kind == GROBO_MOTION_FRAMES && rate_hz > 0) {
         assert_int_equal(grobo_motion_set_frame_rate(motion, rate_hz), 0);
     } else if (kind == GROBO_MOTION_FRAMES) {
@@ -165,12 +165,12 @@ static void test_append_never_mixes(void **state)
     assert_int_equal(grobo_motion_append_motion(steps, keys_of), GROBO_ERR_TYPE);
     assert_int_equal(grobo_motion_concat(steps, keys_of, 0), GROBO_ERR_TYPE);
     assert_true(grobo_motion_equal(steps, before));
-    assert_int_equal(grobo_motion_new(&empty, GROBO_MOTION_POSTURES, 2, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 2, NULL, &empty), 0);
     assert_int_equal(grobo_motion_append_motion(empty, steps), GROBO_ERR_TYPE);
     assert_int_equal(grobo_motion_size(empty), 0);
     assert_int_equal(grobo_motion_append_motion(empty, keys_of), 0);
     assert_int_equal(grobo_motion_append_motion(empty, steps), 0);
-    assert_int_equal(grobo_motion_new(&frames, GROBO_MOTION_FRAMES, 2, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_FRAMES, 2, NULL, &frames), 0);
     assert_int_equal(grobo_motion_append_motion(frames, keys_of), GROBO_ERR_STATE);
     assert_int_equal(grobo_motion_set_joints(frames, 1), 1);
     assert_int_equal(grobo_motion_append_motion(frames, keys_of), GROBO_ERR_ARG);
@@ -243,7 +243,7 @@ static void test_mirror(void **state)
     int neck = grobo_model_find_joint(&grobo_gr001_model, "NECK_Y", 6);
     size_t count;
 
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_KEYS, 20, NULL), 0);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &motion), 0);
     (void)grobo_posture_init(&posture, 20);
     (void)grobo_posture_set_rad(&posture, right, -0.5);
     (void)grobo_posture_set_rad(&posture, neck, 0.25);

@@ -317,7 +317,7 @@ static void test_conversion_says_what_is_dropped(void **state)
     grobo_motion *motion = motion_of(pose_file, GROBO_FORMAT_PSEQ);
     grobo_diagnostics *list = NULL;
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     grobo_motion_free(converted(motion, GROBO_MOTION_POSTURES, NULL, list));
     static const char *const codes[] = {"ik-links-dropped", "zmp-dropped", "sp-joints-dropped",
                                         "keys-dropped"};
@@ -349,7 +349,7 @@ static void test_conversion_fills_joints(void **state)
     grobo_diagnostics *list = NULL;
     grobo_posture start;
 
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     (void)grobo_posture_init(&start, 4);
     (void)grobo_posture_set_rad(&start, 2, 7);
     grobo_motion *postures =
@@ -406,7 +406,7 @@ static void test_frames_are_resampled(void **state)
                   "- { time: 0.35, refer: { type: Pose, joints: [ 0 ], q: [ 2 ] } }\n",
                   GROBO_FORMAT_PSEQ);
     grobo_diagnostics *list = NULL;
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES, NULL, list);
     size_t size = grobo_motion_size(frames);
 
@@ -437,7 +437,7 @@ static void test_empty_motions_are_written(void **state)
     for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
         for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
             grobo_motion *motion = NULL;
-            assert_int_equal(grobo_motion_new(&motion, (grobo_motion_kind)kind, 0, NULL), 0);
+            assert_int_equal(grobo_motion_new((grobo_motion_kind)kind, 0, NULL, &motion), 0);
             char *text = written_as(motion, (grobo_motion_format)format, &options, NULL);
             grobo_motion *back = motion_of(text, (grobo_motion_format)format);
             assert_int_equal(grobo_motion_size(back), 0);

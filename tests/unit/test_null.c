@@ -38,7 +38,8 @@ static grobo_body_stand stand;
 static const double *const poses[3] = {reals, reals, reals};
 static grobo_body_velocity velocity;
 static grobo_momentum momentum;
-static grobo_body_setup setup;
+static const grobo_body_key one_key;
+static const grobo_body_setup setup = {.model = &grobo_gr001_body, .keys = &one_key, .n_keys = 1};
 static grobo_body *made_body;
 static grobo_body *body;
 static grobo_body_report report;
@@ -92,7 +93,7 @@ static int set_up(void **state)
     (void)state;
     grobo_board_parser_init(&board_parser, 0);
     grobo_rs30x_parser_init(&parser, GROBO_ACCEPT_RETURNS);
-    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_KEYS, 20, NULL), GROBO_OK);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &motion), GROBO_OK);
     grobo_posture_init_pose(&posture, &grobo_gr001_model);
     posture.time_us = 1000000;
     assert_int_equal(grobo_motion_append(motion, &posture), GROBO_OK);
@@ -100,9 +101,9 @@ static int set_up(void **state)
     links[0] =
         (grobo_ik_link){.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .name = "WAIST", .is_base = true};
     assert_int_equal(grobo_motion_set_ik_links(motion, 0, links, 1), GROBO_OK);
-    assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, motion, NULL, NULL), GROBO_OK);
+    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), GROBO_OK);
     assert_int_equal(grobo_motion_clip(motion, NULL, &clip), GROBO_OK);
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), GROBO_OK);
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), GROBO_OK);
     stream = tmpfile();
     assert_non_null(stream);
     track = (grobo_spline_track){keys, 0, 4};
@@ -142,8 +143,8 @@ static void board_refuses_null(void **state)
     REFUSES(grobo_board_peek(NULL, 1, &board_frame));
     REFUSES(grobo_board_peek(bytes, 1, NULL));
     grobo_board_parser_init(NULL, 0);
-    assert_int_equal(grobo_board_parser_feed(NULL, 1000, bytes, 1), 0);
-    assert_int_equal(grobo_board_parser_feed(&board_parser, 1000, NULL, 1), 0);
+    assert_int_equal(grobo_board_parser_feed(NULL, bytes, 1, 1000), 0);
+    assert_int_equal(grobo_board_parser_feed(&board_parser, NULL, 1, 1000), 0);
     REFUSES(grobo_board_parser_next(NULL, 1000, &board_frame));
     REFUSES(grobo_board_parser_next(&board_parser, 1000, NULL));
     assert_true(grobo_board_parser_deadline(NULL) == GROBO_NEVER_US);
@@ -181,9 +182,9 @@ static void body_refuses_null(void **state)
     REFUSES(grobo_body_leg_exact(&grobo_gr001_body, 0, transforms, NULL));
     REFUSES(grobo_body_workspace_bytes(NULL, sizes));
     REFUSES(grobo_body_workspace_bytes(&setup, NULL));
-    REFUSES(grobo_body_init(NULL, &setup, bytes, sizeof bytes));
-    REFUSES(grobo_body_init(&made_body, NULL, bytes, sizeof bytes));
-    REFUSES(grobo_body_init(&made_body, &setup, NULL, sizeof bytes));
+    REFUSES(grobo_body_init(&setup, bytes, sizeof bytes, NULL));
+    REFUSES(grobo_body_init(NULL, bytes, sizeof bytes, &made_body));
+    REFUSES(grobo_body_init(&setup, NULL, sizeof bytes, &made_body));
     REFUSES(grobo_body_frame_count(NULL));
     assert_int_equal(grobo_body_joints(NULL), 0);
     REFUSES(grobo_body_frame(NULL, 0, reals, &report));
@@ -198,10 +199,10 @@ static void body_motion_refuses_null(void **state)
 {
     (void)state;
     assert_false(grobo_body_wanted(&grobo_gr001_body, NULL));
-    REFUSES(grobo_body_new(NULL, &grobo_gr001_body, motion, &body_options, grobo_mem_default()));
-    REFUSES(grobo_body_new(&made_body, NULL, motion, &body_options, grobo_mem_default()));
+    REFUSES(grobo_body_new(&grobo_gr001_body, motion, &body_options, grobo_mem_default(), NULL));
+    REFUSES(grobo_body_new(NULL, motion, &body_options, grobo_mem_default(), &made_body));
     REFUSES(
-        grobo_body_new(&made_body, &grobo_gr001_body, NULL, &body_options, grobo_mem_default()));
+        grobo_body_new(&grobo_gr001_body, NULL, &body_options, grobo_mem_default(), &made_body));
     grobo_body_free(NULL);
     grobo_body_clip(NULL, true, &clip);
     grobo_body_clip(body, true, NULL);
@@ -328,7 +329,7 @@ static void model_refuses_null(void **state)
 static void motion_refuses_null_in_its_first_functions(void **state)
 {
     (void)state;
-    REFUSES(grobo_motion_new(NULL, 0, 20, grobo_mem_default()));
+    REFUSES(grobo_motion_new(0, 20, grobo_mem_default(), NULL));
     grobo_motion_free(NULL);
     REFUSES(grobo_motion_dup(NULL, &made_motion));
     REFUSES(grobo_motion_dup(motion, NULL));
@@ -391,6 +392,7 @@ static void motion_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_motion_get_kept(NULL, 1, 0, &kept));
     REFUSES(grobo_motion_get_kept(motion, 1, 0, NULL));
     REFUSES(grobo_motion_keep(NULL, 1, &kept));
+    REFUSES(grobo_motion_keep(NULL, GROBO_MOTION_TOP, &kept));
     REFUSES(grobo_motion_keep(motion, 1, NULL));
     assert_int_equal(grobo_motion_line(NULL, 1), 0);
 }
@@ -433,7 +435,7 @@ static void motion_refuses_null_in_its_third_functions(void **state)
 static void motion_io_refuses_null_in_its_first_functions(void **state)
 {
     (void)state;
-    REFUSES(grobo_diagnostics_new(NULL, grobo_mem_default()));
+    REFUSES(grobo_diagnostics_new(grobo_mem_default(), NULL));
     grobo_diagnostics_free(NULL);
     grobo_diagnostics_clear(NULL);
     assert_int_equal(grobo_diagnostics_total(NULL, 0), 0);

@@ -328,9 +328,9 @@ static void what_is_broken_is_told(void **state)
     (void)state;
     static image i;
     i = (image){.used = 0};
-    assert_int_equal(problem_of(&i, "no pcapng"), GROBO_ERR_TYPE);
+    assert_int_equal(problem_of(&i, "not a pcapng"), GROBO_ERR_TYPE);
     i = (image){.bytes = "53 0C FA AF 03 00", .used = 17};
-    assert_int_equal(problem_of(&i, "no pcapng"), GROBO_ERR_TYPE);
+    assert_int_equal(problem_of(&i, "not a pcapng"), GROBO_ERR_TYPE);
     i = (image){0};
     add_section(&i, false);
     add_packet(&i, 0, 0);

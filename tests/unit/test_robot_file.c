@@ -45,7 +45,7 @@ static int read_def(const char *text, const grobo_mem *mem, grobo_robot_def **de
 static int set_up(void **state)
 {
     (void)state;
-    return grobo_diagnostics_new(&list, NULL);
+    return grobo_diagnostics_new(NULL, &list);
 }
 
 static int tear_down(void **state)
@@ -182,6 +182,7 @@ static void what_is_not_said_is_the_familys(void **state)
 /* Behind a head of three lines, with a joint of its own on the fourth. */
 #define HEAD "name: a\nfamily: feetech\njoints:\n"
 #define JOINT "  - {name: x, id: 1, servo: STS3215, limits_deg: [-9, 9]}\n"
+#define LIMP(servo) "joints:\n  - {name: x, id: 1, servo: " servo ", limits_deg: [-9, 9]}\n"
 #define WITH(more) HEAD "  - {name: x, id: 1, servo: STS3215, limits_deg: [-9, 9], " more "}\n"
 
 typedef struct mistake {
@@ -246,6 +247,9 @@ static const mistake mistakes[] = {
     {"name: a\nfamily: lx16a\njoints:\n  - {name: x, id: 1, servo: LX-16A, limits_deg: [-9, 9], "
      "torque_limit_pct: 40}\n",
      4, 76, "x: its servo has no limit of torque", 0},
+    {"name: a\nfamily: lx16a\ncalibrated: true\n" LIMP("LX-16A"), 3, 13, "lx16a keep no calib", 0},
+    {"name: a\nfamily: ics\ncalibrated: true\n" LIMP("KRS-3301"), 3, 13, "ics keep no calib", 0},
+    {"name: a\nfamily: rs30x\ncalibrated: true\n" LIMP("RS304MD"), 3, 13, "rs30x keep no calib", 0},
     {WITH("torque_limit_pct: 0"), 4, 77, "from 1 to 100", 0},
     {WITH("init_deg: 10"), 4, 69, "x: its initial angle is outside its limits", 0},
     {WITH("rest_deg: -10"), 4, 69, "x: its resting angle is outside its limits", 0},

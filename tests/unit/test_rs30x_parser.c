@@ -294,6 +294,12 @@ static void a_reset_forgets_and_counts(void **state)
     assert_int_equal(grobo_rs30x_parser_pending(&parser), 0);
     push(&parser, b, n, &h);
     expect_heard(&h, b, n);
+    grobo_rs30x_packet packet; /* behind a packet that was handed out, too */
+    assert_int_equal(grobo_rs30x_parser_feed(&parser, b, n), n);
+    assert_int_equal(grobo_rs30x_parser_next(&parser, &packet), 1);
+    grobo_rs30x_parser_reset(&parser);
+    assert_int_equal(grobo_rs30x_parser_pending(&parser), 0);
+    assert_int_equal(parser.framer.stats.dropped_bytes, n - 1);
 }
 
 static void refused_vectors(const vector *v)

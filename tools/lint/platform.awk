@@ -19,6 +19,9 @@ FILENAME ~ /^(src|ports|tools)\// && FILENAME !~ /_linux\.c$/ && FILENAME !~ /wi
 (code ~ linux || code ~ headers || code ~ /__linux/) {
     complain("platform: only Linux has this; it belongs to a file called *_linux.c")
 }
+FILENAME ~ /^tools\/grctl\// && code ~ /(^|[^A-Za-z0-9_])(near|far)([^A-Za-z0-9_]|$)/ {
+    complain("platform: near and far are macros in the headers of Windows")
+}
 FILENAME ~ /^ports\// || FILENAME == "include/grobo/export.h" { next }
 
 code ~ /^ *# *(if|ifdef|ifndef|elif)([^a-z]|$)/ &&

@@ -265,7 +265,7 @@ int main(int argc, char **argv)
     grobo_diagnostics *list = NULL;
     grobo_diagnostic d;
     FILE *file = argc == 2 ? fopen(argv[1], "rb") : NULL;
-    if (!file || grobo_diagnostics_new(&list, NULL) < 0) {
+    if (!file || grobo_diagnostics_new(NULL, &list) < 0) {
         fprintf(stderr, "usage: robots FILE.yaml\n");
         return 2;
     }

@@ -183,11 +183,18 @@ int grobo_gr001_get_angles(const grobo_robot *robot, int64_t max_age_us, double 
 }
 
 /* Values of one field in motor order. */
-static int values(const grobo_robot *robot, grobo_field field, int64_t max_age_us, int32_t *value)
+static int values(const grobo_robot *robot, grobo_field field, int64_t max_age_us, int32_t *value,
+                  size_t capacity)
 {
     uint8_t joints[GROBO_JOINTS_MAX];
-    int n = grobo_i_gr001_order(model_of(robot), joints);
     int known = 0;
+    if (robot == NULL || value == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    int n = grobo_i_gr001_order(model_of(robot), joints);
+    if (capacity < (size_t)n) {
+        return GROBO_ERR_SPACE;
+    }
     for (int i = 0; i < n; i++) {
         grobo_joint_info info;
         (void)grobo_robot_joint(robot, joints[i], &info);
@@ -204,35 +211,22 @@ static int values(const grobo_robot *robot, grobo_field field, int64_t max_age_u
 int grobo_gr001_voltages(const grobo_robot *robot, int64_t max_age_us, int32_t *voltage_mv,
                          size_t capacity)
 {
-    if (robot == NULL || voltage_mv == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    return capacity < model_of(robot)->n_joints
-               ? GROBO_ERR_SPACE
-               : values(robot, GROBO_FIELD_VOLTAGE, max_age_us, voltage_mv);
+    return values(robot, GROBO_FIELD_VOLTAGE, max_age_us, voltage_mv, capacity);
 }
 
 int grobo_gr001_currents(const grobo_robot *robot, int64_t max_age_us, int32_t *current_ma,
                          size_t capacity)
 {
-    if (robot == NULL || current_ma == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    return capacity < model_of(robot)->n_joints
-               ? GROBO_ERR_SPACE
-               : values(robot, GROBO_FIELD_CURRENT, max_age_us, current_ma);
+    return values(robot, GROBO_FIELD_CURRENT, max_age_us, current_ma, capacity);
 }
 
 int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t max_age_us)
 {
-    if (robot == NULL) {
-        return GROBO_ERR_ARG;
-    }
     int32_t voltage_mv[GROBO_JOINTS_MAX];
-    int n = values(robot, GROBO_FIELD_VOLTAGE, max_age_us, voltage_mv);
+    int n = values(robot, GROBO_FIELD_VOLTAGE, max_age_us, voltage_mv, GROBO_JOINTS_MAX);
     double sum_mv = 0;
-    if (n == 0) {
-        return GROBO_ERR_STALE;
+    if (n <= 0) {
+        return n < 0 ? n : GROBO_ERR_STALE;
     }
     for (int i = 0; i < model_of(robot)->n_joints; i++) {
         sum_mv += voltage_mv[i] < 0 ? 0 : voltage_mv[i];

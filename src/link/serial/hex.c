@@ -3,7 +3,7 @@
 
 static const char digits[] = "0123456789ABCDEF";
 
-int grobo_hex(char *text, size_t text_bytes, const void *bytes, size_t size)
+int grobo_hex(const void *bytes, size_t size, char *text, size_t text_bytes)
 {
     if (text == NULL || (bytes == NULL && size > 0)) {
         return GROBO_ERR_ARG;
@@ -25,7 +25,7 @@ int grobo_hex(char *text, size_t text_bytes, const void *bytes, size_t size)
     return (int)(to - text);
 }
 
-int grobo_hex_print(FILE *stream, const void *bytes, size_t size)
+int grobo_hex_print(const void *bytes, size_t size, FILE *stream)
 {
     if (stream == NULL || (bytes == NULL && size > 0)) {
         return GROBO_ERR_ARG;

@@ -77,7 +77,7 @@ static void note_bytes(grobo_serial *serial, grobo_direction direction, const vo
         break;
     }
     if (serial->config.on_tap != NULL) {
-        serial->config.on_tap(direction, grobo_now_us(), bytes, size, serial->config.ctx);
+        serial->config.on_tap(serial->config.ctx, direction, grobo_now_us(), bytes, size);
     }
 }
 

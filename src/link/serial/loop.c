@@ -73,7 +73,7 @@ static void on_time(evutil_socket_t fd, short what, void *arg)
         return;
     }
     timer->deadline_us = timer->armed_us = GROBO_NEVER_US;
-    timer->fn(timer, late_us, timer->ctx);
+    timer->fn(timer->ctx, timer, late_us);
 }
 
 int grobo_timer_new(struct event_base *base, grobo_timer_fn fn, void *ctx, const grobo_mem *mem,

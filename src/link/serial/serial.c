@@ -41,7 +41,7 @@ static bool tell_one(grobo_serial *serial, grobo_serial_event event, int error)
         return true;
     }
     serial->pins++;
-    serial->config.on_event(serial, event, error, serial->config.ctx);
+    serial->config.on_event(serial->config.ctx, serial, event, error);
     return unpin(serial);
 }
 
@@ -88,7 +88,7 @@ static void on_readable(evutil_socket_t fd, short what, void *arg)
     (void)what;
     if (got > 0) {
         serial->pins++;
-        serial->config.on_data(serial, buf, (size_t)got, serial->config.ctx);
+        serial->config.on_data(serial->config.ctx, serial, buf, (size_t)got);
         (void)unpin(serial);
     }
 }

@@ -67,7 +67,7 @@ static void tap(const grobo_sim_server *server, grobo_direction direction, int64
                 const uint8_t *bytes, size_t size)
 {
     if (server->config.on_tap != NULL) {
-        server->config.on_tap(direction, now_us, bytes, size, server->config.ctx);
+        server->config.on_tap(server->config.ctx, direction, now_us, bytes, size);
     }
 }
 
@@ -281,7 +281,14 @@ static int open_pty(grobo_sim_server *server, grobo_os_cause *cause)
     if (r >= 0) {
         r = end_begin(e);
     }
-    return r < 0 ? r : grobo_port_pty_path(e->port, server->device, sizeof server->device);
+    if (r >= 0) {
+        r = grobo_port_pty_path(e->port, server->device, sizeof server->device);
+    }
+    if (r >= 0 && server->link[0] != '\0') {
+        /* The number may have been another terminal's: this robot is stopped by its link. */
+        (void)grobo_estop_clear(server->device, NULL);
+    }
+    return r;
 }
 
 static void on_caller(evutil_socket_t fd, short what, void *arg)
@@ -425,7 +432,7 @@ void grobo_sim_server_pump(grobo_sim_server *server)
     (void)grobo_timer_set(server->timer, next_look_us(server));
 }
 
-static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     grobo_sim_server *server = ctx;
 

@@ -41,12 +41,12 @@ void grobo_i_session_leave_callback(grobo_session *session, grobo_callback callb
 
 void grobo_i_session_report_slow(grobo_session *session)
 {
-    const grobo_event event = {
-        .kind = GROBO_EVENT_SLOW_CALLBACK, .now_us = grobo_now_us(), .u.slow = session->slow};
-
     if (session->slow.count == 0) {
         return;
     }
+    const grobo_event event = {
+        .kind = GROBO_EVENT_SLOW_CALLBACK, .now_us = grobo_now_us(), .u.slow = session->slow};
+
     session->slow = (grobo_event_slow){.count = 0};
     if (session->config.on_robot != NULL) {
         /* Not measured: a report of a report would have no end. */
@@ -59,7 +59,7 @@ void grobo_i_session_say(grobo_session *session, grobo_session_event event, int 
     if (session->config.on_event != NULL && !session->closing) {
         int64_t since_us = grobo_i_session_enter_callback(session);
 
-        session->config.on_event(session, event, error, session->config.ctx);
+        session->config.on_event(session->config.ctx, session, event, error);
         grobo_i_session_leave_callback(session, GROBO_CALLBACK_EVENT, since_us);
     }
 }
@@ -74,15 +74,15 @@ void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event
     }
 }
 
-void grobo_i_session_tell_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                              size_t size, void *ctx)
+void grobo_i_session_tell_tap(void *ctx, grobo_direction direction, int64_t now_us,
+                              const uint8_t *bytes, size_t size)
 {
     grobo_session *session = ctx;
 
     if (session->config.on_tap != NULL) {
         int64_t since_us = grobo_i_session_enter_callback(session);
 
-        session->config.on_tap(direction, now_us, bytes, size, session->config.ctx);
+        session->config.on_tap(session->config.ctx, direction, now_us, bytes, size);
         grobo_i_session_leave_callback(session, GROBO_CALLBACK_TAP, since_us);
     }
 }

@@ -127,7 +127,7 @@ static int sim_take(grobo_session *session, int64_t *until_us)
         got = grobo_sim_tx(session->sim, buf, sizeof buf, now_us);
         if (got > 0) {
             session->sim_rx_bytes += got;
-            grobo_i_session_tell_tap(GROBO_DIR_RX, now_us, buf, got, session);
+            grobo_i_session_tell_tap(session, GROBO_DIR_RX, now_us, buf, got);
             grobo_robot_rx(&session->robot, buf, got, now_us);
         }
     } while (got == sizeof buf);
@@ -142,7 +142,7 @@ static void sim_give(grobo_session *session, const uint8_t *frame, size_t size)
 
     session->sim_tx_bytes += taken;
     if (taken > 0) {
-        grobo_i_session_tell_tap(GROBO_DIR_TX, now_us, frame, taken, session);
+        grobo_i_session_tell_tap(session, GROBO_DIR_TX, now_us, frame, taken);
     }
     GROBO_ASSERT(taken <= size && size - taken <= sizeof session->simulated->backlog);
     session->backlog_bytes = size - taken;

@@ -22,7 +22,7 @@ int grobo_i_session_step(grobo_session *session)
     return r;
 }
 
-void grobo_i_session_on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx)
+void grobo_i_session_on_data(void *ctx, grobo_serial *serial, const uint8_t *bytes, size_t size)
 {
     grobo_session *session = ctx;
 

@@ -14,13 +14,8 @@
 /* Until a robot has answered, nothing is sent to whoever is there but the check. */
 static void configure(grobo_session *session, bool up)
 {
-    grobo_robot_config config = session->robot_config;
-
-    if (!up) {
-        config.sense_interval_us = GROBO_SENSE_NEVER;
-    }
-    /* Cannot fail: the configuration was good at grobo_session_new(). */
-    (void)grobo_i_robot_configure(&session->robot, &config);
+    /* Cannot fail: the configuration was taken before. */
+    (void)grobo_i_robot_configure(&session->robot, &session->robot_config, up);
 }
 
 /* Takes the line away from the engine, which tells what that ends. */
@@ -299,6 +294,11 @@ static void on_request(void *ctx)
     }
 }
 
+static bool on_stopped(void *ctx)
+{
+    return grobo_session_is_latched(ctx);
+}
+
 /* One that was set since the last look is obeyed, not cleared. */
 static int on_reset(void *ctx)
 {
@@ -329,6 +329,7 @@ static void set_host(grobo_session *session)
     const grobo_robot_host host = {
         .clock = on_clock,
         .wake = on_request,
+        .is_stopped = on_stopped,
         .may_reset = on_reset,
         .lock = shared ? on_lock : NULL,
         .unlock = shared ? on_unlock : NULL,
@@ -376,7 +377,7 @@ static void on_leave(grobo_session *session)
     }
 }
 
-static void on_serial(grobo_serial *serial, grobo_serial_event event, int error, void *ctx)
+static void on_serial(void *ctx, grobo_serial *serial, grobo_serial_event event, int error)
 {
     grobo_session *session = ctx;
 
@@ -429,7 +430,7 @@ static void try_again(grobo_session *session)
     }
 }
 
-static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     grobo_session *session = ctx;
 
@@ -641,7 +642,7 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
     if (session == NULL) {
         return GROBO_ERR_ARG;
     }
-    int r = grobo_i_robot_configure(&session->robot, config);
+    int r = grobo_i_robot_configure(&session->robot, config, session->state == GROBO_SESSION_UP);
 
     if (r >= 0) {
         grobo_bus_config bus = session->robot_config.bus;
@@ -649,7 +650,6 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
         /* Cannot fail: the engine has taken it. */
         (void)grobo_i_sized_take(&session->robot_config, sizeof session->robot_config, config);
         session->robot_config.bus = bus;
-        configure(session, session->state == GROBO_SESSION_UP);
         pump(session);
     }
     return r;

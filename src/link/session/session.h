@@ -127,8 +127,8 @@ void grobo_i_session_report_slow(grobo_session *session);
 /* The user's callbacks, where there are any. No event of the line while the session is closed. */
 void grobo_i_session_say(grobo_session *session, grobo_session_event event, int error);
 void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event);
-void grobo_i_session_tell_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                              size_t size, void *ctx);
+void grobo_i_session_tell_tap(void *ctx, grobo_direction direction, int64_t now_us,
+                              const uint8_t *bytes, size_t size);
 
 /* ---- stop.c ---- */
 
@@ -225,7 +225,7 @@ void grobo_i_session_send(grobo_session *session);
 int grobo_i_session_step(grobo_session *session);
 
 /* Callback of the serial port. */
-void grobo_i_session_on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx);
+void grobo_i_session_on_data(void *ctx, grobo_serial *serial, const uint8_t *bytes, size_t size);
 
 /* ---- session.c ---- */
 

@@ -70,7 +70,7 @@ static void settle(grobo_control *control, control_slot *slot, int result)
 static int call_user(grobo_control *control, grobo_control_fn fn, void *arg)
 {
     int64_t since_us = grobo_i_session_enter_callback(control->session);
-    int r = fn(control, arg);
+    int r = fn(arg, control);
 
     grobo_i_session_leave_callback(control->session, GROBO_CALLBACK_CALL, since_us);
     return r;
@@ -96,7 +96,7 @@ static void serve(grobo_control *control)
         slot->state = CALL_RUNNING;
         grobo_mutex_unlock(&control->lock);
         grobo_i_session_attend(control->session);
-        result = users ? call_user(control, fn, arg) : fn(control, arg);
+        result = users ? call_user(control, fn, arg) : fn(arg, control);
         grobo_mutex_lock(&control->lock);
         settle(control, slot, result);
     }
@@ -236,7 +236,7 @@ static int call(grobo_control *control, const call_wish *wish)
         return call_and_wait(control, wish);
     }
     grobo_i_session_attend(control->session);
-    return wish->fn(control, wish->arg);
+    return wish->fn(wish->arg, control);
 }
 
 int grobo_i_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
@@ -269,7 +269,7 @@ static int result_of(grobo_control *control, int number)
 
 /* Makes the request, again in each round while the engine refuses it beside what runs; then looks
  * how the job has ended. */
-static int poll_job(grobo_control *control, void *arg)
+static int poll_job(void *arg, grobo_control *control)
 {
     control_job *job = arg;
 

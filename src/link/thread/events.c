@@ -16,8 +16,8 @@ void grobo_i_control_down(grobo_control *control, int error)
     grobo_i_control_unlock(control);
 }
 
-void grobo_i_control_on_event(grobo_session *session, grobo_session_event event, int error,
-                              void *ctx)
+void grobo_i_control_on_event(void *ctx, grobo_session *session, grobo_session_event event,
+                              int error)
 {
     grobo_control *control = ctx;
 
@@ -38,7 +38,7 @@ void grobo_i_control_on_event(grobo_session *session, grobo_session_event event,
     const grobo_control_event kept = {.of_line = true, .line = event, .error = error};
     grobo_i_control_keep(control, &kept);
     if (control->user.on_event != NULL) {
-        control->user.on_event(session, event, error, control->user.ctx);
+        control->user.on_event(control->user.ctx, session, event, error);
     }
 }
 
@@ -84,8 +84,8 @@ void grobo_i_control_on_robot(void *ctx, const grobo_event *event)
 /* ---- the bytes ---------------------------------------------------------------------------- */
 
 /* What comes between a raw command's leaving and its job's end is its reply. */
-void grobo_i_control_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                            size_t size, void *ctx)
+void grobo_i_control_on_tap(void *ctx, grobo_direction direction, int64_t now_us,
+                            const uint8_t *bytes, size_t size)
 {
     grobo_control *control = ctx;
 
@@ -101,6 +101,6 @@ void grobo_i_control_on_tap(grobo_direction direction, int64_t now_us, const uin
         control->received_bytes += taken;
     }
     if (control->user.on_tap != NULL) {
-        control->user.on_tap(direction, now_us, bytes, size, control->user.ctx);
+        control->user.on_tap(control->user.ctx, direction, now_us, bytes, size);
     }
 }

@@ -22,7 +22,7 @@ grobo_serial *grobo_control_serial(grobo_control *control)
 
 /* ---- the line ----------------------------------------------------------------------------- */
 
-static int set_device(grobo_control *control, void *arg)
+static int set_device(void *arg, grobo_control *control)
 {
     return grobo_session_set_device(control->session, arg);
 }
@@ -41,7 +41,7 @@ int grobo_control_set_device(grobo_control *control, const char *device)
     return grobo_i_control_call(control, set_device, name);
 }
 
-static int get_device(grobo_control *control, void *arg)
+static int get_device(void *arg, grobo_control *control)
 {
     const char *device = grobo_session_device(control->session);
 
@@ -67,7 +67,7 @@ int grobo_control_get_device(grobo_control *control, char *device, size_t device
     return r;
 }
 
-static int open_port(grobo_control *control, void *arg)
+static int open_port(void *arg, grobo_control *control)
 {
     (void)arg;
     return grobo_session_open(control->session);
@@ -110,7 +110,7 @@ int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *look
     return r;
 }
 
-static int close_port(grobo_control *control, void *arg)
+static int close_port(void *arg, grobo_control *control)
 {
     (void)arg;
     grobo_session_close(control->session);
@@ -135,7 +135,7 @@ int grobo_control_close_port(grobo_control *control, int64_t timeout_us)
     return closed < 0 ? closed : left;
 }
 
-static int connect_port(grobo_control *control, void *arg)
+static int connect_port(void *arg, grobo_control *control)
 {
     bool *opened = arg;
 
@@ -175,7 +175,7 @@ bool grobo_control_is_connected(grobo_control *control)
     RETURN_LOCKED(control, bool, control->up);
 }
 
-static int get_cause(grobo_control *control, void *arg)
+static int get_cause(void *arg, grobo_control *control)
 {
     grobo_os_cause *cause = arg;
 
@@ -404,7 +404,7 @@ typedef struct receive_call {
     int64_t end_us;
 } receive_call;
 
-static int receive(grobo_control *control, void *arg)
+static int receive(void *arg, grobo_control *control)
 {
     receive_call *call = arg;
     bool over = grobo_now_us() >= call->end_us;
@@ -458,7 +458,7 @@ bool grobo_control_is_latched(const grobo_control *control)
 }
 
 /* Not where an emergency stop came after the call. */
-static int reset(grobo_control *control, void *arg)
+static int reset(void *arg, grobo_control *control)
 {
     const unsigned *estops = arg;
 

@@ -213,7 +213,7 @@ int grobo_control_is_moving(grobo_control *control)
     return asked || grobo_robot_moving(control_robot(control));
 }
 
-static int await_rest(grobo_control *control, void *arg)
+static int await_rest(void *arg, grobo_control *control)
 {
     (void)arg;
     if (grobo_control_is_moving(control) || grobo_robot_settling(control_robot(control)) ||

@@ -53,7 +53,7 @@ int grobo_control_get_motion_dir(grobo_control *control, char *dir, size_t dir_b
 }
 
 /* Gives the engine a configuration, and keeps it when it was taken. */
-static int configure(grobo_control *control, void *arg)
+static int configure(void *arg, grobo_control *control)
 {
     const grobo_robot_config *change = arg;
     grobo_robot_config config;

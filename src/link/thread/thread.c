@@ -39,7 +39,7 @@ static void look_for_owner(grobo_control *control, int64_t now_us)
     }
 }
 
-static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
+static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     grobo_control *control = ctx;
     int64_t now_us = grobo_now_us();
@@ -58,7 +58,7 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
     if (control->on_svc != NULL) {
         int64_t since_us = grobo_i_session_enter_callback(control->session);
 
-        (void)control->on_svc(control, control->user.ctx);
+        (void)control->on_svc(control->user.ctx, control);
         grobo_i_session_leave_callback(control->session, GROBO_CALLBACK_SVC, since_us);
     }
 }
@@ -324,8 +324,8 @@ static int make_parts(grobo_control *control, const grobo_control_config *config
     }
     if (r >= 0) {
         set_postures(control);
-        r = grobo_motion_new(&control->motion, GROBO_MOTION_POSTURES,
-                             control->driver->model->n_joints, control->mem);
+        r = grobo_motion_new(GROBO_MOTION_POSTURES, control->driver->model->n_joints, control->mem,
+                             &control->motion);
     }
     return r;
 }
@@ -449,7 +449,7 @@ int grobo_control_free(grobo_control *control)
 
 int grobo_control_set_period_us(grobo_control *control, int64_t period_us)
 {
-    if (!is_period(period_us)) {
+    if (control == NULL || !is_period(period_us)) {
         return GROBO_ERR_ARG;
     }
     grobo_i_control_lock(control);

@@ -205,11 +205,11 @@ void grobo_i_control_keep(grobo_control *control, const grobo_control_event *eve
 /* ---- events.c ---- */
 
 /* The session's callbacks; their ctx is the control. */
-void grobo_i_control_on_event(grobo_session *session, grobo_session_event event, int error,
-                              void *ctx);
+void grobo_i_control_on_event(void *ctx, grobo_session *session, grobo_session_event event,
+                              int error);
 void grobo_i_control_on_robot(void *ctx, const grobo_event *event);
-void grobo_i_control_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                            size_t size, void *ctx);
+void grobo_i_control_on_tap(void *ctx, grobo_direction direction, int64_t now_us,
+                            const uint8_t *bytes, size_t size);
 
 /* On the loop: the line is down. */
 void grobo_i_control_down(grobo_control *control, int error);

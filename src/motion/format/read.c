@@ -73,7 +73,7 @@ int grobo_motion_read(const grobo_source *source, const grobo_read_options *opti
     }
     reader.file = reader.options.name != NULL ? reader.options.name : "";
     reader.mem = reader.options.mem != NULL ? reader.options.mem : grobo_mem_default();
-    int result = grobo_motion_new(&reader.motion, GROBO_MOTION_KEYS, 0, reader.mem);
+    int result = grobo_motion_new(GROBO_MOTION_KEYS, 0, reader.mem, &reader.motion);
     if (result < 0) {
         return result;
     }

@@ -226,7 +226,7 @@ int grobo_motion_resample(const grobo_clip *clip, double rate_hz, const grobo_me
     if (clip->sample == NULL) {
         return GROBO_ERR_UNSUPPORTED;
     }
-    int result = grobo_motion_new(&made, GROBO_MOTION_FRAMES, clip->n_joints, mem);
+    int result = grobo_motion_new(GROBO_MOTION_FRAMES, clip->n_joints, mem, &made);
     if (result < 0) {
         return result;
     }

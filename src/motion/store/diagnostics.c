@@ -27,7 +27,7 @@ struct grobo_diagnostics {
     int n_files;
 };
 
-int grobo_diagnostics_new(grobo_diagnostics **list, const grobo_mem *mem)
+int grobo_diagnostics_new(const grobo_mem *mem, grobo_diagnostics **list)
 {
     if (list == NULL) {
         return GROBO_ERR_ARG;

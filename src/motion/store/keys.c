@@ -227,7 +227,7 @@ int grobo_motion_get_kept(const grobo_motion *motion, size_t n, size_t i, grobo_
 
 int grobo_motion_keep(grobo_motion *motion, size_t n, const grobo_kept *kept)
 {
-    if (kept == NULL) {
+    if (motion == NULL || kept == NULL) {
         return GROBO_ERR_ARG;
     }
     bool top = n == GROBO_MOTION_TOP;

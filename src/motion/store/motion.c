@@ -9,8 +9,8 @@
 
 /* ---- making and freeing ------------------------------------------------------------------- */
 
-int grobo_motion_new(grobo_motion **motion, grobo_motion_kind kind, int n_joints,
-                     const grobo_mem *mem)
+int grobo_motion_new(grobo_motion_kind kind, int n_joints, const grobo_mem *mem,
+                     grobo_motion **motion)
 {
     if (motion == NULL || kind < GROBO_MOTION_POSTURES || kind > GROBO_MOTION_FRAMES ||
         n_joints < 0) {
@@ -46,7 +46,7 @@ void grobo_motion_free(grobo_motion *motion)
 int grobo_i_new_like(const grobo_motion *like, grobo_motion **motion)
 {
     grobo_motion *made;
-    int result = grobo_motion_new(&made, like->kind, like->n_joints, like->mem);
+    int result = grobo_motion_new(like->kind, like->n_joints, like->mem, &made);
 
     if (result < 0) {
         return result;

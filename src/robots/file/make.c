@@ -139,17 +139,17 @@ static void find_servo(const maker *m, int j, grobo_joint *joint)
 {
     const grobo_i_joint_draft *draft = &m->draft->joint[j];
     grobo_i_nearest nearest = {NULL, 0};
-    grobo_i_servo servo;
-    for (size_t i = 0; grobo_i_family_row(m->file->def.family, i, &servo); i++) {
-        if (strcmp(servo.name, draft->servo) == 0) {
-            joint->servo_model = servo.model;
+    const grobo_servo_model *servo;
+    for (size_t i = 0; (servo = grobo_i_family_row(m->file->def.family, i)) != NULL; i++) {
+        if (strcmp(servo->name, draft->servo) == 0) {
+            joint->servo_model = servo->number;
             double own_deg_s =
-                OF_ITS_SPEED * servo.speed_deg_s / (joint->gear > 0 ? joint->gear : 1);
+                OF_ITS_SPEED * servo->speed_dps / (joint->gear > 0 ? joint->gear : 1);
             joint->max_speed_rad_s =
                 grobo_rad_from_deg(joint_has(m, j, "speed_deg_s") ? draft->speed_deg_s : own_deg_s);
             return;
         }
-        grobo_i_nearest_try(&nearest, draft->servo, servo.name);
+        grobo_i_nearest_try(&nearest, draft->servo, servo->name);
     }
     char what[96];
     snprintf(what, sizeof what, "servo of family %s called", m->file->def.family->name);
@@ -264,29 +264,36 @@ static void check_mirrors(const maker *m)
 static void check_servos(maker *m)
 {
     const grobo_robot_def *def = &m->file->def;
+    int (*init)(grobo_driver *, const grobo_model *) = def->family->init[def->wiring];
+    if (init == NULL) {
+        (void)complain(m, place_of(m, "wiring"), "wiring", "servos of family %s cannot be wired so",
+                       def->family->name);
+        return;
+    }
     for (int j = 0; j < m->draft->n_joints; j++) {
         grobo_joint joint = m->file->joints[j];
         joint.mirror = 0;
         const grobo_model one = {.name = m->file->model_name, .joints = &joint, .n_joints = 1};
-        int result = def->family->init(&m->driver, &one, def->wiring);
-        if (result == GROBO_ERR_UNSUPPORTED && def->wiring == GROBO_WIRING_BUS) {
+        int result = init(&m->driver, &one);
+        if (result == GROBO_ERR_UNSUPPORTED) {
             (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "servo", joint_place(m, j, "servo"),
                                    "%s: a %s does not tell where it stands", joint.name,
                                    m->draft->joint[j].servo);
             continue;
         }
+        bool calibrated = joint.calibrated;
+        joint.calibrated = false;
+        if (result == GROBO_ERR_ARG && calibrated && init(&m->driver, &one) == GROBO_OK) {
+            (void)complain(m, place_of(m, "calibrated"), "calibrated",
+                           "servos of family %s keep no calibration", def->family->name);
+            return;
+        }
         bool limited = joint.torque_limit_pct > 0;
         joint.torque_limit_pct = 0;
-        if (result == GROBO_ERR_ARG && limited &&
-            def->family->init(&m->driver, &one, def->wiring) == GROBO_OK) {
+        if (result == GROBO_ERR_ARG && limited && init(&m->driver, &one) == GROBO_OK) {
             (void)complain(m, joint_place(m, j, "torque_limit_pct"), "range",
                            "%s: its servo has no limit of torque", joint.name);
             continue;
-        }
-        if (result == GROBO_ERR_UNSUPPORTED) {
-            (void)complain(m, place_of(m, "wiring"), "wiring",
-                           "servos of family %s cannot be wired so", def->family->name);
-            return;
         }
         const grobo_protocol *protocol = m->driver.protocol;
         if (result == GROBO_OK &&

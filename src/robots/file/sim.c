@@ -4,8 +4,8 @@
 
 #include "src/robots/file/families.h"
 
-static const grobo_sim_family *const sim_families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
-                                                       &grobo_sim_lx16a, &grobo_sim_ics, NULL};
+static const grobo_sim_family *const sim_families[] = {
+    &grobo_sim_rs30x, &grobo_sim_dxl2, &grobo_sim_dxl1, &grobo_sim_lx16a, &grobo_sim_ics, NULL};
 
 int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring, grobo_robot_sim *sim)
 {
@@ -17,9 +17,6 @@ int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring, grobo_r
     sim->config.model = def->model;
     sim->config.wiring = wiring;
     sim->config.baud_bps = def->baud_bps;
-    if (def->family->tables == NULL) {
-        return GROBO_OK;
-    }
     for (int j = 0; j < def->model->n_joints; j++) {
         sim->servos[j] = grobo_i_family_servo(def->family, def->model->joints[j].servo_model);
     }

@@ -10,8 +10,6 @@
 enum { AX12 = 1, AX18 = 2, MX28 = 4, MX64 = 8, MX106 = 16 };
 enum { AX = AX12 | AX18, CURRENT = MX64 | MX106, MX = MX28 | CURRENT, ALL = AX | MX };
 
-enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
-
 static const grobo_servo_register rows[] = {
     ROW("model", 0, 2, 0, E, MODEL, "", 0, 65535, 0, ALL),
     ROW("firmware", 2, 1, 0, E, FIRMWARE, "", 0, 255, 0, ALL),
@@ -95,11 +93,8 @@ static const grobo_servo_rate rates[] = {
 
 const grobo_servo_table grobo_dxl1_table = {
     .name = "DYNAMIXEL AX, MX",
-    .registers = rows,
-    .models = models,
-    .rates = rates,
-    .register_count = sizeof rows / sizeof rows[0],
-    .model_count = sizeof models / sizeof models[0],
-    .rate_count = sizeof rates / sizeof rates[0],
+    LIST(registers, register_count, rows),
+    LIST(models, model_count, models),
+    LIST(rates, rate_count, rates),
     .keeps = GROBO_KEEPS_LIMP,
 };

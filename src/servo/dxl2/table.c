@@ -13,8 +13,6 @@ enum { XL330 = 1, XC330M = 2, XC330T = 4, LOAD = 8, LARGE = 16 };
 enum { XC330 = XC330M | XC330T, LOW = XL330 | XC330M, SMALL = XL330 | XC330 };
 enum { ALL = SMALL | LOAD | LARGE };
 
-enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
-
 static const grobo_servo_register rows[] = {
     ROW("model", 0, 2, 0, E, MODEL, "", 0, 65535, 0, ALL),
     ROW("firmware", 6, 1, 0, E, FIRMWARE, "", 0, 255, 0, ALL),
@@ -136,11 +134,8 @@ static const grobo_servo_rate rates[] = {
 
 const grobo_servo_table grobo_dxl2_table = {
     .name = "DYNAMIXEL X",
-    .registers = rows,
-    .models = models,
-    .rates = rates,
-    .register_count = sizeof rows / sizeof rows[0],
-    .model_count = sizeof models / sizeof models[0],
-    .rate_count = sizeof rates / sizeof rates[0],
+    LIST(registers, register_count, rows),
+    LIST(models, model_count, models),
+    LIST(rates, rate_count, rates),
     .keeps = GROBO_KEEPS_LIMP,
 };

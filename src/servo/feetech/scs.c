@@ -7,8 +7,6 @@
 /* Groups of models: there is one. */
 enum { ALL = 1 };
 
-enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
-
 static const grobo_servo_register rows[] = {
     ROW("firmware", 0, 1, 0, E, FIRMWARE, "", 0, 255, 0, ALL),
     ROW("firmware_minor", 1, 1, 0, E, NONE, "", 0, 255, 0, ALL),
@@ -63,12 +61,9 @@ static const grobo_servo_rate rates[] = {
 
 const grobo_servo_table grobo_scs_table = {
     .name = "Feetech SCS",
-    .registers = rows,
-    .models = models,
-    .rates = rates,
-    .register_count = sizeof rows / sizeof rows[0],
-    .model_count = sizeof models / sizeof models[0],
-    .rate_count = sizeof rates / sizeof rates[0],
+    LIST(registers, register_count, rows),
+    LIST(models, model_count, models),
+    LIST(rates, rate_count, rates),
     .keeps = GROBO_KEEPS_LOCK,
     .big_endian = true,
 };

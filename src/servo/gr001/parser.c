@@ -42,8 +42,8 @@ static void abandon_what_stands_still(grobo_board_parser *parser, int64_t now_us
     }
 }
 
-size_t grobo_board_parser_feed(grobo_board_parser *parser, int64_t now_us, const uint8_t *bytes,
-                               size_t n)
+size_t grobo_board_parser_feed(grobo_board_parser *parser, const uint8_t *bytes, size_t n,
+                               int64_t now_us)
 {
     if ((bytes == NULL && n > 0) || parser == NULL) {
         return 0;

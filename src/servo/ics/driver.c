@@ -11,7 +11,7 @@
 
 #include "src/base/bytes.h"
 #include "src/servo/ics/items.h"
-#include "src/servo/table/family.h"
+#include "src/servo/table/items.h"
 
 /* Speeds are 1 to 127, the last of them the servo's own: so they are taken for parts of it. The
  * manual does not say. */
@@ -31,21 +31,13 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
     return found & ~(int32_t)others;
 }
 
-static const grobo_i_family family = {
-    .tables = {&grobo_ics_table}, .wants = wants, .offset_trims = true, .time_max_ms = 65535};
-
 /* ---- frames ---------------------------------------------------------------------------------- */
 
 static int finish(const grobo_driver *self, const grobo_ics_packet *packet,
                   grobo_exchange *exchange)
 {
     int size = grobo_ics_build(packet, exchange->frame, sizeof exchange->frame);
-    if (size < 0) {
-        return size;
-    }
-    exchange->frame_bytes = (uint16_t)size;
-    int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
-    return reply < 0 ? reply : GROBO_OK;
+    return grobo_i_table_finish(self, size, exchange);
 }
 
 static int send_position(const grobo_driver *self, int joint, int32_t position,
@@ -57,9 +49,9 @@ static int send_position(const grobo_driver *self, int joint, int32_t position,
     return finish(self, &packet, exchange);
 }
 
-static int read_item(const grobo_driver *self, uint8_t id, uint8_t item, grobo_exchange *exchange)
+static int read(const grobo_driver *self, uint8_t id, uint16_t code, grobo_exchange *exchange)
 {
-    const grobo_ics_packet packet = {.command = GROBO_ICS_READ, .id = id, .item = item};
+    const grobo_ics_packet packet = {.command = GROBO_ICS_READ, .id = id, .item = (uint8_t)code};
     return finish(self, &packet, exchange);
 }
 
@@ -95,78 +87,25 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
 }
 
 /* The goal where it stands has switched it on already: to read the speed does nothing. */
-static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, grobo_torque mode,
-                  int part, grobo_exchange *exchange)
+static int torque(const grobo_driver *self, int joint, bool on, grobo_exchange *exchange)
 {
-    (void)ctx;
-    int j = grobo_i_table_joint_of_part(self, joints, part);
-    if (mode == GROBO_TORQUE_BRAKE || j < 0) {
-        return j < 0 ? 0 : GROBO_ERR_UNSUPPORTED;
-    }
-    int result = mode == GROBO_TORQUE_OFF
-                     ? send_position(self, j, GROBO_ICS_FREE, exchange)
-                     : read_item(self, self->model->joints[j].motor, GROBO_ICS_SPEED, exchange);
-    return result < 0 ? result : 1;
+    return on ? read(self, self->model->joints[joint].motor, GROBO_I_ICS_READ(SPEED), exchange)
+              : send_position(self, joint, GROBO_ICS_FREE, exchange);
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
-{
-    (void)ctx;
-    if (part >= self->model->n_joints) {
-        return 0;
-    }
-    int result = read_item(self, self->model->joints[part].motor, GROBO_ICS_SPEED, exchange);
-    return result < 0 ? result : 1;
-}
-
-/* What each kind reads, one item after the other; the setup before the angle. */
-static int read_part(const grobo_driver *self, int joint, grobo_sense_kind kind, int part,
-                     grobo_exchange *exchange)
-{
-    enum { END = 0xFF };
-    static const uint8_t all[] = {GROBO_ICS_EEPROM, GROBO_ICS_POSITION_ITEM, GROBO_ICS_CURRENT,
-                                  GROBO_ICS_TEMPERATURE, END};
-    static const uint8_t position[] = {GROBO_ICS_POSITION_ITEM, END};
-    static const uint8_t goal[] = {GROBO_ICS_EEPROM, GROBO_ICS_POSITION_ITEM, END};
-    static const uint8_t *const kinds[] = {[GROBO_SENSE_FULL] = all,
-                                           [GROBO_SENSE_POSITION] = position,
-                                           [GROBO_SENSE_GOAL] = goal,
-                                           [GROBO_SENSE_ALL] = all};
-    uint8_t item = kinds[kind][part]; /* a part comes after the one before it */
-    if (item == END) {
-        return 0;
-    }
-    int result = read_item(self, self->model->joints[joint].motor, item, exchange);
-    return result < 0 ? result : 1;
-}
-
-static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
-                 grobo_exchange *exchange)
-{
-    (void)ctx;
-    int result = read_part(self, joint, kind, 0, exchange);
-    return result < 0 ? result : GROBO_OK;
-}
-
-static int sense_more(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
-                      int part, grobo_exchange *exchange)
-{
-    (void)ctx;
-    return read_part(self, joint, kind, part, exchange);
-}
-
 /* Who it is, which way its positions go, how far, and whether it has torque. */
-static int take_eeprom(const grobo_joint *joint, const grobo_servo_model *servo,
-                       const uint8_t *data, grobo_joint_state *state)
+static int take_eeprom(const grobo_i_family *family, const grobo_joint *joint,
+                       const grobo_servo_model *servo, const uint8_t *data,
+                       grobo_joint_state *state)
 {
     const grobo_i_block block = {servo, 0, data, GROBO_I_ICS_EEPROM_BYTES};
     unsigned flags = data[GROBO_I_ICS_AT_FLAGS];
     if (data[0] != GROBO_I_ICS_FIXED || data[GROBO_I_ICS_AT_ID] != joint->motor) {
         return GROBO_ERR_MISMATCH;
     }
-    int result = grobo_i_table_setup(&family, joint, &block, state);
+    int result = grobo_i_table_setup(family, joint, &block, state);
     state->torque = (flags & GROBO_I_ICS_FREE) != 0 ? GROBO_TORQUE_OFF : GROBO_TORQUE_ON;
     state->valid |= GROBO_FIELD_TORQUE;
     return result;
@@ -208,40 +147,37 @@ static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_pac
         take_goal(moved, servo, reply->address - (unsigned)GROBO_I_ICS_AT_GOAL, state);
         return take_position(moved, servo, data, state);
     }
-    const grobo_i_ics_item *item = grobo_i_ics_item_at(reply->address, (unsigned)reply->data_bytes);
+    const grobo_i_item *item =
+        grobo_i_item_at(grobo_i_ics_items, reply->address, (unsigned)reply->data_bytes);
     if (item == NULL) {
         return GROBO_ERR_MISMATCH;
     }
-    switch ((grobo_ics_item)item->item) {
-    case GROBO_ICS_EEPROM:
-        return take_eeprom(moved, servo, data, state);
-    case GROBO_ICS_POSITION_ITEM:
+    switch (item->read) {
+    case GROBO_I_ICS_READ(EEPROM):
+        return take_eeprom(self->family, moved, servo, data, state);
+    case GROBO_I_ICS_READ(POSITION_ITEM):
         return take_position(moved, servo, data, state);
-    case GROBO_ICS_CURRENT:
+    case GROBO_I_ICS_READ(CURRENT):
         state->current_ma = (data[0] & CURRENT_BITS) * MA_OF_COUNT;
-        state->valid = item->read ? GROBO_FIELD_CURRENT : 0;
+        state->valid = GROBO_FIELD_CURRENT;
         return GROBO_OK;
-    case GROBO_ICS_TEMPERATURE:
+    case GROBO_I_ICS_READ(TEMPERATURE):
         state->temperature_c = (int16_t)lround(grobo_i_ics_celsius(data[0]));
-        state->valid = item->read ? GROBO_FIELD_TEMPERATURE : 0;
+        state->valid = GROBO_FIELD_TEMPERATURE;
         return GROBO_OK;
-    case GROBO_ICS_STRETCH:
-    case GROBO_ICS_SPEED:
+    default:
         return GROBO_OK; /* tells nothing of the joint */
     }
-    return GROBO_ERR_MISMATCH;
 }
 
 /* ---- values, and frames that a user hands in ------------------------------------------------- */
 
-static grobo_write_kind write_kind(const grobo_driver *self, const grobo_register_io *io)
+static grobo_write_kind kind_of(uint16_t code, const uint8_t *data)
 {
-    (void)self;
-    const grobo_i_ics_item *item = grobo_i_ics_item_at(io->address, io->length);
-    if (item == NULL || item->item == GROBO_ICS_SPEED) {
-        return GROBO_WRITE_MOTOR;
-    }
-    return item->item == GROBO_ICS_STRETCH ? GROBO_WRITE_HARMLESS : GROBO_WRITE_SETTING;
+    (void)data;
+    return code == GROBO_I_ICS_WRITE(SPEED)     ? GROBO_WRITE_MOTOR
+           : code == GROBO_I_ICS_WRITE(STRETCH) ? GROBO_WRITE_HARMLESS
+                                                : GROBO_WRITE_SETTING;
 }
 
 /* The EEPROM goes back as it was read but for what is changed: its first byte never is. */
@@ -262,23 +198,13 @@ static int write_eeprom(const grobo_driver *self, const grobo_register_io *io,
     return finish(self, &packet, exchange);
 }
 
-static int registers(const grobo_driver *self, void *ctx, const grobo_register_io *io,
-                     grobo_exchange *exchange)
+static int write(const grobo_driver *self, const grobo_register_io *io, uint16_t code,
+                 grobo_exchange *exchange)
 {
-    (void)ctx;
-    const grobo_i_ics_item *item = grobo_i_ics_item_at(io->address, io->length);
-    if (item == NULL || (io->data == NULL ? !item->read : !item->write)) {
-        return GROBO_ERR_ARG;
-    }
-    if (io->data == NULL) {
-        return read_item(self, io->id, item->item, exchange);
-    }
-    if (item->item == GROBO_ICS_EEPROM) {
-        return write_eeprom(self, io, exchange);
-    }
     const grobo_ics_packet packet = {
-        .command = GROBO_ICS_WRITE, .id = io->id, .item = item->item, .value = io->data[0]};
-    return finish(self, &packet, exchange);
+        .command = GROBO_ICS_WRITE, .id = io->id, .item = (uint8_t)code, .value = io->data[0]};
+    return code == GROBO_I_ICS_WRITE(EEPROM) ? write_eeprom(self, io, exchange)
+                                             : finish(self, &packet, exchange);
 }
 
 /* Of a goal nobody knows how fast the servo would go. */
@@ -311,29 +237,37 @@ static int inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, si
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
+static const uint16_t all[] = {GROBO_I_ICS_READ(EEPROM), GROBO_I_ICS_READ(POSITION_ITEM),
+                               GROBO_I_ICS_READ(CURRENT), GROBO_I_ICS_READ(TEMPERATURE), 0};
+static const uint16_t position[] = {GROBO_I_ICS_READ(POSITION_ITEM), 0};
+static const uint16_t goal[] = {GROBO_I_ICS_READ(EEPROM), GROBO_I_ICS_READ(POSITION_ITEM), 0};
+
+static const grobo_i_items items = {.family = {.tables = {&grobo_ics_table},
+                                               .wants = wants,
+                                               .offset_trims = true,
+                                               .time_max_ms = 65535},
+                                    .items = grobo_i_ics_items,
+                                    .senses = {[GROBO_SENSE_FULL] = all,
+                                               [GROBO_SENSE_POSITION] = position,
+                                               [GROBO_SENSE_GOAL] = goal,
+                                               [GROBO_SENSE_ALL] = all},
+                                    .check = GROBO_I_ICS_READ(SPEED),
+                                    .read = read,
+                                    .write = write,
+                                    .torque = torque,
+                                    .kind = kind_of};
+
 int grobo_ics_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    grobo_driver made = {
-        .goal_wakes = true,
-        .no_speed = true,
-        .check = check,
-        .posture = posture,
-        .torque = torque,
-        .sense = sense,
-        .sense_more = sense_more,
-        .parse = parse,
-        .write_kind = write_kind,
-        .registers = registers,
-        .inspect = inspect,
-    };
-    int result = grobo_i_table_make(&made, model, &grobo_ics_protocol, &family);
+    grobo_driver made = {.goal_wakes = true,
+                         .no_speed = true,
+                         .posture = posture,
+                         .parse = parse,
+                         .inspect = inspect};
+    int result = grobo_i_items_make(&made, model, &grobo_ics_protocol, &items);
     for (int j = 0; result >= 0 && j < model->n_joints; j++) {
         bool tells = grobo_ics_tells_position(grobo_i_table_servo(&made, j));
         result = tells ? result : GROBO_ERR_UNSUPPORTED;
     }
-    if (result < 0 || driver == NULL) {
-        return result < 0 ? result : GROBO_ERR_ARG;
-    }
-    *driver = made;
-    return GROBO_OK;
+    return grobo_i_table_give(driver, &made, result);
 }

@@ -8,6 +8,8 @@
 
 #include <grobo/ics.h>
 
+#include "src/servo/item.h"
+
 enum {
     GROBO_I_ICS_EEPROM_BYTES = 32,
     GROBO_I_ICS_FIXED = 0x5A, /* its first byte */
@@ -24,16 +26,11 @@ enum {
     GROBO_I_ICS_AT_GOAL = 0x4000
 };
 
-/* What a command reads or writes. */
-typedef struct grobo_i_ics_item {
-    uint8_t address, bytes; /* of grobo_ics_table */
-    uint8_t item;           /* grobo_ics_item */
-    bool read, write;
-} grobo_i_ics_item;
-
-/* NULL: none. */
-const grobo_i_ics_item *grobo_i_ics_item_of(uint8_t item, bool write);
-const grobo_i_ics_item *grobo_i_ics_item_at(unsigned address, unsigned bytes);
+/* Of an item. */
+#define GROBO_I_ICS_CODE(command, item) ((uint16_t)((command) << 8 | (item)))
+#define GROBO_I_ICS_READ(name) GROBO_I_ICS_CODE(GROBO_ICS_READ, GROBO_ICS_##name)
+#define GROBO_I_ICS_WRITE(name) GROBO_I_ICS_CODE(GROBO_ICS_WRITE, GROBO_ICS_##name)
+extern const grobo_i_item grobo_i_ics_items[];
 
 /* Two values of 7 bits each are one. */
 static inline uint16_t grobo_i_ics_value(const uint8_t *p)

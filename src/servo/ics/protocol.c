@@ -34,7 +34,8 @@ static int reply_size(const uint8_t *bytes, size_t n)
     if (bytes[1] == GROBO_ICS_EEPROM) {
         return write ? 2 : GROBO_ICS_FRAME_MAX_BYTES;
     }
-    const grobo_i_ics_item *item = grobo_i_ics_item_of(bytes[1], write);
+    const uint16_t code = GROBO_I_ICS_CODE(write ? GROBO_ICS_WRITE : GROBO_ICS_READ, bytes[1]);
+    const grobo_i_item *item = grobo_i_item_of(grobo_i_ics_items, code);
     return item == NULL ? GROBO_ERR_FRAME : 2 + item->bytes;
 }
 
@@ -104,7 +105,8 @@ static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
     } else {
         bool write = packet.command == GROBO_ICS_WRITE;
         bool eeprom = packet.item == GROBO_ICS_EEPROM;
-        const grobo_i_ics_item *item = grobo_i_ics_item_of(packet.item, write);
+        const uint16_t code = GROBO_I_ICS_CODE(packet.command, packet.item);
+        const grobo_i_item *item = grobo_i_item_of(grobo_i_ics_items, code);
         if (item == NULL) {
             return GROBO_ERR_ARG;
         }

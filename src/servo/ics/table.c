@@ -5,8 +5,6 @@
 #include "src/servo/row.h"
 
 enum { ICS35 = 1, ICS36 = 2, ALL = ICS35 | ICS36 };
-enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
-
 static const grobo_servo_register rows[] = {
     ROW("fixed", 0, 1, 0, E, NONE, "", 0, 255, GROBO_I_ICS_FIXED, ALL),
     ROW("stretch", 1, 1, 0, EW, NONE, "", 2, 254, 60, ALL),
@@ -60,12 +58,9 @@ static const grobo_servo_rate rates[] = {{0, ALL, 1250000}, {1, ALL, 625000}, {1
 
 const grobo_servo_table grobo_ics_table = {
     .name = "Kondo KRS",
-    .registers = rows,
-    .models = models,
-    .rates = rates,
-    .register_count = sizeof rows / sizeof rows[0],
-    .model_count = sizeof models / sizeof models[0],
-    .rate_count = sizeof rates / sizeof rates[0],
+    LIST(registers, register_count, rows),
+    LIST(models, model_count, models),
+    LIST(rates, rate_count, rates),
     .big_endian = true,
 };
 
@@ -74,37 +69,17 @@ bool grobo_ics_tells_position(const grobo_servo_model *servo)
     return servo != NULL && servo->table == &grobo_ics_table && servo->group == ICS36;
 }
 
-static const grobo_i_ics_item items[] = {
-    {0, GROBO_I_ICS_EEPROM_BYTES, GROBO_ICS_EEPROM, true, true},
-    {41, 1, GROBO_ICS_STRETCH, true, true},
-    {42, 1, GROBO_ICS_SPEED, true, true},
-    {43, 1, GROBO_ICS_CURRENT, false, true},
-    {44, 1, GROBO_ICS_TEMPERATURE, false, true},
-    {48, 1, GROBO_ICS_CURRENT, true, false},
-    {49, 1, GROBO_ICS_TEMPERATURE, true, false},
-    {50, 2, GROBO_ICS_POSITION_ITEM, true, false},
+const grobo_i_item grobo_i_ics_items[] = {
+    {0, GROBO_I_ICS_EEPROM_BYTES, GROBO_I_ICS_WRITE(EEPROM), GROBO_I_ICS_READ(EEPROM)},
+    {41, 1, GROBO_I_ICS_WRITE(STRETCH), GROBO_I_ICS_READ(STRETCH)},
+    {42, 1, GROBO_I_ICS_WRITE(SPEED), GROBO_I_ICS_READ(SPEED)},
+    {43, 1, GROBO_I_ICS_WRITE(CURRENT), 0},
+    {44, 1, GROBO_I_ICS_WRITE(TEMPERATURE), 0},
+    {48, 1, 0, GROBO_I_ICS_READ(CURRENT)},
+    {49, 1, 0, GROBO_I_ICS_READ(TEMPERATURE)},
+    {50, 2, 0, GROBO_I_ICS_READ(POSITION_ITEM)},
+    {0, 0, 0, 0},
 };
-enum { ITEMS = sizeof items / sizeof items[0] };
-
-const grobo_i_ics_item *grobo_i_ics_item_of(uint8_t item, bool write)
-{
-    for (unsigned k = 0; k < ITEMS; k++) {
-        if (items[k].item == item && (write ? items[k].write : items[k].read)) {
-            return &items[k];
-        }
-    }
-    return NULL;
-}
-
-const grobo_i_ics_item *grobo_i_ics_item_at(unsigned address, unsigned bytes)
-{
-    for (unsigned k = 0; k < ITEMS; k++) {
-        if (items[k].address == address && items[k].bytes == bytes) {
-            return &items[k];
-        }
-    }
-    return NULL;
-}
 
 /* Small is hot. Between 30 and 87 as the manual prints it (another table of the maker's is some
  * degrees off), to the ends as rcb4 goes on. */

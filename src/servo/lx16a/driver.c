@@ -6,7 +6,7 @@
 
 #include "src/base/bytes.h"
 #include "src/servo/lx16a/items.h"
-#include "src/servo/table/family.h"
+#include "src/servo/table/items.h"
 
 #define MS_US 1000
 #define TIME_MAX_MS 30000
@@ -25,11 +25,6 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
     return 0;
 }
 
-static const grobo_i_family family = {.tables = {&grobo_lx16a_table},
-                                      .wants = wants,
-                                      .offset_trims = true,
-                                      .time_max_ms = TIME_MAX_MS};
-
 /* ---- frames ---------------------------------------------------------------------------------- */
 
 static int finish(const grobo_driver *self, uint8_t id, uint8_t command, const uint8_t *data,
@@ -37,12 +32,18 @@ static int finish(const grobo_driver *self, uint8_t id, uint8_t command, const u
 {
     const grobo_lx16a_packet packet = {id, command, data, n};
     int size = grobo_lx16a_build(&packet, exchange->frame, sizeof exchange->frame);
-    if (size < 0) {
-        return size;
-    }
-    exchange->frame_bytes = (uint16_t)size;
-    int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
-    return reply < 0 ? reply : GROBO_OK;
+    return grobo_i_table_finish(self, size, exchange);
+}
+
+static int read(const grobo_driver *self, uint8_t id, uint16_t code, grobo_exchange *exchange)
+{
+    return finish(self, id, (uint8_t)code, NULL, 0, exchange);
+}
+
+static int write(const grobo_driver *self, const grobo_register_io *io, uint16_t code,
+                 grobo_exchange *exchange)
+{
+    return finish(self, io->id, (uint8_t)code, io->data, io->length, exchange);
 }
 
 static int posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
@@ -64,73 +65,14 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
     return result < 0 ? result : 1;
 }
 
-static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, grobo_torque mode,
-                  int part, grobo_exchange *exchange)
+static int torque(const grobo_driver *self, int joint, bool on, grobo_exchange *exchange)
 {
-    (void)ctx;
-    int j = grobo_i_table_joint_of_part(self, joints, part);
-    const uint8_t on = mode == GROBO_TORQUE_ON;
-    if (mode == GROBO_TORQUE_BRAKE || j < 0) {
-        return j < 0 ? 0 : GROBO_ERR_UNSUPPORTED;
-    }
-    int result =
-        finish(self, self->model->joints[j].motor, GROBO_LX16A_LOAD, &on, sizeof on, exchange);
-    return result < 0 ? result : 1;
+    const uint8_t load = on;
+    return finish(self, self->model->joints[joint].motor, GROBO_LX16A_LOAD, &load, sizeof load,
+                  exchange);
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */
-
-static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
-{
-    (void)ctx;
-    if (part >= self->model->n_joints) {
-        return 0;
-    }
-    int result =
-        finish(self, self->model->joints[part].motor, GROBO_LX16A_ID_READ, NULL, 0, exchange);
-    return result < 0 ? result : 1;
-}
-
-/* What each kind reads, one value after the other; the setup before the angle, so that a joint
- * whose servo is set up otherwise is never sensed. */
-static int read_part(const grobo_driver *self, int joint, grobo_sense_kind kind, int part,
-                     grobo_exchange *exchange)
-{
-    static const uint8_t full[] = {GROBO_LX16A_LOAD_READ, GROBO_LX16A_POSITION_READ,
-                                   GROBO_LX16A_TEMPERATURE_READ, GROBO_LX16A_VOLTAGE_READ, 0};
-    static const uint8_t position[] = {GROBO_LX16A_POSITION_READ, 0};
-    static const uint8_t goal[] = {GROBO_LX16A_LOAD_READ, GROBO_LX16A_POSITION_READ,
-                                   GROBO_LX16A_MOVE_READ, 0};
-    static const uint8_t all[] = {GROBO_LX16A_LOAD_READ,    GROBO_LX16A_MODE_READ,
-                                  GROBO_LX16A_LIMITS_READ,  GROBO_LX16A_POSITION_READ,
-                                  GROBO_LX16A_VOLTAGE_READ, GROBO_LX16A_TEMPERATURE_READ,
-                                  GROBO_LX16A_MOVE_READ,    0};
-    static const uint8_t *const kinds[] = {[GROBO_SENSE_FULL] = full,
-                                           [GROBO_SENSE_POSITION] = position,
-                                           [GROBO_SENSE_GOAL] = goal,
-                                           [GROBO_SENSE_ALL] = all};
-    uint8_t command = kinds[kind][part]; /* a part comes after the one before it */
-    if (command == 0) {
-        return 0;
-    }
-    int result = finish(self, self->model->joints[joint].motor, command, NULL, 0, exchange);
-    return result < 0 ? result : 1;
-}
-
-static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
-                 grobo_exchange *exchange)
-{
-    (void)ctx;
-    int result = read_part(self, joint, kind, 0, exchange);
-    return result < 0 ? result : GROBO_OK;
-}
-
-static int sense_more(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
-                      int part, grobo_exchange *exchange)
-{
-    (void)ctx;
-    return read_part(self, joint, kind, part, exchange);
-}
 
 /* Two bytes that are swapped pass the sum: what no servo says is not believed. */
 static int take_position(const grobo_joint *joint, const grobo_servo_model *servo, int32_t ticks,
@@ -163,14 +105,14 @@ static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_pac
     (void)ctx;
     const grobo_joint *moved = &self->model->joints[joint];
     const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
-    const grobo_i_lx16a_item *item =
-        grobo_i_lx16a_item_at(reply->address, (unsigned)reply->data_bytes);
+    const grobo_i_item *item =
+        grobo_i_item_at(grobo_i_lx16a_items, reply->address, (unsigned)reply->data_bytes);
     const uint8_t *data = reply->data;
-    const uint8_t read = item == NULL ? 0 : item->read;
-    switch (read) {
+    const uint16_t code = item == NULL ? 0 : item->read;
+    switch (code) {
     case GROBO_LX16A_MODE_READ:
     case GROBO_LX16A_LIMITS_READ:
-        return grobo_i_table_setup(&family, moved,
+        return grobo_i_table_setup(self->family, moved,
                                    &(grobo_i_block){servo, reply->address, data, reply->data_bytes},
                                    state);
     case GROBO_LX16A_POSITION_READ:
@@ -196,9 +138,9 @@ static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_pac
 
 /* ---- values, and frames that a user hands in ------------------------------------------------- */
 
-static grobo_write_kind kind_of(uint8_t command, const uint8_t *data)
+static grobo_write_kind kind_of(uint16_t code, const uint8_t *data)
 {
-    switch (command) {
+    switch (code) {
     case GROBO_LX16A_LED:
     case GROBO_LX16A_ALARM:
         return GROBO_WRITE_HARMLESS;
@@ -213,25 +155,6 @@ static grobo_write_kind kind_of(uint8_t command, const uint8_t *data)
     default:
         return GROBO_WRITE_MOTOR;
     }
-}
-
-static grobo_write_kind write_kind(const grobo_driver *self, const grobo_register_io *io)
-{
-    (void)self;
-    const grobo_i_lx16a_item *item = grobo_i_lx16a_item_at(io->address, io->length);
-    return item == NULL ? GROBO_WRITE_MOTOR : kind_of(item->write, io->data);
-}
-
-static int registers(const grobo_driver *self, void *ctx, const grobo_register_io *io,
-                     grobo_exchange *exchange)
-{
-    (void)ctx;
-    const grobo_i_lx16a_item *item = grobo_i_lx16a_item_at(io->address, io->length);
-    if (item == NULL || (io->data != NULL && item->write == 0)) {
-        return GROBO_ERR_ARG;
-    }
-    return io->data == NULL ? finish(self, io->id, item->read, NULL, 0, exchange)
-                            : finish(self, io->id, item->write, io->data, io->length, exchange);
 }
 
 /* The offset is the one value that is not kept by itself. */
@@ -294,26 +217,39 @@ static int inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, si
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
+static const uint16_t full[] = {GROBO_LX16A_LOAD_READ, GROBO_LX16A_POSITION_READ,
+                                GROBO_LX16A_TEMPERATURE_READ, GROBO_LX16A_VOLTAGE_READ, 0};
+static const uint16_t position[] = {GROBO_LX16A_POSITION_READ, 0};
+static const uint16_t goal[] = {GROBO_LX16A_LOAD_READ, GROBO_LX16A_POSITION_READ,
+                                GROBO_LX16A_MOVE_READ, 0};
+static const uint16_t all[] = {GROBO_LX16A_LOAD_READ,    GROBO_LX16A_MODE_READ,
+                               GROBO_LX16A_LIMITS_READ,  GROBO_LX16A_POSITION_READ,
+                               GROBO_LX16A_VOLTAGE_READ, GROBO_LX16A_TEMPERATURE_READ,
+                               GROBO_LX16A_MOVE_READ,    0};
+
+static const grobo_i_items items = {.family = {.tables = {&grobo_lx16a_table},
+                                               .wants = wants,
+                                               .offset_trims = true,
+                                               .time_max_ms = TIME_MAX_MS},
+                                    .items = grobo_i_lx16a_items,
+                                    .senses = {[GROBO_SENSE_FULL] = full,
+                                               [GROBO_SENSE_POSITION] = position,
+                                               [GROBO_SENSE_GOAL] = goal,
+                                               [GROBO_SENSE_ALL] = all},
+                                    .check = GROBO_LX16A_ID_READ,
+                                    .read = read,
+                                    .write = write,
+                                    .torque = torque,
+                                    .kind = kind_of};
+
 int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    grobo_driver made = {
-        .goal_wakes = true,
-        .no_speed = true,
-        .check = check,
-        .posture = posture,
-        .torque = torque,
-        .sense = sense,
-        .sense_more = sense_more,
-        .parse = parse,
-        .write_kind = write_kind,
-        .registers = registers,
-        .command = command,
-        .inspect = inspect,
-    };
-    int result = grobo_i_table_make(&made, model, &grobo_lx16a_protocol, &family);
-    if (result < 0 || driver == NULL) {
-        return result < 0 ? result : GROBO_ERR_ARG;
-    }
-    *driver = made;
-    return GROBO_OK;
+    grobo_driver made = {.goal_wakes = true,
+                         .no_speed = true,
+                         .posture = posture,
+                         .parse = parse,
+                         .command = command,
+                         .inspect = inspect};
+    int result = grobo_i_items_make(&made, model, &grobo_lx16a_protocol, &items);
+    return grobo_i_table_give(driver, &made, result);
 }

@@ -37,13 +37,14 @@ static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
     if (packet.id == GROBO_LX16A_ID_ALL) {
         reply->kind = packet.command == GROBO_LX16A_ID_READ ? GROBO_REPLY_ANY : GROBO_REPLY_NONE;
     } else if (length > 0) {
-        *reply = (grobo_reply){.kind = GROBO_REPLY_RETURN,
-                               .id = packet.id,
-                               .tag = packet.command,
-                               .count = 1,
-                               .address = grobo_i_lx16a_item_of(packet.command)->address,
-                               .length = (uint16_t)length,
-                               .bytes = (uint32_t)length + GROBO_LX16A_OVERHEAD_BYTES};
+        *reply =
+            (grobo_reply){.kind = GROBO_REPLY_RETURN,
+                          .id = packet.id,
+                          .tag = packet.command,
+                          .count = 1,
+                          .address = grobo_i_item_of(grobo_i_lx16a_items, packet.command)->address,
+                          .length = (uint16_t)length,
+                          .bytes = (uint32_t)length + GROBO_LX16A_OVERHEAD_BYTES};
     }
     return (int)reply->bytes;
 }

@@ -4,7 +4,7 @@
 #include "src/servo/lx16a/items.h"
 #include "src/servo/row.h"
 
-enum { ALL = 1, R = 0, W = GROBO_REGISTER_W, EW = W | GROBO_REGISTER_KEPT };
+enum { ALL = 1 };
 
 static const grobo_servo_register rows[] = {
     ROW("id", 0, 1, 0, EW, ID, "", 0, 253, 1, ALL),
@@ -45,13 +45,11 @@ static const grobo_servo_model models[] = {
 
 const grobo_servo_table grobo_lx16a_table = {
     .name = "Hiwonder LX",
-    .registers = rows,
-    .models = models,
-    .register_count = sizeof rows / sizeof rows[0],
-    .model_count = sizeof models / sizeof models[0],
+    LIST(registers, register_count, rows),
+    LIST(models, model_count, models),
 };
 
-static const grobo_i_lx16a_item items[] = {
+const grobo_i_item grobo_i_lx16a_items[] = {
     {0, 1, GROBO_LX16A_ID, GROBO_LX16A_ID_READ},
     {1, 1, GROBO_LX16A_OFFSET, GROBO_LX16A_OFFSET_READ},
     {2, 4, GROBO_LX16A_LIMITS, GROBO_LX16A_LIMITS_READ},
@@ -66,30 +64,5 @@ static const grobo_i_lx16a_item items[] = {
     {29, 1, 0, GROBO_LX16A_TEMPERATURE_READ},
     {30, 2, 0, GROBO_LX16A_VOLTAGE_READ},
     {32, 2, 0, GROBO_LX16A_POSITION_READ},
+    {0, 0, 0, 0},
 };
-enum { ITEMS = sizeof items / sizeof items[0] };
-
-const grobo_i_lx16a_item *grobo_i_lx16a_item_row(unsigned k)
-{
-    return k < ITEMS ? &items[k] : NULL;
-}
-
-const grobo_i_lx16a_item *grobo_i_lx16a_item_of(uint8_t command)
-{
-    for (unsigned k = 0; command != 0 && k < ITEMS; k++) {
-        if (items[k].write == command || items[k].read == command) {
-            return &items[k];
-        }
-    }
-    return NULL;
-}
-
-const grobo_i_lx16a_item *grobo_i_lx16a_item_at(unsigned address, unsigned bytes)
-{
-    for (unsigned k = 0; k < ITEMS; k++) {
-        if (items[k].address == address && items[k].bytes == bytes) {
-            return &items[k];
-        }
-    }
-    return NULL;
-}

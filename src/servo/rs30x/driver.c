@@ -38,6 +38,9 @@ static int joints_of_part(const grobo_model *model, grobo_joint_mask joints, int
 {
     uint8_t joint_of[GROBO_SERVO_ID_MAX + 1]; /* by motor, the joint + 1; 0: none */
     int highest = -1, skip = part * capacity, n = 0;
+    if (skip > 0 && grobo_joints_count(joints) <= skip) {
+        return 0;
+    }
     memset(joint_of, 0, sizeof joint_of);
     for (int j = 0; j < model->n_joints; j++) {
         if ((joints & GROBO_JOINT_BIT(j)) != 0) {
@@ -446,7 +449,7 @@ int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        if (model->joints[j].torque_limit_pct > 0) {
+        if (model->joints[j].torque_limit_pct > 0 || model->joints[j].calibrated) {
             return GROBO_ERR_ARG; /* a reading does not show it */
         }
     }

@@ -14,8 +14,6 @@
 enum { RS301 = 1, RS302 = 2, RS303 = 4, RS304 = 8 };
 enum { FAST = RS301 | RS303, SLOW = RS302 | RS304, LATER = RS303 | RS304, ALL = FAST | SLOW };
 
-enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
-
 static const grobo_servo_register rows[] = {
     ROW("model", 0, 2, 0, E, MODEL, "", 0, 65535, 0, ALL),
     ROW("firmware", 2, 1, 0, E, FIRMWARE, "", 0, 255, 0, ALL),
@@ -71,11 +69,8 @@ static const grobo_servo_rate rates[] = {
 
 const grobo_servo_table grobo_rs30x_table = {
     .name = "Futaba RS30x",
-    .registers = rows,
-    .models = models,
-    .rates = rates,
-    .register_count = sizeof rows / sizeof rows[0],
-    .model_count = sizeof models / sizeof models[0],
-    .rate_count = sizeof rates / sizeof rates[0],
+    LIST(registers, register_count, rows),
+    LIST(models, model_count, models),
+    LIST(rates, rate_count, rates),
     .keeps = GROBO_KEEPS_COMMAND,
 };

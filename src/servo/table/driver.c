@@ -101,12 +101,7 @@ static int finish(const grobo_driver *self, const grobo_dxl2_packet *packet,
                   grobo_exchange *exchange)
 {
     int size = family_of(self)->build(packet, exchange->frame, sizeof exchange->frame);
-    if (size < 0) {
-        return size;
-    }
-    exchange->frame_bytes = (uint16_t)size;
-    int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
-    return reply < 0 ? reply : GROBO_OK;
+    return grobo_i_table_finish(self, size, exchange);
 }
 
 static int read_span(const grobo_driver *self, uint8_t id, span s, grobo_exchange *exchange)
@@ -434,11 +429,7 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
         .inspect = grobo_i_table_inspect,
     };
     int result = grobo_i_table_make(&made, model, protocol, family);
-    if (result < 0 || driver == NULL) {
-        return result < 0 ? result : GROBO_ERR_ARG;
-    }
     made.watchdog = family->watchdog_us > 0 ? watchdog : NULL;
-    made.sense_many = reads_alike(&made) ? sense_many : NULL;
-    *driver = made;
-    return GROBO_OK;
+    made.sense_many = result >= 0 && reads_alike(&made) ? sense_many : NULL;
+    return grobo_i_table_give(driver, &made, result);
 }

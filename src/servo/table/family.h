@@ -54,6 +54,12 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
 int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo_protocol *protocol,
                        const grobo_i_family *family);
 
+/* The end of each init: made becomes the driver, where result is no error. */
+int grobo_i_table_give(grobo_driver *driver, const grobo_driver *made, int result);
+
+/* The end of each frame: what it is answered by. size: of the frame, or an error. */
+int grobo_i_table_finish(const grobo_driver *self, int size, grobo_exchange *exchange);
+
 /* The joint number `part` of a set, -1 behind the last: of families that tell one in a frame. */
 int grobo_i_table_joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part);
 

@@ -38,11 +38,31 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
     for (int j = 0; j < model->n_joints; j++) {
         const grobo_joint *joint = &model->joints[j];
         const grobo_servo_model *servo = grobo_i_table_servo(made, j);
-        if (servo == NULL || !reaches(joint, servo, joint->min_rad) ||
+        bool kept = !joint->calibrated || !family->offset_trims; /* where its middle is */
+        if (servo == NULL || !kept || !reaches(joint, servo, joint->min_rad) ||
             !reaches(joint, servo, joint->max_rad)) {
             return GROBO_ERR_ARG;
         }
     }
     made->angle_step_rad = grobo_i_table_step_rad(made);
     return grobo_driver_check(made);
+}
+
+int grobo_i_table_give(grobo_driver *driver, const grobo_driver *made, int result)
+{
+    if (result < 0 || driver == NULL) {
+        return result < 0 ? result : GROBO_ERR_ARG;
+    }
+    *driver = *made;
+    return GROBO_OK;
+}
+
+int grobo_i_table_finish(const grobo_driver *self, int size, grobo_exchange *exchange)
+{
+    if (size < 0) {
+        return size;
+    }
+    exchange->frame_bytes = (uint16_t)size;
+    int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
+    return reply < 0 ? reply : GROBO_OK;
 }

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The plugin for LeRobot: by its documented interface against a stand-in of LeRobot, or the real
-one (GROBO_LEROBOT=real), and a simulator."""
+one (GROBO_LEROBOT=real, with torch or without), and a simulator."""
 
+import dataclasses
 import math
 import os
 import re
@@ -20,6 +21,11 @@ if not REAL:
     if sys.version_info < (3, 10):
         raise unittest.SkipTest("LeRobot needs Python 3.12, its stand-in 3.10")
     sys.path.insert(0, str(HERE / "lerobot_stand_in"))
+else:
+    sys.path.insert(0, str(TOP / "tests/support"))
+    from lerobot_alone import import_alone
+
+    import_alone()
 
 import grobo  # noqa: E402
 import lerobot_robot_grobo  # noqa: E402
@@ -65,6 +71,25 @@ class Plugin(unittest.TestCase):
         name = re.search(r'^name = "(.*)"', project, re.M).group(1)
         self.assertEqual(name, lerobot_robot_grobo.__name__)
         self.assertTrue(name.startswith("lerobot_robot_"))
+
+    @unittest.skipUnless(REAL, "LeRobot's own search")
+    def test_lerobot_finds_it_and_reads_its_options(self):
+        import draccus
+        from lerobot.utils.import_utils import register_third_party_plugins
+
+        info = self.folder / "lerobot_robot_grobo-0.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text("Metadata-Version: 2.1\nName: lerobot_robot_grobo\nVersion: 0\n")
+        sys.path.insert(0, str(self.folder))
+        self.addCleanup(sys.path.remove, str(self.folder))
+        with self.assertLogs(level="INFO") as log:
+            register_third_party_plugins()
+        self.assertIn("Imported third-party plugin: lerobot_robot_grobo", "".join(log.output))
+        command = dataclasses.make_dataclass("Command", [("robot", RobotConfig)])
+        options = "--robot.type=grobo --robot.port=sim --robot.robot=koch --robot.stale_s=1"
+        config = draccus.parse(config_class=command, args=options.split()).robot
+        self.assertEqual((type(config), config.port, config.robot, config.stale_s, config.on_exit),
+                         (GroboConfig, "sim", "koch", 1.0, "default"))
 
     def test_its_config_makes_it(self):
         robot = self.make()

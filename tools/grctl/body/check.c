@@ -71,8 +71,8 @@ static void describe(const grobo_body_finding *f, char *text, size_t capacity)
 
 static grobo_severity severity_of(const grobo_body_finding *f)
 {
-    bool near = f->problem == GROBO_BODY_ZMP_MARGIN && f->worst >= 0;
-    return near || f->problem == GROBO_BODY_FOOT_SLIP || f->problem == GROBO_BODY_JOINT_SPEED
+    bool warns = f->problem == GROBO_BODY_ZMP_MARGIN && f->worst >= 0;
+    return warns || f->problem == GROBO_BODY_FOOT_SLIP || f->problem == GROBO_BODY_JOINT_SPEED
                ? GROBO_SEVERITY_WARNING
                : GROBO_SEVERITY_ERROR;
 }

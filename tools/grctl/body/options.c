@@ -76,7 +76,7 @@ int body_make(app *a, int base, const char *path, const grobo_motion *motion, do
         }
         return 0;
     }
-    error = grobo_body_new(body, &grobo_gr001_body, motion, &options, NULL);
+    error = grobo_body_new(&grobo_gr001_body, motion, &options, NULL, body);
     return error ? fail(a, path, error) : 0;
 }
 
@@ -138,7 +138,7 @@ static int keys_motion(grobo_body *body, grobo_motion **out)
     grobo_clip clip;
     grobo_motion *motion = NULL;
     grobo_body_clip(body, false, &clip);
-    int error = grobo_motion_new(&motion, GROBO_MOTION_KEYS, clip.n_joints, NULL);
+    int error = grobo_motion_new(GROBO_MOTION_KEYS, clip.n_joints, NULL, &motion);
     for (size_t i = 0; i < clip.n_keys && !error; i++) {
         grobo_posture posture;
         int64_t at_us = 0;

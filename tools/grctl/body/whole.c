@@ -18,7 +18,7 @@ int whole_open(const app *a, whole *w, const grobo_motion *motion, const grobo_c
     if (!whole_applies(a, motion, options)) {
         return grobo_motion_clip(motion, plain, &w->clip);
     }
-    int error = grobo_body_new(&w->body, &grobo_gr001_body, motion, options, NULL);
+    int error = grobo_body_new(&grobo_gr001_body, motion, options, NULL, &w->body);
     if (!error) {
         grobo_body_clip(w->body, false, &w->clip);
     }
@@ -84,7 +84,7 @@ int whole_body(const app *a, grobo_body **body, const grobo_motion *motion,
     grobo_motion *keys = NULL;
     *standing = !whole_applies(a, motion, options);
     if (!*standing) {
-        return grobo_body_new(body, &grobo_gr001_body, motion, options, NULL);
+        return grobo_body_new(&grobo_gr001_body, motion, options, NULL, body);
     }
     if (file_model(a, motion) != &grobo_gr001_model) {
         return GROBO_ERR_TYPE;
@@ -100,7 +100,7 @@ int whole_body(const app *a, grobo_body **body, const grobo_motion *motion,
         error = stand_on_feet(keys);
     }
     if (!error) {
-        error = grobo_body_new(body, &grobo_gr001_body, keys, &as_they_are, NULL);
+        error = grobo_body_new(&grobo_gr001_body, keys, &as_they_are, NULL, body);
     }
     grobo_motion_free(keys);
     return error;

@@ -92,6 +92,7 @@ struct app;
 /* What a command does where -d names a group of robots. */
 typedef enum cli_group {
     CLI_GROUP_NEVER = 0, /* it has one robot */
+    CLI_GROUP_FIRST,     /* with the first one, which leads the others */
     CLI_GROUP_EACH,      /* each robot has a grctl of its own, all at the same time */
     CLI_GROUP_TOGETHER   /* it looks at app.group itself */
 } cli_group;
@@ -109,6 +110,8 @@ typedef struct cli_command {
     cli_argument argument;
     bool stops; /* it stops the robot: done first, and mistakes are reported after it */
     cli_group group;
+    /* CLI_GROUP_EACH: does this line go on until it is ended? Then it looks at app.group itself. */
+    bool (*goes_on)(const struct app *app);
     int (*run)(struct app *app);
 } cli_command;
 

@@ -455,9 +455,9 @@ static int no_robot(reader *r, bool asked)
     if (asked || !*r->wanted) {
         return 0;
     }
-    return app_fail(r->a, EXIT_FILE, "NOTFOUND", "%s: default '%s' is no robot of the file%s%s%s",
-                    r->default_path, r->wanted, *nearest ? _("; did you mean '") : "", nearest,
-                    *nearest ? "'?" : "");
+    return app_fail(r->a, EXIT_FILE, "NOTFOUND",
+                    "%s: default '%s' is not a robot of the file%s%s%s", r->default_path, r->wanted,
+                    *nearest ? _("; did you mean '") : "", nearest, *nearest ? "'?" : "");
 }
 
 int config_check_name(app *a, const char *name)

@@ -204,7 +204,7 @@ int file_load_listed(app *a, const char *path, const grobo_read_options *options
 int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion)
 {
     grobo_diagnostics *list = NULL;
-    int error = grobo_diagnostics_new(&list, NULL);
+    int error = grobo_diagnostics_new(NULL, &list);
     if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }

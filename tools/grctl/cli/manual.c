@@ -145,7 +145,7 @@ static const char head[] =
        ".Op Ar OPTIONS\n"
        ".Op Ar ARGUMENTS\n"
        ".Sh DESCRIPTION\n"
-       ".Nm\n"
+       ".Nm grctl\n"
        "drives robots of serial command servos, first of all the GR001 humanoid,\n"
        "for people at a terminal and for scripts.\n"
        "Results go to standard output, everything said to a person goes to\n"

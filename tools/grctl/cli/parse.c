@@ -97,7 +97,7 @@ static bool check_value(parser *p, const cli_option *o, cli_value *v, const char
     case CLI_CHOICE:
         v->choice = choice_index(o->value, text);
         if (v->choice < 0) {
-            return complain(p, "--%s takes a word: '%s' is none of %s", o->name, text, o->value);
+            return complain(p, "--%s: invalid value '%s' (%s)", o->name, text, o->value);
         }
         return true;
     }
@@ -261,7 +261,7 @@ static bool parse_argument(parser *p, const char *token)
                        : complain(p, "no command '%s'", token);
     }
     if (!*token && line->command->argument == CLI_ARG_FILE) {
-        return complain(p, "an empty name is no file");
+        return complain(p, "the file name is empty");
     }
     if (line->n_arguments >= CLI_ARGUMENTS_MAX) {
         return complain(p, "more than %d arguments", CLI_ARGUMENTS_MAX);

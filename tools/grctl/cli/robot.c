@@ -52,7 +52,7 @@ static const grobo_robot_def *find_file(const char *path, char *complaint, size_
         }
     }
     kept *one = calloc(1, sizeof *one);
-    int error = one && strlen(path) < sizeof one->path ? grobo_diagnostics_new(&list, NULL)
+    int error = one && strlen(path) < sizeof one->path ? grobo_diagnostics_new(NULL, &list)
                                                        : GROBO_ERR_NOMEM;
     if (!error) {
         error = robot_read(path, list, &one->def);

@@ -52,7 +52,13 @@ static bool is_echo_alone(const app *a)
 /* By configuration and options. A stop goes on with what could be found. */
 static int find_robot(app *a)
 {
+    static config_robot first;
     int status = config_apply(a);
+    if (!status && a->group && a->line.command->group == CLI_GROUP_FIRST) {
+        app_note(a, "%s: %s, the first of %s", a->line.command->name, a->group->robot[0],
+                 a->group->name);
+        status = config_apply_member(a, a->group->robot[0], &first);
+    }
     if (a->group) { /* each of its robots is found by itself */
         return status;
     }
@@ -83,7 +89,9 @@ static int refuse_group(app *a)
 /* The command of the line, for one robot or a group. */
 static int run_it(app *a, int argc, char *const *argv)
 {
-    bool each = a->group && a->line.command->group == CLI_GROUP_EACH;
+    const cli_command *command = a->line.command;
+    bool each =
+        a->group && command->group == CLI_GROUP_EACH && !(command->goes_on && command->goes_on(a));
     return each ? each_run(a, argc, argv) : a->line.command->run(a);
 }
 

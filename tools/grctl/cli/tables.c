@@ -32,5 +32,5 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
     [GLOBAL_COLOR] =
         OPTION_CHOICE("color", 0, "auto|always|never", "colours; NO_COLOR is honoured"),
     [GLOBAL_HELP] = OPTION_FLAG("help", 'h', "this help"),
-    [GLOBAL_VERSION] = OPTION_FLAG("version", 'V', "the version"),
+    [GLOBAL_VERSION] = OPTION_FLAG("version", 'V', "print the version"),
 };

@@ -5,7 +5,7 @@
 #include "tools/grctl/fleet/agent.h"
 #include "tools/grctl/fleet/broker.h"
 
-enum { OPT_HOST = BROKER_OPTIONS, OPT_GROUP, OPT_LABEL, OPT_MOTIONS, OPTIONS };
+enum { OPT_HOST = BROKER_OPTIONS, OPT_GROUP, OPT_LABEL, OPT_MOTIONS, OPT_COCKPIT, OPTIONS };
 
 static const cli_option options[OPTIONS] = {
     BROKER_OPTION_ROWS,
@@ -14,6 +14,9 @@ static const cli_option options[OPTIONS] = {
         OPTION_TEXT("group", 0, "NAME", "the group of its robots, beside all (that of -d)"),
     [OPT_LABEL] = OPTION_TEXT("label", 0, "NAME,...", "further groups of its robots, at most 8"),
     [OPT_MOTIONS] = OPTION_TEXT("motions", 0, "FOLDER", "where motion files are (motions)"),
+    [OPT_COCKPIT] = OPTION_TEXT("cockpit", 0, "URL",
+                                "a page of each robot, its name for %: a link "
+                                "in the view of the fleet"),
 };
 
 static int take_name(app *a, int option, const char *otherwise, const char *what, char *name)
@@ -44,6 +47,19 @@ static int take_labels(app *a, agent *g)
         agent_join(g, name);
         at += length;
     }
+    return EXIT_DONE;
+}
+
+/* A link to a page. */
+static int take_cockpit(app *a, agent *g)
+{
+    const cli_value *given = app_option(a, OPT_COCKPIT);
+    if (given->given && !fleet_is_link(given->text)) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "--cockpit '%s': http:// or https:// and less than %d characters",
+                        given->text, FLEET_URL_BYTES);
+    }
+    g->cockpit = given->given ? given->text : NULL;
     return EXIT_DONE;
 }
 
@@ -98,6 +114,9 @@ static int run(app *a)
         agent_join(&g, FLEET_ALL);
         agent_join(&g, group);
         status = take_labels(a, &g);
+    }
+    if (!status) {
+        status = take_cockpit(a, &g);
     }
     if (status) {
         return status;

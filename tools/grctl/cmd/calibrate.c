@@ -123,6 +123,18 @@ static int measure(app *a, config_robot *after)
     return conn_close(&c, status);
 }
 
+static int fail_unnamed(app *a)
+{
+    return homing_fits(a)
+               ? app_fail(a, EXIT_USAGE, "ARG",
+                          "calibrate: -d must name a robot of ~/.config/grctl/config.yaml; see "
+                          "'grctl help calibrate'")
+               : app_fail(a, EXIT_USAGE, "ARG",
+                          "calibrate: the servos of %s keep no calibration, and -d names no robot "
+                          "of ~/.config/grctl/config.yaml, where it has trims",
+                          robot_of(a)->name);
+}
+
 static int run(app *a)
 {
     double deg;
@@ -142,9 +154,7 @@ static int run(app *a)
                         robot_of(a)->name);
     }
     if (!a->robot) {
-        return app_fail(a, EXIT_USAGE, "ARG",
-                        "calibrate: -d must name a robot of ~/.config/grctl/config.yaml; see "
-                        "'grctl help calibrate'");
+        return fail_unnamed(a);
     }
     if (a->line.n_arguments == 1) {
         return app_fail(a, EXIT_USAGE, "ARG", "calibrate needs JOINT DEG, or neither");
@@ -170,7 +180,7 @@ static int run(app *a)
 const cli_command cmd_calibrate = {
     .name = "calibrate",
     COMMAND_ARGUMENTS("[JOINT DEG]", 0, 2, CLI_ARG_JOINT),
-    .summary = "tell servos where their middle is, or write trims",
+    .summary = "set the middle of servos, or write trims",
     .details =
         "Servos of Feetech (STS) and DYNAMIXEL (X) keep where their middle is. Press enter,\n"
         "and torque goes off; put every joint into the middle of its range and press enter,\n"

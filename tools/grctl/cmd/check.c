@@ -114,7 +114,7 @@ static int run(app *a)
     if (error) {
         return error;
     }
-    error = grobo_diagnostics_new(&list, NULL);
+    error = grobo_diagnostics_new(NULL, &list);
     if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
@@ -145,7 +145,7 @@ static int run(app *a)
 const cli_command cmd_check = {
     .name = "check",
     COMMAND_ARGUMENTS("FILE...", 1, -1, CLI_ARG_FILE),
-    .summary = "what is wrong with motion files",
+    .summary = "check motion files",
     .details =
         "Reads motion files (.m .pseq .mseq .yaml .seq) and says every problem with its\n"
         "line and column: what is malformed, angles outside a joint's limits, moves too\n"

@@ -3,7 +3,13 @@
 #ifndef GRCTL_COMMANDS_H
 #define GRCTL_COMMANDS_H
 
+#include <stdint.h>
+
 #include "tools/grctl/cli/cli.h"
+
+struct app;
+/* The robots of app.group, a line each, until a signal or q. The exit status. */
+int monitor_group(struct app *a, int64_t interval_us);
 
 /* In the order of the overview: finding a robot, its state, moving it, files, servos, the rest. */
 #define GRCTL_COMMANDS(X)                                                                          \

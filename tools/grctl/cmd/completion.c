@@ -71,13 +71,13 @@ static int run(app *a)
         }
         return EXIT_DONE;
     }
-    return app_fail(a, EXIT_USAGE, "ARG", "completion: '%s' is none of bash, zsh, fish", shell);
+    return app_fail(a, EXIT_USAGE, "ARG", "completion: '%s' is not one of bash, zsh, fish", shell);
 }
 
 const cli_command cmd_completion = {
     .name = "completion",
     COMMAND_ARGUMENTS("bash|zsh|fish", 1, 1, CLI_ARG_WORD),
-    .summary = "a script that completes command lines",
+    .summary = "print a script that completes command lines",
     .details = "Prints the script that makes a shell complete commands, options, joints, groups\n"
                "and files of grctl. 'make install' puts it where the shells look for it.\n",
     .example = "  source <(grctl completion bash)\n"

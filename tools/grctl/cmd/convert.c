@@ -80,7 +80,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const fi
     grobo_motion *copy = NULL;
     grobo_diagnostic first = {.code = "NOMEM"};
     char said[1024] = "";
-    int lost = grobo_diagnostics_new(&list, NULL);
+    int lost = grobo_diagnostics_new(NULL, &list);
     if (!lost) {
         lost = grobo_motion_read_memory(t->bytes ? t->bytes : "", t->size, &read, list, &copy);
     }
@@ -225,14 +225,13 @@ static int run(app *a)
                         "convert: --exact and --integers cannot be used together");
     }
     if (to == GROBO_FORMAT_AUTO) {
-        return app_fail(a, EXIT_USAGE, "ARG",
-                        "%s: its name tells no format; give --to " FILE_FORMATS, out);
+        return app_fail(a, EXIT_USAGE, "ARG", "%s: unknown file type; use --to " FILE_FORMATS, out);
     }
     int error = refuse_out(a, out, to);
     if (error) {
         return error;
     }
-    error = grobo_diagnostics_new(&list, NULL);
+    error = grobo_diagnostics_new(NULL, &list);
     if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }

@@ -188,7 +188,7 @@ static int run(app *a)
 const cli_command cmd_decode = {
     .name = "decode",
     COMMAND_ARGUMENTS("[HEX | FILE]", 0, -1, CLI_ARG_FILE),
-    .summary = "frames in words, from hex or a trace",
+    .summary = "explain frames, from hex or a trace",
     .details =
         "Says what bytes mean: frames of the board, packets to servos and from them, registers by\n"
         "name and in their units, whether the sum is right, what will be answered. --family says\n"

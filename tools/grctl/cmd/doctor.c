@@ -114,8 +114,8 @@ static bool check_reply(patient *p, const char *device)
         snprintf(fix, sizeof fix, "grctl -d %s --wiring %s ...", device,
                  wiring == GROBO_WIRING_BOARD ? "bus" : "board");
     }
-    checkup_found(&p->k, "reply", fix, "nobody answers as asked, but somebody does at %d bps%s",
-                  found_bps,
+    checkup_found(&p->k, "reply", fix,
+                  "no reply at the rate asked for, but there is one at %d bps%s", found_bps,
                   found_bps != asked_bps         ? ""
                   : wiring == GROBO_WIRING_BOARD ? _(", straight on the line")
                                                  : _(", through a board"));
@@ -276,7 +276,7 @@ static void check_servos(patient *p)
     }
     int32_t least_mv = grobo_robot_driver(p->c.robot)->limits.voltage_mv * 11 / 10;
     if (p->high_mv == 0) {
-        checkup_found(&p->k, "voltage", "", "these servos do not tell their voltage");
+        checkup_found(&p->k, "voltage", "", "these servos do not report their voltage");
     } else if (p->low_mv < least_mv) {
         checkup_found(&p->k, "voltage", "charge the battery",
                       "%.2f V at the servos: low; at %.1f V every motion is stopped",
@@ -380,7 +380,7 @@ static int run(app *a)
 const cli_command cmd_doctor = {
     .name = "doctor",
     .arguments = "",
-    .summary = "look for what is wrong, and say what mends it",
+    .summary = "find faults from the port to the last servo, suggest fixes",
     .details =
         "Looks at the port (is it there, may you open it, who holds it, is its latency timer\n"
         "short), asks for a reply (at other baud rates and wirings too when nobody answers), then\n"

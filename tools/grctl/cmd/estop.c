@@ -78,8 +78,7 @@ static int succeed(const target *t, const char *by)
     if (t->marked < 0) {
         return fail(t, t->marked, "%s: stopped%s and verified, but not kept so", t->device, by);
     }
-    snprintf(text, sizeof text, _("stopped%s and verified; 'grctl estop --reset' takes it back"),
-             by);
+    snprintf(text, sizeof text, _("stopped%s and verified; 'grctl estop --reset' releases it"), by);
     app_done(t->a, text);
     return EXIT_DONE;
 }
@@ -315,10 +314,10 @@ static int report_reset(app *a, const char *device, int error, const char *cause
     grobo_estop_holder holder;
     if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error),
-                        "%s: cannot take the emergency stop back: %s", device,
+                        "%s: cannot release the emergency stop: %s", device,
                         cause && *cause ? cause : app_error_text(error));
     }
-    app_done(a, "emergency stop taken back; torque stays as it is");
+    app_done(a, "emergency stop released; torque is unchanged");
     if (!a->link && grobo_estop_ask(device, NULL, &holder) == GROBO_OK &&
         holder.answer != GROBO_ESTOP_NOBODY) {
         app_note(a, "process %d, which has the port, stays stopped until it is reset or restarted",
@@ -371,7 +370,7 @@ static int run_estop(app *a)
 const cli_command cmd_estop = {
     .name = "estop",
     .arguments = "",
-    .summary = "emergency stop, verified",
+    .summary = "stop all joints at once, and verify it",
     .details =
         "Marks the device first: from then on every program of this library and this user\n"
         "refuses to move the robot (grctl with exit status 4), until --reset. Then brakes\n"

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+
+#include <event2/util.h>
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
@@ -17,6 +20,8 @@ enum {
     OPT_IF_LOST,
     OPT_ON_LOST,
     OPT_SPREAD,
+    OPT_AT,
+    OPT_WATCH,
     OPTIONS
 };
 
@@ -25,6 +30,9 @@ enum {
     READY_US = 35000000,
     STOPPED_US = 12000000,
     STATE_US = 400000,
+    BEFORE_US = 1500000, /* clocks are compared so long before a time that was told */
+    WATCH_US = 500000,
+    SILENT_US = 1500000,
     LEAD_US = 300000,
     TRIPS = 20 /* the start is at least so many round trips ahead */
 };
@@ -41,12 +49,58 @@ static const cli_option options[OPTIONS] = {
     [OPT_ON_LOST] = OPTION_CHOICE("on-link-lost", 0, "stop|finish|exit",
                                   "play: what robots do that hear no more of this command (stop)"),
     [OPT_SPREAD] = OPTION_REAL("spread", 0, "MS", 0.1, 1000, "play: begin within this time (5)"),
+    [OPT_AT] = OPTION_TEXT("at", 0, "HH:MM:SS", "play: begin at this time, by the clock here"),
+    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "status: again and again, until a signal"),
 };
 
 static bool never(const leader *l)
 {
     (void)l;
     return false;
+}
+
+/* ---- who is asked ---------------------------------------------------------------------------- */
+
+/* The groups that agents are of, for who mistyped one: ", a, b". */
+static bool name_groups(const leader *l, char *text, size_t capacity)
+{
+    size_t at = 0, k;
+    json_t *one, *groups = json_object();
+    const char *name;
+    for (int i = 0; i < l->n; i++) {
+        json_array_foreach(json_object_get(l->peers[i].facts, "groups"), k, one)
+        {
+            if (json_is_string(one) && fleet_is_name(json_string_value(one))) {
+                json_object_set_new(groups, json_string_value(one), json_null());
+            }
+        }
+    }
+    bool known = json_object_get(groups, l->group) != NULL;
+    *text = '\0';
+    json_object_foreach(groups, name, one)
+    {
+        if (at + strlen(name) + sizeof ", " < capacity) {
+            at += (size_t)snprintf(text + at, capacity - at, ", %s", name);
+        }
+    }
+    json_decref(groups);
+    return known;
+}
+
+/* Nobody is there to be asked; what follows from that. */
+static int fail_nobody(const leader *l, const char *so)
+{
+    char groups[512];
+    if (!name_groups(l, groups, sizeof groups) && *groups) {
+        return app_fail(l->a, EXIT_ROBOT, "NOTFOUND",
+                        "fleet: no agent is of group %s; there are %s%s", l->group,
+                        groups + strlen(", "), so);
+    }
+    return l->host
+               ? app_fail(l->a, EXIT_ROBOT, "NOTFOUND",
+                          "fleet: no agent of group %s at %s is online%s", l->group, l->host, so)
+               : app_fail(l->a, EXIT_ROBOT, "NOTFOUND", "fleet: no agent of group %s is online%s",
+                          l->group, so);
 }
 
 /* ---- answers --------------------------------------------------------------------------------- */
@@ -76,6 +130,13 @@ static int order(leader *l, const char *verb, json_t *body, int64_t bound_us)
 
 /* ---- list and status ------------------------------------------------------------------------- */
 
+/* Is it asked for? Nobody knows of which groups one is that never said it. */
+static bool is_shown(const leader *l, const peer *p)
+{
+    return *p->state && (leader_has(l, p) || (!p->facts && strcmp(l->group, FLEET_ALL) == 0 &&
+                                              (!l->host || strcmp(l->host, p->host) == 0)));
+}
+
 static void list_one(const leader *l, const peer *p)
 {
     size_t i;
@@ -100,38 +161,55 @@ static int run_list(leader *l)
         app_print("host                  connection        robot             model\n");
     }
     for (int i = 0; i < l->n; i++) {
-        if (*l->peers[i].state) {
+        if (is_shown(l, &l->peers[i])) {
             list_one(l, &l->peers[i]);
         }
     }
     return EXIT_DONE;
 }
 
-static int run_status(leader *l)
+static void show_status(const leader *l)
 {
-    leader_listen(l, "state");
-    (void)leader_wait(l, STATE_US, never);
     if (!l->a->json) {
-        app_print("host                  robot             line  play          trip\n");
+        if (l->a->tty_out && app_option(l->a, OPT_WATCH)->given) {
+            app_print("\033[H\033[J");
+        }
+        app_print("host                  robot             line    play          trip\n");
     }
     for (int i = 0; i < l->n; i++) {
         const peer *p = &l->peers[i];
         const char *name;
         json_t *state;
-        json_object_foreach(p->states, name, state)
+        json_object_foreach(is_shown(l, p) ? p->states : NULL, name, state)
         {
             const char *play = fleet_text(state, "play"), *trip = fleet_text(state, "trip");
-            bool up = json_is_true(json_object_get(state, "up"));
+            int64_t age_us = grobo_now_us() - fleet_number(state, "heard_us", 0);
+            bool silent = age_us > SILENT_US, up = json_is_true(json_object_get(state, "up"));
             if (l->a->json) {
                 app_print_json(json_pack("{s:s,s:s,s:b,s:s?,s:s?}", "host", p->host, "robot", name,
-                                         "up", up, "play", play, "trip", trip));
+                                         "up", up && !silent, "play", play, "trip", trip));
             } else {
-                app_print("%-20s  %-16s  %-4s  %-12s  %s\n", p->host, name, up ? "up" : "down",
+                app_print("%-20s  %-16s  %-6s  %-12s  %s\n", p->host, name,
+                          silent ? "silent"
+                          : up   ? "up"
+                                 : "down",
                           play ? play : "-", trip ? trip : "-");
             }
         }
     }
-    return EXIT_DONE;
+}
+
+static int run_status(leader *l)
+{
+    bool watches = app_option(l->a, OPT_WATCH)->given > 0;
+    leader_listen(l, "state");
+    (void)leader_wait(l, STATE_US, never);
+    show_status(l);
+    while (watches && output_flush() && !l->link.signal) {
+        (void)leader_wait(l, WATCH_US, never);
+        show_status(l);
+    }
+    return watches && l->link.signal ? EXIT_SIGNAL + l->link.signal : EXIT_DONE;
 }
 
 /* ---- stops ----------------------------------------------------------------------------------- */
@@ -180,14 +258,20 @@ static int say_stopped(leader *l)
         }
     }
     if (!status) {
-        app_done(l->a, "all stopped; 'grctl fleet reset' takes it back");
+        app_done(l->a, "all stopped; 'grctl fleet reset' releases the stop");
     }
     return status;
 }
 
+/* Said in any case, for agents that are not seen; but then nobody was seen to stop. */
 static int stop(leader *l, const char *how)
 {
+    int n = leader_choose(l);
     (void)leader_latch(l, how);
+    if (n == 0) {
+        (void)leader_wait(l, STATE_US, never); /* until it is out */
+        return fail_nobody(l, _(": nothing was seen to stop; use the switches"));
+    }
     (void)leader_wait(l, STOPPED_US, all_told);
     return say_stopped(l);
 }
@@ -207,9 +291,12 @@ static int run_reset(leader *l)
 {
     (void)leader_latch(l, NULL);
     (void)leader_wait(l, STATE_US, never);
+    if (leader_choose(l) == 0) {
+        return fail_nobody(l, "");
+    }
     int status = order(l, "reset", json_object(), ANSWER_US);
     if (!status) {
-        app_done(l->a, "taken back; nothing moves");
+        app_done(l->a, "released; nothing moves");
     }
     return status;
 }
@@ -259,6 +346,16 @@ static int run_push(leader *l)
 
 /* ---- play ------------------------------------------------------------------------------------ */
 
+static bool any_ended(const leader *l)
+{
+    for (int i = 0; i < l->n; i++) {
+        if (l->peers[i].chosen && l->peers[i].ended) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool all_ended(const leader *l)
 {
     for (int i = 0; i < l->n; i++) {
@@ -269,15 +366,41 @@ static bool all_ended(const leader *l)
     return true;
 }
 
-static json_t *motion_of(const leader *l)
+/* "HH:MM[:SS]", the next one, by the clock of who leads: as an instant. False: it is none. */
+static bool read_time(const char *text, int64_t *at_us)
+{
+    int h, m, s = 0, n = 0;
+    struct timeval now;
+    if ((sscanf(text, "%2d:%2d%n:%2d%n", &h, &m, &n, &s, &n) < 2) || text[n] || h < 0 || h > 23 ||
+        m < 0 || m > 59 || s < 0 || s > 59) {
+        return false;
+    }
+    evutil_gettimeofday(&now, NULL);
+    time_t clock = now.tv_sec;
+    struct tm day = *localtime(&clock);
+    day.tm_hour = h;
+    day.tm_min = m;
+    day.tm_sec = s;
+    day.tm_isdst = -1;
+    clock = mktime(&day);
+    if (clock < now.tv_sec) {
+        day.tm_mday++;
+        day.tm_isdst = -1;
+        clock = mktime(&day);
+    }
+    *at_us = grobo_now_us() + (int64_t)(clock - now.tv_sec) * 1000000 - now.tv_usec;
+    return true;
+}
+
+static json_t *motion_of(const leader *l, const char *path)
 {
     static const char *const lost[] = {"stop", "pause", "continue"};
     static const char *const on_lost[] = {"stop", "finish", "exit"};
     const app *a = l->a;
     return json_pack(
-        "{s:s,s:s,s:i,s:i,s:b,s:s,s:s,s:I}", "group", l->group, "file",
-        name_of_file(a->line.argument[1]), "speed_pct", (int)app_number(a, OPT_SPEED, 100),
-        "repeat", (int)app_number(a, OPT_REPEAT, 1), "mirror", app_option(a, OPT_MIRROR)->given > 0,
+        "{s:s,s:s,s:i,s:i,s:b,s:s,s:s,s:I}", "group", l->group, "file", name_of_file(path),
+        "speed_pct", (int)app_number(a, OPT_SPEED, 100), "repeat",
+        (int)app_number(a, OPT_REPEAT, 1), "mirror", app_option(a, OPT_MIRROR)->given > 0,
         "if_lost", lost[app_option(a, OPT_IF_LOST)->given ? app_option(a, OPT_IF_LOST)->choice : 0],
         "on_link_lost",
         on_lost[app_option(a, OPT_ON_LOST)->given ? app_option(a, OPT_ON_LOST)->choice : 0],
@@ -334,31 +457,42 @@ static int call_off(leader *l, int status)
     return status;
 }
 
-static int run_play(leader *l)
+/* All stand at the first posture: until just before the time. */
+static void wait_for_time(leader *l, int64_t at_us)
 {
-    if (l->a->line.n_arguments != 2) {
-        return app_fail(l->a, EXIT_USAGE, "ARG", "fleet play: one file of the agents' folders");
+    int64_t rest_us = at_us - grobo_now_us() - BEFORE_US;
+    if (rest_us > 0) {
+        app_note(l->a, "all are ready; they begin in %.1f s", (double)(rest_us + BEFORE_US) / 1e6);
+        (void)leader_wait(l, rest_us, any_ended);
     }
-    l->permits = true;
-    int status = order(l, "prepare", motion_of(l), READY_US);
-    int signal = l->link.signal;
-    if ((status || signal) && !l->lost) {
-        return call_off(l, signal ? EXIT_SIGNAL + signal : status);
-    }
+}
+
+/* They stand and wait: tells them one time, 0: as soon as all hear of it. */
+static int set_off(leader *l, int64_t at_us)
+{
     /* The answers to `prepare` waited for robots: a round trip is measured by another order. */
     leader_order(l, "ping", json_object());
     (void)leader_wait(l, ANSWER_US, leader_answered);
     int64_t ahead_us = TRIPS * slowest_us(l) > LEAD_US ? TRIPS * slowest_us(l) : LEAD_US;
-    status = order(l, "start", json_pack("{s:I}", "at_us", (json_int_t)(grobo_now_us() + ahead_us)),
-                   ANSWER_US);
-    if (status) {
-        return call_off(l, status);
+    int64_t soonest_us = grobo_now_us() + ahead_us;
+    if (at_us && at_us < soonest_us) {
+        return app_fail(l->a, EXIT_ROBOT, "STALE", "fleet: that time is over");
     }
-    app_note(l->a, "all begin in %.1f s", (double)ahead_us / 1e6);
+    at_us = at_us ? at_us : soonest_us;
+    int status = order(l, "start", json_pack("{s:I}", "at_us", (json_int_t)at_us), ANSWER_US);
+    if (!status) {
+        app_note(l->a, "all begin in %.1f s", (double)(at_us - grobo_now_us()) / 1e6);
+    }
+    return status;
+}
+
+/* To the end of what they play. */
+static int see_through(leader *l)
+{
     while (!leader_wait(l, 3600000000, all_ended) && !l->link.signal && !l->lost) {
         continue;
     }
-    signal = l->link.signal;
+    int signal = l->link.signal;
     if (signal) {
         (void)call_off(l, 0);
         (void)leader_wait(l, ANSWER_US, all_ended);
@@ -367,8 +501,43 @@ static int run_play(leader *l)
         return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE",
                         "fleet: the broker went away: the robots do as --on-link-lost says");
     }
-    status = say_ended(l);
+    int status = say_ended(l);
     return signal ? EXIT_SIGNAL + signal : status;
+}
+
+/* at_us: when they are to begin, 0: as soon as all are ready. */
+static int play(leader *l, const char *path, int64_t at_us)
+{
+    int status = order(l, "prepare", motion_of(l, path), READY_US);
+    if (at_us && !status && !l->link.signal && !l->lost) {
+        wait_for_time(l, at_us);
+    }
+    int signal = l->link.signal;
+    if ((status || signal) && !l->lost) {
+        return call_off(l, signal ? EXIT_SIGNAL + signal : status);
+    }
+    status = set_off(l, at_us);
+    return status ? call_off(l, status) : see_through(l);
+}
+
+/* One after the other; the time is that of the first. */
+static int run_play(leader *l)
+{
+    const cli_value *time = app_option(l->a, OPT_AT);
+    int64_t at_us = 0;
+    int status = EXIT_DONE;
+    if (l->a->line.n_arguments < 2) {
+        return app_fail(l->a, EXIT_USAGE, "ARG", "fleet play: a file of the agents' folders");
+    }
+    if (time->given && !read_time(time->text, &at_us)) {
+        return app_fail(l->a, EXIT_USAGE, "ARG", "--at '%s': HH:MM or HH:MM:SS is wanted",
+                        time->text);
+    }
+    l->permits = true;
+    for (int i = 1; i < l->a->line.n_arguments && !status; i++) {
+        status = play(l, l->a->line.argument[i], i == 1 ? at_us : 0);
+    }
+    return status;
 }
 
 /* ---- log ------------------------------------------------------------------------------------- */
@@ -433,10 +602,7 @@ static int run(app *a)
                           host->given ? host->text : NULL);
     if (!status) {
         int n = leader_choose(&l);
-        status = verbs[v].asks && n == 0
-                     ? app_fail(a, EXIT_ROBOT, "NOTFOUND", "fleet: no agent of group %s is online",
-                                l.group)
-                     : verbs[v].run(&l);
+        status = verbs[v].asks && n == 0 ? fail_nobody(&l, "") : verbs[v].run(&l);
     }
     leader_end(&l);
     return status;
@@ -451,11 +617,12 @@ const cli_command cmd_fleet = {
         "\n"
         "  list, status, log  who is there; how robots are; what happens, until Ctrl-C\n"
         "  push FILE...       puts motions into the folders of the agents\n"
-        "  play FILE          all prepare, wait for each other, and begin at one time;\n"
-        "                     FILE is a name in the folders of the agents\n"
+        "  play FILE...       all prepare, wait for each other, and begin at one time;\n"
+        "                     names in the folders of the agents, played in turn\n"
         "  stop, estop        a stop of the group that stands until 'reset': softly, or\n"
-        "                     as an emergency stop that is read back joint by joint\n"
-        "  reset              takes that back; nothing moves\n"
+        "                     as an emergency stop that is read back joint by joint;\n"
+        "                     always of the whole group, whatever --host says\n"
+        "  reset              releases the stop; nothing moves\n"
         "\n"
         "A stop over a network is a convenience and no safety function: it may come late or\n"
         "never. Keep the switches within reach.\n",

@@ -157,7 +157,7 @@ static int run(app *a)
 const cli_command cmd_help = {
     .name = "help",
     COMMAND_ARGUMENTS("[COMMAND]", 0, 1, CLI_ARG_COMMAND),
-    .summary = "what grctl can do, or what a command does",
+    .summary = "list the commands, or explain one",
     .details = "Prints the list of commands, or everything about one of them. In a shell it knows\n"
                "the letters and words of the shell too, also by their first letters.\n",
     .example = "  grctl help play\n  grctl help --man | man -l -\n",

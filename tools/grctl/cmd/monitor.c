@@ -13,7 +13,14 @@
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/screen/screen.h"
 
-enum { DRAW_US = 50000, SENSE_US = 300000, NUDGE_MS = 300, INIT_MS = 3000, GROUP_KEYS = 8 };
+enum {
+    DRAW_US = 50000,
+    SENSE_US = 300000,
+    NUDGE_MS = 300,
+    INIT_MS = 3000,
+    GROUP_KEYS = 8,
+    GROUP_US = 500000
+};
 
 __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, const char *format, ...)
 {
@@ -52,7 +59,7 @@ static bool may_move(monitor *m)
     if (!grobo_estop_stands(conn_device(&m->c))) {
         return true;
     }
-    say(m, true, "an emergency stop stands: R takes it back");
+    say(m, true, "an emergency stop stands: R releases it");
     return false;
 }
 
@@ -194,7 +201,7 @@ static void start_play(monitor *m)
 static void reset(monitor *m)
 {
     int error = grobo_robot_reset(grobo_session_robot(m->c.session));
-    say_request(m, error, "stop taken back; nothing moves by itself");
+    say_request(m, error, "stop released; nothing moves by itself");
     m->c.trip = (grobo_trip_info){0};
 }
 
@@ -437,6 +444,13 @@ static int run_plain(app *a)
 static int run(app *a)
 {
     static monitor m;
+    if (a->group && a->line.n_arguments) {
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "monitor: a group is watched; to play, grctl -d %s play", a->group->name);
+    }
+    if (a->group) {
+        return monitor_group(a, GROUP_US);
+    }
     memset(&m, 0, sizeof m);
     int status = a->line.n_arguments ? playlist_load(&m.list, a) : EXIT_DONE;
     if (!status && (a->json || !screen_possible())) {
@@ -457,7 +471,7 @@ static int run(app *a)
 const cli_command cmd_monitor = {
     .name = "monitor",
     COMMAND_ARGUMENTS("[FILE]...", 0, -1, CLI_ARG_FILE),
-    .summary = "full-screen live view, with keys",
+    .summary = "show all joints live on the full screen, with keys",
     .details =
         "Shows all joints between their limits, their torque, temperature and current, the\n"
         "battery and the line, 20 times a second. Nothing moves until a key says so. A line that\n"
@@ -467,10 +481,14 @@ const cli_command cmd_monitor = {
         "  t, b     torque on or off; brake\n"
         "  [ ]      one degree down, up; { } five\n"
         "  i        to the initial posture\n"
-        "  p        play the files\n" PLAY_KEYS_HELP "  R        take a stop back\n"
+        "  p        play the files\n" PLAY_KEYS_HELP "  R        release a stop\n"
         "  q        quit; what moves is stopped first\n"
+        "\n"
+        "Of a group (-d stage) each robot has a line; the keys are e, an emergency stop of all,\n"
+        "and q.\n"
         "\n"
         "Without a terminal that can show it (or with --json) it is 'status --watch'.\n",
     .example = "  grctl monitor\n  grctl -d sim monitor motions/greet.pseq\n",
+    .group = CLI_GROUP_TOGETHER,
     .run = run,
 };

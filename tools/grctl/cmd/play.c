@@ -257,7 +257,7 @@ static int after_estop(conn *c, int error)
         return conn_fail(c, error, "estop");
     }
     return app_fail_trip(c->a, GROBO_TRIP_ESTOP,
-                         "play: emergency stop; 'grctl estop --reset' takes it back");
+                         "play: emergency stop; 'grctl estop --reset' releases it");
 }
 
 /* Plays to the end, then reads where the joints are. */
@@ -289,20 +289,6 @@ static int play(conn *c, show *s)
     return EXIT_DONE;
 }
 
-/* Increments count from where the robot is: sense first. */
-static int prepare(conn *c, show *s)
-{
-    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
-    grobo_posture sensed;
-    int error =
-        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
-    if (error) {
-        return conn_fail(c, error, "play");
-    }
-    grobo_robot_posture(c->robot, GROBO_NEVER_US, &sensed);
-    return playlist_prepare(&s->list, c->a, &sensed);
-}
-
 static int run(app *a)
 {
     static show s;
@@ -320,7 +306,7 @@ static int run(app *a)
         c.ctx = &s;
         c.on_event = on_event;
         if (!status) {
-            status = prepare(&c, &s);
+            status = playlist_prepare_sensed(&s.list, &c);
         }
         if (!status) {
             c.moving = true;

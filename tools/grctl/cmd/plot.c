@@ -253,7 +253,7 @@ static int run(app *a)
 const cli_command cmd_plot = {
     .name = "plot",
     COMMAND_ARGUMENTS("FILE", 1, 1, CLI_ARG_FILE),
-    .summary = "a picture of a motion file: angle over time",
+    .summary = "draw a motion file: angle over time",
     .details =
         "Draws every joint of a motion over time, as it is played: key poses by Choreonoid's\n"
         "curve with legs from ikLinks, .m and .mseq straight from posture to posture, frames as\n"

@@ -94,7 +94,7 @@ static int run(app *a)
 const cli_command cmd_ports = {
     .name = "ports",
     .arguments = "",
-    .summary = "the serial ports of this machine",
+    .summary = "list the serial ports of this machine",
     .details = "Lists every serial port: its path, the name under /dev/serial/by-id that stays\n"
                "when it is plugged in elsewhere, its USB ids, who holds it and whether it may be\n"
                "opened. No port is opened for it.\n",

@@ -227,7 +227,7 @@ static int make_clip(recorder *r)
 {
     grobo_motion *copy;
     int error =
-        grobo_motion_new(&copy, GROBO_MOTION_POSTURES, grobo_motion_joints(r->motion), NULL);
+        grobo_motion_new(GROBO_MOTION_POSTURES, grobo_motion_joints(r->motion), NULL, &copy);
     if (error < 0) {
         return error;
     }
@@ -569,8 +569,8 @@ static int prepare(recorder *r, app *a)
     r->last_moved = -1;
     if (out && grobo_motion_format_of_path(out) == GROBO_FORMAT_AUTO) {
         return app_fail(a, EXIT_USAGE, "ARG",
-                        "%s: -o %s: its name tells no format; .m, .pseq, .mseq or .yaml",
-                        name_of(r), out);
+                        "%s: -o %s: unknown file type; use .m, .pseq, .mseq or .yaml", name_of(r),
+                        out);
     }
     int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &r->joints);
     if (!status) {
@@ -579,7 +579,7 @@ static int prepare(recorder *r, app *a)
     if (status) {
         return status;
     }
-    if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, app_model(a)->n_joints, NULL) < 0) {
+    if (grobo_motion_new(GROBO_MOTION_POSTURES, app_model(a)->n_joints, NULL, &r->motion) < 0) {
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "%s", name_of(r));
     }
     return 0;
@@ -619,7 +619,7 @@ static int run_teach(app *a)
 const cli_command cmd_record = {
     .name = "record",
     COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
-    .summary = "record a motion that a hand shows",
+    .summary = "record a motion by moving the robot by hand",
     .details =
         "All joints, or those named, give way to a hand that turns them and hold when it lets go.\n"
         "A joint without torque stays so: it is limp and nothing is switched on. --limp switches\n"
@@ -638,10 +638,13 @@ const cli_command cmd_record = {
         "  space   keep the posture as it is now\n"
         "  d       drop the last one\n"
         "  s, q    save and end\n"
+        "\n"
+        "Of a group (-d stage) the first robot leads: its motion is recorded.\n"
         "\n" ENDS_HELP,
     .example = "  grctl record\n  grctl record --key -o wave.pseq right_arm\n"
                "  grctl record --limp arms\n",
     COMMAND_OPTIONS(options),
+    .group = CLI_GROUP_FIRST,
     .run = run_record,
 };
 
@@ -666,5 +669,6 @@ const cli_command cmd_teach = {
     .example = "  grctl teach\n  grctl teach -o wave.pseq right_arm\n",
     .options = options,
     .n_options = TEACH_OPTIONS,
+    .group = CLI_GROUP_FIRST,
     .run = run_teach,
 };

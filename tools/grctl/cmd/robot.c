@@ -143,7 +143,7 @@ static int run_check(app *a, const char *path)
     grobo_diagnostics *list = NULL;
     grobo_robot_def *def = NULL;
     grobo_diagnostic d;
-    int error = grobo_diagnostics_new(&list, NULL);
+    int error = grobo_diagnostics_new(NULL, &list);
     if (!error) {
         error = robot_read(path, list, &def);
     }
@@ -170,7 +170,7 @@ static int run_check(app *a, const char *path)
 static void list_servos(const app *a, const grobo_robot_family *family, json_t *list)
 {
     const grobo_servo_table *table;
-    for (size_t i = 0; (table = family_table(family, i)) != NULL; i++) {
+    for (size_t i = 0; (table = family->tables[i]) != NULL; i++) {
         for (int m = 0; m < table->model_count; m++) {
             const grobo_servo_model *servo = &table->models[m];
             if (!a->json) {
@@ -240,7 +240,7 @@ static int run(app *a)
 const cli_command cmd_robot = {
     .name = "robot",
     COMMAND_ARGUMENTS("list|show|check|servos|import|new [NAME|FILE]", 1, 2, CLI_ARG_ROBOT),
-    .summary = "robots that are known, and files of others",
+    .summary = "list known robots, write and check files of others",
     .details =
         "list: the robots that come with grctl. show: what one of them is, or a file says, or the\n"
         "robot of --robot. check: everything that is wrong with a file, with line and column; the\n"

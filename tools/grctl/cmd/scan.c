@@ -345,7 +345,7 @@ static int run_info(app *a)
 const cli_command cmd_scan = {
     .name = "scan",
     .arguments = "",
-    .summary = "which servo ids answer",
+    .summary = "find the servo ids that answer",
     .details =
         "Asks every id for its model and prints those that answer, however late. A silent\n"
         "id costs 4 ms beside the wire's time. Where something comes late or broken, or\n"
@@ -364,7 +364,7 @@ const cli_command cmd_scan = {
 const cli_command cmd_info = {
     .name = "info",
     .arguments = "",
-    .summary = "the board, the servos' models and firmware",
+    .summary = "print models and firmware of the board and the servos",
     .details = "Prints how the robot is reached and what each of its servos is. A servo that does\n"
                "not answer is named and makes the exit status 1. Nothing moves.\n",
     .run = run_info,

@@ -44,7 +44,7 @@ static int run(app *a)
 const cli_command cmd_serve = {
     .name = "serve",
     COMMAND_ARGUMENTS("[DIR]", 0, 1, CLI_ARG_FILE),
-    .summary = "the cockpit: see and move the robot in a browser",
+    .summary = "serve the cockpit: see and move the robot in a browser",
     .details =
         "Prints a link: its page shows the robot in 3-D, live, plays the motions of DIR (the\n"
         "present directory), edits poses, and has a STOP that is always visible. Nothing moves\n"

@@ -66,7 +66,7 @@ static int run(app *a)
     grobo_torque mode;
     const char *word = a->line.argument[0];
     if (!parse_mode(word, &mode)) {
-        return app_fail(a, EXIT_USAGE, "ARG", "servo: '%s' is none of on, off, brake", word);
+        return app_fail(a, EXIT_USAGE, "ARG", "servo: '%s' is not one of on, off, brake", word);
     }
     int status = joints_parse_all(a, a->line.n_arguments - 1, a->line.argument + 1, &joints);
     if (status) {

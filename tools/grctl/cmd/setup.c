@@ -16,13 +16,13 @@ static int run(app *a)
 const cli_command cmd_setup = {
     .name = "setup",
     .arguments = "",
-    .summary = "find a robot and give it a name: for the first time",
+    .summary = "find a robot, name it and read its joints",
     .details =
         "Asks its way through: finds the adapter, and says what mends it where it may not be\n"
         "opened; looks who answers; takes the robot of grctl that has these servos, or writes a\n"
         "file of them; names it in ~/.config/grctl/config.yaml; reads its joints once; and\n"
         "offers to calibrate it. Nothing moves, and nothing is done as root. Each step says what\n"
-        "it has changed; --undo takes it back, the configuration and a robot's file, unless they\n"
+        "it has changed; --undo undoes it, the configuration and a robot's file, unless they\n"
         "have changed since. -d sim shows how it goes.\n"
         "\n"
         "It needs a terminal. With --yes the answers are lines of standard input, and what is\n"

@@ -224,7 +224,7 @@ static int run(app *a)
 const cli_command cmd_shell = {
     .name = "shell",
     COMMAND_ARGUMENTS("[FILE]", 0, 1, CLI_ARG_FILE),
-    .summary = "many commands over one connection, typed or from a script",
+    .summary = "run many commands over one connection, typed or from a script",
     .details = shell_details,
     .more = shell_words,
     .example = "  grctl shell\n  printf 'init\\nm R_ELBOW_P -45\\n' | grctl -d sim shell\n"

@@ -219,7 +219,7 @@ static int run(app *a)
 const cli_command cmd_show = {
     .name = "show",
     COMMAND_ARGUMENTS("FILE", 1, 1, CLI_ARG_FILE),
-    .summary = "a motion file as a table of angles",
+    .summary = "print a motion file as a table of angles",
     .details = "Prints every posture of a motion file: its time in milliseconds and the angles of\n"
                "its joints in degrees; a dot for a joint that the posture leaves alone. On a\n"
                "terminal rows are split where they do not fit, and angles outside a joint's\n"

@@ -89,8 +89,8 @@ typedef struct farm {
 } farm;
 
 /* A trace is told as the host sees it: what the robot receives, the host has sent. */
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     watched *w = ctx;
     if (direction == GROBO_DIR_RX) {
@@ -100,7 +100,7 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
                 size);
 }
 
-static void on_sim(const grobo_sim_event *event, void *ctx)
+static void on_sim(void *ctx, const grobo_sim_event *event)
 {
     watched *w = ctx;
     sim_strict_event(&w->strict, event);
@@ -144,8 +144,8 @@ static grobo_sim_config sim_config(const farm *f, int robot)
             GROBO_SIM_CONFIG_INIT,
             .model = f->model,
             .wiring = wiring->given ? (grobo_wiring)wiring->choice : GROBO_WIRING_BUS,
-            .servos = f->chain.only_rs30x ? NULL : f->chain.servos,
-            .families = f->chain.families,
+            .servos = f->chain.servos,
+            .families = config.families,
             .baud_bps = baud->given ? (uint32_t)baud->number : 0,
         };
     }
@@ -159,17 +159,23 @@ static grobo_sim_config sim_config(const farm *f, int robot)
     return config;
 }
 
-/* How the servos talk, where all are of one family that is not RS30x; else NULL. */
-static const dialect *dialect_of(const farm *f)
+/* The table of all servos; NULL: they are of several. */
+static const grobo_servo_table *table_of(const farm *f)
 {
     const grobo_sim_config config = sim_config(f, 0);
-    const grobo_servo_model *first = config.servos ? config.servos[0] : NULL;
-    for (int i = 0; first && i < config.model->n_joints; i++) {
-        if (!config.servos[i] || config.servos[i]->table != first->table) {
+    for (int i = 1; i < config.model->n_joints; i++) {
+        if (config.servos[i]->table != config.servos[0]->table) {
             return NULL;
         }
     }
-    return dialect_of_servo(first);
+    return config.servos[0]->table;
+}
+
+/* How the servos talk, where all are of one family that is not RS30x; else NULL. */
+static const dialect *dialect_of(const farm *f)
+{
+    const grobo_servo_table *table = table_of(f);
+    return table ? dialect_of_servo(&table->models[0]) : NULL;
 }
 
 static int open_trace(farm *f, int robot)
@@ -269,7 +275,7 @@ static int add_robot(farm *f, int robot)
     if (faults &&
         grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0) {
         return app_fail(f->a, EXIT_USAGE, "ARG",
-                        "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02; see "
+                        "sim: --fault: '%s' is not a list such as drop=0.01,flip=0.02; see "
                         "'grctl help sim'",
                         faults);
     }
@@ -359,7 +365,7 @@ static int serve(farm *f)
 static int check_families(const farm *f)
 {
     const app *a = f->a;
-    if (app_option(a, OPT_SERVO)->given ? f->chain.only_rs30x : !f->robot.config.servos) {
+    if (table_of(f) == &grobo_rs30x_table) {
         return 0;
     }
     if (app_option(a, OPT_STRICT)->given && !dialect_of(f)) {
@@ -411,7 +417,7 @@ static int run(app *a)
 const cli_command cmd_sim = {
     .name = "sim",
     .arguments = "",
-    .summary = "a simulated robot behind a pty, for any program",
+    .summary = "simulate a robot behind a pty, for any program",
     .details =
         "Runs a simulated robot (GR001, or that of --robot), or a chain of servos, until a\n"
         "signal. Prints the path of its pty, one line a robot, when it can be opened; where\n"

@@ -55,9 +55,18 @@ static int watch(conn *c, grobo_joint_mask joints)
     return slept < 0 && c->link_error ? conn_fail(c, c->link_error, "status") : status;
 }
 
+/* Each robot by itself says what it has when it ends. */
+static bool goes_on(const app *a)
+{
+    return app_option(a, OPT_WATCH)->given > 0;
+}
+
 static int run(app *a)
 {
     conn c;
+    if (a->group) {
+        return monitor_group(a, (int64_t)app_number(a, OPT_INTERVAL, 1000) * 1000);
+    }
     grobo_joint_mask joints;
     int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &joints);
     if (status) {
@@ -73,7 +82,7 @@ static int run(app *a)
 const cli_command cmd_status = {
     .name = "status",
     COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
-    .summary = "angle, torque, current, temperature and voltage of the joints",
+    .summary = "print angle, torque, current, temperature, voltage of joints",
     .details = "Reads every joint, or those named, and prints what it reports. A joint that does\n"
                "not answer is shown with the reason and makes the exit status 1; the others are\n"
                "shown all the same. Nothing moves.\n",
@@ -81,5 +90,6 @@ const cli_command cmd_status = {
                "  grctl status --watch --interval 200\n",
     COMMAND_OPTIONS(options),
     .group = CLI_GROUP_EACH,
+    .goes_on = goes_on,
     .run = run,
 };

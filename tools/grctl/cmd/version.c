@@ -17,7 +17,7 @@ static int run(app *a)
 const cli_command cmd_version = {
     .name = "version",
     .arguments = "",
-    .summary = "the version",
+    .summary = "print the version",
     .details = "Prints the version of grctl and its library.\n",
     .run = run,
 };

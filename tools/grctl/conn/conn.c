@@ -29,7 +29,7 @@ bool conn_is_auto(const app *a)
 
 /* ---- what comes from the loop --------------------------------------------------------------- */
 
-static void on_session(grobo_session *session, grobo_session_event event, int error, void *ctx)
+static void on_session(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
     conn_link *link = ctx;
     (void)session;
@@ -49,7 +49,7 @@ static void on_session(grobo_session *session, grobo_session_event event, int er
     case GROBO_SESSION_EVENT_UNGUARDED:
         if (link->user) {
             app_note(link->user->a,
-                     "the guard has ended: if grctl is killed, joints go on to their goals");
+                     "the guard has ended: if grctl is killed, joints continue to their goals");
         }
         break;
     }
@@ -90,8 +90,8 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
     conn_link *link = ctx;
     conn *c = link->user;
@@ -659,7 +659,7 @@ int conn_open_to_move(conn *c, app *a)
     conn_watch(c, true);
     if (grobo_estop_stands(conn_device(c))) {
         return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LATCHED),
-                        "%s: stopped by 'grctl estop'; 'grctl estop --reset' takes it back",
+                        "%s: stopped by 'grctl estop'; 'grctl estop --reset' releases it",
                         conn_device(c));
     }
     return EXIT_DONE;

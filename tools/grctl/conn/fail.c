@@ -27,7 +27,7 @@ static void show_bytes(conn *c, char direction, int64_t at_us, const uint8_t *by
     if (!c->shown_us) {
         c->shown_us = at_us;
     }
-    grobo_hex(text, sizeof text, bytes, size);
+    grobo_hex(bytes, size, text, sizeof text);
     output_complain("%10.3f  %c  %s\n", (double)(at_us - c->shown_us) / 1e3, direction, text);
 }
 

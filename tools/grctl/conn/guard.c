@@ -107,7 +107,7 @@ void guard_start(const app *a, const char *device, grobo_guard **guard)
         app_detail(a, "guarded by process %d", grobo_guard_pid(*guard));
     }
     if (error && error != GROBO_ERR_UNSUPPORTED) {
-        app_note(a, "no guard: %s; if grctl is killed, joints go on to their goals",
+        app_note(a, "no guard: %s; if grctl is killed, joints continue to their goals",
                  app_error_text(error));
     }
 }

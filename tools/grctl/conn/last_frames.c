@@ -84,10 +84,10 @@ last_try last_frames_to(const last_frames *all, const grobo_protocol *protocol, 
 void last_frames_text(const last_frame *frame, char *text, size_t capacity)
 {
     char sent[3 * LAST_FRAME_BYTES + 1], got[3 * LAST_FRAME_BYTES + 1];
-    if (grobo_hex(sent, sizeof sent, frame->sent, frame->n_sent) < 0) {
+    if (grobo_hex(frame->sent, frame->n_sent, sent, sizeof sent) < 0) {
         sent[0] = '\0';
     }
-    if (frame->n_got == 0 || grobo_hex(got, sizeof got, frame->got, frame->n_got) < 0) {
+    if (frame->n_got == 0 || grobo_hex(frame->got, frame->n_got, got, sizeof got) < 0) {
         snprintf(got, sizeof got, _("nothing"));
     }
     snprintf(text, capacity, _("sent %s; received %s"), sent, got);

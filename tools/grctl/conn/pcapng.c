@@ -472,7 +472,7 @@ int pcapng_read(pcapng_reader *reader, pcapng_chunk *chunk)
         if (got == sizeof head && pcapng_is_start(head)) {
             found = read_section(reader, head + 4);
         } else if (!reader->begun) {
-            return fail(reader, GROBO_ERR_TYPE, "is no pcapng file");
+            return fail(reader, GROBO_ERR_TYPE, "is not a pcapng file");
         } else if (got < sizeof head) {
             return fail(reader, GROBO_ERR_SHORT, "cut off in the head of a block");
         } else {

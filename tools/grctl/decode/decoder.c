@@ -35,7 +35,7 @@ static void count(decoder *d, const frame *f)
 static void print_hex(const frame *f)
 {
     char hex[3 * FRAMES_BUFFER_BYTES + 1];
-    if (grobo_hex(hex, sizeof hex, f->bytes, f->size) > 0) {
+    if (grobo_hex(f->bytes, f->size, hex, sizeof hex) > 0) {
         app_print("    %s\n", hex);
     }
 }

@@ -45,6 +45,17 @@ void talk_learn(talk *t, const telegram *said)
     }
 }
 
+void dialect_sum(const uint8_t *bytes, size_t n, telegram *to)
+{
+    unsigned sum = 0;
+    for (size_t i = 2; i + 1 < n; i++) {
+        sum += bytes[i];
+    }
+    to->sum_bytes = 1;
+    to->sum = bytes[n - 1];
+    to->right_sum = ~sum & 0xFF;
+}
+
 const sent_frame *dialect_asked(const dialect *d, const dialect_look *look, size_t size)
 {
     for (int i = 0; i < DIALECT_SENT_MAX && look->sent; i++) {

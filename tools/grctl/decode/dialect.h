@@ -77,7 +77,8 @@ typedef struct dialect {
     int (*peek)(const dialect_look *look, dialect_frame *found);
     /* Why bytes that begin no frame are none; NULL: nothing to say. */
     const char *(*why)(const uint8_t *bytes, size_t n);
-    /* What a command is answered by, as grobo_protocol.reply_to. */
+    const grobo_protocol *protocol;
+    /* What a command is answered by, where the protocol does not tell of all; NULL: it does. */
     int (*reply_to)(const uint8_t *frame, size_t n, grobo_reply *reply);
     /* Whether a good frame answers a request. */
     bool (*answers)(const sent_frame *sent, const uint8_t *bytes, size_t n);
@@ -117,6 +118,9 @@ void talk_ask(talk *t, const uint8_t *bytes, size_t n);
 void talk_learn(talk *t, const telegram *said);
 
 /* ---- for dialects ---------------------------------------------------------------------------- */
+
+/* The sum of DYNAMIXEL 1.0 and LX: of the bytes behind the header, inverted. */
+void dialect_sum(const uint8_t *bytes, size_t n, telegram *to);
 
 /* The request that a frame answers, or NULL. */
 const sent_frame *dialect_asked(const dialect *d, const dialect_look *look, size_t size);

@@ -159,17 +159,16 @@ static void explain_status(telegram *to, const grobo_dxl2_packet *p, const grobo
 }
 
 /* What a request asks servo `id` for. */
-static void ask_of(int (*reply_to)(const uint8_t *, size_t, grobo_reply *),
-                   void (*reply_at)(const uint8_t *, size_t, unsigned, grobo_reply *),
-                   const sent_frame *sent, int id, grobo_reply *asked)
+static void ask_of(const grobo_protocol *protocol, const sent_frame *sent, int id,
+                   grobo_reply *asked)
 {
     *asked = (grobo_reply){.kind = GROBO_REPLY_NONE};
-    if (!sent || reply_to(sent->bytes, sent->n, asked) < 0) {
+    if (!sent || protocol->reply_to(sent->bytes, sent->n, asked) < 0) {
         return;
     }
     grobo_reply at = *asked;
     for (unsigned k = 0; k < asked->count && asked->count > 1; k++) {
-        reply_at(sent->bytes, sent->n, k, &at);
+        protocol->reply_at(sent->bytes, sent->n, k, &at);
         if (at.id == id) {
             asked->address = at.address;
             asked->length = at.length;
@@ -222,11 +221,6 @@ static const char *dxl2_why(const uint8_t *bytes, size_t n)
     return n > 7 && bytes[7] == GROBO_DXL2_STATUS ? "a header in its data is not stuffed" : NULL;
 }
 
-static int dxl2_reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
-{
-    return grobo_dxl2_protocol.reply_to(frame, n, reply);
-}
-
 static bool dxl2_answers(const sent_frame *sent, const uint8_t *bytes, size_t n)
 {
     uint8_t room[DIALECT_FRAME_BYTES];
@@ -236,7 +230,7 @@ static bool dxl2_answers(const sent_frame *sent, const uint8_t *bytes, size_t n)
         p.instruction != GROBO_DXL2_STATUS) {
         return false;
     }
-    ask_of(grobo_dxl2_protocol.reply_to, grobo_dxl2_protocol.reply_at, sent, p.id, &asked);
+    ask_of(&grobo_dxl2_protocol, sent, p.id, &asked);
     return asked.kind == GROBO_REPLY_ANY || (asked.kind == GROBO_REPLY_RETURN && asked.id == p.id &&
                                              (p.data_bytes == asked.length || p.error != 0));
 }
@@ -314,7 +308,7 @@ static void dxl2_explain(const uint8_t *bytes, size_t n, const dialect_frame *as
     } else if (to->all) {
         explain_blocks(to, bytes, n, as->sent);
     } else {
-        ask_of(grobo_dxl2_protocol.reply_to, grobo_dxl2_protocol.reply_at, as->sent, p.id, &asked);
+        ask_of(&grobo_dxl2_protocol, as->sent, p.id, &asked);
         bool ping = asked.kind == GROBO_REPLY_ANY || (as->sent && as->sent->bytes[7] == 1);
         asked.kind = ping ? GROBO_REPLY_NONE : asked.kind;
         explain_status(to, &p, &asked);
@@ -333,7 +327,7 @@ const dialect dialect_dxl2 = {
     .table = &grobo_dxl2_table,
     .peek = dxl2_peek,
     .why = dxl2_why,
-    .reply_to = dxl2_reply_to,
+    .protocol = &grobo_dxl2_protocol,
     .answers = dxl2_answers,
     .explain = dxl2_explain,
 };
@@ -405,11 +399,6 @@ static const char *old_why(const uint8_t *bytes, size_t n)
     return "nobody asked for it";
 }
 
-static int old_reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
-{
-    return grobo_dxl1_protocol.reply_to(frame, n, reply);
-}
-
 static bool old_answers(const sent_frame *sent, const uint8_t *bytes, size_t n)
 {
     return grobo_dxl1_answer(sent->bytes, sent->n, bytes, n) == (int)n;
@@ -423,13 +412,7 @@ static void old_explain(const uint8_t *bytes, size_t n, const dialect_frame *as,
     grobo_dxl1_packet old;
     grobo_reply asked;
     memcpy(to->data, bytes, n); /* a broken one is told as if it were good */
-    unsigned sum = 0;
-    for (size_t i = 2; i + 1 < n; i++) {
-        sum += bytes[i];
-    }
-    to->sum_bytes = 1;
-    to->sum = bytes[n - 1];
-    to->right_sum = ~sum & 0xFF;
+    dialect_sum(bytes, n, to);
     to->data[n - 1] = (uint8_t)to->right_sum;
     to->id = bytes[2];
     to->all = bytes[2] == GROBO_DXL1_ID_ALL;
@@ -451,7 +434,7 @@ static void old_explain(const uint8_t *bytes, size_t n, const dialect_frame *as,
         explain_instruction(to, &p, true);
         return;
     }
-    ask_of(grobo_dxl1_protocol.reply_to, grobo_dxl1_protocol.reply_at, as->sent, p.id, &asked);
+    ask_of(&grobo_dxl1_protocol, as->sent, p.id, &asked);
     explain_status(to, &p, &asked);
     for (int bit = 0; bit < 8; bit++) {
         if (p.error & 1u << bit) {
@@ -503,8 +486,8 @@ static void scs_explain(const uint8_t *bytes, size_t n, const dialect_frame *as,
 #define OLD(name_, family_, title_, table_, explain_)                                              \
     {                                                                                              \
         .name = (name_), .family = (family_), .title = (title_), .table = (table_),                \
-        .peek = old_peek, .why = old_why, .reply_to = old_reply_to, .answers = old_answers,        \
-        .explain = (explain_)                                                                      \
+        .peek = old_peek, .why = old_why, .protocol = &grobo_dxl1_protocol,                        \
+        .answers = old_answers, .explain = (explain_)                                              \
     }
 
 const dialect dialect_dxl1 =

@@ -209,6 +209,7 @@ const dialect dialect_ics = {.name = "ics",
                              .table = &table,
                              .peek = peek,
                              .why = why,
+                             .protocol = &grobo_ics_protocol,
                              .reply_to = reply_to,
                              .answers = answers,
                              .explain = explain};

@@ -117,24 +117,6 @@ static const char *why(const uint8_t *bytes, size_t n)
     return n > 3 && (bytes[3] < 3 || bytes[3] > 7) ? "no frame has this length" : NULL;
 }
 
-static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
-{
-    grobo_lx16a_packet p;
-    int result = grobo_lx16a_parse(frame, n, &p);
-    if (result < 0) {
-        return result;
-    }
-    size_t data = grobo_lx16a_reply_bytes(p.command);
-    *reply = (grobo_reply){.kind = data > 0 ? GROBO_REPLY_RETURN : GROBO_REPLY_NONE};
-    if (data > 0) {
-        reply->id = p.id;
-        reply->count = 1;
-        reply->length = (uint16_t)data;
-        reply->bytes = (uint32_t)data + GROBO_LX16A_OVERHEAD_BYTES;
-    }
-    return (int)reply->bytes;
-}
-
 static bool answers(const sent_frame *sent, const uint8_t *bytes, size_t n)
 {
     return grobo_lx16a_answer(sent->bytes, sent->n, bytes, n) == (int)n;
@@ -144,13 +126,7 @@ static void explain(const uint8_t *bytes, size_t n, const dialect_frame *as, tel
 {
     const order *o = order_of(bytes[4]);
     int length = (int)n - GROBO_LX16A_OVERHEAD_BYTES;
-    unsigned sum = 0;
-    for (size_t i = 2; i + 1 < n; i++) {
-        sum += bytes[i];
-    }
-    to->sum_bytes = 1;
-    to->sum = bytes[n - 1];
-    to->right_sum = ~sum & 0xFF;
+    dialect_sum(bytes, n, to);
     to->id = bytes[2];
     to->all = bytes[2] == GROBO_LX16A_ID_ALL;
     to->reply = as->reply;
@@ -177,6 +153,6 @@ const dialect dialect_lx16a = {.name = "lx16a",
                                .table = &table,
                                .peek = peek,
                                .why = why,
-                               .reply_to = reply_to,
+                               .protocol = &grobo_lx16a_protocol,
                                .answers = answers,
                                .explain = explain};

@@ -245,7 +245,10 @@ int frame_reply(const frame *f, grobo_reply *reply)
         return GROBO_ERR_FRAME;
     }
     if (f->talk && f->talk->dialect) {
-        return f->as.reply ? GROBO_ERR_FRAME : f->talk->dialect->reply_to(f->bytes, f->size, reply);
+        const dialect *d = f->talk->dialect;
+        return f->as.reply   ? GROBO_ERR_FRAME
+               : d->reply_to ? d->reply_to(f->bytes, f->size, reply)
+                             : d->protocol->reply_to(f->bytes, f->size, reply);
     }
     return grobo_rs30x_reply_to(f->bytes, f->size, reply);
 }

@@ -98,7 +98,7 @@ static int feed_hex(reader *r, frames_side side, const char *text, double time_m
     size_t at = 0;
     int n = hextext_parse(text, r->bytes, sizeof r->bytes, &at);
     if (n < 0) {
-        return fail(r, (size_t)(text - r->text) + at, "' is no byte in hex", text + at);
+        return fail(r, (size_t)(text - r->text) + at, "' is not a byte in hex", text + at);
     }
     if (n > 0) {
         decoder_feed(r->d, side, (int64_t)(time_ms * 1e3), r->bytes, (size_t)n);
@@ -129,7 +129,7 @@ static int feed_json(reader *r)
         size_t at = 0;
         int n = hextext_parse(json_string_value(hex), r->bytes, sizeof r->bytes, &at);
         if (n < 0) {
-            status = fail(r, 0, "' is no byte in hex", json_string_value(hex) + at);
+            status = fail(r, 0, "' is not a byte in hex", json_string_value(hex) + at);
         } else if (n > 0) {
             decoder_feed(r->d, side, (int64_t)(json_number_value(time) * 1e3), r->bytes, (size_t)n);
         }

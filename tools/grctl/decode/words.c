@@ -568,7 +568,7 @@ json_t *words_json(const frame *f)
     char hex[3 * FRAMES_BUFFER_BYTES + 1];
     grobo_reply reply;
     int known = expects(f, &reply);
-    if (grobo_hex(hex, sizeof hex, f->bytes, f->size) < 0) {
+    if (grobo_hex(f->bytes, f->size, hex, sizeof hex) < 0) {
         hex[0] = '\0';
     }
     bool numbered = f->kind == FRAME_BOARD &&

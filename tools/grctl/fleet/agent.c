@@ -51,17 +51,16 @@ static void take_latch(agent *g, agent_group *group, json_t *latch)
         json_decref(group->latch);
         group->latch = NULL;
         group->telling = false;
-        say_event(g, NULL, "released", "the stop of the group was taken back");
+        say_event(g, NULL, "released", "the stop of the group was released");
     }
 }
 
 static void find_latch(agent *g, const char *name, const mqtt_message *message)
 {
     json_t *latch = message->size ? fleet_read(message->payload, message->size) : NULL;
-    for (int i = 0; i < g->n_groups; i++) {
-        if (strcmp(g->groups[i].name, name) == 0) {
-            take_latch(g, &g->groups[i], latch);
-        }
+    agent_group *group = agent_find_group(g, name);
+    if (group) {
+        take_latch(g, group, latch);
     }
     json_decref(latch);
 }
@@ -185,12 +184,18 @@ static void on_down(void *ctx, const char *why)
     g->listens = false;
     g->settled_us = 0;
     orders_forget(g);
+    say_untaken(g);
 }
 
 static void on_refused(void *ctx, const char *why)
 {
     agent *g = ctx;
     app_note(g->a, "the broker refuses: %s", why);
+}
+
+static void on_taken(void *ctx, int message)
+{
+    say_taken(ctx, message);
 }
 
 static bool may_block(void *ctx)
@@ -245,14 +250,7 @@ static void open_robots(agent *g, bool first)
         if (s->is_open) {
             continue;
         }
-        *line = '\0';
-        g->a->hushed = line;
-        int status = seat_open(&g->all, i);
-        if (status) {
-            (void)seat_close(s, status);
-        }
-        g->a->hushed = NULL;
-        s->a.hushed = NULL;
+        int status = seat_try(&g->all, i, line);
         if (status && first) {
             app_note(g->a, "%s; tried again every 5 s", *line ? line : s->name);
         } else if (!status && !first) {
@@ -336,6 +334,7 @@ int agent_begin(agent *g, app *a, const mqtt_config *with)
     config.on_down = on_down;
     config.on_message = on_message;
     config.on_refused = on_refused;
+    config.on_taken = on_taken;
     config.may_block = may_block;
     config.ctx = g;
     g->m = mqtt_new(&config, &why);
@@ -363,6 +362,7 @@ int agent_end(agent *g, int status)
     }
     conn_forget(g->tick);
     mqtt_free(g->m);
+    say_untaken(g);
     orders_free(g);
     for (int i = 0; i < g->n_groups; i++) {
         json_decref(g->groups[i].latch);

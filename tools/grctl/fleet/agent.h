@@ -18,6 +18,7 @@ enum {
     AGENT_PENDING = 16,       /* orders that wait for the clock of their sender, or their turn */
     AGENT_LEADERS = 8,        /* whose clocks are known */
     AGENT_GROUPS = 10,        /* all, that of -d, and labels */
+    AGENT_UNTAKEN = 256,      /* events that a broker which hangs may owe an answer to */
     AGENT_PERMIT_US = 600000, /* without one for so long, what is played is let go */
     AGENT_SETTLE_US = 200000, /* from the latches to the first order */
     AGENT_CLOCK_AGE_US = 10000000 /* an offset that is older is measured again */
@@ -54,11 +55,14 @@ typedef struct agent {
     troupe all;
     mqtt *m;
     const char *motions; /* the folder of motion files */
+    const char *cockpit; /* a page of each robot, % for its name; or NULL */
     char host[FLEET_NAME_BYTES];
     agent_group groups[AGENT_GROUPS]; /* the first is "all" */
     int n_groups;
     char epoch[FLEET_ID_BYTES];
     char spool[1000]; /* where events wait for the broker, "" where no file can be had */
+    json_t *untaken;  /* events that the broker has not taken yet, by number; or NULL */
+    bool keeps;       /* events are on disk, though there is a connection */
     char will[320];   /* connection: CONNECTIONBROKEN */
     int64_t seq;
     bool listens;       /* orders are taken */
@@ -84,6 +88,8 @@ typedef struct agent {
 void agent_join(agent *g, const char *group);
 /* "a stop of group NAME stands", until the next call; NULL: none does. */
 const char *agent_latched(const agent *g);
+/* The group of that name, or NULL: it is not of it. */
+agent_group *agent_find_group(agent *g, const char *name);
 /* A stop that brakes at once, not softly. */
 bool agent_brakes(const agent_group *group);
 

@@ -4,14 +4,19 @@
 
 #include "tools/grctl/fleet/agent.h"
 
-void agent_join(agent *g, const char *group)
+agent_group *agent_find_group(agent *g, const char *name)
 {
     for (int i = 0; i < g->n_groups; i++) {
-        if (strcmp(g->groups[i].name, group) == 0) {
-            return;
+        if (strcmp(g->groups[i].name, name) == 0) {
+            return &g->groups[i];
         }
     }
-    if (g->n_groups < AGENT_GROUPS) {
+    return NULL;
+}
+
+void agent_join(agent *g, const char *group)
+{
+    if (!agent_find_group(g, group) && g->n_groups < AGENT_GROUPS) {
         snprintf(g->groups[g->n_groups++].name, FLEET_NAME_BYTES, "%s", group);
     }
 }

@@ -390,7 +390,7 @@ bool leader_latch(leader *l, const char *how)
         json_object_set_new(latch, "how", json_string(how));
     }
     bool done =
-        wire_tell(l->m, "group", l->group, "latch", json_incref(latch), WIRE_SURE | WIRE_KEPT);
+        wire_tell(l->m, "group", l->group, "latch", json_incref(latch), WIRE_SURE | WIRE_KEPT) > 0;
     if (done) {
         keep(&l->latch, latch); /* the broker tells us nothing of our own */
     }

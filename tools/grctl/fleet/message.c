@@ -18,6 +18,17 @@ bool fleet_is_name(const char *name)
     return length > 0 && length < FLEET_NAME_BYTES && strspn(name, letters) == length;
 }
 
+bool fleet_is_link(const char *url)
+{
+    bool fits = url && strlen(url) < FLEET_URL_BYTES &&
+                (strncmp(url, "http://", 7) == 0 || strncmp(url, "https://", 8) == 0) &&
+                strcspn(url, " \"<>\\^`{|}\x7f") == strlen(url);
+    for (const char *c = url; fits && *c; c++) {
+        fits = (unsigned char)*c > ' ';
+    }
+    return fits;
+}
+
 void fleet_host_name(char *name)
 {
     os_host_name(name, FLEET_NAME_BYTES);

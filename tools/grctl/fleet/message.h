@@ -16,6 +16,7 @@ enum {
     FLEET_VERSION = 1,
     FLEET_NAME_BYTES = 64, /* of hosts, robots and groups, with its end */
     FLEET_TOPIC_BYTES = 320,
+    FLEET_URL_BYTES = 256,
     FLEET_ID_BYTES = 33, /* 16 random bytes in hexadecimal */
     FLEET_SEEN = 1024,
     FLEET_ORDER_LIFE_US = 2000000 /* no order is valid for longer */
@@ -27,6 +28,8 @@ enum {
 
 /* Letters, digits, _ and -, 1 to 63 of them: what no topic gives a meaning. */
 bool fleet_is_name(const char *name);
+/* A link to a page, and to nothing else. */
+bool fleet_is_link(const char *url);
 /* Of the machine, with - for what is no character of a name. */
 void fleet_host_name(char *name);
 void fleet_make_id(char *id);

@@ -378,8 +378,12 @@ static void prepare(agent *g, agent_order *order)
     static words w;
     char complaint[APP_LINE_BYTES];
     const char *why = busy(g), *file = fleet_text(order->is.body, "file");
-    if (why || !is_motion_name(file)) {
-        answer(g, order, why ? "state" : "arg", why ? why : "file: a name of the folder is wanted");
+    const char *group = fleet_text(order->is.body, "group");
+    if (why || !is_motion_name(file) || (group && !agent_find_group(g, group))) {
+        answer(g, order, why ? "state" : "arg",
+               why                     ? why
+               : !is_motion_name(file) ? "file: a name of the folder is wanted"
+                                       : "group: none of this agent");
         return;
     }
     line_of(&w, g, order->is.body);

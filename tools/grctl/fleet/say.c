@@ -10,34 +10,74 @@
 
 /* ---- in general ------------------------------------------------------------------------------ */
 
-static void publish_here(agent *g, const char *a, const char *b, json_t *object, int how)
+static int publish_here(agent *g, const char *a, const char *b, json_t *object, int how)
 {
-    (void)wire_tell(g->m, g->host, a, b, object, how);
+    return wire_tell(g->m, g->host, a, b, object, how);
 }
 
-/* While the broker is away it waits on disk. Takes the reference. */
-static void tell_event(agent *g, json_t *event)
+static void keep_event(const agent *g, const json_t *event)
 {
-    if (mqtt_is_up(g->m)) {
-        publish_here(g, "event", NULL, event, WIRE_SURE);
-        return;
-    }
     if (*g->spool) {
         (void)spool_add(g->spool, event);
+    }
+}
+
+/* Kept in memory until the broker has taken it. False: there is no connection. */
+static bool publish_event(agent *g, json_t *event)
+{
+    char number[16];
+    int n = publish_here(g, "event", NULL, json_incref(event), WIRE_SURE);
+    snprintf(number, sizeof number, "%d", n);
+    if (n > 0) {
+        g->untaken = g->untaken ? g->untaken : json_object();
+        json_object_set(g->untaken, number, event);
+    }
+    return n > 0;
+}
+
+/* While the broker is away, or takes nothing, it waits on disk. Takes the reference. */
+static void tell_event(agent *g, json_t *event)
+{
+    if (json_object_size(g->untaken) >= AGENT_UNTAKEN || !publish_event(g, event)) {
+        keep_event(g, event);
+        g->keeps = true;
     }
     json_decref(event);
 }
 
 static void take_kept(void *ctx, json_t *event)
 {
-    publish_here(ctx, "event", NULL, json_incref(event), WIRE_SURE);
+    (void)publish_event(ctx, event);
 }
 
 void say_kept(agent *g)
 {
+    g->keeps = false;
     if (*g->spool) {
         spool_empty(g->spool, take_kept, g);
     }
+}
+
+void say_taken(agent *g, int message)
+{
+    char number[16];
+    snprintf(number, sizeof number, "%d", message);
+    (void)json_object_del(g->untaken, number);
+    if (g->keeps && json_object_size(g->untaken) == 0) {
+        say_kept(g);
+    }
+}
+
+void say_untaken(agent *g)
+{
+    const char *number;
+    json_t *event;
+    json_object_foreach(g->untaken, number, event)
+    {
+        keep_event(g, event);
+    }
+    json_decref(g->untaken);
+    g->untaken = NULL;
 }
 
 /* ---- the agent ------------------------------------------------------------------------------- */
@@ -70,14 +110,35 @@ static json_t *joints_of(const seat *s)
     return list;
 }
 
+/* The page of a robot: its name for each %. False: it is too long. */
+static bool link_of(const agent *g, const seat *s, char *link, size_t capacity)
+{
+    size_t at = 0;
+    for (const char *from = g->cockpit; *from && at < capacity - 1; from++) {
+        bool named = *from == '%';
+        at += (size_t)snprintf(link + at, capacity - at, "%.*s", named ? FLEET_NAME_BYTES : 1,
+                               named ? s->name : from);
+    }
+    return at < capacity;
+}
+
+static json_t *robot_fact(const agent *g, const seat *s)
+{
+    char link[FLEET_URL_BYTES] = "";
+    json_t *robot = json_pack("{s:s,s:s,s:o}", "name", s->name, "model",
+                              s->is_open ? app_model(&s->a)->name : "", "joints",
+                              s->is_open ? joints_of(s) : json_array());
+    if (g->cockpit && link_of(g, s, link, sizeof link)) {
+        json_object_set_new(robot, "cockpit", json_string(link));
+    }
+    return robot;
+}
+
 static json_t *factsheet(const agent *g)
 {
     json_t *robots = json_array(), *groups = json_array();
     for (int i = 0; i < g->all.n; i++) {
-        const seat *s = &g->all.seats[i];
-        json_array_append_new(robots, json_pack("{s:s,s:s,s:o}", "name", s->name, "model",
-                                                s->is_open ? app_model(&s->a)->name : "", "joints",
-                                                s->is_open ? joints_of(s) : json_array()));
+        json_array_append_new(robots, robot_fact(g, &g->all.seats[i]));
     }
     for (int i = 0; i < g->n_groups; i++) {
         json_array_append_new(groups, json_string(g->groups[i].name));
@@ -88,13 +149,13 @@ static json_t *factsheet(const agent *g)
 
 void say_hello(agent *g)
 {
-    publish_here(g, "factsheet", NULL, factsheet(g), WIRE_SURE | WIRE_KEPT);
-    publish_here(g, "connection", NULL, connection(g, "ONLINE"), WIRE_SURE | WIRE_KEPT);
+    (void)publish_here(g, "factsheet", NULL, factsheet(g), WIRE_SURE | WIRE_KEPT);
+    (void)publish_here(g, "connection", NULL, connection(g, "ONLINE"), WIRE_SURE | WIRE_KEPT);
 }
 
 void say_goodbye(agent *g)
 {
-    publish_here(g, "connection", NULL, connection(g, "OFFLINE"), WIRE_SURE | WIRE_KEPT);
+    (void)publish_here(g, "connection", NULL, connection(g, "OFFLINE"), WIRE_SURE | WIRE_KEPT);
 }
 
 void say_latch(agent *g, const agent_group *group)
@@ -105,19 +166,25 @@ void say_latch(agent *g, const agent_group *group)
 
 /* ---- robots ---------------------------------------------------------------------------------- */
 
-static json_t *angles_of(const seat *s)
+/* The angles read last, and the age of the oldest of them: while a motion is played a line may have
+ * little time for readings. */
+static void add_angles(json_t *state, const seat *s)
 {
     const grobo_model *model = app_model(&s->a);
     grobo_joint_info info;
     json_t *list = json_array();
+    int64_t oldest_us = -1;
     for (int j = 0; j < model->n_joints; j++) {
         bool known = grobo_robot_joint(s->c.robot, j, &info) == 0 &&
                      (info.state.valid & GROBO_FIELD_ANGLE) != 0;
         json_array_append_new(list,
                               known ? app_json_number(grobo_deg_from_rad(info.state.angle_rad), 1)
                                     : json_null());
+        oldest_us = known && info.angle_age_us > oldest_us ? info.angle_age_us : oldest_us;
     }
-    return list;
+    json_object_set_new(state, "angles_deg", list);
+    json_object_set_new(state, "angles_age_ms",
+                        oldest_us < 0 ? json_null() : json_integer(oldest_us / 1000));
 }
 
 /* Of all joints: the highest temperature and the lowest voltage. */
@@ -154,7 +221,7 @@ static json_t *state_of(const agent *g, const seat *s)
                                                      : app_json_code(grobo_trip_name(trip.trip)));
     const char *file = g->plays && s->chosen ? fleet_text(g->play.is.body, "file") : NULL;
     json_object_set_new(state, "motion", file ? json_string(file) : json_null());
-    json_object_set_new(state, "angles_deg", angles_of(s));
+    add_angles(state, s);
     add_worst(state, s);
     return state;
 }
@@ -168,9 +235,9 @@ void say_state(agent *g, const seat *s, bool last_too)
                                : json_pack("{s:i,s:I,s:b}", "v", FLEET_VERSION, "seq",
                                            (json_int_t)g->seq, "up", 0);
     if (last_too) {
-        publish_here(g, s->name, "last", json_incref(state), WIRE_KEPT);
+        (void)publish_here(g, s->name, "last", json_incref(state), WIRE_KEPT);
     }
-    publish_here(g, s->name, "state", state, WIRE_ONCE);
+    (void)publish_here(g, s->name, "state", state, WIRE_ONCE);
 }
 
 void say_event(agent *g, const seat *s, const char *kind, const char *text)

@@ -12,6 +12,9 @@ void say_hello(agent *g);
 void say_goodbye(agent *g);
 /* The events that waited on disk for the broker. */
 void say_kept(agent *g);
+/* The broker has taken a message; or it is gone, and what it has not taken waits on disk. */
+void say_taken(agent *g, int message);
+void say_untaken(agent *g);
 /* The state of a robot; also the retained one. */
 void say_state(agent *g, const seat *s, bool last_too);
 /* Of a robot, or of the agent (NULL). */

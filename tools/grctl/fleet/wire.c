@@ -18,28 +18,28 @@ void wire_subscribe(mqtt *m, const char *a, const char *b, const char *c, bool r
     }
 }
 
-bool wire_publish(mqtt *m, const mqtt_message *with, json_t *object, int qos, int expiry_s)
+int wire_publish(mqtt *m, const mqtt_message *with, json_t *object, int qos, int expiry_s)
 {
     mqtt_message message = *with;
     char *text = object ? json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
-    bool sent = false;
+    int number = 0;
     if (text) {
         message.payload = text;
         message.size = strlen(text);
-        sent = mqtt_publish(m, &message, qos, expiry_s);
+        number = mqtt_publish(m, &message, qos, expiry_s);
     }
     free(text);
     json_decref(object);
-    return sent;
+    return number;
 }
 
-bool wire_tell(mqtt *m, const char *a, const char *b, const char *c, json_t *object, int how)
+int wire_tell(mqtt *m, const char *a, const char *b, const char *c, json_t *object, int how)
 {
     char topic[FLEET_TOPIC_BYTES];
     const mqtt_message message = {.topic = topic, .retained = (how & WIRE_KEPT) != 0};
     if (!fleet_topic(topic, a, b, c, NULL)) {
         json_decref(object);
-        return false;
+        return 0;
     }
     return wire_publish(m, &message, object, how & WIRE_SURE, 0);
 }

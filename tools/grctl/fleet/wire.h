@@ -20,10 +20,10 @@ void wire_subscribe(mqtt *m, const char *a, const char *b, const char *c, bool r
 
 /*
  * Publishes an object with the topic and properties of `with`. Takes the reference of the object;
- * NULL: nothing is sent. False: it was not sent.
+ * NULL: nothing is sent. As mqtt_publish().
  */
-bool wire_publish(mqtt *m, const mqtt_message *with, json_t *object, int qos, int expiry_s);
+int wire_publish(mqtt *m, const mqtt_message *with, json_t *object, int qos, int expiry_s);
 /* The same at "grobo/v1/A/B/C"; how: flags of wire_how. */
-bool wire_tell(mqtt *m, const char *a, const char *b, const char *c, json_t *object, int how);
+int wire_tell(mqtt *m, const char *a, const char *b, const char *c, json_t *object, int how);
 
 #endif

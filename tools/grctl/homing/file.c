@@ -97,8 +97,9 @@ int homing_read(app *a, const char *path, bool any, homing *all)
         return app_fail(a, EXIT_FILE, "SYNTAX", "%s:%d:%d: %s", path, error.line, error.column,
                         error.text);
     }
-    int status = json_is_object(file) ? read_all(a, path, file, any, all)
-                                      : complain(a, path, robot_of(a)->name, "is no calibration");
+    int status = json_is_object(file)
+                     ? read_all(a, path, file, any, all)
+                     : complain(a, path, robot_of(a)->name, "is not a calibration");
     json_decref(file);
     return status;
 }

@@ -161,9 +161,9 @@ static void draw_title(const monitor *m, int columns)
         snprintf(text, sizeof text, _(" LINE LOST for %.0f s, trying again "),
                  (double)(grobo_now_us() - m->up_us) / 1e6);
     } else if (trip.trip == GROBO_TRIP_ESTOP) {
-        snprintf(text, sizeof text, _(" EMERGENCY STOP: R takes it back "));
+        snprintf(text, sizeof text, _(" EMERGENCY STOP: R releases it "));
     } else if (trip.trip != GROBO_TRIP_NONE) {
-        snprintf(text, sizeof text, _(" STOPPED: %s: R takes it back "),
+        snprintf(text, sizeof text, _(" STOPPED: %s: R releases it "),
                  _(grobo_trip_name(trip.trip)));
     } else {
         return;
@@ -241,7 +241,7 @@ static void draw_help(const monitor *m, int rows)
 {
     static const char *const lines[] = {
         N_("arrows 0-7 choose   t torque on/off   b brake   [ ] 1 deg   { } 5 deg   i init"),
-        N_("e EMERGENCY STOP   R take it back   q quit"),
+        N_("e EMERGENCY STOP   R release the stop   q quit"),
     };
     static const char *const play = N_("p play   space pause   + - speed   s stop");
     int row = help_row(rows);
@@ -257,7 +257,7 @@ void monitor_draw(const monitor *m)
     int rows, columns;
     screen_begin(&rows, &columns);
     if (rows < LEAST_ROWS || columns < LEAST_COLUMNS) {
-        screen_put(0, 0, SCREEN_WARN, _("a larger window, please: 80x24"));
+        screen_put(0, 0, SCREEN_WARN, _("terminal too small (80x24 needed)"));
         screen_put(1, 0, SCREEN_BOLD, _("e EMERGENCY STOP   q quit"));
         screen_end();
         return;

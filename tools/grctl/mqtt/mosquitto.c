@@ -196,10 +196,12 @@ static void on_publish(struct mosquitto *client, void *ctx, int id, int reason,
 {
     mqtt *m = ctx;
     (void)client;
-    (void)id;
     (void)properties;
     if (reason >= 128) {
         m->config.on_refused(m->config.ctx, mosquitto_reason_string(reason));
+    }
+    if (m->config.on_taken) {
+        m->config.on_taken(m->config.ctx, id);
     }
 }
 
@@ -255,14 +257,15 @@ bool mqtt_is_up(const mqtt *m)
     return m && m->up;
 }
 
-bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
+int mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
 {
     mosquitto_property *properties = NULL;
+    int number = 0;
     if (!mqtt_is_up(m)) {
-        return false;
+        return 0;
     }
     if (qos == 0 && m->queued_bytes > MQTT_QUEUE_MAX_BYTES) {
-        return false;
+        return 0;
     }
     int result = MOSQ_ERR_SUCCESS;
     if (expiry_s > 0) {
@@ -279,13 +282,13 @@ bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
                                                (uint16_t)message->correlation_bytes);
     }
     if (!result) {
-        result = mosquitto_publish_v5(m->client, NULL, message->topic, (int)message->size,
+        result = mosquitto_publish_v5(m->client, &number, message->topic, (int)message->size,
                                       message->payload, qos, message->retained, properties);
     }
     mosquitto_property_free_all(&properties);
     m->queued_bytes += message->size;
     arm(m);
-    return result == MOSQ_ERR_SUCCESS;
+    return result == MOSQ_ERR_SUCCESS ? number : 0;
 }
 
 bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained)

@@ -44,6 +44,7 @@ typedef struct mqtt_config {
     void (*on_down)(void *ctx, const char *why);
     void (*on_message)(void *ctx, const mqtt_message *message);
     void (*on_refused)(void *ctx, const char *why); /* what was published with QoS 1 */
+    void (*on_taken)(void *ctx, int number);        /* by the broker, of what mqtt_publish() took */
     bool (*may_block)(void *ctx); /* may a name be looked up now? It may take seconds. NULL: yes */
     void *ctx;
 } mqtt_config;
@@ -56,8 +57,8 @@ mqtt *mqtt_new(const mqtt_config *config, const char **why);
 /* Begins, and goes on trying. */
 void mqtt_start(mqtt *m);
 bool mqtt_is_up(const mqtt *m);
-/* False: it was left out. qos 0 or 1; expiry_s 0: it does not expire. */
-bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s);
+/* Its number, above 0; 0: it was left out. qos 0 or 1; expiry_s 0: it does not expire. */
+int mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s);
 /* Every message of the filter from now on, and, where asked for, what is retained. */
 bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained);
 /* Says goodbye, so that there is no will, and frees. NULL is fine. Not from a handler. */

@@ -25,13 +25,13 @@ bool mqtt_is_up(const mqtt *m)
     return false;
 }
 
-bool mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
+int mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
 {
     (void)m;
     (void)message;
     (void)qos;
     (void)expiry_s;
-    return false;
+    return 0;
 }
 
 bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained)

@@ -13,7 +13,7 @@ typedef struct play_keys {
 } play_keys;
 
 #define PLAY_KEYS_HELP                                                                             \
-    "  space   pause, go on\n"                                                                     \
+    "  space   pause, resume\n"                                                                    \
     "  + -     faster, slower, by ten percent\n"                                                   \
     "  s, q    stop smoothly\n"                                                                    \
     "  e       emergency stop\n"

@@ -7,6 +7,7 @@
 #include <grobo/sequencer.h>
 
 #include "tools/grctl/body/options.h"
+#include "tools/grctl/conn/conn.h"
 
 enum { PLAY_FILES_MAX = 1 + GROBO_QUEUE_MAX };
 
@@ -56,6 +57,8 @@ int playlist_take(playlist *list, app *a, const char *path, grobo_motion *motion
 
 /* Makes the clips; start: the sensed posture, what increments count from. 0 or the exit status. */
 int playlist_prepare(playlist *list, app *a, const grobo_posture *start);
+/* The same from where the robot is, which is read first. */
+int playlist_prepare_sensed(playlist *list, conn *c);
 
 void playlist_free(playlist *list);
 

@@ -128,7 +128,7 @@ static int solve_and_check(app *a, playlist *list, int i, const grobo_budget *li
     grobo_slack_taken slack = {.n = 0};
     grobo_diagnostics *found = NULL;
     int status = body_make(a, PLAY_BODY, list->path[i], list->motion[i], rate_hz, &list->body[i]);
-    int error = status ? 0 : grobo_diagnostics_new(&found, NULL);
+    int error = status ? 0 : grobo_diagnostics_new(NULL, &found);
     if (error) {
         return fail(a, list->path[i], error);
     }
@@ -191,7 +191,7 @@ int playlist_load(playlist *list, app *a)
     grobo_budget line;
     memset(list, 0, sizeof *list);
     if (app_option(a, PLAY_RATE)->given && app_option(a, PLAY_KEY)->given) {
-        return app_fail(a, EXIT_USAGE, "ARG", "play: --rate and --key exclude each other");
+        return app_fail(a, EXIT_USAGE, "ARG", "play: --rate and --key cannot be used together");
     }
     if (a->line.n_arguments > PLAY_FILES_MAX) {
         return app_fail(a, EXIT_USAGE, "ARG", "play: more than %d files", PLAY_FILES_MAX);
@@ -287,6 +287,19 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
     }
     list->options[0].also = joints_behind(a, list);
     return 0;
+}
+
+int playlist_prepare_sensed(playlist *list, conn *c)
+{
+    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    grobo_posture sensed;
+    int error =
+        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
+    if (error) {
+        return conn_fail(c, error, "play");
+    }
+    grobo_robot_posture(c->robot, GROBO_NEVER_US, &sensed);
+    return playlist_prepare(list, c->a, &sensed);
 }
 
 void playlist_free(playlist *list)

@@ -158,7 +158,7 @@ static int seat_result(const act *c, seat *s)
         int error = conn_end_estop(&s->c);
         return error ? conn_fail(&s->c, error, "estop")
                      : app_fail_trip(&s->a, GROBO_TRIP_ESTOP,
-                                     "play: emergency stop; 'grctl estop --reset' takes it back");
+                                     "play: emergency stop; 'grctl estop --reset' releases it");
     }
     if (how.result == GROBO_ERR_CANCELED) {
         return app_fail(&s->a, EXIT_ROBOT, grobo_error_name(how.result),

@@ -85,6 +85,19 @@ int seat_open(troupe *t, int i)
     return status;
 }
 
+int seat_try(troupe *t, int i, char why[APP_LINE_BYTES])
+{
+    seat *s = &t->seats[i];
+    *why = '\0';
+    t->a->hushed = why;
+    int status = seat_open(t, i);
+    if (status) {
+        (void)seat_close(s, status);
+    }
+    t->a->hushed = s->a.hushed = NULL;
+    return status;
+}
+
 int seat_load(seat *s)
 {
     playlist_free(&s->list);
@@ -94,16 +107,7 @@ int seat_load(seat *s)
 
 int seat_prepare(seat *s)
 {
-    conn *c = &s->c;
-    grobo_joint_mask all = GROBO_JOINTS_ALL(app_model(&s->a)->n_joints);
-    grobo_posture sensed;
-    int error =
-        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
-    if (error) {
-        return conn_fail(c, error, "play");
-    }
-    grobo_robot_posture(c->robot, GROBO_NEVER_US, &sensed);
-    return playlist_prepare(&s->list, &s->a, &sensed);
+    return playlist_prepare_sensed(&s->list, &s->c);
 }
 
 static int make_team(troupe *t, grobo_team_policy policy, const grobo_clip **clips)

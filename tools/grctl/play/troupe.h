@@ -41,6 +41,8 @@ typedef struct troupe {
 int troupe_begin(troupe *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n);
 /* Connects with one robot, which may be moved then. seat_close() in either case. */
 int seat_open(troupe *t, int i);
+/* The same with one that may not be there: then it is closed again, and why says it. */
+int seat_try(troupe *t, int i, char why[APP_LINE_BYTES]);
 /* Reads and checks the files of seat.a.line. 0 or the exit status. */
 int seat_load(seat *s);
 /* Makes the clips, from where the robot is. 0 or the exit status. */

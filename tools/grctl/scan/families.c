@@ -30,7 +30,7 @@ static int look_for(app *a, scan_search *s, const grobo_robot_family *family, sc
 static int rate_of(const app *a, const scan_search *s, const grobo_robot_family *family, int i)
 {
     const cli_value *asked = app_global(a, GLOBAL_BAUD);
-    const grobo_servo_table *table = family_table(family, 0);
+    const grobo_servo_table *table = family->tables[0];
     bool tcp = strncmp(conn_requested(a), "tcp:", 4) == 0;
     if (asked->given || tcp) {
         return i > 0 ? 0 : asked->given ? (int)asked->number : (int)family->baud_bps;

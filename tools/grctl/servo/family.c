@@ -1,17 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include <grobo/rs30x.h>
-
 #include "tools/grctl/servo/family.h"
-
-const grobo_servo_table *family_table(const grobo_robot_family *family, size_t i)
-{
-    if (!family->tables) { /* RS30x */
-        return i == 0 ? &grobo_rs30x_table : NULL;
-    }
-    return family->tables[i];
-}
 
 const grobo_robot_family *family_called(const char *name)
 {
@@ -25,7 +15,7 @@ const grobo_robot_family *family_called(const char *name)
 
 static bool has_rate(const grobo_robot_family *family, int32_t bps)
 {
-    const grobo_servo_table *table = family_table(family, 0);
+    const grobo_servo_table *table = family->tables[0];
     for (int i = 0; i < table->rate_count; i++) {
         if (table->rates[i].bps == bps) {
             return true;
@@ -59,13 +49,14 @@ const grobo_driver *family_driver(const grobo_robot_family *family)
                           .min_rad = -0.1,
                           .max_rad = 0.1,
                           .max_speed_rad_s = 1,
-                          .servo_model = family_table(family, 0)->models[0].number,
+                          .servo_model = family->tables[0]->models[0].number,
                           .mirror_sign = 1};
-    if (family->init(&driver, &model, GROBO_WIRING_BUS) < 0) {
+    int (*init)(grobo_driver *, const grobo_model *) = family->init[GROBO_WIRING_BUS];
+    if (init(&driver, &model) < 0) {
         return NULL;
     }
     joint.motor = driver.protocol->id_max;
-    return family->init(&driver, &model, GROBO_WIRING_BUS) < 0 ? NULL : &driver;
+    return init(&driver, &model) < 0 ? NULL : &driver;
 }
 
 const grobo_robot_family *family_of_driver(const grobo_driver *driver)
@@ -87,7 +78,7 @@ const grobo_robot_family *family_of_servo(const grobo_servo_model *servo)
 {
     const grobo_servo_table *table;
     for (size_t f = 0; grobo_robot_families[f]; f++) {
-        for (size_t i = 0; (table = family_table(grobo_robot_families[f], i)) != NULL; i++) {
+        for (size_t i = 0; (table = grobo_robot_families[f]->tables[i]) != NULL; i++) {
             if (table == servo->table) {
                 return grobo_robot_families[f];
             }
@@ -105,7 +96,7 @@ bool family_is(const grobo_driver *driver, const char *name)
 const grobo_servo_model *family_model(const grobo_robot_family *family, const char *name)
 {
     const grobo_servo_table *table;
-    for (size_t i = 0; (table = family_table(family, i)) != NULL; i++) {
+    for (size_t i = 0; (table = family->tables[i]) != NULL; i++) {
         for (int m = 0; m < table->model_count; m++) {
             if (strcmp(table->models[m].name, name) == 0) {
                 return &table->models[m];
@@ -120,7 +111,7 @@ const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t nu
     const grobo_robot_family *family = family_of_driver(driver);
     const grobo_servo_model *found = NULL;
     const grobo_servo_table *table;
-    for (size_t i = 0; family && !found && (table = family_table(family, i)) != NULL; i++) {
+    for (size_t i = 0; family && !found && (table = family->tables[i]) != NULL; i++) {
         found = grobo_servo_model_numbered(table, number);
     }
     return found;
@@ -132,7 +123,7 @@ const grobo_servo_model *family_servo(const grobo_driver *driver, int id)
     const grobo_robot_family *family = family_of_driver(driver);
     const grobo_servo_model *found =
         joint < 0 ? NULL : family_numbered(driver, driver->model->joints[joint].servo_model);
-    return found || !family ? found : &family_table(family, 0)->models[0];
+    return found || !family ? found : &family->tables[0]->models[0];
 }
 
 const grobo_servo_model *family_identify(const grobo_driver *driver, const uint8_t *bytes)
@@ -140,7 +131,7 @@ const grobo_servo_model *family_identify(const grobo_driver *driver, const uint8
     const grobo_robot_family *family = family_of_driver(driver);
     const grobo_servo_model *found = NULL;
     const grobo_servo_table *table;
-    for (size_t i = 0; family && !found && (table = family_table(family, i)) != NULL; i++) {
+    for (size_t i = 0; family && !found && (table = family->tables[i]) != NULL; i++) {
         const grobo_servo_model *any = &table->models[0];
         const grobo_servo_register *model = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
         int32_t number = grobo_servo_register_get(any, model, bytes);

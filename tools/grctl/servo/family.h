@@ -7,9 +7,6 @@
 #include <grobo/registers.h>
 #include <grobo/robot_file.h>
 
-/* Series number i of a family; NULL behind the last. */
-const grobo_servo_table *family_table(const grobo_robot_family *family, size_t i);
-
 /* The family that a file names so, NULL: none. */
 const grobo_robot_family *family_called(const char *name);
 

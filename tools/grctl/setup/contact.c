@@ -119,7 +119,7 @@ static void read_servos(contact *k)
     contact_note(k, "ping", n_there == model->n_joints ? AS_ASSUMED : NOT_AS_ASSUMED,
                  "%d of %d servos answer", n_there, model->n_joints);
     contact_note(k, "models", n_other == 0 ? AS_ASSUMED : NOT_AS_ASSUMED,
-                 "%d servos are of another model than the robot's file has", n_other);
+                 "%d servos are of another model than in the robot's file", n_other);
     contact_note(k, "registers", n_registers > 0 ? AS_ASSUMED : NOT_AS_ASSUMED,
                  "%d values were read", n_registers);
 }
@@ -157,7 +157,7 @@ static void measure_times(contact *k)
         READS, (double)took_us[0] / 1e3, (double)took_us[n - 1] / 1e3, (double)took_us[n / 2] / 1e3,
         wire_us / 1e3);
     if (!driver->protocol->relay) {
-        contact_note(k, "board", NOT_DONE, "there is none: servos are straight on the line");
+        contact_note(k, "board", NOT_DONE, "no board: the servos are straight on the line");
         return;
     }
     /* One that forwards bytes as they come would be done before that. The quickest of all may be a
@@ -175,16 +175,15 @@ static void look_for_echo(contact *k)
     bool told = app_global(k->a, GLOBAL_ECHO)->given > 0;
     bool comes = n->replies > 0 && n->resync_bytes >= n->replies * REQUEST_BYTES / 2;
     contact_note(k, "echo", comes ? NOT_AS_ASSUMED : AS_ASSUMED,
-                 told    ? "requests come back, and were expected to"
-                 : comes ? "requests come back, which nobody expected: --wiring bus --echo"
-                         : "requests do not come back");
+                 told    ? "the adapter echoes, as configured"
+                 : comes ? "the adapter echoes, which is not configured: --wiring bus --echo"
+                         : "the adapter does not echo");
     /* One in fifty may be lost to a busy machine. */
     bool good = n->bad_sums == 0 && n->timeouts <= n->tx_frames / 50;
-    contact_note(
-        k, "line", good ? AS_ASSUMED : NOT_AS_ASSUMED,
-        "%u frames, %u replies, %u came too late or not, %u had a wrong sum, %u bytes of rubbish",
-        (unsigned)n->tx_frames, (unsigned)n->replies, (unsigned)n->timeouts, (unsigned)n->bad_sums,
-        (unsigned)n->resync_bytes);
+    contact_note(k, "line", good ? AS_ASSUMED : NOT_AS_ASSUMED,
+                 "%u frames, %u replies, %u late or missing, %u with a wrong sum, %u stray bytes",
+                 (unsigned)n->tx_frames, (unsigned)n->replies, (unsigned)n->timeouts,
+                 (unsigned)n->bad_sums, (unsigned)n->resync_bytes);
 }
 
 static int read_only(contact *k)
@@ -285,9 +284,9 @@ static int test_move(contact *k, double *step_deg)
     error = error ? error : go_to(k, k->before_deg, &back_deg);
     status = end_joint(k, error);
     if (!status) {
-        bool near = fabs(there_deg - k->before_deg - *step_deg) < NEAR_DEG &&
-                    fabs(back_deg - k->before_deg) < NEAR_DEG;
-        contact_note(k, "move", near ? AS_ASSUMED : NOT_AS_ASSUMED,
+        bool there = fabs(there_deg - k->before_deg - *step_deg) < NEAR_DEG &&
+                     fabs(back_deg - k->before_deg) < NEAR_DEG;
+        contact_note(k, "move", there ? AS_ASSUMED : NOT_AS_ASSUMED,
                      "from %.2f by %+.0f deg to %.2f, and back to %.2f", k->before_deg, *step_deg,
                      there_deg, back_deg);
     }
@@ -297,7 +296,7 @@ static int test_move(contact *k, double *step_deg)
 static void ask_direction(contact *k, double step_deg)
 {
     char answer[ASK_BYTES];
-    if (!ask_line(k->a, "did it turn, and to where its angle grows first (yes, no, other way)?",
+    if (!ask_line(k->a, "did the joint turn, first towards larger angles (yes, no, other way)?",
                   "not seen", answer)) {
         return;
     }
@@ -307,7 +306,7 @@ static void ask_direction(contact *k, double step_deg)
                  fine     ? AS_ASSUMED
                  : unseen ? NOT_DONE
                           : NOT_AS_ASSUMED,
-                 "the person says of %+.0f deg: %.80s", step_deg, answer);
+                 "the answer for %+.0f deg: %.80s", step_deg, answer);
 }
 
 static int try_joint(contact *k)
@@ -319,8 +318,8 @@ static int try_joint(contact *k)
              _("hold the robot. Switch the torque of %s on for a second? It should not move"),
              name);
     if (!ask_yes(k->a, question)) {
-        contact_note(k, "torque_on", NOT_DONE, "the person did not want it");
-        contact_note(k, "move", NOT_DONE, "the person did not want it");
+        contact_note(k, "torque_on", NOT_DONE, "the person declined");
+        contact_note(k, "move", NOT_DONE, "the person declined");
         return contact_try_rates(k);
     }
     int status = test_torque(k);
@@ -333,7 +332,7 @@ static int try_joint(contact *k)
         app_note(k->a, "something was not as assumed; better send the report first");
     }
     if (!ask_yes(k->a, question)) {
-        contact_note(k, "move", NOT_DONE, "the person did not want it");
+        contact_note(k, "move", NOT_DONE, "the person declined");
         return contact_try_rates(k);
     }
     status = test_move(k, &step_deg);

@@ -48,9 +48,9 @@ static bool keeps_by_command(const servo_change *what)
 static void say_how_to_find(const contact *k, const servo_change *what, int old_bps)
 {
     app_note(k->a,
-             "a servo that is lost: switch its power off and on; then 'grctl -d %s scan --all-baud "
+             "if the servo is lost: switch its power off and on; then 'grctl -d %s scan --all-baud "
              "--first %d --last %d' finds it, and 'grctl -d %s -b RATE servo-set %d baud %d "
-             "--flash' takes it back",
+             "--flash' restores its rate",
              conn_requested(k->a), what->id, what->id, conn_requested(k->a), what->id, old_bps);
 }
 
@@ -92,7 +92,7 @@ static int judge(contact *k, const char *name, const servo_change *there, int ol
 {
     int assumed_bps = there->flash || !keeps_by_command(there) ? change_bps(there) : old_bps;
     if (is->there_bps < 0 && is->back_bps == old_bps) {
-        contact_note(k, name, NOT_AS_ASSUMED, "servo %d, told to take %d bps: %s; it is back at %d",
+        contact_note(k, name, NOT_AS_ASSUMED, "servo %d, set to %d bps: %s; it is back at %d",
                      there->id, change_bps(there), app_error_text(is->there_bps), old_bps);
         return EXIT_DONE;
     }
@@ -103,7 +103,7 @@ static int judge(contact *k, const char *name, const servo_change *there, int ol
         return EXIT_ROBOT;
     }
     contact_note(k, name, is->there_bps == assumed_bps ? AS_ASSUMED : NOT_AS_ASSUMED,
-                 "servo %d, told to take %d bps, answers at %d; and is back at %d", there->id,
+                 "servo %d, set to %d bps, answers at %d, and again at %d", there->id,
                  change_bps(there), is->there_bps, is->back_bps);
     return EXIT_DONE;
 }
@@ -157,7 +157,7 @@ static int ask_and_try(contact *k, const char *name, const servo_change *there, 
                  : _("keep the power on. Set %s from %d to %d bps and back?"),
              joint, old_bps, change_bps(there));
     if (!ask_yes(k->a, question)) {
-        contact_note(k, name, NOT_DONE, "the person did not want it");
+        contact_note(k, name, NOT_DONE, "the person declined");
         return EXIT_DONE;
     }
     int status = contact_open(k, name, false);

@@ -92,7 +92,7 @@ static void end_rate(scan_search *what, const grobo_robot_family *family, conn *
         const scan_identity is = scan_identity_of(p->driver, p->identity[id]);
         found_servo *one = &s->all->servo[s->all->n++];
         *one = (found_servo){.family = family,
-                             .servo = is.servo ? is.servo : &family_table(family, 0)->models[0],
+                             .servo = is.servo ? is.servo : &family->tables[0]->models[0],
                              .told = is.servo != NULL,
                              .unknown = !is.known,
                              .id = id,

@@ -71,7 +71,7 @@ static int choose_port(guide *g, const choice *all)
             return 0;
         }
     }
-    return app_fail(g->a, EXIT_USAGE, "ARG", "setup: '%s' is none of them", answer);
+    return app_fail(g->a, EXIT_USAGE, "ARG", "setup: '%s' is not in the list", answer);
 }
 
 static int find_port(guide *g)
@@ -120,7 +120,7 @@ static int check_port(guide *g)
     app_note(g->a, "the port: %s", g->device);
     return checkup_port(&k, g->device)
                ? 0
-               : app_fail(g->a, EXIT_ROBOT, "PERM", "setup: mend that, and run it again");
+               : app_fail(g->a, EXIT_ROBOT, "PERM", "setup: fix this and run setup again");
 }
 
 /* ---- the robot ------------------------------------------------------------------------------- */
@@ -233,7 +233,7 @@ static int find_robot(guide *g)
         snprintf(g->robot, sizeof g->robot, "%s", *path ? path : robot_of(a)->name);
         return 0;
     }
-    app_note(a, "who answers? Nothing moves.");
+    app_note(a, "asking which servos answer; nothing moves");
     if (answers(g, "gr001")) {
         snprintf(g->robot, sizeof g->robot, "gr001");
         app_note(a, "GR001's board answers");
@@ -294,7 +294,7 @@ static int give_name(guide *g)
     int status = 0;
     propose(g, usual);
     for (int i = 0; i < TRIES; i++) {
-        if (!ask_line(g->a, "the name of this one, for -d?", usual, answer)) {
+        if (!ask_line(g->a, "its name, for -d?", usual, answer)) {
             return gave_up(g);
         }
         status = config_check_name(g->a, answer);
@@ -319,8 +319,7 @@ static int give_name(guide *g)
     status = config_add(g->a, &entry, g->config, sizeof g->config);
     if (!status) {
         g->named = true;
-        app_note(g->a, "%s names it %s now; 'grctl setup --undo' takes that back", g->config,
-                 g->name);
+        app_note(g->a, "%s names it %s now; 'grctl setup --undo' undoes that", g->config, g->name);
     }
     return status;
 }
@@ -361,9 +360,9 @@ static int offer_calibration(guide *g)
         return 0;
     }
     if (!g->a->tty_in ||
-        !ask_yes(g->a, "calibrate it now? Torque goes off, and you move each joint "
+        !ask_yes(g->a, "calibrate it now? Torque is switched off, and you move each joint "
                        "by hand; it can be undone")) {
-        app_note(g->a, "later: grctl -d %s calibrate", g->name);
+        app_note(g->a, "to calibrate it later: grctl -d %s calibrate", g->name);
         return 0;
     }
     return homing_run(g->a, &orders);

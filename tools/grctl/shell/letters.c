@@ -53,7 +53,7 @@ static int need_record(shell *s)
         return 0;
     }
     return keep(
-        s, grobo_motion_new(&s->record, GROBO_MOTION_POSTURES, app_model(&s->one)->n_joints, NULL));
+        s, grobo_motion_new(GROBO_MOTION_POSTURES, app_model(&s->one)->n_joints, NULL, &s->record));
 }
 
 /* Those that a hand may move: in free mode the others hold, and are read each second anyway. */

@@ -13,9 +13,7 @@ typedef struct sim_chain {
     grobo_model model; /* joints SERVO_1, SERVO_2, ... by the ids; it points into this */
     grobo_joint joints[GROBO_SIM_SERVOS_MAX];
     char names[GROBO_SIM_SERVOS_MAX][SIM_CHAIN_NAME_BYTES];
-    const grobo_servo_model *servos[GROBO_SIM_SERVOS_MAX]; /* NULL: an RS30x */
-    const grobo_sim_family *const *families;               /* of those */
-    bool only_rs30x;
+    const grobo_servo_model *servos[GROBO_SIM_SERVOS_MAX];
 } sim_chain;
 
 /* Makes the model of a list ID=TYPE,... Returns 0, or the exit status with the reason printed. */

@@ -291,8 +291,7 @@ static void take(sim_console *console, char c)
     console->line[console->used] = '\0';
     console->used = 0;
     if (console->too_long) {
-        app_note(console->a, "sim: a line of more than %d bytes is left out",
-                 SIM_CONSOLE_BYTES - 1);
+        app_note(console->a, "sim: a line of more than %d bytes is skipped", SIM_CONSOLE_BYTES - 1);
     } else {
         on_line(console);
     }

@@ -41,7 +41,7 @@ static size_t put_servo(const sim_state *s, int servo, char *text, size_t room)
     int32_t model = 0;
     (void)grobo_sim_get_register(sim_of(s), servo, GROBO_RS30X_MODEL, &model);
     (void)grobo_sim_get_flash(sim_of(s), servo, flash);
-    (void)grobo_hex(hex, sizeof hex, flash, sizeof flash);
+    (void)grobo_hex(flash, sizeof flash, hex, sizeof hex);
     return (size_t)snprintf(text, room, "%04X %s\n", (unsigned)model, hex);
 }
 
@@ -161,7 +161,7 @@ static const char *read_text(const sim_state *s, const char *text, size_t size, 
         const char *end = memchr(text, '\n', size);
         ++*line;
         if (!end || end - text != LINE_BYTES - 2) {
-            return end ? _("is no line of a servo") : _("is cut off");
+            return end ? _("is not a line of a servo") : _("is cut off");
         }
         wrong = read_servo(s, i, text);
         size -= (size_t)(end + 1 - text);

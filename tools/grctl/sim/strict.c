@@ -34,7 +34,7 @@ static void report(sim_strict *s, const char *code, int64_t at_us, const uint8_t
 {
     char hex[3 * FRAMES_BUFFER_BYTES + 1] = "";
     s->offences++;
-    (void)grobo_hex(hex, sizeof hex, bytes, n);
+    (void)grobo_hex(bytes, n, hex, sizeof hex);
     if (s->a->json) {
         app_print_json(json_pack("{s:s,s:i,s:o,s:s,s:s}", "offence", code, "robot", s->robot,
                                  "time_ms", app_json_number((double)(at_us - s->start_us) / 1e3, 3),

@@ -25,7 +25,7 @@ static size_t word_of(const char *list, int i, const char **word)
 
 static int give_servos(app *a, sketch *s, const sketch_orders *orders)
 {
-    const grobo_servo_table *table = family_table(s->family, 0);
+    const grobo_servo_table *table = s->family->tables[0];
     bool one = orders->servos && !strchr(orders->servos, ',');
     for (int i = 0; i < sketch_joints(s); i++) {
         const char *word = table->models[0].name;
@@ -133,7 +133,7 @@ static int check_text(app *a, const char *text)
     grobo_diagnostics *list = NULL;
     grobo_robot_def *def = NULL;
     grobo_diagnostic d = {.message = _("not enough memory")};
-    int error = grobo_diagnostics_new(&list, NULL);
+    int error = grobo_diagnostics_new(NULL, &list);
     if (!error) {
         error = sketch_read_back(text, list, &def);
     }

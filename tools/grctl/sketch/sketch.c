@@ -167,13 +167,13 @@ static bool check_parts(const sketch *s, char *complaint, size_t capacity)
     for (int i = 0; i < s->n; i++) {
         const sketch_part *part = &s->part[i];
         double length = 0, sum = part->mass_kg + part->limits_rad[0] + part->limits_rad[1];
-        bool far = part->mass_kg < 0 || part->mass_kg > 10000;
+        bool absurd = part->mass_kg < 0 || part->mass_kg > 10000;
         for (int k = 0; k < 3; k++) {
             length += part->axis[k] * part->axis[k];
             sum += part->origin_m[k] + part->origin_rad[k];
-            far |= fabs(part->origin_m[k]) > 100;
+            absurd |= fabs(part->origin_m[k]) > 100;
         }
-        if (!isfinite(sum) || !isfinite(length) || far) {
+        if (!isfinite(sum) || !isfinite(length) || absurd) {
             snprintf(complaint, capacity, _("'%s': a number is out of range"), part->name);
             return false;
         }
@@ -258,7 +258,7 @@ static bool reaches(const sketch *s, const sketch_part *part)
                                .zero_rad = part->zero_rad};
     const grobo_model one = {.name = "one", .joints = &joint, .n_joints = 1};
     grobo_driver driver;
-    return s->family->init(&driver, &one, s->family->wiring) >= 0;
+    return s->family->init[s->family->wiring](&driver, &one) >= 0;
 }
 
 static void note(sketch_part *part, const char *text)

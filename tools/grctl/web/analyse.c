@@ -19,7 +19,7 @@ bool analysis_begin(analysis *n, const app *a, const char *path)
     n->app.line =
         (cli_line){.command = cli_find_command("play"), .argument = {path}, .n_arguments = 1};
     memcpy(n->app.line.global, a->line.global, sizeof n->app.line.global);
-    return grobo_diagnostics_new(&n->found, NULL) == GROBO_OK;
+    return grobo_diagnostics_new(NULL, &n->found) == GROBO_OK;
 }
 
 void analysis_end(analysis *n)

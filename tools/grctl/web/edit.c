@@ -319,9 +319,8 @@ static int begin(making *m, grobo_motion_format format)
     int error;
     if (!m->base) { /* postures or key poses: other kinds are made of those when they are written */
         grobo_motion_kind kind = grobo_motion_format_kind(format);
-        return grobo_motion_new(&m->motion,
-                                kind == GROBO_MOTION_POSTURES ? kind : GROBO_MOTION_KEYS,
-                                m->model->n_joints, NULL);
+        return grobo_motion_new(kind == GROBO_MOTION_POSTURES ? kind : GROBO_MOTION_KEYS,
+                                m->model->n_joints, NULL, &m->motion);
     }
     error = grobo_motion_dup(m->base, &m->motion);
     if (!error) {
@@ -333,6 +332,122 @@ static int begin(making *m, grobo_motion_format format)
     return error < 0 ? error : GROBO_OK;
 }
 
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+/* By how much joints are moved at a time. */
+typedef struct shift {
+    double time_s, by_rad[GROBO_JOINTS_MAX];
+} shift;
+
+static double line(double a, double b, double part)
+{
+    return a + (b - a) * part;
+}
+
+/* Where in the way from one time to the next, which may be the same. */
+static double part_of(double from_s, double to_s, double time_s)
+{
+    double part = to_s > from_s ? (time_s - from_s) / (to_s - from_s) : 0;
+    return fmin(1, fmax(0, part));
+}
+
+/* The posture of base at a time; n: the frame before, as found for an earlier time. */
+static void sample_base(const making *m, double time_s, size_t *n, grobo_posture *posture)
+{
+    grobo_posture next;
+    double from_s, to_s = 0;
+    while (*n + 2 < grobo_motion_size(m->base) &&
+           grobo_motion_time_s(m->base, *n + 1, &to_s) == 0 && to_s <= time_s) {
+        ++*n;
+    }
+    grobo_motion_get(m->base, *n, posture);
+    if (grobo_motion_get(m->base, *n + 1, &next) < 0) {
+        return; /* of one frame */
+    }
+    grobo_motion_time_s(m->base, *n, &from_s);
+    grobo_motion_time_s(m->base, *n + 1, &to_s);
+    double part = part_of(from_s, to_s, time_s);
+    for (int j = 0; j < posture->n_joints; j++) {
+        posture->angle_rad[j] = line(posture->angle_rad[j], next.angle_rad[j], part);
+    }
+}
+
+/* Where a key names a joint it is as the key says; the others are as in the file. */
+static int read_shift(making *m, const json_t *key, double end_s, size_t *n, shift *s)
+{
+    const json_t *time = json_object_get(key, "time_ms");
+    grobo_posture was, wanted;
+    s->time_s = json_number_value(time) / 1e3;
+    if (!json_is_number(time) || !(s->time_s >= 0 && s->time_s <= end_s + 1e-3)) {
+        return complain(m, GROBO_ERR_ARG, "it has no time_ms within the frames");
+    }
+    if (s->time_s < m->before_s) {
+        return complain(m, GROBO_ERR_ARG, "it is earlier than the one before");
+    }
+    if (json_object_size(key) > 1u + (json_object_get(key, "angle_deg") != NULL)) {
+        return complain(m, GROBO_ERR_UNSUPPORTED, "frames take time_ms and angle_deg alone");
+    }
+    m->before_s = s->time_s;
+    sample_base(m, s->time_s, n, &was);
+    grobo_posture_init(&wanted, m->model->n_joints);
+    int error = read_angles(m, json_object_get(key, "angle_deg"), &wanted);
+    for (int j = 0; !error && j < m->model->n_joints; j++) {
+        if (wanted.set & ~was.set & GROBO_JOINT_BIT(j)) {
+            return complain(m, GROBO_ERR_NOTFOUND, "the frames have no such joint");
+        }
+        if (wanted.set & GROBO_JOINT_BIT(j)) {
+            s->by_rad[j] = wanted.angle_rad[j] - was.angle_rad[j];
+        }
+    }
+    return error;
+}
+
+/* A frame between two keys; one that is not moved stays as it is to the last bit. */
+static int shift_frame(making *m, size_t frame, const shift *before, const shift *after)
+{
+    grobo_posture posture;
+    double time_s;
+    bool moved = false;
+    grobo_motion_get(m->motion, frame, &posture);
+    grobo_motion_time_s(m->motion, frame, &time_s);
+    double part = part_of(before->time_s, after->time_s, time_s);
+    for (int j = 0; j < posture.n_joints; j++) {
+        double by_rad = line(before->by_rad[j], after->by_rad[j], part);
+        if (by_rad != 0 && (posture.set & GROBO_JOINT_BIT(j))) {
+            posture.angle_rad[j] += by_rad;
+            moved = true;
+        }
+    }
+    return moved ? grobo_motion_set(m->motion, frame, &posture) : GROBO_OK;
+}
+
+/*
+ * Frames at a rate keep their times: keys say where joints are at some of them, and from key to key
+ * what they change is carried over by a straight line.
+ */
+static int edit_frames(making *m, const json_t *keys)
+{
+    size_t count = json_array_size(keys), size = grobo_motion_size(m->base), n = 0;
+    shift *shifts = calloc(count, sizeof *shifts);
+    double end_s = 0, time_s = 0;
+    int error = shifts ? grobo_motion_dup(m->base, &m->motion) : GROBO_ERR_NOMEM;
+    if (!error && size > 0) {
+        grobo_motion_time_s(m->base, size - 1, &end_s);
+    }
+    for (m->key = 0; !error && m->key < count; m->key++) {
+        error = read_shift(m, json_array_get(keys, m->key), end_s, &n, &shifts[m->key]);
+    }
+    for (size_t i = 0, k = 0; !error && i < size; i++) {
+        grobo_motion_time_s(m->base, i, &time_s);
+        while (k + 1 < count && shifts[k + 1].time_s <= time_s) {
+            k++;
+        }
+        error = shift_frame(m, i, &shifts[k], &shifts[k + 1 < count ? k + 1 : k]);
+    }
+    free(shifts);
+    return error;
+}
+
 int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion *base,
                grobo_motion_format format, edit_result *result)
 {
@@ -342,13 +457,9 @@ int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion 
         snprintf(result->complaint, sizeof result->complaint, "keys is no list of key poses");
         return GROBO_ERR_EMPTY;
     }
-    if (base && grobo_motion_get_kind(base) == GROBO_MOTION_FRAMES) {
-        snprintf(result->complaint, sizeof result->complaint,
-                 "frames at a rate are not edited by keys");
-        return GROBO_ERR_UNSUPPORTED;
-    }
-    int error = begin(&m, format);
-    for (m.key = 0; !error && m.key < json_array_size(keys); m.key++) {
+    bool frames = base && grobo_motion_get_kind(base) == GROBO_MOTION_FRAMES;
+    int error = frames ? edit_frames(&m, keys) : begin(&m, format);
+    for (m.key = 0; !frames && !error && m.key < json_array_size(keys); m.key++) {
         error = add_key(&m, json_array_get(keys, m.key));
     }
     grobo_motion_free(m.mirrored);

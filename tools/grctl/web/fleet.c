@@ -13,7 +13,7 @@
 #include "tools/grctl/web/door.h"
 #include "tools/grctl/web/page.h"
 
-enum { STATE_HZ = 5, JOINTS_MAX = 64, TEXT_BYTES = 128, URL_BYTES = 256 };
+enum { STATE_HZ = 5, JOINTS_MAX = 64, TEXT_BYTES = 128 };
 /* A robot of which nothing was heard for so long is silent. */
 #define SILENT_US INT64_C(1500000)
 /* A stop that could not go out is tried again so often, so long. */
@@ -75,17 +75,10 @@ static json_t *copy_numbers(const json_t *list, size_t most)
     return copy;
 }
 
-/* A link to a page, and to nothing else. */
 static json_t *copy_link(const json_t *from, const char *key)
 {
     const char *url = fleet_text(from, key);
-    bool fits = url && strlen(url) < URL_BYTES &&
-                (strncmp(url, "http://", 7) == 0 || strncmp(url, "https://", 8) == 0) &&
-                strcspn(url, " \"<>\\^`{|}\x7f") == strlen(url);
-    for (const char *c = url; fits && *c; c++) {
-        fits = (unsigned char)*c > ' ';
-    }
-    return fits ? json_string(url) : json_null();
+    return fleet_is_link(url) ? json_string(url) : json_null();
 }
 
 /* Those of a group that has this peer, with names that are names. */

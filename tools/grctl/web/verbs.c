@@ -300,7 +300,7 @@ void verb_reset(serve *s, http_request *r, json_t *body)
     (void)body;
     int error = stops_reset(s);
     if (!error) {
-        events_tell(&s->events, "stop", "info", NULL, "stop taken back; nothing moves by itself");
+        events_tell(&s->events, "stop", "info", NULL, "stop released; nothing moves by itself");
     }
     serve_accept(s, r, error, "reset");
 }

@@ -70,7 +70,7 @@ def _read(path: str) -> Any:
         reader = ffi.callback("int(void *, void *, size_t)", read, error=lib.GROBO_ERR_IO)
         source = ffi.new("grobo_source *", {"read": reader})
         problems = ffi.new("grobo_diagnostics **")
-        check(lib.grobo_diagnostics_new(problems, ffi.NULL), path)
+        check(lib.grobo_diagnostics_new(ffi.NULL, problems), path)
         found = ffi.gc(problems[0], lib.grobo_diagnostics_free)
         made = ffi.new("grobo_robot_def **")
         result = lib.grobo_robot_def_read(source, os.fsencode(path), found, ffi.NULL, made)

@@ -102,7 +102,7 @@ class Motion:
         self._model = _model or ffi.addressof(GR001)
         if _owned is None:
             made = ffi.new("grobo_motion **")
-            check(lib.grobo_motion_new(made, KINDS.index(kind), joints, ffi.NULL), "motion")
+            check(lib.grobo_motion_new(KINDS.index(kind), joints, ffi.NULL, made), "motion")
             _owned = made[0]
         self._c = ffi.gc(_owned, lib.grobo_motion_free)
         self._robot: Optional[Description] = None  # whose model it is
@@ -117,7 +117,7 @@ class Motion:
         """
         made = ffi.new("grobo_motion **")
         problems = ffi.new("grobo_diagnostics **")
-        check(lib.grobo_diagnostics_new(problems, ffi.NULL), "motion")
+        check(lib.grobo_diagnostics_new(ffi.NULL, problems), "motion")
         found = ffi.gc(problems[0], lib.grobo_diagnostics_free)
         options = new("grobo_read_options")
         model = options.model = robot.model if robot else ffi.addressof(GR001)

@@ -320,10 +320,7 @@ class Robot:
         a period.
         """
         target = posture(angles, time, self._model)
-        with self._control.use() as control:
-            # The engine learns of a stop when the loop turns; such a target would be dropped there.
-            if quick("grobo_control_is_latched", control) & 1:
-                self._check(lib.GROBO_ERR_LATCHED, "send")
+        with self._control.use():
             self._check(quick("grobo_robot_send", self._control.robot, target), "send")
 
     def play(

@@ -58,8 +58,8 @@ bool node_look(const char *device, node_found_fn found, void *ctx)
         return false;
     }
     if (!S_ISCHR(s.st_mode)) {
-        found(ctx, "device", "choose one of those that 'grctl ports' lists", "%s is no serial port",
-              device);
+        found(ctx, "device", "choose one of those that 'grctl ports' lists",
+              "%s is not a serial port", device);
         return false;
     }
     found(ctx, "device", NULL, "%s is there", device);

@@ -25,8 +25,8 @@ bool node_look(const char *device, node_found_fn found, void *ctx)
         return false;
     }
     if (error == GROBO_ERR_TYPE || error == GROBO_ERR_ISDIR) {
-        found(ctx, "device", "choose one of those that 'grctl ports' lists", "%s is no serial port",
-              device);
+        found(ctx, "device", "choose one of those that 'grctl ports' lists",
+              "%s is not a serial port", device);
         return false;
     }
     /* Any other error is one of opening, which comes next. */

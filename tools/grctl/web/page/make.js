@@ -203,13 +203,18 @@ export class Make {
             this.tell('', '');
             this.take(new Draft(this.app.robot.joints, file), look, this.freeName(stem));
         } else if (file.frames.angle_deg.length) {
-            const draft = new Draft(this.app.robot.joints, null);
-            draft.keys = keysOfFrames(file.frames, file.length_ms, IMPORT_MS).map((k) => draft.fresh(k));
-            draft.chosen = draft.keys[0].id;
-            this.tell('', t('Taken from the frames of {0}, a key pose every {1} s. Save it under another name.',
-                            name, IMPORT_MS / 1000));
-            this.take(draft, look, this.freeName(`${stem}-keys`));
-            this.looks.push(draft.keys);
+            const keys = keysOfFrames(file.frames, file.length_ms, IMPORT_MS), stays = file.kind === 'frames';
+            const draft = stays ? new Draft(this.app.robot.joints, { name, etag: file.etag, keys }, true)
+                                : Draft.ofKeys(this.app.robot.joints, keys);
+            this.tell('', stays
+                ? t('{0} is seen every {1} s. Save moves its frames around what you change; under another name they become key poses.',
+                    name, IMPORT_MS / 1000)
+                : t('Taken from the frames of {0}, a key pose every {1} s. Save it under another name.',
+                    name, IMPORT_MS / 1000));
+            this.take(draft, stays ? { ...look, keys: draft.keys } : look, this.freeName(`${stem}-keys`));
+            if (!stays) {
+                this.looks.push(draft.keys);
+            }
         } else {
             this.tell('bad', `${name}: ${file.check.message || t('✕ not readable')}`);
         }
@@ -569,18 +574,21 @@ export class Make {
             return;
         }
         await this.put(name, { 'If-None-Match': '*' },
-                       draft.name ? { base: { motion: draft.name, etag: draft.etag } } : {});
+                       draft.name && !draft.frames ? { base: { motion: draft.name, etag: draft.etag } } : {});
     }
 
     async put(name, headers, more) {
         const { draft, app } = this, { t } = app, written = draft.keys;
+        const stays = draft.frames && name === draft.name; // a file of frames
         this.saving = true;
         try {
-            const told = await app.api.request('PUT', path(name), { ...draft.toEdit(), ...more }, headers);
+            const told = await app.api.request('PUT', path(name), { ...draft.toEdit(stays), ...more }, headers);
             const file = await app.api.get(`${path(name)}?rate=${RATE_HZ}`);
-            const whole = file.keys.length === written.length && ['keys', 'postures'].includes(file.kind);
+            const whole = stays ||
+                (file.keys.length === written.length && ['keys', 'postures'].includes(file.kind));
             if (whole && file.etag === told.etag) {
-                draft.rebase(file, written);
+                draft.frames = stays;
+                draft.rebase(stays ? { ...file, keys: written } : file, written);
                 this.id('as').value = this.freeName(name.replace(/\.[^.]+$/, ''));
             }
             const said = [whole ? t('Saved as {0}.', name) : t('A copy was written as {0}.', name),

@@ -50,8 +50,10 @@ export class Draft {
     /**
      * @param joints of the robot
      * @param file { name, etag, keys } as the server told it; null: a new motion
+     * @param frames whether the keys are samples of a file of frames, which is to stay one
      */
-    constructor(joints, file) {
+    constructor(joints, file, frames = false) {
+        this.frames = frames;
         this.joints = joints;
         this.name = file ? file.name : null;
         this.etag = file ? file.etag : null;
@@ -62,6 +64,14 @@ export class Draft {
         this.before = [];
         this.after = [];
         this.saved = this.keys;
+    }
+
+    /** A new motion of these keys. */
+    static ofKeys(joints, keys) {
+        const draft = new Draft(joints, null);
+        draft.keys = keys.map((key) => draft.fresh(key));
+        draft.chosen = draft.keys[0].id;
+        return draft;
     }
 
     fresh(key) {
@@ -235,6 +245,9 @@ export class Draft {
         const key = this.fresh({ time_ms: this.freeTime(ms, 0),
                                  angle_deg: angles.map((v, j) => v === null ? null
                                      : clamp(Math.round(v * 10) / 10, this.joints[j])) });
+        if (this.frames) { // what is as it was seen there is not changed
+            key.seen = { time_ms: key.time_ms, angle_deg: key.angle_deg };
+        }
         this.set(this.sorted([...this.keys, key]), key.id);
         return key.id;
     }
@@ -271,12 +284,27 @@ export class Draft {
     // ---- the file ------------------------------------------------------------------------------
 
     /** What the server is to write: of a key of the file what differs from it, of a new one all. */
-    toEdit() {
-        return { keys: this.keys.map((key) => this.editKey(key)) };
+    toEdit(frames = this.frames) {
+        return { keys: this.keys.map((key) => frames ? this.editFrames(key) : this.editKey(key)) };
+    }
+
+    /** Of a file of frames: where joints are at this time, if elsewhere than in the file. */
+    editFrames(key) {
+        const was = [key.from === null ? null : this.base[key.from], key.seen]
+            .find((one) => one && one.time_ms === key.time_ms);
+        const angles = {};
+        this.joints.forEach((joint, j) => {
+            const v = key.angle_deg[j];
+            if (v !== null && !(was && v === was.angle_deg[j])) {
+                angles[joint.name] = v;
+            }
+        });
+        return Object.keys(angles).length ? { time_ms: key.time_ms, angle_deg: angles }
+                                          : { time_ms: key.time_ms };
     }
 
     editKey(key) {
-        const was = key.from === null ? null : this.base[key.from];
+        const was = key.from === null || this.frames ? null : this.base[key.from];
         const old = was && key.mirror ? mirrorKey(was, this.joints) : was;
         const edit = was ? { from: key.from } : { time_ms: key.time_ms };
         const angles = {};
@@ -310,10 +338,10 @@ export class Draft {
     rebase(file, written) {
         const at = new Map(written.map((key, n) => [key.id, n]));
         const made = new Map([[written, file.keys.map((key, n) => (
-            { ...key, id: written[n].id, from: n, mirror: false }))]]);
+            { ...key, id: written[n].id, from: n, mirror: false, seen: null }))]]);
         const move = (keys) => {
             if (!made.has(keys)) {
-                made.set(keys, keys.map((key) => ({ ...key, mirror: false,
+                made.set(keys, keys.map((key) => ({ ...key, mirror: false, seen: null,
                                                     from: at.has(key.id) ? at.get(key.id) : null })));
             }
             return made.get(keys);

@@ -26,6 +26,8 @@ export const JA_MAKE = {
     '{0} has too many key poses to be edited here.': '{0} はキーポーズが多すぎて、ここでは編集できません。',
     'Taken from the frames of {0}, a key pose every {1} s. Save it under another name.':
         '{0} のフレームから {1} 秒ごとにキーポーズを作りました。別名で保存してください。',
+    '{0} is seen every {1} s. Save moves its frames around what you change; under another name they become key poses.':
+        '{0} を {1} 秒ごとに表示しています。保存すると、変更した箇所の前後のフレームが動きます。別名ではキーポーズになります。',
     '▲ out of balance from {0} s': '▲ {0} 秒からバランスを失います',
     Undone: '元に戻しました', 'Done again': 'やり直しました', Copied: 'コピーしました', 'out of reach': '届かない',
     '{0} is not set by this key pose': 'このキーポーズでは {0} を指定しない',

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+/* A robot that a file describes (docs/guide/own-robot.md) goes to its initial posture. */
+#include <stdio.h>
+
+#include <grobo/grobo.h>
+
+static int read_file(void *ctx, void *buffer, size_t size)
+{
+    size_t n = fread(buffer, 1, size, ctx);
+    return n == 0 && ferror((FILE *)ctx) ? GROBO_ERR_IO : (int)n;
+}
+
+int main(int argc, char **argv)
+{
+    const char *path = argc > 1 ? argv[1] : "src/robots/so101.yaml";
+    FILE *file = fopen(path, "rb");
+    const grobo_source source = {read_file, file};
+    grobo_robot_def *def;
+    grobo_robot_sim sim;
+    grobo_driver driver;
+    grobo_control *control = NULL;
+    if (!file || grobo_robot_def_read(&source, path, NULL, NULL, &def) < 0 ||
+        grobo_robot_def_driver(def, def->wiring, &driver) < 0 ||
+        grobo_robot_def_sim(def, def->wiring, &sim) < 0) {
+        return 1;
+    }
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
+                                          .device = argc > 2 ? argv[2] : "sim", .driver = &driver,
+                                          .baud_bps = (int)def->baud_bps, .sim = &sim.config};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
+    int result = grobo_control_new(&config, &control);
+    result = result < 0 ? result : grobo_control_connect(control, 0);
+    result = result < 0 ? result : grobo_control_init_position(control);
+    result = result < 0 ? result : grobo_control_wait(control, GROBO_NEVER_US);
+    printf("%s: %s\n", def->title, grobo_error_text(result));
+    (void)grobo_control_free(control);
+    grobo_robot_def_free(def);
+    return fclose(file) != 0 || result < 0;
+}
