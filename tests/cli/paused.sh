@@ -123,6 +123,17 @@ monitors_on() {
     keys R
     until_screen 'stop released' && keys q && until_screen '^>'
 }
+unread_screen() {
+    exits 0 on_robot servo on || return 1
+    "${PYTHON:-python3}" tests/support/unread.py "$GRCTL" "$robot" >"$work/out" 2>"$work/err" ||
+        { cat "$work/out" "$work/err"; return 1; }
+    grep -q 'which has the port, and verified' "$work/out" && exits 0 on_robot estop --reset
+}
+if have_full_screen && have_json; then
+    check "one reaches a monitor whose terminal nobody reads" unread_screen
+else
+    skip "one reaches a monitor whose terminal nobody reads" "no full screen or no python3 here"
+fi
 if have_full_screen; then
     open_screen
     trap end_paused EXIT

@@ -103,9 +103,10 @@ void output_complain(const char *format, ...)
     fflush(stderr);
 }
 
-bool output_is_behind(void)
+bool output_is_behind(const FILE *stream)
 {
-    return err && writer_look(err).behind;
+    const writer *to = stream == stdout ? out : err;
+    return to && writer_look(to).behind;
 }
 
 bool output_detach(void)

@@ -43,7 +43,7 @@ FILE *output_stream(void);
 /* Text for standard error, written out at once. */
 void output_complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* True while standard error has not taken what it was given: what is soon stale can wait. */
-bool output_is_behind(void);
+/* True while stdout or stderr has not taken what it was given: what is soon stale can wait. */
+bool output_is_behind(const FILE *stream);
 
 #endif

@@ -30,7 +30,7 @@ void progress_draw(progress *p, double fraction, const char *text)
 {
     char line[LINE_BYTES] = "";
     size_t at = 0;
-    if (!p->shown || output_is_behind()) {
+    if (!p->shown || output_is_behind(stderr)) {
         return;
     }
     int room = os_columns(stderr) - FREE; /* it may have changed */

@@ -1,9 +1,16 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * ncurses writes its pictures into a file, and they go on as all output does (output.h): a terminal
+ * that takes nothing (Ctrl-S, a reader that is away) holds up nobody, however much of a picture it
+ * has taken. The next picture waits until the one before has gone out.
+ */
 /* curses.h declares bool its own way unless told not to. */
 #define NCURSES_ENABLE_STDBOOL_H 1
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <curses.h>
@@ -11,12 +18,20 @@
 
 #undef columns /* a capability in term.h, a parameter in ours */
 
+#include "tools/grctl/cli/output.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/screen/screen.h"
 
-enum { ESCAPE_MS = 25 };
+enum { ESCAPE_MS = 25, PIECE_BYTES = 4096 };
+
+/* How long the terminal has time to take what ends the screen. */
+enum { LAST_MS = 200 };
 
 static SCREEN *terminal;
+static FILE *drawn;   /* what ncurses writes to: the terminal while it is set up, then `picture` */
+static FILE *picture; /* what it has written and nobody has taken yet */
+static bool paused;   /* the terminal is as it was found */
+static struct termios found_modes, screen_modes;
 static WINDOW *input; /* a pad: reading a key from it draws nothing */
 static attr_t attributes[SCREEN_STYLES];
 
@@ -52,20 +67,68 @@ static void choose_attributes(bool color)
     }
 }
 
-bool screen_open(bool color)
+/* Gives the bytes of a picture to who writes them. */
+static void pass_on(void)
 {
-    static bool registered;
-    if (!registered && atexit(screen_close) != 0) {
+    char piece[PIECE_BYTES];
+    int fd = fileno(picture);
+    off_t size = lseek(fd, 0, SEEK_CUR), at = 0;
+    while (at < size) {
+        ssize_t n = pread(fd, piece, sizeof piece, at);
+        if (n <= 0) {
+            break;
+        }
+        output_bytes(piece, (size_t)n);
+        at += n;
+    }
+    (void)!ftruncate(fd, 0);
+    (void)lseek(fd, 0, SEEK_SET);
+    (void)output_flush();
+}
+
+/* Gives the terminal back, as far as it takes that. */
+static void end_screen(void)
+{
+    endwin();
+    pass_on();
+    for (int ms = 0; ms < LAST_MS && output_is_behind(stdout); ms++) {
+        (void)poll(NULL, 0, 1);
+    }
+    (void)tcsetattr(STDIN_FILENO, TCSANOW, &found_modes);
+    paused = true;
+}
+
+static void forget(void)
+{
+    if (input) {
+        delwin(input);
+    }
+    if (terminal) {
+        delscreen(terminal);
+    }
+    if (drawn) {
+        (void)fclose(drawn);
+    }
+    if (picture) {
+        (void)fclose(picture);
+    }
+    input = NULL;
+    terminal = NULL;
+    drawn = picture = NULL;
+}
+
+/* ncurses sets the modes of the terminal it draws on, so it is that until they are set. */
+static bool set_up(bool color)
+{
+    int fd = dup(STDOUT_FILENO);
+    drawn = fd < 0 ? NULL : fdopen(fd, "w");
+    picture = os_temporary();
+    if (!drawn || !picture || tcgetattr(STDIN_FILENO, &found_modes) != 0) {
         return false;
     }
-    registered = true;
-    terminal = newterm(NULL, stdout, stdin);
-    if (!terminal) {
-        return false;
-    }
-    input = newpad(1, 1);
+    terminal = newterm(NULL, drawn, stdin);
+    input = terminal ? newpad(1, 1) : NULL;
     if (!input) {
-        screen_close();
         return false;
     }
     set_escdelay(ESCAPE_MS);
@@ -75,27 +138,39 @@ bool screen_open(bool color)
     keypad(input, true);
     curs_set(0);
     choose_attributes(color);
+    return tcgetattr(STDIN_FILENO, &screen_modes) == 0 && dup2(fileno(picture), fd) == fd;
+}
+
+bool screen_open(bool color)
+{
+    static bool registered;
+    if (!registered && atexit(screen_close) != 0) {
+        return false;
+    }
+    registered = true;
+    paused = false;
+    if (!set_up(color)) {
+        if (terminal) {
+            endwin();
+        }
+        forget();
+        return false;
+    }
     return true;
 }
 
 void screen_close(void)
 {
-    if (!terminal) {
-        return;
+    if (terminal) {
+        end_screen();
+        forget();
     }
-    endwin();
-    if (input) {
-        delwin(input);
-    }
-    delscreen(terminal);
-    input = NULL;
-    terminal = NULL;
 }
 
 void screen_pause(void)
 {
-    if (terminal) {
-        endwin();
+    if (terminal && !paused) {
+        end_screen();
     }
 }
 
@@ -134,10 +209,15 @@ void screen_put(int row, int column, screen_style style, const char *text)
 
 void screen_end(void)
 {
-    /* Not to a terminal that has been stopped (Ctrl-S): the next picture is as good. */
-    if (os_takes_bytes(stdout)) {
-        refresh();
+    if (output_is_behind(stdout)) {
+        return; /* the next picture is as good */
     }
+    if (paused) {
+        (void)tcsetattr(STDIN_FILENO, TCSANOW, &screen_modes);
+        paused = false;
+    }
+    refresh();
+    pass_on();
 }
 
 int screen_key(void)
