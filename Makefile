@@ -275,7 +275,7 @@ check-fleet: all ## a crowd of simulated robots at a real broker; HOSTS=4 EACH=2
 	-@tools/setup.sh --check
 	@GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" TEST_TIMEOUT_S=1200 TEST_LOGS="$(BUILD)/logs/fleet" \
 	    tests/run.sh tests/cli/fleet.sh tests/cli/fleet_rights.sh tests/fleet/crowd.sh; \
-	    status=$$?; sed -n 's/^# /  /p' $(BUILD)/logs/fleet/*crowd*; exit $$status
+	    status=$$?; sed -n 's/^# /  /p' $(BUILD)/logs/fleet/*.log; exit $$status
 
 COCKPIT_CLIENT := playwright==1.65.0
 COCKPIT_AXE := axe-core@4.10.3
