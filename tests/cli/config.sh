@@ -78,7 +78,8 @@ check_json "calibrate measures" \
     "$GRCTL" calibrate --json --timeout 500
 check_json "then the posture is the initial one" \
     'lines[0]["joints"][0]["angle_deg"] == -40' "$GRCTL" status R_KNEE_P --json
-check "calibrate without a robot" fails 2 'keep no calibration, and -d names no robot of' on_robot calibrate
+check "calibrate without a robot" fails 2 'keep no calibration, and -d names no robot of' \
+    on_robot calibrate
 check "a joint without degrees" fails 2 'needs JOINT DEG' "$GRCTL" calibrate m5
 
 offset() {
