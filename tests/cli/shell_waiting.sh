@@ -213,6 +213,18 @@ else
 fi
 keys 'estop --reset' Enter
 until_screen 'released'
+typed_unseen() {
+    keys 'servo on m5' Enter 'status m5' Enter
+    until_screen 'R_ELBOW_P .* on ' || return 1
+    keys C-s
+    keys 'status m3'
+    exits 0 on_robot estop && complains 'which has the port, and verified' || return 1
+    keys C-q
+    until_screen '^grctl> status m3$'
+}
+check "after Ctrl-S too, whatever is typed" typed_unseen
+keys C-u 'estop --reset' Enter
+until_screen 'released.*$'
 tell plug out
 check "a lost line is told" until_screen ': device is gone$'
 tell plug in

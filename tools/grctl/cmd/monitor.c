@@ -416,7 +416,7 @@ static int run_screen(monitor *m)
     if (error) {
         return conn_fail(c, error, "monitor");
     }
-    output_stream(); /* what was printed stands before the screen */
+    output_flush(); /* what was printed stands before the screen */
     if (!screen_open(a->color_out)) {
         return app_fail(a, EXIT_ROBOT, "UNSUPPORTED", "monitor: cannot use this terminal");
     }

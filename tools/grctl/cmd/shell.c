@@ -150,7 +150,7 @@ static int run_prompt(shell *s)
     }
     while (!ends(s, status)) {
         conn_link_idle(&s->link, s->a);
-        output_stream(); /* what was printed stands before the prompt */
+        output_flush(); /* what was printed stands before the prompt */
         int n = line_read(reader, "grctl> ", line, sizeof line);
         if (n == LINE_END) {
             break;

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Lines edited with libedit, with a history that outlives the shell. */
+/*
+ * Lines edited with libedit, with a history that outlives the shell. What libedit writes is kept,
+ * and goes on as all output does (output.h): a terminal that takes nothing holds up nobody.
+ */
 #include <errno.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -10,6 +13,7 @@
 
 #include <histedit.h>
 
+#include "tools/grctl/cli/output.h"
 #include "tools/grctl/edit/edit.h"
 #include "tools/grctl/os/os.h"
 
@@ -18,6 +22,9 @@ enum { HISTORY_LINES = 1000, CANDIDATES_MAX = 256, WORD_BYTES = 256, PATH_BYTES 
 struct line_reader {
     line_owner owner;
     EditLine *edit;
+    FILE *to; /* what libedit writes to: */
+    char *text;
+    size_t size;
     History *history;
     struct event *resumed; /* SIGCONT */
     const char *prompt;
@@ -37,11 +44,21 @@ static char *give_prompt(EditLine *edit)
     return text;
 }
 
+/* Shows what libedit and its functions have written. */
+static void show(line_reader *reader)
+{
+    (void)fflush(reader->to);
+    output_bytes(reader->text, reader->size);
+    (void)output_flush();
+    (void)fseeko(reader->to, 0, SEEK_SET);
+    reader->size = 0;
+}
+
 /* Above the line that is typed, which then stands below. */
 static void tell_news(line_reader *reader)
 {
-    fputs("\n", stdout);
-    fflush(stdout);
+    fputs("\n", reader->to);
+    show(reader);
     reader->owner.tell(reader->owner.ctx);
     el_set(reader->edit, EL_REFRESH, NULL);
 }
@@ -58,6 +75,7 @@ static void on_resumed(evutil_socket_t number, short what, void *ctx)
     el_set(reader->edit, EL_PREP_TERM, 0);
     el_set(reader->edit, EL_PREP_TERM, 1);
     el_set(reader->edit, EL_REFRESH, NULL);
+    show(reader);
 }
 
 /* A character, once the loop says that there is one. */
@@ -67,6 +85,7 @@ static int get_character(EditLine *edit, wchar_t *out)
     mbstate_t state = {0};
     el_get(edit, EL_CLIENTDATA, &reader);
     for (;;) {
+        show(reader);
         int stopped = reader->owner.wait(reader->owner.ctx);
         char byte;
         if (stopped == LINE_NEWS) {
@@ -133,14 +152,13 @@ static int compare(const void *a, const void *b)
     return strcmp(a, b);
 }
 
-static void list_candidates(candidates *c)
+static void list_candidates(candidates *c, FILE *to)
 {
     qsort(c->word, (size_t)c->n, WORD_BYTES, compare);
-    putchar('\n');
+    putc('\n', to);
     for (int i = 0; i < c->n; i++) {
-        printf("%s%s", c->word[i], i + 1 < c->n ? "  " : "\n");
+        fprintf(to, "%s%s", c->word[i], i + 1 < c->n ? "  " : "\n");
     }
-    fflush(stdout);
 }
 
 static unsigned char complete(EditLine *edit, int key)
@@ -160,7 +178,7 @@ static unsigned char complete(EditLine *edit, int key)
     }
     size_t n = common(&found);
     if (found.n > 1 && n <= replaced) {
-        list_candidates(&found);
+        list_candidates(&found, reader->to);
         return CC_REDISPLAY;
     }
     snprintf(text, sizeof text, "%.*s%s", (int)n, found.word[0],
@@ -209,6 +227,15 @@ static void remember(line_reader *reader, const char *line)
 
 /* ---- the reader ----------------------------------------------------------------------------- */
 
+static void forget(line_reader *reader)
+{
+    if (reader->to) {
+        (void)fclose(reader->to);
+    }
+    free(reader->text);
+    free(reader);
+}
+
 line_reader *line_open(const line_owner *owner)
 {
     line_reader *reader = calloc(1, sizeof *reader);
@@ -217,9 +244,12 @@ line_reader *line_open(const line_owner *owner)
     }
     reader->owner = *owner;
     reader->prompt = "";
-    reader->edit = el_init("grctl", stdin, stdout, stderr);
+    reader->to = open_memstream(&reader->text, &reader->size);
+    reader->edit = reader->to ? el_init_fd("grctl", stdin, reader->to, stderr, STDIN_FILENO,
+                                           STDOUT_FILENO, STDERR_FILENO)
+                              : NULL;
     if (!reader->edit) {
-        free(reader);
+        forget(reader);
         return NULL;
     }
     el_set(reader->edit, EL_CLIENTDATA, reader);
@@ -248,12 +278,14 @@ int line_read(line_reader *reader, const char *prompt, char *line, size_t capaci
     reader->reading = false;
     if (reader->interrupted) {
         el_reset(reader->edit);
-        fputs("\n", stdout);
-        return LINE_INTERRUPTED;
     }
-    if (!text || n <= 0) {
-        fputs("\n", stdout);
-        return LINE_END;
+    bool ends = reader->interrupted || !text || n <= 0;
+    if (ends) {
+        putc('\n', reader->to);
+    }
+    show(reader);
+    if (ends) {
+        return reader->interrupted ? LINE_INTERRUPTED : LINE_END;
     }
     remember(reader, text);
     if (strcspn(text, "\n") >= capacity) {
@@ -272,5 +304,6 @@ void line_close(line_reader *reader)
         event_free(reader->resumed);
     }
     el_end(reader->edit);
-    free(reader);
+    show(reader);
+    forget(reader);
 }

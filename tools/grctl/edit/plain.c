@@ -1,15 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /* Lines without editing, where libedit was not there when grctl was built. */
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/cli/output.h"
 #include "tools/grctl/edit/edit.h"
 #include "tools/grctl/os/os.h"
 
 struct line_reader {
     line_owner owner;
 };
+
+static void say(const char *text)
+{
+    output_bytes(text, strlen(text));
+    (void)output_flush();
+}
 
 line_reader *line_open(const line_owner *owner)
 {
@@ -25,11 +31,9 @@ static int await_input(const line_owner *owner, const char *prompt)
 {
     int stopped;
     while ((stopped = owner->wait(owner->ctx)) == LINE_NEWS) {
-        putchar('\n');
-        fflush(stdout);
+        say("\n");
         owner->tell(owner->ctx);
-        fputs(prompt, stdout);
-        fflush(stdout);
+        say(prompt);
     }
     return stopped;
 }
@@ -37,17 +41,16 @@ static int await_input(const line_owner *owner, const char *prompt)
 int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity)
 {
     size_t n = 0;
-    fputs(prompt, stdout);
-    fflush(stdout);
+    say(prompt);
     for (;;) {
         char c;
         if (await_input(&reader->owner, prompt)) {
-            putchar('\n');
+            say("\n");
             return LINE_INTERRUPTED;
         }
         int got = os_input_read(&c, 1);
         if (got < 0) {
-            putchar('\n');
+            say("\n");
             return LINE_END;
         }
         if (got > 0 && c == '\n') {
