@@ -50,7 +50,7 @@ double grobo_i_dxl_effort(const grobo_sim *sim, int servo);
 int grobo_i_dxl_look(const grobo_sim_servo *servo, int address, int32_t *value);
 int grobo_i_dxl_set(grobo_sim *sim, int servo, int address, int32_t value);
 
-/* Tells what a register got. */
+/* Reports the value that was written to a register. */
 void grobo_i_dxl_tell(grobo_sim *sim, int servo, const grobo_servo_register *reg, int32_t value);
 /* The servo of a family that has this id and hears a packet; negative: none. */
 int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, uint8_t id,

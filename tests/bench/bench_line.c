@@ -32,6 +32,7 @@
 #include <grobo/session.h>
 
 #include "tests/bench/bench.h"
+#include "tests/bench/one_servo.h"
 
 enum { LINES_MAX = 512, FRAME_MAX = 256, PROBE_US = 10000, PROBES = 4096, TIMEOUT_US = 50000 };
 
@@ -427,19 +428,12 @@ static void on_robot(void *ctx, const grobo_event *event)
 
 static int run_sessions(int lines, char **path)
 {
-    static const grobo_joint joint = {.name = "J",
-                                      .min_rad = -1,
-                                      .max_rad = 1,
-                                      .max_speed_rad_s = 1,
-                                      .motor = 1,
-                                      .mirror_sign = 1};
-    static const grobo_model model = {.name = "one servo", .joints = &joint, .n_joints = 1};
     const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
                                       .sense_interval_us = in_background ? 1 : GROBO_SENSE_NEVER,
                                       .sense_position_only = true};
     grobo_driver driver;
 
-    if (grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol) < 0) {
+    if (grobo_rs30x_driver_init(&driver, &one_servo_model, &grobo_rs30x_protocol) < 0) {
         return 1;
     }
     begin_run();

@@ -18,6 +18,7 @@
 #include <grobo/static.h>
 
 #include "tests/bench/bench.h"
+#include "tests/bench/one_servo.h"
 
 #define SECOND_US 1000000
 
@@ -237,19 +238,12 @@ static void on_reading(void *ctx, const grobo_event *event)
 
 static void prepare_reading(void)
 {
-    static const grobo_joint joint = {.name = "J",
-                                      .min_rad = -1,
-                                      .max_rad = 1,
-                                      .max_speed_rad_s = 1,
-                                      .motor = 1,
-                                      .mirror_sign = 1};
-    static const grobo_model model = {.name = "one servo", .joints = &joint, .n_joints = 1};
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
                                        .sense_interval_us = GROBO_SENSE_NEVER};
     const grobo_robot_host host = {.clock = rig_clock};
 
     rig.now_us = SECOND_US;
-    (void)grobo_rs30x_driver_init(&one_servo, &model, &grobo_rs30x_protocol);
+    (void)grobo_rs30x_driver_init(&one_servo, &one_servo_model, &grobo_rs30x_protocol);
     (void)grobo_robot_init(&rig.robot, &one_servo, NULL, &config, rig.now_us);
     grobo_robot_set_host(&rig.robot, &host);
     grobo_robot_on_event(&rig.robot, on_reading, NULL);

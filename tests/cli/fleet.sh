@@ -131,12 +131,7 @@ rests() {
     looks && ! grep -q '"play": *"playing"' "$work/look" && grep -q '"play": *"idle"' "$work/look"
 }
 ended() {
-    wait "$play"
-    status_ended=$?
-    [ $status_ended -eq "$1" ] && return
-    echo "status $status_ended, not $1"
-    cat "$work/said"
-    return 1
+    ended_with "$1" "$play"
 }
 interrupted() {
     plays && kill -INT "$play" && ended 130 && wait_for rests

@@ -62,12 +62,7 @@ watches() {
 }
 watcher_ended() { # STATUS
     exec 7>&-
-    wait "$watcher"
-    watcher_status=$?
-    [ $watcher_status -eq "$1" ] && return
-    echo "status $watcher_status, not $1"
-    cat "$work/said"
-    return 1
+    ended_with "$1" "$watcher"
 }
 all_stopped() {
     [ "$(tail -n 3 "$work/seen" | grep -c '^[abc] .* stopped, read back$')" -eq 3 ]
@@ -120,12 +115,7 @@ begins() { # how it goes on is in $work/played
     written "$work/played" '"starts":true'
 }
 ended() {
-    wait "$program"
-    status_ended=$?
-    [ $status_ended -eq "$1" ] && return
-    echo "status $status_ended, not $1"
-    cat "$work/said"
-    return 1
+    ended_with "$1" "$program"
 }
 holds() {
     exits 0 "$GRCTL" -d "$1" --timeout 500 status && ! grep -q 'moving' "$work/out"

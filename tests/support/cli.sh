@@ -154,6 +154,16 @@ exits() {
     return 1
 }
 
+# ended_with STATUS PID: that process of this shell ends so; else what it said is shown.
+ended_with() {
+    wait "$2"
+    ended_status=$?
+    [ $ended_status -eq "$1" ] && return
+    echo "status $ended_status, not $1"
+    cat "$work/said"
+    return 1
+}
+
 # status_was STATUS COMMAND...: that of the command that was just run; shows what it printed if not.
 status_was() {
     status_got=$?
