@@ -168,7 +168,7 @@ static bool all_hold(const grobo_robot *robot, grobo_joint_mask joints)
 }
 
 /* A target for joints that nothing is read of before. */
-static int admit_target(const grobo_robot *robot, const grobo_posture *target)
+static int admit_target(grobo_robot *robot, const grobo_posture *target)
 {
     if (!robot->link) {
         return GROBO_ERR_CLOSED;
@@ -179,7 +179,8 @@ static int admit_target(const grobo_robot *robot, const grobo_posture *target)
     if (target->set == 0) {
         return GROBO_ERR_ARG;
     }
-    bool others = (target->set & robot->free_joints) != 0 || grobo_i_adrift(robot, target->set);
+    bool others = grobo_i_adrift(robot, target->set, &robot->fault_joint) ||
+                  (target->set & robot->free_joints) != 0;
     return others || !all_hold(robot, target->set) ? GROBO_ERR_STATE : GROBO_OK;
 }
 

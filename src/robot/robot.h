@@ -98,8 +98,9 @@ bool grobo_i_may_halt(const grobo_robot *robot);
 void grobo_i_axis_cut(grobo_robot_axis *axis);
 /* True while a joint is on the way it was sent on, or a target waits for the line. */
 bool grobo_i_moving(const grobo_robot *robot, int64_t now_us);
-/* True if one of these moves though nothing was asked of it, nobody knows where to. */
-bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints);
+/* True if one of these moves though nothing was asked of it, nobody knows where to; *joint is the
+ * first of them, else -1. */
+bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
 /* True if all of these were sensed; else *joint is one that was not. */
 bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
 /* True if all of these are known to have torque. */

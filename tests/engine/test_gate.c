@@ -42,11 +42,13 @@ static void a_goal_is_judged_as_it_leaves(void **state)
         assert_int_equal(judge(order), GROBO_OK);
         robot.free_joints = GROBO_JOINT_BIT(j);
         assert_int_equal(judge(order), GROBO_ERR_STATE);
+        assert_int_equal(robot.fault_joint, -1);
         robot.free_joints = 0;
         robot.axes[other_of(j)].adrift = true;
         assert_int_equal(judge(order), GROBO_OK);
         robot.axes[j].adrift = true;
         assert_int_equal(judge(order), GROBO_ERR_STATE);
+        assert_int_equal(robot.fault_joint, j);
         robot.axes[j].adrift = false;
         latch(GROBO_TRIP_LOST_REPLIES);
         assert_int_equal(judge(order), GROBO_ERR_LATCHED);

@@ -186,6 +186,14 @@ static int fail_limit(conn *c, int joint, const char *prefix, const char *who)
                     grobo_deg_from_rad(info.state.high_rad));
 }
 
+/* It goes where another program has sent it, or falls. */
+static int fail_adrift(conn *c, const char *prefix, const char *who)
+{
+    return app_fail(c->a, app_status_of(GROBO_ERR_STATE), grobo_error_name(GROBO_ERR_STATE),
+                    "%s: %s%s moves, and not by this program: wait, or 'grctl stop'",
+                    conn_device(c), prefix, who);
+}
+
 int conn_fail_job(conn *c, int error, const char *prefix)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
@@ -210,6 +218,9 @@ int conn_fail_job(conn *c, int error, const char *prefix)
     }
     if (error == GROBO_ERR_LIMIT) {
         return fail_limit(c, joint, prefix, who);
+    }
+    if (error == GROBO_ERR_STATE) {
+        return fail_adrift(c, prefix, who);
     }
     return app_fail_error(c->a, app_status_of(error), error, "%s: %s%s", conn_device(c), prefix,
                           who);
