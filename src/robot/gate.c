@@ -208,8 +208,8 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
         return GROBO_ERR_STATE;
     }
     /* A joint in free mode is moved by a person; one adrift by somebody else. */
-    bool others = grobo_i_adrift(robot, joints, &robot->fault_joint) ||
-                  (joints & robot->free_joints) != 0;
+    bool others =
+        grobo_i_adrift(robot, joints, &robot->fault_joint) || (joints & robot->free_joints) != 0;
     return others || !all_limited(robot, joints) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
