@@ -290,8 +290,8 @@ GROBO_API bool grobo_robot_is_pending(const grobo_robot *robot, int number);
 GROBO_API void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *info);
 
 /**
- * Joint and value that made the last request fail with LIMIT or NAN; with STATE the joint that moves
- * though this program sent it nowhere. @return joint or -1.
+ * Joint and value that made the last request fail with LIMIT or NAN; with STATE the joint that
+ * moves though this program sent it nowhere. @return joint or -1.
  */
 GROBO_API int grobo_robot_fault(const grobo_robot *robot, double *value_deg);
 
