@@ -29,7 +29,7 @@ static void report(const conn *c, const grobo_posture *target)
         app_print_json(json_pack("{s:o,s:o}", "joints", render_joints_json(c, target->set),
                                  "max_error_deg", app_json_number(joint < 0 ? NAN : worst, 2)));
     } else if (joint >= 0) {
-        app_note(c->a, "there; largest error %.1f deg (%s)", worst,
+        app_note(c->a, "done; largest error %.1f deg (%s)", worst,
                  grobo_robot_driver(c->robot)->model->joints[joint].name);
     }
 }
