@@ -215,7 +215,8 @@ keys 'estop --reset' Enter
 until_screen 'released'
 # A row of before is on the screen still.
 is_on_again() {
-    screen | awk '/R_ELBOW_P .* on / { n++ } NF { last = $0 } END { exit n != 2 || last != "grctl>" }'
+    screen |
+        awk '/R_ELBOW_P .* on / { n++ } NF { last = $0 } END { exit n != 2 || last != "grctl>" }'
 }
 typed_unseen() {
     keys 'servo on m5' Enter 'status m5' Enter
