@@ -318,7 +318,7 @@ void http_reply_content(http_request *r, const http_content *content)
 {
     const char *known = http_header(r, "If-None-Match");
     add_headers(r);
-    add(r, "Cache-Control", "no-cache");
+    add(r, "Cache-Control", content->lasts ? "max-age=31536000, immutable" : "no-cache");
     if (content->page) {
         add_policy(r);
     }
