@@ -1552,8 +1552,9 @@ def pictures_of_each_view(browser, server):
         return 'PICTURES names no folder'
     os.makedirs(folder, exist_ok=True)
     for size in SIZES:
-        for scheme in ('light', 'dark'):
-            page = browser.page(server.link, size=size, color_scheme=scheme)
+        for scheme, locale in (('light', 'en-GB'), ('dark', 'en-GB'), ('light', 'ja-JP')):
+            look = 'ja' if locale == 'ja-JP' else scheme
+            page = browser.page(server.link, size=size, color_scheme=scheme, locale=locale)
             drive(page)
             torque_on(page, server)
             for tab in ('see', 'play', 'joints', 'make', 'more'):
@@ -1569,14 +1570,14 @@ def pictures_of_each_view(browser, server):
                     page.evaluate('cockpit.select(16)')
                     page.select_option('#make-other', 'wave_both.pseq')
                 page.wait_for_timeout(500)
-                page.screenshot(path=f'{folder}/{size}-{tab}-{scheme}.png')
+                page.screenshot(path=f'{folder}/{size}-{tab}-{look}.png')
                 if tab == 'make':
                     page.evaluate("document.getElementById('make').scrollTop = 400")
                     page.wait_for_timeout(200)
-                    page.screenshot(path=f'{folder}/{size}-{tab}-below-{scheme}.png')
+                    page.screenshot(path=f'{folder}/{size}-{tab}-below-{look}.png')
             page.click('#stop')
             stopped(page)
-            page.screenshot(path=f'{folder}/{size}-stopped-{scheme}.png')
+            page.screenshot(path=f'{folder}/{size}-stopped-{look}.png')
             page.close()
             server.call('POST', '/api/reset', {})
     return None

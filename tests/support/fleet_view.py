@@ -317,6 +317,7 @@ def schema():
         view = View(server)
         fits = Schemas("docs/serve-fleet.openapi.json")
         fits.paths(view, {})
+        fits.routes("tools/grctl/web/fleet.c", "/index.html", "/fleet.html")
         view.wait("stopped by that", lambda s: s["latch"] is not None)
         view.post("reset")
         view.wait_all()
