@@ -1576,7 +1576,7 @@ def pictures_of_each_view(browser, server):
                     page.wait_for_timeout(200)
                     page.screenshot(path=f'{folder}/{size}-{tab}-below-{look}.png')
             page.click('#stop')
-            stopped(page)
+            until(page, "cockpit.state.stop.confirmed && document.getElementById('stopped').matches('.ok')")
             page.screenshot(path=f'{folder}/{size}-stopped-{look}.png')
             page.close()
             server.call('POST', '/api/reset', {})

@@ -544,6 +544,39 @@ def crowd():
         assert page.state()["stop"]["latched"]
 
 
+def foreign():
+    """Connections that are kept, and asked for refusals again and again, hold no place for long."""
+    with Server() as server:
+        page = Page(server)
+        for port, path in ((server.stop_port, "/stop"), (server.port, "/api/stop")):
+            held = [socket.create_connection(("127.0.0.1", port), PATIENCE_S) for _ in range(64)]
+            stop = threading.Event()
+
+            def refresh(wait_s=0, held=held, port=port, stop=stop):
+                """From another page, each once."""
+                for s in held:
+                    try:
+                        s.sendall(f"POST /stop HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://else"
+                                  "where\r\nContent-Length: 0\r\n\r\n".encode())
+                        assert s.recv(4096) == b"" or not stop.wait(wait_s)
+                    except (OSError, AssertionError):
+                        pass
+
+            refresh()
+            again = threading.Thread(target=lambda go=refresh, stop=stop: [
+                go(0.01) for _ in iter(stop.is_set, True)], daemon=True)
+            again.start()
+            began = time.monotonic()
+            status = page.ask("POST", path, b"{}", {"Content-Type": "application/json"}, port)[0]
+            print(f"# {path} beside 64 of another page: {(time.monotonic() - began) * 1e3:.1f} ms")
+            stop.set()
+            again.join()
+            for s in held:
+                s.close()
+            same(status, 204 if path == "/stop" else 200)
+            page.wait("latched", lambda state: state["stop"]["latched"])
+
+
 # ---- driving -----------------------------------------------------------------------------------
 
 def driving():
