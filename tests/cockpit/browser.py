@@ -400,6 +400,12 @@ def a_slider_moves_its_joint_and_ends_at_the_limit(browser, server):
     page = browser.page(server.link)
     drive(page)
     torque_on(page, server)
+    at_once = page.evaluate("""cockpit.robot.joints.map((_, n) => {
+        cockpit.select(n);
+        return Number(document.querySelector('.jog input[type=range]').value);
+    })""")
+    worst = max(abs(a - b) for a, b in zip(at_once, server.state()['angle_deg']))
+    assert worst < 1, f'a slider that was chosen stands {worst} degrees beside its joint'
     page.click('.joint:text-is("R_ELBOW_P")')
     joint = page.evaluate('cockpit.selected')
     limits = page.evaluate('cockpit.robot.joints[cockpit.selected].limits_deg')

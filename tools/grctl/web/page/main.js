@@ -130,8 +130,8 @@ class App {
             clearTimeout(this.fileTimer);
             this.fileTimer = setTimeout(() => this.play.refresh().catch(() => {}), 150);
         }
-        if (event.level === 'error' || event.level === 'warning') {
-            this.notice(event.message);
+        if (event.kind !== 'stop' && (event.level === 'error' || event.level === 'warning')) {
+            this.notice(event.message); // a stop is told beside STOP
         }
         if (['stop', 'trip', 'link', 'lease', 'play'].includes(event.kind)) {
             this.say(event.message, event.kind === 'stop' || event.kind === 'trip');
