@@ -579,6 +579,22 @@ def foreign():
 
 # ---- driving -----------------------------------------------------------------------------------
 
+def names():
+    """A name is told to others as it was given, or as many characters of it as fit."""
+    with Server() as server:
+        for given, told in (("a" + "あ" * 31, "a" + "あ" * 31), ("ab" + "あ" * 100, "ab" + "あ" * 41),
+                            ("x" * 500, "x" * 127), ("😀" * 99, "😀" * 31), ("", "a script")):
+            page = Page(server, given).take()
+            no = expect(409, "lease", Page(server).post, "lease", action="take", name="other")
+            same(no.error["holder"]["name"], told)
+            assert no.error["message"].startswith(told + " drives since"), no.error
+            same(page.state()["lease"]["holder"]["name"], told)
+            page.wait_event(re.escape(told + " drives"))
+            page.post("stop", name=given)
+            same(page.state()["stop"]["by"], told)
+            page.post("reset")
+
+
 def driving():
     with Server() as server:
         page = Page(server).take().keep_beating()
