@@ -80,7 +80,8 @@ static void take(serve *s, http_request *r, const json_t *body)
 {
     const char *secret = door_header_or_body(r, body, "X-Grobo-Lease", "lease");
     bool was_held = lease_is_held(&s->lease);
-    if (!lease_take(&s->lease, door_name(body).name, secret, s->options->takes_over, grobo_now_us())) {
+    if (!lease_take(&s->lease, door_name(body).name, secret, s->options->takes_over,
+                    grobo_now_us())) {
         refuse_lease(s, r);
         return;
     }
