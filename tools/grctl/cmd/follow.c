@@ -431,7 +431,7 @@ static int run(app *a)
     if (!status) {
         status = match(&p);
     }
-    p.leader.a.line.global[GLOBAL_TRACE].given = 0;
+    p.leader.a.line.global[GLOBAL_TRACE] = (cli_value){.text = NULL}; /* it is the follower's */
     if (!status) {
         status = open_follower(&p);
     }
