@@ -90,6 +90,14 @@ shell_moves() {
     grep -q 'there; largest error' "$work/err"
 }
 check "in a shell" shell_moves
+tell block shoulder_pan on
+check "a joint that is blocked is not there" fails 0 \
+    '^not there: largest error 1[0-9]\.[0-9] deg (shoulder_pan); is it blocked?$' \
+    on_robot --robot so101 move shoulder_pan 15
+tell block shoulder_pan off
+check "it is free" wait_for sim_shows 1 ' 1[45]\.[0-9] deg .* mA .* C$'
+check "and gets back" fails 0 'there; largest error 0\.[0-4]' \
+    on_robot --robot so101 move shoulder_pan 0
 mkdir -p "$work/config/grctl"
 cat >"$work/config/grctl/config.yaml" <<END
 robots:
