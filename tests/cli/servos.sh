@@ -135,6 +135,8 @@ check "pose of a file" exits 0 on_robot pose @motions/greet.pseq:3
 check "pose of too few angles" fails 2 'pose takes 20 angles, .*, not 2' on_robot pose 10 20
 check "pose outside limits" fails 4 'R_ELBOW_P (motor 5) to 51.0 deg is outside' \
     on_robot pose m5=51
+check "pose of a joint by two of its names" fails 2 "'m5=6': R_ELBOW_P is there twice" \
+    on_robot pose R_ELBOW_P=5 m5=6
 check "pose without a number" fails 2 "'m5=' is not" on_robot pose m5=
 check "pose of infinity" fails 2 "'m5=inf' is not" on_robot pose m5=inf
 

@@ -153,6 +153,10 @@ static int pose_of_joint(app *a, const char *text, grobo_posture *target)
     if (text[length] != '=' || !cli_read_number(text + length + 1, &deg)) {
         return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not JOINT=DEG", text);
     }
+    if (target->set & GROBO_JOINT_BIT(joint)) {
+        return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s': %s is there twice", text,
+                        app_model(a)->joints[joint].name);
+    }
     grobo_posture_set_deg(target, joint, deg);
     return 0;
 }
