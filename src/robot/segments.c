@@ -21,11 +21,13 @@ static bool is_in_segments(const grobo_robot_axis *axis, int64_t now_us)
     return axis->in_segments;
 }
 
-/* The first of the joints that stopped because nothing came from their servos; -1: none. */
+/* The first of the joints that stopped because their servos did not answer; -1: none. One that was
+ * not asked is silent for want of its host. */
 static int silent_joint(const grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (has_stopped(&robot->axes[j], robot->now_us) && grobo_i_may_sleep(robot, j)) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if (has_stopped(axis, robot->now_us) && grobo_i_may_sleep(robot, j) && axis->lost > 0) {
             return j;
         }
     }
