@@ -8,6 +8,7 @@
 #include <grobo/sim_server.h>
 #include <grobo/sim_static.h>
 
+#include "src/base/instant.h"
 #include "src/base/sized.h"
 #include "src/link/serial/loop.h"
 
@@ -24,6 +25,13 @@
 
 /* How often a backlog is looked at: whether its program has left, or more of it has come. */
 #define LOOK_US 2000
+
+/*
+ * A packet's bytes come to a program together, when the last of them is over, as from a USB adapter;
+ * those of a packet that takes longer after at most this time, a frame of full-speed USB (USB 2.0,
+ * 4.2.1). A wake for each byte would cost more than its time on the wire.
+ */
+#define GATHER_US 1000
 
 /* How long nobody is let in after a failure: the system has no descriptor, and who calls waits. */
 #define DOOR_SHUT_US 100000
@@ -399,10 +407,20 @@ static void await_callers(grobo_sim_server *server)
     }
 }
 
+/* When the wire has a packet for a program, or bytes of one that have waited long enough. */
+static int64_t next_bytes_us(const grobo_sim *sim)
+{
+    int64_t byte_us = grobo_sim_deadline(sim);
+
+    return byte_us == GROBO_NEVER_US
+               ? byte_us
+               : grobo_i_sooner(grobo_sim_packet_deadline(sim), byte_us + GATHER_US);
+}
+
 /* When there is something to do without anybody's bytes. */
 static int64_t next_look_us(const grobo_sim_server *server)
 {
-    int64_t next_us = grobo_sim_deadline(&server->sim);
+    int64_t next_us = next_bytes_us(&server->sim);
 
     next_us = server->replug_us < next_us ? server->replug_us : next_us;
     next_us = server->door_us < next_us ? server->door_us : next_us;
