@@ -166,7 +166,7 @@ static void on_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
 {
     grobo_robot_slot *slot = ctx;
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && txn == &slot->txn);
-    note_answer(slot->robot, txn, GROBO_OK, reply);
+    note_answer(slot->robot, txn, reply->refused ? GROBO_ERR_NACK : GROBO_OK, reply);
     slot->robot->each(slot, reply);
 }
 
