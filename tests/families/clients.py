@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Independent clients against the simulator: clients.py CLIENT PORT. An assertion tells what differs."""
 import os
+import select
 import sys
 import time
 from pathlib import Path
@@ -194,17 +195,26 @@ def rate_of(read, data_bytes):
 
 def bare_reader(port, first, data_bytes):
     """An exchange without a client: the machine takes so long, whoever asks."""
+    import termios
     import tty
 
     body = bytes([0xFE, 4 + SERVOS, 0x82, first, data_bytes, *range(1, SERVOS + 1)])
     frame = b"\xff\xff" + body + bytes([~sum(body) & 0xFF])
     line = os.open(port, os.O_RDWR | os.O_NOCTTY)
     tty.setraw(line)
+    set_up = termios.tcgetattr(line)
+    set_up[4] = set_up[5] = termios.B1000000
+    termios.tcsetattr(line, termios.TCSANOW, set_up)
+    waiting = select.poll()
+    waiting.register(line, select.POLLIN)
+    while waiting.poll(50):  # what the client before had asked for
+        os.read(line, 4096)
 
     def read():
         os.write(line, frame)
         left = SERVOS * (6 + data_bytes)
         while left > 0:
+            assert waiting.poll(PATIENCE_MS), f"{left} bytes did not come"
             left -= len(os.read(line, 4096))
         assert left == 0
 
