@@ -37,10 +37,11 @@ typedef enum grobo_job_kind {
 typedef enum grobo_trip {
     GROBO_TRIP_NONE = 0,
     GROBO_TRIP_TEMPERATURE,  /**< value: deg C */
-    GROBO_TRIP_OVERHEATED,   /**< a servo cut its torque for heat; value: deg C */
+    GROBO_TRIP_OVERHEATED,   /**< a servo cut its torque for heat; value: deg C, 0: not told */
     GROBO_TRIP_CURRENT,      /**< value: mA */
     GROBO_TRIP_VOLTAGE,      /**< value: mV */
-    GROBO_TRIP_LOST_REPLIES, /**< in motion; value: readings lost in a row */
+    GROBO_TRIP_LOST_REPLIES, /**< in motion; value: readings lost in a row; 0: a servo that a goal
+                                  wakes was not heard in time to be sent the next one */
     GROBO_TRIP_TORQUE_LOST,  /**< a joint that held has no torque any more (brown-out) */
     GROBO_TRIP_LIMIT,        /**< a played target outside limits; value: degrees. Not latched */
     GROBO_TRIP_NUMBER,       /**< a played target not finite. Not latched */
