@@ -97,6 +97,7 @@ typedef struct grobo_robot_slot {
     bool refused;     /* at the moment it would have left */
     bool reads;       /* it asks where this joint is */
     bool many;        /* it asks where several are */
+    bool fast;        /* which answer with one packet */
     uint8_t use;      /* 0: free */
     uint8_t joint;
     uint8_t kind, part;      /* of a reading: grobo_sense_kind, exchanges before this one */
@@ -245,6 +246,8 @@ struct grobo_robot {
     unsigned depth;        /* calls into the engine, one inside another */
     int acting;            /* number of the job whose step runs; 0: none */
     bool other_read;       /* in free mode: the last reading was of a joint that is not free */
+    uint8_t fast_lost;     /* readings of all in one packet that failed since one did not */
+    bool fast_forgotten;   /* servos are asked again whether they answer so */
     bool heard_read;       /* the last reading was of a joint that was not heard for long */
     bool link;
     bool answered;      /* the last frame given out was: none of it waits any more */

@@ -279,7 +279,7 @@ static void forget(grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        axis->sensed = axis->has_target = axis->torque_known = false;
+        axis->sensed = axis->has_target = axis->torque_known = axis->state.fast = false;
         axis->wants_torque = axis->held = axis->adrift = false;
         axis->own_until_us = 0;
         axis->status = GROBO_ERR_UNPLUGGED;
@@ -288,7 +288,7 @@ static void forget(grobo_robot *robot)
         axis->way.to_us = robot->now_us;
     }
     robot->free_joints = robot->played_joints = robot->halts_owed = 0;
-    robot->low_readings = 0;
+    robot->low_readings = robot->fast_lost = 0;
 }
 
 void grobo_robot_link_down(grobo_robot *robot, int64_t now_us)
