@@ -299,8 +299,8 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
     slot->many = true;
     slot->unread = all;
     robot->fast_forgotten = false;
-    slot->fast = are_fast(robot) &&
-                 driver->sense_fast(driver, robot->driver_ctx, kind, &robot->built) >= 0;
+    slot->fast =
+        are_fast(robot) && driver->sense_fast(driver, robot->driver_ctx, kind, &robot->built) >= 0;
     if (slot->fast) {
         return GROBO_OK;
     }

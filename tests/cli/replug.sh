@@ -35,8 +35,8 @@ says_so() {
 }
 # Each joint has an angle, and torque.
 all_are_there() {
-    exits 0 arm status && [ "$(grep -c '^ *[1-6]  [a-z_]* *-*[0-9.]* .* on ' "$work/out")" -eq 6 ] &&
-        return
+    exits 0 arm status || return 1
+    [ "$(grep -c '^ *[1-6]  [a-z_]* *-*[0-9.]* .* on ' "$work/out")" -eq 6 ] && return
     cat "$work/out"
     return 1
 }
@@ -47,7 +47,7 @@ all_stand() {
 }
 
 for family_robot in so101 koch; do
-    start_told_sim --robot "$family_robot" || { echo "Bail out! the simulator did not start"; exit 1; }
+    start_told_sim --robot "$family_robot" || { echo "Bail out! no simulator"; exit 1; }
     check "$family_robot stands ready" exits 0 arm init
     check "is unplugged in motion" unplugged
     check "which is said" says_so
