@@ -637,8 +637,8 @@ static size_t fast_part(grobo_sim *sim, int index, const item *one, uint8_t *byt
     return n + one->length;
 }
 
-/* Older firmware of an XL330 is silent (issue pollen-robotics/rustypot#122). Of other models nothing
- * is known: theirs counts likewise. */
+/* Older firmware of an XL330 is silent (issue pollen-robotics/rustypot#122). Of other models
+ * nothing is known: theirs counts likewise. */
 #define FAST_FIRMWARE 46
 
 static bool answers_fast(const grobo_sim_servo *servo, const item *one)

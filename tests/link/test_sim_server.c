@@ -488,7 +488,7 @@ static int pieces_of_a_state(uint32_t baud_bps)
 }
 
 /* A program is given a packet, not bytes: in one piece, and in two where the machine was held up
- * while the packet began. Of one that takes 27 ms it has some before, unless it was held so long. */
+ * while the packet began. Of one that takes 27 ms it has some before, unless held up so long. */
 static void a_packet_comes_whole_unless_it_takes_long(void **state)
 {
     int pieces = 0;

@@ -30,8 +30,8 @@ static bool sync_read(const grobo_servo_model *servo)
     return true;
 }
 
-/* Firmware that answers, of the models where that is known (issue pollen-robotics/rustypot#122): the
- * two XL330. What does not answer is silent. */
+/* Firmware that answers, of the models where that is known, the two XL330 (issue
+ * pollen-robotics/rustypot#122). What does not answer is silent. */
 #define FAST_FIRMWARE 46
 
 static bool fast_read(const grobo_servo_model *servo, int32_t firmware)
