@@ -27,9 +27,9 @@
 #define LOOK_US 2000
 
 /*
- * A packet's bytes come to a program together, when the last of them is over, as from a USB adapter;
- * those of a packet that takes longer after at most this time, a frame of full-speed USB (USB 2.0,
- * 4.2.1). A wake for each byte would cost more than its time on the wire.
+ * A packet's bytes come to a program together, when the last of them is over, as from a USB
+ * adapter; those of a packet that takes longer after at most this time, a frame of full-speed USB
+ * (USB 2.0, 4.2.1). A wake for each byte would cost more than its time on the wire.
  */
 #define GATHER_US 1000
 
