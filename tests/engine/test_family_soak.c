@@ -152,7 +152,7 @@ static void on_look(family_kit *k)
     user.looked_us = k->now_us >= user.looked_us + LOOK_US ? k->now_us : user.looked_us;
 }
 
-/* What the host has read of a joint passed its sum of 8 bits and is wrong: it cannot know either. */
+/* What the host has read of a joint is wrong, and its sum of 8 bits right: nobody can know. */
 static bool is_misread(family_kit *k, int joint, double is_deg)
 {
     double read_deg = k->robot.axes[joint].state.angle_rad / RAD(1);
