@@ -235,6 +235,62 @@ static void the_line_is_not_asked_about_what_was_answered(void **state)
     assert_true(questions > 0);
 }
 
+/* ---- the simulator --------------------------------------------------------------------------- */
+
+static int set_up_sim(void **state)
+{
+    /* A line that is slower than the engine knows: a reply takes its time, frames pile up. */
+    static const grobo_sim_config slow = {GROBO_SIM_CONFIG_INIT, .baud_bps = 9600};
+    static const grobo_robot_config patient = {GROBO_ROBOT_CONFIG_INIT,
+                                               .sense_interval_us = GROBO_SENSE_NEVER,
+                                               .bus = {.margin_us = 300000}};
+
+    (void)state;
+    session_kit_begin();
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                            .robot = &patient, .sim = &slow});
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    loop_run_until(base, &seen.ups, 1);
+    assert_int_equal(
+        session_kit_await(grobo_robot_torque(robot(), GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+        GROBO_OK);
+    return 0;
+}
+
+static int tear_down_sim(void **state)
+{
+    (void)state;
+    session_kit_end();
+    return 0;
+}
+
+static void what_the_simulator_has_not_taken_by_a_stop_moves_nothing(void **state)
+{
+    enum { GOAL = 30, FRAMES_MAX = 60 };
+    grobo_sim *sim = grobo_session_sim(session);
+    int32_t goal_ddeg = -1;
+    int n = 0;
+
+    (void)state;
+    while (session->backlog_bytes == 0 && n < FRAMES_MAX) {
+        grobo_posture target;
+
+        grobo_posture_init_pose(&target, &grobo_gr001_model);
+        target.time_us = 2000000;
+        target.angle_rad[NECK] = grobo_rad_from_deg(++n);
+        assert_int_equal(grobo_robot_send(robot(), &target), GROBO_OK);
+        assert_true(loop_run(base, 12000));
+    }
+    assert_in_range(session->backlog_bytes, 3, GOALS - 1);
+    assert_true(grobo_robot_estop(robot()) > 0);
+    while (session->backlog_bytes > 0 || grobo_sim_rx_room(sim) < GROBO_SIM_WIRE_BYTES) {
+        (void)loop_run(base, 20000);
+    }
+    int servo = grobo_sim_find(sim, grobo_gr001_model.joints[NECK].motor);
+    assert_int_equal(grobo_sim_get_register(sim, servo, GOAL, &goal_ddeg), GROBO_OK);
+    assert_in_range(goal_ddeg, 10, 10 * (n - 1));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -246,6 +302,8 @@ int main(void)
                                         tear_down),
         cmocka_unit_test_setup_teardown(no_frame_is_taken_behind_one_that_has_not_left, set_up,
                                         tear_down),
+        cmocka_unit_test_setup_teardown(what_the_simulator_has_not_taken_by_a_stop_moves_nothing,
+                                        set_up_sim, tear_down_sim),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
