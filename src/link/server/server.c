@@ -8,6 +8,7 @@
 #include <grobo/sim_server.h>
 #include <grobo/sim_static.h>
 
+#include "src/base/instant.h"
 #include "src/base/sized.h"
 #include "src/link/serial/loop.h"
 
@@ -122,14 +123,12 @@ static bool is_in_the_way(end *e)
     if (e == &e->server->ends[END_TCP]) {
         return e->server->knocked || other_end(e)->waits;
     }
-    if (grobo_port_pty_in_use(e->port)) {
-        if (e->left) {
-            forget(e); /* it is the next one that has it open */
-        }
-        e->left = false;
-    } else {
-        e->left = true;
+    bool in_use = grobo_port_pty_in_use(e->port);
+
+    if (in_use && e->left) {
+        forget(e); /* it is the next one that has it open */
     }
+    e->left = !in_use;
     return e->left;
 }
 
@@ -402,16 +401,11 @@ static void await_callers(grobo_sim_server *server)
 /* When there is something to do without anybody's bytes. */
 static int64_t next_look_us(const grobo_sim_server *server)
 {
-    int64_t next_us = grobo_sim_deadline(&server->sim);
+    int64_t next_us = grobo_i_sooner(grobo_sim_deadline(&server->sim), server->replug_us);
+    bool paused = server->ends[END_PTY].paused || server->ends[END_TCP].paused;
 
-    next_us = server->replug_us < next_us ? server->replug_us : next_us;
-    next_us = server->door_us < next_us ? server->door_us : next_us;
-    for (int i = 0; i < ENDS; i++) {
-        int64_t look_us = grobo_now_us() + LOOK_US;
-
-        next_us = server->ends[i].paused && look_us < next_us ? look_us : next_us;
-    }
-    return next_us;
+    next_us = grobo_i_sooner(next_us, server->door_us);
+    return paused ? grobo_i_sooner(next_us, grobo_now_us() + LOOK_US) : next_us;
 }
 
 void grobo_sim_server_pump(grobo_sim_server *server)
@@ -516,11 +510,11 @@ static int make_ends(grobo_sim_server *server)
         end *e = &server->ends[i];
 
         e->ops = ops[i];
-        if (e->ops == NULL) {
-            if (!server->config.no_pty) {
-                return GROBO_ERR_UNSUPPORTED;
-            }
+        if (e->ops == NULL && server->config.no_pty) {
             continue;
+        }
+        if (e->ops == NULL) {
+            return GROBO_ERR_UNSUPPORTED;
         }
         e->port = grobo_i_new(server->config.mem, e->ops->size_bytes);
         if (e->port == NULL) {
@@ -573,17 +567,14 @@ int grobo_sim_server_new(const grobo_sim_server_config *config, grobo_sim_server
 
 void grobo_sim_server_free(grobo_sim_server *server)
 {
-    const grobo_mem *mem;
-
     if (server == NULL) {
         return;
     }
-    mem = server->config.mem;
+    const grobo_mem *mem = server->config.mem;
+
     unplug(server);
     grobo_timer_free(server->timer);
-    for (int i = 0; i < ENDS; i++) {
-        end *e = &server->ends[i];
-
+    for (end *e = server->ends; e < server->ends + ENDS; e++) {
         grobo_i_free(mem, e->port, e->ops != NULL ? e->ops->size_bytes : 0);
     }
     grobo_i_free(mem, server, sizeof *server);
@@ -596,10 +587,7 @@ const char *grobo_sim_server_device(const grobo_sim_server *server)
 
 int grobo_sim_server_tcp_port(const grobo_sim_server *server)
 {
-    if (server == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    return server->callers != NULL ? server->tcp_port : 0;
+    return server == NULL ? GROBO_ERR_ARG : server->callers != NULL ? server->tcp_port : 0;
 }
 
 grobo_sim *grobo_sim_server_sim(grobo_sim_server *server)
