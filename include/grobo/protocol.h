@@ -72,7 +72,7 @@ typedef struct grobo_packet {
 
 /** What a framer met since it was initialised. Bytes in = bytes of frames + dropped + buffered. */
 typedef struct grobo_framer_stats {
-    uint32_t frames;        /**< good ones handed out */
+    uint32_t frames;        /**< good ones returned */
     uint32_t frame_bytes;   /**< their bytes */
     uint32_t dropped_bytes; /**< rubbish skipped while looking for a frame */
     uint32_t bad_sums;      /**< frames whole in form whose sum was wrong */
@@ -83,7 +83,7 @@ typedef struct grobo_framer {
     grobo_framer_stats stats; /**< read freely */
     /* private */
     uint16_t used;  /* bytes in buf */
-    uint16_t taken; /* of them, those of the frame handed out last */
+    uint16_t taken; /* of them, those of the frame returned last */
     bool ending;    /* what is incomplete now will never be completed */
     uint8_t buf[GROBO_FRAME_MAX_BYTES];
 } grobo_framer;

@@ -3,8 +3,8 @@
  * @file robot.h
  * @brief The robot engine: bytes and the time go in, bytes and the next deadline come out.
  *
- * No descriptor, clock, thread or allocation in here. Whoever owns the line pumps the engine,
- * whenever bytes came, a request was made or the deadline is reached, always in this order:
+ * The engine has no descriptor, clock, thread or allocation. The owner of the line pumps it, when
+ * bytes came, a request was made or the deadline is reached, always in this order:
  * @code
  *   grobo_robot_rx(&robot, bytes, n, now);                // what has arrived, first
  *   grobo_robot_step(&robot, now);                        // timeouts, frames that are due
@@ -81,7 +81,7 @@ GROBO_API int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config
  * beside what runs, see above), GROBO_ERR_LATCHED (tripped, for what would move or switch torque
  * on), GROBO_ERR_UNSUPPORTED (not in the driver), and the errors of each. */
 
-/** Is the robot there? Result GROBO_ERR_TIMEOUT if nothing answers. */
+/** Asks whether the robot is there. Result GROBO_ERR_TIMEOUT if nothing answers. */
 GROBO_API int grobo_robot_check(grobo_robot *robot);
 
 /** Reads joints; those that stay silent are in `failed`, the others are delivered. */
@@ -184,13 +184,13 @@ GROBO_API int grobo_robot_estop(grobo_robot *robot);
 GROBO_CORE int grobo_robot_latch(grobo_robot *robot);
 
 /**
- * Takes back a latched stop. Nothing moves; the next move or play senses first.
+ * Clears a latched stop. Nothing moves; the next move or play senses first.
  * @return 0, or GROBO_ERR_STATE while the emergency stop is still being carried out.
  */
 GROBO_API int grobo_robot_reset(grobo_robot *robot);
 
 /**
- * Ends what runs and what waits with GROBO_ERR_CANCELED; moves stop where they are. An emergency
+ * Ends the jobs that run and wait with GROBO_ERR_CANCELED; moves stop where they are. An emergency
  * stop cannot be canceled. @return 0, or GROBO_ERR_STATE.
  */
 GROBO_API int grobo_robot_cancel(grobo_robot *robot);

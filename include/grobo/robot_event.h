@@ -143,7 +143,7 @@ typedef struct grobo_robot_counters {
     uint64_t stalls;        /**< times the host came later than stall_us */
     uint64_t trips;         /**< safety stops */
     uint64_t estops;        /**< emergency stops asked for */
-    uint64_t lost_events;   /**< GROBO_EVENT_JOINT left out, too many in one call */
+    uint64_t lost_events;   /**< GROBO_EVENT_JOINT dropped, too many in one call */
 } grobo_robot_counters;
 
 /** How late motion frames left, in microseconds: quantiles of a histogram of fixed bins. */

@@ -54,7 +54,7 @@ typedef struct grobo_robot_host {
     /** Was an emergency stop asked for that the pump has not carried out? Then what moves is
      *  refused as behind one that was. Called with the lock. */
     bool (*is_stopped)(void *ctx);
-    /** May a latched stop be taken back? @return 0, or the error of grobo_robot_reset(). */
+    /** May a latched stop be cleared? @return 0, or the error of grobo_robot_reset(). */
     int (*may_reset)(void *ctx);
     /** Where several threads use the engine: held during every call, but not during callbacks. A
      *  thread that has it may take it again. */

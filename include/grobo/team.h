@@ -102,7 +102,7 @@ typedef struct grobo_team grobo_team;
  */
 GROBO_API int grobo_team_new(const grobo_team_config *config, grobo_team **team);
 
-/** Frees it; NULL is fine. Its robots go on with what they do. */
+/** Frees it; NULL is fine. Its robots continue with what they do. */
 GROBO_API void grobo_team_free(grobo_team *team);
 
 /**
@@ -129,7 +129,7 @@ GROBO_API int grobo_team_play(grobo_team *team, const grobo_clip *const *clips, 
 /**
  * Tells all that are ready when to begin, where grobo_team_play() was given GROBO_START_LATER.
  * @return 0, GROBO_ERR_STATE (not all are ready), GROBO_ERR_ARG, GROBO_ERR_STALE: that time is over
- *         (they go on waiting).
+ *         (they continue to wait).
  */
 GROBO_API int grobo_team_start_at(grobo_team *team, int64_t start_us, int64_t now_us);
 
