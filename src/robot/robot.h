@@ -190,11 +190,6 @@ bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_
 /* True if a frame of this use is under way. */
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
 
-/* ---- budget.c -------------------------------------------------------------------------------- */
-
-int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
-                   grobo_budget *budget);
-
 /* ---- reading.c ------------------------------------------------------------------------------- */
 
 /* A joint slower than this does not move: in free mode it holds again (protocol 5). */
