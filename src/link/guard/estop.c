@@ -108,8 +108,8 @@ static bool next_note(note_walk *walk)
             note_of(walk->kind, walk->names->name[walk->at / NOTE_FOLDERS], walk->note);
         }
         walk->at++;
-        if (grobo_i_note_read(&walk->in, walk->folder, walk->note, walk->text,
-                              sizeof walk->text) >= 0) {
+        if (grobo_i_note_read(&walk->in, walk->folder, walk->note, walk->text, sizeof walk->text) >=
+            0) {
             return true;
         }
     }

@@ -198,8 +198,7 @@ static int call_and_wait(grobo_control *control, const call_wish *wish)
     int result = GROBO_ERR_FULL;
 
     grobo_i_control_lock(control);
-    control_slot *slot =
-        take_slot(control, wish->urgent ? CONTROL_SLOTS : GROBO_CONTROL_CALLS_MAX);
+    control_slot *slot = take_slot(control, wish->urgent ? CONTROL_SLOTS : GROBO_CONTROL_CALLS_MAX);
     if (slot != NULL) {
         hand_over(control, slot, wish->fn, wish->arg);
         slot->users = wish->users;
