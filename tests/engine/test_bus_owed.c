@@ -201,7 +201,7 @@ static void a_reply_is_owed_to_the_last_microsecond(void **state)
     assert_in_range(p.sent[2].at_us, failed_us + 4 * MS, failed_us + 5 * MS);
 }
 
-/* A goal is answered by nobody: the next one need not wait for what one that was canceled is owed. */
+/* No servo answers a goal: one that was canceled is owed nothing, and the next need not wait. */
 static void a_canceled_goal_keeps_no_other_waiting(void **state)
 {
     (void)state;

@@ -711,7 +711,7 @@ C
 if command -v python3 >/dev/null; then
     check 'anchors: sabotages in their places' \
         sabotaged named 'twice\n- return a + a;\n+ return a;\n'
-    check 'anchors: a text that is not there' refuses 'tests/mutants/named:1: twice: found 0 times' \
+    check 'anchors: a text that is not there' refuses 'named:1: twice: found 0 times' \
         sabotaged named 'twice\n- return a * a;\n+ return a;\n'
     check 'anchors: a function that is not there' refuses 'not one function thrice' \
         sabotaged named 'thrice\n- return a + a;\n+ return a;\n'
