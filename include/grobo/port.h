@@ -333,7 +333,7 @@ GROBO_CORE int grobo_port_identity(const char *device, char *name, size_t name_b
 #define GROBO_GUARD_NAME "grobo-guard"
 
 /**
- * A process that has a device open: who holds the lock of it, else the first found that has it
+ * A process that has a device open: the one that holds its lock, else the first found that has it
  * open and is not the caller.
  * @param[out] name the process's name, NUL-terminated, cut to size; untouched where none.
  * @return its pid, 0 where there is none or it is not known.

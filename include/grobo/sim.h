@@ -254,7 +254,7 @@ GROBO_CORE int64_t grobo_sim_packet_deadline(const grobo_sim *sim);
 /** Room for bytes of the host: what grobo_sim_rx would take now. */
 GROBO_CORE size_t grobo_sim_rx_room(const grobo_sim *sim);
 
-/** True from a hang-up to the next grobo_sim_plug(): whoever serves the port closes it. */
+/** True from a hang-up to the next grobo_sim_plug(): the server of the port closes it. */
 GROBO_CORE bool grobo_sim_hung_up(const grobo_sim *sim);
 
 /**

@@ -7,8 +7,8 @@
  * What is in here is in the static libraries alone (libgrobo-core.a, libgrobo.a): the sizes below
  * change from version to version. With the shared library a robot comes from session.h or thread.h.
  *
- * Whoever owns the line pumps the engine, whenever bytes came, a request was made or the deadline
- * is reached, always in this order:
+ * The owner of the line pumps the engine, when bytes came, a request was made or the deadline is
+ * reached, always in this order:
  * @code
  *   grobo_robot_rx(&robot, bytes, n, now);                // what has arrived, first
  *   grobo_robot_step(&robot, now);                        // timeouts, frames that are due
@@ -42,7 +42,7 @@ GROBO_BEGIN_DECLS
 #define GROBO_ROBOT_JITTER_BINS 64
 
 /**
- * Whoever pumps an engine, as the engine sees it. A function that is NULL is not called. What they
+ * The pump of an engine, as the engine sees it. A function that is NULL is not called. What they
  * call of the engine is grobo_robot_deadline() at most, and from `wake` the pump.
  */
 typedef struct grobo_robot_host {
@@ -273,7 +273,7 @@ GROBO_CORE int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes,
                                       const grobo_driver *driver, void *driver_ctx,
                                       const grobo_robot_config *config, int64_t now_us);
 
-/** Who pumps it; copied, NULL: nobody in particular. Before anything is asked of the engine. */
+/** Sets the pump; copied, NULL: none. Before any request or question. */
 GROBO_CORE void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host);
 
 /** Bytes came from the line. */

@@ -12,8 +12,8 @@
  * Their clocks must be one: sessions on one loop, or engines that one program pumps.
  *
  * A motion begins by a barrier: each robot approaches its first posture and waits; when all are
- * there, all get the same start time. A robot that trips, loses its line, is stopped by somebody
- * else or is not there in time is out of the motion; grobo_team_policy says what the others do.
+ * there, all get the same start time. A robot that trips, loses its line, is stopped by another
+ * request or is not there in time is out of the motion; grobo_team_policy says what the others do.
  * The others do not wait for it: they are asked in the call that reported it.
  *
  * Stops go to every member, whether it takes part or not. They are requests of each engine
