@@ -112,7 +112,7 @@ typedef struct grobo_play_frame {
                                       a multiple of the unit except for rates, never 0 */
     int64_t due_us;              /**< when it should have been taken; it never runs backwards */
     uint32_t skipped;            /**< frames skipped just before this one; then the way may be
-                                      too long for the time: the engine stretches it */
+                                      too long for the time: an owner with limits stretches it */
     grobo_sequencer_state phase; /**< APPROACHING, PLAYING, or PAUSED and STOPPING for a hold */
 } grobo_play_frame;
 
