@@ -240,6 +240,22 @@ static void an_ack_that_is_owed_holds_the_next_for_all_of_the_time(void **state)
     assert_in_range(held_us, GROBO_BUS_HOLD_US, GROBO_BUS_HOLD_US + MS);
 }
 
+/* A byte that begins no packet is less than a reply, and more than silence. */
+static void one_wrong_byte_is_a_short_reply(void **state)
+{
+    (void)state;
+    for (int echo = 0; echo < 2; echo++) {
+        static const uint8_t wrong = 0;
+        peer p;
+        request a;
+        start(&p, echo == 1);
+        peer_submit_read(&p, &a, 1, 0);
+        peer_bytes_at(&p, 300, &wrong, 1);
+        peer_run(&p, S);
+        assert_int_equal(p.ended[0].result, echo ? GROBO_ERR_MISMATCH : GROBO_ERR_SHORT);
+    }
+}
+
 /* ---- echo ------------------------------------------------------------------------------------ */
 
 /* What the adapter hands over late, all of it: the echo and the reply of the request before. */
@@ -484,6 +500,7 @@ int main(void)
         cmocka_unit_test(a_reply_is_owed_to_the_last_microsecond),
         cmocka_unit_test(a_canceled_goal_keeps_no_other_waiting),
         cmocka_unit_test(an_ack_that_is_owed_holds_the_next_for_all_of_the_time),
+        cmocka_unit_test(one_wrong_byte_is_a_short_reply),
         cmocka_unit_test(an_echo_is_found_behind_a_late_echo_and_a_late_reply),
         cmocka_unit_test(late_packets_are_no_broken_echo),
         cmocka_unit_test(a_late_reply_before_the_echo_of_the_next_attempt_is_believed),
