@@ -8,7 +8,6 @@
 #include <grobo/sim_server.h>
 #include <grobo/sim_static.h>
 
-#include "src/base/instant.h"
 #include "src/base/sized.h"
 #include "src/link/serial/loop.h"
 
@@ -401,11 +400,16 @@ static void await_callers(grobo_sim_server *server)
 /* When there is something to do without anybody's bytes. */
 static int64_t next_look_us(const grobo_sim_server *server)
 {
-    int64_t next_us = grobo_i_sooner(grobo_sim_deadline(&server->sim), server->replug_us);
-    bool paused = server->ends[END_PTY].paused || server->ends[END_TCP].paused;
+    int64_t next_us = grobo_sim_deadline(&server->sim);
 
-    next_us = grobo_i_sooner(next_us, server->door_us);
-    return paused ? grobo_i_sooner(next_us, grobo_now_us() + LOOK_US) : next_us;
+    next_us = server->replug_us < next_us ? server->replug_us : next_us;
+    next_us = server->door_us < next_us ? server->door_us : next_us;
+    for (int i = 0; i < ENDS; i++) {
+        int64_t look_us = grobo_now_us() + LOOK_US;
+
+        next_us = server->ends[i].paused && look_us < next_us ? look_us : next_us;
+    }
+    return next_us;
 }
 
 void grobo_sim_server_pump(grobo_sim_server *server)
