@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/angle.h"
 #include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
@@ -137,19 +138,11 @@ static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad, b
 /* True where this time, a multiple of the wire's unit, is surely enough at full speed: without the
  * divisions of time_needed(), which are most of what a frame costs a processor that has none. What
  * is closer than the rounding of both is left to that. */
-static bool is_ample(const grobo_robot *robot, int joint, double to_rad, double time_s)
+static bool is_ample(const grobo_robot *robot, int joint, double to_rad, grobo_i_span asked)
 {
     double most_rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
     double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
-    return fabs(to_rad - from_rad) <= most_rad_s * time_s;
-}
-
-/* What is_ample() takes for a time: the part of it that a lower speed limit leaves. */
-static double ample_s(const grobo_robot *robot, int64_t time_us)
-{
-    const double rounding = 1 - 1e-6;
-    bool on_wire = time_us <= robot->driver->time_max_us;
-    return on_wire ? (double)time_us * robot->config.speed_limit_pct * (rounding * 1e-8) : -1;
+    return grobo_i_gets_there(from_rad, to_rad, most_rad_s, asked);
 }
 
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
@@ -158,7 +151,7 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
     bool on_grid = order->deed == GROBO_I_DEED_GOAL; /* its times, as they were asked for */
     bool stretched = false;
     int64_t longest_us = 0, asked_us = -1;
-    double asked_s = -1;
+    grobo_i_span asked = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (!grobo_i_has(target->posture.set, j)) {
             continue;
@@ -166,9 +159,10 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
         double to_rad = target->posture.angle_rad[j];
         if (target->joint_time_us[j] != asked_us) {
             asked_us = target->joint_time_us[j];
-            asked_s = on_grid && !soft ? ample_s(robot, asked_us) : -1;
+            bool may = on_grid && !soft && asked_us <= robot->driver->time_max_us;
+            asked = may ? grobo_i_span_of(asked_us, robot->config.speed_limit_pct) : 0;
         }
-        bool ample = asked_s > 0 && is_ample(robot, j, to_rad, asked_s);
+        bool ample = asked > 0 && is_ample(robot, j, to_rad, asked);
         int64_t needed_us = ample ? 0 : time_needed(robot, j, to_rad, soft);
         if (needed_us == GROBO_NEVER_US) {
             robot->fault_joint = j;
