@@ -240,6 +240,13 @@ struct grobo_driver {
      */
     int (*stabilize)(const grobo_driver *self, void *ctx, const grobo_posture *sensed,
                      grobo_posture *target);
+    /**
+     * posture() again, where it makes the same frames of the same angles and times, whoever asks
+     * and whenever: from_rad says nothing to it and is not filled in, and a frame that waited with
+     * nothing changed leaves as it is. NULL, or another one than posture(): it may not.
+     */
+    int (*timed_posture)(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                         grobo_exchange *exchange);
 };
 
 /**

@@ -82,6 +82,7 @@ typedef struct grobo_robot_order {
     bool stops;              /* leaves after a latched stop as well */
     bool rests;              /* ends a motion: joints come to rest near where they are by then */
     bool owed;               /* a halt from before a latch that sends nothing */
+    bool stands;             /* its frame is of the goal as it was asked for */
 } grobo_robot_order;
 
 /** A frame under way. Private. */

@@ -21,7 +21,7 @@ static int send_one(grobo_robot *robot, const grobo_robot_order *order, const wa
     slot->order = *order;
     slot->due_us = out->due_us;
     slot->job = out->due_us != GROBO_NEVER_US ? 0 : slot->job; /* the sequencer's, not a job's */
-    int result = grobo_i_gate_build(robot, order, &robot->built);
+    int result = grobo_i_gate_build(robot, &slot->order, &robot->built);
     if (result <= 0) {
         grobo_i_slot_drop(slot);
         return result;

@@ -412,10 +412,10 @@ static void several_joints_go_in_one_frame(void **state)
                 {2, -1, 0, GROBO_ERR_SPACE},
                 {1, -1, 0, GROBO_ERR_SPACE}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        const grobo_robot_order order = {.joints = rows[i].joints == 1 ? 1 : 3,
-                                         .number = NUMBER,
-                                         .deed = GROBO_I_DEED_GOAL,
-                                         .part = (uint8_t)rows[i].part};
+        grobo_robot_order order = {.joints = rows[i].joints == 1 ? 1 : 3,
+                                   .number = NUMBER,
+                                   .deed = GROBO_I_DEED_GOAL,
+                                   .part = (uint8_t)rows[i].part};
         grobo_exchange exchange;
         start();
         whole = driver;
