@@ -121,6 +121,12 @@ static inline bool grobo_i_hard_gets_there(double from_rad, double to_rad, doubl
 #define GROBO_I_SOFT (SIZE_MAX <= UINT32_MAX)
 #endif
 
+/* True of 0, where what is done with it is emulated. */
+static inline bool grobo_i_soft_zero(double value)
+{
+    return GROBO_I_SOFT && grobo_i_bits(value) << 1 == 0;
+}
+
 /*
  * inside:      True: min <= value <= max, and it is finite.
  * ddeg:        Rounds to 0.1 deg. False: it is something else, or a tie.

@@ -162,18 +162,21 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
             continue;
         }
         double to_rad = target->posture.angle_rad[j];
-        if (target->joint_time_us[j] != asked_us) {
-            asked_us = target->joint_time_us[j];
+        int64_t *time_us = &target->joint_time_us[j];
+        if (*time_us != asked_us) {
+            asked_us = *time_us;
+            longest_us = grobo_i_later(longest_us, asked_us);
             bool may = on_grid && !soft && asked_us <= robot->driver->time_max_us;
             asked = may ? grobo_i_span_of(asked_us, robot->config.speed_limit_pct) : 0;
         }
-        bool ample = asked > 0 && is_ample(robot, j, to_rad, asked);
-        int64_t needed_us = ample ? 0 : time_needed(robot, j, to_rad, soft);
+        if (asked > 0 && is_ample(robot, j, to_rad, asked)) {
+            continue;
+        }
+        int64_t needed_us = time_needed(robot, j, to_rad, soft);
         if (needed_us == GROBO_NEVER_US) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
         }
-        int64_t *time_us = &target->joint_time_us[j];
         stretched = stretched || needed_us > *time_us;
         *time_us = grobo_i_later(needed_us, *time_us);
         longest_us = grobo_i_later(longest_us, *time_us);
@@ -674,6 +677,7 @@ static void forget(grobo_robot *robot, grobo_joint_mask joints, bool torque_too)
 static void note_way(grobo_robot *robot, const grobo_robot_order *order, const grobo_target *target)
 {
     int64_t now_us = robot->now_us;
+    bool parts = order->deed == GROBO_I_DEED_GOAL && grobo_i_goes_in_parts(robot, order);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(target->posture.set, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
@@ -684,8 +688,7 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
             robot->halts_owed &= ~GROBO_JOINT_BIT(j);
             axis->has_target = true;
             axis->adrift = axis->held = axis->in_segments = axis->off_way = false;
-            if (order->deed == GROBO_I_DEED_GOAL &&
-                grobo_i_segments_wanted(robot, order, target->joint_time_us[j])) {
+            if (parts && grobo_i_segments_wanted(robot, target->joint_time_us[j])) {
                 grobo_i_segments_begin(robot, j);
             }
         }

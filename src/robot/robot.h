@@ -212,9 +212,9 @@ double grobo_i_hold_rad(const grobo_robot *robot, int joint);
 
 /* ---- ways.c ---------------------------------------------------------------------------------- */
 
-/* True if a joint that gets this time by this order is told its way in parts. */
-bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *order,
-                             int64_t time_us);
+/* True if this order's joints are told their ways in parts, those that get so much time. */
+bool grobo_i_goes_in_parts(const grobo_robot *robot, const grobo_robot_order *order);
+bool grobo_i_segments_wanted(const grobo_robot *robot, int64_t time_us);
 /* The part of a target that its frame asks for. @return false, and nothing in *part, where that is
  * all of it. */
 bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
