@@ -211,7 +211,6 @@ struct grobo_robot {
     grobo_robot_wish queue[GROBO_ROBOT_QUEUE]; /* the first is the oldest */
     unsigned queued;
     int slots_end; /* from here on all slots are free */
-    grobo_robot_axis axes[GROBO_JOINTS_MAX];
     grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
     grobo_event events[GROBO_ROBOT_EVENTS]; /* ring */
     unsigned events_head, events_n;
@@ -255,6 +254,9 @@ struct grobo_robot {
     bool stop_owed;     /* an emergency stop that no line has carried yet */
     bool holds_at_stop; /* the driver switches no torque: an emergency stop halts */
     bool in_segments;   /* a joint may be: whoever looks for one need not where none is */
+    /* The last member: where the library makes an engine there are as many as its robot has joints
+     * (grobo_i_robot_bytes()). */
+    grobo_robot_axis axes[GROBO_JOINTS_MAX];
 };
 
 /* ---- its life and its pump ------------------------------------------------------------------ */

@@ -68,17 +68,20 @@ static int config_take(grobo_robot_config *to, const grobo_robot_config *from)
     return result < 0 || config_sound(to) ? result : GROBO_ERR_ARG;
 }
 
+size_t grobo_i_robot_bytes(const grobo_driver *driver)
+{
+    return offsetof(grobo_robot, axes) + driver->model->n_joints * sizeof(grobo_robot_axis);
+}
+
 int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_driver *driver,
                            void *driver_ctx, const grobo_robot_config *config, int64_t now_us)
 {
-    if (robot == NULL || robot_bytes != sizeof *robot) {
-        return GROBO_ERR_ARG;
-    }
     grobo_robot_config taken;
-    if (grobo_driver_check(driver) < 0 || config_take(&taken, config) < 0) {
+    if (robot == NULL || grobo_driver_check(driver) < 0 || config_take(&taken, config) < 0 ||
+        (robot_bytes != sizeof *robot && robot_bytes != grobo_i_robot_bytes(driver))) {
         return GROBO_ERR_ARG;
     }
-    memset(robot, 0, sizeof *robot);
+    memset(robot, 0, robot_bytes);
     robot->driver = driver;
     robot->job = robot->jobs;
     robot->driver_ctx = driver_ctx;

@@ -107,6 +107,10 @@ bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
 
 /* ---- robot.c --------------------------------------------------------------------------------- */
 
+/* Bytes of an engine with no more axes than this robot has joints: what lies behind them of a
+ * grobo_robot is not there. */
+size_t grobo_i_robot_bytes(const grobo_driver *driver);
+
 /* grobo_robot_configure() for who pumps afterwards: nobody is woken, so nothing leaves by it.
  * Without `senses` nothing is read in the background, whatever it says. */
 int grobo_i_robot_configure(grobo_robot *robot, const grobo_robot_config *config, bool senses);

@@ -8,8 +8,12 @@
 
 #include <cmocka.h>
 
+#include "src/base/assert.h"
 #include "tests/support/axes_kit.h"
 #include "tests/support/next_random.h"
+
+/* Each frame that stands is built once more, to be held against it. */
+static const bool held_against = GROBO_ASSERT_WALKS;
 
 static int built; /* frames, by the driver */
 static grobo_driver whole;
@@ -157,7 +161,7 @@ static void a_frame_that_stands_is_the_one_that_is_built_anew(void **state)
         rows[i].happens();
         slot = frame_of(5);
         assert_int_equal(grobo_i_gate_leave(slot), rows[i].result);
-        assert_int_equal(built, rows[i].anew);
+        assert_int_equal(built, rows[i].anew || (held_against && rows[i].result == GROBO_OK));
         assert_int_equal(slot->txn.frame_bytes, size);
         assert_memory_equal(slot->txn.frame, bytes, size);
     }

@@ -10,6 +10,7 @@
 
 #include "src/base/sized.h"
 #include "src/link/serial/loop.h"
+#include "src/sim/servo.h"
 
 /* How often one end is read before others have their turn: a wire without pace never is full. */
 #define READS_MAX 8
@@ -60,7 +61,8 @@ struct grobo_sim_server {
     bool paced;
     int64_t replug_us; /* when to come back; GROBO_NEVER_US: plugged in, or stays away */
     int64_t door_us;   /* when callers are let in again; GROBO_NEVER_US: they are */
-    grobo_sim sim;
+    size_t bytes;      /* of all this, as the robot has joints */
+    grobo_sim sim;     /* the last member: grobo_i_sim_bytes() */
 };
 
 static void tap(const grobo_sim_server *server, grobo_direction direction, int64_t now_us,
@@ -479,14 +481,11 @@ static int copy_name(char *to, const char *name)
     return GROBO_OK;
 }
 
-static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
+static int fill(grobo_sim_server *server, const grobo_sim_server_config *config,
+                const grobo_sim_config *sim)
 {
-    grobo_sim_config sim;
-    int r = grobo_i_sized_take(&sim, sizeof sim, config->sim);
+    int r;
 
-    if (r < 0) {
-        return r;
-    }
     server->config = *config;
     server->config.sim = NULL;
     server->config.link = NULL;
@@ -494,7 +493,7 @@ static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
     if (server->config.replug_ms == 0) {
         server->config.replug_ms = GROBO_SIM_REPLUG_DEFAULT_MS;
     }
-    server->paced = !sim.unpaced;
+    server->paced = !sim->unpaced;
     server->replug_us = GROBO_NEVER_US;
     server->door_us = GROBO_NEVER_US;
     r = copy_name(server->link, config->link);
@@ -502,7 +501,7 @@ static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
         r = copy_name(server->tcp, config->tcp);
     }
     if (r >= 0) {
-        r = grobo_sim_init(&server->sim, &sim, grobo_now_us());
+        r = grobo_sim_init_sized(&server->sim, grobo_i_sim_bytes(sim->model), sim, grobo_now_us());
     }
     server->baud_bps = (int)server->sim.line_bps;
     return r;
@@ -537,22 +536,27 @@ int grobo_sim_server_new(const grobo_sim_server_config *config, grobo_sim_server
     grobo_os_cause unheard = {0};
     grobo_sim_server_config taken;
     grobo_sim_server *made;
+    grobo_sim_config sim;
+    size_t bytes;
     int r;
 
     if (server == NULL || grobo_i_sized_take(&taken, sizeof taken, config) < 0 ||
+        grobo_i_sized_take(&sim, sizeof sim, taken.sim) < 0 ||
         taken.base == NULL || (taken.no_pty && taken.tcp == NULL)) {
         return GROBO_ERR_ARG;
     }
     config = &taken;
-    made = grobo_i_new(config->mem, sizeof *made);
+    bytes = offsetof(grobo_sim_server, sim) + grobo_i_sim_bytes(sim.model);
+    made = grobo_i_new(config->mem, bytes);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
+    made->bytes = bytes;
     for (int i = 0; i < ENDS; i++) {
         made->ends[i].server = made;
     }
     made->config.mem = config->mem;
-    r = fill(made, config);
+    r = fill(made, config, &sim);
     if (r >= 0) {
         r = make_ends(made);
     }
@@ -586,7 +590,7 @@ void grobo_sim_server_free(grobo_sim_server *server)
 
         grobo_i_free(mem, e->port, e->ops != NULL ? e->ops->size_bytes : 0);
     }
-    grobo_i_free(mem, server, sizeof *server);
+    grobo_i_free(mem, server, server->bytes);
 }
 
 const char *grobo_sim_server_device(const grobo_sim_server *server)
