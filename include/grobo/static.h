@@ -167,8 +167,8 @@ typedef struct grobo_robot_task {
     grobo_posture target;
     grobo_clip clip;
     grobo_play_options options;
-    grobo_exchange exchange;
-    grobo_robot_order order; /* of the exchange */
+    grobo_robot_order order; /* of the frame that it asks with */
+    int64_t settle_us;       /* silence that is needed after it */
     int64_t leave_by_us;     /* after that it does not leave; 0: always */
     int part;
     int rounds;      /* of repeating what was not taken */
@@ -236,6 +236,8 @@ struct grobo_robot {
     grobo_joint_mask heard_round;   /* of the joints that were not heard for long */
     uint8_t reply[GROBO_FRAME_MAX_BYTES];
     grobo_exchange built;                     /* the frame that is being made */
+    grobo_exchange asked;                     /* of the request that begins, */
+    int asked_by;                             /* whose job has this number */
     uint8_t frames[GROBO_ROBOT_FRAMES_BYTES]; /* of the slots, one behind the other */
     size_t frames_used;
     double fault_deg;

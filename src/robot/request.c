@@ -288,7 +288,9 @@ static int start_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_r
                           const grobo_exchange *exchange)
 {
     int number = grobo_i_job_start(robot, kind, grobo_i_script_ask, 0);
-    robot->job->exchange = *exchange;
+    robot->asked = *exchange; /* until its first step, in this call */
+    robot->asked_by = number;
+    robot->job->settle_us = exchange->settle_us;
     robot->job->order = *order;
     robot->job->joints = order->joints;
     return number;
