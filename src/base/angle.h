@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is sure of angles, and soon found. A processor that emulates doubles takes 50 instructions to
- * compare two, and 264 for their product: there the bits of a double (IEEE 754) say it, by integers.
- * What is too close for that they leave open, and doubles decide. The soft functions never say yes
- * where the hard ones, of processors that have doubles, say no (tests/unit/test_angle.c).
+ * What is sure of angles, and soon found. A processor that emulates doubles takes 50 instructions
+ * to compare two, and 264 for their product: there the bits of a double (IEEE 754) say it, by
+ * integers. What is too close for that they leave open, and doubles decide. The soft functions
+ * never say yes where the hard ones, of processors that have doubles, say no
+ * (tests/unit/test_angle.c).
  */
 #ifndef GROBO_BASE_ANGLE_H
 #define GROBO_BASE_ANGLE_H
@@ -78,10 +79,10 @@ static inline bool grobo_i_soft_gets_there(double from_rad, double to_rad, doubl
                                            uint32_t span)
 {
     int32_t from = grobo_i_fine(from_rad), to = grobo_i_fine(to_rad);
-    int32_t speed = grobo_i_fine(speed_rad_s);
+    int32_t pace = grobo_i_fine(speed_rad_s);
     uint32_t way = from < to ? (uint32_t)to - (uint32_t)from : (uint32_t)from - (uint32_t)to;
-    return from != GROBO_I_NOT_FINE && to != GROBO_I_NOT_FINE && speed > 0 &&
-           ((uint64_t)way + 2) << 28 <= (uint64_t)(uint32_t)speed * span;
+    return from != GROBO_I_NOT_FINE && to != GROBO_I_NOT_FINE && pace > 0 &&
+           ((uint64_t)way + 2) << 28 <= (uint64_t)(uint32_t)pace * span;
 }
 
 /* ---- by doubles ------------------------------------------------------------------------------ */

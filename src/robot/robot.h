@@ -249,8 +249,8 @@ int grobo_i_gate_judge(grobo_robot *robot, const grobo_robot_order *order,
 /* Reads and judges a raw frame. *order is its order then. */
 int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_robot_order *order);
 /* Judges, and builds part order->part of a GOAL, HALT, HOLD or TORQUE, as long as it may be when it
- * leaves; a GOAL in the call that has judged its target, grobo_i_gate_send(). Sets order->stands. @return 1, or 0 where the driver has none; GROBO_ERR_CAP: several joints do not fit one
- * frame. */
+ * leaves; a GOAL in the call that has judged its target, grobo_i_gate_send(). Sets order->stands.
+ * @return 1, or 0 where the driver has none; GROBO_ERR_CAP: several joints do not fit one frame. */
 int grobo_i_gate_build(grobo_robot *robot, grobo_robot_order *order, grobo_exchange *exchange);
 /* The targets of this order wait no more: they have left, or never will. */
 void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order);

@@ -26,7 +26,8 @@ static double of_bits(uint64_t bits)
 /* Of all sizes there are; infinities and NaN among them. */
 static double any_double(uint32_t *seed)
 {
-    uint64_t bits = (uint64_t)next_random(seed) << 40 ^ (uint64_t)next_random(seed) << 20 ^ next_random(seed);
+    uint64_t bits =
+        (uint64_t)next_random(seed) << 40 ^ (uint64_t)next_random(seed) << 20 ^ next_random(seed);
     return of_bits(next_random(seed) % 8 == 0 ? bits | UINT64_C(0x7FF) << 52 : bits);
 }
 

@@ -541,8 +541,8 @@ int grobo_sim_server_new(const grobo_sim_server_config *config, grobo_sim_server
     int r;
 
     if (server == NULL || grobo_i_sized_take(&taken, sizeof taken, config) < 0 ||
-        grobo_i_sized_take(&sim, sizeof sim, taken.sim) < 0 ||
-        taken.base == NULL || (taken.no_pty && taken.tcp == NULL)) {
+        grobo_i_sized_take(&sim, sizeof sim, taken.sim) < 0 || taken.base == NULL ||
+        (taken.no_pty && taken.tcp == NULL)) {
         return GROBO_ERR_ARG;
     }
     config = &taken;
