@@ -231,6 +231,9 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
         result = GROBO_ERR_STALE;
     }
     if (result >= 0) {
+        result = grobo_i_move_takes(robot, checked.set & ~robot->job->joints);
+    }
+    if (result >= 0) {
         result = robot->job->number;
         grobo_i_move_retarget(robot, &checked);
     }

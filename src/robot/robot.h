@@ -464,6 +464,9 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
 /* May a job of this kind begin on these joints? GROBO_I_LATER: when others have ended. */
 #define GROBO_I_LATER 1
 int grobo_i_admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask joints, bool moves);
+/* A move that runs takes these joints besides its own, from the moves that have them.
+ * @return 0, or GROBO_ERR_STATE where they are a motion's or another job's: none is taken. */
+int grobo_i_move_takes(grobo_robot *robot, grobo_joint_mask joints);
 /* Joints of the moves that run or wait. */
 grobo_joint_mask grobo_i_joints_of_moves(const grobo_robot *robot);
 /* Begins a move or a reading, or has it wait. @return its number, or the reason why not. */
