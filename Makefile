@@ -87,7 +87,8 @@ flags = $(if $(shell $(PKG_CONFIG) --exists $(2) && echo yes),$(shell $(PKG_CONF
     not all of "$(2)" is here; tools/setup.sh installs what is missing))
 YAML_CFLAGS = $(call once,YAML_CFLAGS,$(call flags,--cflags,yaml-0.1))
 EVENT_CFLAGS = $(call once,EVENT_CFLAGS,$(call flags,--cflags,libevent_core))
-CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(call flags,--cflags,cmocka))
+# What its macros lack is no fault of ours, also where its header is not one of the system's.
+CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(patsubst -I%,-isystem%,$(call flags,--cflags,cmocka)))
 CMOCKA_LIBS = $(call once,CMOCKA_LIBS,$(call flags,--libs,cmocka))
 JSON_CFLAGS = $(call once,JSON_CFLAGS,$(call flags,--cflags,jansson))
 JSON_LIBS = $(call once,JSON_LIBS,$(call flags,--libs,jansson))

@@ -121,7 +121,7 @@ GROBO_CORE size_t grobo_board_parser_feed(grobo_board_parser *parser, const uint
                                           size_t n, int64_t now_us);
 
 /**
- * Hands out the next frame. frame->packet points into the parser, valid until the next call of
+ * Returns the next frame. frame->packet points into the parser, valid until the next call of
  * next, feed or reset.
  * @return 1 with a frame, 0 when more bytes are needed (frame untouched)
  */

@@ -26,9 +26,8 @@
  *   return delay, wire time of the reply, plus a margin learnt from the replies so far.
  * - A reply is believed when header, id, length and sum are those expected, and the address where
  *   the family's replies tell one, and it came after its request was sent. After a failure the line
- *   must be quiet for a moment before
- *   the next request that wants a reply. An ACK is one byte without a name: it must be the first
- *   byte after the request.
+ *   must be quiet for a moment before the next request that wants a reply. An ACK is one byte
+ *   without a name: it must be the first byte after the request.
  * - A late reply is credited: it ends the transaction that waits for its next attempt. The replies
  *   owed to attempts that failed are counted. While one is owed, no other transaction that it
  *   would satisfy is sent, until it has come or twice the worst lateness learnt has passed, at most
@@ -37,8 +36,8 @@
  *   the order but servos answer on their own: there the wait ends GROBO_BUS_MARGIN_MAX_US after
  *   that reply. Retries of the same transaction do not wait: a late reply to its first attempt is a
  *   reply to it.
- * - An echo is found behind late echoes and late replies. As many bytes of rubbish as it has, or
- *   no echo in time, is a broken echo.
+ * - An echo is found behind late echoes and late replies. As many other bytes as it has, or no
+ *   echo in time, is a broken echo.
  *
  * - What was right when a transaction was submitted may be wrong when its turn comes: a transaction
  *   with a `leave` function is asked at every attempt, retries included, at the moment its frame
@@ -58,7 +57,7 @@
 
 GROBO_BEGIN_DECLS
 
-/** Who goes first. */
+/** Which transaction goes first. */
 typedef enum grobo_priority {
     GROBO_PRIORITY_STOP = 0,   /**< emergency stop and what makes the robot safe */
     GROBO_PRIORITY_MOTION = 1, /**< motion frames, on time */
@@ -79,8 +78,8 @@ typedef struct grobo_txn grobo_txn;
  *               GROBO_ERR_CHECKSUM, GROBO_ERR_MISMATCH (the echo was broken, or an ACK came
  *               among other bytes), GROBO_ERR_NACK, GROBO_ERR_STALE (start_by_us passed), what
  *               `leave` returned, or what the cancel function was given. Of several replies:
- *               GROBO_OK when all came, or it was not known who is there; GROBO_ERR_SHORT when
- *               some came, GROBO_ERR_TIMEOUT when none did
+ *               GROBO_OK when all came, or it was not known which servos are there;
+ *               GROBO_ERR_SHORT when some came, GROBO_ERR_TIMEOUT when none did
  * @param reply  the return packet or ACK that ended it, valid during the call; NULL when there is
  *               none. GROBO_ERR_NACK comes with it: its flags say why.
  */
@@ -167,13 +166,13 @@ typedef struct grobo_bus_stats {
     uint32_t timeouts;     /**< attempts without a whole reply in time */
     uint32_t retries;      /**< attempts after the first */
     uint32_t bad_sums;     /**< replies whose sum was wrong */
-    uint32_t resync_bytes; /**< rubbish skipped while a reply or an echo was awaited */
+    uint32_t resync_bytes; /**< skipped while a reply or an echo was awaited */
     uint32_t late_frames;  /**< whole replies that fitted nothing awaited, late echoes */
-    uint32_t late_bytes;   /**< their bytes, and rubbish that came when nothing was awaited */
+    uint32_t late_bytes;   /**< their bytes, and all that came when nothing was awaited */
     uint32_t bad_echoes;   /**< frames whose echo was broken */
     uint32_t failed;       /**< transactions that ended badly after their retries, or were refused
                                 by `leave` */
-    uint32_t canceled;     /**< transactions taken back */
+    uint32_t canceled;     /**< transactions canceled by their owner */
 } grobo_bus_stats;
 
 /** What a bus is doing. */
@@ -250,7 +249,7 @@ GROBO_CORE int grobo_bus_submit(grobo_bus *bus, grobo_txn *txn);
 GROBO_CORE bool grobo_txn_is_pending(const grobo_txn *txn);
 
 /**
- * Takes a transaction back; its callback gets GROBO_ERR_CANCELED before this returns. If it is on
+ * Cancels a transaction; its callback gets GROBO_ERR_CANCELED before this returns. If it is on
  * the wire the line stays occupied until it would have been over.
  * @return GROBO_OK, or GROBO_ERR_NOTFOUND when the bus does not have it
  */
@@ -296,7 +295,7 @@ GROBO_CORE int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us);
 /**
  * Keeps [at_us, at_us + duration_us) free for a motion frame: no user's request and no sensing is
  * started that would not be over before at_us, nor inside the span. One span at a time; a new call
- * replaces it; GROBO_NEVER_US takes it away.
+ * replaces it; GROBO_NEVER_US removes it.
  */
 GROBO_CORE void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t duration_us);
 

@@ -53,7 +53,8 @@ typedef enum grobo_field {
     GROBO_FIELD_TORQUE = 1 << 6,
     GROBO_FIELD_GOAL = 1 << 7,
     GROBO_FIELD_RANGE = 1 << 8,
-    GROBO_FIELD_TORQUE_LIMIT = 1 << 9
+    GROBO_FIELD_TORQUE_LIMIT = 1 << 9,
+    GROBO_FIELD_FAST = 1 << 10
 } grobo_field;
 
 /** What of a servo is not as its joint needs it. */
@@ -79,6 +80,7 @@ typedef struct grobo_joint_state {
     bool overheated;       /**< the servo reports that it was too hot and has cut its torque */
     uint8_t flags;         /**< of the reply, in bits of its family (GROBO_RS30X_STATUS_...) */
     bool torque_limited;   /**< its torque limit is its joint's, or lower */
+    bool fast;             /**< it answers sense_fast() of its driver */
     double low_rad;        /**< range of a calibrated joint, by the limits that its servo keeps */
     double high_rad;
     grobo_setup_fault setup; /**< of a joint that was read with GROBO_ERR_SETUP */
@@ -205,6 +207,11 @@ struct grobo_driver {
      *  @return 0 or an error. */
     int (*sense_many)(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
                       grobo_sense_kind kind, grobo_exchange *exchange);
+    /** As sense_many() of all joints, for servos that answer with one packet together: asked where
+     *  each has told that it does (grobo_joint_state.fast, of a reading of GROBO_SENSE_ALL). NULL:
+     *  there are none. @return 0 or an error: sense_many() is asked. */
+    int (*sense_fast)(const grobo_driver *self, void *ctx, grobo_sense_kind kind,
+                      grobo_exchange *exchange);
     /**
      * Reads what a joint returned; the packet has been checked against the exchange's reply.
      * Sets the fields it finds and their bits in state->valid. @return 0 or an error: a joint that
@@ -240,6 +247,13 @@ struct grobo_driver {
      */
     int (*stabilize)(const grobo_driver *self, void *ctx, const grobo_posture *sensed,
                      grobo_posture *target);
+    /**
+     * posture() again, where it makes the same frames of the same angles and times, whoever asks
+     * and whenever: from_rad says nothing to it and is not filled in, and a frame that waited with
+     * nothing changed leaves as it is. NULL, or another one than posture(): it may not.
+     */
+    int (*timed_posture)(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                         grobo_exchange *exchange);
 };
 
 /**
@@ -268,10 +282,11 @@ GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *m
  * Fills a table for a robot of DYNAMIXEL X servos (Protocol 2.0). grobo_joint.servo_model names the
  * servo by its model number. Goals come with a duration, which the servo takes for a profile: its
  * drive mode must be 4 (time, not reversed), and its operating mode 3, or 4 for a joint of several
- * turns, or 5. All joints are read in one frame. Torque on does not move a servo whose goal is
- * where it stands; whether it keeps an old goal depends on its firmware, so that the engine always
- * sets it. An error of its register shutdown cuts the torque until a reboot. No brake: torque is on
- * or off, and an emergency stop holds unless it is to release.
+ * turns, or 5. All joints are read in one frame, and answer in one where each is an XL330 with
+ * firmware 46 or newer. Torque on does not move a servo whose goal is where it stands; whether it
+ * keeps an old goal depends on its firmware, so that the engine always sets it. An error of its
+ * register shutdown cuts the torque until a reboot. No brake: torque is on or off, and an emergency
+ * stop holds unless it is to release.
  * Its bus watchdog is the dead-man: a servo that nothing was sent to for watchdog_us, 0.5 s, stops
  * where it is and keeps its torque; a move, a play or a torque on clears that.
  * Limits: 65 deg C, 5 lost replies, 60 deg/s for the first move; exit policy hold; an arm.

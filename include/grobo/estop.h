@@ -82,7 +82,7 @@ GROBO_API bool grobo_estop_stands(const char *device);
  * Asks what the program that has a device did about a mark. A program is known by its number and
  * start time, which its session registers. One that is stopped is resumed, if it can read the mark:
  * it does so before it sends anything. Call again until the answer is final, or until time is up.
- * @param stop of grobo_estop_set(); NULL only looks who has the device, and resumes nobody.
+ * @param stop of grobo_estop_set(); NULL only finds the process that has the device.
  * @param[out] holder the answer.
  * @return GROBO_OK, GROBO_ERR_ARG.
  */

@@ -3,7 +3,7 @@
  * @file guard.h
  * @brief A second process that stops the robot when the program dies.
  *
- * Servos go on to the goal they were sent last, whatever becomes of the program that sent it. A
+ * Servos continue to the goal they were sent last, whatever becomes of the program that sent it. A
  * guard is a process in a session of its own that has the open port too. It sends nothing while the
  * program lives. When the program dies without closing the port (SIGKILL, SIGSEGV, abort(), the
  * out-of-memory killer), it waits until the line is quiet, reads every joint, stops those that move

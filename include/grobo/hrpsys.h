@@ -23,7 +23,7 @@
  *   whole robot. Here -1 is GROBO_ERR_ARG; all joints are called "all".
  * - There servo(name) turns the caller's text into capitals in place. Here no text is changed, and
  *   names are found in any case.
- * - There names that are not known are left out, and the ids are not those of the names any more.
+ * - There names that are not known are skipped, and the ids are not those of the names any more.
  *   Here one unknown name makes the call fail, and there are no ids.
  * - hrpsys-base counts joints from 0 in joint order, the GROBO library's names2ids gives motor
  *   numbers. Here each has a function of its own.
@@ -134,7 +134,7 @@ GROBO_API int grobo_hrpsys_set_period_us(grobo_hrpsys *hrpsys, int64_t period_us
 
 /**
  * oneStep: sends the command once, with grobo_robot_send() and its conditions; limits are kept or
- * refused as the engine is configured. Joints without torque are left out.
+ * refused as the engine is configured. Joints without torque are skipped.
  * @return GROBO_OK; GROBO_ERR_EMPTY (nothing written since the joints were switched),
  *         GROBO_ERR_STATE (no joint has torque), or an error of grobo_robot_send().
  */

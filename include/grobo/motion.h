@@ -254,7 +254,8 @@ GROBO_API bool grobo_motion_is_reverse(const grobo_motion *motion);
 GROBO_API void grobo_motion_reset(grobo_motion *motion);
 /** Number of the posture that next gives; size or above (SIZE_MAX in reverse) behind the end. */
 GROBO_API size_t grobo_motion_current(const grobo_motion *motion);
-/** Gives the current posture and goes on. @return 1, or 0 behind the end (posture untouched). */
+/** Gives the current posture and steps to the next.
+ *  @return 1, or 0 behind the end (posture untouched) */
 GROBO_API int grobo_motion_next(grobo_motion *motion, grobo_posture *posture);
 
 /* ---- comparing and editing whole motions -------------------------------------------------- */

@@ -146,7 +146,7 @@ typedef struct grobo_check_options {
     uint16_t speed_pct;         /**< the speed it is played at; 0: 100 */
     /**
      * Not NULL: angles that exceed a limit by no more than the model's slack are no errors, and
-     * are added here. Whoever plays the motion has to apply grobo_model_take_slack().
+     * are added here. The player of the motion has to apply grobo_model_take_slack().
      */
     grobo_slack_taken *slack;
 } grobo_check_options;

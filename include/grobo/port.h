@@ -6,7 +6,7 @@
  * A port is a folder (ports/posix, ports/win32) that brings grobo/port_os.h with the types and
  * implements everything declared here. ports/README.md explains how to write another one.
  *
- * Nothing here knows an event loop. A byte port hands out a socket that a loop can wait on: on
+ * Nothing here knows an event loop. A byte port has a socket that a loop can wait on: on
  * POSIX the descriptor itself, on Win32 one end of a socket pair that a thread of the port pumps
  * from and to the COM handle by overlapped I/O.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
@@ -333,7 +333,7 @@ GROBO_CORE int grobo_port_identity(const char *device, char *name, size_t name_b
 #define GROBO_GUARD_NAME "grobo-guard"
 
 /**
- * A process that has a device open: who holds the lock of it, else the first found that has it
+ * A process that has a device open: the one that holds its lock, else the first found that has it
  * open and is not the caller.
  * @param[out] name the process's name, NUL-terminated, cut to size; untouched where none.
  * @return its pid, 0 where there is none or it is not known.

@@ -28,7 +28,7 @@ typedef enum grobo_reply_kind {
     GROBO_REPLY_NONE = 0,   /**< nothing */
     GROBO_REPLY_ACK = 1,    /**< one byte without a name (RS30x: 07 or 08) */
     GROBO_REPLY_RETURN = 2, /**< packets of these ids and lengths: one, or several by one frame */
-    GROBO_REPLY_ANY = 3     /**< packets of whoever is there, until the time is over */
+    GROBO_REPLY_ANY = 3     /**< packets of any servo that is there, until the time is over */
 } grobo_reply_kind;
 
 /** The reply to expect. Of GROBO_REPLY_NONE and _ACK only kind and bytes count. */
@@ -72,7 +72,7 @@ typedef struct grobo_packet {
 
 /** What a framer met since it was initialised. Bytes in = bytes of frames + dropped + buffered. */
 typedef struct grobo_framer_stats {
-    uint32_t frames;        /**< good ones handed out */
+    uint32_t frames;        /**< good ones returned */
     uint32_t frame_bytes;   /**< their bytes */
     uint32_t dropped_bytes; /**< rubbish skipped while looking for a frame */
     uint32_t bad_sums;      /**< frames whole in form whose sum was wrong */
@@ -83,7 +83,7 @@ typedef struct grobo_framer {
     grobo_framer_stats stats; /**< read freely */
     /* private */
     uint16_t used;  /* bytes in buf */
-    uint16_t taken; /* of them, those of the frame handed out last */
+    uint16_t taken; /* of them, those of the frame returned last */
     bool ending;    /* what is incomplete now will never be completed */
     uint8_t buf[GROBO_FRAME_MAX_BYTES];
 } grobo_framer;
@@ -140,7 +140,7 @@ typedef struct grobo_protocol {
     void (*reply_at)(const uint8_t *frame, size_t n, unsigned k, grobo_reply *reply);
     grobo_several several;
     uint32_t return_delay_us; /**< before a servo replies, as it leaves the factory */
-    uint32_t call_us;         /**< of GROBO_REPLY_ANY: how long whoever is there may take */
+    uint32_t call_us;         /**< of GROBO_REPLY_ANY: how long the servos may take */
     grobo_parity parity;      /**< of its lines */
     uint8_t id_min, id_max;   /**< ids that a servo can have */
     const grobo_relay *relay; /**< the board in between; NULL: the line is the servos' own bus */

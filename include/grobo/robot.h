@@ -3,8 +3,8 @@
  * @file robot.h
  * @brief The robot engine: bytes and the time go in, bytes and the next deadline come out.
  *
- * No descriptor, clock, thread or allocation in here. Whoever owns the line pumps the engine,
- * whenever bytes came, a request was made or the deadline is reached, always in this order:
+ * The engine has no descriptor, clock, thread or allocation. The owner of the line pumps it, when
+ * bytes came, a request was made or the deadline is reached, always in this order:
  * @code
  *   grobo_robot_rx(&robot, bytes, n, now);                // what has arrived, first
  *   grobo_robot_step(&robot, now);                        // timeouts, frames that are due
@@ -81,7 +81,7 @@ GROBO_API int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config
  * beside what runs, see above), GROBO_ERR_LATCHED (tripped, for what would move or switch torque
  * on), GROBO_ERR_UNSUPPORTED (not in the driver), and the errors of each. */
 
-/** Is the robot there? Result GROBO_ERR_TIMEOUT if nothing answers. */
+/** Asks whether the robot is there. Result GROBO_ERR_TIMEOUT if nothing answers. */
 GROBO_API int grobo_robot_check(grobo_robot *robot);
 
 /** Reads joints; those that stay silent are in `failed`, the others are delivered. */
@@ -105,10 +105,11 @@ GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target);
  * Gives the move under way another target, which leaves next: the job ends when the joints are at
  * the target given last. For targets that come one after the other, each before the one before is
  * reached. What this target sets must include what the one before set; joints that it sets besides
- * must have been sensed and hold, as for grobo_robot_send().
+ * must have been sensed and hold, as for grobo_robot_send(); a move that has them loses them.
  * @return the number of that job, or an error, and then the move is as it was: GROBO_ERR_STATE
  *         where no move is under way, or none that may be redirected yet: its first target waits to
- *         leave, or is the slow first one and was not read back. Others as grobo_robot_move().
+ *         leave, or is the slow first one and was not read back; or where a motion or another job
+ *         has one of the joints besides. Others as grobo_robot_move().
  */
 GROBO_API int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target);
 
@@ -184,13 +185,13 @@ GROBO_API int grobo_robot_estop(grobo_robot *robot);
 GROBO_CORE int grobo_robot_latch(grobo_robot *robot);
 
 /**
- * Takes back a latched stop. Nothing moves; the next move or play senses first.
+ * Clears a latched stop. Nothing moves; the next move or play senses first.
  * @return 0, or GROBO_ERR_STATE while the emergency stop is still being carried out.
  */
 GROBO_API int grobo_robot_reset(grobo_robot *robot);
 
 /**
- * Ends what runs and what waits with GROBO_ERR_CANCELED; moves stop where they are. An emergency
+ * Ends the jobs that run and wait with GROBO_ERR_CANCELED; moves stop where they are. An emergency
  * stop cannot be canceled. @return 0, or GROBO_ERR_STATE.
  */
 GROBO_API int grobo_robot_cancel(grobo_robot *robot);
@@ -289,7 +290,10 @@ GROBO_API bool grobo_robot_is_pending(const grobo_robot *robot, int number);
 /** The latched stop, or trip GROBO_TRIP_NONE. */
 GROBO_API void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *info);
 
-/** Joint and value that made the last request fail with LIMIT or NAN. @return joint or -1. */
+/**
+ * Joint and value that made the last request fail with LIMIT or NAN; with STATE the joint that
+ * moves though this program sent it nowhere. @return joint or -1.
+ */
 GROBO_API int grobo_robot_fault(const grobo_robot *robot, double *value_deg);
 
 /** The engine's counters. Borrowed, lives with the robot; for the thread that pumps it. */

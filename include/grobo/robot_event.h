@@ -37,10 +37,11 @@ typedef enum grobo_job_kind {
 typedef enum grobo_trip {
     GROBO_TRIP_NONE = 0,
     GROBO_TRIP_TEMPERATURE,  /**< value: deg C */
-    GROBO_TRIP_OVERHEATED,   /**< a servo cut its torque for heat; value: deg C */
+    GROBO_TRIP_OVERHEATED,   /**< a servo cut its torque for heat; value: deg C, 0: not told */
     GROBO_TRIP_CURRENT,      /**< value: mA */
     GROBO_TRIP_VOLTAGE,      /**< value: mV */
-    GROBO_TRIP_LOST_REPLIES, /**< in motion; value: readings lost in a row */
+    GROBO_TRIP_LOST_REPLIES, /**< in motion; value: readings lost in a row; 0: a servo that a goal
+                                  wakes was not heard in time to be sent the next one */
     GROBO_TRIP_TORQUE_LOST,  /**< a joint that held has no torque any more (brown-out) */
     GROBO_TRIP_LIMIT,        /**< a played target outside limits; value: degrees. Not latched */
     GROBO_TRIP_NUMBER,       /**< a played target not finite. Not latched */
@@ -143,7 +144,7 @@ typedef struct grobo_robot_counters {
     uint64_t stalls;        /**< times the host came later than stall_us */
     uint64_t trips;         /**< safety stops */
     uint64_t estops;        /**< emergency stops asked for */
-    uint64_t lost_events;   /**< GROBO_EVENT_JOINT left out, too many in one call */
+    uint64_t lost_events;   /**< GROBO_EVENT_JOINT dropped, too many in one call */
 } grobo_robot_counters;
 
 /** How late motion frames left, in microseconds: quantiles of a histogram of fixed bins. */

@@ -260,7 +260,7 @@ GROBO_CORE int grobo_frame_wrap(const grobo_protocol *protocol, const uint8_t *p
 /* ---- parser --------------------------------------------------------------------------------- */
 
 /**
- * A push parser of packets: takes any bytes in any split, hands out packets whose header, id,
+ * A push parser of packets: takes any bytes in any split, returns packets whose header, id,
  * flags, address, length, count and sum are right, and finds the next one after rubbish by going
  * back to the byte after the false start. All fields are private but framer.stats.
  */
@@ -287,7 +287,7 @@ GROBO_CORE size_t grobo_rs30x_parser_feed(grobo_rs30x_parser *parser, const uint
                                           size_t n);
 
 /**
- * Hands out the next packet. packet->data points into the parser and is valid until the next call
+ * Returns the next packet. packet->data points into the parser and is valid until the next call
  * of next, feed or reset.
  * @return 1 with a packet, 0 when more bytes are needed (packet untouched)
  */
@@ -295,7 +295,7 @@ GROBO_CORE int grobo_rs30x_parser_next(grobo_rs30x_parser *parser, grobo_rs30x_p
 
 /**
  * Says that the line fell silent (or the file ended): what is incomplete now stays so. The calls
- * of next that follow hand out what is whole behind a false start and drop the rest. The mark
+ * of next that follow return what is whole behind a false start and drop the rest. The mark
  * goes with the first 0 from next.
  */
 GROBO_CORE void grobo_rs30x_parser_end(grobo_rs30x_parser *parser);
@@ -303,7 +303,7 @@ GROBO_CORE void grobo_rs30x_parser_end(grobo_rs30x_parser *parser);
 /** Forgets what is buffered (it counts as dropped); counters stay. */
 GROBO_CORE void grobo_rs30x_parser_reset(grobo_rs30x_parser *parser);
 
-/** Bytes taken and neither handed out nor dropped yet. */
+/** Bytes taken and neither returned nor dropped yet. */
 GROBO_CORE size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser);
 
 /**

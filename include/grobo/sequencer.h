@@ -11,7 +11,7 @@
  * Deadlines are absolute. A caller that comes late gets the posture of the present, once; what it
  * missed is counted and never sent after it.
  *
- * Two ways to play. By keys: one frame a key posture, handed out when the move to it begins; the
+ * Two ways to play. By keys: one frame a key posture, given when the move to it begins; the
  * servos make the way in the frame's time. At a rate: frame i leaves at start + i/rate and carries
  * the posture of that instant, to be reached within one period.
  *
@@ -57,7 +57,7 @@ typedef enum grobo_sequencer_state {
     GROBO_SEQUENCER_IDLE = 0,    /**< nothing to play, or stopped */
     GROBO_SEQUENCER_APPROACHING, /**< on the way to where playing begins */
     GROBO_SEQUENCER_PLAYING,     /**< in the motion */
-    GROBO_SEQUENCER_PAUSED,      /**< holding, may go on */
+    GROBO_SEQUENCER_PAUSED,      /**< holding, may continue */
     GROBO_SEQUENCER_STOPPING,    /**< on the way to standstill, then IDLE */
     GROBO_SEQUENCER_FINISHED,    /**< the last posture of the last clip is reached */
     GROBO_SEQUENCER_FAILED       /**< a clip failed or grobo_sequencer_fail() was called */
@@ -111,8 +111,8 @@ typedef struct grobo_play_frame {
     grobo_posture posture;       /**< joints the clip has set so far, and the time to get there:
                                       a multiple of the unit except for rates, never 0 */
     int64_t due_us;              /**< when it should have been taken; it never runs backwards */
-    uint32_t skipped;            /**< frames left out just before this one; then the way may be
-                                      too long for the time: whoever limits speed stretches it */
+    uint32_t skipped;            /**< frames skipped just before this one; then the way may be
+                                      too long for the time: an owner with limits stretches it */
     grobo_sequencer_state phase; /**< APPROACHING, PLAYING, or PAUSED and STOPPING for a hold */
 } grobo_play_frame;
 
@@ -125,7 +125,7 @@ typedef struct grobo_play_progress {
     int32_t passes;   /**< of the present clip */
     int64_t t_us;     /**< position in this pass */
     int64_t total_us; /**< length of a pass */
-    uint64_t step;    /**< frames of this pass handed out or skipped */
+    uint64_t step;    /**< frames of this pass given or skipped */
     uint64_t steps;   /**< frames of a whole pass: keys, or frames at the rate */
     unsigned queued;  /**< clips that wait */
     bool ready;       /**< grobo_robot_progress(), of GROBO_START_LATER: it has approached, and
@@ -134,10 +134,10 @@ typedef struct grobo_play_progress {
 
 /** Counters; monotonic, wrap. */
 typedef struct grobo_play_stats {
-    uint32_t frames;         /**< handed out */
-    uint32_t late_frames;    /**< handed out late, or skipped */
-    uint32_t skipped_frames; /**< never handed out: their time had passed */
-    int64_t max_late_us;     /**< worst lateness of a frame handed out */
+    uint32_t frames;         /**< given */
+    uint32_t late_frames;    /**< given late, or skipped */
+    uint32_t skipped_frames; /**< never given: their time had passed */
+    int64_t max_late_us;     /**< worst lateness of a frame given */
 } grobo_play_stats;
 
 /** A clip with its options, as it waits. */
@@ -163,7 +163,7 @@ typedef struct grobo_play_key {
 typedef struct grobo_sequencer {
     /* private; small members first, where a Cortex-M0 reaches them in one instruction */
     grobo_sequencer_state state;
-    bool waits;                  /* a frame of the present move is still to be handed out */
+    bool waits;                  /* a frame of the present move is still to be given */
     bool late;                   /* that frame is being taken late */
     bool silent;                 /* KEY: the present move sets no joint, there is no frame */
     uint8_t queue_head, queue_n; /* GROBO_QUEUE_MAX is below 256 */
@@ -265,11 +265,11 @@ GROBO_CORE int grobo_sequencer_start_at(grobo_sequencer *seq, int64_t start_us, 
 /** Gives up with a reason < 0: a frame was refused, the link is gone. Not from IDLE. */
 GROBO_CORE int grobo_sequencer_fail(grobo_sequencer *seq, int error);
 
-/** Forgets everything but the counters; IDLE from any state. No frame is handed out. */
+/** Forgets everything but the counters; IDLE from any state. No frame is given. */
 GROBO_CORE void grobo_sequencer_reset(grobo_sequencer *seq);
 
 /**
- * Hands out what is due at now_us. Call again until it returns 0.
+ * Gives what is due at now_us. Call again until it returns 0.
  * @param[out] frame untouched unless 1 is returned
  * @return 1 a frame, 0 nothing due, or the error of the clip, once, on the way to FAILED.
  */

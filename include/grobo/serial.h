@@ -4,8 +4,8 @@
  * @brief A serial port: asynchronous on a caller's event loop, or synchronous without one.
  *
  * Always 8 data bits, raw, no flow control, opened for this process alone; no parity and 1 stop bit
- * unless asked otherwise.
- * The device is a serial port's name (see grobo_port_serial_ops()) or "tcp:HOST:PORT".
+ * unless configured otherwise. The device is a serial port's name (see grobo_port_serial_ops()) or
+ * "tcp:HOST:PORT".
  *
  * Asynchronous mode: bytes received come by a callback on the loop, bytes to send go through a
  * bounded queue, and no function waits. A peer that never stops writing is read at most 10000 times
@@ -98,8 +98,8 @@ typedef struct grobo_serial_config {
     size_t size;              /**< GROBO_SERIAL_CONFIG_INIT */
     const char *device;       /**< copied; NULL: none yet (grobo_serial_set_device) */
     int baud_bps;             /**< 0: GROBO_BAUD_DEFAULT_BPS; any positive rate, standard or not */
-    grobo_line_format format; /**< set when the port is opened; zero: 8N1. What the device cannot is
-                                   an error of grobo_serial_open() */
+    grobo_line_format format; /**< set when the port is opened; zero: 8N1. A format that the
+                                   device has not is an error of grobo_serial_open() */
     int silence_ms;           /**< bound of each call that waits; 0: GROBO_SILENCE_DEFAULT_MS */
     struct event_base *base;  /**< borrowed; NULL: synchronous mode only */
     grobo_serial_mode mode;   /**< ASYNC needs base and on_data */
@@ -171,9 +171,9 @@ GROBO_API int grobo_serial_low_latency(const grobo_serial *serial);
 /* ---- open and close ----------------------------------------------------------------------- */
 
 /**
- * Opens the device, and asks its driver for low latency: where it knows no such thing or refuses,
- * the port is open all the same. In asynchronous mode GROBO_SERIAL_OPENED follows from the loop,
- * for a connection when it stands; bytes may be sent before. In synchronous mode a connection is
+ * Opens the device, and asks its driver for low latency: where the driver has none or refuses, the
+ * port is open all the same. In asynchronous mode GROBO_SERIAL_OPENED follows from the loop, for a
+ * connection when it is made; bytes may be sent before. In synchronous mode a connection is
  * waited for, at most 2 s.
  * @return GROBO_OK, GROBO_ERR_STATE (open already), GROBO_ERR_ARG (no device, malformed name),
  *   GROBO_ERR_TIMEOUT (no connection), GROBO_ERR_NOMEM, or as grobo_port_ops.open;

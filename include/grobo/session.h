@@ -5,10 +5,9 @@
  *
  * The line is a serial port, a connection, or a simulator in the same process. The session opens
  * it, asks whether a robot answers, moves bytes both ways, calls the engine at its deadlines, and
- * where so configured comes back when the line was lost. It adds nothing to what the engine
- * decides: every request and question of robot.h works on grobo_session_robot(), at the present
- * time, and what a request wants sent leaves at once. Its events come from the loop, never from
- * within the request.
+ * opens a lost line again where so configured. It adds nothing to what the engine decides: every
+ * request and question of robot.h works on grobo_session_robot(), at the present time, and what a
+ * request sends leaves at once. Its events come from the loop, never from within the request.
  *
  * It obeys emergency stops that other programs ask for (estop.h), except with GROBO_DEVICE_SIM.
  * grobo_robot_reset() clears the mark of such a stop, where the latched stop is an emergency
@@ -50,13 +49,13 @@ GROBO_BEGIN_DECLS
 /** Longest such pause. */
 #define GROBO_RECONNECT_MAX_US 100000
 
-/** Where a session is. */
+/** The state of a session. */
 typedef enum grobo_session_state {
     GROBO_SESSION_CLOSED = 0, /**< nothing open */
-    GROBO_SESSION_OPENING,    /**< waits for a connection to stand */
+    GROBO_SESSION_OPENING,    /**< waits until the connection is made */
     GROBO_SESSION_CHECKING,   /**< waits for the robot's answer */
     GROBO_SESSION_UP,         /**< a robot is there */
-    GROBO_SESSION_WAITING     /**< the line is lost, the next attempt has its time */
+    GROBO_SESSION_WAITING     /**< the line is lost, the next attempt is scheduled */
 } grobo_session_state;
 
 /** What a session reports. */
@@ -95,7 +94,7 @@ typedef struct grobo_session_config {
                                           wiring and echo are those of driver and robot */
     const char *const *scan;         /**< borrowed; devices that GROBO_DEVICE_AUTO tries, in this
                                           order, ended by NULL; NULL: all serial ports */
-    bool skip_check;                 /**< up as soon as the line is open, whoever is there */
+    bool skip_check;                 /**< up as soon as the line is open: no robot is asked for */
     bool reconnect;                  /**< open a lost line again, until closed, by the name
                                           that stays (grobo_port_identity()) */
     grobo_session_event_fn on_event; /**< the line's events, or NULL */
@@ -126,8 +125,8 @@ GROBO_API void grobo_session_free(grobo_session *session);
 
 /**
  * Opens the device. GROBO_SESSION_EVENT_UP or _FAILED follows from the loop, unless an error is
- * returned. FAILED comes with GROBO_ERR_TIMEOUT where nobody answers, for GROBO_DEVICE_AUTO with
- * GROBO_ERR_NOTFOUND, and within 2 s a port.
+ * returned. FAILED comes with GROBO_ERR_TIMEOUT where no robot answers, for GROBO_DEVICE_AUTO with
+ * GROBO_ERR_NOTFOUND, after at most 2 s for each port.
  * @return GROBO_OK, GROBO_ERR_STATE (not closed), GROBO_ERR_NOTFOUND (GROBO_DEVICE_AUTO: no
  *   serial port to try), GROBO_ERR_NOMEM, or as grobo_serial_open().
  */
@@ -150,7 +149,7 @@ GROBO_CORE int grobo_session_set_device(grobo_session *session, const char *devi
  */
 GROBO_API int grobo_session_configure(grobo_session *session, const grobo_robot_config *config);
 
-/** Where it is. */
+/** Its state. */
 GROBO_API grobo_session_state grobo_session_get_state(const grobo_session *session);
 
 /** The device in use: what was configured; for GROBO_DEVICE_AUTO the port that is open. */
@@ -175,7 +174,7 @@ GROBO_API void grobo_session_bytes(const grobo_session *session, uint64_t *tx_by
 /* ---- requests of other threads and signal handlers ------------------------------------------
  * They take no lock, no memory and no descriptor, keep errno, and never wait: what is asked for is
  * noted in an atomic word, and the loop is woken. It is kept until the loop has carried it out, and
- * nothing else leaves before: the next frame on the wire is the stop. Where the loop does not turn,
+ * nothing else leaves before: the next frame on the wire is the stop. Where the loop does not run,
  * because a callback holds it or no thread runs it, the request waits. Requests of the same
  * kind that the loop finds together are one. What other threads ask of the engine meanwhile is
  * stopped as well. All return GROBO_OK, or GROBO_ERR_ARG. */

@@ -106,7 +106,7 @@ typedef struct grobo_sim_event {
 
 /**
  * Called at each event. What comes over wires is reported in order of time; what a servo does on
- * its own (overheating, end of a flash write) when somebody next speaks to it or looks at it.
+ * its own (overheating, end of a flash write) when the host next sends to it or a test looks at it.
  */
 typedef void (*grobo_sim_hook)(void *ctx, const grobo_sim_event *event);
 
@@ -173,7 +173,7 @@ typedef struct grobo_sim_config {
 /** Monotonic counters; read freely. */
 typedef struct grobo_sim_stats {
     uint32_t rx_bytes;      /**< bytes of the host that arrived */
-    uint32_t tx_bytes;      /**< bytes handed out to the host */
+    uint32_t tx_bytes;      /**< bytes given to the host */
     uint32_t frames;        /**< board: whole frames of the host */
     uint32_t packets;       /**< whole command packets on the servos' bus */
     uint32_t replies;       /**< replies that entered the line to the host */
@@ -254,12 +254,12 @@ GROBO_CORE int64_t grobo_sim_packet_deadline(const grobo_sim *sim);
 /** Room for bytes of the host: what grobo_sim_rx would take now. */
 GROBO_CORE size_t grobo_sim_rx_room(const grobo_sim *sim);
 
-/** True from a hang-up to the next grobo_sim_plug(): whoever serves the port closes it. */
+/** True from a hang-up to the next grobo_sim_plug(): the server of the port closes it. */
 GROBO_CORE bool grobo_sim_hung_up(const grobo_sim *sim);
 
 /**
  * Takes the host's cable out (in = false) or puts it back. Out: bytes on the line are lost, the
- * servos go on; in: the line and the board start afresh.
+ * servos continue; in: the line and the board start afresh.
  */
 GROBO_CORE void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us);
 
@@ -311,7 +311,7 @@ GROBO_CORE int grobo_sim_set_flash(grobo_sim *sim, int servo,
                                    const uint8_t flash[GROBO_SIM_FLASH_BYTES]);
 
 /**
- * Somebody turns a shaft: from where it is to angle_mdeg (kept within the mechanical stops) in
+ * Turns a shaft as a hand does: from where it is to angle_mdeg (within the mechanical stops) in
  * time_us, at once for 0, whatever the torque is and becomes meanwhile. With torque on at the end
  * of it the servo drives to its goal.
  * @return 0 or GROBO_ERR_ARG (no such servo, time_us < 0 or above INT32_MAX: half an hour)

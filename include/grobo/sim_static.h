@@ -92,12 +92,17 @@ typedef struct grobo_sim_wire {
 #define GROBO_SIM_TALK_BYTES 256
 #endif
 
+/** Of all talks under way: what 64 servos say to one question fits. Private. */
+#ifndef GROBO_SIM_TALKS_BYTES
+#define GROBO_SIM_TALKS_BYTES (GROBO_SIM_TALKS_MAX * 96)
+#endif
+
 /** Bytes that servos say in one go, from start_ns on without a pause. Private. */
 typedef struct grobo_sim_talk {
     /* private */
     int64_t start_ns;
+    uint16_t at; /* in grobo_sim.talk_byte; the next talk's are behind them */
     uint16_t used, said;
-    uint8_t byte[GROBO_SIM_TALK_BYTES];
 } grobo_sim_talk;
 
 /** What servos of a family hear: one for all, as they hear the same. Private. */
@@ -133,7 +138,6 @@ struct grobo_sim {
     bool gone;                              /* hung up */
     bool parity;                            /* a byte has 11 bits, and is lost with one wrong */
     uint8_t n_servos;
-    grobo_sim_servo servo[GROBO_SIM_SERVOS_MAX];
     grobo_sim_wire in, out; /* from the host, to the host */
     int64_t hand_over_ns;   /* when the host's adapter hands over what it has */
 
@@ -154,6 +158,11 @@ struct grobo_sim {
     int64_t bus_heard_ns;                     /* end of the last byte they heard */
     grobo_sim_talk talk[GROBO_SIM_TALKS_MAX]; /* n_talks of them, in the order they began */
     uint16_t n_talks;
+    uint16_t talk_bytes; /* of them all */
+    uint8_t talk_byte[GROBO_SIM_TALKS_BYTES];
+    /* The last member: where the library makes a simulator there are as many as its model has
+     * joints (grobo_i_sim_bytes()). */
+    grobo_sim_servo servo[GROBO_SIM_SERVOS_MAX];
 };
 
 /**

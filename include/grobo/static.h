@@ -7,8 +7,8 @@
  * What is in here is in the static libraries alone (libgrobo-core.a, libgrobo.a): the sizes below
  * change from version to version. With the shared library a robot comes from session.h or thread.h.
  *
- * Whoever owns the line pumps the engine, whenever bytes came, a request was made or the deadline
- * is reached, always in this order:
+ * The owner of the line pumps the engine, when bytes came, a request was made or the deadline is
+ * reached, always in this order:
  * @code
  *   grobo_robot_rx(&robot, bytes, n, now);                // what has arrived, first
  *   grobo_robot_step(&robot, now);                        // timeouts, frames that are due
@@ -42,7 +42,7 @@ GROBO_BEGIN_DECLS
 #define GROBO_ROBOT_JITTER_BINS 64
 
 /**
- * Whoever pumps an engine, as the engine sees it. A function that is NULL is not called. What they
+ * The pump of an engine, as the engine sees it. A function that is NULL is not called. What they
  * call of the engine is grobo_robot_deadline() at most, and from `wake` the pump.
  */
 typedef struct grobo_robot_host {
@@ -54,7 +54,7 @@ typedef struct grobo_robot_host {
     /** Was an emergency stop asked for that the pump has not carried out? Then what moves is
      *  refused as behind one that was. Called with the lock. */
     bool (*is_stopped)(void *ctx);
-    /** May a latched stop be taken back? @return 0, or the error of grobo_robot_reset(). */
+    /** May a latched stop be cleared? @return 0, or the error of grobo_robot_reset(). */
     int (*may_reset)(void *ctx);
     /** Where several threads use the engine: held during every call, but not during callbacks. A
      *  thread that has it may take it again. */
@@ -82,6 +82,7 @@ typedef struct grobo_robot_order {
     bool stops;              /* leaves after a latched stop as well */
     bool rests;              /* ends a motion: joints come to rest near where they are by then */
     bool owed;               /* a halt from before a latch that sends nothing */
+    bool stands;             /* its frame is of the goal as it was asked for */
 } grobo_robot_order;
 
 /** A frame under way. Private. */
@@ -97,6 +98,7 @@ typedef struct grobo_robot_slot {
     bool refused;     /* at the moment it would have left */
     bool reads;       /* it asks where this joint is */
     bool many;        /* it asks where several are */
+    bool fast;        /* which answer with one packet */
     uint8_t use;      /* 0: free */
     uint8_t joint;
     uint8_t kind, part;      /* of a reading: grobo_sense_kind, exchanges before this one */
@@ -166,8 +168,8 @@ typedef struct grobo_robot_task {
     grobo_posture target;
     grobo_clip clip;
     grobo_play_options options;
-    grobo_exchange exchange;
-    grobo_robot_order order; /* of the exchange */
+    grobo_robot_order order; /* of the frame that it asks with */
+    int64_t settle_us;       /* silence that is needed after it */
     int64_t leave_by_us;     /* after that it does not leave; 0: always */
     int part;
     int rounds;      /* of repeating what was not taken */
@@ -210,7 +212,6 @@ struct grobo_robot {
     grobo_robot_wish queue[GROBO_ROBOT_QUEUE]; /* the first is the oldest */
     unsigned queued;
     int slots_end; /* from here on all slots are free */
-    grobo_robot_axis axes[GROBO_JOINTS_MAX];
     grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
     grobo_event events[GROBO_ROBOT_EVENTS]; /* ring */
     unsigned events_head, events_n;
@@ -236,6 +237,8 @@ struct grobo_robot {
     grobo_joint_mask heard_round;   /* of the joints that were not heard for long */
     uint8_t reply[GROBO_FRAME_MAX_BYTES];
     grobo_exchange built;                     /* the frame that is being made */
+    grobo_exchange asked;                     /* of the request that begins, */
+    int asked_by;                             /* whose job has this number */
     uint8_t frames[GROBO_ROBOT_FRAMES_BYTES]; /* of the slots, one behind the other */
     size_t frames_used;
     double fault_deg;
@@ -245,6 +248,8 @@ struct grobo_robot {
     unsigned depth;        /* calls into the engine, one inside another */
     int acting;            /* number of the job whose step runs; 0: none */
     bool other_read;       /* in free mode: the last reading was of a joint that is not free */
+    uint8_t fast_lost;     /* readings of all in one packet that failed since one did not */
+    bool fast_forgotten;   /* servos are asked again whether they answer so */
     bool heard_read;       /* the last reading was of a joint that was not heard for long */
     bool link;
     bool answered;      /* the last frame given out was: none of it waits any more */
@@ -254,6 +259,9 @@ struct grobo_robot {
     bool stop_owed;     /* an emergency stop that no line has carried yet */
     bool holds_at_stop; /* the driver switches no torque: an emergency stop halts */
     bool in_segments;   /* a joint may be: whoever looks for one need not where none is */
+    /* The last member: where the library makes an engine there are as many as its robot has joints
+     * (grobo_i_robot_bytes()). */
+    grobo_robot_axis axes[GROBO_JOINTS_MAX];
 };
 
 /* ---- its life and its pump ------------------------------------------------------------------ */
@@ -273,7 +281,7 @@ GROBO_CORE int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes,
                                       const grobo_driver *driver, void *driver_ctx,
                                       const grobo_robot_config *config, int64_t now_us);
 
-/** Who pumps it; copied, NULL: nobody in particular. Before anything is asked of the engine. */
+/** Sets the pump; copied, NULL: none. Before any request or question. */
 GROBO_CORE void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host);
 
 /** Bytes came from the line. */

@@ -12,8 +12,8 @@
  * Their clocks must be one: sessions on one loop, or engines that one program pumps.
  *
  * A motion begins by a barrier: each robot approaches its first posture and waits; when all are
- * there, all get the same start time. A robot that trips, loses its line, is stopped by somebody
- * else or is not there in time is out of the motion; grobo_team_policy says what the others do.
+ * there, all get the same start time. A robot that trips, loses its line, is stopped by another
+ * request or is not there in time is out of the motion; grobo_team_policy says what the others do.
  * The others do not wait for it: they are asked in the call that reported it.
  *
  * Stops go to every member, whether it takes part or not. They are requests of each engine
@@ -102,7 +102,7 @@ typedef struct grobo_team grobo_team;
  */
 GROBO_API int grobo_team_new(const grobo_team_config *config, grobo_team **team);
 
-/** Frees it; NULL is fine. Its robots go on with what they do. */
+/** Frees it; NULL is fine. Its robots continue with what they do. */
 GROBO_API void grobo_team_free(grobo_team *team);
 
 /**
@@ -129,7 +129,7 @@ GROBO_API int grobo_team_play(grobo_team *team, const grobo_clip *const *clips, 
 /**
  * Tells all that are ready when to begin, where grobo_team_play() was given GROBO_START_LATER.
  * @return 0, GROBO_ERR_STATE (not all are ready), GROBO_ERR_ARG, GROBO_ERR_STALE: that time is over
- *         (they go on waiting).
+ *         (they continue to wait).
  */
 GROBO_API int grobo_team_start_at(grobo_team *team, int64_t start_us, int64_t now_us);
 

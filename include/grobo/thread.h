@@ -27,9 +27,9 @@
  * grobo_control_post_exit() are safe in signal handlers and leave a request that is kept until it
  * has been carried out; grobo_control_exit() leaves it where it cannot wait. What delays it is a
  * callback, or a function of grobo_control_call() or grobo_control_post(), that does not return:
- * while it holds the loop, nothing is read, nothing is watched and nothing is sent, so joints go on
- * to the posture they were sent to last, and a motion that is late by stall_us ends. A callback
- * must not wait for a lock whose owner calls here and waits. One that takes longer than
+ * while it holds the loop, nothing is read, nothing is watched and nothing is sent, so joints
+ * continue to the posture they were sent to last, and a motion that is late by stall_us ends. A
+ * callback must not wait for a lock whose owner calls here and waits. One that takes longer than
  * GROBO_CALLBACK_SLOW_US is reported by the event GROBO_EVENT_SLOW_CALLBACK.
  *
  * Besides their own errors, handed-over and waiting calls may return GROBO_ERR_FULL

@@ -4,6 +4,8 @@
 
 #include <grobo/posture.h>
 
+#include "src/base/angle.h"
+
 static char lower(char c)
 {
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
@@ -48,8 +50,10 @@ double grobo_joint_to_servo(const grobo_joint *joint, double angle_rad)
     if (joint == NULL) {
         return 0;
     }
-    double turned_rad = joint->gear > 0 ? angle_rad * joint->gear : angle_rad;
-    return (joint->sign < 0 ? -turned_rad : turned_rad) + joint->zero_rad;
+    bool geared = !grobo_i_soft_zero(joint->gear) && joint->gear > 0;
+    double turned_rad = geared ? angle_rad * joint->gear : angle_rad;
+    turned_rad = joint->sign < 0 ? -turned_rad : turned_rad;
+    return grobo_i_soft_zero(joint->zero_rad) ? turned_rad : turned_rad + joint->zero_rad;
 }
 
 double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad)

@@ -4,6 +4,8 @@
 
 #include <grobo/posture.h>
 
+#include "src/base/angle.h"
+
 #define PI 3.14159265358979323846
 
 /* What register No.32-33 can hold: 16383 x 10 ms. */
@@ -19,24 +21,10 @@ double grobo_rad_from_deg(double angle_deg)
     return angle_deg * PI / 180.0;
 }
 
-/* Rounds by integers, in 1/65536 of the unit, what has room there and is no tie: a fifth of the
- * instructions where doubles are emulated. False: it is something else. */
-static bool round_small(double angle_rad, int16_t *ddeg)
-{
-    if (!(angle_rad > -50 && angle_rad < 50)) {
-        return false;
-    }
-    int32_t fine = (int32_t)(angle_rad * (1800.0 / PI * 65536)) + 0x8000;
-    uint32_t above_least = (uint32_t)fine + (UINT32_C(1) << 31);
-    uint32_t rest = above_least & 0xFFFF;
-    *ddeg = (int16_t)((int32_t)(above_least >> 16) - 0x8000);
-    return rest > 1 && rest < 0xFFFE;
-}
-
 int16_t grobo_ddeg_from_rad(double angle_rad)
 {
     int16_t small;
-    if (round_small(angle_rad, &small)) {
+    if (grobo_i_ddeg(angle_rad, &small)) {
         return small;
     }
     double ddeg = round(angle_rad * 1800.0 / PI);
@@ -250,12 +238,6 @@ int grobo_posture_mirror(grobo_posture *posture, const grobo_model *model)
     return 0;
 }
 
-/* Most are, and need not be rounded, which keeps the order. No infinity is. */
-static inline bool is_between(const grobo_joint *joint, double angle_rad)
-{
-    return angle_rad >= joint->min_rad && angle_rad <= joint->max_rad && isfinite(angle_rad);
-}
-
 /* On the wire's grid: a limit read from a file in degrees is kept however it was rounded. */
 static bool within_limits(const grobo_joint *joint, double angle_rad)
 {
@@ -271,13 +253,16 @@ int grobo_posture_check(const grobo_posture *posture, const grobo_model *model, 
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        if (!is_set(posture, j) || is_between(&model->joints[j], posture->angle_rad[j])) {
+        const grobo_joint *limits = &model->joints[j];
+        /* Most are inside, and need not be rounded, which keeps the order. */
+        if (!is_set(posture, j) ||
+            grobo_i_inside(limits->min_rad, posture->angle_rad[j], limits->max_rad)) {
             continue;
         }
         int result = 0;
         if (!isfinite(posture->angle_rad[j])) {
             result = GROBO_ERR_NAN;
-        } else if (!within_limits(&model->joints[j], posture->angle_rad[j])) {
+        } else if (!within_limits(limits, posture->angle_rad[j])) {
             result = GROBO_ERR_LIMIT;
         }
         if (result < 0) {

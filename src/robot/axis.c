@@ -145,10 +145,12 @@ bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
     return false;
 }
 
-bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints)
+bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints, int *joint)
 {
+    *joint = -1;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(joints, j) && robot->axes[j].adrift) {
+            *joint = j;
             return true;
         }
     }

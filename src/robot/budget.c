@@ -80,8 +80,8 @@ static uint16_t watched_rate(const grobo_budget *budget, uint32_t joints, uint32
     return 0;
 }
 
-int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
-                   grobo_budget *budget)
+static int budget_of(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
+                     grobo_budget *budget)
 {
     grobo_budget found;
     bool answered = false;
@@ -117,12 +117,12 @@ int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ct
     }
     config.protocol = driver->protocol;
     int result = grobo_bus_init(&bus, &config);
-    return result < 0 ? result : grobo_i_budget(&bus, driver, ctx, budget);
+    return result < 0 ? result : budget_of(&bus, driver, ctx, budget);
 }
 
 int grobo_robot_budget(const grobo_robot *robot, grobo_budget *budget)
 {
     return robot == NULL || budget == NULL
                ? GROBO_ERR_ARG
-               : grobo_i_budget(&robot->bus, robot->driver, robot->driver_ctx, budget);
+               : budget_of(&robot->bus, robot->driver, robot->driver_ctx, budget);
 }

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/angle.h"
 #include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
@@ -22,7 +23,12 @@
 typedef struct saying {
     grobo_target target;                              /* where to, for deeds that move */
     grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1]; /* what it switches, by mode */
+    bool as_asked; /* a goal of all its joints, to where each was asked to go, in that time */
 } saying;
+
+/* When an order is judged: its frame is built when it is asked for, and leaves, more than once if
+ * it is not answered. */
+typedef enum moment { ASKED, BUILT, LEAVES, LEAVES_AGAIN } moment;
 
 /* ---- numbers and limits ---------------------------------------------------------------------- */
 
@@ -137,19 +143,11 @@ static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad, b
 /* True where this time, a multiple of the wire's unit, is surely enough at full speed: without the
  * divisions of time_needed(), which are most of what a frame costs a processor that has none. What
  * is closer than the rounding of both is left to that. */
-static bool is_ample(const grobo_robot *robot, int joint, double to_rad, double time_s)
+static bool is_ample(const grobo_robot *robot, int joint, double to_rad, grobo_i_span asked)
 {
     double most_rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
     double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
-    return fabs(to_rad - from_rad) <= most_rad_s * time_s;
-}
-
-/* What is_ample() takes for a time: the part of it that a lower speed limit leaves. */
-static double ample_s(const grobo_robot *robot, int64_t time_us)
-{
-    const double rounding = 1 - 1e-6;
-    bool on_wire = time_us <= robot->driver->time_max_us;
-    return on_wire ? (double)time_us * robot->config.speed_limit_pct * (rounding * 1e-8) : -1;
+    return grobo_i_gets_there(from_rad, to_rad, most_rad_s, asked);
 }
 
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
@@ -158,23 +156,27 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
     bool on_grid = order->deed == GROBO_I_DEED_GOAL; /* its times, as they were asked for */
     bool stretched = false;
     int64_t longest_us = 0, asked_us = -1;
-    double asked_s = -1;
+    grobo_i_span asked = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (!grobo_i_has(target->posture.set, j)) {
             continue;
         }
         double to_rad = target->posture.angle_rad[j];
-        if (target->joint_time_us[j] != asked_us) {
-            asked_us = target->joint_time_us[j];
-            asked_s = on_grid && !soft ? ample_s(robot, asked_us) : -1;
+        int64_t *time_us = &target->joint_time_us[j];
+        if (*time_us != asked_us) {
+            asked_us = *time_us;
+            longest_us = grobo_i_later(longest_us, asked_us);
+            bool may = on_grid && !soft && asked_us <= robot->driver->time_max_us;
+            asked = may ? grobo_i_span_of(asked_us, robot->config.speed_limit_pct) : 0;
         }
-        bool ample = asked_s > 0 && is_ample(robot, j, to_rad, asked_s);
-        int64_t needed_us = ample ? 0 : time_needed(robot, j, to_rad, soft);
+        if (asked > 0 && is_ample(robot, j, to_rad, asked)) {
+            continue;
+        }
+        int64_t needed_us = time_needed(robot, j, to_rad, soft);
         if (needed_us == GROBO_NEVER_US) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
         }
-        int64_t *time_us = &target->joint_time_us[j];
         stretched = stretched || needed_us > *time_us;
         *time_us = grobo_i_later(needed_us, *time_us);
         longest_us = grobo_i_later(longest_us, *time_us);
@@ -208,7 +210,8 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
         return GROBO_ERR_STATE;
     }
     /* A joint in free mode is moved by a person; one adrift by somebody else. */
-    bool others = (joints & robot->free_joints) != 0 || grobo_i_adrift(robot, joints);
+    bool adrift = grobo_i_adrift(robot, joints, &robot->fault_joint);
+    bool others = adrift || (joints & robot->free_joints) != 0;
     return others || !all_limited(robot, joints) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
@@ -245,9 +248,42 @@ static bool aim_goal(const grobo_robot *robot, const grobo_robot_order *order, b
     return sleeps;
 }
 
-/* To its target, as far as no later one has taken its place; in more time where it leaves late. */
-static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
+/* True if no joint is left out, drawn in or given more time than it was asked to take. */
+static bool goes_as_asked(const grobo_robot *robot, const grobo_robot_order *order,
+                          const grobo_target *target)
 {
+    bool same = target->posture.set == order->joints && !order->rests;
+    for (int j = 0; same && j < robot->driver->model->n_joints; j++) {
+        same = !grobo_i_has(order->joints, j) ||
+               target->joint_time_us[j] == robot->axes[j].next_time_us;
+    }
+    return same;
+}
+
+/* The angles and times of a goal: drawn in to its limits, and slow enough from where its joints are
+ * by now. */
+static int judge_way(grobo_robot *robot, const grobo_robot_order *order, saying *says)
+{
+    int clamped = clamp_target(robot, &says->target.posture); /* one may rest outside */
+    int result = grobo_i_gate_time(robot, order, &says->target);
+    says->as_asked = clamped == 0 && goes_as_asked(robot, order, &says->target);
+    return result;
+}
+
+/* Says the same with that judgement as without it: of what was just judged so. */
+static bool is_judged(grobo_robot *robot, const grobo_robot_order *order, const saying *says)
+{
+    saying again = *says;
+    return judge_way(robot, order, &again) >= 0 &&
+           again.as_asked == goes_as_asked(robot, order, &says->target);
+}
+
+/* To its target, as far as no later one has taken its place; in more time where it leaves late.
+ * When its frame is built the call that asked for it has drawn in and timed it already, from the
+ * same joints, limits and instant (grobo_i_gate_send()). One that rests is aimed elsewhere. */
+static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment when, saying *says)
+{
+    grobo_target *target = &says->target;
     if (robot->trip.latched && (!order->stops || robot->trip.trip == GROBO_TRIP_ESTOP)) {
         return GROBO_ERR_LATCHED;
     }
@@ -255,9 +291,14 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_
     if (target->posture.set == 0) {
         return sleeps ? GROBO_ERR_EMPTY : GROBO_ERR_STALE;
     }
-    (void)clamp_target(robot, &target->posture); /* one may rest outside */
     int result = judge_joints(robot, target->posture.set);
-    return result < 0 ? result : grobo_i_gate_time(robot, order, target);
+    if (result >= 0 && (when != BUILT || order->rests)) {
+        result = judge_way(robot, order, says);
+    } else if (result >= 0) {
+        says->as_asked = target->posture.set == order->joints;
+        GROBO_ASSERT(!GROBO_ASSERT_WALKS || is_judged(robot, order, says));
+    }
+    return result;
 }
 
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
@@ -452,17 +493,18 @@ static void say_nothing(const grobo_robot *robot, saying *says)
     memset(target->joint_time_us, 0, n * sizeof target->joint_time_us[0]);
     memset(target->from_rad, 0, n * sizeof target->from_rad[0]);
     memset(says->torqued, 0, sizeof says->torqued);
+    says->as_asked = false;
 }
 
 static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo_exchange *exchange,
-                 bool again, saying *says)
+                 moment when, saying *says)
 {
     say_nothing(robot, says);
     switch ((grobo_i_deed)order->deed) {
     case GROBO_I_DEED_NONE:
         return GROBO_OK;
     case GROBO_I_DEED_GOAL:
-        return judge_goal(robot, order, &says->target);
+        return judge_goal(robot, order, when, says);
     case GROBO_I_DEED_SEGMENT:
         return judge_segment(robot, order, &says->target);
     case GROBO_I_DEED_HALT:
@@ -476,7 +518,7 @@ static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo
     case GROBO_I_DEED_UNKNOWN:
         return robot->trip.latched ? GROBO_ERR_LATCHED : judge_alone(robot);
     case GROBO_I_DEED_SETTING:
-        return judge_setting(robot, order->joints, again);
+        return judge_setting(robot, order->joints, when == LEAVES_AGAIN);
     case GROBO_I_DEED_COMMAND:
         return judge_alone(robot);
     }
@@ -488,7 +530,7 @@ int grobo_i_gate_judge(grobo_robot *robot, const grobo_robot_order *order,
                        const grobo_exchange *exchange)
 {
     saying says;
-    return judge(robot, order, exchange, false, &says);
+    return judge(robot, order, exchange, ASKED, &says);
 }
 
 int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_robot_order *order)
@@ -531,6 +573,12 @@ static double begin_of_halt(const grobo_robot *robot, const grobo_target *target
                : to_rad + copysign(fmin(fabs(behind_rad), fmax(most_rad, way_rad)), behind_rad);
 }
 
+/* True if the driver looks at angles and times alone. */
+static bool is_timed(const grobo_driver *driver)
+{
+    return driver->posture == driver->timed_posture;
+}
+
 /* What the frames of an order ask for: what it says, or the part of it that goes first. */
 static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order *order,
                                saying *says, grobo_target *part)
@@ -538,7 +586,8 @@ static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order
     bool cut =
         order->deed == GROBO_I_DEED_GOAL && grobo_i_segments_cut(robot, order, &says->target, part);
     grobo_target *target = cut ? part : &says->target;
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+    bool timed = is_timed(robot->driver);
+    for (int j = 0; !timed && j < robot->driver->model->n_joints; j++) {
         target->from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
         if (order->deed == GROBO_I_DEED_HALT) {
             target->from_rad[j] = begin_of_halt(robot, target, j);
@@ -575,16 +624,24 @@ static void says_all(const grobo_robot *robot, const grobo_robot_order *order, s
     says->target.posture.set = order->joints;
 }
 
-int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order, grobo_exchange *exchange)
+/* True of what the driver makes the same frame of, whenever that is: angles and times as they were
+ * asked for. A frame that waits needs not be built anew then. */
+static bool stands(const grobo_robot *robot, const saying *says, const grobo_target *target)
+{
+    return is_timed(robot->driver) && says->as_asked && target == &says->target;
+}
+
+int grobo_i_gate_build(grobo_robot *robot, grobo_robot_order *order, grobo_exchange *exchange)
 {
     saying says;
     grobo_target part;
     const grobo_target *target = &says.target;
     grobo_exchange next;
-    int result = judge(robot, order, NULL, false, &says);
+    int result = judge(robot, order, NULL, BUILT, &says);
     if (result >= 0) {
         says_all(robot, order, &says);
         target = aim(robot, order, &says, &part);
+        order->stands = stands(robot, &says, target);
         result = make_frame(robot, order, &says, target, order->part, exchange);
     }
     bool several = order->part == 0 && grobo_joints_count(order->joints) > 1;
@@ -621,6 +678,7 @@ static void forget(grobo_robot *robot, grobo_joint_mask joints, bool torque_too)
 static void note_way(grobo_robot *robot, const grobo_robot_order *order, const grobo_target *target)
 {
     int64_t now_us = robot->now_us;
+    bool parts = order->deed == GROBO_I_DEED_GOAL && grobo_i_goes_in_parts(robot, order);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(target->posture.set, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
@@ -631,8 +689,7 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
             robot->halts_owed &= ~GROBO_JOINT_BIT(j);
             axis->has_target = true;
             axis->adrift = axis->held = axis->in_segments = axis->off_way = false;
-            if (order->deed == GROBO_I_DEED_GOAL &&
-                grobo_i_segments_wanted(robot, order, target->joint_time_us[j])) {
+            if (parts && grobo_i_segments_wanted(robot, target->joint_time_us[j])) {
                 grobo_i_segments_begin(robot, j);
             }
         }
@@ -784,22 +841,44 @@ static const grobo_exchange *waiting(const grobo_robot_slot *slot)
     return frame;
 }
 
+/* The frame that waits is the one that would be built. */
+static bool is_same_frame(const grobo_robot_slot *slot, const saying *says)
+{
+    grobo_exchange fresh;
+    return make_frame(slot->robot, &slot->order, says, &says->target, slot->order.part, &fresh) >
+               0 &&
+           fresh.frame_bytes == slot->txn.frame_bytes &&
+           memcmp(fresh.frame, slot->txn.frame, fresh.frame_bytes) == 0;
+}
+
+/* Builds the frame of a slot from what it says now. */
+static int build_anew(grobo_robot_slot *slot, saying *says)
+{
+    grobo_robot *robot = slot->robot;
+    grobo_target part;
+    const grobo_target *target = aim(robot, &slot->order, says, &part);
+    if (slot->order.stands && stands(robot, says, target)) {
+        GROBO_ASSERT(!GROBO_ASSERT_WALKS || is_same_frame(slot, says));
+        return GROBO_OK;
+    }
+    slot->order.stands = false; /* it may be built for another time now */
+    int result = make_frame(robot, &slot->order, says, target, slot->order.part, &robot->built);
+    return result > 0 ? grobo_i_slot_renew(slot) : result == 0 ? GROBO_ERR_EMPTY : result;
+}
+
 int grobo_i_gate_leave(grobo_robot_slot *slot)
 {
     grobo_robot *robot = slot->robot;
-    bool again = slot->txn.sent_us >= 0;
+    moment when = slot->txn.sent_us >= 0 ? LEAVES_AGAIN : LEAVES;
     saying says;
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && robot->link);
     if (slot->order.deed == GROBO_I_DEED_NONE && slot->order.joints == 0) {
         return GROBO_OK; /* a reading: it tells no joint anything */
     }
     int result = is_passed(robot, slot) ? GROBO_ERR_STALE
-                                        : judge(robot, &slot->order, waiting(slot), again, &says);
+                                        : judge(robot, &slot->order, waiting(slot), when, &says);
     if (result >= 0 && is_built(&slot->order)) {
-        grobo_target part;
-        const grobo_target *target = aim(robot, &slot->order, &says, &part);
-        result = make_frame(robot, &slot->order, &says, target, slot->order.part, &robot->built);
-        result = result > 0 ? grobo_i_slot_renew(slot) : result == 0 ? GROBO_ERR_EMPTY : result;
+        result = build_anew(slot, &says);
     }
     if (result < 0) {
         return result;

@@ -21,7 +21,7 @@ static int send_one(grobo_robot *robot, const grobo_robot_order *order, const wa
     slot->order = *order;
     slot->due_us = out->due_us;
     slot->job = out->due_us != GROBO_NEVER_US ? 0 : slot->job; /* the sequencer's, not a job's */
-    int result = grobo_i_gate_build(robot, order, &robot->built);
+    int result = grobo_i_gate_build(robot, &slot->order, &robot->built);
     if (result <= 0) {
         grobo_i_slot_drop(slot);
         return result;
@@ -112,21 +112,19 @@ static int stabilize(grobo_robot *robot, grobo_posture *target)
 
 /* Times the target from where its joints are now, and has it wait. It is timed again when it
  * leaves. */
-static int await_line(grobo_robot *robot, const grobo_robot_order *order,
-                      const grobo_posture *posture)
+static int await_line(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
-    grobo_target target = {.posture = *posture};
-    int64_t asked_us = time_asked(robot, posture);
+    int64_t asked_us = time_asked(robot, &target->posture);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        target.joint_time_us[j] = asked_us;
+        target->joint_time_us[j] = asked_us;
     }
-    int result = grobo_i_gate_time(robot, order, &target);
+    int result = grobo_i_gate_time(robot, order, target);
     for (int j = 0; result >= 0 && j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(order->joints, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
             axis->next = order->number;
-            axis->next_rad = posture->angle_rad[j];
-            axis->next_time_us = order->rests ? asked_us : target.joint_time_us[j];
+            axis->next_rad = target->posture.angle_rad[j];
+            axis->next_time_us = order->rests ? asked_us : target->joint_time_us[j];
         }
     }
     return result;
@@ -134,16 +132,18 @@ static int await_line(grobo_robot *robot, const grobo_robot_order *order,
 
 int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const grobo_i_motion *how)
 {
-    grobo_posture target = *wanted;
-    int result = how->as_is ? GROBO_OK : stabilize(robot, &target);
+    grobo_target target;
+    target.posture = *wanted;
+    int result = how->as_is ? GROBO_OK : stabilize(robot, &target.posture);
     if (result >= 0) {
-        result = grobo_i_gate_target(robot, &target);
+        result = grobo_i_gate_target(robot, &target.posture);
     }
-    if (result >= 0 && !grobo_i_all_sensed(robot, target.set, &robot->fault_joint)) {
+    grobo_joint_mask joints = target.posture.set;
+    if (result >= 0 && !grobo_i_all_sensed(robot, joints, &robot->fault_joint)) {
         result = GROBO_ERR_STALE;
     }
     robot->motion = robot->motion == UINT32_MAX ? 1 : robot->motion + 1;
-    grobo_robot_order order = {.joints = target.set,
+    grobo_robot_order order = {.joints = joints,
                                .number = robot->motion,
                                .deed = GROBO_I_DEED_GOAL,
                                .each = how->each,

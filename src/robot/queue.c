@@ -63,6 +63,23 @@ grobo_joint_mask grobo_i_joints_of_moves(const grobo_robot *robot)
 
 /* ---- moves and readings ---------------------------------------------------------------------- */
 
+/* What a motion sets is the motion's; who wants to move that stops it first. */
+static bool is_played(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    return grobo_robot_is_playing(robot) && (robot->clip_joints & joints) != 0;
+}
+
+int grobo_i_move_takes(grobo_robot *robot, grobo_joint_mask joints)
+{
+    if ((taken_from(robot, GROBO_JOB_MOVE) & joints) != 0 || is_played(robot, joints)) {
+        return GROBO_ERR_STATE;
+    }
+    if (joints != 0) {
+        grobo_i_jobs_leave(robot, joints);
+    }
+    return GROBO_OK;
+}
+
 static int admit(grobo_robot *robot, const grobo_robot_wish *wish)
 {
     bool moves = wish->kind == GROBO_JOB_MOVE;
@@ -70,8 +87,7 @@ static int admit(grobo_robot *robot, const grobo_robot_wish *wish)
     if (result < 0) {
         return result;
     }
-    /* What a motion sets is the motion's; who wants to move that stops it first. */
-    bool played = grobo_robot_is_playing(robot) && (robot->clip_joints & wish->joints) != 0;
+    bool played = is_played(robot, wish->joints);
     bool leaving = robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
     return moves && (played || leaving) ? GROBO_ERR_STATE : result;
 }

@@ -27,6 +27,7 @@ static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
     KEEP(GROBO_FIELD_VOLTAGE, voltage_mv)
     KEEP(GROBO_FIELD_TORQUE, torque)
     KEEP(GROBO_FIELD_TORQUE_LIMIT, torque_limited)
+    KEEP(GROBO_FIELD_FAST, fast)
     KEEP(GROBO_FIELD_RANGE, low_rad)
     KEEP(GROBO_FIELD_RANGE, high_rad)
 #undef KEEP

@@ -168,7 +168,7 @@ static bool all_hold(const grobo_robot *robot, grobo_joint_mask joints)
 }
 
 /* A target for joints that nothing is read of before. */
-static int admit_target(const grobo_robot *robot, const grobo_posture *target)
+static int admit_target(grobo_robot *robot, const grobo_posture *target)
 {
     if (!robot->link) {
         return GROBO_ERR_CLOSED;
@@ -179,7 +179,8 @@ static int admit_target(const grobo_robot *robot, const grobo_posture *target)
     if (target->set == 0) {
         return GROBO_ERR_ARG;
     }
-    bool others = (target->set & robot->free_joints) != 0 || grobo_i_adrift(robot, target->set);
+    bool others = grobo_i_adrift(robot, target->set, &robot->fault_joint) ||
+                  (target->set & robot->free_joints) != 0;
     return others || !all_hold(robot, target->set) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
@@ -229,6 +230,9 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
     }
     if (result >= 0 && !grobo_i_all_sensed(robot, checked.set, &robot->fault_joint)) {
         result = GROBO_ERR_STALE;
+    }
+    if (result >= 0) {
+        result = grobo_i_move_takes(robot, checked.set & ~robot->job->joints);
     }
     if (result >= 0) {
         result = robot->job->number;
@@ -288,7 +292,9 @@ static int start_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_r
                           const grobo_exchange *exchange)
 {
     int number = grobo_i_job_start(robot, kind, grobo_i_script_ask, 0);
-    robot->job->exchange = *exchange;
+    robot->asked = *exchange; /* until its first step, in this call */
+    robot->asked_by = number;
+    robot->job->settle_us = exchange->settle_us;
     robot->job->order = *order;
     robot->job->joints = order->joints;
     return number;

@@ -68,17 +68,20 @@ static int config_take(grobo_robot_config *to, const grobo_robot_config *from)
     return result < 0 || config_sound(to) ? result : GROBO_ERR_ARG;
 }
 
+size_t grobo_i_robot_bytes(const grobo_driver *driver)
+{
+    return offsetof(grobo_robot, axes) + driver->model->n_joints * sizeof(grobo_robot_axis);
+}
+
 int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_driver *driver,
                            void *driver_ctx, const grobo_robot_config *config, int64_t now_us)
 {
-    if (robot == NULL || robot_bytes != sizeof *robot) {
-        return GROBO_ERR_ARG;
-    }
     grobo_robot_config taken;
-    if (grobo_driver_check(driver) < 0 || config_take(&taken, config) < 0) {
+    if (robot == NULL || grobo_driver_check(driver) < 0 || config_take(&taken, config) < 0 ||
+        (robot_bytes != sizeof *robot && robot_bytes != grobo_i_robot_bytes(driver))) {
         return GROBO_ERR_ARG;
     }
-    memset(robot, 0, sizeof *robot);
+    memset(robot, 0, robot_bytes);
     robot->driver = driver;
     robot->job = robot->jobs;
     robot->driver_ctx = driver_ctx;
@@ -279,7 +282,7 @@ static void forget(grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        axis->sensed = axis->has_target = axis->torque_known = false;
+        axis->sensed = axis->has_target = axis->torque_known = axis->state.fast = false;
         axis->wants_torque = axis->held = axis->adrift = false;
         axis->own_until_us = 0;
         axis->status = GROBO_ERR_UNPLUGGED;
@@ -288,7 +291,7 @@ static void forget(grobo_robot *robot)
         axis->way.to_us = robot->now_us;
     }
     robot->free_joints = robot->played_joints = robot->halts_owed = 0;
-    robot->low_readings = 0;
+    robot->low_readings = robot->fast_lost = 0;
 }
 
 void grobo_robot_link_down(grobo_robot *robot, int64_t now_us)

@@ -98,14 +98,19 @@ bool grobo_i_may_halt(const grobo_robot *robot);
 void grobo_i_axis_cut(grobo_robot_axis *axis);
 /* True while a joint is on the way it was sent on, or a target waits for the line. */
 bool grobo_i_moving(const grobo_robot *robot, int64_t now_us);
-/* True if one of these moves though nothing was asked of it, nobody knows where to. */
-bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints);
+/* True if one of these moves though nothing was asked of it, nobody knows where to; *joint is the
+ * first of them, else -1. */
+bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
 /* True if all of these were sensed; else *joint is one that was not. */
 bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
 /* True if all of these are known to have torque. */
 bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
 
 /* ---- robot.c --------------------------------------------------------------------------------- */
+
+/* Bytes of an engine with no more axes than this robot has joints: what lies behind them of a
+ * grobo_robot is not there. */
+size_t grobo_i_robot_bytes(const grobo_driver *driver);
 
 /* grobo_robot_configure() for who pumps afterwards: nobody is woken, so nothing leaves by it.
  * Without `senses` nothing is read in the background, whatever it says. */
@@ -190,11 +195,6 @@ bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_
 /* True if a frame of this use is under way. */
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
 
-/* ---- budget.c -------------------------------------------------------------------------------- */
-
-int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
-                   grobo_budget *budget);
-
 /* ---- reading.c ------------------------------------------------------------------------------- */
 
 /* A joint slower than this does not move: in free mode it holds again (protocol 5). */
@@ -212,9 +212,9 @@ double grobo_i_hold_rad(const grobo_robot *robot, int joint);
 
 /* ---- ways.c ---------------------------------------------------------------------------------- */
 
-/* True if a joint that gets this time by this order is told its way in parts. */
-bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *order,
-                             int64_t time_us);
+/* True if this order's joints are told their ways in parts, those that get so much time. */
+bool grobo_i_goes_in_parts(const grobo_robot *robot, const grobo_robot_order *order);
+bool grobo_i_segments_wanted(const grobo_robot *robot, int64_t time_us);
 /* The part of a target that its frame asks for. @return false, and nothing in *part, where that is
  * all of it. */
 bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
@@ -245,10 +245,9 @@ int grobo_i_gate_judge(grobo_robot *robot, const grobo_robot_order *order,
 /* Reads and judges a raw frame. *order is its order then. */
 int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_robot_order *order);
 /* Judges, and builds part order->part of a GOAL, HALT, HOLD or TORQUE, as long as it may be when it
- * leaves. @return 1, or 0 where the driver has none; GROBO_ERR_CAP: several joints do not fit one
- * frame. */
-int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order,
-                       grobo_exchange *exchange);
+ * leaves; a GOAL in the call that has judged its target, grobo_i_gate_send(). Sets order->stands.
+ * @return 1, or 0 where the driver has none; GROBO_ERR_CAP: several joints do not fit one frame. */
+int grobo_i_gate_build(grobo_robot *robot, grobo_robot_order *order, grobo_exchange *exchange);
 /* The targets of this order wait no more: they have left, or never will. */
 void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order);
 /* Gives every joint of a target as much more time as it needs from where it is now.
@@ -461,6 +460,9 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
 /* May a job of this kind begin on these joints? GROBO_I_LATER: when others have ended. */
 #define GROBO_I_LATER 1
 int grobo_i_admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask joints, bool moves);
+/* A move that runs takes these joints besides its own, from the moves that have them.
+ * @return 0, or GROBO_ERR_STATE where they are a motion's or another job's: none is taken. */
+int grobo_i_move_takes(grobo_robot *robot, grobo_joint_mask joints);
 /* Joints of the moves that run or wait. */
 grobo_joint_mask grobo_i_joints_of_moves(const grobo_robot *robot);
 /* Begins a move or a reading, or has it wait. @return its number, or the reason why not. */

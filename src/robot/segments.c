@@ -21,11 +21,13 @@ static bool is_in_segments(const grobo_robot_axis *axis, int64_t now_us)
     return axis->in_segments;
 }
 
-/* The first of the joints that stopped because nothing came from their servos; -1: none. */
+/* The first of the joints that stopped because their servos did not answer; -1: none. One that was
+ * not asked is silent for want of its host. */
 static int silent_joint(const grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (has_stopped(&robot->axes[j], robot->now_us) && grobo_i_may_sleep(robot, j)) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if (has_stopped(axis, robot->now_us) && grobo_i_may_sleep(robot, j) && axis->lost > 0) {
             return j;
         }
     }
@@ -38,10 +40,24 @@ static bool goes_on(const grobo_robot_task *job)
            job->kind == GROBO_JOB_SETTLE;
 }
 
+/* How long a frame has been due for a joint that stopped; its segment was a whole one. */
+static int64_t late_us(const grobo_robot *robot)
+{
+    int64_t most_us = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        int64_t since_us =
+            robot->now_us - axis->told_to_us + GROBO_SEGMENT_US - GROBO_SEGMENT_RENEW_US;
+        most_us = has_stopped(axis, robot->now_us) ? grobo_i_later(most_us, since_us) : most_us;
+    }
+    return most_us;
+}
+
 /* As where the host stalls in a motion: what moves is over, and nothing is latched. */
 static void give_up(grobo_robot *robot)
 {
     int silent = silent_joint(robot);
+    double late_ms = (double)late_us(robot) / 1000.0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_way_is_short(axis)) {
@@ -59,9 +75,7 @@ static void give_up(grobo_robot *robot)
         return;
     }
     robot->counters.stalls++;
-    grobo_i_trip(robot, GROBO_TRIP_HOST_STALL, -1,
-                 (double)(robot->now_us - robot->renewed_us - GROBO_SEGMENT_RENEW_US) / 1000.0,
-                 false);
+    grobo_i_trip(robot, GROBO_TRIP_HOST_STALL, -1, late_ms, false);
     grobo_i_jobs_end(robot, goes_on, GROBO_ERR_CANCELED);
     grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
 }

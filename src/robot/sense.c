@@ -256,13 +256,40 @@ static int next_reading(grobo_robot *robot)
                              : next_of(&robot->round, robot->free_joints);
 }
 
+/* So many in a row lost, and what servos tell of this is not believed until the line comes back. */
+#define FAST_LOST_MOST 3
+
+static bool is_slow(const grobo_robot_axis *axis, int64_t now_us)
+{
+    (void)now_us;
+    return !axis->state.fast;
+}
+
+/* Whether all answer with one packet. */
+static bool are_fast(const grobo_robot *robot)
+{
+    return robot->driver->sense_fast != NULL && robot->fast_lost < FAST_LOST_MOST &&
+           grobo_i_joints_that(robot, is_slow) == 0;
+}
+
+/* Where one that does not answer so has taken the place of another, nobody does: all are asked anew
+ * how they answer. */
+static void note_fast(grobo_robot *robot, int result)
+{
+    robot->fast_lost = result < 0 ? (uint8_t)(robot->fast_lost + 1) : 0;
+    robot->fast_forgotten = result < 0;
+    for (int j = 0; result < 0 && j < robot->driver->model->n_joints; j++) {
+        robot->axes[j].state.fast = false;
+    }
+}
+
 /* All of them in one frame. Any that nothing is known of is asked where it is going, too. */
 static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
 {
     const grobo_driver *driver = robot->driver;
     grobo_joint_mask all = grobo_i_all_joints(robot);
     int unknown;
-    bool first = !grobo_i_all_sensed(robot, all, &unknown);
+    bool first = !grobo_i_all_sensed(robot, all, &unknown) || robot->fast_forgotten;
     bool angles = robot->config.sense_position_only && !(first && driver->all_first);
     grobo_sense_kind kind = angles  ? GROBO_SENSE_POSITION
                             : first ? GROBO_SENSE_ALL
@@ -271,6 +298,12 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
     robot->round = 0;
     slot->many = true;
     slot->unread = all;
+    robot->fast_forgotten = false;
+    slot->fast =
+        are_fast(robot) && driver->sense_fast(driver, robot->driver_ctx, kind, &robot->built) >= 0;
+    if (slot->fast) {
+        return GROBO_OK;
+    }
     return driver->sense_many(driver, robot->driver_ctx, all, kind, &robot->built);
 }
 
@@ -312,6 +345,9 @@ void grobo_i_sense_done(const grobo_robot_slot *slot, int result)
         result < 0 && robot->heard_read ? robot->now_us + HEAR_AGAIN_US : robot->hear_us;
     if (result >= 0 && is_free) {
         free_joint(robot, joint);
+    }
+    if (slot->fast) {
+        note_fast(robot, result);
     }
     if (robot->round == 0 && (is_free || robot->free_joints == 0)) {
         grobo_event event = {.kind = GROBO_EVENT_ROUND};

@@ -153,13 +153,6 @@ static int on_leave(void *ctx, grobo_txn *txn)
     return result;
 }
 
-static void on_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
-{
-    grobo_robot_slot *slot = ctx;
-    GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && txn == &slot->txn);
-    slot->robot->each(slot, reply);
-}
-
 /* A reply with a name, to the first attempt: not to one that may have been asked twice. */
 static void note_answer(grobo_robot *robot, const grobo_txn *txn, int result,
                         const grobo_packet *reply)
@@ -167,6 +160,14 @@ static void note_answer(grobo_robot *robot, const grobo_txn *txn, int result,
     robot->answered =
         robot->answered || (result >= 0 && reply != NULL && reply->kind == GROBO_PACKET_RETURN &&
                             txn->attempts_ == 1 && txn->sent_us == robot->left_us);
+}
+
+static void on_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
+{
+    grobo_robot_slot *slot = ctx;
+    GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && txn == &slot->txn);
+    note_answer(slot->robot, txn, reply->refused ? GROBO_ERR_NACK : GROBO_OK, reply);
+    slot->robot->each(slot, reply);
 }
 
 static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)

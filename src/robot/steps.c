@@ -73,12 +73,8 @@ static int again(grobo_robot *robot, grobo_joint_mask bad, grobo_robot_step_fn s
 
 /* ---- asking ---------------------------------------------------------------------------------- */
 
-static int ask(grobo_robot *robot, const grobo_exchange *exchange)
+static int ask(grobo_robot *robot, grobo_robot_slot *slot, const grobo_exchange *exchange)
 {
-    grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_JOB);
-    if (slot == NULL) {
-        return GROBO_ERR_FULL;
-    }
     slot->order = robot->job->order;
     slot->txn.start_by_us = robot->job->leave_by_us;
     int result = grobo_i_slot_send(slot, exchange, robot->job->priority);
@@ -87,16 +83,18 @@ static int ask(grobo_robot *robot, const grobo_exchange *exchange)
 
 static int step_ask(grobo_robot *robot)
 {
-    return ask(robot, &robot->job->exchange);
+    bool own = robot->asked_by == robot->job->number;
+    grobo_robot_slot *slot = own ? grobo_i_slot_take(robot, GROBO_I_USE_JOB) : NULL;
+    return slot == NULL ? GROBO_ERR_FULL : ask(robot, slot, &robot->asked);
 }
 
 /* Flash and reboot need silence after them. */
 static int step_settle(grobo_robot *robot)
 {
-    if (robot->job->result < 0 || robot->job->exchange.settle_us == 0) {
+    if (robot->job->result < 0 || robot->job->settle_us == 0) {
         return robot->job->result;
     }
-    robot->job->until_us = robot->now_us + robot->job->exchange.settle_us;
+    robot->job->until_us = robot->now_us + robot->job->settle_us;
     return GROBO_I_WAIT;
 }
 
@@ -104,12 +102,16 @@ static int step_check(grobo_robot *robot)
 {
     const grobo_driver *driver = robot->driver;
     grobo_robot_task *job = robot->job;
-    memset(&job->exchange, 0, sizeof job->exchange);
-    int more = driver->check(driver, robot->driver_ctx, job->part, &job->exchange);
-    if (more == 0) {
-        return job->part == 0 ? GROBO_ERR_UNSUPPORTED : job->result;
+    grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_JOB);
+    if (slot == NULL) {
+        return GROBO_ERR_FULL;
     }
-    return more < 0 ? more : ask(robot, &job->exchange);
+    int more = driver->check(driver, robot->driver_ctx, job->part, &robot->built);
+    if (more > 0) {
+        return ask(robot, slot, &robot->built);
+    }
+    grobo_i_slot_drop(slot);
+    return more < 0 ? more : job->part == 0 ? GROBO_ERR_UNSUPPORTED : job->result;
 }
 
 static int step_check_next(grobo_robot *robot)

@@ -45,23 +45,26 @@ static bool is_renewed(const grobo_robot_axis *axis, int64_t now_us)
     return grobo_i_way_is_short(axis) || (axis->has_target && axis->in_segments && !late);
 }
 
-bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *order,
-                             int64_t time_us)
+bool grobo_i_goes_in_parts(const grobo_robot *robot, const grobo_robot_order *order)
 {
     grobo_goals goals = robot->config.goals;
     bool parts =
         goals == GROBO_GOALS_SEGMENTS || (goals == GROBO_GOALS_DEFAULT && robot->driver->arm);
-    return parts && !order->stops && time_us > most_us(robot);
+    return parts && !order->stops;
+}
+
+bool grobo_i_segments_wanted(const grobo_robot *robot, int64_t time_us)
+{
+    return time_us > most_us(robot);
 }
 
 bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
                           const grobo_target *whole, grobo_target *part)
 {
-    bool cut = false;
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+    bool cut = false, parts = grobo_i_goes_in_parts(robot, order);
+    for (int j = 0; parts && j < robot->driver->model->n_joints; j++) {
         int64_t time_us = whole->joint_time_us[j];
-        if (!grobo_i_has(whole->posture.set, j) ||
-            !grobo_i_segments_wanted(robot, order, time_us)) {
+        if (!grobo_i_has(whole->posture.set, j) || !grobo_i_segments_wanted(robot, time_us)) {
             continue;
         }
         if (!cut) {

@@ -637,6 +637,17 @@ static size_t fast_part(grobo_sim *sim, int index, const item *one, uint8_t *byt
     return n + one->length;
 }
 
+/* Older firmware of an XL330 is silent (issue pollen-robotics/rustypot#122). Of other models
+ * nothing is known: theirs counts likewise. */
+#define FAST_FIRMWARE 46
+
+static bool answers_fast(const grobo_sim_servo *servo, const item *one)
+{
+    return grobo_i_dxl_get(servo, GROBO_ROLE_FIRMWARE) >= FAST_FIRMWARE &&
+           one->length <= GROBO_SIM_TALK_BYTES - 16 &&
+           judge_read(servo, one->address, one->length) == GROBO_DXL2_DONE;
+}
+
 /* One status that all of the list make together; whoever is silent ends it. */
 static void read_fast(grobo_sim *sim, const grobo_dxl2_packet *packet, const grobo_sim_event *raw)
 {
@@ -652,8 +663,7 @@ static void read_fast(grobo_sim *sim, const grobo_dxl2_packet *packet, const gro
     grobo_i_put_u16(bytes + 5, (uint16_t)length);
     for (size_t at = 0; next_item(packet, &at, &one); n = 0) {
         int index = hearer(sim, one.id, raw);
-        if (index < 0 || one.length > sizeof bytes - 16 ||
-            judge_read(&sim->servo[index], one.address, one.length) != GROBO_DXL2_DONE) {
+        if (index < 0 || !answers_fast(&sim->servo[index], &one)) {
             return;
         }
         if (at_ns < 0) {

@@ -67,17 +67,23 @@ static int32_t ddeg_of_mdeg(const grobo_sim_servo *servo, int32_t mdeg)
     return servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg;
 }
 
+/* The manuals give a speed as the time for 60 degrees, in hundredths of a second (0.11 s, 0.16 s);
+ * the table has it rounded to degrees a second. */
+static int32_t speed_mdeg_s(const grobo_servo_model *model)
+{
+    int32_t time_cs = (6000 + model->speed_dps / 2) / model->speed_dps;
+    return (6000000 + time_cs / 2) / time_cs;
+}
+
 /* The plant after a change of registers. */
 static void follow(grobo_sim_servo *servo)
 {
     const grobo_servo_model *model = servo->model;
-    /* The manual's 0.11 s for 60 degrees is no whole number of degrees a second. */
-    int32_t speed_mdeg_s = model->speed_dps == 545 ? 545455 : model->speed_dps * 1000;
     int32_t goal_ddeg = wide(servo, GROBO_RS30X_GOAL);
     servo->plant = (grobo_sim_plant){
         .heat_c_per_ma2 = HEAT_C_PER_MA2,
         .goal_mdeg = (servo->reg[GROBO_RS30X_REVERSE] ? -goal_ddeg : goal_ddeg) * 100,
-        .speed_mdeg_s = speed_mdeg_s,
+        .speed_mdeg_s = speed_mdeg_s(model),
         .stall_ma = model->current_ma,
         .most_ma = model->current_ma * servo->reg[GROBO_RS30X_MAX_TORQUE] / 100,
         .limit_c = wide(servo, GROBO_RS30X_TEMPERATURE_LIMIT),

@@ -5,6 +5,9 @@
 
 #include <grobo/sim_static.h>
 
+/* Bytes of a simulator with no more servos than this model has joints, NULL: a GR001. What lies
+ * behind them of a grobo_sim is not there. */
+size_t grobo_i_sim_bytes(const grobo_model *model);
 /* Whether a servo that a packet is for hears it now; tells of those that miss it. */
 bool grobo_i_sim_hears(grobo_sim *sim, int servo, const grobo_sim_event *raw);
 /* A servo answers after_ns from now. Its own replies go straight to the bus; on its way to the host

@@ -15,6 +15,7 @@
 #include "src/sim/fault.h"
 #include "src/sim/note.h"
 #include "src/sim/power.h"
+#include "src/sim/servo.h"
 #include "src/sim/shaft.h"
 #include "src/sim/talk.h"
 #include "src/sim/wire.h"
@@ -109,7 +110,7 @@ static void said(grobo_sim *sim, int64_t t_ns)
 /* Some that nobody disturbs are over: reply_run(). */
 static void said_all(grobo_sim *sim, int run, int64_t t_ns)
 {
-    uint8_t bytes[sizeof sim->talk[0].byte];
+    uint8_t bytes[GROBO_SIM_TALK_BYTES];
     grobo_i_sim_talk_take_run(sim, (size_t)run, bytes);
     grobo_i_sim_board_got(sim, bytes, (size_t)run, t_ns);
 }
@@ -462,25 +463,29 @@ static void use_defaults(grobo_sim_config *config)
     }
 }
 
+size_t grobo_i_sim_bytes(const grobo_model *model)
+{
+    size_t n = model != NULL ? model->n_joints : grobo_gr001_model.n_joints;
+    return offsetof(grobo_sim, servo) + n * sizeof(grobo_sim_servo);
+}
+
 int grobo_sim_init_sized(grobo_sim *sim, size_t sim_bytes, const grobo_sim_config *config,
                          int64_t now_us)
 {
-    if (sim == NULL || sim_bytes != sizeof *sim) {
-        return GROBO_ERR_ARG;
-    }
     grobo_sim_config with;
-    if (grobo_i_sized_take(&with, sizeof with, config) < 0) {
+    if (sim == NULL || grobo_i_sized_take(&with, sizeof with, config) < 0) {
         return GROBO_ERR_ARG;
     }
     use_defaults(&with);
-    if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
+    if ((sim_bytes != sizeof *sim && sim_bytes != grobo_i_sim_bytes(with.model)) ||
+        grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
         with.ambient_c > 60 || (with.wiring == GROBO_WIRING_BOARD && with.echo)) {
         return GROBO_ERR_ARG;
     }
     if (with.model->n_joints > GROBO_SIM_SERVOS_MAX) {
         return GROBO_ERR_CAP;
     }
-    memset(sim, 0, sizeof *sim);
+    memset(sim, 0, sim_bytes);
     sim->config = with;
     sim->config.hook = NULL;
     sim->now_us = now_us;

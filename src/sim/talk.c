@@ -17,6 +17,7 @@ static bool clash(grobo_sim *sim, grobo_sim_talk *talk, int64_t from_ns, uint8_t
     const int64_t byte_ns = sim->bus_byte_ns;
     int64_t to_ns = from_ns + byte_ns;
     int64_t first = (from_ns - talk->start_ns) / byte_ns;
+    uint8_t *said = sim->talk_byte + talk->at;
     bool clashed = false;
     for (int64_t k = first < 0 ? 0 : first; k < talk->used; k++) {
         int64_t start_ns = talk->start_ns + k * byte_ns;
@@ -24,8 +25,8 @@ static bool clash(grobo_sim *sim, grobo_sim_talk *talk, int64_t from_ns, uint8_t
             break;
         }
         if (start_ns + byte_ns > from_ns) {
-            *byte &= talk->byte[k];
-            talk->byte[k] = *byte;
+            *byte &= said[k];
+            said[k] = *byte;
             clashed = true;
         }
     }
@@ -71,34 +72,61 @@ bool grobo_i_sim_talk_into(grobo_sim *sim, uint8_t *byte, int64_t t_ns)
 
 /* ---- what servos say ------------------------------------------------------------------------- */
 
-/* Two with one id begin together: what both say at the same time is the AND. */
-static void join(grobo_sim *sim, grobo_sim_talk *talk, const uint8_t *bytes, size_t n)
+/* Makes a talk longer by so many bytes, which are not filled in; by -talk->used: it has none. */
+static void widen(grobo_sim *sim, int index, int by)
 {
-    for (size_t i = 0; i < n; i++) {
-        talk->byte[i] = i < talk->used ? talk->byte[i] & bytes[i] : bytes[i];
+    grobo_sim_talk *talk = &sim->talk[index];
+    size_t behind = (size_t)talk->at + talk->used, left = sim->talk_bytes - behind;
+    memmove(sim->talk_byte + behind + by, sim->talk_byte + behind, left);
+    talk->used = (uint16_t)(talk->used + by);
+    sim->talk_bytes = (uint16_t)(sim->talk_bytes + by);
+    for (int i = index + 1; i < sim->n_talks; i++) {
+        sim->talk[i].at = (uint16_t)(sim->talk[i].at + by);
     }
-    talk->used = n > talk->used ? (uint16_t)n : talk->used;
+}
+
+/* How many of n bytes there is room for; the others are lost. */
+static size_t fit(grobo_sim *sim, size_t n)
+{
+    size_t room = sizeof sim->talk_byte - sim->talk_bytes;
+    sim->stats.overflows += n > room ? (uint32_t)(n - room) : 0;
+    return n < room ? n : room;
+}
+
+/* Two with one id begin together: what both say at the same time is the AND. */
+static void join(grobo_sim *sim, int index, const uint8_t *bytes, size_t n)
+{
+    grobo_sim_talk *talk = &sim->talk[index];
+    uint8_t *said = sim->talk_byte + talk->at;
+    size_t used = talk->used;
+    for (size_t i = 0; i < n && i < used; i++) {
+        said[i] &= bytes[i];
+    }
+    if (n > used) {
+        size_t more = fit(sim, n - used);
+        widen(sim, index, (int)more);
+        memcpy(said + used, bytes + used, more);
+    }
     collided(sim, false);
 }
 
 void grobo_i_sim_talk(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t start_ns)
 {
-    GROBO_ASSERT(n > 0 && n <= sizeof sim->talk[0].byte);
-    for (size_t i = 0; i < sim->n_talks; i++) {
+    GROBO_ASSERT(n > 0 && n <= GROBO_SIM_TALK_BYTES);
+    for (int i = 0; i < sim->n_talks; i++) {
         if (sim->talk[i].start_ns == start_ns) {
-            join(sim, &sim->talk[i], bytes, n);
+            join(sim, i, bytes, n);
             return;
         }
     }
-    if (sim->n_talks == GROBO_SIM_TALKS_MAX) {
+    if (sim->n_talks == GROBO_SIM_TALKS_MAX || sim->talk_bytes == sizeof sim->talk_byte) {
         sim->stats.overflows += (uint32_t)n;
         return;
     }
-    grobo_sim_talk *spare = &sim->talk[sim->n_talks++];
-    spare->start_ns = start_ns;
-    spare->said = 0;
-    spare->used = (uint16_t)n;
-    memcpy(spare->byte, bytes, n);
+    n = fit(sim, n);
+    sim->talk[sim->n_talks] = (grobo_sim_talk){.start_ns = start_ns, .at = sim->talk_bytes};
+    memcpy(sim->talk_byte + sim->talk_bytes, bytes, n);
+    widen(sim, sim->n_talks++, (int)n);
 }
 
 static int64_t byte_end_ns(const grobo_sim *sim, const grobo_sim_talk *talk)
@@ -138,6 +166,7 @@ static void end_where_over(grobo_sim *sim, int index)
 {
     grobo_sim_talk *talk = &sim->talk[index];
     if (talk->said == talk->used) {
+        widen(sim, index, -talk->used);
         sim->n_talks--;
         memmove(talk, talk + 1, (size_t)(sim->n_talks - index) * sizeof *talk);
     }
@@ -148,7 +177,7 @@ bool grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns, uint8_t *taken)
     int first = next_talk(sim);
     GROBO_ASSERT(first >= 0 && sim->talk[first].said < sim->talk[first].used);
     grobo_sim_talk *talk = &sim->talk[first];
-    uint8_t byte = talk->byte[talk->said++];
+    uint8_t byte = sim->talk_byte[talk->at + talk->said++];
     bool with_master = clash_with_master(sim, t_ns, &byte), clashed = with_master;
     for (int i = 0; i < sim->n_talks; i++) {
         if (i != first) {
@@ -167,7 +196,7 @@ void grobo_i_sim_talk_take_run(grobo_sim *sim, size_t n, uint8_t *taken)
 {
     grobo_sim_talk *talk = &sim->talk[0];
     GROBO_ASSERT(sim->n_talks == 1 && talk->said + n <= talk->used);
-    memcpy(taken, &talk->byte[talk->said], n);
+    memcpy(taken, &sim->talk_byte[talk->at + talk->said], n);
     talk->said = (uint16_t)(talk->said + n);
     end_where_over(sim, 0);
 }

@@ -3,7 +3,8 @@
 #include "src/sim/fault.h"
 #include "src/sim/wire.h"
 
-bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
+/* A byte that is over at at_ns; false when there is no room for it. */
+static bool put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
 {
     wire->free_ns = at_ns;
     if (wire->used == GROBO_SIM_WIRE_BYTES) {
@@ -32,7 +33,7 @@ void grobo_i_sim_wire_write(grobo_sim_wire *wire, const uint8_t *bytes, size_t n
     wire->free_ns = n > 0 ? at_ns : wire->free_ns;
 }
 
-uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire)
+static uint8_t take(grobo_sim_wire *wire)
 {
     GROBO_ASSERT(wire->used > 0 && wire->head < GROBO_SIM_WIRE_BYTES);
     uint8_t byte = wire->byte[wire->head];
@@ -95,7 +96,7 @@ void grobo_i_sim_to_host(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t
             misread(sim, &byte);
         }
         if ((sound || grobo_i_sim_crosses(sim, &byte)) &&
-            !grobo_i_sim_wire_put(&sim->out, byte, handed_over_ns(sim, at_ns))) {
+            !put(&sim->out, byte, handed_over_ns(sim, at_ns))) {
             sim->stats.overflows++;
         }
         sim->out.free_ns = at_ns; /* the adapter waits, the line does not */
@@ -118,7 +119,7 @@ void grobo_i_sim_wire_drop(grobo_sim_wire *wire, size_t n)
 
 bool grobo_i_sim_from_host(grobo_sim *sim, uint8_t *byte)
 {
-    *byte = grobo_i_sim_wire_take(&sim->in);
+    *byte = take(&sim->in);
     sim->stats.rx_bytes++;
     misread(sim, byte);
     return grobo_i_sim_crosses(sim, byte);

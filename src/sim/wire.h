@@ -5,12 +5,9 @@
 
 #include <grobo/sim_static.h>
 
-/* A byte that is over at at_ns; false when there is no room for it. */
-bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns);
 /* Bytes that there is room for, byte_ns each, the first from at_ns on. */
 void grobo_i_sim_wire_write(grobo_sim_wire *wire, const uint8_t *bytes, size_t n, int64_t at_ns,
                             int64_t byte_ns);
-uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire);
 /* Takes those that are over by now. */
 size_t grobo_i_sim_wire_read(grobo_sim_wire *wire, uint8_t *buf, size_t cap, int64_t now_ns);
 /* When the next byte is over, or GROBO_NEVER_US. */

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Memory of a robot engine, of a session on a port, of a simulated robot. */
+#include <stddef.h>
+
 #include <event2/event.h>
 
 #include <grobo/loop.h>
@@ -35,9 +37,11 @@ int main(void)
         fputs("bench_memory: no session\n", stderr);
         return 1;
     }
-    bench_row("S8", "a robot engine, KiB", "grobo", (double)sizeof(grobo_robot) / KIB);
+    bench_row("S8", "a robot engine of 20 joints, KiB", "grobo",
+              (double)(offsetof(grobo_robot, axes) + 20 * sizeof(grobo_robot_axis)) / KIB);
     bench_row("S8", "a pty session, KiB", "grobo", (double)used.bytes / KIB);
-    bench_row("S8", "a simulated robot, KiB", "grobo", (double)sizeof(grobo_sim) / KIB);
+    bench_row("S8", "a simulated robot of 20 joints, KiB", "grobo",
+              (double)(offsetof(grobo_sim, servo) + 20 * sizeof(grobo_sim_servo)) / KIB);
     bench_row("S8", "a simulated robot behind a pty, KiB", "grobo", (double)served.bytes / KIB);
     grobo_session_free(session);
     grobo_sim_server_free(server);

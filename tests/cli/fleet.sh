@@ -232,13 +232,13 @@ check "and robots play again" exits 0 plays_through greet.pseq --group one
 # ---- strangers -----------------------------------------------------------------------------------
 
 id=00112233445566778899aabbccddeeff
-epoch=$(mosquitto_sub -p "$port" -C 1 -t grobo/v1/one/connection |
+epoch=$(mosquitto_sub -h 127.0.0.1 -p "$port" -C 1 -t grobo/v1/one/connection |
     sed 's/.*"epoch":"\([0-9a-f]*\).*/\1/')
 # says_to VERB JSON [OPTIONS]: as an order of $id.
 says_to() {
     says_verb=$1 says_text=$2
     shift 2
-    mosquitto_pub -V 5 -p "$port" -q 1 -t "grobo/v1/one/cmd/$says_verb" -m "$says_text" \
+    publish -V 5 -q 1 -t "grobo/v1/one/cmd/$says_verb" -m "$says_text" \
         -D publish response-topic "grobo/v1/ack/$id" "$@"
 }
 # an_order EPOCH: of prepare.
@@ -250,7 +250,7 @@ an_order() {
 answers() {
     answers_pattern=$1
     shift
-    mosquitto_sub -p "$port" -W 30 -C 1 -t "grobo/v1/ack/$id" >"$work/answer" &
+    mosquitto_sub -h 127.0.0.1 -p "$port" -W 30 -C 1 -t "grobo/v1/ack/$id" >"$work/answer" &
     answers_pid=$!
     wait_for subscribed
     "$@"
@@ -275,13 +275,13 @@ check "the same again is answered, not done" answers '"code":"stale".*clock of i
 check "rubbish" refused 'refused: it is no object' says_to prepare '{"v":1'
 check "an order without an id" refused 'refused: it has no id' says_to prepare '{"v":1}'
 check "an answer that would go elsewhere" refused 'its answer would go elsewhere' \
-    mosquitto_pub -V 5 -p "$port" -q 1 -t grobo/v1/one/cmd/prepare -m "$(an_order "$epoch")" \
+    publish -V 5 -q 1 -t grobo/v1/one/cmd/prepare -m "$(an_order "$epoch")" \
     -D publish response-topic grobo/v1/group/one/latch
 check "a retained order" refused 'a retained message is no order' \
-    mosquitto_pub -p "$port" -q 1 -r -t grobo/v1/one/cmd/prepare -m "$(an_order "$epoch")"
+    publish -q 1 -r -t grobo/v1/one/cmd/prepare -m "$(an_order "$epoch")"
 large() {
     head -c 1500000 /dev/zero | tr '\0' x >"$work/large"
-    mosquitto_pub -p "$port" -q 1 -t grobo/v1/one/cmd/put -f "$work/large" &&
+    publish -q 1 -t grobo/v1/one/cmd/put -f "$work/large" &&
         fleet list | grep -q '^one  *ONLINE'
 }
 check "a message of 1.5 MB" large

@@ -142,6 +142,11 @@ check "a servo of the follower is out" wait_for out
 check "it does not begin" fails 1 'elbow_flex' "$GRCTL" --timeout 500 follow \
     "so101-leader@$leader" "so101@$follower"
 
+trace_of_one() {
+    exits 0 "$GRCTL" --trace "$work/follow.pcapng" follow so101-leader@sim so101@sim --for 0.3 &&
+        exits 0 "$GRCTL" --robot so101 decode "$work/follow.pcapng" && says 'sync write 6 servos'
+}
+check "a trace of it is whole, and the follower's" trace_of_one
 check "for some time" exits 0 "$GRCTL" follow so101-leader@sim so101@sim --for 0.3
 check "no such robot" fails 2 "no robot called 'so102'" "$GRCTL" follow so102@sim so101@sim
 check "two robots with nothing in common" fails 2 'no joint of GR001 has the name' \

@@ -78,6 +78,12 @@ watched() {
         grep -q 'nobody: .*tried again every 5 s' "$work/said"
 }
 check "status --watch too, with one that is not there" watched
+if have_json; then
+    check "after Ctrl-S a table is left out, not kept" \
+        exits 0 python3 tests/support/unread_tables.py "$GRCTL" stage
+else
+    skip "after Ctrl-S a table is left out, not kept" "no python3 here"
+fi
 watched_json() {
     watches -d stage --json monitor && written "$work/seen" '"name": *"c"' &&
         kill -INT "$watcher" && watcher_ended 130

@@ -38,6 +38,8 @@ check "before its value" both exits 0 "$GRCTL" --dev=sim status m2 --- says NECK
 check "the beginning of two" fails 2 '^grctl: --re may be --repeat or --reverse; see' \
     "$GRCTL" play --re x
 check "its whole name, which begins another" exits 0 "$GRCTL" -d sim init --time 300
+check "the name of another command's is no beginning" fails 2 \
+    'unknown option --time; see' "$GRCTL" -d sim move m2 10 --time 8000
 check "the beginning of none" fails 2 'unknown option --jx' "$GRCTL" status --jx
 check "of a joint" fails 2 "no joint called 'r_kne_p'; did you mean R_KNEE_P?$" \
     "$GRCTL" move r_kne_p 3

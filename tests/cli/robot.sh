@@ -100,6 +100,15 @@ check "somebody else on the port: servos without a board" \
 check "with the right wiring they answer" both exits 0 on_robot --wiring bus status m3 --- \
     says R_SHOULDER_P
 check "and there is no echo" fails 1 '' on_robot --wiring bus --echo status m3
+
+# Torque on and R_KNEE_P to -100 degrees in 3 s: frames of another program.
+moved_by_another() {
+    printf '\372\257\014\000\044\001\001\001\051' >"$sim_pty"
+    printf '\372\257\014\000\036\004\001\030\374\054\001\336' >"$sim_pty"
+    fails 1 '(R_KNEE_P) moves, and not by this program' on_robot --wiring bus move m12 -40
+}
+check "a joint that another program has sent" moved_by_another
+check "and that stood when this one left" exits 0 on_robot --wiring bus move m12 -40
 stop_sim
 
 # Motor 7: its id in what comes back could be taken for an ACK.

@@ -4,6 +4,7 @@
 . tests/support/pages.sh
 
 check "move, play, pause, seek, speed, queue, limp, capture" pages driving
+check "a name is told as it was given, or cut at a character" pages names
 check "what is based on an old state is refused" pages stale
 check "a stop latches, is confirmed by each joint, is taken back" pages stopping
 check "a stop on the way of a move, a jog, an approach" pages on_the_way

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 # grctl setup: the port, the robot, its name; and back.
 . tests/support/cli.sh
+. tests/support/terminal.sh
 unset GRCTL_ROBOT
 config=$work/config/grctl/config.yaml
 said() {
@@ -36,6 +37,20 @@ check "it is gone" fails 1 'other: no such file' "$GRCTL" -d other status
 check "the first one is not" exits 0 "$GRCTL" -d so101 status
 check "once only" fails 2 'nothing that could be undone' "$GRCTL" setup --undo
 
+# A person who says --yes is not asked, as of every command.
+if have_terminal; then
+    open_screen
+    type_line "'$GRCTL' -d sim --robot so101 setup --yes"
+    check "--yes at a terminal" until_screen 'done\. From now on'
+    check "named as the brackets say" grep -q '  so101-2: {device: "sim", robot: "so101"}' "$config"
+    type_line "'$GRCTL' -d sim --robot so101 first-contact --yes -o '$work/looked'; echo it is \$?"
+    check "first-contact too, which reads only then" until_screen '^it is 0'
+    check "and has written that" grep -q 'the person declined' "$work/looked.txt"
+    check "undone again" exits 0 "$GRCTL" setup --undo
+else
+    skip "--yes at a terminal" "no tmux"
+fi
+
 printf '# mine\nrobots:\n    # the first\n    one: {device: sim}\n' >"$config"
 check "a name that is taken, then another" answered 0 'one\ntwo\n' "$GRCTL" -d sim setup --yes
 check "was told" said 'has a robot called one already'
@@ -66,9 +81,9 @@ check "another one" answered 0 'new\ncrab\n\n' set_up -b 1000000
 check "gets a file" both exits 0 "$GRCTL" -d crab --timeout 500 status --- says '^ *2  joint2'
 crab=$work/config/grctl/crab.yaml
 check "no other is written over it" answered 0 'new\ncrab\n\n' set_up -b 1000000
-check "but beside it" [ -e "${crab%.yaml}2.yaml" ]
-check "undone, it is gone" both exits 0 "$GRCTL" setup --undo --- said 'crab2.yaml is removed$'
-check "and only it" both [ ! -e "${crab%.yaml}2.yaml" ] --- [ -e "$crab" ]
+check "but beside it" [ -e "${crab%.yaml}-2.yaml" ]
+check "undone, it is gone" both exits 0 "$GRCTL" setup --undo --- said 'crab-2.yaml is removed$'
+check "and only it" both [ ! -e "${crab%.yaml}-2.yaml" ] --- [ -e "$crab" ]
 check "a third one" answered 0 'new\nspider\n\n' set_up -b 1000000
 echo '# mine' >>"$work/config/grctl/spider.yaml"
 check_json "one that somebody changed stays" 'lines[0]["undone"] and not lines[0]["removed"] and

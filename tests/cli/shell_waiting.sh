@@ -213,9 +213,14 @@ else
 fi
 keys 'estop --reset' Enter
 until_screen 'released'
+# A row of before is on the screen still.
+is_on_again() {
+    screen |
+        awk '/R_ELBOW_P .* on / { n++ } NF { last = $0 } END { exit n != 2 || last != "grctl>" }'
+}
 typed_unseen() {
     keys 'servo on m5' Enter 'status m5' Enter
-    until_screen 'R_ELBOW_P .* on ' || return 1
+    wait_for is_on_again || { screen; return 1; }
     keys C-s
     keys 'status m3'
     exits 0 on_robot estop && complains 'which has the port, and verified' || return 1

@@ -95,15 +95,20 @@ strict --- '53 09 FA AF 01 00 24 01 01 01 25' 'wait 20' '41 00'
 check 'a wrong sum behind the board' offends sum '53 09 FA AF 01'
 strict --robots 2 --- '41 00'
 check 'two robots' [ "$strict_status" = 0 ]
+# A simulator that the machine holds up answers late, when grctl asks again: that alone is repeated.
 ours() {
-    start_sim --strict --wiring "$1"
-    on_robot -q --wiring "$1" init --time 100
-    kill -s TERM "$sim_pid"
-    wait "$sim_pid"
-    strict_status=$?
-    sim_pid=
-    grep '^grctl: sim: robot ' "$work/sim.log"
-    [ $strict_status -eq 0 ]
+    for _ in 1 2 3; do
+        start_sim --strict --wiring "$1"
+        on_robot -q --wiring "$1" init --time 100
+        kill -s TERM "$sim_pid"
+        wait "$sim_pid"
+        strict_status=$?
+        sim_pid=
+        [ $strict_status -eq 0 ] && return
+        grep '^grctl: sim: robot ' "$work/sim.log"
+        grep '^grctl: sim: robot ' "$work/sim.log" | grep -qv ' talk: ' && break
+    done
+    return 1
 }
 check 'grctl keeps to the protocol' ours board
 check 'on a bus too' ours bus

@@ -9,7 +9,8 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'support'))
 os.environ.setdefault('LC_ALL', 'C.UTF-8')
 
-from browser import AXE, SIZES, main, note, nothing_serious, test, tests, until  # noqa: E402
+from browser import (AXE, SIZES, is_drawn_before_its_scripts, main, note, nothing_serious, test,  # noqa: E402
+                     tests, until)
 from cockpit import Server as Serve  # noqa: E402
 from fleet_view import Fleet, View, is_possible  # noqa: E402
 
@@ -52,6 +53,13 @@ def open_page(browser, server, **options):
 def shown(page):
     return page.evaluate("""[...document.querySelectorAll('#robots li')].filter((li) => !li.hidden)
         .map((li) => li.querySelector('b').textContent).sort()""")
+
+
+@test
+def the_fleet_is_drawn_before_its_scripts(browser, server):
+    words = is_drawn_before_its_scripts(browser, server.link, ['fleet.css', 'style.css'], READY)
+    for word in ('Fleet', 'connecting', 'Trouble only', 'Stops all robots'):
+        assert word in words, f'{word} is not in {words}'
 
 
 @test

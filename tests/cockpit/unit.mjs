@@ -252,7 +252,7 @@ await test('of many targets the newest is sent, one at a time', async () => {
     same(sent, [1, 4]);
 });
 
-const { howIs, nearest, fleetStopWords, isWanted } = await page('fleet');
+const { howIs, nearest, fleetStopWords, isWanted } = await page('fleet_words');
 await test('a robot of a fleet is told by the worst that is known of it', () => {
     const is = (more) => { const { level, text } = howIs({ link: 'up', trip: null, stopped: false, moving: false,
                                                            play: 'idle', ...more }, (x) => x);

@@ -180,6 +180,44 @@ static void a_hold_that_is_used_again_owes_nothing_from_before(void **state)
     assert_in_range(p.sent[GROBO_BUS_HOLDS].at_us, failed_us + 5 * MS, failed_us + 6 * MS);
 }
 
+/* The second attempt fails at the very microsecond until which the first one's reply is waited for:
+ * both are owed. */
+static void a_reply_is_owed_to_the_last_microsecond(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, false);
+    p.bus.worst_us = (READ_FAILED + GROBO_BUS_QUIET_US) / 2;
+    peer_submit_read(&p, &a, 1, 1);
+    peer_submit_read(&p, &b, 1, 0);
+    int64_t failed_us = 2 * READ_FAILED + GROBO_BUS_QUIET_US;
+    peer_position_at(&p, failed_us + 2 * MS, 1, 11);
+    peer_position_at(&p, failed_us + 4 * MS, 1, 12);
+    peer_position_at(&p, failed_us + 4 * MS + READ_US + MS, 1, 22);
+    peer_run(&p, S);
+    assert_ptr_equal(p.ended[1].txn, &b.txn);
+    assert_int_equal(p.ended[1].value, 22);
+    assert_in_range(p.sent[2].at_us, failed_us + 4 * MS, failed_us + 5 * MS);
+}
+
+/* No servo answers a goal: one that was canceled is owed nothing, and the next need not wait. */
+static void a_canceled_goal_keeps_no_other_waiting(void **state)
+{
+    (void)state;
+    const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol};
+    peer p;
+    request a, b;
+    peer_init(&p, &config);
+    peer_submit_goal(&p, &a, 1, GROBO_PRIORITY_MOTION);
+    peer_run(&p, 100);
+    assert_int_equal(grobo_bus_cancel(&p.bus, &a.txn), GROBO_OK);
+    peer_submit_goal(&p, &b, 1, GROBO_PRIORITY_MOTION);
+    peer_run(&p, S);
+    assert_int_equal(p.sent_count, 2);
+    assert_in_range(p.sent[1].at_us, 100, 5 * MS); /* a reply would be waited for 100 ms */
+}
+
 /* An ACK has no name: however soon replies have come, the next one is not asked for before. */
 static void an_ack_that_is_owed_holds_the_next_for_all_of_the_time(void **state)
 {
@@ -200,6 +238,22 @@ static void an_ack_that_is_owed_holds_the_next_for_all_of_the_time(void **state)
     assert_int_equal(p.ended[READS].result, GROBO_ERR_TIMEOUT);
     int64_t held_us = p.sent[READS + 1].at_us - p.ended[READS].at_us;
     assert_in_range(held_us, GROBO_BUS_HOLD_US, GROBO_BUS_HOLD_US + MS);
+}
+
+/* A byte that begins no packet is less than a reply, and more than silence. */
+static void one_wrong_byte_is_a_short_reply(void **state)
+{
+    (void)state;
+    for (int echo = 0; echo < 2; echo++) {
+        static const uint8_t wrong = 0;
+        peer p;
+        request a;
+        start(&p, echo == 1);
+        peer_submit_read(&p, &a, 1, 0);
+        peer_bytes_at(&p, 300, &wrong, 1);
+        peer_run(&p, S);
+        assert_int_equal(p.ended[0].result, echo ? GROBO_ERR_MISMATCH : GROBO_ERR_SHORT);
+    }
 }
 
 /* ---- echo ------------------------------------------------------------------------------------ */
@@ -443,7 +497,10 @@ int main(void)
         cmocka_unit_test(a_doubled_reply_is_not_taken_for_the_one_that_is_owed),
         cmocka_unit_test(two_owed_replies_are_both_waited_for),
         cmocka_unit_test(a_hold_that_is_used_again_owes_nothing_from_before),
+        cmocka_unit_test(a_reply_is_owed_to_the_last_microsecond),
+        cmocka_unit_test(a_canceled_goal_keeps_no_other_waiting),
         cmocka_unit_test(an_ack_that_is_owed_holds_the_next_for_all_of_the_time),
+        cmocka_unit_test(one_wrong_byte_is_a_short_reply),
         cmocka_unit_test(an_echo_is_found_behind_a_late_echo_and_a_late_reply),
         cmocka_unit_test(late_packets_are_no_broken_echo),
         cmocka_unit_test(a_late_reply_before_the_echo_of_the_next_attempt_is_believed),

@@ -645,6 +645,37 @@ static void raw_frames_are_judged(void **state)
     }
 }
 
+/* A goal, and all registers behind it up to this one, where the joint is. */
+static int raw_up_to(grobo_register_role role)
+{
+    const grobo_servo_model *servo = bus.servo[0].servo;
+    const grobo_servo_register *goal = grobo_servo_register_of(servo, GROBO_ROLE_GOAL);
+    const grobo_servo_register *other = grobo_servo_register_of(servo, role);
+    bool behind = other->address > goal->address;
+    const grobo_servo_register *first = behind ? goal : other;
+    const grobo_servo_register *end = behind ? other : goal;
+    uint8_t data[32] = {0};
+    size_t n = (size_t)(end->address + end->bytes - first->address);
+    assert_true(n <= sizeof data);
+    (void)grobo_servo_register_put(servo, other, other->max,
+                                   data + (other->address - first->address));
+    (void)grobo_servo_register_put(servo, goal, table_get(&bus, 0, GROBO_ROLE_GOAL),
+                                   data + (goal->address - first->address));
+    return raw(1, GROBO_DXL2_WRITE, first->address, data, n);
+}
+
+/* A raw goal brings no other limit of the torque with it: the gripper would pinch harder. */
+static void a_raw_goal_leaves_a_gripper_its_limit(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
+        begin_gripper(i);
+        assert_int_equal(moved_to(20, 20, 20), GROBO_OK);
+        assert_true(raw_up_to(GROBO_ROLE_GOAL) > 0);
+        assert_int_equal(raw_up_to(limits[i].role), GROBO_ERR_UNSUPPORTED);
+    }
+}
+
 static void what_a_servo_cannot_reach_is_no_robot(void **state)
 {
     (void)state;
@@ -686,6 +717,7 @@ int main(void)
         cmocka_unit_test(a_limit_that_is_kept_is_a_setup),
         cmocka_unit_test(guarded_registers_are_refused),
         cmocka_unit_test(raw_frames_are_judged),
+        cmocka_unit_test(a_raw_goal_leaves_a_gripper_its_limit),
         cmocka_unit_test(what_a_servo_cannot_reach_is_no_robot),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -411,6 +411,30 @@ static void a_latch_lets_a_stop_leave_that_waits(void **state)
     }
 }
 
+/* A host that was away has heard no servo meanwhile: that is no servo's fault, and nothing is
+ * latched. */
+static void a_stalled_host_blames_no_servo(void **state)
+{
+    (void)state;
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS,
+                                       .goals = GROBO_GOALS_SEGMENTS};
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        for (int k = 0; k < 10; k++) {
+            family_start(&kit, f, &config, NULL);
+            assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+            grobo_posture p = family_posture(&kit, -60, 8000);
+            assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+            family_run(&kit, S + k * 7 * MS);
+            kit.now_us += S;
+            family_run(&kit, 100 * MS);
+            if (kit.n_trips != 1 || kit.trips[0] != GROBO_TRIP_HOST_STALL) {
+                fail_msg("%s, %d: %u trips, %s", f->name, k, kit.n_trips,
+                         grobo_trip_name(kit.trips[0]));
+            }
+        }
+    }
+}
+
 /* Servos that are told a speed and no time come to rest as soon as others, also where they were
  * read to be behind the way that they were sent on: at a speed for the way that is left. */
 static void a_joint_that_is_behind_stops_in_time(void **state)
@@ -443,6 +467,7 @@ int main(void)
         cmocka_unit_test(a_weak_joint_stops_where_it_is),
         cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
         cmocka_unit_test(a_joint_that_is_behind_stops_in_time),
+        cmocka_unit_test(a_stalled_host_blames_no_servo),
         cmocka_unit_test(a_servo_set_up_otherwise_is_made_limp),
         cmocka_unit_test(postures_are_played),
         cmocka_unit_test(a_faulty_line_moves_nothing_wrong),

@@ -152,6 +152,14 @@ static void on_look(family_kit *k)
     user.looked_us = k->now_us >= user.looked_us + LOOK_US ? k->now_us : user.looked_us;
 }
 
+/* What the host has read of a joint is wrong, and its sum of 8 bits right: nobody can know. */
+static bool is_misread(family_kit *k, int joint, double is_deg)
+{
+    double read_deg = k->robot.axes[joint].state.angle_rad / RAD(1);
+    return k->now_us < user.doubt_until_us && strcmp(k->family->name, "dxl2") != 0 &&
+           fabs(read_deg - is_deg) > HOLD_DEG;
+}
+
 static void on_sim(family_kit *k, const grobo_sim_event *event)
 {
     if (event->kind == GROBO_SIM_GOAL || (event->kind == GROBO_SIM_REGISTER && k->made_up)) {
@@ -164,8 +172,10 @@ static void on_sim(family_kit *k, const grobo_sim_event *event)
     grobo_sim_view view;
     assert_int_equal(grobo_sim_look(&k->sim, event->servo, &view), GROBO_OK);
     double off_deg = (servo->plant.goal_mdeg - view.angle_mdeg) / 1000.0;
+    double is_deg = view.angle_mdeg / (k->joints[event->servo].sign < 0 ? -1000.0 : 1000.0);
     total.torque_on++;
-    if (k->now_us >= user.hand_until_us[event->servo] && fabs(off_deg) > HOLD_DEG) {
+    if (k->now_us >= user.hand_until_us[event->servo] && fabs(off_deg) > HOLD_DEG &&
+        !is_misread(k, event->servo, is_deg)) {
         fail_msg("torque of joint %d comes on %.1f deg away from its goal", event->servo, off_deg);
     }
 }

@@ -42,11 +42,13 @@ static void a_goal_is_judged_as_it_leaves(void **state)
         assert_int_equal(judge(order), GROBO_OK);
         robot.free_joints = GROBO_JOINT_BIT(j);
         assert_int_equal(judge(order), GROBO_ERR_STATE);
+        assert_int_equal(robot.fault_joint, -1);
         robot.free_joints = 0;
         robot.axes[other_of(j)].adrift = true;
         assert_int_equal(judge(order), GROBO_OK);
         robot.axes[j].adrift = true;
         assert_int_equal(judge(order), GROBO_ERR_STATE);
+        assert_int_equal(robot.fault_joint, j);
         robot.axes[j].adrift = false;
         latch(GROBO_TRIP_LOST_REPLIES);
         assert_int_equal(judge(order), GROBO_ERR_LATCHED);
@@ -412,10 +414,10 @@ static void several_joints_go_in_one_frame(void **state)
                 {2, -1, 0, GROBO_ERR_SPACE},
                 {1, -1, 0, GROBO_ERR_SPACE}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        const grobo_robot_order order = {.joints = rows[i].joints == 1 ? 1 : 3,
-                                         .number = NUMBER,
-                                         .deed = GROBO_I_DEED_GOAL,
-                                         .part = (uint8_t)rows[i].part};
+        grobo_robot_order order = {.joints = rows[i].joints == 1 ? 1 : 3,
+                                   .number = NUMBER,
+                                   .deed = GROBO_I_DEED_GOAL,
+                                   .part = (uint8_t)rows[i].part};
         grobo_exchange exchange;
         start();
         whole = driver;

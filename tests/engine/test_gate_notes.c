@@ -71,6 +71,39 @@ static void a_halt_is_noted_of_what_moves(void **state)
     }
 }
 
+static int (*true_posture)(const grobo_driver *self, void *ctx, const grobo_target *target,
+                           int part, grobo_exchange *exchange);
+static double from_rad[GROBO_JOINTS_MAX]; /* of the last frame */
+
+static int catch_posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                         grobo_exchange *exchange)
+{
+    memcpy(from_rad, target->from_rad, sizeof from_rad);
+    return true_posture(self, ctx, target, part, exchange);
+}
+
+/* For servos that make a speed of it: one that is behind has further to go in the same time. */
+static void a_halt_counts_its_way_from_where_a_joint_was_read(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        set_going(j);
+        robot.axes[j].state.angle_rad = here_rad(j) + RAD(9);
+        true_posture = driver.posture;
+        driver.posture = catch_posture;
+        int r = leave((grobo_robot_order){.joints = GROBO_JOINTS_ALL(N),
+                                          .asked_us = NOW - 10 * MS,
+                                          .deed = GROBO_I_DEED_HALT,
+                                          .each = true,
+                                          .stops = true});
+        driver.posture = true_posture;
+        assert_int_equal(r, GROBO_OK);
+        expect_equal(from_rad[j], here_rad(j) + RAD(9), "from where");
+        drop();
+    }
+}
+
 static void a_hold_is_noted_of_its_joints_alone(void **state)
 {
     (void)state;
@@ -297,6 +330,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_goal_is_noted_of_its_joints_alone),
         cmocka_unit_test(a_halt_is_noted_of_what_moves),
+        cmocka_unit_test(a_halt_counts_its_way_from_where_a_joint_was_read),
         cmocka_unit_test(a_hold_is_noted_of_its_joints_alone),
         cmocka_unit_test(torque_is_noted_of_its_joints_alone),
         cmocka_unit_test(what_leaves_joints_unknown_is_noted_of_them_alone),

@@ -170,6 +170,33 @@ static void what_must_not_be_redirected_is_not(void **state)
     assert_int_equal(retarget(6, 100), GROBO_ERR_CLOSED);
 }
 
+/* As a move does; what is moved otherwise stays with who moves it. */
+static void joints_besides_are_taken_from_other_moves(void **state)
+{
+    (void)state;
+    begin(&quiet);
+    grobo_posture chest = rig_posture(&rig, CHEST, -10, 1000);
+    grobo_posture both = rig_posture(&rig, NECK, -5, 1000);
+    assert_int_equal(grobo_posture_set_deg(&both, CHEST, -5), 0);
+    int number = move(5, 1000);
+    rig_run(&rig, 200000);
+    int other = grobo_robot_move(&rig.robot, &chest);
+    rig_run(&rig, 200000);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &both), number);
+    rig_expect(&rig, other, GROBO_ERR_SUPERSEDED);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, CHEST) + 5) < 0.2);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) + 5) < 0.2);
+
+    number = move(5, 1000);
+    rig_run(&rig, 200000);
+    other = grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(CHEST), GROBO_TORQUE_OFF);
+    assert_true(other > 0);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &both), GROBO_ERR_STATE);
+    rig_expect(&rig, other, GROBO_OK);
+    rig_expect(&rig, number, GROBO_OK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -179,6 +206,7 @@ int main(void)
         cmocka_unit_test(a_lost_target_is_sent_again),
         cmocka_unit_test(the_joints_before_go_along),
         cmocka_unit_test(what_must_not_be_redirected_is_not),
+        cmocka_unit_test(joints_besides_are_taken_from_other_moves),
     };
 
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);

@@ -248,6 +248,28 @@ static void an_answer_says_that_its_frame_has_left(void **state)
     }
 }
 
+static void ignore_reply(grobo_robot_slot *slot, const grobo_packet *reply)
+{
+    (void)slot;
+    (void)reply;
+}
+
+/* And so does the first of several, unless it refuses. */
+static void one_of_several_answers_says_that_their_frame_has_left(void **state)
+{
+    (void)state;
+    for (int refused = 0; refused < 2; refused++) {
+        const grobo_packet reply = {.kind = GROBO_PACKET_RETURN, .refused = refused};
+        uint8_t frame[GROBO_FRAME_MAX_BYTES];
+        start();
+        grobo_robot_slot *slot = submit(0, GROBO_I_USE_SENSE, (grobo_robot_order){0});
+        assert_true(grobo_robot_tx(&robot, frame, sizeof frame, NOW + 5) > 0);
+        robot.each = ignore_reply;
+        slot->txn.each(slot->txn.ctx, &slot->txn, &reply);
+        assert_int_equal(robot.answered, !refused);
+    }
+}
+
 /* ---- taking back ----------------------------------------------------------------------------- */
 
 static const grobo_i_use uses[] = {GROBO_I_USE_JOB,     GROBO_I_USE_SENSE, GROBO_I_USE_MOTION,
@@ -934,6 +956,7 @@ int main(void)
         cmocka_unit_test(small_frames_have_four_joints),
         cmocka_unit_test(a_halt_goes_to_what_moves),
         cmocka_unit_test(an_answer_says_that_its_frame_has_left),
+        cmocka_unit_test(one_of_several_answers_says_that_their_frame_has_left),
         cmocka_unit_test(a_halt_of_what_stands_is_not_sent),
         cmocka_unit_test(what_a_frame_was_for_decides_what_its_end_counts),
         cmocka_unit_test(a_stop_takes_back_what_waits_and_halts_what_is_not_played),

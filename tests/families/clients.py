@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Independent clients against the simulator: clients.py CLIENT PORT. An assertion tells what differs."""
 import os
+import select
 import sys
 import time
 from pathlib import Path
@@ -165,25 +166,63 @@ def lerobot_so101(port):
 
 
 SERVOS = 6
-RATE_S = 3
+ROUNDS = 5
+REQUEST_BYTES = 8 + SERVOS
+STATE = 40, 31  # what grobo reads of a servo: first register, bytes
 
 
 def busy_pct(reads, data_bytes, took_s):
     """How much of the time the wire of 1 Mbps was busy: a request for all, and a status of each."""
-    return reads * ((8 + SERVOS) + SERVOS * (6 + data_bytes)) * 10e-6 / took_s * 100
+    return reads * (REQUEST_BYTES + SERVOS * (6 + data_bytes)) * 10e-6 / took_s * 100
+
+
+def best_of(measure):
+    """The best second of some: the machine may be busy with something else in another."""
+    return max((measure() for _ in range(ROUNDS)), key=lambda found: found[1])
 
 
 def rate_of(read, data_bytes):
-    began, n = time.monotonic(), 0
-    while time.monotonic() < began + RATE_S:
-        read()
-        n += 1
-    took_s = time.monotonic() - began
-    return n / took_s, busy_pct(n, data_bytes, took_s)
+    def measure():
+        began, n = time.monotonic(), 0
+        while time.monotonic() < began + 1:
+            read()
+            n += 1
+        took_s = time.monotonic() - began
+        return n / took_s, busy_pct(n, data_bytes, took_s)
+
+    return best_of(measure)
+
+
+def bare_reader(port, first, data_bytes):
+    """An exchange without a client: the machine takes so long, whoever asks."""
+    import termios
+    import tty
+
+    body = bytes([0xFE, 4 + SERVOS, 0x82, first, data_bytes, *range(1, SERVOS + 1)])
+    frame = b"\xff\xff" + body + bytes([~sum(body) & 0xFF])
+    line = os.open(port, os.O_RDWR | os.O_NOCTTY)
+    tty.setraw(line)
+    set_up = termios.tcgetattr(line)
+    set_up[4] = set_up[5] = termios.B1000000
+    termios.tcsetattr(line, termios.TCSANOW, set_up)
+    waiting = select.poll()
+    waiting.register(line, select.POLLIN)
+    while waiting.poll(50):  # what the client before had asked for
+        os.read(line, 4096)
+
+    def read():
+        os.write(line, frame)
+        left = SERVOS * (6 + data_bytes)
+        while left > 0:
+            assert waiting.poll(PATIENCE_MS), f"{left} bytes did not come"
+            left -= len(os.read(line, 4096))
+        assert left == 0
+
+    return line, read
 
 
 def rates(port):
-    """Whole arms read a second: LeRobot, rustypot and ours, one after the other."""
+    """Whole arms read a second: LeRobot, rustypot, ours and a bare loop, one after the other."""
     import rustypot
 
     bus, _ = lerobot_bus(port)
@@ -199,14 +238,24 @@ def rates(port):
 
     with grobo.connect(port, robot="so101", sense_interval=1e-6) as robot:
         stats = lib.grobo_robot_get_bus_stats(robot._control.robot)
+
+        def measure():
+            began, frames, line = time.monotonic(), stats.tx_frames, stats.tx_bytes + stats.rx_bytes
+            time.sleep(1)
+            took_s = time.monotonic() - began
+            line = stats.tx_bytes + stats.rx_bytes - line
+            return (stats.tx_frames - frames) / took_s, line * 10e-6 / took_s * 100
+
         time.sleep(0.5)
-        began, frames, line = time.monotonic(), stats.tx_frames, stats.tx_bytes + stats.rx_bytes
-        time.sleep(RATE_S)
-        took_s = time.monotonic() - began
-        line = stats.tx_bytes + stats.rx_bytes - line
-        told["grobo"] = (stats.tx_frames - frames) / took_s, line * 10e-6 / took_s * 100
+        told["grobo"] = best_of(measure)
+    for who, (first, data_bytes) in {"a bare loop": STATE, "a bare loop for angles": (56, 2)}.items():
+        line, read = bare_reader(port, first, data_bytes)
+        told[who] = rate_of(read, data_bytes)
+        os.close(line)
     for who, (hz, pct) in told.items():
-        print(f"{who}: {hz:.0f} reads of the arm a second, the wire busy for {pct:.1f} % of the time")
+        beside_us = (100 - pct) / 100 * 1e6 / hz
+        print(f"{who}: {hz:.0f} reads of the arm a second, the wire busy for {pct:.1f} % of the "
+              f"time, {beside_us:.0f} us of each beside it")
     busy = os.getloadavg()[0] > os.cpu_count()
     assert busy or told["grobo"][1] >= 95, told
 

@@ -235,6 +235,69 @@ static void the_line_is_not_asked_about_what_was_answered(void **state)
     assert_true(questions > 0);
 }
 
+/* ---- the simulator --------------------------------------------------------------------------- */
+
+static int set_up_sim(void **state)
+{
+    (void)state;
+    session_kit_begin();
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                            .robot = &quiet});
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    loop_run_until(base, &seen.ups, 1);
+    assert_int_equal(
+        session_kit_await(grobo_robot_torque(robot(), GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+        GROBO_OK);
+    return 0;
+}
+
+static int tear_down_sim(void **state)
+{
+    (void)state;
+    session_kit_end();
+    return 0;
+}
+
+/* Moves what is on the line to the simulator, and what will be, in time. */
+static void delay_line(grobo_sim *sim, int64_t span_ns)
+{
+    sim->in.free_ns = (sim->in.free_ns > sim->now_ns ? sim->in.free_ns : sim->now_ns) + span_ns;
+    for (int i = 0; i < sim->in.used; i++) {
+        sim->in.at_ns[(sim->in.head + i) % GROBO_SIM_WIRE_BYTES] += span_ns;
+    }
+}
+
+/* Its line stands still until it takes a frame in part. */
+static void what_the_simulator_has_not_taken_by_a_stop_moves_nothing(void **state)
+{
+    enum { GOAL = 30, FRAMES_MAX = 2 * GROBO_SIM_WIRE_BYTES / GOALS };
+    const int64_t hour_ns = INT64_C(3600000000000);
+    grobo_sim *sim = grobo_session_sim(session);
+    int32_t goal_ddeg = -1;
+    int n = 0;
+
+    (void)state;
+    delay_line(sim, hour_ns);
+    while (session->backlog_bytes == 0 && n < FRAMES_MAX) {
+        grobo_posture target;
+
+        grobo_posture_init_pose(&target, &grobo_gr001_model);
+        target.time_us = 2000000;
+        target.angle_rad[NECK] = grobo_rad_from_deg(++n);
+        assert_int_equal(grobo_robot_send(robot(), &target), GROBO_OK);
+        assert_true(loop_run(base, 12000));
+    }
+    assert_in_range(session->backlog_bytes, 3, GOALS - 1);
+    assert_true(grobo_robot_estop(robot()) > 0);
+    delay_line(sim, -hour_ns);
+    while (session->backlog_bytes > 0 || grobo_sim_rx_room(sim) < GROBO_SIM_WIRE_BYTES) {
+        (void)loop_run(base, 20000);
+    }
+    int servo = grobo_sim_find(sim, grobo_gr001_model.joints[NECK].motor);
+    assert_int_equal(grobo_sim_get_register(sim, servo, GOAL, &goal_ddeg), GROBO_OK);
+    assert_in_range(goal_ddeg, 10, 10 * (n - 1));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -246,6 +309,8 @@ int main(void)
                                         tear_down),
         cmocka_unit_test_setup_teardown(no_frame_is_taken_behind_one_that_has_not_left, set_up,
                                         tear_down),
+        cmocka_unit_test_setup_teardown(what_the_simulator_has_not_taken_by_a_stop_moves_nothing,
+                                        set_up_sim, tear_down_sim),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

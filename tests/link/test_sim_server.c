@@ -453,6 +453,54 @@ static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
     grobo_sim_server_free(server);
 }
 
+/* ---- bytes that come together -------------------------------------------------------------- */
+
+static int handed_over;
+
+static void count_over(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                       size_t size)
+{
+    (void)ctx;
+    (void)now_us;
+    (void)bytes;
+    (void)size;
+    handed_over += direction == GROBO_DIR_TX;
+}
+
+/* How often a program was given bytes until it had the state of servo 1. */
+static int pieces_of_a_state(uint32_t baud_bps)
+{
+    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
+                                  .baud_bps = baud_bps};
+    grobo_sim_server *server = loop_serve(
+        base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .tcp = "tcp:127.0.0.1:0",
+                                        .no_pty = true, .sim = &sim, .on_tap = count_over});
+    client c;
+    char device[32];
+
+    snprintf(device, sizeof device, "tcp:127.0.0.1:%d", grobo_sim_server_tcp_port(server));
+    client_open(&c, device, 0);
+    handed_over = 0;
+    assert_true(ask(&c, ask_state + 2, sizeof ask_state - 3, STATE_BYTES, 5000000));
+    grobo_serial_free(c.serial);
+    grobo_sim_server_free(server);
+    return handed_over;
+}
+
+/* A program is given a packet, not bytes: in one piece, and in two where the machine was held up
+ * while the packet began. Of one that takes 27 ms it has some before, unless held up so long. */
+static void a_packet_comes_whole_unless_it_takes_long(void **state)
+{
+    int pieces = 0;
+
+    (void)state;
+    assert_in_range(pieces_of_a_state(460800), 1, 2);
+    for (int i = 0; i < 100 && pieces < 3; i++) {
+        pieces = pieces_of_a_state(9600);
+    }
+    assert_true(pieces >= 3);
+}
+
 /* ---- what a program leaves behind when it closes ------------------------------------------- */
 
 /* Writes until the system takes no more for a while: far more than the line carries meanwhile. */
@@ -664,6 +712,7 @@ int main(void)
         ON_LOOP(a_flood_leaves_the_loop_to_others),
         ON_LOOP(nobody_can_be_let_in),
         ON_LOOP(a_flood_is_taken_at_the_wires_pace_and_idle_is_idle),
+        ON_LOOP(a_packet_comes_whole_unless_it_takes_long),
         ON_LOOP(a_terminal_flooded_and_closed_answers_the_next),
         ON_LOOP(a_connection_flooded_and_closed_answers_the_next),
         ON_LOOP(all_that_was_written_before_a_close_is_heard),

@@ -683,4 +683,43 @@ check 'robots: made of its file' sh "$gates/../robots/make.sh" --check cat
 echo 'int y;' | sample src/robots/a_b.c
 check 'robots: not made of its file' refuses 'src/robots/a_b.c: robots: differs' \
     sh "$gates/../robots/make.sh" --check cat
+
+# ---- anchors -------------------------------------------------------------------------------
+
+# sabotaged FILE LINES: a tree with a function, and with these sabotages in that file.
+sabotaged() {
+    fresh
+    sample src/bus/a.c <<'C'
+static int twice(int a)
+{
+    GROBO_ASSERT(a > 0);
+    if (a > 9) {
+        return 9;
+    }
+    return a + a;
+}
+C
+    mkdir -p docs tests/mutants
+    echo '| SC01 | twice | `twice` | | `unit/test_a.c:works` |' >docs/seed-map.md
+    echo 'function twice' >tests/mutants/scope
+    for file in asserts named rows survivors; do
+        : >"tests/mutants/$file"
+    done
+    printf '%b' "$2" >"tests/mutants/$1"
+    python3 "$gates/../../tests/mutants/anchors.py"
+}
+if command -v python3 >/dev/null; then
+    check 'anchors: sabotages in their places' \
+        sabotaged named 'twice\n- return a + a;\n+ return a;\n'
+    check 'anchors: a text that is not there' refuses 'named:1: twice: found 0 times' \
+        sabotaged named 'twice\n- return a * a;\n+ return a;\n'
+    check 'anchors: a function that is not there' refuses 'not one function thrice' \
+        sabotaged named 'thrice\n- return a + a;\n+ return a;\n'
+    check 'anchors: an assertion that is not there' refuses '0 assertions, not one: twice: a > 1' \
+        sabotaged asserts 'twice trips twice: a > 1\n- a > 9\n+ a > 8\n'
+    check 'anchors: the function of a row' refuses 'SC01: missing anchor: twice: found 0 times' \
+        sabotaged rows 'SC01 twice\n- a * a\n+ a\n'
+    check 'anchors: a mutant that is not made' refuses 'no such mutant: twice | comparison | none' \
+        sabotaged survivors 'twice | comparison | none\n    Why not.\n'
+fi
 done_testing

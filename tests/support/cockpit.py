@@ -2,6 +2,8 @@
 """Clients of `grctl serve`, good and bad. usage: cockpit.py SCENARIO [GRCTL]; each scenario is a
 function below, starts a server of its own on the simulator, and ends with an exception where
 something is not as docs/serve.md tells."""
+import glob
+import gzip
 import http.client
 import json
 import os
@@ -437,6 +439,15 @@ def page_files():
         assert "unsafe" not in policy
         same(page.ask("GET", "/", headers={"If-None-Match": headers["ETag"]})[0], 304)
         same(page.ask("GET", "/index.html")[0], 200)
+        below = re.search(rb'href="(v[^/"]+)/style.css"', gzip.decompress(body)).group(1).decode()
+        for path, kept in (("/style.css", "no-cache"),
+                           (f"/{below}/style.css", "max-age=31536000, immutable")):
+            status, headers, style = page.ask("GET", path)
+            same((status, headers["Cache-Control"], headers["Content-Encoding"]), (200, kept, "gzip"), path)
+            assert b"#stop" in gzip.decompress(style)
+        for path in (f"/{below}", f"/{below}/", f"/{below}x/style.css", f"/{below}//style.css",
+                     f"/{below}/{below}/style.css", f"/{below}/../Makefile", "/v1-1/style.css"):
+            same(page.ask("GET", path)[0], 404, path)
         for path in ("/nothing", "/../Makefile", "/%2e%2e/Makefile", "/index.html/"):
             status, headers, _ = page.ask("GET", path)
             assert status in (403, 404), f"{path}: {status}"
@@ -533,7 +544,56 @@ def crowd():
         assert page.state()["stop"]["latched"]
 
 
+def foreign():
+    """Connections that are kept, and asked for refusals again and again, hold no place for long."""
+    with Server() as server:
+        page = Page(server)
+        for port, path in ((server.stop_port, "/stop"), (server.port, "/api/stop")):
+            held = [socket.create_connection(("127.0.0.1", port), PATIENCE_S) for _ in range(64)]
+            stop = threading.Event()
+
+            def refresh(wait_s=0, held=held, port=port, stop=stop):
+                """From another page, each once."""
+                for s in held:
+                    try:
+                        s.sendall(f"POST /stop HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://else"
+                                  "where\r\nContent-Length: 0\r\n\r\n".encode())
+                        assert s.recv(4096) == b"" or not stop.wait(wait_s)
+                    except (OSError, AssertionError):
+                        pass
+
+            refresh()
+            again = threading.Thread(target=lambda go=refresh, stop=stop: [
+                go(0.01) for _ in iter(stop.is_set, True)], daemon=True)
+            again.start()
+            began = time.monotonic()
+            status = page.ask("POST", path, b"{}", {"Content-Type": "application/json"}, port)[0]
+            print(f"# {path} beside 64 of another page: {(time.monotonic() - began) * 1e3:.1f} ms")
+            stop.set()
+            again.join()
+            for s in held:
+                s.close()
+            same(status, 204 if path == "/stop" else 200)
+            page.wait("latched", lambda state: state["stop"]["latched"])
+
+
 # ---- driving -----------------------------------------------------------------------------------
+
+def names():
+    """A name is told to others as it was given, or as many characters of it as fit."""
+    with Server() as server:
+        for given, told in (("a" + "あ" * 31, "a" + "あ" * 31), ("ab" + "あ" * 100, "ab" + "あ" * 41),
+                            ("x" * 500, "x" * 127), ("😀" * 99, "😀" * 31), ("", "a script")):
+            page = Page(server, given).take()
+            no = expect(409, "lease", Page(server).post, "lease", action="take", name="other")
+            same(no.error["holder"]["name"], told)
+            assert no.error["message"].startswith(told + " drives since"), no.error
+            same(page.state()["lease"]["holder"]["name"], told)
+            page.wait_event(re.escape(told + " drives"))
+            page.post("stop", name=given)
+            same(page.state()["stop"]["by"], told)
+            page.post("reset")
+
 
 def driving():
     with Server() as server:
@@ -1207,14 +1267,30 @@ class Schemas:
             raise AssertionError(f"{name}: {error.json_path}: {error.message[:500]}") from error
 
     def paths(self, page, names):
-        """Every path that is told is there."""
+        """Every path that is told is there, for the methods that are told and no other."""
         for path, methods in self.api["paths"].items():
-            port = page.server.stop_port if "servers" in methods else page.server.port
+            own, other = page.server.port, page.server.stop_port
+            if "servers" in methods:
+                own, other = other, own
             real = path.format(**names)
-            for method in methods:
-                if method in ("get", "post", "put") and path != "/api/events":
-                    status, _, _ = page.ask(method.upper(), real, {}, port=port)
-                    assert status not in (404, 405), f"{method} {path}: {status}"
+            for method in ("get", "post", "put", "delete", "patch"):
+                if path == "/api/events" and method in methods:
+                    continue
+                status, _, _ = page.ask(method.upper(), real, {}, port=own)
+                assert status not in (404, 405) if method in methods else status == 405, \
+                    f"{method} {path}: {status}"
+            same(page.ask("GET", real, port=other)[0], 404, f"{path} at the other port")
+
+    def routes(self, source, *but):
+        """Every path that the source has is told: a string of it that begins with a slash is one."""
+        with open(source, encoding="utf-8") as f:
+            found = set(re.findall(r'"(/[^"]+)"', f.read())) - set(but)
+        told = {part for path in self.api["paths"] for part in re.split(r"\{.*\}", path) if part}
+        same(sorted(found), sorted(told), source)
+        for other in glob.glob("tools/grctl/web/*.c"):
+            if os.path.basename(other) not in ("routes.c", "fleet.c"):
+                with open(other, encoding="utf-8") as f:
+                    assert '"/api' not in f.read(), f"{other} has a path of its own"
 
 
 def schema():
@@ -1226,6 +1302,7 @@ def schema():
     with Server(motions=folder) as server:
         page = Page(server)
         fits.paths(page, {"name": "greet.pseq"})
+        fits.routes("tools/grctl/web/routes.c", "/api/motions/NAME", "/api/motions/NAME/file")
         page.post("reset")
         fits("robot", page.get("/api/robot"))
         fits("state", page.state())

@@ -3,11 +3,15 @@
 # For tests of agents and fleets: a broker of this test alone on a free port, and agents. Sourced
 # behind cli.sh. $port, $broker: where.
 
+has_no_mqtt() {
+    "$GRCTL" fleet list --broker mqtt://127.0.0.1:1 2>&1 | grep -q 'no MQTT in it'
+}
+
 need_fleet() {
     for fleet_tool in mosquitto mosquitto_pub mosquitto_sub "$@"; do
         command -v "$fleet_tool" >/dev/null || { echo "1..0 # SKIP no $fleet_tool here"; exit 0; }
     done
-    if "$GRCTL" fleet list --broker mqtt://127.0.0.1:1 2>&1 | grep -q 'no MQTT in it'; then
+    if has_no_mqtt; then
         echo "1..0 # SKIP this grctl has no MQTT in it"
         exit 0
     fi
@@ -20,10 +24,15 @@ need_fleet() {
 find_port() {
     for find_n in 1 2 3 4 5 6 7 8 9; do
         port=$((12000 + ($$ + find_n * 4999) % 20000))
-        timeout 5 mosquitto_pub -p "$port" -t x -m x 2>&1 | grep -qi refused && return
+        timeout 5 mosquitto_pub -h 127.0.0.1 -p "$port" -t x -m x 2>&1 | grep -qi refused && return
     done
     echo "Bail out! no port is free"
     exit 1
+}
+
+# publish OPTION...: to the broker; localhost is a name that not every root has.
+publish() {
+    mosquitto_pub -h 127.0.0.1 -p "$port" "$@"
 }
 
 # begin_broker: with $work/broker.conf, or without one of its own for anybody; $broker_pid is it.
@@ -37,7 +46,7 @@ begin_broker() {
 }
 begin_open_broker() {
     begin_broker
-    wait_for mosquitto_pub -p "$port" -t x -m x && return
+    wait_for publish -t x -m x && return
     echo "Bail out! the broker did not start"
     cat "$work/broker.log"
     exit 1

@@ -49,6 +49,7 @@ class Fleet:
                         XDG_STATE_HOME=str(self.folder / "state"), LC_ALL="C.UTF-8")
         self.port = free_port()
         self.url = f"mqtt://127.0.0.1:{self.port}"
+        self.publish = ["mosquitto_pub", "-h", "127.0.0.1", "-p", str(self.port)]
         self.running = {}
         self.begin_broker()
         for host in HOSTS:
@@ -71,8 +72,8 @@ class Fleet:
                         "set_tcp_nodelay true\n")
         self.begin("broker", ["mosquitto", "-c", str(conf)])
         until = time.monotonic() + PATIENCE_S
-        while subprocess.run(["mosquitto_pub", "-p", str(self.port), "-t", "x", "-m", "x"],
-                             capture_output=True, check=False).returncode:
+        while subprocess.run([*self.publish, "-t", "x", "-m", "x"], capture_output=True,
+                             check=False).returncode:
             assert time.monotonic() < until, "the broker did not start"
             time.sleep(0.05)
 
@@ -88,7 +89,7 @@ class Fleet:
 
     def say(self, topic, message, *words):
         text = message if isinstance(message, str) else json.dumps(message)
-        subprocess.run(["mosquitto_pub", "-p", str(self.port), "-q", "1", "-t", f"grobo/v1/{topic}",
+        subprocess.run([*self.publish, "-q", "1", "-t", f"grobo/v1/{topic}",
                         "-s" if text else "-n", *words], input=text, text=True, check=True)
 
     def order(self, *words):
@@ -317,6 +318,7 @@ def schema():
         view = View(server)
         fits = Schemas("docs/serve-fleet.openapi.json")
         fits.paths(view, {})
+        fits.routes("tools/grctl/web/fleet.c", "/index.html", "/fleet.html")
         view.wait("stopped by that", lambda s: s["latch"] is not None)
         view.post("reset")
         view.wait_all()

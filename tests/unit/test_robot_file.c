@@ -268,6 +268,8 @@ static const mistake mistakes[] = {
     {HEAD JOINT "groups:\n  - {name: g, joints: [y]}\n", 6, 24, "no joint or group above", 0},
     {HEAD JOINT "groups:\n  - {name: g, joints: []}\n", 6, 5, "group g has no joints", 0},
     {HEAD JOINT "groups:\n  - {name: x, joints: [x]}\n", 6, 5, "is called 'x' already", 0},
+    {"name: a\nfamily: feetech\ngroups:\n  - {name: g, joints: [x]}\njoints:\n" JOINT, 4, 3,
+     "groups come below the joints", 0},
     {HEAD JOINT "groups:\n  - {joints: [x]}\n", 6, 5, "a group has no 'name'", 0},
     {HEAD JOINT "links:\n  - {name: b}\n  - {name: c}\n", 7, 5, "link c has no 'parent'", 0},
     {HEAD JOINT "links:\n  - {name: b, parent: c}\n", 6, 23, "no link above called 'c'", 0},

@@ -104,6 +104,11 @@ fi
     gate safety named_tests safety docs/guide/safety.md
 }
 if [ "$1" = --all ]; then
+    if command -v python3 >/dev/null; then
+        gate anchors python3 tests/mutants/anchors.py
+    else
+        echo 'lint: without python3 the anchors of sabotages are not checked' >&2
+    fi
     gate layers sh "$gates/layers.sh" "$2"
     gate robots sh tools/robots/make.sh --check "$2/tools/robots/robots"
     gate symbols sh "$gates/symbols.sh" "$2/libgrobo.so.0"

@@ -80,6 +80,42 @@ static bool is_device(const char *device)
     return device != NULL && device[0] != '\0' && strcmp(device, GROBO_DEVICE_AUTO) != 0;
 }
 
+/* The notes of one kind that there are by the names of a device, in each folder. */
+typedef struct note_walk {
+    const char *kind;
+    const grobo_i_device_names *names;
+    grobo_i_note_folders in;
+    int at; /* of the next: name and folder */
+    /* the one that was found: */
+    int folder;
+    char note[NOTE_NAME_BYTES];
+    char text[NOTE_TEXT_BYTES];
+} note_walk;
+
+static void walk_notes(note_walk *walk, const char *kind, const grobo_i_device_names *names)
+{
+    walk->kind = kind;
+    walk->names = names;
+    walk->at = 0;
+    grobo_i_note_folders_find(&walk->in);
+}
+
+static bool next_note(note_walk *walk)
+{
+    while (walk->at < walk->names->n * NOTE_FOLDERS) {
+        walk->folder = walk->at % NOTE_FOLDERS;
+        if (walk->folder == 0) {
+            note_of(walk->kind, walk->names->name[walk->at / NOTE_FOLDERS], walk->note);
+        }
+        walk->at++;
+        if (grobo_i_note_read(&walk->in, walk->folder, walk->note, walk->text, sizeof walk->text) >=
+            0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* ---- marks -------------------------------------------------------------------------------- */
 
 static void remove_answer(const char *id)
@@ -201,22 +237,18 @@ static int clear_group(const char *text, grobo_os_cause *cause)
 
 int grobo_i_estop_clear(const grobo_i_device_names *names, grobo_os_cause *cause)
 {
-    grobo_i_note_folders in;
-    char note[NOTE_NAME_BYTES];
-    char text[NOTE_TEXT_BYTES];
+    note_walk marks;
     int r = GROBO_OK;
 
-    grobo_i_note_folders_find(&in);
-    for (int i = 0; i < names->n; i++) {
-        note_of("estop", names->name[i], note);
-        for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
-            if (grobo_i_note_read(&in, folder, note, text, sizeof text) >= 0) {
-                int error = clear_group(text, cause);
+    walk_notes(&marks, "estop", names);
+    while (next_note(&marks)) {
+        int error = clear_group(marks.text, cause);
 
-                r = error < 0 ? error : r;
-            }
-        }
-        int error = grobo_i_note_remove(note, cause);
+        r = error < 0 ? error : r;
+    }
+    for (int i = 0; i < names->n; i++) { /* one that is empty, or cannot be read */
+        note_of("estop", names->name[i], marks.note);
+        int error = grobo_i_note_remove(marks.note, cause);
 
         r = error < 0 ? error : r;
     }
@@ -238,85 +270,50 @@ int grobo_estop_clear(const char *device, grobo_os_cause *cause)
     return grobo_i_estop_clear(&names, cause != NULL ? cause : &why);
 }
 
-/* Calls for each mark of a device until one returns true. */
-typedef bool mark_fn(void *ctx, const char *id);
-
-static bool each_mark(const grobo_i_device_names *names, mark_fn *fn, void *ctx)
-{
-    grobo_i_note_folders in;
-    char note[NOTE_NAME_BYTES];
-    char text[sizeof((grobo_estop *)0)->id + 1];
-    char id[sizeof((grobo_estop *)0)->id];
-
-    grobo_i_note_folders_find(&in);
-    for (int i = 0; i < names->n; i++) {
-        note_of("estop", names->name[i], note);
-        for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
-            if (grobo_i_note_read(&in, folder, note, text, sizeof text) >= 0) {
-                take_id(text, id);
-                if (fn(ctx, id)) {
-                    return true;
-                }
-            }
-        }
-    }
-    return false;
-}
-
-static bool is_any(void *ctx, const char *id)
-{
-    (void)ctx;
-    (void)id;
-    return true;
-}
-
 bool grobo_estop_stands(const char *device)
 {
     grobo_i_device_names names;
+    note_walk marks;
 
     if (!is_device(device) || strcmp(device, GROBO_DEVICE_SIM) == 0) {
         return false;
     }
     grobo_i_device_names_find(device, &names);
-    return each_mark(&names, is_any, NULL);
+    walk_notes(&marks, "estop", &names);
+    return next_note(&marks);
 }
 
 /* ---- who has the device ------------------------------------------------------------------- */
 
-static bool read_holder(const grobo_i_note_folders *in, int folder, const char *name,
-                        grobo_i_process *holder)
+static bool next_holder(note_walk *walk, grobo_i_process *holder)
 {
-    char note[NOTE_NAME_BYTES];
-    char text[64];
-
-    note_of("holder", name, note);
-    return grobo_i_note_read(in, folder, note, text, sizeof text) >= 0 &&
-           sscanf(text, "%d %" SCNu64, &holder->pid, &holder->started) == 2 && holder->pid > 0;
+    while (next_note(walk)) {
+        if (sscanf(walk->text, "%d %" SCNu64, &holder->pid, &holder->started) == 2 &&
+            holder->pid > 0) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /* Fills the process that has the device and is alive; false where there is none. */
 static bool find_holder(const grobo_i_device_names *names, const grobo_estop *stop,
                         grobo_estop_holder *holder)
 {
-    grobo_i_note_folders in;
+    note_walk holders;
     grobo_i_process process;
 
-    grobo_i_note_folders_find(&in);
-    for (int i = 0; i < names->n; i++) {
-        for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
-            /* One that does not see the mark would go on with what it was doing. */
-            bool wake = stop != NULL && (stop->places & 1u << folder) != 0;
-            int r = GROBO_ERR_NOENT;
+    walk_notes(&holders, "holder", names);
+    while (next_holder(&holders, &process)) {
+        /* One that does not see the mark would go on with what it was doing. */
+        bool wake = stop != NULL && (stop->places & 1u << holders.folder) != 0;
+        int r = grobo_i_process_look(&process, wake);
 
-            if (read_holder(&in, folder, names->name[i], &process)) {
-                r = grobo_i_process_look(&process, wake);
-            }
-            if (r != GROBO_ERR_NOENT) {
-                holder->pid = process.pid;
-                holder->stopped = r == 1;
-                holder->resumed = r == 1 && wake;
-                return true;
-            }
+        if (r != GROBO_ERR_NOENT) {
+            holder->pid = process.pid;
+            holder->stopped = r == 1;
+            holder->resumed = r == 1 && wake;
+            return true;
         }
     }
     return false;
@@ -388,8 +385,7 @@ void grobo_i_estop_watch_begin(grobo_i_estop_watch *watch, const char *device)
 
 void grobo_i_estop_watch_end(grobo_i_estop_watch *watch)
 {
-    grobo_i_note_folders in;
-    char note[NOTE_NAME_BYTES];
+    note_walk holders;
     grobo_i_process self;
     grobo_i_process holder;
     grobo_os_cause cause;
@@ -399,24 +395,15 @@ void grobo_i_estop_watch_end(grobo_i_estop_watch *watch)
     }
     grobo_i_estop_watch_answer(watch);
     grobo_i_process_self(&self);
-    grobo_i_note_folders_find(&in);
-    for (int i = 0; i < watch->names.n; i++) {
-        for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
-            /* A connection may have several, and the last one is registered. */
-            if (read_holder(&in, folder, watch->names.name[i], &holder) && holder.pid == self.pid) {
-                note_of("holder", watch->names.name[i], note);
-                (void)grobo_i_note_remove(note, &cause);
-            }
+    walk_notes(&holders, "holder", &watch->names);
+    while (next_holder(&holders, &holder)) {
+        /* A connection may have several, and the last one is registered. */
+        if (holder.pid == self.pid) {
+            (void)grobo_i_note_remove(holders.note, &cause);
         }
     }
     *watch = (grobo_i_estop_watch){.on = false};
 }
-
-/* The marks that stand now. */
-typedef struct standing {
-    char id[ESTOP_HEARD][sizeof((grobo_estop *)0)->id];
-    int n;
-} standing;
 
 static bool has(char list[][sizeof((grobo_estop *)0)->id], int n, const char *id)
 {
@@ -428,34 +415,30 @@ static bool has(char list[][sizeof((grobo_estop *)0)->id], int n, const char *id
     return at < n;
 }
 
-static bool collect(void *ctx, const char *id)
-{
-    standing *marks = ctx;
-
-    if (!has(marks->id, marks->n, id)) {
-        snprintf(marks->id[marks->n++], sizeof marks->id[0], "%s", id);
-    }
-    return marks->n == ESTOP_HEARD;
-}
-
 bool grobo_i_estop_watch_look(grobo_i_estop_watch *watch, bool *pending)
 {
-    standing marks = {.n = 0};
+    char standing[ESTOP_HEARD][sizeof((grobo_estop *)0)->id];
+    note_walk marks;
+    int n = 0;
     bool fresh = false;
     int answer;
     int result;
 
     *pending = false;
     watch->looked_us = grobo_now_us();
-    (void)each_mark(&watch->names, collect, &marks);
-    for (int i = 0; i < marks.n; i++) {
-        if (!has(watch->heard, watch->n_heard, marks.id[i])) {
+    walk_notes(&marks, "estop", &watch->names);
+    while (n < ESTOP_HEARD && next_note(&marks)) {
+        take_id(marks.text, standing[n]);
+        n += !has(standing, n, standing[n]);
+    }
+    for (int i = 0; i < n; i++) {
+        if (!has(watch->heard, watch->n_heard, standing[i])) {
             fresh = true;
-            *pending = *pending || !read_answer(marks.id[i], &answer, &result);
+            *pending = *pending || !read_answer(standing[i], &answer, &result);
         }
     }
-    memcpy(watch->heard, marks.id, sizeof watch->heard);
-    watch->n_heard = marks.n;
+    memcpy(watch->heard, standing, (size_t)n * sizeof standing[0]);
+    watch->n_heard = n;
     return fresh;
 }
 

@@ -10,6 +10,7 @@
 #include <grobo/serial.h>
 #include <grobo/static.h>
 
+#include "src/base/instant.h"
 #include "src/base/sized.h"
 #include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"
@@ -161,6 +162,15 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
+/* Reads what comes in the span; 0: nothing. */
+static int read_until(guard_run *run, uint8_t *bytes, size_t size, int64_t span_us)
+{
+    grobo_os_cause cause;
+    int got = grobo_port_wait(run->ops->socket(run->port), GROBO_PORT_READABLE, span_us);
+
+    return got > 0 ? run->ops->read(run->port, bytes, size, &cause) : got;
+}
+
 /* What the program sent last leaves, and its replies come; < 0: the line is gone. */
 static int await_quiet(guard_run *run)
 {
@@ -169,26 +179,19 @@ static int await_quiet(guard_run *run)
                                             (baud_bps > 0 ? baud_bps : GROBO_BAUD_DEFAULT_BPS);
     int64_t now_us = grobo_now_us();
     int64_t end_us = now_us + QUIET_MAX_US;
-    int64_t quiet_until_us = now_us + (quiet_us < QUIET_MAX_US ? quiet_us : QUIET_MAX_US);
+    int64_t quiet_until_us = grobo_i_sooner(now_us + quiet_us, end_us);
+    int got = 0;
 
-    while (now_us < quiet_until_us && now_us < end_us) {
+    while (got >= 0 && now_us < quiet_until_us) {
         uint8_t dropped[256];
-        grobo_os_cause cause;
-        int got = grobo_port_wait(run->ops->socket(run->port), GROBO_PORT_READABLE,
-                                  quiet_until_us - now_us);
 
-        if (got > 0) {
-            got = run->ops->read(run->port, dropped, sizeof dropped, &cause);
-        }
+        got = read_until(run, dropped, sizeof dropped, quiet_until_us - now_us);
         now_us = grobo_now_us();
-        if (got < 0) {
-            return got;
-        }
         if (got > 0) {
-            quiet_until_us = now_us + (quiet_us < QUIET_MAX_US ? quiet_us : QUIET_MAX_US);
+            quiet_until_us = grobo_i_sooner(now_us + quiet_us, end_us);
         }
     }
-    return GROBO_OK;
+    return got;
 }
 
 /* Writes a whole frame; a line that takes nothing is as good as gone. */
@@ -233,16 +236,10 @@ static int pump_out(guard_run *run, int64_t end_us)
 static int pump_in(guard_run *run, int64_t end_us)
 {
     int64_t now_us = grobo_now_us();
-    int64_t until_us = grobo_robot_deadline(&run->robot, now_us);
+    int64_t until_us = grobo_i_sooner(grobo_robot_deadline(&run->robot, now_us), end_us);
     uint8_t bytes[256];
-    grobo_os_cause cause;
-    int got;
+    int got = read_until(run, bytes, sizeof bytes, until_us - now_us);
 
-    until_us = until_us < end_us ? until_us : end_us;
-    got = grobo_port_wait(run->ops->socket(run->port), GROBO_PORT_READABLE, until_us - now_us);
-    if (got > 0) {
-        got = run->ops->read(run->port, bytes, sizeof bytes, &cause);
-    }
     if (got > 0) {
         grobo_robot_rx(&run->robot, bytes, (size_t)got, grobo_now_us());
     }

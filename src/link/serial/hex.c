@@ -33,10 +33,7 @@ int grobo_hex_print(const void *bytes, size_t size, FILE *stream)
     const uint8_t *from = bytes;
 
     for (size_t i = 0; i < size; i++) {
-        const char text[] = {' ', digits[from[i] >> 4], digits[from[i] & 15]};
-        size_t skip = i == 0 ? 1 : 0;
-
-        if (fwrite(text + skip, 1, sizeof text - skip, stream) != sizeof text - skip) {
+        if (fprintf(stream, i == 0 ? "%02X" : " %02X", from[i]) < 0) {
             return GROBO_ERR_IO;
         }
     }

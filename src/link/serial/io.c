@@ -41,6 +41,14 @@ bool grobo_serial_is_open(const grobo_serial *serial)
     return serial != NULL && serial->ops != NULL;
 }
 
+int grobo_i_serial_check(const grobo_serial *serial, bool sound)
+{
+    if (serial == NULL || !sound) {
+        return GROBO_ERR_ARG;
+    }
+    return serial->ops != NULL ? GROBO_OK : GROBO_ERR_CLOSED;
+}
+
 void grobo_i_serial_tell(grobo_serial *serial, unsigned what)
 {
     if (serial->config.mode == GROBO_SERIAL_ASYNC) {
@@ -262,16 +270,11 @@ static int send_sync(grobo_serial *serial, const uint8_t *bytes, size_t size)
 
 int grobo_serial_read(grobo_serial *serial, void *buf, size_t size)
 {
-    if (buf == NULL || serial == NULL) {
-        return GROBO_ERR_ARG;
-    }
+    int r = grobo_i_serial_check(serial, buf != NULL);
     size_t most = size < INT_MAX ? size : INT_MAX;
 
-    if (!grobo_serial_is_open(serial)) {
-        return GROBO_ERR_CLOSED;
-    }
-    if (most == 0 || !serial->ready || serial->paused) {
-        return 0;
+    if (r < 0 || most == 0 || !serial->ready || serial->paused) {
+        return r;
     }
     return serial->config.mode == GROBO_SERIAL_ASYNC
                ? grobo_i_serial_take(serial, buf, most)
@@ -280,16 +283,11 @@ int grobo_serial_read(grobo_serial *serial, void *buf, size_t size)
 
 int grobo_serial_write(grobo_serial *serial, const void *bytes, size_t size)
 {
-    if ((bytes == NULL && size > 0) || serial == NULL) {
-        return GROBO_ERR_ARG;
-    }
+    int r = grobo_i_serial_check(serial, bytes != NULL || size == 0);
     size_t most = size < INT_MAX ? size : INT_MAX;
 
-    if (!grobo_serial_is_open(serial)) {
-        return GROBO_ERR_CLOSED;
-    }
-    if (most == 0 || !serial->ready || serial->used > 0) {
-        return 0;
+    if (r < 0 || most == 0 || !serial->ready || serial->used > 0) {
+        return r;
     }
     return serial->config.mode == GROBO_SERIAL_ASYNC
                ? put(serial, bytes, most)
@@ -298,25 +296,17 @@ int grobo_serial_write(grobo_serial *serial, const void *bytes, size_t size)
 
 int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
 {
-    if (buf == NULL || serial == NULL) {
-        return GROBO_ERR_ARG;
+    int r = grobo_i_serial_check(serial, buf != NULL && size <= INT_MAX);
+
+    if (r < 0 || serial->config.mode != GROBO_SERIAL_SYNC) {
+        return r < 0 ? r : GROBO_ERR_STATE;
     }
     uint8_t *to = buf;
     int64_t end_us = silence_end(serial);
     size_t got = 0;
 
-    if (size > INT_MAX) {
-        return GROBO_ERR_ARG;
-    }
-    if (!grobo_serial_is_open(serial)) {
-        return GROBO_ERR_CLOSED;
-    }
-    if (serial->config.mode != GROBO_SERIAL_SYNC) {
-        return GROBO_ERR_STATE;
-    }
     while (got < size) {
-        int r = take_until(serial, to + got, size - got, end_us);
-
+        r = take_until(serial, to + got, size - got, end_us);
         if (r < 0) {
             return r;
         }
@@ -331,14 +321,10 @@ int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
 
 int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t size)
 {
-    if ((bytes == NULL && size > 0) || serial == NULL || size > INT_MAX) {
-        return GROBO_ERR_ARG;
-    }
-    if (!grobo_serial_is_open(serial)) {
-        return GROBO_ERR_CLOSED;
-    }
-    if (size == 0) {
-        return 0;
+    int r = grobo_i_serial_check(serial, (bytes != NULL || size == 0) && size <= INT_MAX);
+
+    if (r < 0 || size == 0) {
+        return r;
     }
     return serial->config.mode == GROBO_SERIAL_ASYNC ? send_async(serial, bytes, size)
                                                      : send_sync(serial, bytes, size);
@@ -373,29 +359,23 @@ void grobo_i_serial_take_back(grobo_serial *serial, size_t size, size_t behind)
 
 int grobo_serial_waiting(grobo_serial *serial)
 {
-    if (serial == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    int r;
+    int r = grobo_i_serial_check(serial, true);
 
-    if (!grobo_serial_is_open(serial)) {
-        return GROBO_ERR_CLOSED;
+    if (r >= 0 && serial->ready) {
+        r = serial->ops->waiting(serial->port, &serial->cause);
     }
-    r = serial->ready ? serial->ops->waiting(serial->port, &serial->cause) : 0;
-    return r < 0 ? grobo_i_serial_lose(serial, r) : r;
+    return r < 0 && grobo_serial_is_open(serial) ? grobo_i_serial_lose(serial, r) : r;
 }
 
 int grobo_serial_discard(grobo_serial *serial)
 {
-    if (serial == NULL) {
-        return GROBO_ERR_ARG;
-    }
     uint8_t scratch[READ_BYTES];
+    int r = grobo_i_serial_check(serial, true);
     int dropped = 0;
     int got = 1;
 
-    if (!grobo_serial_is_open(serial)) {
-        return GROBO_ERR_CLOSED;
+    if (r < 0) {
+        return r;
     }
     /* Bounded: a sender that never pauses must not keep us here. */
     for (int round = 0; serial->ready && got > 0 && round < 64; round++) {

@@ -189,29 +189,27 @@ static void fill_defaults(grobo_serial_config *config)
 
 int grobo_serial_new(const grobo_serial_config *config, grobo_serial **serial)
 {
-    grobo_serial_config taken;
-    const grobo_serial_config *from = &taken;
-    grobo_serial *made;
-    int r = serial != NULL ? grobo_i_sized_take(&taken, sizeof taken, config) : GROBO_ERR_ARG;
+    grobo_serial_config from;
+    int r = serial != NULL ? grobo_i_sized_take(&from, sizeof from, config) : GROBO_ERR_ARG;
 
     if (r >= 0) {
-        r = check(from);
+        r = check(&from);
     }
     if (r < 0) {
         return r;
     }
-    made = grobo_i_new(from->mem, sizeof *made);
+    grobo_serial *made = grobo_i_new(from.mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    made->config = *from;
+    made->config = from;
     fill_defaults(&made->config);
-    r = grobo_serial_set_device(made, from->device);
+    r = grobo_serial_set_device(made, from.device);
     made->config.device = NULL;
     if (r >= 0) {
-        made->queue = grobo_i_new(from->mem, made->config.tx_queue_bytes);
-        made->tell = from->base != NULL ? event_new(from->base, -1, 0, on_tell, made) : NULL;
-        if (made->queue == NULL || (from->base != NULL && made->tell == NULL)) {
+        made->queue = grobo_i_new(from.mem, made->config.tx_queue_bytes);
+        made->tell = from.base != NULL ? event_new(from.base, -1, 0, on_tell, made) : NULL;
+        if (made->queue == NULL || (from.base != NULL && made->tell == NULL)) {
             r = GROBO_ERR_NOMEM;
         }
     }
@@ -258,10 +256,7 @@ int grobo_serial_set_device(grobo_serial *serial, const char *device)
 
 const char *grobo_serial_device(const grobo_serial *serial)
 {
-    if (serial == NULL) {
-        return NULL;
-    }
-    return serial->has_device ? serial->device : NULL;
+    return serial != NULL && serial->has_device ? serial->device : NULL;
 }
 
 int grobo_serial_set_mode(grobo_serial *serial, grobo_serial_mode mode)
@@ -287,14 +282,11 @@ grobo_serial_mode grobo_serial_get_mode(const grobo_serial *serial)
 
 int grobo_serial_set_baud(grobo_serial *serial, int baud_bps)
 {
-    if (serial == NULL) {
+    if (serial == NULL || baud_bps <= 0) {
         return GROBO_ERR_ARG;
     }
     int r = baud_bps;
 
-    if (baud_bps <= 0) {
-        return GROBO_ERR_ARG;
-    }
     if (grobo_serial_is_open(serial)) {
         r = serial->ops->set_baud(serial->port, baud_bps, &serial->cause);
     }
@@ -311,22 +303,19 @@ int grobo_serial_baud(const grobo_serial *serial)
 
 int grobo_serial_set_low_latency(grobo_serial *serial)
 {
-    if (serial == NULL) {
-        return GROBO_ERR_ARG;
+    int r = grobo_i_serial_check(serial, true);
+
+    if (r >= 0) {
+        r = serial->quick_result = serial->ops->set_low_latency(serial->port, &serial->cause);
     }
-    if (!grobo_serial_is_open(serial)) {
-        return GROBO_ERR_CLOSED;
-    }
-    serial->quick_result = serial->ops->set_low_latency(serial->port, &serial->cause);
-    return serial->quick_result;
+    return r;
 }
 
 int grobo_serial_low_latency(const grobo_serial *serial)
 {
-    if (serial == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    return grobo_serial_is_open(serial) ? serial->quick_result : GROBO_ERR_CLOSED;
+    int r = grobo_i_serial_check(serial, true);
+
+    return r < 0 ? r : serial->quick_result;
 }
 
 /* ---- opening ------------------------------------------------------------------------------ */
@@ -342,7 +331,6 @@ static const grobo_port_ops *choose_ops(const grobo_serial *serial)
 static int open_port(grobo_serial *serial)
 {
     const grobo_port_ops *ops = choose_ops(serial);
-    int r;
 
     if (ops->size_bytes > serial->port_bytes) {
         grobo_i_free(serial->config.mem, serial->port, serial->port_bytes);
@@ -352,10 +340,9 @@ static int open_port(grobo_serial *serial)
             return GROBO_ERR_NOMEM;
         }
     }
-    r = ops->open(serial->port, serial->device, serial->config.baud_bps, &serial->cause);
+    int r = ops->open(serial->port, serial->device, serial->config.baud_bps, &serial->cause);
     if (r >= 0) {
         grobo_os_cause cause;
-
         const grobo_line_format *format = &serial->config.format;
 
         if (format->parity != GROBO_PARITY_NONE || format->stop_bits > 1 || format->rs485) {
@@ -375,7 +362,6 @@ static int start_async(grobo_serial *serial)
 {
     evutil_socket_t socket = serial->ops->socket(serial->port);
     struct event_base *base = serial->config.base;
-    int r;
 
     serial->rx = event_new(base, socket, EV_READ | EV_PERSIST, on_readable, serial);
     serial->tx = event_new(base, socket, EV_WRITE, on_writable, serial);
@@ -383,7 +369,7 @@ static int start_async(grobo_serial *serial)
     if (serial->rx == NULL || serial->tx == NULL || serial->resume == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    r = serial->ops->ready(serial->port, &serial->cause);
+    int r = serial->ops->ready(serial->port, &serial->cause);
     if (r > 0) {
         return begin(serial);
     }
@@ -415,19 +401,14 @@ static int start_sync(grobo_serial *serial)
 
 int grobo_serial_open(grobo_serial *serial)
 {
-    if (serial == NULL) {
+    if (serial == NULL || (serial->ops == NULL && !serial->has_device)) {
         return GROBO_ERR_ARG;
     }
-    int r;
-
     if (grobo_serial_is_open(serial)) {
         return GROBO_ERR_STATE;
     }
-    if (!serial->has_device) {
-        return GROBO_ERR_ARG;
-    }
     serial->to_tell = 0;
-    r = open_port(serial);
+    int r = open_port(serial);
     if (r >= 0) {
         r = serial->config.mode == GROBO_SERIAL_ASYNC ? start_async(serial) : start_sync(serial);
         if (r < 0) {
@@ -439,10 +420,7 @@ int grobo_serial_open(grobo_serial *serial)
 
 grobo_handle grobo_serial_handle(const grobo_serial *serial)
 {
-    if (serial == NULL) {
-        return GROBO_HANDLE_NULL;
-    }
-    return serial->ops != NULL ? serial->ops->handle(serial->port) : GROBO_HANDLE_NULL;
+    return grobo_serial_is_open(serial) ? serial->ops->handle(serial->port) : GROBO_HANDLE_NULL;
 }
 
 const grobo_os_cause *grobo_serial_cause(const grobo_serial *serial)

@@ -65,6 +65,10 @@ struct grobo_serial {
 /* Closes a port whose device is gone or that failed; asynchronous mode will be told. */
 int grobo_i_serial_lose(grobo_serial *serial, int error);
 
+/* What a function of an open port answers otherwise: GROBO_ERR_ARG where there is no port or what
+ * else it was given is not sound, GROBO_ERR_CLOSED. */
+int grobo_i_serial_check(const grobo_serial *serial, bool sound);
+
 /* Has on_event called from the loop. */
 void grobo_i_serial_tell(grobo_serial *serial, unsigned what);
 

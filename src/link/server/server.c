@@ -8,8 +8,10 @@
 #include <grobo/sim_server.h>
 #include <grobo/sim_static.h>
 
+#include "src/base/instant.h"
 #include "src/base/sized.h"
 #include "src/link/serial/loop.h"
+#include "src/sim/servo.h"
 
 /* How often one end is read before others have their turn: a wire without pace never is full. */
 #define READS_MAX 8
@@ -24,6 +26,13 @@
 
 /* How often a backlog is looked at: whether its program has left, or more of it has come. */
 #define LOOK_US 2000
+
+/*
+ * A packet's bytes come to a program together, when the last of them is over, as from a USB
+ * adapter; those of a packet that takes longer after at most this time, a frame of full-speed USB
+ * (USB 2.0, 4.2.1). A wake for each byte would cost more than its time on the wire.
+ */
+#define GATHER_US 1000
 
 /* How long nobody is let in after a failure: the system has no descriptor, and who calls waits. */
 #define DOOR_SHUT_US 100000
@@ -60,7 +69,8 @@ struct grobo_sim_server {
     bool paced;
     int64_t replug_us; /* when to come back; GROBO_NEVER_US: plugged in, or stays away */
     int64_t door_us;   /* when callers are let in again; GROBO_NEVER_US: they are */
-    grobo_sim sim;
+    size_t bytes;      /* of all this, as the robot has joints */
+    grobo_sim sim;     /* the last member: grobo_i_sim_bytes() */
 };
 
 static void tap(const grobo_sim_server *server, grobo_direction direction, int64_t now_us,
@@ -122,14 +132,12 @@ static bool is_in_the_way(end *e)
     if (e == &e->server->ends[END_TCP]) {
         return e->server->knocked || other_end(e)->waits;
     }
-    if (grobo_port_pty_in_use(e->port)) {
-        if (e->left) {
-            forget(e); /* it is the next one that has it open */
-        }
-        e->left = false;
-    } else {
-        e->left = true;
+    bool in_use = grobo_port_pty_in_use(e->port);
+
+    if (in_use && e->left) {
+        forget(e); /* it is the next one that has it open */
     }
+    e->left = !in_use;
     return e->left;
 }
 
@@ -399,19 +407,24 @@ static void await_callers(grobo_sim_server *server)
     }
 }
 
+/* When the wire has a packet for a program, or bytes of one that have waited long enough. */
+static int64_t next_bytes_us(const grobo_sim *sim)
+{
+    int64_t byte_us = grobo_sim_deadline(sim);
+
+    return byte_us == GROBO_NEVER_US
+               ? byte_us
+               : grobo_i_sooner(grobo_sim_packet_deadline(sim), byte_us + GATHER_US);
+}
+
 /* When there is something to do without anybody's bytes. */
 static int64_t next_look_us(const grobo_sim_server *server)
 {
-    int64_t next_us = grobo_sim_deadline(&server->sim);
+    int64_t next_us = grobo_i_sooner(next_bytes_us(&server->sim), server->replug_us);
+    bool paused = server->ends[END_PTY].paused || server->ends[END_TCP].paused;
 
-    next_us = server->replug_us < next_us ? server->replug_us : next_us;
-    next_us = server->door_us < next_us ? server->door_us : next_us;
-    for (int i = 0; i < ENDS; i++) {
-        int64_t look_us = grobo_now_us() + LOOK_US;
-
-        next_us = server->ends[i].paused && look_us < next_us ? look_us : next_us;
-    }
-    return next_us;
+    next_us = grobo_i_sooner(next_us, server->door_us);
+    return paused ? grobo_i_sooner(next_us, grobo_now_us() + LOOK_US) : next_us;
 }
 
 void grobo_sim_server_pump(grobo_sim_server *server)
@@ -479,14 +492,11 @@ static int copy_name(char *to, const char *name)
     return GROBO_OK;
 }
 
-static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
+static int fill(grobo_sim_server *server, const grobo_sim_server_config *config,
+                const grobo_sim_config *sim)
 {
-    grobo_sim_config sim;
-    int r = grobo_i_sized_take(&sim, sizeof sim, config->sim);
+    int r;
 
-    if (r < 0) {
-        return r;
-    }
     server->config = *config;
     server->config.sim = NULL;
     server->config.link = NULL;
@@ -494,7 +504,7 @@ static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
     if (server->config.replug_ms == 0) {
         server->config.replug_ms = GROBO_SIM_REPLUG_DEFAULT_MS;
     }
-    server->paced = !sim.unpaced;
+    server->paced = !sim->unpaced;
     server->replug_us = GROBO_NEVER_US;
     server->door_us = GROBO_NEVER_US;
     r = copy_name(server->link, config->link);
@@ -502,7 +512,7 @@ static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
         r = copy_name(server->tcp, config->tcp);
     }
     if (r >= 0) {
-        r = grobo_sim_init(&server->sim, &sim, grobo_now_us());
+        r = grobo_sim_init_sized(&server->sim, grobo_i_sim_bytes(sim->model), sim, grobo_now_us());
     }
     server->baud_bps = (int)server->sim.line_bps;
     return r;
@@ -516,11 +526,11 @@ static int make_ends(grobo_sim_server *server)
         end *e = &server->ends[i];
 
         e->ops = ops[i];
-        if (e->ops == NULL) {
-            if (!server->config.no_pty) {
-                return GROBO_ERR_UNSUPPORTED;
-            }
+        if (e->ops == NULL && server->config.no_pty) {
             continue;
+        }
+        if (e->ops == NULL) {
+            return GROBO_ERR_UNSUPPORTED;
         }
         e->port = grobo_i_new(server->config.mem, e->ops->size_bytes);
         if (e->port == NULL) {
@@ -537,22 +547,27 @@ int grobo_sim_server_new(const grobo_sim_server_config *config, grobo_sim_server
     grobo_os_cause unheard = {0};
     grobo_sim_server_config taken;
     grobo_sim_server *made;
+    grobo_sim_config sim;
+    size_t bytes;
     int r;
 
     if (server == NULL || grobo_i_sized_take(&taken, sizeof taken, config) < 0 ||
-        taken.base == NULL || (taken.no_pty && taken.tcp == NULL)) {
+        grobo_i_sized_take(&sim, sizeof sim, taken.sim) < 0 || taken.base == NULL ||
+        (taken.no_pty && taken.tcp == NULL)) {
         return GROBO_ERR_ARG;
     }
     config = &taken;
-    made = grobo_i_new(config->mem, sizeof *made);
+    bytes = offsetof(grobo_sim_server, sim) + grobo_i_sim_bytes(sim.model);
+    made = grobo_i_new(config->mem, bytes);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
+    made->bytes = bytes;
     for (int i = 0; i < ENDS; i++) {
         made->ends[i].server = made;
     }
     made->config.mem = config->mem;
-    r = fill(made, config);
+    r = fill(made, config, &sim);
     if (r >= 0) {
         r = make_ends(made);
     }
@@ -573,20 +588,17 @@ int grobo_sim_server_new(const grobo_sim_server_config *config, grobo_sim_server
 
 void grobo_sim_server_free(grobo_sim_server *server)
 {
-    const grobo_mem *mem;
-
     if (server == NULL) {
         return;
     }
-    mem = server->config.mem;
+    const grobo_mem *mem = server->config.mem;
+
     unplug(server);
     grobo_timer_free(server->timer);
-    for (int i = 0; i < ENDS; i++) {
-        end *e = &server->ends[i];
-
+    for (end *e = server->ends; e < server->ends + ENDS; e++) {
         grobo_i_free(mem, e->port, e->ops != NULL ? e->ops->size_bytes : 0);
     }
-    grobo_i_free(mem, server, sizeof *server);
+    grobo_i_free(mem, server, server->bytes);
 }
 
 const char *grobo_sim_server_device(const grobo_sim_server *server)
@@ -596,10 +608,7 @@ const char *grobo_sim_server_device(const grobo_sim_server *server)
 
 int grobo_sim_server_tcp_port(const grobo_sim_server *server)
 {
-    if (server == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    return server->callers != NULL ? server->tcp_port : 0;
+    return server == NULL ? GROBO_ERR_ARG : server->callers != NULL ? server->tcp_port : 0;
 }
 
 grobo_sim *grobo_sim_server_sim(grobo_sim_server *server)

@@ -6,6 +6,7 @@
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
+#include "src/sim/servo.h"
 
 /* How often one call reads at most: a line that never pauses must not keep us. */
 #define READS_MAX 16
@@ -82,13 +83,18 @@ const session_line grobo_i_session_port = {
 /* ---- the simulator ------------------------------------------------------------------------ */
 
 struct session_sim {
-    grobo_sim sim;
     uint8_t backlog[GROBO_FRAME_MAX_BYTES]; /* of a frame that it took in part */
+    grobo_sim sim;                          /* the last member: grobo_i_sim_bytes() */
 };
+
+static size_t simulated_bytes(const grobo_session *session)
+{
+    return offsetof(struct session_sim, sim) + grobo_i_sim_bytes(session->sim_config.model);
+}
 
 void grobo_i_session_sim_free(grobo_session *session)
 {
-    grobo_i_free(session->config.mem, session->simulated, sizeof *session->simulated);
+    grobo_i_free(session->config.mem, session->simulated, simulated_bytes(session));
     session->simulated = NULL;
     session->sim = NULL;
 }
@@ -99,9 +105,11 @@ static int sim_open(grobo_session *session, const char *name)
 
     (void)name;
     if (session->sim == NULL) {
-        session->simulated = grobo_i_new(session->config.mem, sizeof *session->simulated);
+        session->simulated = grobo_i_new(session->config.mem, simulated_bytes(session));
         int r = session->simulated != NULL
-                    ? grobo_sim_init(&session->simulated->sim, &session->sim_config, now_us)
+                    ? grobo_sim_init_sized(&session->simulated->sim,
+                                           grobo_i_sim_bytes(session->sim_config.model),
+                                           &session->sim_config, now_us)
                     : GROBO_ERR_NOMEM;
 
         if (r < 0) {

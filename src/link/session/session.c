@@ -52,7 +52,7 @@ static void destroy(grobo_session *session)
     grobo_i_estop_watch_end(&session->estop);
     grobo_i_session_scan_end(session);
     grobo_i_session_sim_free(session);
-    grobo_i_free(mem, session, sizeof *session);
+    grobo_i_free(mem, session, session->bytes);
 }
 
 /* ---- opening ------------------------------------------------------------------------------ */
@@ -492,9 +492,6 @@ static int fill(grobo_session *session, const grobo_session_config *config)
     if (r < 0) {
         return r;
     }
-    if (driver == NULL) {
-        driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
-    }
     session->config = *config;
     session->config.device = NULL;
     session->config.robot = NULL;
@@ -515,8 +512,8 @@ static int fill(grobo_session *session, const grobo_session_config *config)
     if (session->sim_config.baud_bps == 0) {
         session->sim_config.baud_bps = (uint32_t)baud_bps;
     }
-    r = grobo_robot_init(&session->robot, driver, config->driver_ctx, &session->robot_config,
-                         grobo_now_us());
+    r = grobo_robot_init_sized(&session->robot, grobo_i_robot_bytes(driver), driver,
+                               config->driver_ctx, &session->robot_config, grobo_now_us());
     set_host(session);
     return r;
 }
@@ -560,11 +557,19 @@ int grobo_session_new(const grobo_session_config *config, grobo_session **sessio
         taken.base == NULL || taken.device == NULL || taken.baud_bps < 0) {
         return GROBO_ERR_ARG;
     }
+    if (taken.driver == NULL) {
+        taken.driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
+    }
+    if (grobo_driver_check(taken.driver) < 0) {
+        return GROBO_ERR_ARG;
+    }
     config = &taken;
-    made = grobo_i_new(config->mem, sizeof *made);
+    size_t bytes = offsetof(grobo_session, robot) + grobo_i_robot_bytes(taken.driver);
+    made = grobo_i_new(config->mem, bytes);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
+    made->bytes = bytes;
     made->on_leave = on_leave;
     r = fill(made, config);
     made->config.mem = config->mem;

@@ -62,7 +62,6 @@ struct grobo_session {
 
     grobo_session_state state;
     bool was_up; /* since open: then a failed attempt is not the end, if so configured */
-    grobo_robot robot;
     grobo_serial *serial;
     grobo_timer *timer;
 
@@ -108,6 +107,8 @@ struct grobo_session {
     bool freed;                               /* freed in a callback */
 
     session_share share; /* of the engine with other threads */
+    size_t bytes;        /* of all this, as the robot has joints */
+    grobo_robot robot;   /* the last member: grobo_i_robot_bytes() */
 };
 
 /* ---- inside.c ---- */

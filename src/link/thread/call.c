@@ -81,11 +81,10 @@ static void serve(grobo_control *control)
 {
     control_slot *slot;
     uint64_t after = 0;
-    uint64_t last;
 
     grobo_mutex_lock(&control->lock);
     control->woken = false;
-    last = control->tickets; /* what a callback hands over has its turn in the next round */
+    uint64_t last = control->tickets; /* what a callback hands over has the next round */
     while ((slot = next_call(control, after)) != NULL && slot->ticket <= last) {
         grobo_control_fn fn = slot->fn;
         void *arg = slot->arg;
@@ -108,10 +107,7 @@ static void serve(grobo_control *control)
 
 int64_t grobo_control_get_period_us(grobo_control *control)
 {
-    if (control == NULL) {
-        return 0;
-    }
-    RETURN_LOCKED(control, int64_t, control->period_us);
+    RETURN_LOCKED(control, int64_t, 0, control->period_us);
 }
 
 void grobo_i_control_round(grobo_control *control, int64_t end_us)
@@ -199,11 +195,10 @@ typedef struct call_wish {
 static int call_and_wait(grobo_control *control, const call_wish *wish)
 {
     int64_t end_us = end_of(control, wish->timeout_us);
-    control_slot *slot;
     int result = GROBO_ERR_FULL;
 
     grobo_i_control_lock(control);
-    slot = take_slot(control, wish->urgent ? CONTROL_SLOTS : GROBO_CONTROL_CALLS_MAX);
+    control_slot *slot = take_slot(control, wish->urgent ? CONTROL_SLOTS : GROBO_CONTROL_CALLS_MAX);
     if (slot != NULL) {
         hand_over(control, slot, wish->fn, wish->arg);
         slot->users = wish->users;
@@ -324,8 +319,8 @@ static int post(grobo_control *control, grobo_control_fn fn, void *arg)
 {
     control_slot *slot = take_slot(control, GROBO_CONTROL_CALLS_MAX);
 
-    if (control->freeing || slot == NULL) {
-        return control->freeing ? GROBO_ERR_CLOSED : GROBO_ERR_FULL;
+    if (fn == NULL || control->freeing || slot == NULL) {
+        return fn == NULL ? GROBO_ERR_ARG : control->freeing ? GROBO_ERR_CLOSED : GROBO_ERR_FULL;
     }
     slot->posted = true;
     hand_over(control, slot, fn, arg);
@@ -335,8 +330,5 @@ static int post(grobo_control *control, grobo_control_fn fn, void *arg)
 
 int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
 {
-    if (control == NULL || fn == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    RETURN_LOCKED(control, int, post(control, fn, arg));
+    RETURN_LOCKED(control, int, GROBO_ERR_ARG, post(control, fn, arg));
 }

@@ -95,7 +95,7 @@ static int leave_job(grobo_control *control, control_job *job)
     if (!up || control->skip_exit || grobo_i_control_has_exited(control)) {
         return GROBO_OK;
     }
-    return grobo_robot_exit(grobo_session_robot(control->session), GROBO_EXIT_DEFAULT);
+    return grobo_robot_exit(control_robot(control), GROBO_EXIT_DEFAULT);
 }
 
 int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked)
@@ -121,17 +121,15 @@ static int close_port(void *arg, grobo_control *control)
 int grobo_control_close_port(grobo_control *control, int64_t timeout_us)
 {
     bool looked;
-    int left;
-    int closed;
 
     if (grobo_i_control_inside(control)) {
         return GROBO_ERR_STATE;
     }
-    left = grobo_i_control_leave(control, timeout_us, &looked);
+    int left = grobo_i_control_leave(control, timeout_us, &looked);
     if (!looked) {
         return left; /* held up: still open, and the exit stands */
     }
-    closed = grobo_i_control_call(control, close_port, NULL);
+    int closed = grobo_i_control_call(control, close_port, NULL);
     return closed < 0 ? closed : left;
 }
 
@@ -145,12 +143,10 @@ static int connect_port(void *arg, grobo_control *control)
     case GROBO_SESSION_CLOSED:
         if (*opened) {
             return control->line_error;
-        } else {
-            int r = grobo_session_open(control->session);
-
-            *opened = true;
-            return r < 0 ? r : CALL_PENDING;
         }
+        *opened = true;
+        int r = grobo_session_open(control->session);
+        return r < 0 ? r : CALL_PENDING;
     case GROBO_SESSION_OPENING:
     case GROBO_SESSION_CHECKING:
     case GROBO_SESSION_WAITING:
@@ -169,10 +165,7 @@ int grobo_control_connect(grobo_control *control, int64_t timeout_us)
 
 bool grobo_control_is_connected(grobo_control *control)
 {
-    if (control == NULL) {
-        return false;
-    }
-    RETURN_LOCKED(control, bool, control->up);
+    RETURN_LOCKED(control, bool, false, control->up);
 }
 
 static int get_cause(void *arg, grobo_control *control)
@@ -200,7 +193,7 @@ int grobo_control_get_cause(grobo_control *control, grobo_os_cause *cause)
 static int check_job(grobo_control *control, control_job *job)
 {
     (void)job;
-    return grobo_robot_check(grobo_session_robot(control->session));
+    return grobo_robot_check(control_robot(control));
 }
 
 int grobo_control_check_connection(grobo_control *control, int64_t timeout_us)
@@ -238,7 +231,7 @@ int grobo_control_get_servo_states(grobo_control *control, int *states, size_t c
 
 static int torque_job(grobo_control *control, control_job *job)
 {
-    return grobo_robot_torque(grobo_session_robot(control->session), job->joints, job->torque);
+    return grobo_robot_torque(control_robot(control), job->joints, job->torque);
 }
 
 int grobo_control_set_servo_states(grobo_control *control, grobo_joint_mask joints,
@@ -252,14 +245,10 @@ int grobo_control_set_servo_states(grobo_control *control, grobo_joint_mask join
 int grobo_control_set_servo_state(grobo_control *control, int joint, grobo_torque state,
                                   int64_t timeout_us)
 {
-    if (control == NULL) {
+    if (control == NULL || joint < 0 || joint >= grobo_control_joints(control)) {
         return GROBO_ERR_ARG;
     }
-    int r = GROBO_ERR_ARG;
-
-    if (joint >= 0 && joint < control->driver->model->n_joints) {
-        r = grobo_control_set_servo_states(control, GROBO_JOINT_BIT(joint), state, timeout_us);
-    }
+    int r = grobo_control_set_servo_states(control, GROBO_JOINT_BIT(joint), state, timeout_us);
     return r < 0 ? r : (int)state;
 }
 
@@ -272,7 +261,7 @@ int grobo_control_get_current_posture(grobo_control *control, grobo_posture *pos
 
 static int sense_job(grobo_control *control, control_job *job)
 {
-    return grobo_robot_sense(grobo_session_robot(control->session), job->joints, job->sense);
+    return grobo_robot_sense(control_robot(control), job->joints, job->sense);
 }
 
 /* Reads, and gives the joints that have been read since it began. @return their number, or why. */
@@ -356,8 +345,6 @@ int grobo_control_get_command(grobo_control *control, void *packet, size_t capac
 
 static int raw_job(grobo_control *control, control_job *job)
 {
-    int r;
-
     if (grobo_robot_job(control_robot(control)) != GROBO_JOB_NONE) {
         return GROBO_ERR_STATE;
     }
@@ -365,8 +352,7 @@ static int raw_job(grobo_control *control, control_job *job)
     memcpy(control->raw, job->frame, job->size);
     control->raw_bytes = job->size;
     /* Who is told that it took too long is not to see it leave afterwards. */
-    r = grobo_robot_raw_until(grobo_session_robot(control->session), job->frame, job->size,
-                              job->end_us - 1);
+    int r = grobo_robot_raw_until(control_robot(control), job->frame, job->size, job->end_us - 1);
     if (r < 0) {
         control->raw_bytes = 0;
     }
@@ -408,12 +394,11 @@ static int receive(void *arg, grobo_control *control)
 {
     receive_call *call = arg;
     bool over = grobo_now_us() >= call->end_us;
-    size_t had;
 
     if (control->received_bytes < call->size && over) {
         grobo_i_session_look(control->session); /* somebody held us up, maybe */
     }
-    had = control->received_bytes;
+    size_t had = control->received_bytes;
     if (had >= call->size) {
         memcpy(call->bytes, control->received, call->size);
         control->received_bytes -= call->size;
@@ -464,7 +449,7 @@ static int reset(void *arg, grobo_control *control)
 
     return atomic_load(&control->session->estops) != *estops
                ? GROBO_ERR_STATE
-               : grobo_robot_reset(grobo_session_robot(control->session));
+               : grobo_robot_reset(control_robot(control));
 }
 
 int grobo_control_reset(grobo_control *control)
@@ -479,7 +464,7 @@ int grobo_control_reset(grobo_control *control)
 
 static int exit_job(grobo_control *control, control_job *job)
 {
-    return grobo_robot_exit(grobo_session_robot(control->session), job->policy);
+    return grobo_robot_exit(control_robot(control), job->policy);
 }
 
 int grobo_control_exit(grobo_control *control, grobo_exit_policy policy, int64_t timeout_us)

@@ -32,7 +32,6 @@ static int resolve(grobo_control *control, grobo_motion *motion)
 static int adopt(grobo_control *control, grobo_motion *motion)
 {
     int n_joints = control->driver->model->n_joints;
-    grobo_motion *old;
     int r = grobo_motion_joints(motion) > n_joints ? GROBO_ERR_ARG
                                                    : grobo_motion_set_joints(motion, n_joints);
 
@@ -45,7 +44,7 @@ static int adopt(grobo_control *control, grobo_motion *motion)
     }
     r = (int)grobo_motion_size(motion);
     grobo_i_control_lock(control);
-    old = control->motion;
+    grobo_motion *old = control->motion;
     control->motion = motion;
     grobo_i_control_unlock(control);
     grobo_motion_free(old);
@@ -68,22 +67,19 @@ int grobo_control_get_motion(grobo_control *control, grobo_motion **motion)
     if (control == NULL || motion == NULL) {
         return GROBO_ERR_ARG;
     }
-    int r;
-
     grobo_i_control_lock(control);
-    r = grobo_motion_dup(control->motion, motion);
+    int r = grobo_motion_dup(control->motion, motion);
     grobo_i_control_unlock(control);
     return r < 0 ? r : (int)grobo_motion_size(*motion);
 }
 
 void grobo_control_clear_motion(grobo_control *control)
 {
-    if (control == NULL) {
-        return;
+    if (control != NULL) {
+        grobo_i_control_lock(control);
+        grobo_motion_renew(control->motion, GROBO_MOTION_POSTURES);
+        grobo_i_control_unlock(control);
     }
-    grobo_i_control_lock(control);
-    grobo_motion_renew(control->motion, GROBO_MOTION_POSTURES);
-    grobo_i_control_unlock(control);
 }
 
 /* ---- sent and played ---------------------------------------------------------------------- */
@@ -104,10 +100,7 @@ static int send_target(grobo_control *control, const grobo_posture *instead)
 
 int grobo_control_start_motion(grobo_control *control)
 {
-    if (control == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    return send_target(control, NULL);
+    return control == NULL ? GROBO_ERR_ARG : send_target(control, NULL);
 }
 
 int grobo_control_init_position(grobo_control *control)
@@ -161,10 +154,7 @@ int grobo_control_play_motion(grobo_control *control, const grobo_play_options *
 
 bool grobo_control_is_playing(grobo_control *control)
 {
-    if (control == NULL) {
-        return false;
-    }
-    RETURN_LOCKED(control, bool, control->play != PLAY_NONE);
+    RETURN_LOCKED(control, bool, false, control->play != PLAY_NONE);
 }
 
 /* ---- stopping, waiting -------------------------------------------------------------------- */
@@ -220,7 +210,7 @@ static int await_rest(void *arg, grobo_control *control)
         grobo_robot_job(control_robot(control)) != GROBO_JOB_NONE) {
         return CALL_PENDING;
     }
-    RETURN_LOCKED(control, int, control->motion_result);
+    RETURN_LOCKED(control, int, GROBO_ERR_ARG, control->motion_result);
 }
 
 int grobo_control_wait(grobo_control *control, int64_t timeout_us)
@@ -269,16 +259,15 @@ static int get_nth(const grobo_control *control, size_t n, grobo_posture *postur
     size_t size = grobo_motion_size(control->motion);
     bool reverse = control->reverse || control->motion_count < 0;
 
-    return n >= size ? GROBO_ERR_EMPTY
-                     : grobo_motion_get(control->motion, reverse ? size - 1 - n : n, posture);
+    if (posture == NULL || n >= size) {
+        return posture == NULL ? GROBO_ERR_ARG : GROBO_ERR_EMPTY;
+    }
+    return grobo_motion_get(control->motion, reverse ? size - 1 - n : n, posture);
 }
 
 int grobo_control_get_nth_posture(grobo_control *control, size_t n, grobo_posture *posture)
 {
-    if (control == NULL || posture == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    RETURN_LOCKED(control, int, get_nth(control, n, posture));
+    RETURN_LOCKED(control, int, GROBO_ERR_ARG, get_nth(control, n, posture));
 }
 
 int grobo_control_get_first_posture(grobo_control *control, grobo_posture *posture)
@@ -288,17 +277,15 @@ int grobo_control_get_first_posture(grobo_control *control, grobo_posture *postu
 
 int grobo_control_get_last_posture(grobo_control *control, grobo_posture *posture)
 {
-    if (posture == NULL || control == NULL) {
-        return GROBO_ERR_ARG;
-    }
     /* Of an empty motion the number wraps around, to one that is not there. */
-    RETURN_LOCKED(control, int, get_nth(control, grobo_motion_size(control->motion) - 1, posture));
+    RETURN_LOCKED(control, int, GROBO_ERR_ARG,
+                  get_nth(control, grobo_motion_size(control->motion) - 1, posture));
 }
 
 int grobo_control_do_nth_motion(grobo_control *control, size_t n)
 {
     grobo_posture posture;
-    int r = control == NULL ? GROBO_ERR_ARG : grobo_control_get_nth_posture(control, n, &posture);
+    int r = grobo_control_get_nth_posture(control, n, &posture);
 
     if (r >= 0) {
         posture.time_us = 0; /* the default */

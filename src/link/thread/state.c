@@ -41,10 +41,8 @@ int grobo_control_get_motion_dir(grobo_control *control, char *dir, size_t dir_b
     if (control == NULL || dir == NULL) {
         return GROBO_ERR_ARG;
     }
-    size_t length;
-
     grobo_i_control_lock(control);
-    length = strlen(control->motion_dir);
+    size_t length = strlen(control->motion_dir);
     if (length < dir_bytes) {
         memcpy(dir, control->motion_dir, length + 1);
     }
@@ -57,22 +55,17 @@ static int configure(void *arg, grobo_control *control)
 {
     const grobo_robot_config *change = arg;
     grobo_robot_config config;
-    int r;
 
-    grobo_i_control_lock(control);
-    config = control->robot_config;
-    grobo_i_control_unlock(control);
+    grobo_i_control_copy(control, &config, &control->robot_config, sizeof config);
     if (change->default_time_us != 0) {
         config.default_time_us = change->default_time_us;
     }
     if (change->sense_interval_us != 0) {
         config.sense_interval_us = change->sense_interval_us;
     }
-    r = grobo_session_configure(control->session, &config);
+    int r = grobo_session_configure(control->session, &config);
     if (r >= 0) {
-        grobo_i_control_lock(control);
-        control->robot_config = config;
-        grobo_i_control_unlock(control);
+        grobo_i_control_copy(control, &control->robot_config, &config, sizeof config);
     }
     return r;
 }
@@ -95,10 +88,7 @@ int64_t grobo_i_control_default_us(const grobo_control *control)
 
 int64_t grobo_control_get_default_time_us(grobo_control *control)
 {
-    if (control == NULL) {
-        return 0;
-    }
-    RETURN_LOCKED(control, int64_t, grobo_i_control_default_us(control));
+    RETURN_LOCKED(control, int64_t, 0, grobo_i_control_default_us(control));
 }
 
 int grobo_control_set_sense_interval_us(grobo_control *control, int64_t interval_us)
@@ -110,17 +100,17 @@ int grobo_control_set_sense_interval_us(grobo_control *control, int64_t interval
                : grobo_i_control_call(control, configure, &change);
 }
 
+/* With the lock. */
+static int64_t sense_interval_us(const grobo_control *control)
+{
+    int64_t interval_us = control->robot_config.sense_interval_us;
+
+    return interval_us != 0 ? interval_us : SENSE_US;
+}
+
 int64_t grobo_control_get_sense_interval_us(grobo_control *control)
 {
-    if (control == NULL) {
-        return 0;
-    }
-    int64_t interval_us;
-
-    grobo_i_control_lock(control);
-    interval_us = control->robot_config.sense_interval_us;
-    grobo_i_control_unlock(control);
-    return interval_us != 0 ? interval_us : SENSE_US;
+    RETURN_LOCKED(control, int64_t, 0, sense_interval_us(control));
 }
 
 int grobo_control_set_motion_count(grobo_control *control, int count)
@@ -128,33 +118,26 @@ int grobo_control_set_motion_count(grobo_control *control, int count)
     if (control == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_control_lock(control);
-    control->motion_count = count;
-    grobo_i_control_unlock(control);
+    grobo_i_control_copy(control, &control->motion_count, &count, sizeof count);
     return GROBO_OK;
 }
 
 void grobo_control_set_reverse(grobo_control *control, bool reverse)
 {
-    if (control == NULL) {
-        return;
+    if (control != NULL) {
+        grobo_i_control_copy(control, &control->reverse, &reverse, sizeof reverse);
     }
-    grobo_i_control_lock(control);
-    control->reverse = reverse;
-    grobo_i_control_unlock(control);
 }
 
 bool grobo_control_is_reverse(grobo_control *control)
 {
-    if (control == NULL) {
-        return false;
-    }
-    RETURN_LOCKED(control, bool, control->reverse || control->motion_count < 0);
+    RETURN_LOCKED(control, bool, false, control->reverse || control->motion_count < 0);
 }
 
 /* ---- postures ----------------------------------------------------------------------------- */
 
-int grobo_i_control_check_posture(const grobo_control *control, const grobo_posture *posture)
+/* With the lock: may this be a target? */
+static int check_posture(const grobo_control *control, const grobo_posture *posture)
 {
     int r = grobo_posture_check(posture, control->driver->model, NULL);
 
@@ -167,69 +150,54 @@ int grobo_i_control_check_posture(const grobo_control *control, const grobo_post
     return r;
 }
 
-static int set_posture(grobo_control *control, grobo_posture *to, const grobo_posture *posture)
+/* With the lock. */
+static int set_posture(const grobo_control *control, grobo_posture *to,
+                       const grobo_posture *posture)
 {
-    int r;
+    int r = check_posture(control, posture);
 
-    grobo_i_control_lock(control);
-    r = grobo_i_control_check_posture(control, posture);
     if (r >= 0) {
         *to = *posture;
     }
-    grobo_i_control_unlock(control);
     return r;
-}
-
-static void get_posture(grobo_control *control, const grobo_posture *from, grobo_posture *posture)
-{
-    grobo_i_control_lock(control);
-    *posture = *from;
-    grobo_i_control_unlock(control);
 }
 
 int grobo_control_set_init_posture(grobo_control *control, const grobo_posture *posture)
 {
-    return control == NULL ? GROBO_ERR_ARG : set_posture(control, &control->init, posture);
+    RETURN_LOCKED(control, int, GROBO_ERR_ARG, set_posture(control, &control->init, posture));
 }
 
 void grobo_control_get_init_posture(grobo_control *control, grobo_posture *posture)
 {
     if (control != NULL && posture != NULL) {
-        get_posture(control, &control->init, posture);
+        grobo_i_control_copy(control, posture, &control->init, sizeof *posture);
     }
 }
 
 int grobo_control_set_target_posture(grobo_control *control, const grobo_posture *posture)
 {
-    return control == NULL ? GROBO_ERR_ARG : set_posture(control, &control->target, posture);
+    RETURN_LOCKED(control, int, GROBO_ERR_ARG, set_posture(control, &control->target, posture));
 }
 
 void grobo_control_get_target_posture(grobo_control *control, grobo_posture *posture)
 {
     if (control != NULL && posture != NULL) {
-        get_posture(control, &control->target, posture);
+        grobo_i_control_copy(control, posture, &control->target, sizeof *posture);
     }
+}
+
+/* With the lock. */
+static int set_joint(grobo_control *control, int joint, double angle_rad)
+{
+    grobo_posture changed = control->target;
+    int r = grobo_posture_set_rad(&changed, joint, angle_rad);
+
+    return r < 0 ? r : set_posture(control, &control->target, &changed);
 }
 
 int grobo_control_set_joint(grobo_control *control, int joint, double angle_rad)
 {
-    if (control == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    grobo_posture changed;
-    int r;
-
-    grobo_i_control_lock(control);
-    changed = control->target;
-    r = grobo_posture_set_rad(&changed, joint, angle_rad);
-    if (r >= 0) {
-        r = grobo_i_control_check_posture(control, &changed);
-    }
-    if (r >= 0) {
-        control->target = changed;
-    }
-    grobo_i_control_unlock(control);
-    return r;
+    RETURN_LOCKED(control, int, GROBO_ERR_ARG, set_joint(control, joint, angle_rad));
 }
 
 int grobo_control_set_motion_time_us(grobo_control *control, int64_t time_us)
@@ -237,8 +205,6 @@ int grobo_control_set_motion_time_us(grobo_control *control, int64_t time_us)
     if (control == NULL || time_us < 0 || time_us > GROBO_PLAY_TIME_MAX_US) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_control_lock(control);
-    control->target.time_us = time_us;
-    grobo_i_control_unlock(control);
+    grobo_i_control_copy(control, &control->target.time_us, &time_us, sizeof time_us);
     return GROBO_OK;
 }

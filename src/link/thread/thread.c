@@ -69,9 +69,7 @@ static int64_t exit_timeout(grobo_control *control)
 {
     int64_t bound_us;
 
-    grobo_i_control_lock(control);
-    bound_us = control->robot_config.exit_bound_us;
-    grobo_i_control_unlock(control);
+    grobo_i_control_copy(control, &bound_us, &control->robot_config.exit_bound_us, sizeof bound_us);
     bound_us = bound_us > 0 ? bound_us : EXIT_BOUND_US;
     return bound_us < GROBO_NEVER_US - EXIT_SPARE_US ? bound_us + EXIT_SPARE_US : GROBO_NEVER_US;
 }
@@ -155,13 +153,11 @@ int grobo_control_run(grobo_control *control)
     if (control == NULL) {
         return GROBO_ERR_ARG;
     }
-    bool mine;
-
     if (grobo_i_control_inside(control)) {
         return GROBO_ERR_STATE;
     }
     grobo_i_control_lock(control);
-    mine = !control->running && !control->ending;
+    bool mine = !control->running && !control->ending;
     if (mine) {
         control->running = true;
         control->stopping = false;
@@ -209,10 +205,7 @@ int grobo_control_stop_thread(grobo_control *control)
 
 bool grobo_control_is_active(grobo_control *control)
 {
-    if (control == NULL) {
-        return false;
-    }
-    RETURN_LOCKED(control, bool, control->running && !control->stopping);
+    RETURN_LOCKED(control, bool, false, control->running && !control->stopping);
 }
 
 int grobo_control_thread(grobo_control *control, grobo_thread *thread)
@@ -452,8 +445,6 @@ int grobo_control_set_period_us(grobo_control *control, int64_t period_us)
     if (control == NULL || !is_period(period_us)) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_control_lock(control);
-    control->period_us = period_us;
-    grobo_i_control_unlock(control);
+    grobo_i_control_copy(control, &control->period_us, &period_us, sizeof period_us);
     return GROBO_OK;
 }

@@ -173,16 +173,21 @@ void grobo_i_control_share(grobo_control *control);
 void grobo_i_control_lock(grobo_control *control);
 void grobo_i_control_unlock(grobo_control *control);
 
-/* The whole of a function that returns what it looks up, or does, with the lock. */
-#define RETURN_LOCKED(control, type, value)                                                        \
+/* The whole of a function that returns what it looks up, or does, with the lock; `otherwise` where
+ * there is no control. */
+#define RETURN_LOCKED(control, type, otherwise, value)                                             \
     do {                                                                                           \
-        type value_;                                                                               \
-                                                                                                   \
+        if ((control) == NULL) {                                                                   \
+            return otherwise;                                                                      \
+        }                                                                                          \
         grobo_i_control_lock(control);                                                             \
-        value_ = (value);                                                                          \
+        type value_ = (value);                                                                     \
         grobo_i_control_unlock(control);                                                           \
         return value_;                                                                             \
     } while (0)
+
+/* Copies with the lock. */
+void grobo_i_control_copy(grobo_control *control, void *to, const void *from, size_t size);
 
 /* With the lock: has the loop look at its calls. */
 void grobo_i_control_wake(grobo_control *control);
@@ -257,9 +262,6 @@ int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
 int grobo_i_control_job(grobo_control *control, control_job *job, int64_t timeout_us);
 
 /* ---- state.c ---- */
-
-/* With the lock: may this be a target? */
-int grobo_i_control_check_posture(const grobo_control *control, const grobo_posture *posture);
 
 /* With the lock: the time of postures whose own is 0. */
 int64_t grobo_i_control_default_us(const grobo_control *control);

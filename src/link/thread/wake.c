@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What everything else of a control uses: the lock, waking, and who is in a round. */
+#include <string.h>
+
 #include "src/base/assert.h"
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
@@ -43,6 +45,13 @@ void grobo_i_control_lock(grobo_control *control)
 void grobo_i_control_unlock(grobo_control *control)
 {
     grobo_mutex_unlock(&control->lock);
+}
+
+void grobo_i_control_copy(grobo_control *control, void *to, const void *from, size_t size)
+{
+    grobo_i_control_lock(control);
+    memcpy(to, from, size);
+    grobo_i_control_unlock(control);
 }
 
 /* ---- the engine's lock -------------------------------------------------------------------- */

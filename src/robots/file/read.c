@@ -427,9 +427,16 @@ static int read_group(grobo_i_events *events, void *target)
     return read_block(events, GROBO_I_BLOCK_GROUP, group, group->at, &group->place);
 }
 
-static int read_groups(grobo_i_events *events, void *draft)
+static int read_groups(grobo_i_events *events, void *target)
 {
-    return grobo_i_read_list(events, "groups", read_group, draft);
+    const grobo_i_draft *draft = target;
+    const grobo_i_event *event;
+    int result = grobo_i_peek(events, &event);
+    if (result == 0 && draft->n_joints == 0) {
+        return grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "order", event->place,
+                              "groups come below the joints");
+    }
+    return result < 0 ? result : grobo_i_read_list(events, "groups", read_group, target);
 }
 
 static int read_link(grobo_i_events *events, void *target)

@@ -30,6 +30,33 @@ static bool sync_read(const grobo_servo_model *servo)
     return true;
 }
 
+/* Firmware that answers, of the models where that is known, the two XL330 (issue
+ * pollen-robotics/rustypot#122). What does not answer is silent. */
+#define FAST_FIRMWARE 46
+
+static bool fast_read(const grobo_servo_model *servo, int32_t firmware)
+{
+    return (servo->number == 1200 || servo->number == 1190) && firmware >= FAST_FIRMWARE;
+}
+
+/* Each has its error, its id, its data and a CRC; of the last one the CRC is the packet's. */
+static bool fast_part(const grobo_packet *reply, int n, int k, grobo_packet *part)
+{
+    enum { HEAD_BYTES = 2, CRC_BYTES = 2 };
+    size_t bytes = reply->data_bytes + CRC_BYTES, each = bytes / (size_t)n;
+    if (each * (size_t)n != bytes || each <= HEAD_BYTES + CRC_BYTES) {
+        return false;
+    }
+    const uint8_t *at = reply->data + (size_t)k * each;
+    *part = *reply;
+    part->flags = at[0];
+    part->refused = (at[0] & ~(unsigned)GROBO_DXL2_ALERT) != GROBO_DXL2_DONE;
+    part->id = at[1];
+    part->data = at + HEAD_BYTES;
+    part->data_bytes = each - HEAD_BYTES - CRC_BYTES;
+    return true;
+}
+
 /*
  * A profile of this duration, without ramps, is a straight way in time. A set bit of the register
  * shutdown that occurs cuts the torque until a reboot (emanual shutdown).
@@ -50,6 +77,8 @@ static const grobo_i_family family = {
     .resets = true,
     .reboots = true,
     .sync_read = sync_read,
+    .fast_read = fast_read,
+    .fast_part = fast_part,
     .pace = GROBO_I_PACE_PROFILE,
 };
 

@@ -37,16 +37,18 @@ static int joints_of_part(const grobo_model *model, grobo_joint_mask joints, int
                           uint8_t *list)
 {
     uint8_t joint_of[GROBO_SERVO_ID_MAX + 1]; /* by motor, the joint + 1; 0: none */
-    int highest = -1, skip = part * capacity, n = 0;
+    int highest = 0, skip = part * capacity, n = 0;
     if (skip > 0 && grobo_joints_count(joints) <= skip) {
         return 0;
     }
-    memset(joint_of, 0, sizeof joint_of);
+    for (int j = 0; j < model->n_joints; j++) {
+        int motor = model->joints[j].motor;
+        highest = motor > highest ? motor : highest;
+    }
+    memset(joint_of, 0, (size_t)highest + 1);
     for (int j = 0; j < model->n_joints; j++) {
         if ((joints & GROBO_JOINT_BIT(j)) != 0) {
-            int motor = model->joints[j].motor;
-            joint_of[motor] = (uint8_t)(j + 1);
-            highest = motor > highest ? motor : highest;
+            joint_of[model->joints[j].motor] = (uint8_t)(j + 1);
         }
     }
     for (int motor = 0; motor <= highest && n < capacity; motor++) {

@@ -33,6 +33,7 @@ int grobo_i_rs30x_inspect(const grobo_driver *self, void *ctx, const uint8_t *fr
     .posture = grobo_i_rs30x_posture, .torque = grobo_i_rs30x_torque,                              \
     .sense = grobo_i_rs30x_sense, .parse = grobo_i_rs30x_parse,                                    \
     .write_kind = grobo_i_rs30x_write_kind, .registers = grobo_i_rs30x_registers,                  \
-    .command = grobo_i_rs30x_command, .inspect = grobo_i_rs30x_inspect
+    .command = grobo_i_rs30x_command, .inspect = grobo_i_rs30x_inspect,                            \
+    .timed_posture = grobo_i_rs30x_posture
 
 #endif

@@ -339,10 +339,9 @@ static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kin
     return read_span(self, self->model->joints[joint].motor, s, exchange);
 }
 
-static int sense_many(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
-                      grobo_sense_kind kind, grobo_exchange *exchange)
+static int ask_many(const grobo_driver *self, grobo_dxl2_code instruction, grobo_joint_mask joints,
+                    grobo_sense_kind kind, grobo_exchange *exchange)
 {
-    (void)ctx;
     uint8_t ids[GROBO_JOINTS_MAX];
     size_t n = 0;
     span s = {0, 0};
@@ -353,12 +352,29 @@ static int sense_many(const grobo_driver *self, void *ctx, grobo_joint_mask join
         }
     }
     const grobo_dxl2_packet packet = {.id = GROBO_DXL2_ID_ALL,
-                                      .instruction = GROBO_DXL2_SYNC_READ,
+                                      .instruction = (uint8_t)instruction,
                                       .address = (uint16_t)s.from,
                                       .length = (uint16_t)(s.to - s.from),
                                       .data = ids,
                                       .data_bytes = n};
     return finish(self, &packet, exchange);
+}
+
+static int sense_many(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
+                      grobo_sense_kind kind, grobo_exchange *exchange)
+{
+    (void)ctx;
+    return ask_many(self, GROBO_DXL2_SYNC_READ, joints, kind, exchange);
+}
+
+static int sense_fast(const grobo_driver *self, void *ctx, grobo_sense_kind kind,
+                      grobo_exchange *exchange)
+{
+    (void)ctx;
+    int result = ask_many(self, GROBO_DXL2_FAST_SYNC_READ, GROBO_JOINTS_ALL(self->model->n_joints),
+                          kind, exchange);
+    bool too_long = result >= 0 && exchange->reply.bytes > GROBO_FRAME_MAX_BYTES;
+    return too_long ? GROBO_ERR_CAP : result;
 }
 
 /* ---- registers and commands ------------------------------------------------------------------ */
@@ -431,5 +447,6 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
     int result = grobo_i_table_make(&made, model, protocol, family);
     made.watchdog = family->watchdog_us > 0 ? watchdog : NULL;
     made.sense_many = result >= 0 && reads_alike(&made) ? sense_many : NULL;
+    made.sense_fast = made.sense_many != NULL && family->fast_read != NULL ? sense_fast : NULL;
     return grobo_i_table_give(driver, &made, result);
 }

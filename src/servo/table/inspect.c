@@ -115,6 +115,22 @@ static int64_t time_of(const grobo_driver *self, int joint, const share *s, doub
     return (int64_t)(grobo_deg_from_rad(fabs(way_rad)) / dps * 1e6);
 }
 
+/* Whether a frame may write all of this: no setting hides behind a goal, nor a register that no
+ * table knows, nor the limit of a gripper's torque. */
+static bool may_write(const grobo_joint *joint, const grobo_servo_model *servo, const share *s)
+{
+    int32_t counts;
+    const grobo_servo_register *limit =
+        joint->torque_limit_pct > 0 ? grobo_i_table_limit(joint, servo, &counts) : NULL;
+    for (int at = s->address; at < s->address + (int)s->n; at++) {
+        const grobo_servo_register *reg = grobo_servo_register_at(servo, (uint16_t)at);
+        if (reg == NULL || reg == limit || kind_of_register(reg) == GROBO_WRITE_SETTING) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* Only what goes with a goal may be written with one; each value whole. */
 static int inspect_joint(const grobo_driver *self, const share *s, int joint, grobo_target *target,
                          grobo_joint_mask *torqued)
@@ -126,7 +142,8 @@ static int inspect_joint(const grobo_driver *self, const share *s, int joint, gr
     bool has_torque = value_of(servo, s, GROBO_ROLE_TORQUE, &torque);
     bool has_goal = value_of(servo, s, GROBO_ROLE_GOAL, &goal);
     grobo_write_kind kind = kind_of_run(servo, s->address, (int)s->n);
-    if (kind == GROBO_WRITE_SETTING || (kind == GROBO_WRITE_MOTOR && !has_torque && !has_goal)) {
+    if (!may_write(&self->model->joints[joint], servo, s) ||
+        (kind == GROBO_WRITE_MOTOR && !has_torque && !has_goal)) {
         return GROBO_ERR_UNSUPPORTED;
     }
     if (has_torque) {

@@ -123,17 +123,32 @@ int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const gr
     (void)ctx;
     const grobo_i_family *family = self->family;
     const grobo_joint *moved = &self->model->joints[joint];
+    grobo_packet part;
+    if (reply->id != moved->motor && family->fast_part != NULL) {
+        if (!family->fast_part(reply, self->model->n_joints, joint, &part) ||
+            part.id != moved->motor) {
+            return GROBO_ERR_MISMATCH;
+        }
+        reply = &part;
+    }
+    if (reply->refused) {
+        return GROBO_ERR_NACK;
+    }
     const grobo_i_block b = {.servo = grobo_i_table_servo(self, joint),
                              .address = reply->address,
                              .data = reply->data,
                              .n = reply->data_bytes};
-    int32_t model;
+    int32_t model, firmware;
     if (!plausible(family, moved, &b, reply->flags)) {
         return GROBO_ERR_MISMATCH;
     }
     bool whole = value_of(&b, GROBO_ROLE_MODEL, &model); /* the first reading of all */
     int result = whole ? grobo_i_table_setup(family, moved, &b, state) : GROBO_OK;
     state->flags = reply->flags;
+    if (family->fast_read != NULL && value_of(&b, GROBO_ROLE_FIRMWARE, &firmware)) {
+        state->fast = family->fast_read(b.servo, firmware);
+        state->valid |= GROBO_FIELD_FAST;
+    }
     take_angles(self, joint, &b, state);
     take_measures(&b, state);
     take_torque(family, &b, state);

@@ -276,6 +276,10 @@ void app_print_json(json_t *object)
 json_t *app_json_text(const char *text)
 {
     json_t *string = json_string(text);
+    size_t n = strlen(text);
+    for (size_t cut = 1; !string && cut < 4 && cut < n; cut++) {
+        string = json_stringn(text, n - cut); /* of the last character some bytes were cut off */
+    }
     if (!string) { /* not UTF-8: keep what can be shown */
         char *copy = strdup(text);
         for (char *c = copy; c && *c; c++) {

@@ -38,6 +38,7 @@ typedef struct cli_option {
     double min, max; /* of a number, both included */
     bool real;       /* a number may have a fraction */
     bool optional;   /* the word of a choice may be missing: taken if the next word is one */
+    bool whole;      /* not known by its beginning alone, which is an option of other commands */
 } cli_option;
 
 /* Rows of a table of options; letter 0: none. */

@@ -156,7 +156,7 @@ static const cli_option *find_name(parser *p, const char *name, size_t length, c
     *rival = NULL;
     for (size_t i = 0; (o = nth_option(p, i, &at)) != NULL; i++) {
         bool whole = strlen(o->name) == length;
-        if (length == 0 || strncmp(o->name, name, length) != 0) {
+        if (length == 0 || strncmp(o->name, name, length) != 0 || (o->whole && !whole)) {
             continue;
         }
         if (found && !whole) {

@@ -23,8 +23,13 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
         OPTION_FLAG("verbose", 'v', "more: the bytes of a failure; twice: every byte"),
     [GLOBAL_TRACE] =
         OPTION_TEXT("trace", 0, "FILE", "write every byte with its time and direction, as pcapng"),
-    [GLOBAL_TIMEOUT] = OPTION_WHOLE("timeout", 0, "MS", 1, 60000,
-                                    "wait so long for a reply (computed from the baud rate)"),
+    [GLOBAL_TIMEOUT] = {.name = "timeout", /* --time is how long a move takes, for some commands */
+                        .kind = CLI_NUMBER,
+                        .value = "MS",
+                        .help = "wait so long for a reply (computed from the baud rate)",
+                        .min = 1,
+                        .max = 60000,
+                        .whole = true},
     [GLOBAL_RETRIES] = OPTION_WHOLE("retries", 0, "N", 0, 20, "ask again so often (2)"),
     [GLOBAL_ON_EXIT] = OPTION_CHOICE("on-exit", 0, "off|hold|sit",
                                      "what the servos do when the command ends or dies (hold)"),

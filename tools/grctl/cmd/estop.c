@@ -182,10 +182,8 @@ static bool take_port(conn *c, target *t)
 /* With the port: the session may have carried it out when it was opened. */
 static int stop_here(conn *c, const target *t)
 {
-    int error =
-        c->estop_ended
-            ? c->estop_result
-            : conn_wait_shown(c, grobo_robot_estop(grobo_session_robot(c->session)), "estop", 0);
+    int error = c->estop_ended ? c->estop_result
+                               : conn_wait_shown(c, grobo_robot_estop(c->robot), "estop", 0);
     return error ? fail_verify(t, "", error) : succeed(t, "");
 }
 

@@ -42,7 +42,8 @@ const cli_command cmd_first_contact = {
         "\n"
         "It writes PREFIX.txt and PREFIX.json, what was found and whether it is as assumed, and\n"
         "a trace of each part, to be sent to the authors. The exit status is 1 where something\n"
-        "is not as assumed. Answers may be lines of standard input, with --yes.\n",
+        "is not as assumed. With --yes nobody is asked: answers are lines of standard input, or\n"
+        "no.\n",
     .example = "  grctl first-contact gripper\n  grctl -d sim --robot so101 first-contact\n",
     COMMAND_OPTIONS(options),
     .run = run,

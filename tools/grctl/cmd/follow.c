@@ -343,8 +343,7 @@ static int open_follower(pair *p)
         return status;
     }
     c->ctx = p;
-    int error = conn_wait(
-        c, grobo_robot_sense(grobo_session_robot(c->session), p->joints, GROBO_SENSE_ALL));
+    int error = conn_wait(c, grobo_robot_sense(c->robot, p->joints, GROBO_SENSE_ALL));
     return error ? conn_fail(c, error, "follow") : 0;
 }
 
@@ -361,11 +360,9 @@ static int open_leader(pair *p)
     }
     c->ctx = p;
     app_note(p->a, "torque of the leader goes off: hold it; what is raised falls");
-    int error =
-        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_ALL));
+    int error = conn_wait(c, grobo_robot_sense(c->robot, all, GROBO_SENSE_ALL));
     if (!error) {
-        error = conn_wait(
-            c, grobo_robot_torque(grobo_session_robot(c->session), all, GROBO_TORQUE_OFF));
+        error = conn_wait(c, grobo_robot_torque(c->robot, all, GROBO_TORQUE_OFF));
     }
     if (error) {
         return conn_fail(c, error, "follow: leader");
@@ -386,8 +383,7 @@ static int hold(pair *p)
 {
     conn *c = &p->follower.c;
     c->moving = true;
-    int error = conn_wait(
-        c, grobo_robot_torque(grobo_session_robot(c->session), p->joints, GROBO_TORQUE_ON));
+    int error = conn_wait(c, grobo_robot_torque(c->robot, p->joints, GROBO_TORQUE_ON));
     if (error) {
         return conn_fail(c, error, "follow");
     }
@@ -431,7 +427,7 @@ static int run(app *a)
     if (!status) {
         status = match(&p);
     }
-    p.leader.a.line.global[GLOBAL_TRACE].given = 0;
+    p.leader.a.line.global[GLOBAL_TRACE] = (cli_value){.text = NULL}; /* it is the follower's */
     if (!status) {
         status = open_follower(&p);
     }

@@ -110,6 +110,9 @@ static void on_draw(evutil_socket_t fd, short what, void *ctx)
     const app *a = v->all.a;
     (void)fd;
     (void)what;
+    if (a->tty_out && output_is_behind(stdout)) {
+        return; /* the next table is as good */
+    }
     if (!a->json) {
         app_print("%srobot             state       torque   hottest               supply    stop\n",
                   a->tty_out ? "\033[H\033[J" : "");

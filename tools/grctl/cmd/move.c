@@ -10,6 +10,8 @@
 
 enum { OPT_TIME };
 enum { MOVE_MS = 1000, INIT_MS = 2000, LONGEST_MS = 163830 };
+/* More than servos stay behind under a load: something is in the way. */
+static const double there_deg = 5;
 
 static const cli_option init_options[] = {
     [OPT_TIME] = OPTION_WHOLE("time", 't', "MS", 0, LONGEST_MS,
@@ -29,8 +31,12 @@ static void report(const conn *c, const grobo_posture *target)
         app_print_json(json_pack("{s:o,s:o}", "joints", render_joints_json(c, target->set),
                                  "max_error_deg", app_json_number(joint < 0 ? NAN : worst, 2)));
     } else if (joint >= 0) {
-        app_note(c->a, "there; largest error %.1f deg (%s)", worst,
-                 grobo_robot_driver(c->robot)->model->joints[joint].name);
+        const char *name = grobo_robot_driver(c->robot)->model->joints[joint].name;
+        if (worst < there_deg) {
+            app_note(c->a, "there; largest error %.1f deg (%s)", worst, name);
+        } else {
+            app_note(c->a, "not there: largest error %.1f deg (%s); is it blocked?", worst, name);
+        }
     }
 }
 
@@ -146,6 +152,10 @@ static int pose_of_joint(app *a, const char *text, grobo_posture *target)
     }
     if (text[length] != '=' || !cli_read_number(text + length + 1, &deg)) {
         return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not JOINT=DEG", text);
+    }
+    if (target->set & GROBO_JOINT_BIT(joint)) {
+        return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s': %s is there twice", text,
+                        app_model(a)->joints[joint].name);
     }
     grobo_posture_set_deg(target, joint, deg);
     return 0;

@@ -222,11 +222,9 @@ static int start(conn *c, show *s)
     grobo_robot_progress(c->robot, &before);
     s->items = before.item;
     s->following.joint = -1;
-    int error = conn_wait(c, grobo_robot_play(grobo_session_robot(c->session), &s->list.clip[0],
-                                              &s->list.options[0]));
+    int error = conn_wait(c, grobo_robot_play(c->robot, &s->list.clip[0], &s->list.options[0]));
     for (int i = 1; i < s->list.n && error >= 0; i++) {
-        error = grobo_robot_enqueue(grobo_session_robot(c->session), &s->list.clip[i],
-                                    &s->list.options[i]);
+        error = grobo_robot_enqueue(c->robot, &s->list.clip[i], &s->list.options[i]);
     }
     return error < 0 ? error : 0;
 }
@@ -281,7 +279,7 @@ static int play(conn *c, show *s)
     }
     c->moving = false;
     conn_watch(c, false);
-    error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
+    error = conn_wait(c, grobo_robot_sense(c->robot, all, GROBO_SENSE_FULL));
     if (error && c->job.failed == 0) {
         return conn_fail(c, error, "play");
     }

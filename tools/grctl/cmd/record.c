@@ -107,8 +107,7 @@ static int read_limp(recorder *r, bool *read)
     int error = GROBO_OK;
     *read = true;
     if (r->limp) {
-        error = conn_wait(
-            c, grobo_robot_sense(grobo_session_robot(c->session), r->limp, GROBO_SENSE_POSITION));
+        error = conn_wait(c, grobo_robot_sense(c->robot, r->limp, GROBO_SENSE_POSITION));
     }
     if (conn_is_of_reply(error)) {
         *read = false;
@@ -250,7 +249,7 @@ static int play(recorder *r)
     grobo_play_progress end = {0};
     r->playing = (play_keys){.c = c, .speed_pct = 100};
     c->moving = true;
-    int error = conn_wait(c, grobo_robot_play(grobo_session_robot(c->session), &r->clip, NULL));
+    int error = conn_wait(c, grobo_robot_play(c->robot, &r->clip, NULL));
     if (!error) {
         error = conn_wait_until(c, has_played);
     }
@@ -273,8 +272,7 @@ static int let_fall(recorder *r, grobo_joint_mask joints)
     int n = grobo_joints_count(joints);
     app_note(c->a, "torque of %d joint%s goes off: hold the robot; what is raised falls", n,
              n == 1 ? "" : "s");
-    return conn_wait(c,
-                     grobo_robot_torque(grobo_session_robot(c->session), joints, GROBO_TORQUE_OFF));
+    return conn_wait(c, grobo_robot_torque(c->robot, joints, GROBO_TORQUE_OFF));
 }
 
 static int play_kept(recorder *r)
@@ -438,8 +436,7 @@ static int give(recorder *r)
     conn *c = &r->c;
     grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
     grobo_joint_mask hold, switched;
-    int error =
-        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_ALL));
+    int error = conn_wait(c, grobo_robot_sense(c->robot, all, GROBO_SENSE_ALL));
     if (error < 0) {
         return error;
     }
@@ -450,7 +447,7 @@ static int give(recorder *r)
     }
     r->held = hold;
     r->limp = r->joints & ~hold;
-    return hold ? grobo_robot_free(grobo_session_robot(c->session), hold, true) : error;
+    return hold ? grobo_robot_free(c->robot, hold, true) : error;
 }
 
 /* Until somebody says so. Returns why it ended before, or 0. */
@@ -480,7 +477,7 @@ static int teach(recorder *r)
     conn_forget(r->look);
     conn_forget(r->live);
     if (!error && r->held) { /* out of the hands: they hold where they are */
-        error = conn_wait(c, grobo_robot_free(grobo_session_robot(c->session), r->held, false));
+        error = conn_wait(c, grobo_robot_free(c->robot, r->held, false));
     }
     return error;
 }

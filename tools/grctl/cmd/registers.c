@@ -269,8 +269,7 @@ static int read_torque(conn *c, const servo_change *what, const grobo_servo_regi
     if ((error && told) || joint < 0) {
         return error;
     }
-    error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), GROBO_JOINT_BIT(joint),
-                                           GROBO_SENSE_FULL));
+    error = conn_wait(c, grobo_robot_sense(c->robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
     grobo_joint_info i;
     if (!told && grobo_robot_joint(c->robot, joint, &i) == 0) {
         *torque = i.state.valid & GROBO_FIELD_TORQUE ? (int32_t)i.state.torque : GROBO_TORQUE_ON;

@@ -40,8 +40,7 @@ static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, co
     if (mode == GROBO_TORQUE_ON) {
         c->moving = true;
     }
-    int error = conn_wait_shown(
-        c, grobo_robot_torque(grobo_session_robot(c->session), joints, mode), "servo", 0);
+    int error = conn_wait_shown(c, grobo_robot_torque(c->robot, joints, mode), "servo", 0);
     if (error == GROBO_ERR_UNSUPPORTED && mode == GROBO_TORQUE_BRAKE) {
         return app_fail(c->a, EXIT_SAFETY, grobo_error_name(error),
                         "servo: the servos of %s have no brake; on holds, off lets go",

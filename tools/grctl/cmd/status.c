@@ -30,8 +30,7 @@ static void show(conn *c, grobo_joint_mask joints)
 /* One round; the exit status: a joint that stays silent is shown, and makes it 1. */
 static int sense_and_show(conn *c, grobo_joint_mask joints)
 {
-    int error =
-        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), joints, GROBO_SENSE_ALL));
+    int error = conn_wait(c, grobo_robot_sense(c->robot, joints, GROBO_SENSE_ALL));
     if (error && c->job.failed == 0) {
         return conn_fail(c, error, "status");
     }

@@ -60,8 +60,7 @@ int change_write(conn *c, const servo_change *what)
 
 static int command(conn *c, int id, grobo_servo_command what, const char *doing)
 {
-    return conn_wait_shown(c, grobo_robot_command(grobo_session_robot(c->session), id, what), doing,
-                           0);
+    return conn_wait_shown(c, grobo_robot_command(c->robot, id, what), doing, 0);
 }
 
 int change_keep(conn *c, const servo_change *what)

@@ -509,7 +509,7 @@ static int take_over(conn *c, bool check)
         error = conn_wait_until(c, is_idle);
     }
     if (!error && check && !c->link->answered) {
-        error = conn_wait(c, grobo_robot_check(grobo_session_robot(c->session)));
+        error = conn_wait(c, grobo_robot_check(c->robot));
     }
     if (error && !is_interrupted(c)) {
         return fail_open(c, error);
@@ -694,7 +694,7 @@ static void suspend(conn *c)
         conn *u = link->user;
         if (is_to_suspend(u)) {
             u->leaving = true;
-            int job = grobo_robot_exit(grobo_session_robot(u->session), GROBO_EXIT_HOLD);
+            int job = grobo_robot_exit(u->robot, GROBO_EXIT_HOLD);
             u->waiting_for = job > 0 ? job : 0;
         }
     }
@@ -758,8 +758,7 @@ static int carry_out_policy(conn *c, int status)
         return EXIT_DONE;
     }
     c->leaving = true;
-    error =
-        conn_wait_shown(c, grobo_robot_exit(grobo_session_robot(c->session), policy), "leaving", 0);
+    error = conn_wait_shown(c, grobo_robot_exit(c->robot, policy), "leaving", 0);
     if (error && !c->signal && !app_global(c->a, GLOBAL_ON_EXIT)->given) {
         return status; /* nobody asked for it, and why the command failed has been said */
     }
@@ -786,7 +785,7 @@ static void give_back(conn *c)
         return;
     }
     if (grobo_robot_job(c->robot) != GROBO_JOB_NONE) {
-        grobo_robot_cancel(grobo_session_robot(c->session));
+        grobo_robot_cancel(c->robot);
     }
     if (serial && grobo_serial_baud(serial) != baud_bps) {
         grobo_serial_set_baud(serial, baud_bps);

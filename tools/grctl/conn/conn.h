@@ -149,6 +149,9 @@ void conn_forget(struct event *event);
  */
 int conn_fail(conn *c, int error, const char *doing);
 
+/* What a trip measured, as " (72 deg C)" behind its name; "" where nothing was. */
+void conn_trip_value(const grobo_trip_info *t, char *text, size_t text_bytes);
+
 /* Whether an error says that a reply did not come, or came broken. */
 bool conn_is_of_reply(int error);
 

@@ -77,15 +77,27 @@ static const char *trip_unit(grobo_trip trip)
     return "";
 }
 
+void conn_trip_value(const grobo_trip_info *t, char *text, size_t text_bytes)
+{
+    /* A servo that cut its torque may not say how hot it is. One that a goal wakes is not sent the
+     * next one where nothing came from it in time, though no reading of it was lost. */
+    bool untold = t->value == 0 && t->trip == GROBO_TRIP_OVERHEATED;
+    bool unheard = t->value == 0 && t->trip == GROBO_TRIP_LOST_REPLIES;
+    text[0] = '\0';
+    if (unheard) {
+        snprintf(text, text_bytes, "%s", _(" (no answer in time)"));
+    } else if (*trip_unit(t->trip) && !untold) {
+        snprintf(text, text_bytes, " (%.4g%s)", t->value, trip_unit(t->trip));
+    }
+}
+
 /* The engine has stopped by itself, c->trip says why. */
 static int fail_trip(conn *c, const char *doing)
 {
     const grobo_trip_info *t = &c->trip;
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
-    char value[48] = "";
-    if (*trip_unit(t->trip)) {
-        snprintf(value, sizeof value, " (%.4g%s)", t->value, trip_unit(t->trip));
-    }
+    char value[48];
+    conn_trip_value(t, value, sizeof value);
     if (t->joint >= 0 && t->joint < model->n_joints) {
         return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s at motor %d (%s)", doing,
                              _(grobo_trip_name(t->trip)), value, model->joints[t->joint].motor,
@@ -186,6 +198,14 @@ static int fail_limit(conn *c, int joint, const char *prefix, const char *who)
                     grobo_deg_from_rad(info.state.high_rad));
 }
 
+/* It goes where another program has sent it, or falls. */
+static int fail_adrift(conn *c, const char *prefix, const char *who)
+{
+    return app_fail(c->a, app_status_of(GROBO_ERR_STATE), grobo_error_name(GROBO_ERR_STATE),
+                    "%s: %s%s moves, and not by this program: wait, or 'grctl stop'",
+                    conn_device(c), prefix, who);
+}
+
 int conn_fail_job(conn *c, int error, const char *prefix)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
@@ -210,6 +230,9 @@ int conn_fail_job(conn *c, int error, const char *prefix)
     }
     if (error == GROBO_ERR_LIMIT) {
         return fail_limit(c, joint, prefix, who);
+    }
+    if (error == GROBO_ERR_STATE) {
+        return fail_adrift(c, prefix, who);
     }
     return app_fail_error(c->a, app_status_of(error), error, "%s: %s%s", conn_device(c), prefix,
                           who);

@@ -151,16 +151,6 @@ size_t pcapng_make_chunk(uint8_t *packet, int64_t time_us, pcapng_direction dire
     return finish(&b);
 }
 
-int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, const uint8_t *bytes,
-                       size_t size)
-{
-    uint8_t packet[PCAPNG_PACKET_BYTES];
-    if (size == 0 || size > PCAPNG_CHUNK_BYTES) {
-        return GROBO_ERR_ARG;
-    }
-    return write_all(to, packet, pcapng_make_chunk(packet, time_us, direction, bytes, size));
-}
-
 /* ---- reading -------------------------------------------------------------------------------- */
 
 static int fail(pcapng_reader *r, int error, const char *format, ...)

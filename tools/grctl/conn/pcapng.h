@@ -53,9 +53,6 @@ int pcapng_write_head(FILE *to, const char *program, const char *comment,
 /* A chunk of 1..PCAPNG_CHUNK_BYTES bytes; time since 1970 in UTC. */
 size_t pcapng_make_chunk(uint8_t *packet, int64_t time_us, pcapng_direction direction,
                          const uint8_t *bytes, size_t size);
-/* The same into a file. */
-int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, const uint8_t *bytes,
-                       size_t size);
 
 /* ---- reading -------------------------------------------------------------------------------- */
 

@@ -15,7 +15,7 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data)
         .id = (uint8_t)id, .address = (uint16_t)address, .length = (uint16_t)length};
     c->data = data;
     c->data_bytes = (size_t)length;
-    int error = conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
+    int error = conn_wait(c, grobo_robot_registers(c->robot, &io));
     c->data = NULL; /* it is the caller's */
     return error;
 }
@@ -50,7 +50,7 @@ int servos_put(conn *c, int id, const grobo_servo_model *servo, const grobo_serv
                             .address = from,
                             .length = (uint16_t)(length ? length : reg->bytes),
                             .data = bytes};
-    return conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
+    return conn_wait(c, grobo_robot_registers(c->robot, &io));
 }
 
 int servos_model(conn *c, int id, const grobo_servo_model **servo)

@@ -119,8 +119,8 @@ static void on_settled(void *ctx, const ledger_entry *entry)
     }
 }
 
-/* The robot's joints have names where its servos are of the family. */
-talk decoder_talk(const app *a, const char *name)
+/* Who talks on a line of this family: the robot's joints, where its servos are of it. */
+static talk talk_of(const app *a, const char *name)
 {
     const grobo_driver *driver = app_driver(a);
     talk t = {.dialect = dialect_named(name)};
@@ -139,7 +139,7 @@ talk decoder_talk(const app *a, const char *name)
 
 void decoder_init(decoder *d, app *a, unsigned wiring, const char *name)
 {
-    *d = (decoder){.a = a, .talk = decoder_talk(a, name)};
+    *d = (decoder){.a = a, .talk = talk_of(a, name)};
     for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
         frames_init(&d->lines[side], (frames_side)side, wiring, on_frame, d);
         frames_set_talk(&d->lines[side], &d->talk);

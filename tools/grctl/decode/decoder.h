@@ -26,9 +26,6 @@ typedef struct decoder {
  * name: the family. */
 void decoder_init(decoder *d, app *a, unsigned wiring, const char *name);
 
-/* Who talks on a line of this family: the robot's joints, where its servos are of it. */
-talk decoder_talk(const app *a, const char *name);
-
 void decoder_feed(decoder *d, frames_side side, int64_t time_us, const uint8_t *bytes, size_t n);
 
 /* Nothing more comes. */

@@ -8,9 +8,9 @@ enum { SPEED_STEP_PCT = 10 };
 static void toggle_pause(conn *c)
 {
     if (grobo_robot_play_state(c->robot) == GROBO_SEQUENCER_PAUSED) {
-        grobo_robot_resume(grobo_session_robot(c->session));
+        grobo_robot_resume(c->robot);
     } else {
-        grobo_robot_pause(grobo_session_robot(c->session));
+        grobo_robot_pause(c->robot);
     }
 }
 

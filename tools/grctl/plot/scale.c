@@ -73,7 +73,7 @@ double plot_scale_at(const plot_scale *scale, double value)
     return (value - scale->low) / (scale->high - scale->low) * scale->pixels;
 }
 
-int plot_scale_ticks(const plot_scale *scale)
+static int ticks(const plot_scale *scale)
 {
     if (scale->step <= 0) {
         return 0;
@@ -82,7 +82,7 @@ int plot_scale_ticks(const plot_scale *scale)
            1;
 }
 
-double plot_scale_tick(const plot_scale *scale, int i)
+static double tick_at(const plot_scale *scale, int i)
 {
     double tick = (ceil(scale->low / scale->step - 1e-9) + i) * scale->step;
     return tick == 0 ? 0 : tick; /* no -0 */
@@ -91,13 +91,14 @@ double plot_scale_tick(const plot_scale *scale, int i)
 /* A number with a true minus sign. */
 static void format(double value, int decimals, const char *unit, char *text, size_t capacity)
 {
-    char digits[48];
+    char digits[24]; /* what is longer is no label */
     snprintf(digits, sizeof digits, "%.*f", decimals, fabs(value));
     snprintf(text, capacity, "%s%s%s", value < 0 ? "−" : "", digits, unit);
 }
 
-void plot_scale_text(const plot_scale *scale, double value, const char *unit, char *text,
-                     size_t capacity)
+/* A tick's value as text with the decimals its step needs. */
+static void tick_text(const plot_scale *scale, double value, const char *unit, char *text,
+                      size_t capacity)
 {
     int decimals = (int)ceil(-log10(scale->step) - 1e-9);
     format(value, decimals > 0 ? decimals : 0, unit, text, capacity);
@@ -112,15 +113,15 @@ void plot_degrees(double angle_deg, const char *unit, char *text, size_t capacit
 void plot_grid(svg *s, const svg_box *box, const plot_scale *time, const plot_scale *value,
                const char *unit, const char *zero)
 {
-    for (int i = 0; i < plot_scale_ticks(time); i++) {
-        double x = box->x + plot_scale_at(time, plot_scale_tick(time, i));
+    for (int i = 0; i < ticks(time); i++) {
+        double x = box->x + plot_scale_at(time, tick_at(time, i));
         svg_line(s, "grid", x, box->y, x, box->y + box->height);
     }
-    for (int i = 0; i < plot_scale_ticks(value); i++) {
+    for (int i = 0; i < ticks(value); i++) {
         char text[32];
-        double tick = plot_scale_tick(value, i);
+        double tick = tick_at(value, i);
         double y = box->y + box->height - plot_scale_at(value, tick);
-        plot_scale_text(value, tick, unit, text, sizeof text);
+        tick_text(value, tick, unit, text, sizeof text);
         svg_line(s, tick == 0 ? zero : "grid", box->x, y, box->x + box->width, y);
         svg_text(s, "tick", box->x - 5, y + 3.5, "end", text);
     }
@@ -128,10 +129,10 @@ void plot_grid(svg *s, const svg_box *box, const plot_scale *time, const plot_sc
 
 void plot_time_texts(svg *s, const plot_scale *time, double x, double y)
 {
-    for (int i = 0; i < plot_scale_ticks(time); i++) {
+    for (int i = 0; i < ticks(time); i++) {
         char text[32];
-        double tick = plot_scale_tick(time, i);
-        plot_scale_text(time, tick, " s", text, sizeof text);
+        double tick = tick_at(time, i);
+        tick_text(time, tick, " s", text, sizeof text);
         svg_text(s, "tick", x + plot_scale_at(time, tick), y, "middle", text);
     }
 }

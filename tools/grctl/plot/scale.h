@@ -17,11 +17,6 @@ plot_scale plot_angle_scale(const plot_curve *curve, double pixels, bool slim);
 
 /* Pixels from the low end. */
 double plot_scale_at(const plot_scale *scale, double value);
-int plot_scale_ticks(const plot_scale *scale);
-double plot_scale_tick(const plot_scale *scale, int i);
-/* A tick's value as text with the decimals its step needs. */
-void plot_scale_text(const plot_scale *scale, double value, const char *unit, char *text,
-                     size_t capacity);
 /* "−12.5" and a unit; whole degrees where they are. */
 void plot_degrees(double angle_deg, const char *unit, char *text, size_t capacity);
 

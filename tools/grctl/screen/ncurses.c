@@ -35,11 +35,19 @@ static struct termios found_modes, screen_modes;
 static WINDOW *input; /* a pad: reading a key from it draws nothing */
 static attr_t attributes[SCREEN_STYLES];
 
+/* It has no name, so that it is gone with us; /tmp may be read-only, or not there. */
+static bool have_picture(void)
+{
+    picture = picture ? picture : os_temporary();
+    return picture != NULL;
+}
+
 bool screen_possible(void)
 {
     int found;
     return isatty(STDIN_FILENO) && isatty(STDOUT_FILENO) && tcgetpgrp(STDIN_FILENO) == getpgrp() &&
-           setupterm(NULL, STDOUT_FILENO, &found) == OK && cursor_address && clear_screen;
+           setupterm(NULL, STDOUT_FILENO, &found) == OK && cursor_address && clear_screen &&
+           have_picture();
 }
 
 static void choose_attributes(bool color)
@@ -122,8 +130,7 @@ static bool set_up(bool color)
 {
     int fd = dup(STDOUT_FILENO);
     drawn = fd < 0 ? NULL : fdopen(fd, "w");
-    picture = os_temporary();
-    if (!drawn || !picture || tcgetattr(STDIN_FILENO, &found_modes) != 0) {
+    if (!drawn || !have_picture() || tcgetattr(STDIN_FILENO, &found_modes) != 0) {
         return false;
     }
     terminal = newterm(NULL, drawn, stdin);

@@ -59,7 +59,8 @@ const grobo_driver *family_driver(const grobo_robot_family *family)
     return init(&driver, &model) < 0 ? NULL : &driver;
 }
 
-const grobo_robot_family *family_of_driver(const grobo_driver *driver)
+/* The family of a driver's servos; behind a board are RS30x. NULL: one of the driver's own. */
+static const grobo_robot_family *family_of_driver(const grobo_driver *driver)
 {
     static const grobo_protocol *known[16]; /* of the families */
     const grobo_protocol *wanted =

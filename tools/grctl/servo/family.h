@@ -20,9 +20,6 @@ int family_usual_bps(const grobo_robot_family *family, size_t i);
  */
 const grobo_driver *family_driver(const grobo_robot_family *family);
 
-/* The family of a driver's servos; behind a board are RS30x. NULL: one of the driver's own. */
-const grobo_robot_family *family_of_driver(const grobo_driver *driver);
-
 /* The family that has a servo; NULL: none. */
 const grobo_robot_family *family_of_servo(const grobo_servo_model *servo);
 

@@ -14,9 +14,14 @@ int ask_signal(void)
     return ended_by;
 }
 
+static bool no_questions(const app *a)
+{
+    return app_global(a, GLOBAL_YES)->given;
+}
+
 bool ask_can(app *a, const char *instead, int *status)
 {
-    if (a->tty_in || app_global(a, GLOBAL_YES)->given) {
+    if (a->tty_in || no_questions(a)) {
         setvbuf(stdin, NULL, _IONBF, 0); /* what is buffered cannot be waited for */
         return true;
     }
@@ -27,30 +32,37 @@ bool ask_can(app *a, const char *instead, int *status)
     return false;
 }
 
-bool ask_line(const app *a, const char *question, const char *usual, char *answer)
+/* A line of standard input, without its end. False: there is none. */
+static bool read_line(char *answer)
 {
-    bool came = false;
-    if (!ended_by) {
-        output_flush();
-        output_complain("%s [%s] ", _(question), usual);
-        ended_by = os_wait_to_read();
-        came = !ended_by && fgets(answer, ASK_BYTES, stdin) != NULL;
+    ended_by = os_wait_to_read();
+    if (ended_by || !fgets(answer, ASK_BYTES, stdin)) {
+        return false;
     }
-    if (came && !strchr(answer, '\n')) { /* longer than any answer */
+    if (!strchr(answer, '\n')) { /* longer than any answer */
         for (int c = getchar(); c != '\n' && c != EOF;) {
             c = getchar();
         }
     }
-    if (came) {
-        answer[strcspn(answer, "\r\n")] = '\0';
+    answer[strcspn(answer, "\r\n")] = '\0';
+    return true;
+}
+
+bool ask_line(const app *a, const char *question, const char *usual, char *answer)
+{
+    bool person = a->tty_in && !no_questions(a), came = false;
+    if (!ended_by) {
+        output_flush();
+        output_complain("%s [%s] ", _(question), usual);
+        came = (person || !a->tty_in) && read_line(answer);
     }
-    if (!a->tty_in || !came) {
+    if (!person || !came) {
         output_complain("%s\n", came ? answer : "");
     }
     if (!came || !*answer) {
         snprintf(answer, ASK_BYTES, "%s", usual);
     }
-    return came || (!a->tty_in && !ended_by);
+    return came || (!person && !ended_by);
 }
 
 bool ask_yes(const app *a, const char *question)

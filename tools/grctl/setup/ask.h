@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Questions to a person, while no line is open: at a terminal, or answered beforehand by --yes and
- * lines of standard input. */
+/* Questions to a person at a terminal, while no line is open. With --yes nobody is asked: answers
+ * are lines of standard input, unless that is a terminal, which is not read. */
 #ifndef GRCTL_ASK_H
 #define GRCTL_ASK_H
 
@@ -12,9 +12,10 @@ enum { ASK_BYTES = 256 };
 bool ask_can(app *a, const char *instead, int *status);
 
 /*
- * Asks, and looks the question up in the person's language; an empty line, and the end of standard
- * input, is the answer that stands in the brackets. A person who ends the input (Ctrl-D) means to
- * end it all: false; so does Ctrl-C and its like, and nothing is asked any more.
+ * Asks, and looks the question up in the person's language; an empty line, the end of standard
+ * input, and --yes at a terminal, is the answer that stands in the brackets. A person who ends the
+ * input (Ctrl-D) means to end it all: false; so does Ctrl-C and its like, and nothing is asked any
+ * more.
  */
 bool ask_line(const app *a, const char *question, const char *usual, char *answer);
 

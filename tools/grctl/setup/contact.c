@@ -315,7 +315,7 @@ static int try_joint(contact *k)
     char question[APP_LINE_BYTES];
     double step_deg = STEP_DEG;
     snprintf(question, sizeof question,
-             _("hold the robot. Switch the torque of %s on for a second? It should not move"),
+             _("hold the robot. Switch the torque of %s on for half a second? It should not move"),
              name);
     if (!ask_yes(k->a, question)) {
         contact_note(k, "torque_on", NOT_DONE, "the person declined");

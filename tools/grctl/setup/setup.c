@@ -156,7 +156,7 @@ static bool free_path(const char *name, char *path, size_t capacity)
     for (int number = 1; number < 100; number++) {
         char behind[8] = "";
         if (number > 1) {
-            snprintf(behind, sizeof behind, "%d", number);
+            snprintf(behind, sizeof behind, "-%d", number);
         }
         int n = snprintf(path, capacity, "%s%s%s.yaml", config, name, behind);
         FILE *there = n > 0 && (size_t)n < capacity ? fopen(path, "rb") : NULL;
@@ -276,7 +276,7 @@ static void propose(const guide *g, char *name)
     for (int number = 1; number < 100; number++) {
         char behind[8] = "";
         if (number > 1) {
-            snprintf(behind, sizeof behind, "%d", number);
+            snprintf(behind, sizeof behind, "-%d", number);
         }
         snprintf(name, ASK_BYTES, "%.40s%s", from, behind);
         for (char *c = name; *c; c++) {

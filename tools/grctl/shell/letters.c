@@ -69,8 +69,7 @@ static grobo_joint_mask joints_that_move(conn *c, const shell *s)
 static int push(conn *c, shell *s, double ms)
 {
     grobo_posture posture;
-    int error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session),
-                                               joints_that_move(c, s), GROBO_SENSE_FULL));
+    int error = conn_wait(c, grobo_robot_sense(c->robot, joints_that_move(c, s), GROBO_SENSE_FULL));
     int status = error ? conn_fail(c, error, "record") : need_record(s);
     if (status) {
         return status;

@@ -72,8 +72,20 @@ bool door_has_token(http_request *r, const json_t *body)
     return !no.status;
 }
 
-const char *door_name(const json_t *body)
+door_who door_name(const json_t *body)
 {
-    const char *name = door_text(body, "name");
-    return *name ? name : "a script";
+    const char *given = door_text(body, "name");
+    size_t n = strlen(given);
+    door_who who = {"a script"};
+    if (n >= sizeof who.name) {
+        n = sizeof who.name - 1;
+        while (((unsigned char)given[n] & 0xC0) == 0x80) { /* JSON has whole characters */
+            n--;
+        }
+    }
+    if (n > 0) {
+        memcpy(who.name, given, n);
+        who.name[n] = '\0';
+    }
+    return who;
 }

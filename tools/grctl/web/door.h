@@ -4,6 +4,7 @@
 #define GRCTL_WEB_DOOR_H
 
 #include "tools/grctl/web/events.h"
+#include "tools/grctl/web/lease.h"
 #include "tools/grctl/web/web.h"
 
 /*
@@ -20,7 +21,10 @@ const char *door_header_or_body(const http_request *r, const json_t *body, const
                                 const char *key);
 /* Has it the token, in header or body? False: it was refused. */
 bool door_has_token(http_request *r, const json_t *body);
-/* Who asks, as said in the body. */
-const char *door_name(const json_t *body);
+/* Who asks, as said in the body; of a long name as many characters as fit. */
+typedef struct door_who {
+    char name[LEASE_NAME_BYTES];
+} door_who;
+door_who door_name(const json_t *body);
 
 #endif

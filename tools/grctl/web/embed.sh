@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The files of the page as a C table (page.h): compressed, with type and hash.
+# The files of the page as a C table (page.h): compressed, with type and hash. The HTML names the
+# others below the hash of all: who keeps them for ever never has one of another version.
 #
 # usage: tools/grctl/web/embed.sh FOLDER >FILE.c
 set -eu
@@ -23,18 +24,28 @@ type_of() {
     esac
 }
 
+# What is served: the HTML with the names below the version.
+content() {
+    case $1 in
+    *.html) sed -E "s,(href|src)=\"([a-z_]+\.[a-z]+)\",\1=\"v$version/\2\",g" "$folder$1" ;;
+    *) cat "$folder$1" ;;
+    esac
+}
+
 files=$(cd "$folder" && find . -type f ! -name '.*' | sed 's,^\.,,' | LC_ALL=C sort)
+version=$(for file in $files; do echo "$file"; cat "$folder$file"; done | cksum | tr ' ' -)
 printf '/* Made by tools/grctl/web/embed.sh. */\n#include "tools/grctl/web/page.h"\n'
 n=0
 table=
 for file in $files; do
     type=$(type_of "$file")
-    hash=$(gzip -9nc "$folder$file" | cksum | tr ' ' -)
+    hash=$(content "$file" | gzip -9nc | cksum | tr ' ' -)
     printf '\nstatic const unsigned char file_%d[] = {\n' "$n"
-    gzip -9nc "$folder$file" | od -An -v -tu1 | sed 's/  */,/g; s/^,/    /; s/$/,/'
+    content "$file" | gzip -9nc | od -An -v -tu1 | sed 's/  */,/g; s/^,/    /; s/$/,/'
     printf '};\n'
     table="$table    {\"$file\", \"$type\", \"\\\\\"$hash\\\\\"\", file_$n, sizeof file_$n},
 "
     n=$((n + 1))
 done
-printf '\nconst page_file page_files[] = {\n%b    {0}};\n' "$table"
+printf '\nconst char page_version[] = "/v%s";\n' "$version"
+printf 'const page_file page_files[] = {\n%b    {0}};\n' "$table"

@@ -283,7 +283,7 @@ static void want_stop(view *v, const char *how, const char *name)
         return;
     }
     if (!same && (!v->wanted || strcmp(v->wanted, how) != 0)) {
-        events_tell(&v->events, "stop", "warning", NULL, "%s of all robots by %.63s", how, name);
+        events_tell(&v->events, "stop", "warning", NULL, "%s of all robots by %s", how, name);
     }
     v->wanted = how;
     v->wanted_us = now_us;
@@ -299,7 +299,7 @@ static void serve_stop(view *v, http_request *r, const json_t *body)
     if (http_is_open(r->server) && !door_has_token(r, body)) {
         return;
     }
-    want_stop(v, estop ? "estop" : "stop", door_name(body));
+    want_stop(v, estop ? "estop" : "stop", door_name(body).name);
     if (!v->l.up) {
         http_refuse(r, 503, "unreachable",
                     "the broker is away: the stop goes out when it is back; use the switches");
@@ -322,8 +322,8 @@ static void serve_reset(view *v, http_request *r, const json_t *body)
         v->wanted = v->published = NULL;
         (void)leader_latch(&v->l, NULL);
         v->release_us = grobo_now_us() + RELEASE_US;
-        events_tell(&v->events, "stop", "info", NULL, "the stop is released by %.63s",
-                    door_name(body));
+        events_tell(&v->events, "stop", "info", NULL, "the stop is released by %s",
+                    door_name(body).name);
         http_reply_json(r, 200,
                         json_pack("{s:b,s:I}", "done", false, "sequence", (json_int_t)v->sequence));
     }

@@ -49,11 +49,11 @@ typedef struct guest {
     port *at;                /* NULL: this place is free */
     struct bufferevent *bev; /* for when it is heard, as it is there then */
     const struct evbuffer *input;
-    const struct evhttp_connection *connection; /* from the first request on */
-    char address[64];                           /* "" on loopback, and until it is known */
-    int64_t heard_us;                           /* when it sent something, or came */
-    int64_t began_us;                           /* a request that is not whole, 0: none */
-    bool named;
+    struct evhttp_connection *connection; /* from the first request on */
+    char address[64];                     /* "" on loopback, and until it is known */
+    int64_t heard_us;                     /* when it sent something, or came */
+    int64_t began_us;                     /* a request that is not whole, 0: none */
+    bool named, ended;
 } guest;
 
 typedef struct stream {
@@ -110,6 +110,45 @@ static void open_door(port *p, bool open)
     }
 }
 
+/* It has had its reply, and is kept for a next request. */
+static bool is_idle(const guest *g)
+{
+    const http *h = g->at->of;
+    if (!g->connection || g->began_us || g->ended) {
+        return false;
+    }
+    for (const stream *s = h->streams; s; s = s->next) {
+        if (s->connection == g->connection) {
+            return false;
+        }
+    }
+    for (const http_request *r = h->waiting; r; r = r->next) {
+        if (evhttp_request_get_connection(r->raw) == g->connection) {
+            return false;
+        }
+    }
+    struct bufferevent *bev = evhttp_connection_get_bufferevent(g->connection);
+    return evbuffer_get_length(bufferevent_get_output(bev)) == 0;
+}
+
+/* Where all places are taken, the one that was silent longest makes room: it may come again. */
+static void make_room(port *p)
+{
+    guest *idlest = NULL;
+    bool full = guests_of(p, NULL) >= HTTP_CONNECTIONS_MAX;
+    open_door(p, !full);
+    for (int i = 0; full && i < GUESTS; i++) {
+        guest *g = &p->of->guests[i];
+        if (g->at == p && is_idle(g) && (!idlest || g->heard_us < idlest->heard_us)) {
+            idlest = g;
+        }
+    }
+    if (idlest) {
+        idlest->ended = true;
+        net_end(bufferevent_getfd(evhttp_connection_get_bufferevent(idlest->connection)));
+    }
+}
+
 /* Forgets those that have gone without a word. */
 static void sweep_guests(http *h)
 {
@@ -120,8 +159,8 @@ static void sweep_guests(http *h)
             g->at = NULL;
         }
     }
-    open_door(&h->first, guests_of(&h->first, NULL) < HTTP_CONNECTIONS_MAX);
-    open_door(&h->second, guests_of(&h->second, NULL) < HTTP_CONNECTIONS_MAX);
+    make_room(&h->first);
+    make_room(&h->second);
 }
 
 static guest *take_place(port *p, const struct evbuffer *input)
@@ -178,9 +217,7 @@ static struct bufferevent *on_connection(struct event_base *base, void *ctx)
         g->bev = bev;
         evbuffer_add_cb(bufferevent_get_input(bev), on_input, p);
     }
-    if (guests_of(p, NULL) >= HTTP_CONNECTIONS_MAX) {
-        open_door(p, false);
-    }
+    make_room(p);
     return bev;
 }
 
@@ -318,7 +355,7 @@ void http_reply_content(http_request *r, const http_content *content)
 {
     const char *known = http_header(r, "If-None-Match");
     add_headers(r);
-    add(r, "Cache-Control", "no-cache");
+    add(r, "Cache-Control", content->lasts ? "max-age=31536000, immutable" : "no-cache");
     if (content->page) {
         add_policy(r);
     }
@@ -365,10 +402,14 @@ static void on_closed(struct evhttp_connection *connection, void *ctx)
 {
     http *h = ctx;
     guest *g = find_guest(h, NULL, connection);
+    port *p = g ? g->at : NULL;
     if (g) {
         g->at = NULL;
     }
     forget_stream(h, connection);
+    if (p) {
+        make_room(p);
+    }
 }
 
 /* Not from within its own callbacks. */
@@ -751,6 +792,7 @@ void http_free(http *server)
     if (!server) {
         return;
     }
+    server->first.n_listeners = server->second.n_listeners = 0; /* they go before the connections */
     for (stream *s = server->streams; s; s = s->next) {
         s->ends = true;
     }

@@ -102,6 +102,7 @@ typedef struct http_content {
     size_t size;
     const char *etag; /* or NULL; with its quotes */
     bool gzip;        /* the bytes are compressed */
+    bool lasts;       /* what this path names never changes */
     bool page;        /* of the page: a policy is sent along */
 } http_content;
 /* 200, or 304 where the client has that. */

@@ -11,7 +11,7 @@
 
 #include "tools/grctl/web/wall.h"
 
-enum { LEASE_NAME_BYTES = 64, LEASE_ID_BYTES = 8 + 1 };
+enum { LEASE_NAME_BYTES = 128, LEASE_ID_BYTES = 8 + 1 };
 /* Who was asked has this time to answer. */
 #define LEASE_ASK_US INT64_C(10000000)
 

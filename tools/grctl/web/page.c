@@ -8,9 +8,17 @@
 
 enum { DISK_BYTES = 1024 * 1024 };
 
+/* Behind the version, where the path has it; NULL: it has not. */
+static const char *below_version(const char *path)
+{
+    size_t n = strlen(page_version);
+    return strncmp(path, page_version, n) == 0 && path[n] == '/' ? path + n : NULL;
+}
+
 static const page_file *find(const char *path)
 {
-    const char *name = strcmp(path, "/") == 0 ? "/index.html" : path;
+    const char *below = below_version(path);
+    const char *name = strcmp(path, "/") == 0 ? "/index.html" : below ? below : path;
     for (const page_file *f = page_files; f->path; f++) {
         if (strcmp(f->path, name) == 0) {
             return f;
@@ -55,6 +63,7 @@ void page_serve(http_request *r)
                                           .bytes = f->bytes,
                                           .size = f->size,
                                           .etag = f->etag,
+                                          .lasts = below_version(r->path) != NULL,
                                           .gzip = true,
                                           .page = true});
 }

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The page: files of web/page, compressed in the program, or with GRCTL_WEB_DIR from there. */
+/*
+ * The page: files of web/page, compressed in the program, or with GRCTL_WEB_DIR from there. Below
+ * page_version they are what they are for ever, and a browser asks for them once.
+ */
 #ifndef GRCTL_WEB_PAGE_H
 #define GRCTL_WEB_PAGE_H
 
@@ -17,6 +20,7 @@ typedef struct page_file {
     size_t size;
 } page_file;
 extern const page_file page_files[]; /* path NULL behind the last */
+extern const char page_version[];    /* "/v..." */
 
 bool page_has(const char *path);
 void page_serve(http_request *r);

@@ -80,7 +80,8 @@ static void take(serve *s, http_request *r, const json_t *body)
 {
     const char *secret = door_header_or_body(r, body, "X-Grobo-Lease", "lease");
     bool was_held = lease_is_held(&s->lease);
-    if (!lease_take(&s->lease, door_name(body), secret, s->options->takes_over, grobo_now_us())) {
+    if (!lease_take(&s->lease, door_name(body).name, secret, s->options->takes_over,
+                    grobo_now_us())) {
         refuse_lease(s, r);
         return;
     }
@@ -95,7 +96,7 @@ static void take(serve *s, http_request *r, const json_t *body)
 
 static void ask(serve *s, http_request *r, const json_t *body)
 {
-    if (!lease_ask(&s->lease, door_name(body), grobo_now_us())) {
+    if (!lease_ask(&s->lease, door_name(body).name, grobo_now_us())) {
         http_refuse(r, 409, "state", "nobody drives: take it");
         return;
     }
@@ -145,7 +146,7 @@ static void serve_stop(serve *s, http_request *r, const json_t *body)
     if (http_is_open(r->server) && !door_has_token(r, body)) {
         return;
     }
-    int result = stops_ask(s, door_name(body), estop);
+    int result = stops_ask(s, door_name(body).name, estop);
     if (result < 0 && result != GROBO_ERR_CLOSED) {
         serve_refuse(s, r, result, estop ? "estop" : "stop");
     } else if (r->second) {

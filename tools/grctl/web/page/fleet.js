@@ -2,70 +2,15 @@
 // The view of a fleet (docs/serve.md): a card for each robot, a stop for all of them, one robot in
 // full. It moves none. Drawn from the newest state, as the cockpit is.
 
-import { Api, takeToken } from './api.js';
-import { element, replace, setText, setting, translatePage } from './dom.js';
-import { count, Stopper } from './stop.js';
+import { element, replace, setText, setting } from './dom.js';
+import { NEAR_DEG, fleetStopWords, howIs, isWanted, nearest } from './fleet_words.js';
+import { api, id, lang, stopper, t } from './start.js';
+import { count } from './stop.js';
 import { openStream } from './stream.js';
-import { translate } from './text.js';
 
 const OLD_MS = 1000;
-const NEAR_DEG = 3;
-const id = (name) => document.getElementById(name);
 const degrees = (value, digits = 0) => typeof value === 'number' ? value.toFixed(digits).replace('-', '−') : '–';
 const keyOf = ({ host, robot }) => `${host}/${robot}`;
-
-/** How a robot is: { level: 'ok' | 'warn' | 'bad' | 'off', text }. */
-export function howIs(robot, t) {
-    const link = { away: ['off', t('signed off')], broken: ['bad', t('agent lost')], silent: ['bad', t('no news')],
-                   down: ['bad', t('not connected')] }[robot.link];
-    const [level, text] = link ? link
-        : robot.trip ? ['bad', t(robot.trip)]
-        : robot.stopped ? ['warn', robot.moving ? t('stopping') : t('stopped')]
-        : robot.play === 'playing' || robot.play === 'approaching' || robot.play === 'paused'
-        ? ['ok', t(robot.play)] : ['ok', robot.moving ? t('moves') : t('idle')];
-    return { level, text };
-}
-
-/** The joint that has the least to go before a limit: { name, left }; null: nothing is known. */
-export function nearest(angles, joints) {
-    let found = null;
-    joints.forEach((joint, n) => {
-        const [min, max] = joint.limits_deg, angle = angles[n];
-        if (typeof angle === 'number' && typeof min === 'number' && typeof max === 'number') {
-            const left = Math.min(angle - min, max - angle);
-            found = !found || left < found.left ? { name: joint.name, left } : found;
-        }
-    });
-    return found;
-}
-
-/** What is known of a stop, as stopWords() of one robot. null: there is none. */
-export function fleetStopWords(state, waited, t) {
-    if (waited > 0 && !(state && state.latch)) {
-        return waited > 700
-            ? { level: 'bad', text: t('STOP sent, no answer for {0} s: use the switches', (waited / 1000).toFixed(1)) }
-            : { level: 'warn', text: t('STOP sent') };
-    }
-    if (!state || !state.latch) {
-        return null;
-    }
-    const n = count(state.robots.map((r) => r.stop)), total = state.robots.length - (n.away || 0);
-    const who = state.latch.kind === 'stop' ? t('Stopped') : t('emergency stop');
-    if (state.confirmed) {
-        return { level: 'ok', text: `${who}: ${t('all {0} robots stand', total)}` };
-    }
-    return { level: n.moving || n.silent ? 'bad' : 'warn',
-             text: `${who}: ${t('{0} of {1} robots stand', n.stopped || 0, total)}` };
-}
-
-/** Whether a robot is one that is looked for. @param want { text, group, trouble } */
-export function isWanted(robot, facts, want, level) {
-    const words = [robot.host, robot.robot, facts.model, robot.motion, robot.trip, ...facts.groups];
-    return want.text.toLowerCase().split(/\s+/).every(
-        (word) => words.some((w) => w && w.toLowerCase().includes(word))) &&
-        (!want.group || facts.groups.includes(want.group)) &&
-        (!want.trouble || level === 'bad' || level === 'warn');
-}
 
 const NOTHING = { model: '', groups: [], joints: [], cockpit: null };
 
@@ -136,10 +81,8 @@ class Card {
 
 class View {
     constructor() {
-        this.lang = setting('lang') || (navigator.language.startsWith('ja') ? 'ja' : 'en');
-        this.t = (text, ...values) => translate(this.lang, text, values);
-        this.api = new Api(takeToken());
-        this.stopper = new Stopper(this.api, () => setting('name') || this.t('Computer'), () => this.schedule());
+        Object.assign(this, { api, lang, stopper, t });
+        stopper.changed = () => this.schedule();
         this.state = null;
         this.arrived = 0;
         this.drawn = 0;
@@ -148,7 +91,6 @@ class View {
         this.cards = new Map();
         this.chosen = null;
         this.log = [];
-        translatePage(this.lang, this.t);
         this.setTheme();
         this.listen();
     }
@@ -235,17 +177,6 @@ class View {
     }
 
     listen() {
-        const stop = id('stop');
-        stop.addEventListener('pointerdown', () => this.stopper.press());
-        stop.addEventListener('click', (event) => event.detail === 0 && this.stopper.press());
-        document.addEventListener('keydown', (event) => {
-            if (event.key === 'Escape') {
-                event.preventDefault();
-                if (!event.repeat) {
-                    this.stopper.press();
-                }
-            }
-        }, true);
         id('reset').addEventListener('click', () => this.api.post('/api/reset', { name: this.stopper.name() })
             .catch((error) => this.fail(error)));
         id('close').addEventListener('click', () => this.choose(null));
@@ -385,7 +316,5 @@ class View {
     }
 }
 
-if (globalThis.document) {
-    self.cockpit = new View(); // for tests, and for the curious
-    self.cockpit.start();
-}
+self.cockpit = new View(); // for tests, and for the curious
+self.cockpit.start();

@@ -86,6 +86,7 @@ export class Joints {
         this.slider.setAttribute('aria-label', this.app.t('{0}, degrees', name));
         this.plot.checked = this.app.see.plots.chosen.includes(joint);
         limits.forEach((v, n) => setText(this.ends[n], `${Math.round(v)}°`));
+        this.follow(this.app.state); // a key may come before the next picture
         this.rows[joint].line.after(this.slot);
         this.drawnAt = 0;
     }
@@ -127,17 +128,25 @@ export class Joints {
         }
     }
 
+    /** Puts the slider where its joint is. Where that is not known, nothing can be dragged. */
+    follow(state) {
+        const joint = this.app.selected;
+        const angle = state ? state.target_deg[joint] ?? state.angle_deg[joint] : null;
+        if (angle !== null && Number(this.slider.value) !== angle) {
+            this.slider.value = angle;
+        }
+        this.known = angle !== null;
+        this.slider.disabled = !this.known || !this.app.mayMove();
+        this.show(angle || 0, false);
+    }
+
     draw(state, now) {
         const joint = this.app.selected;
         if (this.dragged && this.dragged.until && now > this.dragged.until) {
             this.dragged = null;
         }
         if (joint >= 0 && !this.dragged) {
-            const angle = state.target_deg[joint] ?? state.angle_deg[joint];
-            if (angle !== null && Number(this.slider.value) !== angle) {
-                this.slider.value = angle;
-            }
-            this.show(angle || 0, false);
+            this.follow(state);
         }
         if (now - this.drawnAt > 240) {
             this.drawnAt = now;
@@ -145,7 +154,7 @@ export class Joints {
             const may = this.app.mayMove();
             for (const node of [this.slider, ...this.buttons,
                                 ...document.querySelectorAll('#all-joints button')]) {
-                node.disabled = !may;
+                node.disabled = !may || node === this.slider && !this.known;
             }
             setText(document.getElementById('jog-hint'), this.app.whyNot() || '');
         }

@@ -2,9 +2,8 @@
 // The cockpit: ties the views, the stream, the lease and STOP together. Everything is drawn from the
 // newest state, in animation frames that are asked for when a state or a hand has come.
 
-import { Api, takeToken } from './api.js';
 import { makeBody } from './body.js';
-import { element, replace, setText, setting, translatePage } from './dom.js';
+import { element, replace, setText, setting } from './dom.js';
 import { Figure, fromHex, mix } from './figure.js';
 import { Joints } from './joints.js';
 import { Lease } from './lease.js';
@@ -12,21 +11,17 @@ import { Make } from './make.js';
 import { DEG } from './mat.js';
 import { Play } from './play.js';
 import { See } from './see.js';
-import { Stopper, stopWords } from './stop.js';
+import { api, id, lang, stopper, t } from './start.js';
+import { stopWords } from './stop.js';
 import { openStream } from './stream.js';
-import { translate } from './text.js';
+import { TABS, showPanel } from './tabs.js';
 
 const OLD_MS = 500;
 const SETTLED_MS = 400;
-const TABS = ['see', 'play', 'joints', 'make', 'more'];
-const PANELS = { see: 'see', play: 'motions', joints: 'joints', make: 'make', more: 'more' };
-const id = (name) => document.getElementById(name);
 
 class App {
     constructor() {
-        this.lang = setting('lang') || (navigator.language.startsWith('ja') ? 'ja' : 'en');
-        this.t = (text, ...values) => translate(this.lang, text, values);
-        this.api = new Api(takeToken());
+        Object.assign(this, { api, lang, stopper, t });
         this.lease = new Lease();
         this.state = null;
         this.arrived = 0;
@@ -37,7 +32,8 @@ class App {
         this.leaseAsks = false;
         this.toMatrix = ({ p_m: p, rotation: r }) => [r[0], r[3], r[6], 0, r[1], r[4], r[7], 0,
                                                       r[2], r[5], r[8], 0, p[0], p[1], p[2], 1];
-        this.stopper = new Stopper(this.api, () => this.userName(), () => this.schedule());
+        stopper.name = () => this.userName();
+        stopper.changed = () => this.schedule();
         this.figure = new Figure(id('view'), {
             flat: new URLSearchParams(location.search).has('flat'),
             onPick: (joint) => this.select(joint === this.selected ? -1 : joint, true),
@@ -50,9 +46,8 @@ class App {
         this.play = new Play(this);
         this.make = new Make(this);
         this.listen();
-        this.translateAll();
         this.setTheme(setting('theme') || '');
-        this.showTab(setting('tab') || 'see');
+        this.showTab(document.body.dataset.tab);
     }
 
     async start() {
@@ -125,7 +120,6 @@ class App {
         if (this.robot) {
             this.see.state(state);
         }
-        document.body.classList.remove('waiting');
     }
 
     takeEvent(event) {
@@ -136,8 +130,8 @@ class App {
             clearTimeout(this.fileTimer);
             this.fileTimer = setTimeout(() => this.play.refresh().catch(() => {}), 150);
         }
-        if (event.level === 'error' || event.level === 'warning') {
-            this.notice(event.message);
+        if (event.kind !== 'stop' && (event.level === 'error' || event.level === 'warning')) {
+            this.notice(event.message); // a stop is told beside STOP
         }
         if (['stop', 'trip', 'link', 'lease', 'play'].includes(event.kind)) {
             this.say(event.message, event.kind === 'stop' || event.kind === 'trip');
@@ -277,19 +271,7 @@ class App {
     // ---- hands ---------------------------------------------------------------------------------
 
     listen() {
-        const stop = id('stop');
-        stop.addEventListener('pointerdown', () => this.stopper.press());
-        stop.addEventListener('click', (event) => event.detail === 0 && this.stopper.press());
-        document.addEventListener('keydown', (event) => {
-            if (event.key === 'Escape') {
-                event.preventDefault();
-                if (!event.repeat) {
-                    this.stopper.press();
-                }
-            } else {
-                this.onKey(event);
-            }
-        }, true);
+        document.addEventListener('keydown', (event) => event.key === 'Escape' || this.onKey(event), true);
         id('reset').addEventListener('click', () => this.command('/api/reset'));
         id('lease').addEventListener('click', () => this.leaseButton());
         id('lease-keep').addEventListener('click', () => this.command('/api/lease', { action: 'deny' }));
@@ -350,14 +332,7 @@ class App {
     }
 
     showTab(tab) {
-        const name = TABS.includes(tab) ? tab : 'see';
-        document.body.dataset.tab = name;
-        setting('tab', name);
-        TABS.forEach((one) => {
-            id(`tab-${one}`).setAttribute('aria-selected', String(one === name));
-            id(`tab-${one}`).tabIndex = one === name ? 0 : -1;
-            id(PANELS[one]).hidden = one !== name;
-        });
+        showPanel(tab);
         this.see.plots.dirty = true;
         this.play.paint();
         this.schedule();
@@ -383,7 +358,7 @@ class App {
         this.schedule();
     }
 
-    // ---- theme and language --------------------------------------------------------------------
+    // ---- theme ---------------------------------------------------------------------------------
 
     setTheme(name) {
         document.documentElement.dataset.theme = name;
@@ -400,11 +375,6 @@ class App {
         this.play.paint();
         this.play.stripKey = null;
         this.schedule();
-    }
-
-    translateAll() {
-        translatePage(this.lang, this.t);
-        document.querySelector('#view canvas').setAttribute('aria-label', this.t('The robot'));
     }
 
     // ---- drawing -------------------------------------------------------------------------------
@@ -636,6 +606,5 @@ class App {
     }
 }
 
-const app = new App();
-self.cockpit = app; // for tests, and for the curious
-app.start();
+self.cockpit = new App(); // for tests, and for the curious
+self.cockpit.start();

@@ -5,7 +5,7 @@
 import { Feed } from './feed.js';
 
 function shared(token, tell) {
-    const worker = new SharedWorker('worker.js', { type: 'module', name: 'grctl' });
+    const worker = new SharedWorker(new URL('worker.js', import.meta.url), { type: 'module', name: 'grctl' });
     worker.port.onmessage = ({ data }) => tell(data);
     worker.port.start();
     return (message) => worker.port.postMessage({ token, ...message });
