@@ -90,14 +90,20 @@ shell_moves() {
     grep -q 'there; largest error' "$work/err"
 }
 check "in a shell" shell_moves
+tell block gripper on
+check "a gripper that is blocked is not there" fails 0 \
+    '^not there: largest error 1[0-9]\.[0-9] deg (gripper); is it blocked?$' \
+    on_robot --robot so101 move gripper 55
+tell block gripper off
+check "it is free" wait_for sim_shows 6 ' 5[45]\.[0-9] deg .* mA .* C$'
+check "and gets back" fails 0 'there; largest error 0\.[0-4]' on_robot --robot so101 move gripper 40
 tell block shoulder_pan on
-check "a joint that is blocked is not there" fails 0 \
-    '^not there: largest error 1[0-9]\.[0-9] deg (shoulder_pan); is it blocked?$' \
-    on_robot --robot so101 move shoulder_pan 15
+check "a joint that is blocked ends its move" \
+    fails 4 'stopped for safety: over-current ([0-9]* mA) at motor 1 (shoulder_pan)' \
+    on_robot --robot so101 move shoulder_pan 60 4000
+check "and pushes no more" wait_for sim_shows 1 ' [0-9][0-9] mA .* C$'
 tell block shoulder_pan off
-check "it is free" wait_for sim_shows 1 ' 1[45]\.[0-9] deg .* mA .* C$'
-check "and gets back" fails 0 'there; largest error 0\.[0-4]' \
-    on_robot --robot so101 move shoulder_pan 0
+check "it stands where it was held" wait_for sim_shows 1 ' -*[01]\.[0-9] deg .* [0-9][0-9] mA '
 mkdir -p "$work/config/grctl"
 cat >"$work/config/grctl/config.yaml" <<END
 robots:
@@ -107,10 +113,10 @@ robots:
 END
 check "trim before robot" fails 3 'robot stands before trim and offset' "$GRCTL" -d desk status
 sed -i.old /wrong:/d "$work/config/grctl/config.yaml"
-check "a configured robot says which it is" fails 0 'done; ' "$GRCTL" -d desk move wrist_flex 20
+check "a configured robot says which it is" fails 0 'there; ' "$GRCTL" -d desk move wrist_flex 20
 check "its trims are its own" both exits 0 on_robot --robot so101 status m4 --- \
     says 'wrist_flex  *2[12]\.'
-check "a file beside the configuration" fails 0 'done; ' "$GRCTL" -d other move lift 30
+check "a file beside the configuration" fails 0 'there; ' "$GRCTL" -d other move lift 30
 check "not two robots at once" fails 2 'is another robot' "$GRCTL" -d desk --robot koch status
 records() {
     : >"$work/recording"
