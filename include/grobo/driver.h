@@ -160,6 +160,8 @@ struct grobo_driver {
     int64_t time_max_us;            /**< longest goal time of the wire, >= time_step_us, at most
                                          GROBO_PLAY_TIME_MAX_US */
     double angle_step_rad;          /**< goals are rounded to multiples of this, > 0 */
+    double accel_rad_s2;            /**< joints speed up and brake so on the way to a goal; 0: too
+                                         fast to count, or not known */
     grobo_safety_limits limits;     /**< safety limits of this robot */
     grobo_exit_policy on_exit;      /**< what GROBO_EXIT_DEFAULT stands for; not DEFAULT itself */
     bool arm;                       /**< its joints do not stand on each other, so that it may stop

@@ -135,6 +135,7 @@ typedef struct grobo_robot_axis {
     int64_t next_time_us;      /* and its time, so far */
     int status;                /* of the last reading */
     uint16_t lost;             /* readings lost in a row */
+    int16_t seen_dps;          /* how fast it turned at seen_us; INT16_MIN: not known */
     int64_t told_to_us;        /* in segments: until when on its way the servo was told to go */
     bool in_segments;          /* it is told its way in parts */
     bool sensed;               /* since the link came up */

@@ -42,27 +42,171 @@ int64_t grobo_i_axis_until(const grobo_robot_axis *axis)
     return axis->off_way ? axis->own_until_us : axis->way.to_us;
 }
 
-/* A servo slower than this part of its way is too weak for it; one that begins softly keeps up. */
-#define WEAK_PART 0.9
+/* One that is so near the end of its way is there. */
+#define LAGS_RAD (1 * 0.017453292519943295)
 
-static bool is_weak(const grobo_robot_axis *axis)
+/* Where a joint is, and how fast it turns. */
+typedef struct course {
+    double at_rad, rad_s;
+} course;
+
+/* What a servo does whose speed was told along with where it is, until it is told to go elsewhere;
+ * or one that goes where nobody knows. */
+static course go_on(course c, double time_s)
 {
-    double way_rad = fabs(axis->way.to_rad - axis->way.from_rad);
-    double time_s = (double)(axis->way.to_us - axis->way.from_us) / 1e6;
-    double speed_rad_s = grobo_rad_from_deg(abs(axis->state.speed_dps));
-    return (axis->state.valid & GROBO_FIELD_SPEED) != 0 && !axis->off_way &&
-           speed_rad_s * time_s < WEAK_PART * way_rad;
+    c.at_rad += c.rad_s * time_s;
+    return c;
 }
 
-double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t now_us)
+/* It changes its speed to another one, which takes time. */
+static course speed_up(course c, double to_rad_s, double accel_rad_s2, double time_s)
+{
+    double change_s = fmin(fabs(to_rad_s - c.rad_s) / accel_rad_s2, time_s);
+    double change_rad_s = copysign(accel_rad_s2, to_rad_s - c.rad_s) * change_s;
+    c.at_rad += (c.rad_s + change_rad_s / 2) * change_s;
+    c.rad_s += change_rad_s;
+    return go_on(c, time_s - change_s);
+}
+
+static double seconds(int64_t from_us, int64_t to_us)
+{
+    return to_us > from_us ? (double)(to_us - from_us) / 1e6 : 0;
+}
+
+/* True while it is on a way that is known, be it the one it was sent on or that its servo told. */
+static bool is_guided(const grobo_robot_axis *axis)
+{
+    return axis->off_way ? axis->own_until_us > axis->angle_us
+                         : axis->way.to_us > axis->way.from_us &&
+                               axis->way.to_rad != axis->way.from_rad;
+}
+
+static double way_speed(const grobo_robot_way *way)
+{
+    return fabs(way->to_rad - way->from_rad) / seconds(way->from_us, way->to_us);
+}
+
+static bool tells_speed(const grobo_robot_axis *axis)
+{
+    return axis->seen_dps != GROBO_I_NO_SPEED;
+}
+
+/* A speed as it is kept. */
+static int16_t dps_of(double dps)
+{
+    return (int16_t)fmin(fmax(dps, -INT16_MAX), INT16_MAX);
+}
+
+void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got)
+{
+    bool told = (got->valid & GROBO_FIELD_SPEED) != 0;
+    axis->seen_rad = got->angle_rad;
+    axis->seen_us = asked_us;
+    axis->seen_dps = told ? dps_of(got->speed_dps) : GROBO_I_NO_SPEED;
+}
+
+bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    return tells_speed(axis) && !robot->driver->no_speed &&
+           (axis->state.valid & GROBO_FIELD_TIME) == 0;
+}
+
+/* Of a servo with ramps that tells its speed: from there and then to the speed of its way, and to
+ * rest at its end. */
+static course on_ramps(const grobo_robot_axis *axis, double accel_rad_s2, int64_t now_us)
+{
+    const grobo_robot_way *way = &axis->way;
+    course c = {axis->seen_rad, grobo_rad_from_deg(axis->seen_dps)};
+    int64_t told_us = grobo_i_later(axis->seen_us, way->from_us);
+    c = go_on(c, seconds(axis->seen_us, grobo_i_sooner(told_us, now_us)));
+    double left_rad = way->to_rad - c.at_rad;
+    double wanted_rad_s = way_speed(way);
+    if (seconds(way->from_us, axis->seen_us) * accel_rad_s2 > 2 * wanted_rad_s) {
+        wanted_rad_s = fmin(wanted_rad_s, fabs(c.rad_s)); /* it should be as fast, and is too weak */
+    }
+    wanted_rad_s = copysign(wanted_rad_s, left_rad);
+    c = speed_up(c, wanted_rad_s, accel_rad_s2, seconds(told_us, now_us));
+    double still_rad = (way->to_rad - c.at_rad) * (left_rad < 0 ? -1 : 1);
+    bool there = c.rad_s * left_rad > 0 && still_rad <= 0;
+    double most_rad_s = sqrt(2 * accel_rad_s2 * fmax(still_rad, 0)); /* that it still can brake */
+    return there ? (course){way->to_rad, 0}
+           : c.rad_s * left_rad > 0
+               ? (course){c.at_rad, copysign(fmin(fabs(c.rad_s), most_rad_s), left_rad)}
+               : c;
+}
+
+/* How far a joint can have come since it was read: at the speed of its way, or the one it was read
+ * to have; at its most where it was told since. */
+static double most_since(const grobo_robot *robot, int joint, int64_t now_us)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
+    if (axis->seen_us >= axis->way.from_us) {
+        double seen_rad_s = tells_speed(axis) ? grobo_rad_from_deg(abs(axis->seen_dps)) : 0;
+        rad_s = fmax(way_speed(&axis->way), seen_rad_s);
+    }
+    return rad_s * seconds(axis->seen_us, now_us);
+}
+
+/* Where the way is by now, but not further than the joint can have come. One that is before its way
+ * comes along it, too. */
+static double along(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double way_rad = grobo_i_axis_commanded(axis, now_us);
-    double most_rad = robot->driver->model->joints[joint].max_speed_rad_s *
-                      (double)(now_us - axis->seen_us) / 1e6;
-    double left_rad = way_rad - axis->seen_rad;
-    bool behind = is_weak(axis) && fabs(left_rad) - most_rad > GROBO_I_OFF_WAY_RAD;
-    return behind ? axis->seen_rad + copysign(most_rad, left_rad) : way_rad;
+    double most_rad = most_since(robot, joint, now_us);
+    double end_rad = axis->way.to_rad;
+    bool before = (way_rad - axis->seen_rad) * (end_rad - axis->seen_rad) < 0 &&
+                  axis->seen_us >= axis->way.from_us;
+    double left_rad = (before ? end_rad : way_rad) - axis->seen_rad;
+    return axis->seen_rad + copysign(fmin(fabs(left_rad), most_rad), left_rad);
+}
+
+/* Of a servo that tells how it turns, and of which no way or its ramps are known. */
+static course turning(const grobo_robot *robot, int joint, int64_t now_us)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    const course seen = {axis->seen_rad, grobo_rad_from_deg(axis->seen_dps)};
+    return is_guided(axis) ? on_ramps(axis, robot->driver->accel_rad_s2, now_us)
+                           : go_on(seen, seconds(axis->seen_us, now_us));
+}
+
+static bool has_course(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool known = !is_guided(axis) || (!axis->off_way && robot->driver->accel_rad_s2 > 0);
+    return grobo_i_axis_tells_turn(robot, joint) && known;
+}
+
+double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double accel_rad_s2 = robot->driver->accel_rad_s2;
+    bool on_way = is_guided(axis) && !axis->off_way;
+    if (!has_course(robot, joint)) {
+        return on_way ? along(robot, joint, rest_us) : grobo_i_axis_commanded(axis, rest_us);
+    }
+    int64_t now_us = grobo_i_sooner(robot->now_us, rest_us);
+    const course c = turning(robot, joint, now_us);
+    double on_rad = fabs(c.rad_s) * seconds(now_us, rest_us);
+    if (accel_rad_s2 > 0 && rest_us > now_us) {
+        on_rad = fmax(on_rad, c.rad_s * c.rad_s / (2 * accel_rad_s2));
+    }
+    double left_rad = axis->way.to_rad - c.at_rad;
+    bool beyond = on_way && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
+    return beyond ? axis->way.to_rad : c.at_rad + copysign(on_rad, c.rad_s);
+}
+
+void grobo_i_axis_told(grobo_robot *robot, int joint)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    if (robot->driver->accel_rad_s2 > 0 && has_course(robot, joint)) {
+        const course c = turning(robot, joint, robot->now_us);
+        axis->seen_rad = c.at_rad;
+        axis->seen_us = robot->now_us;
+        axis->seen_dps = dps_of(grobo_deg_from_rad(c.rad_s));
+    }
 }
 
 grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint)
@@ -134,11 +278,21 @@ bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
     return !limp && grobo_i_later(grobo_i_axis_until(axis), axis->way.to_us) > now_us;
 }
 
+bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    return axis->sensed && axis->has_target && !axis->off_way && is_guided(axis) &&
+           axis->seen_us >= axis->told_us && grobo_i_axis_tells_turn(robot, joint) &&
+           abs(axis->seen_dps) >= GROBO_I_SLOW_DPS && grobo_i_axis_is_on(axis) &&
+           fabs(grobo_i_axis_reached(robot, joint, robot->now_us) - axis->way.to_rad) > LAGS_RAD;
+}
+
 bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (axis->next != 0 || (axis->sensed && grobo_i_axis_moves(axis, now_us))) {
+        if (axis->next != 0 || (axis->sensed && grobo_i_axis_moves(axis, now_us)) ||
+            grobo_i_axis_lags(robot, j)) {
             return true;
         }
     }

@@ -118,11 +118,18 @@ static double speed_limit(const grobo_robot *robot, int joint, bool soft)
 #define HALT_LEAST_US 25000
 #define HALT_TIME_US 100000
 
-/* The least time from where the joint is now, in microseconds. */
-static double time_of_way(const grobo_robot *robot, int joint, double to_rad, bool soft)
+/* Where a way begins: a halt where the joint is, everything else where the way before is by now. */
+static double begin_of(const grobo_robot *robot, bool halts, int joint)
+{
+    return halts ? grobo_i_axis_reached(robot, joint, robot->now_us)
+                 : grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
+}
+
+/* The least time from there, in microseconds. */
+static double time_of_way(const grobo_robot *robot, int joint, double from_rad, double to_rad,
+                          bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double from_rad = grobo_i_axis_commanded(axis, robot->now_us);
     /* Angles are rounded on the wire: that much further is not faster. */
     double way_rad = fmax(fabs(to_rad - from_rad) - robot->driver->angle_step_rad, 0);
     double time_us = way_rad / speed_limit(robot, joint, soft) * 1e6;
@@ -131,10 +138,11 @@ static double time_of_way(const grobo_robot *robot, int joint, double to_rad, bo
 }
 
 /* The same in the wire's unit; GROBO_NEVER_US where the wire has no time that is long enough. */
-static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad, bool soft)
+static int64_t time_needed(const grobo_robot *robot, int joint, double from_rad, double to_rad,
+                           bool soft)
 {
     int64_t step_us = robot->driver->time_step_us;
-    double needed_us = time_of_way(robot, joint, to_rad, soft);
+    double needed_us = time_of_way(robot, joint, from_rad, to_rad, soft);
     double steps = fmax(ceil(needed_us / (double)step_us), 1);
     double most = (double)(robot->driver->time_max_us / step_us);
     return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
@@ -172,7 +180,8 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
         if (asked > 0 && is_ample(robot, j, to_rad, asked)) {
             continue;
         }
-        int64_t needed_us = time_needed(robot, j, to_rad, soft);
+        double from_rad = begin_of(robot, order->deed == GROBO_I_DEED_HALT, j);
+        int64_t needed_us = time_needed(robot, j, from_rad, to_rad, soft);
         if (needed_us == GROBO_NEVER_US) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
@@ -310,7 +319,8 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     int64_t rest_us = grobo_i_later(order->asked_us + HALT_AHEAD_US, robot->now_us + HALT_LEAST_US);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool moves = axis->sensed && grobo_i_axis_moves(axis, robot->now_us) &&
+        bool goes_on = grobo_i_axis_moves(axis, robot->now_us) || grobo_i_axis_lags(robot, j);
+        bool moves = axis->sensed && goes_on &&
                      (!robot->driver->goal_wakes || axis->wants_torque || grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
             target->posture.angle_rad[j] = grobo_i_axis_reached(robot, j, rest_us);
@@ -440,7 +450,8 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
             return GROBO_ERR_STALE;
         }
         if (grobo_i_has(target->posture.set, j) &&
-            most_us < time_of_way(robot, j, target->posture.angle_rad[j], robot->soft)) {
+            most_us < time_of_way(robot, j, begin_of(robot, false, j),
+                                  target->posture.angle_rad[j], robot->soft)) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
         }
@@ -588,7 +599,7 @@ static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order
     grobo_target *target = cut ? part : &says->target;
     bool timed = is_timed(robot->driver);
     for (int j = 0; !timed && j < robot->driver->model->n_joints; j++) {
-        target->from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
+        target->from_rad[j] = begin_of(robot, order->deed == GROBO_I_DEED_HALT, j);
         if (order->deed == GROBO_I_DEED_HALT) {
             target->from_rad[j] = begin_of_halt(robot, target, j);
         }
@@ -682,7 +693,8 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(target->posture.set, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
-            double from_rad = grobo_i_axis_commanded(axis, now_us);
+            double from_rad = begin_of(robot, order->deed == GROBO_I_DEED_HALT, j);
+            grobo_i_axis_told(robot, j);
             axis->way = (grobo_robot_way){from_rad, target->posture.angle_rad[j], now_us,
                                           now_us + target->joint_time_us[j]};
             axis->own_until_us = 0;

@@ -115,8 +115,7 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
     grobo_robot_axis *axis = &robot->axes[joint];
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
         axis->sensed = true;
-        axis->seen_rad = got->angle_rad;
-        axis->seen_us = asked_us;
+        grobo_i_axis_seen(axis, asked_us, got);
         take_move(robot, joint, got);
         axis->off_way = is_off_way(robot, joint, asked_us, got);
         if (!axis->has_target) {

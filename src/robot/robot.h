@@ -69,9 +69,20 @@ double grobo_i_axis_target(const grobo_robot_axis *axis);
 /* An angle this far from the way that a joint was sent on is not of a joint on that way: more than
  * what the fastest one does while a frame is on its way. */
 #define GROBO_I_OFF_WAY_RAD (12 * 0.017453292519943295)
-/* Where its way is, but not further than it can have come since it was read: one that is too weak
- * for its way is far behind it. */
-double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t now_us);
+/* grobo_robot_axis.seen_dps of a reading without a speed. */
+#define GROBO_I_NO_SPEED INT16_MIN
+/* True of servos that tell how fast they turn and which way, and not how long: what was read last
+ * is all that is known of their turning. */
+bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint);
+/* Where a joint comes to rest that is told so now, and no sooner than by then; where it is, of now.
+ * What counts is where it was read and how it can have gone on from there: it may be behind its
+ * way by far, too weak for it or still turning the other way. */
+double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us);
+/* What was read of where a joint is; and that it is told to go elsewhere from now on. */
+void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got);
+void grobo_i_axis_told(grobo_robot *robot, int joint);
+/* True of one whose way is over and that was read not to be there yet. */
+bool grobo_i_axis_lags(const grobo_robot *robot, int joint);
 /* Takes the sensed angle for where a joint is, nothing being asked of it. */
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
 /* Takes what was read for where a joint is: at the angle, or on the move the servo told of. */

@@ -5,6 +5,7 @@
  * budget of rounds ends that.
  */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/instant.h"
@@ -619,6 +620,35 @@ static int step_quiet(grobo_robot *robot)
 /* Where nobody knows to: it moves until its halt has left, and the halt is refused no sooner. */
 #define ASTRAY_US 100000
 
+/* A servo that turns yet so near the end of its way comes to rest there; nearer and slower, it
+ * stands and trembles. */
+#define ARRIVES_RAD (3 * 0.017453292519943295)
+#define TREMBLES_RAD (1 * 0.017453292519943295)
+#define TREMBLES_DPS 60
+#define ARRIVES_US 20000
+
+/* Of one that tells no more than its speed. */
+static bool still_turns(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool trembles = axis->has_target && !axis->off_way && abs(axis->seen_dps) < TREMBLES_DPS &&
+                    near_rad(axis->way.to_rad, axis->seen_rad, TREMBLES_RAD);
+    return grobo_i_axis_tells_turn(robot, joint) && !trembles &&
+           axis->state.torque == GROBO_TORQUE_ON && abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
+}
+
+/* It is let go on, and looked at once more. */
+static bool arrives(grobo_robot *robot, int joint)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    bool arrives = axis->has_target && !axis->off_way && still_turns(robot, joint) &&
+                   near_rad(axis->way.to_rad, axis->seen_rad, ARRIVES_RAD);
+    if (arrives) {
+        axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ARRIVES_US);
+    }
+    return arrives;
+}
+
 /* True if the servo, just read, says that it is on a way; notes that way. */
 static bool is_astray(grobo_robot *robot, int joint)
 {
@@ -627,8 +657,9 @@ static bool is_astray(grobo_robot *robot, int joint)
     int64_t left_us = state->goal_time_us - state->time_us;
     bool creeps = axis->goal_us == axis->angle_us && left_us > 0 &&
                   !near_rad(state->goal_rad, state->angle_rad, THERE_RAD);
+    bool turns = still_turns(robot, joint);
     if (state->torque != GROBO_TORQUE_ON ||
-        (axis->own_until_us <= robot->now_us && !axis->adrift && !creeps)) {
+        (axis->own_until_us <= robot->now_us && !axis->adrift && !creeps && !turns)) {
         return false;
     }
     if (creeps) {
@@ -647,15 +678,19 @@ static int step_strays(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
     bool emergency = job->kind == GROBO_JOB_ESTOP;
-    grobo_joint_mask astray = 0;
+    grobo_joint_mask astray = 0, arriving = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(job->joints & ~job->failed, j) && is_astray(robot, j)) {
+        bool asked = grobo_i_has(job->joints & ~job->failed, j);
+        if (asked && arrives(robot, j)) {
+            arriving |= GROBO_JOINT_BIT(j);
+        } else if (asked && is_astray(robot, j)) {
             astray |= GROBO_JOINT_BIT(j);
         }
     }
     if (astray != 0 && (emergency || job->rounds < ROUNDS)) {
-        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+        grobo_i_gate_halt(robot, astray);
     }
+    astray |= arriving;
     if (emergency) {
         job->joints = astray | job->failed;
         return again(robot, job->joints, step_quiet);

@@ -10,6 +10,7 @@
 
 #include <grobo/ics.h>
 
+#include "src/sim/shaft.h"
 #include "tests/support/family_kit.h"
 
 enum { JOINTS = FAMILY_JOINTS, MS = 1000, S = 1000000 };
@@ -459,12 +460,94 @@ static void a_joint_that_is_behind_stops_in_time(void **state)
     }
 }
 
+/* The first joint turns at full speed, may be sent the other way, and is stopped so long behind
+ * that. */
+typedef struct turn_back {
+    bool turned, emergency;
+    int ms;
+    int64_t interval_us;
+    double dps;      /* how fast it turned when it was stopped */
+    double on_deg;   /* further than it needs to brake */
+    double back_deg; /* less than that */
+    double done_deg; /* how far it goes on once an emergency stop is done */
+} turn_back;
+
+static double at_deg(void)
+{
+    grobo_sim_step(&kit.sim, kit.now_us);
+    return family_angle_deg(&kit, 0);
+}
+
+static void send_fast(double deg, int ms)
+{
+    grobo_posture p = family_posture(&kit, deg, 10);
+    assert_int_equal(grobo_robot_send(&kit.robot, &p), GROBO_OK);
+    family_run(&kit, ms * MS);
+}
+
+static void stop_turning(const family *f, turn_back *t)
+{
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = t->interval_us};
+    family_start(&kit, f, &config, NULL);
+    assert_int_equal(family_move(&kit, 85, 2000), GROBO_OK);
+    send_fast(-60, t->turned ? 250 : t->ms);
+    if (t->turned) {
+        send_fast(80, t->ms);
+    }
+    double then_deg = at_deg(), low_deg = then_deg, high_deg = then_deg;
+    double v = grobo_i_sim_speed_mdeg_s(&kit.sim.servo[0], kit.now_us) / 1000;
+    double a = kit.sim.servo[0].plant.accel_mdeg_s2 / 1000.0;
+    if (t->emergency) {
+        assert_int_equal(family_wait(&kit, grobo_robot_estop(&kit.robot)), GROBO_OK);
+    } else {
+        (void)grobo_robot_stop(&kit.robot, true); /* the fastest are there */
+    }
+    double done_deg = at_deg();
+    for (int i = 0; i < 200; i++) {
+        family_run(&kit, 5 * MS);
+        low_deg = fmin(low_deg, at_deg());
+        high_deg = fmax(high_deg, at_deg());
+    }
+    double brake_deg = a > 0 ? v * fabs(v) / 2 / a : 0;
+    double on_deg = (at_deg() - then_deg - brake_deg) * (v < 0 ? -1 : 1);
+    t->dps = fabs(v);
+    t->on_deg = fmax(on_deg, 0);
+    t->back_deg = fmax(-on_deg, v < 0 ? at_deg() - low_deg : high_deg - at_deg());
+    t->done_deg = fabs(at_deg() - done_deg);
+}
+
+/* A servo with ramps is far behind its way when it was sent back at full speed, and turns the other
+ * way at first. It is not sent on to where its way is, nor pulled back; and an emergency stop is
+ * not done before it stands. */
+static void a_joint_that_turns_back_stops_where_it_is(void **state)
+{
+    (void)state;
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        bool ramps = strcmp(f->name, "feetech") == 0;
+        for (int run = 0; run < 8; run++) {
+            for (int ms = 3; ms < 420; ms += 39) {
+                turn_back t = {.turned = run % 2 != 0, .emergency = run / 2 % 2 != 0, .ms = ms,
+                               .interval_us = run / 4 != 0 ? 50 * MS : 150 * MS};
+                stop_turning(f, &t);
+                double most_deg = ramps ? 4 : 0.055 * t.dps;
+                if (t.on_deg > most_deg || t.back_deg > 0.5 ||
+                    (t.emergency && t.done_deg > 0.5)) {
+                    fail_msg("%s, run %d, at %d ms: %.0f deg/s, %.1f deg on, %.1f back, %.1f done",
+                             f->name, run, ms, t.dps, t.on_deg, t.back_deg, t.done_deg);
+                }
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_is_woken_after_a_dip),
         cmocka_unit_test(a_lost_reply_ends_no_way),
         cmocka_unit_test(a_weak_joint_stops_where_it_is),
+        cmocka_unit_test(a_joint_that_turns_back_stops_where_it_is),
         cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
         cmocka_unit_test(a_joint_that_is_behind_stops_in_time),
         cmocka_unit_test(a_stalled_host_blames_no_servo),
