@@ -257,7 +257,8 @@ def rates(port):
         print(f"{who}: {hz:.0f} reads of the arm a second, the wire busy for {pct:.1f} % of the "
               f"time, {beside_us:.0f} us of each beside it")
     busy = os.getloadavg()[0] > os.cpu_count()
-    assert busy or told["grobo"][1] >= 95, told
+    machine = told["a bare loop"][1]  # what wakes of the system leave of the wire
+    assert busy or told["grobo"][1] >= min(95, machine - 1), told
 
 
 def arrives(position, goal):
