@@ -50,8 +50,9 @@ typedef struct course {
     double at_rad, rad_s;
 } course;
 
-/* What a servo does whose speed was told along with where it is, until it is told to go elsewhere;
- * or one that goes where nobody knows. */
+/* Who goes where nobody knows is not believed to do so for longer. */
+#define GOES_ON_S 0.2
+
 static course go_on(course c, double time_s)
 {
     c.at_rad += c.rad_s * time_s;
@@ -76,9 +77,9 @@ static double seconds(int64_t from_us, int64_t to_us)
 /* True while it is on a way that is known, be it the one it was sent on or that its servo told. */
 static bool is_guided(const grobo_robot_axis *axis)
 {
-    return axis->off_way ? axis->own_until_us > axis->angle_us
-                         : axis->way.to_us > axis->way.from_us &&
-                               axis->way.to_rad != axis->way.from_rad;
+    return axis->off_way
+               ? axis->own_until_us > axis->angle_us
+               : axis->way.to_us > axis->way.from_us && axis->way.to_rad != axis->way.from_rad;
 }
 
 static double way_speed(const grobo_robot_way *way)
@@ -89,6 +90,17 @@ static double way_speed(const grobo_robot_way *way)
 static bool tells_speed(const grobo_robot_axis *axis)
 {
     return axis->seen_dps != GROBO_I_NO_SPEED;
+}
+
+/* What was read last. A speed that is too high for the joint was misread. */
+#define MISREAD_PART 1.5
+
+static course seen(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double most_rad_s = MISREAD_PART * robot->driver->model->joints[joint].max_speed_rad_s;
+    double rad_s = tells_speed(axis) ? grobo_rad_from_deg(axis->seen_dps) : 0;
+    return (course){axis->seen_rad, copysign(fmin(fabs(rad_s), most_rad_s), rad_s)};
 }
 
 /* A speed as it is kept. */
@@ -108,32 +120,33 @@ void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joi
 bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return tells_speed(axis) && !robot->driver->no_speed &&
-           (axis->state.valid & GROBO_FIELD_TIME) == 0;
+    return tells_speed(axis) && (axis->state.valid & GROBO_FIELD_TIME) == 0;
 }
 
 /* Of a servo with ramps that tells its speed: from there and then to the speed of its way, and to
  * rest at its end. */
-static course on_ramps(const grobo_robot_axis *axis, double accel_rad_s2, int64_t now_us)
+static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
 {
-    const grobo_robot_way *way = &axis->way;
-    course c = {axis->seen_rad, grobo_rad_from_deg(axis->seen_dps)};
-    int64_t told_us = grobo_i_later(axis->seen_us, way->from_us);
-    c = go_on(c, seconds(axis->seen_us, grobo_i_sooner(told_us, now_us)));
-    double left_rad = way->to_rad - c.at_rad;
-    double wanted_rad_s = way_speed(way);
-    if (seconds(way->from_us, axis->seen_us) * accel_rad_s2 > 2 * wanted_rad_s) {
-        wanted_rad_s = fmin(wanted_rad_s, fabs(c.rad_s)); /* it should be as fast, and is too weak */
+    const grobo_robot_way *way = &robot->axes[joint].way;
+    double accel_rad_s2 = robot->driver->accel_rad_s2, wanted_rad_s = way_speed(way);
+    course c = seen(robot, joint);
+    int64_t seen_us = robot->axes[joint].seen_us;
+    if (seconds(way->from_us, seen_us) * accel_rad_s2 > 2 * wanted_rad_s) {
+        wanted_rad_s = fmin(wanted_rad_s, fabs(c.rad_s)); /* too weak to be as fast by then */
     }
-    wanted_rad_s = copysign(wanted_rad_s, left_rad);
-    c = speed_up(c, wanted_rad_s, accel_rad_s2, seconds(told_us, now_us));
-    double still_rad = (way->to_rad - c.at_rad) * (left_rad < 0 ? -1 : 1);
-    bool there = c.rad_s * left_rad > 0 && still_rad <= 0;
+    c = go_on(c, fmin(seconds(seen_us, way->from_us), GOES_ON_S));
+    double left_rad = way->to_rad - c.at_rad;
+    wanted_rad_s = left_rad == 0 ? 0 : copysign(wanted_rad_s, left_rad);
+    c = speed_up(c, wanted_rad_s, accel_rad_s2,
+                 seconds(grobo_i_later(seen_us, way->from_us), now_us));
+    double still_rad = copysign(way->to_rad - c.at_rad, (way->to_rad - c.at_rad) * left_rad);
+    if (c.rad_s * left_rad <= 0) {
+        return c;
+    }
     double most_rad_s = sqrt(2 * accel_rad_s2 * fmax(still_rad, 0)); /* that it still can brake */
-    return there ? (course){way->to_rad, 0}
-           : c.rad_s * left_rad > 0
-               ? (course){c.at_rad, copysign(fmin(fabs(c.rad_s), most_rad_s), left_rad)}
-               : c;
+    c.rad_s = copysign(fmin(fabs(c.rad_s), most_rad_s), left_rad);
+    c.at_rad = still_rad <= 0 ? way->to_rad : c.at_rad;
+    return c;
 }
 
 /* How far a joint can have come since it was read: at the speed of its way, or the one it was read
@@ -143,8 +156,7 @@ static double most_since(const grobo_robot *robot, int joint, int64_t now_us)
     const grobo_robot_axis *axis = &robot->axes[joint];
     double rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
     if (axis->seen_us >= axis->way.from_us) {
-        double seen_rad_s = tells_speed(axis) ? grobo_rad_from_deg(abs(axis->seen_dps)) : 0;
-        rad_s = fmax(way_speed(&axis->way), seen_rad_s);
+        rad_s = fmax(way_speed(&axis->way), fabs(seen(robot, joint).rad_s));
     }
     return rad_s * seconds(axis->seen_us, now_us);
 }
@@ -167,9 +179,9 @@ static double along(const grobo_robot *robot, int joint, int64_t now_us)
 static course turning(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    const course seen = {axis->seen_rad, grobo_rad_from_deg(axis->seen_dps)};
-    return is_guided(axis) ? on_ramps(axis, robot->driver->accel_rad_s2, now_us)
-                           : go_on(seen, seconds(axis->seen_us, now_us));
+    return is_guided(axis)
+               ? on_ramps(robot, joint, now_us)
+               : go_on(seen(robot, joint), fmin(seconds(axis->seen_us, now_us), GOES_ON_S));
 }
 
 static bool has_course(const grobo_robot *robot, int joint)

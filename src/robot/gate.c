@@ -450,8 +450,8 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
             return GROBO_ERR_STALE;
         }
         if (grobo_i_has(target->posture.set, j) &&
-            most_us < time_of_way(robot, j, begin_of(robot, false, j),
-                                  target->posture.angle_rad[j], robot->soft)) {
+            most_us < time_of_way(robot, j, begin_of(robot, false, j), target->posture.angle_rad[j],
+                                  robot->soft)) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
         }

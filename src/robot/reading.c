@@ -161,6 +161,13 @@ static void take_speed(const grobo_robot *robot, int joint, grobo_joint_state *g
     }
 }
 
+/* Between an angle from before it was told to go elsewhere and one since then lies the speed of
+ * neither way. */
+static bool is_of_one_way(const grobo_robot *robot, const grobo_robot_axis *axis)
+{
+    return !robot->driver->no_speed || axis->angle_us >= axis->told_us;
+}
+
 /* asked_us: when the joint was asked first. A late answer may be of before a frame that has left
  * meanwhile: it restores nothing of what that frame has made unknown. */
 static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_joint_state *got)
@@ -170,6 +177,7 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
         got->angle_rad += correction(robot, joint);
     }
     take_speed(robot, joint, got);
+    bool one_way = is_of_one_way(robot, axis);
     merge(axis, got);
     axis->status = GROBO_OK;
     axis->lost = 0;
@@ -181,6 +189,7 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
     }
     if (asked_us >= axis->told_us) {
         take_place(robot, joint, asked_us, got);
+        axis->seen_dps = one_way ? axis->seen_dps : GROBO_I_NO_SPEED;
     }
 }
 

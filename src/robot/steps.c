@@ -162,13 +162,15 @@ static int step_require(grobo_robot *robot)
 }
 
 /* Servos that tell no speed are read twice before they are sent anywhere: another program may have
- * sent them on their way. */
+ * sent them on their way. Who is to stand is read twice since he was told to. */
 static grobo_joint_mask of_unknown_speed(const grobo_robot *robot)
 {
     grobo_joint_mask found = 0;
+    bool stand = robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
     for (int j = 0; robot->driver->no_speed && j < robot->driver->model->n_joints; j++) {
         bool is = grobo_i_has(robot->job->joints & ~robot->job->failed, j);
-        bool known = (robot->axes[j].state.valid & GROBO_FIELD_SPEED) != 0;
+        bool known = stand ? robot->axes[j].seen_dps != GROBO_I_NO_SPEED
+                           : (robot->axes[j].state.valid & GROBO_FIELD_SPEED) != 0;
         found |= is && !known ? GROBO_JOINT_BIT(j) : 0;
     }
     return found;
@@ -688,7 +690,7 @@ static int step_strays(grobo_robot *robot)
         }
     }
     if (astray != 0 && (emergency || job->rounds < ROUNDS)) {
-        grobo_i_gate_halt(robot, astray);
+        grobo_i_gate_halt(robot, grobo_i_all_joints(robot) & ~arriving);
     }
     astray |= arriving;
     if (emergency) {
@@ -738,7 +740,7 @@ const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, step_watchdog_clear, SWITCH,
                                                        NULL};
 const grobo_robot_step_fn grobo_i_script_exit_hold[] = {
-    step_quiet, step_read, step_hear_all, step_strays, step_watchdog_clear, NULL};
+    step_quiet, step_read, TWICE, step_hear_all, step_strays, step_watchdog_clear, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
     step_quiet,    step_read, step_read_again, step_require,        step_from_here,
     step_aim_rest, MOVE,      step_require,    step_watchdog_clear, SWITCH,

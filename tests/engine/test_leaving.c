@@ -18,7 +18,7 @@ static rig_clip clip;
 /* ---- steps ----------------------------------------------------------------------------------- */
 
 /* The steps of a script that are looked at. */
-enum { QUIET = 0, STRAYS = 3, AIM_REST = 5 };
+enum { QUIET = 0, STRAYS = 5, AIM_REST = 5 };
 
 /* A job is about to take this step of its script. */
 static void begin_job(grobo_job_kind kind, const grobo_robot_step_fn *script, unsigned at)
@@ -129,6 +129,47 @@ static void who_leaves_stops_what_others_set_going(void **state)
             assert_true(halting() == (row->astray ? GROBO_JOINT_BIT(j) : 0));
             assert_int_equal(robot.job->at, row->astray ? QUIET : STRAYS + 1);
             assert_int_equal(robot.job->rounds, row->astray);
+        }
+    }
+}
+
+/* Of servos that tell no more than how fast they turn: one that turns near the end of its way is
+ * looked at once more, one that trembles there stands, any other is stopped anew. */
+static void who_leaves_waits_for_what_turns(void **state)
+{
+    (void)state;
+    static const struct {
+        int dps;
+        double left_deg;
+        bool on, tells_time, again, halts;
+    } rows[] = {
+        {7, 30, true, false, false, false},     {8, 30, true, false, true, true},
+        {-8, -30, true, false, true, true},     {8, 30, false, false, false, false},
+        {8, 30, true, true, false, false},      {8, 3.1, true, false, true, true},
+        {8, 2.9, true, false, true, false},     {59, 0.9, true, false, false, false},
+        {-59, -0.9, true, false, false, false}, {60, 0.9, true, false, true, false},
+        {8, -1.1, true, false, true, false},
+    };
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start();
+            begin_job(GROBO_JOB_EXIT, grobo_i_script_exit_hold, STRAYS);
+            grobo_robot_axis *axis = &robot.axes[j];
+            axis->state.valid = GROBO_FIELD_ANGLE | GROBO_FIELD_SPEED | GROBO_FIELD_TORQUE |
+                                (rows[i].tells_time ? GROBO_FIELD_TIME : 0);
+            axis->state.torque = rows[i].on ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF;
+            axis->state.time_us = axis->state.goal_time_us = 0;
+            axis->own_until_us = 0;
+            axis->has_target = true;
+            axis->seen_rad = axis->state.angle_rad;
+            axis->seen_dps = (int16_t)rows[i].dps;
+            axis->way.to_rad = axis->seen_rad + RAD(rows[i].left_deg);
+            axis->way.to_us = NOW - 1;
+            assert_int_equal(take_step(), GROBO_I_NEXT);
+            if ((halting() != 0) != rows[i].halts || (robot.job->at == QUIET) != rows[i].again) {
+                fail_msg("row %zu: joint %d", i, j);
+            }
+            assert_true((axis->way.to_us > NOW) == rows[i].again);
         }
     }
 }
@@ -478,6 +519,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(who_leaves_waits_until_all_is_quiet),
         cmocka_unit_test(who_leaves_stops_what_others_set_going),
+        cmocka_unit_test(who_leaves_waits_for_what_turns),
         cmocka_unit_test(who_leaves_does_not_look_at_what_was_not_read),
         cmocka_unit_test(who_leaves_gives_up_on_a_joint_that_goes_on),
         cmocka_unit_test(who_sits_down_aims_at_the_rest_of_what_holds),

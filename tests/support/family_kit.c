@@ -139,6 +139,12 @@ void family_start(family_kit *kit, const family *f, const grobo_robot_config *co
     assert_int_equal(f->init(&kit->driver, &kit->model), GROBO_OK);
     assert_int_equal(grobo_robot_init(&kit->robot, &kit->driver, NULL, &used, kit->now_us),
                      GROBO_OK);
+    family_listen(kit);
+}
+
+void family_listen(family_kit *kit)
+{
+    kit->n_done = 0; /* numbers of jobs begin anew */
     grobo_robot_on_event(&kit->robot, on_event, kit);
     grobo_robot_link_up(&kit->robot, kit->now_us);
 }

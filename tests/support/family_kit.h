@@ -50,6 +50,8 @@ typedef struct family_kit {
 /* sim NULL: seed 7. What of it makes the family is filled in. */
 void family_start(family_kit *kit, const family *f, const grobo_robot_config *config,
                   const grobo_sim_config *sim);
+/* Takes what the robot tells, and brings its link up: of one that was initialised anew, too. */
+void family_listen(family_kit *kit);
 /* Sets a register of a servo behind the robot's back. */
 void family_set_up(family_kit *kit, int servo, grobo_register_role role, int32_t value);
 double family_angle_deg(family_kit *kit, int joint);

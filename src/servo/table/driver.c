@@ -188,6 +188,32 @@ static void put_role(const grobo_servo_model *servo, grobo_register_role role, d
     }
 }
 
+static bool takes_time(const grobo_i_family *family, const grobo_servo_model *servo)
+{
+    return family->pace == GROBO_I_PACE_PROFILE ||
+           (family->pace == GROBO_I_PACE_TIME &&
+            grobo_servo_register_of(servo, GROBO_ROLE_GOAL_TIME) != NULL);
+}
+
+/* How joints speed up and brake: as the slowest of them, where each goal is told the most of a
+ * register of acceleration; else 0. */
+static double least_accel(const grobo_driver *self)
+{
+    double least_dps2 = INFINITY;
+    for (int j = 0; j < self->model->n_joints; j++) {
+        const grobo_joint *joint = &self->model->joints[j];
+        const grobo_servo_model *servo = grobo_i_table_servo(self, j);
+        const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_ACCELERATION);
+        span s = goal_span(servo);
+        bool told = reg != NULL && reg->address >= s.from && reg->address < s.to &&
+                    !takes_time(self->family, servo);
+        double ratio = grobo_joint_from_servo(joint, 1) - grobo_joint_from_servo(joint, 0);
+        double own_dps2 = told ? reg->max * grobo_i_table_unit(reg) * fabs(ratio) : 0;
+        least_dps2 = fmin(least_dps2, own_dps2);
+    }
+    return grobo_rad_from_deg(least_dps2);
+}
+
 static void put_goal(const grobo_driver *self, int joint, const void *what, span s, uint8_t *to)
 {
     const grobo_target *target = what;
@@ -200,8 +226,7 @@ static void put_goal(const grobo_driver *self, int joint, const void *what, span
     put_role(servo, GROBO_ROLE_GOAL, grobo_i_table_ticks(moved, servo, angle_rad), s, to);
     if (family->pace == GROBO_I_PACE_PROFILE) {
         put_role(servo, GROBO_ROLE_SPEED, fmax(ms, 1), s, to);
-    } else if (family->pace == GROBO_I_PACE_TIME &&
-               grobo_servo_register_of(servo, GROBO_ROLE_GOAL_TIME) != NULL) {
+    } else if (takes_time(family, servo)) {
         put_role(servo, GROBO_ROLE_GOAL_TIME, fmax(ms, 1), s, to);
     } else {
         const grobo_servo_register *speed = grobo_servo_register_of(servo, GROBO_ROLE_SPEED);
@@ -446,6 +471,7 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
     };
     int result = grobo_i_table_make(&made, model, protocol, family);
     made.watchdog = family->watchdog_us > 0 ? watchdog : NULL;
+    made.accel_rad_s2 = result >= 0 ? least_accel(&made) : 0;
     made.sense_many = result >= 0 && reads_alike(&made) ? sense_many : NULL;
     made.sense_fast = made.sense_many != NULL && family->fast_read != NULL ? sense_fast : NULL;
     return grobo_i_table_give(driver, &made, result);

@@ -107,10 +107,6 @@ int32_t grobo_i_table_ticks(const grobo_joint *joint, const grobo_servo_model *s
 /* The coarsest count of a joint's servo. */
 double grobo_i_table_step_rad(const grobo_driver *self);
 
-/* How joints speed up and brake: as the slowest of them, where all are told a speed and the most
- * of a register of acceleration. 0: they are not. */
-double grobo_i_table_accel_rad_s2(const grobo_driver *self);
-
 /* Of grobo_driver; inspect.c */
 grobo_write_kind grobo_i_table_write_kind(const grobo_driver *self, const grobo_register_io *io);
 int grobo_i_table_inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, size_t size,

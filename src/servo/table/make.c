@@ -45,7 +45,6 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
         }
     }
     made->angle_step_rad = grobo_i_table_step_rad(made);
-    made->accel_rad_s2 = grobo_i_table_accel_rad_s2(made);
     return grobo_driver_check(made);
 }
 

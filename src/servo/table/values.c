@@ -114,25 +114,3 @@ double grobo_i_table_step_rad(const grobo_driver *self)
     }
     return step_rad;
 }
-
-/* Of one that is told the time of its way, nobody chooses it. */
-static double accel_dps2(const grobo_i_family *family, const grobo_servo_model *servo)
-{
-    const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_ACCELERATION);
-    bool timed = family->pace == GROBO_I_PACE_PROFILE ||
-                 (family->pace == GROBO_I_PACE_TIME &&
-                  grobo_servo_register_of(servo, GROBO_ROLE_GOAL_TIME) != NULL);
-    return reg == NULL || timed ? 0 : reg->max * grobo_i_table_unit(reg);
-}
-
-double grobo_i_table_accel_rad_s2(const grobo_driver *self)
-{
-    double least_dps2 = INFINITY;
-    for (int j = 0; j < self->model->n_joints; j++) {
-        const grobo_joint *joint = &self->model->joints[j];
-        double ratio = grobo_joint_from_servo(joint, 1) - grobo_joint_from_servo(joint, 0);
-        double own_dps2 = accel_dps2(self->family, grobo_i_table_servo(self, j));
-        least_dps2 = fmin(least_dps2, own_dps2 * fabs(ratio));
-    }
-    return least_dps2 * RAD_PER_DEG;
-}
