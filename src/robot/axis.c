@@ -104,9 +104,9 @@ static course seen(const grobo_robot *robot, int joint)
 }
 
 /* A speed as it is kept. */
-static int16_t dps_of(double dps)
+static int16_t dps_of(int32_t dps)
 {
-    return (int16_t)fmin(fmax(dps, -INT16_MAX), INT16_MAX);
+    return (int16_t)(dps < -INT16_MAX ? -INT16_MAX : dps > INT16_MAX ? INT16_MAX : dps);
 }
 
 void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got)
@@ -127,25 +127,27 @@ bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint)
  * rest at its end. */
 static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
 {
-    const grobo_robot_way *way = &robot->axes[joint].way;
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    const grobo_robot_way *way = &axis->way;
     double accel_rad_s2 = robot->driver->accel_rad_s2, wanted_rad_s = way_speed(way);
     course c = seen(robot, joint);
-    int64_t seen_us = robot->axes[joint].seen_us;
+    int64_t seen_us = axis->seen_us;
+    double end_rad = axis->in_segments ? grobo_i_way_at(way, axis->told_to_us) : way->to_rad;
     if (seconds(way->from_us, seen_us) * accel_rad_s2 > 2 * wanted_rad_s) {
         wanted_rad_s = fmin(wanted_rad_s, fabs(c.rad_s)); /* too weak to be as fast by then */
     }
     c = go_on(c, fmin(seconds(seen_us, way->from_us), GOES_ON_S));
-    double left_rad = way->to_rad - c.at_rad;
+    double left_rad = end_rad - c.at_rad;
     wanted_rad_s = left_rad == 0 ? 0 : copysign(wanted_rad_s, left_rad);
     c = speed_up(c, wanted_rad_s, accel_rad_s2,
                  seconds(grobo_i_later(seen_us, way->from_us), now_us));
-    double still_rad = copysign(way->to_rad - c.at_rad, (way->to_rad - c.at_rad) * left_rad);
+    double still_rad = copysign(end_rad - c.at_rad, (end_rad - c.at_rad) * left_rad);
     if (c.rad_s * left_rad <= 0) {
         return c;
     }
     double most_rad_s = sqrt(2 * accel_rad_s2 * fmax(still_rad, 0)); /* that it still can brake */
     c.rad_s = copysign(fmin(fabs(c.rad_s), most_rad_s), left_rad);
-    c.at_rad = still_rad <= 0 ? way->to_rad : c.at_rad;
+    c.at_rad = still_rad <= 0 ? end_rad : c.at_rad;
     return c;
 }
 
@@ -217,7 +219,7 @@ void grobo_i_axis_told(grobo_robot *robot, int joint)
         const course c = turning(robot, joint, robot->now_us);
         axis->seen_rad = c.at_rad;
         axis->seen_us = robot->now_us;
-        axis->seen_dps = dps_of(grobo_deg_from_rad(c.rad_s));
+        axis->seen_dps = dps_of((int32_t)lround(grobo_deg_from_rad(c.rad_s)));
     }
 }
 
@@ -293,9 +295,9 @@ bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return axis->sensed && axis->has_target && !axis->off_way && is_guided(axis) &&
-           axis->seen_us >= axis->told_us && grobo_i_axis_tells_turn(robot, joint) &&
-           abs(axis->seen_dps) >= GROBO_I_SLOW_DPS && grobo_i_axis_is_on(axis) &&
+    return abs(axis->seen_dps) >= GROBO_I_SLOW_DPS && grobo_i_axis_tells_turn(robot, joint) &&
+           axis->sensed && axis->has_target && !axis->off_way && is_guided(axis) &&
+           axis->seen_us >= axis->told_us && grobo_i_axis_is_on(axis) &&
            fabs(grobo_i_axis_reached(robot, joint, robot->now_us) - axis->way.to_rad) > LAGS_RAD;
 }
 
