@@ -292,11 +292,16 @@ bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
     return !limp && grobo_i_later(grobo_i_axis_until(axis), axis->way.to_us) > now_us;
 }
 
+static bool turns(const grobo_robot_axis *axis)
+{
+    return abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
+}
+
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return abs(axis->seen_dps) >= GROBO_I_SLOW_DPS && grobo_i_axis_tells_turn(robot, joint) &&
-           axis->sensed && axis->has_target && !axis->off_way && is_guided(axis) &&
+    return turns(axis) && grobo_i_axis_tells_turn(robot, joint) && axis->sensed &&
+           axis->has_target && !axis->off_way && is_guided(axis) &&
            axis->seen_us >= axis->told_us && grobo_i_axis_is_on(axis) &&
            fabs(grobo_i_axis_reached(robot, joint, robot->now_us) - axis->way.to_rad) > LAGS_RAD;
 }
@@ -306,7 +311,7 @@ bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         if (axis->next != 0 || (axis->sensed && grobo_i_axis_moves(axis, now_us)) ||
-            grobo_i_axis_lags(robot, j)) {
+            (turns(axis) && grobo_i_axis_lags(robot, j))) {
             return true;
         }
     }
