@@ -1391,7 +1391,8 @@ def is_drawn_before_its_scripts(browser, link, sheets, ready):
     page.on('pageerror', lambda e: browser.trouble.append(e.stack or str(e)))
     page.on('console', lambda m: m.type in ('error', 'warning') and browser.trouble.append(m.text))
     page.route('**/*.js', lambda route: held.append(route))
-    page.goto(link, wait_until='commit')
+    early = page.goto(link, wait_until='commit').headers['link']
+    assert all(f'/{sheet}>; rel=preload; as=style' in early for sheet in sheets), early
     until(page, "performance.getEntriesByName('first-contentful-paint').length === 1")
     stop = page.locator('#stop')
     assert stop.inner_text().startswith('STOP') and stop.bounding_box()['height'] >= 64

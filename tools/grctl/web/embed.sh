@@ -32,6 +32,12 @@ content() {
     esac
 }
 
+# The style sheets of HTML for a Link header, which a browser reads before it has the HTML.
+early() {
+    content "$1" | sed -n 's|.*rel="stylesheet" href="\([^"]*\)".*|</\1>; rel=preload; as=style|p' |
+        paste -sd , - | sed 's/,/, /g'
+}
+
 files=$(cd "$folder" && find . -type f ! -name '.*' | sed 's,^\.,,' | LC_ALL=C sort)
 version=$(for file in $files; do echo "$file"; cat "$folder$file"; done | cksum | tr ' ' -)
 printf '/* Made by tools/grctl/web/embed.sh. */\n#include "tools/grctl/web/page.h"\n'
@@ -43,7 +49,7 @@ for file in $files; do
     printf '\nstatic const unsigned char file_%d[] = {\n' "$n"
     content "$file" | gzip -9nc | od -An -v -tu1 | sed 's/  */,/g; s/^,/    /; s/$/,/'
     printf '};\n'
-    table="$table    {\"$file\", \"$type\", \"\\\\\"$hash\\\\\"\", file_$n, sizeof file_$n},
+    table="$table    {\"$file\", \"$type\", \"\\\\\"$hash\\\\\"\", \"$(early "$file")\", file_$n, sizeof file_$n},
 "
     n=$((n + 1))
 done

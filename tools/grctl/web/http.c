@@ -366,6 +366,9 @@ void http_reply_content(http_request *r, const http_content *content)
         send_reply(r, 304, NULL, 0);
         return;
     }
+    if (content->early && *content->early) {
+        add(r, "Link", content->early);
+    }
     add(r, "Content-Type", content->type);
     add(r, "Vary", "Accept-Encoding");
     if (content->gzip) {

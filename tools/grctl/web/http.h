@@ -100,10 +100,11 @@ typedef struct http_content {
     const char *type;
     const void *bytes;
     size_t size;
-    const char *etag; /* or NULL; with its quotes */
-    bool gzip;        /* the bytes are compressed */
-    bool lasts;       /* what this path names never changes */
-    bool page;        /* of the page: a policy is sent along */
+    const char *etag;  /* or NULL; with its quotes */
+    const char *early; /* or NULL, or "": a Link header, what to ask for along with it */
+    bool gzip;         /* the bytes are compressed */
+    bool lasts;        /* what this path names never changes */
+    bool page;         /* of the page: a policy is sent along */
 } http_content;
 /* 200, or 304 where the client has that. */
 void http_reply_content(http_request *r, const http_content *content);

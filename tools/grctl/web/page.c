@@ -63,6 +63,7 @@ void page_serve(http_request *r)
                                           .bytes = f->bytes,
                                           .size = f->size,
                                           .etag = f->etag,
+                                          .early = f->early,
                                           .lasts = below_version(r->path) != NULL,
                                           .gzip = true,
                                           .page = true});

@@ -16,6 +16,7 @@ typedef struct page_file {
     const char *path; /* "/index.html" */
     const char *type;
     const char *etag;
+    const char *early;          /* what to ask for along with it, a Link header; or "" */
     const unsigned char *bytes; /* gzip */
     size_t size;
 } page_file;
