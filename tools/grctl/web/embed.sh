@@ -49,7 +49,8 @@ for file in $files; do
     printf '\nstatic const unsigned char file_%d[] = {\n' "$n"
     content "$file" | gzip -9nc | od -An -v -tu1 | sed 's/  */,/g; s/^,/    /; s/$/,/'
     printf '};\n'
-    table="$table    {\"$file\", \"$type\", \"\\\\\"$hash\\\\\"\", \"$(early "$file")\", file_$n, sizeof file_$n},
+    row="\"$file\", \"$type\", \"\\\\\"$hash\\\\\"\", \"$(early "$file")\""
+    table="$table    {$row, file_$n, sizeof file_$n},
 "
     n=$((n + 1))
 done
