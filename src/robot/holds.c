@@ -32,9 +32,9 @@ static void assert_axis(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     GROBO_ASSERT(axis->way.from_us <= axis->way.to_us);
-    /* A way that its servo told of is another program's. */
-    bool on_way =
-        axis->has_target && axis->way.from_us < axis->way.to_us && axis->own_until_us == 0;
+    /* A way that its servo told of is another program's; where it was read to turn is no target. */
+    bool on_way = axis->has_target && axis->way.from_us < axis->way.to_us &&
+                  axis->way.from_rad != axis->way.to_rad && axis->own_until_us == 0;
     GROBO_ASSERT(!on_way || is_inside(robot, joint, axis->way.to_rad));
     GROBO_ASSERT(axis->next == 0 || is_inside(robot, joint, axis->next_rad));
     GROBO_ASSERT(axis->next == 0 || next_waits(robot, joint));
