@@ -518,6 +518,8 @@ static void stop_now(how_to_stop how)
     }
 }
 
+#define TURNS 6 /* of each way to stop: instants, joints, rates of readings */
+
 static void stop_turning(const family *f, turn_back *t)
 {
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
@@ -558,16 +560,16 @@ static void a_joint_that_turns_back_stops_where_it_is(void **state)
     (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         bool ramps = strcmp(f->name, "feetech") == 0;
-        for (int i = 0; i < 22 * (int)HOWS; i++) {
+        for (int i = 0; i < TURNS * (int)HOWS; i++) {
             turn_back t = {.turned = i % 2 != 0,
-                           .how = (how_to_stop)(i / 22),
+                           .how = (how_to_stop)(i / TURNS),
                            .joint = i / 2 % 2,
-                           .ms = 16 + 39 * (i % 22 / 2),
+                           .ms = 16 + 143 * (i % TURNS / 2),
                            .interval_us = i / 4 % 2 != 0 ? 50 * MS : 150 * MS};
             stop_turning(f, &t);
             bool others = t.how == LEAVE_AFTER_ANOTHER;
             double time_s = !others ? 0.055 : kit.driver.no_speed ? 0.2 : 0.08;
-            double most_deg = ramps ? 4 : time_s * t.dps;
+            double most_deg = ramps ? (others ? 8 : 4) : time_s * t.dps;
             bool waits = t.how != STOP && t.how != HEAT;
             if (t.on_deg > most_deg || t.back_deg > 0.5 || (waits && t.done_deg > 0.5)) {
                 fail_msg("%s, stop %d, at %d ms: %.0f deg/s, %.1f deg on, %.1f back, %.1f done",
