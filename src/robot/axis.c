@@ -193,11 +193,33 @@ static bool has_course(const grobo_robot *robot, int joint)
     return grobo_i_axis_tells_turn(robot, joint) && known;
 }
 
+/* A servo slower than this part of its way is too weak for it; one that begins softly keeps up. */
+#define WEAK_PART 0.9
+
+/* Of a servo that tells the time of its way: there, but for one that is too weak and was read to be
+ * further behind than it can have come since. */
+static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double way_rad = grobo_i_axis_commanded(axis, now_us);
+    double speed_rad_s = grobo_rad_from_deg(abs(axis->state.speed_dps));
+    bool weak = !axis->off_way && axis->way.to_us > axis->way.from_us &&
+                speed_rad_s < WEAK_PART * way_speed(&axis->way);
+    double most_rad =
+        robot->driver->model->joints[joint].max_speed_rad_s * seconds(axis->seen_us, now_us);
+    double left_rad = way_rad - axis->seen_rad;
+    bool behind = weak && fabs(left_rad) - most_rad > GROBO_I_OFF_WAY_RAD;
+    return behind ? axis->seen_rad + copysign(most_rad, left_rad) : way_rad;
+}
+
 double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double accel_rad_s2 = robot->driver->accel_rad_s2;
     bool on_way = is_guided(axis) && !axis->off_way;
+    if ((axis->state.valid & GROBO_FIELD_TIME) != 0) {
+        return by_time(robot, joint, rest_us);
+    }
     if (!has_course(robot, joint)) {
         return on_way ? along(robot, joint, rest_us) : grobo_i_axis_commanded(axis, rest_us);
     }

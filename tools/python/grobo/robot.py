@@ -438,6 +438,8 @@ class Robot:
                 result = lib.GROBO_ERR_LATCHED  # what it has canceled is stopped as well
             if trip.joint >= 0 and reason:
                 joint, value = self.joints[trip.joint], float(trip.value)
+            if result == lib.GROBO_ERR_LATCHED and not reason:
+                reason = "emergency stop"  # asked for, and not yet taken up by the control thread
         raise errors.error(result, what, joint, value, reason)
 
 
