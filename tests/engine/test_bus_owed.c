@@ -137,6 +137,20 @@ static void a_doubled_reply_is_not_taken_for_the_one_that_is_owed(void **state)
     assert_int_equal(p.sent[2].at_us, second_us + READ_US + 200);
 }
 
+/* A question that fails twice, whose replies come so much later than that, and the same question
+ * again with its own. @return when the second of the late ones comes */
+static int64_t late_twice(peer *p, request *a, request *b, int64_t first_us, int64_t second_us)
+{
+    int64_t failed_us = 2 * READ_FAILED + GROBO_BUS_QUIET_US;
+    peer_submit_read(p, a, 1, 1);
+    peer_submit_read(p, b, 1, 0);
+    peer_position_at(p, failed_us + first_us, 1, 11);
+    peer_position_at(p, failed_us + second_us, 1, 12);
+    peer_position_at(p, failed_us + second_us + READ_US + MS, 1, 22);
+    peer_run(p, S);
+    return failed_us + second_us;
+}
+
 /* Every attempt that failed is owed a reply: the same question waits for all of them. */
 static void two_owed_replies_are_both_waited_for(void **state)
 {
@@ -144,18 +158,12 @@ static void two_owed_replies_are_both_waited_for(void **state)
     peer p;
     request a, b;
     start(&p, false);
-    peer_submit_read(&p, &a, 1, 1);
-    peer_submit_read(&p, &b, 1, 0);
-    int64_t failed_us = 2 * READ_FAILED + GROBO_BUS_QUIET_US;
-    peer_position_at(&p, failed_us + 5 * MS, 1, 11);
-    peer_position_at(&p, failed_us + 10 * MS, 1, 12);
-    peer_position_at(&p, failed_us + 10 * MS + READ_US + MS, 1, 22);
-    peer_run(&p, S);
+    int64_t late_us = late_twice(&p, &a, &b, 5 * MS, 10 * MS);
     assert_int_equal(p.ended[0].result, GROBO_ERR_TIMEOUT);
     assert_ptr_equal(p.ended[1].txn, &b.txn);
     assert_int_equal(p.ended[1].value, 22);
     assert_int_equal(p.sent_count, 3);
-    assert_in_range(p.sent[2].at_us, failed_us + 10 * MS, failed_us + 11 * MS);
+    assert_in_range(p.sent[2].at_us, late_us, late_us + MS);
 }
 
 /* One more question than there is room for is failed, and takes the place of the oldest: what was
@@ -189,16 +197,10 @@ static void a_reply_is_owed_to_the_last_microsecond(void **state)
     request a, b;
     start(&p, false);
     p.bus.worst_us = (READ_FAILED + GROBO_BUS_QUIET_US) / 2;
-    peer_submit_read(&p, &a, 1, 1);
-    peer_submit_read(&p, &b, 1, 0);
-    int64_t failed_us = 2 * READ_FAILED + GROBO_BUS_QUIET_US;
-    peer_position_at(&p, failed_us + 2 * MS, 1, 11);
-    peer_position_at(&p, failed_us + 4 * MS, 1, 12);
-    peer_position_at(&p, failed_us + 4 * MS + READ_US + MS, 1, 22);
-    peer_run(&p, S);
+    int64_t late_us = late_twice(&p, &a, &b, 2 * MS, 4 * MS);
     assert_ptr_equal(p.ended[1].txn, &b.txn);
     assert_int_equal(p.ended[1].value, 22);
-    assert_in_range(p.sent[2].at_us, failed_us + 4 * MS, failed_us + 5 * MS);
+    assert_in_range(p.sent[2].at_us, late_us, late_us + MS);
 }
 
 /* No servo answers a goal: one that was canceled is owed nothing, and the next need not wait. */
