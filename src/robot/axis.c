@@ -203,7 +203,8 @@ static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
     const grobo_robot_axis *axis = &robot->axes[joint];
     double way_rad = grobo_i_axis_commanded(axis, now_us);
     double speed_rad_s = grobo_rad_from_deg(abs(axis->state.speed_dps));
-    bool weak = !axis->off_way && axis->way.to_us > axis->way.from_us &&
+    bool weak = (axis->state.valid & GROBO_FIELD_SPEED) != 0 && !axis->off_way &&
+                axis->way.to_us > axis->way.from_us &&
                 speed_rad_s < WEAK_PART * way_speed(&axis->way);
     double most_rad =
         robot->driver->model->joints[joint].max_speed_rad_s * seconds(axis->seen_us, now_us);
