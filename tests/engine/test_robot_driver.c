@@ -21,6 +21,7 @@ static int context;
 static unsigned calls[9];
 static bool has_no_frame; /* for any target */
 static unsigned frames;   /* before the driver fails */
+static bool fails_once;
 
 /* ---- a driver that looks at its context ------------------------------------------------------ */
 
@@ -68,7 +69,8 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
     if (has_no_frame) {
         return 0;
     }
-    if (frames == 0) {
+    if (frames == 0 || fails_once) {
+        fails_once = false;
         return GROBO_ERR_SPACE;
     }
     frames--;
@@ -321,6 +323,30 @@ static void an_order_leaves_whole_or_not_at_all(void **state)
     }
 }
 
+/* A motion of which a frame cannot be made ends, and all that moves beside it comes to rest. */
+static void a_motion_that_cannot_go_on_stops_the_robot(void **state)
+{
+    (void)state;
+    static const rig_key nod[] = {{0, {{NECK, 0}}}, {500, {{NECK, 20}}}, {1000, {{NECK, 0}}}};
+    start(&quiet);
+    rig_power(&rig);
+    grobo_posture beside = rig_posture(&rig, R_ELBOW, -100, 8000);
+    rig_clip_init(&clip, nod, 3);
+    clip.only = GROBO_JOINT_BIT(NECK);
+    assert_true(grobo_robot_play(&rig.robot, &clip.clip, NULL) > 0);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    assert_true(grobo_robot_move(&rig.robot, &beside) > 0);
+    rig_run(&rig, 200000);
+    fails_once = true;
+    rig_wait_play(&rig, GROBO_SEQUENCER_FAILED);
+    assert_false(fails_once);
+    rig_run(&rig, 300000);
+    const double stopped_deg = rig_angle_deg(&rig, R_ELBOW);
+    rig_run(&rig, 5000000);
+    assert_true(fabs(rig_angle_deg(&rig, R_ELBOW) - stopped_deg) < 0.5);
+    assert_true(stopped_deg > -40);
+}
+
 /* What does not take is told again, in frames of few joints: they get through. */
 static void what_is_told_again_is_told_in_small_frames(void **state)
 {
@@ -448,6 +474,7 @@ int main(void)
         cmocka_unit_test(a_halt_of_several_frames_stops_one),
         cmocka_unit_test(an_order_without_a_frame_is_over),
         cmocka_unit_test(an_order_leaves_whole_or_not_at_all),
+        cmocka_unit_test(a_motion_that_cannot_go_on_stops_the_robot),
         cmocka_unit_test(what_is_told_again_is_told_in_small_frames),
         cmocka_unit_test(an_emergency_stop_without_torque_halts),
         cmocka_unit_test(an_emergency_stop_without_torque_reaches_who_was_deaf),
