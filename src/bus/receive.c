@@ -72,17 +72,17 @@ static bool take_several(grobo_bus *bus, grobo_packet *p)
 /* A reply to this transaction: a return packet or an ACK byte. */
 static void take_reply(grobo_bus *bus, grobo_txn *txn, const grobo_packet *p, uint32_t key)
 {
-    if (txn != bus->active) {
-        (void)grobo_i_bus_settle(bus, key);
-        (void)grobo_i_bus_take_out(bus, txn);
-    } else if (txn->attempts_ > 1) {
-        grobo_i_bus_hold_more(bus, txn, key);
-    } else if (p->refused) {
+    if (txn->attempts_ > 1) {
+        grobo_i_bus_hold_more(bus, txn, key); /* to its other attempts */
+    } else if (txn != bus->active || p->refused) {
         (void)grobo_i_bus_settle(bus, key);
     } else { /* nothing was owed to it */
         grobo_i_bus_learn(bus);
         grobo_i_bus_release_holds(bus);
         bus->free_us = grobo_i_sooner(bus->free_us, bus->now_us); /* its last byte is here */
+    }
+    if (txn != bus->active) {
+        (void)grobo_i_bus_take_out(bus, txn);
     }
     if (p->refused) {
         bus->stats.refusals++;

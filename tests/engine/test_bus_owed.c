@@ -166,6 +166,28 @@ static void two_owed_replies_are_both_waited_for(void **state)
     assert_in_range(p.sent[2].at_us, late_us, late_us + MS);
 }
 
+/* A reply so late that it was no longer expected comes while its question waits for a third
+ * attempt: that to the second is owed still. */
+static void a_reply_that_was_given_up_settles_no_later_one(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, false);
+    p.bus.worst_us = 100;
+    int64_t first_us = 2 * READ_FAILED + GROBO_BUS_QUIET_US + GROBO_BUS_QUIET_US / 2;
+    peer_submit_read(&p, &a, 1, 2);
+    peer_submit_read(&p, &b, 1, 0);
+    peer_position_at(&p, first_us, 1, 11);
+    peer_position_at(&p, first_us + 2 * MS, 1, 12);
+    peer_position_at(&p, first_us + 2 * MS + READ_US + MS, 1, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].value, 11);
+    assert_ptr_equal(p.ended[1].txn, &b.txn);
+    assert_int_equal(p.ended[1].value, 22);
+    assert_int_equal(p.sent_count, 3);
+}
+
 /* One more question than there is room for is failed, and takes the place of the oldest: what was
  * owed to that one is not owed to it. */
 static void a_hold_that_is_used_again_owes_nothing_from_before(void **state)
@@ -500,6 +522,7 @@ int main(void)
         cmocka_unit_test(two_owed_replies_are_both_waited_for),
         cmocka_unit_test(a_hold_that_is_used_again_owes_nothing_from_before),
         cmocka_unit_test(a_reply_is_owed_to_the_last_microsecond),
+        cmocka_unit_test(a_reply_that_was_given_up_settles_no_later_one),
         cmocka_unit_test(a_canceled_goal_keeps_no_other_waiting),
         cmocka_unit_test(an_ack_that_is_owed_holds_the_next_for_all_of_the_time),
         cmocka_unit_test(one_wrong_byte_is_a_short_reply),
