@@ -211,7 +211,8 @@ static void the_first_frame_asks_for_a_segment(void **state)
     }
 }
 
-/* It may begin outside its limits, and no part of it lies there. */
+/* It may begin outside its limits, and no part of it lies there; to the limit it is no faster than
+ * on all of its way. */
 static void no_part_lies_outside_the_limits(void **state)
 {
     (void)state;
@@ -226,6 +227,12 @@ static void no_part_lies_outside_the_limits(void **state)
             grobo_i_segments_aim(&robot, GROBO_JOINTS_ALL(N), &target);
             assert_true(target.posture.set == GROBO_JOINT_BIT(j));
             expect_equal(target.posture.angle_rad[j], end * RAD(70 + j), "its part");
+            assert_in_range(target.joint_time_us[j], S, S + 10000);
+            robot.now_us += 700000;
+            robot.axes[j].told_to_us = NOW + S;
+            grobo_i_segments_aim(&robot, GROBO_JOINTS_ALL(N), &target);
+            expect_equal(target.posture.angle_rad[j], end * RAD(69.6 + j), "what is inside");
+            assert_int_equal(target.joint_time_us[j], GROBO_SEGMENT_US);
         }
     }
 }
