@@ -81,7 +81,8 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
 /* What was read of where a joint is; and that it is told to go elsewhere from now on. */
 void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got);
 void grobo_i_axis_told(grobo_robot *robot, int joint);
-/* True of one whose way is over and that was read not to be there yet. */
+/* True of one whose way is over and that was read not to be there yet, or lately to turn and not to
+ * be on it. */
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint);
 /* Takes the sensed angle for where a joint is, nothing being asked of it. */
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);

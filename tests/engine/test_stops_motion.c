@@ -109,6 +109,36 @@ static void a_stop_begins_where_a_joint_is_that_is_behind(void **state)
     }
 }
 
+/* A weak supply: the shoulder falls 60 degrees behind, and is read. */
+static void a_stop_of_a_motion_begins_where_a_weak_joint_is(void **state)
+{
+    (void)state;
+    static const rig_key leap[] = {
+        {0, {{SHOULDER, -100}}}, {540, {{SHOULDER, 100}}}, {4000, {{SHOULDER, 100}}}};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = GROBO_SENSE_NEVER, .voltage_mv = -1};
+    for (int way = 0; way < WAYS; way++) {
+        rig_start_at(&rig, 0, &config);
+        rig_clip_init(&clip, leap, 3);
+        clip.only = GROBO_JOINT_BIT(SHOULDER);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
+        while (rig_angle_deg(&rig, SHOULDER) > -99.5) {
+            rig_run(&rig, 10000);
+        }
+        grobo_sim_set_supply(&rig.sim, 7400 * 2 / 3);
+        while (rig_angle_deg(&rig, SHOULDER) < -20) {
+            rig_run(&rig, 1000);
+        }
+        rig_expect(&rig,
+                   grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
+                   GROBO_OK);
+        stop_by(way);
+        double asked_deg = rig_angle_deg(&rig, SHOULDER);
+        rig_run(&rig, 1500000);
+        assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < stop_way_deg(way));
+    }
+}
+
 /* The clip has the neck at 30 degrees by then. */
 static void a_stop_leaves_a_joint_where_a_raw_goal_sent_it(void **state)
 {
@@ -261,6 +291,67 @@ static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
         rig_run(&rig, 3000000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - asked_deg) < 2);
     }
+}
+
+/* The frame that was to turn it round is lost, and it is read ahead of its way, without its goal: at
+ * full speed, or slowly where the way is over. */
+static void a_stop_ends_a_way_that_was_to_be_over(void **state)
+{
+    (void)state;
+    static const struct {
+        int there_ms, back_ms, read_ms;
+        double most_deg; /* that it may be pulled back or go on */
+    } rows[] = {{530, 5000, 300, 20}, {8000, 200, 900, 3}, {8000, 5000, 2500, 3}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        rig_start_at(&rig, 0, &quiet);
+        grobo_posture target = rig_posture(&rig, SHOULDER, -100, 1000);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+        target = rig_posture(&rig, SHOULDER, 100, rows[i].there_ms);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+        rig_run(&rig, 150000);
+        target = rig_posture(&rig, SHOULDER, -100, rows[i].back_ms);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, SHOULDER, GROBO_SIM_CABLE_MUTE), 0);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+        rig_run(&rig, 15000);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, SHOULDER, GROBO_SIM_CABLE_IN), 0);
+        rig_run(&rig, rows[i].read_ms * 1000);
+        rig_expect(&rig,
+                   grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
+                   GROBO_OK);
+        double asked_deg = rig_angle_deg(&rig, SHOULDER);
+        assert_true(grobo_robot_moving(&rig.robot));
+        assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+        rig_run(&rig, 3000000);
+        assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < rows[i].most_deg);
+        assert_false(grobo_robot_moving(&rig.robot));
+    }
+}
+
+/* Another program moves it, where this one may not: to its limit it comes softly. */
+static void a_stop_outside_the_limits_is_slow(void **state)
+{
+    (void)state;
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+    const grobo_rs30x_goal goal = {NECK_ID, 490, 1000};
+    rig_start_narrow(&rig);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 15, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+    int n = grobo_frame_goals(rig.driver->protocol, &goal, 1, frame, sizeof frame);
+    assert_int_equal(grobo_sim_rx(&rig.sim, frame, (size_t)n, rig.now_us), n);
+    rig_run(&rig, 8000000);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_SENSE_ALL),
+               GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+    double before_deg = rig_angle_deg(&rig, NECK);
+    assert_true(before_deg > 40);
+    for (int i = 0; i < 20; i++) {
+        rig_run(&rig, 50000);
+        double deg = rig_angle_deg(&rig, NECK);
+        assert_true(before_deg - deg < 0.05 * 66);
+        before_deg = deg;
+    }
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) < 0.2);
 }
 
 /* A reading that was on the line tells of one more joint that moves, sent there by nobody here. */
@@ -717,6 +808,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(whatever_stops_a_motion_throws_no_joint_back),
         cmocka_unit_test(a_stop_begins_where_a_joint_is_that_is_behind),
+        cmocka_unit_test(a_stop_of_a_motion_begins_where_a_weak_joint_is),
         cmocka_unit_test(a_stop_leaves_a_joint_where_a_raw_goal_sent_it),
         cmocka_unit_test(a_cancel_halts_what_a_raw_goal_moves_in_a_motion),
         cmocka_unit_test(a_stop_reaches_a_joint_of_the_clip_before),
@@ -724,6 +816,8 @@ int main(void)
         cmocka_unit_test(a_stop_after_a_motion_is_not_undone_by_its_end),
         cmocka_unit_test(a_stop_moves_no_joint_that_lost_its_frame),
         cmocka_unit_test(a_stop_ends_the_way_of_a_joint_that_lost_its_frame),
+        cmocka_unit_test(a_stop_ends_a_way_that_was_to_be_over),
+        cmocka_unit_test(a_stop_outside_the_limits_is_slow),
         cmocka_unit_test(a_halt_is_for_what_moves_when_it_leaves),
         cmocka_unit_test(a_halt_makes_no_reading_of_others_stale),
         cmocka_unit_test(a_stop_reaches_a_joint_that_was_to_let_go),
