@@ -40,6 +40,9 @@ static int joints_of_clip(const grobo_clip *clip, const grobo_play_options *opti
         *joints |= result < 0 ? 0 : posture.set;
         return result;
     }
+    if (clip->key == NULL) {
+        return GROBO_ERR_ARG;
+    }
     for (size_t i = 0; i < clip->n_keys && result >= 0; i++) {
         result = clip->key(clip->ctx, i, &posture, &at_us);
         *joints |= result < 0 ? 0 : posture.set;

@@ -11,6 +11,7 @@
 
 #include <grobo/board.h>
 #include <grobo/driver.h>
+#include <grobo/sequencer.h>
 
 static grobo_exchange exchange;
 
@@ -222,8 +223,8 @@ static void bad_tables_are_refused(void **state)
     static const grobo_readback nowhere[] = {{0.1, 20}};
     static const double rest_outside[20] = {[3] = 1.0};
     static grobo_protocol others;
-    grobo_driver bad[10];
-    for (int i = 0; i < 10; i++) {
+    grobo_driver bad[13];
+    for (int i = 0; i < 13; i++) {
         bad[i] = *grobo_gr001_driver(GROBO_WIRING_BOARD);
         assert_int_equal(grobo_driver_check(&bad[i]), 0);
     }
@@ -240,7 +241,10 @@ static void bad_tables_are_refused(void **state)
     others = grobo_rs30x_protocol; /* whose ids end at 19: one is outside */
     others.id_max = 19;
     bad[9].protocol = &others;
-    for (int i = 0; i < 10; i++) {
+    bad[10].time_max_us = GROBO_PLAY_TIME_MAX_US + 1;
+    bad[11].accel_rad_s2 = INFINITY;
+    bad[12].accel_rad_s2 = -1;
+    for (int i = 0; i < 13; i++) {
         assert_int_equal(grobo_driver_check(&bad[i]), GROBO_ERR_ARG);
     }
     assert_int_equal(grobo_driver_check(NULL), GROBO_ERR_ARG);
