@@ -301,7 +301,7 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment
     }
     bool sleeps = aim_goal(robot, order, robot->soft || order->soft, target);
     if (target->posture.set == 0) {
-        return sleeps ? GROBO_ERR_EMPTY : GROBO_ERR_STALE;
+        return sleeps || order->rests ? GROBO_ERR_EMPTY : GROBO_ERR_STALE;
     }
     int result = judge_joints(robot, target->posture.set);
     if (result >= 0 && (when != BUILT || order->rests)) {

@@ -257,13 +257,15 @@ void grobo_i_play_done(grobo_robot_slot *slot, int result)
 
 static bool send_frame(grobo_robot *robot, const grobo_play_frame *frame)
 {
+    bool rests =
+        frame->phase == GROBO_SEQUENCER_STOPPING || frame->phase == GROBO_SEQUENCER_PAUSED;
     grobo_i_motion how = {.priority = GROBO_PRIORITY_MOTION,
                           .due_us = frame->due_us,
                           .each = frame->phase != GROBO_SEQUENCER_APPROACHING,
-                          .stops = frame->phase == GROBO_SEQUENCER_STOPPING,
-                          .rests = frame->phase == GROBO_SEQUENCER_STOPPING ||
-                                   frame->phase == GROBO_SEQUENCER_PAUSED};
+                          .stops = rests,
+                          .rests = rests};
     grobo_i_slots_cancel_goals(robot, frame->posture.set, true);
+    grobo_i_slots_cancel_stops(robot, frame->posture.set);
     int result = grobo_i_gate_send(robot, &frame->posture, &how);
     if (result < 0) {
         give_up(robot, result);

@@ -190,13 +190,15 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
 int grobo_i_slot_renew(grobo_robot_slot *slot);
 /* Gives a slot back that was not sent. */
 void grobo_i_slot_drop(grobo_robot_slot *slot);
-/* Takes back every frame of this use. */
+/* Takes back every frame of this use, but for one that waits to bring a motion to rest. */
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use);
 /* Takes back every frame that a step of this job made. */
 void grobo_i_slots_cancel_job(grobo_robot *robot, int number);
 /* Takes back targets that have not left and move one of these joints; `played`: and those of the
- * motion that is played. */
+ * motion that is played. Not what brings it to rest. */
 void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, bool played);
+/* Takes that back, where these joints are all that it brings to rest: they are told otherwise. */
+void grobo_i_slots_cancel_stops(grobo_robot *robot, grobo_joint_mask joints);
 /* Takes back the parts of an order that wait behind this one, which has failed. */
 void grobo_i_slots_cancel_rest(const grobo_robot_slot *before);
 /* Takes back frames that would switch the torque of one of these joints on. */

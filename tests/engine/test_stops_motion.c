@@ -80,6 +80,80 @@ static void whatever_stops_a_motion_throws_no_joint_back(void **state)
     }
 }
 
+/* The frame that brings the motion to rest waits behind a reading, and something else comes. */
+static void a_stop_is_not_lost_by_what_comes_behind_it(void **state)
+{
+    (void)state;
+    enum { AGAIN, LEAVE, LET_GO, HEAT, SEND_CHEST, SEND_NECK, BEHINDS };
+    for (int i = 0; i < 2 * BEHINDS; i++) {
+        const grobo_joint_mask others = GROBO_JOINT_BIT(CHEST) | GROBO_JOINT_BIT(NECK);
+        bool at_once = i % 2 != 0;
+        rig_start_at(&rig, -45, &quiet);
+        rig_clip_init(&clip, rise, 3);
+        clip.only = others;
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        rig_run(&rig, 500000);
+        assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, i / 2 == HEAT ? 75 : 30), 0);
+        int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_ALL);
+        rig_run(&rig, 500);
+        assert_int_equal(grobo_robot_stop(&rig.robot, at_once), GROBO_OK);
+        rig_run(&rig, 500);
+        double asked_deg = rig_angle_deg(&rig, NECK);
+        grobo_posture chest = rig_posture(&rig, CHEST, 5, 1000);
+        grobo_posture neck = rig_posture(&rig, NECK, asked_deg, 100);
+        switch (i / 2) {
+        case AGAIN:
+            assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
+            break;
+        case LEAVE:
+            assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD) > 0);
+            break;
+        case LET_GO:
+            assert_true(grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(CHEST), GROBO_TORQUE_OFF) >
+                        0);
+            break;
+        case HEAT:
+            rig_expect(&rig, number, GROBO_OK);
+            assert_int_equal(rig_count(&rig, GROBO_EVENT_TRIP), 1);
+            break;
+        default: /* at once it is over while its frame waits */
+            rig.robot.bus.free_us += 20000;
+            rig_run(&rig, 12000);
+            (void)grobo_robot_send(&rig.robot, i / 2 == SEND_NECK ? &neck : &chest);
+            break;
+        }
+        rig_run(&rig, 1500000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - asked_deg) < 8);
+    }
+}
+
+/* Nor is a pause, whose motion goes on to wait. */
+static void a_pause_is_not_lost_by_what_comes_behind_it(void **state)
+{
+    (void)state;
+    for (int cancels = 0; cancels < 2; cancels++) {
+        rig_start_at(&rig, -45, &quiet);
+        rig_clip_init(&clip, rise, 3);
+        clip.only = GROBO_JOINT_BIT(CHEST) | GROBO_JOINT_BIT(NECK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        rig_run(&rig, 500000);
+        assert_true(grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_ALL) > 0);
+        rig_run(&rig, 500);
+        assert_true(raw_goal(&rig, SHOULDER, 0, 1000) > 0);
+        assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_OK);
+        rig_run(&rig, 500);
+        double asked_deg = rig_angle_deg(&rig, NECK);
+        assert_true(cancels ? grobo_robot_cancel(&rig.robot) == GROBO_OK
+                            : grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(CHEST),
+                                                 GROBO_TORQUE_OFF) > 0);
+        rig_run(&rig, 1500000);
+        assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_PAUSED);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - asked_deg) < 8);
+    }
+}
+
 /* What a stop may add to the way of a joint: half of what it does in the 200 ms of a smooth one,
  * and what it does while the frame is on its way. */
 static double stop_way_deg(int way)
@@ -808,6 +882,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(whatever_stops_a_motion_throws_no_joint_back),
         cmocka_unit_test(a_stop_begins_where_a_joint_is_that_is_behind),
+        cmocka_unit_test(a_stop_is_not_lost_by_what_comes_behind_it),
+        cmocka_unit_test(a_pause_is_not_lost_by_what_comes_behind_it),
         cmocka_unit_test(a_stop_of_a_motion_begins_where_a_weak_joint_is),
         cmocka_unit_test(a_stop_leaves_a_joint_where_a_raw_goal_sent_it),
         cmocka_unit_test(a_cancel_halts_what_a_raw_goal_moves_in_a_motion),
