@@ -257,8 +257,7 @@ void grobo_i_play_done(grobo_robot_slot *slot, int result)
 
 static bool send_frame(grobo_robot *robot, const grobo_play_frame *frame)
 {
-    bool rests =
-        frame->phase == GROBO_SEQUENCER_STOPPING || frame->phase == GROBO_SEQUENCER_PAUSED;
+    bool rests = frame->phase == GROBO_SEQUENCER_STOPPING || frame->phase == GROBO_SEQUENCER_PAUSED;
     grobo_i_motion how = {.priority = GROBO_PRIORITY_MOTION,
                           .due_us = frame->due_us,
                           .each = frame->phase != GROBO_SEQUENCER_APPROACHING,

@@ -119,6 +119,15 @@ static void look_at_faults(void)
     }
 }
 
+/* What all joints stand behind by now, or NULL. */
+static const char *stopped_by(void)
+{
+    bool stopped = user.still_us > 0 && kit.now_us > user.still_us;
+    return user.stands && kit.now_us > user.stands_us ? "an emergency stop"
+           : stopped                                  ? "a stop"
+                                                      : NULL;
+}
+
 static void look_at(family_kit *k, int j)
 {
     const grobo_sim_servo *servo = &k->sim.servo[j];
@@ -139,12 +148,8 @@ static void look_at(family_kit *k, int j)
     if (goes && !doubtful(j) && view.speed_dps > most_dps) {
         fail_msg("joint %d turns by %d deg/s, and may by %.0f", j, (int)view.speed_dps, most_dps);
     }
-    if (user.still_us > 0 && k->now_us > user.still_us && left_deg > REST_DEG && !doubtful(j)) {
-        fail_msg("joint %d goes on after a stop: %d deg/s, to %.1f deg", j, (int)view.speed_dps,
-                 to_deg);
-    }
-    if (user.stands && k->now_us > user.stands_us && left_deg > REST_DEG && !doubtful(j)) {
-        fail_msg("joint %d moves after an emergency stop: %d deg/s, to %.1f deg", j,
+    if (stopped_by() != NULL && left_deg > REST_DEG && !doubtful(j)) {
+        fail_msg("joint %d moves after %s: %d deg/s, to %.1f deg", j, stopped_by(),
                  (int)view.speed_dps, to_deg);
     }
 }
@@ -438,9 +443,9 @@ static void stop_and_look(void)
 static void ask(void)
 {
     static void (*const requests[])(void) = {
-        ask_move,   ask_move,     ask_move, ask_send,  ask_send,   ask_torque,
-        ask_torque, ask_raw,      ask_raw,  ask_estop, ask_exit,   ask_registers,
-        ask_free,   turn_by_hand, ask_move, ask_move,  ask_reading, ask_retarget,
+        ask_move,   ask_move,     ask_move, ask_send,   ask_send,    ask_torque,
+        ask_torque, ask_raw,      ask_raw,  ask_estop,  ask_exit,    ask_registers,
+        ask_free,   turn_by_hand, ask_move, ask_move,   ask_reading, ask_retarget,
         ask_send,   hold_fast,    weaken,   ask_restart};
     reset_some_time();
     let_go(kit.now_us);
@@ -461,11 +466,13 @@ static void start(const run *r)
 {
     static const int64_t intervals_us[] = {1, 50 * MS, 150 * MS};
     const char *faults = lines[r->line];
-    const grobo_robot_config config = {
-        GROBO_ROBOT_CONFIG_INIT,
-        .sense_interval_us = intervals_us[(r->seed + (unsigned)r->line) % 3], .voltage_mv = -1,
-        .limit_policy = r->seed % 3 == 0 ? GROBO_LIMIT_CLAMP : 0,
-        .estop_torque = r->seed % 2 == 0 ? GROBO_ESTOP_OFF : 0, .lost_replies = 30};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us =
+                                           intervals_us[(r->seed + (unsigned)r->line) % 3],
+                                       .voltage_mv = -1,
+                                       .limit_policy = r->seed % 3 == 0 ? GROBO_LIMIT_CLAMP : 0,
+                                       .estop_torque = r->seed % 2 == 0 ? GROBO_ESTOP_OFF : 0,
+                                       .lost_replies = 30};
     const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = r->seed * 7 + 1, .no_stops = true};
     memset(&user, 0, sizeof user);
     user.random = (r->seed * 100 + (uint32_t)r->line) * 2654435761u + 17;

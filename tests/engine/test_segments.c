@@ -329,8 +329,8 @@ static void a_move_within_a_segment_is_one_frame(void **state)
 
 /* ---- ends ------------------------------------------------------------------------------------ */
 
-/* Another program has left the neck 25 degrees outside of its limits: the first move, which is slow,
- * is so from there on. */
+/* Another program has left the neck 25 degrees outside of its limits: the first move is slow from
+ * there on. */
 static void a_joint_from_outside_its_limits_is_slow(void **state)
 {
     (void)state;

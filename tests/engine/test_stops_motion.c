@@ -145,9 +145,9 @@ static void a_pause_is_not_lost_by_what_comes_behind_it(void **state)
         assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_OK);
         rig_run(&rig, 500);
         double asked_deg = rig_angle_deg(&rig, NECK);
-        assert_true(cancels ? grobo_robot_cancel(&rig.robot) == GROBO_OK
-                            : grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(CHEST),
-                                                 GROBO_TORQUE_OFF) > 0);
+        assert_true(
+            cancels ? grobo_robot_cancel(&rig.robot) == GROBO_OK
+                    : grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(CHEST), GROBO_TORQUE_OFF) > 0);
         rig_run(&rig, 1500000);
         assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_PAUSED);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - asked_deg) < 8);
@@ -203,8 +203,7 @@ static void a_stop_of_a_motion_begins_where_a_weak_joint_is(void **state)
         while (rig_angle_deg(&rig, SHOULDER) < -20) {
             rig_run(&rig, 1000);
         }
-        rig_expect(&rig,
-                   grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
+        rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
                    GROBO_OK);
         stop_by(way);
         double asked_deg = rig_angle_deg(&rig, SHOULDER);
@@ -367,8 +366,8 @@ static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
     }
 }
 
-/* The frame that was to turn it round is lost, and it is read ahead of its way, without its goal: at
- * full speed, or slowly where the way is over. */
+/* The frame that was to turn it round is lost, and it is read ahead of its way, without its goal:
+ * at full speed, or slowly where the way is over. */
 static void a_stop_ends_a_way_that_was_to_be_over(void **state)
 {
     (void)state;
@@ -389,8 +388,7 @@ static void a_stop_ends_a_way_that_was_to_be_over(void **state)
         rig_run(&rig, 15000);
         assert_int_equal(grobo_sim_set_cable(&rig.sim, SHOULDER, GROBO_SIM_CABLE_IN), 0);
         rig_run(&rig, rows[i].read_ms * 1000);
-        rig_expect(&rig,
-                   grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
+        rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
                    GROBO_OK);
         double asked_deg = rig_angle_deg(&rig, SHOULDER);
         assert_true(grobo_robot_moving(&rig.robot));
