@@ -200,7 +200,6 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
 {
     grobo_i_slots_cancel(robot, GROBO_I_USE_MOTION);
     grobo_i_slots_cancel(robot, GROBO_I_USE_SEGMENT);
-    grobo_i_slots_cancel_stops(robot, joints);
     if (!grobo_i_may_halt(robot)) {
         return;
     }

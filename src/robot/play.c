@@ -264,7 +264,6 @@ static bool send_frame(grobo_robot *robot, const grobo_play_frame *frame)
                           .stops = rests,
                           .rests = rests};
     grobo_i_slots_cancel_goals(robot, frame->posture.set, true);
-    grobo_i_slots_cancel_stops(robot, frame->posture.set);
     int result = grobo_i_gate_send(robot, &frame->posture, &how);
     if (result < 0) {
         give_up(robot, result);

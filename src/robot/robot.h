@@ -197,8 +197,6 @@ void grobo_i_slots_cancel_job(grobo_robot *robot, int number);
 /* Takes back targets that have not left and move one of these joints; `played`: and those of the
  * motion that is played. Not what brings it to rest. */
 void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, bool played);
-/* Takes that back, where these joints are all that it brings to rest: they are told otherwise. */
-void grobo_i_slots_cancel_stops(grobo_robot *robot, grobo_joint_mask joints);
 /* Takes back the parts of an order that wait behind this one, which has failed. */
 void grobo_i_slots_cancel_rest(const grobo_robot_slot *before);
 /* Takes back frames that would switch the torque of one of these joints on. */

@@ -219,7 +219,7 @@ static void cancel(grobo_robot_slot *slot)
     (void)grobo_bus_cancel(&slot->robot->bus, &slot->txn);
 }
 
-/* Nothing comes behind what brings a motion to rest: it leaves, or another one in its place. */
+/* Nothing comes behind what brings a motion to rest: it leaves, but for joints of later targets. */
 static bool brings_rest(const grobo_robot_slot *slot)
 {
     return slot->order.rests && waits(slot);
@@ -252,16 +252,6 @@ void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, boo
         bool meant =
             (slot->order.joints & joints) != 0 || (played && slot->due_us != GROBO_NEVER_US);
         if (goal && meant && waits(slot) && !brings_rest(slot)) {
-            cancel(slot);
-        }
-    }
-}
-
-void grobo_i_slots_cancel_stops(grobo_robot *robot, grobo_joint_mask joints)
-{
-    for (int i = 0; i < robot->slots_end; i++) {
-        grobo_robot_slot *slot = &robot->slots[i];
-        if (brings_rest(slot) && (slot->order.joints & ~joints) == 0) {
             cancel(slot);
         }
     }
