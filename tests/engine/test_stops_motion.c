@@ -404,6 +404,28 @@ static void a_stop_ends_a_way_that_was_to_be_over(void **state)
     }
 }
 
+/* Who is not read again is not taken to move for ever. */
+static void what_turns_off_its_way_is_forgotten(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, 0, &quiet);
+    grobo_posture target = rig_posture(&rig, SHOULDER, 100, 10000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_run(&rig, 4000000);
+    target = rig_posture(&rig, SHOULDER, 0, 600);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, SHOULDER, GROBO_SIM_CABLE_MUTE), 0);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_run(&rig, 15000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, SHOULDER, GROBO_SIM_CABLE_IN), 0);
+    rig_run(&rig, 1500000);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
+               GROBO_OK);
+    rig_run(&rig, GROBO_WATCH_US - 100000);
+    assert_true(grobo_robot_moving(&rig.robot));
+    rig_run(&rig, 100000);
+    assert_false(grobo_robot_moving(&rig.robot));
+}
+
 /* Another program moves it, where this one may not: to its limit it comes softly. */
 static void a_stop_outside_the_limits_is_slow(void **state)
 {
@@ -896,6 +918,7 @@ int main(void)
         cmocka_unit_test(a_stop_moves_no_joint_that_lost_its_frame),
         cmocka_unit_test(a_stop_ends_the_way_of_a_joint_that_lost_its_frame),
         cmocka_unit_test(a_stop_ends_a_way_that_was_to_be_over),
+        cmocka_unit_test(what_turns_off_its_way_is_forgotten),
         cmocka_unit_test(a_stop_outside_the_limits_is_slow),
         cmocka_unit_test(a_halt_is_for_what_moves_when_it_leaves),
         cmocka_unit_test(a_halt_makes_no_reading_of_others_stale),
