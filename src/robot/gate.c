@@ -162,8 +162,7 @@ static bool is_ample(const grobo_robot *robot, int joint, double to_rad, grobo_i
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
     bool soft = robot->soft || order->soft;
-    /* Its times, as they were asked for. */
-    bool on_grid = order->deed == GROBO_I_DEED_GOAL && !order->rests;
+    bool on_grid = order->deed == GROBO_I_DEED_GOAL; /* its times, as they were asked for */
     bool stretched = false;
     int64_t longest_us = 0, asked_us = -1;
     grobo_i_span asked = 0;

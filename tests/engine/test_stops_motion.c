@@ -214,6 +214,8 @@ static void a_stop_of_a_motion_begins_where_a_weak_joint_is(void **state)
         double asked_deg = rig_angle_deg(&rig, SHOULDER);
         rig_run(&rig, 1500000);
         assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < stop_way_deg(way));
+        assert_true(way != STOP_AT_ONCE ||
+                    rig_sent_ms(&rig, grobo_gr001_model.joints[SHOULDER].motor) <= 20);
     }
 }
 
