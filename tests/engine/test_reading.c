@@ -88,8 +88,8 @@ static void a_joint_that_moves_where_its_way_is_not_is_off_it(void **state)
         double deg;
         int64_t told_us; /* so long ago */
         bool off;
-    } rows[] = {{32.1, 200001, true},  {31.9, 200001, false}, {32.1, 200000, false},
-                {-0.1, 200001, true},  {0.1, 200001, false},  {-0.1, 200000, false},
+    } rows[] = {{32.1, 200001, true}, {31.9, 200001, false}, {32.1, 200000, false},
+                {-0.1, 200001, true}, {0.1, 200001, false},  {-0.1, 200000, false},
                 {-40, 20000, false}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         on_the_way();

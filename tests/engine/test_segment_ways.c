@@ -58,8 +58,8 @@ static void a_joint_is_where_it_was_sent_or_read(void **state)
     expect_equal(grobo_i_axis_target(&axis), 7, "target that waits");
 }
 
-/* It tells the time of its way, which is at 50 degrees and goes at 100 degrees a second: it is there,
- * but where it told to be slower and is further behind than it can have come since. */
+/* It tells the time of its way, which is at 50 degrees and goes at 100 degrees a second: it is
+ * there, but where it told to be slower and is further behind than it can have come since. */
 static void a_joint_is_on_its_way_but_where_it_is_weak(void **state)
 {
     (void)state;
@@ -69,13 +69,13 @@ static void a_joint_is_on_its_way_but_where_it_is_weak(void **state)
         double seen_deg, since_deg; /* where it was read, what it can have come since */
         double deg;
     } rows[] = {
-        {true, false, 50, 30, 0, 30},    {true, false, 89, 30, 0, 30},
-        {true, false, -89, 30, 0, 30},   {true, false, 91, 30, 0, 50},
-        {false, false, 50, 30, 0, 50},   {true, false, 50, 37.9, 0, 37.9},
-        {true, false, 50, 38.1, 0, 50},  {true, false, 50, 30, 5, 35},
-        {true, false, 50, 30, 8.1, 50},  {true, false, 50, 62.1, 0, 62.1},
-        {true, false, 50, 61.9, 0, 50},  {true, false, 50, 70, 5, 65},
-        {true, true, 0, 30, 0, 30},      {true, true, 100, 30, 5, 30},
+        {true, false, 50, 30, 0, 30},   {true, false, 89, 30, 0, 30},
+        {true, false, -89, 30, 0, 30},  {true, false, 91, 30, 0, 50},
+        {false, false, 50, 30, 0, 50},  {true, false, 50, 37.9, 0, 37.9},
+        {true, false, 50, 38.1, 0, 50}, {true, false, 50, 30, 5, 35},
+        {true, false, 50, 30, 8.1, 50}, {true, false, 50, 62.1, 0, 62.1},
+        {true, false, 50, 61.9, 0, 50}, {true, false, 50, 70, 5, 65},
+        {true, true, 0, 30, 0, 30},     {true, true, 100, 30, 5, 30},
     };
     for (int j = 0; j < N; j++) {
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
