@@ -18,11 +18,7 @@
 #include "tools/grctl/setup/contact.h"
 #include "tools/grctl/setup/contact_rate.h"
 
-enum { READS = 50, LOOKS = 5, LOOK_US = 100000, MOVE_US = 1000000 };
-enum {
-    BLOCK_BYTES = 30,
-    REQUEST_BYTES = 6 /* no request is shorter, but ICS */
-};
+enum { READS = 50, LOOKS = 5, LOOK_US = 100000, MOVE_US = 1000000, BLOCK_BYTES = 30 };
 
 #define STEP_DEG 2.0
 #define NEAR_DEG 1.0 /* of the gears' play and the servo's dead band */
@@ -173,7 +169,7 @@ static void look_for_echo(contact *k)
 {
     const grobo_bus_stats *n = grobo_robot_get_bus_stats(k->c.robot);
     bool told = app_global(k->a, GLOBAL_ECHO)->given > 0;
-    bool comes = n->replies > 0 && n->resync_bytes >= n->replies * REQUEST_BYTES / 2;
+    bool comes = !grobo_robot_driver(k->c.robot)->protocol->relay && wire_echoes(n);
     contact_note(k, "echo", comes ? NOT_AS_ASSUMED : AS_ASSUMED,
                  told    ? "the adapter echoes, as configured"
                  : comes ? "the adapter echoes, which is not configured: --wiring bus --echo"
