@@ -498,8 +498,7 @@ static uint8_t judge_reset(const grobo_dxl2_packet *packet)
 {
     uint8_t what = packet->data_bytes == 1 ? packet->data[0] : 0;
     bool all = what == GROBO_DXL2_RESET_ALL && packet->id != GROBO_DXL2_ID_ALL;
-    bool known =
-        all || what == GROBO_DXL2_RESET_BUT_ID || what == GROBO_DXL2_RESET_BUT_ID_BAUD;
+    bool known = all || what == GROBO_DXL2_RESET_BUT_ID || what == GROBO_DXL2_RESET_BUT_ID_BAUD;
     return known ? GROBO_DXL2_DONE : GROBO_DXL2_BAD_RANGE;
 }
 

@@ -87,7 +87,8 @@ check_json "registers in JSON" 'lines[0]["model"] == "STS3215" and lines[0]["reg
     {"name": "max_position", "address": 11, "value": 3150, "unit": "0.088 deg",
      "max_position_deg": 96.9}]' of so101 --json servo-get 3 max_position
 check "a servo may answer nothing but readings" both \
-    exits 0 of so101 servo-set 6 reply_level 0 --flash --- said '^servo 6: reply_level 1 -> 0, kept$'
+    exits 0 of so101 servo-set 6 reply_level 0 --flash --- \
+    said '^servo 6: reply_level 1 -> 0, kept$'
 check "and is set all the same" both exits 0 of so101 servo-set 6 position_p 20 --flash --- \
     said '^servo 6: position_p 32 -> 20, kept$'
 check "its lock is closed" both exits 0 of so101 servo-get 6 lock --- says '^ 55  lock  *1$'
@@ -96,7 +97,8 @@ stop_sim
 # What is sent has the form of a status here: FF FF 01 04 02 38 02 BE would be -130.1 degrees.
 start_told_sim --robot so101 --echo
 check "an adapter that returns what is sent, though nobody said so" both \
-    exits 0 of so101 servo-get 1 present_position --- says '^ 56  present_position  *2048  *0.0 deg$'
+    exits 0 of so101 servo-get 1 present_position --- \
+    says '^ 56  present_position  *2048  *0.0 deg$'
 check "nobody answers for a servo that is not there" fails 1 'no reply from servo 9' \
     of so101 servo-get 9 present_position
 check "what is written is read back" both exits 0 of so101 servo-set 1 offset 100 --- \

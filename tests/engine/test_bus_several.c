@@ -335,8 +335,8 @@ static void an_echo_that_looks_like_a_status_is_an_echo(void **state)
     ended(200, GROBO_OK);
 }
 
-/* An adapter returns what is sent and nobody reckons with it; or there is another host. What was sent
- * has the form of a status, in part of one that refuses. */
+/* An adapter returns what is sent and nobody reckons with it; or there is another host. What was
+ * sent has the form of a status, in part of one that refuses. */
 static void what_a_host_sends_is_no_answer(void **state)
 {
     (void)state;

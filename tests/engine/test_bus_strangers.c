@@ -55,8 +55,8 @@ static int ask_board(uint8_t id, uint8_t *frame)
 
 static int tell_rs30x(const saying *what, uint8_t *bytes)
 {
-    const grobo_rs30x_packet packet = {
-        GROBO_RS30X_RETURN, what->id, 0, 42, (uint8_t)what->n, 1, what->data, what->n};
+    const grobo_rs30x_packet packet = {GROBO_RS30X_RETURN, what->id, 0,          42,
+                                       (uint8_t)what->n,   1,        what->data, what->n};
     return grobo_rs30x_build(&packet, bytes, ROOM);
 }
 

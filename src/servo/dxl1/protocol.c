@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* DYNAMIXEL Protocol 1.0 for the bus: what a frame is answered by, and what a status tells. Nothing
  * in a frame says whether it is a status: the bus compares with what it has sent, and what looks as
- * if a host had sent it answers nothing. It is an echo that nobody reckons with, or another host's. */
+ * if a host had sent it answers nothing: an echo that nobody reckons with, or another host's. */
 #include <string.h>
 
 #include <grobo/bus.h>
