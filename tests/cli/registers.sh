@@ -124,6 +124,10 @@ check "not of a servo that holds" fails 4 'servo 3 holds, and .* another return_
 check "what is no setting" both exits 0 of koch servo-set 3 led 1 --- \
     said '^servo 3: led 0 -> 1; lost at power-off$'
 exits 0 of koch servo off elbow_flex
+check "one that would answer pings alone" fails 4 'reply_level 0 a servo answers nothing' \
+    of koch servo-set 2 reply_level 0
+check "or in another protocol" fails 4 'protocol_type 1 a servo answers nothing' \
+    of koch servo-set 2 protocol_type 1
 exits 0 of koch servo-set 2 reply_level 1
 check "one that answers readings alone" both exits 0 of koch servo-set 2 led 1 --- \
     said '^servo 2: led 0 -> 1; lost at power-off$'

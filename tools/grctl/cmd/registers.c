@@ -433,6 +433,14 @@ static bool read_value(const servo_change *what, const char *text, int32_t *coun
     return true;
 }
 
+/* DYNAMIXEL that answer nothing but pings, or in another protocol, could not be asked again. */
+static bool would_hide(const servo_change *what)
+{
+    bool pings_alone =
+        what->reg->role == GROBO_ROLE_REPLY_LEVEL && what->value == 0 && what->reg->max > 1;
+    return pings_alone || (strcmp(what->reg->name, "protocol_type") == 0 && what->value != 2);
+}
+
 /* What the command line asks for, of the servo that what->servo is. */
 static int parse_change(app *a, servo_change *what)
 {
@@ -454,6 +462,13 @@ static int parse_change(app *a, servo_change *what)
         return app_fail(a, EXIT_USAGE, "LIMIT", "servo-set: '%s': %s takes %d to %d (counts of %s)",
                         a->line.argument[2], what->reg->name, what->reg->min, what->reg->max,
                         *what->reg->unit ? what->reg->unit : "1");
+    }
+    if (would_hide(what)) {
+        return app_fail(
+            a, EXIT_SAFETY, "UNSUPPORTED",
+            "servo-set: with %s %d a servo answers nothing that is asked from here, and "
+            "could not be set back",
+            what->reg->name, what->value);
     }
     what->flash = app_option(a, OPT_FLASH)->given > 0;
     if ((what->reg->flags & GROBO_REGISTER_KEPT) == 0 && what->flash) {
