@@ -245,7 +245,7 @@ static void others_are_passed_over(void **state)
         uint8_t bytes[ROOM];
         static const uint8_t many[] = {0x3F, 0x06, 0x00, 0x01};
         start_line(&families[i]);
-        reply_behind(NULL, 0, true, "alone");
+        reply_behind(bytes, 0, true, "alone");
         reply_behind(bytes, (size_t)say(OTHER_ID, OTHER_VALUE, bytes), true, "behind another's");
         for (size_t n = 1; n <= sizeof many; n += n == 1 ? 3 : 1) {
             const saying what = {OWN_ID, 0, many, n};
