@@ -46,7 +46,8 @@ GROBO_API int grobo_port_start(void);
 
 /**
  * Now, in microseconds of a monotonic clock with an arbitrary start. Never negative, never goes
- * back, and is not affected when the system's date is changed. Thread safe.
+ * back, goes on while the machine sleeps, and is not affected when the system's date is changed.
+ * Thread safe.
  */
 GROBO_API int64_t grobo_now_us(void);
 
