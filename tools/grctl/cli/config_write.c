@@ -35,8 +35,9 @@ static char *read_all(const char *path)
 {
     FILE *file = fopen(path, "rb");
     char *text = file ? calloc(1, CONFIG_FILE_MAX_BYTES + 1) : NULL;
-    if (text && fread(text, 1, CONFIG_FILE_MAX_BYTES, file) == CONFIG_FILE_MAX_BYTES) {
-        errno = EFBIG;
+    size_t size = text ? fread(text, 1, CONFIG_FILE_MAX_BYTES, file) : 0;
+    if (size == CONFIG_FILE_MAX_BYTES || (text && ferror(file))) {
+        errno = size == CONFIG_FILE_MAX_BYTES ? EFBIG : errno;
         free(text);
         text = NULL;
     }
@@ -71,7 +72,7 @@ static void put_trims(const app *a, draft *to, const config_robot *robot)
         if (robot->trim_deg[j] == 0) {
             continue;
         }
-        snprintf(one, sizeof one, "%s%s: %.1f", before, app_model(a)->joints[j].name,
+        snprintf(one, sizeof one, "%s%s: %.10g", before, app_model(a)->joints[j].name,
                  robot->trim_deg[j]);
         put(to, one, strlen(one));
         before = ", ";
@@ -80,24 +81,49 @@ static void put_trims(const app *a, draft *to, const config_robot *robot)
     put(to, "}", *before == '{' ? 0 : 1);
 }
 
-static void put_file(const app *a, draft *to, const char *text, const config_robot *robot)
+/* Between the trims that are added and their neighbour. */
+static void put_break(draft *to, const config_robot *robot)
 {
-    size_t at = byte_of(text, robot->trimmed ? robot->trim_at : robot->first_at);
-    size_t end = byte_of(text, robot->trimmed ? robot->trim_end : robot->first_at);
-    put(to, text, at);
-    if (!robot->trimmed) {
-        put(to, "trim: ", strlen("trim: "));
-    }
-    put_trims(a, to, robot);
-    if (!robot->trimmed && robot->flow) {
-        put(to, ", ", strlen(", "));
-    } else if (!robot->trimmed) {
-        put(to, "\n", 1);
-    }
-    for (size_t i = 0; !robot->trimmed && !robot->flow && i < robot->first_column; i++) {
+    put(to, robot->flow ? ", " : "\n", robot->flow ? 2 : 1);
+    for (size_t i = 0; !robot->flow && i < robot->first_column; i++) {
         put(to, " ", 1);
     }
+}
+
+static void put_file(const app *a, draft *to, const char *text, const config_robot *robot)
+{
+    bool adds = !robot->trimmed, behind = adds && robot->def_end;
+    size_t at = byte_of(text, robot->trimmed ? robot->trim_at
+                              : behind       ? robot->def_end
+                                             : robot->first_at);
+    size_t end = robot->trimmed ? byte_of(text, robot->trim_end) : at;
+    if (behind && !robot->flow) {
+        at = end = at + strcspn(text + at, "\n"); /* and behind its comment */
+    }
+    put(to, text, at);
+    if (behind) {
+        put_break(to, robot);
+    }
+    put(to, "trim: ", adds ? strlen("trim: ") : 0);
+    put_trims(a, to, robot);
+    if (adds && !behind) {
+        put_break(to, robot);
+    }
     put(to, text + end, strlen(text + end));
+}
+
+/* Before it takes the place of the file: it must have the robot. */
+static int check(app *a, const draft *made, const config_robot *robot)
+{
+    return config_would_read(a, made->text, made->used, robot)
+               ? 0
+               : fail(a, robot->path, "it would not be read as it is meant; change it by hand");
+}
+
+static int replace(app *a, const draft *made, const char *path)
+{
+    int error = file_save(path, made->text, made->used);
+    return error ? fail(a, path, file_error_text(error)) : EXIT_DONE;
 }
 
 int config_write_trims(app *a, const config_robot *robot)
@@ -115,8 +141,8 @@ int config_write_trims(app *a, const config_robot *robot)
     if (!made.text || made.full) {
         status = fail(a, robot->path, made.text ? "too long" : "not enough memory");
     } else {
-        int error = file_save(robot->path, made.text, made.used);
-        status = error ? fail(a, robot->path, file_error_text(error)) : EXIT_DONE;
+        status = check(a, &made, robot);
+        status = status ? status : replace(a, &made, robot->path);
     }
     free(made.text);
     free(text);
@@ -258,6 +284,7 @@ static bool find_file(char *path, size_t capacity)
 int config_add(app *a, const config_entry *entry, char *path, size_t capacity)
 {
     draft made = {.capacity = CONFIG_FILE_MAX_BYTES};
+    config_robot robot = {.name = ""};
     if (!find_file(path, capacity)) {
         return app_fail(a, EXIT_FILE, "NOENT",
                         "there is no folder for a configuration: HOME is "
@@ -276,11 +303,14 @@ int config_add(app *a, const config_entry *entry, char *path, size_t capacity)
     } else if (!fits) {
         status = fail(a, path, "its robots stand in braces; add the robot by hand");
     } else {
-        status = keep_undo(a, path, before, made.text, entry->file);
+        snprintf(robot.name, sizeof robot.name, "%s", entry->name);
+        snprintf(robot.path, sizeof robot.path, "%s", path);
+        snprintf(robot.device, sizeof robot.device, "%s", entry->device);
+        status = check(a, &made, &robot);
+        status = status ? status : keep_undo(a, path, before, made.text, entry->file);
     }
     if (!status) {
-        int error = file_save(path, made.text, made.used);
-        status = error ? fail(a, path, file_error_text(error)) : 0;
+        status = replace(a, &made, path);
     }
     free(made.text);
     free(before);
