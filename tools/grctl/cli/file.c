@@ -166,11 +166,11 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
     return grobo_motion_read(&source, &named, list, motion);
 }
 
-int file_save(const char *path, const void *bytes, size_t size)
+static int save(const char *path, bool exclusive, const void *bytes, size_t size)
 {
     const grobo_files *files = grobo_files_os();
     grobo_file file;
-    int error = files->create(&file, path, false);
+    int error = files->create(&file, path, exclusive);
     if (error) {
         return error;
     }
@@ -180,6 +180,16 @@ int file_save(const char *path, const void *bytes, size_t size)
     }
     files->discard(&file);
     return error;
+}
+
+int file_save(const char *path, const void *bytes, size_t size)
+{
+    return save(path, false, bytes, size);
+}
+
+int file_save_new(const char *path, const void *bytes, size_t size)
+{
+    return save(path, true, bytes, size);
 }
 
 /* A copy of what the shell has recorded. */

@@ -40,6 +40,8 @@ int file_load_listed(app *a, const char *path, const grobo_read_options *options
 
 /* Replaces a file, or what a symbolic link leads to, once the new one is safely written. */
 int file_save(const char *path, const void *bytes, size_t size);
+/* The same of a file that is not there yet; else GROBO_ERR_EXISTS. */
+int file_save_new(const char *path, const void *bytes, size_t size);
 
 /* What a file is called in messages: "-" is standard input. */
 const char *file_shown_name(const char *path);
