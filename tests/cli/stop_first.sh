@@ -77,6 +77,7 @@ check "a trace in a folder that is missing" brakes 3 'trace cannot be written: n
 check "a trace that is a folder" brakes 3 'trace cannot be written' \
     -d "$robot" --trace "$work" estop
 check "and of stop" halts 3 'trace cannot be written' -d "$robot" --trace "$work" stop
+check "a file that is no trace" brakes 3 'it is no trace' -d "$robot" --trace "$0" estop
 if [ -c /dev/full ]; then
     check "a trace on a full disk" brakes 3 'trace cannot be written' \
         -d "$robot" --trace /dev/full estop
