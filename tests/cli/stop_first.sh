@@ -48,6 +48,12 @@ check "an argument too many" brakes 2 "'now' is one argument too many" -d "$robo
 check "an option without its value" brakes 2 'needs a value' estop -d "$robot" --trace
 check "an echo without its bus" brakes 2 'echo needs --wiring bus' -d "$robot" --echo estop
 check "the same of stop" halts 2 'unknown option --now' -d "$robot" stop --now
+releases_nothing() {
+    exits 0 on_robot estop && fails 2 "'now' is one argument too many" on_robot estop --reset now &&
+        fails 2 'unknown option --no' on_robot estop --reset --no &&
+        fails 4 "stopped by 'grctl estop'" on_robot move m5 0 && exits 0 on_robot estop --reset
+}
+check "but with a mistake nothing is released" releases_nothing
 # What names no command, or asks for help, moves nothing.
 harmless() {
     holds && exits 2 on_robot sotp estop && exits 0 on_robot estop --help &&

@@ -144,8 +144,9 @@ static int stop_first(app *a, int argc, char *const *argv, const char *complaint
         a->line.global[GLOBAL_ECHO].given = 0;
     }
     a->stops = true;
+    a->mistaken = complaint != NULL;
     int status = run_it(a, argc, argv);
-    a->stops = false;
+    a->stops = a->mistaken = false;
     is_over = true;
     if (!a->link) {
         suspend_by(SIG_DFL);

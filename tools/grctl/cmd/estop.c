@@ -356,7 +356,7 @@ static int run_estop(app *a)
         return stop_unknown(a, conn_requested(a), why);
     }
     if (resets) {
-        return reset(a, device);
+        return a->mistaken ? EXIT_USAGE : reset(a, device); /* only stops go before a mistake */
     }
     if (strcmp(device, GROBO_DEVICE_AUTO) == 0) {
         return stop_any(a);
