@@ -361,4 +361,15 @@ else
     skip "all that was said is as docs/fleet.schema.json says" "no python3-jsonschema"
 fi
 
+# What a stranger at the broker says of itself is a line, whatever it contains.
+clean() {
+    for what in connection factsheet; do
+        publish -q 1 -r -t grobo/v1/stranger/$what -m '{"v":1,"state":"ON\u001b[2J",
+            "epoch":"'$id'","groups":["all"],"robots":[{"name":"a\nb","model":"m\u009bx"}]}'
+    done
+    wait_for is_listed stranger ON && fleet list >"$work/out" || return 1
+    ! tr -d '\n' <"$work/out" | LC_ALL=C grep '[[:cntrl:]]' &&
+        says '^stranger  *ON?\[2J  *a?b  *m??x$'
+}
+check "a stranger writes no control characters to a terminal" clean
 done_testing

@@ -46,6 +46,11 @@ check "joint by joint" fails 0 '(lift)\|(turn)' \
     "$GRCTL" --robot "$work/arm.yaml" -d sim move lift 50
 check "within its limits" fails 4 'lift (motor 4) to 61.0 deg is outside its limits -20 to 60' \
     "$GRCTL" --robot "$work/arm.yaml" -d sim move lift 61
+loud() {
+    sed 's/^name.*/&\ntitle: "Loud\\a\\e[2J\\nrobot"/' "$work/arm.yaml" >"$work/loud.yaml"
+    exits 0 "$GRCTL" robot show "$work/loud.yaml" && says '^crane: Loud??\[2J?robot$'
+}
+check "its title is a line without control characters" loud
 sed 's/limits_deg: \[-90, 90\]/limit_deg: [-90, 90]/' "$work/arm.yaml" >"$work/wrong.yaml"
 check "a mistake has line and column" fails 3 "wrong.yaml:5:44: no key .* called 'limit_deg'" \
     "$GRCTL" --robot "$work/wrong.yaml" joints

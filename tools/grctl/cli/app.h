@@ -109,6 +109,8 @@ void app_detail(const app *a, const char *format, ...) __attribute__((format(pri
 
 /* Prints on standard output as printf() does, see output.h; a while later, or by output_flush(). */
 void app_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* The same of a whole line with texts of others: app_make_one_line(). */
+void app_print_line(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* One JSON object on a line of its own; takes the reference. */
 void app_print_json(json_t *object);
 /* A JSON string of bytes that may be no UTF-8. */

@@ -58,7 +58,7 @@ static void print_comment(const decoder *d, const pcapng_chunk *chunk)
         app_print_json(json_pack("{s:o,s:o}", "time_ms", app_json_number(time_ms, 3), "comment",
                                  app_json_text(chunk->comment)));
     } else {
-        app_print("%10.3f  %-7s  %s\n", time_ms, "comment", chunk->comment);
+        app_print_line("%10.3f  %-7s  %s", time_ms, "comment", chunk->comment);
     }
 }
 

@@ -150,8 +150,8 @@ static void list_one(const leader *l, const peer *p)
     json_array_foreach(robots, i, robot)
     {
         const char *name = fleet_text(robot, "name"), *model = fleet_text(robot, "model");
-        app_print("%-20s  %-16s  %-16s  %s\n", p->host, p->state, name ? name : "",
-                  model && *model ? model : "-");
+        app_print_line("%-20s  %-16s  %-16s  %s", p->host, p->state, name ? name : "",
+                       model && *model ? model : "-");
     }
 }
 
@@ -189,11 +189,11 @@ static void show_status(const leader *l)
                 app_print_json(json_pack("{s:s,s:s,s:b,s:s?,s:s?}", "host", p->host, "robot", name,
                                          "up", up && !silent, "play", play, "trip", trip));
             } else {
-                app_print("%-20s  %-16s  %-6s  %-12s  %s\n", p->host, name,
-                          silent ? "silent"
-                          : up   ? "up"
-                                 : "down",
-                          play ? play : "-", trip ? trip : "-");
+                app_print_line("%-20s  %-16s  %-6s  %-12s  %s", p->host, name,
+                               silent ? "silent"
+                               : up   ? "up"
+                                      : "down",
+                               play ? play : "-", trip ? trip : "-");
             }
         }
     }
@@ -438,7 +438,7 @@ static int say_ended(leader *l)
                                          "late_us", json_object_get(robot, "late_us"), "bound_us",
                                          json_object_get(p->answer, "bound_us")));
             } else if (ok) {
-                app_print("%s/%s: played\n", p->host, name ? name : "");
+                app_print_line("%s/%s: played", p->host, name ? name : "");
             } else {
                 status = app_fail(l->a, EXIT_ROBOT, "CANCELED", "%s/%s: %s", p->host,
                                   name ? name : "", why ? why : "");
@@ -550,8 +550,8 @@ static void say_event(leader *l, const peer *p, json_t *event)
         app_print_json(json_pack("{s:s,s:s?,s:s,s:s?}", "host", p->host, "robot", robot, "kind",
                                  kind ? kind : "", "message", text));
     } else {
-        app_print("%s%s%s: %s %s\n", p->host, robot ? "/" : "", robot ? robot : "",
-                  kind ? kind : "", text ? text : "");
+        app_print_line("%s%s%s: %s %s", p->host, robot ? "/" : "", robot ? robot : "",
+                       kind ? kind : "", text ? text : "");
     }
     output_flush();
 }

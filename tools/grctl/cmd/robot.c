@@ -96,7 +96,7 @@ static json_t *robot_json(const grobo_robot_def *def)
 static void print_robot(const grobo_robot_def *def)
 {
     const grobo_safety_limits *limits = &def->limits;
-    app_print("%s: %s\n", def->name, def->title);
+    app_print_line("%s: %s", def->name, def->title);
     app_print("servos     %d of family %s\n", def->model->n_joints, def->family->name);
     app_print("line       %lu bps, %s", (unsigned long)def->baud_bps,
               def->wiring == GROBO_WIRING_BOARD ? "through its board" : "servos on a bus");
