@@ -123,6 +123,12 @@ check "its trims are its own" both exits 0 on_robot --robot so101 status m4 --- 
     says 'wrist_flex  *2[12]\.'
 check "a file beside the configuration" fails 0 'there; ' "$GRCTL" -d other move lift 30
 check "not two robots at once" fails 2 'is another robot' "$GRCTL" -d desk --robot koch status
+trims_of_another() {
+    printf '  trimmed: {device: sim, trim: {R_HIP_Y: 5}}\n' >>"$work/config/grctl/config.yaml"
+    fails 2 '^grctl: $GRCTL_ROBOT: so101: trimmed of .* is another robot: gr001' \
+        env GRCTL_ROBOT=so101 "$GRCTL" -d trimmed status
+}
+check "nor the trims of one for another" trims_of_another
 records() {
     : >"$work/recording"
     "$GRCTL" --robot so101 -d "$robot" record -o "$work/taught.yaml" >"$work/out" \
