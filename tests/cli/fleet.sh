@@ -307,7 +307,8 @@ two_at_once() {
     plays && answered '"another motion is played" in lines[0]["message"]' one prepare \
         '{"file":"greet.pseq"}' &&
         answered '"nothing was prepared" in lines[0]["message"]' one start \
-            '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500 && moves
+            '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500 &&
+        answered 'lines[0]["code"] == "busy"' one put '{"file":"y.m","text":""}' && moves
     two_status=$?
     kill -INT "$play"
     ended 130 && wait_for rests && return $two_status
@@ -328,9 +329,11 @@ if have_json; then
         one prepare '{"file":"greet.pseq","group":"two"}'
     check "a file of another folder" answered 'lines[0]["code"] == "arg"' \
         one put '{"file":"../y.m","text":""}'
+    check "a file that is no motion" answered 'lines[0]["code"] == "arg"' \
+        one put '{"file":"y.txt","text":""}'
     check "an order that there is not" answered 'lines[0]["code"] == "unsupported"' one dance '{}'
     check "two who would lead" two_at_once
-    check "none of these was done" test ! -e "$work/motions/y.m"
+    check "none of these was done" [ -z "$(ls "$work/motions" | grep '^y')" ]
 else
     skip "a stranger who has a clock" "no python3 here"
 fi
