@@ -282,7 +282,7 @@ static void propose(const guide *g, char *name)
         for (char *c = name; *c; c++) {
             *c = *c == '.' ? '-' : *c;
         }
-        if (config_check_name(&quiet, name) == 0) {
+        if (config_check_name(&quiet, name) != EXIT_USAGE) {
             return;
         }
     }
@@ -293,19 +293,16 @@ static int give_name(guide *g)
     char usual[ASK_BYTES], answer[ASK_BYTES];
     int status = 0;
     propose(g, usual);
-    for (int i = 0; i < TRIES; i++) {
+    for (int i = 0; i < TRIES && (i == 0 || status == EXIT_USAGE); i++) {
         if (!ask_line(g->a, "its name, for -d?", usual, answer)) {
             return gave_up(g);
         }
         status = config_check_name(g->a, answer);
-        if (!status) {
-            memcpy(g->name, answer, strlen(answer) + 1); /* it fits: it was checked */
-            break;
-        }
     }
     if (status) {
         return status;
     }
+    memcpy(g->name, answer, strlen(answer) + 1); /* it fits: it was checked */
     const cli_value *wiring = app_global(g->a, GLOBAL_WIRING);
     const config_entry entry = {.name = g->name,
                                 .device = g->device,
