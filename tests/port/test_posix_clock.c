@@ -16,7 +16,7 @@
 
 #include <grobo/port.h>
 
-enum { NOT_KNOWN = 2, APART_S = 60 };
+enum { NOT_KNOWN = 2, STOOD = 99, APART_S = 60 };
 
 static const char *program;
 
@@ -35,7 +35,7 @@ static int counts_sleep(void)
     }
     double apart_s = (double)grobo_now_us() / 1e6 - up_s;
 
-    return apart_s > -APART_S && apart_s < APART_S ? 0 : 1;
+    return apart_s > -APART_S && apart_s < APART_S ? 0 : STOOD;
 }
 
 static void the_clock_goes_on_while_the_machine_sleeps(void **state)
@@ -50,11 +50,11 @@ static void the_clock_goes_on_while_the_machine_sleeps(void **state)
     assert_in_range(n, 1, sizeof line - 1);
     int status = system(line);
     assert_true(WIFEXITED(status));
-    if (WEXITSTATUS(status) == NOT_KNOWN) {
+    assert_int_not_equal(WEXITSTATUS(status), STOOD);
+    if (WEXITSTATUS(status) != 0) { /* nor may an emulator's program be started so */
         print_message("no time namespaces here\n");
         skip();
     }
-    assert_int_equal(WEXITSTATUS(status), 0);
 }
 
 /* A condition sleeps by a clock of its own. */
