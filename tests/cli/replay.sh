@@ -168,7 +168,7 @@ torque_late() {
 }
 check 'torque is sent though the joint was read a while ago' torque_late
 shows_how_far() {
-    script -qec "stty cols 60; '$GRCTL' -d '$robot' --yes replay '$work/late'" \
+    script -qec "stty cols 60; '$GRCTL' -d '$robot' --timeout 500 --yes replay '$work/late'" \
         /dev/null </dev/null >"$work/screen" && grep -q 'replay: [0-9.]* of 3\.0 s' "$work/screen"
 }
 if command -v script >/dev/null 2>&1 && script -qec true /dev/null </dev/null >/dev/null 2>&1; then
