@@ -70,6 +70,10 @@ sofa='config.yaml:4:1: no key .sofa'
 check "a configuration with a mistake behind the robot" brakes 3 "$sofa" estop
 check "and of stop" halts 3 "$sofa" stop
 check "a robot of it that is asked for" brakes 3 "$sofa" -d kitchen estop
+printf 'sofa: 1\nrobots: {kitchen: {device: %s}}\n' "$robot" >"$config"
+check "what cannot be found in it is not released" fails 3 'config.yaml:1:1: no key .sofa' \
+    "$GRCTL" estop --reset
+printf 'default: kitchen\nrobots:\n  kitchen: {device: %s}\nsofa: 1\n' "$robot" >"$config"
 check "a device needs no configuration" brakes 0 'stopped and verified' -d "$robot" estop
 rm "$config"
 check "a robot that the configuration no longer has: it says so" fails 1 \

@@ -39,7 +39,8 @@ typedef struct app {
     bool tty_in, tty_out, tty_err;
     bool moves;      /* the command may move the robot: it gets a guard */
     bool stops;      /* the command stops the robot: no signal or trace keeps it from that */
-    bool mistaken;   /* it does so though its line has a mistake, which is told later */
+    bool mistaken;   /* it does so though its line has a mistake, or nobody knows which robot is
+                        meant; that is told later */
     bool reconnects; /* a lost line is opened again, and is no failure */
     bool traced;     /* --trace was begun, or could not be; else there was no line to trace */
     bool clamps;     /* targets outside limits go to the limit, and are no failure */

@@ -144,7 +144,7 @@ static int stop_first(app *a, int argc, char *const *argv, const char *complaint
         a->line.global[GLOBAL_ECHO].given = 0;
     }
     a->stops = true;
-    a->mistaken = complaint != NULL;
+    a->mistaken = complaint || (later && !app_global(a, GLOBAL_DEVICE)->given);
     int status = run_it(a, argc, argv);
     a->stops = a->mistaken = false;
     is_over = true;

@@ -347,6 +347,9 @@ static int run_estop(app *a)
     static target t;
     char device[GROBO_DEVICE_MAX_BYTES];
     bool resets = app_option(a, OPT_RESET)->given > 0;
+    if (resets && a->mistaken) {
+        return EXIT_DONE; /* only a stop goes before what is wrong */
+    }
     const char *why = find_device(a, device);
     if (why && resets) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(GROBO_ERR_NOENT), "%s: %s",
@@ -356,7 +359,7 @@ static int run_estop(app *a)
         return stop_unknown(a, conn_requested(a), why);
     }
     if (resets) {
-        return a->mistaken ? EXIT_USAGE : reset(a, device); /* only stops go before a mistake */
+        return reset(a, device);
     }
     if (strcmp(device, GROBO_DEVICE_AUTO) == 0) {
         return stop_any(a);
