@@ -172,7 +172,7 @@ check "no JSON" spoiled '[0-9]*:[0-9]*: ' 's/{/[/'
 check "a joint is missing" spoiled 'gripper: needs' '/"gripper"/,$d;/"wrist_roll"/,$s/},$/}}/'
 check "no file" fails 3 'none.json' on_robot calibrate --from "$work/none.json"
 check "nobody presses enter" in_folder exits 2 on_robot calibrate
-check "that is said" grep -q 'needs a person who presses enter' "$work/err"
+check "that is said" grep -q 'needs a person to press enter' "$work/err"
 check "the file must say so" fails 2 "calibrated: true" "$GRCTL" --robot pan-tilt -d sim calibrate
 check "another robot has trims" fails 2 'keep no calibration' \
     "$GRCTL" --robot gr001 -d sim calibrate --from "$work/so101.json"

@@ -40,7 +40,7 @@ joints:
 END
 check "a file" fails 0 'crane.*2 joints, nothing wrong\|crane: 2 joints' \
     "$GRCTL" robot check "$work/arm.yaml"
-check "moves in its simulator" fails 0 'there; largest error 0\.[0-4]' \
+check "moves in its simulator" fails 0 'done; largest error 0\.[0-4]' \
     "$GRCTL" --robot "$work/arm.yaml" -d sim init
 check "joint by joint" fails 0 '(lift)\|(turn)' \
     "$GRCTL" --robot "$work/arm.yaml" -d sim move lift 50
@@ -87,16 +87,16 @@ check "it plays there" plays on_robot --robot so101 play --speed 200 \
 check "all stand where it ended" wait_for sim_shows 6 ' -*0\.[0-9] deg'
 shell_moves() {
     echo 'move gripper 40' | "$GRCTL" -d "$robot" --robot so101 shell >"$work/out" 2>"$work/err"
-    grep -q 'there; largest error' "$work/err"
+    grep -q 'done; largest error' "$work/err"
 }
 check "in a shell" shell_moves
 tell block gripper on
 check "a gripper that is blocked is not there" fails 0 \
-    '^not there: largest error 1[0-9]\.[0-9] deg (gripper); is it blocked?$' \
+    '^not reached: largest error 1[0-9]\.[0-9] deg (gripper); is it blocked?$' \
     on_robot --robot so101 move gripper 55
 tell block gripper off
 check "it is free" wait_for sim_shows 6 ' 5[45]\.[0-9] deg .* mA .* C$'
-check "and gets back" fails 0 'there; largest error 0\.[0-4]' on_robot --robot so101 move gripper 40
+check "and gets back" fails 0 'done; largest error 0\.[0-4]' on_robot --robot so101 move gripper 40
 tell block shoulder_pan on
 check "a joint that is blocked ends its move" \
     fails 4 'stopped for safety: over-current ([0-9]* mA) at motor 1 (shoulder_pan)' \
@@ -166,7 +166,7 @@ joints:
   - {name: tilt, id: 2, servo: ${family##*:}, limits_deg: [-60, 60], sign: -1}
 END
     check "$family moves" both exits 0 "$GRCTL" --robot "$work/pair.yaml" -d sim move tilt 20 --- \
-        written "$work/err" 'there; largest error 0\.[01] deg'
+        written "$work/err" 'done; largest error 0\.[01] deg'
     check "$family is found" both exits 0 "$GRCTL" --robot "$work/pair.yaml" -d sim scan --last 3 \
         --- says '^  2  .* tilt$'
 done

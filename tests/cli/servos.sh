@@ -127,7 +127,7 @@ check "flash does not keep it" fails 2 'flash does not keep register max_torque'
 
 initial=$(awk '{ for (i = 2; i < 22; i++) print $i / 10; exit }' motions/greet.m)
 check "pose by joints" both exits 0 on_robot pose --time 300 m5=-30 L_ELBOW_P=30 --- \
-    said '^there; largest error 0\.[0-9] deg'
+    said '^done; largest error 0\.[0-9] deg'
 # The angles are words.
 # shellcheck disable=SC2086
 check "pose by 20 angles" both exits 0 on_robot pose --time 300 $initial --- said '^there; '

@@ -13,8 +13,8 @@ enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGE
 static const cli_option options[] = {
     [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 1000,
                              "to yaml: frames per second (50, or the source's own)"),
-    [OPT_FROM] = OPTION_CHOICE("from", 0, FILE_FORMATS, "format of IN, whatever its name says"),
-    [OPT_TO] = OPTION_CHOICE("to", 0, FILE_FORMATS, "format of OUT, whatever its name says"),
+    [OPT_FROM] = OPTION_CHOICE("from", 0, FILE_FORMATS, "format of IN (by its name)"),
+    [OPT_TO] = OPTION_CHOICE("to", 0, FILE_FORMATS, "format of OUT (by its name)"),
     [OPT_EXACT] = OPTION_FLAG("exact", 0,
                               "write exact angles (m) and times (yaml), which the original and "
                               "Choreonoid before 2.1 cannot read"),

@@ -382,11 +382,11 @@ const cli_command cmd_doctor = {
     .arguments = "",
     .summary = "find faults from the port to the last servo, suggest fixes",
     .details =
-        "Looks at the port (is it there, may you open it, who holds it, is its latency timer\n"
-        "short), asks for a reply (at other baud rates and wirings too when nobody answers), then\n"
-        "asks every servo for its model, voltage, temperature and flags. Each thing that is wrong\n"
-        "comes with the line that mends it, and makes the exit status 1. Nothing moves. -v shows\n"
-        "every servo, also those that are well.\n",
+        "Checks the port (does it exist, may you open it, which program holds it, is its latency\n"
+        "timer short), asks for a reply (without one also at other baud rates and wirings), then\n"
+        "asks every servo for its model, voltage, temperature and flags. Each problem is printed\n"
+        "with its fix, and makes the exit status 1. Nothing moves. -v shows the servos without a\n"
+        "problem too.\n",
     .example = "  grctl doctor\n  grctl -d /dev/ttyUSB0 doctor -v\n",
     .group = CLI_GROUP_EACH,
     .run = run,

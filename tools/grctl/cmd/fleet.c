@@ -50,7 +50,7 @@ static const cli_option options[OPTIONS] = {
                                   "play: what robots do that hear no more of this command (stop)"),
     [OPT_SPREAD] = OPTION_REAL("spread", 0, "MS", 0.1, 1000, "play: begin within this time (5)"),
     [OPT_AT] = OPTION_TEXT("at", 0, "HH:MM:SS", "play: begin at this time, by the clock here"),
-    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "status: again and again, until a signal"),
+    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "status: repeat until a signal"),
 };
 
 static bool never(const leader *l)
@@ -339,7 +339,7 @@ static int run_push(leader *l)
                        ANSWER_US);
     }
     if (!status) {
-        app_done(l->a, "there");
+        app_done(l->a, "done");
     }
     return status;
 }
@@ -499,7 +499,7 @@ static int see_through(leader *l)
     }
     if (l->lost) {
         return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE",
-                        "fleet: the broker went away: the robots do as --on-link-lost says");
+                        "fleet: the broker is lost: the robots act by --on-link-lost");
     }
     int status = say_ended(l);
     return signal ? EXIT_SIGNAL + signal : status;
@@ -613,15 +613,15 @@ const cli_command cmd_fleet = {
     COMMAND_ARGUMENTS("list|status|play|stop|estop|reset|push|log [FILE]", 1, -1, CLI_ARG_FILE),
     .summary = "ask the robots of many machines, over a broker",
     .details =
-        "Speaks with every 'grctl agent' at the broker, or with a group or a machine of them.\n"
+        "Commands every 'grctl agent' at the broker, or those of a group or of a machine.\n"
         "\n"
-        "  list, status, log  who is there; how robots are; what happens, until Ctrl-C\n"
+        "  list, status, log  the agents; the state of robots; events, until Ctrl-C\n"
         "  push FILE...       puts motions into the folders of the agents\n"
         "  play FILE...       all prepare, wait for each other, and begin at one time;\n"
         "                     names in the folders of the agents, played in turn\n"
-        "  stop, estop        a stop of the group that stands until 'reset': softly, or\n"
+        "  stop, estop        a stop of the group that stands until 'reset': smoothly, or\n"
         "                     as an emergency stop that is read back joint by joint;\n"
-        "                     always of the whole group, whatever --host says\n"
+        "                     always of the whole group, also with --host\n"
         "  reset              releases the stop; nothing moves\n"
         "\n"
         "A stop over a network is a convenience and no safety function: it may come late or\n"

@@ -29,7 +29,7 @@ static const double there_deg = 1.5, behind_deg = 20;
 
 static const cli_option options[] = {
     [OPT_RATE] = OPTION_WHOLE("rate", 'r', "HZ", 5, MAX_HZ, "targets a second (100)"),
-    [OPT_FOR] = OPTION_REAL("for", 0, "S", 0.1, 86400, "end after so many seconds"),
+    [OPT_FOR] = OPTION_REAL("for", 0, "S", 0.1, 86400, "end after this time"),
 };
 
 typedef enum following {

@@ -66,7 +66,7 @@ static const char *stop_of(const view *v, const seat *s)
     grobo_robot_tripped(s->c.robot, &trip);
     return trip.trip == GROBO_TRIP_NONE ? "-"
            : !v->estopped               ? _(grobo_trip_name(trip.trip))
-           : !s->c.estop_ended          ? _("told")
+           : !s->c.estop_ended          ? _("requested")
            : s->c.estop_result < 0      ? _("NOT seen to stop: use its switch")
                                         : _("stopped, read back");
 }

@@ -33,9 +33,9 @@ static void report(const conn *c, const grobo_posture *target)
     } else if (joint >= 0) {
         const char *name = grobo_robot_driver(c->robot)->model->joints[joint].name;
         if (worst < there_deg) {
-            app_note(c->a, "there; largest error %.1f deg (%s)", worst, name);
+            app_note(c->a, "done; largest error %.1f deg (%s)", worst, name);
         } else {
-            app_note(c->a, "not there: largest error %.1f deg (%s); is it blocked?", worst, name);
+            app_note(c->a, "not reached: largest error %.1f deg (%s); is it blocked?", worst, name);
         }
     }
 }

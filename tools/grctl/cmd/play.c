@@ -19,7 +19,7 @@ static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_MIRROR] = OPTION_FLAG("mirror", 'm', "left for right"),
     [PLAY_SPEED] =
         OPTION_WHOLE("speed", 's', "PCT", 1, GROBO_PLAY_SPEED_MAX_PCT, "speed in percent (100)"),
-    [PLAY_FROM] = OPTION_REAL("from", 'f', "MS", 0, 1e9, "begin so far into the first file"),
+    [PLAY_FROM] = OPTION_REAL("from", 'f', "MS", 0, 1e9, "begin at this time of the first file"),
     [PLAY_RATE] = OPTION_WHOLE("rate", 0, "HZ", 1, GROBO_PLAY_RATE_MAX_HZ,
                                "interpolate, so many frames a second (pseq and yaml)"),
     [PLAY_KEY] =
@@ -326,7 +326,7 @@ const cli_command cmd_play = {
         "checked before anything moves: an angle outside a joint's limits is refused with its\n"
         "place in the file and exit status 4, or played at the limit with --clamp. An angle up\n"
         "to one degree outside, as recordings have them, is played at the limit, with a warning.\n"
-        "One warning says where the robot would fall; --force and 'warn_fall: false' in\n"
+        "One warning reports where the robot would fall; --force and 'warn_fall: false' in\n"
         "config.yaml silence it. Torque comes on where it is off, and the robot goes slowly from\n"
         "where it is to where the motion begins. Ctrl-C stops smoothly and carries out the exit\n"
         "policy.\n"
@@ -337,7 +337,7 @@ const cli_command cmd_play = {
         "115200 bps.\n"
         "\n"
         "Where -d names a group of the configuration, its robots approach, wait for each other\n"
-        "and begin together; --if-lost says what the others do when one trips or loses its line.\n"
+        "and begin together; --if-lost chooses what the others do when one trips or loses its line.\n"
         "\n"
         "On a terminal it takes keys:\n"
         "\n" PLAY_KEYS_HELP,

@@ -96,7 +96,7 @@ const cli_command cmd_ports = {
     .arguments = "",
     .summary = "list the serial ports of this machine",
     .details = "Lists every serial port: its path, the name under /dev/serial/by-id that stays\n"
-               "when it is plugged in elsewhere, its USB ids, who holds it and whether it may be\n"
-               "opened. No port is opened for it.\n",
+               "when it is plugged in elsewhere, its USB ids, which program holds it and whether\n"
+               "it may be opened. No port is opened for it.\n",
     .run = run,
 };

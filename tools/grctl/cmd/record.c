@@ -34,8 +34,8 @@ static const cli_option options[] = {
         OPTION_TEXT("out", 'o', "FILE", ".m, .pseq, .mseq or .yaml (the first free MotionN.m)"),
     [OPT_TIME] = OPTION_WHOLE("time", 't', "MS", 10, 9990,
                               "time to reach a posture kept by a key press (1000)"),
-    [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 50, "look so many times a second (4)"),
-    [OPT_KEY] = OPTION_FLAG("key", 'k', "a posture a key press: space"),
+    [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 50, "checks per second (4)"),
+    [OPT_KEY] = OPTION_FLAG("key", 'k', "keep a posture only at a key press: space"),
     [OPT_MOVED] = OPTION_REAL("moved", 'm', "DEG", 0, 180,
                               "keep a posture when a joint moved by so much (10); 0: every one"),
     [OPT_LIMP] = OPTION_FLAG("limp", 0, "switch torque off; the default where it is off"),
@@ -399,7 +399,7 @@ static void say_how(const recorder *r, bool hears)
 {
     if (r->held) {
         app_note(r->c.a,
-                 "joints are in your hands: each gives way when you turn it, holds when let go");
+                 "joints follow your hands: each turns with your hand and holds when released");
     }
     if (r->limp) {
         app_note(r->c.a, "%d joint%s limp: move by hand; a released joint does not hold",
@@ -618,19 +618,19 @@ const cli_command cmd_record = {
     COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "record a motion by moving the robot by hand",
     .details =
-        "All joints, or those named, give way to a hand that turns them and hold when it lets go.\n"
+        "All joints, or those named, follow a hand that turns them and hold when it releases them.\n"
         "A joint without torque stays so: it is limp and nothing is switched on. --limp switches\n"
-        "the torque of what is taught off: hold the robot, an arm falls. What is not taught stays\n"
-        "as it is.\n"
+        "off the torque of the joints that are taught: hold the robot, an arm falls. The others\n"
+        "stay as they are.\n"
         "\n"
-        "Postures are kept when a joint has moved by --moved degrees, looked at --rate times a\n"
+        "Postures are kept when a joint has moved by --moved degrees, checked --rate times a\n"
         "second; with --key only at the press of a key. Pauses are cut to a second.\n"
         "\n"
-        "At 115200 bps each of all joints is read 6 times a second, of the 3 of an arm 40 times,\n"
-        "a single one 120 times: a higher --rate sees nothing more. The joints that are not\n"
+        "At 115200 bps each of all joints is read 6 times a second, each of the 3 of an arm 40\n"
+        "times, a single one 120 times: a higher --rate has no effect. The joints that are not\n"
         "taught are watched meanwhile, once a second.\n"
         "\n"
-        "Keys, of a terminal or a pipe:\n"
+        "Keys, from a terminal or a pipe:\n"
         "\n"
         "  space   keep the posture as it is now\n"
         "  d       drop the last one\n"
@@ -650,10 +650,10 @@ const cli_command cmd_teach = {
     COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "record postures of limp joints, and play them at once",
     .details =
-        "Switches the torque of all joints, or of those named, off: hold the robot, an arm falls.\n"
-        "What is not taught stays as it is: what holds, holds.\n"
+        "Switches off the torque of all joints, or of those named: hold the robot, an arm falls.\n"
+        "Joints that are not taught stay as they are: those that hold continue to hold.\n"
         "\n"
-        "Keys, of a terminal or a pipe:\n"
+        "Keys, from a terminal or a pipe:\n"
         "\n"
         "  space      keep the posture as it is now\n"
         "  d          drop the last one\n"

@@ -510,20 +510,19 @@ const cli_command cmd_servo_set = {
     .summary = "write a servo's register by name",
     .details =
         "Writes one register and reads it back. The value is what the register stores (see\n"
-        "servo-get); a baud rate may be given as it is. With --flash the servo also keeps\n"
-        "its settings over power-off; that is shown first and, on a terminal, asked for.\n"
-        "Goal and torque are refused: move and servo set them safely; id, direction, limits and\n"
-        "what else decides where a goal is are refused while the servo holds, an id that another\n"
-        "servo has, and through the board a baud rate other than 115200.\n"
+        "servo-get); a baud rate may be given as it is. With --flash the servo also keeps its\n"
+        "settings over power-off; that is shown first and, on a terminal, asked for. Goal and\n"
+        "torque are refused: move and servo set them safely. Id, direction, limits and other\n"
+        "settings that decide where a goal is are refused while the servo holds. An id that\n"
+        "another servo has, and through the board a baud rate other than 115200, are refused too.\n"
         "\n"
-        "What --flash does depends on the servo: RS30x write their flash, Feetech's are opened\n"
-        "(register lock) for the one write and closed again, and DYNAMIXEL keep id, limits and\n"
-        "the like always.\n"
+        "What --flash does depends on the servo: RS30x write their flash, Feetech's are unlocked\n"
+        "for this one write, and DYNAMIXEL keep id, limits and the like always.\n"
         "\n"
         "On a bus a new baud rate is written at the old one. With --flash an RS30x keeps it and\n"
-        "restarts, the command follows it to the new rate and verifies that it answers there;\n"
-        "-b then reaches it. Without --flash the servo goes on at the old rate and forgets the\n"
-        "new one when it restarts.\n",
+        "restarts, the command follows it to the new rate and verifies that it answers there; -b\n"
+        "then reaches it. Without --flash the servo stays at the old rate and forgets the new one\n"
+        "when it restarts.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
     COMMAND_OPTIONS(set_options),
     .run = run_set,

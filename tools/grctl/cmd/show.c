@@ -10,7 +10,7 @@
 enum { OPT_JOINTS, OPT_RATE, OPT_BODY };
 
 static const cli_option options[] = {
-    MOTION_LOOK_ROWS(OPT_JOINTS, OPT_RATE, "as it is played, so many rows a second"),
+    MOTION_LOOK_ROWS(OPT_JOINTS, OPT_RATE, "what is played, rows per second"),
     BODY_OPTION_ROWS(OPT_BODY),
 };
 

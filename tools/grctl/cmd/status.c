@@ -7,7 +7,7 @@
 enum { OPT_WATCH, OPT_INTERVAL };
 
 static const cli_option options[] = {
-    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "again and again, until a signal"),
+    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "repeat until a signal"),
     [OPT_INTERVAL] = OPTION_WHOLE("interval", 'i', "MS", 20, 3600000,
                                   "time between two rounds of --watch (1000)"),
 };

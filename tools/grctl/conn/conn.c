@@ -528,7 +528,7 @@ static void say_found(conn *c)
         auto_used(c->a, conn_device(c), conn_is_auto(c->a));
     }
     if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED) {
-        app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", app_error_text(answer));
+        app_detail(c->a, "low latency: %s; see 'grctl doctor'", app_error_text(answer));
     }
 }
 

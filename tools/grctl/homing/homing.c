@@ -257,7 +257,7 @@ static int watch(calibration *k, bool ranges)
             status = conn_fail(&k->c, error, "calibrate");
         } else if (k->has_ended && !k->pressed) {
             status = app_fail(k->a, EXIT_USAGE, "CANCELED",
-                              "calibrate: needs a person who presses enter, or --from FILE");
+                              "calibrate: needs a person to press enter, or --from FILE");
         } else {
             memcpy(last, k->now, sizeof last);
             status = look(k);
@@ -342,7 +342,7 @@ static int hear_enter(calibration *k)
 {
     if (!keys_start(&k->input, k->c.base, true, on_key, k)) {
         return app_fail(k->a, EXIT_USAGE, "CANCELED",
-                        "calibrate: needs a person who presses enter, or --from FILE");
+                        "calibrate: needs a person to press enter, or --from FILE");
     }
     k->listens = true;
     k->look = conn_every(&k->c, LOOK_US, conn_note, &k->is_due);

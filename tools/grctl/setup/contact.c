@@ -147,7 +147,7 @@ static void measure_times(contact *k)
         }
     }
     if (n == 0) {
-        contact_note(k, "latency", NOT_DONE, "nobody answers");
+        contact_note(k, "latency", NOT_DONE, "no servo answers");
         return;
     }
     qsort(took_us, (size_t)n, sizeof *took_us, by_size);

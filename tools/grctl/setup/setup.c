@@ -88,7 +88,7 @@ static int find_port(guide *g)
     auto_report(g->a, &all);
     if (all.n_usb == 0) {
         return app_fail(g->a, EXIT_ROBOT, "NOENT",
-                        all.n_blocked ? "setup: no adapter may be opened; mend that and run it "
+                        all.n_blocked ? "setup: no adapter may be opened; fix that and run it "
                                         "again"
                                       : "setup: no USB adapter is here; plug the robot's cable in "
                                         "and run it again, or try it with -d sim");
@@ -245,10 +245,11 @@ static int find_robot(guide *g)
     }
     found_choose(a, &all);
     if (all.n == 0) {
-        return app_fail(a, EXIT_ROBOT, "NOTFOUND",
-                        "setup: nobody answers on %s: switch the robot on, push its cables in, and "
-                        "run it again",
-                        g->device);
+        return app_fail(
+            a, EXIT_ROBOT, "NOTFOUND",
+            "setup: no servo answers on %s: switch the robot on, push its cables in, and "
+            "run it again",
+            g->device);
     }
     for (int i = 0; i < all.n; i++) {
         app_note(a, "  %3d  %-12s %7d bps  %s", all.servo[i].id, all.servo[i].servo->name,
