@@ -146,7 +146,7 @@ static const char head[] =
        ".Op Ar ARGUMENTS\n"
        ".Sh DESCRIPTION\n"
        ".Nm grctl\n"
-       "drives robots of serial command servos, first of all the GR001 humanoid,\n"
+       "drives robots of serial command servos, such as a GR001 humanoid or an SO-101 arm,\n"
        "for people at a terminal and for scripts.\n"
        "Results go to standard output, messages to standard error.\n"
        "Without a terminal, no command asks.\n"
