@@ -80,10 +80,9 @@ static void print_global_options(FILE *to)
 
 void cli_print_overview(FILE *to)
 {
-    fputs(
-        _("grctl drives robots of serial command servos, such as a GR001 humanoid or an SO-101 arm.\n\n"
-          "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n"),
-        to);
+    fputs(_("grctl drives robots of serial command servos, such as GR001 or an SO-101 arm.\n\n"
+            "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n"),
+          to);
     for (size_t i = 0; i < cli_n_commands; i++) {
         fprintf(to, "  %-15s%s\n", cli_commands[i]->name, _(cli_commands[i]->summary));
     }
