@@ -9,7 +9,7 @@ enum { OPT_OUT };
 
 static const cli_option options[] = {
     [OPT_OUT] = OPTION_TEXT("out", 'o', "PREFIX",
-                            "how the names of report and traces begin (first-contact-ROBOT)"),
+                            "prefix of the names of report and traces (first-contact-ROBOT)"),
 };
 
 static int run(app *a)

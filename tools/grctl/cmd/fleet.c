@@ -611,7 +611,7 @@ static int run(app *a)
 const cli_command cmd_fleet = {
     .name = "fleet",
     COMMAND_ARGUMENTS("list|status|play|stop|estop|reset|push|log [FILE]", 1, -1, CLI_ARG_FILE),
-    .summary = "ask the robots of many machines, over a broker",
+    .summary = "command the robots of many machines, over a broker",
     .details =
         "Commands every 'grctl agent' at the broker, or those of a group or of a machine.\n"
         "\n"

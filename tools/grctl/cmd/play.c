@@ -337,7 +337,7 @@ const cli_command cmd_play = {
         "115200 bps.\n"
         "\n"
         "Where -d names a group of the configuration, its robots approach, wait for each other\n"
-        "and begin together; --if-lost chooses what the others do when one trips or loses its line.\n"
+        "and begin together; --if-lost chooses what the others do if one trips or loses its line.\n"
         "\n"
         "On a terminal it takes keys:\n"
         "\n" PLAY_KEYS_HELP,

@@ -618,7 +618,7 @@ const cli_command cmd_record = {
     COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "record a motion by moving the robot by hand",
     .details =
-        "All joints, or those named, follow a hand that turns them and hold when it releases them.\n"
+        "All joints, or those named, follow a hand that turns them and hold when released.\n"
         "A joint without torque stays so: it is limp and nothing is switched on. --limp switches\n"
         "off the torque of the joints that are taught: hold the robot, an arm falls. The others\n"
         "stay as they are.\n"
