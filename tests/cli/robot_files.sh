@@ -113,10 +113,10 @@ robots:
 END
 check "trim before robot" fails 3 'robot stands before trim and offset' "$GRCTL" -d desk status
 sed -i.old /wrong:/d "$work/config/grctl/config.yaml"
-check "a configured robot says which it is" fails 0 'there; ' "$GRCTL" -d desk move wrist_flex 20
+check "a configured robot says which it is" fails 0 'done; ' "$GRCTL" -d desk move wrist_flex 20
 check "its trims are its own" both exits 0 on_robot --robot so101 status m4 --- \
     says 'wrist_flex  *2[12]\.'
-check "a file beside the configuration" fails 0 'there; ' "$GRCTL" -d other move lift 30
+check "a file beside the configuration" fails 0 'done; ' "$GRCTL" -d other move lift 30
 check "not two robots at once" fails 2 'is another robot' "$GRCTL" -d desk --robot koch status
 records() {
     : >"$work/recording"
