@@ -9,7 +9,6 @@
 #include <grobo/session.h>
 
 #include "tools/grctl/cli/config.h"
-#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/lang/lang.h"

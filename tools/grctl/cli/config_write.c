@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/model.h>
-
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/lang/lang.h"

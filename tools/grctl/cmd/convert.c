@@ -5,7 +5,6 @@
 
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
-#include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 
 enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGERS, OPT_BODY };

@@ -244,8 +244,7 @@ static void check_servo(patient *p, int joint)
     int error = reg ? servos_read(&p->c, j->motor, reg->address, reg->bytes, bytes) : GROBO_OK;
     snprintf(name, sizeof name, "servo_%d", j->motor);
     if (!error) {
-        error = conn_wait(&p->c, grobo_robot_sense(grobo_session_robot(p->c.session),
-                                                   GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
+        error = conn_sense(&p->c, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL);
     }
     if (p->c.signal || p->c.link_error) {
         return;
@@ -267,7 +266,7 @@ static void check_servo(patient *p, int joint)
 
 static void check_servos(patient *p)
 {
-    p->model = grobo_robot_driver(p->c.robot)->model;
+    p->model = conn_model(&p->c);
     for (int joint = 0; joint < p->model->n_joints && !p->c.signal && !p->c.link_error; joint++) {
         check_servo(p, joint);
     }

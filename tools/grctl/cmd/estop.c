@@ -336,7 +336,7 @@ static int reset(app *a, const char *device)
     }
     int status = conn_is_auto(a) ? conn_open(&c, a) : conn_open_unchecked(&c, a);
     if (!status) {
-        int error = grobo_robot_reset(grobo_session_robot(c.session));
+        int error = grobo_robot_reset(c.robot);
         status = report_reset(a, conn_device(&c), error, NULL);
     }
     return conn_close(&c, status);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* joints: the robot's table of joints. Offline. */
-#include <string.h>
 
 #include <grobo/model.h>
 

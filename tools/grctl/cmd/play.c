@@ -172,8 +172,7 @@ static json_t *summary_json(const conn *c, deviation following, deviation end)
 static void print_deviation(const conn *c, const char *what, deviation d)
 {
     if (d.joint >= 0) {
-        app_print("%s %.1f deg (%s)\n", what, d.deg,
-                  grobo_robot_driver(c->robot)->model->joints[d.joint].name);
+        app_print("%s %.1f deg (%s)\n", what, d.deg, conn_model(c)->joints[d.joint].name);
     }
 }
 
@@ -261,7 +260,7 @@ static int after_estop(conn *c, int error)
 /* Plays to the end, then reads where the joints are. */
 static int play(conn *c, show *s)
 {
-    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    grobo_joint_mask all = GROBO_JOINTS_ALL(conn_model(c)->n_joints);
     warn_of_rate(c, &s->list.options[0]);
     int error = start(c, s);
     if (error) {
@@ -279,7 +278,7 @@ static int play(conn *c, show *s)
     }
     c->moving = false;
     conn_watch(c, false);
-    error = conn_wait(c, grobo_robot_sense(c->robot, all, GROBO_SENSE_FULL));
+    error = conn_sense(c, all, GROBO_SENSE_FULL);
     if (error && c->job.failed == 0) {
         return conn_fail(c, error, "play");
     }

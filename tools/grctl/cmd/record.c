@@ -94,7 +94,7 @@ static int keep(recorder *r, grobo_posture *now)
     } else {
         now->time_us = n == 0 ? KEY_MS * 1000 : took_us < PAUSE_US ? took_us : PAUSE_US;
     }
-    grobo_posture_clamp(now, grobo_robot_driver(r->c.robot)->model);
+    grobo_posture_clamp(now, conn_model(&r->c));
     r->last = *now;
     r->last_us = now_us;
     return grobo_motion_append(r->motion, now);
@@ -107,7 +107,7 @@ static int read_limp(recorder *r, bool *read)
     int error = GROBO_OK;
     *read = true;
     if (r->limp) {
-        error = conn_wait(c, grobo_robot_sense(c->robot, r->limp, GROBO_SENSE_POSITION));
+        error = conn_sense(c, r->limp, GROBO_SENSE_POSITION);
     }
     if (conn_is_of_reply(error)) {
         *read = false;
@@ -161,7 +161,7 @@ static int drop_last(recorder *r)
 static size_t add_angle(const recorder *r, const grobo_posture *now, int joint, char *text,
                         size_t capacity)
 {
-    const grobo_model *model = grobo_robot_driver(r->c.robot)->model;
+    const grobo_model *model = conn_model(&r->c);
     int n = snprintf(text, capacity, "  %s %.1f", model->joints[joint].name,
                      grobo_deg_from_rad(now->angle_rad[joint]));
     return n > 0 && (size_t)n < capacity ? (size_t)n : 0;
@@ -420,7 +420,7 @@ static void say_how(const recorder *r, bool hears)
 static void look_at_torque(const recorder *r, grobo_joint_mask *hold, grobo_joint_mask *switched)
 {
     *hold = *switched = 0;
-    for (int j = 0; j < grobo_robot_driver(r->c.robot)->model->n_joints; j++) {
+    for (int j = 0; j < conn_model(&r->c)->n_joints; j++) {
         grobo_joint_info info;
         if (!(r->joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(r->c.robot, j, &info) < 0) {
             continue;
@@ -434,9 +434,9 @@ static void look_at_torque(const recorder *r, grobo_joint_mask *hold, grobo_join
 static int give(recorder *r)
 {
     conn *c = &r->c;
-    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    grobo_joint_mask all = GROBO_JOINTS_ALL(conn_model(c)->n_joints);
     grobo_joint_mask hold, switched;
-    int error = conn_wait(c, grobo_robot_sense(c->robot, all, GROBO_SENSE_ALL));
+    int error = conn_sense(c, all, GROBO_SENSE_ALL);
     if (error < 0) {
         return error;
     }

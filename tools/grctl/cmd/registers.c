@@ -263,13 +263,13 @@ static grobo_write_kind kind_of(const app *a, const servo_change *what)
 static int read_torque(conn *c, const servo_change *what, const grobo_servo_register *reg,
                        int32_t *torque)
 {
-    int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
+    int joint = grobo_model_joint_of_motor(conn_model(c), what->id);
     int error = servos_get(c, what->id, what->servo, reg, torque);
     bool told = error != GROBO_ERR_UNSUPPORTED;
     if ((error && told) || joint < 0) {
         return error;
     }
-    error = conn_wait(c, grobo_robot_sense(c->robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
+    error = conn_sense(c, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL);
     grobo_joint_info i;
     if (!told && grobo_robot_joint(c->robot, joint, &i) == 0) {
         *torque = i.state.valid & GROBO_FIELD_TORQUE ? (int32_t)i.state.torque : GROBO_TORQUE_ON;

@@ -5,7 +5,6 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
-#include "tools/grctl/servo/family.h"
 #include "tools/grctl/setup/found.h"
 
 enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_NAME, OPT_OUT };

@@ -287,7 +287,7 @@ static int run_scan(app *a)
 
 static int info(conn *c)
 {
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    const grobo_model *model = conn_model(c);
     bool board = grobo_driver_wiring(grobo_robot_driver(c->robot)) == GROBO_WIRING_BOARD;
     uint16_t address = 0;
     const grobo_driver *driver = grobo_robot_driver(c->robot);

@@ -22,7 +22,7 @@ static bool parse_mode(const char *word, grobo_torque *mode)
 static void print_json(const conn *c, grobo_joint_mask joints)
 {
     json_t *list = json_array();
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    const grobo_model *model = conn_model(c);
     for (int j = 0; j < model->n_joints; j++) {
         grobo_joint_info i;
         if (!(joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(c->robot, j, &i) < 0) {
@@ -44,7 +44,7 @@ static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, co
     if (error == GROBO_ERR_UNSUPPORTED && mode == GROBO_TORQUE_BRAKE) {
         return app_fail(c->a, EXIT_SAFETY, grobo_error_name(error),
                         "servo: the servos of %s have no brake; on holds, off lets go",
-                        grobo_robot_driver(c->robot)->model->name);
+                        conn_model(c)->name);
     }
     if (error) {
         return conn_fail(c, error, "servo");

@@ -4,7 +4,6 @@
 #include <signal.h>
 #include <string.h>
 
-#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/guard.h"

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
 
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"

@@ -11,7 +11,6 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/os/os.h"
-#include "tools/grctl/servo/family.h"
 #include "tools/grctl/sim/chain.h"
 #include "tools/grctl/sim/console.h"
 #include "tools/grctl/sim/state.h"

@@ -149,6 +149,11 @@ int conn_wait(conn *c, int job)
     return error ? error : c->job.result;
 }
 
+int conn_sense(conn *c, grobo_joint_mask joints, grobo_sense_kind kind)
+{
+    return conn_wait(c, grobo_robot_sense(c->robot, joints, kind));
+}
+
 /* What a person sees of it. */
 enum { SHOW_US = 100000, LONG_US = 2000000 };
 
@@ -489,7 +494,7 @@ static void take(conn *c, app *a)
     c->link->user = c;
     c->base = c->link->base;
     c->session = c->link->session;
-    c->robot = c->session ? grobo_session_robot(c->session) : NULL;
+    c->robot = grobo_session_robot(c->session);
     c->up = c->link->up;
 }
 

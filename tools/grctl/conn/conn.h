@@ -10,7 +10,6 @@
 
 #include <grobo/session.h>
 
-#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/conn/last_frames.h"
 #include "tools/grctl/conn/trace.h"
@@ -121,6 +120,12 @@ void conn_watch(conn *c, bool on);
  * link is lost.
  */
 int conn_wait(conn *c, int job);
+
+/* Reads joints, and waits for that. */
+int conn_sense(conn *c, grobo_joint_mask joints, grobo_sense_kind kind);
+
+/* The joints of the robot that is connected: with its trims. */
+const grobo_model *conn_model(const conn *c);
 
 /*
  * The same, and a terminal shows for how long: after 2 s, or at once where it should take longer.

@@ -6,7 +6,6 @@
 #include "tools/grctl/fleet/say.h"
 #include "tools/grctl/fleet/spool.h"
 #include "tools/grctl/fleet/wire.h"
-#include "tools/grctl/show/render.h"
 
 /* ---- in general ------------------------------------------------------------------------------ */
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <math.h>
 #include <string.h>
 
 #include <grobo/dxl1.h>
@@ -95,16 +94,13 @@ static int put_role(calibration *k, int joint, grobo_register_role role, int32_t
                             .length = reg->bytes,
                             .data = bytes};
     int error = grobo_servo_register_put(servo, reg, value, bytes);
-    return error < 0
-               ? error
-               : conn_wait(&k->c, grobo_robot_registers(grobo_session_robot(k->c.session), &io));
+    return error < 0 ? error : conn_wait(&k->c, grobo_robot_registers(k->c.robot, &io));
 }
 
 /* The engine knows a joint's torque before each write: a setting makes it unknown. */
 static int know_torque(calibration *k, int joint)
 {
-    int error = conn_wait(&k->c, grobo_robot_sense(grobo_session_robot(k->c.session),
-                                                   GROBO_JOINT_BIT(joint), GROBO_SENSE_GOAL));
+    int error = conn_sense(&k->c, GROBO_JOINT_BIT(joint), GROBO_SENSE_GOAL);
     return error == GROBO_ERR_SETUP ? GROBO_OK : error;
 }
 
@@ -437,8 +433,7 @@ static int let_limp(calibration *k)
     if (!k->listens) {
         app_note(k->a, "torque goes off: what is raised falls");
     }
-    return conn_wait(&k->c,
-                     grobo_robot_torque(grobo_session_robot(k->c.session), all, GROBO_TORQUE_OFF));
+    return conn_wait(&k->c, grobo_robot_torque(k->c.robot, all, GROBO_TORQUE_OFF));
 }
 
 /* The robot is limp, and what its servos hold is in a file. */

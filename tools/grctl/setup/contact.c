@@ -13,7 +13,6 @@
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/scan/scan.h"
-#include "tools/grctl/servo/registers.h"
 #include "tools/grctl/setup/ask.h"
 #include "tools/grctl/setup/contact.h"
 #include "tools/grctl/setup/contact_rate.h"
@@ -202,8 +201,7 @@ static int read_only(contact *k)
 
 static int switch_torque(contact *k, grobo_torque torque)
 {
-    return conn_wait(&k->c, grobo_robot_torque(grobo_session_robot(k->c.session),
-                                               GROBO_JOINT_BIT(k->joint), torque));
+    return conn_wait(&k->c, grobo_robot_torque(k->c.robot, GROBO_JOINT_BIT(k->joint), torque));
 }
 
 static int go_to(contact *k, double deg, double *reached_deg)
@@ -213,7 +211,7 @@ static int go_to(contact *k, double deg, double *reached_deg)
     grobo_posture_init(&target, app_model(k->a)->n_joints);
     grobo_posture_set_deg(&target, k->joint, deg);
     target.time_us = MOVE_US;
-    int error = conn_wait(&k->c, grobo_robot_move(grobo_session_robot(k->c.session), &target));
+    int error = conn_wait(&k->c, grobo_robot_move(k->c.robot, &target));
     if (!error) {
         error = contact_sense(k, &is);
     }

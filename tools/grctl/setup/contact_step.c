@@ -62,7 +62,6 @@ int contact_close(contact *k, int status)
 
 int contact_sense(contact *k, grobo_joint_info *is)
 {
-    int error = conn_wait(&k->c, grobo_robot_sense(grobo_session_robot(k->c.session),
-                                                   GROBO_JOINT_BIT(k->joint), GROBO_SENSE_FULL));
+    int error = conn_sense(&k->c, GROBO_JOINT_BIT(k->joint), GROBO_SENSE_FULL);
     return error ? error : grobo_robot_joint(k->c.robot, k->joint, is);
 }

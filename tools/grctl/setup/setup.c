@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/cli/config.h"
@@ -333,8 +332,7 @@ static int read_joints(guide *g)
     const grobo_model *model = app_model(a);
     int status = conn_open(&c, a);
     if (!status) {
-        (void)conn_wait(&c, grobo_robot_sense(grobo_session_robot(c.session),
-                                              GROBO_JOINTS_ALL(model->n_joints), GROBO_SENSE_FULL));
+        (void)conn_sense(&c, GROBO_JOINTS_ALL(model->n_joints), GROBO_SENSE_FULL);
     }
     for (int j = 0; j < model->n_joints && !status; j++) {
         grobo_joint_info i;

@@ -69,7 +69,7 @@ static grobo_joint_mask joints_that_move(conn *c, const shell *s)
 static int push(conn *c, shell *s, double ms)
 {
     grobo_posture posture;
-    int error = conn_wait(c, grobo_robot_sense(c->robot, joints_that_move(c, s), GROBO_SENSE_FULL));
+    int error = conn_sense(c, joints_that_move(c, s), GROBO_SENSE_FULL);
     int status = error ? conn_fail(c, error, "record") : need_record(s);
     if (status) {
         return status;
@@ -216,7 +216,7 @@ static int do_free(shell *s, int n, char **words)
     }
     status = conn_open_to_move(&c, &s->one);
     if (!status) {
-        int error = grobo_robot_free(grobo_session_robot(c.session), joints, true);
+        int error = grobo_robot_free(c.robot, joints, true);
         status = error < 0 ? conn_fail(&c, error, "free") : 0;
         s->link.free_joints |= status ? 0 : joints;
     }
@@ -237,8 +237,7 @@ static int do_end(shell *s, int n, char **words)
     }
     int status = conn_open(&c, &s->one);
     if (!status) {
-        int error = conn_wait(
-            &c, grobo_robot_free(grobo_session_robot(c.session), s->link.free_joints, false));
+        int error = conn_wait(&c, grobo_robot_free(c.robot, s->link.free_joints, false));
         status = error < 0 ? conn_fail(&c, error, "end") : 0;
         s->link.free_joints = 0;
     }

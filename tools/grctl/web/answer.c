@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* What every part of `serve` says to a request, and asks of the robot. */
-#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/port.h>

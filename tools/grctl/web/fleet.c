@@ -3,7 +3,6 @@
  * serve --broker: how the robots of a fleet are, and a stop for all of them. It orders no motion.
  * What agents say is hostile: it is copied by known keys, with bounds.
  */
-#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/port.h>

@@ -144,8 +144,7 @@ static int begin(load *l)
         config = serve_config(s);
         (void)grobo_session_configure(s->c.session, &config);
     }
-    int job = grobo_robot_play(grobo_session_robot(s->c.session), &l->item->list.clip[0],
-                               &l->item->list.options[0]);
+    int job = grobo_robot_play(s->c.robot, &l->item->list.clip[0], &l->item->list.options[0]);
     if (job > 0) {
         free_items(p); /* the engine has none of them any more */
         p->items = l->item;
@@ -161,8 +160,8 @@ static int begin(load *l)
 static int queue(load *l)
 {
     player_item **end = &l->s->player.items;
-    int result = grobo_robot_enqueue(grobo_session_robot(l->s->c.session), &l->item->list.clip[0],
-                                     &l->item->list.options[0]);
+    int result =
+        grobo_robot_enqueue(l->s->c.robot, &l->item->list.clip[0], &l->item->list.options[0]);
     while (*end) {
         end = &(*end)->next;
     }

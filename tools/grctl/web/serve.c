@@ -151,7 +151,7 @@ static void lose_motion(serve *s)
                 leaves ? "the exit policy is carried out" : "the motion stops");
     stops_halt(s);
     if (leaves) {
-        int job = grobo_robot_exit(grobo_session_robot(s->c.session), GROBO_EXIT_DEFAULT);
+        int job = grobo_robot_exit(s->c.robot, GROBO_EXIT_DEFAULT);
         serve_note_job(s, job, "exit");
     }
 }
@@ -270,7 +270,7 @@ static int run(serve *s)
     conn *c = &s->c;
     c->ctx = s;
     c->on_event = on_event;
-    s->model = grobo_robot_driver(c->robot)->model;
+    s->model = conn_model(c);
     s->began_us = s->events.began_us = grobo_now_us();
     s->load_pct = s->load_hz = NAN;
     grobo_robot_config config = serve_config(s);
