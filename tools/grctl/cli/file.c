@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/files.h>
@@ -164,6 +166,46 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
     }
     named.name = file_shown_name(path);
     return grobo_motion_read(&source, &named, list, motion);
+}
+
+bool file_is_there(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (file) {
+        fclose(file);
+    }
+    return file != NULL;
+}
+
+heap file_rest(FILE *from, size_t most)
+{
+    char piece[1 << 14];
+    size_t n = 0;
+    heap all = {0};
+    do {
+        heap_add(&all, piece, n);
+        n = fread(piece, 1, sizeof piece, from);
+    } while (n > 0 && all.size <= most);
+    int error = ferror(from) ? errno : !all.bytes ? ENOMEM : all.size > most ? EFBIG : 0;
+    if (error) {
+        free(all.bytes);
+        all.bytes = NULL;
+        errno = error;
+    }
+    return all;
+}
+
+heap file_bytes(const char *path, size_t most)
+{
+    heap all = {0};
+    FILE *file = fopen(path, "rb");
+    if (file) {
+        all = file_rest(file, most);
+        int error = errno;
+        fclose(file);
+        errno = error;
+    }
+    return all;
 }
 
 int file_save(const char *path, const void *bytes, size_t size)

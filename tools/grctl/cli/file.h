@@ -6,6 +6,7 @@
 #include <grobo/motion_io.h>
 
 #include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/heap.h"
 
 /*
  * Reads a motion; "-" is standard input, "@record" what a shell has recorded. On failure says the
@@ -37,6 +38,14 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
 /* As file_load(), but what there is to say beside an error goes to the caller's list. */
 int file_load_listed(app *a, const char *path, const grobo_read_options *options,
                      grobo_diagnostics *list, grobo_motion **motion);
+
+/* Whether there is one that can be read. */
+bool file_is_there(const char *path);
+
+/* All that a file has, or what is to come of a stream. Without bytes: errno says why; EFBIG: they
+ * are more than `most`. */
+heap file_rest(FILE *from, size_t most);
+heap file_bytes(const char *path, size_t most);
 
 /* Replaces a file, or what a symbolic link leads to, once the new one is safely written. */
 int file_save(const char *path, const void *bytes, size_t size);

@@ -5,6 +5,7 @@
 
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/heap.h"
 #include "tools/grctl/cmd/commands.h"
 
 enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGERS, OPT_BODY };
@@ -34,30 +35,7 @@ static grobo_motion_format format_of(const app *a, int option)
 
 /* ---- writing -------------------------------------------------------------------------------- */
 
-/* The file as it will be, so that it is read back before an old one is replaced. */
-typedef struct file_text {
-    char *bytes;
-    size_t size, room;
-} file_text;
-
-static int write_text(void *ctx, const void *data, size_t size)
-{
-    file_text *t = ctx;
-    if (size > t->room - t->size) {
-        size_t room = 2 * t->room + size;
-        char *bytes = realloc(t->bytes, room);
-        if (!bytes) {
-            return GROBO_ERR_NOMEM;
-        }
-        t->bytes = bytes;
-        t->room = room;
-    }
-    memcpy(t->bytes + t->size, data, size);
-    t->size += size;
-    return 0;
-}
-
-static int put_out(const file_text *t, const char *path)
+static int put_out(const heap *t, const char *path)
 {
     if (strcmp(path, "-") != 0) {
         return file_save(path, t->bytes, t->size);
@@ -70,7 +48,7 @@ static int put_out(const file_text *t, const char *path)
 }
 
 /* Reads the text and looks whether it plays what the motion does. 0, or the status. */
-static int verify(app *a, const grobo_motion *motion, const char *path, const file_text *t,
+static int verify(app *a, const grobo_motion *motion, const char *path, const heap *t,
                   const grobo_write_options *how)
 {
     grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = how->model, .format = how->format,
@@ -106,8 +84,8 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const fi
 static int write_out(app *a, const grobo_motion *motion, const char *path,
                      const grobo_write_options *how, grobo_diagnostics *list)
 {
-    file_text t = {0};
-    grobo_sink sink = {.write = write_text, .ctx = &t};
+    heap t = {0}; /* the file as it will be: read back before an old one is replaced */
+    grobo_sink sink = {.write = heap_sink, .ctx = &t};
     int status = 0, error = grobo_motion_write(motion, how->format, how, &sink, list);
     if (!error && !app_option(a, OPT_LOSSY)->given) {
         status = verify(a, motion, path, &t, how);

@@ -2,6 +2,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/decode/decoder.h"
 #include "tools/grctl/decode/hextext.h"
@@ -133,11 +134,7 @@ static bool is_file(const app *a)
     if (n == 1 || n == GROBO_ERR_CAP) {
         return strpbrk(name, "/.") != NULL;
     }
-    FILE *file = fopen(name, "rb");
-    if (file) {
-        fclose(file);
-    }
-    return file || strpbrk(name, "/.");
+    return file_is_there(name) || strpbrk(name, "/.");
 }
 
 static int decode_arguments(decoder *d)

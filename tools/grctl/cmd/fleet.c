@@ -5,6 +5,7 @@
 
 #include <event2/util.h>
 
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/fleet/broker.h"
@@ -305,18 +306,12 @@ static int run_reset(leader *l)
 
 static json_t *text_of(app *a, const char *path)
 {
-    FILE *file = fopen(path, "rb");
-    char *text = malloc(MQTT_PAYLOAD_MAX_BYTES / 2);
-    size_t n = file && text ? fread(text, 1, MQTT_PAYLOAD_MAX_BYTES / 2, file) : 0;
-    bool ok = file && text && !ferror(file) && n < MQTT_PAYLOAD_MAX_BYTES / 2;
-    json_t *string = ok ? json_stringn(text, n) : NULL;
+    heap text = file_bytes(path, MQTT_PAYLOAD_MAX_BYTES / 2 - 1);
+    json_t *string = text.bytes ? json_stringn(text.bytes, text.size) : NULL;
     if (!string) {
         (void)app_fail(a, EXIT_FILE, "IO", "%s: a text file of less than 512 KiB is wanted", path);
     }
-    if (file) {
-        fclose(file);
-    }
-    free(text);
+    free(text.bytes);
     return string;
 }
 

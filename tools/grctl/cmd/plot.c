@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/body/options.h"
@@ -194,7 +195,7 @@ static int draw(app *a, const order *o, const plot_data *data)
     if (!status) {
         report(a, o, data);
     }
-    svg_free(&drawing);
+    free(drawing.bytes);
     return status;
 }
 

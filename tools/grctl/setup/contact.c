@@ -7,7 +7,6 @@
 #include <grobo/version.h>
 
 #include "tools/grctl/cli/file.h"
-#include "tools/grctl/cli/output.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
@@ -49,7 +48,7 @@ static int write_report(contact *k)
     int status = text ? save(k, ".json", text, strlen(text))
                       : app_fail_error(k->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "first-contact");
     if (!status) {
-        status = save(k, ".txt", k->text, k->used);
+        status = save(k, ".txt", k->text.bytes, k->text.size);
     }
     if (!status && k->a->json) {
         app_print_json(json_incref(all));
@@ -349,9 +348,7 @@ static int begin(contact *k, const contact_orders *orders)
     snprintf(k->prefix, sizeof k->prefix, orders->out ? "%.900s" : "first-contact-%.900s",
              orders->out ? orders->out : robot_of(k->a)->name);
     snprintf(path, sizeof path, "%s.txt", k->prefix);
-    FILE *there = fopen(path, "rb");
-    if (there) {
-        fclose(there);
+    if (file_is_there(path)) {
         return app_fail(k->a, EXIT_USAGE, "EXISTS", "%s is there already; -o names another", path);
     }
     k->joint = orders->joint >= 0 ? orders->joint : app_model(k->a)->n_joints - 1;
@@ -386,6 +383,7 @@ int contact_run(app *a, const contact_orders *orders)
     int written = k.steps && json_array_size(k.steps) > 0 ? write_report(&k) : 0;
     json_decref(k.steps);
     json_decref(k.servos);
+    free(k.text.bytes);
     status = ask_signal() ? EXIT_SIGNAL + ask_signal() : status ? status : written;
     return status ? status : k.n_bad ? EXIT_ROBOT : EXIT_DONE;
 }

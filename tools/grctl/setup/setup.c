@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "tools/grctl/cli/config.h"
-#include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/doctor/checkup.h"
@@ -158,11 +158,10 @@ static bool free_path(const char *name, char *path, size_t capacity)
             snprintf(behind, sizeof behind, "-%d", number);
         }
         int n = snprintf(path, capacity, "%s%s%s.yaml", config, name, behind);
-        FILE *there = n > 0 && (size_t)n < capacity ? fopen(path, "rb") : NULL;
-        if (!there) {
-            return n > 0 && (size_t)n < capacity;
+        bool fits = n > 0 && (size_t)n < capacity;
+        if (!fits || !file_is_there(path)) {
+            return fits;
         }
-        fclose(there);
     }
     return false;
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/cli/heap.h"
 #include "tools/grctl/web/edit.h"
 #include "tools/grctl/web/library.h"
 #include "tools/grctl/web/pose.h"
@@ -473,45 +474,26 @@ int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion 
 
 /* ---- as a file ------------------------------------------------------------------------------- */
 
-typedef struct heap {
-    char *bytes;
-    size_t size, room;
-} heap;
-
 static int put(void *ctx, const void *bytes, size_t size)
 {
-    heap *h = ctx;
-    if (h->size + size > LIBRARY_FILE_BYTES) {
-        return GROBO_ERR_CAP;
-    }
-    if (h->size + size > h->room) {
-        size_t room = 2 * (h->size + size);
-        char *more = realloc(h->bytes, room);
-        if (!more) {
-            return GROBO_ERR_NOMEM;
-        }
-        h->bytes = more;
-        h->room = room;
-    }
-    memcpy(h->bytes + h->size, bytes, size);
-    h->size += size;
-    return GROBO_OK;
+    heap *to = ctx;
+    return to->size + size > LIBRARY_FILE_BYTES ? GROBO_ERR_CAP : heap_sink(to, bytes, size);
 }
 
 int edit_write(const grobo_motion *motion, grobo_motion_format format, const grobo_model *model,
                grobo_diagnostics *lost, char **bytes, size_t *size)
 {
-    heap h = {0};
-    grobo_sink sink = {.write = put, .ctx = &h};
+    heap to = {0};
+    grobo_sink sink = {.write = put, .ctx = &to};
     grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT, .model = model,
                                .exact = format == GROBO_FORMAT_M &&
                                         grobo_motion_get_kind(motion) == GROBO_MOTION_POSTURES};
     int error = grobo_motion_write(motion, format, &how, &sink, lost);
     if (error < 0) {
-        free(h.bytes);
+        free(to.bytes);
         return error;
     }
-    *bytes = h.bytes;
-    *size = h.size;
+    *bytes = to.bytes;
+    *size = to.size;
     return GROBO_OK;
 }

@@ -14,6 +14,7 @@
 
 #include <grobo/port.h>
 
+#include "tools/grctl/cli/heap.h"
 #include "tools/grctl/os/net.h"
 #include "tools/grctl/web/http.h"
 
@@ -42,7 +43,7 @@ typedef struct port {
 
 /*
  * A connection. libevent does not tell when one ends that never made a request: such a one is known
- * by its buffer alone, which is compared and not used, and is taken for gone when it was silent for
+ * by its heap alone, which is compared and not used, and is taken for gone when it was silent for
  * longer than evhttp lets it be.
  */
 typedef struct guest {
@@ -328,10 +329,10 @@ void http_reply_text(http_request *r, int status, const char *text, size_t size)
 
 void http_reply_json(http_request *r, int status, json_t *body)
 {
-    char *text = json_dumps(body, JSON_COMPACT | JSON_REAL_PRECISION(12));
-    json_decref(body);
-    http_reply_text(r, status, text, text ? strlen(text) : 0);
-    free(text);
+    heap text = {0};
+    heap_json(&text, body);
+    http_reply_text(r, status, text.bytes, text.size);
+    free(text.bytes);
 }
 
 void http_refuse(http_request *r, int status, const char *code, const char *format, ...)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <dirent.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -183,21 +184,15 @@ int library_read(library *l, const char *name, library_file *file)
     if (!find(l, name) || !true_path(l, name, file->path, &info)) {
         return GROBO_ERR_NOENT;
     }
-    if (info.st_size > LIBRARY_FILE_BYTES) {
-        return GROBO_ERR_CAP;
+    heap all = file_bytes(file->path, LIBRARY_FILE_BYTES);
+    if (!all.bytes) {
+        return errno == EFBIG ? GROBO_ERR_CAP : GROBO_ERR_IO;
     }
-    FILE *from = fopen(file->path, "rb");
-    file->bytes = malloc((size_t)info.st_size + 1);
-    if (from && file->bytes) {
-        file->size = fread(file->bytes, 1, (size_t)info.st_size, from);
-        library_hash(file->bytes, file->size, file->etag);
-    }
-    bool read = from && file->bytes && !ferror(from);
-    if (from) {
-        fclose(from);
-    }
+    file->bytes = all.bytes;
+    file->size = all.size;
+    library_hash(file->bytes, file->size, file->etag);
     snprintf(file->path, sizeof file->path, "%s", name);
-    return read ? GROBO_OK : GROBO_ERR_IO;
+    return GROBO_OK;
 }
 
 void library_drop(library_file *file)
@@ -262,11 +257,12 @@ struct ask {
 
 static void answer(ask *q, int status, json_t *body)
 {
-    q->text = json_dumps(body, JSON_COMPACT | JSON_REAL_PRECISION(12));
-    q->size = q->text ? strlen(q->text) : 0;
+    heap text = {0};
+    heap_json(&text, body);
+    q->text = text.bytes;
+    q->size = text.size;
     q->status = status;
     q->type = "application/json";
-    json_decref(body);
 }
 
 static void refuse(ask *q, int status, const char *code, const char *message)
