@@ -657,10 +657,7 @@ static void run_put_file(ask *q)
     if (n.motion) {
         save(q, q->sent, q->sent_size, NULL);
     } else {
-        answer(q, 422,
-               json_pack("{s:o}", "error",
-                         json_pack("{s:o,s:o}", "code", app_json_code(n.app.failed), "message",
-                                   app_json_text(n.said))));
+        refuse(q, 422, n.app.failed, n.said);
     }
     analysis_end(&n);
 }

@@ -67,14 +67,8 @@ static bool read_angles(serve *s, http_request *r, const json_t *angles, const c
     if (status) {
         int joint = -1;
         grobo_posture_check(target, s->model, &joint);
-        json_t *error = json_pack("{s:o,s:o}", "code", app_json_code(quiet.failed), "message",
-                                  app_json_text(said));
-        if (joint >= 0) {
-            json_object_set_new(error, "joint", json_integer(joint));
-            json_object_set_new(error, "name", json_string(s->model->joints[joint].name));
-            json_object_set_new(error, "value",
-                                app_json_number(grobo_deg_from_rad(target->angle_rad[joint]), 3));
-        }
+        json_t *error = serve_refusal(quiet.failed, said);
+        serve_blame(error, s, joint, joint >= 0 ? grobo_deg_from_rad(target->angle_rad[joint]) : 0);
         http_reply_json(r, 422, json_pack("{s:o}", "error", error));
     }
     return status == 0;
