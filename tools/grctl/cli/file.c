@@ -243,12 +243,19 @@ int file_load_listed(app *a, const char *path, const grobo_read_options *options
     return error ? complain(a, path, error, list) : EXIT_DONE;
 }
 
+int file_list(app *a, grobo_diagnostics **list)
+{
+    int error = grobo_diagnostics_new(NULL, list);
+    return error ? app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error))
+                 : 0;
+}
+
 int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion)
 {
     grobo_diagnostics *list = NULL;
-    int error = grobo_diagnostics_new(NULL, &list);
+    int error = file_list(a, &list);
     if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
+        return error;
     }
     error = file_load_listed(a, path, options, list, motion);
     if (!error) {

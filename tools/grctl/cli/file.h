@@ -61,6 +61,8 @@ void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t c
 /* Prints it with its code, as a result; on a terminal with what that means. color: "" for none. */
 void file_print(const app *a, const grobo_diagnostic *d, const char *color);
 
+/* An empty list of them. 0, or the exit status with it said. */
+int file_list(app *a, grobo_diagnostics **list);
 /* Diagnostics as a list of JSON. */
 json_t *file_json(const grobo_diagnostics *list);
 

@@ -111,12 +111,9 @@ static int run(app *a)
     grobo_diagnostics *list = NULL;
     tally t = {0};
     int error = body_options_read(a, OPT_BODY, 0, &o.body);
+    error = error ? error : file_list(a, &list);
     if (error) {
         return error;
-    }
-    error = grobo_diagnostics_new(NULL, &list);
-    if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
     for (int i = 0; i < a->line.n_arguments; i++) {
         if (is_passed_by(a, a->line.argument[i], list)) {

@@ -205,12 +205,9 @@ static int run(app *a)
         return app_fail(a, EXIT_USAGE, "ARG", "%s: unknown file type; use --to " FILE_FORMATS, out);
     }
     int error = refuse_out(a, out, to);
+    error = error ? error : file_list(a, &list);
     if (error) {
         return error;
-    }
-    error = grobo_diagnostics_new(NULL, &list);
-    if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
     error = file_load_listed(a, in, &read, list, &motion);
     if (!error) {

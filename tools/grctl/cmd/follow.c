@@ -275,7 +275,7 @@ static int lead(pair *p)
     p->began_us = grobo_now_us();
     p->due_us = p->began_us + p->period_us;
     p->end_us = s > 0 ? p->began_us + (int64_t)(s * 1e6) : 0;
-    struct event *timer = conn_every(c, p->period_us, on_period, p);
+    struct event *timer = conn_every(c->base, p->period_us, on_period, p);
     int error = timer ? conn_wait_until(c, is_over) : GROBO_ERR_NOMEM;
     conn_forget(timer);
     report(p);

@@ -363,7 +363,7 @@ static bool is_over(conn *c)
 /* Until somebody quits. Returns why it ended otherwise, or 0. */
 static int watch(monitor *m)
 {
-    struct event *tick = conn_every(&m->c, DRAW_US, on_draw, m);
+    struct event *tick = conn_every(m->c.base, DRAW_US, on_draw, m);
     struct event *input = event_new(m->c.base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, m);
     int error = tick && input ? GROBO_OK : GROBO_ERR_NOMEM;
     if (!error) {

@@ -236,7 +236,7 @@ static int watch_it(conn *c, show *s)
     if (keys_start(&s->input, c->base, false, on_key, c) && s->bar.shown) {
         app_note(c->a, "space: pause   + -: speed   s: stop   e: EMERGENCY STOP");
     }
-    struct event *tick = conn_every(c, TICK_US, on_tick, c);
+    struct event *tick = conn_every(c->base, TICK_US, on_tick, c);
     int error = conn_wait_until(c, is_over);
     conn_forget(tick);
     keys_stop(&s->input);

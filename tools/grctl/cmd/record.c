@@ -466,9 +466,9 @@ static int teach(recorder *r)
     progress_start(&r->line, c->a);
     if (!r->by_key) {
         double rate_hz = app_number(c->a, OPT_RATE, seed_rate_hz);
-        r->look = conn_every(c, (int64_t)(1e6 / rate_hz), conn_note, &r->look_is_due);
+        r->look = conn_every(c->base, (int64_t)(1e6 / rate_hz), conn_note, &r->look_is_due);
     }
-    r->live = conn_every(c, LIVE_US, conn_note, &r->live_is_due);
+    r->live = conn_every(c->base, LIVE_US, conn_note, &r->live_is_due);
     if (!error) {
         error = mind(r);
     }

@@ -185,20 +185,14 @@ static void on_show(evutil_socket_t fd, short what, void *ctx)
 
 int conn_wait_shown(conn *c, int job, const char *doing, int64_t expected_us)
 {
-    const struct timeval period = {0, SHOW_US};
     waiting w = {.doing = doing, .began_us = grobo_now_us(), .expected_us = expected_us};
     struct event *tick = NULL;
     progress_start(&w.bar, c->a);
     if (job > 0 && w.bar.shown) {
-        tick = event_new(c->base, -1, EV_PERSIST, on_show, &w);
-    }
-    if (tick) {
-        event_add(tick, &period);
+        tick = conn_every(c->base, SHOW_US, on_show, &w);
     }
     int error = conn_wait(c, job);
-    if (tick) {
-        event_free(tick);
-    }
+    conn_forget(tick);
     progress_clear(&w.bar);
     return error;
 }
@@ -211,17 +205,19 @@ void conn_note(evutil_socket_t fd, short what, void *ctx)
     *flag = true;
 }
 
-static struct timeval timeval_of(int64_t us)
+struct timeval conn_timeval(int64_t us)
 {
     return (struct timeval){.tv_sec = (int)(us / 1000000), .tv_usec = (int)(us % 1000000)};
 }
 
-struct event *conn_every(conn *c, int64_t period_us, event_callback_fn fn, void *ctx)
+struct event *conn_every(struct event_base *base, int64_t period_us, event_callback_fn fn,
+                         void *ctx)
 {
-    struct timeval period = timeval_of(period_us);
-    struct event *timer = event_new(c->base, -1, EV_PERSIST, fn, ctx);
-    if (timer) {
-        event_add(timer, &period);
+    struct timeval period = conn_timeval(period_us);
+    struct event *timer = event_new(base, -1, EV_PERSIST, fn, ctx);
+    if (timer && event_add(timer, &period) != 0) {
+        event_free(timer);
+        timer = NULL;
     }
     return timer;
 }
@@ -237,7 +233,7 @@ int conn_sleep_until(conn *c, int64_t at_us)
 {
     bool awake = false;
     int64_t rest_us = at_us - grobo_now_us();
-    struct timeval rest = timeval_of(rest_us > 0 ? rest_us : 0);
+    struct timeval rest = conn_timeval(rest_us > 0 ? rest_us : 0);
     struct event *timer = evtimer_new(c->base, conn_note, &awake);
     int error = GROBO_OK;
     if (!timer) {

@@ -142,8 +142,10 @@ int conn_sleep_until(conn *c, int64_t at_us);
 /* For an event of the loop: sets the bool that ctx points to. */
 void conn_note(evutil_socket_t fd, short what, void *ctx);
 
+struct timeval conn_timeval(int64_t us);
 /* Has fn called again and again. NULL: there is no memory. */
-struct event *conn_every(conn *c, int64_t period_us, event_callback_fn fn, void *ctx);
+struct event *conn_every(struct event_base *base, int64_t period_us, event_callback_fn fn,
+                         void *ctx);
 
 /* Ends an event; NULL is allowed. */
 void conn_forget(struct event *event);

@@ -131,12 +131,7 @@ static bool is_known(agent *g, const agent_order *order)
 {
     const char *before = fleet_seen_find(&g->seen, order->is.id);
     if (before && *before) {
-        const mqtt_message again = {.topic = order->response,
-                                    .payload = before,
-                                    .size = strlen(before),
-                                    .correlation = order->correlation,
-                                    .correlation_bytes = order->correlation_bytes};
-        (void)mqtt_publish(g->m, &again, 1, 0);
+        say_again(g, order, before);
     }
     return before != NULL;
 }

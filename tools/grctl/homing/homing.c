@@ -341,7 +341,7 @@ static int hear_enter(calibration *k)
                         "calibrate: needs a person who presses enter, or --from FILE");
     }
     k->listens = true;
-    k->look = conn_every(&k->c, LOOK_US, conn_note, &k->is_due);
+    k->look = conn_every(k->c.base, LOOK_US, conn_note, &k->is_due);
     progress_start(&k->line, k->a);
     app_note(k->a, "hold the robot, what is raised falls: torque goes off when you press enter");
     return watch(k, false);

@@ -503,15 +503,14 @@ static bool never(const leader *l)
 
 static int run(view *v, app *a)
 {
-    const struct timeval period = {0, 1000000 / STATE_HZ};
     http_config config = {.base = v->l.link.base, .rule = rule_of, .serve = answer, .ctx = v};
     int status = door_open(a, v->options, &config, &v->events);
     if (status) {
         return status;
     }
     v->http = v->events.to;
-    v->tick = event_new(v->l.link.base, -1, EV_PERSIST, on_tick, v);
-    if (!v->tick || event_add(v->tick, &period) != 0) {
+    v->tick = conn_every(v->l.link.base, 1000000 / STATE_HZ, on_tick, v);
+    if (!v->tick) {
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "serve");
     }
     v->l.on_event = on_fleet_event;

@@ -241,7 +241,7 @@ static int start(serve *s)
         return status;
     }
     s->http = s->events.to;
-    s->tick = conn_every(&s->c, SERVE_STATE_US, on_tick, s);
+    s->tick = conn_every(s->c.base, SERVE_STATE_US, on_tick, s);
     s->worker = worker_new(s->c.base);
     s->library = library_new(s->a, s->options->folder);
     if (!s->tick || !s->worker || !s->library) {
