@@ -348,10 +348,10 @@ int grobo_gr001_print_posture(const grobo_posture *posture, FILE *stream)
     int written = fprintf(stream, "                   right  middle    left\n");
     for (size_t i = 0; i < sizeof body / sizeof body[0] && written >= 0; i++) {
         char text[3][16];
-        const body_row *row = &body[i];
-        written = fprintf(stream, "%-16s%8s%8s%*s\n", row->part, cell(posture, row->right, text[0]),
-                          cell(posture, row->middle, text[1]), row->left == NONE ? 0 : 8,
-                          cell(posture, row->left, text[2]));
+        const char *left = cell(posture, body[i].left, text[2]);
+        written =
+            fprintf(stream, "%-16s%8s%8s%*s\n", body[i].part, cell(posture, body[i].right, text[0]),
+                    cell(posture, body[i].middle, text[1]), *left != '\0' ? 8 : 0, left);
     }
     return written < 0 ? GROBO_ERR_IO : GROBO_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Bytes on the heap that grow as they are put together, as those of a file that is written whole. */
+/* Bytes on the heap that grow as they are put together, as of a file that is written whole. */
 #ifndef GRCTL_HEAP_H
 #define GRCTL_HEAP_H
 

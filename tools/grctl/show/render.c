@@ -3,6 +3,11 @@
 
 #include "tools/grctl/show/render.h"
 
+static const grobo_model *model_of(const conn *c)
+{
+    return grobo_robot_driver(c->robot)->model;
+}
+
 static bool has(const grobo_joint_info *info, grobo_field field)
 {
     return (info->state.valid & field) != 0;
@@ -40,7 +45,7 @@ static json_t *integer_or_null(bool known, long value)
 
 static json_t *joint_json(const conn *c, int joint)
 {
-    const grobo_joint *j = &conn_model(c)->joints[joint];
+    const grobo_joint *j = &model_of(c)->joints[joint];
     grobo_joint_info i;
     double target_rad;
     if (grobo_robot_joint(c->robot, joint, &i) < 0) {
@@ -64,7 +69,7 @@ static json_t *joint_json(const conn *c, int joint)
 json_t *render_joints_json(const conn *c, grobo_joint_mask joints)
 {
     json_t *list = json_array();
-    for (int j = 0; j < conn_model(c)->n_joints; j++) {
+    for (int j = 0; j < model_of(c)->n_joints; j++) {
         if (joints & GROBO_JOINT_BIT(j)) {
             json_array_append_new(list, joint_json(c, j));
         }
@@ -84,7 +89,7 @@ static void cell(bool known, int width, int decimals, double value)
 
 void render_status(const conn *c, grobo_joint_mask joints)
 {
-    const grobo_model *model = conn_model(c);
+    const grobo_model *model = model_of(c);
     bool color = c->a->color_out;
     app_print("motor  joint         angle  target  torque  speed  current  temp  volts  age ms\n");
     for (int k = 0; k < model->n_joints; k++) {
@@ -116,7 +121,7 @@ double render_worst_error(const conn *c, int *joint)
 {
     double worst = 0;
     *joint = -1;
-    for (int k = 0; k < conn_model(c)->n_joints; k++) {
+    for (int k = 0; k < model_of(c)->n_joints; k++) {
         grobo_joint_info i;
         if (grobo_robot_joint(c->robot, k, &i) < 0 || !i.has_target ||
             i.angle_age_us == GROBO_NEVER_US || i.status != GROBO_OK) {
@@ -133,7 +138,7 @@ double render_worst_error(const conn *c, int *joint)
 
 void render_reached(const conn *c)
 {
-    const grobo_model *model = conn_model(c);
+    const grobo_model *model = model_of(c);
     app_print("motor  joint         target  reached  error deg\n");
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;

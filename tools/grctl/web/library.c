@@ -13,7 +13,6 @@
 #include "tools/grctl/web/analyse.h"
 #include "tools/grctl/web/edit.h"
 #include "tools/grctl/web/library.h"
-#include "tools/grctl/web/make.h"
 #include "tools/grctl/web/serve.h"
 
 #define LOOK_US INT64_C(2000000)
@@ -165,7 +164,8 @@ static void scan(library *l, json_t *news)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-void library_hash(const void *bytes, size_t size, char etag[LIBRARY_ETAG_BYTES])
+/* A hash of bytes, in quotes. */
+static void hash_of(const void *bytes, size_t size, char etag[LIBRARY_ETAG_BYTES])
 {
     uint64_t hash = UINT64_C(0xcbf29ce484222325); /* FNV-1a */
     for (size_t i = 0; i < size; i++) {
@@ -190,7 +190,7 @@ int library_read(library *l, const char *name, library_file *file)
     }
     file->bytes = all.bytes;
     file->size = all.size;
-    library_hash(file->bytes, file->size, file->etag);
+    hash_of(file->bytes, file->size, file->etag);
     snprintf(file->path, sizeof file->path, "%s", name);
     return GROBO_OK;
 }
@@ -216,7 +216,9 @@ static bool is_taken(const library *l, const char *name)
     return taken;
 }
 
-int library_write(library *l, const char *name, const char *etag, const void *bytes, size_t size)
+/* Writes one, where it is as it was: GROBO_ERR_EXISTS where not. etag NULL: there shall be none. */
+static int write_file(library *l, const char *name, const char *etag, const void *bytes,
+                      size_t size)
 {
     char path[GROBO_PATH_MAX_BYTES];
     library_file now;
@@ -546,7 +548,7 @@ static bool read_sent(ask *q)
 /* Writes it, and tells what it is now, and what of it the format has no place for. */
 static void save(ask *q, const void *bytes, size_t size, const grobo_diagnostics *lost)
 {
-    int error = library_write(q->l, q->name, *q->match ? q->match : NULL, bytes, size);
+    int error = write_file(q->l, q->name, *q->match ? q->match : NULL, bytes, size);
     if (error == GROBO_ERR_EXISTS) {
         refuse(q, 409, "changed", "the file is not as it was read");
     } else if (error) {
@@ -616,7 +618,7 @@ static void write_edited(ask *q, const grobo_motion *made)
     if (!analysis_begin(&n, q->l->a, q->name)) {
         return;
     }
-    int error = make_write(&n.app, q->name, made, n.found, &bytes, &size);
+    int error = edit_file(&n.app, q->name, made, n.found, &bytes, &size);
     if (error == GROBO_ERR_UNREACHABLE) {
         refuse(q, 422, n.app.failed, n.said);
     } else if (error) {
