@@ -281,16 +281,13 @@ void explain_shares(text *t, const telegram *said)
 
 /* ---- what is wrong --------------------------------------------------------------------------- */
 
-static bool wrong_item(const explain_item *i, char *why, size_t capacity)
+bool explain_is_wrong(const explain_item *i, char *why, size_t capacity)
 {
-    if (!i->whole) {
-        return false;
-    }
-    if ((i->reg->flags & GROBO_REGISTER_W) == 0) {
+    if (i->reg && (i->reg->flags & GROBO_REGISTER_W) == 0) {
         snprintf(why, capacity, "it writes %s, which is read-only", i->reg->name);
         return true;
     }
-    if (i->value < i->reg->min || i->value > i->reg->max) {
+    if (i->whole && (i->value < i->reg->min || i->value > i->reg->max)) {
         snprintf(why, capacity, "%s %d is outside %d..%d", i->reg->name, (int)i->value,
                  (int)i->reg->min, (int)i->reg->max);
         return true;
@@ -308,7 +305,7 @@ const char *explain_offence(const talk *who, const telegram *said, char *why, si
         const telegram_part *part = &said->part[k];
         for (int at = 0; part->data && part->address >= 0 && at < part->length;) {
             const explain_item i = item_of(who, part, at);
-            if (wrong_item(&i, why, capacity)) {
+            if (i.whole && explain_is_wrong(&i, why, capacity)) {
                 return "range";
             }
             at += i.bytes;

@@ -24,9 +24,6 @@ const char *words_side(frames_side side)
 
 /* ---- what text and JSON share -------------------------------------------------------------- */
 
-/* The last model has all registers. */
-#define ANY_RS30X (&grobo_rs30x_table.models[grobo_rs30x_table.model_count - 1])
-
 /* Part number `index` of a packet: 1, or 0 behind the last. */
 static int find_part(const grobo_rs30x_packet *p, int index, telegram_part *part)
 {
@@ -118,13 +115,13 @@ static void say_registers(text *t, const telegram_part *part)
     const char *comma = "";
     for (int at = 0; at < part->length;) {
         char value[REGISTERS_TEXT_BYTES];
-        const explain_item item = explain_item_at(ANY_RS30X, part, at);
+        const explain_item item = explain_item_at(EXPLAIN_RS30X, part, at);
         at += item.bytes;
         if (!item.reg && item.value == 0) {
             continue;
         }
         if (item.whole) {
-            registers_text(ANY_RS30X, item.reg, item.value, value, sizeof value);
+            registers_text(EXPLAIN_RS30X, item.reg, item.value, value, sizeof value);
             say(t, "%s%s %s", comma, item.reg->name, value);
             if (item.reg->address == GROBO_RS30X_GOAL_TIME && item.value == 0) {
                 say(t, " (full speed)");
@@ -149,7 +146,7 @@ static void say_names(text *t, const grobo_rs30x_packet *p)
         return;
     }
     for (int at = 0; at < part.length;) {
-        const explain_item item = explain_item_at(ANY_RS30X, &part, at);
+        const explain_item item = explain_item_at(EXPLAIN_RS30X, &part, at);
         at += item.bytes;
         if (item.whole) {
             say(t, "%s%s", comma, item.reg->name);
@@ -483,7 +480,7 @@ static json_t *packet_json(const frame *f)
     json_t *servos = json_array();
     telegram_part part;
     for (int i = 0; find_part(p, i, &part); i++) {
-        json_array_append_new(servos, explain_part(f->talk, ANY_RS30X, &part));
+        json_array_append_new(servos, explain_part(f->talk, EXPLAIN_RS30X, &part));
     }
     return json_pack("{s:s,s:s,s:i,s:i,s:i,s:i,s:i,s:i,s:b,s:o*,s:o*,s:o}", "kind", kinds[p->kind],
                      "action", action_of(p), "id", p->id, "flags", p->flags, "address", p->address,
