@@ -74,27 +74,15 @@ static bool keeps_offset(const calibration *k, int joint)
 static int read_role(calibration *k, int joint, grobo_register_role role, int32_t *value)
 {
     const grobo_servo_model *servo = servo_of(k->a, joint);
-    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
-    uint8_t bytes[4] = {0};
-    int error =
-        servos_read(&k->c, app_model(k->a)->joints[joint].motor, reg->address, reg->bytes, bytes);
-    if (!error) {
-        *value = grobo_servo_register_get(servo, reg, bytes);
-    }
-    return error;
+    return servos_get(&k->c, app_model(k->a)->joints[joint].motor, servo,
+                      grobo_servo_register_of(servo, role), value);
 }
 
 static int put_role(calibration *k, int joint, grobo_register_role role, int32_t value)
 {
     const grobo_servo_model *servo = servo_of(k->a, joint);
-    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
-    uint8_t bytes[4] = {0};
-    grobo_register_io io = {.id = app_model(k->a)->joints[joint].motor,
-                            .address = reg->address,
-                            .length = reg->bytes,
-                            .data = bytes};
-    int error = grobo_servo_register_put(servo, reg, value, bytes);
-    return error < 0 ? error : conn_wait(&k->c, grobo_robot_registers(k->c.robot, &io));
+    return servos_put(&k->c, app_model(k->a)->joints[joint].motor, servo,
+                      grobo_servo_register_of(servo, role), value);
 }
 
 /* The engine knows a joint's torque before each write: a setting makes it unknown. */
