@@ -147,6 +147,12 @@ static int read_stream(void *ctx, void *buffer, size_t size)
     return n == 0 && ferror(stream) ? GROBO_ERR_IO : (int)n;
 }
 
+const char *file_last_part(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 const char *file_shown_name(const char *path)
 {
     return strcmp(path, "-") == 0 ? "(standard input)" : path;

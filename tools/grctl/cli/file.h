@@ -50,6 +50,9 @@ heap file_bytes(const char *path, size_t most);
 /* Replaces a file, or what a symbolic link leads to, once the new one is safely written. */
 int file_save(const char *path, const void *bytes, size_t size);
 
+/* Its name without folders. */
+const char *file_last_part(const char *path);
+
 /* What a file is called in messages: "-" is standard input. */
 const char *file_shown_name(const char *path);
 

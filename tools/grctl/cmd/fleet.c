@@ -54,12 +54,6 @@ static const cli_option options[OPTIONS] = {
     [OPT_WATCH] = OPTION_FLAG("watch", 'w', "status: again and again, until a signal"),
 };
 
-static bool never(const leader *l)
-{
-    (void)l;
-    return false;
-}
-
 /* ---- who is asked ---------------------------------------------------------------------------- */
 
 /* The groups that agents are of, for who mistyped one: ", a, b". */
@@ -204,10 +198,10 @@ static int run_status(leader *l)
 {
     bool watches = app_option(l->a, OPT_WATCH)->given > 0;
     leader_listen(l, "state");
-    (void)leader_wait(l, STATE_US, never);
+    (void)leader_wait(l, STATE_US, NULL);
     show_status(l);
     while (watches && output_flush() && !l->link.signal) {
-        (void)leader_wait(l, WATCH_US, never);
+        (void)leader_wait(l, WATCH_US, NULL);
         show_status(l);
     }
     return watches && l->link.signal ? EXIT_SIGNAL + l->link.signal : EXIT_DONE;
@@ -270,7 +264,7 @@ static int stop(leader *l, const char *how)
     int n = leader_choose(l);
     (void)leader_latch(l, how);
     if (n == 0) {
-        (void)leader_wait(l, STATE_US, never); /* until it is out */
+        (void)leader_wait(l, STATE_US, NULL); /* until it is out */
         return fail_nobody(l, _(": nothing was seen to stop; use the switches"));
     }
     (void)leader_wait(l, STOPPED_US, all_told);
@@ -291,7 +285,7 @@ static int run_estop(leader *l)
 static int run_reset(leader *l)
 {
     (void)leader_latch(l, NULL);
-    (void)leader_wait(l, STATE_US, never);
+    (void)leader_wait(l, STATE_US, NULL);
     if (leader_choose(l) == 0) {
         return fail_nobody(l, "");
     }
@@ -315,12 +309,6 @@ static json_t *text_of(app *a, const char *path)
     return string;
 }
 
-static const char *name_of_file(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 static int run_push(leader *l)
 {
     int status = EXIT_DONE;
@@ -330,7 +318,7 @@ static int run_push(leader *l)
         if (!text) {
             return EXIT_FILE;
         }
-        status = order(l, "put", json_pack("{s:s,s:o}", "file", name_of_file(path), "text", text),
+        status = order(l, "put", json_pack("{s:s,s:o}", "file", file_last_part(path), "text", text),
                        ANSWER_US);
     }
     if (!status) {
@@ -393,7 +381,7 @@ static json_t *motion_of(const leader *l, const char *path)
     static const char *const on_lost[] = {"stop", "finish", "exit"};
     const app *a = l->a;
     return json_pack(
-        "{s:s,s:s,s:i,s:i,s:b,s:s,s:s,s:I}", "group", l->group, "file", name_of_file(path),
+        "{s:s,s:s,s:i,s:i,s:b,s:s,s:s,s:I}", "group", l->group, "file", file_last_part(path),
         "speed_pct", (int)app_number(a, OPT_SPEED, 100), "repeat",
         (int)app_number(a, OPT_REPEAT, 1), "mirror", app_option(a, OPT_MIRROR)->given > 0,
         "if_lost", lost[app_option(a, OPT_IF_LOST)->given ? app_option(a, OPT_IF_LOST)->choice : 0],
@@ -555,7 +543,7 @@ static int run_log(leader *l)
 {
     l->on_event = say_event;
     while (!l->link.signal) {
-        (void)leader_wait(l, 3600000000, never);
+        (void)leader_wait(l, 3600000000, NULL);
     }
     return EXIT_SIGNAL + l->link.signal;
 }

@@ -121,7 +121,7 @@ static bool is_interrupted(const conn *c)
 
 int conn_wait_until(conn *c, bool (*done)(conn *c))
 {
-    while (!done(c)) {
+    while (!done || !done(c)) {
         if (is_interrupted(c)) {
             return GROBO_ERR_CANCELED;
         }

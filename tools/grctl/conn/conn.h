@@ -133,7 +133,8 @@ const grobo_model *conn_model(const conn *c);
  */
 int conn_wait_shown(conn *c, int job, const char *doing, int64_t expected_us);
 
-/* Runs the loop until `done` says so, a signal comes or the link is lost; as conn_wait(). */
+/* Runs the loop until `done` (which may be NULL) says so, a signal comes or the link is lost; as
+ * conn_wait(). */
 int conn_wait_until(conn *c, bool (*done)(conn *c));
 
 /* Waits for a moment of grobo_now_us(); as conn_wait(). */

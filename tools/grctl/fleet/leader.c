@@ -193,11 +193,16 @@ static void on_time(evutil_socket_t fd, short what, void *ctx)
     (void)ctx; /* it only ends a round of the loop */
 }
 
+static bool is_done(const leader *l, bool (*done)(const leader *l))
+{
+    return done && done(l);
+}
+
 bool leader_wait(leader *l, int64_t bound_us, bool (*done)(const leader *l))
 {
     int64_t until_us = grobo_now_us() + bound_us;
     struct event *timer = evtimer_new(l->link.base, on_time, NULL);
-    while (timer && !done(l) && !l->link.signal && !l->lost) {
+    while (timer && !is_done(l, done) && !l->link.signal && !l->lost) {
         int64_t rest_us = until_us - grobo_now_us();
         const struct timeval rest = conn_timeval(rest_us);
         if (rest_us <= 0 || evtimer_add(timer, &rest) != 0 ||
@@ -206,18 +211,12 @@ bool leader_wait(leader *l, int64_t bound_us, bool (*done)(const leader *l))
         }
     }
     conn_forget(timer);
-    return done(l);
+    return is_done(l, done);
 }
 
 static bool is_up(const leader *l)
 {
     return l->up;
-}
-
-static bool never(const leader *l)
-{
-    (void)l;
-    return false;
 }
 
 /* An agent that is there and has not said yet of which groups it is. */
@@ -238,7 +237,7 @@ static void hear_retained(leader *l)
     unsigned before;
     do {
         before = l->kept;
-        (void)leader_wait(l, SEEN_US, never);
+        (void)leader_wait(l, SEEN_US, NULL);
     } while ((l->kept != before || anybody_unknown(l)) && l->up && !l->link.signal &&
              grobo_now_us() < until_us);
 }

@@ -22,8 +22,7 @@ enum { RASTERISERS = sizeof rasterisers / sizeof rasterisers[0] };
 
 picture_format picture_format_of(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    const char *dot = strrchr(slash ? slash : path, '.');
+    const char *dot = strrchr(file_last_part(path), '.');
     if (dot && strcasecmp(dot, ".svg") == 0) {
         return PICTURE_SVG;
     }

@@ -495,12 +495,6 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
-static bool never(const leader *l)
-{
-    (void)l;
-    return false;
-}
-
 static int run(view *v, app *a)
 {
     http_config config = {.base = v->l.link.base, .rule = rule_of, .serve = answer, .ctx = v};
@@ -518,7 +512,7 @@ static int run(view *v, app *a)
     on_tick(-1, 0, v);
     door_announce(a, v->options, v->http);
     while (!v->l.link.signal) {
-        (void)leader_wait(&v->l, INT64_C(3600000000), never);
+        (void)leader_wait(&v->l, INT64_C(3600000000), NULL);
     }
     return EXIT_SIGNAL + v->l.link.signal;
 }

@@ -227,12 +227,6 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
-static bool never(conn *c)
-{
-    (void)c;
-    return false;
-}
-
 static int start(serve *s)
 {
     http_config config = {.base = s->c.base, .rule = serve_rule, .serve = serve_request, .ctx = s};
@@ -277,7 +271,7 @@ static int run(serve *s)
     }
     on_tick(-1, 0, s); /* there is a state from the first request on */
     door_announce(s->a, s->options, s->http);
-    error = conn_wait_until(c, never);
+    error = conn_wait_until(c, NULL);
     c->moving = c->up && serve_is_moving(s);
     c->on_event = NULL; /* nobody is told any more */
     return error ? conn_fail(c, error, "serve") : EXIT_DONE;
