@@ -140,7 +140,6 @@ static int refuse_links(app *a, const char *path, const grobo_motion *motion,
 static int solve_legs(app *a, const char *path, const grobo_write_options *how,
                       grobo_motion **motion)
 {
-    grobo_body *body = NULL;
     grobo_motion *solved = NULL;
     double rate_hz = how->rate_hz;
     if (how->format == GROBO_FORMAT_PSEQ && !body_options_given(a, OPT_BODY)) {
@@ -149,14 +148,8 @@ static int solve_legs(app *a, const char *path, const grobo_write_options *how,
     if (how->format == GROBO_FORMAT_YAML && !how->exact && !(rate_hz > 0)) {
         rate_hz = GROBO_MOTION_RATE_HZ;
     }
-    int status = body_make(a, OPT_BODY, path, *motion, rate_hz, &body);
-    if (!status && body) {
-        status = body_motion(a, path, body, rate_hz, &solved);
-    }
-    grobo_body_free(body);
+    int status = body_solve(a, OPT_BODY, path, *motion, rate_hz, &solved);
     if (solved) {
-        (void)grobo_motion_set_name(solved, grobo_motion_name(*motion));
-        (void)grobo_motion_set_target_body(solved, grobo_motion_target_body(*motion));
         grobo_motion_free(*motion);
         *motion = solved;
     }

@@ -512,20 +512,8 @@ static int solve_legs(app *a, const char *name, grobo_motion_format format,
                       const grobo_motion *motion, grobo_motion **solved)
 {
     double rate_hz = format == GROBO_FORMAT_YAML ? GROBO_MOTION_RATE_HZ : 0;
-    grobo_body *body = NULL;
-    if (format == GROBO_FORMAT_PSEQ) {
-        return 0;
-    }
-    int status = body_make(a, PLAY_BODY, name, motion, rate_hz, &body);
-    if (!status && body) {
-        status = body_motion(a, name, body, rate_hz, solved);
-    }
-    grobo_body_free(body);
-    if (*solved) {
-        (void)grobo_motion_set_name(*solved, grobo_motion_name(motion));
-        (void)grobo_motion_set_target_body(*solved, grobo_motion_target_body(motion));
-    }
-    return status;
+    return format == GROBO_FORMAT_PSEQ ? 0
+                                       : body_solve(a, PLAY_BODY, name, motion, rate_hz, solved);
 }
 
 int edit_file(app *a, const char *name, const grobo_motion *motion, grobo_diagnostics *lost,
