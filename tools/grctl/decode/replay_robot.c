@@ -144,6 +144,16 @@ static bool is_reply_trouble(int error)
     return conn_is_of_reply(error) || error == GROBO_ERR_NACK;
 }
 
+/* Frames of the trace are sent once; what replay asks by itself is asked again, as usual. */
+static int asks_again(plan *p, bool again)
+{
+    grobo_robot_config config = conn_robot_config(p->r->a);
+    if (!again) {
+        config.retries = -1;
+    }
+    return grobo_robot_configure(p->c.robot, &config);
+}
+
 /* Torque comes on only where the joints were read just now: a frame that would not leave for that
  * is sent after a reading, whose replies are not those of the trace. */
 static int send_one(plan *p, const frame *f)
@@ -151,7 +161,9 @@ static int send_one(plan *p, const frame *f)
     int error = conn_wait(&p->c, grobo_robot_raw(p->c.robot, f->bytes, f->size));
     if (error == GROBO_ERR_STALE && p->torqued) {
         p->reads = true;
+        (void)asks_again(p, true);
         (void)conn_sense(&p->c, p->torqued, GROBO_SENSE_FULL);
+        (void)asks_again(p, false);
         p->reads = false;
         error = conn_wait(&p->c, grobo_robot_raw(p->c.robot, f->bytes, f->size));
     }
@@ -210,7 +222,6 @@ static int send_chunk(void *ctx, const pcapng_chunk *chunk)
 static int prepare(plan *p)
 {
     grobo_joint_mask all = GROBO_JOINTS_ALL(conn_model(&p->c)->n_joints);
-    grobo_robot_config config = conn_robot_config(p->r->a);
     int error = 0;
     if (p->moves) {
         error = conn_sense(&p->c, all, GROBO_SENSE_FULL);
@@ -218,9 +229,8 @@ static int prepare(plan *p)
     if (!error && p->torqued) {
         error = conn_wait(&p->c, grobo_robot_torque(p->c.robot, p->torqued, GROBO_TORQUE_ON));
     }
-    config.retries = -1;
     if (!error) {
-        error = grobo_robot_configure(p->c.robot, &config);
+        error = asks_again(p, false);
     }
     if (!error) {
         error = conn_sleep_until(&p->c, grobo_now_us() + GROBO_BUS_HOLD_US);
@@ -248,8 +258,7 @@ static int send_all(plan *p)
         }
         progress_clear(&p->bar);
         p->c.on_bytes = NULL; /* the exit policy is no part of it, and may try again */
-        grobo_robot_config config = conn_robot_config(p->r->a);
-        grobo_robot_configure(p->c.robot, &config);
+        (void)asks_again(p, true);
     }
     return conn_close(&p->c, status);
 }
