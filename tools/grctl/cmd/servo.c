@@ -44,7 +44,7 @@ static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, co
     if (error == GROBO_ERR_UNSUPPORTED && mode == GROBO_TORQUE_BRAKE) {
         return app_fail(c->a, EXIT_SAFETY, grobo_error_name(error),
                         "servo: the servos of %s have no brake; on holds, off lets go",
-                        conn_model(c)->name);
+                        grobo_robot_driver(c->robot)->model->name);
     }
     if (error) {
         return conn_fail(c, error, "servo");

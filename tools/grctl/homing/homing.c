@@ -74,14 +74,14 @@ static bool keeps_offset(const calibration *k, int joint)
 static int read_role(calibration *k, int joint, grobo_register_role role, int32_t *value)
 {
     const grobo_servo_model *servo = servo_of(k->a, joint);
-    return servos_get(&k->c, app_model(k->a)->joints[joint].motor, servo,
+    return servos_get(&k->c, joint_of(k->a, joint)->motor, servo,
                       grobo_servo_register_of(servo, role), value);
 }
 
 static int put_role(calibration *k, int joint, grobo_register_role role, int32_t value)
 {
     const grobo_servo_model *servo = servo_of(k->a, joint);
-    return servos_put(&k->c, app_model(k->a)->joints[joint].motor, servo,
+    return servos_put(&k->c, joint_of(k->a, joint)->motor, servo,
                       grobo_servo_register_of(servo, role), value);
 }
 
