@@ -137,7 +137,7 @@ typedef struct grobo_bus_config {
     uint32_t hold_us;   /**< upper bound, see above; default GROBO_BUS_HOLD_US */
     bool echo;          /**< the adapter returns what is sent: check and remove it */
     bool overlap;       /**< the board takes a frame while it still forwards the one before;
-                                    nobody documented that, so by default it is not relied upon */
+                                    no document states that, so by default it is not relied upon */
 } grobo_bus_config;
 
 /** Learnt margin: lower bound. */

@@ -11,7 +11,7 @@
  * stop out before anything else; where it has, the session is latched and sends nothing for it.
  * grobo_robot_reset() and grobo_estop_clear() clear a mark.
  *
- * Marks are files in directories that the user owns and nobody else may enter: "grobo" in
+ * Marks are files in directories that the user owns and no other user may enter: "grobo" in
  * $XDG_RUNTIME_DIR, and "grobo-UID" in /tmp (Windows: in the local AppData). Directories or files
  * of other users, symbolic links, and directories open to others are not trusted. Marks last until
  * they are cleared or these directories are, as a rule when the machine is started again. The

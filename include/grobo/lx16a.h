@@ -23,7 +23,7 @@ GROBO_BEGIN_DECLS
 #define GROBO_LX16A_OVERHEAD_BYTES 6
 /** Highest id of a servo. */
 #define GROBO_LX16A_ID_MAX 253
-/** All servos; nobody answers but to ID_READ. */
+/** All servos; they answer ID_READ alone. */
 #define GROBO_LX16A_ID_ALL 254
 
 /** Commands. Values of two bytes have the low one first. */

@@ -27,7 +27,7 @@ GROBO_BEGIN_DECLS
 /** A step of this or more means 'the default motion time' in .m and .mseq files. */
 #define GROBO_MOTION_STEP_MAX_US 10000000
 
-/** Frames per second of a motion that becomes frames, where nobody asked for another rate. */
+/** Frames per second of a motion that becomes frames, where no other rate is asked for. */
 #define GROBO_MOTION_RATE_HZ 50
 
 /** What the postures of a motion mean and how its times count. */
@@ -271,7 +271,7 @@ GROBO_CORE bool grobo_motion_near(const grobo_motion *a, const grobo_motion *b, 
  * is converted before, as grobo_motion_convert() does without a note of what is lost: frames are
  * resampled, and increments count from where this motion leaves each joint.
  * @return 0, GROBO_ERR_TYPE (increments of a joint that this motion does not set, or anything but
- *   increments to a motion of increments: nobody knows from where they count, see
+ *   increments to a motion of increments: it is unknown from where they count, see
  *   grobo_motion_resolve()), GROBO_ERR_ARG (more joints), GROBO_ERR_STATE (frames without a rate),
  *   GROBO_ERR_CAP or GROBO_ERR_NOMEM.
  */
@@ -311,7 +311,7 @@ GROBO_API int grobo_motion_crop(grobo_motion *motion, int64_t from_us, int64_t t
 /**
  * True for a motion of a model's robot: it has no more joints, and names as its target body the
  * model, "SerialRobot" (as the original library calls any robot) or none. Everything else is a
- * motion of another robot, whose joints have no names here. A NULL model is nobody's: false.
+ * motion of another robot, whose joints have no names here. False where the model is NULL.
  */
 GROBO_CORE bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model);
 /**

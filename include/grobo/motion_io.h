@@ -253,7 +253,7 @@ GROBO_API int grobo_motion_save(const grobo_motion *motion, const grobo_files *f
                                 grobo_diagnostics *list);
 /**
  * Writes a motion as .m to the first of Motion1.m, Motion2.m, ... that is not there yet in a
- * directory; nobody else's file is replaced, even when two programs do so at once.
+ * directory; no other program's file is replaced, even when two programs do so at once.
  * @param[out] path NUL-terminated on success.
  * @return N, GROBO_ERR_SPACE, GROBO_ERR_FULL (a million of them), or as grobo_motion_save().
  */

@@ -46,7 +46,8 @@ GROBO_API int grobo_port_start(void);
 
 /**
  * Now, in microseconds of a monotonic clock with an arbitrary start. Never negative, never goes
- * back, and is not affected when the system's date is changed. Thread safe.
+ * back, goes on while the machine sleeps, and is not affected when the system's date is changed.
+ * Thread safe.
  */
 GROBO_API int64_t grobo_now_us(void);
 
@@ -82,7 +83,7 @@ GROBO_CORE void grobo_mutex_lock(grobo_mutex *mutex);
 /** Gives the lock back; the thread that took it must call. */
 GROBO_CORE void grobo_mutex_unlock(grobo_mutex *mutex);
 
-/** Ends a lock that nobody holds. */
+/** Ends a lock that no thread holds. */
 GROBO_CORE void grobo_mutex_deinit(grobo_mutex *mutex);
 
 /**
@@ -101,7 +102,7 @@ GROBO_CORE void grobo_cond_wait(grobo_cond *cond, grobo_mutex *mutex, int64_t un
 /** Wakes all threads that sleep at the condition; with or without the lock. */
 GROBO_CORE void grobo_cond_wake_all(grobo_cond *cond);
 
-/** Ends a condition at which nobody sleeps. */
+/** Ends a condition at which no thread sleeps. */
 GROBO_CORE void grobo_cond_deinit(grobo_cond *cond);
 
 /* ---- byte ports --------------------------------------------------------------------------- */
@@ -152,7 +153,7 @@ typedef struct grobo_port_ops {
     /**
      * Whether open() has been completed: a connection may still be on its way. While 0, wait
      * until socket() is writable and ask again.
-     * @return 1 usable, 0 not yet, or an error (GROBO_ERR_NOENT: nobody there).
+     * @return 1 usable, 0 not yet, or an error (GROBO_ERR_NOENT: no listener).
      */
     int (*ready)(grobo_port *port, grobo_os_cause *cause);
 

@@ -29,7 +29,7 @@ GROBO_BEGIN_DECLS
 /** Highest id of a servo; the lowest is 1. */
 #define GROBO_RS30X_ID_MAX 127
 
-/** Address of every servo; nobody replies to it. */
+/** Address of every servo; no servo replies to it. */
 #define GROBO_RS30X_ID_ALL 255
 
 /** RS30x servos straight on their bus. */

@@ -38,7 +38,7 @@ GROBO_BEGIN_DECLS
 #define GROBO_PLAY_SPEED_MAX_PCT 1000
 /** Default of grobo_play_options.approach_deg_s: a tenth of what the servos can do. */
 #define GROBO_PLAY_APPROACH_DEG_S 60
-/** How far a joint is taken to be from its goal when nobody knows where it is. */
+/** How far a joint is taken to be from its goal when its place is unknown. */
 #define GROBO_PLAY_UNKNOWN_DEG 180
 /** Default of grobo_play_options.stop_us. */
 #define GROBO_PLAY_STOP_US 200000

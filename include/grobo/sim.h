@@ -181,7 +181,7 @@ typedef struct grobo_sim_stats {
     uint32_t overflows;     /**< bytes lost to a full buffer: board's, or towards the host */
     uint32_t stalls;        /**< packets on the servos' bus forgotten because they stalled */
     uint32_t collisions;    /**< bytes on the servos' bus with two talkers */
-    uint32_t stray_bytes;   /**< bytes of servos that nobody listened to */
+    uint32_t stray_bytes;   /**< bytes of servos that were not listened to */
     uint32_t slots;         /**< slots played */
     uint32_t scenarios;     /**< scenarios played */
     uint8_t last_slot;      /**< number of the last one */

@@ -121,7 +121,7 @@ GROBO_API int grobo_team_add(grobo_team *team, grobo_robot *robot);
  * @return GROBO_OK, GROBO_ERR_EMPTY (no members), GROBO_ERR_STATE (a motion is under way),
  *         GROBO_ERR_ARG; else what the policy made of the members that refused: with
  *         GROBO_TEAM_CONTINUE the refusal of the last one when none is left, with the others the
- *         first refusal, and then nobody plays.
+ *         first refusal, and then no robot plays.
  */
 GROBO_API int grobo_team_play(grobo_team *team, const grobo_clip *const *clips, bool one_clip,
                               const grobo_play_options *options, int64_t now_us);

@@ -171,7 +171,7 @@ GROBO_API int grobo_control_call(grobo_control *control, grobo_control_fn fn, vo
  * Has fn called on the loop, and returns at once. It is called exactly once, at the latest by
  * grobo_control_free(). At once.
  * @return GROBO_OK, GROBO_ERR_FULL, GROBO_ERR_ARG, GROBO_ERR_CLOSED (of a function that
- *   grobo_control_free() calls as its last: nobody would call another).
+ *   grobo_control_free() calls as its last: no thread would call another).
  */
 GROBO_API int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg);
 
@@ -186,7 +186,7 @@ GROBO_API grobo_robot *grobo_control_robot(grobo_control *control);
 /**
  * Waits for the end of a job of grobo_control_robot(). Waits.
  * @param job what the request returned; an error of it is returned at once.
- * @return the job's result; GROBO_ERR_NOTFOUND of a job that nobody knows any more: of those that
+ * @return the job's result; GROBO_ERR_NOTFOUND of a job that is forgotten: of those that
  *   have ended the last GROBO_CONTROL_ENDS are known.
  */
 GROBO_API int grobo_control_wait_job(grobo_control *control, int job, int64_t timeout_us);

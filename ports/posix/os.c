@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Clock, threads, locks, waiting for a descriptor. */
+/* Threads, locks, waiting for a descriptor. */
 #include <errno.h>
 #include <limits.h>
 #include <poll.h>
@@ -11,15 +11,6 @@
 int grobo_port_start(void)
 {
     return GROBO_OK;
-}
-
-int64_t grobo_now_us(void)
-{
-    struct timespec now;
-
-    /* Cannot fail: POSIX systems without CLOCK_MONOTONIC do not compile this. */
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
 }
 
 int grobo_thread_start(grobo_thread *thread, grobo_thread_fn fn, void *arg)
@@ -138,10 +129,13 @@ static int make_cond(grobo_cond *cond)
     return r;
 }
 
+/* By the clock of conditions, which is not that of grobo_now_us() everywhere. */
 static void sleep_at(grobo_cond *cond, grobo_mutex *mutex, int64_t span_us)
 {
-    struct timespec until = timespec_of(grobo_now_us() + span_us);
+    struct timespec now, until;
 
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    until = timespec_of((int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000 + span_us);
     (void)pthread_cond_timedwait(cond, mutex, &until);
 }
 #endif

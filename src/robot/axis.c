@@ -323,9 +323,15 @@ static bool turns(const grobo_robot_axis *axis)
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return turns(axis) && grobo_i_axis_tells_turn(robot, joint) && axis->sensed &&
-           axis->has_target && !axis->off_way && is_guided(axis) &&
-           axis->seen_us >= axis->told_us && grobo_i_axis_is_on(axis) &&
+    if (!turns(axis) || !tells_speed(axis) || !axis->sensed || !axis->has_target ||
+        axis->seen_us < axis->told_us || !grobo_i_axis_is_on(axis)) {
+        return false;
+    }
+    if (axis->off_way) { /* where to, nobody knows */
+        return axis->own_until_us <= axis->seen_us &&
+               robot->now_us - axis->seen_us <= GROBO_WATCH_US;
+    }
+    return grobo_i_axis_tells_turn(robot, joint) && is_guided(axis) &&
            fabs(grobo_i_axis_reached(robot, joint, robot->now_us) - axis->way.to_rad) > LAGS_RAD;
 }
 

@@ -118,11 +118,12 @@ static double speed_limit(const grobo_robot *robot, int joint, bool soft)
 #define HALT_LEAST_US 25000
 #define HALT_TIME_US 100000
 
-/* Where a way begins: a halt where the joint is, everything else where the way before is by now. */
-static double begin_of(const grobo_robot *robot, bool halts, int joint)
+/* Where a way begins: one to rest where the joint is, any other where the way before is by now. */
+static double begin_of(const grobo_robot *robot, const grobo_robot_order *order, int joint)
 {
-    return halts ? grobo_i_axis_reached(robot, joint, robot->now_us)
-                 : grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
+    return order->deed == GROBO_I_DEED_HALT || order->rests
+               ? grobo_i_axis_reached(robot, joint, robot->now_us)
+               : grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
 }
 
 /* The least time from there, in microseconds. */
@@ -180,7 +181,7 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
         if (asked > 0 && is_ample(robot, j, to_rad, asked)) {
             continue;
         }
-        double from_rad = begin_of(robot, order->deed == GROBO_I_DEED_HALT, j);
+        double from_rad = begin_of(robot, order, j);
         int64_t needed_us = time_needed(robot, j, from_rad, to_rad, soft);
         if (needed_us == GROBO_NEVER_US) {
             robot->fault_joint = j;
@@ -230,7 +231,8 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool halted = axis->last == 0; /* by what has no number: a raw frame, or a halt behind it */
-    double here_rad = grobo_i_axis_commanded(axis, robot->now_us + (halted ? HALT_AHEAD_US : 0));
+    int64_t rest_us = robot->now_us + (halted ? HALT_AHEAD_US : 0);
+    double here_rad = grobo_i_axis_reached(robot, joint, rest_us);
     double time_s = halted ? 0 : (double)axis->next_time_us / 1e6;
     double most_rad = speed_limit(robot, joint, soft) * time_s / 2;
     return fmin(fmax(axis->next_rad, here_rad - most_rad), here_rad + most_rad);
@@ -298,7 +300,7 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment
     }
     bool sleeps = aim_goal(robot, order, robot->soft || order->soft, target);
     if (target->posture.set == 0) {
-        return sleeps ? GROBO_ERR_EMPTY : GROBO_ERR_STALE;
+        return sleeps || order->rests ? GROBO_ERR_EMPTY : GROBO_ERR_STALE;
     }
     int result = judge_joints(robot, target->posture.set);
     if (result >= 0 && (when != BUILT || order->rests)) {
@@ -308,6 +310,16 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment
         GROBO_ASSERT(!GROBO_ASSERT_WALKS || is_judged(robot, order, says));
     }
     return result;
+}
+
+/* One that is outside its limits is drawn in softly, once it has torque or is halted there. */
+static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad, double to_rad)
+{
+    int64_t step_us = robot->driver->time_step_us;
+    double way_rad = fabs(to_rad - from_rad);
+    double steps = ceil(way_rad / speed_limit(robot, joint, true) * 1e6 / (double)step_us);
+    double most = (double)(robot->driver->time_max_us / step_us);
+    return (int64_t)fmin(fmax(steps, 1), most) * step_us;
 }
 
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
@@ -323,25 +335,19 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
         bool moves = axis->sensed && goes_on &&
                      (!robot->driver->goal_wakes || axis->wants_torque || grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
-            target->posture.angle_rad[j] = grobo_i_axis_reached(robot, j, rest_us);
-            target->joint_time_us[j] = HALT_TIME_US;
+            const grobo_i_limits limits = grobo_i_joint_limits(robot, j);
+            double rest_rad = grobo_i_axis_reached(robot, j, rest_us);
+            double in_rad = fmin(fmax(rest_rad, limits.min_rad), limits.max_rad);
+            target->posture.angle_rad[j] = in_rad;
+            target->joint_time_us[j] =
+                grobo_i_later(HALT_TIME_US, draw_time_us(robot, j, rest_rad, in_rad));
             target->posture.set |= GROBO_JOINT_BIT(j);
         }
     }
     if (target->posture.set == 0) {
         return GROBO_ERR_EMPTY;
     }
-    (void)clamp_target(robot, &target->posture); /* one may stand outside */
     return grobo_i_gate_time(robot, order, target);
-}
-
-/* One that stands outside its limits is drawn in once it has torque: softly. */
-static int64_t hold_time_us(const grobo_robot *robot, int joint, double hold_rad)
-{
-    int64_t step_us = robot->driver->time_step_us;
-    double way_rad = fabs(hold_rad - robot->axes[joint].state.angle_rad);
-    double steps = ceil(way_rad / speed_limit(robot, joint, true) * 1e6 / (double)step_us);
-    return grobo_i_sooner((int64_t)fmax(steps, 1) * step_us, robot->driver->time_max_us);
 }
 
 /* The goal of joints without torque to where each was seen last; not of one too far outside. */
@@ -358,7 +364,7 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
         if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) && limited &&
             !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
-            target->joint_time_us[j] = hold_time_us(robot, j, hold_rad);
+            target->joint_time_us[j] = draw_time_us(robot, j, axis->state.angle_rad, hold_rad);
             target->posture.set |= GROBO_JOINT_BIT(j);
         }
     }
@@ -450,8 +456,8 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
             return GROBO_ERR_STALE;
         }
         if (grobo_i_has(target->posture.set, j) &&
-            most_us < time_of_way(robot, j, begin_of(robot, false, j), target->posture.angle_rad[j],
-                                  robot->soft)) {
+            most_us < time_of_way(robot, j, grobo_i_axis_commanded(&robot->axes[j], robot->now_us),
+                                  target->posture.angle_rad[j], robot->soft)) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
         }
@@ -599,7 +605,7 @@ static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order
     grobo_target *target = cut ? part : &says->target;
     bool timed = is_timed(robot->driver);
     for (int j = 0; !timed && j < robot->driver->model->n_joints; j++) {
-        target->from_rad[j] = begin_of(robot, order->deed == GROBO_I_DEED_HALT, j);
+        target->from_rad[j] = begin_of(robot, order, j);
         if (order->deed == GROBO_I_DEED_HALT) {
             target->from_rad[j] = begin_of_halt(robot, target, j);
         }
@@ -693,7 +699,7 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(target->posture.set, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
-            double from_rad = begin_of(robot, order->deed == GROBO_I_DEED_HALT, j);
+            double from_rad = begin_of(robot, order, j);
             grobo_i_axis_told(robot, j);
             axis->way = (grobo_robot_way){from_rad, target->posture.angle_rad[j], now_us,
                                           now_us + target->joint_time_us[j]};

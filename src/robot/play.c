@@ -40,6 +40,9 @@ static int joints_of_clip(const grobo_clip *clip, const grobo_play_options *opti
         *joints |= result < 0 ? 0 : posture.set;
         return result;
     }
+    if (clip->key == NULL) {
+        return GROBO_ERR_ARG;
+    }
     for (size_t i = 0; i < clip->n_keys && result >= 0; i++) {
         result = clip->key(clip->ctx, i, &posture, &at_us);
         *joints |= result < 0 ? 0 : posture.set;
@@ -254,12 +257,12 @@ void grobo_i_play_done(grobo_robot_slot *slot, int result)
 
 static bool send_frame(grobo_robot *robot, const grobo_play_frame *frame)
 {
+    bool rests = frame->phase == GROBO_SEQUENCER_STOPPING || frame->phase == GROBO_SEQUENCER_PAUSED;
     grobo_i_motion how = {.priority = GROBO_PRIORITY_MOTION,
                           .due_us = frame->due_us,
                           .each = frame->phase != GROBO_SEQUENCER_APPROACHING,
-                          .stops = frame->phase == GROBO_SEQUENCER_STOPPING,
-                          .rests = frame->phase == GROBO_SEQUENCER_STOPPING ||
-                                   frame->phase == GROBO_SEQUENCER_PAUSED};
+                          .stops = rests,
+                          .rests = rests};
     grobo_i_slots_cancel_goals(robot, frame->posture.set, true);
     int result = grobo_i_gate_send(robot, &frame->posture, &how);
     if (result < 0) {

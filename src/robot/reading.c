@@ -88,9 +88,14 @@ static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis
     return told && fabs(axis->state.goal_rad - axis->way.to_rad) > grobo_i_same_goal_rad(robot);
 }
 
-/* A joint that stands still, or creeps, beside its way has lost the frame, and so has one whose
- * goal is another. Until the next one it is where it was read, or on the way that its servo told
- * of: a stop would throw it to where it should be by then. The angle alone tells nothing of it. */
+/* So long after its frame left a joint that is no place between the begin of its way and where it
+ * should be by then is not on it: a weak one is behind, one that turns back has done so. */
+#define TURNED_US 200000
+
+/* A joint that stands still, or creeps, beside its way has lost the frame, and so has one that is
+ * ahead of it, or before it for long, or whose goal is another. Until the next one it is where it
+ * was read, or on the way that its servo told of: a stop would throw it to where it should be by
+ * then. The angle alone tells nothing of it. */
 static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
                        const grobo_joint_state *got)
 {
@@ -104,8 +109,10 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
     double then_rad = grobo_i_way_at(&axis->way, asked_us);
     double now_rad = grobo_i_way_at(&axis->way, robot->now_us);
     double beside_rad = fmin(fabs(got->angle_rad - then_rad), fabs(got->angle_rad - now_rad));
-    return axis->has_target && !axis->in_segments && abs(got->speed_dps) < GROBO_I_SLOW_DPS &&
-           beside_rad > GROBO_I_OFF_WAY_RAD;
+    bool between = (got->angle_rad - axis->way.from_rad) * (now_rad - got->angle_rad) >= 0;
+    bool elsewhere = !between && asked_us - axis->told_us > TURNED_US;
+    return axis->has_target && !axis->in_segments && beside_rad > GROBO_I_OFF_WAY_RAD &&
+           (elsewhere || abs(got->speed_dps) < GROBO_I_SLOW_DPS);
 }
 
 /* What a reading tells of where the joint is by now. */

@@ -50,6 +50,7 @@ static void config_fill(grobo_robot_config *c, const grobo_driver *driver)
         c->approach_dps = grobo_deg_from_rad(limits->approach_rad_s);
     }
     c->sense_interval_us = time_or(c->sense_interval_us, SENSE_INTERVAL_US);
+    c->sense_interval_us = grobo_i_sooner(c->sense_interval_us, GROBO_NEVER_US / 4);
     c->temperature_c = limit_or(c->temperature_c, limits->temperature_c);
     c->current_ma = limit_or(c->current_ma, limits->current_ma);
     c->voltage_mv = limit_or(c->voltage_mv, limits->voltage_mv);

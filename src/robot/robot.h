@@ -81,7 +81,8 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
 /* What was read of where a joint is; and that it is told to go elsewhere from now on. */
 void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got);
 void grobo_i_axis_told(grobo_robot *robot, int joint);
-/* True of one whose way is over and that was read not to be there yet. */
+/* True of one whose way is over and that was read not to be there yet, or lately to turn and not to
+ * be on it. */
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint);
 /* Takes the sensed angle for where a joint is, nothing being asked of it. */
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
@@ -189,12 +190,12 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
 int grobo_i_slot_renew(grobo_robot_slot *slot);
 /* Gives a slot back that was not sent. */
 void grobo_i_slot_drop(grobo_robot_slot *slot);
-/* Takes back every frame of this use. */
+/* Takes back every frame of this use, but for one that waits to bring a motion to rest. */
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use);
 /* Takes back every frame that a step of this job made. */
 void grobo_i_slots_cancel_job(grobo_robot *robot, int number);
 /* Takes back targets that have not left and move one of these joints; `played`: and those of the
- * motion that is played. */
+ * motion that is played. Not what brings it to rest. */
 void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, bool played);
 /* Takes back the parts of an order that wait behind this one, which has failed. */
 void grobo_i_slots_cancel_rest(const grobo_robot_slot *before);

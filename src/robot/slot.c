@@ -219,10 +219,16 @@ static void cancel(grobo_robot_slot *slot)
     (void)grobo_bus_cancel(&slot->robot->bus, &slot->txn);
 }
 
+/* Nothing comes behind what brings a motion to rest: it leaves, but for joints of later targets. */
+static bool brings_rest(const grobo_robot_slot *slot)
+{
+    return slot->order.rests && waits(slot);
+}
+
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use)
 {
     for (int i = 0; i < robot->slots_end; i++) {
-        if (robot->slots[i].use == use) {
+        if (robot->slots[i].use == use && !brings_rest(&robot->slots[i])) {
             cancel(&robot->slots[i]);
         }
     }
@@ -245,7 +251,7 @@ void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, boo
         bool goal = slot->use == GROBO_I_USE_MOTION || slot->use == GROBO_I_USE_SEGMENT;
         bool meant =
             (slot->order.joints & joints) != 0 || (played && slot->due_us != GROBO_NEVER_US);
-        if (goal && meant && waits(slot)) {
+        if (goal && meant && waits(slot) && !brings_rest(slot)) {
             cancel(slot);
         }
     }

@@ -768,6 +768,7 @@ void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target)
     grobo_i_slots_cancel_goals(robot, job->joints, false);
     job->target = *target;
     job->joints = job->pending = target->set;
+    job->superseded &= ~target->set; /* what another move had is its own again */
     job->rounds = 0;
     job->failed = job->todo = 0;
     job->result = GROBO_OK;

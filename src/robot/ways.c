@@ -19,18 +19,28 @@ static int64_t most_us(const grobo_robot *robot)
     return GROBO_SEGMENT_US < step_us ? step_us : GROBO_SEGMENT_US / step_us * step_us;
 }
 
-/* What a frame asks for where so much is left to go. */
-static int64_t next_us(const grobo_robot *robot, int64_t left_us)
-{
-    int64_t step_us = robot->driver->time_step_us;
-    return grobo_i_sooner((left_us + step_us - 1) / step_us * step_us, most_us(robot));
-}
-
-/* Where a way is after so much of its time, and never outside the limits: it may begin there. */
+/* Where a way is by then, and never outside the limits: it may begin there. */
 static double place(const grobo_robot *robot, int joint, const grobo_robot_way *way, int64_t at_us)
 {
     const grobo_i_limits limits = grobo_i_joint_limits(robot, joint);
     return fmin(fmax(grobo_i_way_at(way, at_us), limits.min_rad), limits.max_rad);
+}
+
+/* How long the next part of a way takes: a whole segment or what is left, and to its limit one that
+ * is still outside by then, no faster than on all of the way. */
+static int64_t part_us(const grobo_robot *robot, int joint, const grobo_robot_way *way,
+                       int64_t now_us)
+{
+    int64_t step_us = robot->driver->time_step_us;
+    int64_t end_us = grobo_i_sooner(way->to_us, now_us + most_us(robot));
+    double way_rad = way->to_rad - way->from_rad;
+    double left_rad = place(robot, joint, way, end_us) - way->from_rad;
+    double way_us = (double)(way->to_us - way->from_us);
+    if (fabs(left_rad) > fabs(grobo_i_way_at(way, end_us) - way->from_rad)) {
+        int64_t in_us = way->from_us + (int64_t)(left_rad / way_rad * way_us);
+        end_us = grobo_i_sooner(grobo_i_later(in_us, end_us), way->to_us);
+    }
+    return (end_us - now_us + step_us - 1) / step_us * step_us;
 }
 
 bool grobo_i_way_is_short(const grobo_robot_axis *axis)
@@ -73,7 +83,7 @@ bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *ord
         }
         const grobo_robot_way way = {grobo_i_axis_commanded(&robot->axes[j], robot->now_us),
                                      whole->posture.angle_rad[j], 0, time_us};
-        part->joint_time_us[j] = most_us(robot);
+        part->joint_time_us[j] = part_us(robot, j, &way, 0);
         part->posture.angle_rad[j] = place(robot, j, &way, part->joint_time_us[j]);
     }
     return cut;
@@ -101,7 +111,7 @@ void grobo_i_segments_begin(grobo_robot *robot, int joint)
         robot->renewed_us = robot->now_us;
     }
     axis->in_segments = robot->in_segments = true;
-    axis->told_to_us = robot->now_us + most_us(robot);
+    axis->told_to_us = robot->now_us + part_us(robot, joint, &axis->way, robot->now_us);
 }
 
 void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, grobo_target *target)
@@ -110,7 +120,7 @@ void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, gro
         const grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_has(joints, j) && is_renewed(axis, robot->now_us) &&
             axis->told_to_us > robot->now_us) {
-            int64_t time_us = next_us(robot, axis->way.to_us - robot->now_us);
+            int64_t time_us = part_us(robot, j, &axis->way, robot->now_us);
             target->joint_time_us[j] = time_us;
             target->posture.angle_rad[j] = place(robot, j, &axis->way, robot->now_us + time_us);
             target->posture.set |= GROBO_JOINT_BIT(j);

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include <grobo/driver.h>
+#include <grobo/sequencer.h>
 
 static bool functions_present(const grobo_driver *driver)
 {
@@ -48,7 +49,9 @@ static bool readback_sound(const grobo_driver *driver)
 static bool times_sound(const grobo_driver *driver)
 {
     return driver->time_step_us > 0 && driver->time_max_us >= driver->time_step_us &&
-           isfinite(driver->angle_step_rad) && driver->angle_step_rad > 0;
+           driver->time_max_us <= GROBO_PLAY_TIME_MAX_US && isfinite(driver->angle_step_rad) &&
+           driver->angle_step_rad > 0 && isfinite(driver->accel_rad_s2) &&
+           driver->accel_rad_s2 >= 0;
 }
 
 static bool joints_sound(const grobo_driver *driver)

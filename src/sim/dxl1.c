@@ -380,7 +380,8 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 static uint8_t judge_value(const grobo_sim_servo *servo, const grobo_servo_register *reg,
                            int32_t value)
 {
-    bool locked = (reg->flags & GROBO_REGISTER_KEPT) != 0 &&
+    bool opens = reg->role == GROBO_ROLE_LOCK && value != LOCK_CLOSED; /* only power-off does */
+    bool locked = ((reg->flags & GROBO_REGISTER_KEPT) != 0 || opens) &&
                   grobo_i_dxl_get(servo, GROBO_ROLE_LOCK) == LOCK_CLOSED;
     if (value < reg->min || value > reg->max || locked) {
         return GROBO_DXL1_BAD_RANGE;

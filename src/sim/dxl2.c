@@ -25,6 +25,8 @@
 #define OVERLOAD_US 1000000
 /* The largest homing offset that counts where a position is within one turn. */
 #define HOMING_ONE_TURN 1024
+/* Where the registers in RAM begin. */
+#define EEPROM_END 64
 
 static int mode_of(const grobo_sim_servo *servo)
 {
@@ -492,17 +494,20 @@ static uint8_t forget_turns(grobo_sim *sim, int index, const grobo_dxl2_packet *
     return GROBO_DXL2_DONE;
 }
 
-static uint8_t reset(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
+static uint8_t judge_reset(const grobo_dxl2_packet *packet)
 {
-    grobo_sim_servo *servo = &sim->servo[index];
     uint8_t what = packet->data_bytes == 1 ? packet->data[0] : 0;
     bool all = what == GROBO_DXL2_RESET_ALL && packet->id != GROBO_DXL2_ID_ALL;
-    if (!all && what != GROBO_DXL2_RESET_BUT_ID && what != GROBO_DXL2_RESET_BUT_ID_BAUD) {
-        return GROBO_DXL2_BAD_RANGE;
-    }
+    bool known = all || what == GROBO_DXL2_RESET_BUT_ID || what == GROBO_DXL2_RESET_BUT_ID_BAUD;
+    return known ? GROBO_DXL2_DONE : GROBO_DXL2_BAD_RANGE;
+}
+
+static void reset(grobo_sim *sim, int index, uint8_t what)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
     int32_t id = servo->plant.id, rate = grobo_i_dxl_get(servo, GROBO_ROLE_BAUD);
     grobo_i_dxl_factory(servo);
-    if (!all) {
+    if (what != GROBO_DXL2_RESET_ALL) {
         grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
     }
     if (what == GROBO_DXL2_RESET_BUT_ID_BAUD) {
@@ -510,12 +515,17 @@ static uint8_t reset(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
     }
     memcpy(servo->flash, servo->reg, sizeof servo->flash);
     grobo_i_sim_reboot(sim, index);
-    return GROBO_DXL2_DONE;
 }
 
 static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
 {
     uint8_t code = packet->instruction;
+    bool by_second = packet->id != sim->servo[index].plant.id && packet->id != GROBO_DXL2_ID_ALL;
+    bool writes = code == GROBO_DXL2_WRITE || code == GROBO_DXL2_REG_WRITE;
+    if (by_second && writes && packet->address < EEPROM_END) { /* not by the secondary id */
+        grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->address);
+        return GROBO_DXL2_NO_ACCESS;
+    }
     if (code == GROBO_DXL2_WRITE) {
         return write(sim, index, packet->address, packet->data, packet->data_bytes);
     }
@@ -528,8 +538,10 @@ static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl2_packet *pac
     if (code == GROBO_DXL2_CLEAR) {
         return forget_turns(sim, index, packet);
     }
-    bool later = code == GROBO_DXL2_REBOOT || code == GROBO_DXL2_FACTORY_RESET;
-    return later ? GROBO_DXL2_DONE : GROBO_DXL2_BAD_INSTRUCTION;
+    if (code == GROBO_DXL2_FACTORY_RESET) { /* when the answer is made, as a restart */
+        return judge_reset(packet);
+    }
+    return code == GROBO_DXL2_REBOOT ? GROBO_DXL2_DONE : GROBO_DXL2_BAD_INSTRUCTION;
 }
 
 static void for_one(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
@@ -553,8 +565,8 @@ static void for_one(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
     }
     if (packet->instruction == GROBO_DXL2_REBOOT) {
         grobo_i_sim_reboot(sim, index);
-    } else if (packet->instruction == GROBO_DXL2_FACTORY_RESET) {
-        (void)reset(sim, index, packet);
+    } else if (packet->instruction == GROBO_DXL2_FACTORY_RESET && error == GROBO_DXL2_DONE) {
+        reset(sim, index, packet->data[0]);
     }
 }
 

@@ -73,10 +73,14 @@ static void sleep_loop(int fd)
     const int frames = (int)(SPAN_S * 1000000 / period_us);
     const double begin_us = bench_cpu_us();
     int64_t due_us = grobo_now_us();
+    struct timespec now; /* of a clock that is not that of grobo_now_us() everywhere */
 
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    const int64_t apart_us = (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000 - due_us;
     for (int i = 0; i < frames; i++) {
         due_us += period_us;
-        const struct timespec at = {due_us / 1000000, due_us % 1000000 * 1000};
+        const int64_t at_us = due_us + apart_us;
+        const struct timespec at = {at_us / 1000000, at_us % 1000000 * 1000};
 
         (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
         note_late(grobo_now_us() - due_us);

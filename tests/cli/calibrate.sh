@@ -146,6 +146,16 @@ check_json "a calibration is shown" \
     'lines[0]["written"] is False and lines[0]["joints"][2]["before_range"][1] == 4095' \
     on_robot --json calibrate --from "$work/so101.json" --dry-run
 check "nothing was written" register 3 max_position 4095
+# A disk that takes nothing: what the servos hold could not be put back.
+full() (
+    cd "$work" && ls >"$work/listed" || return 1
+    { (ulimit -f 0 && on_robot calibrate --from so101.json); echo $? >&9; } \
+        9>"$work/status" 2>&1 >/dev/null | cat >"$work/err"
+    [ "$(cat "$work/status")" -eq 3 ] && grep -q "so101-before[0-9]*\.json: " "$work/err" &&
+        rm "$work/status" && ls | diff "$work/listed" -
+)
+check "nor where a disk is full, and no half file is left" \
+    both full --- register 3 max_position 4095
 check "a calibration is taken" in_folder exits 0 on_robot calibrate --from so101.json
 check "it moves again" exits 0 on_robot move elbow_flex 5 500
 check "all is as it came" in_folder exits 0 on_robot calibrate --restore so101-before.json
@@ -172,7 +182,7 @@ check "no JSON" spoiled '[0-9]*:[0-9]*: ' 's/{/[/'
 check "a joint is missing" spoiled 'gripper: needs' '/"gripper"/,$d;/"wrist_roll"/,$s/},$/}}/'
 check "no file" fails 3 'none.json' on_robot calibrate --from "$work/none.json"
 check "nobody presses enter" in_folder exits 2 on_robot calibrate
-check "that is said" grep -q 'needs a person who presses enter' "$work/err"
+check "that is said" grep -q 'needs a person to press enter' "$work/err"
 check "the file must say so" fails 2 "calibrated: true" "$GRCTL" --robot pan-tilt -d sim calibrate
 check "another robot has trims" fails 2 'keep no calibration' \
     "$GRCTL" --robot gr001 -d sim calibrate --from "$work/so101.json"

@@ -58,11 +58,11 @@ check "up to it" exits 0 "$GRCTL" -d kitchen move m5 47.5 500
 check "where the servo is at its limit" both exits 0 on_robot status m5 --- \
     says 'R_ELBOW_P  *50\.0'
 check "another trim beside it" exits 0 "$GRCTL" calibrate m12 -1
-check "both are there" grep -q 'trim: {R_KNEE_P: -1\.0, R_ELBOW_P: 2\.5}' "$config"
+check "both are there" grep -q 'trim: {R_KNEE_P: -1, R_ELBOW_P: 2\.5}' "$config"
 check "the table of joints has no trims" both exits 0 "$GRCTL" joints m5 --- \
     says '^R_ELBOW_P .* -130  *50  *-20  '
 check "a robot in braces" both exits 0 "$GRCTL" -d cellar calibrate m5 3 --- \
-    grep -q 'trim: {R_ELBOW_P: 3\.0}}$' "$config"
+    grep -q 'trim: {R_ELBOW_P: 3}}$' "$config"
 check "not more than a tooth" fails 4 'does its horn sit right' "$GRCTL" calibrate m5 30
 dry() {
     cp "$config" "$work/before"
@@ -87,6 +87,46 @@ offset() {
     exits 0 "$GRCTL" status R_KNEE_P && says 'R_KNEE_P  *-38\.0'
 }
 check "an offset is added to what is read" offset
+
+# trims_read LINE: of a file on standard input; what calibrate has written is read, and has it.
+trims_read() {
+    sed "s|PORT|$robot|" | written
+    exits 0 "$GRCTL" -d kitchen calibrate m12 1.5 && exits 0 "$GRCTL" -d kitchen status m12 &&
+        grep -qxF -e "$1" "$config" && return
+    cat "$config" "$work/err"
+    return 1
+}
+cp "$config" "$work/mine"
+check "a trim stands behind the robot that it is of" trims_read '    trim: {R_KNEE_P: 1.5}' <<'EOF'
+robots:
+  kitchen:
+    device: PORT
+    robot: gr001   # or another
+    wiring: board
+EOF
+line="  kitchen: {device: \"$robot\", robot: \"gr001\", trim: {R_KNEE_P: 1.5}}"
+check "in braces too, as setup writes it" trims_read "$line" <<'EOF'
+robots:
+  kitchen: {device: "PORT", robot: "gr001"}
+EOF
+line="  kitchen: {device: \"$robot\", trim: {R_KNEE_P: 1.5, R_ELBOW_P: 0.125}}"
+check "what a person wrote finer stays so" trims_read "$line" <<'EOF'
+robots:
+  kitchen: {device: "PORT", trim: {R_ELBOW_P: 0.125}}
+EOF
+utf16() {
+    printf 'robots:\n  kitchen:\n    device: sim\n' | iconv -f UTF-8 -t UTF-16 >"$config" &&
+        cp "$config" "$work/before" && exits 0 "$GRCTL" -d kitchen joints &&
+        exits 3 "$GRCTL" -d kitchen calibrate m12 1.5 &&
+        complains 'would not be read as it is meant; change it by hand$' &&
+        cmp "$config" "$work/before"
+}
+if command -v iconv >/dev/null; then
+    check "a file in UTF-16 is read, and left alone" utf16
+else
+    skip "a file in UTF-16 is read, and left alone" "no iconv"
+fi
+cp "$work/mine" "$config"
 
 # ---- the shell --------------------------------------------------------------------------------
 

@@ -97,4 +97,17 @@ start_sim --wiring bus --echo
 check "an echo nobody reckons with" finds 'returns what is sent' '--wiring bus --echo' --wiring bus
 check "one that is expected" exits 0 doctor --wiring bus --echo
 stop_sim
+# Of Feetech what was sent is a packet, and of KRS, which have no sums, it hides the replies.
+cat >"$work/krs.yaml" <<'YAML'
+name: t
+family: ics
+joints:
+  - {name: turn, id: 1, servo: KRS-3301, limits_deg: [-90, 90]}
+YAML
+for bus in so101 "$work/krs.yaml"; do
+    start_sim --robot "$bus" --echo
+    check "an echo: ${bus##*/}" finds 'returns what is sent' '--wiring bus --echo' --robot "$bus"
+    check "and beside it nothing" [ "$(grep -c '^BAD' "$work/out")" -eq 1 ]
+    stop_sim
+done
 done_testing

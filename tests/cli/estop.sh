@@ -41,7 +41,7 @@ exits 0 on_robot servo on
 check "while it plays" stopped '"t_ms":[1-9]' --json play --speed 20 motions/greet.pseq
 check "while it moves" stopped 'robot found' -v move m5 -100 20000
 exits 0 on_robot servo on
-check "while it is taught" stopped 'in your hands' record -o "$work/taught.m"
+check "while it is taught" stopped 'follow your hands' record -o "$work/taught.m"
 check "what was taught is kept" test -s "$work/taught.m"
 check "while it is taught limp" stopped 'are limp' teach -o "$work/limp.m"
 

@@ -94,6 +94,10 @@ start_sim --wiring bus --echo
 check "an echo that nobody expected" contact 1 '' echo --wiring bus -d "$robot" --timeout 500
 check "is told" said '^NOT as assumed  *echo .*--echo'
 stop_sim
+start_sim --robot so101 --echo
+check "one that looks like replies" contact 1 '' alike --robot so101 -d "$robot" --timeout 500
+check "is told, too" said '^NOT as assumed  *echo .*--echo'
+stop_sim
 start_told_sim --robot so101
 tell cable 3 out
 check "a servo that is silent" contact 1 '' silent --robot so101 -d "$robot"

@@ -307,7 +307,8 @@ two_at_once() {
     plays && answered '"another motion is played" in lines[0]["message"]' one prepare \
         '{"file":"greet.pseq"}' &&
         answered '"nothing was prepared" in lines[0]["message"]' one start \
-            '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500 && moves
+            '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500 &&
+        answered 'lines[0]["code"] == "busy"' one put '{"file":"y.m","text":""}' && moves
     two_status=$?
     kill -INT "$play"
     ended 130 && wait_for rests && return $two_status
@@ -328,9 +329,11 @@ if have_json; then
         one prepare '{"file":"greet.pseq","group":"two"}'
     check "a file of another folder" answered 'lines[0]["code"] == "arg"' \
         one put '{"file":"../y.m","text":""}'
+    check "a file that is no motion" answered 'lines[0]["code"] == "arg"' \
+        one put '{"file":"y.txt","text":""}'
     check "an order that there is not" answered 'lines[0]["code"] == "unsupported"' one dance '{}'
     check "two who would lead" two_at_once
-    check "none of these was done" test ! -e "$work/motions/y.m"
+    check "none of these was done" [ -z "$(ls "$work/motions" | grep '^y')" ]
 else
     skip "a stranger who has a clock" "no python3 here"
 fi
@@ -361,4 +364,15 @@ else
     skip "all that was said is as docs/fleet.schema.json says" "no python3-jsonschema"
 fi
 
+# What a stranger at the broker says of itself is a line, whatever it contains.
+clean() {
+    for what in connection factsheet; do
+        publish -q 1 -r -t grobo/v1/stranger/$what -m '{"v":1,"state":"ON\u001b[2J",
+            "epoch":"'$id'","groups":["all"],"robots":[{"name":"a\nb","model":"m\u009bx"}]}'
+    done
+    wait_for is_listed stranger ON && fleet list >"$work/out" || return 1
+    ! tr -d '\n' <"$work/out" | LC_ALL=C grep '[[:cntrl:]]' &&
+        says '^stranger  *ON?\[2J  *a?b  *m??x$'
+}
+check "a stranger writes no control characters to a terminal" clean
 done_testing

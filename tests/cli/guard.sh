@@ -197,7 +197,7 @@ unplugged() {
     exec 7>"$work/lines"
     rm "$work/lines"
     echo 'init --time 500' >&7
-    written "$work/moving" '^there' || return 1
+    written "$work/moving" '^done' || return 1
     guard=$(sed -n 's/^guarded by process //p' "$work/moving")
     wait_for has_port || return 1
     tell plug out

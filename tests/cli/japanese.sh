@@ -131,7 +131,7 @@ check "doctor" well
 # What another wiring is told by is a message.
 elsewhere() {
     ja exits 1 "$GRCTL" -d "$robot" doctor &&
-        says '^BAD   reply  .*では応答があります（通信路に直結）' &&
+        says '^BAD   reply  .*では応答があります (通信路に直結)' &&
         says "^ *-> grctl -d $robot --wiring bus "
 }
 check "doctor finds the other wiring in Japanese too" elsewhere

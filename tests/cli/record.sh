@@ -46,7 +46,7 @@ start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
 exits 0 on_robot servo on
 start_record --key -o wave.pseq
-check "what holds is held in the hands" grep -q 'joints are in your hands' "$work/err"
+check "what holds is held in the hands" grep -q 'joints follow your hands' "$work/err"
 key ' '
 turn_elbow -90
 key '  d'

@@ -86,6 +86,23 @@ check "replay says that it cannot" fails 2 'replay: knows the frames of RS30x on
 check_json "registers in JSON" 'lines[0]["model"] == "STS3215" and lines[0]["registers"] == [
     {"name": "max_position", "address": 11, "value": 3150, "unit": "0.088 deg",
      "max_position_deg": 96.9}]' of so101 --json servo-get 3 max_position
+check "a servo may answer nothing but readings" both \
+    exits 0 of so101 servo-set 6 reply_level 0 --flash --- \
+    said '^servo 6: reply_level 1 -> 0, kept$'
+check "and is set all the same" both exits 0 of so101 servo-set 6 position_p 20 --flash --- \
+    said '^servo 6: position_p 32 -> 20, kept$'
+check "its lock is closed" both exits 0 of so101 servo-get 6 lock --- says '^ 55  lock  *1$'
+stop_sim
+
+# What is sent has the form of a status here: FF FF 01 04 02 38 02 BE would be -130.1 degrees.
+start_told_sim --robot so101 --echo
+check "an adapter that returns what is sent, though nobody said so" both \
+    exits 0 of so101 servo-get 1 present_position --- \
+    says '^ 56  present_position  *2048  *0.0 deg$'
+check "nobody answers for a servo that is not there" fails 1 'no reply from servo 9' \
+    of so101 servo-get 9 present_position
+check "what is written is read back" both exits 0 of so101 servo-set 1 offset 100 --- \
+    said 'offset 0 (0.0 deg) -> 100 (8.8 deg); lost at power-off without --flash$'
 stop_sim
 
 # ---- DYNAMIXEL: kept at once, without torque only ----------------------------------------------
@@ -107,6 +124,13 @@ check "not of a servo that holds" fails 4 'servo 3 holds, and .* another return_
 check "what is no setting" both exits 0 of koch servo-set 3 led 1 --- \
     said '^servo 3: led 0 -> 1; lost at power-off$'
 exits 0 of koch servo off elbow_flex
+check "one that would answer pings alone" fails 4 'reply_level 0 a servo answers nothing' \
+    of koch servo-set 2 reply_level 0
+check "or in another protocol" fails 4 'protocol_type 1 a servo answers nothing' \
+    of koch servo-set 2 protocol_type 1
+exits 0 of koch servo-set 2 reply_level 1
+check "one that answers readings alone" both exits 0 of koch servo-set 2 led 1 --- \
+    said '^servo 2: led 0 -> 1; lost at power-off$'
 check "the rate" both exits 0 of koch servo-set 6 baud 57600 --- \
     said 'baud 3 (1000000 bps) -> 1 (57600 bps), kept; it answers at 57600 bps$'
 check "and back" exits 0 of koch -b 57600 servo-set 6 baud 1000000

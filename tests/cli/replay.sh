@@ -185,7 +185,7 @@ torque_late_and_lost() {
 }
 check 'a lost reply does not keep it from being sent' torque_late_and_lost
 shows_how_far() {
-    script -qec "stty cols 60; '$GRCTL' -d '$robot' --yes replay '$work/late'" \
+    script -qec "stty cols 60; '$GRCTL' -d '$robot' --timeout 500 --yes replay '$work/late'" \
         /dev/null </dev/null >"$work/screen" && grep -q 'replay: [0-9.]* of 3\.0 s' "$work/screen"
 }
 if command -v script >/dev/null 2>&1 && script -qec true /dev/null </dev/null >/dev/null 2>&1; then

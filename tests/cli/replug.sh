@@ -55,7 +55,7 @@ for family_robot in so101 koch; do
     check "there is no port" fails 1 'no such file or device\|refused' arm status
     check "it is plugged in" tell plug in
     check "and all joints answer" all_are_there
-    check "it moves" both exits 0 arm init --- written "$work/err" 'there; largest error 0\.[0-9]'
+    check "it moves" both exits 0 arm init --- written "$work/err" 'done; largest error 0\.[0-9]'
     check "and plays to the end" both exits 0 arm play --speed 200 motions/so101-wave.yaml --- \
         says '^largest error at the end'
     stop_sim

@@ -40,12 +40,17 @@ joints:
 END
 check "a file" fails 0 'crane.*2 joints, nothing wrong\|crane: 2 joints' \
     "$GRCTL" robot check "$work/arm.yaml"
-check "moves in its simulator" fails 0 'there; largest error 0\.[0-4]' \
+check "moves in its simulator" fails 0 'done; largest error 0\.[0-4]' \
     "$GRCTL" --robot "$work/arm.yaml" -d sim init
 check "joint by joint" fails 0 '(lift)\|(turn)' \
     "$GRCTL" --robot "$work/arm.yaml" -d sim move lift 50
 check "within its limits" fails 4 'lift (motor 4) to 61.0 deg is outside its limits -20 to 60' \
     "$GRCTL" --robot "$work/arm.yaml" -d sim move lift 61
+loud() {
+    sed 's/^name.*/&\ntitle: "Loud\\a\\e[2J\\nrobot"/' "$work/arm.yaml" >"$work/loud.yaml"
+    exits 0 "$GRCTL" robot show "$work/loud.yaml" && says '^crane: Loud??\[2J?robot$'
+}
+check "its title is a line without control characters" loud
 sed 's/limits_deg: \[-90, 90\]/limit_deg: [-90, 90]/' "$work/arm.yaml" >"$work/wrong.yaml"
 check "a mistake has line and column" fails 3 "wrong.yaml:5:44: no key .* called 'limit_deg'" \
     "$GRCTL" --robot "$work/wrong.yaml" joints
@@ -87,16 +92,16 @@ check "it plays there" plays on_robot --robot so101 play --speed 200 \
 check "all stand where it ended" wait_for sim_shows 6 ' -*0\.[0-9] deg'
 shell_moves() {
     echo 'move gripper 40' | "$GRCTL" -d "$robot" --robot so101 shell >"$work/out" 2>"$work/err"
-    grep -q 'there; largest error' "$work/err"
+    grep -q 'done; largest error' "$work/err"
 }
 check "in a shell" shell_moves
 tell block gripper on
 check "a gripper that is blocked is not there" fails 0 \
-    '^not there: largest error 1[0-9]\.[0-9] deg (gripper); is it blocked?$' \
+    '^not reached: largest error 1[0-9]\.[0-9] deg (gripper); is it blocked?$' \
     on_robot --robot so101 move gripper 55
 tell block gripper off
 check "it is free" wait_for sim_shows 6 ' 5[45]\.[0-9] deg .* mA .* C$'
-check "and gets back" fails 0 'there; largest error 0\.[0-4]' on_robot --robot so101 move gripper 40
+check "and gets back" fails 0 'done; largest error 0\.[0-4]' on_robot --robot so101 move gripper 40
 tell block shoulder_pan on
 check "a joint that is blocked ends its move" \
     fails 4 'stopped for safety: over-current ([0-9]* mA) at motor 1 (shoulder_pan)' \
@@ -113,11 +118,17 @@ robots:
 END
 check "trim before robot" fails 3 'robot stands before trim and offset' "$GRCTL" -d desk status
 sed -i.old /wrong:/d "$work/config/grctl/config.yaml"
-check "a configured robot says which it is" fails 0 'there; ' "$GRCTL" -d desk move wrist_flex 20
+check "a configured robot says which it is" fails 0 'done; ' "$GRCTL" -d desk move wrist_flex 20
 check "its trims are its own" both exits 0 on_robot --robot so101 status m4 --- \
     says 'wrist_flex  *2[12]\.'
-check "a file beside the configuration" fails 0 'there; ' "$GRCTL" -d other move lift 30
+check "a file beside the configuration" fails 0 'done; ' "$GRCTL" -d other move lift 30
 check "not two robots at once" fails 2 'is another robot' "$GRCTL" -d desk --robot koch status
+trims_of_another() {
+    printf '  trimmed: {device: sim, trim: {R_HIP_Y: 5}}\n' >>"$work/config/grctl/config.yaml"
+    fails 2 '^grctl: $GRCTL_ROBOT: so101: trimmed of .* is another robot: gr001' \
+        env GRCTL_ROBOT=so101 "$GRCTL" -d trimmed status
+}
+check "nor the trims of one for another" trims_of_another
 records() {
     : >"$work/recording"
     "$GRCTL" --robot so101 -d "$robot" record -o "$work/taught.yaml" >"$work/out" \
@@ -166,7 +177,7 @@ joints:
   - {name: tilt, id: 2, servo: ${family##*:}, limits_deg: [-60, 60], sign: -1}
 END
     check "$family moves" both exits 0 "$GRCTL" --robot "$work/pair.yaml" -d sim move tilt 20 --- \
-        written "$work/err" 'there; largest error 0\.[01] deg'
+        written "$work/err" 'done; largest error 0\.[01] deg'
     check "$family is found" both exits 0 "$GRCTL" --robot "$work/pair.yaml" -d sim scan --last 3 \
         --- says '^  2  .* tilt$'
 done

@@ -127,10 +127,10 @@ check "flash does not keep it" fails 2 'flash does not keep register max_torque'
 
 initial=$(awk '{ for (i = 2; i < 22; i++) print $i / 10; exit }' motions/greet.m)
 check "pose by joints" both exits 0 on_robot pose --time 300 m5=-30 L_ELBOW_P=30 --- \
-    said '^there; largest error 0\.[0-9] deg'
+    said '^done; largest error 0\.[0-9] deg'
 # The angles are words.
 # shellcheck disable=SC2086
-check "pose by 20 angles" both exits 0 on_robot pose --time 300 $initial --- said '^there; '
+check "pose by 20 angles" both exits 0 on_robot pose --time 300 $initial --- said '^done; '
 check "pose of a file" exits 0 on_robot pose @motions/greet.pseq:3
 check "pose of too few angles" fails 2 'pose takes 20 angles, .*, not 2' on_robot pose 10 20
 check "pose outside limits" fails 4 'R_ELBOW_P (motor 5) to 51.0 deg is outside' \

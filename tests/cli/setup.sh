@@ -68,6 +68,16 @@ echo 'robots: {one: {device: sim}}' >"$config"
 check "robots in braces" answered 3 'two\n' "$GRCTL" -d sim setup --yes
 check "are left alone" both said 'in braces; add the robot by hand' --- \
     grep -qx 'robots: {one: {device: sim}}' "$config"
+echo '{robots: {one: {device: sim}}}' >"$config"
+check "a file in braces" answered 3 'two\n' "$GRCTL" -d sim setup --yes
+check "is left alone" both said 'would not be read as it is meant; change it by hand' --- \
+    grep -qx '{robots: {one: {device: sim}}}' "$config"
+echo 'robots: [' >"$config"
+check "a file that cannot be read" answered 3 'a\nb\n' "$GRCTL" -d sim setup --yes
+once() {
+    [ "$(grep -c 'config.yaml:1:9: ' "$work/err")" -eq 1 ] || { cat "$work/err"; return 1; }
+}
+check "is said once" once
 check "names that are none" answered 2 'a b\nsim\n../x\na:b\nx y\n' "$GRCTL" -d sim setup --yes
 rm "$config"
 

@@ -48,6 +48,12 @@ check "an argument too many" brakes 2 "'now' is one argument too many" -d "$robo
 check "an option without its value" brakes 2 'needs a value' estop -d "$robot" --trace
 check "an echo without its bus" brakes 2 'echo needs --wiring bus' -d "$robot" --echo estop
 check "the same of stop" halts 2 'unknown option --now' -d "$robot" stop --now
+releases_nothing() {
+    exits 0 on_robot estop && fails 2 "'now' is one argument too many" on_robot estop --reset now &&
+        fails 2 'unknown option --no' on_robot estop --reset --no &&
+        fails 4 "stopped by 'grctl estop'" on_robot move m5 0 && exits 0 on_robot estop --reset
+}
+check "but with a mistake nothing is released" releases_nothing
 # What names no command, or asks for help, moves nothing.
 harmless() {
     holds && exits 2 on_robot sotp estop && exits 0 on_robot estop --help &&
@@ -64,6 +70,10 @@ sofa='config.yaml:4:1: no key .sofa'
 check "a configuration with a mistake behind the robot" brakes 3 "$sofa" estop
 check "and of stop" halts 3 "$sofa" stop
 check "a robot of it that is asked for" brakes 3 "$sofa" -d kitchen estop
+printf 'sofa: 1\nrobots: {kitchen: {device: %s}}\n' "$robot" >"$config"
+check "what cannot be found in it is not released" fails 3 'config.yaml:1:1: no key .sofa' \
+    "$GRCTL" estop --reset
+printf 'default: kitchen\nrobots:\n  kitchen: {device: %s}\nsofa: 1\n' "$robot" >"$config"
 check "a device needs no configuration" brakes 0 'stopped and verified' -d "$robot" estop
 rm "$config"
 check "a robot that the configuration no longer has: it says so" fails 1 \
@@ -77,6 +87,7 @@ check "a trace in a folder that is missing" brakes 3 'trace cannot be written: n
 check "a trace that is a folder" brakes 3 'trace cannot be written' \
     -d "$robot" --trace "$work" estop
 check "and of stop" halts 3 'trace cannot be written' -d "$robot" --trace "$work" stop
+check "a file that is no trace" brakes 3 'it is no trace' -d "$robot" --trace "$0" estop
 if [ -c /dev/full ]; then
     check "a trace on a full disk" brakes 3 'trace cannot be written' \
         -d "$robot" --trace /dev/full estop

@@ -48,6 +48,14 @@ refused() {
 }
 check 'no such folder: nothing is done' refused "$work/none/trace" 'no such folder$'
 check 'a folder: nothing is done' refused "$work" ': is a directory$'
+# So would one for whom --trace needs no FILE.
+no_trace() {
+    cp motions/sit.pseq "$work/mine.pseq"
+    refused "$work/mine.pseq" 'it is no trace; name another file$' &&
+        fails 3 'it is no trace' "$GRCTL" play --dry-run --trace "$work/mine.pseq" \
+            motions/greet.pseq && cmp motions/sit.pseq "$work/mine.pseq"
+}
+check 'a file that is no trace: it stays, and nothing is done' no_trace
 if [ -c /dev/full ]; then
     check 'a full disk: nothing is done' refused /dev/full 'no room left on the disk$'
 else

@@ -335,6 +335,46 @@ static void an_echo_that_looks_like_a_status_is_an_echo(void **state)
     ended(200, GROBO_OK);
 }
 
+/* An adapter returns what is sent and nobody reckons with it; or there is another host. What was
+ * sent has the form of a status, in part of one that refuses. */
+static void what_a_host_sends_is_no_answer(void **state)
+{
+    (void)state;
+    static const uint8_t goal[] = {0x00, 0x08, 0x64, 0x00};
+    static const struct {
+        const grobo_protocol *protocol;
+        grobo_dxl1_packet asked;
+        size_t answer_bytes;
+    } rows[] = {
+        {&grobo_feetech_protocol, {.instruction = GROBO_DXL1_READ, .address = 56, .length = 2}, 2},
+        {&grobo_dxl1_protocol, {.instruction = GROBO_DXL1_READ, .address = 36, .length = 2}, 2},
+        {&grobo_dxl1_protocol, {.instruction = GROBO_DXL1_READ, .address = 36, .length = 8}, 8},
+        {&grobo_dxl1_protocol,
+         {.instruction = GROBO_DXL1_WRITE, .address = 30, .data = goal, .data_bytes = 4},
+         0},
+        {&grobo_dxl1_protocol,
+         {.instruction = GROBO_DXL1_WRITE, .address = 25, .data = goal, .data_bytes = 1},
+         0},
+    };
+    static const uint8_t values[] = {0xE8, 0x03, 0, 0, 0, 0, 0, 0};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        uint8_t b[16];
+        grobo_dxl1_packet asked = rows[i].asked;
+        asked.id = 9;
+        submit_old(rows[i].protocol, false, &asked);
+        peer_bytes_at(&p, 100, r.frame, r.txn.frame_bytes);
+        peer_run(&p, 150);
+        assert_int_equal(p.ended_count, 0);
+        const grobo_dxl1_packet status = {
+            .status = true, .id = 9, .data = values, .data_bytes = rows[i].answer_bytes};
+        int n = grobo_dxl1_build(&status, b, sizeof b);
+        peer_bytes_at(&p, 700, b, (size_t)n);
+        peer_run(&p, S);
+        ended(700, GROBO_OK);
+        assert_int_equal(p.ended[0].value, rows[i].answer_bytes > 0 ? 1000 : 0);
+    }
+}
+
 static void feetech_answers_a_sync_read_one_by_one(void **state)
 {
     (void)state;
@@ -433,6 +473,7 @@ int main(void)
         cmocka_unit_test(a_broken_request_is_repeated_and_a_refused_one_is_not),
         cmocka_unit_test(stuffing_is_taken_out_of_what_is_read),
         cmocka_unit_test(an_echo_that_looks_like_a_status_is_an_echo),
+        cmocka_unit_test(what_a_host_sends_is_no_answer),
         cmocka_unit_test(feetech_answers_a_sync_read_one_by_one),
         cmocka_unit_test(errors_of_old_dynamixels_are_told_apart),
         cmocka_unit_test(parity_and_length_count),

@@ -581,6 +581,20 @@ static void a_joint_that_turns_back_stops_where_it_is(void **state)
 
 /* Those of servos that are told their acceleration with each goal: MX have such a register too far
  * away from the goal, and DYNAMIXEL X one that is a time. */
+/* The longest interval that there is means hardly ever, and not as fast as the wire allows. */
+static void a_very_long_interval_reads_once(void **state)
+{
+    (void)state;
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = GROBO_NEVER_US};
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        family_start(&kit, f, &config, NULL);
+        family_run(&kit, 3 * (int64_t)S);
+        assert_in_range(kit.n_sent, 1, 16);
+        assert_int_equal(family_move(&kit, 10, 500), GROBO_OK);
+    }
+}
+
 static void a_driver_tells_the_ramps_of_its_servos(void **state)
 {
     (void)state;
@@ -614,6 +628,7 @@ int main(void)
         cmocka_unit_test(a_lost_reply_ends_no_way),
         cmocka_unit_test(a_weak_joint_stops_where_it_is),
         cmocka_unit_test(a_driver_tells_the_ramps_of_its_servos),
+        cmocka_unit_test(a_very_long_interval_reads_once),
         cmocka_unit_test(a_joint_that_turns_back_stops_where_it_is),
         cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
         cmocka_unit_test(a_joint_that_is_behind_stops_in_time),

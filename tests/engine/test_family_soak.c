@@ -8,6 +8,7 @@
  *   - an emergency stop is carried out within its bound, nothing moves after it, and nothing is
  *     accepted that moves;
  *   - each job ends once, within its bound;
+ *   - after a stop nothing goes on, be it behind its way, weak, held fast or turned round;
  *   - on a line that is good again each joint is where it is read to be.
  * A servo that took a packet which nobody sent is excused until it takes the next goal: the line
  * has made it up, and its sum is right (tests/support/family_kit.c).
@@ -73,12 +74,16 @@ static struct {
     int64_t doubt_until_us;
     int64_t hand_until_us[FAMILY_JOINTS]; /* a hand turns it, or did lately */
     bool misled[FAMILY_JOINTS];           /* the line made up what it was told last */
-    int estop;                            /* its job, 0 when it is over */
+    int64_t held_until_us;                /* somebody holds this joint fast, */
+    int held_joint;
+    int64_t weak_until_us; /* and the supply is low */
+    int estop;             /* its job, 0 when it is over */
     bool latched, stands;
     int64_t stands_us, looked_us;
+    int64_t still_us; /* after a stop all stand from then on; 0: somebody asked for something */
 } user;
 static struct {
-    unsigned runs, moves, torque_on, estops, jobs, refused, checked;
+    unsigned runs, moves, torque_on, estops, jobs, refused, checked, retargets, stops;
     int64_t virtual_us;
 } total;
 static struct CMUnitTest tests[RUNS_MAX];
@@ -114,6 +119,15 @@ static void look_at_faults(void)
     }
 }
 
+/* What all joints stand behind by now, or NULL. */
+static const char *stopped_by(void)
+{
+    bool stopped = user.still_us > 0 && kit.now_us > user.still_us;
+    return user.stands && kit.now_us > user.stands_us ? "an emergency stop"
+           : stopped                                  ? "a stop"
+                                                      : NULL;
+}
+
 static void look_at(family_kit *k, int j)
 {
     const grobo_sim_servo *servo = &k->sim.servo[j];
@@ -134,11 +148,14 @@ static void look_at(family_kit *k, int j)
     if (goes && !doubtful(j) && view.speed_dps > most_dps) {
         fail_msg("joint %d turns by %d deg/s, and may by %.0f", j, (int)view.speed_dps, most_dps);
     }
-    if (user.stands && k->now_us > user.stands_us && left_deg > REST_DEG && !doubtful(j)) {
-        fail_msg("joint %d moves after an emergency stop: %d deg/s, to %.1f deg", j,
+    if (stopped_by() != NULL && left_deg > REST_DEG && !doubtful(j)) {
+        fail_msg("joint %d moves after %s: %d deg/s, to %.1f deg", j, stopped_by(),
                  (int)view.speed_dps, to_deg);
     }
 }
+
+/* A joint goes on for so long after a stop: the line, the frame, the halt. */
+#define STILL_US (600 * MS)
 
 /* Servos are looked at so often: a byte is shorter. */
 #define LOOK_US 1000
@@ -188,6 +205,7 @@ static void began(int number)
         total.refused++;
         return;
     }
+    user.still_us = 0;
     assert_true(user.n_open < OPEN_MAX);
     user.open[user.n_open] = number;
     user.open_us[user.n_open++] = kit.now_us;
@@ -259,6 +277,17 @@ static void ask_send(void)
     grobo_posture p = some_posture();
     int result = grobo_robot_send(&kit.robot, &p);
     assert_true(!user.latched || result < 0);
+    user.still_us = result < 0 ? user.still_us : 0;
+}
+
+static void ask_retarget(void)
+{
+    grobo_posture p = some_posture();
+    p.set = GROBO_JOINTS_ALL(FAMILY_JOINTS); /* what the move before set among them */
+    int result = grobo_robot_retarget(&kit.robot, &p);
+    assert_true(!user.latched || result < 0);
+    user.still_us = result < 0 ? user.still_us : 0;
+    total.retargets += result > 0;
 }
 
 static void ask_torque(void)
@@ -317,6 +346,12 @@ static void ask_registers(void)
     began(grobo_robot_registers(&kit.robot, &io));
 }
 
+/* One that was held fast has cut its torque until then. */
+static void ask_restart(void)
+{
+    began(grobo_robot_command(&kit.robot, 1 + (int)pick(FAMILY_JOINTS), GROBO_SERVO_REBOOT));
+}
+
 static void ask_estop(void)
 {
     int result = grobo_robot_estop(&kit.robot);
@@ -333,6 +368,7 @@ static void ask_exit(void)
 static void ask_free(void)
 {
     (void)grobo_robot_free(&kit.robot, some_joints(), pick(3) == 0);
+    user.still_us = 0;
 }
 
 /* A hand turns a joint that is limp. */
@@ -348,6 +384,40 @@ static void turn_by_hand(void)
     }
 }
 
+/* A joint is held fast for a while, or the supply is low. What is let go jumps after its goal. */
+static void hold_fast(void)
+{
+    if (user.held_until_us == 0) {
+        user.held_joint = (int)pick(FAMILY_JOINTS);
+        user.held_until_us = kit.now_us + (100 + pick(900)) * (int64_t)MS;
+        user.hand_until_us[user.held_joint] = user.held_until_us + 3 * (int64_t)S;
+        assert_int_equal(grobo_sim_set_blocked(&kit.sim, user.held_joint, true), GROBO_OK);
+    }
+}
+
+static uint32_t nominal_mv(void)
+{
+    return kit.servos[0]->voltage_mv;
+}
+
+static void weaken(void)
+{
+    user.weak_until_us = kit.now_us + (100 + pick(3000)) * (int64_t)MS;
+    grobo_sim_set_supply(&kit.sim, nominal_mv() * (60 + pick(30)) / 100);
+}
+
+static void let_go(int64_t now_us)
+{
+    if (user.held_until_us > 0 && now_us >= user.held_until_us) {
+        assert_int_equal(grobo_sim_set_blocked(&kit.sim, user.held_joint, false), GROBO_OK);
+        user.held_until_us = 0;
+    }
+    if (user.weak_until_us > 0 && now_us >= user.weak_until_us) {
+        grobo_sim_set_supply(&kit.sim, nominal_mv());
+        user.weak_until_us = 0;
+    }
+}
+
 /* After a stop for safety a person resets after a while. */
 static void reset_some_time(void)
 {
@@ -359,18 +429,31 @@ static void reset_some_time(void)
     }
 }
 
+/* Nobody asks for anything for a while. */
+static void stop_and_look(void)
+{
+    if (grobo_robot_stop(&kit.robot, pick(2) == 0) >= 0) {
+        look_at_jobs();
+        user.still_us = user.n_open == 0 ? kit.now_us + STILL_US : 0;
+        total.stops += user.n_open == 0;
+        family_run(&kit, pick(2) * 2 * STILL_US);
+    }
+}
+
 static void ask(void)
 {
     static void (*const requests[])(void) = {
-        ask_move,   ask_move,     ask_move, ask_send,  ask_send,   ask_torque,
-        ask_torque, ask_raw,      ask_raw,  ask_estop, ask_exit,   ask_registers,
-        ask_free,   turn_by_hand, ask_move, ask_move,  ask_reading};
+        ask_move,   ask_move,     ask_move, ask_send,   ask_send,    ask_torque,
+        ask_torque, ask_raw,      ask_raw,  ask_estop,  ask_exit,    ask_registers,
+        ask_free,   turn_by_hand, ask_move, ask_move,   ask_reading, ask_retarget,
+        ask_send,   hold_fast,    weaken,   ask_restart};
     reset_some_time();
+    let_go(kit.now_us);
     if (user.n_open < OPEN_MAX - 1) {
         requests[pick(sizeof requests / sizeof requests[0])]();
     }
-    if (pick(20) == 0) {
-        (void)grobo_robot_stop(&kit.robot, pick(2) == 0);
+    if (pick(10) == 0) {
+        stop_and_look();
     }
     if (pick(30) == 0) {
         (void)grobo_robot_cancel(&kit.robot);
@@ -383,11 +466,13 @@ static void start(const run *r)
 {
     static const int64_t intervals_us[] = {1, 50 * MS, 150 * MS};
     const char *faults = lines[r->line];
-    const grobo_robot_config config = {
-        GROBO_ROBOT_CONFIG_INIT,
-        .sense_interval_us = intervals_us[(r->seed + (unsigned)r->line) % 3],
-        .limit_policy = r->seed % 3 == 0 ? GROBO_LIMIT_CLAMP : 0,
-        .estop_torque = r->seed % 2 == 0 ? GROBO_ESTOP_OFF : 0, .lost_replies = 30};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us =
+                                           intervals_us[(r->seed + (unsigned)r->line) % 3],
+                                       .voltage_mv = -1,
+                                       .limit_policy = r->seed % 3 == 0 ? GROBO_LIMIT_CLAMP : 0,
+                                       .estop_torque = r->seed % 2 == 0 ? GROBO_ESTOP_OFF : 0,
+                                       .lost_replies = 30};
     const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = r->seed * 7 + 1, .no_stops = true};
     memset(&user, 0, sizeof user);
     user.random = (r->seed * 100 + (uint32_t)r->line) * 2654435761u + 17;
@@ -413,6 +498,7 @@ static bool anything_turns(void)
 static void calm_down(void)
 {
     assert_true(grobo_sim_set_faults(&kit.sim, "all=0,hangup=0", 14) > 0);
+    let_go(GROBO_NEVER_US);
     (void)grobo_robot_free(&kit.robot, GROBO_JOINTS_ALL(FAMILY_JOINTS), false);
     for (int i = 0; i < 70 && user.n_open > 0; i++) {
         family_run(&kit, S);
@@ -468,11 +554,13 @@ static void everything_was_done(void **state)
 {
     (void)state;
     print_message("# %u runs, %.1f virtual minutes: %u jobs, %u moves done, %u torques on, %u "
-                  "emergency stops, %u requests refused, %u joints true at the end\n",
+                  "emergency stops, %u requests refused, %u retargets, %u stops, %u joints true "
+                  "at the end\n",
                   total.runs, (double)total.virtual_us / 60e6, total.jobs, total.moves,
-                  total.torque_on, total.estops, total.refused, total.checked);
+                  total.torque_on, total.estops, total.refused, total.retargets, total.stops,
+                  total.checked);
     assert_true(total.moves > 0 && total.torque_on > 0 && total.checked > 0);
-    assert_true(total.estops > 0 && total.refused > 0);
+    assert_true(total.estops > 0 && total.refused > 0 && total.stops > 0);
 }
 
 static uint32_t number(const char *name, uint32_t otherwise)

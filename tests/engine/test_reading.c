@@ -80,6 +80,27 @@ static void a_joint_that_moves_beside_its_way_is_late_and_on_it(void **state)
     assert_false(neck()->off_way);
 }
 
+/* Ahead of its way, or before its begin: 200 ms after the frame left it is on another one. */
+static void a_joint_that_moves_where_its_way_is_not_is_off_it(void **state)
+{
+    (void)state;
+    static const struct {
+        double deg;
+        int64_t told_us; /* so long ago */
+        bool off;
+    } rows[] = {{32.1, 200001, true}, {31.9, 200001, false}, {32.1, 200000, false},
+                {-0.1, 200001, true}, {0.1, 200001, false},  {-0.1, 200000, false},
+                {-40, 20000, false}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        on_the_way();
+        neck()->told_us = rig.robot.now_us - rows[i].told_us;
+        read_state(rows[i].deg, 30);
+        if (neck()->off_way != rows[i].off) {
+            fail_msg("row %zu", i);
+        }
+    }
+}
+
 static void a_joint_that_was_sent_nowhere_is_off_no_way(void **state)
 {
     (void)state;
@@ -678,6 +699,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_joint_that_stands_beside_its_way_is_off_it),
         cmocka_unit_test(a_joint_that_moves_beside_its_way_is_late_and_on_it),
+        cmocka_unit_test(a_joint_that_moves_where_its_way_is_not_is_off_it),
         cmocka_unit_test(a_joint_that_was_sent_nowhere_is_off_no_way),
         cmocka_unit_test(off_its_way_a_joint_is_on_its_own_or_where_it_was_read),
         cmocka_unit_test(a_driver_that_makes_no_number_of_a_reply_has_read_nothing),

@@ -298,11 +298,25 @@ static void leaving_takes_a_policy_that_there_is(void **state)
     }
 }
 
+/* Nor does it crash: what a clip must have is asked for before it is looked through. */
+static void a_clip_without_keys_of_its_own_is_refused(void **state)
+{
+    (void)state;
+    make_playing();
+    grobo_clip none = clip.clip;
+    none.key = NULL;
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &none, NULL), GROBO_ERR_ARG);
+    make_ready();
+    assert_int_equal(grobo_robot_play(&rig.robot, &none, NULL), GROBO_ERR_ARG);
+    assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_NONE);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_is_taken_or_refused_for_its_reason),
         cmocka_unit_test(leaving_takes_a_policy_that_there_is),
+        cmocka_unit_test(a_clip_without_keys_of_its_own_is_refused),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -197,6 +197,25 @@ static void joints_besides_are_taken_from_other_moves(void **state)
     rig_expect(&rig, number, GROBO_OK);
 }
 
+/* Another move has taken the chest; the next target takes it back, and the job ends well. */
+static void a_joint_that_was_taken_comes_back(void **state)
+{
+    (void)state;
+    begin(&quiet);
+    grobo_posture both = rig_posture(&rig, NECK, -5, 1000);
+    assert_int_equal(grobo_posture_set_deg(&both, CHEST, -5), 0);
+    grobo_posture chest = rig_posture(&rig, CHEST, -10, 1000);
+    int number = grobo_robot_move(&rig.robot, &both);
+    rig_run(&rig, 300000);
+    int other = grobo_robot_move(&rig.robot, &chest);
+    rig_run(&rig, 300000);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &both), number);
+    rig_expect(&rig, other, GROBO_ERR_SUPERSEDED);
+    const grobo_event_job *job = rig_expect(&rig, number, GROBO_OK);
+    assert_true(job->failed == 0);
+    assert_true(fabs(rig_angle_deg(&rig, CHEST) + 5) < 0.2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -207,6 +226,7 @@ int main(void)
         cmocka_unit_test(the_joints_before_go_along),
         cmocka_unit_test(what_must_not_be_redirected_is_not),
         cmocka_unit_test(joints_besides_are_taken_from_other_moves),
+        cmocka_unit_test(a_joint_that_was_taken_comes_back),
     };
 
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);

@@ -58,6 +58,44 @@ static void a_joint_is_where_it_was_sent_or_read(void **state)
     expect_equal(grobo_i_axis_target(&axis), 7, "target that waits");
 }
 
+/* It tells the time of its way, which is at 50 degrees and goes at 100 degrees a second: it is
+ * there, but where it told to be slower and is further behind than it can have come since. */
+static void a_joint_is_on_its_way_but_where_it_is_weak(void **state)
+{
+    (void)state;
+    static const struct {
+        bool tells, off;
+        int32_t dps;
+        double seen_deg, since_deg; /* where it was read, what it can have come since */
+        double deg;
+    } rows[] = {
+        {true, false, 50, 30, 0, 30},   {true, false, 89, 30, 0, 30},
+        {true, false, -89, 30, 0, 30},  {true, false, 91, 30, 0, 50},
+        {false, false, 50, 30, 0, 50},  {true, false, 50, 37.9, 0, 37.9},
+        {true, false, 50, 38.1, 0, 50}, {true, false, 50, 30, 5, 35},
+        {true, false, 50, 30, 8.1, 50}, {true, false, 50, 62.1, 0, 62.1},
+        {true, false, 50, 61.9, 0, 50}, {true, false, 50, 70, 5, 65},
+        {true, true, 0, 30, 0, 30},     {true, true, 100, 30, 5, 30},
+    };
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start();
+            grobo_robot_axis *axis = &robot.axes[j];
+            axis->way = (grobo_robot_way){0, RAD(100), NOW - S / 2, NOW + S / 2};
+            axis->state.angle_rad = axis->seen_rad = RAD(rows[i].seen_deg);
+            axis->seen_us = NOW - (int64_t)(rows[i].since_deg / speed_dps(j) * S);
+            axis->state.speed_dps = rows[i].dps;
+            axis->state.valid &= (uint16_t)(rows[i].tells ? 0xFFFF : ~GROBO_FIELD_SPEED);
+            axis->off_way = rows[i].off;
+            axis->own_until_us = 0;
+            double deg = grobo_i_axis_reached(&robot, j, NOW) / RAD(1);
+            if (fabs(deg - rows[i].deg) > 0.01) {
+                fail_msg("row %zu: at %.2f deg", i, deg);
+            }
+        }
+    }
+}
+
 static void a_joint_that_is_not_limp_moves_to_the_end_of_its_way(void **state)
 {
     (void)state;
@@ -211,7 +249,8 @@ static void the_first_frame_asks_for_a_segment(void **state)
     }
 }
 
-/* It may begin outside its limits, and no part of it lies there. */
+/* It may begin outside its limits, and no part of it lies there; to the limit it is no faster than
+ * on all of its way. */
 static void no_part_lies_outside_the_limits(void **state)
 {
     (void)state;
@@ -226,6 +265,12 @@ static void no_part_lies_outside_the_limits(void **state)
             grobo_i_segments_aim(&robot, GROBO_JOINTS_ALL(N), &target);
             assert_true(target.posture.set == GROBO_JOINT_BIT(j));
             expect_equal(target.posture.angle_rad[j], end * RAD(70 + j), "its part");
+            assert_in_range(target.joint_time_us[j], S, S + 10000);
+            robot.now_us += 700000;
+            robot.axes[j].told_to_us = NOW + S;
+            grobo_i_segments_aim(&robot, GROBO_JOINTS_ALL(N), &target);
+            expect_equal(target.posture.angle_rad[j], end * RAD(69.6 + j), "what is inside");
+            assert_int_equal(target.joint_time_us[j], GROBO_SEGMENT_US);
         }
     }
 }
@@ -482,6 +527,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_way_is_straight_in_time),
         cmocka_unit_test(a_joint_is_where_it_was_sent_or_read),
+        cmocka_unit_test(a_joint_is_on_its_way_but_where_it_is_weak),
         cmocka_unit_test(a_joint_that_is_not_limp_moves_to_the_end_of_its_way),
         cmocka_unit_test(a_joint_rests_where_it_was_read),
         cmocka_unit_test(joints_are_asked_for_by_their_bits),

@@ -329,6 +329,33 @@ static void a_move_within_a_segment_is_one_frame(void **state)
 
 /* ---- ends ------------------------------------------------------------------------------------ */
 
+/* Another program has left the neck 25 degrees outside of its limits: the first move is slow from
+ * there on. */
+static void a_joint_from_outside_its_limits_is_slow(void **state)
+{
+    (void)state;
+    const grobo_robot_config slow = {GROBO_ROBOT_CONFIG_INIT, .approach_dps = 10,
+                                     .sense_interval_us = GROBO_SENSE_NEVER,
+                                     .goals = GROBO_GOALS_SEGMENTS};
+    rig_start_narrow(&rig);
+    rig_power(&rig);
+    assert_int_equal(grobo_robot_configure(&rig.robot, &slow), GROBO_OK);
+    assert_int_equal(grobo_sim_set_register(&rig.sim, NECK, GROBO_RS30X_GOAL, 450), 0);
+    rig_run(&rig, SECOND_US);
+    grobo_posture target = rig_posture(&rig, NECK, 0, 100);
+    int number = grobo_robot_move(&rig.robot, &target);
+    double before_deg = rig_angle_deg(&rig, NECK);
+    assert_true(before_deg > 44);
+    while (grobo_robot_is_pending(&rig.robot, number)) {
+        rig_run(&rig, SECOND_US / 10);
+        double deg = rig_angle_deg(&rig, NECK);
+        assert_true(before_deg - deg < 1.3);
+        before_deg = deg;
+    }
+    rig_expect(&rig, number, GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.2);
+}
+
 static void expect_at_rest(void)
 {
     double deg = rig_angle_deg(&rig, NECK);
@@ -491,6 +518,7 @@ int main(void)
         cmocka_unit_test(a_short_stall_is_no_pause),
         cmocka_unit_test(lost_frames_are_made_good),
         cmocka_unit_test(a_move_within_a_segment_is_one_frame),
+        cmocka_unit_test(a_joint_from_outside_its_limits_is_slow),
         cmocka_unit_test(a_long_stall_ends_the_move),
         cmocka_unit_test(a_long_stall_ends_an_approach),
         cmocka_unit_test(what_stops_a_move_stops_its_segments),

@@ -214,6 +214,9 @@ static void ax_judges_what_it_is_told(void **state)
     /* A closed lock keeps the EEPROM until power-off. */
     assert_int_equal(put(1, GROBO_ROLE_LOCK, 1), 0);
     assert_int_equal(put(1, GROBO_ROLE_ID, 5), GROBO_DXL1_BAD_RANGE);
+    assert_int_equal(put(1, GROBO_ROLE_LOCK, 0), GROBO_DXL1_BAD_RANGE);
+    assert_int_equal(put(1, GROBO_ROLE_LOCK, 1), 0);
+    assert_int_equal(put(1, GROBO_ROLE_ID, 5), GROBO_DXL1_BAD_RANGE);
 }
 
 static void ax_loses_its_force(void **state)

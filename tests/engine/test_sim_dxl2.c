@@ -296,18 +296,36 @@ static void writes_wait_level_and_names_hold(void **state)
     assert_int_equal(chain.kit.n_got, 14);
     /* The answer to a new id, and to a new rate, comes the old way. */
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 0), 0);
+    chain_send(&chain, 1, GROBO_DXL2_WRITE, 12, 0, (const uint8_t *)"\x32", 1);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ID, 9), 0);
     assert_int_equal(chain.kit.got[4], 1);
     chain_send(&chain, 9, GROBO_DXL2_PING, 0, 0, NULL, 0);
     assert_int_equal(chain.kit.got[4], 9);
+    /* To its second id it says nothing, and keeps its EEPROM as it is. */
+    chain_send(&chain, 50, GROBO_DXL2_WRITE, 65, 0, (const uint8_t *)"\x01", 1);
+    assert_int_equal(chain.kit.n_got, 0);
+    assert_int_equal(simkit_register(&chain.kit, 0, 65), 1);
+    chain_send(&chain, 50, GROBO_DXL2_WRITE, 9, 0, (const uint8_t *)"\x07", 1);
+    assert_int_equal(chain.kit.n_got, 0);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_RETURN_DELAY), 250);
     assert_int_equal(chain_write(&chain, 9, GROBO_ROLE_BAUD, 1), 0);
     chain_send(&chain, 9, GROBO_DXL2_PING, 0, 0, NULL, 0);
     assert_int_equal(chain.kit.n_got, 0);
     assert_int_equal(grobo_sim_set_line_bps(&chain.kit.sim, 57600), 0);
     chain_send(&chain, 9, GROBO_DXL2_PING, 0, 0, NULL, 0);
     assert_int_equal(chain.kit.n_got, 14);
-    /* All but id and rate from the factory. */
+}
+
+static void it_is_as_from_the_factory(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 1, NULL);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ID, 9), 0);
+    /* All but id and rate from the factory; no such reset is none. */
     assert_int_equal(chain_write(&chain, 9, GROBO_ROLE_RETURN_DELAY, 3), 0);
+    chain_send(&chain, 9, GROBO_DXL2_FACTORY_RESET, 0, 0, (const uint8_t *)"\x03", 1);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_RANGE);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_RETURN_DELAY), 3);
     static const uint8_t but_both = GROBO_DXL2_RESET_BUT_ID_BAUD, all = GROBO_DXL2_RESET_ALL;
     chain_send(&chain, 9, GROBO_DXL2_FACTORY_RESET, 0, 0, &but_both, 1);
     simkit_run(&chain.kit, 600000);
@@ -332,6 +350,7 @@ int main(void)
         cmocka_unit_test(the_watchdog_stops_a_servo),
         cmocka_unit_test(a_shutdown_lasts_until_the_restart),
         cmocka_unit_test(writes_wait_level_and_names_hold),
+        cmocka_unit_test(it_is_as_from_the_factory),
     };
     return cmocka_run_group_tests_name("sim_dxl2", tests, NULL, NULL);
 }

@@ -80,6 +80,85 @@ static void whatever_stops_a_motion_throws_no_joint_back(void **state)
     }
 }
 
+/* The frame that brings the motion to rest waits behind a reading, and something else comes. */
+static void a_stop_is_not_lost_by_what_comes_behind_it(void **state)
+{
+    (void)state;
+    enum { AGAIN, LEAVE, LET_GO, HEAT, SEND, SEND_BOTH, BEHINDS };
+    for (int i = 0; i < 2 * BEHINDS; i++) {
+        const grobo_joint_mask others = GROBO_JOINT_BIT(CHEST) | GROBO_JOINT_BIT(NECK);
+        bool at_once = i % 2 != 0;
+        rig_start_at(&rig, -45, &quiet);
+        rig_clip_init(&clip, rise, 3);
+        clip.only = others;
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        rig_run(&rig, 500000);
+        assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, i / 2 == HEAT ? 75 : 30), 0);
+        grobo_sim_cable cable = i / 2 < SEND ? GROBO_SIM_CABLE_IN : GROBO_SIM_CABLE_MUTE;
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, cable), 0);
+        int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_ALL);
+        rig_run(&rig, 500);
+        assert_int_equal(grobo_robot_stop(&rig.robot, at_once), GROBO_OK);
+        rig_run(&rig, 500);
+        double asked_deg = rig_angle_deg(&rig, NECK);
+        grobo_posture chest = rig_posture(&rig, CHEST, -5, 1000);
+        grobo_posture both = chest;
+        assert_int_equal(grobo_posture_set_deg(&both, NECK, asked_deg), 0);
+        switch (i / 2) {
+        case AGAIN:
+            assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
+            break;
+        case LEAVE:
+            assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD) > 0);
+            break;
+        case LET_GO:
+            assert_true(grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(CHEST), GROBO_TORQUE_OFF) >
+                        0);
+            break;
+        case HEAT:
+            rig_expect(&rig, number, GROBO_OK);
+            assert_int_equal(rig_count(&rig, GROBO_EVENT_TRIP), 1);
+            break;
+        default: /* at once it is over while its frame waits */
+            rig.robot.bus.free_us += 20000;
+            rig_run(&rig, 12000);
+            assert_int_equal(grobo_robot_send(&rig.robot, i / 2 == SEND ? &chest : &both),
+                             at_once ? GROBO_OK : GROBO_ERR_STATE);
+            break;
+        }
+        rig_run(&rig, 1500000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - asked_deg) < 8);
+        assert_true(i / 2 < SEND || !at_once || fabs(rig_angle_deg(&rig, CHEST) + 5) < 0.2);
+    }
+}
+
+/* Nor is a pause, whose motion goes on to wait. */
+static void a_pause_is_not_lost_by_what_comes_behind_it(void **state)
+{
+    (void)state;
+    for (int cancels = 0; cancels < 2; cancels++) {
+        rig_start_at(&rig, -45, &quiet);
+        rig_clip_init(&clip, rise, 3);
+        clip.only = GROBO_JOINT_BIT(CHEST) | GROBO_JOINT_BIT(NECK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        rig_run(&rig, 500000);
+        assert_true(grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_ALL) > 0);
+        rig_run(&rig, 500);
+        assert_true(raw_goal(&rig, SHOULDER, 0, 1000) > 0);
+        assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_OK);
+        rig_run(&rig, 500);
+        double asked_deg = rig_angle_deg(&rig, NECK);
+        assert_true(
+            cancels ? grobo_robot_cancel(&rig.robot) == GROBO_OK
+                    : grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(CHEST), GROBO_TORQUE_OFF) > 0);
+        rig_run(&rig, 1500000);
+        assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_PAUSED);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - asked_deg) < 8);
+    }
+}
+
 /* What a stop may add to the way of a joint: half of what it does in the 200 ms of a smooth one,
  * and what it does while the frame is on its way. */
 static double stop_way_deg(int way)
@@ -106,6 +185,37 @@ static void a_stop_begins_where_a_joint_is_that_is_behind(void **state)
         assert_true(asked_deg > 0);
         rig_run(&rig, 1500000);
         assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < stop_way_deg(way));
+    }
+}
+
+/* A weak supply: the shoulder falls 60 degrees behind, and is read. */
+static void a_stop_of_a_motion_begins_where_a_weak_joint_is(void **state)
+{
+    (void)state;
+    static const rig_key leap[] = {
+        {0, {{SHOULDER, -100}}}, {540, {{SHOULDER, 100}}}, {4000, {{SHOULDER, 100}}}};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = GROBO_SENSE_NEVER, .voltage_mv = -1};
+    for (int way = 0; way < WAYS; way++) {
+        rig_start_at(&rig, 0, &config);
+        rig_clip_init(&clip, leap, 3);
+        clip.only = GROBO_JOINT_BIT(SHOULDER);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
+        while (rig_angle_deg(&rig, SHOULDER) > -99.5) {
+            rig_run(&rig, 10000);
+        }
+        grobo_sim_set_supply(&rig.sim, 7400 * 2 / 3);
+        while (rig_angle_deg(&rig, SHOULDER) < -20) {
+            rig_run(&rig, 1000);
+        }
+        rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
+                   GROBO_OK);
+        stop_by(way);
+        double asked_deg = rig_angle_deg(&rig, SHOULDER);
+        rig_run(&rig, 1500000);
+        assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < stop_way_deg(way));
+        assert_true(way != STOP_AT_ONCE ||
+                    rig_sent_ms(&rig, grobo_gr001_model.joints[SHOULDER].motor) <= 20);
     }
 }
 
@@ -261,6 +371,88 @@ static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
         rig_run(&rig, 3000000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - asked_deg) < 2);
     }
+}
+
+/* The frame that was to turn it round is lost, and it is read ahead of its way, without its goal:
+ * at full speed, or slowly where the way is over. */
+static void a_stop_ends_a_way_that_was_to_be_over(void **state)
+{
+    (void)state;
+    static const struct {
+        int there_ms, back_ms, read_ms;
+        double most_deg; /* that it may be pulled back or go on */
+    } rows[] = {{530, 5000, 300, 20}, {8000, 200, 900, 3}, {8000, 5000, 2500, 3}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        rig_start_at(&rig, 0, &quiet);
+        grobo_posture target = rig_posture(&rig, SHOULDER, -100, 1000);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+        target = rig_posture(&rig, SHOULDER, 100, rows[i].there_ms);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+        rig_run(&rig, 150000);
+        target = rig_posture(&rig, SHOULDER, -100, rows[i].back_ms);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, SHOULDER, GROBO_SIM_CABLE_MUTE), 0);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+        rig_run(&rig, 15000);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, SHOULDER, GROBO_SIM_CABLE_IN), 0);
+        rig_run(&rig, rows[i].read_ms * 1000);
+        rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
+                   GROBO_OK);
+        double asked_deg = rig_angle_deg(&rig, SHOULDER);
+        assert_true(grobo_robot_moving(&rig.robot));
+        assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+        rig_run(&rig, 3000000);
+        assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < rows[i].most_deg);
+        assert_false(grobo_robot_moving(&rig.robot));
+    }
+}
+
+/* Who is not read again is not taken to move for ever. */
+static void what_turns_off_its_way_is_forgotten(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, 0, &quiet);
+    grobo_posture target = rig_posture(&rig, SHOULDER, 100, 10000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_run(&rig, 4000000);
+    target = rig_posture(&rig, SHOULDER, 0, 600);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, SHOULDER, GROBO_SIM_CABLE_MUTE), 0);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_run(&rig, 15000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, SHOULDER, GROBO_SIM_CABLE_IN), 0);
+    rig_run(&rig, 1500000);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(SHOULDER), GROBO_SENSE_FULL),
+               GROBO_OK);
+    rig_run(&rig, GROBO_WATCH_US - 100000);
+    assert_true(grobo_robot_moving(&rig.robot));
+    rig_run(&rig, 100000);
+    assert_false(grobo_robot_moving(&rig.robot));
+}
+
+/* Another program moves it, where this one may not: to its limit it comes softly. */
+static void a_stop_outside_the_limits_is_slow(void **state)
+{
+    (void)state;
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+    const grobo_rs30x_goal goal = {NECK_ID, 490, 1000};
+    rig_start_narrow(&rig);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 15, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+    int n = grobo_frame_goals(rig.driver->protocol, &goal, 1, frame, sizeof frame);
+    assert_int_equal(grobo_sim_rx(&rig.sim, frame, (size_t)n, rig.now_us), n);
+    rig_run(&rig, 8000000);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_SENSE_ALL),
+               GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+    double before_deg = rig_angle_deg(&rig, NECK);
+    assert_true(before_deg > 40);
+    for (int i = 0; i < 20; i++) {
+        rig_run(&rig, 50000);
+        double deg = rig_angle_deg(&rig, NECK);
+        assert_true(before_deg - deg < 0.05 * 66);
+        before_deg = deg;
+    }
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) < 0.2);
 }
 
 /* A reading that was on the line tells of one more joint that moves, sent there by nobody here. */
@@ -717,6 +909,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(whatever_stops_a_motion_throws_no_joint_back),
         cmocka_unit_test(a_stop_begins_where_a_joint_is_that_is_behind),
+        cmocka_unit_test(a_stop_is_not_lost_by_what_comes_behind_it),
+        cmocka_unit_test(a_pause_is_not_lost_by_what_comes_behind_it),
+        cmocka_unit_test(a_stop_of_a_motion_begins_where_a_weak_joint_is),
         cmocka_unit_test(a_stop_leaves_a_joint_where_a_raw_goal_sent_it),
         cmocka_unit_test(a_cancel_halts_what_a_raw_goal_moves_in_a_motion),
         cmocka_unit_test(a_stop_reaches_a_joint_of_the_clip_before),
@@ -724,6 +919,9 @@ int main(void)
         cmocka_unit_test(a_stop_after_a_motion_is_not_undone_by_its_end),
         cmocka_unit_test(a_stop_moves_no_joint_that_lost_its_frame),
         cmocka_unit_test(a_stop_ends_the_way_of_a_joint_that_lost_its_frame),
+        cmocka_unit_test(a_stop_ends_a_way_that_was_to_be_over),
+        cmocka_unit_test(what_turns_off_its_way_is_forgotten),
+        cmocka_unit_test(a_stop_outside_the_limits_is_slow),
         cmocka_unit_test(a_halt_is_for_what_moves_when_it_leaves),
         cmocka_unit_test(a_halt_makes_no_reading_of_others_stale),
         cmocka_unit_test(a_stop_reaches_a_joint_that_was_to_let_go),

@@ -149,7 +149,7 @@ by_each() {
 check 'install' make_target install
 share=$tree/opt/grobo/share
 check 'the man page is there' grep -q '^\.Dt GRCTL 1' "$share/man/man1/grctl.1"
-check 'and in Japanese' grep -q '^\.Nd シリアルコマンドサーボ' "$share/man/ja/man1/grctl.1"
+check 'and in Japanese' grep -q '^\.Nd シリアルサーボ' "$share/man/ja/man1/grctl.1"
 check 'that of what --json prints too' grep -q '^\.Dt GRCTL-JSON 5' "$share/man/man5/grctl-json.5"
 check 'its schema' grep -q '"title": "What grctl --json prints' "$share/grobo/grctl.schema.json"
 check 'the dissector for Wireshark' grep -q '^local grobo = Proto(' \

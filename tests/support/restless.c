@@ -108,6 +108,10 @@ static grobo_play_options any_options(restless *u)
                                   .speed_pct = (uint16_t)(50 + restless_pick(u, 200)),
                                   .unwatched = restless_pick(u, 3) != 0,
                                   .also = restless_pick(u, 2) ? rig_all(u->rig) : 0};
+    uint32_t later = restless_pick(u, 12);
+    options.start_us = later == 0   ? GROBO_START_LATER
+                       : later == 1 ? u->rig->now_us + (int64_t)restless_pick(u, 3000000)
+                                    : 0;
     return options;
 }
 
@@ -202,9 +206,12 @@ static void ask_control(restless *u)
 {
     grobo_robot *robot = &u->rig->robot;
     int result = 0;
-    switch (restless_pick(u, 4)) {
+    switch (restless_pick(u, 5)) {
     case 0:
         result = grobo_robot_pause(robot);
+        break;
+    case 4:
+        result = grobo_robot_start_at(robot, u->rig->now_us + (int64_t)restless_pick(u, 1000000));
         break;
     case 1:
         result = grobo_robot_resume(robot);

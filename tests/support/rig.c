@@ -35,6 +35,9 @@ static double along_deg(const rig_way *way, int64_t now_us)
  * engine draws the line at 12 degrees, and what it takes for the way is rounded: just below and
  * above that it may take either. */
 static const double beside_deg[RIG_ASKED] = {11, 13};
+/* Nor is it on it where it is read ahead of it, or, so long after the frame, before its begin. */
+static const double before_deg[RIG_ASKED] = {-0.5, 0.5};
+#define TURNED_US 200000
 /* The servo's speed below which a joint stands still. */
 #define SLOW_DPS 8
 
@@ -43,6 +46,13 @@ static const double beside_deg[RIG_ASKED] = {11, 13};
 static void leave_ways(grobo_test_rig *rig, grobo_joint_mask joints)
 {
     rig->on_way &= ~joints;
+}
+
+/* So far past an end of that part of its way that it should have gone by then. */
+static double past_deg(const rig_way *way, double deg, double now_deg)
+{
+    double sign = now_deg < way->from_deg ? -1 : 1;
+    return fmax((way->from_deg - deg) * sign, (deg - now_deg) * sign);
 }
 
 /* The way that a servo is on by itself, as far as it told. */
@@ -78,9 +88,12 @@ static void look_for_ways(grobo_test_rig *rig, int j, const grobo_joint_state *s
     }
     rig->own[j] = own_way(rig, j, state);
     for (int i = 0; witness_told(&rig->witness, GROBO_RS30X_SPEED) && i < RIG_ASKED; i++) {
-        double then_deg = fabs(deg - along_deg(&rig->ways[j][i], asked_us));
-        double now_deg = fabs(deg - along_deg(&rig->ways[j][i], rig->now_us));
-        rig->off[j][i] = slow && fmin(then_deg, now_deg) > beside_deg[i];
+        const rig_way *way = &rig->ways[j][i];
+        double now_deg = along_deg(way, rig->now_us);
+        double least_deg = fmin(fabs(deg - along_deg(way, asked_us)), fabs(deg - now_deg));
+        bool turned = asked_us - rig->told_us[j] > TURNED_US;
+        bool past = turned && past_deg(way, deg, now_deg) > before_deg[i];
+        rig->off[j][i] = (slow || past) && least_deg > beside_deg[i];
     }
     if (witness_told(&rig->witness, GROBO_RS30X_GOAL)) {
         rig->own_told |= GROBO_JOINT_BIT(j);

@@ -11,6 +11,9 @@
 
 #include <grobo/board.h>
 #include <grobo/driver.h>
+#include <grobo/dxl2.h>
+#include <grobo/feetech.h>
+#include <grobo/sequencer.h>
 
 static grobo_exchange exchange;
 
@@ -216,14 +219,77 @@ static void what_no_servo_says_is_not_believed(void **state)
     }
 }
 
+/* A joint of servos that are registers. */
+typedef struct table_row {
+    int (*init)(grobo_driver *driver, const grobo_model *model);
+    uint16_t servo;
+    grobo_register_role role;
+    int32_t good, bad; /* the values next to each other that are believed, and not */
+} table_row;
+
+static int read_as(const table_row *row, int32_t value)
+{
+    const grobo_joint joint = {.name = "a",
+                               .min_rad = -1,
+                               .max_rad = 1,
+                               .max_speed_rad_s = 2,
+                               .servo_model = row->servo,
+                               .motor = 1,
+                               .mirror_sign = 1};
+    const grobo_model model = {.name = "t", .joints = &joint, .n_joints = 1};
+    grobo_driver driver;
+    grobo_joint_state got = {0};
+    uint8_t bytes[256] = {0};
+    assert_int_equal(row->init(&driver, &model), GROBO_OK);
+    assert_true(driver.sense(&driver, NULL, 0, GROBO_SENSE_FULL, &exchange) >= 0);
+    const grobo_servo_model *servo = row->init == grobo_dxl2_driver_init
+                                         ? grobo_servo_model_numbered(&grobo_dxl2_table, row->servo)
+                                         : grobo_servo_model_numbered(&grobo_sts_table, row->servo);
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, row->role);
+    const grobo_servo_register *position = grobo_servo_register_of(servo, GROBO_ROLE_POSITION);
+    const grobo_reply *asked = &exchange.reply;
+    bytes[position->address + 1] = 8; /* the middle */
+    for (int i = 0; i < reg->bytes; i++) {
+        bytes[reg->address + i] = (uint8_t)((uint32_t)value >> 8 * i);
+    }
+    const grobo_packet reply = {.kind = GROBO_PACKET_RETURN,
+                                .id = 1,
+                                .address = asked->address,
+                                .data = bytes + asked->address,
+                                .data_bytes = asked->length};
+    return driver.parse(&driver, NULL, 0, &reply, &got);
+}
+
+static void nor_what_no_servo_of_registers_says(void **state)
+{
+    (void)state;
+    static const table_row rows[] = {
+        {grobo_dxl2_driver_init, 1200, GROBO_ROLE_PRESENT_SPEED, 32767, 32768},
+        {grobo_dxl2_driver_init, 1200, GROBO_ROLE_PRESENT_SPEED, -32767, -32768},
+        {grobo_dxl2_driver_init, 1200, GROBO_ROLE_PRESENT_SPEED, 0, INT32_MIN},
+        {grobo_dxl2_driver_init, 1200, GROBO_ROLE_POSITION, 4351, 4352},
+        {grobo_dxl2_driver_init, 1200, GROBO_ROLE_POSITION, -256, -257},
+        {grobo_dxl2_driver_init, 1200, GROBO_ROLE_VOLTAGE, 300, 301},
+        {grobo_dxl2_driver_init, 1200, GROBO_ROLE_TEMPERATURE, 120, 121},
+        {grobo_dxl2_driver_init, 1200, GROBO_ROLE_TORQUE, 1, 3},
+        {grobo_feetech_driver_init, 777, GROBO_ROLE_TEMPERATURE, 120, 121},
+        {grobo_feetech_driver_init, 777, GROBO_ROLE_TORQUE, 2, 128},
+        {grobo_feetech_driver_init, 777, GROBO_ROLE_ERROR, 0, 32}, /* the status told of none */
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        assert_int_equal(read_as(&rows[i], rows[i].good), GROBO_OK);
+        assert_int_equal(read_as(&rows[i], rows[i].bad), GROBO_ERR_MISMATCH);
+    }
+}
+
 static void bad_tables_are_refused(void **state)
 {
     (void)state;
     static const grobo_readback nowhere[] = {{0.1, 20}};
     static const double rest_outside[20] = {[3] = 1.0};
     static grobo_protocol others;
-    grobo_driver bad[10];
-    for (int i = 0; i < 10; i++) {
+    grobo_driver bad[13];
+    for (int i = 0; i < 13; i++) {
         bad[i] = *grobo_gr001_driver(GROBO_WIRING_BOARD);
         assert_int_equal(grobo_driver_check(&bad[i]), 0);
     }
@@ -240,7 +306,10 @@ static void bad_tables_are_refused(void **state)
     others = grobo_rs30x_protocol; /* whose ids end at 19: one is outside */
     others.id_max = 19;
     bad[9].protocol = &others;
-    for (int i = 0; i < 10; i++) {
+    bad[10].time_max_us = GROBO_PLAY_TIME_MAX_US + 1;
+    bad[11].accel_rad_s2 = INFINITY;
+    bad[12].accel_rad_s2 = -1;
+    for (int i = 0; i < 13; i++) {
         assert_int_equal(grobo_driver_check(&bad[i]), GROBO_ERR_ARG);
     }
     assert_int_equal(grobo_driver_check(NULL), GROBO_ERR_ARG);
@@ -283,6 +352,7 @@ int main(void)
         cmocka_unit_test(senses_ask_for_what_they_say),
         cmocka_unit_test(replies_become_readings),
         cmocka_unit_test(what_no_servo_says_is_not_believed),
+        cmocka_unit_test(nor_what_no_servo_of_registers_says),
         cmocka_unit_test(bad_tables_are_refused),
         cmocka_unit_test(raw_frames_are_read),
     };

@@ -60,6 +60,22 @@ static void what_is_kept_comes_in_its_order_once(void **state)
     assert_int_equal(n, 0);
 }
 
+/* As a full disk or a power failure leaves it. */
+static void half_a_line_takes_no_other_with_it(void **state)
+{
+    static const char half[] = "{\"v\":1,\"n\":0,\"mess";
+    (void)state;
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(half, 1, sizeof half - 1, file), sizeof half - 1);
+    assert_int_equal(fclose(file), 0);
+    add(1);
+    add(2);
+    empty();
+    assert_int_equal(n, 2);
+    assert_int_equal(first, 1);
+}
+
 static long size_of(const char *name)
 {
     FILE *file = fopen(name, "rb");
@@ -100,6 +116,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(what_is_kept_comes_in_its_order_once, clean, clean),
+        cmocka_unit_test_setup_teardown(half_a_line_takes_no_other_with_it, clean, clean),
         cmocka_unit_test_setup_teardown(the_oldest_go_where_it_is_full, clean, clean),
         cmocka_unit_test_setup_teardown(lines_that_cannot_be_read_are_dropped, clean, clean),
     };

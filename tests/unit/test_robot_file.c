@@ -283,6 +283,11 @@ static const mistake mistakes[] = {
     {HEAD JOINT "title: \"a\\0b\"\n", 5, 8, "NUL", 0},
     {"name: a\nfamily: rs30x\njoints:\n  - {name: x, id: 0, servo: RS301CR, limits_deg: [-9, 9]}\n",
      4, 19, "an id from 1 to 127 is wanted", 0},
+    {"name: a\nfamily: ics\njoints:\n  - {name: x, id: 32, servo: KRS-3301, limits_deg: [-9, 9]}\n",
+     4, 19, "an id from 0 to 31 is wanted", 0},
+    {"name: a\nfamily: dynamixel2\njoints:\n"
+     "  - {name: x, id: 253, servo: XL330-M288, limits_deg: [-9, 9]}\n",
+     4, 19, "an id from 0 to 252 is wanted", 0},
 };
 
 static void each_mistake_has_a_place(void **state)

@@ -2,8 +2,6 @@
 #include <locale.h>
 #include <string.h>
 
-#include <grobo/version.h>
-
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/run.h"
 #include "tools/grctl/cmd/commands.h"

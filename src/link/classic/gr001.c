@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* GR001 by motor number and in motor order, on the engine. */
+/* GR001 by motor number and in motor order, on the engine; and for people, into a stream. */
 #include <math.h>
 
 #include <grobo/gr001.h>
-
-#include "src/link/classic/gr001.h"
 
 static const grobo_model *model_of(const grobo_robot *robot)
 {
     return grobo_robot_driver(robot)->model;
 }
 
-int grobo_i_gr001_order(const grobo_model *model, uint8_t *joints)
+/* Joints in the order of their motors; joints: room for GROBO_JOINTS_MAX. How many. */
+static int order(const grobo_model *model, uint8_t *joints)
 {
     for (int n = 0; n < model->n_joints; n++) {
         int at = n;
@@ -23,14 +22,17 @@ int grobo_i_gr001_order(const grobo_model *model, uint8_t *joints)
     return model->n_joints;
 }
 
+/* The joint of a motor, or an error. */
+static int joint_of(const grobo_robot *robot, int motor)
+{
+    return robot == NULL ? GROBO_ERR_ARG : grobo_model_joint_of_motor(model_of(robot), motor);
+}
+
 /* ---- one motor, a group of motors ------------------------------------------------------------ */
 
 int grobo_gr001_torque(grobo_robot *robot, int motor, grobo_torque mode)
 {
-    if (robot == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    int joint = grobo_model_joint_of_motor(model_of(robot), motor);
+    int joint = joint_of(robot, motor);
     return joint < 0 ? joint : grobo_robot_torque(robot, GROBO_JOINT_BIT(joint), mode);
 }
 
@@ -53,19 +55,15 @@ static bool is_time(int time_cs)
 
 int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs)
 {
-    if (robot == NULL) {
-        return GROBO_ERR_ARG;
-    }
     grobo_posture target;
-    const grobo_model *model = model_of(robot);
-    int joint = grobo_model_joint_of_motor(model, motor);
+    int joint = joint_of(robot, motor);
     if (joint < 0) {
         return joint;
     }
     if (!is_time(time_cs)) {
         return GROBO_ERR_ARG;
     }
-    (void)grobo_posture_init(&target, model->n_joints);
+    (void)grobo_posture_init(&target, model_of(robot)->n_joints);
     (void)grobo_posture_set_rad(&target, joint, grobo_rad_from_ddeg(angle_ddeg));
     /* One unit, which the engine stretches to what the joint can do. */
     target.time_us = (time_cs == 0 ? 1 : time_cs) * (int64_t)GROBO_PLAY_TIME_UNIT_US;
@@ -74,20 +72,14 @@ int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs)
 
 int grobo_gr001_sense(grobo_robot *robot, int motor)
 {
-    if (robot == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    int joint = grobo_model_joint_of_motor(model_of(robot), motor);
+    int joint = joint_of(robot, motor);
     return joint < 0 ? joint : grobo_robot_sense(robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL);
 }
 
 int grobo_gr001_angle(const grobo_robot *robot, int motor, int64_t max_age_us, int *angle_ddeg)
 {
-    if (robot == NULL || angle_ddeg == NULL) {
-        return GROBO_ERR_ARG;
-    }
     grobo_joint_info info;
-    int joint = grobo_model_joint_of_motor(model_of(robot), motor);
+    int joint = angle_ddeg == NULL ? GROBO_ERR_ARG : joint_of(robot, motor);
     if (joint < 0) {
         return joint;
     }
@@ -127,7 +119,7 @@ int grobo_gr001_posture(const grobo_model *model, const int16_t *angle_ddeg, siz
         return GROBO_ERR_ARG;
     }
     uint8_t joints[GROBO_JOINTS_MAX];
-    if (n > (size_t)grobo_i_gr001_order(model, joints)) {
+    if (n > (size_t)order(model, joints)) {
         return GROBO_ERR_CAP;
     }
     if (!is_time(time_cs)) {
@@ -149,7 +141,7 @@ int grobo_gr001_set_angles(grobo_robot *robot, const double *angle_rad, size_t n
     uint8_t joints[GROBO_JOINTS_MAX];
     grobo_posture target;
     const grobo_model *model = model_of(robot);
-    if (n != (size_t)grobo_i_gr001_order(model, joints)) {
+    if (n != (size_t)order(model, joints)) {
         return GROBO_ERR_ARG;
     }
     (void)grobo_posture_init(&target, model->n_joints);
@@ -170,7 +162,7 @@ int grobo_gr001_get_angles(const grobo_robot *robot, int64_t max_age_us, double 
     uint8_t joints[GROBO_JOINTS_MAX];
     double by_joint[GROBO_JOINTS_MAX];
     grobo_posture sensed;
-    int n = grobo_i_gr001_order(model_of(robot), joints);
+    int n = order(model_of(robot), joints);
     if (capacity < (size_t)n) {
         return GROBO_ERR_SPACE;
     }
@@ -191,7 +183,7 @@ static int values(const grobo_robot *robot, grobo_field field, int64_t max_age_u
     if (robot == NULL || value == NULL) {
         return GROBO_ERR_ARG;
     }
-    int n = grobo_i_gr001_order(model_of(robot), joints);
+    int n = order(model_of(robot), joints);
     if (capacity < (size_t)n) {
         return GROBO_ERR_SPACE;
     }
@@ -269,4 +261,97 @@ int grobo_gr001_play_record(const grobo_motion *record, grobo_robot *robot,
     }
     *clip = made;
     return number;
+}
+
+/* ---- for people ------------------------------------------------------------------------------ */
+
+/* A line a motor: number, name, value in `unit`, divided by 10 to the power of `decimals`. */
+static int print_values(const grobo_model *model, const int32_t *value, int decimals,
+                        const char *unit, FILE *stream)
+{
+    uint8_t joints[GROBO_JOINTS_MAX];
+    int n = order(model, joints);
+    double scale = decimals == 0 ? 1 : 1000;
+    for (int i = 0; i < n; i++) {
+        const grobo_joint *joint = &model->joints[joints[i]];
+        if (value[i] >= 0 && fprintf(stream, "%2d %-12s %6.*f %s\n", joint->motor, joint->name,
+                                     decimals, value[i] / scale, unit) < 0) {
+            return GROBO_ERR_IO;
+        }
+    }
+    return GROBO_OK;
+}
+
+int grobo_gr001_print_voltages(const grobo_robot *robot, FILE *stream)
+{
+    if (robot == NULL || stream == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    int32_t voltage_mv[GROBO_JOINTS_MAX];
+    (void)grobo_gr001_voltages(robot, GROBO_NEVER_US, voltage_mv, GROBO_JOINTS_MAX);
+    int result = print_values(model_of(robot), voltage_mv, 2, "V", stream);
+    int mean_mv = grobo_gr001_mean_voltage_mv(robot, GROBO_NEVER_US);
+    if (result < 0) {
+        return result;
+    }
+    int written = mean_mv < 0 ? fprintf(stream, "mean -\n")
+                              : fprintf(stream, "mean            %6.2f V\n", mean_mv / 1000.0);
+    return written < 0 ? GROBO_ERR_IO : GROBO_OK;
+}
+
+int grobo_gr001_print_currents(const grobo_robot *robot, FILE *stream)
+{
+    if (robot == NULL || stream == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    int32_t current_ma[GROBO_JOINTS_MAX];
+    (void)grobo_gr001_currents(robot, GROBO_NEVER_US, current_ma, GROBO_JOINTS_MAX);
+    return print_values(model_of(robot), current_ma, 0, "mA", stream);
+}
+
+enum { NONE = -1 };
+
+/* One line of the body, as seen from the front: joints of its right, its middle, its left. */
+typedef struct body_row {
+    const char *part;
+    int8_t right, middle, left;
+} body_row;
+
+static const body_row body[] = {
+    {"neck yaw", NONE, 13, NONE},    {"shoulder pitch", 14, NONE, 17},
+    {"shoulder roll", 15, NONE, 18}, {"elbow pitch", 16, NONE, 19},
+    {"chest pitch", NONE, 12, NONE}, {"hip yaw", 0, NONE, 6},
+    {"hip roll", 1, NONE, 7},        {"hip pitch", 2, NONE, 8},
+    {"knee pitch", 3, NONE, 9},      {"ankle pitch", 4, NONE, 10},
+    {"ankle roll", 5, NONE, 11},
+};
+
+/* An angle; empty where there is no joint. */
+static const char *cell(const grobo_posture *posture, int joint, char text[16])
+{
+    if (joint == NONE) {
+        return "";
+    }
+    if ((posture->set & GROBO_JOINT_BIT(joint)) == 0) {
+        return "-";
+    }
+    /* By way of the wire's unit, which knows no -0.0. */
+    (void)snprintf(text, 16, "%.1f", grobo_ddeg_from_rad(posture->angle_rad[joint]) / 10.0);
+    return text;
+}
+
+int grobo_gr001_print_posture(const grobo_posture *posture, FILE *stream)
+{
+    if (stream == NULL || posture == NULL || posture->n_joints != grobo_gr001_model.n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    int written = fprintf(stream, "                   right  middle    left\n");
+    for (size_t i = 0; i < sizeof body / sizeof body[0] && written >= 0; i++) {
+        char text[3][16];
+        const char *left = cell(posture, body[i].left, text[2]);
+        written =
+            fprintf(stream, "%-16s%8s%8s%*s\n", body[i].part, cell(posture, body[i].right, text[0]),
+                    cell(posture, body[i].middle, text[1]), *left != '\0' ? 8 : 0, left);
+    }
+    return written < 0 ? GROBO_ERR_IO : GROBO_OK;
 }

@@ -272,7 +272,9 @@ static void check_servos(maker *m)
     }
     for (int j = 0; j < m->draft->n_joints; j++) {
         grobo_joint joint = m->file->joints[j];
+        int id = joint.motor;
         joint.mirror = 0;
+        joint.motor = 1; /* which each family has: its own is judged below */
         const grobo_model one = {.name = m->file->model_name, .joints = &joint, .n_joints = 1};
         int result = init(&m->driver, &one);
         if (result == GROBO_ERR_UNSUPPORTED) {
@@ -296,8 +298,7 @@ static void check_servos(maker *m)
             continue;
         }
         const grobo_protocol *protocol = m->driver.protocol;
-        if (result == GROBO_OK &&
-            (joint.motor < protocol->id_min || joint.motor > protocol->id_max)) {
+        if (result == GROBO_OK && (id < protocol->id_min || id > protocol->id_max)) {
             result = grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "range", joint_place(m, j, "id"),
                                       "%s: an id from %d to %d is wanted", joint.name,
                                       protocol->id_min, protocol->id_max);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* DYNAMIXEL Protocol 1.0 for the bus: what a frame is answered by, and what a status tells. Nothing
- * in a frame says whether it is a status: the bus compares with what it has sent. */
+ * in a frame says whether it is a status: the bus compares with what it has sent, and what looks as
+ * if a host had sent it answers nothing: an echo that nobody reckons with, or another host's. */
 #include <string.h>
 
 #include <grobo/bus.h>
@@ -29,13 +30,15 @@ void grobo_i_dxl1_unpack(uint8_t *bytes, size_t n, uint8_t refusals, grobo_packe
 }
 
 /* The other bits say how the servo is, and come with good data. Of a request that came broken: it
- * is asked again when the time of its answer is over. */
+ * is asked again when the time of its answer is over. A read or a write of a host's would refuse,
+ * with data, as no status does. */
 static void unpack(uint8_t *bytes, size_t n, grobo_packet *packet)
 {
     const uint8_t refusals =
         GROBO_DXL1_ANGLE_LIMIT | GROBO_DXL1_BAD_RANGE | GROBO_DXL1_BAD_INSTRUCTION;
     grobo_i_dxl1_unpack(bytes, n, refusals, packet);
-    if ((packet->flags & GROBO_DXL1_BAD_SUM) != 0) {
+    bool sent = packet->refused && packet->data_bytes > 0 && packet->flags <= GROBO_DXL1_WRITE;
+    if (sent || (packet->flags & GROBO_DXL1_BAD_SUM) != 0) {
         packet->kind = GROBO_PACKET_COMMAND;
     }
 }

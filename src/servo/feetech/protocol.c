@@ -5,10 +5,15 @@
 
 #include "src/servo/dxl1/protocol.h"
 
-/* All of its errors say how the servo is; the data are good, and the request was done. */
+/* All of its errors say how the servo is; the data are good, and the request was done. What a host
+ * sends to read two bytes is a status with two, the address and a 2: it is no value of theirs, even
+ * if a servo without its sensor may say so one time in 256. */
 static void unpack(uint8_t *bytes, size_t n, grobo_packet *packet)
 {
     grobo_i_dxl1_unpack(bytes, n, 0, packet);
+    if (packet->flags == GROBO_DXL1_READ && packet->data_bytes == 2 && packet->data[1] == 2) {
+        packet->kind = GROBO_PACKET_COMMAND;
+    }
 }
 
 const grobo_protocol grobo_feetech_protocol = {

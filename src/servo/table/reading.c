@@ -99,6 +99,15 @@ static void take_limit(const grobo_joint *joint, const grobo_i_block *b, grobo_j
     }
 }
 
+/* Within what the register can hold; of four bytes that is not all that they can say. */
+static bool speed_fits(const grobo_i_block *b)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(b->servo, GROBO_ROLE_PRESENT_SPEED);
+    int32_t counts;
+    return !value_of(b, GROBO_ROLE_PRESENT_SPEED, &counts) ||
+           (counts >= reg->min && counts <= reg->max);
+}
+
 /* A sum of bytes does not notice what two faults make up for: what no servo says is not believed.
  * Where a status and a register tell the same errors, both must. */
 static bool plausible(const grobo_i_family *family, const grobo_joint *joint,
@@ -113,8 +122,8 @@ static bool plausible(const grobo_i_family *family, const grobo_joint *joint,
     bool told = family->pace == GROBO_I_PACE_PROFILE || !value_of(b, GROBO_ROLE_ERROR, &error) ||
                 error == flags;
     bool turn = ticks >= -OUTSIDE_TICKS && ticks < b->servo->span_ticks + OUTSIDE_TICKS;
-    return told && (turn || joint->turns) && mv <= VOLTAGE_MAX_MV && celsius <= HEAT_MAX_C &&
-           torque >= 0 && torque <= TORQUE_MAX;
+    return told && (turn || joint->turns) && speed_fits(b) && mv <= VOLTAGE_MAX_MV &&
+           celsius <= HEAT_MAX_C && torque >= 0 && torque <= TORQUE_MAX;
 }
 
 int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,

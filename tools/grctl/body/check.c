@@ -2,7 +2,6 @@
 #include <math.h>
 
 #include "tools/grctl/body/check.h"
-#include "tools/grctl/cli/file.h"
 
 /* Nearer to the edge real feet, floors and servos decide. */
 static const double margin_least_m = 0.005;

@@ -155,7 +155,8 @@ static int keys_motion(grobo_body *body, grobo_motion **out)
     return error;
 }
 
-int body_motion(app *a, const char *path, grobo_body *body, double rate_hz, grobo_motion **out)
+static int make_motion(app *a, const char *path, grobo_body *body, double rate_hz,
+                       grobo_motion **out)
 {
     int n = rate_hz > 0 ? grobo_body_frames(body, NULL, out) : keys_motion(body, out);
     if (n < 0) {
@@ -165,4 +166,20 @@ int body_motion(app *a, const char *path, grobo_body *body, double rate_hz, grob
         app_note(a, "%s: in %d frames a leg does not reach its target", path, n);
     }
     return 0;
+}
+
+int body_solve(app *a, int base, const char *path, const grobo_motion *motion, double rate_hz,
+               grobo_motion **solved)
+{
+    grobo_body *body = NULL;
+    int status = body_make(a, base, path, motion, rate_hz, &body);
+    if (!status && body) {
+        status = make_motion(a, path, body, rate_hz, solved);
+    }
+    grobo_body_free(body);
+    if (*solved) {
+        (void)grobo_motion_set_name(*solved, grobo_motion_name(motion));
+        (void)grobo_motion_set_target_body(*solved, grobo_motion_target_body(motion));
+    }
+    return status;
 }

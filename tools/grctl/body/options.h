@@ -67,9 +67,10 @@ int body_make(app *a, int base, const char *path, const grobo_motion *motion, do
 int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *slack);
 
 /*
- * The motion with its legs solved: frames at a rate, or (0) a posture a key time. The motion
- * belongs to the caller. 0 or the status.
+ * The motion with its legs solved: frames at a rate, or (0) a posture a key time. It belongs to the
+ * caller; *solved stays NULL as *body above. 0 or the status.
  */
-int body_motion(app *a, const char *path, grobo_body *body, double rate_hz, grobo_motion **out);
+int body_solve(app *a, int base, const char *path, const grobo_motion *motion, double rate_hz,
+               grobo_motion **solved);
 
 #endif

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/files.h>
+
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/lang/lang.h"
@@ -67,9 +69,12 @@ double app_number(const app *a, int i, double otherwise)
 
 void app_make_one_line(char *text)
 {
-    for (; *text; text++) {
-        if ((unsigned char)*text < 0x20 || *text == 0x7f) {
-            *text = '?';
+    for (unsigned char *c = (unsigned char *)text; *c; c++) {
+        bool c1 = c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0; /* controls of eight bits */
+        if (*c < 0x20 || *c == 0x7f || c1) {
+            *c = '?';
+            c += c1;
+            *c = '?';
         }
     }
 }
@@ -256,6 +261,17 @@ void app_print(const char *format, ...)
     va_start(list, format);
     output_print(format, list);
     va_end(list);
+}
+
+void app_print_line(const char *format, ...)
+{
+    char text[GROBO_PATH_MAX_BYTES + APP_LINE_BYTES];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    app_make_one_line(text);
+    app_print("%s\n", text);
 }
 
 static int print_part(const char *bytes, size_t size, void *ctx)

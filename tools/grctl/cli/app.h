@@ -39,6 +39,8 @@ typedef struct app {
     bool tty_in, tty_out, tty_err;
     bool moves;      /* the command may move the robot: it gets a guard */
     bool stops;      /* the command stops the robot: no signal or trace keeps it from that */
+    bool mistaken;   /* it does so though its line has a mistake, or nobody knows which robot is
+                        meant; that is told later */
     bool reconnects; /* a lost line is opened again, and is no failure */
     bool traced;     /* --trace was begun, or could not be; else there was no line to trace */
     bool clamps;     /* targets outside limits go to the limit, and are no failure */
@@ -108,6 +110,8 @@ void app_detail(const app *a, const char *format, ...) __attribute__((format(pri
 
 /* Prints on standard output as printf() does, see output.h; a while later, or by output_flush(). */
 void app_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* The same of a whole line with texts of others: app_make_one_line(). */
+void app_print_line(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* One JSON object on a line of its own; takes the reference. */
 void app_print_json(json_t *object);
 /* A JSON string of bytes that may be no UTF-8. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +10,6 @@
 #include <grobo/session.h>
 
 #include "tools/grctl/cli/config.h"
-#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/lang/lang.h"
@@ -205,6 +205,7 @@ static int take_def(reader *r)
         return complain(r, &r->event.start_mark, "%s", complaint);
     }
     r->model = def->model;
+    robot->def_end = r->event.end_mark.index;
     return 0;
 }
 
@@ -362,12 +363,17 @@ static int take_top(reader *r, const char *key)
 
 /* ---- files ---------------------------------------------------------------------------------- */
 
-static int read_file(reader *r, FILE *file)
+/* A file, or a text where that is NULL. */
+static int read_file(reader *r, FILE *file, const char *text, size_t size)
 {
     if (!yaml_parser_initialize(&r->parser)) {
         return app_fail(r->a, EXIT_ROBOT, "NOMEM", "%s: not enough memory", r->path);
     }
-    yaml_parser_set_input_file(&r->parser, file);
+    if (file) {
+        yaml_parser_set_input_file(&r->parser, file);
+    } else {
+        yaml_parser_set_input_string(&r->parser, (const unsigned char *)text, size);
+    }
     r->has_event = false;
     next(r);
     if (!r->status) {
@@ -400,7 +406,7 @@ static int find(reader *r)
             if (!file) {
                 break;
             }
-            read_file(r, file);
+            read_file(r, file, NULL, 0);
             fclose(file);
             if (knew) {
                 break;
@@ -555,8 +561,27 @@ bool config_warns_of_falls(const app *a)
         if (!file) {
             continue;
         }
-        read_file(&r, file);
+        read_file(&r, file, NULL, 0);
         fclose(file);
     }
     return !r.has_warn_fall || r.warn_fall;
+}
+
+bool config_would_read(const app *a, const char *text, size_t size, const config_robot *wanted)
+{
+    static config_robot robot;
+    char hushed[APP_LINE_BYTES];
+    app quiet = *a;
+    reader r = {.a = &quiet, .robot = &robot};
+    quiet.hushed = hushed;
+    quiet.driver = NULL; /* it is not chosen yet where a configuration is read */
+    memset(&robot, 0, sizeof robot);
+    snprintf(r.wanted, sizeof r.wanted, "%s", wanted->name);
+    snprintf(r.path, sizeof r.path, "%s", wanted->path);
+    bool same = !read_file(&r, NULL, text, size) && strcmp(robot.name, wanted->name) == 0 &&
+                strcmp(robot.device, wanted->device) == 0;
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
+        same &= fabs(robot.trim_deg[j] - wanted->trim_deg[j]) < 1e-6;
+    }
+    return same;
 }

@@ -43,8 +43,8 @@ typedef struct config_robot {
     double trim_deg[GROBO_JOINTS_MAX];
     double offset_deg[GROBO_JOINTS_MAX];
     bool trimmed, offsets;
-    /* where the trim stands in the file, or would, in characters */
-    size_t trim_at, trim_end, first_at, first_column;
+    /* where the trim stands in the file, or would: behind its robot, or first; in characters */
+    size_t trim_at, trim_end, def_end, first_at, first_column;
     bool flow; /* the robot is written as { ... } */
 } config_robot;
 
@@ -106,6 +106,9 @@ int config_add(app *a, const config_entry *entry, char *path, size_t capacity);
  * removes what was made for the robot, unless that has. As above.
  */
 int config_undo(app *a, config_undone *undone);
+
+/* Whether a file of this text, at its path, has the robot with this device and these trims. */
+bool config_would_read(const app *a, const char *text, size_t size, const config_robot *wanted);
 
 /* Writes the trims of the robot into its file: a temporary one takes its place. As above. */
 int config_write_trims(app *a, const config_robot *robot);

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/model.h>
-
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/lang/lang.h"
@@ -33,136 +31,110 @@ static size_t byte_of(const char *text, size_t characters)
 
 static char *read_all(const char *path)
 {
-    FILE *file = fopen(path, "rb");
-    char *text = file ? calloc(1, CONFIG_FILE_MAX_BYTES + 1) : NULL;
-    if (text && fread(text, 1, CONFIG_FILE_MAX_BYTES, file) == CONFIG_FILE_MAX_BYTES) {
-        errno = EFBIG;
-        free(text);
-        text = NULL;
-    }
-    if (file) {
-        fclose(file);
-    }
-    return text;
+    return file_bytes(path, CONFIG_FILE_MAX_BYTES - 1).bytes;
 }
 
-/* Text that is put together; what has no room is missed, and `full` says so. */
-typedef struct draft {
-    char *text;
-    size_t used, capacity;
-    bool full;
-} draft;
-
-static void put(draft *to, const char *text, size_t size)
-{
-    to->full |= size > to->capacity - to->used;
-    if (to->full) {
-        return;
-    }
-    memcpy(to->text + to->used, text, size);
-    to->used += size;
-}
-
-static void put_trims(const app *a, draft *to, const config_robot *robot)
+static void put_trims(const app *a, heap *to, const config_robot *robot)
 {
     const char *before = "{";
-    char one[64];
     for (int j = 0; j < app_model(a)->n_joints; j++) {
-        if (robot->trim_deg[j] == 0) {
-            continue;
+        if (robot->trim_deg[j] != 0) {
+            heap_print(to, "%s%s: %.10g", before, app_model(a)->joints[j].name, robot->trim_deg[j]);
+            before = ", ";
         }
-        snprintf(one, sizeof one, "%s%s: %.1f", before, app_model(a)->joints[j].name,
-                 robot->trim_deg[j]);
-        put(to, one, strlen(one));
-        before = ", ";
     }
-    put(to, "{}", *before == '{' ? 2 : 0);
-    put(to, "}", *before == '{' ? 0 : 1);
+    heap_print(to, *before == '{' ? "{}" : "}");
 }
 
-static void put_file(const app *a, draft *to, const char *text, const config_robot *robot)
+/* Between the trims that are added and their neighbour. */
+static void put_break(heap *to, const config_robot *robot)
 {
-    size_t at = byte_of(text, robot->trimmed ? robot->trim_at : robot->first_at);
-    size_t end = byte_of(text, robot->trimmed ? robot->trim_end : robot->first_at);
-    put(to, text, at);
-    if (!robot->trimmed) {
-        put(to, "trim: ", strlen("trim: "));
+    if (robot->flow) {
+        heap_print(to, ", ");
+    } else {
+        heap_print(to, "\n%*s", (int)robot->first_column, "");
     }
+}
+
+static void put_file(const app *a, heap *to, const char *text, const config_robot *robot)
+{
+    bool adds = !robot->trimmed, behind = adds && robot->def_end;
+    size_t at = byte_of(text, robot->trimmed ? robot->trim_at
+                              : behind       ? robot->def_end
+                                             : robot->first_at);
+    size_t end = robot->trimmed ? byte_of(text, robot->trim_end) : at;
+    if (behind && !robot->flow) {
+        at = end = at + strcspn(text + at, "\n"); /* and behind its comment */
+    }
+    heap_add(to, text, at);
+    if (behind) {
+        put_break(to, robot);
+    }
+    heap_print(to, adds ? "trim: " : "");
     put_trims(a, to, robot);
-    if (!robot->trimmed && robot->flow) {
-        put(to, ", ", strlen(", "));
-    } else if (!robot->trimmed) {
-        put(to, "\n", 1);
+    if (adds && !behind) {
+        put_break(to, robot);
     }
-    for (size_t i = 0; !robot->trimmed && !robot->flow && i < robot->first_column; i++) {
-        put(to, " ", 1);
-    }
-    put(to, text + end, strlen(text + end));
+    heap_print(to, "%s", text + end);
+}
+
+/* Before it takes the place of the file: it must have the robot. 0, or the exit status. */
+static int check(app *a, const heap *made, const config_robot *robot)
+{
+    const char *trouble = !made->bytes                         ? N_("not enough memory")
+                          : made->size > CONFIG_FILE_MAX_BYTES ? N_("too long")
+                          : !config_would_read(a, made->bytes, made->size, robot)
+                              ? N_("it would not be read as it is meant; change it by hand")
+                              : NULL;
+    return trouble ? fail(a, robot->path, trouble) : 0;
+}
+
+static int save(app *a, const char *path, const char *text, size_t size)
+{
+    int error = file_save(path, text, size);
+    return error ? fail(a, path, file_error_text(error)) : EXIT_DONE;
 }
 
 int config_write_trims(app *a, const config_robot *robot)
 {
-    draft made = {.capacity = CONFIG_FILE_MAX_BYTES};
+    heap made = {0};
     char *text = read_all(robot->path);
-    int status;
     if (!text) {
         return fail(a, robot->path, app_cause_text(errno));
     }
-    made.text = malloc(made.capacity);
-    if (made.text) {
-        put_file(a, &made, text, robot);
-    }
-    if (!made.text || made.full) {
-        status = fail(a, robot->path, made.text ? "too long" : "not enough memory");
-    } else {
-        int error = file_save(robot->path, made.text, made.used);
-        status = error ? fail(a, robot->path, file_error_text(error)) : EXIT_DONE;
-    }
-    free(made.text);
+    put_file(a, &made, text, robot);
+    int status = check(a, &made, robot);
+    status = status ? status : save(a, robot->path, made.bytes, made.size);
+    free(made.bytes);
     free(text);
     return status;
 }
 
 /* ---- another robot --------------------------------------------------------------------------- */
 
-static void put_text(draft *to, const char *text)
-{
-    put(to, text, strlen(text));
-}
-
 /* A scalar in double quotes. */
-static void put_quoted(draft *to, const char *text)
+static void put_quoted(heap *to, const char *text)
 {
-    put_text(to, "\"");
+    heap_print(to, "\"");
     for (; *text; text++) {
-        if (*text == '"' || *text == '\\') {
-            put_text(to, "\\");
-        }
-        put(to, text, 1);
+        heap_print(to, *text == '"' || *text == '\\' ? "\\%c" : "%c", *text);
     }
-    put_text(to, "\"");
+    heap_print(to, "\"");
 }
 
-static void put_entry(draft *to, const config_entry *entry, size_t indent)
+static void put_entry(heap *to, const config_entry *entry, size_t indent)
 {
-    char number[32];
-    for (size_t i = 0; i < indent; i++) {
-        put_text(to, " ");
-    }
-    put_text(to, entry->name);
-    put_text(to, ": {device: ");
+    heap_print(to, "%*s%s: {device: ", (int)indent, "", entry->name);
     put_quoted(to, entry->device);
-    put_text(to, ", robot: ");
+    heap_print(to, ", robot: ");
     put_quoted(to, entry->def);
     if (entry->baud_bps) {
-        snprintf(number, sizeof number, ", baud: %d", entry->baud_bps);
-        put_text(to, number);
+        heap_print(to, ", baud: %d", entry->baud_bps);
     }
     if (entry->wiring) {
-        put_text(to, ", wiring: ");
-        put_text(to, entry->wiring);
+        heap_print(to, ", wiring: %s", entry->wiring);
     }
-    put_text(to, "}\n");
+    heap_print(to, "}\n");
 }
 
 static const char *line_behind(const char *line)
@@ -200,7 +172,7 @@ static const char *find_robots(const char *text, bool *has)
 }
 
 /* False: robots stand there in braces. */
-static bool put_added(draft *to, const char *text, const config_entry *entry)
+static bool put_added(heap *to, const char *text, const config_entry *entry)
 {
     bool has;
     const char *at = find_robots(text, &has);
@@ -208,23 +180,17 @@ static bool put_added(draft *to, const char *text, const config_entry *entry)
         return false;
     }
     if (!*text) {
-        put_text(to, "default: ");
-        put_text(to, entry->name);
-        put_text(to, "\n");
+        heap_print(to, "default: %s\n", entry->name);
     }
-    if (at) {
-        put(to, text, (size_t)(at - text));
-    } else {
-        put_text(to, text);
-    }
-    if (to->used > 0 && to->used <= to->capacity && to->text[to->used - 1] != '\n') {
-        put_text(to, "\n");
+    heap_add(to, text, at ? (size_t)(at - text) : strlen(text));
+    if (to->size > 0 && to->bytes[to->size - 1] != '\n') {
+        heap_print(to, "\n");
     }
     if (!at) {
-        put_text(to, "robots:\n");
+        heap_print(to, "robots:\n");
     }
     put_entry(to, entry, at ? indent_of(at) : 2);
-    put_text(to, at ? at : "");
+    heap_print(to, "%s", at ? at : "");
     return true;
 }
 
@@ -257,32 +223,30 @@ static bool find_file(char *path, size_t capacity)
 
 int config_add(app *a, const config_entry *entry, char *path, size_t capacity)
 {
-    draft made = {.capacity = CONFIG_FILE_MAX_BYTES};
+    heap made = {0};
+    config_robot robot = {.name = ""};
     if (!find_file(path, capacity)) {
         return app_fail(a, EXIT_FILE, "NOENT",
                         "there is no folder for a configuration: HOME is "
                         "not set");
     }
-    errno = 0;
     char *before = read_all(path);
     if (!before && errno != ENOENT) {
         return fail(a, path, app_cause_text(errno));
     }
-    made.text = calloc(1, made.capacity + 1);
-    bool fits = made.text && put_added(&made, before ? before : "", entry);
-    int status = 0;
-    if (!made.text || made.full) {
-        status = fail(a, path, made.text ? "too long" : "not enough memory");
-    } else if (!fits) {
-        status = fail(a, path, "its robots stand in braces; add the robot by hand");
-    } else {
-        status = keep_undo(a, path, before, made.text, entry->file);
+    bool fits = put_added(&made, before ? before : "", entry);
+    snprintf(robot.name, sizeof robot.name, "%s", entry->name);
+    snprintf(robot.path, sizeof robot.path, "%s", path);
+    snprintf(robot.device, sizeof robot.device, "%s", entry->device);
+    int status = fits ? check(a, &made, &robot)
+                      : fail(a, path, "its robots stand in braces; add the robot by hand");
+    if (!status) {
+        status = keep_undo(a, path, before, made.bytes, entry->file);
     }
     if (!status) {
-        int error = file_save(path, made.text, made.used);
-        status = error ? fail(a, path, file_error_text(error)) : 0;
+        status = save(a, path, made.bytes, made.size);
     }
-    free(made.text);
+    free(made.bytes);
     free(before);
     return status;
 }
@@ -307,8 +271,7 @@ static int put_back(app *a, const char *path, const char *before, const char *af
     if (!before) {
         return remove(path) == 0 ? 0 : fail(a, path, app_cause_text(errno));
     }
-    int error = file_save(path, before, strlen(before));
-    return error ? fail(a, path, file_error_text(error)) : 0;
+    return save(a, path, before, strlen(before));
 }
 
 int config_undo(app *a, config_undone *undone)

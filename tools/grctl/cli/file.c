@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/files.h>
@@ -145,6 +147,12 @@ static int read_stream(void *ctx, void *buffer, size_t size)
     return n == 0 && ferror(stream) ? GROBO_ERR_IO : (int)n;
 }
 
+const char *file_last_part(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 const char *file_shown_name(const char *path)
 {
     return strcmp(path, "-") == 0 ? "(standard input)" : path;
@@ -166,11 +174,51 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
     return grobo_motion_read(&source, &named, list, motion);
 }
 
-int file_save(const char *path, const void *bytes, size_t size)
+bool file_is_there(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (file) {
+        fclose(file);
+    }
+    return file != NULL;
+}
+
+heap file_rest(FILE *from, size_t most)
+{
+    char piece[1 << 14];
+    size_t n = 0;
+    heap all = {0};
+    do {
+        heap_add(&all, piece, n);
+        n = fread(piece, 1, sizeof piece, from);
+    } while (n > 0 && all.size <= most);
+    int error = ferror(from) ? errno : !all.bytes ? ENOMEM : all.size > most ? EFBIG : 0;
+    if (error) {
+        free(all.bytes);
+        all.bytes = NULL;
+        errno = error;
+    }
+    return all;
+}
+
+heap file_bytes(const char *path, size_t most)
+{
+    heap all = {0};
+    FILE *file = fopen(path, "rb");
+    if (file) {
+        all = file_rest(file, most);
+        int error = errno;
+        fclose(file);
+        errno = error;
+    }
+    return all;
+}
+
+static int save(const char *path, bool exclusive, const void *bytes, size_t size)
 {
     const grobo_files *files = grobo_files_os();
     grobo_file file;
-    int error = files->create(&file, path, false);
+    int error = files->create(&file, path, exclusive);
     if (error) {
         return error;
     }
@@ -180,6 +228,16 @@ int file_save(const char *path, const void *bytes, size_t size)
     }
     files->discard(&file);
     return error;
+}
+
+int file_save(const char *path, const void *bytes, size_t size)
+{
+    return save(path, false, bytes, size);
+}
+
+int file_save_new(const char *path, const void *bytes, size_t size)
+{
+    return save(path, true, bytes, size);
 }
 
 /* A copy of what the shell has recorded. */
@@ -201,12 +259,19 @@ int file_load_listed(app *a, const char *path, const grobo_read_options *options
     return error ? complain(a, path, error, list) : EXIT_DONE;
 }
 
+int file_list(app *a, grobo_diagnostics **list)
+{
+    int error = grobo_diagnostics_new(NULL, list);
+    return error ? app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error))
+                 : 0;
+}
+
 int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion)
 {
     grobo_diagnostics *list = NULL;
-    int error = grobo_diagnostics_new(NULL, &list);
+    int error = file_list(a, &list);
     if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
+        return error;
     }
     error = file_load_listed(a, path, options, list, motion);
     if (!error) {

@@ -6,6 +6,7 @@
 #include <grobo/motion_io.h>
 
 #include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/heap.h"
 
 /*
  * Reads a motion; "-" is standard input, "@record" what a shell has recorded. On failure says the
@@ -38,8 +39,21 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
 int file_load_listed(app *a, const char *path, const grobo_read_options *options,
                      grobo_diagnostics *list, grobo_motion **motion);
 
+/* Whether there is one that can be read. */
+bool file_is_there(const char *path);
+
+/* All that a file has, or what is to come of a stream. Without bytes: errno says why; EFBIG: they
+ * are more than `most`. */
+heap file_rest(FILE *from, size_t most);
+heap file_bytes(const char *path, size_t most);
+
 /* Replaces a file, or what a symbolic link leads to, once the new one is safely written. */
 int file_save(const char *path, const void *bytes, size_t size);
+/* The same of a file that is not there yet; else GROBO_ERR_EXISTS. */
+int file_save_new(const char *path, const void *bytes, size_t size);
+
+/* Its name without folders. */
+const char *file_last_part(const char *path);
 
 /* What a file is called in messages: "-" is standard input. */
 const char *file_shown_name(const char *path);
@@ -52,6 +66,8 @@ void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t c
 /* Prints it with its code, as a result; on a terminal with what that means. color: "" for none. */
 void file_print(const app *a, const grobo_diagnostic *d, const char *color);
 
+/* An empty list of them. 0, or the exit status with it said. */
+int file_list(app *a, grobo_diagnostics **list);
 /* Diagnostics as a list of JSON. */
 json_t *file_json(const grobo_diagnostics *list);
 

@@ -80,7 +80,7 @@ static void print_global_options(FILE *to)
 
 void cli_print_overview(FILE *to)
 {
-    fputs(_("grctl drives serial command-servo robots, first of all the GR001 humanoid.\n\n"
+    fputs(_("grctl drives robots of serial command servos, such as GR001 or an SO-101 arm.\n\n"
             "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n"),
           to);
     for (size_t i = 0; i < cli_n_commands; i++) {
@@ -91,7 +91,7 @@ void cli_print_overview(FILE *to)
     print_details(
         to, _("A joint is named by name (R_KNEE_P), motor (m12) or joint id (j3); a group by name "
               "(all body right_arm left_arm arms right_leg left_leg legs) or by its number 0..7. "
-              "Angles are degrees, times milliseconds. 'grctl help COMMAND' says more.\n"));
+              "Angles are degrees, times milliseconds. See 'grctl help COMMAND' for details.\n"));
 }
 
 void cli_print_command(FILE *to, const cli_command *command)

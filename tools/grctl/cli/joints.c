@@ -129,3 +129,25 @@ int joints_check_limits(app *a, const grobo_posture *posture, const char *doing)
                     j->name, j->motor, grobo_deg_from_rad(posture->angle_rad[joint]),
                     grobo_deg_from_rad(j->min_rad), grobo_deg_from_rad(j->max_rad));
 }
+
+json_t *joints_json(grobo_joint_mask joints)
+{
+    json_t *list = json_array();
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
+        if (joints & GROBO_JOINT_BIT(j)) {
+            json_array_append_new(list, json_integer(j));
+        }
+    }
+    return list;
+}
+
+json_t *joints_groups_json(const grobo_model *model, int joint)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < model->n_groups; i++) {
+        if (model->groups[i].joints & GROBO_JOINT_BIT(joint)) {
+            json_array_append_new(list, json_string(model->groups[i].name));
+        }
+    }
+    return list;
+}

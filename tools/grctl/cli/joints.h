@@ -21,5 +21,8 @@ int joints_parse_motion(app *a, const char *list, const grobo_model *model, int 
 int joints_parse_one(app *a, const char *name, size_t length, int *status);
 /* Refuses a posture with an angle outside its limits: says which, returns the exit status, or 0. */
 int joints_check_limits(app *a, const grobo_posture *posture, const char *doing);
+/* Their numbers as a list, and the names of the groups that a joint is in. */
+json_t *joints_json(grobo_joint_mask joints);
+json_t *joints_groups_json(const grobo_model *model, int joint);
 
 #endif

@@ -155,12 +155,16 @@ int robot_choose(app *a)
         return app_fail(a, is_path(name) ? EXIT_FILE : EXIT_USAGE,
                         is_path(name) ? "SYNTAX" : "NOTFOUND", "%s%s", whose, complaint);
     }
-    if (a->robot && app_global(a, GLOBAL_ROBOT)->given && strcmp(name, configured) != 0) {
-        return app_fail(a, EXIT_USAGE, "ARG", "--robot %s: %s of %s is another robot: %s", name,
-                        a->robot->name, a->robot->path, configured);
-    }
     a->def_name = name;
-    return make_driver(a, name);
+    int status = make_driver(a, name); /* which a stop needs in any case */
+    bool given = app_global(a, GLOBAL_ROBOT)->given > 0;
+    if (!status && a->robot && (given || a->robot->trimmed || a->robot->offsets) &&
+        strcmp(name, configured) != 0) { /* trims are of the joints of one robot */
+        return app_fail(a, EXIT_USAGE, "ARG", "%s%s: %s of %s is another robot: %s",
+                        given ? "--robot " : whose, name, a->robot->name, a->robot->path,
+                        configured);
+    }
+    return status;
 }
 
 void robot_of_words(app *a, int n, char *const *words)

@@ -117,6 +117,16 @@ static void suspend_by(void (*handler)(int number))
     }
 }
 
+/* What was wrong before a stop: of the configuration, and of the line. The status of the last. */
+static int complain_late(app *a, int later, const char *said, const char *complaint)
+{
+    if (later) {
+        *a->place = '\0'; /* it stands in the message */
+        app_fail(a, later, later == EXIT_FILE ? "SYNTAX" : "ARG", "%s", said);
+    }
+    return complaint ? fail(a, complaint) : later;
+}
+
 /*
  * A command that stops the robot: neither a mistake on its line nor a bad configuration keeps it
  * from that, nor a signal. They are reported after it; the status is that of a signal, or of the
@@ -144,19 +154,14 @@ static int stop_first(app *a, int argc, char *const *argv, const char *complaint
         a->line.global[GLOBAL_ECHO].given = 0;
     }
     a->stops = true;
+    a->mistaken = complaint || (later && !app_global(a, GLOBAL_DEVICE)->given);
     int status = run_it(a, argc, argv);
-    a->stops = false;
+    a->stops = a->mistaken = false;
     is_over = true;
     if (!a->link) {
         suspend_by(SIG_DFL);
     }
-    if (later) {
-        *a->place = '\0'; /* it stands in the message */
-        app_fail(a, later, later == EXIT_FILE ? "SYNTAX" : "ARG", "%s", hushed);
-    }
-    if (complaint) {
-        later = fail(a, complaint);
-    }
+    later = complain_late(a, later, hushed, complaint);
     if (noted && status < EXIT_SIGNAL) {
         return EXIT_SIGNAL + noted;
     }

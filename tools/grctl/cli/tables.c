@@ -26,14 +26,14 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
     [GLOBAL_TIMEOUT] = {.name = "timeout", /* --time is how long a move takes, for some commands */
                         .kind = CLI_NUMBER,
                         .value = "MS",
-                        .help = "wait so long for a reply (computed from the baud rate)",
+                        .help = "time to wait for a reply (computed from the baud rate)",
                         .min = 1,
                         .max = 60000,
                         .whole = true},
-    [GLOBAL_RETRIES] = OPTION_WHOLE("retries", 0, "N", 0, 20, "ask again so often (2)"),
+    [GLOBAL_RETRIES] = OPTION_WHOLE("retries", 0, "N", 0, 20, "number of retries (2)"),
     [GLOBAL_ON_EXIT] = OPTION_CHOICE("on-exit", 0, "off|hold|sit",
                                      "what the servos do when the command ends or dies (hold)"),
-    [GLOBAL_YES] = OPTION_FLAG("yes", 'y', "no questions"),
+    [GLOBAL_YES] = OPTION_FLAG("yes", 'y', "ask no questions"),
     [GLOBAL_COLOR] =
         OPTION_CHOICE("color", 0, "auto|always|never", "colours; NO_COLOR is honoured"),
     [GLOBAL_HELP] = OPTION_FLAG("help", 'h', "this help"),

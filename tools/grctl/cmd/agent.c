@@ -9,11 +9,11 @@ enum { OPT_HOST = BROKER_OPTIONS, OPT_GROUP, OPT_LABEL, OPT_MOTIONS, OPT_COCKPIT
 
 static const cli_option options[OPTIONS] = {
     BROKER_OPTION_ROWS,
-    [OPT_HOST] = OPTION_TEXT("host", 0, "NAME", "what this machine is called (its own name)"),
+    [OPT_HOST] = OPTION_TEXT("host", 0, "NAME", "name of this machine (its host name)"),
     [OPT_GROUP] =
         OPTION_TEXT("group", 0, "NAME", "the group of its robots, beside all (that of -d)"),
     [OPT_LABEL] = OPTION_TEXT("label", 0, "NAME,...", "further groups of its robots, at most 8"),
-    [OPT_MOTIONS] = OPTION_TEXT("motions", 0, "FOLDER", "where motion files are (motions)"),
+    [OPT_MOTIONS] = OPTION_TEXT("motions", 0, "FOLDER", "folder of the motion files (motions)"),
     [OPT_COCKPIT] = OPTION_TEXT("cockpit", 0, "URL",
                                 "a page of each robot, its name for %: a link "
                                 "in the view of the fleet"),
@@ -130,17 +130,17 @@ const cli_command cmd_agent = {
     .arguments = "",
     .summary = "lend the robots of this machine to a fleet",
     .details =
-        "Connects to an MQTT 5 broker, says how the robots are, and does what 'grctl fleet'\n"
-        "orders: one connection, however many robots. -d names a robot or a group of the\n"
-        "configuration.\n"
+        "Connects to an MQTT 5 broker, reports the state of the robots, and executes the orders\n"
+        "of 'grctl fleet': one connection, however many robots. -d names a robot or a group of\n"
+        "the configuration.\n"
         "\n"
-        "It moves nothing by itself. Without its broker it goes on trying, and a motion that is\n"
-        "played ends as was said when it began: it stops softly unless told otherwise. A robot\n"
-        "that is not there is tried again every 5 s. A stop of the group stands until it is taken\n"
-        "back.\n"
+        "It moves nothing by itself. Without its broker it keeps trying to connect, and a motion\n"
+        "that is being played ends as was chosen at its start: by default it stops smoothly. A\n"
+        "robot that does not answer is tried again every 5 s. A stop of the group stands until it\n"
+        "is released.\n"
         "\n"
-        "GRCTL_MQTT_PASSWORD is the password of USER. docs/guide/fleet.md has the rights that the\n"
-        "broker should give, and what a stop over a network is not.\n",
+        "GRCTL_MQTT_PASSWORD is the password of USER. docs/guide/fleet.md lists the rights that\n"
+        "the broker should grant, and what a stop over a network is not.\n",
     .example = "  grctl -d stage agent --broker mqtt://stage.local\n",
     COMMAND_OPTIONS(options),
     .group = CLI_GROUP_TOGETHER,

@@ -103,11 +103,7 @@ static int measure(app *a, config_robot *after)
     conn c;
     const grobo_model *model = app_model(a);
     int status = conn_open(&c, a);
-    int error =
-        status
-            ? 0
-            : conn_wait(&c, grobo_robot_sense(grobo_session_robot(c.session),
-                                              GROBO_JOINTS_ALL(model->n_joints), GROBO_SENSE_FULL));
+    int error = status ? 0 : conn_sense(&c, GROBO_JOINTS_ALL(model->n_joints), GROBO_SENSE_FULL);
     if (error) {
         status = conn_fail(&c, error, "calibrate");
     }

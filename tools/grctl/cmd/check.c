@@ -111,12 +111,9 @@ static int run(app *a)
     grobo_diagnostics *list = NULL;
     tally t = {0};
     int error = body_options_read(a, OPT_BODY, 0, &o.body);
+    error = error ? error : file_list(a, &list);
     if (error) {
         return error;
-    }
-    error = grobo_diagnostics_new(NULL, &list);
-    if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
     for (int i = 0; i < a->line.n_arguments; i++) {
         if (is_passed_by(a, a->line.argument[i], list)) {
@@ -147,17 +144,19 @@ const cli_command cmd_check = {
     COMMAND_ARGUMENTS("FILE...", 1, -1, CLI_ARG_FILE),
     .summary = "check motion files",
     .details =
-        "Reads motion files (.m .pseq .mseq .yaml .seq) and says every problem with its\n"
-        "line and column: what is malformed, angles outside a joint's limits, moves too\n"
-        "fast for the servo (and the time they would need), times going back, joints that\n"
-        "GR001 does not have, legs that only ikLinks give. Exit status 3 if there is an\n"
-        "error; warnings alone leave it 0. Notes are shown with -v. Of several files those that\n"
-        "neither name nor content make a motion are passed by.\n\n"
-        "Legs given by ikLinks are solved, and the solved angles are checked too. One\n"
-        "warning says where the robot would fall; --force and 'warn_fall: false' in config.yaml\n"
-        "silence it. --balance reports more: where the ZMP leaves the soles, no foot stands, or\n"
-        "a standing foot slips, the former two as errors. A motion that gives no feet is taken\n"
-        "to stand on both.\n\n"
+        "Reads motion files (.m .pseq .mseq .yaml .seq) and reports every problem with its line\n"
+        "and column: malformed contents, angles outside a joint's limits, moves too fast for the\n"
+        "servo (and the time they would need), times that go back, joints that GR001 does not\n"
+        "have, legs that only ikLinks give. The exit status is 3 if there is an error; warnings\n"
+        "alone leave it 0. Notes are shown with -v. Of several files, those that are no motion by\n"
+        "name or content are skipped.\n"
+        "\n"
+        "Legs given by ikLinks are solved, and the solved angles are checked too. One warning\n"
+        "reports where the robot would fall; --force and 'warn_fall: false' in config.yaml\n"
+        "silence it. --balance reports more: where the ZMP leaves the soles, no foot stands, or a\n"
+        "standing foot slips; the first two are errors. A motion that gives no feet is assumed to\n"
+        "stand on both.\n"
+        "\n"
         "Angles up to one degree outside a limit, as recordings have them, are played at the\n"
         "limit: one warning counts them.\n",
     .example = "  grctl check motions/*\n  grctl check --json walk.pseq\n"

@@ -5,7 +5,7 @@
 
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
-#include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/heap.h"
 #include "tools/grctl/cmd/commands.h"
 
 enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGERS, OPT_BODY };
@@ -13,8 +13,8 @@ enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGE
 static const cli_option options[] = {
     [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 1000,
                              "to yaml: frames per second (50, or the source's own)"),
-    [OPT_FROM] = OPTION_CHOICE("from", 0, FILE_FORMATS, "format of IN, whatever its name says"),
-    [OPT_TO] = OPTION_CHOICE("to", 0, FILE_FORMATS, "format of OUT, whatever its name says"),
+    [OPT_FROM] = OPTION_CHOICE("from", 0, FILE_FORMATS, "format of IN (by its name)"),
+    [OPT_TO] = OPTION_CHOICE("to", 0, FILE_FORMATS, "format of OUT (by its name)"),
     [OPT_EXACT] = OPTION_FLAG("exact", 0,
                               "write exact angles (m) and times (yaml), which the original and "
                               "Choreonoid before 2.1 cannot read"),
@@ -35,30 +35,7 @@ static grobo_motion_format format_of(const app *a, int option)
 
 /* ---- writing -------------------------------------------------------------------------------- */
 
-/* The file as it will be, so that it is read back before an old one is replaced. */
-typedef struct file_text {
-    char *bytes;
-    size_t size, room;
-} file_text;
-
-static int write_text(void *ctx, const void *data, size_t size)
-{
-    file_text *t = ctx;
-    if (size > t->room - t->size) {
-        size_t room = 2 * t->room + size;
-        char *bytes = realloc(t->bytes, room);
-        if (!bytes) {
-            return GROBO_ERR_NOMEM;
-        }
-        t->bytes = bytes;
-        t->room = room;
-    }
-    memcpy(t->bytes + t->size, data, size);
-    t->size += size;
-    return 0;
-}
-
-static int put_out(const file_text *t, const char *path)
+static int put_out(const heap *t, const char *path)
 {
     if (strcmp(path, "-") != 0) {
         return file_save(path, t->bytes, t->size);
@@ -71,7 +48,7 @@ static int put_out(const file_text *t, const char *path)
 }
 
 /* Reads the text and looks whether it plays what the motion does. 0, or the status. */
-static int verify(app *a, const grobo_motion *motion, const char *path, const file_text *t,
+static int verify(app *a, const grobo_motion *motion, const char *path, const heap *t,
                   const grobo_write_options *how)
 {
     grobo_read_options read = {GROBO_READ_OPTIONS_INIT, .model = how->model, .format = how->format,
@@ -107,8 +84,8 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const fi
 static int write_out(app *a, const grobo_motion *motion, const char *path,
                      const grobo_write_options *how, grobo_diagnostics *list)
 {
-    file_text t = {0};
-    grobo_sink sink = {.write = write_text, .ctx = &t};
+    heap t = {0}; /* the file as it will be: read back before an old one is replaced */
+    grobo_sink sink = {.write = heap_sink, .ctx = &t};
     int status = 0, error = grobo_motion_write(motion, how->format, how, &sink, list);
     if (!error && !app_option(a, OPT_LOSSY)->given) {
         status = verify(a, motion, path, &t, how);
@@ -163,7 +140,6 @@ static int refuse_links(app *a, const char *path, const grobo_motion *motion,
 static int solve_legs(app *a, const char *path, const grobo_write_options *how,
                       grobo_motion **motion)
 {
-    grobo_body *body = NULL;
     grobo_motion *solved = NULL;
     double rate_hz = how->rate_hz;
     if (how->format == GROBO_FORMAT_PSEQ && !body_options_given(a, OPT_BODY)) {
@@ -172,14 +148,8 @@ static int solve_legs(app *a, const char *path, const grobo_write_options *how,
     if (how->format == GROBO_FORMAT_YAML && !how->exact && !(rate_hz > 0)) {
         rate_hz = GROBO_MOTION_RATE_HZ;
     }
-    int status = body_make(a, OPT_BODY, path, *motion, rate_hz, &body);
-    if (!status && body) {
-        status = body_motion(a, path, body, rate_hz, &solved);
-    }
-    grobo_body_free(body);
+    int status = body_solve(a, OPT_BODY, path, *motion, rate_hz, &solved);
     if (solved) {
-        (void)grobo_motion_set_name(solved, grobo_motion_name(*motion));
-        (void)grobo_motion_set_target_body(solved, grobo_motion_target_body(*motion));
         grobo_motion_free(*motion);
         *motion = solved;
     }
@@ -228,12 +198,9 @@ static int run(app *a)
         return app_fail(a, EXIT_USAGE, "ARG", "%s: unknown file type; use --to " FILE_FORMATS, out);
     }
     int error = refuse_out(a, out, to);
+    error = error ? error : file_list(a, &list);
     if (error) {
         return error;
-    }
-    error = grobo_diagnostics_new(NULL, &list);
-    if (error) {
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", app_error_text(error));
     }
     error = file_load_listed(a, in, &read, list, &motion);
     if (!error) {

@@ -2,6 +2,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/decode/decoder.h"
 #include "tools/grctl/decode/hextext.h"
@@ -14,8 +15,7 @@ enum { OPT_FAMILY };
 #define FAMILIES "rs30x|dynamixel2|dynamixel1|feetech|scs|lx16a|ics"
 
 static const cli_option options[] = {
-    [OPT_FAMILY] =
-        OPTION_CHOICE("family", 0, FAMILIES, "what the servos are, where the robot's are others"),
+    [OPT_FAMILY] = OPTION_CHOICE("family", 0, FAMILIES, "family of the servos (the robot's)"),
 };
 
 static unsigned wiring_of(const app *a)
@@ -58,7 +58,7 @@ static void print_comment(const decoder *d, const pcapng_chunk *chunk)
         app_print_json(json_pack("{s:o,s:o}", "time_ms", app_json_number(time_ms, 3), "comment",
                                  app_json_text(chunk->comment)));
     } else {
-        app_print("%10.3f  %-7s  %s\n", time_ms, "comment", chunk->comment);
+        app_print_line("%10.3f  %-7s  %s", time_ms, "comment", chunk->comment);
     }
 }
 
@@ -133,11 +133,7 @@ static bool is_file(const app *a)
     if (n == 1 || n == GROBO_ERR_CAP) {
         return strpbrk(name, "/.") != NULL;
     }
-    FILE *file = fopen(name, "rb");
-    if (file) {
-        fclose(file);
-    }
-    return file || strpbrk(name, "/.");
+    return file_is_there(name) || strpbrk(name, "/.");
 }
 
 static int decode_arguments(decoder *d)
@@ -190,20 +186,19 @@ const cli_command cmd_decode = {
     COMMAND_ARGUMENTS("[HEX | FILE]", 0, -1, CLI_ARG_FILE),
     .summary = "explain frames, from hex or a trace",
     .details =
-        "Says what bytes mean: frames of the board, packets to servos and from them, registers by\n"
-        "name and in their units, whether the sum is right, what will be answered. --family says\n"
-        "whose packets: Futaba's (rs30x), DYNAMIXEL 2.0 and 1.0 (dynamixel2,\n"
-        "dynamixel1), Feetech's STS and SMS (feetech) and SCS (scs), Hiwonder's (lx16a), Kondo's\n"
-        "(ics); without it they are those of the robot. Replies\n"
-        "of most families do not say which registers they bring: the request before does.\n"
-        "Registers are those of the servo's model, where the robot or the bytes tell it, else of\n"
-        "the first model of the family. Bytes that are\n"
-        "no frame are shown as what they are. The bytes come as hex on the command line (with or\n"
-        "without blanks), from a file or standard input of hex, from what 'play --dry-run'\n"
-        "prints, or from a trace of --trace. A name that is hex is hex: say ./cafe for a file.\n"
-        "Exit status 3 if a frame had a wrong sum or was cut off.\n"
-        "With -v the bytes are shown too. --wiring tells what to believe of a host; without it\n"
-        "board frames and bare packets are both known.\n",
+        "Explains bytes: frames of the board, packets to and from servos, registers by name and\n"
+        "in their units, whether the sum is right, which reply is expected. --family names the\n"
+        "family of the packets: Futaba (rs30x), DYNAMIXEL 2.0 and 1.0 (dynamixel2, dynamixel1),\n"
+        "Feetech STS and SMS (feetech) and SCS (scs), Hiwonder (lx16a), Kondo (ics); by default\n"
+        "it is that of the robot. In most families a reply does not name its registers: the\n"
+        "request before it does. Registers are those of the servo's model where the robot or the\n"
+        "bytes name it, else of the first model of the family. Bytes that are no frame are shown\n"
+        "as they are. The bytes come as hex on the command line (with or without blanks), from a\n"
+        "file or standard input of hex, from the output of 'play --dry-run', or from a trace of\n"
+        "--trace. A name that is hex is read as hex: write ./cafe for a file. The exit status is\n"
+        "3 if a frame had a wrong sum or was cut off.\n"
+        "-v shows the bytes too. --wiring selects how the host's frames are read; without it\n"
+        "board frames and bare packets are both recognized.\n",
     .example = "  grctl decode 53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11\n"
                "  grctl play --dry-run motions/greet.pseq | grctl decode\n"
                "  grctl decode walk.pcapng\n"

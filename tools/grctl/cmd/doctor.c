@@ -9,12 +9,12 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/servos.h"
+#include "tools/grctl/conn/wire.h"
 #include "tools/grctl/doctor/checkup.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
 
-enum { READ_BYTES = 30 /* the longest */, REQUEST_BYTES = 8 /* the shortest that is asked here */ };
-enum { NAME_BYTES = 16, FIX_BYTES = 512 };
+enum { READ_BYTES = 30 /* the longest */, NAME_BYTES = 16, FIX_BYTES = 512 };
 
 typedef struct patient {
     checkup k;
@@ -81,6 +81,46 @@ static int find_answer(patient *p, int asked_bps)
     return app_driver(a) != driver && ask(p, said) ? asked_bps : 0;
 }
 
+/* ---- an echo --------------------------------------------------------------------------------- */
+
+static bool may_echo(const app *a)
+{
+    return app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BUS &&
+           !app_global(a, GLOBAL_ECHO)->given;
+}
+
+static void found_echo(patient *p, const char *device)
+{
+    char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
+    snprintf(fix, sizeof fix, "grctl -d %s --wiring bus --echo ...", device);
+    checkup_found(&p->k, "echo", fix, "the adapter returns what is sent to it");
+}
+
+static void check_echo(patient *p, const char *device)
+{
+    if (may_echo(p->k.a) && wire_echoes(grobo_robot_get_bus_stats(p->c.robot))) {
+        found_echo(p, device);
+    }
+}
+
+/* Of a family without sums no reply is found behind an echo that is not reckoned with. */
+static bool answers_behind_echo(patient *p, const char *device)
+{
+    app *a = p->k.a;
+    char said[APP_LINE_BYTES];
+    if (!may_echo(a)) {
+        return false;
+    }
+    a->line.global[GLOBAL_ECHO].given = 1;
+    bool found = ask(p, said);
+    if (found) {
+        found_echo(p, device);
+    } else {
+        a->line.global[GLOBAL_ECHO].given = 0;
+    }
+    return found;
+}
+
 static bool check_reply(patient *p, const char *device)
 {
     app *a = p->k.a;
@@ -96,6 +136,9 @@ static bool check_reply(patient *p, const char *device)
         return false;
     }
     if (!strstr(said, _("no robot answers"))) {
+        if (answers_behind_echo(p, device)) {
+            return true;
+        }
         checkup_found(&p->k, "reply",
                       strncmp(device, "tcp:", 4) == 0 ? "start a serial server there (ser2net), or "
                                                         "correct the address: -d tcp:HOST:PORT"
@@ -120,21 +163,6 @@ static bool check_reply(patient *p, const char *device)
                   : wiring == GROBO_WIRING_BOARD ? _(", straight on the line")
                                                  : _(", through a board"));
     return true;
-}
-
-/* To who does not reckon with an echo it is rubbish: a request's bytes in front of its reply. */
-static void check_echo(patient *p, const char *device)
-{
-    const app *a = p->k.a;
-    const grobo_bus_stats *n = grobo_robot_get_bus_stats(p->c.robot);
-    char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
-    if (app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD ||
-        app_global(a, GLOBAL_ECHO)->given || n->replies == 0 ||
-        n->resync_bytes < n->replies * REQUEST_BYTES / 2) {
-        return;
-    }
-    snprintf(fix, sizeof fix, "grctl -d %s --wiring bus --echo ...", device);
-    checkup_found(&p->k, "echo", fix, "the adapter returns what is sent to it");
 }
 
 /* ---- the servos ------------------------------------------------------------------------------ */
@@ -244,8 +272,7 @@ static void check_servo(patient *p, int joint)
     int error = reg ? servos_read(&p->c, j->motor, reg->address, reg->bytes, bytes) : GROBO_OK;
     snprintf(name, sizeof name, "servo_%d", j->motor);
     if (!error) {
-        error = conn_wait(&p->c, grobo_robot_sense(grobo_session_robot(p->c.session),
-                                                   GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
+        error = conn_sense(&p->c, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL);
     }
     if (p->c.signal || p->c.link_error) {
         return;
@@ -267,7 +294,7 @@ static void check_servo(patient *p, int joint)
 
 static void check_servos(patient *p)
 {
-    p->model = grobo_robot_driver(p->c.robot)->model;
+    p->model = conn_model(&p->c);
     for (int joint = 0; joint < p->model->n_joints && !p->c.signal && !p->c.link_error; joint++) {
         check_servo(p, joint);
     }
@@ -382,11 +409,11 @@ const cli_command cmd_doctor = {
     .arguments = "",
     .summary = "find faults from the port to the last servo, suggest fixes",
     .details =
-        "Looks at the port (is it there, may you open it, who holds it, is its latency timer\n"
-        "short), asks for a reply (at other baud rates and wirings too when nobody answers), then\n"
-        "asks every servo for its model, voltage, temperature and flags. Each thing that is wrong\n"
-        "comes with the line that mends it, and makes the exit status 1. Nothing moves. -v shows\n"
-        "every servo, also those that are well.\n",
+        "Checks the port (does it exist, may you open it, which program holds it, is its latency\n"
+        "timer short), asks for a reply (without one also at other baud rates and wirings), then\n"
+        "asks every servo for its model, voltage, temperature and flags. Each problem is printed\n"
+        "with its fix, and makes the exit status 1. Nothing moves. -v shows the servos without a\n"
+        "problem too.\n",
     .example = "  grctl doctor\n  grctl -d /dev/ttyUSB0 doctor -v\n",
     .group = CLI_GROUP_EACH,
     .run = run,

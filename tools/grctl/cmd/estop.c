@@ -336,7 +336,7 @@ static int reset(app *a, const char *device)
     }
     int status = conn_is_auto(a) ? conn_open(&c, a) : conn_open_unchecked(&c, a);
     if (!status) {
-        int error = grobo_robot_reset(grobo_session_robot(c.session));
+        int error = grobo_robot_reset(c.robot);
         status = report_reset(a, conn_device(&c), error, NULL);
     }
     return conn_close(&c, status);
@@ -347,6 +347,9 @@ static int run_estop(app *a)
     static target t;
     char device[GROBO_DEVICE_MAX_BYTES];
     bool resets = app_option(a, OPT_RESET)->given > 0;
+    if (resets && a->mistaken) {
+        return EXIT_DONE; /* only a stop goes before what is wrong */
+    }
     const char *why = find_device(a, device);
     if (why && resets) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(GROBO_ERR_NOENT), "%s: %s",

@@ -9,7 +9,7 @@ enum { OPT_OUT };
 
 static const cli_option options[] = {
     [OPT_OUT] = OPTION_TEXT("out", 'o', "PREFIX",
-                            "how the names of report and traces begin (first-contact-ROBOT)"),
+                            "prefix of the names of report and traces (first-contact-ROBOT)"),
 };
 
 static int run(app *a)
@@ -31,19 +31,19 @@ const cli_command cmd_first_contact = {
     COMMAND_ARGUMENTS("[JOINT]", 0, 1, CLI_ARG_JOINT),
     .summary = "test what grctl assumes of a real robot, step by step",
     .details =
-        "For whoever connects a robot that nobody has connected before. First it is only read:\n"
-        "who answers, models and firmware, all registers, how late replies are, whether an\n"
+        "For the first person who connects a robot of this kind. It first only reads: which\n"
+        "servos answer, models and firmware, all registers, how late replies are, whether an\n"
         "adapter echoes, whether GR001's board stores a frame before it forwards it. Then, each\n"
-        "confirmed by you: the torque of JOINT (the last one) comes on, which should not make it\n"
-        "jump; it moves by 2 degrees and back; and its servo, limp, takes another baud rate and\n"
-        "comes back to its own, which says when it takes effect. A joint that was limp is limp\n"
-        "again. Ctrl-C waits until a servo is back at its rate; how one that is lost is found\n"
-        "again is said before.\n"
+        "step confirmed by you: the torque of JOINT (the last one) comes on, which should not\n"
+        "make it jump; it moves by 2 degrees and back; and its servo, limp, is set to another\n"
+        "baud rate and back, which shows when a rate takes effect. A joint that was limp is limp\n"
+        "again. Ctrl-C waits until the servo is back at its rate; how to find a servo that is\n"
+        "lost is printed before.\n"
         "\n"
-        "It writes PREFIX.txt and PREFIX.json, what was found and whether it is as assumed, and\n"
-        "a trace of each part, to be sent to the authors. The exit status is 1 where something\n"
-        "is not as assumed. With --yes nobody is asked: answers are lines of standard input, or\n"
-        "no.\n",
+        "It writes PREFIX.txt and PREFIX.json, with what was found and whether it is as assumed,\n"
+        "and a trace of each part; please send them to the authors. The exit status is 1 if\n"
+        "something is not as assumed. With --yes it does not ask: answers are lines of standard\n"
+        "input, or no.\n",
     .example = "  grctl first-contact gripper\n  grctl -d sim --robot so101 first-contact\n",
     COMMAND_OPTIONS(options),
     .run = run,

@@ -5,6 +5,7 @@
 
 #include <event2/util.h>
 
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/fleet/broker.h"
@@ -50,14 +51,8 @@ static const cli_option options[OPTIONS] = {
                                   "play: what robots do that hear no more of this command (stop)"),
     [OPT_SPREAD] = OPTION_REAL("spread", 0, "MS", 0.1, 1000, "play: begin within this time (5)"),
     [OPT_AT] = OPTION_TEXT("at", 0, "HH:MM:SS", "play: begin at this time, by the clock here"),
-    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "status: again and again, until a signal"),
+    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "status: repeat until a signal"),
 };
-
-static bool never(const leader *l)
-{
-    (void)l;
-    return false;
-}
 
 /* ---- who is asked ---------------------------------------------------------------------------- */
 
@@ -150,8 +145,8 @@ static void list_one(const leader *l, const peer *p)
     json_array_foreach(robots, i, robot)
     {
         const char *name = fleet_text(robot, "name"), *model = fleet_text(robot, "model");
-        app_print("%-20s  %-16s  %-16s  %s\n", p->host, p->state, name ? name : "",
-                  model && *model ? model : "-");
+        app_print_line("%-20s  %-16s  %-16s  %s", p->host, p->state, name ? name : "",
+                       model && *model ? model : "-");
     }
 }
 
@@ -189,11 +184,11 @@ static void show_status(const leader *l)
                 app_print_json(json_pack("{s:s,s:s,s:b,s:s?,s:s?}", "host", p->host, "robot", name,
                                          "up", up && !silent, "play", play, "trip", trip));
             } else {
-                app_print("%-20s  %-16s  %-6s  %-12s  %s\n", p->host, name,
-                          silent ? "silent"
-                          : up   ? "up"
-                                 : "down",
-                          play ? play : "-", trip ? trip : "-");
+                app_print_line("%-20s  %-16s  %-6s  %-12s  %s", p->host, name,
+                               silent ? "silent"
+                               : up   ? "up"
+                                      : "down",
+                               play ? play : "-", trip ? trip : "-");
             }
         }
     }
@@ -203,10 +198,10 @@ static int run_status(leader *l)
 {
     bool watches = app_option(l->a, OPT_WATCH)->given > 0;
     leader_listen(l, "state");
-    (void)leader_wait(l, STATE_US, never);
+    (void)leader_wait(l, STATE_US, NULL);
     show_status(l);
     while (watches && output_flush() && !l->link.signal) {
-        (void)leader_wait(l, WATCH_US, never);
+        (void)leader_wait(l, WATCH_US, NULL);
         show_status(l);
     }
     return watches && l->link.signal ? EXIT_SIGNAL + l->link.signal : EXIT_DONE;
@@ -269,7 +264,7 @@ static int stop(leader *l, const char *how)
     int n = leader_choose(l);
     (void)leader_latch(l, how);
     if (n == 0) {
-        (void)leader_wait(l, STATE_US, never); /* until it is out */
+        (void)leader_wait(l, STATE_US, NULL); /* until it is out */
         return fail_nobody(l, _(": nothing was seen to stop; use the switches"));
     }
     (void)leader_wait(l, STOPPED_US, all_told);
@@ -290,7 +285,7 @@ static int run_estop(leader *l)
 static int run_reset(leader *l)
 {
     (void)leader_latch(l, NULL);
-    (void)leader_wait(l, STATE_US, never);
+    (void)leader_wait(l, STATE_US, NULL);
     if (leader_choose(l) == 0) {
         return fail_nobody(l, "");
     }
@@ -305,25 +300,13 @@ static int run_reset(leader *l)
 
 static json_t *text_of(app *a, const char *path)
 {
-    FILE *file = fopen(path, "rb");
-    char *text = malloc(MQTT_PAYLOAD_MAX_BYTES / 2);
-    size_t n = file && text ? fread(text, 1, MQTT_PAYLOAD_MAX_BYTES / 2, file) : 0;
-    bool ok = file && text && !ferror(file) && n < MQTT_PAYLOAD_MAX_BYTES / 2;
-    json_t *string = ok ? json_stringn(text, n) : NULL;
+    heap text = file_bytes(path, MQTT_PAYLOAD_MAX_BYTES / 2 - 1);
+    json_t *string = text.bytes ? json_stringn(text.bytes, text.size) : NULL;
     if (!string) {
         (void)app_fail(a, EXIT_FILE, "IO", "%s: a text file of less than 512 KiB is wanted", path);
     }
-    if (file) {
-        fclose(file);
-    }
-    free(text);
+    free(text.bytes);
     return string;
-}
-
-static const char *name_of_file(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
 }
 
 static int run_push(leader *l)
@@ -335,11 +318,11 @@ static int run_push(leader *l)
         if (!text) {
             return EXIT_FILE;
         }
-        status = order(l, "put", json_pack("{s:s,s:o}", "file", name_of_file(path), "text", text),
+        status = order(l, "put", json_pack("{s:s,s:o}", "file", file_last_part(path), "text", text),
                        ANSWER_US);
     }
     if (!status) {
-        app_done(l->a, "there");
+        app_done(l->a, "done");
     }
     return status;
 }
@@ -398,7 +381,7 @@ static json_t *motion_of(const leader *l, const char *path)
     static const char *const on_lost[] = {"stop", "finish", "exit"};
     const app *a = l->a;
     return json_pack(
-        "{s:s,s:s,s:i,s:i,s:b,s:s,s:s,s:I}", "group", l->group, "file", name_of_file(path),
+        "{s:s,s:s,s:i,s:i,s:b,s:s,s:s,s:I}", "group", l->group, "file", file_last_part(path),
         "speed_pct", (int)app_number(a, OPT_SPEED, 100), "repeat",
         (int)app_number(a, OPT_REPEAT, 1), "mirror", app_option(a, OPT_MIRROR)->given > 0,
         "if_lost", lost[app_option(a, OPT_IF_LOST)->given ? app_option(a, OPT_IF_LOST)->choice : 0],
@@ -438,7 +421,7 @@ static int say_ended(leader *l)
                                          "late_us", json_object_get(robot, "late_us"), "bound_us",
                                          json_object_get(p->answer, "bound_us")));
             } else if (ok) {
-                app_print("%s/%s: played\n", p->host, name ? name : "");
+                app_print_line("%s/%s: played", p->host, name ? name : "");
             } else {
                 status = app_fail(l->a, EXIT_ROBOT, "CANCELED", "%s/%s: %s", p->host,
                                   name ? name : "", why ? why : "");
@@ -499,7 +482,7 @@ static int see_through(leader *l)
     }
     if (l->lost) {
         return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE",
-                        "fleet: the broker went away: the robots do as --on-link-lost says");
+                        "fleet: the broker is lost: the robots act by --on-link-lost");
     }
     int status = say_ended(l);
     return signal ? EXIT_SIGNAL + signal : status;
@@ -550,8 +533,8 @@ static void say_event(leader *l, const peer *p, json_t *event)
         app_print_json(json_pack("{s:s,s:s?,s:s,s:s?}", "host", p->host, "robot", robot, "kind",
                                  kind ? kind : "", "message", text));
     } else {
-        app_print("%s%s%s: %s %s\n", p->host, robot ? "/" : "", robot ? robot : "",
-                  kind ? kind : "", text ? text : "");
+        app_print_line("%s%s%s: %s %s", p->host, robot ? "/" : "", robot ? robot : "",
+                       kind ? kind : "", text ? text : "");
     }
     output_flush();
 }
@@ -560,7 +543,7 @@ static int run_log(leader *l)
 {
     l->on_event = say_event;
     while (!l->link.signal) {
-        (void)leader_wait(l, 3600000000, never);
+        (void)leader_wait(l, 3600000000, NULL);
     }
     return EXIT_SIGNAL + l->link.signal;
 }
@@ -611,17 +594,17 @@ static int run(app *a)
 const cli_command cmd_fleet = {
     .name = "fleet",
     COMMAND_ARGUMENTS("list|status|play|stop|estop|reset|push|log [FILE]", 1, -1, CLI_ARG_FILE),
-    .summary = "ask the robots of many machines, over a broker",
+    .summary = "command the robots of many machines, over a broker",
     .details =
-        "Speaks with every 'grctl agent' at the broker, or with a group or a machine of them.\n"
+        "Commands every 'grctl agent' at the broker, or those of a group or of a machine.\n"
         "\n"
-        "  list, status, log  who is there; how robots are; what happens, until Ctrl-C\n"
+        "  list, status, log  the agents; the state of robots; events, until Ctrl-C\n"
         "  push FILE...       puts motions into the folders of the agents\n"
         "  play FILE...       all prepare, wait for each other, and begin at one time;\n"
         "                     names in the folders of the agents, played in turn\n"
-        "  stop, estop        a stop of the group that stands until 'reset': softly, or\n"
+        "  stop, estop        a stop of the group that stands until 'reset': smoothly, or\n"
         "                     as an emergency stop that is read back joint by joint;\n"
-        "                     always of the whole group, whatever --host says\n"
+        "                     always of the whole group, also with --host\n"
         "  reset              releases the stop; nothing moves\n"
         "\n"
         "A stop over a network is a convenience and no safety function: it may come late or\n"

@@ -29,7 +29,7 @@ static const double there_deg = 1.5, behind_deg = 20;
 
 static const cli_option options[] = {
     [OPT_RATE] = OPTION_WHOLE("rate", 'r', "HZ", 5, MAX_HZ, "targets a second (100)"),
-    [OPT_FOR] = OPTION_REAL("for", 0, "S", 0.1, 86400, "end after so many seconds"),
+    [OPT_FOR] = OPTION_REAL("for", 0, "S", 0.1, 86400, "end after this time"),
 };
 
 typedef enum following {
@@ -124,16 +124,11 @@ static void report(const pair *p)
 
 /* ---- one period ------------------------------------------------------------------------------ */
 
-static const grobo_model *model_of(const side *s)
-{
-    return grobo_robot_driver(s->c.robot)->model;
-}
-
 /* Where the leader is, in the follower's joints and limits. False: its readings are too old. */
 static bool read_leader(pair *p, grobo_posture *wanted)
 {
     grobo_posture leader, within;
-    const grobo_model *model = model_of(&p->follower);
+    const grobo_model *model = conn_model(&p->follower.c);
     grobo_robot_posture(p->leader.c.robot, LOST_US, &leader);
     grobo_posture_init(wanted, model->n_joints);
     for (int j = 0; j < model->n_joints; j++) {
@@ -192,7 +187,7 @@ static int send_moved(pair *p)
     }
     p->all_us = all ? now_us : p->all_us;
     target.time_us = 2 * p->period_us;
-    int error = grobo_robot_send(grobo_session_robot(p->follower.c.session), &target);
+    int error = grobo_robot_send(p->follower.c.robot, &target);
     p->sent += error >= 0;
     return error;
 }
@@ -215,9 +210,8 @@ static void follow(pair *p, const grobo_posture *wanted)
 static void let_limp(pair *p)
 {
     if (p->leader.c.up && !p->limp && !p->limp_job) {
-        grobo_joint_mask all = GROBO_JOINTS_ALL(model_of(&p->leader)->n_joints);
-        int job =
-            grobo_robot_torque(grobo_session_robot(p->leader.c.session), all, GROBO_TORQUE_OFF);
+        grobo_joint_mask all = GROBO_JOINTS_ALL(conn_model(&p->leader.c)->n_joints);
+        int job = grobo_robot_torque(p->leader.c.robot, all, GROBO_TORQUE_OFF);
         p->limp_job = job > 0 ? job : 0;
     }
 }
@@ -281,7 +275,7 @@ static int lead(pair *p)
     p->began_us = grobo_now_us();
     p->due_us = p->began_us + p->period_us;
     p->end_us = s > 0 ? p->began_us + (int64_t)(s * 1e6) : 0;
-    struct event *timer = conn_every(c, p->period_us, on_period, p);
+    struct event *timer = conn_every(c->base, p->period_us, on_period, p);
     int error = timer ? conn_wait_until(c, is_over) : GROBO_ERR_NOMEM;
     conn_forget(timer);
     report(p);
@@ -343,7 +337,7 @@ static int open_follower(pair *p)
         return status;
     }
     c->ctx = p;
-    int error = conn_wait(c, grobo_robot_sense(c->robot, p->joints, GROBO_SENSE_ALL));
+    int error = conn_sense(c, p->joints, GROBO_SENSE_ALL);
     return error ? conn_fail(c, error, "follow") : 0;
 }
 
@@ -360,7 +354,7 @@ static int open_leader(pair *p)
     }
     c->ctx = p;
     app_note(p->a, "torque of the leader goes off: hold it; what is raised falls");
-    int error = conn_wait(c, grobo_robot_sense(c->robot, all, GROBO_SENSE_ALL));
+    int error = conn_sense(c, all, GROBO_SENSE_ALL);
     if (!error) {
         error = conn_wait(c, grobo_robot_torque(c->robot, all, GROBO_TORQUE_OFF));
     }
@@ -389,7 +383,7 @@ static int hold(pair *p)
     }
     grobo_robot_posture(c->robot, GROBO_NEVER_US, &p->now);
     p->now.set &= p->joints;
-    grobo_posture_clamp(&p->now, model_of(&p->follower));
+    grobo_posture_clamp(&p->now, conn_model(&p->follower.c));
     return 0;
 }
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* joints: the robot's table of joints. Offline. */
-#include <string.h>
 
 #include <grobo/model.h>
 
@@ -39,17 +38,12 @@ static void print_joint(const grobo_model *model, int joint)
 static json_t *joint_json(const grobo_model *model, int joint)
 {
     const grobo_joint *j = &model->joints[joint];
-    json_t *groups = json_array();
-    for (int i = 0; i < model->n_groups; i++) {
-        if (model->groups[i].joints & GROBO_JOINT_BIT(joint)) {
-            json_array_append_new(groups, json_string(model->groups[i].name));
-        }
-    }
     return json_pack("{s:i,s:i,s:i,s:s,s:[o,o],s:o,s:o}", "joint", joint, "motor", j->motor, "id",
                      j->motor, "name", j->name, "limits_deg",
                      app_json_number(grobo_deg_from_rad(j->min_rad), 1),
                      app_json_number(grobo_deg_from_rad(j->max_rad), 1), "init_deg",
-                     app_json_number(grobo_deg_from_rad(j->init_rad), 1), "groups", groups);
+                     app_json_number(grobo_deg_from_rad(j->init_rad), 1), "groups",
+                     joints_groups_json(model, joint));
 }
 
 static int run(app *a)

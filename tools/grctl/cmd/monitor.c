@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* monitor: everything at a glance, and the keys to act on it. */
-#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -102,10 +101,10 @@ static void switch_torque(monitor *m, grobo_torque mode, const char *doing)
     if (mode == GROBO_TORQUE_ON && !may_move(m)) {
         return;
     }
-    int result = grobo_robot_torque(grobo_session_robot(m->c.session), m->chosen, mode);
+    int result = grobo_robot_torque(m->c.robot, m->chosen, mode);
     if (result == GROBO_ERR_STATE && mode != GROBO_TORQUE_ON &&
-        grobo_robot_cancel(grobo_session_robot(m->c.session)) == GROBO_OK) {
-        result = grobo_robot_torque(grobo_session_robot(m->c.session), m->chosen, mode);
+        grobo_robot_cancel(m->c.robot) == GROBO_OK) {
+        result = grobo_robot_torque(m->c.robot, m->chosen, mode);
     }
     say_request(m, result, doing);
 }
@@ -159,7 +158,7 @@ static void nudge(monitor *m, double by_deg)
     }
     grobo_posture_clamp(&target, m->model);
     grobo_posture_set_time_ms(&target, NUDGE_MS);
-    say_request(m, grobo_robot_move(grobo_session_robot(m->c.session), &target), "nudge");
+    say_request(m, grobo_robot_move(m->c.robot, &target), "nudge");
 }
 
 static void go_init(monitor *m)
@@ -170,8 +169,7 @@ static void go_init(monitor *m)
     }
     grobo_posture_init_pose(&target, m->model);
     grobo_posture_set_time_ms(&target, INIT_MS);
-    say_request(m, grobo_robot_move(grobo_session_robot(m->c.session), &target),
-                "move to the initial posture");
+    say_request(m, grobo_robot_move(m->c.robot, &target), "move to the initial posture");
 }
 
 static void start_play(monitor *m)
@@ -190,8 +188,7 @@ static void start_play(monitor *m)
         return; /* it has said why */
     }
     m->prepared = true;
-    job =
-        grobo_robot_play(grobo_session_robot(m->c.session), &m->list.clip[0], &m->list.options[0]);
+    job = grobo_robot_play(m->c.robot, &m->list.clip[0], &m->list.options[0]);
     if (job > 0) {
         m->keys.speed_pct = 100;
     }
@@ -200,7 +197,7 @@ static void start_play(monitor *m)
 
 static void reset(monitor *m)
 {
-    int error = grobo_robot_reset(grobo_session_robot(m->c.session));
+    int error = grobo_robot_reset(m->c.robot);
     say_request(m, error, "stop released; nothing moves by itself");
     m->c.trip = (grobo_trip_info){0};
 }
@@ -304,8 +301,7 @@ static void queue_others(monitor *m)
 {
     int error = GROBO_OK;
     for (int i = 1; i < m->list.n && error >= 0; i++) {
-        error = grobo_robot_enqueue(grobo_session_robot(m->c.session), &m->list.clip[i],
-                                    &m->list.options[i]);
+        error = grobo_robot_enqueue(m->c.robot, &m->list.clip[i], &m->list.options[i]);
         if (error < 0) {
             say(m, true, "%s: %s", m->list.path[i], app_error_text(error));
         }
@@ -367,7 +363,7 @@ static bool is_over(conn *c)
 /* Until somebody quits. Returns why it ended otherwise, or 0. */
 static int watch(monitor *m)
 {
-    struct event *tick = conn_every(&m->c, DRAW_US, on_draw, m);
+    struct event *tick = conn_every(m->c.base, DRAW_US, on_draw, m);
     struct event *input = event_new(m->c.base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, m);
     int error = tick && input ? GROBO_OK : GROBO_ERR_NOMEM;
     if (!error) {
@@ -397,7 +393,7 @@ static int leave(monitor *m, int error)
     conn *c = &m->c;
     c->moving = c->up && grobo_robot_moving(c->robot);
     if (!error && c->moving) {
-        error = conn_wait(c, grobo_robot_exit(grobo_session_robot(c->session), GROBO_EXIT_HOLD));
+        error = conn_wait(c, grobo_robot_exit(c->robot, GROBO_EXIT_HOLD));
     }
     return error ? conn_fail(c, error, "monitor") : EXIT_DONE;
 }
@@ -408,7 +404,7 @@ static int run_screen(monitor *m)
     app *a = c->a;
     c->ctx = m;
     c->on_event = on_event;
-    m->model = grobo_robot_driver(c->robot)->model;
+    m->model = conn_model(c);
     m->keys = (play_keys){.c = c, .speed_pct = 100};
     m->blocks = os_shows_utf8();
     choose_place(m, 0);

@@ -20,33 +20,6 @@ typedef struct view {
 
 /* ---- a robot --------------------------------------------------------------------------------- */
 
-/* What of all its joints is worth a word. */
-typedef struct worst {
-    int on, hottest;
-    double hottest_c, lowest_v;
-} worst;
-
-static worst worst_of(const seat *s)
-{
-    worst w = {.hottest = -1, .hottest_c = NAN, .lowest_v = NAN};
-    grobo_joint_info info;
-    for (int j = 0; j < app_model(&s->a)->n_joints; j++) {
-        if (grobo_robot_joint(s->c.robot, j, &info) != 0) {
-            continue;
-        }
-        w.on += info.torque_known && info.state.torque == GROBO_TORQUE_ON;
-        if ((info.state.valid & GROBO_FIELD_TEMPERATURE) &&
-            !(info.state.temperature_c <= w.hottest_c)) {
-            w.hottest = j;
-            w.hottest_c = info.state.temperature_c;
-        }
-        if (info.state.valid & GROBO_FIELD_VOLTAGE) {
-            w.lowest_v = fmin(w.lowest_v, info.state.voltage_mv / 1000.0);
-        }
-    }
-    return w;
-}
-
 static bool is_there(const seat *s)
 {
     return s->is_open && s->c.up && !s->c.link_error;
@@ -66,7 +39,7 @@ static const char *stop_of(const view *v, const seat *s)
     grobo_robot_tripped(s->c.robot, &trip);
     return trip.trip == GROBO_TRIP_NONE ? "-"
            : !v->estopped               ? _(grobo_trip_name(trip.trip))
-           : !s->c.estop_ended          ? _("told")
+           : !s->c.estop_ended          ? _("requested")
            : s->c.estop_result < 0      ? _("NOT seen to stop: use its switch")
                                         : _("stopped, read back");
 }
@@ -78,7 +51,7 @@ static void show(const view *v, const seat *s)
         return;
     }
     const grobo_model *model = app_model(&s->a);
-    worst w = worst_of(s);
+    seat_worst w = seat_get_worst(s);
     char heat[64] = "-", supply[16] = "-";
     if (w.hottest >= 0) {
         snprintf(heat, sizeof heat, "%s %.0f C", model->joints[w.hottest].name, w.hottest_c);
@@ -166,10 +139,8 @@ static void open_all(view *v, bool first)
 
 static int watch(view *v, int64_t interval_us)
 {
-    const struct timeval period = {.tv_sec = (int)(interval_us / 1000000),
-                                   .tv_usec = (int)(interval_us % 1000000)};
-    struct event *draw = event_new(v->all.host.base, -1, EV_PERSIST, on_draw, v);
-    bool fine = draw && event_add(draw, &period) == 0;
+    struct event *draw = conn_every(v->all.host.base, interval_us, on_draw, v);
+    bool fine = draw != NULL;
     bool hears = fine && keys_start(&v->input, v->all.host.base, true, on_key, v);
     if (hears && v->all.a->tty_err) {
         app_note(v->all.a, "e: EMERGENCY STOP of all   q: quit");

@@ -31,11 +31,11 @@ static void report(const conn *c, const grobo_posture *target)
         app_print_json(json_pack("{s:o,s:o}", "joints", render_joints_json(c, target->set),
                                  "max_error_deg", app_json_number(joint < 0 ? NAN : worst, 2)));
     } else if (joint >= 0) {
-        const char *name = grobo_robot_driver(c->robot)->model->joints[joint].name;
+        const char *name = conn_model(c)->joints[joint].name;
         if (worst < there_deg) {
-            app_note(c->a, "there; largest error %.1f deg (%s)", worst, name);
+            app_note(c->a, "done; largest error %.1f deg (%s)", worst, name);
         } else {
-            app_note(c->a, "not there: largest error %.1f deg (%s); is it blocked?", worst, name);
+            app_note(c->a, "not reached: largest error %.1f deg (%s); is it blocked?", worst, name);
         }
     }
 }
@@ -59,7 +59,7 @@ static int go(app *a, const grobo_posture *target, const char *doing)
     int status = conn_open_to_move(&c, a);
     if (!status) {
         int64_t began_us = grobo_now_us();
-        int job = grobo_robot_move(grobo_session_robot(c.session), target);
+        int job = grobo_robot_move(c.robot, target);
         c.moving = job > 0; /* refused at once: nothing moves, nothing is to be left */
         int error = conn_wait_shown(&c, job, doing, target->time_us);
         if (error) {

@@ -19,7 +19,7 @@ static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_MIRROR] = OPTION_FLAG("mirror", 'm', "left for right"),
     [PLAY_SPEED] =
         OPTION_WHOLE("speed", 's', "PCT", 1, GROBO_PLAY_SPEED_MAX_PCT, "speed in percent (100)"),
-    [PLAY_FROM] = OPTION_REAL("from", 'f', "MS", 0, 1e9, "begin so far into the first file"),
+    [PLAY_FROM] = OPTION_REAL("from", 'f', "MS", 0, 1e9, "begin at this time of the first file"),
     [PLAY_RATE] = OPTION_WHOLE("rate", 0, "HZ", 1, GROBO_PLAY_RATE_MAX_HZ,
                                "interpolate, so many frames a second (pseq and yaml)"),
     [PLAY_KEY] =
@@ -172,8 +172,7 @@ static json_t *summary_json(const conn *c, deviation following, deviation end)
 static void print_deviation(const conn *c, const char *what, deviation d)
 {
     if (d.joint >= 0) {
-        app_print("%s %.1f deg (%s)\n", what, d.deg,
-                  grobo_robot_driver(c->robot)->model->joints[d.joint].name);
+        app_print("%s %.1f deg (%s)\n", what, d.deg, conn_model(c)->joints[d.joint].name);
     }
 }
 
@@ -237,7 +236,7 @@ static int watch_it(conn *c, show *s)
     if (keys_start(&s->input, c->base, false, on_key, c) && s->bar.shown) {
         app_note(c->a, "space: pause   + -: speed   s: stop   e: EMERGENCY STOP");
     }
-    struct event *tick = conn_every(c, TICK_US, on_tick, c);
+    struct event *tick = conn_every(c->base, TICK_US, on_tick, c);
     int error = conn_wait_until(c, is_over);
     conn_forget(tick);
     keys_stop(&s->input);
@@ -261,7 +260,7 @@ static int after_estop(conn *c, int error)
 /* Plays to the end, then reads where the joints are. */
 static int play(conn *c, show *s)
 {
-    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    grobo_joint_mask all = GROBO_JOINTS_ALL(conn_model(c)->n_joints);
     warn_of_rate(c, &s->list.options[0]);
     int error = start(c, s);
     if (error) {
@@ -279,7 +278,7 @@ static int play(conn *c, show *s)
     }
     c->moving = false;
     conn_watch(c, false);
-    error = conn_wait(c, grobo_robot_sense(c->robot, all, GROBO_SENSE_FULL));
+    error = conn_sense(c, all, GROBO_SENSE_FULL);
     if (error && c->job.failed == 0) {
         return conn_fail(c, error, "play");
     }
@@ -326,7 +325,7 @@ const cli_command cmd_play = {
         "checked before anything moves: an angle outside a joint's limits is refused with its\n"
         "place in the file and exit status 4, or played at the limit with --clamp. An angle up\n"
         "to one degree outside, as recordings have them, is played at the limit, with a warning.\n"
-        "One warning says where the robot would fall; --force and 'warn_fall: false' in\n"
+        "One warning reports where the robot would fall; --force and 'warn_fall: false' in\n"
         "config.yaml silence it. Torque comes on where it is off, and the robot goes slowly from\n"
         "where it is to where the motion begins. Ctrl-C stops smoothly and carries out the exit\n"
         "policy.\n"
@@ -337,7 +336,7 @@ const cli_command cmd_play = {
         "115200 bps.\n"
         "\n"
         "Where -d names a group of the configuration, its robots approach, wait for each other\n"
-        "and begin together; --if-lost says what the others do when one trips or loses its line.\n"
+        "and begin together; --if-lost chooses what the others do if one trips or loses its line.\n"
         "\n"
         "On a terminal it takes keys:\n"
         "\n" PLAY_KEYS_HELP,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/body/options.h"
@@ -26,12 +27,6 @@ typedef struct order {
     char name[GROBO_PATH_MAX_BYTES]; /* of OUT where none is given */
 } order;
 
-static const char *last_part(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* The file's name with another extension, in the directory we are in. */
 static int choose_name(app *a, order *o)
 {
@@ -55,7 +50,7 @@ static int settle(app *a, order *o)
 {
     const cli_value *out = app_option(a, OPT_OUT);
     o->in = a->line.argument[0];
-    o->shown = strcmp(o->in, "-") == 0 ? "standard input" : last_part(o->in);
+    o->shown = strcmp(o->in, "-") == 0 ? "standard input" : file_last_part(o->in);
     o->format = PICTURE_SVG;
     o->out = out->given ? out->text : "-";
     if (!out->given && (a->tty_out || a->json)) {
@@ -194,7 +189,7 @@ static int draw(app *a, const order *o, const plot_data *data)
     if (!status) {
         report(a, o, data);
     }
-    svg_free(&drawing);
+    free(drawing.bytes);
     return status;
 }
 

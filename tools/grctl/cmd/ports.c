@@ -34,8 +34,11 @@ static json_t *port_json(const grobo_port_info *info)
                      usable ? NULL : app_json_code(grobo_error_name(info->open_result)));
 }
 
-static void print_port(const grobo_port_info *info)
+/* What an adapter and a process call themselves is for them to say. */
+static void print_port(grobo_port_info *info)
 {
+    app_make_one_line(info->product);
+    app_make_one_line(info->owner_name);
     app_print("%-16s", info->path);
     if (info->open_result == GROBO_OK) {
         app_print("  free");
@@ -70,7 +73,8 @@ static int visit(void *ctx, const grobo_port_info *info)
     if (list) {
         json_array_append_new(list, port_json(info));
     } else {
-        print_port(info);
+        grobo_port_info shown = *info;
+        print_port(&shown);
     }
     return 0;
 }
@@ -96,7 +100,7 @@ const cli_command cmd_ports = {
     .arguments = "",
     .summary = "list the serial ports of this machine",
     .details = "Lists every serial port: its path, the name under /dev/serial/by-id that stays\n"
-               "when it is plugged in elsewhere, its USB ids, who holds it and whether it may be\n"
-               "opened. No port is opened for it.\n",
+               "when it is plugged in elsewhere, its USB ids, which program holds it and whether\n"
+               "it may be opened. No port is opened for it.\n",
     .run = run,
 };

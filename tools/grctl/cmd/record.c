@@ -34,8 +34,8 @@ static const cli_option options[] = {
         OPTION_TEXT("out", 'o', "FILE", ".m, .pseq, .mseq or .yaml (the first free MotionN.m)"),
     [OPT_TIME] = OPTION_WHOLE("time", 't', "MS", 10, 9990,
                               "time to reach a posture kept by a key press (1000)"),
-    [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 50, "look so many times a second (4)"),
-    [OPT_KEY] = OPTION_FLAG("key", 'k', "a posture a key press: space"),
+    [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 50, "checks per second (4)"),
+    [OPT_KEY] = OPTION_FLAG("key", 'k', "keep a posture only at a key press: space"),
     [OPT_MOVED] = OPTION_REAL("moved", 'm', "DEG", 0, 180,
                               "keep a posture when a joint moved by so much (10); 0: every one"),
     [OPT_LIMP] = OPTION_FLAG("limp", 0, "switch torque off; the default where it is off"),
@@ -94,7 +94,7 @@ static int keep(recorder *r, grobo_posture *now)
     } else {
         now->time_us = n == 0 ? KEY_MS * 1000 : took_us < PAUSE_US ? took_us : PAUSE_US;
     }
-    grobo_posture_clamp(now, grobo_robot_driver(r->c.robot)->model);
+    grobo_posture_clamp(now, conn_model(&r->c));
     r->last = *now;
     r->last_us = now_us;
     return grobo_motion_append(r->motion, now);
@@ -107,7 +107,7 @@ static int read_limp(recorder *r, bool *read)
     int error = GROBO_OK;
     *read = true;
     if (r->limp) {
-        error = conn_wait(c, grobo_robot_sense(c->robot, r->limp, GROBO_SENSE_POSITION));
+        error = conn_sense(c, r->limp, GROBO_SENSE_POSITION);
     }
     if (conn_is_of_reply(error)) {
         *read = false;
@@ -161,7 +161,7 @@ static int drop_last(recorder *r)
 static size_t add_angle(const recorder *r, const grobo_posture *now, int joint, char *text,
                         size_t capacity)
 {
-    const grobo_model *model = grobo_robot_driver(r->c.robot)->model;
+    const grobo_model *model = conn_model(&r->c);
     int n = snprintf(text, capacity, "  %s %.1f", model->joints[joint].name,
                      grobo_deg_from_rad(now->angle_rad[joint]));
     return n > 0 && (size_t)n < capacity ? (size_t)n : 0;
@@ -399,7 +399,7 @@ static void say_how(const recorder *r, bool hears)
 {
     if (r->held) {
         app_note(r->c.a,
-                 "joints are in your hands: each gives way when you turn it, holds when let go");
+                 "joints follow your hands: each turns with your hand and holds when released");
     }
     if (r->limp) {
         app_note(r->c.a, "%d joint%s limp: move by hand; a released joint does not hold",
@@ -420,7 +420,7 @@ static void say_how(const recorder *r, bool hears)
 static void look_at_torque(const recorder *r, grobo_joint_mask *hold, grobo_joint_mask *switched)
 {
     *hold = *switched = 0;
-    for (int j = 0; j < grobo_robot_driver(r->c.robot)->model->n_joints; j++) {
+    for (int j = 0; j < conn_model(&r->c)->n_joints; j++) {
         grobo_joint_info info;
         if (!(r->joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(r->c.robot, j, &info) < 0) {
             continue;
@@ -434,9 +434,9 @@ static void look_at_torque(const recorder *r, grobo_joint_mask *hold, grobo_join
 static int give(recorder *r)
 {
     conn *c = &r->c;
-    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    grobo_joint_mask all = GROBO_JOINTS_ALL(conn_model(c)->n_joints);
     grobo_joint_mask hold, switched;
-    int error = conn_wait(c, grobo_robot_sense(c->robot, all, GROBO_SENSE_ALL));
+    int error = conn_sense(c, all, GROBO_SENSE_ALL);
     if (error < 0) {
         return error;
     }
@@ -466,9 +466,9 @@ static int teach(recorder *r)
     progress_start(&r->line, c->a);
     if (!r->by_key) {
         double rate_hz = app_number(c->a, OPT_RATE, seed_rate_hz);
-        r->look = conn_every(c, (int64_t)(1e6 / rate_hz), conn_note, &r->look_is_due);
+        r->look = conn_every(c->base, (int64_t)(1e6 / rate_hz), conn_note, &r->look_is_due);
     }
-    r->live = conn_every(c, LIVE_US, conn_note, &r->live_is_due);
+    r->live = conn_every(c->base, LIVE_US, conn_note, &r->live_is_due);
     if (!error) {
         error = mind(r);
     }
@@ -618,19 +618,19 @@ const cli_command cmd_record = {
     COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "record a motion by moving the robot by hand",
     .details =
-        "All joints, or those named, give way to a hand that turns them and hold when it lets go.\n"
+        "All joints, or those named, follow a hand that turns them and hold when released.\n"
         "A joint without torque stays so: it is limp and nothing is switched on. --limp switches\n"
-        "the torque of what is taught off: hold the robot, an arm falls. What is not taught stays\n"
-        "as it is.\n"
+        "off the torque of the joints that are taught: hold the robot, an arm falls. The others\n"
+        "stay as they are.\n"
         "\n"
-        "Postures are kept when a joint has moved by --moved degrees, looked at --rate times a\n"
+        "Postures are kept when a joint has moved by --moved degrees, checked --rate times a\n"
         "second; with --key only at the press of a key. Pauses are cut to a second.\n"
         "\n"
-        "At 115200 bps each of all joints is read 6 times a second, of the 3 of an arm 40 times,\n"
-        "a single one 120 times: a higher --rate sees nothing more. The joints that are not\n"
+        "At 115200 bps each of all joints is read 6 times a second, each of the 3 of an arm 40\n"
+        "times, a single one 120 times: a higher --rate has no effect. The joints that are not\n"
         "taught are watched meanwhile, once a second.\n"
         "\n"
-        "Keys, of a terminal or a pipe:\n"
+        "Keys, from a terminal or a pipe:\n"
         "\n"
         "  space   keep the posture as it is now\n"
         "  d       drop the last one\n"
@@ -650,10 +650,10 @@ const cli_command cmd_teach = {
     COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "record postures of limp joints, and play them at once",
     .details =
-        "Switches the torque of all joints, or of those named, off: hold the robot, an arm falls.\n"
-        "What is not taught stays as it is: what holds, holds.\n"
+        "Switches off the torque of all joints, or of those named: hold the robot, an arm falls.\n"
+        "Joints that are not taught stay as they are: those that hold continue to hold.\n"
         "\n"
-        "Keys, of a terminal or a pipe:\n"
+        "Keys, from a terminal or a pipe:\n"
         "\n"
         "  space      keep the posture as it is now\n"
         "  d          drop the last one\n"

@@ -263,13 +263,13 @@ static grobo_write_kind kind_of(const app *a, const servo_change *what)
 static int read_torque(conn *c, const servo_change *what, const grobo_servo_register *reg,
                        int32_t *torque)
 {
-    int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
+    int joint = grobo_model_joint_of_motor(conn_model(c), what->id);
     int error = servos_get(c, what->id, what->servo, reg, torque);
     bool told = error != GROBO_ERR_UNSUPPORTED;
     if ((error && told) || joint < 0) {
         return error;
     }
-    error = conn_wait(c, grobo_robot_sense(c->robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
+    error = conn_sense(c, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL);
     grobo_joint_info i;
     if (!told && grobo_robot_joint(c->robot, joint, &i) == 0) {
         *torque = i.state.valid & GROBO_FIELD_TORQUE ? (int32_t)i.state.torque : GROBO_TORQUE_ON;
@@ -433,6 +433,14 @@ static bool read_value(const servo_change *what, const char *text, int32_t *coun
     return true;
 }
 
+/* DYNAMIXEL that answer nothing but pings, or in another protocol, could not be asked again. */
+static bool would_hide(const servo_change *what)
+{
+    bool pings_alone =
+        what->reg->role == GROBO_ROLE_REPLY_LEVEL && what->value == 0 && what->reg->max > 1;
+    return pings_alone || (strcmp(what->reg->name, "protocol_type") == 0 && what->value != 2);
+}
+
 /* What the command line asks for, of the servo that what->servo is. */
 static int parse_change(app *a, servo_change *what)
 {
@@ -454,6 +462,13 @@ static int parse_change(app *a, servo_change *what)
         return app_fail(a, EXIT_USAGE, "LIMIT", "servo-set: '%s': %s takes %d to %d (counts of %s)",
                         a->line.argument[2], what->reg->name, what->reg->min, what->reg->max,
                         *what->reg->unit ? what->reg->unit : "1");
+    }
+    if (would_hide(what)) {
+        return app_fail(
+            a, EXIT_SAFETY, "UNSUPPORTED",
+            "servo-set: with %s %d a servo answers nothing that is asked from here, and "
+            "could not be set back",
+            what->reg->name, what->value);
     }
     what->flash = app_option(a, OPT_FLASH)->given > 0;
     if ((what->reg->flags & GROBO_REGISTER_KEPT) == 0 && what->flash) {
@@ -510,20 +525,19 @@ const cli_command cmd_servo_set = {
     .summary = "write a servo's register by name",
     .details =
         "Writes one register and reads it back. The value is what the register stores (see\n"
-        "servo-get); a baud rate may be given as it is. With --flash the servo also keeps\n"
-        "its settings over power-off; that is shown first and, on a terminal, asked for.\n"
-        "Goal and torque are refused: move and servo set them safely; id, direction, limits and\n"
-        "what else decides where a goal is are refused while the servo holds, an id that another\n"
-        "servo has, and through the board a baud rate other than 115200.\n"
+        "servo-get); a baud rate may be given as it is. With --flash the servo also keeps its\n"
+        "settings over power-off; that is shown first and, on a terminal, asked for. Goal and\n"
+        "torque are refused: move and servo set them safely. Id, direction, limits and other\n"
+        "settings that decide where a goal is are refused while the servo holds. An id that\n"
+        "another servo has, and through the board a baud rate other than 115200, are refused too.\n"
         "\n"
-        "What --flash does depends on the servo: RS30x write their flash, Feetech's are opened\n"
-        "(register lock) for the one write and closed again, and DYNAMIXEL keep id, limits and\n"
-        "the like always.\n"
+        "What --flash does depends on the servo: RS30x write their flash, Feetech's are unlocked\n"
+        "for this one write, and DYNAMIXEL keep id, limits and the like always.\n"
         "\n"
         "On a bus a new baud rate is written at the old one. With --flash an RS30x keeps it and\n"
-        "restarts, the command follows it to the new rate and verifies that it answers there;\n"
-        "-b then reaches it. Without --flash the servo goes on at the old rate and forgets the\n"
-        "new one when it restarts.\n",
+        "restarts, the command follows it to the new rate and verifies that it answers there; -b\n"
+        "then reaches it. Without --flash the servo stays at the old rate and forgets the new one\n"
+        "when it restarts.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
     COMMAND_OPTIONS(set_options),
     .run = run_set,

@@ -5,18 +5,17 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
-#include "tools/grctl/servo/family.h"
 #include "tools/grctl/setup/found.h"
 
 enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_NAME, OPT_OUT };
 
 static const cli_option options[] = {
     [OPT_FAMILY] = OPTION_CHOICE("family", 0, "rs30x|dynamixel2|dynamixel1|feetech|lx16a|ics",
-                                 "how its servos talk (import: feetech; new: all)"),
+                                 "family of its servos (import: feetech; new: all)"),
     [OPT_SERVO] = OPTION_TEXT("servo", 0, "MODEL[,MODEL]...",
                               "import: its servos, one for all or for each joint"),
     [OPT_IDS] = OPTION_TEXT("ids", 0, "1-4,7", "import: ids of the joints, in order (1, 2, 3...)"),
-    [OPT_NAME] = OPTION_TEXT("name", 0, "NAME", "import, new: what the robot is called"),
+    [OPT_NAME] = OPTION_TEXT("name", 0, "NAME", "import, new: name of the robot"),
     [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE", "import, new: the robot's file (standard output)"),
 };
 
@@ -96,7 +95,7 @@ static json_t *robot_json(const grobo_robot_def *def)
 static void print_robot(const grobo_robot_def *def)
 {
     const grobo_safety_limits *limits = &def->limits;
-    app_print("%s: %s\n", def->name, def->title);
+    app_print_line("%s: %s", def->name, def->title);
     app_print("servos     %d of family %s\n", def->model->n_joints, def->family->name);
     app_print("line       %lu bps, %s", (unsigned long)def->baud_bps,
               def->wiring == GROBO_WIRING_BOARD ? "through its board" : "servos on a bus");
@@ -242,25 +241,26 @@ const cli_command cmd_robot = {
     COMMAND_ARGUMENTS("list|show|check|servos|import|new [NAME|FILE]", 1, 2, CLI_ARG_ROBOT),
     .summary = "list known robots, write and check files of others",
     .details =
-        "list: the robots that come with grctl. show: what one of them is, or a file says, or the\n"
-        "robot of --robot. check: everything that is wrong with a file, with line and column; the\n"
-        "exit status is 3 then. servos: the servos that a file may name, of all families or of\n"
-        "one. No robot is asked.\n"
+        "list: the robots that come with grctl. show: the contents of one of them, of a file, or\n"
+        "of the robot of --robot. check: every problem of a file, with line and column; the exit\n"
+        "status is 3 then. servos: the servos that a file may name, of all families or of one. No\n"
+        "robot is asked.\n"
         "\n"
-        "import: a robot's file of a URDF or of a body of Choreonoid: joints, limits, speeds,\n"
-        "parts with their masses. What these do not tell (servos, ids, which way each turns) is\n"
-        "guessed, and said in a comment, unless --family, --servo and --ids tell. Limits that the\n"
-        "servo does not reach are cut; joints that slide or follow another are taken as fixed.\n"
+        "import: a robot's file from a URDF or a body of Choreonoid: joints, limits, speeds,\n"
+        "parts with their masses. What these do not contain (servos, ids, which way each turns)\n"
+        "is guessed and marked by a comment, unless --family, --servo and --ids give it. Limits\n"
+        "that the servo does not reach are cut; joints that slide or follow another are treated\n"
+        "as fixed.\n"
         "\n"
         "new: a robot's file of the servos that answer on the line of -d, of every family at its\n"
         "usual rates, or of --family, or at the rate of -b. Joints are called joint1 and so on;\n"
-        "limits are those that the servos hold. Robots that come with grctl and have these ids\n"
-        "and servos are named.\n"
+        "limits are those stored in the servos. A robot that comes with grctl and has these ids\n"
+        "and servos is named.\n"
         "\n"
-        "A robot is a YAML file: its joints with id, servo and limits, its line, what is safe.\n"
-        "docs/guide/own-robot.md describes one, docs/robot.schema.json tells an editor its keys.\n"
-        "Every command takes --robot NAME or --robot FILE; GRCTL_ROBOT and the key robot of a\n"
-        "configured robot say the same.\n",
+        "A robot is a YAML file: its joints with id, servo and limits, its line, its safety\n"
+        "limits. docs/guide/own-robot.md describes the file, docs/robot.schema.json gives an\n"
+        "editor its keys. Every command takes --robot NAME or --robot FILE; GRCTL_ROBOT and the\n"
+        "key robot of a configured robot do the same.\n",
     .example = "  grctl robot list\n  grctl robot check ./arm.yaml\n"
                "  grctl --robot ./arm.yaml -d sim init\n"
                "  grctl robot import arm.urdf --family feetech --servo STS3215 -o arm.yaml\n"

@@ -287,7 +287,7 @@ static int run_scan(app *a)
 
 static int info(conn *c)
 {
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    const grobo_model *model = conn_model(c);
     bool board = grobo_driver_wiring(grobo_robot_driver(c->robot)) == GROBO_WIRING_BOARD;
     uint16_t address = 0;
     const grobo_driver *driver = grobo_robot_driver(c->robot);
@@ -347,14 +347,14 @@ const cli_command cmd_scan = {
     .arguments = "",
     .summary = "find the servo ids that answer",
     .details =
-        "Asks every id for its model and prints those that answer, however late. A silent\n"
-        "id costs 4 ms beside the wire's time. Where something comes late or broken, or\n"
-        "where a joint of the robot is missing, ids that are missing are asked again with\n"
-        "patience. --timeout MS gives each more time. Exit status 1 if none answers, or if\n"
-        "it is not sure who does. Nothing moves.\n"
-        "--family looks for servos of a family instead of the robot's, at the rates where\n"
-        "they are found usually, at that of -b, or with --all-baud at all; 'all' tries every\n"
-        "family and counts models that it knows.\n",
+        "Asks every id for its model and prints those that answer, however late. A silent id\n"
+        "costs 4 ms beside the wire's time. Where something comes late or broken, or where a\n"
+        "joint of the robot is missing, missing ids are asked again with more time. --timeout MS\n"
+        "gives each more time. The exit status is 1 if no servo answers, or if the result is not\n"
+        "certain. Nothing moves.\n"
+        "--family looks for servos of a family instead of the robot's, at their usual rates, at\n"
+        "that of -b, or with --all-baud at all rates; 'all' tries every family and counts models\n"
+        "that it knows.\n",
     .example = "  grctl scan --last 20\n  grctl scan --wiring bus --all-baud\n"
                "  grctl scan --family all --last 10\n",
     COMMAND_OPTIONS(options),

@@ -22,7 +22,7 @@ static bool parse_mode(const char *word, grobo_torque *mode)
 static void print_json(const conn *c, grobo_joint_mask joints)
 {
     json_t *list = json_array();
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    const grobo_model *model = conn_model(c);
     for (int j = 0; j < model->n_joints; j++) {
         grobo_joint_info i;
         if (!(joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(c->robot, j, &i) < 0) {
@@ -43,7 +43,7 @@ static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, co
     int error = conn_wait_shown(c, grobo_robot_torque(c->robot, joints, mode), "servo", 0);
     if (error == GROBO_ERR_UNSUPPORTED && mode == GROBO_TORQUE_BRAKE) {
         return app_fail(c->a, EXIT_SAFETY, grobo_error_name(error),
-                        "servo: the servos of %s have no brake; on holds, off lets go",
+                        "servo: the servos of %s have no brake; on holds, off releases",
                         grobo_robot_driver(c->robot)->model->name);
     }
     if (error) {

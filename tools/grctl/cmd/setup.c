@@ -18,15 +18,15 @@ const cli_command cmd_setup = {
     .arguments = "",
     .summary = "find a robot, name it and read its joints",
     .details =
-        "Asks its way through: finds the adapter, and prints the fix where it may not be\n"
-        "opened; looks who answers; takes the robot of grctl that has these servos, or writes a\n"
-        "file of them; names it in ~/.config/grctl/config.yaml; reads its joints once; and\n"
-        "offers to calibrate it. Nothing moves, and nothing is done as root. Each step says what\n"
-        "it has changed; --undo undoes it, the configuration and a robot's file, unless they\n"
-        "have changed since. -d sim shows how it goes.\n"
+        "Guides through the first steps: finds the adapter, and prints the fix if it cannot be\n"
+        "opened; finds the servos that answer; takes the robot of grctl that has these servos, or\n"
+        "writes a file of them; names it in ~/.config/grctl/config.yaml; reads its joints once;\n"
+        "and offers to calibrate it. Nothing moves, and nothing is done as root. Each step prints\n"
+        "what it has changed; --undo restores the configuration and removes a robot's file that\n"
+        "was made, unless they have changed since. -d sim shows how it goes.\n"
         "\n"
-        "It asks at a terminal. With --yes it does not: each answer is what stands in the\n"
-        "brackets, or a line of standard input where that is no terminal. No calibration then.\n",
+        "It asks on a terminal. With --yes it does not: each answer is the value in the brackets,\n"
+        "or a line of standard input where that is no terminal. It does not calibrate then.\n",
     .example = "  grctl setup\n  grctl -d sim --robot so101 setup\n  grctl setup --undo\n",
     COMMAND_OPTIONS(options),
     .run = run,

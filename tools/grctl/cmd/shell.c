@@ -4,7 +4,6 @@
 #include <signal.h>
 #include <string.h>
 
-#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/guard.h"
@@ -14,8 +13,8 @@
 enum { OPT_KEEP_GOING };
 
 static const cli_option options[] = {
-    [OPT_KEEP_GOING] =
-        OPTION_FLAG("keep-going", 'k', "go on behind a command that fails; its exit status stays"),
+    [OPT_KEEP_GOING] = OPTION_FLAG("keep-going", 'k',
+                                   "continue after a command that fails; its exit status stays"),
 };
 
 /* While no command has the robot, a signal is only noted: it ends the shell, or a script. */

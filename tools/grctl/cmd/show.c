@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
 
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
@@ -10,7 +9,7 @@
 enum { OPT_JOINTS, OPT_RATE, OPT_BODY };
 
 static const cli_option options[] = {
-    MOTION_LOOK_ROWS(OPT_JOINTS, OPT_RATE, "as it is played, so many rows a second"),
+    MOTION_LOOK_ROWS(OPT_JOINTS, OPT_RATE, "what is played, rows per second"),
     BODY_OPTION_ROWS(OPT_BODY),
 };
 
@@ -109,16 +108,6 @@ static void print_json(const show_rows *rows, const char *path, const char *form
                              "keys", keys));
 }
 
-/* A name from a file, safe on a terminal. */
-static void print_text(const char *text)
-{
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
-        bool c1 = c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0; /* controls of eight bits */
-        app_print("%c", *c < 0x20 || *c == 0x7f || c1 ? '?' : *c);
-        c += c1;
-    }
-}
-
 static const char *row_word(const show_rows *rows)
 {
     if (rows->rate_hz > 0) {
@@ -153,22 +142,14 @@ static void print_head(const show_rows *rows, const char *path, const char *form
     double length_us = rows->as_played ? (double)rows->played.clip.length_us
                                        : (double)grobo_motion_length_us(motion, -1);
     size_t linked = count_linked(motion);
-    print_text(path);
-    app_print(": %s", format);
-    if (*grobo_motion_name(motion)) {
-        app_print(" \"");
-        print_text(grobo_motion_name(motion));
-        app_print("\"");
-    }
-    if (*grobo_motion_target_body(motion)) {
-        app_print(" for ");
-        print_text(grobo_motion_target_body(motion));
-    }
-    app_print(", %zu %s", rows->n, row_word(rows));
+    const char *name = grobo_motion_name(motion), *body = grobo_motion_target_body(motion);
+    char rate[32] = "";
     if (grobo_motion_frame_rate(motion) > 0 && !grobo_motion_has_frame_times(motion)) {
-        app_print(" at %.5g Hz", grobo_motion_frame_rate(motion));
+        snprintf(rate, sizeof rate, " at %.5g Hz", grobo_motion_frame_rate(motion));
     }
-    app_print(", %.3f s, angles in degrees\n", length_us / 1e6);
+    app_print_line("%s: %s%s%s%s%s%s, %zu %s%s, %.3f s, angles in degrees", path, format,
+                   *name ? " \"" : "", name, *name ? "\"" : "", *body ? " for " : "", body, rows->n,
+                   row_word(rows), rate, length_us / 1e6);
     if (rows->played.body) {
         app_print("legs by inverse kinematics\n");
     } else if (linked) {

@@ -11,7 +11,6 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/os/os.h"
-#include "tools/grctl/servo/family.h"
 #include "tools/grctl/sim/chain.h"
 #include "tools/grctl/sim/console.h"
 #include "tools/grctl/sim/state.h"
@@ -44,11 +43,11 @@ static const cli_option options[] = {
                               "XL330-M288, STS3215, AX-12A...; an unknown type lists all"),
     [OPT_NO_STOPS] = OPTION_FLAG("no-stops", 0, "shafts meet no mechanical stops"),
     [OPT_NO_PACING] = OPTION_FLAG("no-pacing", 0, "bytes take no time on the wire"),
-    [OPT_LATENCY] = OPTION_WHOLE("latency", 0, "MS", 0, 255,
-                                 "bytes wait so long for others, as in an adapter (0; FTDI: 16)"),
+    [OPT_LATENCY] =
+        OPTION_WHOLE("latency", 0, "MS", 0, 255, "latency of the adapter (0; FTDI: 16)"),
     [OPT_ROBOTS] = OPTION_WHOLE("robots", 'n', "N", 1, ROBOTS_MAX,
-                                "so many robots, each behind a pty of its own (1)"),
-    [OPT_SEED] = OPTION_WHOLE("seed", 0, "N", 0, 4294967295.0, "of everything random"),
+                                "number of robots, each behind a pty of its own (1)"),
+    [OPT_SEED] = OPTION_WHOLE("seed", 0, "N", 0, 4294967295.0, "seed of all random numbers"),
     [OPT_START] = OPTION_CHOICE("start", 0, "init|zero|limp",
                                 "where the joints are at power-up; limp: anywhere (init)"),
     [OPT_FAULT] = OPTION_TEXT("fault", 0, "LIST",

@@ -7,14 +7,14 @@
 enum { OPT_WATCH, OPT_INTERVAL };
 
 static const cli_option options[] = {
-    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "again and again, until a signal"),
+    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "repeat until a signal"),
     [OPT_INTERVAL] = OPTION_WHOLE("interval", 'i', "MS", 20, 3600000,
                                   "time between two rounds of --watch (1000)"),
 };
 
 static void show(conn *c, grobo_joint_mask joints)
 {
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    const grobo_model *model = conn_model(c);
     if (!c->a->json) {
         if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given) {
             app_print("\033[H\033[J");
@@ -30,7 +30,7 @@ static void show(conn *c, grobo_joint_mask joints)
 /* One round; the exit status: a joint that stays silent is shown, and makes it 1. */
 static int sense_and_show(conn *c, grobo_joint_mask joints)
 {
-    int error = conn_wait(c, grobo_robot_sense(c->robot, joints, GROBO_SENSE_ALL));
+    int error = conn_sense(c, joints, GROBO_SENSE_ALL);
     if (error && c->job.failed == 0) {
         return conn_fail(c, error, "status");
     }

@@ -8,8 +8,7 @@ static int run_stop(app *a)
     conn c;
     int status = conn_open(&c, a);
     if (!status) {
-        int error = conn_wait_shown(
-            &c, grobo_robot_exit(grobo_session_robot(c.session), GROBO_EXIT_HOLD), "stop", 0);
+        int error = conn_wait_shown(&c, grobo_robot_exit(c.robot, GROBO_EXIT_HOLD), "stop", 0);
         if (error) {
             status = conn_fail(&c, error, "stop");
         } else {

@@ -20,8 +20,7 @@ static int start(app *a, grobo_stored_kind kind, const char *what)
     }
     int status = conn_open_to_move(&c, a);
     if (!status) {
-        error =
-            conn_wait(&c, grobo_robot_stored(grobo_session_robot(c.session), kind, (int)number));
+        error = conn_wait(&c, grobo_robot_stored(c.robot, kind, (int)number));
         if (error) {
             status = conn_fail(&c, error, what);
         } else {

@@ -121,7 +121,7 @@ static bool is_interrupted(const conn *c)
 
 int conn_wait_until(conn *c, bool (*done)(conn *c))
 {
-    while (!done(c)) {
+    while (!done || !done(c)) {
         if (is_interrupted(c)) {
             return GROBO_ERR_CANCELED;
         }
@@ -147,6 +147,11 @@ int conn_wait(conn *c, int job)
     int error = conn_wait_until(c, job_done);
     c->waiting_for = 0;
     return error ? error : c->job.result;
+}
+
+int conn_sense(conn *c, grobo_joint_mask joints, grobo_sense_kind kind)
+{
+    return conn_wait(c, grobo_robot_sense(c->robot, joints, kind));
 }
 
 /* What a person sees of it. */
@@ -180,20 +185,14 @@ static void on_show(evutil_socket_t fd, short what, void *ctx)
 
 int conn_wait_shown(conn *c, int job, const char *doing, int64_t expected_us)
 {
-    const struct timeval period = {0, SHOW_US};
     waiting w = {.doing = doing, .began_us = grobo_now_us(), .expected_us = expected_us};
     struct event *tick = NULL;
     progress_start(&w.bar, c->a);
     if (job > 0 && w.bar.shown) {
-        tick = event_new(c->base, -1, EV_PERSIST, on_show, &w);
-    }
-    if (tick) {
-        event_add(tick, &period);
+        tick = conn_every(c->base, SHOW_US, on_show, &w);
     }
     int error = conn_wait(c, job);
-    if (tick) {
-        event_free(tick);
-    }
+    conn_forget(tick);
     progress_clear(&w.bar);
     return error;
 }
@@ -206,17 +205,19 @@ void conn_note(evutil_socket_t fd, short what, void *ctx)
     *flag = true;
 }
 
-static struct timeval timeval_of(int64_t us)
+struct timeval conn_timeval(int64_t us)
 {
     return (struct timeval){.tv_sec = (int)(us / 1000000), .tv_usec = (int)(us % 1000000)};
 }
 
-struct event *conn_every(conn *c, int64_t period_us, event_callback_fn fn, void *ctx)
+struct event *conn_every(struct event_base *base, int64_t period_us, event_callback_fn fn,
+                         void *ctx)
 {
-    struct timeval period = timeval_of(period_us);
-    struct event *timer = event_new(c->base, -1, EV_PERSIST, fn, ctx);
-    if (timer) {
-        event_add(timer, &period);
+    struct timeval period = conn_timeval(period_us);
+    struct event *timer = event_new(base, -1, EV_PERSIST, fn, ctx);
+    if (timer && event_add(timer, &period) != 0) {
+        event_free(timer);
+        timer = NULL;
     }
     return timer;
 }
@@ -232,7 +233,7 @@ int conn_sleep_until(conn *c, int64_t at_us)
 {
     bool awake = false;
     int64_t rest_us = at_us - grobo_now_us();
-    struct timeval rest = timeval_of(rest_us > 0 ? rest_us : 0);
+    struct timeval rest = conn_timeval(rest_us > 0 ? rest_us : 0);
     struct event *timer = evtimer_new(c->base, conn_note, &awake);
     int error = GROBO_OK;
     if (!timer) {
@@ -489,7 +490,7 @@ static void take(conn *c, app *a)
     c->link->user = c;
     c->base = c->link->base;
     c->session = c->link->session;
-    c->robot = c->session ? grobo_session_robot(c->session) : NULL;
+    c->robot = grobo_session_robot(c->session);
     c->up = c->link->up;
 }
 
@@ -528,7 +529,7 @@ static void say_found(conn *c)
         auto_used(c->a, conn_device(c), conn_is_auto(c->a));
     }
     if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED) {
-        app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", app_error_text(answer));
+        app_detail(c->a, "low latency: %s; see 'grctl doctor'", app_error_text(answer));
     }
 }
 

@@ -10,7 +10,6 @@
 
 #include <grobo/session.h>
 
-#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/conn/last_frames.h"
 #include "tools/grctl/conn/trace.h"
@@ -122,13 +121,20 @@ void conn_watch(conn *c, bool on);
  */
 int conn_wait(conn *c, int job);
 
+/* Reads joints, and waits for that. */
+int conn_sense(conn *c, grobo_joint_mask joints, grobo_sense_kind kind);
+
+/* The joints of the robot that is connected: with its trims. */
+const grobo_model *conn_model(const conn *c);
+
 /*
  * The same, and a terminal shows for how long: after 2 s, or at once where it should take longer.
  * expected_us: how long it should take, 0 where nobody knows. `doing`: "move".
  */
 int conn_wait_shown(conn *c, int job, const char *doing, int64_t expected_us);
 
-/* Runs the loop until `done` says so, a signal comes or the link is lost; as conn_wait(). */
+/* Runs the loop until `done` (which may be NULL) says so, a signal comes or the link is lost; as
+ * conn_wait(). */
 int conn_wait_until(conn *c, bool (*done)(conn *c));
 
 /* Waits for a moment of grobo_now_us(); as conn_wait(). */
@@ -137,8 +143,10 @@ int conn_sleep_until(conn *c, int64_t at_us);
 /* For an event of the loop: sets the bool that ctx points to. */
 void conn_note(evutil_socket_t fd, short what, void *ctx);
 
+struct timeval conn_timeval(int64_t us);
 /* Has fn called again and again. NULL: there is no memory. */
-struct event *conn_every(conn *c, int64_t period_us, event_callback_fn fn, void *ctx);
+struct event *conn_every(struct event_base *base, int64_t period_us, event_callback_fn fn,
+                         void *ctx);
 
 /* Ends an event; NULL is allowed. */
 void conn_forget(struct event *event);

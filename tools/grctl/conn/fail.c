@@ -15,6 +15,11 @@ const char *conn_device(const conn *c)
     return grobo_session_device(c->session);
 }
 
+const grobo_model *conn_model(const conn *c)
+{
+    return grobo_robot_driver(c->robot)->model;
+}
+
 /* ---- the bytes of the line ------------------------------------------------------------------ */
 
 /* From -vv on, but not over a full screen. */
@@ -95,7 +100,7 @@ void conn_trip_value(const grobo_trip_info *t, char *text, size_t text_bytes)
 static int fail_trip(conn *c, const char *doing)
 {
     const grobo_trip_info *t = &c->trip;
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    const grobo_model *model = conn_model(c);
     char value[48];
     conn_trip_value(t, value, sizeof value);
     if (t->joint >= 0 && t->joint < model->n_joints) {
@@ -208,7 +213,7 @@ static int fail_adrift(conn *c, const char *prefix, const char *who)
 
 int conn_fail_job(conn *c, int error, const char *prefix)
 {
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    const grobo_model *model = conn_model(c);
     int joint = c->job.kind == GROBO_JOB_NONE ? -1 : c->job.joint;
     char who[64];
     if (joint < 0 || joint >= model->n_joints) {

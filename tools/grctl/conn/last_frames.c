@@ -2,8 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/rs30x.h>
-
 #include "tools/grctl/conn/last_frames.h"
 #include "tools/grctl/lang/lang.h"
 

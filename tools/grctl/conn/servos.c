@@ -33,6 +33,14 @@ int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_serv
     return error;
 }
 
+/* A servo may be set up to answer nothing but what is read: what it has tells. */
+static int look_after(conn *c, const grobo_register_io *io)
+{
+    uint8_t is[FAMILY_PIECE_BYTES];
+    int error = servos_read(c, io->id, io->address, io->length, is);
+    return !error && memcmp(is, io->data, io->length) != 0 ? GROBO_ERR_TIMEOUT : error;
+}
+
 int servos_put(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
                int32_t value)
 {
@@ -50,7 +58,8 @@ int servos_put(conn *c, int id, const grobo_servo_model *servo, const grobo_serv
                             .address = from,
                             .length = (uint16_t)(length ? length : reg->bytes),
                             .data = bytes};
-    return conn_wait(c, grobo_robot_registers(c->robot, &io));
+    error = conn_wait(c, grobo_robot_registers(c->robot, &io));
+    return error == GROBO_ERR_TIMEOUT ? look_after(c, &io) : error;
 }
 
 int servos_model(conn *c, int id, const grobo_servo_model **servo)

@@ -23,7 +23,7 @@ int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_serv
 
 /*
  * Writes it, where several are written in one piece with the others as they are. As above; a value
- * that the register does not take is GROBO_ERR_LIMIT.
+ * that the register does not take is GROBO_ERR_LIMIT. Of a servo that is silent it is read back.
  */
 int servos_put(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
                int32_t value);

@@ -4,10 +4,12 @@
 
 #include <event2/util.h>
 
+#include <grobo/files.h>
 #include <grobo/version.h>
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/conn/trace.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
 enum { QUEUE_BYTES = 1024 * 1024 };
@@ -34,8 +36,24 @@ static void describe(const app *a, char *text, size_t capacity)
 static int fail(app *a, const trace *t, int cause)
 {
     return app_fail(a, EXIT_FILE, "IO", "%s: the trace cannot be written: %s", t->path,
-                    cause == ENOENT ? file_write_error_text(GROBO_ERR_NOENT)
-                                    : app_cause_text(cause));
+                    cause == ENOENT   ? file_write_error_text(GROBO_ERR_NOENT)
+                    : cause == EEXIST ? _("it is no trace; name another file")
+                                      : app_cause_text(cause));
+}
+
+/* A file with something other than a trace, as where the name of a motion stands behind --trace. */
+static bool is_foreign(const char *path)
+{
+    static const char section[] = {'\n', '\r', '\r', '\n'}; /* in either byte order */
+    char start[sizeof section];
+    FILE *file = grobo_files_os()->holds(path) ? fopen(path, "rb") : NULL;
+    if (!file) {
+        return false;
+    }
+    bool same = fread(start, 1, sizeof start, file) == sizeof start &&
+                memcmp(start, section, sizeof start) == 0;
+    fclose(file);
+    return !same;
 }
 
 /* No trace keeps a robot from being stopped: then trace_close() reports it. */
@@ -64,6 +82,9 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
         return give_up(a, t, ENAMETOOLONG);
     }
     t->to_wall_us = wall_us() - now_us;
+    if (is_foreign(t->path)) {
+        return give_up(a, t, EEXIST);
+    }
     t->file = os_create(t->path, !a->stops);
     if (!t->file) {
         return give_up(a, t, os_is_folder(t->path) ? EISDIR : errno);

@@ -102,3 +102,9 @@ int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs)
     measure_read(&bus, driver, GROBO_SENSE_POSITION, &costs[WIRE_READ_ANGLE]);
     return GROBO_OK;
 }
+
+bool wire_echoes(const grobo_bus_stats *n)
+{
+    enum { REQUEST_BYTES = 6 }; /* none is shorter, but of ICS */
+    return n->replies > 0 && n->resync_bytes + n->late_bytes >= n->replies * REQUEST_BYTES / 2;
+}

@@ -38,4 +38,8 @@ enum { WIRE_SILENT_MARGIN_US = 2500 };
  */
 int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t *time_us);
 
+/* Whether an adapter has returned what was sent to it, by what a bus met that did not reckon with
+ * that: of each request rubbish, or with some families a packet, before its reply. */
+bool wire_echoes(const grobo_bus_stats *n);
+
 #endif

@@ -7,33 +7,28 @@
 /* Fewer registers are named, more are told by their addresses. */
 enum { NAMES_MAX = 4 };
 
-/* A register in a part; bytes of none (reg NULL), or of one that is not there as a whole. */
-typedef struct item {
-    const grobo_servo_model *servo;
-    const grobo_servo_register *reg;
-    int address, bytes;
-    int32_t value;
-    bool whole;
-} item;
-
-/* What stands at an offset of a part that has data or asks for them. */
-static item item_at(const talk *t, const telegram_part *part, int at)
+explain_item explain_item_at(const grobo_servo_model *servo, const telegram_part *part, int at)
 {
-    item i = {.servo = talk_servo(t, part->id), .address = part->address + at, .bytes = 1};
-    i.reg = part->address < 0 ? NULL : grobo_servo_register_at(i.servo, (uint16_t)i.address);
+    explain_item i = {.servo = servo, .address = part->address + at, .bytes = 1};
+    i.reg = part->address < 0 ? NULL : grobo_servo_register_at(servo, (uint16_t)i.address);
     i.whole = i.reg && i.reg->address == i.address && at + i.reg->bytes <= part->length;
     if (i.whole) {
         i.bytes = i.reg->bytes;
-        i.value = part->data ? grobo_servo_register_get(i.servo, i.reg, part->data + at) : 0;
+        i.value = part->data ? grobo_servo_register_get(servo, i.reg, part->data + at) : 0;
     } else if (part->data) {
         i.value = part->data[at];
     }
     return i;
 }
 
+static explain_item item_of(const talk *who, const telegram_part *part, int at)
+{
+    return explain_item_at(talk_servo(who, part->id), part, at);
+}
+
 /* ---- text ---------------------------------------------------------------------------------- */
 
-static void say_value(text *t, const item *i, bool write)
+static void say_value(text *t, const explain_item *i, bool write)
 {
     char value[REGISTERS_TEXT_BYTES], range[64];
     registers_text(i->servo, i->reg, i->value, value, sizeof value);
@@ -50,7 +45,7 @@ static void say_value(text *t, const item *i, bool write)
 }
 
 /* A register or byte in a list of them. */
-static void say_item(text *t, const item *i, bool write)
+static void say_item(text *t, const explain_item *i, bool write)
 {
     if (i->whole) {
         say_value(t, i, write);
@@ -61,7 +56,7 @@ static void say_item(text *t, const item *i, bool write)
 }
 
 /* Limits that leave no room. */
-static void say_order(text *t, const item *i, int32_t *lowest)
+static void say_order(text *t, const explain_item *i, int32_t *lowest)
 {
     if (i->whole && i->reg->role == GROBO_ROLE_MIN_POSITION) {
         *lowest = i->value;
@@ -82,7 +77,7 @@ static void say_values(text *t, const telegram_part *part, bool write)
         return;
     }
     for (int at = 0; at < part->length;) {
-        const item i = item_at(t->talk, part, at);
+        const explain_item i = item_of(t->talk, part, at);
         at += i.bytes;
         if (i.reg || i.value != 0) {
             say(t, "%s", comma);
@@ -119,7 +114,7 @@ static void say_names(text *t, const telegram_part *part)
     int n = 0;
     for (int at = 0; at < part->length; n++) {
         const telegram_part asked = {part->id, part->address, part->length, NULL};
-        const item i = item_at(t->talk, &asked, at);
+        const explain_item i = item_of(t->talk, &asked, at);
         at += i.bytes;
         n = i.whole ? n : NAMES_MAX;
         if (i.whole && used < sizeof names) {
@@ -286,16 +281,13 @@ void explain_shares(text *t, const telegram *said)
 
 /* ---- what is wrong --------------------------------------------------------------------------- */
 
-static bool wrong_item(const item *i, char *why, size_t capacity)
+bool explain_is_wrong(const explain_item *i, char *why, size_t capacity)
 {
-    if (!i->whole) {
-        return false;
-    }
-    if ((i->reg->flags & GROBO_REGISTER_W) == 0) {
+    if (i->reg && (i->reg->flags & GROBO_REGISTER_W) == 0) {
         snprintf(why, capacity, "it writes %s, which is read-only", i->reg->name);
         return true;
     }
-    if (i->value < i->reg->min || i->value > i->reg->max) {
+    if (i->whole && (i->value < i->reg->min || i->value > i->reg->max)) {
         snprintf(why, capacity, "%s %d is outside %d..%d", i->reg->name, (int)i->value,
                  (int)i->reg->min, (int)i->reg->max);
         return true;
@@ -312,8 +304,8 @@ const char *explain_offence(const talk *who, const telegram *said, char *why, si
     for (size_t k = 0; k < said->n_parts; k++) {
         const telegram_part *part = &said->part[k];
         for (int at = 0; part->data && part->address >= 0 && at < part->length;) {
-            const item i = item_at(who, part, at);
-            if (wrong_item(&i, why, capacity)) {
+            const explain_item i = item_of(who, part, at);
+            if (i.whole && explain_is_wrong(&i, why, capacity)) {
                 return "range";
             }
             at += i.bytes;
@@ -324,13 +316,13 @@ const char *explain_offence(const talk *who, const telegram *said, char *why, si
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
-static json_t *part_json(const talk *who, const telegram_part *part)
+json_t *explain_part(const talk *who, const grobo_servo_model *servo, const telegram_part *part)
 {
     json_t *registers = json_object();
     json_t *other = json_object();
     for (int at = 0; part->data && at < part->length;) {
         char key[REGISTERS_TEXT_BYTES];
-        const item i = item_at(who, part, at);
+        const explain_item i = explain_item_at(servo, part, at);
         if (i.whole) {
             registers_key(i.reg, key, sizeof key);
             json_object_set_new(registers, key, registers_json(i.servo, i.reg, i.value));
@@ -358,7 +350,8 @@ json_t *explain_packet(const frame *f, const telegram *said)
     json_t *status = json_array();
     snprintf(unknown, sizeof unknown, "instruction %02X", said->code);
     for (size_t i = 0; i < said->n_parts; i++) {
-        json_array_append_new(servos, part_json(f->talk, &said->part[i]));
+        const telegram_part *part = &said->part[i];
+        json_array_append_new(servos, explain_part(f->talk, talk_servo(f->talk, part->id), part));
     }
     for (size_t i = 0; i < said->n_status; i++) {
         json_array_append_new(status, json_string(said->status[i]));

@@ -2,7 +2,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "tools/grctl/cli/file.h"
 #include "tools/grctl/decode/input.h"
 #include "tools/grctl/os/os.h"
 

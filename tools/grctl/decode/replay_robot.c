@@ -158,17 +158,14 @@ static int asks_again(plan *p, bool again)
  * is sent after a reading, whose replies are not those of the trace. */
 static int send_one(plan *p, const frame *f)
 {
-    int error =
-        conn_wait(&p->c, grobo_robot_raw(grobo_session_robot(p->c.session), f->bytes, f->size));
+    int error = conn_wait(&p->c, grobo_robot_raw(p->c.robot, f->bytes, f->size));
     if (error == GROBO_ERR_STALE && p->torqued) {
         p->reads = true;
         (void)asks_again(p, true);
-        (void)conn_wait(&p->c, grobo_robot_sense(grobo_session_robot(p->c.session), p->torqued,
-                                                 GROBO_SENSE_FULL));
+        (void)conn_sense(&p->c, p->torqued, GROBO_SENSE_FULL);
         (void)asks_again(p, false);
         p->reads = false;
-        error =
-            conn_wait(&p->c, grobo_robot_raw(grobo_session_robot(p->c.session), f->bytes, f->size));
+        error = conn_wait(&p->c, grobo_robot_raw(p->c.robot, f->bytes, f->size));
     }
     return error;
 }
@@ -224,15 +221,13 @@ static int send_chunk(void *ctx, const pcapng_chunk *chunk)
  */
 static int prepare(plan *p)
 {
-    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(p->c.robot)->model->n_joints);
+    grobo_joint_mask all = GROBO_JOINTS_ALL(conn_model(&p->c)->n_joints);
     int error = 0;
     if (p->moves) {
-        error = conn_wait(
-            &p->c, grobo_robot_sense(grobo_session_robot(p->c.session), all, GROBO_SENSE_FULL));
+        error = conn_sense(&p->c, all, GROBO_SENSE_FULL);
     }
     if (!error && p->torqued) {
-        error = conn_wait(&p->c, grobo_robot_torque(grobo_session_robot(p->c.session), p->torqued,
-                                                    GROBO_TORQUE_ON));
+        error = conn_wait(&p->c, grobo_robot_torque(p->c.robot, p->torqued, GROBO_TORQUE_ON));
     }
     if (!error) {
         error = asks_again(p, false);

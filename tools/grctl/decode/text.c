@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Hex from text: lines of bytes, `time_ms bytes` as of play --dry-run, or JSON with "hex". */
-#include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/decode/decoder.h"

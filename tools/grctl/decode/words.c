@@ -24,55 +24,22 @@ const char *words_side(frames_side side)
 
 /* ---- what text and JSON share -------------------------------------------------------------- */
 
-/* The last model has all registers. */
-#define ANY_RS30X (&grobo_rs30x_table.models[grobo_rs30x_table.model_count - 1])
-
-/* What a packet holds for one servo. */
-typedef struct packet_part {
-    uint8_t id;
-    uint8_t address;
-    const uint8_t *data;
-    size_t n;
-} packet_part;
-
 /* Part number `index` of a packet: 1, or 0 behind the last. */
-static int find_part(const grobo_rs30x_packet *p, int index, packet_part *part)
+static int find_part(const grobo_rs30x_packet *p, int index, telegram_part *part)
 {
     if (p->kind == GROBO_RS30X_LONG) {
         const uint8_t *entry = p->data + (size_t)index * p->length;
         if (index >= p->count) {
             return 0;
         }
-        *part = (packet_part){entry[0], p->address, entry + 1, (size_t)p->length - 1};
+        *part = (telegram_part){entry[0], p->address, p->length - 1, entry + 1};
         return 1;
     }
     if (index > 0 || p->data_bytes == 0) {
         return 0;
     }
-    *part = (packet_part){p->id, p->address, p->data, p->data_bytes};
+    *part = (telegram_part){p->id, p->address, (int)p->data_bytes, p->data};
     return 1;
-}
-
-/* A register in a part; a byte of none (reg NULL), or of one that is not there as a whole. */
-typedef struct packet_item {
-    const grobo_servo_register *reg;
-    unsigned address;
-    int32_t value;
-    bool whole;
-} packet_item;
-
-/* What stands at offset `at` of a part: how many bytes it takes. */
-static size_t find_item(const packet_part *part, size_t at, packet_item *item)
-{
-    unsigned address = part->address + (unsigned)at;
-    const grobo_servo_register *reg =
-        address < GROBO_REGISTERS ? grobo_servo_register_at(ANY_RS30X, (uint16_t)address) : NULL;
-    item->reg = reg;
-    item->address = address;
-    item->whole = reg && reg->address == address && at + reg->bytes <= part->n;
-    item->value =
-        item->whole ? grobo_servo_register_get(ANY_RS30X, reg, part->data + at) : part->data[at];
-    return item->whole ? reg->bytes : 1;
 }
 
 /* "write", "read", "ping", "flash", "reboot", "flash and reboot", "factory reset", "return". */
@@ -143,25 +110,24 @@ static void say_span(text *t, unsigned address, unsigned length)
 }
 
 /* Registers of a servo; reserved bytes are said where they are not 0. */
-static void say_registers(text *t, const packet_part *part)
+static void say_registers(text *t, const telegram_part *part)
 {
     const char *comma = "";
-    for (size_t at = 0; at < part->n;) {
+    for (int at = 0; at < part->length;) {
         char value[REGISTERS_TEXT_BYTES];
-        packet_item item;
-        size_t size = find_item(part, at, &item);
-        at += size;
+        const explain_item item = explain_item_at(EXPLAIN_RS30X, part, at);
+        at += item.bytes;
         if (!item.reg && item.value == 0) {
             continue;
         }
         if (item.whole) {
-            registers_text(ANY_RS30X, item.reg, item.value, value, sizeof value);
+            registers_text(EXPLAIN_RS30X, item.reg, item.value, value, sizeof value);
             say(t, "%s%s %s", comma, item.reg->name, value);
             if (item.reg->address == GROBO_RS30X_GOAL_TIME && item.value == 0) {
                 say(t, " (full speed)");
             }
         } else {
-            say(t, "%sNo.%u = %02X%s%s%s", comma, item.address, (unsigned)item.value,
+            say(t, "%sNo.%d = %02X%s%s%s", comma, item.address, (unsigned)item.value,
                 item.reg ? " (half of " : "", item.reg ? item.reg->name : "", item.reg ? ")" : "");
         }
         comma = ", ";
@@ -175,17 +141,17 @@ static void say_registers(text *t, const packet_part *part)
 static void say_names(text *t, const grobo_rs30x_packet *p)
 {
     const char *comma = "";
-    packet_part part;
+    telegram_part part;
     if (find_part(p, 0, &part) == 0) {
         return;
     }
-    for (size_t at = 0; at < part.n;) {
-        packet_item item;
-        at += find_item(&part, at, &item);
+    for (int at = 0; at < part.length;) {
+        const explain_item item = explain_item_at(EXPLAIN_RS30X, &part, at);
+        at += item.bytes;
         if (item.whole) {
             say(t, "%s%s", comma, item.reg->name);
         } else {
-            say(t, "%sNo.%u", comma, item.address);
+            say(t, "%sNo.%d", comma, item.address);
         }
         comma = ", ";
     }
@@ -215,7 +181,7 @@ static void say_command(text *t, const frame *f, const grobo_reply *reply, int k
     const grobo_rs30x_packet *p = &f->packet;
     const char *action = action_of(p);
     bool only_writes = strcmp(action, "write") == 0;
-    packet_part part;
+    telegram_part part;
     if (p->kind == GROBO_RS30X_LONG) {
         say(t, "write %u servos: ", p->count);
         say_names(t, p);
@@ -239,7 +205,7 @@ static void say_return(text *t, const frame *f)
 {
     const grobo_rs30x_packet *p = &f->packet;
     const char *comma = "; ";
-    packet_part part;
+    telegram_part part;
     say_who(t, p->id);
     say(t, " returns");
     if (find_part(p, 0, &part)) {
@@ -377,10 +343,10 @@ static void say_reply(text *t, const grobo_reply *reply, int known)
 
 static void say_shares(text *t, const grobo_rs30x_packet *p)
 {
-    packet_part part;
+    telegram_part part;
     for (int i = 0; find_part(p, i, &part); i++) {
         say(t, "    ");
-        say_who(t, part.id);
+        say_who(t, (uint8_t)part.id);
         say(t, ": ");
         say_registers(t, &part);
         say(t, "\n");
@@ -494,31 +460,6 @@ static const char *kind_of(const frame *f)
     return "rubbish";
 }
 
-/* Reserved bytes are told where they are not 0. */
-static json_t *part_json(const talk *who, const packet_part *part)
-{
-    const char *name = talk_joint(who, part->id);
-    json_t *registers = json_object();
-    json_t *other = json_object();
-    for (size_t at = 0; at < part->n;) {
-        char key[REGISTERS_TEXT_BYTES];
-        packet_item item;
-        at += find_item(part, at, &item);
-        if (item.whole) {
-            registers_key(item.reg, key, sizeof key);
-            json_object_set_new(registers, key, registers_json(ANY_RS30X, item.reg, item.value));
-        } else if (item.reg || item.value) {
-            snprintf(key, sizeof key, "%u", item.address);
-            json_object_set_new(other, key, json_integer(item.value));
-        }
-    }
-    bool others = json_object_size(other) > 0;
-    json_t *o = json_pack("{s:i,s:s?,s:o,s:O*}", "id", part->id, "name", name, "registers",
-                          registers, "other_bytes", others ? other : NULL);
-    json_decref(other);
-    return o;
-}
-
 static json_t *status_json(const grobo_rs30x_packet *p)
 {
     json_t *list = json_array();
@@ -537,9 +478,9 @@ static json_t *packet_json(const frame *f)
     const uint8_t *bytes = f->kind == FRAME_BOARD ? f->board.packet : f->bytes;
     int right = right_sum(p);
     json_t *servos = json_array();
-    packet_part part;
+    telegram_part part;
     for (int i = 0; find_part(p, i, &part); i++) {
-        json_array_append_new(servos, part_json(f->talk, &part));
+        json_array_append_new(servos, explain_part(f->talk, EXPLAIN_RS30X, &part));
     }
     return json_pack("{s:s,s:s,s:i,s:i,s:i,s:i,s:i,s:i,s:b,s:o*,s:o*,s:o}", "kind", kinds[p->kind],
                      "action", action_of(p), "id", p->id, "flags", p->flags, "address", p->address,

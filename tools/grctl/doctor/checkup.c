@@ -26,6 +26,7 @@ void checkup_found(void *ctx, const char *name, const char *fix, const char *for
     va_start(list, format);
     vsnprintf(message, sizeof message, lang_text(format), list);
     va_end(list);
+    app_make_one_line(message);
     fix = fix ? lang_text(fix) : NULL;
     k->n++;
     k->failed += !ok;

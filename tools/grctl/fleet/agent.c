@@ -72,13 +72,22 @@ static bool stands(const seat *s)
             !grobo_robot_is_playing(s->c.robot));
 }
 
+static bool all_stand(void *ctx)
+{
+    const agent *g = ctx;
+    for (int i = 0; i < g->all.n; i++) {
+        if (!stands(&g->all.seats[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* Told once all stand, or could not be made to. */
 static void tell_stopped(agent *g)
 {
-    for (int i = 0; i < g->all.n; i++) {
-        if (!stands(&g->all.seats[i])) {
-            return;
-        }
+    if (!all_stand(g)) {
+        return;
     }
     for (int i = 0; i < g->n_groups; i++) {
         if (g->groups[i].telling) {
@@ -198,17 +207,6 @@ static void on_taken(void *ctx, int message)
     say_taken(ctx, message);
 }
 
-static bool may_block(void *ctx)
-{
-    const agent *g = ctx;
-    for (int i = 0; i < g->all.n; i++) {
-        if (!stands(&g->all.seats[i])) {
-            return false;
-        }
-    }
-    return true;
-}
-
 static void on_tick(evutil_socket_t fd, short what, void *ctx)
 {
     agent *g = ctx;
@@ -291,13 +289,6 @@ void agent_work(agent *g)
 
 /* ---- an agent -------------------------------------------------------------------------------- */
 
-static int make_timer(agent *g)
-{
-    const struct timeval period = {0, TICK_US};
-    g->tick = event_new(g->all.host.base, -1, EV_PERSIST, on_tick, g);
-    return g->tick && event_add(g->tick, &period) == 0 ? EXIT_DONE : EXIT_ROBOT;
-}
-
 int agent_begin(agent *g, app *a, const mqtt_config *with)
 {
     static config_group one;
@@ -335,7 +326,7 @@ int agent_begin(agent *g, app *a, const mqtt_config *with)
     config.on_message = on_message;
     config.on_refused = on_refused;
     config.on_taken = on_taken;
-    config.may_block = may_block;
+    config.may_block = all_stand;
     config.ctx = g;
     g->m = mqtt_new(&config, &why);
     if (!g->m) {
@@ -344,7 +335,8 @@ int agent_begin(agent *g, app *a, const mqtt_config *with)
     open_robots(g, true);
     g->retry_us = grobo_now_us() + RETRY_US;
     mqtt_start(g->m);
-    return make_timer(g);
+    g->tick = conn_every(g->all.host.base, TICK_US, on_tick, g);
+    return g->tick ? EXIT_DONE : EXIT_ROBOT;
 }
 
 int agent_end(agent *g, int status)

@@ -11,7 +11,7 @@ enum { BROKER_URL, BROKER_CA, BROKER_CERT, BROKER_KEY, BROKER_OPTIONS };
 #define BROKER_OPTION_ROWS                                                                         \
     [BROKER_URL] = OPTION_TEXT("broker", 0, "URL",                                                 \
                                "mqtt://[USER@]HOST[:PORT], mqtts:// with TLS (mqtt://localhost)"), \
-    [BROKER_CA] = OPTION_TEXT("ca", 0, "FILE", "certificates that the broker's is checked by"),    \
+    [BROKER_CA] = OPTION_TEXT("ca", 0, "FILE", "CA certificates to verify the broker"),            \
     [BROKER_CERT] = OPTION_TEXT("cert", 0, "FILE", "the certificate of this machine"),             \
     [BROKER_KEY] = OPTION_TEXT("key", 0, "FILE", "its key")
 

@@ -193,32 +193,30 @@ static void on_time(evutil_socket_t fd, short what, void *ctx)
     (void)ctx; /* it only ends a round of the loop */
 }
 
+static bool is_done(const leader *l, bool (*done)(const leader *l))
+{
+    return done && done(l);
+}
+
 bool leader_wait(leader *l, int64_t bound_us, bool (*done)(const leader *l))
 {
     int64_t until_us = grobo_now_us() + bound_us;
     struct event *timer = evtimer_new(l->link.base, on_time, NULL);
-    while (timer && !done(l) && !l->link.signal && !l->lost) {
+    while (timer && !is_done(l, done) && !l->link.signal && !l->lost) {
         int64_t rest_us = until_us - grobo_now_us();
-        const struct timeval rest = {.tv_sec = (int)(rest_us / 1000000),
-                                     .tv_usec = (int)(rest_us % 1000000)};
+        const struct timeval rest = conn_timeval(rest_us);
         if (rest_us <= 0 || evtimer_add(timer, &rest) != 0 ||
             event_base_loop(l->link.base, EVLOOP_ONCE) != 0) {
             break;
         }
     }
     conn_forget(timer);
-    return done(l);
+    return is_done(l, done);
 }
 
 static bool is_up(const leader *l)
 {
     return l->up;
-}
-
-static bool never(const leader *l)
-{
-    (void)l;
-    return false;
 }
 
 /* An agent that is there and has not said yet of which groups it is. */
@@ -239,14 +237,13 @@ static void hear_retained(leader *l)
     unsigned before;
     do {
         before = l->kept;
-        (void)leader_wait(l, SEEN_US, never);
+        (void)leader_wait(l, SEEN_US, NULL);
     } while ((l->kept != before || anybody_unknown(l)) && l->up && !l->link.signal &&
              grobo_now_us() < until_us);
 }
 
 static int connect_it(leader *l, const mqtt_config *with)
 {
-    const struct timeval period = {0, LEADER_PERMIT_US};
     mqtt_config config = *with;
     const char *why;
     config.base = l->link.base;
@@ -260,8 +257,8 @@ static int connect_it(leader *l, const mqtt_config *with)
     if (!l->m) {
         return app_fail(l->a, EXIT_ROBOT, "IO", "fleet: %s: %s", config.host, why);
     }
-    l->tick = event_new(l->link.base, -1, EV_PERSIST, on_tick, l);
-    if (!l->tick || event_add(l->tick, &period) != 0) {
+    l->tick = conn_every(l->link.base, LEADER_PERMIT_US, on_tick, l);
+    if (!l->tick) {
         return app_fail_error(l->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "fleet");
     }
     mqtt_start(l->m);

@@ -62,7 +62,8 @@ bool leader_has(const leader *l, const peer *p);
 int leader_choose(leader *l);
 /* An order for each that is chosen. Takes the reference of body. */
 void leader_order(leader *l, const char *verb, json_t *body);
-/* Runs the loop until done says so (true), or the time is over, or a signal comes. */
+/* Runs the loop until done (which may be NULL) says so (true), or the time is over, or a signal
+ * comes. */
 bool leader_wait(leader *l, int64_t bound_us, bool (*done)(const leader *l));
 /* Every chosen one has answered. */
 bool leader_answered(const leader *l);

@@ -131,12 +131,7 @@ static bool is_known(agent *g, const agent_order *order)
 {
     const char *before = fleet_seen_find(&g->seen, order->is.id);
     if (before && *before) {
-        const mqtt_message again = {.topic = order->response,
-                                    .payload = before,
-                                    .size = strlen(before),
-                                    .correlation = order->correlation,
-                                    .correlation_bytes = order->correlation_bytes};
-        (void)mqtt_publish(g->m, &again, 1, 0);
+        say_again(g, order, before);
     }
     return before != NULL;
 }
@@ -467,8 +462,13 @@ static void put(agent *g, agent_order *order)
     const char *name = fleet_text(order->is.body, "file");
     const json_t *text = json_object_get(order->is.body, "text");
     char path[CONFIG_PATH_BYTES];
-    if (!is_motion_name(name) || !json_is_string(text)) {
-        answer(g, order, "arg", "file, text: a name of the folder and its content are wanted");
+    if (!is_motion_name(name) || grobo_motion_format_of_path(name) == GROBO_FORMAT_AUTO ||
+        !json_is_string(text)) {
+        answer(g, order, "arg", "file, text: the name of a motion and its content are wanted");
+        return;
+    }
+    if (g->plays) {
+        answer(g, order, "busy", "a motion is played, which a slow disk would hold up");
         return;
     }
     snprintf(path, sizeof path, "%s/%s", g->motions, name);

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/fleet/say.h"
 #include "tools/grctl/fleet/spool.h"
 #include "tools/grctl/fleet/wire.h"
-#include "tools/grctl/show/render.h"
 
 /* ---- in general ------------------------------------------------------------------------------ */
 
@@ -187,24 +185,11 @@ static void add_angles(json_t *state, const seat *s)
                         oldest_us < 0 ? json_null() : json_integer(oldest_us / 1000));
 }
 
-/* Of all joints: the highest temperature and the lowest voltage. */
 static void add_worst(json_t *state, const seat *s)
 {
-    grobo_joint_info info;
-    double hottest_c = NAN, lowest_v = NAN;
-    for (int j = 0; j < app_model(&s->a)->n_joints; j++) {
-        if (grobo_robot_joint(s->c.robot, j, &info) != 0) {
-            continue;
-        }
-        if (info.state.valid & GROBO_FIELD_TEMPERATURE) {
-            hottest_c = fmax(hottest_c, info.state.temperature_c);
-        }
-        if (info.state.valid & GROBO_FIELD_VOLTAGE) {
-            lowest_v = fmin(lowest_v, info.state.voltage_mv / 1000.0);
-        }
-    }
-    json_object_set_new(state, "temperature_c", app_json_number(hottest_c, 0));
-    json_object_set_new(state, "voltage_v", app_json_number(lowest_v, 2));
+    seat_worst w = seat_get_worst(s);
+    json_object_set_new(state, "temperature_c", app_json_number(w.hottest_c, 0));
+    json_object_set_new(state, "voltage_v", app_json_number(w.lowest_v, 2));
 }
 
 static json_t *state_of(const agent *g, const seat *s)
@@ -301,6 +286,16 @@ void say_ended(agent *g, const char *order)
                             order, "robots", results_of(g), "at_ms", (json_int_t)wire_wall_ms()));
 }
 
+void say_again(agent *g, const agent_order *order, const char *text)
+{
+    const mqtt_message out = {.topic = order->response,
+                              .payload = text,
+                              .size = strlen(text),
+                              .correlation = order->correlation,
+                              .correlation_bytes = order->correlation_bytes};
+    (void)mqtt_publish(g->m, &out, 1, 0);
+}
+
 void say_answer(agent *g, const agent_order *order, const char *code, const char *message,
                 json_t *extra)
 {
@@ -316,12 +311,7 @@ void say_answer(agent *g, const agent_order *order, const char *code, const char
     }
     char *text = json_dumps(answer, JSON_COMPACT);
     if (text) {
-        const mqtt_message out = {.topic = order->response,
-                                  .payload = text,
-                                  .size = strlen(text),
-                                  .correlation = order->correlation,
-                                  .correlation_bytes = order->correlation_bytes};
-        (void)mqtt_publish(g->m, &out, 1, 0);
+        say_again(g, order, text);
         fleet_seen_end(&g->seen, order->is.id, text);
     }
     free(text);

@@ -29,5 +29,7 @@ void say_ended(agent *g, const char *order);
 /* To who ordered. Takes the reference of extra, which may be NULL. */
 void say_answer(agent *g, const agent_order *order, const char *code, const char *message,
                 json_t *extra);
+/* What was answered before. */
+void say_again(agent *g, const agent_order *order, const char *text);
 
 #endif

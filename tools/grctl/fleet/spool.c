@@ -18,7 +18,8 @@ bool spool_add(const char *path, const json_t *event)
     char old[PATH_BYTES];
     char *text = json_dumps(event, JSON_COMPACT);
     FILE *file = text && strlen(text) < SPOOL_LINE_BYTES - 1 ? fopen(path, "ab") : NULL;
-    bool ok = file && fprintf(file, "%s\n", text) > 0 && fflush(file) == 0;
+    /* The last may be half a line: of a full disk, or of one that lost its power. */
+    bool ok = file && fprintf(file, "\n%s\n", text) > 0 && fflush(file) == 0;
     bool full = ok && ftell(file) >= SPOOL_FILE_BYTES - SPOOL_LINE_BYTES;
     if (file) {
         ok = fclose(file) == 0 && ok;

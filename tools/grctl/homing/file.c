@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/homing/file.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
@@ -104,25 +105,10 @@ int homing_read(app *a, const char *path, bool any, homing *all)
     return status;
 }
 
-int homing_write(app *a, const char *path, const homing *all, char *written, size_t capacity)
+/* The text of a file, to be freed; NULL: no memory. */
+static char *make_text(const app *a, const homing *all, size_t *size)
 {
     const grobo_model *model = app_model(a);
-    FILE *to = NULL;
-    for (int n = 1; n < 1000 && !to; n++) {
-        char number[16] = "";
-        if (n > 1) {
-            snprintf(number, sizeof number, "%d", n);
-        }
-        snprintf(written, capacity, path ? "%s" : "%s-before%s.json",
-                 path ? path : robot_of(a)->name, number);
-        to = fopen(written, path ? "w" : "wx");
-        if (!to && (path || errno != EEXIST)) {
-            break;
-        }
-    }
-    if (!to) {
-        return app_fail(a, EXIT_FILE, "IO", "%s: %s", written, app_cause_text(errno));
-    }
     json_t *file = json_object();
     for (int j = 0; j < model->n_joints; j++) {
         json_object_set_new(file, model->joints[j].name,
@@ -130,8 +116,32 @@ int homing_write(app *a, const char *path, const homing *all, char *written, siz
                                       "drive_mode", 0, "homing_offset", (int)all[j].offset,
                                       "range_min", (int)all[j].min, "range_max", (int)all[j].max));
     }
-    int error = json_dumpf(file, to, JSON_INDENT(4)) != 0 || fputc('\n', to) == EOF;
+    *size = json_dumpb(file, NULL, 0, JSON_INDENT(4));
+    char *text = malloc(*size + 1);
+    if (text) {
+        (void)json_dumpb(file, text, *size, JSON_INDENT(4));
+        text[(*size)++] = '\n';
+    }
     json_decref(file);
-    error |= fclose(to) != 0;
-    return error ? app_fail(a, EXIT_FILE, "IO", "%s: %s", written, app_cause_text(errno)) : 0;
+    return text;
+}
+
+int homing_write(app *a, const char *path, const homing *all, char *written, size_t capacity)
+{
+    size_t size;
+    char *text = make_text(a, all, &size);
+    int error = text ? GROBO_ERR_EXISTS : GROBO_ERR_NOMEM;
+    for (int n = 1; n < 1000 && error == GROBO_ERR_EXISTS; n++) {
+        char number[16] = "";
+        if (n > 1) {
+            snprintf(number, sizeof number, "%d", n);
+        }
+        snprintf(written, capacity, path ? "%s" : "%s-before%s.json",
+                 path ? path : robot_of(a)->name, number);
+        error = path ? file_save(written, text, size) : file_save_new(written, text, size);
+    }
+    free(text);
+    return error ? app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", written,
+                            file_write_error_text(error))
+                 : 0;
 }

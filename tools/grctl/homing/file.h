@@ -3,8 +3,6 @@
 #ifndef GRCTL_HOMING_FILE_H
 #define GRCTL_HOMING_FILE_H
 
-#include <grobo/model.h>
-
 #include "tools/grctl/cli/robot.h"
 
 /* Of one servo, in its counts. */

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <math.h>
 #include <string.h>
 
 #include <grobo/dxl1.h>
@@ -75,36 +74,21 @@ static bool keeps_offset(const calibration *k, int joint)
 static int read_role(calibration *k, int joint, grobo_register_role role, int32_t *value)
 {
     const grobo_servo_model *servo = servo_of(k->a, joint);
-    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
-    uint8_t bytes[4] = {0};
-    int error =
-        servos_read(&k->c, app_model(k->a)->joints[joint].motor, reg->address, reg->bytes, bytes);
-    if (!error) {
-        *value = grobo_servo_register_get(servo, reg, bytes);
-    }
-    return error;
+    return servos_get(&k->c, joint_of(k->a, joint)->motor, servo,
+                      grobo_servo_register_of(servo, role), value);
 }
 
 static int put_role(calibration *k, int joint, grobo_register_role role, int32_t value)
 {
     const grobo_servo_model *servo = servo_of(k->a, joint);
-    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
-    uint8_t bytes[4] = {0};
-    grobo_register_io io = {.id = app_model(k->a)->joints[joint].motor,
-                            .address = reg->address,
-                            .length = reg->bytes,
-                            .data = bytes};
-    int error = grobo_servo_register_put(servo, reg, value, bytes);
-    return error < 0
-               ? error
-               : conn_wait(&k->c, grobo_robot_registers(grobo_session_robot(k->c.session), &io));
+    return servos_put(&k->c, joint_of(k->a, joint)->motor, servo,
+                      grobo_servo_register_of(servo, role), value);
 }
 
 /* The engine knows a joint's torque before each write: a setting makes it unknown. */
 static int know_torque(calibration *k, int joint)
 {
-    int error = conn_wait(&k->c, grobo_robot_sense(grobo_session_robot(k->c.session),
-                                                   GROBO_JOINT_BIT(joint), GROBO_SENSE_GOAL));
+    int error = conn_sense(&k->c, GROBO_JOINT_BIT(joint), GROBO_SENSE_GOAL);
     return error == GROBO_ERR_SETUP ? GROBO_OK : error;
 }
 
@@ -257,7 +241,7 @@ static int watch(calibration *k, bool ranges)
             status = conn_fail(&k->c, error, "calibrate");
         } else if (k->has_ended && !k->pressed) {
             status = app_fail(k->a, EXIT_USAGE, "CANCELED",
-                              "calibrate: needs a person who presses enter, or --from FILE");
+                              "calibrate: needs a person to press enter, or --from FILE");
         } else {
             memcpy(last, k->now, sizeof last);
             status = look(k);
@@ -342,10 +326,10 @@ static int hear_enter(calibration *k)
 {
     if (!keys_start(&k->input, k->c.base, true, on_key, k)) {
         return app_fail(k->a, EXIT_USAGE, "CANCELED",
-                        "calibrate: needs a person who presses enter, or --from FILE");
+                        "calibrate: needs a person to press enter, or --from FILE");
     }
     k->listens = true;
-    k->look = conn_every(&k->c, LOOK_US, conn_note, &k->is_due);
+    k->look = conn_every(k->c.base, LOOK_US, conn_note, &k->is_due);
     progress_start(&k->line, k->a);
     app_note(k->a, "hold the robot, what is raised falls: torque goes off when you press enter");
     return watch(k, false);
@@ -437,8 +421,7 @@ static int let_limp(calibration *k)
     if (!k->listens) {
         app_note(k->a, "torque goes off: what is raised falls");
     }
-    return conn_wait(&k->c,
-                     grobo_robot_torque(grobo_session_robot(k->c.session), all, GROBO_TORQUE_OFF));
+    return conn_wait(&k->c, grobo_robot_torque(k->c.robot, all, GROBO_TORQUE_OFF));
 }
 
 /* The robot is limp, and what its servos hold is in a file. */

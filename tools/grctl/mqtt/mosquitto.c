@@ -91,12 +91,21 @@ static void check(mqtt *m, int result)
     arm(m);
 }
 
+/* Of a connection whose TLS has not begun and never will, libmosquitto 2.0.11 says nothing. */
+static bool has_ended(evutil_socket_t fd)
+{
+    char byte;
+    return recv(fd, &byte, sizeof byte, MSG_PEEK) == 0;
+}
+
 static void on_readable(evutil_socket_t fd, short what, void *ctx)
 {
     mqtt *m = ctx;
-    (void)fd;
     (void)what;
     check(m, mosquitto_loop_read(m->client, AT_ONCE));
+    if (m->connecting && m->readable && has_ended(fd)) {
+        lost(m, _("the broker cannot be reached"));
+    }
 }
 
 static void on_writable(evutil_socket_t fd, short what, void *ctx)

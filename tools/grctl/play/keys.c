@@ -24,7 +24,7 @@ static void change_speed(play_keys *k, int by_pct)
     if (speed_pct > GROBO_PLAY_SPEED_MAX_PCT) {
         speed_pct = GROBO_PLAY_SPEED_MAX_PCT;
     }
-    if (grobo_robot_speed(grobo_session_robot(k->c->session), speed_pct) == GROBO_OK) {
+    if (grobo_robot_speed(k->c->robot, speed_pct) == GROBO_OK) {
         k->speed_pct = speed_pct;
     }
 }
@@ -37,7 +37,7 @@ void play_keys_estop(play_keys *k)
     if (grobo_estop_set(conn_device(k->c), NULL, &cause) < 0) {
         app_note(k->c->a, "the emergency stop is not kept for other programs: %s", cause.text);
     }
-    grobo_robot_estop(grobo_session_robot(k->c->session));
+    grobo_robot_estop(k->c->robot);
 }
 
 bool play_keys_take(play_keys *k, int key)
@@ -55,7 +55,7 @@ bool play_keys_take(play_keys *k, int key)
         return true;
     case 's':
     case 'q':
-        k->stopped |= grobo_robot_stop(grobo_session_robot(k->c->session), false) == GROBO_OK;
+        k->stopped |= grobo_robot_stop(k->c->robot, false) == GROBO_OK;
         return true;
     case 'e':
         play_keys_estop(k);

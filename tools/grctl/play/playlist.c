@@ -291,9 +291,9 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
 
 int playlist_prepare_sensed(playlist *list, conn *c)
 {
-    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    grobo_joint_mask all = GROBO_JOINTS_ALL(conn_model(c)->n_joints);
     grobo_posture sensed;
-    int error = conn_wait(c, grobo_robot_sense(c->robot, all, GROBO_SENSE_FULL));
+    int error = conn_sense(c, all, GROBO_SENSE_FULL);
     if (error) {
         return conn_fail(c, error, "play");
     }

@@ -33,7 +33,7 @@ static void on_team(void *ctx, const grobo_team_event_info *event)
         break;
     case GROBO_TEAM_EVENT_PAUSED:
         c->paused = true;
-        app_note(a, "the others pause; space goes on without it, s stops them");
+        app_note(a, "the others pause; space continues without it, s stops them");
         break;
     case GROBO_TEAM_EVENT_READY:
     case GROBO_TEAM_EVENT_ENDED:

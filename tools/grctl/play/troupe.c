@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,9 +11,7 @@ void troupe_look(troupe *t)
     int64_t now_us = grobo_now_us();
     int64_t at_us = t->team ? grobo_team_step(t->team, now_us) : GROBO_NEVER_US;
     if (at_us != GROBO_NEVER_US) {
-        int64_t rest_us = at_us > now_us ? at_us - now_us : 0;
-        const struct timeval rest = {.tv_sec = (int)(rest_us / 1000000),
-                                     .tv_usec = (int)(rest_us % 1000000)};
+        const struct timeval rest = conn_timeval(at_us > now_us ? at_us - now_us : 0);
         (void)evtimer_add(t->timer, &rest);
     }
 }
@@ -108,6 +107,27 @@ int seat_load(seat *s)
 int seat_prepare(seat *s)
 {
     return playlist_prepare_sensed(&s->list, &s->c);
+}
+
+seat_worst seat_get_worst(const seat *s)
+{
+    seat_worst w = {.hottest = -1, .hottest_c = NAN, .lowest_v = NAN};
+    grobo_joint_info info;
+    for (int j = 0; j < app_model(&s->a)->n_joints; j++) {
+        if (grobo_robot_joint(s->c.robot, j, &info) != 0) {
+            continue;
+        }
+        w.on += info.torque_known && info.state.torque == GROBO_TORQUE_ON;
+        if ((info.state.valid & GROBO_FIELD_TEMPERATURE) &&
+            !(info.state.temperature_c <= w.hottest_c)) {
+            w.hottest = j;
+            w.hottest_c = info.state.temperature_c;
+        }
+        if (info.state.valid & GROBO_FIELD_VOLTAGE) {
+            w.lowest_v = fmin(w.lowest_v, info.state.voltage_mv / 1000.0);
+        }
+    }
+    return w;
 }
 
 static int make_team(troupe *t, grobo_team_policy policy, const grobo_clip **clips)

@@ -47,6 +47,12 @@ int seat_try(troupe *t, int i, char why[APP_LINE_BYTES]);
 int seat_load(seat *s);
 /* Makes the clips, from where the robot is. 0 or the exit status. */
 int seat_prepare(seat *s);
+/* What of all its joints is worth a word; hottest -1, NAN: not known. */
+typedef struct seat_worst {
+    int on, hottest;
+    double hottest_c, lowest_v;
+} seat_worst;
+seat_worst seat_get_worst(const seat *s);
 /* Plays the first clip of every chosen seat. 0, or an error: see grobo_team_play(). */
 int troupe_play(troupe *t, grobo_team_policy policy, const grobo_play_options *options);
 /* Lets the team look at the time; after any request of it. */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <errno.h>
+#include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
-
-#include <grobo/files.h>
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/output.h"
@@ -22,8 +22,7 @@ enum { RASTERISERS = sizeof rasterisers / sizeof rasterisers[0] };
 
 picture_format picture_format_of(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    const char *dot = strrchr(slash ? slash : path, '.');
+    const char *dot = strrchr(file_last_part(path), '.');
     if (dot && strcasecmp(dot, ".svg") == 0) {
         return PICTURE_SVG;
     }
@@ -56,22 +55,9 @@ static int refuse(app *a, const char *path, int error)
 
 static int save_stream(app *a, const char *path, FILE *from)
 {
-    const grobo_files *files = grobo_files_os();
-    char buffer[1 << 16];
-    grobo_file file;
-    size_t n;
-    int error = files->create(&file, path, false);
-    if (error) {
-        return refuse(a, path, error);
-    }
-    while (!error && (n = fread(buffer, 1, sizeof buffer, from)) > 0) {
-        error = files->write(&file, buffer, n);
-    }
-    if (error || ferror(from)) {
-        files->discard(&file);
-        return refuse(a, path, error ? error : GROBO_ERR_IO);
-    }
-    error = files->commit(&file);
+    heap all = file_rest(from, SIZE_MAX);
+    int error = all.bytes ? file_save(path, all.bytes, all.size) : GROBO_ERR_IO;
+    free(all.bytes);
     return error ? refuse(a, path, error) : 0;
 }
 
@@ -116,7 +102,7 @@ static int save_png(app *a, const svg *drawing, const char *path)
     const char *tried = NULL, *used = NULL;
     FILE *in = os_temporary(), *out = os_temporary();
     int status = 0;
-    if (!in || !out || fwrite(drawing->data, 1, drawing->size, in) != drawing->size ||
+    if (!in || !out || fwrite(drawing->bytes, 1, drawing->size, in) != drawing->size ||
         fflush(in) != 0) {
         status = app_fail(a, EXIT_FILE, "IO", "%s: no room for temporary files", path);
     } else {
@@ -148,9 +134,9 @@ int picture_save(app *a, const svg *drawing, const char *path, picture_format fo
         return save_png(a, drawing, path);
     }
     if (strcmp(path, "-") != 0) {
-        int error = file_save(path, drawing->data, drawing->size);
+        int error = file_save(path, drawing->bytes, drawing->size);
         return error ? refuse(a, path, error) : 0;
     }
-    output_bytes(drawing->data, drawing->size); /* the end of the program says if it failed */
+    output_bytes(drawing->bytes, drawing->size); /* the end of the program says if it failed */
     return 0;
 }

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/plot/svg.h"
 
-enum { FIRST_BYTES = 1 << 16, DECIMALS = 100 };
+enum { DECIMALS = 100 };
 
 /* Beyond this a coordinate means nothing; it keeps numbers short and the arithmetic exact. */
 static const double number_most = 1e9;
@@ -14,32 +13,9 @@ static const double number_most = 1e9;
 const char svg_signature[] =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- drawn by grctl plot -->\n";
 
-static void put_bytes(svg *s, const char *bytes, size_t n)
-{
-    if (s->failed) {
-        return;
-    }
-    if (n > s->capacity - s->size) {
-        size_t capacity = s->capacity ? s->capacity : FIRST_BYTES;
-        char *data;
-        while (n > capacity - s->size) {
-            capacity *= 2;
-        }
-        data = realloc(s->data, capacity);
-        if (!data) {
-            s->failed = true;
-            return;
-        }
-        s->data = data;
-        s->capacity = capacity;
-    }
-    memcpy(s->data + s->size, bytes, n);
-    s->size += n;
-}
-
 static void put(svg *s, const char *markup)
 {
-    put_bytes(s, markup, strlen(markup));
+    heap_add(s, markup, strlen(markup));
 }
 
 /* A number with at most two decimals, none that are zero at its end. */
@@ -67,7 +43,7 @@ static void put_number(svg *s, double number)
         text[--at] = (char)('0' + rest % 10);
         rest /= 10;
     } while (rest);
-    put_bytes(s, text + at, sizeof text - at);
+    heap_add(s, text + at, sizeof text - at);
 }
 
 /* ---- text ---------------------------------------------------------------------------------- */
@@ -136,7 +112,7 @@ static void put_text(svg *s, const char *text)
         } else if (entity(c)) {
             put(s, entity(c));
         } else {
-            put_bytes(s, text, length);
+            heap_add(s, text, length);
         }
     }
 }
@@ -145,20 +121,14 @@ static void put_text(svg *s, const char *text)
 
 static void put_attribute(svg *s, const char *name, double number)
 {
-    put(s, " ");
-    put(s, name);
-    put(s, "=\"");
+    heap_print(s, " %s=\"", name);
     put_number(s, number);
     put(s, "\"");
 }
 
 static void begin(svg *s, const char *element, const char *style_class)
 {
-    put(s, "<");
-    put(s, element);
-    put(s, " class=\"");
-    put(s, style_class);
-    put(s, "\"");
+    heap_print(s, "<%s class=\"%s\"", element, style_class);
 }
 
 void svg_open(svg *s, double width, double height, const char *style)
@@ -180,27 +150,14 @@ void svg_open(svg *s, double width, double height, const char *style)
 bool svg_close(svg *s)
 {
     put(s, "</svg>\n");
-    if (s->failed) {
-        svg_free(s);
-    }
-    return s->data != NULL;
-}
-
-void svg_free(svg *s)
-{
-    free(s->data);
-    memset(s, 0, sizeof *s);
+    return s->bytes != NULL;
 }
 
 void svg_describe(svg *s, const char *kind, const char *text)
 {
-    put(s, "<");
-    put(s, kind);
-    put(s, ">");
+    heap_print(s, "<%s>", kind);
     put_text(s, text);
-    put(s, "</");
-    put(s, kind);
-    put(s, ">\n");
+    heap_print(s, "</%s>\n", kind);
 }
 
 void svg_line(svg *s, const char *style_class, double x1, double y1, double x2, double y2)
@@ -244,9 +201,7 @@ void svg_text(svg *s, const char *style_class, double x, double y, const char *a
     begin(s, "text", style_class);
     put_attribute(s, "x", x);
     put_attribute(s, "y", y);
-    put(s, " text-anchor=\"");
-    put(s, anchor);
-    put(s, "\">");
+    heap_print(s, " text-anchor=\"%s\">", anchor);
     put_text(s, text);
     put(s, "</text>\n");
 }

@@ -6,14 +6,10 @@
 #ifndef GRCTL_SVG_H
 #define GRCTL_SVG_H
 
-#include <stdbool.h>
-#include <stddef.h>
+#include "tools/grctl/cli/heap.h"
 
-typedef struct svg {
-    char *data; /* the document; svg_free() frees it */
-    size_t size, capacity;
-    bool failed;
-} svg;
+/* The document. */
+typedef heap svg;
 
 typedef struct svg_box {
     double x, y, width, height;
@@ -23,7 +19,6 @@ typedef struct svg_box {
 void svg_open(svg *s, double width, double height, const char *style);
 /* Ends it. @return false if memory ran out; then there is no document. */
 bool svg_close(svg *s);
-void svg_free(svg *s);
 
 /* Names the document, for tooltips and screen readers. kind: "title" or "desc". */
 void svg_describe(svg *s, const char *kind, const char *text);

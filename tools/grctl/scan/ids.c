@@ -165,7 +165,7 @@ static int look(conn *c, scan_pass *p, uint32_t margin_us)
 /* One that the robot should have is missing, though others answer. */
 static bool misses_joint(const conn *c, const scan_pass *p)
 {
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    const grobo_model *model = conn_model(c);
     for (int joint = 0; joint < model->n_joints && p->heard_us && p->own; joint++) {
         int id = grobo_model_motor_of_joint(model, joint);
         if (id >= p->first && id <= p->last && !p->there[id]) {

@@ -7,22 +7,16 @@
 #include <grobo/version.h>
 
 #include "tools/grctl/cli/file.h"
-#include "tools/grctl/cli/output.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/scan/scan.h"
-#include "tools/grctl/servo/registers.h"
 #include "tools/grctl/setup/ask.h"
 #include "tools/grctl/setup/contact.h"
 #include "tools/grctl/setup/contact_rate.h"
 
-enum { READS = 50, LOOKS = 5, LOOK_US = 100000, MOVE_US = 1000000 };
-enum {
-    BLOCK_BYTES = 30,
-    REQUEST_BYTES = 6 /* no request is shorter, but ICS */
-};
+enum { READS = 50, LOOKS = 5, LOOK_US = 100000, MOVE_US = 1000000, BLOCK_BYTES = 30 };
 
 #define STEP_DEG 2.0
 #define NEAR_DEG 1.0 /* of the gears' play and the servo's dead band */
@@ -50,7 +44,7 @@ static int write_report(contact *k)
     int status = text ? save(k, ".json", text, strlen(text))
                       : app_fail_error(k->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "first-contact");
     if (!status) {
-        status = save(k, ".txt", k->text, k->used);
+        status = save(k, ".txt", k->text.bytes, k->text.size);
     }
     if (!status && k->a->json) {
         app_print_json(json_incref(all));
@@ -147,7 +141,7 @@ static void measure_times(contact *k)
         }
     }
     if (n == 0) {
-        contact_note(k, "latency", NOT_DONE, "nobody answers");
+        contact_note(k, "latency", NOT_DONE, "no servo answers");
         return;
     }
     qsort(took_us, (size_t)n, sizeof *took_us, by_size);
@@ -173,7 +167,7 @@ static void look_for_echo(contact *k)
 {
     const grobo_bus_stats *n = grobo_robot_get_bus_stats(k->c.robot);
     bool told = app_global(k->a, GLOBAL_ECHO)->given > 0;
-    bool comes = n->replies > 0 && n->resync_bytes >= n->replies * REQUEST_BYTES / 2;
+    bool comes = !grobo_robot_driver(k->c.robot)->protocol->relay && wire_echoes(n);
     contact_note(k, "echo", comes ? NOT_AS_ASSUMED : AS_ASSUMED,
                  told    ? "the adapter echoes, as configured"
                  : comes ? "the adapter echoes, which is not configured: --wiring bus --echo"
@@ -202,8 +196,7 @@ static int read_only(contact *k)
 
 static int switch_torque(contact *k, grobo_torque torque)
 {
-    return conn_wait(&k->c, grobo_robot_torque(grobo_session_robot(k->c.session),
-                                               GROBO_JOINT_BIT(k->joint), torque));
+    return conn_wait(&k->c, grobo_robot_torque(k->c.robot, GROBO_JOINT_BIT(k->joint), torque));
 }
 
 static int go_to(contact *k, double deg, double *reached_deg)
@@ -213,7 +206,7 @@ static int go_to(contact *k, double deg, double *reached_deg)
     grobo_posture_init(&target, app_model(k->a)->n_joints);
     grobo_posture_set_deg(&target, k->joint, deg);
     target.time_us = MOVE_US;
-    int error = conn_wait(&k->c, grobo_robot_move(grobo_session_robot(k->c.session), &target));
+    int error = conn_wait(&k->c, grobo_robot_move(k->c.robot, &target));
     if (!error) {
         error = contact_sense(k, &is);
     }
@@ -351,9 +344,7 @@ static int begin(contact *k, const contact_orders *orders)
     snprintf(k->prefix, sizeof k->prefix, orders->out ? "%.900s" : "first-contact-%.900s",
              orders->out ? orders->out : robot_of(k->a)->name);
     snprintf(path, sizeof path, "%s.txt", k->prefix);
-    FILE *there = fopen(path, "rb");
-    if (there) {
-        fclose(there);
+    if (file_is_there(path)) {
         return app_fail(k->a, EXIT_USAGE, "EXISTS", "%s is there already; -o names another", path);
     }
     k->joint = orders->joint >= 0 ? orders->joint : app_model(k->a)->n_joints - 1;
@@ -388,6 +379,7 @@ int contact_run(app *a, const contact_orders *orders)
     int written = k.steps && json_array_size(k.steps) > 0 ? write_report(&k) : 0;
     json_decref(k.steps);
     json_decref(k.servos);
+    free(k.text.bytes);
     status = ask_signal() ? EXIT_SIGNAL + ask_signal() : status ? status : written;
     return status ? status : k.n_bad ? EXIT_ROBOT : EXIT_DONE;
 }

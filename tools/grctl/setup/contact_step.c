@@ -23,9 +23,7 @@ void contact_note(contact *k, const char *name, verdict v, const char *format, .
     app_make_one_line(said);
     k->n_bad += v == NOT_AS_ASSUMED;
     app_note(k->a, "%-14s  %-14s  %s", _(verdicts[v]), name, said);
-    int n = snprintf(k->text + k->used, sizeof k->text - k->used, "%-14s  %-14s  %s\n", verdicts[v],
-                     name, message);
-    k->used += n > 0 && (size_t)n < sizeof k->text - k->used ? (size_t)n : 0;
+    heap_print(&k->text, "%-14s  %-14s  %s\n", verdicts[v], name, message);
     json_array_append_new(k->steps, json_pack("{s:s,s:s,s:o}", "name", name, "verdict", words[v],
                                               "message", app_json_text(message)));
 }
@@ -62,7 +60,6 @@ int contact_close(contact *k, int status)
 
 int contact_sense(contact *k, grobo_joint_info *is)
 {
-    int error = conn_wait(&k->c, grobo_robot_sense(grobo_session_robot(k->c.session),
-                                                   GROBO_JOINT_BIT(k->joint), GROBO_SENSE_FULL));
+    int error = conn_sense(&k->c, GROBO_JOINT_BIT(k->joint), GROBO_SENSE_FULL);
     return error ? error : grobo_robot_joint(k->c.robot, k->joint, is);
 }

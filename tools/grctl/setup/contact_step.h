@@ -3,16 +3,16 @@
 #ifndef GRCTL_CONTACT_STEP_H
 #define GRCTL_CONTACT_STEP_H
 
+#include "tools/grctl/cli/heap.h"
 #include "tools/grctl/conn/conn.h"
 
-enum { CONTACT_PATH_BYTES = 1024, CONTACT_REPORT_BYTES = 65536 };
+enum { CONTACT_PATH_BYTES = 1024 };
 
 typedef struct contact {
     app *a;
     conn c;
     char prefix[CONTACT_PATH_BYTES], trace[CONTACT_PATH_BYTES];
-    char text[CONTACT_REPORT_BYTES];
-    size_t used;
+    heap text; /* the report */
     json_t *steps, *servos;
     int joint, n_bad;
     double before_deg;

@@ -180,8 +180,7 @@ void found_choose(app *a, found_servos *all)
             all->servo[kept++] = *one;
         } else {
             app_note(
-                a,
-                "left out: %s of id %d, family %s at %d bps: a robot has one family and one rate",
+                a, "skipped: %s of id %d, family %s at %d bps: a robot has one family and one rate",
                 one->servo->name, one->id, one->family->name, one->baud_bps);
         }
     }

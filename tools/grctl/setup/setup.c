@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/cli/config.h"
-#include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/doctor/checkup.h"
@@ -88,7 +87,7 @@ static int find_port(guide *g)
     auto_report(g->a, &all);
     if (all.n_usb == 0) {
         return app_fail(g->a, EXIT_ROBOT, "NOENT",
-                        all.n_blocked ? "setup: no adapter may be opened; mend that and run it "
+                        all.n_blocked ? "setup: no adapter may be opened; fix that and run it "
                                         "again"
                                       : "setup: no USB adapter is here; plug the robot's cable in "
                                         "and run it again, or try it with -d sim");
@@ -159,11 +158,10 @@ static bool free_path(const char *name, char *path, size_t capacity)
             snprintf(behind, sizeof behind, "-%d", number);
         }
         int n = snprintf(path, capacity, "%s%s%s.yaml", config, name, behind);
-        FILE *there = n > 0 && (size_t)n < capacity ? fopen(path, "rb") : NULL;
-        if (!there) {
-            return n > 0 && (size_t)n < capacity;
+        bool fits = n > 0 && (size_t)n < capacity;
+        if (!fits || !file_is_there(path)) {
+            return fits;
         }
-        fclose(there);
     }
     return false;
 }
@@ -245,10 +243,11 @@ static int find_robot(guide *g)
     }
     found_choose(a, &all);
     if (all.n == 0) {
-        return app_fail(a, EXIT_ROBOT, "NOTFOUND",
-                        "setup: nobody answers on %s: switch the robot on, push its cables in, and "
-                        "run it again",
-                        g->device);
+        return app_fail(
+            a, EXIT_ROBOT, "NOTFOUND",
+            "setup: no servo answers on %s: switch the robot on, push its cables in, and "
+            "run it again",
+            g->device);
     }
     for (int i = 0; i < all.n; i++) {
         app_note(a, "  %3d  %-12s %7d bps  %s", all.servo[i].id, all.servo[i].servo->name,
@@ -282,7 +281,7 @@ static void propose(const guide *g, char *name)
         for (char *c = name; *c; c++) {
             *c = *c == '.' ? '-' : *c;
         }
-        if (config_check_name(&quiet, name) == 0) {
+        if (config_check_name(&quiet, name) != EXIT_USAGE) {
             return;
         }
     }
@@ -293,19 +292,16 @@ static int give_name(guide *g)
     char usual[ASK_BYTES], answer[ASK_BYTES];
     int status = 0;
     propose(g, usual);
-    for (int i = 0; i < TRIES; i++) {
+    for (int i = 0; i < TRIES && (i == 0 || status == EXIT_USAGE); i++) {
         if (!ask_line(g->a, "its name, for -d?", usual, answer)) {
             return gave_up(g);
         }
         status = config_check_name(g->a, answer);
-        if (!status) {
-            memcpy(g->name, answer, strlen(answer) + 1); /* it fits: it was checked */
-            break;
-        }
     }
     if (status) {
         return status;
     }
+    memcpy(g->name, answer, strlen(answer) + 1); /* it fits: it was checked */
     const cli_value *wiring = app_global(g->a, GLOBAL_WIRING);
     const config_entry entry = {.name = g->name,
                                 .device = g->device,
@@ -333,8 +329,7 @@ static int read_joints(guide *g)
     const grobo_model *model = app_model(a);
     int status = conn_open(&c, a);
     if (!status) {
-        (void)conn_wait(&c, grobo_robot_sense(grobo_session_robot(c.session),
-                                              GROBO_JOINTS_ALL(model->n_joints), GROBO_SENSE_FULL));
+        (void)conn_sense(&c, GROBO_JOINTS_ALL(model->n_joints), GROBO_SENSE_FULL);
     }
     for (int j = 0; j < model->n_joints && !status; j++) {
         grobo_joint_info i;

@@ -69,7 +69,7 @@ static grobo_joint_mask joints_that_move(conn *c, const shell *s)
 static int push(conn *c, shell *s, double ms)
 {
     grobo_posture posture;
-    int error = conn_wait(c, grobo_robot_sense(c->robot, joints_that_move(c, s), GROBO_SENSE_FULL));
+    int error = conn_sense(c, joints_that_move(c, s), GROBO_SENSE_FULL);
     int status = error ? conn_fail(c, error, "record") : need_record(s);
     if (status) {
         return status;
@@ -216,7 +216,7 @@ static int do_free(shell *s, int n, char **words)
     }
     status = conn_open_to_move(&c, &s->one);
     if (!status) {
-        int error = grobo_robot_free(grobo_session_robot(c.session), joints, true);
+        int error = grobo_robot_free(c.robot, joints, true);
         status = error < 0 ? conn_fail(&c, error, "free") : 0;
         s->link.free_joints |= status ? 0 : joints;
     }
@@ -237,8 +237,7 @@ static int do_end(shell *s, int n, char **words)
     }
     int status = conn_open(&c, &s->one);
     if (!status) {
-        int error = conn_wait(
-            &c, grobo_robot_free(grobo_session_robot(c.session), s->link.free_joints, false));
+        int error = conn_wait(&c, grobo_robot_free(c.robot, s->link.free_joints, false));
         status = error < 0 ? conn_fail(&c, error, "end") : 0;
         s->link.free_joints = 0;
     }
@@ -398,19 +397,22 @@ static const shell_word table[] = {
 };
 
 const char shell_details[] = N_(
-    "Runs commands, one a line, over one connection that stays open between them: those of grctl\n"
-    "without 'grctl', and the letters and words of the original programs below. Words are split\n"
-    "at blanks, quotes and backslashes keep them together, # begins a comment. Commands come from\n"
-    "a person, who gets history and completion (TAB), or from FILE or a pipe: then the first that\n"
-    "fails ends the shell with its exit status, and the message names the line. With --json each\n"
-    "line of a script ends with {\"line\":N,\"status\":S}, so that a program can lead a robot\n"
-    "through a pipe (docs/guide/scripts.md). Ctrl-C stops the\n"
-    "command that runs; at the prompt it clears the line. What --on-exit asks for is carried out\n"
-    "once, at the end.\n\n"
+    "Runs commands, one a line, over one connection that stays open between them: those of\n"
+    "grctl without 'grctl', and the letters and words of the original programs below. Words\n"
+    "are split at blanks, quotes and backslashes keep them together, # begins a comment.\n"
+    "Commands are typed, with history and completion (TAB), or come from FILE or a pipe: then\n"
+    "the first command that fails ends the shell with its exit status, and the message names\n"
+    "the line. With --json each line of a script ends with {\"line\":N,\"status\":S}, so that a\n"
+    "program can control a robot through a pipe (docs/guide/scripts.md). Ctrl-C stops the\n"
+    "running command; at the prompt it clears the line. The action of --on-exit is carried\n"
+    "out once, at the end.\n"
+    "\n"
     "Between two commands an open robot is watched: a lost line, an alarm of a servo, and an\n"
-    "emergency stop by another grctl are told at once. They end a script like a command that\n"
-    "fails, though its next line has not come; a prompt stays.\n\n"
-    "The record is a motion that grows by hand; every command takes it as the file @record.\n");
+    "emergency stop by another grctl are reported at once. They end a script as a command\n"
+    "that fails does, even before its next line has come; a prompt stays.\n"
+    "\n"
+    "The record is a motion that is built by hand; every command takes it as the file\n"
+    "@record.\n");
 
 const char *shell_words(void)
 {

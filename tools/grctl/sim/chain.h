@@ -3,8 +3,6 @@
 #ifndef GRCTL_SIM_CHAIN_H
 #define GRCTL_SIM_CHAIN_H
 
-#include <grobo/sim.h>
-
 #include "tools/grctl/cli/app.h"
 
 enum { SIM_CHAIN_NAME_BYTES = 12 };

@@ -32,13 +32,13 @@ typedef struct sim_console {
 #define SIM_CONSOLE_HELP                                                                           \
     "  robot N                     the commands after this are for robot N\n"                      \
     "  fault KIND=RATE,...         as --fault\n"                                                   \
-    "  silent SERVO on|off         it neither hears nor speaks, but holds\n"                       \
+    "  silent SERVO on|off         it neither receives nor replies, but holds\n"                   \
     "  cable SERVO in|mute|out     out: no power, limp\n"                                          \
     "  block SERVO on|off          its shaft is held fast\n"                                       \
     "  turn SERVO DEG [MS]         a hand turns its shaft\n"                                       \
     "  load SERVO MA               extra current, as of a weight\n"                                \
     "  temperature SERVO C         of its case\n"                                                  \
-    "  id SERVO ID                 another id, perhaps somebody else's\n"                          \
+    "  id SERVO ID                 another id, also one in use\n"                                  \
     "  voltage V                   of the battery\n"                                               \
     "  plug in|out                 the host's cable\n"                                             \
     "  look [SERVO]                what it does\n"                                                 \

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <stdarg.h>
 #include <string.h>
 
 #include <grobo/serial.h>
@@ -10,9 +9,6 @@
 
 /* Bytes that collide within this time are one offence. */
 #define ONE_COLLISION_US 20000
-
-/* The last model has all registers. */
-#define ANY (&grobo_rs30x_table.models[grobo_rs30x_table.model_count - 1])
 
 enum { WHY_BYTES = 128 };
 
@@ -54,24 +50,13 @@ static bool wrong_data(uint8_t address, const uint8_t *data, size_t n, char *why
                  (int)(address + n - 1));
         return true;
     }
-    for (size_t i = 0; i < n; i++) {
-        const grobo_servo_register *reg = grobo_servo_register_at(ANY, (uint16_t)(address + i));
-        if (!reg) {
-            continue;
-        }
-        if ((reg->flags & GROBO_REGISTER_W) == 0) {
-            snprintf(why, WHY_BYTES, "it writes %s, which is read-only", reg->name);
+    const telegram_part part = {.address = address, .length = (int)n, .data = data};
+    for (int at = 0; at < part.length;) {
+        const explain_item item = explain_item_at(EXPLAIN_RS30X, &part, at);
+        if (explain_is_wrong(&item, why, WHY_BYTES)) {
             return true;
         }
-        if (reg->address != address + i || i + reg->bytes > n) {
-            continue; /* a half of it */
-        }
-        int32_t value = grobo_servo_register_get(ANY, reg, data + i);
-        if (value < reg->min || value > reg->max) {
-            snprintf(why, WHY_BYTES, "%s %d is outside %d..%d", reg->name, (int)value,
-                     (int)reg->min, (int)reg->max);
-            return true;
-        }
+        at += item.bytes;
     }
     return false;
 }

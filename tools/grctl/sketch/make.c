@@ -147,18 +147,9 @@ static int check_text(app *a, const char *text)
     return error;
 }
 
-static bool is_there(const char *path)
-{
-    FILE *file = fopen(path, "rb");
-    if (file) {
-        fclose(file);
-    }
-    return file != NULL;
-}
-
 static int save(app *a, const char *out, const char *text)
 {
-    if (is_there(out) && !app_global(a, GLOBAL_YES)->given) {
+    if (file_is_there(out) && !app_global(a, GLOBAL_YES)->given) {
         return app_fail(a, EXIT_USAGE, "EXISTS", "%s is there already; --yes replaces it", out);
     }
     int error = file_save(out, text, strlen(text));
@@ -196,23 +187,16 @@ int sketch_write(app *a, sketch *s, const char *out, json_t *fits)
 /* All of a file, to be freed; NULL with the reason said. */
 static char *read_file(app *a, const char *path, size_t *size, int *status)
 {
-    FILE *file = os_is_folder(path) ? NULL : fopen(path, "rb");
-    char *bytes = file ? malloc(SKETCH_FILE_MAX_BYTES + 1) : NULL;
-    if (!file) {
-        *status = app_fail(a, EXIT_FILE, "IO", "%s: %s", path,
-                           os_is_folder(path) ? _("is a folder") : app_cause_text(errno));
-        return NULL;
+    heap all = file_bytes(path, SKETCH_FILE_MAX_BYTES);
+    if (!all.bytes) {
+        bool long_one = errno == EFBIG;
+        *status = app_fail(a, EXIT_FILE, long_one ? "CAP" : "IO", "%s: %s", path,
+                           long_one             ? _("is longer than 4 MiB")
+                           : os_is_folder(path) ? _("is a folder")
+                                                : app_cause_text(errno));
     }
-    *size = bytes ? fread(bytes, 1, SKETCH_FILE_MAX_BYTES + 1, file) : 0;
-    bool failed = ferror(file) != 0;
-    fclose(file);
-    if (bytes && !failed && *size <= SKETCH_FILE_MAX_BYTES) {
-        return bytes;
-    }
-    *status = app_fail(a, EXIT_FILE, bytes && !failed ? "CAP" : "IO", "%s: %s", path,
-                       bytes && !failed ? _("is longer than 4 MiB") : _("cannot be read"));
-    free(bytes);
-    return NULL;
+    *size = all.size;
+    return all.bytes;
 }
 
 static bool is_xml(const char *bytes, size_t size)

@@ -1,28 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* A sketch as the text of a robot's file. */
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/cli/heap.h"
 #include "tools/grctl/sketch/sketch.h"
-
-enum { TEXT_MAX_BYTES = 1 << 18 /* 64 joints and parts take an eighth of it */ };
-
-typedef struct paper {
-    char *text;
-    size_t used;
-} paper;
-
-__attribute__((format(printf, 2, 3))) static void put(paper *to, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    int n = vsnprintf(to->text + to->used, TEXT_MAX_BYTES - to->used, format, list);
-    va_end(list);
-    to->used += n > 0 && (size_t)n < TEXT_MAX_BYTES - to->used ? (size_t)n : 0;
-}
 
 /* What strangers call something, in a comment: one line of ASCII. */
 static const char *plain(const char *text)
@@ -52,47 +34,47 @@ static double limit(double angle_rad)
     return tidy(grobo_deg_from_rad(angle_rad), 1e-6);
 }
 
-static void put_joint(paper *to, const sketch_part *part)
+static void put_joint(heap *to, const sketch_part *part)
 {
-    put(to, "  - {name: %s, id: %d, servo: %s, limits_deg: [%.6g, %.6g]", part->called, part->id,
-        part->servo->name, limit(part->limits_rad[0]), limit(part->limits_rad[1]));
+    heap_print(to, "  - {name: %s, id: %d, servo: %s, limits_deg: [%.6g, %.6g]", part->called,
+               part->id, part->servo->name, limit(part->limits_rad[0]), limit(part->limits_rad[1]));
     if (part->init_rad != 0) {
-        put(to, ", init_deg: %.6g", limit(part->init_rad));
+        heap_print(to, ", init_deg: %.6g", limit(part->init_rad));
     }
     if (part->zero_rad != 0) {
-        put(to, ", zero_deg: %.6g", limit(part->zero_rad));
+        heap_print(to, ", zero_deg: %.6g", limit(part->zero_rad));
     }
     double gear = part->gear != 0 ? fabs(part->gear) : 1;
     if (part->gear < 0) {
-        put(to, ", sign: -1");
+        heap_print(to, ", sign: -1");
     }
     if (gear != 1) {
-        put(to, ", gear: %.6g", gear);
+        heap_print(to, ", gear: %.6g", gear);
     }
     double speed_dps = grobo_deg_from_rad(part->speed_rad_s);
     if (speed_dps >= 1 && speed_dps < 0.8 * part->servo->speed_dps / gear) {
-        put(to, ", speed_deg_s: %.6g", speed_dps);
+        heap_print(to, ", speed_deg_s: %.6g", speed_dps);
     }
-    put(to, part->turns ? ", turns: true}" : "}");
+    heap_print(to, part->turns ? ", turns: true}" : "}");
     const char *name = *part->joint ? part->joint : part->name;
     if (strcmp(name, part->called) != 0) {
-        put(to, " # '%s'", plain(name));
+        heap_print(to, " # '%s'", plain(name));
     }
     if (*part->note) {
-        put(to, "%s %s", strcmp(name, part->called) != 0 ? ";" : " #", plain(part->note));
+        heap_print(to, "%s %s", strcmp(name, part->called) != 0 ? ";" : " #", plain(part->note));
     }
-    put(to, "\n");
+    heap_print(to, "\n");
 }
 
-static void put_vector(paper *to, const char *key, const double *v)
+static void put_vector(heap *to, const char *key, const double *v)
 {
     if (v[0] == 0 && v[1] == 0 && v[2] == 0) {
         return;
     }
-    put(to, ", %s: [%.7g, %.7g, %.7g]", key, v[0], v[1], v[2]);
+    heap_print(to, ", %s: [%.7g, %.7g, %.7g]", key, v[0], v[1], v[2]);
 }
 
-static void put_link(paper *to, const sketch *s, const sketch_part *part)
+static void put_link(heap *to, const sketch *s, const sketch_part *part)
 {
     double origin_m[3], origin_deg[3], axis[3];
     double length = sqrt(part->axis[0] * part->axis[0] + part->axis[1] * part->axis[1] +
@@ -102,64 +84,62 @@ static void put_link(paper *to, const sketch *s, const sketch_part *part)
         origin_deg[k] = degrees(part->origin_rad[k]);
         axis[k] = length > 0 ? tidy(part->axis[k] / length, 1e-9) : 0;
     }
-    put(to, "  - {name: %s", part->shown);
+    heap_print(to, "  - {name: %s", part->shown);
     if (part->above >= 0) {
-        put(to, ", parent: %s", s->part[part->above].shown);
+        heap_print(to, ", parent: %s", s->part[part->above].shown);
     }
     if (part->motion == SKETCH_TURNS) {
-        put(to, ", joint: %s", part->called);
+        heap_print(to, ", joint: %s", part->called);
         put_vector(to, "axis", axis);
     }
     put_vector(to, "origin_m", origin_m);
     put_vector(to, "origin_deg", origin_deg);
     if (part->mass_kg > 0) {
-        put(to, ", mass_kg: %.6g", part->mass_kg);
+        heap_print(to, ", mass_kg: %.6g", part->mass_kg);
     }
-    put(to, "}");
+    heap_print(to, "}");
     if (part->motion == SKETCH_WITHOUT) {
-        put(to, " # taken as fixed: %s", plain(part->note));
+        heap_print(to, " # taken as fixed: %s", plain(part->note));
     }
-    put(to, "\n");
+    heap_print(to, "\n");
 }
 
 char *sketch_text(sketch *s)
 {
-    paper to = {.text = malloc(TEXT_MAX_BYTES)};
-    if (!to.text) {
-        return NULL;
-    }
-    put(&to, "# Made by grctl of %s.\n", plain(s->source));
-    put(&to, "# Not known, and to be filled in (docs/guide/own-robot.md):%s%s%s\n",
-        s->guessed_servos ? " family and servos," : "", s->guessed_ids ? " ids," : "",
-        s->bare ? " names, limits of the mechanics," : "");
-    put(&to, "# which way each servo turns (sign), and where its joint is at 0 (zero_deg).\n");
-    put(&to, "name: %s\nfamily: %s\n", s->name, s->family->name);
+    heap to = {0};
+    heap_print(&to, "# Made by grctl of %s.\n", plain(s->source));
+    heap_print(&to, "# Not known, and to be filled in (docs/guide/own-robot.md):%s%s%s\n",
+               s->guessed_servos ? " family and servos," : "", s->guessed_ids ? " ids," : "",
+               s->bare ? " names, limits of the mechanics," : "");
+    heap_print(&to,
+               "# which way each servo turns (sign), and where its joint is at 0 (zero_deg).\n");
+    heap_print(&to, "name: %s\nfamily: %s\n", s->name, s->family->name);
     if (s->baud_bps) {
-        put(&to, "line: {baud: %d}\n", s->baud_bps);
+        heap_print(&to, "line: {baud: %d}\n", s->baud_bps);
     }
     if (*s->usb) {
-        put(&to, "usb: [\"%s\"]\n", s->usb);
+        heap_print(&to, "usb: [\"%s\"]\n", s->usb);
     }
     if (s->calibrated) {
-        put(&to, "calibrated: true # its servos keep offsets\n");
+        heap_print(&to, "calibrated: true # its servos keep offsets\n");
     }
-    put(&to, "\njoints:\n");
+    heap_print(&to, "\njoints:\n");
     for (int i = 0; i < s->n_joints; i++) {
         put_joint(&to, sketch_joint(s, i));
     }
-    put(&to, "\ngroups:\n  - {name: all, joints: [");
+    heap_print(&to, "\ngroups:\n  - {name: all, joints: [");
     for (int i = 0; i < s->n_joints; i++) {
-        put(&to, "%s%s", i ? ", " : "", sketch_joint(s, i)->called);
+        heap_print(&to, "%s%s", i ? ", " : "", sketch_joint(s, i)->called);
     }
-    put(&to, "]}\n");
+    heap_print(&to, "]}\n");
     if (!s->bare && s->n > GROBO_ROBOT_LINKS_MAX) {
-        put(&to, "\n# Its %d parts are left out: a robot's file has at most %d.\n", s->n,
-            GROBO_ROBOT_LINKS_MAX);
+        heap_print(&to, "\n# Its %d parts are left out: a robot's file has at most %d.\n", s->n,
+                   GROBO_ROBOT_LINKS_MAX);
     } else if (!s->bare) {
-        put(&to, "\nlinks:\n");
+        heap_print(&to, "\nlinks:\n");
         for (int i = 0; i < s->n; i++) {
             put_link(&to, s, &s->part[s->along[i]]);
         }
     }
-    return to.text;
+    return to.bytes;
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/body/check.h"
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/web/analyse.h"
 #include "tools/grctl/web/pose.h"
 
@@ -228,17 +228,6 @@ json_t *analysis_balance_json(const analysis *n)
     return balance;
 }
 
-static json_t *angles_json(const grobo_posture *posture, int n_joints)
-{
-    json_t *list = json_array();
-    for (int j = 0; j < n_joints; j++) {
-        bool set = j < posture->n_joints && (posture->set & GROBO_JOINT_BIT(j));
-        json_array_append_new(
-            list, app_json_number(set ? grobo_deg_from_rad(posture->angle_rad[j]) : NAN, 3));
-    }
-    return list;
-}
-
 static json_t *vector_json(const double *values, int n)
 {
     json_t *list = json_array();
@@ -263,7 +252,7 @@ static json_t *key_json(const analysis *n, size_t i)
     grobo_key_info info;
     double time_s = 0;
     size_t n_links;
-    json_t *links = json_array(), *stationary = json_array();
+    json_t *links = json_array();
     grobo_motion_get(n->motion, i, &posture);
     grobo_motion_get_key(n->motion, i, &info);
     grobo_motion_time_s(n->motion, i, &time_s);
@@ -271,17 +260,12 @@ static json_t *key_json(const analysis *n, size_t i)
     for (size_t k = 0; k < n_links; k++) {
         json_array_append_new(links, link_json(&link[k]));
     }
-    for (int j = 0; j < posture.n_joints; j++) {
-        if (info.stationary & GROBO_JOINT_BIT(j)) {
-            json_array_append_new(stationary, json_integer(j));
-        }
-    }
     return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "time_ms", app_json_number(time_s * 1e3, 6),
                      "name", app_json_text(grobo_motion_key_name(n->motion, i)), "angle_deg",
-                     angles_json(&posture, app_model(&n->app)->n_joints), "stationary", stationary,
-                     "links", links, "zmp_m",
-                     info.has_zmp ? vector_json(info.zmp_m, 3) : json_null(), "max_transition_ms",
-                     app_json_number(info.max_transition_s * 1e3, 6));
+                     pose_angles_json(&posture, app_model(&n->app)->n_joints, 3), "stationary",
+                     joints_json(info.stationary & GROBO_JOINTS_ALL(posture.n_joints)), "links",
+                     links, "zmp_m", info.has_zmp ? vector_json(info.zmp_m, 3) : json_null(),
+                     "max_transition_ms", app_json_number(info.max_transition_s * 1e3, 6));
 }
 
 json_t *analysis_keys_json(const analysis *n)
@@ -344,7 +328,8 @@ static void add_frame(analysis *n, int64_t t_us, frames *f)
         return;
     }
     json_array_append_new(f->time_ms, app_json_number((double)t_us / 1e3, 1));
-    json_array_append_new(f->angle_deg, angles_json(&posture, app_model(&n->app)->n_joints));
+    json_array_append_new(f->angle_deg,
+                          pose_angles_json(&posture, app_model(&n->app)->n_joints, 3));
     json_array_append_new(f->root, root);
 }
 

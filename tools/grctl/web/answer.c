@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* What every part of `serve` says to a request, and asks of the robot. */
-#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/port.h>
@@ -82,6 +81,20 @@ static int status_of(int error)
     return 409;
 }
 
+json_t *serve_refusal(const char *code, const char *message)
+{
+    return json_pack("{s:o,s:o}", "code", app_json_code(code), "message", app_json_text(message));
+}
+
+void serve_blame(json_t *refusal, const serve *s, int joint, double value)
+{
+    if (joint >= 0 && joint < s->model->n_joints) {
+        json_object_set_new(refusal, "joint", json_integer(joint));
+        json_object_set_new(refusal, "name", json_string(s->model->joints[joint].name));
+        json_object_set_new(refusal, "value", app_json_number(value, 3));
+    }
+}
+
 void serve_refuse(serve *s, http_request *r, int error, const char *doing)
 {
     json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(grobo_error_name(error)),
@@ -90,11 +103,7 @@ void serve_refuse(serve *s, http_request *r, int error, const char *doing)
     int joint = error == GROBO_ERR_LIMIT || error == GROBO_ERR_NAN
                     ? grobo_robot_fault(s->c.robot, &value)
                     : -1;
-    if (joint >= 0 && joint < s->model->n_joints) {
-        json_object_set_new(refusal, "joint", json_integer(joint));
-        json_object_set_new(refusal, "name", json_string(s->model->joints[joint].name));
-        json_object_set_new(refusal, "value", app_json_number(value, 3));
-    }
+    serve_blame(refusal, s, joint, value);
     if (error == GROBO_ERR_LATCHED && s->c.trip.trip != GROBO_TRIP_NONE) {
         json_object_set_new(refusal, "trip", app_json_code(grobo_trip_name(s->c.trip.trip)));
     }
@@ -105,8 +114,7 @@ void serve_refuse_said(http_request *r, int status, const app *a)
 {
     static const int statuses[] = {200, 409, 400, 422, 422};
     bool missing = strcmp(a->failed, grobo_error_name(GROBO_ERR_NOENT)) == 0;
-    json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(a->failed), "message",
-                                app_json_text(a->hushed));
+    json_t *refusal = serve_refusal(a->failed, a->hushed);
     int found = status > 0 && status <= EXIT_SAFETY ? statuses[status] : 409;
     http_reply_json(r, missing ? 404 : found, json_pack("{s:o}", "error", refusal));
 }

@@ -42,8 +42,8 @@ void door_announce(const app *a, const web_options *options, const http *h)
             json_pack("{s:s,s:s,s:s}", "url", url, "stop_url", stop_url, "token", http_token(h)));
     } else {
         if (http_is_open(h)) {
-            app_note(a, "serve: plain HTTP beyond this machine: whoever listens on that network "
-                        "reads the token; 'ssh -L' or a proxy with TLS is safer");
+            app_note(a, "serve: HTTP is not encrypted: programs on that network can read the "
+                        "token; use 'ssh -L' or a proxy with TLS");
         }
         app_print("%s#token=%s\n", url, http_token(h));
     }

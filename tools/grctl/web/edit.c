@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/cli/heap.h"
+#include "tools/grctl/play/play.h"
 #include "tools/grctl/web/edit.h"
 #include "tools/grctl/web/library.h"
 #include "tools/grctl/web/pose.h"
@@ -473,45 +475,60 @@ int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion 
 
 /* ---- as a file ------------------------------------------------------------------------------- */
 
-typedef struct heap {
-    char *bytes;
-    size_t size, room;
-} heap;
-
 static int put(void *ctx, const void *bytes, size_t size)
 {
-    heap *h = ctx;
-    if (h->size + size > LIBRARY_FILE_BYTES) {
-        return GROBO_ERR_CAP;
-    }
-    if (h->size + size > h->room) {
-        size_t room = 2 * (h->size + size);
-        char *more = realloc(h->bytes, room);
-        if (!more) {
-            return GROBO_ERR_NOMEM;
-        }
-        h->bytes = more;
-        h->room = room;
-    }
-    memcpy(h->bytes + h->size, bytes, size);
-    h->size += size;
-    return GROBO_OK;
+    heap *to = ctx;
+    return to->size + size > LIBRARY_FILE_BYTES ? GROBO_ERR_CAP : heap_sink(to, bytes, size);
 }
 
 int edit_write(const grobo_motion *motion, grobo_motion_format format, const grobo_model *model,
                grobo_diagnostics *lost, char **bytes, size_t *size)
 {
-    heap h = {0};
-    grobo_sink sink = {.write = put, .ctx = &h};
+    heap to = {0};
+    grobo_sink sink = {.write = put, .ctx = &to};
     grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT, .model = model,
                                .exact = format == GROBO_FORMAT_M &&
                                         grobo_motion_get_kind(motion) == GROBO_MOTION_POSTURES};
     int error = grobo_motion_write(motion, format, &how, &sink, lost);
     if (error < 0) {
-        free(h.bytes);
+        free(to.bytes);
         return error;
     }
-    *bytes = h.bytes;
-    *size = h.size;
+    *bytes = to.bytes;
+    *size = to.size;
     return GROBO_OK;
+}
+
+/* Frames of many hours: refused before there is memory for them. A number has 2 bytes at least. */
+static bool is_too_long(const grobo_motion *motion, grobo_motion_format format)
+{
+    double length_s = (double)grobo_motion_length_us(motion, -1) / 1e6;
+    return format == GROBO_FORMAT_YAML && grobo_motion_get_kind(motion) != GROBO_MOTION_FRAMES &&
+           length_s * GROBO_MOTION_RATE_HZ * 2 * grobo_motion_joints(motion) > LIBRARY_FILE_BYTES;
+}
+
+/* Targets of legs become angles, where the format has no place for them. 0 or the status. */
+static int solve_legs(app *a, const char *name, grobo_motion_format format,
+                      const grobo_motion *motion, grobo_motion **solved)
+{
+    double rate_hz = format == GROBO_FORMAT_YAML ? GROBO_MOTION_RATE_HZ : 0;
+    return format == GROBO_FORMAT_PSEQ ? 0
+                                       : body_solve(a, PLAY_BODY, name, motion, rate_hz, solved);
+}
+
+int edit_file(app *a, const char *name, const grobo_motion *motion, grobo_diagnostics *lost,
+              char **bytes, size_t *size)
+{
+    grobo_motion_format format = grobo_motion_format_of_path(name);
+    grobo_motion *solved = NULL;
+    int error = GROBO_OK;
+    if (is_too_long(motion, format)) {
+        error = GROBO_ERR_CAP;
+    } else if (solve_legs(a, name, format, motion, &solved)) {
+        error = GROBO_ERR_UNREACHABLE;
+    } else {
+        error = edit_write(solved ? solved : motion, format, app_model(a), lost, bytes, size);
+    }
+    grobo_motion_free(solved);
+    return error;
 }

@@ -7,6 +7,8 @@
 
 #include <grobo/motion_io.h>
 
+#include "tools/grctl/cli/app.h"
+
 typedef struct edit_result {
     grobo_motion *motion; /* the caller's */
     char complaint[256];  /* one line, where there is an error */
@@ -25,5 +27,13 @@ int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion 
  */
 int edit_write(const grobo_motion *motion, grobo_motion_format format, const grobo_model *model,
                grobo_diagnostics *lost, char **bytes, size_t *size);
+
+/*
+ * The same of the format that its name tells, with its legs solved where the format has no place
+ * for their targets. The app's line is that of `play`, whose options say how. Also
+ * GROBO_ERR_UNREACHABLE, where the app has said which leg was not solved.
+ */
+int edit_file(app *a, const char *name, const grobo_motion *motion, grobo_diagnostics *lost,
+              char **bytes, size_t *size);
 
 #endif

@@ -7,6 +7,7 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/heap.h"
 #include "tools/grctl/web/events.h"
 
 enum { COMMENT_US = 900000 };
@@ -26,46 +27,33 @@ void events_tell(events *e, const char *kind, const char *level, json_t *more, c
         json_object_update_missing(event, more);
         json_decref(more);
     }
-    char *data = json_dumps(event, JSON_COMPACT | JSON_REAL_PRECISION(12));
-    json_decref(event);
-    if (!data) {
+    heap text = {0};
+    heap_print(&text, "id: %d\nevent: event\ndata: ", e->last);
+    heap_json(&text, event);
+    heap_print(&text, "\n\n");
+    if (!text.bytes) {
         return;
     }
-    size_t size = strlen(data) + 64;
-    char *text = malloc(size);
-    if (text) {
-        int n = snprintf(text, size, "id: %d\nevent: event\ndata: %s\n\n", e->last, data);
-        free(e->text[e->last % EVENTS_KEPT]);
-        e->text[e->last % EVENTS_KEPT] = text;
-        if (e->to) {
-            http_send(e->to, text, (size_t)n, false);
-        }
+    free(e->text[e->last % EVENTS_KEPT]);
+    e->text[e->last % EVENTS_KEPT] = text.bytes;
+    if (e->to) {
+        http_send(e->to, text.bytes, text.size, false);
     }
-    free(data);
 }
 
-/* Those behind an id, to be freed; NULL: no memory. */
+/* Those behind an id, to be freed; NULL or "": none. */
 static char *since(const events *e, int id)
 {
-    size_t size = 1;
+    heap all = {0};
     int first = id < 0 || id > e->last ? e->last : id;
     if (first < e->last - EVENTS_KEPT) {
         first = e->last - EVENTS_KEPT;
     }
     for (int i = first + 1; i <= e->last; i++) {
-        size += e->text[i % EVENTS_KEPT] ? strlen(e->text[i % EVENTS_KEPT]) : 0;
+        const char *text = e->text[i % EVENTS_KEPT];
+        heap_print(&all, "%s", text ? text : "");
     }
-    char *all = malloc(size);
-    char *at = all;
-    for (int i = first + 1; all && i <= e->last; i++) {
-        size_t n = e->text[i % EVENTS_KEPT] ? strlen(e->text[i % EVENTS_KEPT]) : 0;
-        memcpy(at, e->text[i % EVENTS_KEPT], n);
-        at += n;
-    }
-    if (all) {
-        *at = '\0';
-    }
-    return all;
+    return all.bytes;
 }
 
 void events_stream(const events *e, http_request *r)
@@ -82,20 +70,16 @@ void events_stream(const events *e, http_request *r)
 
 void events_send_state(events *e, json_t *state)
 {
-    static const char head[] = "event: state\ndata: ", comment[] = ": alive\n\n";
-    char *data = json_dumps(state, JSON_COMPACT | JSON_REAL_PRECISION(12));
-    size_t n = data ? strlen(data) : 0;
-    char *text = malloc(sizeof head + n + 2);
+    static const char comment[] = ": alive\n\n";
     int64_t now_us = grobo_now_us();
-    if (data && text) {
-        memcpy(text, head, sizeof head - 1);
-        memcpy(text + sizeof head - 1, data, n);
-        memcpy(text + sizeof head - 1 + n, "\n\n", 2);
-        http_send(e->to, text, sizeof head - 1 + n + 2, true);
+    heap text = {0};
+    heap_print(&text, "event: state\ndata: ");
+    heap_json(&text, state);
+    heap_print(&text, "\n\n");
+    if (text.bytes) {
+        http_send(e->to, text.bytes, text.size, true);
     }
-    free(text);
-    free(data);
-    json_decref(state);
+    free(text.bytes);
     if (now_us - e->commented_us > COMMENT_US) {
         e->commented_us = now_us;
         http_send(e->to, comment, sizeof comment - 1, false);

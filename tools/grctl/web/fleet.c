@@ -3,7 +3,6 @@
  * serve --broker: how the robots of a fleet are, and a stop for all of them. It orders no motion.
  * What agents say is hostile: it is copied by known keys, with bounds.
  */
-#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/port.h>
@@ -496,23 +495,16 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
-static bool never(const leader *l)
-{
-    (void)l;
-    return false;
-}
-
 static int run(view *v, app *a)
 {
-    const struct timeval period = {0, 1000000 / STATE_HZ};
     http_config config = {.base = v->l.link.base, .rule = rule_of, .serve = answer, .ctx = v};
     int status = door_open(a, v->options, &config, &v->events);
     if (status) {
         return status;
     }
     v->http = v->events.to;
-    v->tick = event_new(v->l.link.base, -1, EV_PERSIST, on_tick, v);
-    if (!v->tick || event_add(v->tick, &period) != 0) {
+    v->tick = conn_every(v->l.link.base, 1000000 / STATE_HZ, on_tick, v);
+    if (!v->tick) {
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "serve");
     }
     v->l.on_event = on_fleet_event;
@@ -520,7 +512,7 @@ static int run(view *v, app *a)
     on_tick(-1, 0, v);
     door_announce(a, v->options, v->http);
     while (!v->l.link.signal) {
-        (void)leader_wait(&v->l, INT64_C(3600000000), never);
+        (void)leader_wait(&v->l, INT64_C(3600000000), NULL);
     }
     return EXIT_SIGNAL + v->l.link.signal;
 }

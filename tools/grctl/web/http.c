@@ -14,6 +14,7 @@
 
 #include <grobo/port.h>
 
+#include "tools/grctl/cli/heap.h"
 #include "tools/grctl/os/net.h"
 #include "tools/grctl/web/http.h"
 
@@ -42,7 +43,7 @@ typedef struct port {
 
 /*
  * A connection. libevent does not tell when one ends that never made a request: such a one is known
- * by its buffer alone, which is compared and not used, and is taken for gone when it was silent for
+ * by its heap alone, which is compared and not used, and is taken for gone when it was silent for
  * longer than evhttp lets it be.
  */
 typedef struct guest {
@@ -275,32 +276,14 @@ static void add_headers(const http_request *r)
     add(r, "Cross-Origin-Resource-Policy", r->second ? "cross-origin" : "same-origin");
 }
 
+/* Of the statuses that libevent has no phrase for; NULL: it has. */
 static const char *reason_of(int status)
 {
-    static const struct {
-        int status;
-        const char *reason;
-    } reasons[] = {{200, "OK"},
-                   {204, "No Content"},
-                   {304, "Not Modified"},
-                   {400, "Bad Request"},
-                   {401, "Unauthorized"},
-                   {403, "Forbidden"},
-                   {404, "Not Found"},
-                   {405, "Method Not Allowed"},
-                   {409, "Conflict"},
-                   {413, "Content Too Large"},
-                   {415, "Unsupported Media Type"},
-                   {422, "Unprocessable Content"},
-                   {428, "Precondition Required"},
-                   {429, "Too Many Requests"},
-                   {503, "Service Unavailable"}};
-    for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++) {
-        if (reasons[i].status == status) {
-            return reasons[i].reason;
-        }
-    }
-    return "Error";
+    return status == 413   ? "Content Too Large"
+           : status == 422 ? "Unprocessable Content"
+           : status == 428 ? "Precondition Required"
+           : status == 429 ? "Too Many Requests"
+                           : NULL;
 }
 
 static void send_reply(http_request *r, int status, const void *bytes, size_t size)
@@ -328,10 +311,10 @@ void http_reply_text(http_request *r, int status, const char *text, size_t size)
 
 void http_reply_json(http_request *r, int status, json_t *body)
 {
-    char *text = json_dumps(body, JSON_COMPACT | JSON_REAL_PRECISION(12));
-    json_decref(body);
-    http_reply_text(r, status, text, text ? strlen(text) : 0);
-    free(text);
+    heap text = {0};
+    heap_json(&text, body);
+    http_reply_text(r, status, text.bytes, text.size);
+    free(text.bytes);
 }
 
 void http_refuse(http_request *r, int status, const char *code, const char *format, ...)
@@ -500,7 +483,7 @@ void http_reply_stream(http_request *r, const char *first)
     add(r, "Cache-Control", "no-store");
     add(r, "Content-Type", "text/event-stream");
     net_keep_little(bufferevent_getfd(bev), SEND_BYTES); /* what waits there is the past */
-    evhttp_send_reply_start(r->raw, 200, reason_of(200));
+    evhttp_send_reply_start(r->raw, 200, NULL);
     if (evbuffer_get_length(bufferevent_get_input(bev)) > 0) { /* it came with the request */
         end_stream(s);
     }
@@ -673,7 +656,7 @@ static void on_request(struct evhttp_request *raw, void *ctx)
     know_guest(p, evhttp_request_get_connection(raw));
     http_request *r = calloc(1, sizeof *r);
     if (!r) {
-        evhttp_send_reply(raw, 503, reason_of(503), NULL);
+        evhttp_send_reply(raw, 503, NULL, NULL);
         return;
     }
     r->server = p->of;

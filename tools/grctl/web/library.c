@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <dirent.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +13,6 @@
 #include "tools/grctl/web/analyse.h"
 #include "tools/grctl/web/edit.h"
 #include "tools/grctl/web/library.h"
-#include "tools/grctl/web/make.h"
 #include "tools/grctl/web/serve.h"
 
 #define LOOK_US INT64_C(2000000)
@@ -164,7 +164,8 @@ static void scan(library *l, json_t *news)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-void library_hash(const void *bytes, size_t size, char etag[LIBRARY_ETAG_BYTES])
+/* A hash of bytes, in quotes. */
+static void hash_of(const void *bytes, size_t size, char etag[LIBRARY_ETAG_BYTES])
 {
     uint64_t hash = UINT64_C(0xcbf29ce484222325); /* FNV-1a */
     for (size_t i = 0; i < size; i++) {
@@ -183,21 +184,15 @@ int library_read(library *l, const char *name, library_file *file)
     if (!find(l, name) || !true_path(l, name, file->path, &info)) {
         return GROBO_ERR_NOENT;
     }
-    if (info.st_size > LIBRARY_FILE_BYTES) {
-        return GROBO_ERR_CAP;
+    heap all = file_bytes(file->path, LIBRARY_FILE_BYTES);
+    if (!all.bytes) {
+        return errno == EFBIG ? GROBO_ERR_CAP : GROBO_ERR_IO;
     }
-    FILE *from = fopen(file->path, "rb");
-    file->bytes = malloc((size_t)info.st_size + 1);
-    if (from && file->bytes) {
-        file->size = fread(file->bytes, 1, (size_t)info.st_size, from);
-        library_hash(file->bytes, file->size, file->etag);
-    }
-    bool read = from && file->bytes && !ferror(from);
-    if (from) {
-        fclose(from);
-    }
+    file->bytes = all.bytes;
+    file->size = all.size;
+    hash_of(file->bytes, file->size, file->etag);
     snprintf(file->path, sizeof file->path, "%s", name);
-    return read ? GROBO_OK : GROBO_ERR_IO;
+    return GROBO_OK;
 }
 
 void library_drop(library_file *file)
@@ -221,7 +216,9 @@ static bool is_taken(const library *l, const char *name)
     return taken;
 }
 
-int library_write(library *l, const char *name, const char *etag, const void *bytes, size_t size)
+/* Writes one, where it is as it was: GROBO_ERR_EXISTS where not. etag NULL: there shall be none. */
+static int write_file(library *l, const char *name, const char *etag, const void *bytes,
+                      size_t size)
 {
     char path[GROBO_PATH_MAX_BYTES];
     library_file now;
@@ -262,11 +259,12 @@ struct ask {
 
 static void answer(ask *q, int status, json_t *body)
 {
-    q->text = json_dumps(body, JSON_COMPACT | JSON_REAL_PRECISION(12));
-    q->size = q->text ? strlen(q->text) : 0;
+    heap text = {0};
+    heap_json(&text, body);
+    q->text = text.bytes;
+    q->size = text.size;
     q->status = status;
     q->type = "application/json";
-    json_decref(body);
 }
 
 static void refuse(ask *q, int status, const char *code, const char *message)
@@ -550,7 +548,7 @@ static bool read_sent(ask *q)
 /* Writes it, and tells what it is now, and what of it the format has no place for. */
 static void save(ask *q, const void *bytes, size_t size, const grobo_diagnostics *lost)
 {
-    int error = library_write(q->l, q->name, *q->match ? q->match : NULL, bytes, size);
+    int error = write_file(q->l, q->name, *q->match ? q->match : NULL, bytes, size);
     if (error == GROBO_ERR_EXISTS) {
         refuse(q, 409, "changed", "the file is not as it was read");
     } else if (error) {
@@ -620,7 +618,7 @@ static void write_edited(ask *q, const grobo_motion *made)
     if (!analysis_begin(&n, q->l->a, q->name)) {
         return;
     }
-    int error = make_write(&n.app, q->name, made, n.found, &bytes, &size);
+    int error = edit_file(&n.app, q->name, made, n.found, &bytes, &size);
     if (error == GROBO_ERR_UNREACHABLE) {
         refuse(q, 422, n.app.failed, n.said);
     } else if (error) {
@@ -661,10 +659,7 @@ static void run_put_file(ask *q)
     if (n.motion) {
         save(q, q->sent, q->sent_size, NULL);
     } else {
-        answer(q, 422,
-               json_pack("{s:o}", "error",
-                         json_pack("{s:o,s:o}", "code", app_json_code(n.app.failed), "message",
-                                   app_json_text(n.said))));
+        refuse(q, 422, n.app.failed, n.said);
     }
     analysis_end(&n);
 }

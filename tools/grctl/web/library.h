@@ -40,10 +40,6 @@ typedef struct library_file {
 /* Reads one of the folder. 0 or an error; library_drop() in either case. */
 int library_read(library *l, const char *name, library_file *file);
 void library_drop(library_file *file);
-/* Writes one, where it is as it was: GROBO_ERR_EXISTS where not. etag NULL: there shall be none. */
-int library_write(library *l, const char *name, const char *etag, const void *bytes, size_t size);
-/* A hash of bytes, in quotes. */
-void library_hash(const void *bytes, size_t size, char etag[LIBRARY_ETAG_BYTES]);
 /* May a new file be called so? */
 bool library_is_name(const char *name);
 

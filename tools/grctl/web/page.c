@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/web/http.h"
 #include "tools/grctl/web/page.h"
 
@@ -36,20 +37,15 @@ bool page_has(const char *path)
 static bool serve_from(const char *folder, http_request *r, const page_file *file)
 {
     char path[4096];
-    char *bytes = malloc(DISK_BYTES);
     snprintf(path, sizeof path, "%s%s", folder, file->path);
-    FILE *from = fopen(path, "rb");
-    bool read = from && bytes;
-    if (read) {
-        size_t size = fread(bytes, 1, DISK_BYTES, from);
-        http_reply_content(
-            r, &(http_content){.type = file->type, .bytes = bytes, .size = size, .page = true});
+    heap all = file_bytes(path, DISK_BYTES);
+    if (!all.bytes) {
+        return false;
     }
-    if (from) {
-        fclose(from);
-    }
-    free(bytes);
-    return read;
+    http_reply_content(
+        r, &(http_content){.type = file->type, .bytes = all.bytes, .size = all.size, .page = true});
+    free(all.bytes);
+    return true;
 }
 
 void page_serve(http_request *r)

@@ -7,6 +7,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/play/play.h"
 #include "tools/grctl/web/library.h"
+#include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 
 struct player_item {
@@ -144,8 +145,7 @@ static int begin(load *l)
         config = serve_config(s);
         (void)grobo_session_configure(s->c.session, &config);
     }
-    int job = grobo_robot_play(grobo_session_robot(s->c.session), &l->item->list.clip[0],
-                               &l->item->list.options[0]);
+    int job = grobo_robot_play(s->c.robot, &l->item->list.clip[0], &l->item->list.options[0]);
     if (job > 0) {
         free_items(p); /* the engine has none of them any more */
         p->items = l->item;
@@ -161,8 +161,8 @@ static int begin(load *l)
 static int queue(load *l)
 {
     player_item **end = &l->s->player.items;
-    int result = grobo_robot_enqueue(grobo_session_robot(l->s->c.session), &l->item->list.clip[0],
-                                     &l->item->list.options[0]);
+    int result =
+        grobo_robot_enqueue(l->s->c.robot, &l->item->list.clip[0], &l->item->list.options[0]);
     while (*end) {
         end = &(*end)->next;
     }
@@ -243,13 +243,6 @@ void verb_queue(serve *s, http_request *r, json_t *body)
 
 /* ---- what is played -------------------------------------------------------------------------- */
 
-static const char *state_word(grobo_sequencer_state state)
-{
-    static const char *const words[GROBO_SEQUENCER_STATES] = {
-        "idle", "approaching", "playing", "paused", "stopping", "finished", "failed"};
-    return words[state];
-}
-
 /* The motion that is played now; those before it are over. */
 static player_item *present(const serve *s, const grobo_play_progress *progress)
 {
@@ -299,16 +292,12 @@ json_t *player_json(serve *s)
         json_array_append_new(queue, app_json_text(i->name));
     }
     if (player_at(s, 0, &ghost)) {
-        angles = json_array();
-        for (int j = 0; j < s->model->n_joints; j++) {
-            bool set = j < ghost.n_joints && (ghost.set & GROBO_JOINT_BIT(j));
-            json_array_append_new(
-                angles, app_json_number(set ? grobo_deg_from_rad(ghost.angle_rad[j]) : NAN, 1));
-        }
+        angles = pose_angles_json(&ghost, s->model->n_joints, 1);
     }
     return json_pack("{s:s,s:o?,s:o,s:o,s:i,s:i,s:b,s:b,s:b,s:i,s:o,s:o?,s:s?,s:o?}", "state",
-                     state_word(progress.state), "motion", item ? app_json_text(item->name) : NULL,
-                     "t_ms", app_json_number((double)progress.t_us / 1e3, 1), "total_ms",
+                     grobo_sequencer_state_name(progress.state), "motion",
+                     item ? app_json_text(item->name) : NULL, "t_ms",
+                     app_json_number((double)progress.t_us / 1e3, 1), "total_ms",
                      app_json_number((double)progress.total_us / 1e3, 1), "pass",
                      (int)progress.pass, "passes", (int)progress.passes, "loop", item && item->loop,
                      "mirror", o && o->mirror, "reverse", o && o->reverse, "speed_pct",
@@ -325,7 +314,7 @@ void player_on_event(serve *s, const grobo_event *event)
     const char *level = event->u.play.error ? "error" : "info";
     const player_item *item = s->player.items;
     events_tell(&s->events, "play", level, NULL, "%s%s%s%s%s", item ? item->name : "motion", ": ",
-                state_word(event->u.play.to), event->u.play.error ? ": " : "",
+                grobo_sequencer_state_name(event->u.play.to), event->u.play.error ? ": " : "",
                 event->u.play.error ? grobo_error_text(event->u.play.error) : "");
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
@@ -22,6 +23,17 @@ static json_t *list_json(const double *values, int n, int decimals)
     json_t *list = json_array();
     for (int i = 0; i < n; i++) {
         json_array_append_new(list, app_json_number(values[i], decimals));
+    }
+    return list;
+}
+
+json_t *pose_angles_json(const grobo_posture *posture, int n_joints, int decimals)
+{
+    json_t *list = json_array();
+    for (int j = 0; j < n_joints; j++) {
+        bool set = j < posture->n_joints && (posture->set & GROBO_JOINT_BIT(j));
+        json_array_append_new(
+            list, app_json_number(set ? grobo_deg_from_rad(posture->angle_rad[j]) : NAN, decimals));
     }
     return list;
 }
@@ -49,7 +61,7 @@ static bool read_numbers(const json_t *list, size_t n, double *values)
     return true;
 }
 
-bool pose_read_angles(const json_t *list, int n_joints, double *q_rad)
+static bool read_angles(const json_t *list, int n_joints, double *q_rad)
 {
     double deg[GROBO_JOINTS_MAX];
     bool fine = read_numbers(list, (size_t)n_joints, deg);
@@ -261,14 +273,14 @@ static bool reach(dragging *d)
 static json_t *beyond_limits(const grobo_model *model, const double *q_rad)
 {
     static const double slack_rad = 0.05 * 3.14159265358979323846 / 180; /* the wire's half unit */
-    json_t *list = json_array();
+    grobo_joint_mask beyond = 0;
     for (int j = 0; j < model->n_joints; j++) {
         if (q_rad[j] < model->joints[j].min_rad - slack_rad ||
             q_rad[j] > model->joints[j].max_rad + slack_rad) {
-            json_array_append_new(list, json_integer(j));
+            beyond |= GROBO_JOINT_BIT(j);
         }
     }
-    return list;
+    return joints_json(beyond);
 }
 
 /* The pose that is given, and where its feet are. */
@@ -277,7 +289,7 @@ static bool read_pose(const json_t *body, dragging *d)
     const json_t *root = json_object_get(body, "root");
     grobo_transform links[GROBO_BODY_LINKS_MAX];
     grobo_body_stand stood;
-    if (!pose_read_angles(json_object_get(body, "angle_deg"), d->body->n_joints, d->q_rad) ||
+    if (!read_angles(json_object_get(body, "angle_deg"), d->body->n_joints, d->q_rad) ||
         grobo_body_stand_pose(d->body, d->q_rad, NULL, &stood) < 0) {
         return false;
     }

@@ -21,14 +21,14 @@ json_t *pose_links_json(const app *a);
 json_t *pose_feet_json(const app *a);
 /* Stands a posture: joints that it does not set are at their initial angles. False: no body. */
 bool pose_stand(const app *a, const grobo_posture *posture, grobo_body_stand *stood);
+/* Angles in degrees; null: not set. */
+json_t *pose_angles_json(const grobo_posture *posture, int n_joints, int decimals);
 /* Where the root is then; null: no body. */
 json_t *pose_root_json(const app *a, const grobo_posture *posture);
 json_t *pose_placement_json(const grobo_transform *at);
 /* Of a body; point: the ZMP, or NULL. */
 json_t *pose_stand_json(const grobo_body_stand *stand, const double *zmp_m);
 
-/* All joints in degrees by a list of numbers; false: it is none. */
-bool pose_read_angles(const json_t *list, int n_joints, double *q_rad);
 /* Place and attitude by their lists; what is NULL or missing stays. False: it is none. */
 bool pose_read_placement(const json_t *p_m, const json_t *rotation, grobo_transform *at);
 

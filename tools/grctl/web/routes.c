@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Which path is what, and what every request has to bring along. */
-#include <stdio.h>
 #include <string.h>
 
 #include <grobo/port.h>

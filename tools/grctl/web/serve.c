@@ -9,6 +9,7 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/web/door.h"
+#include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 
 /* ---- jobs ------------------------------------------------------------------------------------ */
@@ -23,44 +24,43 @@ static json_t *result_json(const serve *s, const grobo_event_job *job)
     return more;
 }
 
-/* The words of the command for how a job failed. */
+/* The words of the command for an error of the robot. */
+static void explain(serve *s, int error, const char *doing, char said[APP_LINE_BYTES])
+{
+    app *a = s->c.a, quiet = *a;
+    *said = '\0';
+    app_hush(&quiet, said);
+    s->c.a = &quiet;
+    (void)conn_fail(&s->c, error, doing);
+    s->c.a = a;
+}
+
 static void say_end(serve *s, const serve_job *j, const grobo_event_job *job)
 {
-    char said[APP_LINE_BYTES] = "";
-    app *a = s->c.a, quiet = *a;
+    char said[APP_LINE_BYTES];
     bool ours = job->result == GROBO_ERR_CANCELED || job->result == GROBO_ERR_SUPERSEDED;
     if (job->result >= 0 || ours) {
         events_tell(&s->events, "job", "info", result_json(s, job), "%s: %s", j->doing,
                     ours ? "stopped" : "done");
         return;
     }
-    app_hush(&quiet, said);
-    s->c.a = &quiet;
     s->c.job = *job;
-    (void)conn_fail(&s->c, job->result, j->doing);
-    s->c.a = a;
+    explain(s, job->result, j->doing, said);
     events_tell(&s->events, "job", "error", result_json(s, job), "%s", said);
 }
 
 static void answer_capture(serve *s, const serve_job *j, const grobo_event_job *job)
 {
     grobo_posture posture;
-    json_t *angles = json_array();
     if (job->result < 0 && job->failed == 0) {
-        json_decref(angles);
         serve_refuse(s, j->waiting, job->result, "capture");
         return;
     }
     grobo_robot_posture(s->c.robot, GROBO_NEVER_US, &posture);
-    for (int k = 0; k < s->model->n_joints; k++) {
-        bool read = (j->joints & posture.set & ~job->failed & GROBO_JOINT_BIT(k)) != 0;
-        json_array_append_new(angles,
-                              read ? app_json_number(grobo_deg_from_rad(posture.angle_rad[k]), 2)
-                                   : json_null());
-    }
-    http_reply_json(
-        j->waiting, 200,
-        json_pack("{s:I,s:o}", "sequence", (json_int_t)s->sequence, "angle_deg", angles));
+    posture.set &= j->joints & ~job->failed;
+    http_reply_json(j->waiting, 200,
+                    json_pack("{s:I,s:o}", "sequence", (json_int_t)s->sequence, "angle_deg",
+                              pose_angles_json(&posture, s->model->n_joints, 2)));
 }
 
 static void end_job(serve *s, const grobo_event_job *job)
@@ -83,15 +83,11 @@ static void end_job(serve *s, const grobo_event_job *job)
 
 static void say_trip(serve *s)
 {
-    char said[APP_LINE_BYTES] = "";
-    app *a = s->c.a, quiet = *a;
+    char said[APP_LINE_BYTES];
     if (s->stops.latched) { /* by us: it was told */
         return;
     }
-    app_hush(&quiet, said);
-    s->c.a = &quiet;
-    (void)conn_fail(&s->c, GROBO_ERR_LATCHED, "robot");
-    s->c.a = a;
+    explain(s, GROBO_ERR_LATCHED, "robot", said);
     json_t *more = json_pack("{s:o}", "trip", app_json_code(grobo_trip_name(s->c.trip.trip)));
     if (s->c.trip.joint >= 0) {
         json_object_set_new(more, "joint", json_integer(s->c.trip.joint));
@@ -151,7 +147,7 @@ static void lose_motion(serve *s)
                 leaves ? "the exit policy is carried out" : "the motion stops");
     stops_halt(s);
     if (leaves) {
-        int job = grobo_robot_exit(grobo_session_robot(s->c.session), GROBO_EXIT_DEFAULT);
+        int job = grobo_robot_exit(s->c.robot, GROBO_EXIT_DEFAULT);
         serve_note_job(s, job, "exit");
     }
 }
@@ -231,12 +227,6 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
-static bool never(conn *c)
-{
-    (void)c;
-    return false;
-}
-
 static int start(serve *s)
 {
     http_config config = {.base = s->c.base, .rule = serve_rule, .serve = serve_request, .ctx = s};
@@ -245,7 +235,7 @@ static int start(serve *s)
         return status;
     }
     s->http = s->events.to;
-    s->tick = conn_every(&s->c, SERVE_STATE_US, on_tick, s);
+    s->tick = conn_every(s->c.base, SERVE_STATE_US, on_tick, s);
     s->worker = worker_new(s->c.base);
     s->library = library_new(s->a, s->options->folder);
     if (!s->tick || !s->worker || !s->library) {
@@ -270,7 +260,7 @@ static int run(serve *s)
     conn *c = &s->c;
     c->ctx = s;
     c->on_event = on_event;
-    s->model = grobo_robot_driver(c->robot)->model;
+    s->model = conn_model(c);
     s->began_us = s->events.began_us = grobo_now_us();
     s->load_pct = s->load_hz = NAN;
     grobo_robot_config config = serve_config(s);
@@ -281,7 +271,7 @@ static int run(serve *s)
     }
     on_tick(-1, 0, s); /* there is a state from the first request on */
     door_announce(s->a, s->options, s->http);
-    error = conn_wait_until(c, never);
+    error = conn_wait_until(c, NULL);
     c->moving = c->up && serve_is_moving(s);
     c->on_event = NULL; /* nobody is told any more */
     return error ? conn_fail(c, error, "serve") : EXIT_DONE;

@@ -90,6 +90,9 @@ json_t *serve_state_json(serve *s);
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
+/* What an error is told by; and which joint is to blame, of -1 none. */
+json_t *serve_refusal(const char *code, const char *message);
+void serve_blame(json_t *refusal, const serve *s, int joint, double value);
 /* By an error of the library: "move: ...". */
 void serve_refuse(serve *s, http_request *r, int error, const char *doing);
 /* By what app_fail() said to an app that is hushed, and the exit status it gave. */

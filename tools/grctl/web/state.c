@@ -6,6 +6,7 @@
 #include <grobo/port.h>
 #include <grobo/version.h>
 
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/show/render.h"
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
@@ -139,22 +140,16 @@ static const char *link_word(const serve *s)
 
 json_t *serve_state_json(serve *s)
 {
-    json_t *limp = json_array();
     json_t *state = json_pack("{s:I,s:I,s:s}", "sequence", (json_int_t)s->sequence, "time_ms",
                               (json_int_t)serve_ms(s, grobo_now_us()), "link", link_word(s));
     const char *job = job_word(grobo_robot_job(s->c.robot));
     add_joints(s, state);
-    for (int j = 0; j < s->model->n_joints; j++) {
-        if (s->limp & GROBO_JOINT_BIT(j)) {
-            json_array_append_new(limp, json_integer(j));
-        }
-    }
     json_t *more =
-        json_pack("{s:o,s:b,s:s?,s:o,s:o,s:o,s:o,s:{s:o,s:o},s:i}", "limp", limp, "moving",
-                  grobo_robot_moving(s->c.robot), "job", job, "play", player_json(s), "stop",
-                  stops_json(s), "line", line_json(s), "body", body_json(s), "lease", "holder",
-                  page_json(s, &s->lease.holder), "asked", page_json(s, &s->lease.asker), "clients",
-                  http_streams(s->http));
+        json_pack("{s:o,s:b,s:s?,s:o,s:o,s:o,s:o,s:{s:o,s:o},s:i}", "limp", joints_json(s->limp),
+                  "moving", grobo_robot_moving(s->c.robot), "job", job, "play", player_json(s),
+                  "stop", stops_json(s), "line", line_json(s), "body", body_json(s), "lease",
+                  "holder", page_json(s, &s->lease.holder), "asked", page_json(s, &s->lease.asker),
+                  "clients", http_streams(s->http));
     json_object_update_new(state, more);
     return state;
 }
@@ -169,22 +164,17 @@ static json_t *number(double value)
 static json_t *joint_json(const grobo_model *model, int j)
 {
     const grobo_joint *joint = &model->joints[j];
-    json_t *groups = json_array();
-    for (int g = 0; g < model->n_groups; g++) {
-        if (model->groups[g].joints & GROBO_JOINT_BIT(j)) {
-            json_array_append_new(groups, json_string(model->groups[g].name));
-        }
-    }
-    return json_pack(
-        "{s:i,s:i,s:s,s:[o,o],s:o,s:o,s:o,s:i,s:i}", "joint", j, "motor", joint->motor, "name",
-        joint->name, "limits_deg", app_json_number(grobo_deg_from_rad(joint->min_rad), 3),
-        app_json_number(grobo_deg_from_rad(joint->max_rad), 3), "init_deg",
-        app_json_number(grobo_deg_from_rad(joint->init_rad), 3), "max_speed_dps",
-        app_json_number(grobo_deg_from_rad(joint->max_speed_rad_s), 1), "groups", groups, "mirror",
-        joint->mirror, "mirror_sign", joint->mirror_sign < 0 ? -1 : 1);
+    return json_pack("{s:i,s:i,s:s,s:[o,o],s:o,s:o,s:o,s:i,s:i}", "joint", j, "motor", joint->motor,
+                     "name", joint->name, "limits_deg",
+                     app_json_number(grobo_deg_from_rad(joint->min_rad), 3),
+                     app_json_number(grobo_deg_from_rad(joint->max_rad), 3), "init_deg",
+                     app_json_number(grobo_deg_from_rad(joint->init_rad), 3), "max_speed_dps",
+                     app_json_number(grobo_deg_from_rad(joint->max_speed_rad_s), 1), "groups",
+                     joints_groups_json(model, j), "mirror", joint->mirror, "mirror_sign",
+                     joint->mirror_sign < 0 ? -1 : 1);
 }
 
-static json_t *joints_json(const grobo_model *model)
+static json_t *all_joints_json(const grobo_model *model)
 {
     json_t *list = json_array();
     for (int j = 0; j < model->n_joints; j++) {
@@ -197,14 +187,8 @@ static json_t *groups_json(const grobo_model *model)
 {
     json_t *list = json_array();
     for (int g = 0; g < model->n_groups; g++) {
-        json_t *joints = json_array();
-        for (int j = 0; j < model->n_joints; j++) {
-            if (model->groups[g].joints & GROBO_JOINT_BIT(j)) {
-                json_array_append_new(joints, json_integer(j));
-            }
-        }
-        json_array_append_new(
-            list, json_pack("{s:s,s:o}", "name", model->groups[g].name, "joints", joints));
+        json_array_append_new(list, json_pack("{s:s,s:o}", "name", model->groups[g].name, "joints",
+                                              joints_json(model->groups[g].joints)));
     }
     return list;
 }
@@ -254,7 +238,7 @@ json_t *serve_robot_json(serve *s)
                   wiring_word(s), "baud_bps", (int)conn_baud(s->a));
     json_t *more = json_pack(
         "{s:o,s:o,s:o,s:o,s:o,s:s,s:o,s:i,s:o,s:b,s:{s:i,s:i,s:i,s:i,s:i}}", "joints",
-        joints_json(s->model), "groups", groups_json(s->model), "links", pose_links_json(s->a),
+        all_joints_json(s->model), "groups", groups_json(s->model), "links", pose_links_json(s->a),
         "body", pose_feet_json(s->a), "safety", safety_json(&driver->limits), "exit", exit_word(s),
         "budget", budget_json(s), "stop_port", http_stop_port(s->http), "state_hz", number(30),
         "token", http_is_open(s->http), "lease", "heartbeat_ms", SERVE_HEARTBEAT_MS, "jog_lost_ms",

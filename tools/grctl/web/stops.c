@@ -61,9 +61,9 @@ int stops_ask(serve *s, const char *by, bool estop)
         memset(t->joints, 0, sizeof t->joints);
     }
     if (estop && news) {
-        result = grobo_robot_estop(grobo_session_robot(s->c.session));
+        result = grobo_robot_estop(s->c.robot);
     } else if (!t->estop) { /* again: a frame may have been lost */
-        (void)grobo_robot_stop(grobo_session_robot(s->c.session), true);
+        (void)grobo_robot_stop(s->c.robot, true);
     }
     if (news) {
         lease_end(&s->lease);
@@ -131,14 +131,14 @@ void stops_look(serve *s)
         t->held = grobo_robot_latch(s->c.robot) == GROBO_OK;
     }
     if (missing && !t->reading && grobo_now_us() - t->at_us > STOPS_ON_ITS_WAY_US) {
-        int job = grobo_robot_sense(grobo_session_robot(s->c.session), missing, GROBO_SENSE_FULL);
+        int job = grobo_robot_sense(s->c.robot, missing, GROBO_SENSE_FULL);
         t->reading = job > 0 ? job : 0;
     }
 }
 
 int stops_reset(serve *s)
 {
-    int error = s->c.up ? grobo_robot_reset(grobo_session_robot(s->c.session)) : GROBO_OK;
+    int error = s->c.up ? grobo_robot_reset(s->c.robot) : GROBO_OK;
     if (error) {
         return error;
     }
@@ -158,7 +158,7 @@ void stops_halt(serve *s)
     s->jogs = s->jog_waits = s->moves = false;
     s->player.epoch++;
     if (s->c.up) {
-        (void)grobo_robot_stop(grobo_session_robot(s->c.session), false);
+        (void)grobo_robot_stop(s->c.robot, false);
     }
 }
 

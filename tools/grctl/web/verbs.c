@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* What a page may ask of the robot. */
-#include <math.h>
 #include <string.h>
 
 #include <grobo/port.h>
@@ -68,14 +67,8 @@ static bool read_angles(serve *s, http_request *r, const json_t *angles, const c
     if (status) {
         int joint = -1;
         grobo_posture_check(target, s->model, &joint);
-        json_t *error = json_pack("{s:o,s:o}", "code", app_json_code(quiet.failed), "message",
-                                  app_json_text(said));
-        if (joint >= 0) {
-            json_object_set_new(error, "joint", json_integer(joint));
-            json_object_set_new(error, "name", json_string(s->model->joints[joint].name));
-            json_object_set_new(error, "value",
-                                app_json_number(grobo_deg_from_rad(target->angle_rad[joint]), 3));
-        }
+        json_t *error = serve_refusal(quiet.failed, said);
+        serve_blame(error, s, joint, joint >= 0 ? grobo_deg_from_rad(target->angle_rad[joint]) : 0);
         http_reply_json(r, 422, json_pack("{s:o}", "error", error));
     }
     return status == 0;
@@ -98,13 +91,13 @@ static bool read_time(http_request *r, const json_t *body, double otherwise, gro
 void verb_pause(serve *s, http_request *r, json_t *body)
 {
     (void)body;
-    serve_accept(s, r, grobo_robot_pause(grobo_session_robot(s->c.session)), "pause");
+    serve_accept(s, r, grobo_robot_pause(s->c.robot), "pause");
 }
 
 void verb_resume(serve *s, http_request *r, json_t *body)
 {
     (void)body;
-    serve_accept(s, r, grobo_robot_resume(grobo_session_robot(s->c.session)), "resume");
+    serve_accept(s, r, grobo_robot_resume(s->c.robot), "resume");
 }
 
 void verb_seek(serve *s, http_request *r, json_t *body)
@@ -115,8 +108,7 @@ void verb_seek(serve *s, http_request *r, json_t *body)
         http_refuse(r, 400, "arg", "seek: t_ms is no time");
         return;
     }
-    serve_accept(s, r, grobo_robot_seek(grobo_session_robot(s->c.session), (int64_t)(ms * 1000)),
-                 "seek");
+    serve_accept(s, r, grobo_robot_seek(s->c.robot, (int64_t)(ms * 1000)), "seek");
 }
 
 void verb_speed(serve *s, http_request *r, json_t *body)
@@ -127,7 +119,7 @@ void verb_speed(serve *s, http_request *r, json_t *body)
         http_refuse(r, 400, "arg", "speed: speed_pct is 1 to %d", GROBO_PLAY_SPEED_MAX_PCT);
         return;
     }
-    int result = grobo_robot_speed(grobo_session_robot(s->c.session), (int)pct);
+    int result = grobo_robot_speed(s->c.robot, (int)pct);
     if (result >= 0) {
         s->player.speed_pct = (uint16_t)pct;
     }
@@ -160,7 +152,7 @@ void verb_move(serve *s, http_request *r, json_t *body)
         return;
     }
     s->jogs = s->jog_waits = false;
-    int job = grobo_robot_move(grobo_session_robot(s->c.session), &target);
+    int job = grobo_robot_move(s->c.robot, &target);
     s->moves |= job > 0;
     serve_accept(s, r, serve_note_job(s, job, "move"), "move");
 }
@@ -171,7 +163,7 @@ void verb_jog_on(serve *s)
     if (!s->jog_waits || !s->c.up) {
         return;
     }
-    grobo_robot *robot = grobo_session_robot(s->c.session);
+    grobo_robot *robot = s->c.robot;
     int job = grobo_robot_retarget(robot, &s->jog);
     if (job == GROBO_ERR_STATE && grobo_robot_job(robot) != GROBO_JOB_MOVE &&
         grobo_robot_job(robot) != GROBO_JOB_PLAY) {
@@ -222,7 +214,7 @@ void verb_jog(serve *s, http_request *r, json_t *body)
 /* Less torque does not wait for a move to end: it ends the move. */
 static int switch_torque(serve *s, grobo_joint_mask joints, grobo_torque mode)
 {
-    grobo_robot *robot = grobo_session_robot(s->c.session);
+    grobo_robot *robot = s->c.robot;
     int result = grobo_robot_torque(robot, joints, mode);
     if (result == GROBO_ERR_STATE && mode != GROBO_TORQUE_ON &&
         grobo_robot_cancel(robot) == GROBO_OK) {
@@ -237,7 +229,7 @@ static int switch_torque(serve *s, grobo_joint_mask joints, grobo_torque mode)
 /* Free mode begins at once, and ends as a job. */
 static int set_limp(serve *s, grobo_joint_mask joints, bool on)
 {
-    int result = grobo_robot_free(grobo_session_robot(s->c.session), joints, on);
+    int result = grobo_robot_free(s->c.robot, joints, on);
     if (result >= 0) {
         s->limp = on ? s->limp | joints : s->limp & ~joints;
     }
@@ -282,7 +274,7 @@ void verb_capture(serve *s, http_request *r, json_t *body)
     if (!read_joints(s, r, body, &joints)) {
         return;
     }
-    int job = grobo_robot_sense(grobo_session_robot(s->c.session), joints, GROBO_SENSE_FULL);
+    int job = grobo_robot_sense(s->c.robot, joints, GROBO_SENSE_FULL);
     if (serve_note_job(s, job, NULL) < 0) {
         serve_refuse(s, r, job, "capture");
         return;

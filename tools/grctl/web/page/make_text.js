@@ -37,7 +37,7 @@ export const JA_MAKE = {
     '{0} has changed since it was opened. Save under another name, or open it again.':
         '{0} は開いた後に変更されています。別名で保存するか、開き直してください。',
     '{0} is there already, or what it is made of has changed. Choose another name.':
-        '{0} は既にあるか、元のファイルが変更されています。別の名前にしてください。',
+        '{0} はすでにあるか、元のファイルが変更されています。別の名前にしてください。',
     '{0} joints were read from the robot.': 'ロボットから {0} 関節を読み取りました。',
     'In this pose the robot would fall. Move it there?': 'この姿勢ではロボットが倒れます。動かしますか?',
     '{0} s here, {1} s there.': 'こちら {0} 秒、相手 {1} 秒。', '{0} of {1} joints differ.': '{1} 関節中 {0} に差があります。',
