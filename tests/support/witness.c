@@ -160,6 +160,12 @@ void witness_heard(witness *w, const grobo_sim_event *event)
         hear_reply(w, event);
     } else if (event->kind == GROBO_SIM_REBOOT && event->servo >= 0) {
         w->reboot_us[event->servo] = event->time_us;
+    } else if (event->kind == GROBO_SIM_INJECTED && event->value == GROBO_SIM_FAULT_DUPLICATE) {
+        int joint = grobo_model_joint_of_motor(
+            w->model, w->said[(w->n_said - 1) % WITNESS_SAID].bytes[2]);
+        if (joint >= 0) {
+            w->twice_us[joint] = event->time_us;
+        }
     }
 }
 
@@ -276,7 +282,8 @@ static bool may_be_doubled(const witness *w, int joint, const witness_packet *se
 {
     const witness_packet *its = &w->said[seen->said_number % WITNESS_SAID];
     if (!its->believed && now_us - its->at_us <= DOUBLED_US &&
-        now_us - w->doubled_us[joint] <= DOUBLED_US) {
+        (now_us - w->doubled_us[joint] <= DOUBLED_US || /* or was let go by, late itself */
+         now_us - w->twice_us[joint] <= 2 * DOUBLED_US)) {
         return true;
     }
     for (unsigned i = 0; i < WITNESS_SAID && i < w->n_said; i++) {

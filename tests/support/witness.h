@@ -54,6 +54,7 @@ typedef struct witness {
     witness_question questions[WITNESS_QUESTIONS];
     witness_question answered;            /* by the reading that was believed last */
     int64_t doubled_us[GROBO_JOINTS_MAX]; /* when a doubled reply was believed last */
+    int64_t twice_us[GROBO_JOINTS_MAX];   /* when the line said one twice */
     int64_t said_us[GROBO_JOINTS_MAX];    /* when the reading was said that was believed last */
     int64_t goal_us[GROBO_JOINTS_MAX];    /* when the goal was said that was believed last */
     int64_t reboot_us[GROBO_JOINTS_MAX];  /* when a servo last lost what it was told */
