@@ -216,6 +216,38 @@ static void time_is_the_clocks_but_never_goes_back(void **state)
     assert_int_equal(info.angle_age_us, age_us + 2234);
 }
 
+static int plays;
+
+static void pause_then(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    if (event->kind == GROBO_EVENT_JOB) {
+        assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_OK);
+    }
+    plays += event->kind == GROBO_EVENT_PLAY;
+}
+
+/* What is asked for in a callback is told before the pump that called it returns. */
+static void what_a_callback_begins_is_told_at_once(void **state)
+{
+    (void)state;
+    static const rig_key nod[] = {{0, {{NECK, 0}}}, {500, {{NECK, 20}}}, {1500, {{NECK, 0}}}};
+    rig_clip clip;
+    begin();
+    rig_clip_init(&clip, nod, 3);
+    clip.only = GROBO_JOINT_BIT(NECK);
+    assert_true(grobo_robot_play(&rig.robot, &clip.clip, NULL) >= 0);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    grobo_posture aim = rig_posture(&rig, R_ELBOW, -40, 2000);
+    assert_true(grobo_robot_move(&rig.robot, &aim) > 0);
+    rig_run(&rig, 100000);
+    grobo_robot_on_event(&rig.robot, pause_then, NULL);
+    plays = 0;
+    assert_true(grobo_robot_move(&rig.robot, &aim) > 0); /* ends the move before it */
+    grobo_robot_step(&rig.robot, rig.now_us);
+    assert_int_equal(plays, 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -224,6 +256,7 @@ int main(void)
         cmocka_unit_test(the_pump_holds_the_lock_but_not_while_it_tells),
         cmocka_unit_test(a_reset_is_the_hosts_to_allow),
         cmocka_unit_test(time_is_the_clocks_but_never_goes_back),
+        cmocka_unit_test(what_a_callback_begins_is_told_at_once),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }
