@@ -161,8 +161,8 @@ void witness_heard(witness *w, const grobo_sim_event *event)
     } else if (event->kind == GROBO_SIM_REBOOT && event->servo >= 0) {
         w->reboot_us[event->servo] = event->time_us;
     } else if (event->kind == GROBO_SIM_INJECTED && event->value == GROBO_SIM_FAULT_DUPLICATE) {
-        int joint = grobo_model_joint_of_motor(
-            w->model, w->said[(w->n_said - 1) % WITNESS_SAID].bytes[2]);
+        int joint =
+            grobo_model_joint_of_motor(w->model, w->said[(w->n_said - 1) % WITNESS_SAID].bytes[2]);
         if (joint >= 0) {
             w->twice_us[joint] = event->time_us;
         }
