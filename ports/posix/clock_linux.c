@@ -13,11 +13,16 @@
 #define SLEEPLESS CLOCK_MONOTONIC
 #endif
 
-int64_t grobo_now_us(void)
+int64_t grobo_i_posix_us(clockid_t clock)
 {
     struct timespec now;
 
-    /* Cannot fail: POSIX systems without this clock do not compile this. */
-    (void)clock_gettime(SLEEPLESS, &now);
+    /* Cannot fail: POSIX systems without the clock do not compile this. */
+    (void)clock_gettime(clock, &now);
     return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+int64_t grobo_now_us(void)
+{
+    return grobo_i_posix_us(SLEEPLESS);
 }

@@ -132,10 +132,8 @@ static int make_cond(grobo_cond *cond)
 /* By the clock of conditions, which is not that of grobo_now_us() everywhere. */
 static void sleep_at(grobo_cond *cond, grobo_mutex *mutex, int64_t span_us)
 {
-    struct timespec now, until;
+    struct timespec until = timespec_of(grobo_i_posix_us(CLOCK_MONOTONIC) + span_us);
 
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    until = timespec_of((int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000 + span_us);
     (void)pthread_cond_timedwait(cond, mutex, &until);
 }
 #endif

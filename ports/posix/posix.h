@@ -4,6 +4,7 @@
 #define GROBO_PORTS_POSIX_H
 
 #include <sys/types.h>
+#include <time.h>
 
 #include "ports/common/common.h"
 
@@ -16,6 +17,9 @@ struct grobo_port {
     char path[64];                     /* of the slave */
     char link[GROBO_DEVICE_MAX_BYTES]; /* to it, or empty */
 };
+
+/* Now, in microseconds of this clock. */
+int64_t grobo_i_posix_us(clockid_t clock);
 
 /* The GROBO_ERR_* for an errno: of a line, a socket or a process; and of a file. */
 int grobo_i_posix_error(int code);
