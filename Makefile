@@ -335,9 +335,9 @@ firmware: ## the core and two examples for Cortex-M0 and M4, in build/bare
 	@tools/setup.sh --cross baremetal
 	+@$(MAKE) --no-print-directory $(FIRMWARES)
 
-size: ## what the core takes there, against the limits; UPDATE=1 keeps the figures
+size: ## what the core and these examples take there, against the limits; UPDATE=1 keeps the figures
 	@tools/setup.sh --cross baremetal
-	+@$(MAKE) --no-print-directory $(BARE_LIBS) $(BARE_RAM)
+	+@$(MAKE) --no-print-directory $(BARE_LIBS) $(BARE_RAM) $(FIRMWARES)
 	@PREFIX=$(BARE_PREFIX) UPDATE=$(UPDATE) tools/baremetal/size.sh $(BARE_DIR) $(BARE_SIZES)
 
 check-firmware: $(GRCTL) ## these examples in QEMU, grctl or a simulated robot at their UART

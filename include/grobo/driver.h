@@ -261,7 +261,8 @@ struct grobo_driver {
 /**
  * Checks a table: functions that must be there, time step, limits, exit policy, the model
  * (grobo_model_check()), joints of `readback`.
- * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
+ * @return 0, GROBO_ERR_ARG; GROBO_ERR_UNSUPPORTED where the build is for plain drivers alone and
+ *         this is none (GROBO_DRIVERS_PLAIN of limits.h). Pure; thread safe.
  */
 GROBO_API int grobo_driver_check(const grobo_driver *driver);
 

@@ -55,6 +55,16 @@
 /** Replies that one frame may ask for by name. */
 #define GROBO_REPLIES_MAX 64
 
+/**
+ * 1 in a firmware whose drivers are like that of RS30x servos, which tell the time of their way:
+ * what the engine does for others is left out. A driver is refused that has `accel_rad_s2`,
+ * `goal_wakes`, `no_speed`, `all_first`, sense_many(), sense_fast(), sense_more(), watchdog() or
+ * torque_limit().
+ */
+#ifndef GROBO_DRIVERS_PLAIN
+#define GROBO_DRIVERS_PLAIN 0
+#endif
+
 /** Motions that may wait behind the one being played. */
 #ifndef GROBO_QUEUE_MAX
 #define GROBO_QUEUE_MAX 8

@@ -120,7 +120,7 @@ void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joi
 bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return tells_speed(axis) && (axis->state.valid & GROBO_FIELD_TIME) == 0;
+    return !GROBO_DRIVERS_PLAIN && tells_speed(axis) && (axis->state.valid & GROBO_FIELD_TIME) == 0;
 }
 
 /* Of a servo with ramps that tells its speed: from there and then to the speed of its way, and to
@@ -129,7 +129,7 @@ static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_robot_way *way = &axis->way;
-    double accel_rad_s2 = robot->driver->accel_rad_s2, wanted_rad_s = way_speed(way);
+    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2), wanted_rad_s = way_speed(way);
     course c = seen(robot, joint);
     int64_t seen_us = axis->seen_us;
     double end_rad = axis->in_segments ? grobo_i_way_at(way, axis->told_to_us) : way->to_rad;
@@ -189,7 +189,8 @@ static course turning(const grobo_robot *robot, int joint, int64_t now_us)
 static bool has_course(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool known = !is_guided(axis) || (!axis->off_way && robot->driver->accel_rad_s2 > 0);
+    bool known =
+        !is_guided(axis) || (!axis->off_way && GROBO_I_EXTRA(robot->driver, accel_rad_s2) > 0);
     return grobo_i_axis_tells_turn(robot, joint) && known;
 }
 
@@ -216,7 +217,7 @@ static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
 double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double accel_rad_s2 = robot->driver->accel_rad_s2;
+    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
     bool on_way = is_guided(axis) && !axis->off_way;
     if ((axis->state.valid & GROBO_FIELD_TIME) != 0) {
         return by_time(robot, joint, rest_us);
@@ -238,7 +239,7 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
 void grobo_i_axis_told(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
-    if (robot->driver->accel_rad_s2 > 0 && has_course(robot, joint)) {
+    if (GROBO_I_EXTRA(robot->driver, accel_rad_s2) > 0 && has_course(robot, joint)) {
         const course c = turning(robot, joint, robot->now_us);
         axis->seen_rad = c.at_rad;
         axis->seen_us = robot->now_us;
@@ -261,7 +262,7 @@ grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint)
 bool grobo_i_torque_is_limited(const grobo_robot *robot, int joint)
 {
     const grobo_joint_state *state = &robot->axes[joint].state;
-    return robot->driver->model->joints[joint].torque_limit_pct == 0 ||
+    return GROBO_DRIVERS_PLAIN || robot->driver->model->joints[joint].torque_limit_pct == 0 ||
            ((state->valid & GROBO_FIELD_TORQUE_LIMIT) != 0 && state->torque_limited);
 }
 
@@ -293,7 +294,7 @@ bool grobo_i_axis_is_on(const grobo_robot_axis *axis)
 
 bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
 {
-    return robot->driver->goal_wakes &&
+    return GROBO_I_EXTRA(robot->driver, goal_wakes) &&
            robot->now_us - robot->axes[joint].heard_us > GROBO_I_RESTART_US;
 }
 

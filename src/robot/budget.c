@@ -39,7 +39,7 @@ static int reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *
 {
     int result = GROBO_OK;
     *us = 0;
-    if (driver->sense_many != NULL) {
+    if (GROBO_I_EXTRA(driver, sense_many) != NULL) {
         grobo_exchange exchange = {0};
         result = driver->sense_many(driver, ctx, GROBO_JOINTS_ALL(driver->model->n_joints),
                                     GROBO_SENSE_FULL, &exchange);
@@ -50,7 +50,7 @@ static int reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *
         grobo_exchange exchange = {0};
         result = driver->sense(driver, ctx, j, GROBO_SENSE_FULL, &exchange);
         uint32_t one_us = result < 0 ? 0 : cost_of(bus, &exchange);
-        for (int part = 1; result >= 0 && driver->sense_more != NULL; part++) {
+        for (int part = 1; result >= 0 && GROBO_I_EXTRA(driver, sense_more) != NULL; part++) {
             exchange = (grobo_exchange){0};
             result = driver->sense_more(driver, ctx, j, GROBO_SENSE_FULL, part, &exchange);
             if (result == 0) {
@@ -92,8 +92,9 @@ static int budget_of(const grobo_bus *bus, const grobo_driver *driver, void *ctx
     if (result < 0) {
         return result;
     }
-    uint32_t readings = driver->sense_many != NULL ? 1 : driver->model->n_joints;
-    uint32_t watch_us = driver->goal_wakes && !answered ? GROBO_I_RESTART_US : GROBO_WATCH_US;
+    uint32_t readings = GROBO_I_EXTRA(driver, sense_many) != NULL ? 1 : driver->model->n_joints;
+    uint32_t watch_us =
+        GROBO_I_EXTRA(driver, goal_wakes) && !answered ? GROBO_I_RESTART_US : GROBO_WATCH_US;
     found.watched_hz = watched_rate(&found, readings, watch_us);
     found.default_hz =
         found.watched_hz < GROBO_PLAY_RATE_HZ ? found.watched_hz : GROBO_PLAY_RATE_HZ;

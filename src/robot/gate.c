@@ -216,7 +216,7 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
     if (!grobo_i_all_sensed(robot, joints, &robot->fault_joint)) {
         return GROBO_ERR_STALE;
     }
-    if (robot->driver->goal_wakes && !grobo_i_all_on(robot, joints)) {
+    if (GROBO_I_EXTRA(robot->driver, goal_wakes) && !grobo_i_all_on(robot, joints)) {
         return GROBO_ERR_STATE;
     }
     /* A joint in free mode is moved by a person; one adrift by somebody else. */
@@ -243,7 +243,7 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
 static bool aim_goal(const grobo_robot *robot, const grobo_robot_order *order, bool soft,
                      grobo_target *target)
 {
-    bool wakes = robot->driver->goal_wakes, sleeps = false;
+    bool wakes = GROBO_I_EXTRA(robot->driver, goal_wakes), sleeps = false;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool last = axis->next == 0 && axis->last == order->number; /* again, or its next part */
@@ -333,7 +333,8 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
         const grobo_robot_axis *axis = &robot->axes[j];
         bool goes_on = grobo_i_axis_moves(axis, robot->now_us) || grobo_i_axis_lags(robot, j);
         bool moves = axis->sensed && goes_on &&
-                     (!robot->driver->goal_wakes || axis->wants_torque || grobo_i_axis_is_on(axis));
+                     (!GROBO_I_EXTRA(robot->driver, goal_wakes) || axis->wants_torque ||
+                      grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
             const grobo_i_limits limits = grobo_i_joint_limits(robot, j);
             double rest_rad = grobo_i_axis_reached(robot, j, rest_us);
@@ -360,7 +361,8 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         double hold_rad = grobo_i_hold_rad(robot, j);
-        bool limited = !robot->driver->goal_wakes || grobo_i_torque_is_limited(robot, j);
+        bool limited =
+            !GROBO_I_EXTRA(robot->driver, goal_wakes) || grobo_i_torque_is_limited(robot, j);
         if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) && limited &&
             !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
@@ -472,7 +474,8 @@ static int judge_segment(grobo_robot *robot, const grobo_robot_order *order, gro
         return GROBO_ERR_LATCHED;
     }
     grobo_i_segments_aim(robot, order->joints, target);
-    for (int j = 0; robot->driver->goal_wakes && j < robot->driver->model->n_joints; j++) {
+    for (int j = 0; GROBO_I_EXTRA(robot->driver, goal_wakes) && j < robot->driver->model->n_joints;
+         j++) {
         target->posture.set &= ~(grobo_i_may_sleep(robot, j) ? GROBO_JOINT_BIT(j) : 0);
     }
     return target->posture.set == 0 ? GROBO_ERR_EMPTY : judge_joints(robot, target->posture.set);

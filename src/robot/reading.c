@@ -160,7 +160,7 @@ static void take_speed(const grobo_robot *robot, int joint, grobo_joint_state *g
     const grobo_robot_axis *axis = &robot->axes[joint];
     int64_t us = axis->angle_us == GROBO_NEVER_US ? 0 : robot->now_us - axis->angle_us;
     const unsigned both = GROBO_FIELD_ANGLE | GROBO_FIELD_SPEED;
-    if (robot->driver->no_speed && (got->valid & both) == GROBO_FIELD_ANGLE &&
+    if (GROBO_I_EXTRA(robot->driver, no_speed) && (got->valid & both) == GROBO_FIELD_ANGLE &&
         us >= SPEED_LEAST_US && us <= SPEED_MOST_US) {
         double way_deg = grobo_deg_from_rad(got->angle_rad - axis->state.angle_rad);
         got->speed_dps = (int32_t)(way_deg * 1e6 / (double)us);
@@ -172,7 +172,7 @@ static void take_speed(const grobo_robot *robot, int joint, grobo_joint_state *g
  * neither way. */
 static bool is_of_one_way(const grobo_robot *robot, const grobo_robot_axis *axis)
 {
-    return !robot->driver->no_speed || axis->angle_us >= axis->told_us;
+    return !GROBO_I_EXTRA(robot->driver, no_speed) || axis->angle_us >= axis->told_us;
 }
 
 /* asked_us: when the joint was asked first. A late answer may be of before a frame that has left
@@ -251,7 +251,7 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
     if (result >= 0) {
         result = GROBO_OK;
         take_reading(robot, joint, slot->asked_us, got);
-        if (robot->driver->goal_wakes) {
+        if (GROBO_I_EXTRA(robot->driver, goal_wakes)) {
             note_heard(slot, got);
         }
     } else {

@@ -78,7 +78,11 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
                            void *driver_ctx, const grobo_robot_config *config, int64_t now_us)
 {
     grobo_robot_config taken;
-    if (robot == NULL || grobo_driver_check(driver) < 0 || config_take(&taken, config) < 0 ||
+    int sound = robot != NULL ? grobo_driver_check(driver) : GROBO_ERR_ARG;
+    if (sound < 0) {
+        return sound;
+    }
+    if (config_take(&taken, config) < 0 ||
         (robot_bytes != sizeof *robot && robot_bytes != grobo_i_robot_bytes(driver))) {
         return GROBO_ERR_ARG;
     }

@@ -42,6 +42,10 @@ void grobo_i_tell(grobo_robot *robot, const grobo_event *event);
 
 /* ---- axis.c ---------------------------------------------------------------------------------- */
 
+/* What drivers of servos other than RS30x may have. A build for plain ones (limits.h) knows that it
+ * is missing: the compiler leaves out what follows from it. */
+#define GROBO_I_EXTRA(driver, member) (GROBO_DRIVERS_PLAIN ? 0 : (driver)->member)
+
 /* True if the joint is one of these. */
 static inline bool grobo_i_has(grobo_joint_mask joints, int joint)
 {

@@ -93,7 +93,7 @@ static bool is_unheard(const grobo_robot_axis *axis, int64_t now_us)
 
 static grobo_joint_mask unheard(const grobo_robot *robot)
 {
-    bool now = robot->driver->goal_wakes && robot->now_us >= robot->hear_us;
+    bool now = GROBO_I_EXTRA(robot->driver, goal_wakes) && robot->now_us >= robot->hear_us;
     return now ? grobo_i_joints_that(robot, is_unheard) : 0;
 }
 
@@ -101,7 +101,8 @@ static grobo_joint_mask unheard(const grobo_robot *robot)
 static int64_t unheard_at(const grobo_robot *robot)
 {
     int64_t at_us = GROBO_NEVER_US;
-    for (int j = 0; robot->driver->goal_wakes && j < robot->driver->model->n_joints; j++) {
+    for (int j = 0; GROBO_I_EXTRA(robot->driver, goal_wakes) && j < robot->driver->model->n_joints;
+         j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         at_us = grobo_i_axis_is_on(axis) ? grobo_i_sooner(at_us, axis->heard_us + HEAR_US) : at_us;
     }
@@ -232,7 +233,7 @@ static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
     if (grobo_i_has(robot->free_joints, joint)) {
         return GROBO_SENSE_ALL;
     }
-    bool first = robot->driver->all_first && !robot->axes[joint].sensed;
+    bool first = GROBO_I_EXTRA(robot->driver, all_first) && !robot->axes[joint].sensed;
     if (robot->free_joints == 0 && robot->config.sense_position_only && !first) {
         return GROBO_SENSE_POSITION;
     }
@@ -268,7 +269,7 @@ static bool is_slow(const grobo_robot_axis *axis, int64_t now_us)
 /* Whether all answer with one packet. */
 static bool are_fast(const grobo_robot *robot)
 {
-    return robot->driver->sense_fast != NULL && robot->fast_lost < FAST_LOST_MOST &&
+    return GROBO_I_EXTRA(robot->driver, sense_fast) != NULL && robot->fast_lost < FAST_LOST_MOST &&
            grobo_i_joints_that(robot, is_slow) == 0;
 }
 
@@ -290,7 +291,7 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
     grobo_joint_mask all = grobo_i_all_joints(robot);
     int unknown;
     bool first = !grobo_i_all_sensed(robot, all, &unknown) || robot->fast_forgotten;
-    bool angles = robot->config.sense_position_only && !(first && driver->all_first);
+    bool angles = robot->config.sense_position_only && !(first && GROBO_I_EXTRA(driver, all_first));
     grobo_sense_kind kind = angles  ? GROBO_SENSE_POSITION
                             : first ? GROBO_SENSE_ALL
                                     : GROBO_SENSE_FULL;
@@ -328,7 +329,7 @@ void grobo_i_sense_step(grobo_robot *robot)
     if (slot == NULL) {
         return;
     }
-    bool many = robot->driver->sense_many != NULL && robot->free_joints == 0;
+    bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL && robot->free_joints == 0;
     if ((many ? ask_all(robot, slot) : ask_next(robot, slot)) < 0) {
         grobo_i_slot_drop(slot);
         return;
@@ -371,5 +372,6 @@ int64_t grobo_i_sense_deadline(const grobo_robot *robot)
     int64_t due_us = robot->free_joints != 0 ? robot->now_us
                      : never                 ? GROBO_NEVER_US
                                              : robot->sense_us;
-    return robot->driver->goal_wakes ? grobo_i_sooner(due_us, unheard_at(robot)) : due_us;
+    return GROBO_I_EXTRA(robot->driver, goal_wakes) ? grobo_i_sooner(due_us, unheard_at(robot))
+                                                    : due_us;
 }

@@ -167,7 +167,8 @@ static grobo_joint_mask of_unknown_speed(const grobo_robot *robot)
 {
     grobo_joint_mask found = 0;
     bool stand = robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
-    for (int j = 0; robot->driver->no_speed && j < robot->driver->model->n_joints; j++) {
+    for (int j = 0; GROBO_I_EXTRA(robot->driver, no_speed) && j < robot->driver->model->n_joints;
+         j++) {
         bool is = grobo_i_has(robot->job->joints & ~robot->job->failed, j);
         bool known = stand ? robot->axes[j].seen_dps != GROBO_I_NO_SPEED
                            : (robot->axes[j].state.valid & GROBO_FIELD_SPEED) != 0;
@@ -295,7 +296,7 @@ static int build_watchdog(const grobo_driver *driver, void *ctx, grobo_joint_mas
 static int tell_watchdog(grobo_robot *robot, int64_t time_us)
 {
     const grobo_driver *driver = robot->driver;
-    bool has_one = driver->watchdog != NULL && driver->watchdog_us > 0;
+    bool has_one = GROBO_I_EXTRA(driver, watchdog) != NULL && driver->watchdog_us > 0;
     tell_plain(robot, has_one ? robot->job->joints : 0, time_us, build_watchdog);
     return GROBO_I_DRAIN;
 }

@@ -13,7 +13,7 @@ static int read_on(const grobo_robot_slot *before)
 {
     grobo_robot *robot = before->robot;
     const grobo_driver *driver = robot->driver;
-    if (driver->sense_more == NULL || !before->reads ||
+    if (GROBO_I_EXTRA(driver, sense_more) == NULL || !before->reads ||
         (before->use == GROBO_I_USE_JOB && !grobo_i_job_has(before))) {
         return 0;
     }
@@ -121,7 +121,7 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
         break;
     case GROBO_I_USE_SENSE:
         if (result != GROBO_ERR_CANCELED && result != GROBO_ERR_UNPLUGGED) {
-            if (slot->many) {
+            if (!GROBO_DRIVERS_PLAIN && slot->many) {
                 take_unread(slot, result, reply);
             } else {
                 result = take_reading(slot, result, reply);

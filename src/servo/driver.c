@@ -67,6 +67,16 @@ static bool joints_sound(const grobo_driver *driver)
     return true;
 }
 
+/* What a build for plain drivers leaves out (limits.h). */
+static int check_plain(const grobo_driver *driver)
+{
+    bool plain = driver->accel_rad_s2 == 0 && !driver->goal_wakes && !driver->no_speed &&
+                 !driver->all_first && driver->sense_many == NULL && driver->sense_fast == NULL &&
+                 driver->sense_more == NULL && driver->watchdog == NULL &&
+                 driver->torque_limit == NULL;
+    return GROBO_DRIVERS_PLAIN && !plain ? GROBO_ERR_UNSUPPORTED : GROBO_OK;
+}
+
 int grobo_driver_check(const grobo_driver *driver)
 {
     if (driver == NULL || driver->name == NULL || driver->model == NULL ||
@@ -80,7 +90,7 @@ int grobo_driver_check(const grobo_driver *driver)
         !readback_sound(driver)) {
         return GROBO_ERR_ARG;
     }
-    return GROBO_OK;
+    return check_plain(driver);
 }
 
 grobo_wiring grobo_driver_wiring(const grobo_driver *driver)

@@ -90,6 +90,34 @@ C
         grep -q 'grobo_[a-z_]*_20' "$work/said"
 }
 
+# Of what a build for plain drivers leaves out, a driver must need nothing.
+plain_drivers() {
+    cat >"$work/plain.c" <<'C'
+#include <string.h>
+#include <grobo/driver.h>
+static grobo_driver driver;
+static int is_refused(void)
+{
+    int result = grobo_driver_check(&driver);
+    driver = *grobo_gr001_driver(GROBO_WIRING_BUS);
+    return result == GROBO_ERR_UNSUPPORTED;
+}
+#define REFUSED(with) (driver.with, is_refused())
+#define HAVING(function) \
+    (memcpy(&driver.function, &driver.sense, sizeof driver.sense), is_refused())
+int main(void)
+{
+    return is_refused() || grobo_driver_check(&driver) < 0 ||
+        !(REFUSED(accel_rad_s2 = 1) && REFUSED(goal_wakes = true) && REFUSED(no_speed = true) &&
+        REFUSED(all_first = true) && HAVING(sense_many) && HAVING(sense_fast) &&
+        HAVING(sense_more) && HAVING(watchdog) && HAVING(torque_limit));
+}
+C
+    # shellcheck disable=SC2086
+    ${CC:-gcc} $c11 -DGROBO_DRIVERS_PLAIN=1 -I include -I . "$work/plain.c" src/servo/driver.c \
+        -x none -o "$work/plain" "${BUILD:-build}/libgrobo-core.a" -lm && $emulator "$work/plain"
+}
+
 # Takes the last two fields of each structure with a size out of the installed headers.
 yesterdays_headers() {
     mkdir -p "$work/yesterday/grobo"
@@ -161,6 +189,7 @@ check 'pkg-config tells the version of the headers' same_version
 compilers >"$work/compilers"
 by_each
 check 'another GROBO_JOINTS_MAX fails to link' other_cap
+check 'a build for plain drivers refuses others' plain_drivers
 check 'headers with shorter structures' yesterdays_headers
 check 'a program of yesterday runs with the library of today' yesterdays_program
 rm -f "$library"/libgrobo.so*

@@ -5,8 +5,8 @@ BARE_PREFIX ?= arm-none-eabi-
 BARE_CPUS := cortex-m0 cortex-m4
 # The longest frame of RS30x.
 BARE_FRAME := -DGROBO_FRAME_MAX_BYTES=148 -DGROBO_ROBOT_SLOTS=12
-# The caps of limits.h for a robot of 20 joints.
-BARE_CAPS ?= $(BARE_FRAME) -DGROBO_JOINTS_MAX=20 -DGROBO_QUEUE_MAX=2 -DGROBO_SIM_WIRE_BYTES=256 \
+# The caps of limits.h for a robot of 20 RS30x servos.
+BARE_CAPS ?= $(BARE_FRAME) -DGROBO_JOINTS_MAX=20 -DGROBO_DRIVERS_PLAIN=1 -DGROBO_QUEUE_MAX=2 -DGROBO_SIM_WIRE_BYTES=256 \
     -DGROBO_SIM_FIFO_BYTES=256 -DGROBO_SIM_TALK_BYTES=148 -DGROBO_SIM_TALKS_MAX=12
 # An assertion would bring the C library's way of printing it.
 BARE_FLAGS := -std=c11 -DNDEBUG $(WARNINGS) -mthumb -Os -ffunction-sections -fdata-sections -fstack-usage \

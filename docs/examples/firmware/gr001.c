@@ -10,8 +10,6 @@
 
 #include "mcu.h"
 
-enum { CHUNK_BYTES = 64 };
-
 static grobo_sim sim;
 
 static size_t smaller(size_t a, size_t b)
@@ -21,7 +19,7 @@ static size_t smaller(size_t a, size_t b)
 
 int main(void)
 {
-    uint8_t bytes[CHUNK_BYTES];
+    uint8_t bytes[64];
     mcu_start();
     if (grobo_sim_init(&sim, NULL, mcu_now_us()) < 0) {
         return 1;

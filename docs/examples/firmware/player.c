@@ -13,14 +13,13 @@
 
 enum { R_SHOULDER_R = 15, R_ELBOW_P = 16, KEYS = 4, KEY_US = 600000 };
 
-static const double shoulder_rad[KEYS] = {RAD(-60), RAD(-60), RAD(-60), RAD(-60)};
 static const double elbow_rad[KEYS] = {RAD(-30), RAD(-70), RAD(-30), RAD(-50)};
 
 static int wave_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
 {
     (void)ctx;
     (void)grobo_posture_init(posture, grobo_gr001_model.n_joints);
-    (void)grobo_posture_set_rad(posture, R_SHOULDER_R, shoulder_rad[i]);
+    (void)grobo_posture_set_rad(posture, R_SHOULDER_R, RAD(-60));
     (void)grobo_posture_set_rad(posture, R_ELBOW_P, elbow_rad[i]);
     posture->time_us = KEY_US;
     *at_us = ((int64_t)i + 1) * KEY_US;
@@ -64,12 +63,9 @@ int main(void)
         size_t got = mcu_uart_read(bytes, sizeof bytes);
         grobo_robot_rx(&robot, bytes, got, mcu_now_us());
         grobo_robot_step(&robot, mcu_now_us());
-        int n = 0;
         if (mcu_uart_room() >= sizeof bytes) {
-            n = grobo_robot_tx(&robot, bytes, sizeof bytes, mcu_now_us());
-        }
-        if (n > 0) {
-            mcu_uart_write(bytes, (size_t)n);
+            int n = grobo_robot_tx(&robot, bytes, sizeof bytes, mcu_now_us());
+            mcu_uart_write(bytes, n > 0 ? (size_t)n : 0);
         }
         mcu_wait_until(grobo_robot_deadline(&robot, mcu_now_us()));
     }
