@@ -4,8 +4,9 @@
  * in wine's dosdevices. Linux only.
  *
  * usage: nullmodem DOSDEVICES COMMAND [ARGUMENT]...
- *   runs the command with GROBO_TEST_SERIAL=COM10,COM11 (or the next that are free) and ends as it
- *   does; signals are handed on to it.
+ *   runs the command with GROBO_TEST_SERIAL=COM10,COM11 (or the next that are free) and with
+ *   GROBO_TEST_NO_PARITY, which a pseudo-terminal has not, and ends as it does; signals are handed
+ *   on to it.
  */
 #include <errno.h>
 #include <fcntl.h>
@@ -164,6 +165,7 @@ int main(int argc, char **argv)
     }
     snprintf(pair, sizeof pair, "COM%d,COM%d", ends[0].com, ends[1].com);
     setenv("GROBO_TEST_SERIAL", pair, 1);
+    setenv("GROBO_TEST_NO_PARITY", "1", 1);
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         signal(numbers[i], hand_on);
     }
