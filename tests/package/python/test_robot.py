@@ -4,7 +4,9 @@
 import _thread
 import gc
 import os
+import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -138,6 +140,17 @@ class Moving(unittest.TestCase):
         with self.assertRaises(LookupError):
             self.robot["NOSE"]
 
+    def test_no_number_means_a_default_that_was_not_asked_for(self):
+        for options in ({"speed": 0}, {"speed": 0.004}, {"speed": -1.0}, {"speed": 700.0},
+                        {"rate": 0}, {"rate": -5}, {"rate": 1001}):
+            with self.assertRaises(errors.Arg, msg=options):
+                self.robot.play(GREET, **options)
+        for verb in (self.robot.init, lambda time: self.robot.move({"R_ELBOW_P": 0.0}, time=time),
+                     lambda time: self.robot.send({"R_ELBOW_P": 0.0}, time=time)):
+            with self.assertRaises(errors.Arg):
+                verb(time=-1.0)
+        self.assertFalse(self.robot.status().moving)
+
 
 class Others(unittest.TestCase):
     """Robots beside GR001."""
@@ -211,6 +224,56 @@ class Leaving(unittest.TestCase):
         thread.join()
         self.assertEqual(len(ended), 1)
 
+    def test_a_close_that_is_interrupted_is_made_up_for(self):
+        robot = grobo.connect("sim")
+        control = robot._control
+
+        def interrupt():
+            until(lambda: control.closing)
+            _thread.interrupt_main()
+
+        with control.use():  # close() waits for it
+            thread = threading.Thread(target=interrupt)
+            thread.start()
+            with self.assertRaises(KeyboardInterrupt):
+                robot.close()
+            thread.join()
+        with self.assertRaises(errors.Closed):
+            robot.status()
+        robot.close()
+        self.assertFalse(control.handle)
+        robot.close()
+
+    def test_an_interrupt_anywhere_leaves_a_robot_that_closes(self):
+        """Ctrl-C is heard where a function begins, and behind each call."""
+        robot = grobo.connect("sim")
+        at, left = 0, 0
+
+        def interrupt(_frame, event, _arg):
+            nonlocal left
+            if event in ("call", "c_return"):
+                left -= 1
+                if left == 0:
+                    sys.setprofile(None)
+                    raise KeyboardInterrupt
+
+        while left <= 0:
+            at, left = at + 1, at + 1
+            try:
+                sys.setprofile(interrupt)
+                robot.stop()
+            except KeyboardInterrupt:
+                pass
+            finally:
+                sys.setprofile(None)
+            thread = threading.Thread(target=robot.status, daemon=True)
+            thread.start()
+            thread.join(5)
+            self.assertFalse(thread.is_alive(), f"locked behind call {at}")
+            self.assertFalse(robot._control.users, f"in use behind call {at}")
+        self.assertGreater(at, 5)
+        robot.close()
+
     def test_a_robot_that_is_not_closed_warns(self):
         robot = grobo.connect("sim")
         control = robot._control
@@ -231,6 +294,31 @@ class Leaving(unittest.TestCase):
                     os._exit(7)
                 os._exit(1)
             self.assertEqual(os.waitpid(child, 0)[1] >> 8, 7)
+
+    def test_a_child_forked_while_a_thread_asks_leaves_at_once(self):
+        with grobo.connect("sim") as robot:
+            locked, forked = threading.Event(), threading.Event()
+
+            def hold():
+                with robot._control.lock:
+                    locked.set()
+                    forked.wait()
+
+            thread = threading.Thread(target=hold)
+            thread.start()
+            locked.wait()
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                child = os.fork()
+            if child == 0:
+                signal.alarm(10)
+                with self.assertRaises(errors.State):
+                    robot.status()
+                robot.close()
+                os._exit(7)
+            forked.set()
+            thread.join()
+            self.assertEqual(os.waitpid(child, 0)[1], 7 << 8)
 
     def test_many_robots_leave_no_thread_and_no_descriptor(self):
         def count():

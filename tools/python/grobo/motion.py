@@ -78,7 +78,7 @@ def posture(
     """A C posture of names and angles, or of angles in joint order (NaN: not set)."""
     made = ffi.new("grobo_posture *")
     check(lib.grobo_posture_init(made, model.n_joints), "posture")
-    made.time_us = us(time) if time is not None else 0
+    made.time_us = _time_us(time)
     names = joint_names(model)
     if not isinstance(angles, Mapping):
         if len(angles) > len(names):
@@ -91,6 +91,21 @@ def posture(
         if result < 0:
             raise error(result, "posture", name)
     return made
+
+
+def init_pose(time: Optional[float], model: Any) -> Any:
+    """The model's initial posture, as a C posture."""
+    made = ffi.new("grobo_posture *")
+    lib.grobo_posture_init_pose(made, model)
+    made.time_us = _time_us(time)
+    return made
+
+
+def _time_us(time: Optional[float]) -> int:
+    """Of a posture; 0: the default time."""
+    if time is not None and time < 0:
+        raise error(lib.GROBO_ERR_ARG, "time")
+    return us(time) if time is not None else 0
 
 
 class Motion:
