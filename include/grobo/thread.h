@@ -36,7 +36,8 @@
  * (GROBO_CONTROL_CALLS_MAX are under way; some more for a stop or an exit), GROBO_ERR_CLOSED
  * (the robot is not connected) and GROBO_ERR_UNPLUGGED (the line was lost while the call waited:
  * no call waits for a robot that is gone). Callbacks run on the thread that runs the loop, without
- * any lock held.
+ * any lock held. The functions of a driver and of a clip run with the robot's lock, on whatever
+ * thread asks for it: they may call at-once functions of other robots, which do not call back.
  *
  * Joints count from 0 in joint order. The exit policy of the robot's configuration is carried out,
  * within its bound, before the loop is left alone: at the end of the control thread, by
