@@ -139,6 +139,9 @@ class Moving(unittest.TestCase):
         self.assertEqual(caught.exception.joint, "NOSE")
         with self.assertRaises(LookupError):
             self.robot["NOSE"]
+        with self.assertRaises(LookupError) as caught:
+            self.robot.move({0: 0.0})  # a number is no name
+        self.assertIn("(0)", str(caught.exception))
 
     def test_no_number_means_a_default_that_was_not_asked_for(self):
         for options in ({"speed": 0}, {"speed": 0.004}, {"speed": -1.0}, {"speed": 700.0},

@@ -116,6 +116,8 @@ class Motion:
     ) -> None:
         self._model = _model or ffi.addressof(GR001)
         if _owned is None:
+            if kind not in KINDS[:-1]:
+                raise ValueError(f"kind {kind!r}: {', '.join(KINDS[:-1])}; frames are read of files")
             made = ffi.new("grobo_motion **")
             check(lib.grobo_motion_new(KINDS.index(kind), joints, ffi.NULL, made), "motion")
             _owned = made[0]
