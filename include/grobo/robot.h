@@ -94,8 +94,9 @@ GROBO_API int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, gro
 GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode);
 
 /**
- * Moves the joints that `target` sets, in target->time_us or as much longer as is safe, then reads
- * them. Ends when they are there. Errors at once: GROBO_ERR_LIMIT, GROBO_ERR_NAN (see
+ * Moves the joints that `target` sets, in target->time_us (0 or less: the default time; more than
+ * grobo_driver.time_max_us: that) or as much longer as is safe, then reads them. Ends when they are
+ * there. Errors at once: GROBO_ERR_LIMIT, GROBO_ERR_NAN (see
  * grobo_robot_fault()), GROBO_ERR_ARG; later GROBO_ERR_SPEED: the wire has no time that is long
  * enough; also GROBO_ERR_STATE for a joint that the motion being played sets.
  */

@@ -349,8 +349,9 @@ GROBO_API int grobo_control_read_posture(grobo_control *control, grobo_posture *
 /** Reads one joint. Waits. @return GROBO_OK, or an error and *angle_rad is as it was. */
 GROBO_API int grobo_control_read_angle(grobo_control *control, int joint, double *angle_rad,
                                        int64_t timeout_us);
-/** Sets the initial posture (copied); all 0 before. At once. @return GROBO_OK, GROBO_ERR_LIMIT,
- *  GROBO_ERR_NAN, GROBO_ERR_ARG (other number of joints). */
+/** Sets the initial posture (copied); before, each joint at 0 or at the limit nearest to it. At
+ *  once. @return GROBO_OK, GROBO_ERR_LIMIT, GROBO_ERR_NAN, GROBO_ERR_ARG (other number of
+ *  joints). */
 GROBO_API int grobo_control_set_init_posture(grobo_control *control, const grobo_posture *posture);
 /** The initial posture. At once. */
 GROBO_API void grobo_control_get_init_posture(grobo_control *control, grobo_posture *posture);
