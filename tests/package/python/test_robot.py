@@ -13,9 +13,11 @@ import time
 import unittest
 import warnings
 from pathlib import Path
+from unittest import mock
 
 import grobo
 from grobo import errors
+from grobo import robot as robot_module
 from grobo.robot import Torque
 
 GREET = "motions/greet.pseq"
@@ -366,6 +368,25 @@ class Exiting(unittest.TestCase):
         self.assertEqual(self.torque_after(grobo.Exit.OFF), {Torque.OFF})
         self.assertEqual(self.torque_after(grobo.Exit.HOLD), {Torque.ON})
         self.assertEqual(self.torque_after(None), {Torque.ON})
+
+    def test_a_robot_that_was_dropped_makes_way_for_the_next(self):
+        robot = grobo.connect(str(self.link))
+        robot.torque(True)
+        with self.assertWarns(ResourceWarning):
+            del robot
+            gc.collect()
+        with grobo.connect(str(self.link)) as robot:
+            self.assertEqual(len(robot.angles()), 20)
+
+    def test_a_robot_that_was_dropped_is_left_as_was_asked_for(self):
+        for policy, posted in ((grobo.Exit.OFF, 1), (None, 0)):
+            robot = grobo.connect("sim", exit=policy)
+            with mock.patch.object(robot_module, "lib", wraps=robot_module.lib) as lib:
+                with self.assertWarns(ResourceWarning):
+                    del robot
+                    gc.collect()
+                self.assertEqual(lib.grobo_control_post_exit.call_count, posted)
+            robot_module._close_all()
 
     def test_it_is_carried_out_where_an_exception_leaves(self):
         with self.assertRaises(ZeroDivisionError):

@@ -78,6 +78,7 @@ class _Control:
     def __init__(self, config: Any, keep: List[Any]) -> None:
         made = ffi.new("grobo_control **")
         errors.check(lib.grobo_control_new(config, made), "robot")
+        self.leaves = not config.skip_exit
         self.handle = made[0]
         self.robot = lib.grobo_control_robot(self.handle)
         self.keep = keep
@@ -86,6 +87,7 @@ class _Control:
         self.idle = threading.Condition(self.lock)
         self.users: Set[object] = set()
         self.closing = False
+        self.dropped = False  # its robot was collected, not closed
         _open.add(self)
 
     @contextmanager
@@ -128,9 +130,10 @@ _open: Set[_Control] = set()
 
 
 @atexit.register
-def _close_all() -> None:
+def _close_all(dropped: bool = False) -> None:
     for control in list(_open):
-        control.close()
+        if control.dropped or not dropped:
+            control.close()
 
 
 class Joint:
@@ -188,6 +191,7 @@ class Robot:
         robot: Union[str, "os.PathLike[str]", Description] = "gr001",
         sense_interval: Optional[float] = None,
     ) -> None:
+        _close_all(dropped=True)  # one of them may have the device
         if not isinstance(robot, Description):
             robot = Description(robot)
         self.description = robot
@@ -254,8 +258,10 @@ class Robot:
         control = getattr(self, "_control", None)
         if control is not None and not control.closing and control.process == os.getpid():
             warnings.warn(f"robot {self.device} was not closed", ResourceWarning, source=self)
-            # Freed at exit: this may be any thread, which must not wait here.
-            lib.grobo_control_post_exit(control.handle, Exit.DEFAULT)
+            # Closed by the next robot, or at exit: this may be any thread, which must not wait here.
+            control.dropped = True
+            if control.leaves:
+                lib.grobo_control_post_exit(control.handle, Exit.DEFAULT)
 
     # ---- asking ----------------------------------------------------------------------------
 
