@@ -46,6 +46,8 @@
  * called by the program's own atexit() handler). Where the thread that owns the robot may die
  * without that, owner_timeout_us is the dead-man's handle; for the death of the whole process there
  * is session.guard (guard.h).
+ * A process that the program forked calls nothing here, not even grobo_control_free(): port and
+ * loop are its parent's.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_THREAD_H
