@@ -11,6 +11,7 @@ check "hosts, origins, tokens, methods that are refused" pages refusals
 check "what is too large or never whole is refused" pages sizes
 check "no path leads out of the folder" pages escapes
 check "beyond loopback everything needs the token" pages beyond_loopback
+check "the link leads to the page, wherever it listens" pages printed_links
 check "the page: compressed, known by its hash, under a policy" pages page_files
 check "states come 30 times a second, events are kept" pages stream
 check "a stream that sends something is dropped" pages greedy

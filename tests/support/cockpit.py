@@ -50,6 +50,7 @@ class Server:
         if "url" not in told:
             raise AssertionError(f"did not start: {told}")
         self.token = told["token"]
+        self.links = (told["url"], told["stop_url"])
         self.port = int(re.search(r":(\d+)/", told["url"]).group(1))
         self.stop_port = int(re.search(r":(\d+)/", told["stop_url"]).group(1))
         return self
@@ -417,6 +418,28 @@ def beyond_loopback():
                       {"X-Grobo-Token": None, "Content-Type": "text/plain"}, server.stop_port)[0],
              204, "stop with the token in its body")
         assert page.state()["stop"]["latched"]
+
+
+def printed_links():
+    """The link of each way to listen leads to the page, and its other port takes a stop."""
+    ways = [(), ("--listen", "127.0.0.2"), ("--listen", "0.0.0.0"),
+            ("--listen", "127.0.0.2", "--name", "localhost")]
+    if os.path.exists("/proc/sys/net/ipv6") and socket.has_ipv6:
+        ways.append(("--listen", "::1"))
+    for words in ways:
+        with Server(*words) as server:
+            told = [re.fullmatch(r"http://(.+):(\d+)/", url) for url in server.links]
+            assert all(told), f"{words}: {server.links}"
+            for link, path in zip(told, ("/", "/stop")):
+                host, port = link.group(1), int(link.group(2))
+                at = words[1] if words and words[1] != "0.0.0.0" else "127.0.0.1"
+                connection = http.client.HTTPConnection(at, port, timeout=PATIENCE_S)
+                connection.request("GET" if path == "/" else "POST", path, None,
+                                   {"Host": f"{host}:{port}", "X-Grobo-Token": server.token,
+                                    "Origin": f"http://{told[0].group(1)}:{server.port}"})
+                answer = connection.getresponse()
+                same(answer.status, 200 if path == "/" else 204, f"{words}: {link.group()}{path}")
+                connection.close()
 
 
 def page_files():

@@ -727,9 +727,24 @@ static bool open_port(http *h, port *p, uint16_t number)
     return open;
 }
 
+/* The address where it listens as a link has it; NULL: loopback or every one. */
+static const char *own_address(const http *h, char text[WALL_NAME_BYTES])
+{
+    const char *address = h->config.address;
+    if (!address || address[strspn(address, "0.:")] == '\0') {
+        return NULL;
+    }
+    bool six = strchr(address, ':') != NULL;
+    snprintf(text, WALL_NAME_BYTES, "%s%s%s", six ? "[" : "", address, six ? "]" : "");
+    return text;
+}
+
 static void set_walls(http *h)
 {
-    const char *names[WALL_HOSTS] = {"127.0.0.1", "[::1]", "localhost", h->config.name};
+    char text[WALL_NAME_BYTES];
+    const char *address = own_address(h, text), *name = h->config.name ? h->config.name : address;
+    const char *names[WALL_HOSTS] = {name ? name : "127.0.0.1", "127.0.0.1", "[::1]", "localhost",
+                                     address};
     wall *w = &h->first.wall;
     w->open = h->config.address && !net_is_loopback(h->config.address);
     w->page_port = w->port;
@@ -799,6 +814,11 @@ void http_free(http *server)
         event_free(server->reap);
     }
     free(server);
+}
+
+const char *http_host(const http *server)
+{
+    return server->first.wall.hosts[0];
 }
 
 uint16_t http_port(const http *server)

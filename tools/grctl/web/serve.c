@@ -270,7 +270,7 @@ static int run(serve *s)
         return status;
     }
     on_tick(-1, 0, s); /* there is a state from the first request on */
-    door_announce(s->a, s->options, s->http);
+    door_announce(s->a, s->http);
     error = conn_wait_until(c, NULL);
     c->moving = c->up && serve_is_moving(s);
     c->on_event = NULL; /* nobody is told any more */
