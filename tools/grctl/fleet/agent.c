@@ -134,12 +134,27 @@ static void let_go(agent *g)
 
 /* ---- what comes ------------------------------------------------------------------------------ */
 
+/* What the broker keeps of this host: where our own was before, that of another life is another
+ * agent's, and each connection of one ends that of the other. */
+static void take_connection(const agent *g, const mqtt_message *message)
+{
+    json_t *said = fleet_read(message->payload, message->size);
+    const char *epoch = said ? fleet_text(said, "epoch") : NULL;
+    if (g->greeted && epoch && strcmp(epoch, g->epoch) != 0) {
+        app_note(g->a, "the broker has another agent of the name '%s': give one another --host",
+                 g->host);
+    }
+    json_decref(said);
+}
+
 static void on_message(void *ctx, const mqtt_message *message)
 {
     agent *g = ctx;
     char part[4][FLEET_NAME_BYTES];
     int n = fleet_parts(message->topic, part);
-    if (n == 3 && strcmp(part[0], "group") == 0 && strcmp(part[2], "latch") == 0) {
+    if (n == 2 && strcmp(part[1], "connection") == 0) {
+        take_connection(g, message);
+    } else if (n == 3 && strcmp(part[0], "group") == 0 && strcmp(part[2], "latch") == 0) {
         find_latch(g, part[1], message);
     } else if (message->retained) {
         say_event(g, NULL, "refused", "a retained message is no order");
@@ -164,6 +179,7 @@ static void on_up(void *ctx)
     for (int i = 0; i < g->n_groups; i++) {
         wire_subscribe(g->m, "group", g->groups[i].name, "latch", true);
     }
+    wire_subscribe(g->m, g->host, "connection", NULL, true);
     g->listens = false;
     g->settled_us = grobo_now_us() + AGENT_SETTLE_US;
     say_hello(g);
@@ -189,6 +205,7 @@ static void on_down(void *ctx, const char *why)
     agent *g = ctx;
     if (g->listens || g->settled_us) {
         app_note(g->a, "the broker is away: %s", why);
+        g->greeted = true;
     }
     g->listens = false;
     g->settled_us = 0;

@@ -75,6 +75,9 @@ static void lost(mqtt *m, const char *why)
 {
     bool was = m->up || m->connecting;
     forget_socket(m);
+    if (m->up && grobo_now_us() - m->tried_us > INT64_C(1000) * LONGEST_MS) {
+        m->pause_ms = FIRST_MS; /* a broker that takes and closes is not asked ten times a second */
+    }
     m->up = false;
     if (was) {
         try_later(m);
@@ -188,7 +191,6 @@ static void on_connect(struct mosquitto *client, void *ctx, int reason, int flag
     }
     m->up = true;
     m->connecting = false;
-    m->pause_ms = FIRST_MS;
     m->config.on_up(m->config.ctx);
 }
 
