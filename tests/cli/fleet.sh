@@ -352,11 +352,28 @@ broken() {
 }
 check "the broker says it of one that died" broken
 again() {
-    begin_agent one
+    begin_agent one --on-exit sit
     wait_for is_listed one ONLINE && wait_for grep -q connected "$work/one.err" &&
         ! grep -q 'another agent' "$work/one.err"
 }
 check "its next life is no other agent" again
+# Who leads is gone between the order to start and the start: then nothing begins and none leaves.
+abandoned() { # FINISH
+    : >"$work/one.err"
+    python3 tests/support/mqtt.py "$port" abandon one one \
+        '{"file":"greet.pseq","on_link_lost":"'$1'"}' >"$work/out" &&
+        json 'all(l["ok"] for l in lines)' &&
+        written "$work/one.err" 'the permit lapsed before the start: it stops' &&
+        python3 tests/support/mqtt.py "$port" still 1 3 >"$work/out" &&
+        json 'all(r["rests"] and r["came_deg"] < 1 and r["moved_deg"] < 1
+              for r in (lines[0]["one/a"], lines[0]["one/b"]))'
+}
+if have_json; then
+    check "a start whose leader is lost before it is none" abandoned finish
+    check "no exit policy is carried out before it either" abandoned exit
+else
+    skip "a start whose leader is lost before it" "no python3 here"
+fi
 has_connected_often() {
     [ "$(grep -c '^connected' "$work/one.err")" -ge 6 ]
 }

@@ -113,17 +113,19 @@ static void take_permit(agent *g, const char *group, const mqtt_message *message
 /* As was said when it began; before it began it stops in any case. */
 static void let_go(agent *g)
 {
+    bool begun = g->started && grobo_now_us() >= g->start_us;
+    agent_lost lost = begun ? g->on_lost : AGENT_STOP;
     g->let_go = true;
     say_event(g, NULL, "unpermitted",
-              !g->started                  ? "the permit lapsed before the start: it stops"
-              : g->on_lost == AGENT_FINISH ? "the permit lapsed: the motion goes on"
-              : g->on_lost == AGENT_EXIT   ? "the permit lapsed: the exit policy"
-                                           : "the permit lapsed: the motion stops");
-    if (g->started && g->on_lost == AGENT_FINISH) {
+              !begun                 ? "the permit lapsed before the start: it stops"
+              : lost == AGENT_FINISH ? "the permit lapsed: the motion goes on"
+              : lost == AGENT_EXIT   ? "the permit lapsed: the exit policy"
+                                     : "the permit lapsed: the motion stops");
+    if (lost == AGENT_FINISH) {
         return;
     }
     (void)grobo_team_stop(g->all.team, false);
-    for (int i = 0; i < g->all.n && g->on_lost == AGENT_EXIT; i++) {
+    for (int i = 0; i < g->all.n && lost == AGENT_EXIT; i++) {
         seat *s = &g->all.seats[i];
         if (s->chosen && s->c.up) {
             (void)grobo_robot_exit(s->c.robot, GROBO_EXIT_DEFAULT);
