@@ -434,6 +434,29 @@ def a_slider_moves_its_joint_and_ends_at_the_limit(browser, server):
     assert state['target_deg'][joint] >= limits[0] - 0.11, state['target_deg']
 
 
+@test
+def a_question_holds_up_neither_control_nor_stop(browser, server):
+    page = browser.page(server.link)
+    drive(page)
+    torque_on(page, server)
+    page.click('#torque-off')
+    until(page, "document.activeElement.value === 'no'")
+    until(page, 'old => cockpit.state.time_ms > old + 4000', page.evaluate('cockpit.state.time_ms'))
+    assert page.evaluate("cockpit.lease.status()") == 'mine' # a reader takes his time
+    assert set(server.state()['torque']) == {'on'}
+    nothing_serious(page, 'a question')
+    page.click('#ask [value=yes]')
+    server.wait(lambda s: set(s['torque']) == {'off'}, 'torque off')
+    torque_on(page, server)
+    page.click('#torque-off')
+    page.click('#stop')
+    stopped(page)
+    page.locator('#ask [value=no]').focus()
+    page.keyboard.press('Escape')
+    until(page, "!document.getElementById('ask').open")
+    assert set(server.state()['torque']) == {'on'}
+
+
 HOLD_FIRST = """path => {
     const real = self.fetch;
     self.held = 0;
@@ -1266,8 +1289,9 @@ def a_file_that_changed_elsewhere_is_not_written_over(browser, server):
     page.click('#make-save-as')
     until(page, "document.getElementById('make-told').className === 'bad'")
     assert not (pathlib.Path(server.folder).parent / 'out.pseq').exists()
-    page.once('dialog', lambda d: d.dismiss()) # what is not saved is not left by mistake
-    page.select_option('#make-open', 'greet.pseq')
+    page.select_option('#make-open', 'greet.pseq') # what is not saved is not left by mistake
+    page.click('#ask [value=no]')
+    until(page, "document.getElementById('make-open').value === 'mine.pseq'")
     assert page.evaluate('cockpit.make.draft.name') == 'mine.pseq'
 
 

@@ -110,7 +110,7 @@ static void on_event(conn *c, const grobo_event *event)
         say_trip(s);
         break;
     case GROBO_EVENT_LINK_DOWN:
-        s->jogs = s->jog_waits = s->moves = false;
+        s->jogs = s->jog_waits = false;
         s->limp = 0;
         events_tell(&s->events, "link", "error", NULL, "the line is lost");
         break;

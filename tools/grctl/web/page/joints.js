@@ -3,7 +3,7 @@
 // follows while it is dragged, if this page drives.
 
 import { Newest } from './api.js';
-import { element, setText, stepByKeys, tremble } from './dom.js';
+import { ask, element, setText, stepByKeys, tremble } from './dom.js';
 
 const SIGNS = { on: '●', off: '○', brake: '◐' };
 
@@ -16,8 +16,8 @@ export class Joints {
         const all = (id, what) => document.getElementById(id).addEventListener('click', what);
         all('stand', () => app.command('/api/move', { pose: 'init', time_ms: 3000 }, true));
         all('torque-on', () => app.command('/api/torque', { joints: ['all'], mode: 'on' }, true));
-        all('torque-off', () => {
-            if (app.robot.arm || !app.robot.body || confirm(app.t('Without torque the robot sinks or falls. Hold it. Switch torque off?'))) {
+        all('torque-off', async () => {
+            if (app.robot.arm || !app.robot.body || await ask(app.t('Without torque the robot sinks or falls. Hold it. Switch torque off?'))) {
                 app.command('/api/torque', { joints: ['all'], mode: 'off' });
             }
         });
