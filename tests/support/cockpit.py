@@ -885,19 +885,23 @@ def given_back():
         other.wait_played("finished")
 
 
-def lost_with(on_lost, message, end):
+def lost_with(on_lost, message, end, **how):
     with Server() as server:
         page, other = Page(server).take(), Page(server)
-        how = {"on_lost": on_lost} if on_lost else {}
+        how.update({"on_lost": on_lost} if on_lost else {})
         page.target("play", motion="greet.pseq", repeat=2, **how)
         last_ms = page.state()["time_ms"]
         took = other.wait_event(message)["time_ms"] - last_ms
         assert 2500 < took < 6000, f"{on_lost}: {took} ms"
         state = other.wait_played(end)
         same(state["lease"]["holder"], None)
-        if on_lost != "finish":
+        if end == "idle":
             other.wait("it stands", lambda s: not s["moving"] and s["job"] is None)
         same(set(other.state()["torque"]), {"on"}, on_lost)
+
+
+def lost_in_a_loop():
+    lost_with("finish", "a loop has no end, the motion stops", "idle", loop=True)
 
 
 def lost_in_motion():
@@ -905,6 +909,7 @@ def lost_in_motion():
     for each in beside((lost_with, None, "the motion stops", "idle"),
                        (lost_with, "stop", "the motion stops", "idle"),
                        (lost_with, "finish", "the motion goes on", "finished"),
+                       (lost_in_a_loop,),
                        (lost_with, "exit", "exit policy", "idle")):
         if each:
             raise each

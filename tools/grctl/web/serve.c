@@ -137,14 +137,17 @@ static void lose_motion(serve *s)
 {
     bool plays =
         grobo_robot_is_playing(s->c.robot) || grobo_robot_job(s->c.robot) == GROBO_JOB_PLAY;
-    if (plays && s->player.on_lost == PLAYER_FINISH) {
+    bool finishes = plays && s->player.on_lost == PLAYER_FINISH, endless = player_is_endless(s);
+    if (finishes && !endless) {
         events_tell(&s->events, "lease", "warning", NULL,
                     "the page that drives is lost: the motion goes on");
         return;
     }
     bool leaves = plays && s->player.on_lost == PLAYER_EXIT;
     events_tell(&s->events, "lease", "warning", NULL, "the page that drives is lost: %s",
-                leaves ? "the exit policy is carried out" : "the motion stops");
+                leaves                ? "the exit policy is carried out"
+                : finishes && endless ? "a loop has no end, the motion stops"
+                                      : "the motion stops");
     stops_halt(s);
     if (leaves) {
         int job = grobo_robot_exit(s->c.robot, GROBO_EXIT_DEFAULT);
