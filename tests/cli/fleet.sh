@@ -45,6 +45,35 @@ check_json "how they are" \
     fleet status --json
 check "a broker that is not there" fails 1 'fleet: 127.0.0.1: ' \
     "$GRCTL" fleet list --broker mqtt://127.0.0.1:1
+lonely() { # said once, however often it is tried again
+    "$GRCTL" -d one agent --broker mqtt://127.0.0.1:1 --host lonely 2>"$work/lonely.err" 3>&- &
+    lonely=$!
+    echo $lonely >>"$work/pids"
+    written "$work/lonely.err" 'the broker is away: '
+    lonely_status=$?
+    kill -TERM "$lonely"
+    wait "$lonely"
+    [ $lonely_status -eq 0 ] && [ "$(grep -c 'is away' "$work/lonely.err")" -eq 1 ]
+}
+check "an agent says so, and keeps trying" lonely
+signs_off() { # a broker that takes who comes, and says at once that it shuts down
+    off_port=$(find_port && echo $port)
+    python3 tests/support/mqtt.py "$off_port" goodbye >"$work/off.out" 2>&1 3>&- &
+    echo $! >>"$work/pids"
+    "$GRCTL" -d one agent --broker "mqtt://127.0.0.1:$off_port" --host off 2>"$work/off.err" 3>&- &
+    off=$!
+    echo $off >>"$work/pids"
+    written "$work/off.err" 'is away: Server shutting down'
+    off_status=$?
+    kill -TERM "$off"
+    wait "$off"
+    ! grep -e '\[warn\]' "$work/off.err" && return $off_status
+}
+if have_json; then
+    check "what a broker says at its end is told, and nothing else" signs_off
+else
+    skip "what a broker says at its end" "no python3 here"
+fi
 check "a broker that is none" fails 2 'is wanted' "$GRCTL" fleet list --broker http://x
 check "TLS wants certificates to check by" fails 2 '--ca names the file' \
     "$GRCTL" fleet list --broker mqtts://127.0.0.1

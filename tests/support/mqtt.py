@@ -15,6 +15,7 @@ usage: mqtt.py PORT floor N         round trips of N messages by the broker alon
                                     from the posture heard first, and how old that one was
        mqtt.py PORT keep FILE       every message of grobo/v1/# as a line "topic payload", until it
                                     is ended
+       mqtt.py PORT goodbye         is a broker itself: takes who comes, and says that it shuts down
        mqtt.py 0 fits FILE          these lines are as docs/fleet.schema.json says, but for orders
                                     of strangers; prints how many of each kind
 """
@@ -264,6 +265,19 @@ def keep(client, path):
                 out.write(got[0] + " " + got[1].decode("utf-8", "replace") + "\n")
 
 
+def goodbye(port):
+    listener = socket.socket()
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    listener.bind(("127.0.0.1", port))
+    listener.listen()
+    kept = []
+    while True:
+        client = listener.accept()[0]
+        client.recv(1000)
+        client.sendall(b"\x20\x03\0\0\0" + b"\xe0\x02\x8b\0")
+        kept.append(client)
+
+
 def kind_of(topic):
     part = topic[len(ROOT):].split("/")
     return "cmd_" + part[2] if part[1:2] == ["cmd"] else "ack" if part[0] == "ack" else part[-1]
@@ -297,6 +311,8 @@ def main(words):
     if words[1] == "fits":
         fits(words[2])
         return
+    if words[1] == "goodbye":
+        goodbye(int(words[0]))
     client = Client(int(words[0]))
     if words[1] == "floor":
         floor(client, int(words[2]))

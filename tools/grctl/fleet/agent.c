@@ -173,6 +173,7 @@ static void on_message(void *ctx, const mqtt_message *message)
 static void on_up(void *ctx)
 {
     agent *g = ctx;
+    g->away = false;
     app_report(g->a,
                json_pack("{s:b,s:s,s:s,s:s}", "connected", 1, "host", g->host, "group",
                          g->groups[1].name, "epoch", g->epoch),
@@ -205,10 +206,11 @@ static void begin_listening(agent *g)
 static void on_down(void *ctx, const char *why)
 {
     agent *g = ctx;
-    if (g->listens || g->settled_us) {
+    if (!g->away) { /* once, however often it is tried again */
         app_note(g->a, "the broker is away: %s", why);
-        g->greeted = true;
     }
+    g->away = true;
+    g->greeted = g->greeted || g->listens || g->settled_us;
     g->listens = false;
     g->settled_us = 0;
     orders_forget(g);
