@@ -43,6 +43,13 @@ check "what is not known is said" both exits 0 take "$work/arm.body" --- \
 check_json "as JSON" 'lines[0]["name"] == "crane" and lines[0]["file"] is None and
     "STS3215" in lines[0]["text"] and lines[0]["n_joints"] == 2' take "$work/arm.body" --json
 check "another name" both exits 0 take "$work/arm.body" --name lift-1 --- says '^name: lift-1$'
+sed 's/jointType/joint_type/; s/jointRange/joint_range/; s/jointAxis/joint_axis/
+    s/jointId: 0/joint_id: 1, joint_velocity_range: [-100, 90]/
+    s/jointId: 1/joint_id: 0, max_joint_velocity: unlimited/' "$work/arm.body" >"$work/new.body"
+check "a body as Choreonoid writes it today" both exits 0 take "$work/new.body" --ids 1-2 \
+    --servo STS3215 --- says 'LIFT, id: 1, servo: STS3215, limits_deg: \[-20, 60\]}$'
+check "with the speed of its slower direction" \
+    says 'TURN, id: 2, servo: STS3215, limits_deg: \[-90, 90\], speed_deg_s: 90}$'
 check "too few ids" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1
 check "too many" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1-3
 check "ids that are none" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1,x
