@@ -193,7 +193,26 @@ robots:
   kitchen: &a {device: /dev/x}
   cellar:  *a
 EOF
+check "a robot twice" bad '3:3: kitchen is there twice' <<'EOF'
+robots:
+  kitchen: {device: /dev/x, trim: {m5: 1}}
+  kitchen: {device: /dev/x, trim: {m5: 2}}
+EOF
+check "a key twice" bad '2:44: trim is there twice' <<'EOF'
+robots:
+  kitchen: {device: /dev/x, trim: {m5: 1}, trim: {m6: 2}}
+EOF
+check "a joint twice, by its motor and by its name" bad '2:43: R_ELBOW_P is there twice' <<'EOF'
+robots:
+  kitchen: {device: /dev/x, trim: {m5: 1, R_ELBOW_P: 2}}
+EOF
 check "it does not keep others from working" exits 0 "$GRCTL" check motions/greet.pseq
+if [ -z "${NATIVE_GRCTL:-}" ]; then
+    ln -sf config.yaml "$config"
+    check "a link to itself is not taken for no file" \
+        fails 3 'config.yaml: ' "$GRCTL" -d kitchen status
+    rm "$config"
+fi
 written <<'EOF'
 default: attic
 EOF
