@@ -136,9 +136,31 @@ static int refuse_links(app *a, const char *path, const grobo_motion *motion,
                     path, n, grobo_motion_size(motion));
 }
 
+/* Notes what the source has and angles have no place for; the rest they were solved by. */
+static void note_lost(const grobo_motion *motion, const grobo_write_options *how,
+                      grobo_diagnostics *list)
+{
+    static const char *const codes[] = {"zmp-dropped", "name-dropped", "keys-dropped"};
+    grobo_diagnostics *all = NULL;
+    grobo_motion *plain = NULL;
+    grobo_diagnostic d;
+    if (grobo_diagnostics_new(NULL, &all) == 0) {
+        (void)grobo_motion_convert(motion, GROBO_MOTION_POSTURES, how, all, &plain);
+    }
+    for (size_t i = 0; grobo_diagnostics_get(all, i, &d) == 0; i++) {
+        for (size_t k = 0; k < sizeof codes / sizeof codes[0]; k++) {
+            if (strcmp(d.code, codes[k]) == 0) {
+                grobo_diagnostics_add(list, &d);
+            }
+        }
+    }
+    grobo_motion_free(plain);
+    grobo_diagnostics_free(all);
+}
+
 /* Key poses keep their link targets; any other format gets the angles that they lead to. */
 static int solve_legs(app *a, const char *path, const grobo_write_options *how,
-                      grobo_motion **motion)
+                      grobo_motion **motion, grobo_diagnostics *list)
 {
     grobo_motion *solved = NULL;
     double rate_hz = how->rate_hz;
@@ -150,6 +172,7 @@ static int solve_legs(app *a, const char *path, const grobo_write_options *how,
     }
     int status = body_solve(a, OPT_BODY, path, *motion, rate_hz, &solved);
     if (solved) {
+        note_lost(*motion, how, list);
         grobo_motion_free(*motion);
         *motion = solved;
     }
@@ -204,7 +227,7 @@ static int run(app *a)
     }
     error = file_load_listed(a, in, &read, list, &motion);
     if (!error) {
-        error = solve_legs(a, in, &how, &motion);
+        error = solve_legs(a, in, &how, &motion, list);
     }
     if (error) {
         grobo_diagnostics_free(list);
