@@ -168,6 +168,9 @@ static int take(playlist *list, app *a, const char *path, grobo_motion *motion,
     if (grobo_motion_size(motion) == 0) {
         return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", path);
     }
+    if (grobo_motion_length_us(motion, -1) > GROBO_PLAY_LENGTH_MAX_US) {
+        return fail(a, path, GROBO_ERR_CAP);
+    }
     set_options(&list->options[i], a, grobo_motion_get_kind(motion));
     return solve_and_check(a, list, i, line);
 }
