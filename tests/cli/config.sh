@@ -69,6 +69,21 @@ dry() {
     exits 0 "$GRCTL" calibrate m5 7 --dry-run && cmp "$config" "$work/before"
 }
 check "--dry-run writes nothing" dry
+# The second one finds the file as the first one, and a person, have left it.
+one_by_one() {
+    {
+        echo 'calibrate m5 1.5'
+        until grep -q '1\.5' "$config"; do sleep 0.05; done
+        sed 's/^default:/# a line more\n&/' "$config" >"$work/more" && cp "$work/more" "$config"
+        echo 'calibrate m12 -3'
+    } | "$GRCTL" -d kitchen --yes shell >"$work/out" 2>"$work/err" || { cat "$work/err"; return 1; }
+    diff "$config" - <<EOF
+$(sed 's/^default:/# a line more\n&/; s/trim: {R_KNEE.*}/trim: {R_KNEE_P: -3, R_ELBOW_P: 1.5}/' \
+    "$work/before")
+EOF
+}
+check "one after the other in a shell" one_by_one
+cp "$work/before" "$config"
 
 # By measuring: the robot stands in its initial posture but for one joint.
 exits 0 on_robot init --time 500

@@ -589,21 +589,17 @@ bool config_warns_of_falls(const app *a)
     return !r.has_warn_fall || r.warn_fall;
 }
 
-bool config_would_read(const app *a, const char *text, size_t size, const config_robot *wanted)
+bool config_find_in(const app *a, const char *text, size_t size, const config_robot *wanted,
+                    config_robot *found)
 {
-    static config_robot robot;
     char hushed[APP_LINE_BYTES];
     app quiet = *a;
-    reader r = {.a = &quiet, .robot = &robot};
+    reader r = {.a = &quiet, .robot = found};
     quiet.hushed = hushed;
     quiet.driver = NULL; /* it is not chosen yet where a configuration is read */
-    memset(&robot, 0, sizeof robot);
+    memset(found, 0, sizeof *found);
     snprintf(r.wanted, sizeof r.wanted, "%s", wanted->name);
     snprintf(r.path, sizeof r.path, "%s", wanted->path);
-    bool same = !read_file(&r, NULL, text, size) && strcmp(robot.name, wanted->name) == 0 &&
-                strcmp(robot.device, wanted->device) == 0;
-    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
-        same &= fabs(robot.trim_deg[j] - wanted->trim_deg[j]) < 1e-6;
-    }
-    return same;
+    return !read_file(&r, NULL, text, size) && strcmp(found->name, wanted->name) == 0 &&
+           strcmp(found->device, wanted->device) == 0;
 }
