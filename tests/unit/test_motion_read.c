@@ -395,6 +395,8 @@ static void test_body_motion_refused(void **state)
          "time-range", 4, 95},
         {PART "content: JointPosition, numParts: 1, frames: [ [ -1, 1 ] ], hasFrameTime: true }",
          "frame-length", 4, 73},
+        {PART "content: JointPosition, numParts: 1, frames: [ [ 1 ] ], hasFrameTime: true }",
+         "frame-length", 4, 71},
         {PART "content: JointPosition, frameRate: x, frames: [ [ 1 ] ] }", "type", 4, 61},
         {PART "content: JointPosition, frameRate: -1, frames: [ [ 1 ] ] }", "frame-rate", 4, 61},
     };
