@@ -153,6 +153,17 @@ static void widen(const app *a, grobo_motion *motion)
     }
 }
 
+static bool sets_joints(const grobo_motion *motion)
+{
+    grobo_posture posture;
+    for (size_t i = 0; grobo_motion_get(motion, i, &posture) == 0; i++) {
+        if (posture.set) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* The next of the list, with the line's budget. */
 static int take(playlist *list, app *a, const char *path, grobo_motion *motion,
                 const grobo_budget *line)
@@ -172,7 +183,11 @@ static int take(playlist *list, app *a, const char *path, grobo_motion *motion,
         return fail(a, path, GROBO_ERR_CAP);
     }
     set_options(&list->options[i], a, grobo_motion_get_kind(motion));
-    return solve_and_check(a, list, i, line);
+    status = solve_and_check(a, list, i, line);
+    if (!status && !list->body[i] && !sets_joints(motion)) {
+        return app_fail(a, EXIT_FILE, "EMPTY", "%s: no posture sets any joint", path);
+    }
+    return status;
 }
 
 int playlist_take(playlist *list, app *a, const char *path, grobo_motion *motion)
