@@ -112,7 +112,8 @@ check "key poses keep their links" links_kept
 
 if [ -e /dev/full ]; then
     on_full() {
-        ! "$GRCTL" convert --to m motions/greet.pseq - >/dev/full 2>"$work/err" || return 1
+        "$GRCTL" convert --to m motions/greet.pseq - >/dev/full 2>"$work/err"
+        [ $? -eq 1 ] || return 1
         complains 'no room left on the disk'
     }
     check "a full disk" fails 3 '/dev/full: cannot write: no room left on the disk' \

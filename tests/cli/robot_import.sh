@@ -54,7 +54,7 @@ check "a servo that is none" fails 2 "no servo of family feetech is called 'XL43
 check "a list that is too short" fails 2 'one for each of 2 joints' \
     take "$work/arm.body" --servo STS3215,
 check "no such file" fails 3 'none.urdf: no such file' take "$work/none.urdf"
-check "a folder" fails 3 'is a folder' take "$work"
+check "a folder" fails 3 'is a directory' take "$work"
 check "nothing" fails 3 'neither a URDF nor a body' take /dev/null
 check "no end of it" fails 3 'longer than 4 MiB' take /dev/zero
 check "no folder" fails 3 'no such folder' take "$work/arm.body" -o "$work/none/arm.yaml"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/heap.h"
+#include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 
 enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGERS, OPT_BODY };
@@ -40,11 +40,8 @@ static int put_out(const heap *t, const char *path)
     if (strcmp(path, "-") != 0) {
         return file_save(path, t->bytes, t->size);
     }
-    errno = 0;
-    if (fwrite(t->bytes, 1, t->size, stdout) == t->size && fflush(stdout) == 0) {
-        return 0;
-    }
-    return errno == ENOSPC ? GROBO_ERR_DISK : GROBO_ERR_IO;
+    output_bytes(t->bytes, t->size);
+    return 0;
 }
 
 /* Reads the text and looks whether it plays what the motion does. 0, or the status. */
@@ -55,7 +52,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const he
                                .name = path};
     grobo_diagnostics *list = NULL;
     grobo_motion *copy = NULL;
-    grobo_diagnostic first = {.code = "NOMEM"};
+    grobo_diagnostic first;
     char said[1024] = "";
     int lost = grobo_diagnostics_new(NULL, &list);
     if (!lost) {
@@ -70,7 +67,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const he
         if (i > 0) {
             app_note(a, "%s", said);
         } else if (lost) {
-            app_fail(a, EXIT_FILE, first.code, "%s; --lossy writes %s all the same", said, path);
+            app_fail(a, EXIT_FILE, "MISMATCH", "%s; --lossy writes %s all the same", said, path);
         }
     }
     if (lost < 0 && grobo_diagnostics_get(list, 0, &first) < 0) {
@@ -130,7 +127,7 @@ static int refuse_links(app *a, const char *path, const grobo_motion *motion,
     if (!n || keeps || ik->given || app_option(a, OPT_LOSSY)->given) {
         return 0;
     }
-    return app_fail(a, EXIT_FILE, "ik-links-lost",
+    return app_fail(a, EXIT_FILE, "UNSUPPORTED",
                     "%s: %zu of %zu poses have ikLinks, which are solved for GR001 only; --ik off "
                     "converts the listed joints alone",
                     path, n, grobo_motion_size(motion));
@@ -160,7 +157,7 @@ static void report(app *a, const grobo_motion *motion, const char *out,
                    const grobo_diagnostics *list)
 {
     grobo_diagnostic d;
-    if (a->json && strcmp(out, "-") != 0) {
+    if (a->json) {
         app_print_json(json_pack("{s:o,s:I,s:o}", "file", app_json_text(out), "postures",
                                  (json_int_t)grobo_motion_size(motion), "diagnostics",
                                  file_json(list)));
@@ -197,6 +194,10 @@ static int run(app *a)
     if (to == GROBO_FORMAT_AUTO) {
         return app_fail(a, EXIT_USAGE, "ARG", "%s: unknown file type; use --to " FILE_FORMATS, out);
     }
+    if (a->json && strcmp(out, "-") == 0) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "--json and the motion cannot both go to standard output");
+    }
     int error = refuse_out(a, out, to);
     error = error ? error : file_list(a, &list);
     if (error) {
@@ -215,7 +216,7 @@ static int run(app *a)
     if (!error) {
         error = write_out(a, motion, out, &how, list);
     }
-    if (!error) {
+    if (!error && output_flush()) { /* else app_finish() says why not */
         report(a, motion, out, list);
     }
     grobo_diagnostics_free(list);

@@ -166,8 +166,8 @@ static int run_list(leader *l)
 static void show_status(const leader *l)
 {
     if (!l->a->json) {
-        if (l->a->tty_out && app_option(l->a, OPT_WATCH)->given) {
-            app_print("\033[H\033[J");
+        if (app_option(l->a, OPT_WATCH)->given) {
+            app_print_home(l->a);
         }
         app_print("host                  robot             line    play          trip\n");
     }

@@ -59,7 +59,7 @@ static int check_one(app *a, const playlist *list, int i, grobo_slack_taken *sla
         return list->body[i] ? body_refuse(a, list->path[i], list->body[i], slack) : 0;
     }
     file_format(&d, false, text, sizeof text);
-    return app_fail(a, EXIT_SAFETY, d.code, "%s; %s", text,
+    return app_fail(a, EXIT_SAFETY, is_limit(&d) ? "LIMIT" : "SPEED", "%s; %s", text,
                     is_limit(&d) ? _("--clamp plays it at the limit")
                                  : _("a lower --speed gives it time"));
 }
