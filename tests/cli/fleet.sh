@@ -49,6 +49,10 @@ check "a broker that is none" fails 2 'is wanted' "$GRCTL" fleet list --broker h
 check "TLS wants certificates to check by" fails 2 '--ca names the file' \
     "$GRCTL" fleet list --broker mqtts://127.0.0.1
 check "no such order" fails 2 'there are list, status' fleet dance
+check "a file is missing" fails 2 'fleet push needs FILE' fleet push
+check "so for a motion" fails 2 'fleet play needs FILE' fleet play
+check "a group without its option resets nothing" \
+    fails 2 "fleet reset: 'one' is one argument too many; a group is --group one" fleet reset one
 check "an agent has robots of the configuration" fails 2 'agent: -d names a robot or a group' \
     "$GRCTL" -d sim agent --broker "$broker"
 
@@ -150,6 +154,11 @@ check "until it is taken back" exits 0 fleet reset --group one
 check "a soft stop" stopped stop
 check "stands as well" fails 1 'a stop of group one stands' fleet play greet.pseq --group one
 check "and is taken back" exits 0 fleet reset --group one
+mistaken() {
+    plays && exits 2 fleet stop two --group one && grep -q "'two' is one argument" "$work/err" &&
+        complains_of a && ended 1 && exits 0 fleet reset --group one
+}
+check "a word too many is reported after the stop" mistaken
 # A stop of all, one of the group, and that of the group taken back.
 two_stops() {
     exits 1 fleet estop && exits 0 fleet stop --group one && exits 1 fleet reset --group one &&
