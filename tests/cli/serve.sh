@@ -51,6 +51,8 @@ sys.exit(subprocess.run([sys.argv[1], "-d", "sim", "serve", "--port",
                          str(s.getsockname()[1])]).returncode)
 ' "$GRCTL"
 }
+check "an address of another machine is an error" fails 1 '--listen is no address of this machine' \
+    "$GRCTL" serve -d sim --port 0 --listen 999.1.1.1
 check "a port in use is an error" fails 1 'port [0-9]*: the port is in use' taken
 check "a folder that is none is an error" fails 3 'nowhere: no such folder' \
     "$GRCTL" -d sim serve --port 0 nowhere
