@@ -173,7 +173,8 @@ GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy);
  * every joint back and repeats what did not take, for at most 10 s. Where the driver has no
  * `torque`, or that fails, all joints are halted and hold instead. Latched until
  * grobo_robot_reset(). Never refused but for GROBO_ERR_CLOSED, where it is latched all the same,
- * and carried out as soon as the line is there: so is one that the line was lost under.
+ * and carried out as soon as the line is there: so is one that the line was lost under. Its trip is
+ * reported once, however often it is asked for until the reset.
  */
 GROBO_API int grobo_robot_estop(grobo_robot *robot);
 
