@@ -22,12 +22,13 @@
  * - Readings run beside everything but what has the robot for itself: the check, the preparation
  *   of a play, flash and restart, a stored motion, the exit, the emergency stop.
  * - Moves and readings that cannot begin yet wait in their order (GROBO_ROBOT_QUEUE of them, then
- *   GROBO_ERR_FULL) for GROBO_ROBOT_QUEUE_US at most (GROBO_ERR_STALE). A stop, a trip, a lost
- *   line and free mode end what waits.
+ *   GROBO_ERR_FULL) for GROBO_ROBOT_QUEUE_US at most (GROBO_ERR_STALE). A stop, a trip, a motion
+ *   that fails, a lost line and free mode end what waits.
  * - Torque off and brake, stop, exit and the emergency stop take the place of what is in their way.
  * - All others are refused with GROBO_ERR_STATE while their joints are busy.
  * Playing is not a job: grobo_robot_play() prepares as a job, then the sequencer runs beside the
- * jobs until GROBO_EVENT_PLAY reports its end.
+ * jobs until GROBO_EVENT_PLAY reports its end. A motion that fails stops what moves beside it, as
+ * grobo_robot_stop() does.
  *
  * Safety, on every path, judged as the bytes leave, by grobo_robot_tx():
  * - Every target is finite and within the joint's limits (refused, or clamped if so configured).
