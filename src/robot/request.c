@@ -213,6 +213,19 @@ int grobo_robot_send(grobo_robot *robot, const grobo_posture *target)
     return result < 0 ? result : GROBO_OK;
 }
 
+/* Which of the jobs is the move that may go to these joints' target instead; NULL: none. */
+static grobo_robot_task *move_of(grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int i = 0; i < GROBO_ROBOT_JOBS && !robot->soft; i++) {
+        grobo_robot_task *job = &robot->jobs[i];
+        if (job->kind == GROBO_JOB_MOVE && (job->joints & ~joints) == 0 &&
+            grobo_i_move_is_sent(job)) {
+            return job;
+        }
+    }
+    return NULL;
+}
+
 int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
 {
     if (robot == NULL || target == NULL) {
@@ -220,9 +233,9 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
     }
     grobo_i_begin(robot);
     grobo_posture checked = *target;
+    grobo_robot_task *job = move_of(robot, target->set);
     int result = admit_target(robot, target);
-    bool sent = grobo_i_move_is_sent(robot) && !robot->soft;
-    if (result >= 0 && (!sent || (robot->job->joints & ~target->set) != 0)) {
+    if (result >= 0 && job == NULL) {
         result = GROBO_ERR_STATE;
     }
     if (result >= 0) {
@@ -232,10 +245,11 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
         result = GROBO_ERR_STALE;
     }
     if (result >= 0) {
-        result = grobo_i_move_takes(robot, checked.set & ~robot->job->joints);
+        result = grobo_i_move_takes(robot, checked.set & ~job->joints);
     }
     if (result >= 0) {
-        result = robot->job->number;
+        result = job->number;
+        robot->job = job;
         grobo_i_move_retarget(robot, &checked);
     }
     grobo_i_end(robot);

@@ -450,9 +450,9 @@ extern const grobo_robot_step_fn grobo_i_script_exit_off[];
 extern const grobo_robot_step_fn grobo_i_script_exit_hold[];
 extern const grobo_robot_step_fn grobo_i_script_exit_sit[];
 
-/* True if the job is a move whose target has been sent. */
-bool grobo_i_move_is_sent(const grobo_robot *robot);
-/* Sends the joints of such a move to another target, and goes on from there. */
+/* True if the target of a move has been sent. */
+bool grobo_i_move_is_sent(const grobo_robot_task *job);
+/* Sends the joints of such a move, robot.job, to another target, and goes on from there. */
 void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target);
 
 /* ---- turn.c ---------------------------------------------------------------------------------- */

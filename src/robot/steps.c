@@ -749,13 +749,9 @@ const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
 
 /* ---- another target -------------------------------------------------------------------------- */
 
-bool grobo_i_move_is_sent(const grobo_robot *robot)
+bool grobo_i_move_is_sent(const grobo_robot_task *job)
 {
-    const grobo_robot_task *job = robot->job;
     unsigned sending = 0;
-    if (job->kind != GROBO_JOB_MOVE) {
-        return false;
-    }
     while (job->script[sending] != step_send) {
         sending++;
     }
