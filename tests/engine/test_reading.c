@@ -360,6 +360,22 @@ static void an_angle_alone_hides_no_turning(void **state)
     }
 }
 
+/* The angle before is from before the frame that sent it elsewhere, of servos that tell no speed. */
+static void two_ways_have_no_speed(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int i = 0; i < 4; i++) {
+            bool tells = i % 2 != 0, since = i / 2 != 0;
+            start_with(NULL);
+            made.no_speed = !tells;
+            given.speed_dps = 25;
+            robot.axes[j].told_us = since ? NOW - 4 : NOW - 5; /* the angle is of NOW - 5 */
+            assert_int_equal(take(j)->seen_dps, tells || !since ? 25 : GROBO_I_NO_SPEED);
+        }
+    }
+}
+
 /* Another host's way, which the servo tells: its time, or what it cannot do faster. */
 static void where_a_servo_goes_is_taken_from_what_it_tells(void **state)
 {
@@ -735,6 +751,7 @@ int main(void)
         cmocka_unit_test(what_a_reading_lacks_stays_as_it_was),
         cmocka_unit_test(a_reading_from_before_a_frame_tells_nothing_of_after_it),
         cmocka_unit_test(an_angle_alone_hides_no_turning),
+        cmocka_unit_test(two_ways_have_no_speed),
         cmocka_unit_test(where_a_servo_goes_is_taken_from_what_it_tells),
         cmocka_unit_test(a_joint_is_adrift_that_moves_nobody_knows_where),
         cmocka_unit_test(a_joint_sent_nowhere_is_where_it_was_read),
