@@ -23,7 +23,8 @@
  *   of a play, flash and restart, a stored motion, the exit, the emergency stop.
  * - Moves and readings that cannot begin yet wait in their order (GROBO_ROBOT_QUEUE of them, then
  *   GROBO_ERR_FULL) for GROBO_ROBOT_QUEUE_US at most (GROBO_ERR_STALE). A stop, a trip, a motion
- *   that fails, a lost line and free mode end what waits.
+ *   that fails, a lost line and free mode end what waits. Where a pump that is held up has 20 ends
+ *   and other events to report, they are refused with GROBO_ERR_FULL too.
  * - Torque off and brake, stop, exit and the emergency stop take the place of what is in their way.
  * - All others are refused with GROBO_ERR_STATE while their joints are busy.
  * Playing is not a job: grobo_robot_play() prepares as a job, then the sequencer runs beside the
