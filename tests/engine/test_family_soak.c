@@ -572,6 +572,7 @@ static void start(const run *r)
                                            intervals_us[(r->seed + (unsigned)r->line) % 3],
                                        .voltage_mv = -1,
                                        .limit_policy = r->seed % 3 == 0 ? GROBO_LIMIT_CLAMP : 0,
+                                       .goals = r->seed % 5 < 2 ? GROBO_GOALS_WHOLE : 0,
                                        .estop_torque = r->seed % 2 == 0 ? GROBO_ESTOP_OFF : 0,
                                        .lost_replies = 30};
     const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = r->seed * 7 + 1, .no_stops = true};
