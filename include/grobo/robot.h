@@ -166,7 +166,8 @@ GROBO_API int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int
 /**
  * What servos do when a program ends: stops a motion, carries the policy out and reads it back,
  * within exit_bound_us. Takes the place of a job that runs (that one ends with
- * GROBO_ERR_CANCELED). Works when tripped; then GROBO_EXIT_SIT is carried out as GROBO_EXIT_HOLD.
+ * GROBO_ERR_CANCELED); where an exit of the same policy runs it returns the number of that one.
+ * Works when tripped; then GROBO_EXIT_SIT is carried out as GROBO_EXIT_HOLD.
  * @param policy GROBO_EXIT_DEFAULT: the configuration's.
  */
 GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy);
@@ -176,8 +177,9 @@ GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy);
  * every joint back and repeats what did not take, for at most 10 s. Where the driver has no
  * `torque`, or that fails, all joints are halted and hold instead. Latched until
  * grobo_robot_reset(). Never refused but for GROBO_ERR_CLOSED, where it is latched all the same,
- * and carried out as soon as the line is there: so is one that the line was lost under. Its trip is
- * reported once, however often it is asked for until the reset.
+ * and carried out as soon as the line is there: so is one that the line was lost under. Asked for
+ * again while it is carried out, it returns the number of that job; its trip is reported once until
+ * the reset. So a callback may answer each trip, or each job that fails, with it.
  */
 GROBO_API int grobo_robot_estop(grobo_robot *robot);
 

@@ -21,10 +21,11 @@ static int begin(grobo_robot *robot, int number)
     return number;
 }
 
-static int refuse(grobo_robot *robot, int error)
+/* Begins nothing: for an error, or because the job of this number carries it out. */
+static int refuse(grobo_robot *robot, int result)
 {
     grobo_i_end(robot);
-    return error;
+    return result;
 }
 
 int grobo_robot_check(grobo_robot *robot)
@@ -522,12 +523,16 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
                              : (unsigned)policy > GROBO_EXIT_SIT ? GROBO_ERR_ARG
                                                                  : GROBO_ERR_STATE);
     }
+    const grobo_robot_step_fn *script = exit_script(robot, policy);
+    if (robot->job->kind == GROBO_JOB_EXIT && robot->job->script == script) {
+        return refuse(robot, robot->job->number); /* it is being carried out */
+    }
     if (grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
     displace(robot, true);
     grobo_i_slots_cancel(robot, GROBO_I_USE_PLAIN); /* such as torque that free mode asked for */
-    int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, exit_script(robot, policy), 0);
+    int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, script, 0);
     robot->job->joints = grobo_i_all_joints(robot);
     robot->job->torque = GROBO_TORQUE_OFF;
     robot->job->bound_us =
@@ -558,13 +563,16 @@ int grobo_robot_estop(grobo_robot *robot)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
+    robot->counters.estops++;
+    if (robot->job->kind == GROBO_JOB_ESTOP) { /* begun anew each time, it would never end */
+        return refuse(robot, robot->job->number);
+    }
     grobo_i_jobs_end(robot, NULL, GROBO_ERR_CANCELED);
     grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
     grobo_sequencer_reset(&robot->sequencer);
     grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
     (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
     grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
-    robot->counters.estops++;
     robot->halts_owed = 0;
     robot->stop_owed = true;
     int number = robot->link ? grobo_i_estop_start(robot) : GROBO_ERR_CLOSED;

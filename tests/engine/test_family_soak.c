@@ -457,13 +457,19 @@ static void ask_estop(void)
 {
     int result = grobo_robot_estop(&kit.robot);
     user.latched = user.latched || result > 0;
-    user.estop = result > 0 ? result : user.estop;
-    began(result);
+    if (result != user.estop) { /* it is being carried out */
+        user.estop = result > 0 ? result : user.estop;
+        began(result);
+    }
 }
 
 static void ask_exit(void)
 {
-    began(grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD));
+    bool again = grobo_robot_job(&kit.robot) == GROBO_JOB_EXIT;
+    int result = grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD);
+    if (!again || result < 0) {
+        began(result);
+    }
 }
 
 static void ask_free(void)

@@ -360,7 +360,7 @@ static void an_angle_alone_hides_no_turning(void **state)
     }
 }
 
-/* The angle before is from before the frame that sent it elsewhere, of servos that tell no speed. */
+/* Of servos that tell no speed: the angle before is of before the frame that sent it elsewhere. */
 static void two_ways_have_no_speed(void **state)
 {
     (void)state;
