@@ -89,7 +89,8 @@ typedef enum grobo_dxl2_mode {
 
 /** Bits of the drive mode. */
 #define GROBO_DXL2_DRIVE_REVERSE 0x01u
-#define GROBO_DXL2_DRIVE_TIME 0x04u /**< profiles by duration instead of by velocity */
+#define GROBO_DXL2_DRIVE_TIME 0x04u  /**< profiles by duration instead of by velocity */
+#define GROBO_DXL2_DRIVE_WAKES 0x08u /**< a goal switches torque on */
 
 /** A frame taken apart, or to be put together. Fields that an instruction lacks are 0. */
 typedef struct grobo_dxl2_packet {

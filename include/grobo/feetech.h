@@ -39,6 +39,7 @@ typedef enum grobo_sts_mode {
 #define GROBO_STS_PHASE_FINE_SPEED 0x04u /**< a count of speed is 1 step/s, else 50 */
 #define GROBO_STS_PHASE_ZERO_FULL 0x08u  /**< a speed of 0 is full speed, else none */
 #define GROBO_STS_PHASE_TURNS 0x10u      /**< the position counts turns */
+#define GROBO_STS_PHASE_FEEDBACK 0x80u   /**< the position counts backwards, with REVERSE only */
 
 /** The protocol, for the bus. Servos must have a reply level of 1, as they leave the factory. */
 GROBO_API extern const grobo_protocol grobo_feetech_protocol;

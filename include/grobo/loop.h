@@ -20,7 +20,7 @@ struct event_base;
  * Makes an event_base whose timers keep microseconds: a default base rounds to the 4 ms of the
  * coarse clock and misses a period of 10 ms by 2. Any event_base works with this library, this
  * one keeps time. Freed by the caller with event_base_free(), after everything made on it.
- * @return NULL when memory is out or libevent has no backend.
+ * @return NULL when memory or descriptors are out, or libevent has no backend.
  */
 GROBO_API struct event_base *grobo_loop_new(void);
 

@@ -22,12 +22,14 @@
  * - Readings run beside everything but what has the robot for itself: the check, the preparation
  *   of a play, flash and restart, a stored motion, the exit, the emergency stop.
  * - Moves and readings that cannot begin yet wait in their order (GROBO_ROBOT_QUEUE of them, then
- *   GROBO_ERR_FULL) for GROBO_ROBOT_QUEUE_US at most (GROBO_ERR_STALE). A stop, a trip, a lost
- *   line and free mode end what waits.
+ *   GROBO_ERR_FULL) for GROBO_ROBOT_QUEUE_US at most (GROBO_ERR_STALE). A stop, a trip, a motion
+ *   that fails, a lost line and free mode end what waits. Where a pump that is held up has 20 ends
+ *   and other events to report, they are refused with GROBO_ERR_FULL too.
  * - Torque off and brake, stop, exit and the emergency stop take the place of what is in their way.
  * - All others are refused with GROBO_ERR_STATE while their joints are busy.
  * Playing is not a job: grobo_robot_play() prepares as a job, then the sequencer runs beside the
- * jobs until GROBO_EVENT_PLAY reports its end.
+ * jobs until GROBO_EVENT_PLAY reports its end. A motion that fails stops what moves beside it, as
+ * grobo_robot_stop() does.
  *
  * Safety, on every path, judged as the bytes leave, by grobo_robot_tx():
  * - Every target is finite and within the joint's limits (refused, or clamped if so configured).
@@ -94,8 +96,9 @@ GROBO_API int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, gro
 GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode);
 
 /**
- * Moves the joints that `target` sets, in target->time_us or as much longer as is safe, then reads
- * them. Ends when they are there. Errors at once: GROBO_ERR_LIMIT, GROBO_ERR_NAN (see
+ * Moves the joints that `target` sets, in target->time_us (0 or less: the default time; more than
+ * grobo_driver.time_max_us: that) or as much longer as is safe, then reads them. Ends when they are
+ * there. Errors at once: GROBO_ERR_LIMIT, GROBO_ERR_NAN (see
  * grobo_robot_fault()), GROBO_ERR_ARG; later GROBO_ERR_SPEED: the wire has no time that is long
  * enough; also GROBO_ERR_STATE for a joint that the motion being played sets.
  */
@@ -104,8 +107,9 @@ GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target);
 /**
  * Gives the move under way another target, which leaves next: the job ends when the joints are at
  * the target given last. For targets that come one after the other, each before the one before is
- * reached. What this target sets must include what the one before set; joints that it sets besides
- * must have been sensed and hold, as for grobo_robot_send(); a move that has them loses them.
+ * reached. What this target sets must include what the one before set (of several moves the first
+ * of which that is true); joints that it sets besides must have been sensed and hold, as for
+ * grobo_robot_send(); a move that has them loses them.
  * @return the number of that job, or an error, and then the move is as it was: GROBO_ERR_STATE
  *         where no move is under way, or none that may be redirected yet: its first target waits to
  *         leave, or is the slow first one and was not read back; or where a motion or another job
@@ -163,7 +167,8 @@ GROBO_API int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int
 /**
  * What servos do when a program ends: stops a motion, carries the policy out and reads it back,
  * within exit_bound_us. Takes the place of a job that runs (that one ends with
- * GROBO_ERR_CANCELED). Works when tripped; then GROBO_EXIT_SIT is carried out as GROBO_EXIT_HOLD.
+ * GROBO_ERR_CANCELED); where an exit of the same policy runs it returns the number of that one.
+ * Works when tripped; then GROBO_EXIT_SIT is carried out as GROBO_EXIT_HOLD.
  * @param policy GROBO_EXIT_DEFAULT: the configuration's.
  */
 GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy);
@@ -173,7 +178,9 @@ GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy);
  * every joint back and repeats what did not take, for at most 10 s. Where the driver has no
  * `torque`, or that fails, all joints are halted and hold instead. Latched until
  * grobo_robot_reset(). Never refused but for GROBO_ERR_CLOSED, where it is latched all the same,
- * and carried out as soon as the line is there: so is one that the line was lost under.
+ * and carried out as soon as the line is there: so is one that the line was lost under. Asked for
+ * again while it is carried out, it returns the number of that job; its trip is reported once until
+ * the reset. So a callback may answer each trip, or each job that fails, with it.
  */
 GROBO_API int grobo_robot_estop(grobo_robot *robot);
 

@@ -22,7 +22,9 @@
  *
  * Other threads and signal handlers may call grobo_session_post_estop(), grobo_session_post_stop(),
  * grobo_session_post_exit() and grobo_session_is_latched(), and nothing else of a session. The
- * program makes sure that none of them is called once the session is being freed.
+ * program makes sure that none of them is called once the session is being freed. A process that
+ * the program forked calls nothing of it, not even grobo_session_free(): port and loop are its
+ * parent's.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_SESSION_H

@@ -36,7 +36,8 @@
  * (GROBO_CONTROL_CALLS_MAX are under way; some more for a stop or an exit), GROBO_ERR_CLOSED
  * (the robot is not connected) and GROBO_ERR_UNPLUGGED (the line was lost while the call waited:
  * no call waits for a robot that is gone). Callbacks run on the thread that runs the loop, without
- * any lock held.
+ * any lock held. The functions of a driver and of a clip run with the robot's lock, on whatever
+ * thread asks for it: they may call at-once functions of other robots, which do not call back.
  *
  * Joints count from 0 in joint order. The exit policy of the robot's configuration is carried out,
  * within its bound, before the loop is left alone: at the end of the control thread, by
@@ -45,6 +46,8 @@
  * called by the program's own atexit() handler). Where the thread that owns the robot may die
  * without that, owner_timeout_us is the dead-man's handle; for the death of the whole process there
  * is session.guard (guard.h).
+ * A process that the program forked calls nothing here, not even grobo_control_free(): port and
+ * loop are its parent's.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_THREAD_H
@@ -348,8 +351,9 @@ GROBO_API int grobo_control_read_posture(grobo_control *control, grobo_posture *
 /** Reads one joint. Waits. @return GROBO_OK, or an error and *angle_rad is as it was. */
 GROBO_API int grobo_control_read_angle(grobo_control *control, int joint, double *angle_rad,
                                        int64_t timeout_us);
-/** Sets the initial posture (copied); all 0 before. At once. @return GROBO_OK, GROBO_ERR_LIMIT,
- *  GROBO_ERR_NAN, GROBO_ERR_ARG (other number of joints). */
+/** Sets the initial posture (copied); before, each joint at 0 or at the limit nearest to it. At
+ *  once. @return GROBO_OK, GROBO_ERR_LIMIT, GROBO_ERR_NAN, GROBO_ERR_ARG (other number of
+ *  joints). */
 GROBO_API int grobo_control_set_init_posture(grobo_control *control, const grobo_posture *posture);
 /** The initial posture. At once. */
 GROBO_API void grobo_control_get_init_posture(grobo_control *control, grobo_posture *posture);

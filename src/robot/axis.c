@@ -112,6 +112,11 @@ static int16_t dps_of(int32_t dps)
 void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got)
 {
     bool told = (got->valid & GROBO_FIELD_SPEED) != 0;
+    bool known = tells_speed(axis) && axis->seen_us >= axis->told_us &&
+                 seconds(axis->seen_us, asked_us) < GOES_ON_S;
+    if (known && !told) {
+        return; /* an angle alone would hide that it turns */
+    }
     axis->seen_rad = got->angle_rad;
     axis->seen_us = asked_us;
     axis->seen_dps = told ? dps_of(got->speed_dps) : GROBO_I_NO_SPEED;

@@ -7,7 +7,7 @@ static int controlled(grobo_robot *robot, int result)
 {
     if (grobo_sequencer_get_state(&robot->sequencer) == GROBO_SEQUENCER_FAILED &&
         robot->told_state != GROBO_SEQUENCER_FAILED) {
-        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+        grobo_i_stop_broken(robot);
     }
     grobo_i_end(robot);
     return result;

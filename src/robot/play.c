@@ -237,7 +237,7 @@ static void give_up(grobo_robot *robot, int error)
         grobo_i_trip(robot, error == GROBO_ERR_LIMIT ? GROBO_TRIP_LIMIT : GROBO_TRIP_NUMBER,
                      robot->fault_joint, robot->fault_deg, false);
     }
-    grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+    grobo_i_stop_broken(robot);
 }
 
 void grobo_i_play_done(grobo_robot_slot *slot, int result)
@@ -307,7 +307,7 @@ void grobo_i_play_step(grobo_robot *robot)
         }
     }
     if (more < 0) {
-        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+        grobo_i_stop_broken(robot);
     }
     robot->counters.late_frames += (uint32_t)(stats->late_frames - late_before);
     tell_unwatched(robot);

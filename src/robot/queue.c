@@ -109,9 +109,16 @@ static int begin(grobo_robot *robot, const grobo_robot_wish *wish)
     return number;
 }
 
+/* Of the events that may wait, so many are kept for the ends of what runs and waits, and for what
+ * a stop tells. */
+#define EVENTS_TO_END (GROBO_ROBOT_JOBS + GROBO_ROBOT_QUEUE + 4)
+
 int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_wish *wish)
 {
     int result = admit(robot, wish);
+    if (result >= 0 && robot->events_n >= GROBO_ROBOT_EVENTS - EVENTS_TO_END) {
+        result = GROBO_ERR_FULL; /* the pump has not told for long what has ended */
+    }
     if (result < 0) {
         return result;
     }

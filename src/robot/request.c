@@ -21,10 +21,11 @@ static int begin(grobo_robot *robot, int number)
     return number;
 }
 
-static int refuse(grobo_robot *robot, int error)
+/* Begins nothing: for an error, or because the job of this number carries it out. */
+static int refuse(grobo_robot *robot, int result)
 {
     grobo_i_end(robot);
-    return error;
+    return result;
 }
 
 int grobo_robot_check(grobo_robot *robot)
@@ -213,6 +214,19 @@ int grobo_robot_send(grobo_robot *robot, const grobo_posture *target)
     return result < 0 ? result : GROBO_OK;
 }
 
+/* Which of the jobs is the move that may go to these joints' target instead; NULL: none. */
+static grobo_robot_task *move_of(grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int i = 0; i < GROBO_ROBOT_JOBS && !robot->soft; i++) {
+        grobo_robot_task *job = &robot->jobs[i];
+        if (job->kind == GROBO_JOB_MOVE && (job->joints & ~joints) == 0 &&
+            grobo_i_move_is_sent(job)) {
+            return job;
+        }
+    }
+    return NULL;
+}
+
 int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
 {
     if (robot == NULL || target == NULL) {
@@ -220,9 +234,9 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
     }
     grobo_i_begin(robot);
     grobo_posture checked = *target;
+    grobo_robot_task *job = move_of(robot, target->set);
     int result = admit_target(robot, target);
-    bool sent = grobo_i_move_is_sent(robot) && !robot->soft;
-    if (result >= 0 && (!sent || (robot->job->joints & ~target->set) != 0)) {
+    if (result >= 0 && job == NULL) {
         result = GROBO_ERR_STATE;
     }
     if (result >= 0) {
@@ -232,10 +246,11 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
         result = GROBO_ERR_STALE;
     }
     if (result >= 0) {
-        result = grobo_i_move_takes(robot, checked.set & ~robot->job->joints);
+        result = grobo_i_move_takes(robot, checked.set & ~job->joints);
     }
     if (result >= 0) {
-        result = robot->job->number;
+        result = job->number;
+        robot->job = job;
         grobo_i_move_retarget(robot, &checked);
     }
     grobo_i_end(robot);
@@ -508,12 +523,16 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
                              : (unsigned)policy > GROBO_EXIT_SIT ? GROBO_ERR_ARG
                                                                  : GROBO_ERR_STATE);
     }
+    const grobo_robot_step_fn *script = exit_script(robot, policy);
+    if (robot->job->kind == GROBO_JOB_EXIT && robot->job->script == script) {
+        return refuse(robot, robot->job->number); /* it is being carried out */
+    }
     if (grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
     displace(robot, true);
     grobo_i_slots_cancel(robot, GROBO_I_USE_PLAIN); /* such as torque that free mode asked for */
-    int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, exit_script(robot, policy), 0);
+    int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, script, 0);
     robot->job->joints = grobo_i_all_joints(robot);
     robot->job->torque = GROBO_TORQUE_OFF;
     robot->job->bound_us =
@@ -544,13 +563,16 @@ int grobo_robot_estop(grobo_robot *robot)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
+    robot->counters.estops++;
+    if (robot->job->kind == GROBO_JOB_ESTOP) { /* begun anew each time, it would never end */
+        return refuse(robot, robot->job->number);
+    }
     grobo_i_jobs_end(robot, NULL, GROBO_ERR_CANCELED);
     grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
     grobo_sequencer_reset(&robot->sequencer);
     grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
     (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
     grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
-    robot->counters.estops++;
     robot->halts_owed = 0;
     robot->stop_owed = true;
     int number = robot->link ? grobo_i_estop_start(robot) : GROBO_ERR_CLOSED;

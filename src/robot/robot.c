@@ -194,6 +194,9 @@ int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t no
         robot->left_us = robot->now_us;
         robot->answered = false;
     }
+    if (robot->queue_may_go) { /* a job has ended, with what was refused */
+        grobo_i_jobs_close_up(robot);
+    }
     grobo_i_unlock(robot);
     return size;
 }

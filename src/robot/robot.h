@@ -381,6 +381,8 @@ void grobo_i_make_way(grobo_robot *robot);
 /* Cancels targets that wait, and halts what moves; while a motion is played, which ends by itself,
  * only what was sent beside it. */
 void grobo_i_stop_moves(grobo_robot *robot);
+/* A motion cannot go on: halts all that moves, and ends what moves or waits to move beside it. */
+void grobo_i_stop_broken(grobo_robot *robot);
 /* True if a job moves joints, or would: a stop ends it. */
 bool grobo_i_job_moves(const grobo_robot_task *job);
 
@@ -452,9 +454,9 @@ extern const grobo_robot_step_fn grobo_i_script_exit_off[];
 extern const grobo_robot_step_fn grobo_i_script_exit_hold[];
 extern const grobo_robot_step_fn grobo_i_script_exit_sit[];
 
-/* True if the job is a move whose target has been sent. */
-bool grobo_i_move_is_sent(const grobo_robot *robot);
-/* Sends the joints of such a move to another target, and goes on from there. */
+/* True if the target of a move has been sent. */
+bool grobo_i_move_is_sent(const grobo_robot_task *job);
+/* Sends the joints of such a move, robot.job, to another target, and goes on from there. */
 void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target);
 
 /* ---- turn.c ---------------------------------------------------------------------------------- */

@@ -607,7 +607,8 @@ static int step_quiet(grobo_robot *robot)
     bool still = !grobo_robot_is_playing(robot) && !grobo_i_slots_busy(robot, GROBO_I_USE_HALT);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        still = still && axis->next == 0 && axis->way.to_us <= robot->now_us;
+        bool ends = axis->way.to_us <= robot->now_us || !grobo_i_may_halt(robot);
+        still = still && axis->next == 0 && ends;
     }
     if (still) {
         return GROBO_I_NEXT;
@@ -749,13 +750,9 @@ const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
 
 /* ---- another target -------------------------------------------------------------------------- */
 
-bool grobo_i_move_is_sent(const grobo_robot *robot)
+bool grobo_i_move_is_sent(const grobo_robot_task *job)
 {
-    const grobo_robot_task *job = robot->job;
     unsigned sending = 0;
-    if (job->kind != GROBO_JOB_MOVE) {
-        return false;
-    }
     while (job->script[sending] != step_send) {
         sending++;
     }

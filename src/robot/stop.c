@@ -36,3 +36,16 @@ bool grobo_i_job_moves(const grobo_robot_task *job)
 {
     return job->kind == GROBO_JOB_MOVE || job->kind == GROBO_JOB_PLAY || job->order.moves;
 }
+
+/* Playing ends with what it could not do, and the preparation of it by itself. */
+static bool moves_beside(const grobo_robot_task *job)
+{
+    return job->kind != GROBO_JOB_PLAY && grobo_i_job_moves(job);
+}
+
+void grobo_i_stop_broken(grobo_robot *robot)
+{
+    grobo_i_jobs_end(robot, moves_beside, GROBO_ERR_CANCELED);
+    grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
+    grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+}

@@ -50,8 +50,8 @@ static bool must_end(const grobo_robot_task *job)
 void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value, bool latched)
 {
     GROBO_ASSERT(reason != GROBO_TRIP_NONE && joint < robot->driver->model->n_joints);
-    if (robot->trip.latched && reason != GROBO_TRIP_ESTOP) {
-        return; /* the first reason stays */
+    if (robot->trip.latched && (reason != GROBO_TRIP_ESTOP || robot->trip.trip == reason)) {
+        return; /* the first reason stays, and is told once */
     }
     grobo_event event = {.kind = GROBO_EVENT_TRIP};
     event.u.trip = (grobo_trip_info){reason, joint, value, robot->now_us, latched};

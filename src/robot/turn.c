@@ -165,6 +165,7 @@ static void settle(grobo_robot *robot)
 void grobo_i_leave(grobo_robot *robot)
 {
     GROBO_ASSERT(robot->depth > 0);
+    grobo_i_jobs_close_up(robot); /* before a callback asks for what runs */
     if (robot->depth == 1) {
         grobo_i_play_tell(robot);
         while (robot->events_n > 0) {
@@ -178,7 +179,6 @@ void grobo_i_leave(grobo_robot *robot)
             }
             grobo_i_play_tell(robot);
         }
-        grobo_i_jobs_close_up(robot);
         settle(robot);
     }
     robot->depth--;

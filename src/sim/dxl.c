@@ -245,6 +245,11 @@ void grobo_i_dxl_silence(const grobo_sim *sim, grobo_i_dxl_round *round, size_t 
     round->at_ns += (int64_t)n * sim->bus_byte_ns;
 }
 
+void grobo_i_dxl_beside(grobo_i_dxl_round *round, const grobo_i_dxl_round *own)
+{
+    round->at_ns = own->at_ns > round->at_ns ? own->at_ns : round->at_ns;
+}
+
 /* ---- inspection ---------------------------------------------------------------------------- */
 
 static const grobo_servo_register *begins(const grobo_sim_servo *servo, int address)
@@ -288,10 +293,10 @@ void grobo_i_dxl_tell(grobo_sim *sim, int index, const grobo_servo_register *reg
                                              .value2 = goal ? 0 : value});
 }
 
-int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, uint8_t id,
+int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, uint8_t id, int before,
                        const grobo_sim_event *raw)
 {
-    for (int i = 0; i < sim->n_servos; i++) {
+    for (int i = before + 1; i < sim->n_servos; i++) {
         if (sim->servo[i].family == family && sim->servo[i].plant.id == id &&
             grobo_i_sim_hears(sim, i, raw)) {
             return i;

@@ -52,8 +52,9 @@ int grobo_i_dxl_set(grobo_sim *sim, int servo, int address, int32_t value);
 
 /* Reports the value that was written to a register. */
 void grobo_i_dxl_tell(grobo_sim *sim, int servo, const grobo_servo_register *reg, int32_t value);
-/* The servo of a family that has this id and hears a packet; negative: none. */
-int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, uint8_t id,
+/* The next servo behind `before` (-1: the first) that has this id and hears a packet; negative: no
+ * more. Several may have one id, each is asked once. */
+int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, uint8_t id, int before,
                        const grobo_sim_event *raw);
 
 /* What the battery's voltage is for a servo: each has a supply of its own kind. */
@@ -75,5 +76,8 @@ typedef struct grobo_i_dxl_round {
 void grobo_i_dxl_answer(grobo_sim *sim, int servo, grobo_i_dxl_round *round, uint8_t *bytes,
                         size_t n);
 void grobo_i_dxl_silence(const grobo_sim *sim, grobo_i_dxl_round *round, size_t n);
+/* One of those with an id speaks when the one before is over, as the others do: its own round. The
+ * next id waits for the last of them. */
+void grobo_i_dxl_beside(grobo_i_dxl_round *round, const grobo_i_dxl_round *own);
 
 #endif

@@ -119,7 +119,11 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
     int32_t ticks = grobo_i_dxl_ticks(servo, reverses(servo), angle_mdeg);
     int32_t turn = grobo_i_dxl_turn(servo);
     int32_t offset = grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
-    ticks = is_feetech(servo) ? ticks - offset : ticks + offset;
+    if (is_feetech(servo)) {
+        ticks -= offset;
+    } else if (counts_turns(servo)) { /* of MX; else it means nothing */
+        ticks += offset;
+    }
     if (turn == 0 && reverses(servo)) {
         ticks += 2 * servo->model->middle;
     }
@@ -654,11 +658,18 @@ static void for_one(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
 static void read_one(grobo_sim *sim, const grobo_sim_event *raw, grobo_i_dxl_round *round,
                      dxl1_series series, const grobo_dxl1_packet *one)
 {
-    int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, one->id, raw);
-    if (index < 0 || series_of(&sim->servo[index]) != series) {
+    const grobo_i_dxl_round begin = *round;
+    bool silent = true;
+    for (int i = -1; (i = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, one->id, i, raw)) >= 0;) {
+        grobo_i_dxl_round own = begin;
+        if (series_of(&sim->servo[i]) == series) {
+            answer_read(sim, i, &own, one->address, one->length);
+            grobo_i_dxl_beside(round, &own);
+            silent = false;
+        }
+    }
+    if (silent) {
         grobo_i_dxl_silence(sim, round, GROBO_DXL1_OVERHEAD_BYTES + (size_t)one->length);
-    } else {
-        answer_read(sim, index, round, one->address, one->length);
     }
 }
 
@@ -672,13 +683,18 @@ static void sync_read(grobo_sim *sim, const grobo_dxl1_packet *packet, const gro
     }
 }
 
+/* An id that comes again counts once (emanual, bulk read). */
 static void bulk_read(grobo_sim *sim, const grobo_dxl1_packet *packet, const grobo_sim_event *raw)
 {
     grobo_i_dxl_round round = {0};
+    bool seen[GROBO_DXL1_ID_ALL + 2] = {false};
     for (size_t i = 1; i + 3 <= packet->data_bytes; i += 3) {
         const uint8_t *item = packet->data + i;
         const grobo_dxl1_packet one = {.length = item[0], .id = item[1], .address = item[2]};
-        read_one(sim, raw, &round, MX, &one);
+        if (!seen[one.id]) {
+            read_one(sim, raw, &round, MX, &one);
+        }
+        seen[one.id] = true;
     }
 }
 
@@ -686,9 +702,9 @@ static void sync_write(grobo_sim *sim, const grobo_dxl1_packet *packet, const gr
 {
     size_t each = 1 + (size_t)packet->length;
     for (size_t at = 0; packet->length > 0 && at + each <= packet->data_bytes; at += each) {
-        int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, packet->data[at], raw);
-        if (index >= 0) {
-            (void)write(sim, index, packet->address, packet->data + at + 1, packet->length);
+        const uint8_t *data = packet->data + at;
+        for (int i = -1; (i = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, *data, i, raw)) >= 0;) {
+            (void)write(sim, i, packet->address, data + 1, packet->length);
         }
     }
 }
@@ -698,10 +714,15 @@ static void ping_all(grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_i_dxl_round turn = {0};
     for (int id = 0; id <= GROBO_DXL1_ID_MAX; id++) {
-        int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, (uint8_t)id, raw);
-        grobo_i_dxl_round once = {0};
-        if (index >= 0) {
-            answer(sim, index, series_of(&sim->servo[index]) == STS ? &turn : &once, 0, NULL, 0);
+        const grobo_i_dxl_round begin = turn;
+        const uint8_t its = (uint8_t)id;
+        for (int i = -1; (i = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, its, i, raw)) >= 0;) {
+            bool waits = series_of(&sim->servo[i]) == STS;
+            grobo_i_dxl_round own = waits ? begin : (grobo_i_dxl_round){0};
+            answer(sim, i, &own, 0, NULL, 0);
+            if (waits) {
+                grobo_i_dxl_beside(&turn, &own);
+            }
         }
     }
 }
@@ -755,10 +776,11 @@ static void broken(grobo_sim *sim, const uint8_t *bytes, size_t n)
                                  .servo = -1,
                                  .bytes = bytes,
                                  .n_bytes = n};
-    int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, bytes[2], &raw);
-    grobo_i_dxl_round round = {0};
-    if (index >= 0 && !is_feetech(&sim->servo[index]) && answers(&sim->servo[index], false)) {
-        answer(sim, index, &round, GROBO_DXL1_BAD_SUM, NULL, 0);
+    for (int i = -1; (i = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, bytes[2], i, &raw)) >= 0;) {
+        grobo_i_dxl_round round = {0};
+        if (!is_feetech(&sim->servo[i]) && answers(&sim->servo[i], false)) {
+            answer(sim, i, &round, GROBO_DXL1_BAD_SUM, NULL, 0);
+        }
     }
 }
 

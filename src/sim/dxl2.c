@@ -292,6 +292,11 @@ static bool is_goal(const grobo_servo_register *reg)
            reg->role == GROBO_ROLE_GOAL_CURRENT || reg->role == GROBO_ROLE_GOAL_PWM;
 }
 
+static bool is_shut_down(const grobo_sim_servo *servo)
+{
+    return (servo->status & grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN)) != 0;
+}
+
 /* Whether a register may get a value. */
 static uint8_t judge_value(const grobo_sim_servo *servo, const grobo_servo_register *reg,
                            int32_t value)
@@ -304,8 +309,7 @@ static uint8_t judge_value(const grobo_sim_servo *servo, const grobo_servo_regis
         (reg->role == GROBO_ROLE_WATCHDOG && value < 0)) {
         return GROBO_DXL2_BAD_RANGE;
     }
-    int32_t shutdown = grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN);
-    if (reg->role == GROBO_ROLE_TORQUE && value == 1 && (servo->status & shutdown) != 0) {
+    if (reg->role == GROBO_ROLE_TORQUE && value == 1 && is_shut_down(servo)) {
         return GROBO_DXL2_FAILED;
     }
     return outside_limits(servo, reg, value);
@@ -341,6 +345,13 @@ static uint8_t judge(const grobo_sim_servo *servo, int address, const uint8_t *b
     return hit ? GROBO_DXL2_DONE : GROBO_DXL2_NO_ACCESS;
 }
 
+/* By its drive mode, any goal switches torque on. */
+static bool wakes(const grobo_sim_servo *servo)
+{
+    return (grobo_i_dxl_get(servo, GROBO_ROLE_DIRECTION) & (int)GROBO_DXL2_DRIVE_WAKES) != 0 &&
+           !is_shut_down(servo);
+}
+
 /* Gains and profile of the new mode; the same rows as from the factory. */
 static void mode_written(grobo_sim *sim, int index)
 {
@@ -368,12 +379,13 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
     int32_t value = grobo_servo_register_get(servo->model, reg, &servo->reg[reg->address]);
     if (reg->role == GROBO_ROLE_MODE) {
         mode_written(sim, index);
+    } else if (is_goal(reg) && wakes(servo)) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 1);
     }
     follow(sim, index);
-    if (reg->role == GROBO_ROLE_TORQUE) {
-        grobo_i_sim_torque(sim, index, before);
-    } else if (servo->plant.torque == GROBO_TORQUE_ON && is_goal(reg) &&
-               (reg->role == GROBO_ROLE_GOAL || servo->plant.wheel)) {
+    grobo_i_sim_torque(sim, index, before);
+    if (servo->plant.torque == GROBO_TORQUE_ON && is_goal(reg) &&
+        (reg->role == GROBO_ROLE_GOAL || servo->plant.wheel)) {
         grobo_i_sim_set_out(sim, index);
     }
     grobo_i_dxl_tell(sim, index, reg, value);
@@ -522,7 +534,8 @@ static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl2_packet *pac
     uint8_t code = packet->instruction;
     bool by_second = packet->id != sim->servo[index].plant.id && packet->id != GROBO_DXL2_ID_ALL;
     bool writes = code == GROBO_DXL2_WRITE || code == GROBO_DXL2_REG_WRITE;
-    if (by_second && writes && packet->address < EEPROM_END) { /* not by the secondary id */
+    bool kept = code == GROBO_DXL2_FACTORY_RESET || (writes && packet->address < EEPROM_END);
+    if (by_second && kept) { /* not by the secondary id */
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->address);
         return GROBO_DXL2_NO_ACCESS;
     }
@@ -615,9 +628,9 @@ static bool next_item(const grobo_dxl2_packet *packet, size_t *at, item *found)
     return true;
 }
 
-static int hearer(grobo_sim *sim, uint8_t id, const grobo_sim_event *raw)
+static int hearer(grobo_sim *sim, uint8_t id, int before, const grobo_sim_event *raw)
 {
-    int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl2, id, raw);
+    int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl2, id, before, raw);
     if (index >= 0) {
         sim->servo[index].heard_us = sim->now_us;
     }
@@ -629,24 +642,27 @@ static void read_each(grobo_sim *sim, const grobo_dxl2_packet *packet, const gro
     grobo_i_dxl_round round = {0};
     item one;
     for (size_t at = 0; next_item(packet, &at, &one);) {
-        int index = hearer(sim, one.id, raw);
+        const grobo_i_dxl_round begin = round;
+        int index = hearer(sim, one.id, -1, raw);
         if (index < 0) {
             grobo_i_dxl_silence(sim, &round, GROBO_DXL2_STATUS_BYTES + (size_t)one.length);
-        } else {
-            answer_read(sim, index, &round, one.address, one.length);
+        }
+        for (; index >= 0; index = hearer(sim, one.id, index, raw)) {
+            grobo_i_dxl_round own = begin;
+            answer_read(sim, index, &own, one.address, one.length);
+            grobo_i_dxl_beside(&round, &own);
         }
     }
 }
 
-/* The bytes that one servo adds to a fast status: the first the head of all. */
-static size_t fast_part(grobo_sim *sim, int index, const item *one, uint8_t *bytes, size_t n)
+/* What one servo adds to a fast status, without its CRC. */
+static void fast_part(grobo_sim *sim, int index, const item *one, uint8_t *bytes)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     refresh(sim, index);
-    bytes[n++] = with_alert(servo, GROBO_DXL2_DONE);
-    bytes[n++] = one->id;
-    memcpy(bytes + n, &servo->reg[one->address], one->length);
-    return n + one->length;
+    bytes[0] = with_alert(servo, GROBO_DXL2_DONE);
+    bytes[1] = one->id;
+    memcpy(bytes + 2, &servo->reg[one->address], one->length);
 }
 
 /* Older firmware of an XL330 is silent (issue pollen-robotics/rustypot#122). Of other models
@@ -674,19 +690,23 @@ static void read_fast(grobo_sim *sim, const grobo_dxl2_packet *packet, const gro
     }
     grobo_i_put_u16(bytes + 5, (uint16_t)length);
     for (size_t at = 0; next_item(packet, &at, &one); n = 0) {
-        int index = hearer(sim, one.id, raw);
+        int index = hearer(sim, one.id, -1, raw);
         if (index < 0 || !answers_fast(&sim->servo[index], &one)) {
             return;
         }
         if (at_ns < 0) {
             at_ns = (int64_t)grobo_i_dxl_get(&sim->servo[index], GROBO_ROLE_RETURN_DELAY) * 2000;
         }
-        n = fast_part(sim, index, &one, bytes, n);
-        crc = grobo_dxl2_crc(crc, bytes, n);
-        grobo_i_put_u16(bytes + n, crc);
-        crc = grobo_dxl2_crc(crc, bytes + n, 2);
-        grobo_i_sim_speak(sim, index, bytes, n + 2, at_ns);
-        at_ns += (int64_t)(n + 2) * sim->bus_byte_ns;
+        const size_t end = n + 2u + one.length;
+        const uint16_t before = crc;
+        for (; index >= 0; index = hearer(sim, one.id, index, raw)) {
+            fast_part(sim, index, &one, bytes + n);
+            crc = grobo_dxl2_crc(before, bytes, end);
+            grobo_i_put_u16(bytes + end, crc);
+            crc = grobo_dxl2_crc(crc, bytes + end, 2);
+            grobo_i_sim_speak(sim, index, bytes, end + 2, at_ns);
+        }
+        at_ns += (int64_t)(end + 2) * sim->bus_byte_ns;
     }
 }
 
@@ -694,9 +714,8 @@ static void write_each(grobo_sim *sim, const grobo_dxl2_packet *packet, const gr
 {
     item one;
     for (size_t at = 0; next_item(packet, &at, &one);) {
-        int index = hearer(sim, one.id, raw);
-        if (index >= 0) {
-            (void)write(sim, index, one.address, one.data, one.length);
+        for (int i = -1; (i = hearer(sim, one.id, i, raw)) >= 0;) {
+            (void)write(sim, i, one.address, one.data, one.length);
         }
     }
 }
@@ -706,9 +725,11 @@ static void ping_all(grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_i_dxl_round round = {0};
     for (int id = 0; id <= GROBO_DXL2_ID_MAX; id++) {
-        int index = hearer(sim, (uint8_t)id, raw);
-        if (index >= 0) {
-            ping(sim, index, &round);
+        const grobo_i_dxl_round begin = round;
+        for (int i = -1; (i = hearer(sim, (uint8_t)id, i, raw)) >= 0;) {
+            grobo_i_dxl_round own = begin;
+            ping(sim, i, &own);
+            grobo_i_dxl_beside(&round, &own);
         }
     }
 }
@@ -733,14 +754,13 @@ static void spread(grobo_sim *sim, const grobo_dxl2_packet *packet, int result,
             continue;
         }
         servo->heard_us = sim->now_us;
-        if (result == GROBO_ERR_SHORT) {
-            if (packet->id == servo->plant.id) {
-                answer(sim, i, &round, GROBO_DXL2_BAD_LENGTH, NULL, 0);
-            }
-        } else if (packet->instruction == GROBO_DXL2_PING) {
-            ping(sim, i, &round);
-        } else {
+        bool named = packet->id == servo->plant.id; /* to its second id it says nothing */
+        if (result >= 0 && packet->instruction != GROBO_DXL2_PING) {
             for_one(sim, i, packet);
+        } else if (named && result >= 0) {
+            ping(sim, i, &round);
+        } else if (named) {
+            answer(sim, i, &round, GROBO_DXL2_BAD_LENGTH, NULL, 0);
         }
     }
 }

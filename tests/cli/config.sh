@@ -69,6 +69,21 @@ dry() {
     exits 0 "$GRCTL" calibrate m5 7 --dry-run && cmp "$config" "$work/before"
 }
 check "--dry-run writes nothing" dry
+# The second one finds the file as the first one, and a person, have left it.
+one_by_one() {
+    {
+        echo 'calibrate m5 1.5'
+        until grep -q '1\.5' "$config"; do sleep 0.05; done
+        sed 's/^default:/# a line more\n&/' "$config" >"$work/more" && cp "$work/more" "$config"
+        echo 'calibrate m12 -3'
+    } | "$GRCTL" -d kitchen --yes shell >"$work/out" 2>"$work/err" || { cat "$work/err"; return 1; }
+    diff "$config" - <<EOF
+$(sed 's/^default:/# a line more\n&/; s/trim: {R_KNEE.*}/trim: {R_KNEE_P: -3, R_ELBOW_P: 1.5}/' \
+    "$work/before")
+EOF
+}
+check "one after the other in a shell" one_by_one
+cp "$work/before" "$config"
 
 # By measuring: the robot stands in its initial posture but for one joint.
 exits 0 on_robot init --time 500
@@ -193,7 +208,26 @@ robots:
   kitchen: &a {device: /dev/x}
   cellar:  *a
 EOF
+check "a robot twice" bad '3:3: kitchen is there twice' <<'EOF'
+robots:
+  kitchen: {device: /dev/x, trim: {m5: 1}}
+  kitchen: {device: /dev/x, trim: {m5: 2}}
+EOF
+check "a key twice" bad '2:44: trim is there twice' <<'EOF'
+robots:
+  kitchen: {device: /dev/x, trim: {m5: 1}, trim: {m6: 2}}
+EOF
+check "a joint twice, by its motor and by its name" bad '2:43: R_ELBOW_P is there twice' <<'EOF'
+robots:
+  kitchen: {device: /dev/x, trim: {m5: 1, R_ELBOW_P: 2}}
+EOF
 check "it does not keep others from working" exits 0 "$GRCTL" check motions/greet.pseq
+if [ -z "${NATIVE_GRCTL:-}" ]; then
+    ln -sf config.yaml "$config"
+    check "a link to itself is not taken for no file" \
+        fails 3 'config.yaml: ' "$GRCTL" -d kitchen status
+    rm "$config"
+fi
 written <<'EOF'
 default: attic
 EOF

@@ -91,6 +91,25 @@ check 'an instruction that these servos do not have' decodes --family scs \
 sync read present_position of servo 1, servo 2; these servos have no sync read; sum 3C right; \
     reply: 16 bytes
 TEXT
+check 'what another protocol has at that place' decodes --family dynamixel1 \
+    FFFF01058A01020369 <<'TEXT'
+fast sync read servo 1: 3 bytes 01 02 03; these servos have no fast sync read; sum 69 right; \
+    reply: 6 bytes
+TEXT
+check 'the same of Feetech' decodes --family feetech FFFF0106920002011E45 <<'TEXT'
+bulk read servo 1: 4 bytes 00 02 01 1E; these servos have no bulk read; sum 45 right; \
+    reply: 8 bytes
+TEXT
+check 'the same of DYNAMIXEL 2.0' decodes --family dynamixel2 FFFFFD000103000B254E <<'TEXT'
+calibrate servo 1; these servos have no calibrate; CRC 4E25 right; reply: 11 bytes
+TEXT
+check 'a list of nothing' decodes --family dynamixel2 fffffd00fe090082840000000102cd2a \
+    fffffd00fe090083840000000102deab <<'TEXT'
+sync read nothing at 132 of servo 1, servo 2; it reads nothing; CRC 2ACD right; reply: 22 bytes
+sync write 2 servos: nothing at 132; it writes nothing; CRC ABDE right; no reply
+    servo 1: nothing at 132
+    servo 2: nothing at 132
+TEXT
 check 'Hiwonder' decodes --family lx16a 555501031CDF 555501051CF401E8 5555010328D3 <<'TEXT'
 read present_position of servo 1; sum DF right; reply: 8 bytes
 servo 1 returns present_position 0.0 deg; sum E8 right

@@ -213,6 +213,31 @@ reset_of_busy() {
     [ $busy_status -eq 0 ] && exits 0 on_robot move m5 0 500
 }
 
+# Nothing stands any more: this grctl itself has the port then, and that is no news.
+reset_again() {
+    exits 0 on_robot estop && exits 0 on_robot estop --reset && exits 0 on_robot estop --reset &&
+        ! grep 'which has the port' "$work/err"
+}
+
+# unplugged: the line goes while the stop is sent. It is owed, also by who has not heard of it.
+has_sent() {
+    [ "$(wc -c <"$work/unplugged.pcapng")" -gt 500 ]
+}
+unplugged() {
+    exits 0 on_robot servo on && tell silent all on || return 1
+    rm -f "$work/unplugged.pcapng"
+    on_robot --trace "$work/unplugged.pcapng" estop 2>"$work/unplugged" &
+    unplugged_pid=$!
+    wait_for has_sent && tell plug out
+    wait $unplugged_pid
+    unplugged_status=$?
+    tell silent all off && tell plug in && wait_for test -e "$robot" || return 1
+    cat "$work/unplugged"
+    [ $unplugged_status -eq 1 ] && grep -q 'NOT verified; switch the robot off' "$work/unplugged" &&
+        fails 4 "stopped by 'grctl estop'" on_robot move m5 0 && braked &&
+        exits 0 on_robot estop --reset
+}
+
 # with_tmp MOUNTS COMMAND: with another /tmp and no session, as root of a name space.
 with_tmp() {
     env -u XDG_RUNTIME_DIR -u XDG_CONFIG_HOME -u XDG_STATE_HOME unshare -m sh -c "$1"' &&
@@ -268,6 +293,8 @@ if [ -z "${NATIVE_GRCTL:-}" ]; then # there nobody is stopped, and nobody else h
     fi
     check "the device is missing" missing
     check "taken back while another grctl has the port" reset_of_busy
+    check "taken back twice" reset_again
+    check "unplugged while it stops" unplugged
     if unshare -m true 2>/dev/null; then
         check "no mark can be written" unwritable
         check "who could not see a mark is not resumed" unwritable_and_frozen

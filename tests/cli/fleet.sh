@@ -45,10 +45,43 @@ check_json "how they are" \
     fleet status --json
 check "a broker that is not there" fails 1 'fleet: 127.0.0.1: ' \
     "$GRCTL" fleet list --broker mqtt://127.0.0.1:1
+lonely() { # said once, however often it is tried again
+    "$GRCTL" -d one agent --broker mqtt://127.0.0.1:1 --host lonely 2>"$work/lonely.err" 3>&- &
+    lonely=$!
+    echo $lonely >>"$work/pids"
+    written "$work/lonely.err" 'the broker is away: '
+    lonely_status=$?
+    kill -TERM "$lonely"
+    wait "$lonely"
+    [ $lonely_status -eq 0 ] && [ "$(grep -c 'is away' "$work/lonely.err")" -eq 1 ]
+}
+check "an agent says so, and keeps trying" lonely
+signs_off() { # a broker that takes who comes, and says at once that it shuts down
+    off_port=$(find_port && echo $port)
+    python3 tests/support/mqtt.py "$off_port" goodbye >"$work/off.out" 2>&1 3>&- &
+    echo $! >>"$work/pids"
+    "$GRCTL" -d one agent --broker "mqtt://127.0.0.1:$off_port" --host off 2>"$work/off.err" 3>&- &
+    off=$!
+    echo $off >>"$work/pids"
+    written "$work/off.err" 'is away: Server shutting down'
+    off_status=$?
+    kill -TERM "$off"
+    wait "$off"
+    ! grep -e '\[warn\]' "$work/off.err" && return $off_status
+}
+if have_json; then
+    check "what a broker says at its end is told, and nothing else" signs_off
+else
+    skip "what a broker says at its end" "no python3 here"
+fi
 check "a broker that is none" fails 2 'is wanted' "$GRCTL" fleet list --broker http://x
 check "TLS wants certificates to check by" fails 2 '--ca names the file' \
     "$GRCTL" fleet list --broker mqtts://127.0.0.1
 check "no such order" fails 2 'there are list, status' fleet dance
+check "a file is missing" fails 2 'fleet push needs FILE' fleet push
+check "so for a motion" fails 2 'fleet play needs FILE' fleet play
+check "a group without its option resets nothing" \
+    fails 2 "fleet reset: 'one' is one argument too many; a group is --group one" fleet reset one
 check "an agent has robots of the configuration" fails 2 'agent: -d names a robot or a group' \
     "$GRCTL" -d sim agent --broker "$broker"
 
@@ -150,6 +183,11 @@ check "until it is taken back" exits 0 fleet reset --group one
 check "a soft stop" stopped stop
 check "stands as well" fails 1 'a stop of group one stands' fleet play greet.pseq --group one
 check "and is taken back" exits 0 fleet reset --group one
+mistaken() {
+    plays && exits 2 fleet stop two --group one && grep -q "'two' is one argument" "$work/err" &&
+        complains_of a && ended 1 && exits 0 fleet reset --group one
+}
+check "a word too many is reported after the stop" mistaken
 # A stop of all, one of the group, and that of the group taken back.
 two_stops() {
     exits 1 fleet estop && exits 0 fleet stop --group one && exits 1 fleet reset --group one &&
@@ -351,6 +389,43 @@ broken() {
     wait_for is_listed one ONLINE && kill -9 "$agent" && wait_for is_listed one CONNECTIONBROKEN
 }
 check "the broker says it of one that died" broken
+again() {
+    begin_agent one --on-exit sit
+    wait_for is_listed one ONLINE && wait_for grep -q connected "$work/one.err" &&
+        ! grep -q 'another agent' "$work/one.err"
+}
+check "its next life is no other agent" again
+# Who leads is gone between the order to start and the start: then nothing begins and none leaves.
+abandoned() { # FINISH
+    : >"$work/one.err"
+    python3 tests/support/mqtt.py "$port" abandon one one \
+        '{"file":"greet.pseq","on_link_lost":"'$1'"}' >"$work/out" &&
+        json 'all(l["ok"] for l in lines)' &&
+        written "$work/one.err" 'the permit lapsed before the start: it stops' &&
+        python3 tests/support/mqtt.py "$port" still 1 3 >"$work/out" &&
+        json 'all(r["rests"] and r["came_deg"] < 1 and r["moved_deg"] < 1
+              for r in (lines[0]["one/a"], lines[0]["one/b"]))'
+}
+if have_json; then
+    check "a start whose leader is lost before it is none" abandoned finish
+    check "no exit policy is carried out before it either" abandoned exit
+else
+    skip "a start whose leader is lost before it" "no python3 here"
+fi
+has_connected_often() {
+    [ "$(grep -c '^connected' "$work/one.err")" -ge 6 ]
+}
+twins() { # two of them, each of which takes the other's place: after pauses that grow
+    twins_from=$(date +%s)
+    begin_agent two --host one
+    wait_for grep -q "has another agent of the name 'one'" "$work/one.err" &&
+        wait_for has_connected_often && [ $(($(date +%s) - twins_from)) -ge 2 ]
+    twins_status=$?
+    kill -TERM "$agent"
+    wait "$agent"
+    return $twins_status
+}
+check "two agents of one name are told so, and leave each other time" twins
 
 # ---- the schema ----------------------------------------------------------------------------------
 

@@ -62,6 +62,21 @@ cat >"$work/rows" <<'END'
 1|lines[0]["error"]["code"] == "noent"|-d /dev/none status
 2|lines[0]["error"]["code"] == "arg"|status --nonsense
 3|lines[0]["error"]["message"]|play /dev/null
+3|lines[0]["error"]["code"] == "syntax"|show WORK/number.m
+4|lines[0]["error"]["code"] == "limit"|-d sim play WORK/limit.m
+4|lines[0]["error"]["code"] == "speed"|-d sim play WORK/speed.m
+3|lines[0]["error"]["code"] == "unsupported"|convert motions/step.pseq WORK/step.m --robot so101
+2|lines[0]["error"]["code"] == "arg"|convert --to m motions/greet.pseq -
+2|lines[0]["error"]["code"] == "arg"|-d sim
+1|lines[0]["error"]["message"].endswith("x: no such folder")|sim --link /nonexistent/x
+3|"n.json: no such file" == lines[0]["error"]["message"]|--robot koch -d sim calibrate --from n.json
+3|lines[0]["error"]["code"] == "isdir"|-d sim --robot so101 calibrate --from tests
+3|lines[0]["error"]["code"] == "isdir"|decode tests
+3|lines[0]["error"]["code"] == "noent"|robot import none.urdf
+3|lines[0]["error"]["code"] == "isdir"|shell tests
+3|lines[0]["error"]["code"] == "isdir"|-d sim --trace /tmp status
+3|lines[0]["error"]["code"] == "exists"|-d sim --trace README.md status
+1|lines[0]["error"]["code"] == "perm"|-d /dev/null --yes setup
 4|lines[0]["error"]["code"] == "limit"|-d sim move m5 120
 END
 cat >"$work/one.body" <<'END'
@@ -69,6 +84,10 @@ format: ChoreonoidBody
 links: [{name: a}, {name: b, parent: a, jointType: revolute, jointAxis: X, jointRange: 90}]
 END
 mkdir -p "$work/config/grctl"
+echo '0 x' >"$work/number.m"
+zeros='0 0 0 0 0 0 0 0 0 0 0 0 0 0 0'
+echo "0  0 0 0 0 -1400 $zeros" >"$work/limit.m"
+printf '%s\n' "0  0 0 -1000 0 0 $zeros" "100  0 0 1000 0 0 $zeros" >"$work/speed.m"
 awk '/^<!-- file lerobot.json/ { on = 1; next } on && /^```$/ { exit } on && !/^```/' \
     docs/guide/arm.md >"$work/a.json"
 printf 'robots:\n  here: {device: sim}\n' >"$work/config/grctl/config.yaml"
@@ -166,6 +185,11 @@ rows() {
     done <"$work/rows"
 }
 rows run
+check "--json of an option" both exits 0 "$GRCTL" move --help --json \
+    --- json 'lines[0]["commands"][0]["name"] == "move"'
+check "as the schema says" fits help
+check "--json cut short, and a mistake behind it" both exits 2 "$GRCTL" --js status --nonsense \
+    --- json 'lines[0]["error"]["code"] == "arg"'
 
 # ---- what speaks until it is ended, and what a person leads --------------------------------------
 

@@ -46,10 +46,17 @@ fi
 monitor="'$GRCTL' -d '$work/robot' --retries 10 monitor motions/greet.pseq"
 monitor="$monitor; echo status \$?; stty -a"
 open_screen
-type_line "TERM=dumb $monitor"
+on_screen pipe-pane "cat >'$work/bytes'"
+type_line "printf begins; TERM=dumb $monitor"
 check "a dumb terminal: the table" until_screen 'R_KNEE_P  *-40.0'
 keys C-c
 until_screen 'status 130'
+on_screen pipe-pane
+no_escapes() {
+    wait_for grep -q 'status 130' "$work/bytes" &&
+        ! sed '1,/begins/d; /status 130/,$d' "$work/bytes" | grep "$(printf '\033')"
+}
+check "nothing that it cannot take" no_escapes
 
 began=$(date +%s)
 type_line "$monitor"

@@ -49,6 +49,13 @@ check "50 Hz for 5 s" plays 251 5000 --rate 50 --unwatched "$greet"
 check "by default what the line allows, through the board" plays 196 5000 "$greet"
 check "39 Hz may be asked for" plays 196 5000 --rate 39 "$greet"
 too_fast='40 frames a second leave no time to read the joints (at most 39); --unwatched plays them'
+printf 'type: PoseSeq\nname: t\nrefs:\n- {time: 0, refer: {type: Pose, joints: [0], q: [0]}}
+- {time: 1e9, refer: {type: Pose, joints: [0], q: [0]}}\n' >"$work/long.pseq"
+check "a motion of 31 years" fails 3 'long.pseq: larger than a built-in cap allows' \
+    "$GRCTL" play --dry-run "$work/long.pseq"
+sed 's/, joints: .*\]}/}/; s/1e9/1/' "$work/long.pseq" >"$work/still.pseq"
+check "a motion of no joints" fails 3 'still.pseq: no posture sets any joint' \
+    "$GRCTL" play --dry-run "$work/still.pseq"
 check "40 Hz may not" fails 4 "$too_fast" "$GRCTL" play --dry-run --rate 40 "$greet"
 check "nor on a robot, of which nothing is opened" \
     fails 4 "$too_fast" "$GRCTL" -d /dev/none play --rate 40 "$greet"

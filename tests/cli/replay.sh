@@ -165,6 +165,13 @@ too_fast() {
         exits 0 on_robot status R_KNEE_P && says '-45.0'
 }
 check 'a goal too fast for the joint is refused by the engine' too_fast
+"$GRCTL" -d sim -q --trace "$work/looks" status m3 >"$work/out"
+behind_refused() {
+    printf 'replay %s\nreplay %s\n' "$work/refused" "$work/looks" |
+        on_robot --yes shell --keep-going >"$work/out" 2>"$work/err"
+    says '^[1-9][0-9]* frames sent' || { cat "$work/err"; return 1; }
+}
+check 'in a shell the next one is another one' behind_refused
 # The engine takes torque only for a joint read just now: replay reads it, and compares nothing.
 on='53 09 FA AF 0C 00 24 01 01 01 29' # torque of R_KNEE_P
 torque_late() {

@@ -43,6 +43,13 @@ check "what is not known is said" both exits 0 take "$work/arm.body" --- \
 check_json "as JSON" 'lines[0]["name"] == "crane" and lines[0]["file"] is None and
     "STS3215" in lines[0]["text"] and lines[0]["n_joints"] == 2' take "$work/arm.body" --json
 check "another name" both exits 0 take "$work/arm.body" --name lift-1 --- says '^name: lift-1$'
+sed 's/jointType/joint_type/; s/jointRange/joint_range/; s/jointAxis/joint_axis/
+    s/jointId: 0/joint_id: 1, joint_velocity_range: [-100, 90]/
+    s/jointId: 1/joint_id: 0, max_joint_velocity: unlimited/' "$work/arm.body" >"$work/new.body"
+check "a body as Choreonoid writes it today" both exits 0 take "$work/new.body" --ids 1-2 \
+    --servo STS3215 --- says 'LIFT, id: 1, servo: STS3215, limits_deg: \[-20, 60\]}$'
+check "with the speed of its slower direction" \
+    says 'TURN, id: 2, servo: STS3215, limits_deg: \[-90, 90\], speed_deg_s: 90}$'
 check "too few ids" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1
 check "too many" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1-3
 check "ids that are none" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1,x
@@ -54,7 +61,7 @@ check "a servo that is none" fails 2 "no servo of family feetech is called 'XL43
 check "a list that is too short" fails 2 'one for each of 2 joints' \
     take "$work/arm.body" --servo STS3215,
 check "no such file" fails 3 'none.urdf: no such file' take "$work/none.urdf"
-check "a folder" fails 3 'is a folder' take "$work"
+check "a folder" fails 3 'is a directory' take "$work"
 check "nothing" fails 3 'neither a URDF nor a body' take /dev/null
 check "no end of it" fails 3 'longer than 4 MiB' take /dev/zero
 check "no folder" fails 3 'no such folder' take "$work/arm.body" -o "$work/none/arm.yaml"

@@ -97,4 +97,43 @@ else
     cell '--wiring=bus --echo' 16 near idle
     cell '--wiring=bus --echo' 0 far busy
 fi
+
+# stranger: id 3 of a bus of STS3215; when 250 is asked a second master asks it, too.
+stranger() {
+    cat >"$work/stranger.py" <<'PY'
+import os
+import tty
+
+near, far = os.openpty()
+tty.setraw(far)
+print(os.ttyname(far), flush=True)
+reply = bytes.fromhex("FF FF 03 07 00 03 09 00 09 03 DD")
+heard = b""
+while True:
+    heard += os.read(near, 4096)
+    while len(heard) >= 8:
+        if heard[2] in (3, 250):
+            os.write(near, reply)
+        heard = heard[8:]
+PY
+    mkfifo "$work/far"
+    python3 "$work/stranger.py" >"$work/far" &
+    line_pid=$!
+    read -r robot <"$work/far"
+    rm "$work/far"
+}
+# Waiting as long as those replies seem late took a quarter of an hour.
+ends_beside_a_stranger() {
+    timeout 120 "$GRCTL" -d "$robot" --robot so101 scan >"$work/out" 2>"$work/err"
+    [ $? -lt 2 ] && grep -q '^ *3  STS3215 ' "$work/out" && return
+    cat "$work/out" "$work/err"
+    return 1
+}
+if command -v python3 >/dev/null 2>&1 && ! by_tcp; then
+    stranger
+    check "another master asks a servo on the line" ends_beside_a_stranger
+    far_no_more
+else
+    skip "another master asks a servo on the line" "no python3, or no ptys"
+fi
 done_testing

@@ -11,6 +11,7 @@ check "hosts, origins, tokens, methods that are refused" pages refusals
 check "what is too large or never whole is refused" pages sizes
 check "no path leads out of the folder" pages escapes
 check "beyond loopback everything needs the token" pages beyond_loopback
+check "the link leads to the page, wherever it listens" pages printed_links
 check "the page: compressed, known by its hash, under a policy" pages page_files
 check "states come 30 times a second, events are kept" pages stream
 check "a stream that sends something is dropped" pages greedy
@@ -51,6 +52,8 @@ sys.exit(subprocess.run([sys.argv[1], "-d", "sim", "serve", "--port",
                          str(s.getsockname()[1])]).returncode)
 ' "$GRCTL"
 }
+check "an address of another machine is an error" fails 1 '--listen is no address of this machine' \
+    "$GRCTL" serve -d sim --port 0 --listen 999.1.1.1
 check "a port in use is an error" fails 1 'port [0-9]*: the port is in use' taken
 check "a folder that is none is an error" fails 3 'nowhere: no such folder' \
     "$GRCTL" -d sim serve --port 0 nowhere

@@ -25,6 +25,26 @@ version
 ' --- says '^    3  R_SHOULDER_P'
 check "both of them" says '^grctl [0-9]'
 check "the last line needs no end" both script 0 'version' --- says '^grctl'
+# Nothing of a command is left over for the next one of its kind.
+again() {
+    "$grctl" -d sim --trace "$work/again.pcapng" status >"$work/out" || return 1
+    for again_line in 'show motions/greet.pseq' 'show --rate 5 motions/step.pseq' \
+        "replay $work/again.pcapng" "decode $work/again.pcapng" \
+        'check --balance motions/step.pseq' \
+        'plot --balance -o - motions/step.pseq' \
+        'convert --to m motions/greet.pseq -' \
+        'play --dry-run motions/greet.pseq'; do
+        script 0 "$again_line
+" || return 1
+        cat "$work/out" "$work/out" "$work/out" "$work/out" >"$work/four"
+        script 0 "$again_line
+$again_line
+$again_line
+$again_line
+" && diff "$work/four" "$work/out" >"$work/more" || { sed 5q "$work/more"; return 1; }
+    done
+}
+check "the same command four times" again
 check "comments, blanks, quotes" both script 0 '
   # nothing
  status "m3" # that one

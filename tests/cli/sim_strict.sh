@@ -131,6 +131,8 @@ t 'Feetech: no frame' rubbish 'FF FF 01 01 00$' 'FF FF 01 01 00'
 chain='--robot koch'
 t 'DYNAMIXEL: a value out of range' range 'FF FF FD 00 01 06 00 03 40 00 09 .*$' \
     'FF FF FD 00 01 06 00 03 40 00 09 E8 E6'
+t "DYNAMIXEL: an instruction of Feetech's" request 'FF FF FD 00 01 03 00 0B 25 4E$' \
+    'FF FF FD 00 01 03 00 0B 25 4E'
 check "two families on a line" fails 2 'knows one family on a line' \
     "$GRCTL" sim --strict --servo 1=XL330-M288,2=STS3215
 done_testing

@@ -390,6 +390,16 @@ def a_page_without_the_token_watches_and_stops(browser, server):
 
 
 @test
+def a_new_link_in_an_old_tab_is_taken(browser, server):
+    page = browser.page(server.url + '#token=of-the-server-before')
+    with page.expect_event('load', timeout=LIMIT_MS): # the link itself loads nothing
+        page.evaluate('link => { location.href = link; }', server.link)
+    until(page, 'self.cockpit && cockpit.drawn > 0')
+    assert page.evaluate('cockpit.api.token') == TOKEN
+    drive(page)
+
+
+@test
 def the_token_leaves_the_address_bar(browser, server):
     page = browser.page(server.link)
     assert 'token' not in page.evaluate('location.href')
@@ -422,6 +432,84 @@ def a_slider_moves_its_joint_and_ends_at_the_limit(browser, server):
     until(page, "document.querySelector('.jog output').textContent.includes('at its limit')")
     state = server.wait(lambda s: abs(s['angle_deg'][joint] - limits[0]) < 2, 'the limit')
     assert state['target_deg'][joint] >= limits[0] - 0.11, state['target_deg']
+
+
+@test
+def a_question_holds_up_neither_control_nor_stop(browser, server):
+    page = browser.page(server.link)
+    drive(page)
+    torque_on(page, server)
+    page.click('#torque-off')
+    until(page, "document.activeElement.value === 'no'")
+    until(page, 'old => cockpit.state.time_ms > old + 4000', page.evaluate('cockpit.state.time_ms'))
+    assert page.evaluate("cockpit.lease.status()") == 'mine' # a reader takes his time
+    assert set(server.state()['torque']) == {'on'}
+    nothing_serious(page, 'a question')
+    page.click('#ask [value=yes]')
+    server.wait(lambda s: set(s['torque']) == {'off'}, 'torque off')
+    torque_on(page, server)
+    page.click('#torque-off')
+    page.click('#stop')
+    stopped(page)
+    page.locator('#ask [value=no]').focus()
+    page.keyboard.press('Escape')
+    until(page, "!document.getElementById('ask').open")
+    assert set(server.state()['torque']) == {'on'}
+
+
+HOLD_FIRST = """path => {
+    const real = self.fetch;
+    self.held = 0;
+    self.fetch = (...request) => request[0] !== path || self.held++ > 0 ? real(...request)
+        : new Promise((done) => { self.letGo = done; }).then(() => real(...request));
+}"""
+
+
+@test
+def a_drag_before_a_gap_of_the_network_moves_nothing_after_it(browser, server):
+    browser.expects('stale: ')
+    page = browser.page(server.link)
+    drive(page)
+    torque_on(page, server)
+    page.click('.joint:text-is("L_ELBOW_P")')
+    before = server.state()
+    page.evaluate(HOLD_FIRST, '/api/jog')
+    page.locator('.jog input[type=range]').focus()
+    page.keyboard.press('PageDown') # is under way
+    page.keyboard.press('PageDown') # waits
+    until(page, 'cockpit.joints.newest.next !== undefined')
+    until(page, 'old => cockpit.drawn > old + 40', before['sequence'])
+    page.evaluate('letGo()')
+    until(page, 'self.held === 2 && !cockpit.joints.newest.busy')
+    still(server)
+    worst = max(abs(a - b) for a, b in zip(before['angle_deg'], server.state()['angle_deg']))
+    assert worst < 1, f'a joint moved {worst} degrees'
+    until(page, "cockpit.lease.status() === 'mine'")
+
+
+@test
+def a_seek_before_a_gap_of_the_network_moves_nothing_after_it(browser, server):
+    browser.expects('stale: ')
+    page = browser.page(server.link)
+    drive(page)
+    loops(page, server, 200)
+    page.evaluate(HOLD_FIRST, '/api/seek')
+    page.evaluate("""() => {
+        const post = cockpit.api.post.bind(cockpit.api);
+        self.refused = [];
+        cockpit.api.post = (path, body) => post(path, body).catch((no) => {
+            refused.push(no.code);
+            throw no;
+        });
+        for (const ms of [300, 600]) {
+            document.getElementById('seek').value = ms;
+            document.getElementById('seek').dispatchEvent(new Event('input'));
+        }
+    }""")
+    until(page, 'old => cockpit.drawn > old + 40', page.evaluate('cockpit.drawn'))
+    page.evaluate('letGo()')
+    until(page, 'self.held === 2 && !cockpit.play.seek.busy')
+    assert page.evaluate('refused') == ['stale', 'stale'], page.evaluate('refused')
 
 
 @test
@@ -1201,8 +1289,9 @@ def a_file_that_changed_elsewhere_is_not_written_over(browser, server):
     page.click('#make-save-as')
     until(page, "document.getElementById('make-told').className === 'bad'")
     assert not (pathlib.Path(server.folder).parent / 'out.pseq').exists()
-    page.once('dialog', lambda d: d.dismiss()) # what is not saved is not left by mistake
-    page.select_option('#make-open', 'greet.pseq')
+    page.select_option('#make-open', 'greet.pseq') # what is not saved is not left by mistake
+    page.click('#ask [value=no]')
+    until(page, "document.getElementById('make-open').value === 'mine.pseq'")
     assert page.evaluate('cockpit.make.draft.name') == 'mine.pseq'
 
 

@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import sys
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'support'))
 os.environ.setdefault('LC_ALL', 'C.UTF-8')
@@ -157,6 +158,24 @@ def a_broker_that_is_away_is_seen_and_the_stop_goes_out_later(browser, server):
     server.fleet.begin_broker()
     until(page, "document.getElementById('stop-words').textContent === 'Stopped: 3 of 4 robots stand'",
           limit_ms=30000)
+
+
+@test
+def facts_that_do_not_come_are_asked_for_at_a_pace(browser, server):
+    browser.expects('ERR_FAILED', 'Failed to fetch')
+    page = open_page(browser, server)
+    asked = []
+
+    def refuse(route):
+        asked.append(time.monotonic())
+        route.abort()
+
+    page.route('**/api/fleet', refuse)
+    page.evaluate('cockpit.news = -1')
+    until(page, 'old => cockpit.state.sequence > old + 20', page.evaluate('cockpit.state.sequence'))
+    assert 1 <= len(asked) <= 2 + (time.monotonic() - asked[0]) / 1.5, asked
+    page.unroute('**/api/fleet')
+    until(page, 'cockpit.news === cockpit.state.news')
 
 
 @test

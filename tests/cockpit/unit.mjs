@@ -100,7 +100,7 @@ await test('solids are closed: their normals point outwards', async () => {
     }
 });
 
-const { EventParser, pauseMs } = await page('feed');
+const { EventParser, Feed, pauseMs } = await page('feed');
 await test('events are cut from pieces of any size', () => {
     const text = ': quiet\n\nevent: state\ndata: {"sequence": 1}\n\nid: 7\nevent: event\r\n' +
                  'data: one\ndata: two\r\n\r\n';
@@ -118,6 +118,32 @@ await test('the pauses before another attempt grow and end', () => {
     const pauses = [0, 1, 2, 3, 4, 50].map((n) => pauseMs(n, 0.5));
     same(pauses.every((p, n) => n === 0 || p >= pauses[n - 1]), true);
     same(pauses[5], 4000);
+});
+await test('a stream that is opened again at once is watched for silence too', async () => {
+    const real = globalThis.fetch, ends = [];
+    globalThis.fetch = (path, { signal }) => new Promise((_, fail) => {
+        ends.push(new Promise((done) => signal.addEventListener('abort', () => {
+            done('aborted');
+            fail(new Error('aborted'));
+        })));
+    });
+    try {
+        const feed = new Feed(() => {});
+        feed.start('token');
+        feed.stop();
+        feed.start('token');
+        same(await ends[0], 'aborted');
+        let timer;
+        const late = new Promise((done) => {
+            timer = setTimeout(done, 6000, 'open for 6 s');
+        });
+        const was = await Promise.race([ends[1], late]);
+        clearTimeout(timer);
+        feed.stop();
+        same(was, 'aborted');
+    } finally {
+        globalThis.fetch = real;
+    }
 });
 
 const { Lease } = await page('lease');
@@ -200,6 +226,30 @@ await test('a stop goes both ways, and again until it is acknowledged', async ()
     same(stopper.timer, null);
 });
 
+await test('a stop that is pressed again is repeated again, however long the server was away', () => {
+    const sent = [], real = performance.now;
+    let now = 0;
+    performance.now = () => now;
+    const stopper = new Stopper({ post: () => {
+        sent.push(now);
+        return Promise.reject(new Error('lost'));
+    } }, () => 'Anna', () => {});
+    try {
+        stopper.press();
+        now = 31000;
+        stopper.again();
+        same([stopper.timer, stopper.unanswered()], [null, 31000]);
+        stopper.press();
+        now += 250;
+        stopper.again();
+        same(sent, [0, 31000, 31250]);
+        same(stopper.unanswered(), 31250); // of the first: nobody has heard any of them
+    } finally {
+        performance.now = real;
+        clearInterval(stopper.timer);
+    }
+});
+
 const { Ring, columns, ticks } = await page('plots');
 await test('a ring keeps the newest, and a column its peaks', () => {
     const ring = new Ring(1, 8);
@@ -233,7 +283,32 @@ await test('a pose between two samples is between them', () => {
     near(sample(frames, 9999, null).q, [Math.PI, 5 * Math.PI / 180]);
 });
 
-const { Newest } = await page('api');
+const { Newest, takeToken } = await page('api');
+await test('a browser that keeps nothing has the token of its link', () => {
+    const kept = {};
+    const storage = { setItem: (key, value) => {
+        kept[key] = value;
+    }, getItem: (key) => kept[key] ?? null };
+    const open = (hash, sessionStorage) => {
+        const made = { location: { hash, pathname: '/', search: '' }, sessionStorage,
+                       history: { replaceState: (state, title, url) => {
+                           made.location.hash = url;
+                       } } };
+        for (const name of Object.keys(made)) {
+            Object.defineProperty(globalThis, name, { configurable: true, get: () => {
+                if (made[name] === null) {
+                    throw new Error('SecurityError');
+                }
+                return made[name];
+            } });
+        }
+        return [takeToken(), made.location.hash];
+    };
+    same(open('#token=one', storage), ['one', '/']);
+    same(open('', storage), ['one', '']);
+    same(open('#token=two', null), ['two', '#token=two']);
+    same(open('', null), [null, '']);
+});
 await test('of many targets the newest is sent, one at a time', async () => {
     const sent = [];
     let open = null;

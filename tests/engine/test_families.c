@@ -305,6 +305,7 @@ static void what_is_set_up_otherwise_does_not_move(void **state)
     refused(x, 1, GROBO_ROLE_MODE, GROBO_DXL2_MODE_VELOCITY);
     refused(x, 1, GROBO_ROLE_DIRECTION, 0);
     refused(x, 1, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME | GROBO_DXL2_DRIVE_REVERSE);
+    refused(x, 1, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME | GROBO_DXL2_DRIVE_WAKES);
     refused(x, 0, GROBO_ROLE_MAX_POSITION, 2900);
     refused(sts, 1, GROBO_ROLE_MODE, GROBO_STS_MODE_PWM);
     refused(sts, 1, GROBO_ROLE_DIRECTION, 8);
@@ -502,11 +503,14 @@ static void a_fault_says_what_is_wanted(void **state)
         int32_t found, low, high;
     } faults[] = {
         {0, GROBO_ROLE_DIRECTION, 1, 4, 4},
+        {0, GROBO_ROLE_DIRECTION, 12, 4, 4},
         {0, GROBO_ROLE_MODE, 4, 3, 3},
         {0, GROBO_ROLE_MODEL, 1190, 1200, 1200},
         {0, GROBO_ROLE_OFFSET, -7, 0, 0},
         {0, GROBO_ROLE_MAX_POSITION, 2900, 2958, 4095},
         {1, GROBO_ROLE_DIRECTION, 0x18, 0x0C, 0x0C},
+        {1, GROBO_ROLE_DIRECTION, 0x8C, 0x0C, 0x0C},
+        {1, GROBO_ROLE_DIRECTION, 0x8D, 0x0C, 0x0C}, /* both senses: never one without the other */
         {1, GROBO_ROLE_OFFSET, 25, 0, 0},
         {1, GROBO_ROLE_MIN_POSITION, 1200, -32767, 1138},
         {2, GROBO_ROLE_DIRECTION, 1, 0, 0},
@@ -521,6 +525,37 @@ static void a_fault_says_what_is_wanted(void **state)
         assert_int_equal(got.state.setup.found, faults[i].found);
         assert_int_equal(got.state.setup.low, faults[i].low);
         assert_int_equal(got.state.setup.high, faults[i].high);
+    }
+}
+
+/* A count of a position that is worth more than the table says: a goal would lead further. */
+static void a_coarser_count_is_refused(void **state)
+{
+    (void)state;
+    static grobo_joint joints[JOINTS];
+    grobo_joint_info got;
+    start(&families[1], &quiet);
+    bus.servo[1].memory[30] = 2;
+    assert_int_equal(moved_to(10, 10, 10), GROBO_ERR_SETUP);
+    assert_int_equal(grobo_robot_joint(&bus.robot, 1, &got), GROBO_OK);
+    assert_string_equal(got.state.setup.reg->name, "angular_resolution");
+    assert_int_equal(got.state.setup.low, 1);
+    for (int way = 0; way < 3; way++) { /* where an MX counts no turns, it means nothing */
+        const bool turns = way > 0;
+        const uint8_t divider = way < 2 ? 2 : 1;
+        const grobo_model model = {"mx28", joints, NULL, JOINTS, 0, 0};
+        const family mx = {&model, grobo_dxl1_driver_init, 0.09, 0, true, false};
+        memcpy(joints, ax12_joints, sizeof joints);
+        for (int j = 0; j < JOINTS; j++) {
+            joints[j].servo_model = 29;
+            joints[j].turns = turns;
+        }
+        start(&mx, &quiet);
+        for (int j = 0; j < JOINTS && turns; j++) {
+            table_put(&bus, j, GROBO_ROLE_MIN_POSITION, 4095);
+        }
+        bus.servo[1].memory[22] = divider;
+        assert_int_equal(moved_to(10, 10, 10), way == 1 ? GROBO_ERR_SETUP : GROBO_OK);
     }
 }
 
@@ -710,6 +745,7 @@ int main(void)
         cmocka_unit_test(a_joint_that_was_never_calibrated_does_not_move),
         cmocka_unit_test(a_calibrated_joint_goes_as_far_as_its_servo),
         cmocka_unit_test(a_fault_says_what_is_wanted),
+        cmocka_unit_test(a_coarser_count_is_refused),
         cmocka_unit_test(the_same_goal_again_is_no_crawl),
         cmocka_unit_test(a_joint_is_drawn_in_softly),
         cmocka_unit_test(a_gripper_has_its_limit_before_its_torque),

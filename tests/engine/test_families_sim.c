@@ -579,6 +579,41 @@ static void a_joint_that_turns_back_stops_where_it_is(void **state)
     }
 }
 
+/* It is too weak for its way, behind whose end it turns yet: it was read to, and then for its angle
+ * alone. */
+static void a_stop_reaches_a_joint_read_for_its_angle_alone(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"feetech", "dxl1", "dxl2"};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .goals = GROBO_GOALS_WHOLE,
+                                       .sense_interval_us = GROBO_SENSE_NEVER, .voltage_mv = -1};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        family_start(&kit, family_named(names[i]), &config, NULL);
+        assert_int_equal(family_move(&kit, 85, 2000), GROBO_OK);
+        grobo_sim_set_supply(&kit.sim, kit.servos[0]->voltage_mv * 66u / 100);
+        grobo_posture p = family_posture(&kit, -85, 10);
+        p.set = GROBO_JOINT_BIT(0);
+        assert_int_equal(grobo_robot_send(&kit.robot, &p), GROBO_OK);
+        family_run(&kit, 20 * MS);
+        while (kit.robot.axes[0].way.to_us > kit.now_us) {
+            family_run(&kit, 5 * MS);
+        }
+        for (int kind = 0; kind < 2; kind++) {
+            grobo_sense_kind what = kind == 0 ? GROBO_SENSE_FULL : GROBO_SENSE_POSITION;
+            int number = grobo_robot_sense(&kit.robot, p.set, what);
+            assert_int_equal(family_wait(&kit, number), GROBO_OK);
+        }
+        assert_int_equal(grobo_robot_stop(&kit.robot, true), GROBO_OK);
+        for (int k = 0; k < 8; k++) {
+            family_run(&kit, 50 * MS);
+        }
+        double here_deg = family_angle_deg(&kit, 0);
+        family_run(&kit, 2 * (int64_t)S);
+        family_run(&kit, MS);
+        assert_true(here_deg > -80 && fabs(family_angle_deg(&kit, 0) - here_deg) < 0.5);
+    }
+}
+
 /* Those of servos that are told their acceleration with each goal: MX have such a register too far
  * away from the goal, and DYNAMIXEL X one that is a time. */
 /* The longest interval that there is means hardly ever, and not as fast as the wire allows. */
@@ -627,6 +662,7 @@ int main(void)
         cmocka_unit_test(nothing_is_woken_after_a_dip),
         cmocka_unit_test(a_lost_reply_ends_no_way),
         cmocka_unit_test(a_weak_joint_stops_where_it_is),
+        cmocka_unit_test(a_stop_reaches_a_joint_read_for_its_angle_alone),
         cmocka_unit_test(a_driver_tells_the_ramps_of_its_servos),
         cmocka_unit_test(a_very_long_interval_reads_once),
         cmocka_unit_test(a_joint_that_turns_back_stops_where_it_is),

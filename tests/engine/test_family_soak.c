@@ -64,8 +64,17 @@ typedef struct run {
     char name[120];
 } run;
 
+enum { KEYS = 4, MOTIONS = 4 };
+
+typedef struct motion {
+    grobo_clip clip;
+    grobo_posture key[KEYS];
+    int64_t at_us[KEYS];
+} motion;
+
 static family_kit kit;
 static struct {
+    motion motions[MOTIONS];
     uint32_t random;
     int open[OPEN_MAX]; /* jobs that have not ended */
     int64_t open_us[OPEN_MAX];
@@ -83,7 +92,7 @@ static struct {
     int64_t still_us; /* after a stop all stand from then on; 0: somebody asked for something */
 } user;
 static struct {
-    unsigned runs, moves, torque_on, estops, jobs, refused, checked, retargets, stops;
+    unsigned runs, moves, torque_on, estops, jobs, refused, checked, retargets, stops, plays;
     int64_t virtual_us;
 } total;
 static struct CMUnitTest tests[RUNS_MAX];
@@ -352,17 +361,115 @@ static void ask_restart(void)
     began(grobo_robot_command(&kit.robot, 1 + (int)pick(FAMILY_JOINTS), GROBO_SERVO_REBOOT));
 }
 
+/* ---- motions --------------------------------------------------------------------------------- */
+
+static int key_of(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
+{
+    const motion *m = ctx;
+    *posture = m->key[i];
+    *at_us = m->at_us[i];
+    return GROBO_OK;
+}
+
+static int sample_of(void *ctx, int64_t at_us, grobo_posture *posture)
+{
+    const motion *m = ctx;
+    int i = 0;
+    while (i < KEYS - 2 && m->at_us[i + 1] < at_us) {
+        i++;
+    }
+    double part = (double)(at_us - m->at_us[i]) / (double)(m->at_us[i + 1] - m->at_us[i]);
+    *posture = m->key[i];
+    for (int j = 0; j < FAMILY_JOINTS; j++) {
+        posture->angle_rad[j] += (m->key[i + 1].angle_rad[j] - m->key[i].angle_rad[j]) * part;
+    }
+    return GROBO_OK;
+}
+
+static void make_motions(void)
+{
+    for (int i = 0; i < MOTIONS; i++) {
+        motion *m = &user.motions[i];
+        grobo_joint_mask joints = some_joints();
+        int64_t at_us = 0;
+        for (int k = 0; k < KEYS; k++) {
+            m->key[k] = some_posture();
+            m->key[k].set = joints;
+            for (int j = 0; j < FAMILY_JOINTS && i > 0; j++) {
+                m->key[k].angle_rad[j] *= 0.8; /* only one of them is beyond the limits */
+            }
+            m->at_us[k] = at_us;
+            at_us += (100 + pick(1500)) * (int64_t)MS;
+        }
+        m->clip = (grobo_clip){.key = key_of,
+                               .sample = sample_of,
+                               .ctx = m,
+                               .length_us = m->at_us[KEYS - 1],
+                               .n_keys = KEYS,
+                               .n_joints = FAMILY_JOINTS};
+    }
+}
+
+static void ask_motion(void)
+{
+    const grobo_clip *clip = &user.motions[pick(MOTIONS)].clip;
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
+                                        .mode = pick(2) ? GROBO_PLAY_RATE : GROBO_PLAY_KEY,
+                                        .rate_hz = pick(2) ? 20 : 0,
+                                        .repeat = 1 + (int32_t)pick(2),
+                                        .reverse = pick(4) == 0,
+                                        .speed_pct = (uint16_t)(50 + pick(250)),
+                                        .stop_us = (1 + pick(300)) * (int64_t)MS,
+                                        .unwatched = true,
+                                        .also = pick(2) ? GROBO_JOINTS_ALL(FAMILY_JOINTS) : 0};
+    if (grobo_robot_is_playing(&kit.robot) && pick(2) == 0) {
+        int result = grobo_robot_enqueue(&kit.robot, clip, &options);
+        assert_true(!user.latched || result < 0);
+        return;
+    }
+    int result = grobo_robot_play(&kit.robot, clip, &options);
+    assert_true(!user.latched || result < 0);
+    total.plays += result > 0;
+    began(result);
+}
+
+static void ask_control(void)
+{
+    int result = 0;
+    switch (pick(4)) {
+    case 0:
+        result = grobo_robot_pause(&kit.robot);
+        break;
+    case 1:
+        result = grobo_robot_resume(&kit.robot);
+        break;
+    case 2:
+        result = grobo_robot_seek(&kit.robot, pick(3000) * (int64_t)MS);
+        break;
+    default:
+        result = grobo_robot_speed(&kit.robot, 20 + (int)pick(300));
+        break;
+    }
+    user.still_us = result < 0 ? user.still_us : 0;
+}
+
 static void ask_estop(void)
 {
     int result = grobo_robot_estop(&kit.robot);
     user.latched = user.latched || result > 0;
-    user.estop = result > 0 ? result : user.estop;
-    began(result);
+    if (result != user.estop) { /* it is being carried out */
+        user.estop = result > 0 ? result : user.estop;
+        began(result);
+    }
 }
 
 static void ask_exit(void)
 {
-    began(grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD));
+    bool again = grobo_robot_job(&kit.robot) == GROBO_JOB_EXIT;
+    int result = grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD);
+    if (!again || result < 0) {
+        began(result);
+    }
 }
 
 static void ask_free(void)
@@ -443,10 +550,10 @@ static void stop_and_look(void)
 static void ask(void)
 {
     static void (*const requests[])(void) = {
-        ask_move,   ask_move,     ask_move, ask_send,   ask_send,    ask_torque,
-        ask_torque, ask_raw,      ask_raw,  ask_estop,  ask_exit,    ask_registers,
-        ask_free,   turn_by_hand, ask_move, ask_move,   ask_reading, ask_retarget,
-        ask_send,   hold_fast,    weaken,   ask_restart};
+        ask_move,    ask_move,   ask_move,    ask_send,     ask_send,      ask_torque, ask_torque,
+        ask_raw,     ask_raw,    ask_estop,   ask_exit,     ask_registers, ask_free,   turn_by_hand,
+        ask_move,    ask_move,   ask_reading, ask_retarget, ask_send,      hold_fast,  weaken,
+        ask_restart, ask_motion, ask_motion,  ask_control,  ask_control};
     reset_some_time();
     let_go(kit.now_us);
     if (user.n_open < OPEN_MAX - 1) {
@@ -471,12 +578,14 @@ static void start(const run *r)
                                            intervals_us[(r->seed + (unsigned)r->line) % 3],
                                        .voltage_mv = -1,
                                        .limit_policy = r->seed % 3 == 0 ? GROBO_LIMIT_CLAMP : 0,
+                                       .goals = r->seed % 5 < 2 ? GROBO_GOALS_WHOLE : 0,
                                        .estop_torque = r->seed % 2 == 0 ? GROBO_ESTOP_OFF : 0,
                                        .lost_replies = 30};
     const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = r->seed * 7 + 1, .no_stops = true};
     memset(&user, 0, sizeof user);
     user.random = (r->seed * 100 + (uint32_t)r->line) * 2654435761u + 17;
     family_start(&kit, r->family, &config, &sim);
+    make_motions();
     kit.on_look = on_look;
     kit.on_sim = on_sim;
     assert_true(grobo_sim_set_faults(&kit.sim, faults, strlen(faults)) > 0);
@@ -499,6 +608,9 @@ static void calm_down(void)
 {
     assert_true(grobo_sim_set_faults(&kit.sim, "all=0,hangup=0", 14) > 0);
     let_go(GROBO_NEVER_US);
+    if (grobo_robot_is_playing(&kit.robot)) { /* it may be paused */
+        assert_int_equal(grobo_robot_stop(&kit.robot, false), GROBO_OK);
+    }
     (void)grobo_robot_free(&kit.robot, GROBO_JOINTS_ALL(FAMILY_JOINTS), false);
     for (int i = 0; i < 70 && user.n_open > 0; i++) {
         family_run(&kit, S);
@@ -554,13 +666,14 @@ static void everything_was_done(void **state)
 {
     (void)state;
     print_message("# %u runs, %.1f virtual minutes: %u jobs, %u moves done, %u torques on, %u "
-                  "emergency stops, %u requests refused, %u retargets, %u stops, %u joints true "
-                  "at the end\n",
+                  "emergency stops, %u requests refused, %u retargets, %u stops, %u motions, %u "
+                  "joints true at the end\n",
                   total.runs, (double)total.virtual_us / 60e6, total.jobs, total.moves,
                   total.torque_on, total.estops, total.refused, total.retargets, total.stops,
-                  total.checked);
+                  total.plays, total.checked);
     assert_true(total.moves > 0 && total.torque_on > 0 && total.checked > 0);
     assert_true(total.estops > 0 && total.refused > 0 && total.stops > 0);
+    assert_true(total.plays > 0);
 }
 
 static uint32_t number(const char *name, uint32_t otherwise)

@@ -59,6 +59,54 @@ static void a_goal_is_judged_as_it_leaves(void **state)
     }
 }
 
+/* Of servos that a goal switches on: those that are known to hold, and were heard lately. */
+static void a_goal_that_would_wake_a_servo_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order goal = {
+            .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
+        for (int wakes = 0; wakes < 2; wakes++) {
+            start();
+            driver.goal_wakes = wakes;
+            robot.axes[j].heard_us = NOW - GROBO_I_RESTART_US;
+            await(j, 1, S);
+            assert_int_equal(judge(goal), GROBO_OK);
+            make_limp(other_of(j));
+            assert_int_equal(judge(goal), GROBO_OK);
+            make_limp(j);
+            assert_int_equal(judge(goal), wakes ? GROBO_ERR_STATE : GROBO_OK);
+            robot.axes[j].heard_us--;
+            assert_int_equal(judge(goal), wakes ? GROBO_ERR_EMPTY : GROBO_OK);
+        }
+    }
+    driver.goal_wakes = false;
+}
+
+/* Torque that comes on and waits is not for a joint that is to be without; else it is. */
+static void torque_off_and_brake_take_back_torque_on_that_waits(void **state)
+{
+    (void)state;
+    static const grobo_torque modes[] = {GROBO_TORQUE_OFF, GROBO_TORQUE_ON, GROBO_TORQUE_BRAKE};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
+            const grobo_joint_mask joint = GROBO_JOINT_BIT(j);
+            start();
+            make_limp(j);
+            assert_int_equal(grobo_i_gate_torque(&robot, joint, GROBO_TORQUE_ON, GROBO_I_WHOLE),
+                             GROBO_OK);
+            const grobo_txn *first = &robot.slots[0].txn;
+            assert_true(grobo_txn_is_pending(first));
+            assert_int_equal(grobo_i_gate_torque(&robot, joint, modes[i], GROBO_I_WHOLE), GROBO_OK);
+            bool on = modes[i] == GROBO_TORQUE_ON;
+            assert_int_equal(grobo_bus_pending(&robot.bus), on ? 2 : 1);
+            assert_true(grobo_i_slots_wait(&robot, joint, GROBO_I_DEED_TORQUE, modes[i]));
+            assert_int_equal(
+                grobo_i_slots_wait(&robot, joint, GROBO_I_DEED_TORQUE, GROBO_TORQUE_ON), on);
+        }
+    }
+}
+
 /* What has left goes again, or its next part, until another one waits or has left. */
 static void a_goal_goes_again_until_another_takes_its_place(void **state)
 {
@@ -839,6 +887,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_goal_is_judged_as_it_leaves),
+        cmocka_unit_test(a_goal_that_would_wake_a_servo_is_refused_by_name),
+        cmocka_unit_test(torque_off_and_brake_take_back_torque_on_that_waits),
         cmocka_unit_test(a_goal_goes_again_until_another_takes_its_place),
         cmocka_unit_test(a_halt_is_refused_by_name),
         cmocka_unit_test(a_halt_stops_ahead_of_where_joints_are),

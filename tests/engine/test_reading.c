@@ -332,6 +332,50 @@ static void a_reading_from_before_a_frame_tells_nothing_of_after_it(void **state
     }
 }
 
+/* What was read a while ago of how it turns goes for as long as it may go on, unless it was told to
+ * go elsewhere since. */
+static void an_angle_alone_hides_no_turning(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t later_us;
+        bool told, hides;
+    } rows[] = {{1, false, false}, {199999, false, false}, {200000, false, true}, {9, true, true}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            const int64_t then_us = NOW + rows[i].later_us;
+            start_with(NULL);
+            given.speed_dps = -30;
+            (void)take(j);
+            robot.now_us = then_us;
+            robot.axes[j].told_us = rows[i].told ? NOW + 1 : NOW;
+            given.valid = GROBO_FIELD_ANGLE;
+            given.angle_rad = RAD(12);
+            assert_int_equal(take_asked(j, then_us), GROBO_OK);
+            const grobo_robot_axis *axis = &robot.axes[j];
+            assert_int_equal(axis->seen_dps, rows[i].hides ? GROBO_I_NO_SPEED : -30);
+            assert_true(axis->seen_us == (rows[i].hides ? then_us : NOW));
+            expect("seen", axis->seen_rad, RAD(rows[i].hides ? 12 : 10));
+        }
+    }
+}
+
+/* Of servos that tell no speed: the angle before is of before the frame that sent it elsewhere. */
+static void two_ways_have_no_speed(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int i = 0; i < 4; i++) {
+            bool tells = i % 2 != 0, since = i / 2 != 0;
+            start_with(NULL);
+            made.no_speed = !tells;
+            given.speed_dps = 25;
+            robot.axes[j].told_us = since ? NOW - 4 : NOW - 5; /* the angle is of NOW - 5 */
+            assert_int_equal(take(j)->seen_dps, tells || !since ? 25 : GROBO_I_NO_SPEED);
+        }
+    }
+}
+
 /* Another host's way, which the servo tells: its time, or what it cannot do faster. */
 static void where_a_servo_goes_is_taken_from_what_it_tells(void **state)
 {
@@ -706,6 +750,8 @@ int main(void)
         cmocka_unit_test(an_angle_alone_tells_nothing_of_how_a_joint_moves),
         cmocka_unit_test(what_a_reading_lacks_stays_as_it_was),
         cmocka_unit_test(a_reading_from_before_a_frame_tells_nothing_of_after_it),
+        cmocka_unit_test(an_angle_alone_hides_no_turning),
+        cmocka_unit_test(two_ways_have_no_speed),
         cmocka_unit_test(where_a_servo_goes_is_taken_from_what_it_tells),
         cmocka_unit_test(a_joint_is_adrift_that_moves_nobody_knows_where),
         cmocka_unit_test(a_joint_sent_nowhere_is_where_it_was_read),

@@ -465,6 +465,32 @@ static void an_emergency_stop_without_torque_gives_up_who_is_silent(void **state
     assert_true(rig.now_us - begun_us < 5000000);
 }
 
+static int no_more(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind, int part,
+                   grobo_exchange *exchange)
+{
+    (void)self;
+    (void)ctx;
+    (void)kind;
+    (void)exchange;
+    assert_int_equal(part, 1);
+    return joint == NECK ? GROBO_ERR_SPACE : 0;
+}
+
+/* A reading is as good as what a driver has to ask for it. */
+static void a_reading_that_cannot_be_asked_on_fails(void **state)
+{
+    (void)state;
+    grobo_driver driver = *grobo_gr001_driver(rig_wiring);
+    driver.sense_more = no_more;
+    rig_start_driver(&rig, &driver, &quiet, NULL);
+    const grobo_joint_mask neck = GROBO_JOINT_BIT(NECK);
+    int number = grobo_robot_sense(&rig.robot, neck, GROBO_SENSE_ALL);
+    assert_int_equal(rig_expect(&rig, number, GROBO_ERR_SPACE)->failed, neck);
+    assert_int_equal(rig_last(&rig, GROBO_EVENT_JOINT)->u.joint.result, GROBO_ERR_SPACE);
+    number = grobo_robot_sense(&rig.robot, rig_all(&rig) & ~neck, GROBO_SENSE_ALL);
+    rig_expect(&rig, number, GROBO_OK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -479,6 +505,7 @@ int main(void)
         cmocka_unit_test(an_emergency_stop_without_torque_halts),
         cmocka_unit_test(an_emergency_stop_without_torque_reaches_who_was_deaf),
         cmocka_unit_test(an_emergency_stop_without_torque_gives_up_who_is_silent),
+        cmocka_unit_test(a_reading_that_cannot_be_asked_on_fails),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -248,6 +248,43 @@ static void what_a_callback_begins_is_told_at_once(void **state)
     assert_int_equal(plays, 1);
 }
 
+enum { MOVES = 60 };
+static unsigned ends[MOVES], began_first;
+
+static void count_end(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    unsigned i = event->kind == GROBO_EVENT_JOB ? (unsigned)event->u.job.number - began_first : 0;
+    if (event->kind == GROBO_EVENT_JOB && i < MOVES) {
+        ends[i]++;
+    }
+}
+
+/* The loop is held up, and another thread moves on: each move ends the one before. */
+static void each_end_is_told_however_late(void **state)
+{
+    (void)state;
+    begin();
+    grobo_robot_on_event(&rig.robot, count_end, NULL);
+    memset(ends, 0, sizeof ends);
+    unsigned begun = 0;
+    for (int i = 0; i < MOVES; i++) {
+        grobo_posture aim = rig_posture(&rig, NECK, i % 2 ? 20 : -20, 2000);
+        int number = grobo_robot_move(&rig.robot, &aim);
+        assert_true(number > 0 || number == GROBO_ERR_FULL);
+        began_first = i == 0 ? (unsigned)number : began_first;
+        begun += number > 0;
+    }
+    assert_int_equal(begun, 21); /* 20 ends wait */
+    assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+    assert_true(grobo_robot_estop(&rig.robot) > 0);
+    grobo_robot_step(&rig.robot, rig.now_us);
+    for (unsigned i = 0; i < begun; i++) {
+        assert_int_equal(ends[i], 1);
+    }
+    assert_int_equal(grobo_robot_get_counters(&rig.robot)->lost_events, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -257,6 +294,7 @@ int main(void)
         cmocka_unit_test(a_reset_is_the_hosts_to_allow),
         cmocka_unit_test(time_is_the_clocks_but_never_goes_back),
         cmocka_unit_test(what_a_callback_begins_is_told_at_once),
+        cmocka_unit_test(each_end_is_told_however_late),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

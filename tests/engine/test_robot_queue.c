@@ -331,6 +331,55 @@ static void torque_off_finds_room(void **state)
     rig_expect(&rig, number[1], GROBO_OK);
 }
 
+/* ---- asked for as a job before ends ---------------------------------------------------------- */
+
+static int awaited, canceled, runs, redirected;
+
+static void ask_as_it_ends(grobo_test_rig *r, const grobo_event *event)
+{
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.number == awaited) {
+        grobo_posture target = rig_posture(r, R_ELBOW, -20, 500);
+        runs = grobo_robot_job(&r->robot);
+        redirected = grobo_robot_retarget(&r->robot, &target);
+        canceled = grobo_robot_cancel(&r->robot);
+    }
+}
+
+/* The callback is called before the place of what has ended is another's. */
+static void a_callback_stops_what_runs_beside_what_has_ended(void **state)
+{
+    (void)state;
+    begin();
+    awaited = move(NECK, 10, 300);
+    int other = move(R_ELBOW, -60, 4000);
+    rig.on_event = ask_as_it_ends;
+    rig_expect(&rig, awaited, GROBO_OK);
+    rig.on_event = NULL;
+    assert_int_equal(runs, GROBO_JOB_MOVE);
+    assert_int_equal(redirected, other);
+    assert_int_equal(canceled, GROBO_OK);
+    rig_expect(&rig, other, GROBO_ERR_CANCELED);
+}
+
+/* One ends where its frame would leave: nobody was told of it yet. */
+static void a_refused_frame_hides_no_job(void **state)
+{
+    (void)state;
+    begin();
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+    const grobo_rs30x_goal goal = {NECK_ID, 100, 100};
+    int n = grobo_frame_goal(rig.driver->protocol, &goal, frame, sizeof frame);
+    rig.robot.bus.free_us = rig.now_us + 20000; /* the line is taken */
+    assert_true(grobo_robot_raw(&rig.robot, frame, (size_t)n) > 0);
+    int moving = move(R_ELBOW, -60, 4000);
+    rig.robot.axes[NECK].adrift = true; /* it was read to be moved by somebody else */
+    rig.now_us += 20000;
+    (void)grobo_robot_tx(&rig.robot, frame, sizeof frame, rig.now_us);
+    assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_MOVE);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
+    rig_expect(&rig, moving, GROBO_ERR_CANCELED);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -347,6 +396,8 @@ int main(void)
         cmocka_unit_test(what_needs_a_joint_at_rest_is_refused_while_it_moves),
         cmocka_unit_test(the_head_turns_while_an_arm_plays),
         cmocka_unit_test(torque_off_finds_room),
+        cmocka_unit_test(a_callback_stops_what_runs_beside_what_has_ended),
+        cmocka_unit_test(a_refused_frame_hides_no_job),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -216,6 +216,31 @@ static void a_joint_that_was_taken_comes_back(void **state)
     assert_true(fabs(rig_angle_deg(&rig, CHEST) + 5) < 0.2);
 }
 
+/* Whatever began before it: the move is found among all jobs, by its joints. */
+static void a_move_is_found_behind_other_jobs(void **state)
+{
+    (void)state;
+    begin(&quiet);
+    for (int j = R_HIP_R; j < CHEST; j++) { /* a reading that takes long */
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, j, GROBO_SIM_CABLE_MUTE), 0);
+    }
+    const grobo_joint_mask silent = GROBO_JOINTS_ALL(CHEST) & ~GROBO_JOINT_BIT(HIP);
+    assert_true(grobo_robot_sense(&rig.robot, silent, GROBO_SENSE_FULL) > 0);
+    grobo_posture elbow = rig_posture(&rig, L_ELBOW, 20, 2000);
+    int other = grobo_robot_move(&rig.robot, &elbow);
+    int number = move(30, 2000);
+    while (goals_sent() == 0) {
+        rig_run(&rig, 1000);
+    }
+    rig_run(&rig, 10000);
+    assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_SENSE);
+    assert_int_equal(retarget(-5, 100), number);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &elbow), other);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) + 5) < 0.2);
+    rig_expect(&rig, other, GROBO_OK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -227,6 +252,7 @@ int main(void)
         cmocka_unit_test(what_must_not_be_redirected_is_not),
         cmocka_unit_test(joints_besides_are_taken_from_other_moves),
         cmocka_unit_test(a_joint_that_was_taken_comes_back),
+        cmocka_unit_test(a_move_is_found_behind_other_jobs),
     };
 
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);

@@ -412,6 +412,91 @@ static void emergency_stop_takes_the_place_of_a_job(void **state)
     rig_expect(&rig, stop, GROBO_OK);
 }
 
+static unsigned asked;
+
+static void stop_at_each_trip(grobo_test_rig *r, const grobo_event *event)
+{
+    if (event->kind == GROBO_EVENT_TRIP) {
+        assert_true(++asked < 10);
+        (void)grobo_robot_estop(&r->robot);
+    }
+}
+
+/* A program that makes an emergency stop of each trip, and so of the emergency stop. */
+static void emergency_stop_may_be_the_answer_to_a_trip(void **state)
+{
+    (void)state;
+    for (int has_line = 0; has_line < 2; has_line++) {
+        start_playing(&watching);
+        asked = 0;
+        rig.on_event = stop_at_each_trip;
+        if (has_line) {
+            assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, 75), GROBO_OK);
+            (void)expect_trip(GROBO_TRIP_ESTOP, 3000000);
+        } else {
+            grobo_robot_link_down(&rig.robot, rig.now_us);
+            assert_int_equal(grobo_robot_estop(&rig.robot), GROBO_ERR_CLOSED);
+            grobo_robot_link_up(&rig.robot, rig.now_us);
+        }
+        rig_run(&rig, 1000000);
+        rig.on_event = NULL;
+        assert_int_equal(asked, has_line ? 2 : 1);
+        assert_int_equal(rig_last(&rig, GROBO_EVENT_JOB)->u.job.result, GROBO_OK);
+        assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_BRAKE);
+    }
+}
+
+static bool leaves;
+
+static void stop_at_each_failure(grobo_test_rig *r, const grobo_event *event)
+{
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.result < 0) {
+        assert_true(++asked < 10);
+        (void)(leaves ? grobo_robot_exit(&r->robot, GROBO_EXIT_OFF) : grobo_robot_estop(&r->robot));
+    }
+}
+
+/* A program that stops, or leaves, where any job fails; and that ends all others. */
+static void a_stop_may_be_the_answer_to_a_job_that_fails(void **state)
+{
+    (void)state;
+    for (int exits = 0; exits < 2; exits++) {
+        rig_start_at(&rig, 0, &quiet);
+        grobo_posture aim = rig_posture(&rig, NECK, 30, 5000);
+        assert_true(grobo_robot_move(&rig.robot, &aim) > 0);
+        aim = rig_posture(&rig, R_ELBOW, -30, 5000);
+        assert_true(grobo_robot_move(&rig.robot, &aim) > 0);
+        rig_run(&rig, 500000);
+        asked = 0;
+        leaves = exits;
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), GROBO_OK);
+        int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL);
+        rig.on_event = stop_at_each_failure;
+        (void)rig_wait(&rig, number);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_IN), GROBO_OK);
+        rig_run(&rig, 3000000);
+        rig.on_event = NULL;
+        assert_int_equal(asked, 3);
+        assert_int_equal(rig_last(&rig, GROBO_EVENT_JOB)->u.job.result, GROBO_OK);
+        assert_int_equal(rig_torque(&rig, NECK), exits ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE);
+    }
+}
+
+/* No halt leaves behind it: who lets go then waits for nothing that moves yet, unheard. */
+static void who_was_not_stopped_is_let_go(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, 0, &quiet);
+    grobo_posture target = rig_posture(&rig, NECK, 30, 60000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_run(&rig, 500000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    assert_true(rig_wait(&rig, grobo_robot_estop(&rig.robot))->result < 0);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF), GROBO_OK);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
+}
+
 static void exit_holds_sits_or_lets_go(void **state)
 {
     (void)state;
@@ -537,6 +622,9 @@ int main(void)
         cmocka_unit_test(emergency_stop_gives_up_where_nobody_answers),
         cmocka_unit_test(emergency_stop_repeats_until_it_took),
         cmocka_unit_test(emergency_stop_takes_the_place_of_a_job),
+        cmocka_unit_test(emergency_stop_may_be_the_answer_to_a_trip),
+        cmocka_unit_test(who_was_not_stopped_is_let_go),
+        cmocka_unit_test(a_stop_may_be_the_answer_to_a_job_that_fails),
         cmocka_unit_test(exit_holds_sits_or_lets_go),
         cmocka_unit_test(exit_takes_the_place_of_a_job_and_is_bounded),
         cmocka_unit_test(a_limp_robot_is_not_made_to_sit),

@@ -96,6 +96,42 @@ static void a_joint_is_on_its_way_but_where_it_is_weak(void **state)
     }
 }
 
+/* At 1000 deg/s^2: it speeds up to what its way takes unless it had twice the time for that, and
+ * brakes before the end. */
+static void a_servo_with_ramps_is_where_these_bring_it(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t seen_us, rest_us; /* since the begin of its way, which takes a second */
+        double seen_deg;
+        int16_t dps;
+        double deg;
+    } rows[] = {
+        {150000, 400000, 5, 50, 28.75},   /* the same, and 100 ms more */
+        {250000, 400000, 10, 50, 17.5},   /* too weak to be faster */
+        {1000000, 1000001, 99, 100, 100}, /* too fast to end there, and it ends there */
+        {1000000, 1000001, 90, 100, 95},  /* it would need 5 degrees */
+    };
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start();
+            driver.accel_rad_s2 = RAD(1000);
+            grobo_robot_axis *axis = &robot.axes[j];
+            const int64_t begin_us = NOW - rows[i].rest_us / 1000 * 1000;
+            axis->way = (grobo_robot_way){0, RAD(100), begin_us, begin_us + S};
+            axis->state.valid &= (uint16_t)~GROBO_FIELD_TIME;
+            axis->seen_rad = RAD(rows[i].seen_deg);
+            axis->seen_us = begin_us + rows[i].seen_us;
+            axis->seen_dps = rows[i].dps;
+            double deg = grobo_i_axis_reached(&robot, j, begin_us + rows[i].rest_us) / RAD(1);
+            if (fabs(deg - rows[i].deg) > 0.01) {
+                fail_msg("row %zu: at %.2f deg", i, deg);
+            }
+        }
+    }
+    driver.accel_rad_s2 = 0;
+}
+
 static void a_joint_that_is_not_limp_moves_to_the_end_of_its_way(void **state)
 {
     (void)state;
@@ -528,6 +564,7 @@ int main(void)
         cmocka_unit_test(a_way_is_straight_in_time),
         cmocka_unit_test(a_joint_is_where_it_was_sent_or_read),
         cmocka_unit_test(a_joint_is_on_its_way_but_where_it_is_weak),
+        cmocka_unit_test(a_servo_with_ramps_is_where_these_bring_it),
         cmocka_unit_test(a_joint_that_is_not_limp_moves_to_the_end_of_its_way),
         cmocka_unit_test(a_joint_rests_where_it_was_read),
         cmocka_unit_test(joints_are_asked_for_by_their_bits),

@@ -254,7 +254,14 @@ static void mx_is_read_in_bulk(void **state)
     assert_int_equal(chain.kit.got[14 + 8 + 2], 6);
     chain_send(&chain, GROBO_DXL1_ID_ALL, GROBO_DXL1_SYNC_READ, 36, 2, six, sizeof six);
     assert_int_equal(chain.kit.n_got, 0);
-    /* Multi-turn, and its wheel. */
+    /* An id that comes twice counts once (emanual, Protocol 1.0). */
+    simkit_ask(&chain.kit, "FF FF FE 0C 92 00 02 04 24 02 05 24 01 04 2B DE", 50000);
+    assert_int_equal(chain.kit.n_got, 8 + 8);
+    /* Multi-turn, where alone its offset counts, and its wheel. */
+    assert_int_equal(put(3, GROBO_ROLE_OFFSET, 1024), 0);
+    assert_int_equal(value(2, GROBO_ROLE_POSITION), 2048);
+    assert_int_equal(put(3, GROBO_ROLE_MIN_POSITION, 4095), 0);
+    assert_int_equal(value(2, GROBO_ROLE_POSITION), 3072);
     assert_int_equal(put(1, GROBO_ROLE_MIN_POSITION, 4095), 0);
     assert_int_equal(put(1, GROBO_ROLE_GOAL, -2048), 0);
     simkit_run(&chain.kit, 3000000);
@@ -263,6 +270,31 @@ static void mx_is_read_in_bulk(void **state)
     assert_int_equal(put(2, GROBO_ROLE_SPEED, 1124), 0);
     assert_int_equal(put(2, GROBO_ROLE_TORQUE, 1), 0);
     assert_int_equal(value(1, GROBO_ROLE_PRESENT_SPEED), -100);
+}
+
+/* New servos have one id: what is for it is for all of them, and their answers collide. */
+static void servos_with_one_id_act_together(void **state)
+{
+    (void)state;
+    static const uint8_t goal[] = {1, 0x00, 0x05}, both[] = {1, 3};
+    start("STS3215", 3);
+    assert_int_equal(put(1, GROBO_ROLE_TORQUE, 1), 0);
+    (void)put(2, GROBO_ROLE_ID, 1);
+    chain_send(&chain, GROBO_DXL1_ID_ALL, GROBO_DXL1_SYNC_WRITE, 42, 2, goal, sizeof goal);
+    simkit_run(&chain.kit, 1000000);
+    assert_int_equal(value(0, GROBO_ROLE_POSITION), 0x500);
+    assert_int_equal(value(1, GROBO_ROLE_GOAL), 0x500);
+    chain_send(&chain, GROBO_DXL1_ID_ALL, GROBO_DXL1_SYNC_READ, 56, 2, both, sizeof both);
+    simkit_expect(&chain.kit, "FF FF 01 04 00 00 00 F0 FF FF 03 04 00 00 08 F0");
+    uint32_t before = chain.kit.sim.stats.collisions;
+    chain_send(&chain, GROBO_DXL1_ID_ALL, GROBO_DXL1_PING, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 2 * 6);
+    assert_int_equal(chain.kit.sim.stats.collisions, before + 1);
+    start("MX-28", 2);
+    assert_int_equal(put(2, GROBO_ROLE_ID, 1), 0);
+    before = chain.kit.sim.stats.collisions;
+    simkit_ask(&chain.kit, "FF FF 01 02 01 FC", 50000); /* a wrong sum */
+    assert_int_equal(chain.kit.sim.stats.collisions, before + 1);
 }
 
 /* Two families on one line: each hears its own packets and no other. */
@@ -309,6 +341,7 @@ int main(void)
         cmocka_unit_test(ax_judges_what_it_is_told),
         cmocka_unit_test(ax_loses_its_force),
         cmocka_unit_test(mx_is_read_in_bulk),
+        cmocka_unit_test(servos_with_one_id_act_together),
         cmocka_unit_test(families_share_a_line),
     };
     return cmocka_run_group_tests_name("sim_dxl1", tests, NULL, NULL);

@@ -130,6 +130,63 @@ static void all_are_found_by_one_ping(void **state)
     }
 }
 
+/* New servos have one id: what is for it is for all of them, and their answers collide. */
+static void servos_with_one_id_act_together(void **state)
+{
+    (void)state;
+    static const uint8_t leds[] = {1, 1}, bulk[] = {1, 65, 0, 1, 0, 0}, both[] = {1, 3};
+    static const uint8_t instructions[] = {GROBO_DXL2_SYNC_READ, GROBO_DXL2_FAST_SYNC_READ};
+    chain_start(&chain, model("XL330-M288"), 3, NULL);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 0x500), 0);
+    assert_int_equal(chain_write(&chain, 2, GROBO_ROLE_ID, 1), 0);
+    simkit_run(&chain.kit, 1000000);
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_SYNC_WRITE, 65, 1, leds, sizeof leds);
+    assert_int_equal(simkit_register(&chain.kit, 0, 65), 1);
+    assert_int_equal(simkit_register(&chain.kit, 1, 65), 1);
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_BULK_WRITE, 0, 0, bulk, sizeof bulk);
+    assert_int_equal(simkit_register(&chain.kit, 0, 65), 0);
+    assert_int_equal(simkit_register(&chain.kit, 1, 65), 0);
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_SYNC_READ, 132, 4, both, sizeof both);
+    assert_int_equal(chain.kit.n_got, 2 * 15);
+    assert_int_equal(value_at(0), 0x500 & 0x800);
+    assert_int_equal(id_at(15), 3);
+    assert_int_equal(chain.kit.got_us[15] - chain.kit.got_us[14], DELAY_US + BYTE_US);
+    for (size_t i = 0; i < sizeof instructions; i++) {
+        uint32_t before = chain.kit.sim.stats.collisions;
+        chain_send(&chain, GROBO_DXL2_ID_ALL, instructions[i], 132, 4, both, sizeof both);
+        assert_int_equal(chain.kit.sim.stats.collisions, before + 1);
+    }
+    uint32_t before = chain.kit.sim.stats.collisions;
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_PING, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 2 * 14);
+    assert_int_equal(chain.kit.sim.stats.collisions, before + 1);
+}
+
+/* By its drive mode, where no error forbids it; the goal has its time. */
+static void a_goal_may_wake_a_servo(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 1, NULL);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 1024), 0);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_DIRECTION,
+                                 GROBO_DXL2_DRIVE_TIME | GROBO_DXL2_DRIVE_WAKES),
+                     0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_SPEED, 1000), 0);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 2148), 0);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 1);
+    simkit_run(&chain.kit, 400000);
+    assert_in_range(chain_register(&chain, 0, GROBO_ROLE_POSITION), 2080, 2110);
+    assert_int_equal(grobo_sim_set_temperature(&chain.kit.sim, 0, 90), 0);
+    simkit_run(&chain.kit, 1000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 0);
+    (void)chain_write(&chain, 1, GROBO_ROLE_GOAL, 1024);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 0);
+}
+
 static void moves_follow_their_profile(void **state)
 {
     (void)state;
@@ -308,6 +365,10 @@ static void writes_wait_level_and_names_hold(void **state)
     chain_send(&chain, 50, GROBO_DXL2_WRITE, 9, 0, (const uint8_t *)"\x07", 1);
     assert_int_equal(chain.kit.n_got, 0);
     assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_RETURN_DELAY), 250);
+    chain_send(&chain, 50, GROBO_DXL2_PING, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 0);
+    chain_send(&chain, 50, GROBO_DXL2_FACTORY_RESET, 0, 0, (const uint8_t *)"\xFF", 1);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ID), 9);
     assert_int_equal(chain_write(&chain, 9, GROBO_ROLE_BAUD, 1), 0);
     chain_send(&chain, 9, GROBO_DXL2_PING, 0, 0, NULL, 0);
     assert_int_equal(chain.kit.n_got, 0);
@@ -344,6 +405,8 @@ int main(void)
         cmocka_unit_test(servos_of_a_list_answer_in_turn),
         cmocka_unit_test(a_fast_read_is_one_status),
         cmocka_unit_test(all_are_found_by_one_ping),
+        cmocka_unit_test(servos_with_one_id_act_together),
+        cmocka_unit_test(a_goal_may_wake_a_servo),
         cmocka_unit_test(moves_follow_their_profile),
         cmocka_unit_test(a_stream_of_goals_flows),
         cmocka_unit_test(modes_have_their_own_goals),

@@ -565,6 +565,37 @@ static void a_clip_that_breaks_stops_the_robot(void **state)
     expect_rest();
 }
 
+/* A move beside it is not done where it was stopped, nor does a raw goal leave that waits. */
+static void a_clip_that_breaks_ends_what_moves_beside_it(void **state)
+{
+    (void)state;
+    static const rig_key stay[] = {{0, {{NECK, -45}}}, {2000, {{NECK, -45}}}};
+    grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 20};
+    for (int commands = 0; commands < 2; commands++) {
+        start_at(-45);
+        rig_clip_init(&clip, stay, 2);
+        clip.only = GROBO_JOINT_BIT(NECK);
+        sound_sample = clip.clip.sample;
+        clip.clip.sample = sample_that_breaks;
+        options.from_us = commands ? 1000000 : 0;
+        options.reverse = !commands; /* it breaks after 1.1 s, or under a command */
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        grobo_posture target = rig_posture(&rig, R_ELBOW, -60, 3000);
+        int beside = grobo_robot_move(&rig.robot, &target);
+        rig_run(&rig, commands ? 500000 : 1080000);
+        rig.robot.bus.free_us += 100000; /* the line is taken */
+        int raw = raw_goal(rig.driver->model->joints[SHOULDER].motor, 0, 100);
+        assert_true(!commands || grobo_robot_seek(&rig.robot, 100000) == GROBO_ERR_EMPTY);
+        rig_expect(&rig, beside, GROBO_ERR_CANCELED);
+        rig_expect(&rig, raw, GROBO_ERR_CANCELED);
+        rig_run(&rig, 500000);
+        double here_deg = rig_angle_deg(&rig, R_ELBOW);
+        rig_run(&rig, 3000000);
+        assert_true(here_deg > -59 && fabs(rig_angle_deg(&rig, R_ELBOW) - here_deg) < 0.01);
+    }
+}
+
 static unsigned goals_left; /* before the driver fails */
 static int (*sound_posture)(const grobo_driver *self, void *ctx, const grobo_target *target,
                             int part, grobo_exchange *exchange);
@@ -643,6 +674,7 @@ int main(void)
         cmocka_unit_test(a_move_begins_when_its_frame_leaves),
         cmocka_unit_test(an_approach_that_never_takes_is_given_up),
         cmocka_unit_test(a_clip_that_breaks_stops_the_robot),
+        cmocka_unit_test(a_clip_that_breaks_ends_what_moves_beside_it),
         cmocka_unit_test(a_target_that_makes_no_frame_ends_what_asked_for_it),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);

@@ -32,6 +32,37 @@ same_symbols() {
     }
     END { exit bad }' docs/seed-map.md $guide
 }
+# Each call in C++ has as many arguments as a function of that name in the reference document.
+same_arguments() {
+    awk '
+    function arguments(text) {
+        gsub(/"[^"]*"/, "s", text)
+        return text ~ /^ *$/ ? 0 : gsub(/,/, "", text) + 1
+    }
+    FNR == NR {
+        if (match($0, /[A-Za-z_0-9]+\([^()]*\)/) && $0 ~ /(;|= 0;|\{)[ \r]*$/) {
+            call = substr($0, RSTART, RLENGTH)
+            at = index(call, "(")
+            sub(/\)$/, "", call)
+            known[substr(call, 1, at - 1), arguments(substr(call, at + 1))] = 1
+        }
+        next
+    }
+    /^\| [A-Z][A-Z][0-9][0-9] \| `[a-z]\.[A-Za-z_0-9]+\([^()]*\)/ {
+        split($0, cell, " [|] ")
+        call = cell[2]
+        sub(/^`[a-z]\./, "", call)
+        sub(/\).*/, "", call)
+        at = index(call, "(")
+        if (call ~ /\.\.\./) next
+        calls++
+        if (!((substr(call, 1, at - 1), arguments(substr(call, at + 1))) in known)) {
+            print cell[1] ": " call ")"
+            bad = 1
+        }
+    }
+    END { exit bad || calls < 100 }' "$reference" $guide
+}
 sources() {
     cat tests/export/original.c
     sed -n 's/^| \([A-Z][A-Z][0-9][0-9]\) | `.*` | `\(.*\)` |$/void \1(void);\
@@ -48,6 +79,12 @@ compiles() {
 }
 check 'it has each of the 190 members' all_members
 check 'each is served by what the map says' same_symbols
+reference=${GROBO_SHARED:-../shared}/seed/class-reference.ja.txt
+if [ -r "$reference" ]; then
+    check 'its calls in C++ have the arguments of the reference document' same_arguments
+else
+    skip 'its calls in C++' "no $reference"
+fi
 if [ -n "${CROSS:-}" ]; then
     skip 'its C compiles' 'the same for all machines'
 elif [ -n "${CC:-}" ] || command -v cc >/dev/null; then

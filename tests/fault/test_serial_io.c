@@ -244,9 +244,59 @@ static void every_call_fails_once(void **state)
     event_base_free(base);
 }
 
+/* ---- what is not about bytes -------------------------------------------------------------- */
+
+static int gone_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause)
+{
+    (void)port;
+    (void)baud_bps;
+    (void)cause;
+    return GROBO_ERR_UNPLUGGED;
+}
+
+static int gone(grobo_port *port, grobo_os_cause *cause)
+{
+    (void)port;
+    (void)cause;
+    return GROBO_ERR_UNPLUGGED;
+}
+
+static int set_baud(grobo_serial *serial)
+{
+    return grobo_serial_set_baud(serial, 57600);
+}
+
+static void a_call_that_finds_the_device_gone_closes_the_port(void **state)
+{
+    int (*const calls[])(grobo_serial * serial) = {set_baud, grobo_serial_set_low_latency,
+                                                   grobo_serial_waiting};
+    grobo_port_ops ops = *grobo_port_serial_ops();
+
+    (void)state;
+    test_line_open(&line);
+    for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
+        grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device, .ops = &ops};
+        grobo_serial *serial;
+
+        assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
+        ops = *grobo_port_serial_ops();
+        assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+        ops.set_baud = gone_baud;
+        ops.set_low_latency = ops.waiting = gone;
+        assert_int_equal(calls[i](serial), GROBO_ERR_UNPLUGGED);
+        assert_false(grobo_serial_is_open(serial));
+        assert_int_equal(calls[i](serial) < 0, i > 0); /* closed; a speed is for the next open */
+        grobo_serial_free(serial);
+    }
+    test_line_close(&line);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_call_fails_once)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_call_fails_once),
+        cmocka_unit_test(a_call_that_finds_the_device_gone_closes_the_port),
+    };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

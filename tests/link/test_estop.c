@@ -360,6 +360,30 @@ static void without_a_line_it_is_carried_out_when_that_is_back(void **state)
     grobo_session_free(session);
 }
 
+/* The program that heard it has exited before it could send it. */
+static void the_next_session_carries_out_what_one_owed(void **state)
+{
+    grobo_session *session = open_session();
+    grobo_estop stop;
+
+    (void)state;
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    loop_run_until(base, &at.losts, 1);
+    assert_int_equal(grobo_estop_set(device, &stop, NULL), GROBO_OK);
+    for (int i = 0; i < 200 && ask(&stop).answer == GROBO_ESTOP_SILENT; i++) {
+        loop_run_for(base, 10000);
+    }
+    assert_int_equal(ask(&stop).answer, GROBO_ESTOP_HEARD);
+    grobo_session_free(session);
+    assert_int_equal(ask(&stop).answer, GROBO_ESTOP_NOBODY);
+    assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
+    session = open_session();
+    assert_int_equal(at.estops, 1);
+    assert_int_equal(look().torque, GROBO_TORQUE_BRAKE);
+    assert_int_equal(ask(&stop).answer, GROBO_ESTOP_DONE);
+    grobo_session_free(session);
+}
+
 static void who_looks_uses_no_processor(void **state)
 {
     grobo_session *session = open_session();
@@ -473,6 +497,7 @@ int main(void)
         TEST(a_second_mark_is_answered_too),
         TEST(who_was_held_up_looks_before_it_sends),
         TEST(without_a_line_it_is_carried_out_when_that_is_back),
+        TEST(the_next_session_carries_out_what_one_owed),
         TEST(who_looks_uses_no_processor),
         TEST(a_loop_that_stands_still_is_silent),
         TEST(a_process_that_has_exited_has_nothing),

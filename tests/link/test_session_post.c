@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 #include <event2/event.h>
@@ -63,6 +65,40 @@ static void have_descriptors(bool any)
         none.rlim_cur = 1;
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
     }
+}
+
+/* What grobo_control_new() returns in a child that may have so many descriptors more. */
+static int new_with_descriptors(rlim_t more)
+{
+    grobo_session_config on_sim = {GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &on_sim,
+                                         .events = 1};
+    int status = 0;
+    pid_t child = fork();
+
+    if (child == 0) {
+        grobo_control *made = NULL;
+        int next = dup(0);
+        const struct rlimit few = {(rlim_t)next + more, (rlim_t)next + more};
+
+        (void)close(next);
+        int r = setrlimit(RLIMIT_NOFILE, &few) == 0 ? grobo_control_new(&config, &made) : -100;
+        _exit(-r);
+    }
+    assert_true(child > 0);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    return -WEXITSTATUS(status);
+}
+
+/* libevent ends a program that has no descriptor for a loop: the library returns before. */
+static void no_descriptor_for_a_loop_is_an_error(void **state)
+{
+    (void)state;
+    for (rlim_t more = 0; more < 8; more++) { /* a loop and two pairs need them */
+        assert_int_equal(new_with_descriptors(more), GROBO_ERR_NOMEM);
+    }
+    assert_int_equal(new_with_descriptors(16), GROBO_OK);
 }
 
 /* ---- a control ---------------------------------------------------------------------------- */
@@ -531,6 +567,7 @@ int main(void)
         cmocka_unit_test(a_handler_may_interrupt_the_loop),
         cmocka_unit_test(handlers_may_interrupt_anything),
         cmocka_unit_test(nothing_takes_a_descriptor),
+        cmocka_unit_test(no_descriptor_for_a_loop_is_an_error),
         ON_LOOP(a_session_takes_all_three),
         ON_LOOP(another_thread_wakes_the_loop),
         ON_LOOP(nothing_is_sent_before_a_posted_stop),

@@ -269,6 +269,14 @@ static void behind_a_link_a_stop_of_the_terminal_was_meant_for_another(void **st
     assert_false(grobo_estop_stands(grobo_sim_server_device(server)));
     assert_true(grobo_estop_stands(link));
 
+    /* One of this robot has both names, and stands although it gets its number again. */
+    assert_int_equal(grobo_estop_clear(link, NULL), GROBO_OK);
+    assert_int_equal(grobo_estop_set(link, NULL, NULL), GROBO_OK);
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
+    assert_true(grobo_estop_stands(link));
+    assert_true(grobo_estop_stands(grobo_sim_server_device(server)));
+
     assert_int_equal(grobo_estop_clear(link, NULL), GROBO_OK);
     assert_int_equal(grobo_estop_clear(device, NULL), GROBO_OK);
     grobo_sim_server_free(server);

@@ -201,13 +201,12 @@ static void no_table_is_too_full_for_a_stop(void **state)
     assert_int_equal(grobo_control_estop(control), GROBO_OK);
     hold_end(&gate);
     for (int i = 0; i < 4; i++) {
-        int r = end_call(&callers[i]);
-        assert_true(r == GROBO_OK || r == GROBO_ERR_CANCELED); /* the next one took its place */
+        assert_int_equal(end_call(&callers[i]), GROBO_OK); /* one exit serves for all */
     }
     (void)grobo_control_wait(control, 0);
     assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
     assert_int_equal(told.estops, 1);
-    assert_in_range(told.exits, 4, 5); /* the one that nobody awaits counts where it has begun */
+    assert_in_range(told.exits, 1, 2); /* one of them may come when it has ended */
     assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_OFF);
     stop_kit_end();
 }

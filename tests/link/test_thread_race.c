@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A control called by many threads at once, in its callbacks, while it starts, stops and goes. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -497,6 +498,53 @@ static void a_callback_may_wait_for_another_robot(void **state)
     assert_int_equal(grobo_control_free(other), GROBO_OK);
 }
 
+/* A stabilizer follows another robot: it runs within a call to its own, which waits for no loop. */
+static int follow(const grobo_driver *self, void *ctx, const grobo_posture *sensed,
+                  grobo_posture *target)
+{
+    grobo_posture leader;
+    double angle_rad;
+
+    (void)self;
+    (void)sensed;
+    check(14, grobo_control_get_current_posture(ctx, &leader) > 0);
+    check(15, grobo_control_is_moving(ctx) == 0);
+    check(16, grobo_posture_get_rad(&leader, ELBOW, &angle_rad) == GROBO_OK &&
+                  grobo_posture_set_rad(target, ELBOW, angle_rad) == GROBO_OK);
+    seen.events++;
+    return GROBO_OK;
+}
+
+static void a_stabilizer_may_ask_another_robot(void **state)
+{
+    grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
+    grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                    .baud_bps = 1000000, .driver = &driver, .driver_ctx = control};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
+    grobo_posture posture;
+    grobo_control *follower;
+    double angle_rad;
+
+    (void)state;
+    control_come_up();
+    assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
+    assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
+    driver.stabilize = follow;
+    memset(&seen, 0, sizeof seen);
+    assert_int_equal(grobo_control_new(&config, &follower), GROBO_OK);
+    assert_int_equal(grobo_control_connect(follower, 0), GROBO_OK);
+    assert_int_equal(grobo_control_set_joint(follower, ELBOW, 0), GROBO_OK);
+    assert_int_equal(grobo_control_start_motion(follower), GROBO_OK);
+    assert_int_equal(grobo_control_wait(follower, 0), GROBO_OK);
+    assert_int_equal(grobo_control_read_angle(follower, ELBOW, &angle_rad, 0), GROBO_OK);
+    assert_true(fabs(grobo_deg_from_rad(angle_rad) - 10) < 1);
+    assert_int_equal(grobo_control_free(follower), GROBO_OK);
+    assert_int_equal(seen.wrong, 0);
+    assert_true(seen.events > 0);
+}
+
 int main(void)
 {
 #define ALONE(test) cmocka_unit_test_setup_teardown(test, control_set_up, control_tear_down)
@@ -504,6 +552,7 @@ int main(void)
         WITH_AND_WITHOUT_THREAD(many_threads_call_at_once),
         WITH_AND_WITHOUT_THREAD(a_call_gives_up_in_its_time),
         WITH_AND_WITHOUT_THREAD(a_callback_may_wait_for_another_robot),
+        WITH_AND_WITHOUT_THREAD(a_stabilizer_may_ask_another_robot),
         ALONE(the_thread_is_started_and_stopped_while_others_call),
         ALONE(a_stop_returns_though_the_thread_is_started_again),
         ALONE(the_thread_starts_and_stops),

@@ -50,6 +50,7 @@ class Server:
         if "url" not in told:
             raise AssertionError(f"did not start: {told}")
         self.token = told["token"]
+        self.links = (told["url"], told["stop_url"])
         self.port = int(re.search(r":(\d+)/", told["url"]).group(1))
         self.stop_port = int(re.search(r":(\d+)/", told["stop_url"]).group(1))
         return self
@@ -417,6 +418,28 @@ def beyond_loopback():
                       {"X-Grobo-Token": None, "Content-Type": "text/plain"}, server.stop_port)[0],
              204, "stop with the token in its body")
         assert page.state()["stop"]["latched"]
+
+
+def printed_links():
+    """The link of each way to listen leads to the page, and its other port takes a stop."""
+    ways = [(), ("--listen", "127.0.0.2"), ("--listen", "0.0.0.0"),
+            ("--listen", "127.0.0.2", "--name", "localhost")]
+    if os.path.exists("/proc/sys/net/ipv6") and socket.has_ipv6:
+        ways.append(("--listen", "::1"))
+    for words in ways:
+        with Server(*words) as server:
+            told = [re.fullmatch(r"http://(.+):(\d+)/", url) for url in server.links]
+            assert all(told), f"{words}: {server.links}"
+            for link, path in zip(told, ("/", "/stop")):
+                host, port = link.group(1), int(link.group(2))
+                at = words[1] if words and words[1] != "0.0.0.0" else "127.0.0.1"
+                connection = http.client.HTTPConnection(at, port, timeout=PATIENCE_S)
+                connection.request("GET" if path == "/" else "POST", path, None,
+                                   {"Host": f"{host}:{port}", "X-Grobo-Token": server.token,
+                                    "Origin": f"http://{told[0].group(1)}:{server.port}"})
+                answer = connection.getresponse()
+                same(answer.status, 200 if path == "/" else 204, f"{words}: {link.group()}{path}")
+                connection.close()
 
 
 def page_files():
@@ -862,19 +885,23 @@ def given_back():
         other.wait_played("finished")
 
 
-def lost_with(on_lost, message, end):
+def lost_with(on_lost, message, end, **how):
     with Server() as server:
         page, other = Page(server).take(), Page(server)
-        how = {"on_lost": on_lost} if on_lost else {}
+        how.update({"on_lost": on_lost} if on_lost else {})
         page.target("play", motion="greet.pseq", repeat=2, **how)
         last_ms = page.state()["time_ms"]
         took = other.wait_event(message)["time_ms"] - last_ms
         assert 2500 < took < 6000, f"{on_lost}: {took} ms"
         state = other.wait_played(end)
         same(state["lease"]["holder"], None)
-        if on_lost != "finish":
+        if end == "idle":
             other.wait("it stands", lambda s: not s["moving"] and s["job"] is None)
         same(set(other.state()["torque"]), {"on"}, on_lost)
+
+
+def lost_in_a_loop():
+    lost_with("finish", "a loop has no end, the motion stops", "idle", loop=True)
 
 
 def lost_in_motion():
@@ -882,6 +909,7 @@ def lost_in_motion():
     for each in beside((lost_with, None, "the motion stops", "idle"),
                        (lost_with, "stop", "the motion stops", "idle"),
                        (lost_with, "finish", "the motion goes on", "finished"),
+                       (lost_in_a_loop,),
                        (lost_with, "exit", "exit policy", "idle")):
         if each:
             raise each

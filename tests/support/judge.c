@@ -55,6 +55,16 @@ void judge_job_began(judge *w, int number, grobo_job_kind kind)
     w->jobs[w->n_jobs++] = (judge_job){.number = number, .kind = kind, .asked_us = w->rig->now_us};
 }
 
+/* It runs already, and serves for what was asked again. */
+static bool runs(const judge *w, int number)
+{
+    size_t i = 0;
+    while (i < w->n_jobs && w->jobs[i].number != number) {
+        i++;
+    }
+    return i < w->n_jobs;
+}
+
 void judge_motion_asked(judge *w)
 {
     w->resting = false;
@@ -151,6 +161,9 @@ void judge_estop_asked(judge *w, int result)
     if (result < 0 && result != GROBO_ERR_CLOSED) {
         fail_msg("an emergency stop was refused: %s", grobo_error_name(result));
     }
+    if (runs(w, result)) {
+        return;
+    }
     judge_raws_stopped(w, true);
     w->latched = w->by_estop = true;
     w->resting = false; /* what follows is stricter */
@@ -163,6 +176,9 @@ void judge_estop_asked(judge *w, int result)
 
 void judge_exit_asked(judge *w, int number, grobo_exit_policy policy)
 {
+    if (runs(w, number)) {
+        return;
+    }
     judge_job_began(w, number, GROBO_JOB_EXIT);
     bool holds = policy == GROBO_EXIT_SIT && w->latched; /* a stopped robot does not sit down */
     w->jobs[w->n_jobs - 1].policy = holds ? GROBO_EXIT_HOLD : policy;

@@ -6,12 +6,16 @@ usage: mqtt.py PORT floor N         round trips of N messages by the broker alon
                                     one order with a clock that its agent may compare; prints the
                                     answer. id, from: 32 digits; issued_ms, life_ms: beside now;
                                     at_ms: sets at_us; twice=BODY: the same id again, with that body
+       mqtt.py PORT abandon HOST GROUP BODY
+                                    prepares with BODY, and permits until all are ready, then orders
+                                    a start 30 s ahead and falls silent; prints both answers
        mqtt.py PORT still SECONDS N what N robots do until each has stood for so long (30 s more at
                                     most), by "host/robot": whether it came to rest, how far it
                                     moved from there, whether it was busy then, how far that is
                                     from the posture heard first, and how old that one was
        mqtt.py PORT keep FILE       every message of grobo/v1/# as a line "topic payload", until it
                                     is ended
+       mqtt.py PORT goodbye         is a broker itself: takes who comes, and says that it shuts down
        mqtt.py 0 fits FILE          these lines are as docs/fleet.schema.json says, but for orders
                                     of strangers; prints how many of each kind
 """
@@ -160,6 +164,7 @@ class Sender:
         return head["id"]
 
     def answer(self, number, wait_s=10):
+        """None: it did not come."""
         until_s = time.monotonic() + wait_s
         while time.monotonic() < until_s:
             got = self.client.message(until_s - time.monotonic())
@@ -172,18 +177,31 @@ class Sender:
                                      "t_us": now_us()})
             elif said.get("id") == number and "ok" in said:
                 return said
-        sys.exit("no answer")
+        return None
 
 
 def order(client, host, verb, body, words):
     options = dict(word.split("=", 1) for word in words)
     sender = Sender(client, host, options.get("from"))
     number = sender.order(verb, json.loads(body), options)
-    print(json.dumps(sender.answer(number)))
+    print(json.dumps(sender.answer(number) or sys.exit("no answer")))
     if "twice" in options:
         options["id"] = number
         sender.order(verb, json.loads(options["twice"]), options)
-        print(json.dumps(sender.answer(number)))
+        print(json.dumps(sender.answer(number) or sys.exit("no answer")))
+
+
+def abandon(client, host, group, body):
+    sender = Sender(client, host)
+    number = sender.order("prepare", dict(json.loads(body), group=group, spread_us=1000000), {})
+    said, until_s = None, time.monotonic() + 60
+    while said is None and time.monotonic() < until_s:
+        client.publish(ROOT + "group/" + group + "/permit",
+                       {"v": 1, "leader": sender.name, "seq": 0})
+        said = sender.answer(number, 0.1)
+    print(json.dumps(said))
+    start = sender.order("start", {"of": number}, {"at_ms": 30000})
+    print(json.dumps(sender.answer(start)))
 
 
 class Rest:
@@ -247,6 +265,19 @@ def keep(client, path):
                 out.write(got[0] + " " + got[1].decode("utf-8", "replace") + "\n")
 
 
+def goodbye(port):
+    listener = socket.socket()
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    listener.bind(("127.0.0.1", port))
+    listener.listen()
+    kept = []
+    while True:
+        client = listener.accept()[0]
+        client.recv(1000)
+        client.sendall(b"\x20\x03\0\0\0" + b"\xe0\x02\x8b\0")
+        kept.append(client)
+
+
 def kind_of(topic):
     part = topic[len(ROOT):].split("/")
     return "cmd_" + part[2] if part[1:2] == ["cmd"] else "ack" if part[0] == "ack" else part[-1]
@@ -280,11 +311,15 @@ def main(words):
     if words[1] == "fits":
         fits(words[2])
         return
+    if words[1] == "goodbye":
+        goodbye(int(words[0]))
     client = Client(int(words[0]))
     if words[1] == "floor":
         floor(client, int(words[2]))
     elif words[1] == "order":
         order(client, words[2], words[3], words[4], words[5:])
+    elif words[1] == "abandon":
+        abandon(client, *words[2:])
     elif words[1] == "still":
         still(client, float(words[2]), int(words[3]))
     else:

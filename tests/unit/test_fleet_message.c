@@ -80,6 +80,13 @@ static void payloads_are_objects_of_this_version(void **state)
     assert_int_equal(fleet_number(object, "n", -3), -3);
     assert_null(fleet_text(object, "t"));
     json_decref(object);
+    /* A time of which the clock of another is taken away, or to which it is added. */
+    object =
+        json_pack("{s:I,s:I,s:I}", "far", INT64_MAX, "past", INT64_MIN, "most", INT64_C(1) << 53);
+    assert_int_equal(fleet_number(object, "far", -3), -3);
+    assert_int_equal(fleet_number(object, "past", -3), -3);
+    assert_int_equal(fleet_number(object, "most", -3), INT64_C(1) << 53);
+    json_decref(object);
 }
 
 static json_t *body(const char *id_, int64_t issued_us, int64_t deadline_us)

@@ -395,6 +395,8 @@ static void test_body_motion_refused(void **state)
          "time-range", 4, 95},
         {PART "content: JointPosition, numParts: 1, frames: [ [ -1, 1 ] ], hasFrameTime: true }",
          "frame-length", 4, 73},
+        {PART "content: JointPosition, numParts: 1, frames: [ [ 1 ] ], hasFrameTime: true }",
+         "frame-length", 4, 71},
         {PART "content: JointPosition, frameRate: x, frames: [ [ 1 ] ] }", "type", 4, 61},
         {PART "content: JointPosition, frameRate: -1, frames: [ [ 1 ] ] }", "frame-rate", 4, 61},
     };
@@ -501,6 +503,57 @@ static void test_memory_of_a_long_file(void **state)
     free(text);
 }
 
+/* What a ref says beside the name of an earlier pose is kept as anywhere else. */
+static void test_keys_beside_a_name(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "type: PoseSeq\nname: t\nrefs:\n"
+        "- { time: 0, mine: 1, refer: { type: Pose, name: a, of_pose: 2 } }\n"
+        "- { time: 1, mine: 3, other: 4, refer: a }\n- { time: 2, refer: a }\n";
+    static const char *const kept_of_1[] = {"mine", "3", "other", "4", "of_pose", "2"};
+    grobo_motion *motion = motion_of(text, GROBO_FORMAT_PSEQ);
+    grobo_kept kept;
+
+    assert_int_equal(grobo_motion_kept_count(motion, 1), 3);
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(grobo_motion_get_kept(motion, 1, i, &kept), 0);
+        assert_string_equal(kept.key, kept_of_1[2 * i]);
+        assert_string_equal(kept.value, kept_of_1[2 * i + 1]);
+    }
+    assert_int_equal(grobo_motion_kept_count(motion, 2), 1);
+    grobo_motion_free(motion);
+}
+
+/* ---- messages ----------------------------------------------------------------------------- */
+
+/* A long name is cut; what is left of it stays legible, and only what is no character is not. */
+static void test_long_names_in_messages(void **state)
+{
+    (void)state;
+#define POSE_14 "\xE3\x81\x82\xE3\x82\x8B\xE3\x81\x8F" /* aruku, in 3 of 14 characters */
+    static const char text[] =
+        "type: PoseSeq\nname: t\nrefs:\n- { time: 0, refer: \"" POSE_14 POSE_14 POSE_14 POSE_14
+            POSE_14 "\" }\n";
+    grobo_diagnostics *list = NULL;
+    grobo_diagnostic found;
+
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
+    assert_int_equal(read_result(text, NULL, list), GROBO_ERR_SYNTAX);
+    assert_int_equal(grobo_diagnostics_get(list, 0, &found), 0);
+    assert_string_equal(found.message,
+                        "no pose '" POSE_14 POSE_14 POSE_14 POSE_14 "\xE3\x81\x82?' before this");
+    grobo_diagnostics_clear(list);
+    assert_int_equal(read_result("100 \xE3\x81\x82\xFF\x1B\n", NULL, list), GROBO_ERR_SYNTAX);
+    grobo_diagnostics_clear(list);
+    grobo_read_options as_m = {GROBO_READ_OPTIONS_INIT, .format = GROBO_FORMAT_M};
+    assert_int_equal(read_result("100 \xE3\x81\x82\xFF\x1B\n", &as_m, list), GROBO_ERR_SYNTAX);
+    assert_int_equal(grobo_diagnostics_get(list, 0, &found), 0);
+    assert_string_equal(found.message, "'\xE3\x81\x82?\?' is not a number");
+#undef POSE_14
+    grobo_diagnostics_free(list);
+}
+
 /* ---- formats ------------------------------------------------------------------------------ */
 
 static void test_format_by_content_and_name(void **state)
@@ -530,6 +583,7 @@ static void test_format_by_content_and_name(void **state)
                                  &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .name = "a.txt"},
                                  list),
                      0);
+    assert_int_equal(read_result("\xEF\xBB\xBF# by hand\r\n100 1 2\r\n", NULL, list), 0);
     assert_int_equal(
         read_result("", &(grobo_read_options){GROBO_READ_OPTIONS_INIT, .name = "a.m"}, list), 0);
     assert_int_equal(read_result("", NULL, list), GROBO_ERR_SYNTAX);
@@ -596,6 +650,8 @@ int main(void)
         cmocka_unit_test(test_key_poses_of_another_type),
         cmocka_unit_test(test_memory_of_a_long_file),
         cmocka_unit_test(test_body_motion_refused),
+        cmocka_unit_test(test_keys_beside_a_name),
+        cmocka_unit_test(test_long_names_in_messages),
         cmocka_unit_test(test_format_by_content_and_name),
         cmocka_unit_test(test_files_refused),
         cmocka_unit_test(test_source_fails),

@@ -260,6 +260,19 @@ static void a_body_turns_as_choreonoid_does(void **state)
     near(def->model->joints[0].max_rad, grobo_rad_from_deg(179.5), 1e-6);
     near(def->links[1].origin_rad[0], 0.5, 1e-6);
     grobo_robot_def_free(def);
+    /* Today's spelling, beside the older one; about Z where no axis is given. */
+    def = def_of("format: ChoreonoidBody\nangle_unit: radian\nlinks:\n - {name: a}\n"
+                 " - {name: b, parent: a, joint_type: revolute, jointId: 1, joint_axis: X,\n"
+                 "    joint_range: [-1, 0.5], jointVelocityRange: [-2, 3]}\n"
+                 " - {name: c, parent: b, joint_type: revolute, joint_id: 0, joint_range: 1,\n"
+                 "    max_joint_velocity: unlimited}\n",
+                 false, "feetech", "STS3215");
+    assert_string_equal(def->model->joints[0].name, "c");
+    near(def->links[2].axis[2], 1, 0);
+    near(def->model->joints[0].min_rad, -1, 1e-6);
+    near(def->model->joints[1].max_rad, 0.5, 1e-6);
+    near(def->model->joints[1].max_speed_rad_s, 2, 1e-4);
+    grobo_robot_def_free(def);
 }
 
 /* ---- what is refused ------------------------------------------------------------------------ */
@@ -327,12 +340,14 @@ static void a_broken_body_is_refused_in_a_line(void **state)
     refused("links: [", false, "arm:2:1: did not find");
     refused("name: x\n", false, "neither a URDF nor a body");
     refused("- 1\n", false, "neither a URDF nor a body");
+    refused(BODY " - {name: b, parent: a, jointType: revolute, joint__axis: X,\n"
+                 "    max_joint_velocity: much}\n",
+            false, "arm:5: a number is wanted");
     refused("", false, "neither a URDF nor a body");
     refused("format: ChoreonoidBody\nlinks: {a: b}\n", false, "arm:2: a list of links is wanted");
     refused(BODY " - {parent: a}\n", false, "arm:4: a link has no name");
     refused(BODY " - {name: b, parent: a, type: SubBody}\n", false,
             "only links of type Link are read");
-    refused(BODY " - {name: b, parent: a, jointType: revolute}\n", false, "has no jointAxis");
     refused(BODY " - {name: b, parent: a, jointType: revolute, jointAxis: Q}\n", false,
             "jointAxis: X, Y, Z");
     refused(BODY " - {name: b, parent: a, translation: [0, 0, x]}\n", false,

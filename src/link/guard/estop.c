@@ -336,6 +336,12 @@ static bool read_answer(const char *id, int *answer, int *result)
     return false;
 }
 
+/* One that was only heard is still owed where the program that heard it has exited. */
+static bool is_final(int answer)
+{
+    return answer == GROBO_ESTOP_DONE || answer == GROBO_ESTOP_FAILED;
+}
+
 int grobo_estop_ask(const char *device, const grobo_estop *stop, grobo_estop_holder *holder)
 {
     grobo_i_device_names names;
@@ -354,7 +360,7 @@ int grobo_estop_ask(const char *device, const grobo_estop *stop, grobo_estop_hol
         holder->answer = GROBO_ESTOP_SILENT;
     }
     if (stop != NULL && stop->id[0] != '\0' && read_answer(stop->id, &answer, &result) &&
-        answer >= GROBO_ESTOP_HEARD && answer <= GROBO_ESTOP_FAILED) {
+        (is_final(answer) || (answer == GROBO_ESTOP_HEARD && holder->pid != 0))) {
         holder->answer = (grobo_estop_answer)answer;
         holder->result = result;
     }
@@ -434,7 +440,8 @@ bool grobo_i_estop_watch_look(grobo_i_estop_watch *watch, bool *pending)
     for (int i = 0; i < n; i++) {
         if (!has(watch->heard, watch->n_heard, standing[i])) {
             fresh = true;
-            *pending = *pending || !read_answer(standing[i], &answer, &result);
+            *pending =
+                *pending || !(read_answer(standing[i], &answer, &result) && is_final(answer));
         }
     }
     memcpy(watch->heard, standing, (size_t)n * sizeof standing[0]);

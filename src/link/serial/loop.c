@@ -30,9 +30,26 @@ struct timeval grobo_i_link_timeval(int64_t span_us)
     return tv;
 }
 
+/* For the four descriptors of a base libevent ends the program where it has none. Where another
+ * thread takes them behind this look, it still does. */
+static bool has_descriptors(void)
+{
+    evutil_socket_t pairs[2][2];
+    int made = 0;
+
+    while (made < 2 && evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, pairs[made]) == 0) {
+        made++;
+    }
+    for (int i = 0; i < 2 * made; i++) {
+        evutil_closesocket(pairs[i / 2][i % 2]);
+    }
+    return made == 2;
+}
+
 struct event_base *grobo_loop_new(void)
 {
-    struct event_config *config = grobo_port_start() < 0 ? NULL : event_config_new();
+    bool may = grobo_port_start() >= 0 && has_descriptors();
+    struct event_config *config = may ? event_config_new() : NULL;
     struct event_base *base = NULL;
 
     if (config == NULL) {

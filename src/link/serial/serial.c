@@ -280,6 +280,12 @@ grobo_serial_mode grobo_serial_get_mode(const grobo_serial *serial)
     return serial == NULL ? GROBO_SERIAL_SYNC : serial->config.mode;
 }
 
+/* Closes a port whose setting found no device. */
+static int or_lost(grobo_serial *serial, int r)
+{
+    return r == GROBO_ERR_UNPLUGGED ? grobo_i_serial_lose(serial, r) : r;
+}
+
 int grobo_serial_set_baud(grobo_serial *serial, int baud_bps)
 {
     if (serial == NULL || baud_bps <= 0) {
@@ -293,7 +299,7 @@ int grobo_serial_set_baud(grobo_serial *serial, int baud_bps)
     if (r > 0) {
         serial->config.baud_bps = baud_bps;
     }
-    return r == GROBO_ERR_UNPLUGGED ? grobo_i_serial_lose(serial, r) : r;
+    return or_lost(serial, r);
 }
 
 int grobo_serial_baud(const grobo_serial *serial)
@@ -308,7 +314,7 @@ int grobo_serial_set_low_latency(grobo_serial *serial)
     if (r >= 0) {
         r = serial->quick_result = serial->ops->set_low_latency(serial->port, &serial->cause);
     }
-    return r;
+    return or_lost(serial, r);
 }
 
 int grobo_serial_low_latency(const grobo_serial *serial)

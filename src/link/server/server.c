@@ -284,6 +284,7 @@ static void answer(grobo_sim_server *server)
 static int open_pty(grobo_sim_server *server, grobo_os_cause *cause)
 {
     end *e = &server->ends[END_PTY];
+    bool stopped = server->link[0] != '\0' && grobo_estop_stands(server->link);
     int r = e->ops->open(e->port, server->link, server->baud_bps, cause);
 
     if (r >= 0) {
@@ -295,6 +296,9 @@ static int open_pty(grobo_sim_server *server, grobo_os_cause *cause)
     if (r >= 0 && server->link[0] != '\0') {
         /* The number may have been another terminal's: this robot is stopped by its link. */
         (void)grobo_estop_clear(server->device, NULL);
+        if (stopped && !grobo_estop_stands(server->link)) { /* it was this robot's */
+            (void)grobo_estop_set(server->link, NULL, NULL);
+        }
     }
     return r;
 }

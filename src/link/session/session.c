@@ -260,15 +260,9 @@ static void on_unlock(void *ctx)
 /* Emergency stops that were not posted count as those do, see grobo_control_reset(). */
 static void count_estops(grobo_session *session)
 {
-    unsigned estops;
-
-    if (session->share.lock != NULL) {
-        on_lock(session);
-    }
-    estops = (unsigned)grobo_robot_get_counters(&session->robot)->estops;
-    if (session->share.lock != NULL) {
-        on_unlock(session);
-    }
+    grobo_i_lock(&session->robot);
+    unsigned estops = (unsigned)session->robot.counters.estops;
+    grobo_i_unlock(&session->robot);
     if (atomic_exchange(&session->seen_estops, estops) != estops &&
         !atomic_load(&session->obeying)) {
         atomic_fetch_add(&session->estops, 1);

@@ -24,47 +24,41 @@ grobo_serial *grobo_control_serial(grobo_control *control)
 
 static int set_device(void *arg, grobo_control *control)
 {
-    return grobo_session_set_device(control->session, arg);
+    const char *const *device = arg;
+
+    return grobo_session_set_device(control->session, *device);
 }
 
 int grobo_control_set_device(grobo_control *control, const char *device)
 {
-    char name[GROBO_DEVICE_MAX_BYTES];
-
-    if (device == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    if (strlen(device) >= sizeof name) {
-        return GROBO_ERR_CAP;
-    }
-    memcpy(name, device, strlen(device) + 1);
-    return grobo_i_control_call(control, set_device, name);
+    return grobo_i_control_call(control, set_device, &device);
 }
+
+/* The caller's storage, which stays until the loop is done with it: see wait_for() in call.c. */
+typedef struct storage {
+    void *bytes;
+    size_t size;
+    int64_t end_us;
+} storage;
 
 static int get_device(void *arg, grobo_control *control)
 {
+    const storage *to = arg;
     const char *device = grobo_session_device(control->session);
+    size_t length = strlen(device);
 
-    memcpy(arg, device, strlen(device) + 1);
-    return GROBO_OK;
+    if (length >= to->size) {
+        return GROBO_ERR_SPACE;
+    }
+    memcpy(to->bytes, device, length + 1);
+    return (int)length;
 }
 
 int grobo_control_get_device(grobo_control *control, char *device, size_t device_bytes)
 {
-    if (device == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    char name[GROBO_DEVICE_MAX_BYTES];
-    int r = grobo_i_control_call(control, get_device, name);
+    storage to = {.bytes = device, .size = device_bytes};
 
-    if (r >= 0 && strlen(name) >= device_bytes) {
-        r = GROBO_ERR_SPACE;
-    }
-    if (r >= 0) {
-        memcpy(device, name, strlen(name) + 1);
-        r = (int)strlen(name);
-    }
-    return r;
+    return device == NULL ? GROBO_ERR_ARG : grobo_i_control_call(control, get_device, &to);
 }
 
 static int open_port(void *arg, grobo_control *control)
@@ -178,16 +172,7 @@ static int get_cause(void *arg, grobo_control *control)
 
 int grobo_control_get_cause(grobo_control *control, grobo_os_cause *cause)
 {
-    if (cause == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    grobo_os_cause said;
-    int r = grobo_i_control_call(control, get_cause, &said);
-
-    if (r >= 0) {
-        *cause = said;
-    }
-    return r;
+    return cause == NULL ? GROBO_ERR_ARG : grobo_i_control_call(control, get_cause, cause);
 }
 
 static int check_job(grobo_control *control, control_job *job)
@@ -384,26 +369,20 @@ int grobo_control_send_command(grobo_control *control, const void *packet, size_
     return r < 0 ? r : (int)job.size;
 }
 
-typedef struct receive_call {
-    uint8_t *bytes;
-    size_t size;
-    int64_t end_us;
-} receive_call;
-
 static int receive(void *arg, grobo_control *control)
 {
-    receive_call *call = arg;
-    bool over = grobo_now_us() >= call->end_us;
+    const storage *to = arg;
+    bool over = grobo_now_us() >= to->end_us;
 
-    if (control->received_bytes < call->size && over) {
+    if (control->received_bytes < to->size && over) {
         grobo_i_session_look(control->session); /* somebody held us up, maybe */
     }
     size_t had = control->received_bytes;
-    if (had >= call->size) {
-        memcpy(call->bytes, control->received, call->size);
-        control->received_bytes -= call->size;
-        memmove(control->received, control->received + call->size, control->received_bytes);
-        return (int)call->size;
+    if (had >= to->size) {
+        memcpy(to->bytes, control->received, to->size);
+        control->received_bytes -= to->size;
+        memmove(control->received, control->received + to->size, control->received_bytes);
+        return (int)to->size;
     }
     if (!over) {
         return CALL_PENDING;
@@ -417,17 +396,10 @@ int grobo_control_receive(grobo_control *control, void *bytes, size_t size)
     if (bytes == NULL) {
         return GROBO_ERR_ARG;
     }
-    uint8_t taken[GROBO_CONTROL_RECEIVE_BYTES];
-    receive_call call = {taken, size, grobo_now_us() + INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS};
-    int r = GROBO_ERR_CAP;
+    storage to = {bytes, size, grobo_now_us() + INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS};
 
-    if (size <= sizeof taken) {
-        r = grobo_i_control_wait(control, receive, &call, 0);
-    }
-    if (r > 0) {
-        memcpy(bytes, taken, (size_t)r);
-    }
-    return r;
+    return size <= GROBO_CONTROL_RECEIVE_BYTES ? grobo_i_control_wait(control, receive, &to, 0)
+                                               : GROBO_ERR_CAP;
 }
 
 /* ---- safety ------------------------------------------------------------------------------- */

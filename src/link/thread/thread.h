@@ -13,6 +13,7 @@
 #define GROBO_LINK_THREAD_I_H
 
 #include <limits.h>
+#include <stdatomic.h>
 
 #include <event2/event.h>
 
@@ -73,7 +74,9 @@ typedef enum play_stage { PLAY_NONE = 0, PLAY_ASKED, PLAY_BEGUN } play_stage;
 struct grobo_control {
     const grobo_mem *mem;
     grobo_mutex lock;
-    grobo_mutex engine; /* of the session's engine */
+    grobo_mutex engine;                /* of the session's engine */
+    const char *_Atomic engine_thread; /* that has it; NULL: none */
+    unsigned engine_depth;             /* under engine: how often */
     const grobo_driver *driver;
     grobo_control_fn on_svc;
     grobo_session_config user; /* its callbacks */

@@ -56,34 +56,33 @@ void grobo_i_control_copy(grobo_control *control, void *to, const void *from, si
 
 /* ---- the engine's lock -------------------------------------------------------------------- */
 
-/* The engine that this thread holds, and how often: within a call to one no other is called. */
-static _Thread_local const grobo_control *held;
-static _Thread_local unsigned times_held;
+/* Its address is the name of this thread. */
+static _Thread_local char me;
 
 static void engine_lock(void *ctx)
 {
     grobo_control *control = ctx;
 
-    GROBO_ASSERT(times_held == 0 || held == control);
-    if (times_held == 0) {
+    if (atomic_load(&control->engine_thread) != &me) {
         if (!grobo_i_control_inside(control)) {
             grobo_i_control_lock(control); /* somebody is there */
             grobo_i_control_unlock(control);
         }
         grobo_mutex_lock(&control->engine);
-        held = control;
+        GROBO_ASSERT(control->engine_depth == 0);
+        atomic_store(&control->engine_thread, &me);
     }
-    times_held++;
+    control->engine_depth++;
 }
 
 static void engine_unlock(void *ctx)
 {
     grobo_control *control = ctx;
 
-    GROBO_ASSERT(times_held > 0 && held == control);
-    times_held--;
-    if (times_held == 0) {
-        held = NULL;
+    GROBO_ASSERT(control->engine_depth > 0);
+    control->engine_depth--;
+    if (control->engine_depth == 0) {
+        atomic_store(&control->engine_thread, NULL);
         grobo_mutex_unlock(&control->engine);
     }
 }

@@ -27,7 +27,8 @@ static bool starts_a_number(const unsigned char *text, size_t size, size_t at)
 /* Of a .m file the first word that is no comment is a number with another one behind it. */
 static bool looks_like_m(const unsigned char *text, size_t size)
 {
-    size_t i = span(text, size, 0, " \t\r\n");
+    bool marked = size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0;
+    size_t i = span(text, size, marked ? 3 : 0, " \t\r\n");
 
     while (i < size && text[i] == '#') {
         const unsigned char *newline = memchr(text + i, '\n', size - i);

@@ -333,6 +333,10 @@ static int take_frames(component *part)
     int result = 0;
 
     document->has_joints = true;
+    if (!part->times && has_frame_time(part) && part->columns == 1) {
+        return grobo_i_complain(reader, GROBO_ERR_SYNTAX, "frame-length", part->frames_place,
+                                "frames of a time without angles");
+    }
     if (!part->times && has_frame_time(part) && part->columns > 1) {
         result = take_times_from_frames(part);
     }

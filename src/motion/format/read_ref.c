@@ -212,16 +212,20 @@ static int copy_pose(grobo_i_pose_ref *ref, const grobo_i_row *row)
         row->angle_rad[j] = other.angle_rad[j];
     }
     *row->set = *other.set;
-    if (*other.extra != NULL) {
-        *row->extra = grobo_i_extra_dup(motion->mem, *other.extra);
-        if (*row->extra == NULL) {
-            return GROBO_ERR_NOMEM;
-        }
-        grobo_i_drop_kept(motion->mem, &(*row->extra)->kept, GROBO_KEPT_REF);
-        (*row->extra)->info.max_transition_s = ref->info.max_transition_s;
-    } else {
-        return put_extra(ref, row);
+    grobo_i_extra *extra = grobo_i_extra_dup(motion->mem, *other.extra); /* it has a name */
+    if (extra == NULL) {
+        return GROBO_ERR_NOMEM;
     }
+    *row->extra = extra;
+    extra->info.max_transition_s = ref->info.max_transition_s;
+    grobo_i_drop_kept(motion->mem, &extra->kept, GROBO_KEPT_REF);
+    grobo_i_kept **end = &ref->kept;
+    while (*end != NULL) {
+        end = &(*end)->next;
+    }
+    *end = extra->kept;
+    extra->kept = ref->kept;
+    ref->kept = NULL;
     return 0;
 }
 

@@ -166,14 +166,15 @@ const char *grobo_severity_name(grobo_severity severity)
 void grobo_i_format_message(char *message, size_t size, const char *format, va_list args)
 {
     (void)vsnprintf(message, size, format, args);
-    for (char *p = message; *p != '\0'; p++) {
-        if ((unsigned char)*p < 0x20 || *p == 0x7F) {
+    const char *end = message + strlen(message);
+
+    for (char *p = message; p < end;) {
+        size_t length = grobo_i_utf8_length(p, (size_t)(end - p));
+        if (length == 0 || (unsigned char)*p < 0x20 || *p == 0x7F) {
             *p = '?';
+            length = 1;
         }
-    }
-    bool well_formed = grobo_i_utf8_ok(message, strlen(message));
-    for (char *p = message; *p != '\0' && !well_formed; p++) {
-        *p = (unsigned char)*p < 0x80 ? *p : '?';
+        p += length;
     }
 }
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/motion/text/utf8.h"
 
-/* Length of the UTF-8 sequence at text, 0 if it is malformed. */
-static size_t sequence_length(const unsigned char *text, size_t length)
+size_t grobo_i_utf8_length(const char *first, size_t left)
 {
+    const unsigned char *text = (const unsigned char *)first;
     static const struct {
         unsigned char first, last; /* of the leading byte */
         unsigned char low, high;   /* of the second byte */
@@ -21,7 +21,7 @@ static size_t sequence_length(const unsigned char *text, size_t length)
         if (text[0] < forms[i].first || text[0] > forms[i].last) {
             continue;
         }
-        if (length < forms[i].length || text[1] < forms[i].low || text[1] > forms[i].high) {
+        if (left < forms[i].length || text[1] < forms[i].low || text[1] > forms[i].high) {
             return 0;
         }
         for (size_t k = 2; k < forms[i].length; k++) {
@@ -36,10 +36,8 @@ static size_t sequence_length(const unsigned char *text, size_t length)
 
 bool grobo_i_utf8_ok(const char *text, size_t length)
 {
-    const unsigned char *bytes = (const unsigned char *)text;
-
     for (size_t i = 0; i < length;) {
-        size_t step = sequence_length(bytes + i, length - i);
+        size_t step = grobo_i_utf8_length(text + i, length - i);
         if (step == 0) {
             return false;
         }

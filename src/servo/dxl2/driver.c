@@ -2,8 +2,9 @@
 /* Robots of DYNAMIXEL X servos. */
 #include "src/servo/table/family.h"
 
-/* Bits of the drive mode that say what a goal means: its sense, and that it comes with a time. */
-#define DRIVE_BITS (GROBO_DXL2_DRIVE_REVERSE | GROBO_DXL2_DRIVE_TIME)
+/* Bits of the drive mode that say what a goal means: its sense, that it comes with a time, and that
+ * it switches torque on, which would wake limp joints. */
+#define DRIVE_BITS (GROBO_DXL2_DRIVE_REVERSE | GROBO_DXL2_DRIVE_TIME | GROBO_DXL2_DRIVE_WAKES)
 
 /* Longer than the time between two readings of a joint that moves: GROBO_WATCH_US / 2 at most. */
 #define WATCHDOG_US 500000

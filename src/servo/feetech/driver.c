@@ -5,8 +5,11 @@
 #include "src/servo/dxl1/driver.h"
 
 /* The phase says what a count of speed is, and whether positions count turns; only STS and SMS have
- * these bits (FTServo's tables). */
-#define PHASE_BITS (GROBO_STS_PHASE_REVERSE | GROBO_STS_PHASE_FINE_SPEED | GROBO_STS_PHASE_TURNS)
+ * these bits (FTServo's tables). A servo is turned round by the senses of motor and sensor together
+ * (wiki.juxitech.com, phase of STS): with one of them it would run away from its goal. */
+#define PHASE_BITS                                                                                 \
+    (GROBO_STS_PHASE_REVERSE | GROBO_STS_PHASE_FEEDBACK | GROBO_STS_PHASE_FINE_SPEED |             \
+     GROBO_STS_PHASE_TURNS)
 
 static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
                      grobo_register_role role, int32_t found)

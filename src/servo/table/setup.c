@@ -111,6 +111,25 @@ static int judge_values(const grobo_i_family *family, const grobo_joint *joint,
     return GROBO_OK;
 }
 
+/* A count of a position is worth what the table says: of STS, and of MX that count turns (FTServo's
+ * tables; emanual resolution_divider). */
+static int judge_scale(const grobo_joint *joint, const grobo_i_block *b, grobo_joint_state *state)
+{
+    const grobo_servo_register *reg = grobo_servo_register_named(b->servo, "angular_resolution");
+    if (reg == NULL && joint->turns) {
+        reg = grobo_servo_register_named(b->servo, "resolution_divider");
+    }
+    if (reg == NULL || reg->address < b->address || reg->address >= b->address + b->n) {
+        return GROBO_OK;
+    }
+    int32_t found = grobo_servo_register_get(b->servo, reg, b->data + (reg->address - b->address));
+    if (found == reg->factory) {
+        return GROBO_OK;
+    }
+    state->setup = (grobo_setup_fault){reg, found, reg->factory, reg->factory};
+    return GROBO_ERR_SETUP;
+}
+
 static int judge_turns(const grobo_i_family *family, const grobo_i_block *b, int32_t min,
                        int32_t max, grobo_joint_state *state)
 {
@@ -125,6 +144,7 @@ int grobo_i_table_setup(const grobo_i_family *family, const grobo_joint *joint,
 {
     int32_t min, max, mode = 0;
     int result = judge_values(family, joint, block, state);
+    result = result < 0 ? result : judge_scale(joint, block, state);
     if (result < 0 || !value_of(block, GROBO_ROLE_MIN_POSITION, &min) ||
         !value_of(block, GROBO_ROLE_MAX_POSITION, &max)) {
         return result;

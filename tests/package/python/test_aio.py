@@ -2,11 +2,14 @@
 """The face for asyncio, against simulators in this process."""
 
 import asyncio
+import threading
+import time
 import unittest
 
 import grobo
 import grobo.aio
 from grobo import _lib, errors
+from grobo import robot as robot_module
 
 GREET = "motions/greet.pseq"
 
@@ -67,6 +70,38 @@ class Aio(unittest.IsolatedAsyncioTestCase):
         angles = await self.robot.angles(["R_ELBOW_P"])
         self.assertGreater(angles["R_ELBOW_P"], -0.9)
 
+    async def test_a_play_that_is_cancelled_before_it_begins_does_not_last(self):
+        asked, given_up = threading.Event(), threading.Event()
+
+        class Late:
+            """The name of a file, which comes when the play has been cancelled."""
+
+            def __fspath__(self):
+                asked.set()
+                given_up.wait()
+                return GREET
+
+        task = asyncio.create_task(self.robot.play(Late()))
+        await self.until(asked.is_set)
+        task.cancel()
+        await asyncio.sleep(0)  # it is told
+        given_up.set()
+        since = time.monotonic()
+        with self.assertRaises(asyncio.CancelledError):
+            await task
+        await self.until(lambda: not self.robot.status().moving)
+        self.assertLess(time.monotonic() - since, 3)  # it takes 5 s to its end
+
+    async def test_a_reading_that_is_cancelled_stops_nothing(self):
+        moving = asyncio.create_task(self.robot.init(time=0.5))
+        await self.until(lambda: self.robot.status().moving)
+        reading = asyncio.create_task(self.robot.angles())
+        await asyncio.sleep(0.001)
+        reading.cancel()
+        with self.assertRaises(asyncio.CancelledError):
+            await reading
+        await moving
+
     async def test_an_emergency_stop_is_an_event_and_ends_a_move(self):
         task = asyncio.create_task(self.robot.move({"R_ELBOW_P": -1.0}, time=20))
         await self.until(lambda: self.robot.status().moving)
@@ -92,6 +127,42 @@ class Aio(unittest.IsolatedAsyncioTestCase):
             await task
         await self.watcher
         self.assertEqual(self.events[0].kind, "line_up")
+        async for event in self.robot.events():
+            self.fail(event)
+
+
+@unittest.skipUnless(_lib.has("grobo_control_next_event"), "the library keeps no events")
+class Aside(unittest.IsolatedAsyncioTestCase):
+    """What goes wrong beside the robot."""
+
+    async def test_a_loop_that_was_held_up_hears_of_the_end_all_the_same(self):
+        async with await grobo.aio.connect("sim", events=1) as robot:
+            await robot.init()
+            moves = [
+                asyncio.create_task(robot.move({name: angle}, time=0.1))
+                for name, angle in (("R_ELBOW_P", -0.2), ("L_ELBOW_P", -0.2), ("NECK_Y", 0.1))
+            ]
+            await asyncio.sleep(0)  # they begin
+            while robot.status().moving:
+                time.sleep(0.01)
+            await asyncio.wait_for(asyncio.gather(*moves), 5)
+
+    async def test_a_connection_that_is_given_up_is_closed(self):
+        connecting = asyncio.create_task(grobo.aio.connect("sim"))
+        while not robot_module._open:
+            await asyncio.sleep(0)
+        connecting.cancel()
+        with self.assertRaises(asyncio.CancelledError):
+            await connecting
+        self.assertEqual(robot_module._open, set())
+
+    async def test_leaving_keeps_the_exception_that_leaves(self):
+        with self.assertRaises(ZeroDivisionError):
+            async with await grobo.aio.connect("sim") as robot:
+                robot._robot.close = lambda: errors.check(-1, "exit policy")
+                1 / 0
+        self.assertEqual(len(robot_module._open), 1)
+        robot_module._close_all()
 
 
 @unittest.skipIf(_lib.has("grobo_control_next_event"), "the library keeps events")

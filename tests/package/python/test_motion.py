@@ -29,6 +29,11 @@ class Motions(unittest.TestCase):
             for angle, one in zip(row, back):
                 self.assertTrue(angle == one or (math.isnan(angle) and math.isnan(one)))
         self.assertEqual(motion.length, 1.25)
+        for kind in ("keys", "steps"):
+            self.assertEqual(grobo.Motion.of([0.5, 1.25], rows, kind).length, 1.25)
+        for kind in ("frames", "key"):  # frames have a rate instead of times
+            with self.assertRaisesRegex(ValueError, kind):
+                grobo.Motion.of([0.5, 1.25], rows, kind)
 
     def test_a_file_is_read_and_written(self):
         motion = grobo.Motion.load(GREET)

@@ -4,16 +4,20 @@
 import _thread
 import gc
 import os
+import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 import unittest
 import warnings
 from pathlib import Path
+from unittest import mock
 
 import grobo
 from grobo import errors
+from grobo import robot as robot_module
 from grobo.robot import Torque
 
 GREET = "motions/greet.pseq"
@@ -137,6 +141,20 @@ class Moving(unittest.TestCase):
         self.assertEqual(caught.exception.joint, "NOSE")
         with self.assertRaises(LookupError):
             self.robot["NOSE"]
+        with self.assertRaises(LookupError) as caught:
+            self.robot.move({0: 0.0})  # a number is no name
+        self.assertIn("(0)", str(caught.exception))
+
+    def test_no_number_means_a_default_that_was_not_asked_for(self):
+        for options in ({"speed": 0}, {"speed": 0.004}, {"speed": -1.0}, {"speed": 700.0},
+                        {"rate": 0}, {"rate": -5}, {"rate": 1001}):
+            with self.assertRaises(errors.Arg, msg=options):
+                self.robot.play(GREET, **options)
+        for verb in (self.robot.init, lambda time: self.robot.move({"R_ELBOW_P": 0.0}, time=time),
+                     lambda time: self.robot.send({"R_ELBOW_P": 0.0}, time=time)):
+            with self.assertRaises(errors.Arg):
+                verb(time=-1.0)
+        self.assertFalse(self.robot.status().moving)
 
 
 class Others(unittest.TestCase):
@@ -211,6 +229,56 @@ class Leaving(unittest.TestCase):
         thread.join()
         self.assertEqual(len(ended), 1)
 
+    def test_a_close_that_is_interrupted_is_made_up_for(self):
+        robot = grobo.connect("sim")
+        control = robot._control
+
+        def interrupt():
+            until(lambda: control.closing)
+            _thread.interrupt_main()
+
+        with control.use():  # close() waits for it
+            thread = threading.Thread(target=interrupt)
+            thread.start()
+            with self.assertRaises(KeyboardInterrupt):
+                robot.close()
+            thread.join()
+        with self.assertRaises(errors.Closed):
+            robot.status()
+        robot.close()
+        self.assertFalse(control.handle)
+        robot.close()
+
+    def test_an_interrupt_anywhere_leaves_a_robot_that_closes(self):
+        """Ctrl-C is heard where a function begins, and behind each call."""
+        robot = grobo.connect("sim")
+        at, left = 0, 0
+
+        def interrupt(_frame, event, _arg):
+            nonlocal left
+            if event in ("call", "c_return"):
+                left -= 1
+                if left == 0:
+                    sys.setprofile(None)
+                    raise KeyboardInterrupt
+
+        while left <= 0:
+            at, left = at + 1, at + 1
+            try:
+                sys.setprofile(interrupt)
+                robot.stop()
+            except KeyboardInterrupt:
+                pass
+            finally:
+                sys.setprofile(None)
+            thread = threading.Thread(target=robot.status, daemon=True)
+            thread.start()
+            thread.join(5)
+            self.assertFalse(thread.is_alive(), f"locked behind call {at}")
+            self.assertFalse(robot._control.users, f"in use behind call {at}")
+        self.assertGreater(at, 5)
+        robot.close()
+
     def test_a_robot_that_is_not_closed_warns(self):
         robot = grobo.connect("sim")
         control = robot._control
@@ -231,6 +299,31 @@ class Leaving(unittest.TestCase):
                     os._exit(7)
                 os._exit(1)
             self.assertEqual(os.waitpid(child, 0)[1] >> 8, 7)
+
+    def test_a_child_forked_while_a_thread_asks_leaves_at_once(self):
+        with grobo.connect("sim") as robot:
+            locked, forked = threading.Event(), threading.Event()
+
+            def hold():
+                with robot._control.lock:
+                    locked.set()
+                    forked.wait()
+
+            thread = threading.Thread(target=hold)
+            thread.start()
+            locked.wait()
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                child = os.fork()
+            if child == 0:
+                signal.alarm(10)
+                with self.assertRaises(errors.State):
+                    robot.status()
+                robot.close()
+                os._exit(7)
+            forked.set()
+            thread.join()
+            self.assertEqual(os.waitpid(child, 0)[1], 7 << 8)
 
     def test_many_robots_leave_no_thread_and_no_descriptor(self):
         def count():
@@ -275,6 +368,25 @@ class Exiting(unittest.TestCase):
         self.assertEqual(self.torque_after(grobo.Exit.OFF), {Torque.OFF})
         self.assertEqual(self.torque_after(grobo.Exit.HOLD), {Torque.ON})
         self.assertEqual(self.torque_after(None), {Torque.ON})
+
+    def test_a_robot_that_was_dropped_makes_way_for_the_next(self):
+        robot = grobo.connect(str(self.link))
+        robot.torque(True)
+        with self.assertWarns(ResourceWarning):
+            del robot
+            gc.collect()
+        with grobo.connect(str(self.link)) as robot:
+            self.assertEqual(len(robot.angles()), 20)
+
+    def test_a_robot_that_was_dropped_is_left_as_was_asked_for(self):
+        for policy, posted in ((grobo.Exit.OFF, 1), (None, 0)):
+            robot = grobo.connect("sim", exit=policy)
+            with mock.patch.object(robot_module, "lib", wraps=robot_module.lib) as lib:
+                with self.assertWarns(ResourceWarning):
+                    del robot
+                    gc.collect()
+                self.assertEqual(lib.grobo_control_post_exit.call_count, posted)
+            robot_module._close_all()
 
     def test_it_is_carried_out_where_an_exception_leaves(self):
         with self.assertRaises(ZeroDivisionError):

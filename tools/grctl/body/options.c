@@ -172,6 +172,7 @@ int body_solve(app *a, int base, const char *path, const grobo_motion *motion, d
                grobo_motion **solved)
 {
     grobo_body *body = NULL;
+    grobo_kept kept;
     int status = body_make(a, base, path, motion, rate_hz, &body);
     if (!status && body) {
         status = make_motion(a, path, body, rate_hz, solved);
@@ -180,6 +181,9 @@ int body_solve(app *a, int base, const char *path, const grobo_motion *motion, d
     if (*solved) {
         (void)grobo_motion_set_name(*solved, grobo_motion_name(motion));
         (void)grobo_motion_set_target_body(*solved, grobo_motion_target_body(motion));
+        for (size_t i = 0; grobo_motion_get_kept(motion, GROBO_MOTION_TOP, i, &kept) == 0; i++) {
+            (void)grobo_motion_keep(*solved, GROBO_MOTION_TOP, &kept);
+        }
     }
     return status;
 }

@@ -12,21 +12,24 @@
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
-static bool wants_color(const app *a, bool tty)
+static bool wants_color(const app *a, bool screen)
 {
     const cli_value *v = app_global(a, GLOBAL_COLOR);
     const char *no_color = getenv("NO_COLOR");
-    const char *term = getenv("TERM");
     if (v->given && v->choice == 1) { /* always */
         return true;
     }
     if (v->given && v->choice == 2) { /* never */
         return false;
     }
-    if (no_color && *no_color) {
-        return false;
-    }
-    return tty && !(term && strcmp(term, "dumb") == 0);
+    return screen && !(no_color && *no_color);
+}
+
+/* One that takes escape sequences. */
+static bool is_screen(bool tty)
+{
+    const char *term = getenv("TERM"); /* not there on Windows */
+    return tty && !(term && (!*term || strcmp(term, "dumb") == 0));
 }
 
 void app_settle(app *a)
@@ -37,8 +40,10 @@ void app_settle(app *a)
     a->tty_in = os_is_terminal(stdin);
     a->tty_out = os_is_terminal(stdout);
     a->tty_err = os_is_terminal(stderr);
-    a->color_out = wants_color(a, a->tty_out);
-    a->color_err = wants_color(a, a->tty_err);
+    a->screen_out = is_screen(a->tty_out);
+    a->screen_err = is_screen(a->tty_err);
+    a->color_out = wants_color(a, a->screen_out);
+    a->color_err = wants_color(a, a->screen_err);
 }
 
 const cli_value *app_option(const app *a, int i)
@@ -161,21 +166,40 @@ const char *app_error_text(int error)
     return lang_text(grobo_error_text(error));
 }
 
-const char *app_cause_text(int number)
+static int error_of_cause(int number)
 {
     switch (number) {
     case ENOENT:
     case ENOTDIR:
-        return _("no such file");
+        return GROBO_ERR_NOENT;
     case EISDIR:
-        return app_error_text(GROBO_ERR_ISDIR);
+        return GROBO_ERR_ISDIR;
     case EACCES:
     case EPERM:
-        return app_error_text(GROBO_ERR_PERM);
+        return GROBO_ERR_PERM;
     case ENOSPC:
-        return app_error_text(GROBO_ERR_DISK);
+        return GROBO_ERR_DISK;
     }
-    return strerror(number);
+    return GROBO_ERR_IO;
+}
+
+const char *app_cause_text(int number)
+{
+    int error = error_of_cause(number);
+    return error == GROBO_ERR_NOENT ? _("no such file")
+           : error == GROBO_ERR_IO  ? strerror(number)
+                                    : app_error_text(error);
+}
+
+int app_fail_cause(app *a, int status, int number, const char *format, ...)
+{
+    char text[APP_LINE_BYTES];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, lang_text(format), list);
+    va_end(list);
+    return app_fail(a, status, grobo_error_name(error_of_cause(number)), "%s: %s", text,
+                    app_cause_text(number));
 }
 
 static void say(const app *a, int least, const char *format, va_list list)
@@ -251,8 +275,7 @@ int app_finish(app *a, int status)
         return EXIT_SIGNAL + OS_BROKEN_PIPE;
     }
     a->json = false; /* there is no output left to put it on */
-    return app_fail(a, EXIT_ROBOT, "IO", "standard output: cannot write: %s",
-                    app_cause_text(output_error()));
+    return app_fail_cause(a, EXIT_ROBOT, output_error(), "standard output: cannot write");
 }
 
 void app_print(const char *format, ...)
@@ -261,6 +284,13 @@ void app_print(const char *format, ...)
     va_start(list, format);
     output_print(format, list);
     va_end(list);
+}
+
+void app_print_home(const app *a)
+{
+    if (a->screen_out) {
+        app_print("\033[H\033[J");
+    }
 }
 
 void app_print_line(const char *format, ...)

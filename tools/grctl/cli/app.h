@@ -37,7 +37,8 @@ typedef struct app {
     int verbosity; /* -1 quiet, 0, 1, 2 */
     bool color_out, color_err;
     bool tty_in, tty_out, tty_err;
-    bool moves;      /* the command may move the robot: it gets a guard */
+    bool screen_out, screen_err; /* a terminal that takes escape sequences */
+    bool moves;                  /* the command may move the robot: it gets a guard */
     bool stops;      /* the command stops the robot: no signal or trace keeps it from that */
     bool mistaken;   /* it does so though its line has a mistake, or nobody knows which robot is
                         meant; that is told later */
@@ -102,6 +103,9 @@ int app_finish(app *a, int status);
 /* What an error of the library, and what errno says of a file, for a person: in the language. */
 const char *app_error_text(int error);
 const char *app_cause_text(int number);
+/* The same behind a colon, with that error's name. */
+int app_fail_cause(app *a, int status, int number, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* A file name may hold anything; what is said of it stays one line without control characters. */
 void app_make_one_line(char *text);
@@ -110,7 +114,9 @@ void app_detail(const app *a, const char *format, ...) __attribute__((format(pri
 
 /* Prints on standard output as printf() does, see output.h; a while later, or by output_flush(). */
 void app_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* The same of a whole line with texts of others: app_make_one_line(). */
+/* A screen is cleared for the next table; elsewhere tables follow each other. */
+void app_print_home(const app *a);
+/* As app_print() of a whole line with texts of others: app_make_one_line(). */
 void app_print_line(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* One JSON object on a line of its own; takes the reference. */
 void app_print_json(json_t *object);

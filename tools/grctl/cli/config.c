@@ -71,17 +71,25 @@ static const char *scalar(const reader *r)
 /* Calls `take` with each key of the mapping that the last event began, the value being next. */
 static int each_key(reader *r, int (*take)(reader *r, const char *key))
 {
+    json_t *seen = json_object();
     if (r->event.type != YAML_MAPPING_START_EVENT) {
-        return complain(r, &r->event.start_mark, "%s", "a mapping is wanted here");
+        complain(r, &r->event.start_mark, "%s", "a mapping is wanted here");
     }
     while (!r->status && next(r) == 0 && r->event.type != YAML_MAPPING_END_EVENT) {
         char key[CONFIG_NAME_BYTES];
         if (!scalar(r) || r->event.data.scalar.length >= sizeof key) {
-            return complain(r, &r->event.start_mark, "%s", "a name is wanted here");
+            complain(r, &r->event.start_mark, "%s", "a name is wanted here");
+            break;
         }
         snprintf(key, sizeof key, "%s", scalar(r));
+        if (json_object_get(seen, key)) {
+            complain(r, &r->event.start_mark, "%s is there twice", key);
+            break;
+        }
+        json_object_set_new(seen, key, json_true());
         take(r, key);
     }
+    json_decref(seen);
     return r->status;
 }
 
@@ -149,6 +157,28 @@ static int unknown_joint(reader *r, const char *name)
     return complain(r, &r->event.start_mark, "%s", text);
 }
 
+/* The joint that the last event names, and its degrees. */
+static int take_joint(reader *r, double *deg, grobo_joint_mask *seen)
+{
+    const char *name = scalar(r);
+    int joint = name ? grobo_model_find_joint(r->model, name, strlen(name)) : -1;
+    if (joint < 0) {
+        return unknown_joint(r, name ? name : "");
+    }
+    if (*seen & GROBO_JOINT_BIT(joint)) {
+        return complain(r, &r->event.start_mark, "%s is there twice", name);
+    }
+    *seen |= GROBO_JOINT_BIT(joint);
+    if (next(r)) {
+        return r->status;
+    }
+    if (!scalar(r) || !cli_read_number(scalar(r), &deg[joint]) ||
+        deg[joint] < -CONFIG_TRIM_MAX_DEG || deg[joint] > CONFIG_TRIM_MAX_DEG) {
+        return complain(r, &r->event.start_mark, "%s", "degrees from -20 to 20 are wanted");
+    }
+    return 0;
+}
+
 /* {JOINT: degrees, ...}; at_end: behind the last character of the mapping's text. */
 static int take_degrees(reader *r, double *deg, size_t *at, size_t *at_end)
 {
@@ -159,19 +189,11 @@ static int take_degrees(reader *r, double *deg, size_t *at, size_t *at_end)
         return complain(r, &r->event.start_mark, "%s", "JOINT: degrees are wanted here");
     }
     bool flow = r->event.data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
+    grobo_joint_mask seen = 0;
     *at = *at_end = r->event.start_mark.index;
     while (next(r) == 0 && r->event.type != YAML_MAPPING_END_EVENT) {
-        const char *name = scalar(r);
-        int joint = name ? grobo_model_find_joint(r->model, name, strlen(name)) : -1;
-        if (joint < 0) {
-            return unknown_joint(r, name ? name : "");
-        }
-        if (next(r)) {
+        if (take_joint(r, deg, &seen)) {
             return r->status;
-        }
-        if (!scalar(r) || !cli_read_number(scalar(r), &deg[joint]) ||
-            deg[joint] < -CONFIG_TRIM_MAX_DEG || deg[joint] > CONFIG_TRIM_MAX_DEG) {
-            return complain(r, &r->event.start_mark, "%s", "degrees from -20 to 20 are wanted");
         }
         *at_end = r->event.end_mark.index;
     }
@@ -399,9 +421,9 @@ static int find(reader *r)
             bool knew = *r->wanted != '\0';
             errno = 0;
             FILE *file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
-            if (!file && errno == EACCES) {
-                return r->status = app_fail(r->a, EXIT_FILE, "PERM", "%s: %s", r->path,
-                                            app_cause_text(errno));
+            if (!file && errno && errno != ENOENT && errno != ENOTDIR) {
+                return r->status = app_fail(r->a, EXIT_FILE, errno == EACCES ? "PERM" : "IO",
+                                            "%s: %s", r->path, app_cause_text(errno));
             }
             if (!file) {
                 break;
@@ -567,21 +589,17 @@ bool config_warns_of_falls(const app *a)
     return !r.has_warn_fall || r.warn_fall;
 }
 
-bool config_would_read(const app *a, const char *text, size_t size, const config_robot *wanted)
+bool config_find_in(const app *a, const char *text, size_t size, const config_robot *wanted,
+                    config_robot *found)
 {
-    static config_robot robot;
     char hushed[APP_LINE_BYTES];
     app quiet = *a;
-    reader r = {.a = &quiet, .robot = &robot};
+    reader r = {.a = &quiet, .robot = found};
     quiet.hushed = hushed;
     quiet.driver = NULL; /* it is not chosen yet where a configuration is read */
-    memset(&robot, 0, sizeof robot);
+    memset(found, 0, sizeof *found);
     snprintf(r.wanted, sizeof r.wanted, "%s", wanted->name);
     snprintf(r.path, sizeof r.path, "%s", wanted->path);
-    bool same = !read_file(&r, NULL, text, size) && strcmp(robot.name, wanted->name) == 0 &&
-                strcmp(robot.device, wanted->device) == 0;
-    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
-        same &= fabs(robot.trim_deg[j] - wanted->trim_deg[j]) < 1e-6;
-    }
-    return same;
+    return !read_file(&r, NULL, text, size) && strcmp(found->name, wanted->name) == 0 &&
+           strcmp(found->device, wanted->device) == 0;
 }

@@ -107,10 +107,14 @@ int config_add(app *a, const config_entry *entry, char *path, size_t capacity);
  */
 int config_undo(app *a, config_undone *undone);
 
-/* Whether a file of this text, at its path, has the robot with this device and these trims. */
-bool config_would_read(const app *a, const char *text, size_t size, const config_robot *wanted);
+/* Whether a file of this text, at its path, has the robot with this device; found: as it says. */
+bool config_find_in(const app *a, const char *text, size_t size, const config_robot *wanted,
+                    config_robot *found);
 
-/* Writes the trims of the robot into its file: a temporary one takes its place. As above. */
-int config_write_trims(app *a, const config_robot *robot);
+/*
+ * Writes the trims of some joints of the robot into its file, as that is now: a temporary one takes
+ * its place, and the robot is what it says. As above.
+ */
+int config_write_trims(app *a, config_robot *robot, grobo_joint_mask joints);
 
 #endif

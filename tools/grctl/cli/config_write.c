@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Writing trims into a configuration file that a person wrote: only they change. */
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -78,15 +79,31 @@ static void put_file(const app *a, heap *to, const char *text, const config_robo
     heap_print(to, "%s", text + end);
 }
 
+/* Whether a file of this text has the robot with this device and these trims. */
+static bool would_read(const app *a, const heap *made, const config_robot *wanted)
+{
+    static config_robot found;
+    bool same = config_find_in(a, made->bytes, made->size, wanted, &found);
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
+        same &= fabs(found.trim_deg[j] - wanted->trim_deg[j]) < 1e-6;
+    }
+    return same;
+}
+
+static int refuse(app *a, const char *path)
+{
+    return fail(a, path, N_("it would not be read as it is meant; change it by hand"));
+}
+
 /* Before it takes the place of the file: it must have the robot. 0, or the exit status. */
 static int check(app *a, const heap *made, const config_robot *robot)
 {
     const char *trouble = !made->bytes                         ? N_("not enough memory")
                           : made->size > CONFIG_FILE_MAX_BYTES ? N_("too long")
-                          : !config_would_read(a, made->bytes, made->size, robot)
-                              ? N_("it would not be read as it is meant; change it by hand")
-                              : NULL;
-    return trouble ? fail(a, robot->path, trouble) : 0;
+                                                               : NULL;
+    return trouble                       ? fail(a, robot->path, trouble)
+           : !would_read(a, made, robot) ? refuse(a, robot->path)
+                                         : 0;
 }
 
 static int save(app *a, const char *path, const char *text, size_t size)
@@ -95,13 +112,23 @@ static int save(app *a, const char *path, const char *text, size_t size)
     return error ? fail(a, path, file_error_text(error)) : EXIT_DONE;
 }
 
-int config_write_trims(app *a, const config_robot *robot)
+/* It may have changed since the robot was read of it, also by the command before in a shell. */
+int config_write_trims(app *a, config_robot *robot, grobo_joint_mask joints)
 {
+    static config_robot now;
     heap made = {0};
     char *text = read_all(robot->path);
     if (!text) {
         return fail(a, robot->path, app_cause_text(errno));
     }
+    if (!config_find_in(a, text, strlen(text), robot, &now) || strcmp(now.def, robot->def) != 0) {
+        free(text);
+        return refuse(a, robot->path);
+    }
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
+        now.trim_deg[j] = joints & GROBO_JOINT_BIT(j) ? robot->trim_deg[j] : now.trim_deg[j];
+    }
+    *robot = now;
     put_file(a, &made, text, robot);
     int status = check(a, &made, robot);
     status = status ? status : save(a, robot->path, made.bytes, made.size);

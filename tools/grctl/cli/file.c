@@ -135,7 +135,7 @@ static int complain(app *a, const char *path, int error, const grobo_diagnostics
             continue;
         }
         file_format(&d, false, text, sizeof text);
-        return app_fail(a, EXIT_FILE, d.code, "%s", text);
+        return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s", text);
     }
     return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path, file_error_text(error));
 }

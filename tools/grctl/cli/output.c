@@ -44,7 +44,9 @@ void output_bytes(const void *bytes, size_t size)
 {
     const char *from = bytes;
     if (!out) {
-        fwrite(bytes, 1, size, stdout); /* output_flush() finds out whether it failed */
+        if (fwrite(bytes, 1, size, stdout) < size) {
+            note_error(errno);
+        }
         return;
     }
     while (size > 0) {
@@ -68,7 +70,9 @@ int output_error(void)
 void output_print(const char *format, va_list list)
 {
     if (!out) {
-        vprintf(format, list);
+        if (vprintf(format, list) < 0) {
+            note_error(errno);
+        }
     } else {
         static char text[STAGE_BYTES];
         int n = vsnprintf(text, sizeof text, format, list);

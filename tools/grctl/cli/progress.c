@@ -12,7 +12,7 @@ enum { BAR_MOST = 40, LINE_BYTES = 512, FREE = 3 };
 void progress_start(progress *p, const app *a)
 {
     memset(p, 0, sizeof *p);
-    p->shown = a->tty_err && !a->json && a->verbosity >= 0;
+    p->shown = a->screen_err && !a->json && a->verbosity >= 0;
     p->blocks = os_shows_utf8();
 }
 

@@ -22,14 +22,14 @@ static bool wants_json(int argc, char *const *argv)
     return false;
 }
 
-static int help(const cli_command *command)
+/* As 'grctl help COMMAND'. */
+static int help(app *a)
 {
-    if (command) {
-        cli_print_command(output_stream(), command);
-    } else {
-        cli_print_overview(output_stream());
-    }
-    return EXIT_DONE;
+    const cli_command *about = a->line.command;
+    memset(a->line.option, 0, sizeof a->line.option);
+    a->line.n_arguments = about ? 1 : 0;
+    a->line.argument[0] = about ? about->name : NULL;
+    return cli_find_command("help")->run(a);
 }
 
 static int fail(app *a, const char *complaint)
@@ -175,10 +175,13 @@ static int run_without_robot(app *a)
         return cli_find_command("version")->run(a);
     }
     if (app_global(a, GLOBAL_HELP)->given) {
-        return help(a->line.command);
+        return help(a);
     }
     if (a->line.command) {
         return -1;
+    }
+    if (a->json) {
+        return app_fail(a, EXIT_USAGE, "ARG", "a command is missing; see 'grctl help'");
     }
     cli_print_overview(stderr);
     return EXIT_USAGE;
@@ -216,7 +219,7 @@ int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), v
     bool json = a->json; /* of the shell */
     app_settle(a);
     if (!ok) {
-        a->json = json || wants_json(argc, argv);
+        a->json = a->json || json || wants_json(argc, argv);
     }
     if (command && command->stops && !app_global(a, GLOBAL_VERSION)->given &&
         !app_global(a, GLOBAL_HELP)->given) {

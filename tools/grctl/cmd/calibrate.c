@@ -61,7 +61,7 @@ static bool confirmed(const app *a, const config_robot *robot)
     return answer == 'y' || answer == 'Y';
 }
 
-static int finish(app *a, const config_robot *after)
+static int finish(app *a, config_robot *after, grobo_joint_mask joints)
 {
     if (app_option(a, OPT_DRY_RUN)->given) {
         show(a, a->robot, after);
@@ -73,7 +73,7 @@ static int finish(app *a, const config_robot *after)
     if (!confirmed(a, after)) {
         return app_fail(a, EXIT_USAGE, "CANCELED", "calibrate: nothing was written");
     }
-    int status = config_write_trims(a, after);
+    int status = config_write_trims(a, after, joints);
     if (status) {
         return status;
     }
@@ -156,6 +156,7 @@ static int run(app *a)
         return app_fail(a, EXIT_USAGE, "ARG", "calibrate needs JOINT DEG, or neither");
     }
     config_robot after = *a->robot;
+    grobo_joint_mask joints = GROBO_JOINTS_ALL(app_model(a)->n_joints);
     if (a->line.n_arguments == 0) {
         status = measure(a, &after);
     } else {
@@ -168,9 +169,10 @@ static int run(app *a)
             return app_fail(a, EXIT_USAGE, "ARG", "calibrate: '%s' is not an angle in degrees",
                             a->line.argument[1]);
         }
+        joints = GROBO_JOINT_BIT(joint);
         status = set_trim(a, &after, joint, deg);
     }
-    return status ? status : finish(a, &after);
+    return status ? status : finish(a, &after, joints);
 }
 
 const cli_command cmd_calibrate = {

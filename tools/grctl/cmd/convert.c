@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/heap.h"
+#include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 
 enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGERS, OPT_BODY };
@@ -40,11 +40,8 @@ static int put_out(const heap *t, const char *path)
     if (strcmp(path, "-") != 0) {
         return file_save(path, t->bytes, t->size);
     }
-    errno = 0;
-    if (fwrite(t->bytes, 1, t->size, stdout) == t->size && fflush(stdout) == 0) {
-        return 0;
-    }
-    return errno == ENOSPC ? GROBO_ERR_DISK : GROBO_ERR_IO;
+    output_bytes(t->bytes, t->size);
+    return 0;
 }
 
 /* Reads the text and looks whether it plays what the motion does. 0, or the status. */
@@ -55,7 +52,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const he
                                .name = path};
     grobo_diagnostics *list = NULL;
     grobo_motion *copy = NULL;
-    grobo_diagnostic first = {.code = "NOMEM"};
+    grobo_diagnostic first;
     char said[1024] = "";
     int lost = grobo_diagnostics_new(NULL, &list);
     if (!lost) {
@@ -70,7 +67,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const he
         if (i > 0) {
             app_note(a, "%s", said);
         } else if (lost) {
-            app_fail(a, EXIT_FILE, first.code, "%s; --lossy writes %s all the same", said, path);
+            app_fail(a, EXIT_FILE, "MISMATCH", "%s; --lossy writes %s all the same", said, path);
         }
     }
     if (lost < 0 && grobo_diagnostics_get(list, 0, &first) < 0) {
@@ -130,15 +127,37 @@ static int refuse_links(app *a, const char *path, const grobo_motion *motion,
     if (!n || keeps || ik->given || app_option(a, OPT_LOSSY)->given) {
         return 0;
     }
-    return app_fail(a, EXIT_FILE, "ik-links-lost",
+    return app_fail(a, EXIT_FILE, "UNSUPPORTED",
                     "%s: %zu of %zu poses have ikLinks, which are solved for GR001 only; --ik off "
                     "converts the listed joints alone",
                     path, n, grobo_motion_size(motion));
 }
 
+/* Notes what the source has and angles have no place for; the rest they were solved by. */
+static void note_lost(const grobo_motion *motion, const grobo_write_options *how,
+                      grobo_diagnostics *list)
+{
+    static const char *const codes[] = {"zmp-dropped", "name-dropped", "keys-dropped"};
+    grobo_diagnostics *all = NULL;
+    grobo_motion *plain = NULL;
+    grobo_diagnostic d;
+    if (grobo_diagnostics_new(NULL, &all) == 0) {
+        (void)grobo_motion_convert(motion, GROBO_MOTION_POSTURES, how, all, &plain);
+    }
+    for (size_t i = 0; grobo_diagnostics_get(all, i, &d) == 0; i++) {
+        for (size_t k = 0; k < sizeof codes / sizeof codes[0]; k++) {
+            if (strcmp(d.code, codes[k]) == 0) {
+                grobo_diagnostics_add(list, &d);
+            }
+        }
+    }
+    grobo_motion_free(plain);
+    grobo_diagnostics_free(all);
+}
+
 /* Key poses keep their link targets; any other format gets the angles that they lead to. */
 static int solve_legs(app *a, const char *path, const grobo_write_options *how,
-                      grobo_motion **motion)
+                      grobo_motion **motion, grobo_diagnostics *list)
 {
     grobo_motion *solved = NULL;
     double rate_hz = how->rate_hz;
@@ -150,6 +169,7 @@ static int solve_legs(app *a, const char *path, const grobo_write_options *how,
     }
     int status = body_solve(a, OPT_BODY, path, *motion, rate_hz, &solved);
     if (solved) {
+        note_lost(*motion, how, list);
         grobo_motion_free(*motion);
         *motion = solved;
     }
@@ -160,7 +180,7 @@ static void report(app *a, const grobo_motion *motion, const char *out,
                    const grobo_diagnostics *list)
 {
     grobo_diagnostic d;
-    if (a->json && strcmp(out, "-") != 0) {
+    if (a->json) {
         app_print_json(json_pack("{s:o,s:I,s:o}", "file", app_json_text(out), "postures",
                                  (json_int_t)grobo_motion_size(motion), "diagnostics",
                                  file_json(list)));
@@ -197,6 +217,10 @@ static int run(app *a)
     if (to == GROBO_FORMAT_AUTO) {
         return app_fail(a, EXIT_USAGE, "ARG", "%s: unknown file type; use --to " FILE_FORMATS, out);
     }
+    if (a->json && strcmp(out, "-") == 0) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "--json and the motion cannot both go to standard output");
+    }
     int error = refuse_out(a, out, to);
     error = error ? error : file_list(a, &list);
     if (error) {
@@ -204,7 +228,7 @@ static int run(app *a)
     }
     error = file_load_listed(a, in, &read, list, &motion);
     if (!error) {
-        error = solve_legs(a, in, &how, &motion);
+        error = solve_legs(a, in, &how, &motion, list);
     }
     if (error) {
         grobo_diagnostics_free(list);
@@ -215,7 +239,7 @@ static int run(app *a)
     if (!error) {
         error = write_out(a, motion, out, &how, list);
     }
-    if (!error) {
+    if (!error && output_flush()) { /* else app_finish() says why not */
         report(a, motion, out, list);
     }
     grobo_diagnostics_free(list);

@@ -135,6 +135,9 @@ static int report_holder(const target *t, int error)
                     "port; end that program and repeat, or switch the robot off",
                     t->said);
     }
+    if (error == GROBO_ERR_UNPLUGGED) { /* the stop may have been on its way */
+        return fail(t, error, "%s; NOT verified; switch the robot off", t->said);
+    }
     return fail(t, error ? error : GROBO_ERR_IO, "%s; NOT stopped, nothing was sent", t->said);
 }
 
@@ -309,18 +312,12 @@ static const char *find_device(const app *a, char *device)
 
 static int report_reset(app *a, const char *device, int error, const char *cause)
 {
-    grobo_estop_holder holder;
     if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: cannot release the emergency stop: %s", device,
                         cause && *cause ? cause : app_error_text(error));
     }
     app_done(a, "emergency stop released; torque is unchanged");
-    if (!a->link && grobo_estop_ask(device, NULL, &holder) == GROBO_OK &&
-        holder.answer != GROBO_ESTOP_NOBODY) {
-        app_note(a, "process %d, which has the port, stays stopped until it is reset or restarted",
-                 holder.pid);
-    }
     return EXIT_DONE;
 }
 
@@ -331,8 +328,15 @@ static int reset(app *a, const char *device)
     bool shell = a->link && a->link->session;
     if (!shell && grobo_estop_stands(device)) {
         grobo_os_cause cause = {0};
+        grobo_estop_holder holder;
         int error = grobo_estop_clear(device, &cause);
-        return report_reset(a, device, error, cause.text);
+        int cleared = report_reset(a, device, error, cause.text);
+        if (!error && grobo_estop_ask(device, NULL, &holder) == GROBO_OK && holder.pid != 0) {
+            app_note(a,
+                     "process %d, which has the port, stays stopped until it is reset or restarted",
+                     holder.pid);
+        }
+        return cleared;
     }
     int status = conn_is_auto(a) ? conn_open(&c, a) : conn_open_unchecked(&c, a);
     if (!status) {

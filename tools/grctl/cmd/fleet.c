@@ -166,8 +166,8 @@ static int run_list(leader *l)
 static void show_status(const leader *l)
 {
     if (!l->a->json) {
-        if (l->a->tty_out && app_option(l->a, OPT_WATCH)->given) {
-            app_print("\033[H\033[J");
+        if (app_option(l->a, OPT_WATCH)->given) {
+            app_print_home(l->a);
         }
         app_print("host                  robot             line    play          trip\n");
     }
@@ -509,9 +509,6 @@ static int run_play(leader *l)
     const cli_value *time = app_option(l->a, OPT_AT);
     int64_t at_us = 0;
     int status = EXIT_DONE;
-    if (l->a->line.n_arguments < 2) {
-        return app_fail(l->a, EXIT_USAGE, "ARG", "fleet play: a file of the agents' folders");
-    }
     if (time->given && !read_time(time->text, &at_us)) {
         return app_fail(l->a, EXIT_USAGE, "ARG", "--at '%s': HH:MM or HH:MM:SS is wanted",
                         time->text);
@@ -553,15 +550,30 @@ static int run_log(leader *l)
 static const struct {
     const char *word;
     int (*run)(leader *l);
-    bool asks; /* agents must be there */
+    bool asks; /* for files, and agents must be there */
 } verbs[] = {{"list", run_list, false}, {"status", run_status, false}, {"play", run_play, true},
              {"stop", run_stop, false}, {"estop", run_estop, false},   {"reset", run_reset, false},
              {"push", run_push, true},  {"log", run_log, false}};
 
-static int run(app *a)
+/* "all" where somebody meant a group: what is not asked for is a mistake. 0, or the status. */
+static int check_files(app *a, bool asks)
 {
-    static leader l;
-    static broker b;
+    const char *verb = a->line.argument[0], *extra = a->line.argument[1];
+    if (asks && a->line.n_arguments < 2) {
+        return app_fail(a, EXIT_USAGE, "ARG", "fleet %s needs FILE...; see 'grctl help fleet'",
+                        verb);
+    }
+    if (!asks && a->line.n_arguments > 1) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "fleet %s: '%s' is one argument too many; a group is --group %s", verb,
+                        extra, extra);
+    }
+    return 0;
+}
+
+/* The verb and the names of the line: 0, or the status. */
+static int check_line(app *a, size_t *verb)
+{
     const cli_value *group = app_option(a, OPT_GROUP), *host = app_option(a, OPT_HOST);
     size_t v = 0;
     while (v < sizeof verbs / sizeof verbs[0] && strcmp(verbs[v].word, a->line.argument[0]) != 0) {
@@ -572,12 +584,28 @@ static int run(app *a)
                         "fleet %s: there are list, status, play, stop, estop, reset, push, log",
                         a->line.argument[0]);
     }
+    *verb = v;
     if ((group->given && !fleet_is_name(group->text)) ||
         (host->given && !fleet_is_name(host->text))) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "fleet: letters, digits, _ and - in the name of a group or a host");
     }
-    int status = broker_read(&b, a);
+    return 0;
+}
+
+static int run(app *a)
+{
+    static leader l;
+    static broker b;
+    const cli_value *group = app_option(a, OPT_GROUP), *host = app_option(a, OPT_HOST);
+    size_t v = 0;
+    int status = check_line(a, &v);
+    if (status) {
+        return status;
+    }
+    bool stops = verbs[v].run == run_stop || verbs[v].run == run_estop; /* they stop first */
+    status = stops ? 0 : check_files(a, verbs[v].asks);
+    status = status ? status : broker_read(&b, a);
     if (status) {
         return status;
     }
@@ -588,7 +616,8 @@ static int run(app *a)
         status = verbs[v].asks && n == 0 ? fail_nobody(&l, "") : verbs[v].run(&l);
     }
     leader_end(&l);
-    return status;
+    int late = stops ? check_files(a, false) : 0;
+    return status ? status : late;
 }
 
 const cli_command cmd_fleet = {

@@ -64,8 +64,9 @@ static int list_words(const asked *what, json_t *list)
                                   json_pack("{s:s,s:s,s:s,s:s}", "letter", w->letter, "word",
                                             w->word, "arguments", w->arguments, "help", w->help));
         } else {
-            app_print("  %-2s %s%s%s\n      %s\n", w->letter, w->word,
-                      *w->word && *w->arguments ? " " : "", w->arguments, _(w->help));
+            char row[256];
+            shell_word_text(w, row, sizeof row);
+            app_print("%s", row);
         }
     }
     return n;

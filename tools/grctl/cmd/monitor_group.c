@@ -87,8 +87,8 @@ static void on_draw(evutil_socket_t fd, short what, void *ctx)
         return; /* the next table is as good */
     }
     if (!a->json) {
-        app_print("%srobot             state       torque   hottest               supply    stop\n",
-                  a->tty_out ? "\033[H\033[J" : "");
+        app_print_home(a);
+        app_print("robot             state       torque   hottest               supply    stop\n");
     }
     for (int i = 0; i < v->all.n; i++) {
         if (a->json) {

@@ -36,6 +36,7 @@ static int run(app *a)
     static replay r;
     const cli_value *device = app_global(a, GLOBAL_DEVICE);
     bool to_sim = !device->given || strcmp(device->text, GROBO_DEVICE_SIM) == 0;
+    memset(&r, 0, sizeof r);
     r.a = a;
     r.path = a->line.argument[0];
     r.first_us = -1;

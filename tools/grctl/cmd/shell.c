@@ -126,8 +126,9 @@ static int run_script(shell *s, shell_script *in)
         }
     }
     if (in->file && ferror(in->file)) { /* where nothing ran, the reason is still known */
-        first = app_fail(s->a, EXIT_FILE, "IO", "%s: %s", s->file,
-                         s->line ? _("it could not be read to its end") : app_cause_text(errno));
+        first = s->line ? app_fail(s->a, EXIT_FILE, "IO", "%s: it could not be read to its end",
+                                   s->file)
+                        : app_fail_cause(s->a, EXIT_FILE, errno, "%s", s->file);
     }
     return shell_noted ? EXIT_SIGNAL + (int)shell_noted : first;
 }
@@ -185,8 +186,7 @@ static int run_shell(shell *s)
     memset(&in, 0, sizeof in);
     s->file = path ? path : "standard input";
     if (path && !(from = fopen(path, "r"))) {
-        return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path,
-                        app_cause_text(os_is_folder(path) ? EISDIR : errno));
+        return app_fail_cause(s->a, EXIT_FILE, os_is_folder(path) ? EISDIR : errno, "%s", path);
     }
     in.file = from && !os_input_take(from) ? from : NULL;
     int status = run_script(s, &in);

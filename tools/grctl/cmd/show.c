@@ -189,8 +189,7 @@ static int run(app *a)
     if (status) {
         return status;
     }
-    rows.motion = motion;
-    rows.model = file_model(a, motion);
+    rows = (show_rows){.motion = motion, .model = file_model(a, motion)};
     status = show(a, &rows);
     whole_close(&rows.played);
     grobo_motion_free(motion);

@@ -6,6 +6,7 @@
 #include <grobo/sim_server.h>
 
 #include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
@@ -265,6 +266,10 @@ static int add_robot(farm *f, int robot)
         sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, dialect_of(f));
     }
     error = grobo_sim_server_new(&config, &f->server[robot], &cause);
+    if (error == GROBO_ERR_NOENT) { /* of the link, whose folder is missing */
+        return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s",
+                        name_of_failed(&at, &cause), file_write_error_text(error));
+    }
     if (error) {
         return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s",
                         name_of_failed(&at, &cause), app_error_text(error), *cause.text ? ": " : "",

@@ -16,8 +16,8 @@ static void show(conn *c, grobo_joint_mask joints)
 {
     const grobo_model *model = conn_model(c);
     if (!c->a->json) {
-        if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given) {
-            app_print("\033[H\033[J");
+        if (app_option(c->a, OPT_WATCH)->given) {
+            app_print_home(c->a);
         }
         render_status(c, joints);
         output_flush();

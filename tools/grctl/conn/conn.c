@@ -265,12 +265,19 @@ static bool is_tcp(const char *device)
 }
 
 /* Why the device cannot be used, and what to do about it. */
-static const char *advice(int error, const char *device)
+static const char *advice(const conn *c, int error)
 {
     switch (error) {
+    case GROBO_ERR_BUSY: /* an estop says itself what to do */
+        return c->a->hushed ? "" : _("; end that program, or stop its robot: 'grctl estop'");
     case GROBO_ERR_NOENT:
-        return is_tcp(device) ? _("; does a serial server listen there?")
-                              : _("; see 'grctl ports' for what there is");
+        if (is_tcp(conn_device(c))) {
+            return _("; does a serial server listen there?");
+        }
+        return _("; see 'grctl ports' for what there is");
+    case GROBO_ERR_TYPE:
+    case GROBO_ERR_ISDIR:
+        return _("; see 'grctl ports' for what there is");
     case GROBO_ERR_PERM:
         return _("; may your user open it? it often takes membership of the group dialout");
     case GROBO_ERR_TIMEOUT:
@@ -353,7 +360,7 @@ static int fail_closed(conn *c, int error)
     return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s%s%s%s%s",
                     error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), open_trouble(c, error),
                     tells ? " (" : "", tells ? cause->text : "", tells ? ")" : "",
-                    advice(error, conn_device(c)));
+                    advice(c, error));
 }
 
 static int fail_open(conn *c, int error)

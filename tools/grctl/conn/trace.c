@@ -35,10 +35,13 @@ static void describe(const app *a, char *text, size_t capacity)
 
 static int fail(app *a, const trace *t, int cause)
 {
-    return app_fail(a, EXIT_FILE, "IO", "%s: the trace cannot be written: %s", t->path,
-                    cause == ENOENT   ? file_write_error_text(GROBO_ERR_NOENT)
-                    : cause == EEXIST ? _("it is no trace; name another file")
-                                      : app_cause_text(cause));
+    if (cause == ENOENT || cause == EEXIST) {
+        return app_fail(a, EXIT_FILE, cause == ENOENT ? "NOENT" : "EXISTS",
+                        "%s: the trace cannot be written: %s", t->path,
+                        cause == ENOENT ? file_write_error_text(GROBO_ERR_NOENT)
+                                        : _("it is no trace; name another file"));
+    }
+    return app_fail_cause(a, EXIT_FILE, cause, "%s: the trace cannot be written", t->path);
 }
 
 /* A file with something other than a trace, as where the name of a motion stands behind --trace. */

@@ -8,27 +8,30 @@
 
 #include "tools/grctl/decode/dialect.h"
 
+/* Who has an instruction. */
+enum { X = 1, AX_MX = 2, STS = 4, SCS = 8, FEETECH = STS | SCS, ALL = X | AX_MX | FEETECH };
+
 static const struct {
-    uint8_t code;
+    uint8_t code, in;
     const char *action;
 } instructions[] = {
-    {GROBO_DXL2_PING, "ping"},
-    {GROBO_DXL2_READ, "read"},
-    {GROBO_DXL2_WRITE, "write"},
-    {GROBO_DXL2_REG_WRITE, "write at action"},
-    {GROBO_DXL2_ACTION, "action"},
-    {GROBO_DXL2_FACTORY_RESET, "factory reset"},
-    {GROBO_DXL2_REBOOT, "reboot"},
-    {GROBO_DXL1_RESET_TURNS, "forget turns"},
-    {GROBO_DXL1_CALIBRATE, "calibrate"},
-    {GROBO_DXL2_CLEAR, "clear"},
-    {GROBO_DXL2_BACKUP, "backup"},
-    {GROBO_DXL2_SYNC_READ, "sync read"},
-    {GROBO_DXL2_SYNC_WRITE, "sync write"},
-    {GROBO_DXL2_FAST_SYNC_READ, "fast sync read"},
-    {GROBO_DXL2_BULK_READ, "bulk read"},
-    {GROBO_DXL2_BULK_WRITE, "bulk write"},
-    {GROBO_DXL2_FAST_BULK_READ, "fast bulk read"},
+    {GROBO_DXL2_PING, ALL, "ping"},
+    {GROBO_DXL2_READ, ALL, "read"},
+    {GROBO_DXL2_WRITE, ALL, "write"},
+    {GROBO_DXL2_REG_WRITE, ALL, "write at action"},
+    {GROBO_DXL2_ACTION, ALL, "action"},
+    {GROBO_DXL2_FACTORY_RESET, ALL, "factory reset"},
+    {GROBO_DXL2_REBOOT, X | FEETECH, "reboot"},
+    {GROBO_DXL1_RESET_TURNS, FEETECH, "forget turns"},
+    {GROBO_DXL1_CALIBRATE, FEETECH, "calibrate"},
+    {GROBO_DXL2_CLEAR, X, "clear"},
+    {GROBO_DXL2_BACKUP, X, "backup"},
+    {GROBO_DXL2_SYNC_READ, X | STS, "sync read"},
+    {GROBO_DXL2_SYNC_WRITE, ALL, "sync write"},
+    {GROBO_DXL2_FAST_SYNC_READ, X, "fast sync read"},
+    {GROBO_DXL2_BULK_READ, X | AX_MX, "bulk read"},
+    {GROBO_DXL2_BULK_WRITE, X, "bulk write"},
+    {GROBO_DXL2_FAST_BULK_READ, X, "fast bulk read"},
 };
 
 static const char *action_of(unsigned code)
@@ -39,6 +42,16 @@ static const char *action_of(unsigned code)
         }
     }
     return NULL;
+}
+
+static bool lacks(unsigned code, unsigned series)
+{
+    for (size_t i = 0; i < sizeof instructions / sizeof *instructions; i++) {
+        if (instructions[i].code == code) {
+            return (instructions[i].in & series) == 0;
+        }
+    }
+    return false;
 }
 
 static telegram_part *add_part(telegram *to, int id, int address, int length)
@@ -102,11 +115,16 @@ static void add_old_bulk(telegram *to, const grobo_dxl2_packet *p)
     }
 }
 
-static void explain_instruction(telegram *to, const grobo_dxl2_packet *p, bool old)
+static void add_bytes(telegram *to, const grobo_dxl2_packet *p)
+{
+    if (p->data_bytes > 0) {
+        add_part(to, p->id, -1, (int)p->data_bytes)->data = p->data;
+    }
+}
+
+static void add_all(telegram *to, const grobo_dxl2_packet *p, bool old)
 {
     bool reads = p->instruction == GROBO_DXL2_READ;
-    to->action = action_of(p->instruction);
-    to->code = p->instruction;
     switch (p->instruction) {
     case GROBO_DXL2_SYNC_READ:
     case GROBO_DXL2_FAST_SYNC_READ:
@@ -129,14 +147,30 @@ static void explain_instruction(telegram *to, const grobo_dxl2_packet *p, bool o
     case GROBO_DXL2_REG_WRITE:
         add_part(to, p->id, p->address, reads ? p->length : (int)p->data_bytes)->data =
             reads ? NULL : p->data;
-        if ((reads ? p->length : p->data_bytes) == 0) {
-            snprintf(to->trouble, sizeof to->trouble, "it %s nothing", reads ? "reads" : "writes");
-        }
         return;
     default:
-        if (p->data_bytes > 0) {
-            add_part(to, p->id, -1, (int)p->data_bytes)->data = p->data;
+        add_bytes(to, p);
+    }
+}
+
+static void explain_instruction(telegram *to, const grobo_dxl2_packet *p, unsigned series)
+{
+    bool lacking = lacks(p->instruction, series);
+    to->action = action_of(p->instruction);
+    to->code = p->instruction;
+    if (lacking && p->instruction != GROBO_DXL2_SYNC_READ) {
+        add_bytes(to, p);
+    } else {
+        add_all(to, p, series != X);
+    }
+    for (size_t i = 0; i < to->n_parts; i++) {
+        if (to->part[i].length == 0) {
+            snprintf(to->trouble, sizeof to->trouble, "it %s nothing",
+                     to->part[i].data ? "writes" : "reads");
         }
+    }
+    if (lacking) {
+        snprintf(to->trouble, sizeof to->trouble, "these servos have no %s", to->action);
     }
 }
 
@@ -304,7 +338,7 @@ static void dxl2_explain(const uint8_t *bytes, size_t n, const dialect_frame *as
     }
     to->all = p.id == GROBO_DXL2_ID_ALL;
     if (p.instruction != GROBO_DXL2_STATUS) {
-        explain_instruction(to, &p, false);
+        explain_instruction(to, &p, X);
     } else if (to->all) {
         explain_blocks(to, bytes, n, as->sent);
     } else {
@@ -406,7 +440,7 @@ static bool old_answers(const sent_frame *sent, const uint8_t *bytes, size_t n)
 
 typedef const char *const bit_texts[8];
 
-static void old_explain(const uint8_t *bytes, size_t n, const dialect_frame *as,
+static void old_explain(const uint8_t *bytes, size_t n, const dialect_frame *as, unsigned series,
                         const bit_texts *bits, telegram *to)
 {
     grobo_dxl1_packet old;
@@ -431,7 +465,7 @@ static void old_explain(const uint8_t *bytes, size_t n, const dialect_frame *as,
                                  .data = old.data,
                                  .data_bytes = old.data_bytes};
     if (!as->reply) {
-        explain_instruction(to, &p, true);
+        explain_instruction(to, &p, series);
         return;
     }
     ask_of(&grobo_dxl1_protocol, as->sent, p.id, &asked);
@@ -440,13 +474,6 @@ static void old_explain(const uint8_t *bytes, size_t n, const dialect_frame *as,
         if (p.error & 1u << bit) {
             add_status(to, (*bits)[bit] ? (*bits)[bit] : "an unknown error");
         }
-    }
-}
-
-static void refuse(telegram *to, const char *instruction)
-{
-    if (to->action && strcmp(to->action, instruction) == 0 && !*to->trouble) {
-        snprintf(to->trouble, sizeof to->trouble, "these servos have no %s", instruction);
     }
 }
 
@@ -460,11 +487,11 @@ static void dxl1_explain(const uint8_t *bytes, size_t n, const dialect_frame *as
                                    "overload",
                                    "it does not know the instruction",
                                    NULL};
-    old_explain(bytes, n, as, &bits, to);
-    refuse(to, "sync read");
+    old_explain(bytes, n, as, AX_MX, &bits, to);
 }
 
-static void sts_explain(const uint8_t *bytes, size_t n, const dialect_frame *as, telegram *to)
+static void feetech_explain(const uint8_t *bytes, size_t n, const dialect_frame *as,
+                            unsigned series, telegram *to)
 {
     static const bit_texts bits = {"voltage out of range",
                                    "its sensor fails",
@@ -474,13 +501,17 @@ static void sts_explain(const uint8_t *bytes, size_t n, const dialect_frame *as,
                                    "overload",
                                    NULL,
                                    NULL};
-    old_explain(bytes, n, as, &bits, to);
+    old_explain(bytes, n, as, series, &bits, to);
+}
+
+static void sts_explain(const uint8_t *bytes, size_t n, const dialect_frame *as, telegram *to)
+{
+    feetech_explain(bytes, n, as, STS, to);
 }
 
 static void scs_explain(const uint8_t *bytes, size_t n, const dialect_frame *as, telegram *to)
 {
-    sts_explain(bytes, n, as, to);
-    refuse(to, "sync read");
+    feetech_explain(bytes, n, as, SCS, to);
 }
 
 #define OLD(name_, family_, title_, table_, explain_)                                              \

@@ -124,6 +124,8 @@ static void say_names(text *t, const telegram_part *part)
     }
     if (n > 0 && n <= NAMES_MAX) {
         say(t, "%s", names);
+    } else if (part->length == 0) {
+        say(t, "nothing at %d", part->address);
     } else {
         say(t, "%d-%d", part->address, part->address + part->length - 1);
     }
@@ -270,7 +272,7 @@ void explain_shares(text *t, const telegram *said)
         say(t, "    ");
         say_servo(t, said->part[i].id);
         say(t, ": ");
-        if (said->part[i].data) {
+        if (said->part[i].data && said->part[i].length > 0) {
             say_values(t, &said->part[i], !said->reply);
         } else {
             say_names(t, &said->part[i]);

@@ -22,8 +22,7 @@ int input_open(input *in, app *a, const char *path)
     if (!in->file || ferror(in->file)) {
         int cause = in->name == path && os_is_folder(path) ? EISDIR : errno;
         input_close(in);
-        return app_fail(a, EXIT_FILE, cause == ENOENT ? "NOENT" : "IO", "%s: %s", path,
-                        app_cause_text(cause));
+        return app_fail_cause(a, EXIT_FILE, cause, "%s", path);
     }
     return 0;
 }

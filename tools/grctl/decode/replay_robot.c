@@ -266,6 +266,7 @@ static int send_all(plan *p)
 int replay_to_robot(replay *r)
 {
     static plan p;
+    memset(&p, 0, sizeof p);
     p.r = r;
     r->ctx = &p;
     replay_begin(r, judge_frame);

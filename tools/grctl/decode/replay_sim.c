@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A trace against a fresh simulator: chunks as they were, at their times, in virtual time. */
+#include <string.h>
+
 #include <grobo/sim_static.h>
 
 #include "tools/grctl/decode/replay.h"
@@ -84,6 +86,7 @@ int replay_to_sim(replay *r)
     static stage s;
     grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = r->wiring,
                                .baud_bps = (uint32_t)r->baud_bps};
+    memset(&s, 0, sizeof s);
     int error = grobo_sim_init(&s.sim, &config, 0);
     if (error) {
         return app_fail(r->a, EXIT_FILE, grobo_error_name(error),

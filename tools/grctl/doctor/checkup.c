@@ -13,6 +13,10 @@ void checkup_start(checkup *k, app *a)
 static void print(const checkup *k, const char *color, const char *verdict, const char *name,
                   const char *message)
 {
+    if (k->aside) {
+        app_note(k->a, "%-4s  %-10s  %s", verdict, name, message);
+        return;
+    }
     app_print("%s%-4s%s  %-10s  %s\n", k->a->color_out ? color : "", verdict,
               k->a->color_out ? "\033[0m" : "", name, message);
 }
@@ -35,8 +39,10 @@ void checkup_found(void *ctx, const char *name, const char *fix, const char *for
                                                    "message", app_json_text(message), "fix",
                                                    ok ? json_null() : app_json_text(fix)));
     } else if (!ok) {
+        char line[APP_LINE_BYTES + sizeof "-> "];
+        snprintf(line, sizeof line, "-> %s", fix);
         print(k, "\033[1;31m", "BAD", name, message);
-        app_print("      %-10s  -> %s\n", "", fix);
+        print(k, "", "", "", line);
     } else if (!fix || k->a->verbosity > 0) {
         print(k, "\033[32m", "ok", name, message);
     }

@@ -8,6 +8,7 @@
 typedef struct checkup {
     app *a;
     json_t *checks; /* NULL: as text, at once */
+    bool aside;     /* the text is no result: on standard error */
     int n, failed;
 } checkup;
 

@@ -44,6 +44,11 @@ static bool check_owner(checkup *k, const char *device)
         checkup_found(k, "owner", NULL, "no other program holds it");
         return true;
     }
+    if (error == GROBO_ERR_TYPE) {
+        checkup_found(k, "device", "choose one of those that 'grctl ports' lists",
+                      "%s is not a serial port", device);
+        return false;
+    }
     int pid = error == GROBO_ERR_BUSY ? grobo_port_owner(device, name, sizeof name) : 0;
     node_end_program(fix, sizeof fix, pid);
     if (pid > 0) {

@@ -113,17 +113,19 @@ static void take_permit(agent *g, const char *group, const mqtt_message *message
 /* As was said when it began; before it began it stops in any case. */
 static void let_go(agent *g)
 {
+    bool begun = g->started && grobo_now_us() >= g->start_us;
+    agent_lost lost = begun ? g->on_lost : AGENT_STOP;
     g->let_go = true;
     say_event(g, NULL, "unpermitted",
-              !g->started                  ? "the permit lapsed before the start: it stops"
-              : g->on_lost == AGENT_FINISH ? "the permit lapsed: the motion goes on"
-              : g->on_lost == AGENT_EXIT   ? "the permit lapsed: the exit policy"
-                                           : "the permit lapsed: the motion stops");
-    if (g->started && g->on_lost == AGENT_FINISH) {
+              !begun                 ? "the permit lapsed before the start: it stops"
+              : lost == AGENT_FINISH ? "the permit lapsed: the motion goes on"
+              : lost == AGENT_EXIT   ? "the permit lapsed: the exit policy"
+                                     : "the permit lapsed: the motion stops");
+    if (lost == AGENT_FINISH) {
         return;
     }
     (void)grobo_team_stop(g->all.team, false);
-    for (int i = 0; i < g->all.n && g->on_lost == AGENT_EXIT; i++) {
+    for (int i = 0; i < g->all.n && lost == AGENT_EXIT; i++) {
         seat *s = &g->all.seats[i];
         if (s->chosen && s->c.up) {
             (void)grobo_robot_exit(s->c.robot, GROBO_EXIT_DEFAULT);
@@ -134,12 +136,27 @@ static void let_go(agent *g)
 
 /* ---- what comes ------------------------------------------------------------------------------ */
 
+/* What the broker keeps of this host: where our own was before, that of another life is another
+ * agent's, and each connection of one ends that of the other. */
+static void take_connection(const agent *g, const mqtt_message *message)
+{
+    json_t *said = fleet_read(message->payload, message->size);
+    const char *epoch = said ? fleet_text(said, "epoch") : NULL;
+    if (g->greeted && epoch && strcmp(epoch, g->epoch) != 0) {
+        app_note(g->a, "the broker has another agent of the name '%s': give one another --host",
+                 g->host);
+    }
+    json_decref(said);
+}
+
 static void on_message(void *ctx, const mqtt_message *message)
 {
     agent *g = ctx;
     char part[4][FLEET_NAME_BYTES];
     int n = fleet_parts(message->topic, part);
-    if (n == 3 && strcmp(part[0], "group") == 0 && strcmp(part[2], "latch") == 0) {
+    if (n == 2 && strcmp(part[1], "connection") == 0) {
+        take_connection(g, message);
+    } else if (n == 3 && strcmp(part[0], "group") == 0 && strcmp(part[2], "latch") == 0) {
         find_latch(g, part[1], message);
     } else if (message->retained) {
         say_event(g, NULL, "refused", "a retained message is no order");
@@ -156,6 +173,7 @@ static void on_message(void *ctx, const mqtt_message *message)
 static void on_up(void *ctx)
 {
     agent *g = ctx;
+    g->away = false;
     app_report(g->a,
                json_pack("{s:b,s:s,s:s,s:s}", "connected", 1, "host", g->host, "group",
                          g->groups[1].name, "epoch", g->epoch),
@@ -164,6 +182,7 @@ static void on_up(void *ctx)
     for (int i = 0; i < g->n_groups; i++) {
         wire_subscribe(g->m, "group", g->groups[i].name, "latch", true);
     }
+    wire_subscribe(g->m, g->host, "connection", NULL, true);
     g->listens = false;
     g->settled_us = grobo_now_us() + AGENT_SETTLE_US;
     say_hello(g);
@@ -187,9 +206,11 @@ static void begin_listening(agent *g)
 static void on_down(void *ctx, const char *why)
 {
     agent *g = ctx;
-    if (g->listens || g->settled_us) {
+    if (!g->away) { /* once, however often it is tried again */
         app_note(g->a, "the broker is away: %s", why);
     }
+    g->away = true;
+    g->greeted = g->greeted || g->listens || g->settled_us;
     g->listens = false;
     g->settled_us = 0;
     orders_forget(g);

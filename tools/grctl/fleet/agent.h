@@ -65,6 +65,8 @@ typedef struct agent {
     bool keeps;       /* events are on disk, though there is a connection */
     char will[320];   /* connection: CONNECTIONBROKEN */
     int64_t seq;
+    bool away;          /* the broker, and that was said */
+    bool greeted;       /* the broker heard of this life in an earlier connection */
     bool listens;       /* orders are taken */
     int64_t settled_us; /* when they will be */
     fleet_seen seen;

@@ -82,6 +82,9 @@ int fleet_parts(const char *topic, char parts[4][FLEET_NAME_BYTES])
 
 /* ---- payloads -------------------------------------------------------------------------------- */
 
+/* What every reader of JSON keeps exactly, 2^53: sums of such times do not overflow. */
+#define NUMBER_MAX INT64_C(9007199254740992)
+
 json_t *fleet_read(const void *payload, size_t size)
 {
     json_t *object = json_loadb(payload, size, JSON_REJECT_DUPLICATES, NULL);
@@ -100,7 +103,8 @@ const char *fleet_text(const json_t *object, const char *key)
 int64_t fleet_number(const json_t *object, const char *key, int64_t otherwise)
 {
     const json_t *value = json_object_get(object, key);
-    return json_is_integer(value) ? (int64_t)json_integer_value(value) : otherwise;
+    int64_t number = json_is_integer(value) ? (int64_t)json_integer_value(value) : otherwise;
+    return number > NUMBER_MAX || number < -NUMBER_MAX ? otherwise : number;
 }
 
 static bool take_id(char *id, const char *text)

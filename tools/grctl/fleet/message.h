@@ -41,7 +41,8 @@ int fleet_parts(const char *topic, char parts[4][FLEET_NAME_BYTES]);
 
 /* Of a payload: an object of this version, to be released, or NULL. */
 json_t *fleet_read(const void *payload, size_t size);
-/* Text and number of an object; NULL and `otherwise` where there is none. */
+/* Text and number (a whole one, at most 2^53) of an object; NULL and `otherwise` where there is
+ * none. */
 const char *fleet_text(const json_t *object, const char *key);
 int64_t fleet_number(const json_t *object, const char *key, int64_t otherwise);
 

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/homing/file.h"
 #include "tools/grctl/lang/lang.h"
+#include "tools/grctl/os/os.h"
 #include "tools/grctl/servo/family.h"
 
 static int complain(app *a, const char *path, const char *joint, const char *what)
@@ -91,8 +93,8 @@ int homing_read(app *a, const char *path, bool any, homing *all)
 {
     json_error_t error;
     json_t *file = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
-    if (!file && error.line < 1) {
-        return app_fail(a, EXIT_FILE, "NOENT", "%s: %s", path, error.text);
+    if (!file && (error.line < 1 || os_is_folder(path))) {
+        return app_fail_cause(a, EXIT_FILE, os_is_folder(path) ? EISDIR : errno, "%s", path);
     }
     if (!file) {
         return app_fail(a, EXIT_FILE, "SYNTAX", "%s:%d:%d: %s", path, error.line, error.column,

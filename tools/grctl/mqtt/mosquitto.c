@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * libmosquitto on the loop. Its descriptor is closed before it tells of a loss, so both events go
- * in that callback, before anything else can be opened with the same number. Nothing is freed in
- * its callbacks.
+ * libmosquitto on the loop. Its descriptor is closed before it tells of a loss, so the event goes
+ * in that callback, before anything else can be opened with the same number. There is one event for
+ * reading and writing: of two, libevent would tell the system that one is left, of a descriptor
+ * that is closed, and warn. Nothing is freed in its callbacks.
  */
 #include <mosquitto.h>
 #include <mqtt_protocol.h>
@@ -22,7 +23,7 @@ enum { FIRST_MS = 100, LONGEST_MS = 5000, MISC_MS = 500, CONNECT_MS = 5000, AT_O
 struct mqtt {
     mqtt_config config;
     struct mosquitto *client;
-    struct event *readable, *writable, *misc, *again;
+    struct event *ready, *misc, *again; /* ready: NULL without a connection */
     char address[256]; /* of the host: looked up once, but for TLS, which compares the name */
     int pause_ms;
     int64_t tried_us;
@@ -35,23 +36,28 @@ struct mqtt {
 
 static void forget_socket(mqtt *m)
 {
-    if (m->readable) {
-        event_free(m->readable);
-        event_free(m->writable);
+    if (m->ready) {
+        event_free(m->ready);
     }
-    m->readable = m->writable = NULL;
+    m->ready = NULL;
 }
+
+static void on_ready(evutil_socket_t fd, short what, void *ctx);
 
 /* What any call of the library may have left to be written. */
 static void arm(mqtt *m)
 {
-    if (!m->writable) {
+    if (!m->ready) {
         return;
     }
-    if (mosquitto_want_write(m->client)) {
-        (void)event_add(m->writable, NULL);
-    } else {
-        m->queued_bytes = 0;
+    bool writes = mosquitto_want_write(m->client);
+    short wanted = (short)(EV_READ | EV_PERSIST | (writes ? EV_WRITE : 0));
+    m->queued_bytes = writes ? m->queued_bytes : 0;
+    if (wanted != event_get_events(m->ready)) {
+        evutil_socket_t fd = event_get_fd(m->ready);
+        (void)event_del(m->ready);
+        (void)event_assign(m->ready, m->config.base, fd, wanted, on_ready, m);
+        (void)event_add(m->ready, NULL);
     }
 }
 
@@ -75,6 +81,9 @@ static void lost(mqtt *m, const char *why)
 {
     bool was = m->up || m->connecting;
     forget_socket(m);
+    if (m->up && grobo_now_us() - m->tried_us > INT64_C(1000) * LONGEST_MS) {
+        m->pause_ms = FIRST_MS; /* a broker that takes and closes is not asked ten times a second */
+    }
     m->up = false;
     if (was) {
         try_later(m);
@@ -83,10 +92,16 @@ static void lost(mqtt *m, const char *why)
     }
 }
 
+/* Of the library's own errors, and those that a broker gives. */
+static const char *error_text(int error)
+{
+    return error >= 128 ? mosquitto_reason_string(error) : mosquitto_strerror(error);
+}
+
 static void check(mqtt *m, int result)
 {
-    if (result != MOSQ_ERR_SUCCESS && m->readable) {
-        lost(m, mosquitto_strerror(result));
+    if (result != MOSQ_ERR_SUCCESS && m->ready) {
+        lost(m, error_text(result));
     }
     arm(m);
 }
@@ -98,22 +113,18 @@ static bool has_ended(evutil_socket_t fd)
     return recv(fd, &byte, sizeof byte, MSG_PEEK) == 0;
 }
 
-static void on_readable(evutil_socket_t fd, short what, void *ctx)
+static void on_ready(evutil_socket_t fd, short what, void *ctx)
 {
     mqtt *m = ctx;
-    (void)what;
-    check(m, mosquitto_loop_read(m->client, AT_ONCE));
-    if (m->connecting && m->readable && has_ended(fd)) {
-        lost(m, _("the broker cannot be reached"));
+    if (what & EV_WRITE) {
+        check(m, mosquitto_loop_write(m->client, AT_ONCE));
     }
-}
-
-static void on_writable(evutil_socket_t fd, short what, void *ctx)
-{
-    mqtt *m = ctx;
-    (void)fd;
-    (void)what;
-    check(m, mosquitto_loop_write(m->client, AT_ONCE));
+    if (m->ready && (what & EV_READ)) {
+        check(m, mosquitto_loop_read(m->client, AT_ONCE));
+        if (m->connecting && m->ready && has_ended(fd)) {
+            lost(m, _("the broker cannot be reached"));
+        }
+    }
 }
 
 static void on_misc(evutil_socket_t fd, short what, void *ctx)
@@ -123,7 +134,7 @@ static void on_misc(evutil_socket_t fd, short what, void *ctx)
     (void)what;
     if (m->connecting && grobo_now_us() - m->tried_us > INT64_C(1000) * CONNECT_MS) {
         lost(m, _("the broker does not answer"));
-    } else if (m->readable) {
+    } else if (m->ready) {
         check(m, mosquitto_loop_misc(m->client));
     }
 }
@@ -135,9 +146,8 @@ static void take_socket(mqtt *m)
         lost(m, _("no socket"));
         return;
     }
-    m->readable = event_new(m->config.base, fd, EV_READ | EV_PERSIST, on_readable, m);
-    m->writable = event_new(m->config.base, fd, EV_WRITE, on_writable, m);
-    if (!m->readable || !m->writable || event_add(m->readable, NULL) != 0) {
+    m->ready = event_new(m->config.base, fd, EV_READ | EV_PERSIST, on_ready, m);
+    if (!m->ready || event_add(m->ready, NULL) != 0) {
         lost(m, _("not enough memory"));
         return;
     }
@@ -188,7 +198,6 @@ static void on_connect(struct mosquitto *client, void *ctx, int reason, int flag
     }
     m->up = true;
     m->connecting = false;
-    m->pause_ms = FIRST_MS;
     m->config.on_up(m->config.ctx);
 }
 
@@ -197,7 +206,7 @@ static void on_disconnect(struct mosquitto *client, void *ctx, int reason,
 {
     (void)client;
     (void)properties;
-    lost(ctx, reason ? mosquitto_strerror(reason) : _("the broker closed the connection"));
+    lost(ctx, reason ? error_text(reason) : _("the broker closed the connection"));
 }
 
 static void on_publish(struct mosquitto *client, void *ctx, int id, int reason,
@@ -415,7 +424,7 @@ void mqtt_free(mqtt *m)
     m->up = m->connecting = false;
     if (was_up) {
         (void)mosquitto_disconnect(m->client);
-        for (int i = 0; i < AT_ONCE && m->readable && mosquitto_want_write(m->client); i++) {
+        for (int i = 0; i < AT_ONCE && m->ready && mosquitto_want_write(m->client); i++) {
             (void)mosquitto_loop_write(m->client, AT_ONCE);
         }
     }

@@ -59,7 +59,7 @@ static int check_one(app *a, const playlist *list, int i, grobo_slack_taken *sla
         return list->body[i] ? body_refuse(a, list->path[i], list->body[i], slack) : 0;
     }
     file_format(&d, false, text, sizeof text);
-    return app_fail(a, EXIT_SAFETY, d.code, "%s; %s", text,
+    return app_fail(a, EXIT_SAFETY, is_limit(&d) ? "LIMIT" : "SPEED", "%s; %s", text,
                     is_limit(&d) ? _("--clamp plays it at the limit")
                                  : _("a lower --speed gives it time"));
 }
@@ -153,6 +153,17 @@ static void widen(const app *a, grobo_motion *motion)
     }
 }
 
+static bool sets_joints(const grobo_motion *motion)
+{
+    grobo_posture posture;
+    for (size_t i = 0; grobo_motion_get(motion, i, &posture) == 0; i++) {
+        if (posture.set) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* The next of the list, with the line's budget. */
 static int take(playlist *list, app *a, const char *path, grobo_motion *motion,
                 const grobo_budget *line)
@@ -168,8 +179,15 @@ static int take(playlist *list, app *a, const char *path, grobo_motion *motion,
     if (grobo_motion_size(motion) == 0) {
         return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", path);
     }
+    if (grobo_motion_length_us(motion, -1) > GROBO_PLAY_LENGTH_MAX_US) {
+        return fail(a, path, GROBO_ERR_CAP);
+    }
     set_options(&list->options[i], a, grobo_motion_get_kind(motion));
-    return solve_and_check(a, list, i, line);
+    status = solve_and_check(a, list, i, line);
+    if (!status && !list->body[i] && !sets_joints(motion)) {
+        return app_fail(a, EXIT_FILE, "EMPTY", "%s: no posture sets any joint", path);
+    }
+    return status;
 }
 
 int playlist_take(playlist *list, app *a, const char *path, grobo_motion *motion)

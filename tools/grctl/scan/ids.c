@@ -7,8 +7,8 @@
 
 /* Looks at all ids that are missing, at most LOOKS_MAX times; a line is quiet after LISTEN_US
  * without a byte, or twice the worst lateness seen, and is not listened to for longer than
- * LISTEN_MAX_US. */
-enum { FEW = 4, LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000 };
+ * LISTEN_MAX_US. What comes later than LATE_MAX_US is no reply. */
+enum { FEW = 4, LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000, LATE_MAX_US = 1000000 };
 
 scan_identity scan_identity_of(const grobo_driver *driver, const uint8_t *bytes)
 {
@@ -35,14 +35,17 @@ scan_identity scan_identity_of(const grobo_driver *driver, const uint8_t *bytes)
 
 /* ---- what comes ------------------------------------------------------------------------------ */
 
+/* A question of this look has one reply. What else a servo says, to another master or under a
+ * wrong id, is no late one: all that follow would wait as long. */
 static void take_reply(scan_pass *p, const grobo_packet *packet, int64_t now_us)
 {
     int id = packet->id;
+    int64_t took_us = now_us - p->asked_us[id];
     if (packet->kind != GROBO_PACKET_RETURN || packet->refused || p->asked_us[id] == 0 ||
-        packet->data_bytes != (size_t)p->bytes) {
+        packet->data_bytes != (size_t)p->bytes || took_us > LATE_MAX_US) {
         return;
     }
-    int64_t took_us = now_us - p->asked_us[id];
+    p->asked_us[id] = 0;
     if (took_us > p->worst_us) {
         p->worst_us = took_us;
     }
@@ -144,6 +147,7 @@ static int look(conn *c, scan_pass *p, uint32_t margin_us)
     int error = servos_wait(c, p->baud_bps, p->bytes, margin_us, -1, &p->timeout_us);
     p->late = false;
     p->rubbish = 0;
+    memset(p->asked_us, 0, sizeof p->asked_us);
     for (int id = p->first; id <= p->last && !error; id++) {
         if (p->progress) {
             p->progress(p, id);

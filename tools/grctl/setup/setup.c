@@ -112,6 +112,7 @@ static int check_port(guide *g)
     app quiet = *g->a;
     quiet.json = false;
     checkup_start(&k, &quiet);
+    k.aside = true;
     set_global(g->a, GLOBAL_DEVICE, g->device);
     if (!is_port(g->device)) {
         return 0;

@@ -414,14 +414,18 @@ const char shell_details[] = N_(
     "The record is a motion that is built by hand; every command takes it as the file\n"
     "@record.\n");
 
+int shell_word_text(const shell_word *w, char *text, size_t capacity)
+{
+    return snprintf(text, capacity, "  %-2s %s%s%s\n      %s\n", w->letter, w->word,
+                    *w->word && *w->arguments ? " " : "", w->arguments, _(w->help));
+}
+
 const char *shell_words(void)
 {
     static char text[4096];
     size_t used = 0;
     for (size_t i = 0; i < sizeof table / sizeof table[0] && used < sizeof text; i++) {
-        const shell_word *w = &table[i];
-        used += (size_t)snprintf(text + used, sizeof text - used, "  %s %s %s\n      %s\n",
-                                 w->letter, w->word, w->arguments, _(w->help));
+        used += (size_t)shell_word_text(&table[i], text + used, sizeof text - used);
     }
     return text;
 }

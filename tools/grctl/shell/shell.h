@@ -52,6 +52,8 @@ typedef struct shell_word {
 
 /* Row i of the table, NULL behind the last. */
 const shell_word *shell_word_row(size_t i);
+/* Its two lines of help. Returns what snprintf() does. */
+int shell_word_text(const shell_word *w, char *text, size_t capacity);
 /* That of a letter or word, NULL for none. */
 const shell_word *shell_word_find(const char *name);
 /* The command or word that is nearest to a name, or NULL; a command that it is comes first. */

@@ -28,6 +28,19 @@ static bool complain(reader *r, const yaml_node_t *at, const char *what)
     return false;
 }
 
+/* Today's files have joint_type for the jointType of older ones, and both beside one another. */
+static bool is_key(const char *name, const char *key)
+{
+    for (; *name && *key; name++, key++) {
+        if (*key >= 'A' && *key <= 'Z' && name[0] == '_' && name[1] == *key - 'A' + 'a') {
+            name++;
+        } else if (*name != *key) {
+            return false;
+        }
+    }
+    return *name == *key;
+}
+
 /* The value of a key, or NULL. */
 static yaml_node_t *find(reader *r, const yaml_node_t *map, const char *key)
 {
@@ -37,8 +50,7 @@ static yaml_node_t *find(reader *r, const yaml_node_t *map, const char *key)
     }
     for (pair = map->data.mapping.pairs.start; pair < map->data.mapping.pairs.top; pair++) {
         const yaml_node_t *name = yaml_document_get_node(&r->document, pair->key);
-        if (name->type == YAML_SCALAR_NODE &&
-            strcmp((const char *)name->data.scalar.value, key) == 0) {
+        if (name->type == YAML_SCALAR_NODE && is_key((const char *)name->data.scalar.value, key)) {
             return yaml_document_get_node(&r->document, pair->value);
         }
     }
@@ -166,12 +178,10 @@ static bool take_axis(reader *r, const yaml_node_t *link, sketch_part *part)
     const yaml_node_t *node = find(r, link, "jointAxis");
     const char *text = text_of(node);
     static const char names[] = "XYZ";
-    if (!node) {
-        return complain(r, link, "a joint that turns has no jointAxis");
-    }
-    if (!text) {
+    if (!text && node) {
         return take_numbers(r, node, 3, part->axis);
     }
+    text = text ? text : "Z"; /* as Link.cpp of choreonoid has it */
     bool negative = *text == '-';
     char letter = text[negative];
     letter = letter >= 'x' && letter <= 'z' ? (char)(letter - 'x' + 'X') : letter;
@@ -184,27 +194,47 @@ static bool take_axis(reader *r, const yaml_node_t *link, sketch_part *part)
     return true;
 }
 
-/* Two of them, or one for both sides; "unlimited" is none. */
-static bool take_range(reader *r, const yaml_node_t *link, sketch_part *part)
+/* Two of them, or one for both sides; false with the complaint. */
+static bool take_limits(reader *r, const yaml_node_t *node, double *limits_rad)
 {
-    const yaml_node_t *node = find(r, link, "jointRange");
-    double *limits = part->limits_rad;
-    if (!node) {
-        return true;
-    }
     bool both = length_of(node) == 2;
     for (int i = 0; i < 2; i++) {
         const yaml_node_t *one = both ? item(r, node, i) : node;
         const char *text = text_of(one);
-        if (text && strcmp(text, "unlimited") == 0) {
-            return true;
-        }
-        if (!take_numbers(r, one, 1, &limits[i])) {
+        double number = INFINITY;
+        if (!(text && strcmp(text, "unlimited") == 0) && !take_numbers(r, one, 1, &number)) {
             return false;
         }
-        limits[i] *= r->unit_rad * (!both && i == 0 ? -1 : 1);
+        limits_rad[i] = number * r->unit_rad * (!both && i == 0 ? -1 : 1);
     }
-    part->limited = true;
+    return true;
+}
+
+static bool take_range(reader *r, const yaml_node_t *link, sketch_part *part)
+{
+    const yaml_node_t *node = find(r, link, "jointRange");
+    double limits_rad[2] = {INFINITY, INFINITY};
+    if (node && !take_limits(r, node, limits_rad)) {
+        return false;
+    }
+    part->limited = isfinite(limits_rad[0]) && isfinite(limits_rad[1]);
+    if (part->limited) {
+        memcpy(part->limits_rad, limits_rad, sizeof limits_rad);
+    }
+    return true;
+}
+
+/* The slower direction counts. */
+static bool take_speed(reader *r, const yaml_node_t *link, sketch_part *part)
+{
+    const yaml_node_t *node = find(r, link, "maxJointVelocity");
+    double limits_rad_s[2] = {0, 0};
+    node = node ? node : find(r, link, "jointVelocityRange");
+    if (node && !take_limits(r, node, limits_rad_s)) {
+        return false;
+    }
+    double speed_rad_s = fmin(fabs(limits_rad_s[0]), fabs(limits_rad_s[1]));
+    part->speed_rad_s = isfinite(speed_rad_s) ? speed_rad_s : 0;
     return true;
 }
 
@@ -212,7 +242,7 @@ static bool take_joint(reader *r, const yaml_node_t *link, sketch_part *part)
 {
     const yaml_node_t *type_node = find(r, link, "jointType");
     const char *type = text_of(type_node);
-    double number = SKETCH_PARTS_MAX, speed = 0;
+    double number = SKETCH_PARTS_MAX;
     if (!type || strcmp(type, "fixed") == 0 || strcmp(type, "free") == 0) {
         return true;
     }
@@ -223,13 +253,11 @@ static bool take_joint(reader *r, const yaml_node_t *link, sketch_part *part)
     }
     part->motion = SKETCH_TURNS;
     if (!take_numbers(r, find(r, link, "jointId"), 1, &number) ||
-        !take_numbers(r, find(r, link, "maxJointVelocity"), 1, &speed) ||
         !take_text(r, link, "joint_name", part->joint)) {
         return false;
     }
     part->order = number >= 0 && number < SKETCH_PARTS_MAX ? (int)number : SKETCH_PARTS_MAX;
-    part->speed_rad_s = speed * r->unit_rad;
-    return take_axis(r, link, part) && take_range(r, link, part);
+    return take_axis(r, link, part) && take_range(r, link, part) && take_speed(r, link, part);
 }
 
 static bool take_link(reader *r, const yaml_node_t *link)

@@ -189,11 +189,9 @@ static char *read_file(app *a, const char *path, size_t *size, int *status)
 {
     heap all = file_bytes(path, SKETCH_FILE_MAX_BYTES);
     if (!all.bytes) {
-        bool long_one = errno == EFBIG;
-        *status = app_fail(a, EXIT_FILE, long_one ? "CAP" : "IO", "%s: %s", path,
-                           long_one             ? _("is longer than 4 MiB")
-                           : os_is_folder(path) ? _("is a folder")
-                                                : app_cause_text(errno));
+        int cause = os_is_folder(path) ? EISDIR : errno;
+        *status = cause == EFBIG ? app_fail(a, EXIT_FILE, "CAP", "%s: is longer than 4 MiB", path)
+                                 : app_fail_cause(a, EXIT_FILE, cause, "%s", path);
     }
     *size = all.size;
     return all.bytes;

@@ -29,11 +29,9 @@ int door_open(app *a, const web_options *options, http_config *config, events *e
     return EXIT_DONE;
 }
 
-void door_announce(const app *a, const web_options *options, const http *h)
+void door_announce(const app *a, const http *h)
 {
-    const char *host = options->name     ? options->name
-                       : options->listen ? options->listen
-                                         : "127.0.0.1";
+    const char *host = http_host(h);
     char url[256], stop_url[256];
     snprintf(url, sizeof url, "http://%s:%u/", host, http_port(h));
     snprintf(stop_url, sizeof stop_url, "http://%s:%u/", host, http_stop_port(h));

@@ -13,7 +13,7 @@
  */
 int door_open(app *a, const web_options *options, http_config *config, events *e);
 /* The link, with its token. */
-void door_announce(const app *a, const web_options *options, const http *h);
+void door_announce(const app *a, const http *h);
 /* A key of a body that is text; "" where there is none. */
 const char *door_text(const json_t *body, const char *key);
 /* Where a page cannot set a header, its value stands in the body. */

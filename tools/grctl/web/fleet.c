@@ -510,7 +510,7 @@ static int run(view *v, app *a)
     v->l.on_event = on_fleet_event;
     leader_listen(&v->l, "state");
     on_tick(-1, 0, v);
-    door_announce(a, v->options, v->http);
+    door_announce(a, v->http);
     while (!v->l.link.signal) {
         (void)leader_wait(&v->l, INT64_C(3600000000), NULL);
     }

@@ -727,9 +727,24 @@ static bool open_port(http *h, port *p, uint16_t number)
     return open;
 }
 
+/* The address where it listens as a link has it; NULL: loopback or every one. */
+static const char *own_address(const http *h, char text[WALL_NAME_BYTES])
+{
+    const char *address = h->config.address;
+    if (!address || address[strspn(address, "0.:")] == '\0') {
+        return NULL;
+    }
+    bool six = strchr(address, ':') != NULL;
+    snprintf(text, WALL_NAME_BYTES, "%s%s%s", six ? "[" : "", address, six ? "]" : "");
+    return text;
+}
+
 static void set_walls(http *h)
 {
-    const char *names[WALL_HOSTS] = {"127.0.0.1", "[::1]", "localhost", h->config.name};
+    char text[WALL_NAME_BYTES];
+    const char *address = own_address(h, text), *name = h->config.name ? h->config.name : address;
+    const char *names[WALL_HOSTS] = {name ? name : "127.0.0.1", "127.0.0.1", "[::1]", "localhost",
+                                     address};
     wall *w = &h->first.wall;
     w->open = h->config.address && !net_is_loopback(h->config.address);
     w->page_port = w->port;
@@ -744,6 +759,13 @@ static void set_walls(http *h)
     uint16_t number = h->second.wall.port;
     h->second.wall = *w;
     h->second.wall.port = number;
+}
+
+/* What libevent would print of an address: the complaint is that of the caller. */
+static void keep_silent(int severity, const char *text)
+{
+    (void)severity;
+    (void)text;
 }
 
 int http_new(const http_config *config, http **server, const char **complaint)
@@ -761,7 +783,9 @@ int http_new(const http_config *config, http **server, const char **complaint)
         http_free(h);
         return GROBO_ERR_NOMEM;
     }
-    *complaint = "the port is in use, or is not ours; --port chooses another";
+    *complaint = config->address ? "the port is in use, or --listen is no address of this machine"
+                                 : "the port is in use, or is not ours; --port chooses another";
+    event_set_log_callback(keep_silent);
     if (!open_port(h, &h->first, config->port) ||
         !open_port(h, &h->second, config->port ? (uint16_t)(config->port + 1) : 0)) {
         http_free(h);
@@ -799,6 +823,11 @@ void http_free(http *server)
         event_free(server->reap);
     }
     free(server);
+}
+
+const char *http_host(const http *server)
+{
+    return server->first.wall.hosts[0];
 }
 
 uint16_t http_port(const http *server)

@@ -67,6 +67,8 @@ int http_new(const http_config *config, http **server, const char **complaint);
 /* Ends all connections; requests that wait get no reply. NULL is nothing. */
 void http_free(http *server);
 
+/* What a link to it has as its host. */
+const char *http_host(const http *server);
 uint16_t http_port(const http *server);
 uint16_t http_stop_port(const http *server);
 const char *http_token(const http *server);

@@ -280,6 +280,17 @@ bool player_at(const serve *s, int64_t offset_us, grobo_posture *posture)
     return item && plays && sample(item, s->model, progress.t_us + offset_us, posture) >= 0;
 }
 
+bool player_is_endless(const serve *s)
+{
+    grobo_play_progress progress;
+    grobo_robot_progress(s->c.robot, &progress);
+    const player_item *item = present(s, &progress);
+    while (item && !item->loop) {
+        item = item->next;
+    }
+    return item != NULL;
+}
+
 json_t *player_json(serve *s)
 {
     grobo_play_progress progress;

@@ -34,6 +34,9 @@ json_t *player_json(serve *s);
 /* Where the motion is at an offset from now, by joint; false: nothing is played. */
 bool player_at(const serve *s, int64_t offset_us, grobo_posture *posture);
 
+/* A motion that loops is played, or waits. */
+bool player_is_endless(const serve *s);
+
 /* Frees what has been played. */
 void player_on_event(serve *s, const grobo_event *event);
 /* When nothing plays any more. */

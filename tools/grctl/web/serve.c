@@ -110,7 +110,7 @@ static void on_event(conn *c, const grobo_event *event)
         say_trip(s);
         break;
     case GROBO_EVENT_LINK_DOWN:
-        s->jogs = s->jog_waits = s->moves = false;
+        s->jogs = s->jog_waits = false;
         s->limp = 0;
         events_tell(&s->events, "link", "error", NULL, "the line is lost");
         break;
@@ -137,14 +137,17 @@ static void lose_motion(serve *s)
 {
     bool plays =
         grobo_robot_is_playing(s->c.robot) || grobo_robot_job(s->c.robot) == GROBO_JOB_PLAY;
-    if (plays && s->player.on_lost == PLAYER_FINISH) {
+    bool finishes = plays && s->player.on_lost == PLAYER_FINISH, endless = player_is_endless(s);
+    if (finishes && !endless) {
         events_tell(&s->events, "lease", "warning", NULL,
                     "the page that drives is lost: the motion goes on");
         return;
     }
     bool leaves = plays && s->player.on_lost == PLAYER_EXIT;
     events_tell(&s->events, "lease", "warning", NULL, "the page that drives is lost: %s",
-                leaves ? "the exit policy is carried out" : "the motion stops");
+                leaves                ? "the exit policy is carried out"
+                : finishes && endless ? "a loop has no end, the motion stops"
+                                      : "the motion stops");
     stops_halt(s);
     if (leaves) {
         int job = grobo_robot_exit(s->c.robot, GROBO_EXIT_DEFAULT);
@@ -270,7 +273,7 @@ static int run(serve *s)
         return status;
     }
     on_tick(-1, 0, s); /* there is a state from the first request on */
-    door_announce(s->a, s->options, s->http);
+    door_announce(s->a, s->http);
     error = conn_wait_until(c, NULL);
     c->moving = c->up && serve_is_moving(s);
     c->on_event = NULL; /* nobody is told any more */

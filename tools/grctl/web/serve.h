@@ -54,7 +54,6 @@ struct serve {
     /* jogging: the newest target */
     grobo_posture jog;
     bool jogs, jog_waits;
-    bool moves; /* a move of the lease's holder is under way */
     /* the load of the line, over the last second */
     int64_t load_us;
     uint64_t load_bytes;

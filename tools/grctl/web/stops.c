@@ -51,7 +51,7 @@ int stops_ask(serve *s, const char *by, bool estop)
     stops *t = &s->stops;
     bool news = !t->latched || (estop && !t->estop);
     int result = GROBO_OK;
-    s->jogs = s->jog_waits = s->moves = false;
+    s->jogs = s->jog_waits = false;
     if (news) {
         t->latched = true;
         t->estop = estop;
@@ -155,7 +155,7 @@ bool stops_is_latched(serve *s)
 
 void stops_halt(serve *s)
 {
-    s->jogs = s->jog_waits = s->moves = false;
+    s->jogs = s->jog_waits = false;
     s->player.epoch++;
     if (s->c.up) {
         (void)grobo_robot_stop(s->c.robot, false);

@@ -153,7 +153,6 @@ void verb_move(serve *s, http_request *r, json_t *body)
     }
     s->jogs = s->jog_waits = false;
     int job = grobo_robot_move(s->c.robot, &target);
-    s->moves |= job > 0;
     serve_accept(s, r, serve_note_job(s, job, "move"), "move");
 }
 

@@ -15,7 +15,7 @@ enum {
     WALL_TOKEN_BYTES = 64 + 1,  /* of a token, with its NUL */
     WALL_SECRET_BYTES = 32 + 1, /* of one that is made here: 128 bits in hexadecimal */
     WALL_NAME_BYTES = 128,
-    WALL_HOSTS = 4
+    WALL_HOSTS = 5
 };
 
 /* What is asked of a request beside what is asked of all. */

@@ -16,9 +16,9 @@ from types import TracebackType
 from typing import Any, AsyncIterator, Dict, Iterable, List, Optional, Type, Union
 
 from grobo import errors
-from grobo._lib import ffi, has, lib, new, quick, us
-from grobo.motion import Motion, posture
-from grobo.robot import Angles, Exit, Status, Torque
+from grobo._lib import ffi, has, lib, new, quick
+from grobo.motion import Motion, init_pose, posture
+from grobo.robot import Angles, Exit, Status, Torque, log
 from grobo.robot import Robot as _Blocking
 
 EVENTS = 256  # kept for a loop that is late
@@ -69,7 +69,9 @@ class Robot:
     # ---- events ----------------------------------------------------------------------------
 
     async def events(self) -> AsyncIterator[Event]:
-        """Everything that happens from now on, until the robot is closed."""
+        """Everything that happens from its first turn on, until the robot is closed."""
+        if self._robot._control.closing:
+            return
         queue: "asyncio.Queue[Optional[Event]]" = asyncio.Queue()
         self._readers.append(queue)
         try:
@@ -83,17 +85,28 @@ class Robot:
                 self._readers.remove(queue)
 
     def _drain(self) -> None:
+        lost = 0
         with self._robot._control.use() as control:
             while quick("grobo_control_next_event", control, self._event) == 1:
                 event = self._read(self._event)
+                lost += event.lost
                 for queue in self._readers:
                     queue.put_nowait(event)
-                future = self._jobs.pop(event.job, None) if event.job is not None else None
-                if future is not None and not future.done():
-                    if event.error is not None:
-                        future.set_exception(event.error)
-                    else:
-                        future.set_result(0)
+                if event.job is not None:
+                    self._end(event.job, event.error)
+            for job in list(self._jobs) if lost else ():
+                if not lib.grobo_robot_is_pending(self._robot._control.robot, job):
+                    result = lib.grobo_control_wait_job(control, job, 0)  # known: it has ended
+                    self._end(job, errors.error(result, "move") if result < 0 else None)
+
+    def _end(self, job: int, error: Optional[errors.Error]) -> None:
+        future = self._jobs.pop(job, None)
+        if future is None or future.done():
+            return
+        if error is not None:
+            future.set_exception(error)
+        else:
+            future.set_result(0)
 
     def _read(self, c: Any) -> Event:
         lost = int(c.lost)
@@ -132,10 +145,7 @@ class Robot:
 
     async def init(self, time: Optional[float] = None) -> None:
         """Moves to the initial posture."""
-        target = ffi.new("grobo_posture *")
-        lib.grobo_posture_init_pose(target, self._robot._model)
-        target.time_us = us(time) if time is not None else 0
-        await self._moved(target)
+        await self._moved(init_pose(time, self._robot._model))
 
     async def move(self, angles: Angles, *, time: Optional[float] = None) -> None:
         """Moves joints; several moves of different joints may be under way."""
@@ -153,24 +163,31 @@ class Robot:
             await future
         except asyncio.CancelledError:
             self._jobs.pop(job, None)
-            if not self._robot._control.closing:
-                self._robot.stop()
+            self._stop_unless_closing()
             raise
 
-    async def _in_thread(self, function: Any, *args: Any, **options: Any) -> Any:
+    async def _in_thread(self, function: Any, *args: Any) -> Any:
+        return await self._loop.run_in_executor(None, function, *args)
+
+    async def _moved_in_thread(self, function: Any, *args: Any, **options: Any) -> None:
         call = self._loop.run_in_executor(None, lambda: function(*args, **options))
         try:
-            return await asyncio.shield(call)
+            await asyncio.shield(call)
         except asyncio.CancelledError:
-            if not self._robot._control.closing:
-                self._robot.stop()
+            self._stop_unless_closing()
             await asyncio.wait([call])
             call.exception()
+            self._stop_unless_closing()  # what it has begun meanwhile
             raise
+
+    def _stop_unless_closing(self) -> None:
+        if not self._robot._control.closing:
+            self._robot.stop()
 
     async def play(self, motion: Union[Motion, str], **options: Any) -> None:
         """Plays a motion: the options of grobo.Robot.play()."""
-        await self._in_thread(self._robot.play, motion, **options)
+        await self._moved_in_thread(self._robot._begin, motion, **options)
+        await self._moved_in_thread(self._robot._await_play)
 
     async def torque(
         self, state: Union[bool, Torque], joints: Optional[Iterable[str]] = None
@@ -221,7 +238,12 @@ class Robot:
         value: Optional[BaseException],
         trace: Optional[TracebackType],
     ) -> None:
-        await self.close()
+        try:
+            await self.close()
+        except errors.Error:
+            if kind is None:
+                raise
+            log.exception("%s: the exit policy failed", self._robot.device)
 
 
 async def connect(
@@ -232,5 +254,11 @@ async def connect(
         raise errors.error(lib.GROBO_ERR_UNSUPPORTED, "asyncio needs the library's events")
     options.setdefault("events", EVENTS)
     loop = asyncio.get_running_loop()
-    robot = await loop.run_in_executor(None, lambda: _Blocking(device, exit=exit, **options))
-    return Robot(robot)
+    call = loop.run_in_executor(None, lambda: _Blocking(device, exit=exit, **options))
+    try:
+        return Robot(await asyncio.shield(call))
+    except asyncio.CancelledError:
+        await asyncio.wait([call])
+        if call.exception() is None:
+            await loop.run_in_executor(None, call.result().close)
+        raise

@@ -35,7 +35,7 @@ class Error(Exception):
 
     def __str__(self) -> str:
         text = ffi.string(lib.grobo_error_text(self.code)).decode()
-        about = [part for part in (self.reason, self.joint) if part]
+        about = [str(part) for part in (self.reason, self.joint) if part is not None]
         if self.value is not None:
             about.append(f"{self.value:g}")
         return f"{self.what}: {text}" + (f" ({', '.join(about)})" if about else "")

@@ -78,7 +78,7 @@ def posture(
     """A C posture of names and angles, or of angles in joint order (NaN: not set)."""
     made = ffi.new("grobo_posture *")
     check(lib.grobo_posture_init(made, model.n_joints), "posture")
-    made.time_us = us(time) if time is not None else 0
+    made.time_us = _time_us(time)
     names = joint_names(model)
     if not isinstance(angles, Mapping):
         if len(angles) > len(names):
@@ -93,6 +93,21 @@ def posture(
     return made
 
 
+def init_pose(time: Optional[float], model: Any) -> Any:
+    """The model's initial posture, as a C posture."""
+    made = ffi.new("grobo_posture *")
+    lib.grobo_posture_init_pose(made, model)
+    made.time_us = _time_us(time)
+    return made
+
+
+def _time_us(time: Optional[float]) -> int:
+    """Of a posture; 0: the default time."""
+    if time is not None and time < 0:
+        raise error(lib.GROBO_ERR_ARG, "time")
+    return us(time) if time is not None else 0
+
+
 class Motion:
     """A motion in memory: postures, each reached some time after the one before."""
 
@@ -101,6 +116,8 @@ class Motion:
     ) -> None:
         self._model = _model or ffi.addressof(GR001)
         if _owned is None:
+            if kind not in KINDS[:-1]:
+                raise ValueError(f"kind {kind!r}: {', '.join(KINDS[:-1])}; frames are read of files")
             made = ffi.new("grobo_motion **")
             check(lib.grobo_motion_new(KINDS.index(kind), joints, ffi.NULL, made), "motion")
             _owned = made[0]

@@ -19,7 +19,7 @@ from typing import (
 from grobo import errors
 from grobo._lib import ffi, has, lib, new, quick, us
 from grobo.description import Description
-from grobo.motion import Motion, Posture, posture
+from grobo.motion import Motion, Posture, init_pose, posture
 
 log = logging.getLogger("grobo")
 
@@ -78,50 +78,62 @@ class _Control:
     def __init__(self, config: Any, keep: List[Any]) -> None:
         made = ffi.new("grobo_control **")
         errors.check(lib.grobo_control_new(config, made), "robot")
+        self.leaves = not config.skip_exit
         self.handle = made[0]
         self.robot = lib.grobo_control_robot(self.handle)
         self.keep = keep
         self.process = os.getpid()
-        self.users = 0
+        self.lock = threading.RLock()  # not of Python code, where Ctrl-C would leave it locked
+        self.idle = threading.Condition(self.lock)
+        self.users: Set[object] = set()
         self.closing = False
-        self.idle = threading.Condition()
+        self.dropped = False  # its robot was collected, not closed
         _open.add(self)
 
     @contextmanager
     def use(self) -> Iterator[Any]:
         """The handle, which is not freed meanwhile."""
-        with self.idle:
-            if self.process != os.getpid():
-                raise errors.error(lib.GROBO_ERR_STATE, "robot of a parent process")
+        if self.process != os.getpid():
+            raise errors.error(lib.GROBO_ERR_STATE, "robot of a parent process")
+        user = object()
+        try:
+            if not self.closing:  # its lock is held for as long as an exit takes
+                with self.lock:
+                    self.users.add(user)
             if self.closing:
                 raise errors.error(lib.GROBO_ERR_CLOSED, "robot")
-            self.users += 1
-        try:
             yield self.handle
         finally:
-            with self.idle:
-                self.users -= 1
-                self.idle.notify_all()
+            with self.lock:
+                self.users.discard(user)
+                if self.closing:
+                    self.idle.notify_all()
 
     def close(self) -> int:
-        with self.idle:
-            if self.closing or self.process != os.getpid():
-                return 0
+        """Where Ctrl-C ends it, the next one goes on."""
+        if self.process != os.getpid():
+            return 0
+        with self.lock:
             self.closing = True
-            self.idle.wait_for(lambda: self.users == 0)
-        _open.discard(self)
-        result: int = lib.grobo_control_close_port(self.handle, 0)
-        lib.grobo_control_free(self.handle)
-        return result
+            while self.users:
+                self.idle.wait(SLICE)  # Ctrl-C may have ended the one that would notify
+            if not self.handle:
+                return 0
+            result: int = lib.grobo_control_close_port(self.handle, 0)
+            handle, self.handle = self.handle, ffi.NULL
+            lib.grobo_control_free(handle)
+            _open.discard(self)
+            return result
 
 
 _open: Set[_Control] = set()
 
 
 @atexit.register
-def _close_all() -> None:
+def _close_all(dropped: bool = False) -> None:
     for control in list(_open):
-        control.close()
+        if control.dropped or not dropped:
+            control.close()
 
 
 class Joint:
@@ -179,6 +191,7 @@ class Robot:
         robot: Union[str, "os.PathLike[str]", Description] = "gr001",
         sense_interval: Optional[float] = None,
     ) -> None:
+        _close_all(dropped=True)  # one of them may have the device
         if not isinstance(robot, Description):
             robot = Description(robot)
         self.description = robot
@@ -245,8 +258,10 @@ class Robot:
         control = getattr(self, "_control", None)
         if control is not None and not control.closing and control.process == os.getpid():
             warnings.warn(f"robot {self.device} was not closed", ResourceWarning, source=self)
-            # Freed at exit: this may be any thread, which must not wait here.
-            lib.grobo_control_post_exit(control.handle, Exit.DEFAULT)
+            # Closed by the next robot, or at exit: this may be any thread, which must not wait here.
+            control.dropped = True
+            if control.leaves:
+                lib.grobo_control_post_exit(control.handle, Exit.DEFAULT)
 
     # ---- asking ----------------------------------------------------------------------------
 
@@ -271,7 +286,8 @@ class Robot:
             )
 
     def angles(self, joints: Optional[Iterable[str]] = None) -> Dict[str, float]:
-        """Reads joints now, in radians; those that stay silent are missing."""
+        """Reads joints now, in radians. Of all of them those that stay silent are missing, of a
+        list the first silent one raises."""
         if joints is not None:
             angle = ffi.new("double *")
             read = {}
@@ -295,9 +311,7 @@ class Robot:
 
     def init(self, time: Optional[float] = None) -> None:
         """Moves to the initial posture."""
-        target = ffi.new("grobo_posture *")
-        lib.grobo_posture_init_pose(target, self._model)
-        target.time_us = us(time) if time is not None else 0
+        target = init_pose(time, self._model)
         self._interruptible(lambda: self._wait_job(self._move(target), "init"))
 
     def move(self, angles: Angles, *, time: Optional[float] = None) -> None:
@@ -335,25 +349,40 @@ class Robot:
     ) -> None:
         """Plays a motion or a motion file; returns when it has ended, raises what stopped it.
 
-        `rate`: frames a second; without one a frame for each posture, and the servos fill the time.
+        `speed`: 0.01 to 10. `rate`: frames a second, 1 to 1000; without one a frame for each posture,
+        and the servos fill the time.
         """
+
+        def verb() -> None:
+            self._begin(motion, speed, repeat, reverse, mirror, rate)
+            self._await_play()
+
+        self._interruptible(verb)
+
+    def _begin(
+        self,
+        motion: Union[Motion, str, "os.PathLike[str]"],
+        speed: float = 1.0,
+        repeat: int = 1,
+        reverse: bool = False,
+        mirror: bool = False,
+        rate: Optional[int] = None,
+    ) -> None:
         if not isinstance(motion, Motion):
             motion = Motion.load(Path(motion), self.description)
         options = new("grobo_play_options")
-        options.speed_pct = round(speed * 100)
+        options.speed_pct = _within(round(speed * 100), lib.GROBO_PLAY_SPEED_MAX_PCT, "speed")
         options.mirror = mirror
         if rate is not None:
             options.mode = lib.GROBO_PLAY_RATE
-            options.rate_hz = rate
+            options.rate_hz = _within(rate, lib.GROBO_PLAY_RATE_MAX_HZ, "rate")
         with self._control.use() as control:
             self._check(lib.grobo_control_set_motion(control, motion._c), "play")
             lib.grobo_control_set_motion_count(control, repeat)
             lib.grobo_control_set_reverse(control, reverse)
-        self._interruptible(lambda: self._play(options))
-
-    def _play(self, options: Any) -> None:
-        with self._control.use() as control:
             self._check(lib.grobo_control_play_motion(control, options), "play")
+
+    def _await_play(self) -> None:
         while True:
             with self._control.use() as control:
                 result = lib.grobo_control_wait(control, us(SLICE))
@@ -441,6 +470,13 @@ class Robot:
             if result == lib.GROBO_ERR_LATCHED and not reason:
                 reason = "emergency stop"  # asked for, and not yet taken up by the control thread
         raise errors.error(result, what, joint, value, reason)
+
+
+def _within(number: int, most: int, what: str) -> int:
+    """An option that is 0 in C is the default there."""
+    if not 1 <= number <= most:
+        raise errors.error(lib.GROBO_ERR_ARG, what)
+    return number
 
 
 def _trip_name(trip: Any) -> Optional[str]:

@@ -9,14 +9,21 @@ export class ApiError extends Error {
     }
 }
 
-/** The token of the link that opened the page; kept for reloads, and out of the address bar. */
+/**
+ * The token of the link that opened the page; kept for reloads, and out of the address bar. In a
+ * browser that keeps nothing it stays there.
+ */
 export function takeToken() {
-    const [, token] = location.hash.match(/token=([^&]+)/) || [];
-    if (token) {
-        sessionStorage.setItem('token', token);
-        history.replaceState(null, '', location.pathname + location.search);
+    const [, token = null] = location.hash.match(/token=([^&]+)/) || [];
+    try {
+        if (token) {
+            sessionStorage.setItem('token', token);
+            history.replaceState(null, '', location.pathname + location.search);
+        }
+        return sessionStorage.getItem('token');
+    } catch (error) {
+        return token;
     }
-    return sessionStorage.getItem('token');
 }
 
 export class Api {
@@ -76,6 +83,8 @@ export class Api {
 
 /**
  * Sends the newest of many targets: one request is under way, what comes meanwhile replaces itself.
+ * A target that moves the robot names the state that was drawn when it was pushed, not when it is
+ * sent: after a gap of the network it is stale.
  * After each it rests for pauseMs: the server takes 100 a second of all pages.
  */
 export class Newest {

@@ -41,6 +41,31 @@ export function stepByKeys(slider, done) {
     });
 }
 
+let answer = () => {};
+
+/**
+ * Asks beside the page, which goes on: a window of the browser's own (confirm) holds up heartbeats,
+ * states and STOP. Another question, or Esc in it, is a no.
+ * @returns a promise of the answer
+ */
+export function ask(text) {
+    const box = document.getElementById('ask'), before = document.activeElement;
+    answer(false);
+    setText(box.firstElementChild, text);
+    box.show();
+    box.querySelector('[value=no]').focus();
+    return new Promise((done) => {
+        answer = (yes) => {
+            answer = () => {};
+            box.close();
+            before.focus({ preventScroll: true });
+            done(yes);
+        };
+        box.onclick = ({ target }) => target.value && answer(target.value === 'yes');
+        box.onkeydown = ({ key }) => key === 'Escape' && answer(false);
+    });
+}
+
 /** A short tremor where the machine has one: a limit that a finger feels. */
 export function tremble() {
     if (navigator.vibrate) {

@@ -86,8 +86,11 @@ export class Feed {
         } catch (error) {
             why = error.message;
         }
+        if (this.abort !== abort) {
+            return; // there is a new one, with a silence of its own
+        }
         clearTimeout(this.silence);
-        if (this.running && this.abort === abort) {
+        if (this.running) {
             const wait = pauseMs(this.tries++);
             this.tell({ type: 'down', wait, why });
             this.timer = setTimeout(() => this.open(), wait);

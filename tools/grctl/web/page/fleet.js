@@ -98,6 +98,7 @@ class View {
     start() {
         openStream(this.api.token, (message) => this.take(message));
         setInterval(() => this.schedule(), 250);
+        this.loading = true;
         this.load();
     }
 
@@ -115,6 +116,7 @@ class View {
         } catch (error) {
             this.fail(error);
             setTimeout(() => this.load(), 1500);
+            return; // each state that comes meanwhile would begin another such row
         }
         this.loading = false;
         this.schedule();

@@ -3,7 +3,7 @@
 // follows while it is dragged, if this page drives.
 
 import { Newest } from './api.js';
-import { element, setText, stepByKeys, tremble } from './dom.js';
+import { ask, element, setText, stepByKeys, tremble } from './dom.js';
 
 const SIGNS = { on: '●', off: '○', brake: '◐' };
 
@@ -12,12 +12,12 @@ export class Joints {
         this.app = app;
         this.body = document.querySelector('#joints tbody');
         this.drawnAt = 0;
-        this.newest = new Newest(({ joint, value }) => this.jog(joint, value));
+        this.newest = new Newest((target) => app.command('/api/jog', target));
         const all = (id, what) => document.getElementById(id).addEventListener('click', what);
         all('stand', () => app.command('/api/move', { pose: 'init', time_ms: 3000 }, true));
         all('torque-on', () => app.command('/api/torque', { joints: ['all'], mode: 'on' }, true));
-        all('torque-off', () => {
-            if (app.robot.arm || !app.robot.body || confirm(app.t('Without torque the robot sinks or falls. Hold it. Switch torque off?'))) {
+        all('torque-off', async () => {
+            if (app.robot.arm || !app.robot.body || await ask(app.t('Without torque the robot sinks or falls. Hold it. Switch torque off?'))) {
                 app.command('/api/torque', { joints: ['all'], mode: 'off' });
             }
         });
@@ -100,7 +100,7 @@ export class Joints {
         this.atEdge = edge;
         this.dragged = { joint, value, at: performance.now() };
         this.show(value, edge);
-        this.newest.push({ joint, value });
+        this.newest.push({ angle_deg: { [this.app.name(joint)]: value }, sequence: this.app.drawn });
     }
 
     release() {
@@ -114,10 +114,6 @@ export class Joints {
         setText(this.out, words);
         this.out.classList.toggle('warn', edge);
         this.slider.setAttribute('aria-valuetext', words);
-    }
-
-    async jog(joint, value) {
-        await this.app.command('/api/jog', { angle_deg: { [this.app.name(joint)]: value } }, true);
     }
 
     /** Ends a drag softly: the page is hidden, or the pointer was taken away. */

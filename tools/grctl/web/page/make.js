@@ -5,7 +5,7 @@
 
 import { Newest } from './api.js';
 import { forward, stand } from './body.js';
-import { element, replace, seconds, setText } from './dom.js';
+import { ask, element, replace, seconds, setText } from './dom.js';
 import { Draft, compare, keysOfFrames } from './make_draft.js';
 import { Hands } from './make_hands.js';
 import { Line } from './make_line.js';
@@ -70,7 +70,7 @@ export class Make {
         click('mirror-all', () => this.edit(() => this.draft.mirrorAll()));
         click('delete', () => this.edit(() => this.draft.remove(this.draft.chosen), true));
         click('preview', () => this.togglePreview());
-        click('new', () => this.mayLeave() && this.begin());
+        click('new', async () => await this.mayLeave() && this.begin());
         change('open', () => this.chooseFile(this.id('open').value));
         click('save', () => this.save());
         click('save-as', () => this.saveAs());
@@ -146,13 +146,13 @@ export class Make {
 
     // ---- the draft -----------------------------------------------------------------------------
 
-    mayLeave() {
+    async mayLeave() {
         return !this.draft || !this.draft.changed() ||
-               confirm(this.app.t('What was changed is not saved. Leave it?'));
+               ask(this.app.t('What was changed is not saved. Leave it?'));
     }
 
-    chooseFile(name) {
-        if (name && this.mayLeave()) {
+    async chooseFile(name) {
+        if (name && await this.mayLeave()) {
             this.open(name);
         } else {
             this.id('open').value = this.draft && this.draft.name || '';
@@ -608,11 +608,11 @@ export class Make {
 
     // ---- the robot -----------------------------------------------------------------------------
 
-    limp(mode) {
+    async limp(mode) {
         const { app } = this, group = app.robot.groups.find((g) => g.name === this.id('group').value);
         const legs = (app.robot.body ? app.robot.body.feet : []).flatMap((foot) => foot.joints);
         const falls = mode === 'limp' && group.joints.some((j) => legs.includes(j));
-        if (!falls || confirm(app.t('Without torque the robot sinks or falls. Hold it. Switch torque off?'))) {
+        if (!falls || await ask(app.t('Without torque the robot sinks or falls. Hold it. Switch torque off?'))) {
             app.command('/api/torque', { joints: [group.name], mode }, true);
         }
     }
@@ -647,11 +647,11 @@ export class Make {
         return Math.min(60000, Math.max(1000, Math.ceil(far / (this.app.robot.safety.approach_dps || 60) * 10) * 100));
     }
 
-    show() {
+    async show() {
         const { app } = this, margin = this.margin();
         const angles = Object.fromEntries(this.degrees().map((v, j) => [app.robot.joints[j].name, round(v, 2)]));
         if (margin === null || margin >= 0 ||
-            confirm(app.t('In this pose the robot would fall. Move it there?'))) {
+            await ask(app.t('In this pose the robot would fall. Move it there?'))) {
             app.command('/api/move', { angle_deg: angles, time_ms: this.showTime() }, true);
         }
     }

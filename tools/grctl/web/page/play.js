@@ -29,7 +29,7 @@ export class Play {
         this.name = null;
         this.look = null;
         this.at = 0;
-        this.seek = new Newest((ms) => app.command('/api/seek', { t_ms: ms }, true));
+        this.seek = new Newest((target) => app.command('/api/seek', target));
         this.speed = new Newest((pct) => app.command('/api/speed', { speed_pct: pct }));
         const click = (name, what) => this.id(name).addEventListener('click', what);
         click('play', () => this.playOrPause());
@@ -226,7 +226,7 @@ export class Play {
         this.at = ms;
         this.previewing = false;
         if (this.live() && this.app.mayMove()) {
-            this.seek.push(ms);
+            this.seek.push({ t_ms: ms, sequence: this.app.drawn });
         }
         this.app.schedule();
     }

@@ -43,6 +43,8 @@ document.addEventListener('keydown', (event) => {
         }
     }
 }, true);
+// The link of a server that was started anew, opened in the tab of the one before.
+addEventListener('hashchange', () => location.hash.includes('token=') && location.reload());
 document.body.classList.remove('unarmed');
 document.documentElement.dataset.theme = setting('theme') || '';
 translatePage(lang, t);

@@ -17,9 +17,9 @@ export class Stopper {
     }
 
     press() {
-        const now = performance.now();
+        this.pressed = performance.now();
         if (this.at === null || this.answered) {
-            this.at = now;
+            this.at = this.pressed;
             this.answered = false;
         }
         this.send();
@@ -38,7 +38,7 @@ export class Stopper {
     }
 
     again() {
-        if (this.answered || performance.now() - this.at > GIVE_UP_MS) {
+        if (this.answered || performance.now() - this.pressed > GIVE_UP_MS) {
             clearInterval(this.timer);
             this.timer = null;
         } else {

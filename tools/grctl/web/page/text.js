@@ -59,7 +59,7 @@ export const JA = {
     'Nobody drives': '操作者なし', 'Give back': '操作権を返す', 'Take control': '操作権を取る',
     'Ask for control': '操作権を頼む', 'Asked …': '依頼中…', 'Asked, {0} s': '依頼中 {0} 秒',
     'Take over': '操作を引き継ぐ', '{0} asks to drive': '{0} が操作を希望', 'Give it': 'ゆずる',
-    watching: '閲覧のみ', 'To drive, open the link that grctl serve printed.':
+    Yes: 'はい', No: 'いいえ', watching: '閲覧のみ', 'To drive, open the link that grctl serve printed.':
         '操作するには grctl serve が表示したリンクを開いてください。', 'Keep it': '続ける', free: '余裕あり',
     'less than 12° left': '残り 12° 未満', 'less than 3° left': '残り 3° 未満',
     'centre of mass': '重心', support: '支持多角形', target: '目標',
