@@ -65,8 +65,12 @@ end_group() {
     while kill -s 0 -- "-$1" 2>/dev/null; do
         tries=$((tries - 1))
         if [ $tries -eq 0 ]; then
-            left=1
-            ps -A -o pgid= -o args= | awk -v group="$1" '$1 == group' >>"$logs/$number.log"
+            # One that init has not buried yet has ended.
+            ps -A -o pgid= -o stat= -o args= | awk -v group="$1" '$1 == group && $2 !~ /^Z/' \
+                >"$logs/$number.left"
+            [ ! -s "$logs/$number.left" ] || left=1
+            cat "$logs/$number.left" >>"$logs/$number.log"
+            rm "$logs/$number.left"
             kill -s KILL -- "-$1"
             return
         fi

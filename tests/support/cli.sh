@@ -24,9 +24,15 @@ export XDG_CONFIG_HOME XDG_STATE_HOME
 # What a test begins besides, a process of its own each, is ended with it. A check is a shell of its
 # own, so a file knows them.
 : >"$work/pids"
+# group_of PID: one that has ended may be the number of another test's process by now.
+group_of() {
+    ps -o pgid= -p "$1" 2>/dev/null
+}
+own_group=$(group_of $$)
 end_cli_test() {
     stop_sim
     while read -r ended_pid; do
+        [ "$(group_of "$ended_pid")" = "$own_group" ] || continue
         kill "$ended_pid" 2>/dev/null
         kill -CONT "$ended_pid" 2>/dev/null
         wait "$ended_pid" 2>/dev/null
