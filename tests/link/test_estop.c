@@ -339,19 +339,25 @@ static void who_was_held_up_looks_before_it_sends(void **state)
     grobo_session_free(session);
 }
 
+/* An emergency stop that the session hears behind the loss of its line. */
+static void hear_without_a_line(grobo_estop *stop)
+{
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    loop_run_until(base, &at.losts, 1);
+    assert_int_equal(grobo_estop_set(device, stop, NULL), GROBO_OK);
+    for (int i = 0; i < 200 && ask(stop).answer == GROBO_ESTOP_SILENT; i++) {
+        loop_run_for(base, 10000);
+    }
+    assert_int_equal(ask(stop).answer, GROBO_ESTOP_HEARD);
+}
+
 static void without_a_line_it_is_carried_out_when_that_is_back(void **state)
 {
     grobo_session *session = open_session();
     grobo_estop stop;
 
     (void)state;
-    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
-    loop_run_until(base, &at.losts, 1);
-    assert_int_equal(grobo_estop_set(device, &stop, NULL), GROBO_OK);
-    for (int i = 0; i < 200 && ask(&stop).answer == GROBO_ESTOP_SILENT; i++) {
-        loop_run_for(base, 10000);
-    }
-    assert_int_equal(ask(&stop).answer, GROBO_ESTOP_HEARD);
+    hear_without_a_line(&stop);
     assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
     loop_run_until(base, &at.ups, 2);
     assert_int_equal(at.estops, 1);
@@ -367,13 +373,7 @@ static void the_next_session_carries_out_what_one_owed(void **state)
     grobo_estop stop;
 
     (void)state;
-    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
-    loop_run_until(base, &at.losts, 1);
-    assert_int_equal(grobo_estop_set(device, &stop, NULL), GROBO_OK);
-    for (int i = 0; i < 200 && ask(&stop).answer == GROBO_ESTOP_SILENT; i++) {
-        loop_run_for(base, 10000);
-    }
-    assert_int_equal(ask(&stop).answer, GROBO_ESTOP_HEARD);
+    hear_without_a_line(&stop);
     grobo_session_free(session);
     assert_int_equal(ask(&stop).answer, GROBO_ESTOP_NOBODY);
     assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
