@@ -124,14 +124,22 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
     return status;
 }
 
-int app_fail_error(app *a, int status, int error, const char *format, ...)
+/* With the reason behind a colon. */
+static int fail_because(app *a, int status, int error, const char *reason, const char *format,
+                        va_list list)
 {
     char text[APP_LINE_BYTES];
+    vsnprintf(text, sizeof text, lang_text(format), list);
+    return app_fail(a, status, grobo_error_name(error), "%s: %s", text, reason);
+}
+
+int app_fail_error(app *a, int status, int error, const char *format, ...)
+{
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, lang_text(format), list);
+    status = fail_because(a, status, error, app_error_text(error), format, list);
     va_end(list);
-    return app_fail(a, status, grobo_error_name(error), "%s: %s", text, app_error_text(error));
+    return status;
 }
 
 int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
@@ -193,13 +201,11 @@ const char *app_cause_text(int number)
 
 int app_fail_cause(app *a, int status, int number, const char *format, ...)
 {
-    char text[APP_LINE_BYTES];
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, lang_text(format), list);
+    status = fail_because(a, status, error_of_cause(number), app_cause_text(number), format, list);
     va_end(list);
-    return app_fail(a, status, grobo_error_name(error_of_cause(number)), "%s: %s", text,
-                    app_cause_text(number));
+    return status;
 }
 
 static void say(const app *a, int least, const char *format, va_list list)

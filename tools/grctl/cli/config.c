@@ -422,8 +422,7 @@ static int find(reader *r)
             errno = 0;
             FILE *file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
             if (!file && errno && errno != ENOENT && errno != ENOTDIR) {
-                return r->status = app_fail(r->a, EXIT_FILE, errno == EACCES ? "PERM" : "IO",
-                                            "%s: %s", r->path, app_cause_text(errno));
+                return r->status = app_fail_cause(r->a, EXIT_FILE, errno, "%s", r->path);
             }
             if (!file) {
                 break;
