@@ -124,13 +124,46 @@ class Plugin(unittest.TestCase):
         self.drive(robot, target, lambda s: abs(s["gripper.pos"] - 20) < 0.5)
 
     def test_what_is_returned_is_what_was_sent(self):
-        robot = self.make()
+        robot = self.make(max_relative_target=None)
         robot.connect()
         high = math.degrees(robot._description.limits["elbow_flex"][1])
         sent = robot.send_action({"elbow_flex.pos": 500.0, "wrist_flex.pos": 1.5})
         self.assertAlmostEqual(sent["elbow_flex.pos"], high)
         self.assertAlmostEqual(sent["wrist_flex.pos"], 1.5)
         self.drive(robot, {"elbow_flex.pos": 500.0}, lambda s: s["elbow_flex.pos"] > high - 0.5)
+
+    def test_a_jump_is_clipped_near_where_the_joint_is(self):
+        """A policy that jumps by 100 degrees does not throw the arm."""
+        robot = self.make()
+        robot.connect()
+        most = GroboConfig(port="sim").max_relative_target
+        self.assertTrue(0 < most <= 15)
+        was = robot.get_observation()["elbow_flex.pos"]
+        sent = robot.send_action({"elbow_flex.pos": was - 100, "gripper.pos": 1.0})
+        self.assertAlmostEqual(sent["elbow_flex.pos"], was - most, delta=1)
+        self.assertAlmostEqual(sent["gripper.pos"], 1.0)
+        until(lambda: not robot._robot.status().moving)
+        self.assertGreater(robot.get_observation()["elbow_flex.pos"], was - most - 1)
+
+    def test_how_far_an_action_may_go_is_set_for_all_or_each(self):
+        joints = grobo.Description("so101").joints
+        robot = self.make(max_relative_target={**dict.fromkeys(joints, 90.0), "gripper": 2.0})
+        robot.connect()
+        was = robot.get_observation()
+        sent = robot.send_action({"elbow_flex.pos": was["elbow_flex.pos"] - 50, "gripper.pos": 50.0})
+        self.assertAlmostEqual(sent["elbow_flex.pos"], was["elbow_flex.pos"] - 50, delta=1)
+        self.assertAlmostEqual(sent["gripper.pos"], was["gripper.pos"] + 2, delta=1)
+        for bad in (0, -5.0, math.nan, math.inf, True, "far", {"gripper": 2.0},
+                    {**dict.fromkeys(joints, 9.0), "elbow": 5.0},
+                    {**dict.fromkeys(joints, 9.0), "gripper": 0.0}):
+            with self.assertRaisesRegex(ValueError, "max_relative_target", msg=bad):
+                Grobo(self.config(max_relative_target=bad))
+
+    def test_no_action_is_clipped_at_an_old_reading(self):
+        robot = self.make(stale_s=0.0)
+        robot.connect()
+        with self.assertRaises(TimeoutError):
+            robot.send_action({"elbow_flex.pos": 1.0})
 
     def test_bad_actions_are_refused(self):
         robot = self.make()

@@ -35,6 +35,22 @@ class Motions(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, kind):
                 grobo.Motion.of([0.5, 1.25], rows, kind)
 
+    def test_rows_have_an_angle_for_each_joint(self):
+        with self.assertRaisesRegex(ValueError, "^1 angles for 2 joints"):
+            grobo.Motion.of([0.5, 1.0], [[0.0, 0.5], [0.1]])
+        motion = grobo.Motion()
+        for wrong in ([0.0, 0.0, 1.0], [0.0] * 21):
+            with self.assertRaisesRegex(ValueError, f"^{len(wrong)} angles for 20 joints"):
+                motion.append(wrong, 0.5)
+        self.assertEqual(len(motion), 0)
+        arm = grobo.Motion.of([0.5], [[0.0] * 6], robot=grobo.Description("so101"))
+        self.assertIn("gripper", arm[0])
+        arm.append({"gripper": 0.1}, 0.5)
+        with self.assertRaisesRegex(ValueError, "^20 angles for 6 joints"):
+            arm.append([0.0] * 20, 0.5)
+        with self.assertRaisesRegex(ValueError, "^5 angles for 6 joints"):
+            grobo.Motion.of([0.5], [[0.0] * 5], robot=grobo.Description("so101"))
+
     def test_a_file_is_read_and_written(self):
         motion = grobo.Motion.load(GREET)
         self.assertEqual(motion.kind, "keys")

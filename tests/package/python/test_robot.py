@@ -3,6 +3,7 @@
 
 import _thread
 import gc
+import math
 import os
 import signal
 import subprocess
@@ -53,8 +54,24 @@ class Moving(unittest.TestCase):
         angles[self.robot.joints.index("R_ELBOW_P")] = -0.5
         self.robot.move(angles, time=0.2)
         self.assertAlmostEqual(self.robot["R_ELBOW_P"].angle, -0.5, delta=0.01)
-        with self.assertRaises(ValueError):
-            self.robot.move([0.0] * 21)
+
+    def test_a_list_has_an_angle_for_each_joint(self):
+        """Three angles are not the first three of twenty joints."""
+        for wrong in ([0.0, 0.0, 1.0], [0.0] * 19, [0.0] * 21, []):
+            for verb in (lambda a: self.robot.move(a, time=0.2),
+                         lambda a: self.robot.send(a, time=0.2)):
+                with self.assertRaisesRegex(ValueError, f"^{len(wrong)} angles for 20 joints"):
+                    verb(wrong)
+        self.assertFalse(self.robot.status().moving)
+
+    def test_a_motion_for_another_number_of_joints_is_not_played(self):
+        motion = grobo.Motion.of([0.2], [[0.1, 0.2, 0.3]])
+        with self.assertRaisesRegex(ValueError, "3 joints.*20"):
+            self.robot.play(motion)
+        wave = grobo.Motion.load("motions/so101-wave.yaml", grobo.Description("so101"))
+        with self.assertRaisesRegex(ValueError, "6 joints.*20"):
+            self.robot.play(wave)
+        self.assertFalse(self.robot.status().playing)
 
     def test_status_says_what_was_read(self):
         self.robot.torque(True)
@@ -132,7 +149,8 @@ class Moving(unittest.TestCase):
         with self.assertRaises(errors.Limit) as caught:
             self.robot.move({"R_ELBOW_P": 3.0})
         self.assertEqual(caught.exception.joint, "R_ELBOW_P")
-        self.assertAlmostEqual(caught.exception.value, 171.887, places=2)
+        self.assertAlmostEqual(caught.exception.value, 3.0, places=6)
+        self.assertEqual(caught.exception.unit, "rad")
         self.assertIsInstance(caught.exception, ValueError)
         with self.assertRaises(errors.Nan):
             self.robot.move({"R_ELBOW_P": float("inf")})
@@ -144,6 +162,25 @@ class Moving(unittest.TestCase):
         with self.assertRaises(LookupError) as caught:
             self.robot.move({0: 0.0})  # a number is no name
         self.assertIn("(0)", str(caught.exception))
+
+    def test_a_limit_is_told_in_the_unit_of_the_caller(self):
+        low, high = self.robot.description.limits["R_ELBOW_P"]
+        with self.assertRaises(errors.Limit) as caught:
+            self.robot.move({"R_ELBOW_P": -45.0})  # degrees, where radians are asked for
+        self.assertEqual(caught.exception.limits, (low, high))
+        self.assertEqual(str(caught.exception),
+                         f"move: outside a joint's limits (R_ELBOW_P, -45 rad is not within {low:.4g} to "
+                         f"{high:.4g} rad)")
+        with self.assertRaises(errors.Limit) as caught:
+            self.robot["R_ELBOW_P"].move(deg=-160)
+        self.assertAlmostEqual(caught.exception.value, -160)
+        self.assertEqual(caught.exception.unit, "deg")
+        self.assertIn(f"R_ELBOW_P, -160 deg is not within {math.degrees(low):.4g} to "
+                      f"{math.degrees(high):.4g} deg", str(caught.exception))
+        with self.assertRaises(errors.Limit) as caught:
+            self.robot["R_ELBOW_P"].move(-45)
+        self.assertEqual(caught.exception.unit, "rad")
+        self.assertFalse(self.robot.status().moving)
 
     def test_no_number_means_a_default_that_was_not_asked_for(self):
         for options in ({"speed": 0}, {"speed": 0.004}, {"speed": -1.0}, {"speed": 700.0},

@@ -120,9 +120,10 @@ class Robot:
             what = _word("grobo_job_kind", u.job.kind, "GROBO_JOB_")
             joint = self._name(u.job.joint)
             value = u.job.value or None
-            failed = (
-                errors.error(u.job.result, what, joint, value) if u.job.result < 0 else None
-            )
+            failed = None
+            if u.job.result < 0:
+                failed = errors.error(u.job.result, what, joint, value)
+                self._robot._tell_angle(failed)
             return Event(kind, u.job.number, joint, value, what, error=failed, lost=lost)
         if kind == "joint":
             joint = self._name(u.joint.joint)

@@ -13,12 +13,15 @@ from grobo._lib import ffi, lib
 class Error(Exception):
     """What the library refused, or could not do.
 
-    `code` is the number of error.h, `joint` and `value` say what it is about where that is known:
-    for a limit the joint's name and the angle in degrees, for a safety stop the joint and the value
-    in the unit of the reason.
+    `code` is the number of error.h, `joint` and `value` say what it is about where that is known,
+    and `unit` is that of the value: for a limit the joint's name and the angle as the caller gave
+    it ("rad" or "deg"), for a safety stop the joint and the value in the unit of the reason.
+    `limits` are the two limits of an angle that is outside, in the same unit.
     """
 
     code = 0
+    unit: typing.Optional[str] = None
+    limits: typing.Optional[typing.Tuple[float, float]] = None
 
     def __init__(
         self,
@@ -37,7 +40,10 @@ class Error(Exception):
         text = ffi.string(lib.grobo_error_text(self.code)).decode()
         about = [str(part) for part in (self.reason, self.joint) if part is not None]
         if self.value is not None:
-            about.append(f"{self.value:g}")
+            value = f"{self.value:.6g}" + (f" {self.unit}" if self.unit else "")
+            if self.limits is not None:
+                value += " is not within {:.4g} to {:.4g} {}".format(*self.limits, self.unit)
+            about.append(value)
         return f"{self.what}: {text}" + (f" ({', '.join(about)})" if about else "")
 
 

@@ -73,17 +73,31 @@ class Posture(Mapping[str, float]):
 
 
 def posture(
-    angles: Union[Mapping[str, float], Sequence[float]], time: Optional[float], model: Any
+    angles: Union[Mapping[str, float], Sequence[float]], time: Optional[float], model: Any,
+    joints: Optional[int] = None,
 ) -> Any:
-    """A C posture of names and angles, or of angles in joint order (NaN: not set)."""
-    made = ffi.new("grobo_posture *")
-    check(lib.grobo_posture_init(made, model.n_joints), "posture")
-    made.time_us = _time_us(time)
+    """A C posture of names and angles, or of all angles in joint order (NaN: not set).
+
+    A list that is too short is refused: the angles are perhaps those of other joints. `joints`:
+    how many there are, without it those of the model.
+    """
     names = joint_names(model)
+    joints = len(names) if joints is None else joints
+    made = ffi.new("grobo_posture *")
+    check(lib.grobo_posture_init(made, joints), "posture")
+    made.time_us = _time_us(time)
     if not isinstance(angles, Mapping):
-        if len(angles) > len(names):
-            raise ValueError(f"{len(angles)} angles for {len(names)} joints")
-        angles = {n: a for n, a in zip(names, angles) if not math.isnan(a)}
+        if len(angles) != joints:
+            raise ValueError(
+                f"{len(angles)} angles for {joints} joints: a list has one for each joint (NaN: "
+                "not set); a dict names joints"
+            )
+        for joint, angle in enumerate(angles):
+            if not math.isnan(angle):
+                result = lib.grobo_posture_set_rad(made, joint, angle)
+                if result < 0:
+                    raise error(result, "posture", (names + [None] * joints)[joint])
+        return made
     for name, angle in angles.items():
         if name not in names:
             raise error(lib.GROBO_ERR_NOTFOUND, "joint", name)
@@ -112,13 +126,15 @@ class Motion:
     """A motion in memory: postures, each reached some time after the one before."""
 
     def __init__(
-        self, kind: str = "postures", joints: int = 20, _owned: Any = None, _model: Any = None
+        self, kind: str = "postures", joints: Optional[int] = None, _owned: Any = None,
+        _model: Any = None
     ) -> None:
         self._model = _model or ffi.addressof(GR001)
         if _owned is None:
             if kind not in KINDS[:-1]:
                 raise ValueError(f"kind {kind!r}: {', '.join(KINDS[:-1])}; frames are read of files")
             made = ffi.new("grobo_motion **")
+            joints = self._model.n_joints if joints is None else joints
             check(lib.grobo_motion_new(KINDS.index(kind), joints, ffi.NULL, made), "motion")
             _owned = made[0]
         self._c = ffi.gc(_owned, lib.grobo_motion_free)
@@ -148,13 +164,21 @@ class Motion:
 
     @classmethod
     def of(
-        cls, times: Sequence[float], angles: Sequence[Sequence[float]], kind: str = "postures"
+        cls, times: Sequence[float], angles: Sequence[Sequence[float]], kind: str = "postures",
+        robot: Optional[Description] = None,
     ) -> "Motion":
         """A motion of arrays: `times` in seconds from the beginning, not falling, and for each a
-        row of angles in radians by joint order (NaN: this posture does not set the joint)."""
+        row of angles in radians by joint order (NaN: this posture does not set the joint).
+
+        All rows have as many angles as `robot` has joints, or without one as each other.
+        """
         if len(times) != len(angles):
             raise ValueError(f"{len(times)} times for {len(angles)} postures")
-        motion = cls(kind, max((len(row) for row in angles), default=0))
+        if robot:
+            motion = cls(kind, _model=robot.model)
+            motion._robot = robot
+        else:
+            motion = cls(kind, max((len(row) for row in angles), default=0))
         before = 0.0
         for time, row in zip(times, angles):
             motion.append(row, float(time) - before)
@@ -163,7 +187,8 @@ class Motion:
 
     def append(self, angles: Union[Mapping[str, float], Sequence[float]], time: float) -> None:
         """Appends a posture that is reached `time` seconds after the last one."""
-        check(lib.grobo_motion_append(self._c, posture(angles, time, self._model)), "append")
+        made = posture(angles, time, self._model, self.joints)
+        check(lib.grobo_motion_append(self._c, made), "append")
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes the file whose format its extension names."""
@@ -178,6 +203,11 @@ class Motion:
     @property
     def kind(self) -> str:
         return KINDS[lib.grobo_motion_get_kind(self._c)]
+
+    @property
+    def joints(self) -> int:
+        """How many joints its postures have."""
+        return int(lib.grobo_motion_joints(self._c))
 
     @property
     def length(self) -> float:

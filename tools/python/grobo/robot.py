@@ -136,6 +136,20 @@ def _close_all(dropped: bool = False) -> None:
             control.close()
 
 
+@contextmanager
+def _told_in_degrees(spoken: bool) -> Iterator[None]:
+    """An angle that is refused is told in degrees where the caller spoke in degrees."""
+    try:
+        yield
+    except errors.Error as error:
+        if spoken and error.unit == "rad" and error.value is not None:
+            error.value, error.unit = math.degrees(error.value), "deg"
+            if error.limits is not None:
+                low, high = error.limits
+                error.limits = math.degrees(low), math.degrees(high)
+        raise
+
+
 class Joint:
     """One joint of a robot: robot["R_ELBOW_P"]."""
 
@@ -162,9 +176,9 @@ class Joint:
     ) -> None:
         if (angle is None) == (deg is None):
             raise TypeError("move() takes an angle, or deg=")
-        self._robot.move(
-            {self.name: angle if angle is not None else math.radians(deg or 0.0)}, time=time
-        )
+        target = {self.name: angle if angle is not None else math.radians(deg or 0.0)}
+        with _told_in_degrees(deg is not None):
+            self._robot.move(target, time=time)
 
     def torque(self, state: Union[bool, Torque]) -> None:
         self._robot.torque(state, [self.name])
@@ -315,7 +329,8 @@ class Robot:
         self._interruptible(lambda: self._wait_job(self._move(target), "init"))
 
     def move(self, angles: Angles, *, time: Optional[float] = None) -> None:
-        """Moves joints: angles in radians by name, or in joint order; returns when they are there.
+        """Moves joints: angles in radians by name, or of all joints in joint order (NaN: not this
+        one); returns when they are there.
 
         `time`: seconds; without one as fast as the robot's default allows.
         """
@@ -370,6 +385,7 @@ class Robot:
     ) -> None:
         if not isinstance(motion, Motion):
             motion = Motion.load(Path(motion), self.description)
+        self._check_joints(motion)
         options = new("grobo_play_options")
         options.speed_pct = _within(round(speed * 100), lib.GROBO_PLAY_SPEED_MAX_PCT, "speed")
         options.mirror = mirror
@@ -381,6 +397,18 @@ class Robot:
             lib.grobo_control_set_motion_count(control, repeat)
             lib.grobo_control_set_reverse(control, reverse)
             self._check(lib.grobo_control_play_motion(control, options), "play")
+
+    def _check_joints(self, motion: Motion) -> None:
+        """The joints of a motion are those of the robot, and not the first of them by chance."""
+        joints = self.joints
+        if motion.joints != len(joints):
+            raise ValueError(f"play: the motion has {motion.joints} joints, the robot {len(joints)}")
+        if motion._robot and motion._robot.joints != joints:
+            other = next(n for n in motion._robot.joints if n not in joints)
+            raise ValueError(
+                f"play: the motion is for {motion._robot.name}: the robot "
+                f"({self.description.name}) has no joint {other}"
+            )
 
     def _await_play(self) -> None:
         while True:
@@ -453,7 +481,7 @@ class Robot:
         """The result, or its exception with joint and value where the library names them."""
         if result >= 0:
             return result
-        value, reason = None, None
+        value, reason, unit = None, None, None
         if result in (lib.GROBO_ERR_LIMIT, lib.GROBO_ERR_NAN):
             at = ffi.new("double *")
             number = lib.grobo_robot_fault(self._control.robot, at)
@@ -467,9 +495,31 @@ class Robot:
                 result = lib.GROBO_ERR_LATCHED  # what it has canceled is stopped as well
             if trip.joint >= 0 and reason:
                 joint, value = self.joints[trip.joint], float(trip.value)
+                unit = _TRIP_UNITS.get(trip.trip)
             if result == lib.GROBO_ERR_LATCHED and not reason:
                 reason = "emergency stop"  # asked for, and not yet taken up by the control thread
-        raise errors.error(result, what, joint, value, reason)
+        raised = errors.error(result, what, joint, value, reason)
+        raised.unit = unit
+        self._tell_angle(raised)
+        raise raised
+
+    def _tell_angle(self, error: errors.Error) -> None:
+        """The library tells an angle that it refuses in degrees: here it is in radians, as angles
+        are given, with its limits."""
+        if error.code in (lib.GROBO_ERR_LIMIT, lib.GROBO_ERR_NAN) and error.value is not None:
+            error.value, error.unit = math.radians(error.value), "rad"
+            if error.code == lib.GROBO_ERR_LIMIT and error.joint in self.joints:
+                error.limits = self.description.limits[error.joint]
+
+
+_TRIP_UNITS = {
+    lib.GROBO_TRIP_TEMPERATURE: "°C",
+    lib.GROBO_TRIP_OVERHEATED: "°C",
+    lib.GROBO_TRIP_CURRENT: "mA",
+    lib.GROBO_TRIP_VOLTAGE: "mV",
+    lib.GROBO_TRIP_LIMIT: "deg",
+    lib.GROBO_TRIP_HOST_STALL: "ms",
+}
 
 
 def _within(number: int, most: int, what: str) -> int:

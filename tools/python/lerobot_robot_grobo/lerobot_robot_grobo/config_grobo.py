@@ -16,6 +16,9 @@ class GroboConfig(RobotConfig):
     robot: str = "so101"
     # What the servos do at the end: "hold", "sit", "off", or "default", the robot's own.
     on_exit: str = "default"
+    # How far an action may take a joint from where it was read, in degrees: for all joints, or for
+    # each by its name. None: as far as its limits.
+    max_relative_target: float | dict[str, float] | None = 10.0
     # Seconds in which an action is reached: a little more than a period of LeRobot's loop.
     action_s: float = 0.05
     # Seconds between two readings of all joints, as far as the line allows.

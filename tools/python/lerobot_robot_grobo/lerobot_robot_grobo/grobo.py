@@ -2,9 +2,10 @@
 """A robot of libgrobo with the interface of LeRobot's robots.
 
 Observations and actions are degrees by "JOINT.pos". The thread of the library reads the joints;
-get_observation() takes what was read last and never waits for the line. An action is clipped to
-the limits of its joints here, and checked and timed by the library as any target; what is returned
-is what was sent. Between two actions nothing moves on: each ends at its own target.
+get_observation() takes what was read last and never waits for the line. An action is clipped here:
+near where each joint was read (max_relative_target), so that a policy that jumps does not throw the
+arm, and to the limits. The library checks and times it as any target; what is returned is what was
+sent. Between two actions nothing moves on: each ends at its own target.
 """
 
 import math
@@ -17,6 +18,23 @@ from lerobot.robots import Robot
 from lerobot.utils.errors import DeviceAlreadyConnectedError, DeviceNotConnectedError
 
 from lerobot_robot_grobo.config_grobo import GroboConfig
+
+
+def most_relative(option: Any, joints: list[str]) -> dict[str, float]:
+    """max_relative_target for each joint, in radians; inf: as far as its limits."""
+    if option is None:
+        return dict.fromkeys(joints, math.inf)
+    each = option if isinstance(option, dict) else dict.fromkeys(joints, option)
+    if set(each) != set(joints):
+        odd = sorted(set(each) ^ set(joints))
+        raise ValueError(f"max_relative_target has each joint or is one number: see {odd[0]!r}")
+    for joint, degrees in each.items():
+        number = isinstance(degrees, (int, float)) and not isinstance(degrees, bool)
+        if not number or not 0 < degrees < math.inf:
+            raise ValueError(
+                f"max_relative_target of {joint} is {degrees!r}: degrees above 0, or None for all"
+            )
+    return {joint: math.radians(degrees) for joint, degrees in each.items()}
 
 
 class Grobo(Robot):
@@ -32,6 +50,7 @@ class Grobo(Robot):
         if config.on_exit.upper() not in grobo.Exit.__members__:
             raise ValueError(f"on_exit {config.on_exit!r}: default, hold, sit or off")
         self._exit = grobo.Exit[config.on_exit.upper()]
+        self._most = most_relative(config.max_relative_target, self._description.joints)
         self.cameras = make_cameras_from_configs(config.cameras) if config.cameras else {}
 
     # ---- what it has; also before it is connected --------------------------------------------
@@ -104,9 +123,7 @@ class Grobo(Robot):
     def get_observation(self) -> dict[str, Any]:
         seen: dict[str, Any] = {}
         for name, joint in self._connected().status().joints.items():
-            if joint.degrees is None or joint.age is None or joint.age > self.config.stale_s:
-                raise TimeoutError(f"{self}: {name} was not read for {self.config.stale_s:g} s")
-            seen[f"{name}.pos"] = joint.degrees
+            seen[f"{name}.pos"] = math.degrees(self._present(joint))
         for name, camera in self.cameras.items():
             if getattr(camera, "use_rgb", True):
                 seen[name] = camera.read_latest()
@@ -117,6 +134,7 @@ class Grobo(Robot):
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
         robot = self._connected()
         limits = self._description.limits
+        read = robot.status().joints
         target = {}
         for key, degrees in action.items():
             joint = key.removesuffix(".pos")
@@ -125,10 +143,20 @@ class Grobo(Robot):
             angle = math.radians(float(degrees))
             if not math.isfinite(angle):
                 raise ValueError(f"{self}: {key} is {degrees}")
+            most = self._most[joint]
+            if most < math.inf:
+                present = self._present(read[joint])
+                angle = min(max(angle, present - most), present + most)
             low, high = limits[joint]
             target[joint] = min(max(angle, low), high)
         robot.send(target, time=self.config.action_s)
         return {f"{joint}.pos": math.degrees(angle) for joint, angle in target.items()}
+
+    def _present(self, joint: grobo.JointStatus) -> float:
+        """Where a joint was read, in radians."""
+        if joint.angle is None or joint.age is None or joint.age > self.config.stale_s:
+            raise TimeoutError(f"{self}: {joint.name} was not read for {self.config.stale_s:g} s")
+        return joint.angle
 
     def _connected(self) -> grobo.Robot:
         if self._robot is None:
