@@ -26,7 +26,7 @@ flags() {
 builds() {
     # Flags and compiler are lists of words.
     # shellcheck disable=SC2046
-    ${CC:-cc} -std=c11 -Wall -Wextra -Werror -o "$work/${1:-example}" "$work/${1:-example}.c" \
+    ${CC:-cc} -std=c11 -Wall -Wextra ${WERROR:-} -o "$work/${1:-example}" "$work/${1:-example}.c" \
         $(flags)
 }
 plays() {

@@ -12,8 +12,8 @@ trap 'rm -rf "$work"' EXIT
 tree=$work/tree
 library=$tree/opt/grobo/lib
 emulator=${EMULATOR:-} # for another machine: a command with its options
-c11='-std=c11 -Wall -Wextra -Wpedantic -Werror -x c'
-cxx11='-std=c++11 -Wall -Wextra -Wpedantic -Werror -x c++'
+c11="-std=c11 -Wall -Wextra -Wpedantic ${WERROR:-} -x c"
+cxx11="-std=c++11 -Wall -Wextra -Wpedantic ${WERROR:-} -x c++"
 PKG_CONFIG_SYSROOT_DIR=$tree
 PKG_CONFIG_PATH=$library/pkgconfig
 export PKG_CONFIG_SYSROOT_DIR PKG_CONFIG_PATH

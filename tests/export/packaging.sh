@@ -61,9 +61,39 @@ dist_needs_git() {
         [ -z "$(find "$work/again" -name '*.tar*' 2>/dev/null)" ]
 }
 
-no_werror_in_a_tarball() {
-    make_in "$source" -n lib BUILD="$work/n" >"$work/out" && ! grep -q -e -Werror "$work/out" &&
-        { [ ! -e .git ] || make_in "$here" -n lib BUILD="$work/n" | grep -q -e -Werror; }
+# A user's compiler may be younger than this tree: it warns of what was right when that was written.
+no_warning_ends_a_build() {
+    for tree in "$here" "$source"; do
+        # shellcheck disable=SC2086
+        for target in all lib install "demo MOTION=none" "test RING=unit"; do
+            (unset WERROR; make_in "$tree" -n $target BUILD="$work/n") >"$work/out" 2>&1
+            grep -q -e '-Wall' "$work/out" || { echo "$tree, $target: compiles nothing"; return 1; }
+            ! grep -m 2 -e -Werror "$work/out" || { echo "$tree: make $target"; return 1; }
+        done
+    done
+}
+
+# What .ci/run runs, with a make that only tells: each stage is given it.
+ci_is_strict() {
+    mkdir -p "$work/ci/.ci" "$work/ci/tools" "$work/ci/bin" && cp .ci/run "$work/ci/.ci" || return 1
+    printf '%s\n' '#!/bin/sh' 'exit 0' >"$work/ci/tools/setup.sh"
+    # shellcheck disable=SC2016
+    printf '%s\n' '#!/bin/sh' 'echo "stage ${WERROR:-lax} $*" >&3' >"$work/ci/bin/make"
+    chmod +x "$work/ci/tools/setup.sh" "$work/ci/bin/make"
+    (unset WERROR; PATH=$work/ci/bin:$PATH "$work/ci/.ci/run" 3>"$work/out" >/dev/null 2>&1)
+    cat "$work/out"
+    [ "$(wc -l <"$work/out")" -ge 5 ] && ! grep -v '^stage -Werror ' "$work/out"
+}
+# Each build of such a stage takes it along, below other makes too.
+strict_is_strict() {
+    for target in all check-san check-tsan check-memcheck "fuzz FUZZ_CC=gcc"; do
+        # shellcheck disable=SC2086
+        (export WERROR=-Werror; make_in "$here" -n $target RING=unit BUILD="$work/n") \
+            >"$work/out" 2>&1
+        grep -e '-Wall' "$work/out" >"$work/calls" ||
+            { echo "$target: compiles nothing"; return 1; }
+        ! grep -m 2 -v -e -Werror "$work/calls" || { echo "make $target"; return 1; }
+    done
 }
 
 # What pkg-config is asked when each recipe is expanded; libyaml is needed.
@@ -134,7 +164,11 @@ check 'a tarball, unpacked' tarball
 source=$(echo "$work"/libgrobo-*)
 check 'the same commit, the same tarball' same_tarball
 check 'a tarball of a tarball: one line, and no file' dist_needs_git
-check 'a warning is an error in a checkout only' no_werror_in_a_tarball
+check 'no command of a user makes a warning an error' no_warning_ends_a_build
+if [ -e .ci/run ]; then
+    check '.ci/run gives -Werror to each stage' ci_is_strict
+    check 'and each build of them takes it along' strict_is_strict
+fi
 check 'the libraries alone need libevent and libyaml' needs_no_more
 check 'blanks in BUILD and DESTDIR; nothing is compiled again' installs_what_was_built
 check 'grobo.pc: the tree may be moved' moved

@@ -12,7 +12,7 @@ place=$work/opt/grobo
 # What the library itself is built on stands in the same tree.
 mkdir -p "$work/$(dirname "$GROBO_WINE")"
 ln -s "$GROBO_WINE" "$work/$GROBO_WINE"
-warnings='-Wall -Wextra -Wpedantic -Werror'
+warnings="-Wall -Wextra -Wpedantic ${WERROR:-}"
 
 make_target() {
     env -u MAKEFLAGS -u MAKELEVEL make --no-print-directory -C "$here" "$1" \

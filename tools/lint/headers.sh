@@ -8,7 +8,7 @@ set -u
 cc=${CC:-gcc}
 cxx=${CXX:-g++}
 flags="-Iinclude -Iports/posix/include ${CPPFLAGS:-}"
-warnings='-Wall -Wextra -Wpedantic -Werror'
+warnings="-Wall -Wextra -Wpedantic ${WERROR:-}"
 bad=0
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT

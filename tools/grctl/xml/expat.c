@@ -15,6 +15,18 @@ typedef struct reader {
 
 static XML_Parser now; /* that an ear is called for */
 
+/* Since 2.9.0 places are of 64 bits; the functions before them are deprecated. */
+static xml_trouble place(XML_Parser parser)
+{
+#if XML_MAJOR_VERSION > 2 || (XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION >= 9)
+    return (xml_trouble){.line = (unsigned)XML_GetCurrentLineNumber64(parser),
+                         .column = (unsigned)XML_GetCurrentColumnNumber64(parser) + 1};
+#else
+    return (xml_trouble){.line = (unsigned)XML_GetCurrentLineNumber(parser),
+                         .column = (unsigned)XML_GetCurrentColumnNumber(parser) + 1};
+#endif
+}
+
 const char *xml_missing(void)
 {
     return NULL;
@@ -22,7 +34,7 @@ const char *xml_missing(void)
 
 unsigned xml_line(void)
 {
-    return now ? (unsigned)XML_GetCurrentLineNumber(now) : 0;
+    return now ? place(now).line : 0;
 }
 
 static void refuse(reader *r, const char *why)
@@ -88,8 +100,7 @@ int xml_read(const char *bytes, size_t size, const xml_ear *ear, xml_trouble *tr
     bool whole = XML_Parse(r.parser, bytes, (int)size, XML_TRUE) == XML_STATUS_OK;
     now = NULL;
     if (!whole) {
-        *trouble = (xml_trouble){.line = (unsigned)XML_GetCurrentLineNumber(r.parser),
-                                 .column = (unsigned)XML_GetCurrentColumnNumber(r.parser) + 1};
+        *trouble = place(r.parser);
         snprintf(trouble->text, sizeof trouble->text, "%s",
                  r.refused ? r.refused : XML_ErrorString(XML_GetErrorCode(r.parser)));
     }
