@@ -74,17 +74,18 @@ static double seconds(int64_t from_us, int64_t to_us)
     return to_us > from_us ? (double)(to_us - from_us) / 1e6 : 0;
 }
 
-/* True while it is on a way that is known, be it the one it was sent on or that its servo told. */
+/* True of one whose goal is known, be it the one it was sent to, where it may stand by now, or that
+ * its servo told of. */
 static bool is_guided(const grobo_robot_axis *axis)
 {
-    return axis->off_way
-               ? axis->own_until_us > axis->angle_us
-               : axis->way.to_us > axis->way.from_us && axis->way.to_rad != axis->way.from_rad;
+    return axis->off_way ? axis->own_until_us > axis->angle_us : axis->has_target;
 }
 
+/* 0 of a way that leads nowhere, whatever its time. */
 static double way_speed(const grobo_robot_way *way)
 {
-    return fabs(way->to_rad - way->from_rad) / seconds(way->from_us, way->to_us);
+    double way_rad = fabs(way->to_rad - way->from_rad);
+    return way_rad > 0 ? way_rad / seconds(way->from_us, way->to_us) : 0;
 }
 
 static bool tells_speed(const grobo_robot_axis *axis)
@@ -128,13 +129,24 @@ bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint)
     return !GROBO_DRIVERS_PLAIN && tells_speed(axis) && (axis->state.valid & GROBO_FIELD_TIME) == 0;
 }
 
+/* The speed that the frame of its way asked for. Where that way leads nowhere, drivers have a joint
+ * go the rest of the way before at the approach speed. */
+static double told_speed(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_way *way = &robot->axes[joint].way;
+    return fabs(way->to_rad - way->from_rad) < robot->driver->angle_step_rad
+               ? robot->driver->limits.approach_rad_s
+               : way_speed(way);
+}
+
 /* Of a servo with ramps that tells its speed: from there and then to the speed of its way, and to
  * rest at its end. */
 static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_robot_way *way = &axis->way;
-    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2), wanted_rad_s = way_speed(way);
+    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
+    double wanted_rad_s = told_speed(robot, joint);
     course c = seen(robot, joint);
     int64_t seen_us = axis->seen_us;
     double end_rad = axis->in_segments ? grobo_i_way_at(way, axis->told_to_us) : way->to_rad;
@@ -219,25 +231,51 @@ static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
     return behind ? axis->seen_rad + copysign(most_rad, left_rad) : way_rad;
 }
 
+/* Of servos that do not tell how they turn, or that have no ramps: on a way that is known. */
+static double on_way_at(const grobo_robot *robot, int joint, int64_t at_us)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    if ((axis->state.valid & GROBO_FIELD_TIME) != 0) {
+        return by_time(robot, joint, at_us);
+    }
+    return is_guided(axis) && !axis->off_way ? along(robot, joint, at_us)
+                                             : grobo_i_axis_commanded(axis, at_us);
+}
+
+double grobo_i_axis_place(const grobo_robot *robot, int joint)
+{
+    return has_course(robot, joint) ? turning(robot, joint, robot->now_us).at_rad
+                                    : on_way_at(robot, joint, robot->now_us);
+}
+
+double grobo_i_axis_speed(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    if (has_course(robot, joint)) {
+        return fabs(turning(robot, joint, robot->now_us).rad_s);
+    }
+    const grobo_robot_way way = axis->off_way
+                                    ? (grobo_robot_way){axis->state.angle_rad, axis->state.goal_rad,
+                                                        axis->angle_us, axis->own_until_us}
+                                    : axis->way;
+    return way.to_us > robot->now_us ? way_speed(&way) : 0;
+}
+
 double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
-    bool on_way = is_guided(axis) && !axis->off_way;
-    if ((axis->state.valid & GROBO_FIELD_TIME) != 0) {
-        return by_time(robot, joint, rest_us);
-    }
     if (!has_course(robot, joint)) {
-        return on_way ? along(robot, joint, rest_us) : grobo_i_axis_commanded(axis, rest_us);
+        return on_way_at(robot, joint, rest_us);
     }
-    int64_t now_us = grobo_i_sooner(robot->now_us, rest_us);
-    const course c = turning(robot, joint, now_us);
-    double on_rad = fabs(c.rad_s) * seconds(now_us, rest_us);
-    if (accel_rad_s2 > 0 && rest_us > now_us) {
+    const course c = turning(robot, joint, robot->now_us);
+    double on_rad = fabs(c.rad_s) * seconds(robot->now_us, rest_us);
+    if (accel_rad_s2 > 0) {
         on_rad = fmax(on_rad, c.rad_s * c.rad_s / (2 * accel_rad_s2));
     }
     double left_rad = axis->way.to_rad - c.at_rad;
-    bool beyond = on_way && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
+    bool beyond =
+        is_guided(axis) && !axis->off_way && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
     return beyond ? axis->way.to_rad : c.at_rad + copysign(on_rad, c.rad_s);
 }
 
@@ -338,7 +376,7 @@ bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
                robot->now_us - axis->seen_us <= GROBO_WATCH_US;
     }
     return grobo_i_axis_tells_turn(robot, joint) && is_guided(axis) &&
-           fabs(grobo_i_axis_reached(robot, joint, robot->now_us) - axis->way.to_rad) > LAGS_RAD;
+           fabs(grobo_i_axis_place(robot, joint) - axis->way.to_rad) > LAGS_RAD;
 }
 
 bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)

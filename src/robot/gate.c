@@ -122,7 +122,7 @@ static double speed_limit(const grobo_robot *robot, int joint, bool soft)
 static double begin_of(const grobo_robot *robot, const grobo_robot_order *order, int joint)
 {
     return order->deed == GROBO_I_DEED_HALT || order->rests
-               ? grobo_i_axis_reached(robot, joint, robot->now_us)
+               ? grobo_i_axis_place(robot, joint)
                : grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
 }
 
@@ -225,17 +225,19 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
     return others || !all_limited(robot, joints) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
-/* Where the end of a motion brings a joint to rest: at most half of what it could do in that time
- * from where it is. A joint that is behind, or that a raw frame moves, is not where the clip is. */
+/* Where the end of a motion brings a joint to rest: between where it is and where it comes to rest
+ * that slows down evenly in that time. A joint that is behind, or that a raw frame moves, is not
+ * where the clip is. */
 static double rest_of(const grobo_robot *robot, int joint, bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool halted = axis->last == 0; /* by what has no number: a raw frame, or a halt behind it */
-    int64_t rest_us = robot->now_us + (halted ? HALT_AHEAD_US : 0);
-    double here_rad = grobo_i_axis_reached(robot, joint, rest_us);
-    double time_s = halted ? 0 : (double)axis->next_time_us / 1e6;
-    double most_rad = speed_limit(robot, joint, soft) * time_s / 2;
-    return fmin(fmax(axis->next_rad, here_rad - most_rad), here_rad + most_rad);
+    double rest_rad =
+        grobo_i_axis_reached(robot, joint, robot->now_us + (halted ? HALT_AHEAD_US : 0));
+    double here_rad = grobo_i_axis_place(robot, joint);
+    double rad_s = fmin(grobo_i_axis_speed(robot, joint), speed_limit(robot, joint, soft));
+    double most_rad = fmax(rad_s * (double)axis->next_time_us / 1e6 / 2, fabs(rest_rad - here_rad));
+    return halted ? rest_rad : fmin(fmax(axis->next_rad, here_rad - most_rad), here_rad + most_rad);
 }
 
 /* Where the joints of an order are to go by now, but for those that it would wake. @return whether

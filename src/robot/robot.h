@@ -78,9 +78,13 @@ double grobo_i_axis_target(const grobo_robot_axis *axis);
 /* True of servos that tell how fast they turn and which way, and not how long: what was read last
  * is all that is known of their turning. */
 bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint);
-/* Where a joint comes to rest that is told so now, and no sooner than by then; where it is, of now.
- * What counts is where it was read and how it can have gone on from there: it may be behind its
- * way by far, too weak for it or still turning the other way. */
+/* Where a joint is now. What counts is where it was read and how it can have gone on from there: it
+ * may be behind its way by far, too weak for it or still turning the other way. A reading from
+ * before the last frame that left to it says where it was then, and nothing of how it turns now. */
+double grobo_i_axis_place(const grobo_robot *robot, int joint);
+/* How fast it turns by that, in radians a second. */
+double grobo_i_axis_speed(const grobo_robot *robot, int joint);
+/* Where it comes to rest that is told so now, and no sooner than by then. */
 double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us);
 /* What was read of where a joint is; and that it is told to go elsewhere from now on. */
 void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got);

@@ -672,7 +672,7 @@ static bool is_astray(grobo_robot *robot, int joint)
     grobo_i_axis_here(axis, robot->now_us);
     /* To where nobody knows: it stops where it was. */
     axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ASTRAY_US);
-    axis->has_target = true;
+    axis->has_target = axis->off_way = true;
     return true;
 }
 

@@ -706,7 +706,8 @@ static void a_target_of_no_joint_takes_no_time(void **state)
     assert_int_equal(robot.counters.stretched, 0);
 }
 
-/* The end of a motion: at most half of what the joint could do in its time, from where it is. */
+/* The end of a motion: at most half of the way that the joint would go in its time, from where it
+ * is, and no faster than it may. */
 static void a_motion_rests_near_where_joints_are(void **state)
 {
     (void)state;
@@ -715,11 +716,12 @@ static void a_motion_rests_near_where_joints_are(void **state)
             for (int how = 0; how < 8; how++) {
                 bool far = how % 2 != 0;
                 bool soft = how / 2 == 1 || how / 2 == 2; /* the robot, or the order */
-                double most_deg = (soft ? 60 : speed_dps(j)) * 0.04 / 2;
+                double most_deg = (soft ? 60 : 80) * 0.04 / 2;
                 double way_deg = side * (most_deg + (far ? 1 : -0.5));
                 start();
                 robot.soft = how / 2 == 1;
-                set_going(j); /* is 10 degrees from where it was */
+                robot.axes[j].way = (grobo_robot_way){here_rad(j), here_rad(j) + RAD(20),
+                                                      NOW - S / 8, NOW + S / 8}; /* 80 deg/s */
                 await(j, 10 + way_deg, 40 * MS);
                 assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
                                                            .number = NUMBER,

@@ -123,7 +123,7 @@ static void who_leaves_stops_what_others_set_going(void **state)
                 before[j].way =
                     (grobo_robot_way){at->angle_rad, tells ? at->goal_rad : at->angle_rad,
                                       tells ? NOW - 5 : NOW, NOW + row->way_us};
-                before[j].has_target = true;
+                before[j].has_target = before[j].off_way = true;
             }
             expect_axes();
             assert_true(halting() == (row->astray ? GROBO_JOINT_BIT(j) : 0));

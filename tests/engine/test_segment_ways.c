@@ -107,8 +107,8 @@ static void a_servo_with_ramps_is_where_these_bring_it(void **state)
         int16_t dps;
         double deg;
     } rows[] = {
-        {150000, 400000, 5, 50, 28.75},   /* the same, and 100 ms more */
-        {250000, 400000, 10, 50, 17.5},   /* too weak to be faster */
+        {150000, 400000, 5, 50, 33.75},   /* at 28.75, and 5 degrees to brake */
+        {250000, 400000, 10, 50, 18.75},  /* too weak to be faster: at 17.5, and 1.25 degrees */
         {1000000, 1000001, 99, 100, 100}, /* too fast to end there, and it ends there */
         {1000000, 1000001, 90, 100, 95},  /* it would need 5 degrees */
     };
