@@ -195,6 +195,37 @@ check "and leaves nothing of that behind" cleared
 on_screen pipe-pane
 type_line "'$GRCTL' -d '$work/none' monitor"
 check "no such device" until_screen 'none: no such file'
+
+# Robots of other shapes: one list, more joints than rows, names longer than their column.
+on_screen resize-window -x 80 -y 24
+robot_file() {
+    printf 'name: %s\nfamily: feetech\nline: {baud: 1000000}\njoints:\n' "$1"
+    for k in $(seq "$2"); do
+        echo "  - {name: part_with_a_long_name_$k, id: $((k + 100)), servo: STS3215,"
+        echo "     limits_deg: [-50, 50]}"
+    done
+}
+type_line "'$GRCTL' -d sim --robot so101 monitor"
+check "an arm is one list, longer bars" until_screen '^ 1>shoulder_pan  *[-0-9.]* .\{38,\} off '
+check "its last joint" until_screen '^ 6 gripper  *[-0-9.]* .* off '
+keys Up
+check "up from the first is the last" until_screen '^ 6>gripper'
+keys Right
+check "beside a list is nothing else" until_screen '^ 6>gripper'
+check "the keys of its groups" until_screen '^arrows 0-1 choose'
+keys q
+until_screen '^>'
+robot_file many 64 >"$work/many.yaml"
+type_line "'$GRCTL' -d sim --robot '$work/many.yaml' monitor"
+check "more joints than places" until_screen '^0 more joints above, 40 below'
+check "a long name keeps its end" until_screen '^101>part_.*~.*_1  .* off .* 133 part_.*~.*_33 '
+keys Up
+check "the arrows turn the page" until_screen '^40 more joints above, 0 below'
+check "to the joint that is chosen" until_screen ' 164>part_.*_64 '
+on_screen resize-window -x 120 -y 40
+check "a large screen has them all" until_screen '^101 part_.* 145 part_.*_45 '
+keys q
+until_screen '^>'
 on_screen kill-server
 stop_sim
 done_testing

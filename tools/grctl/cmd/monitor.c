@@ -17,7 +17,8 @@ enum {
     SENSE_US = 300000,
     NUDGE_MS = 300,
     INIT_MS = 3000,
-    GROUP_KEYS = 8,
+    GROUP_KEYS = MONITOR_GROUP_KEYS,
+    FIRST_ROWS = 12,
     GROUP_US = 500000
 };
 
@@ -64,10 +65,10 @@ static bool may_move(monitor *m)
 
 /* ---- what keys do ---------------------------------------------------------------------------- */
 
-static void choose_place(monitor *m, int place)
+static void choose_joint(monitor *m, int joint)
 {
-    m->cursor = (place + MONITOR_PLACES) % MONITOR_PLACES;
-    m->chosen = GROBO_JOINT_BIT(monitor_joint(m, m->cursor));
+    m->cursor = joint;
+    m->chosen = GROBO_JOINT_BIT(joint);
 }
 
 static void choose_group(monitor *m, int group)
@@ -207,9 +208,9 @@ static bool take_choice(monitor *m, int key)
     if (key >= '0' && key < '0' + GROUP_KEYS) {
         choose_group(m, key - '0');
     } else if (key == SCREEN_KEY_UP || key == SCREEN_KEY_DOWN) {
-        choose_place(m, m->cursor + (key == SCREEN_KEY_DOWN ? 1 : -1));
+        choose_joint(m, monitor_below(&m->layout, m->cursor, key == SCREEN_KEY_DOWN ? 1 : -1));
     } else if (key == SCREEN_KEY_LEFT || key == SCREEN_KEY_RIGHT) {
-        choose_place(m, m->cursor + MONITOR_PLACES / 2);
+        choose_joint(m, monitor_beside(&m->layout, m->cursor, key == SCREEN_KEY_RIGHT ? 1 : -1));
     } else {
         return false;
     }
@@ -407,7 +408,8 @@ static int run_screen(monitor *m)
     m->model = conn_model(c);
     m->keys = (play_keys){.c = c, .speed_pct = 100};
     m->blocks = os_shows_utf8();
-    choose_place(m, 0);
+    monitor_lay_out(&m->layout, m->model, FIRST_ROWS, 1);
+    choose_joint(m, m->layout.cell[0].joint);
     int error = sense_often(c);
     if (error) {
         return conn_fail(c, error, "monitor");
