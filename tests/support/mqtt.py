@@ -16,6 +16,7 @@ usage: mqtt.py PORT floor N         round trips of N messages by the broker alon
        mqtt.py PORT keep FILE       every message of grobo/v1/# as a line "topic payload", until it
                                     is ended
        mqtt.py PORT goodbye         is a broker itself: takes who comes, and says that it shuts down
+       mqtt.py PORT mute            is one that takes connections and says nothing
        mqtt.py 0 fits FILE          these lines are as docs/fleet.schema.json says, but for orders
                                     of strangers; prints how many of each kind
 """
@@ -265,17 +266,28 @@ def keep(client, path):
                 out.write(got[0] + " " + got[1].decode("utf-8", "replace") + "\n")
 
 
-def goodbye(port):
+def listen(port):
     listener = socket.socket()
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     listener.bind(("127.0.0.1", port))
     listener.listen()
-    kept = []
+    print("ready", flush=True)
+    return listener
+
+
+def goodbye(port):
+    listener, kept = listen(port), []
     while True:
         client = listener.accept()[0]
         client.recv(1000)
         client.sendall(b"\x20\x03\0\0\0" + b"\xe0\x02\x8b\0")
         kept.append(client)
+
+
+def mute(port):
+    listener, kept = listen(port), []
+    while True:
+        kept.append(listener.accept()[0])
 
 
 def kind_of(topic):
@@ -313,6 +325,8 @@ def main(words):
         return
     if words[1] == "goodbye":
         goodbye(int(words[0]))
+    if words[1] == "mute":
+        mute(int(words[0]))
     client = Client(int(words[0]))
     if words[1] == "floor":
         floor(client, int(words[2]))

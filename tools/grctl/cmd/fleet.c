@@ -35,7 +35,8 @@ enum {
     WATCH_US = 500000,
     SILENT_US = 1500000,
     LEAD_US = 300000,
-    TRIPS = 20 /* the start is at least so many round trips ahead */
+    IF_LOST_CONTINUE = 2, /* of OPT_IF_LOST */
+    TRIPS = 20            /* the start is at least so many round trips ahead */
 };
 
 static const cli_option options[OPTIONS] = {
@@ -111,7 +112,10 @@ static int say_answers(leader *l, const char *doing)
         }
         const char *code = fleet_text(p->answer, "code"), *why = fleet_text(p->answer, "message");
         status = app_fail(l->a, EXIT_ROBOT, p->answer && code ? code : "TIMEOUT", "%s: %s: %s",
-                          p->host, doing, p->answer && why ? why : _("no answer"));
+                          p->host, doing,
+                          p->answer && why ? why
+                          : p->gone        ? _("its agent is gone")
+                                           : _("no answer"));
     }
     return status;
 }
@@ -209,20 +213,42 @@ static int run_status(leader *l)
 
 /* ---- stops ----------------------------------------------------------------------------------- */
 
+/* What can be heard of the stop was heard. Who is gone has nothing to say. */
 static bool all_told(const leader *l)
 {
     for (int i = 0; i < l->n; i++) {
-        if (l->peers[i].chosen && !l->peers[i].stopped) {
-            return false;
+        const peer *p = &l->peers[i];
+        if (p->chosen && !p->gone && !p->stopped) {
+            return l->stop_refused;
         }
     }
-    return true;
+    return l->stop_taken || l->stop_refused;
+}
+
+/* Those that may have robots of which nothing was heard. */
+static int say_unheard(leader *l)
+{
+    int status = EXIT_DONE;
+    if (!l->stop_taken) {
+        status = app_fail(l->a, EXIT_ROBOT, "UNREACHABLE",
+                          "fleet: the broker did not take the stop: use the switches");
+    }
+    for (int i = 0; i < l->n; i++) {
+        const peer *p = &l->peers[i];
+        if (leader_is_unknown(p) && !p->stopped && (!l->host || strcmp(l->host, p->host) == 0)) {
+            status = app_fail(l->a, EXIT_ROBOT, "TIMEOUT",
+                              "%s: is online and never said which robots it has; nothing of it was "
+                              "seen to stop: use their switches",
+                              p->host);
+        }
+    }
+    return status;
 }
 
 /* Each robot by itself: only what was read back is a success. */
 static int say_stopped(leader *l)
 {
-    int status = EXIT_DONE;
+    int status = say_unheard(l);
     for (int i = 0; i < l->n; i++) {
         const peer *p = &l->peers[i];
         size_t k;
@@ -258,34 +284,33 @@ static int say_stopped(leader *l)
     return status;
 }
 
-/* Said in any case, for agents that are not seen; but then nobody was seen to stop. */
-static int stop(leader *l, const char *how)
+/* The latch is out since there is a connection, see leader_open(): for agents that are not seen
+ * too, but of these nobody was seen to stop. */
+static int run_stop(leader *l)
 {
     int n = leader_choose(l);
-    (void)leader_latch(l, how);
+    (void)leader_wait(l, STOPPED_US, all_told);
     if (n == 0) {
-        (void)leader_wait(l, STATE_US, NULL); /* until it is out */
+        (void)say_unheard(l);
         return fail_nobody(l, _(": nothing was seen to stop; use the switches"));
     }
-    (void)leader_wait(l, STOPPED_US, all_told);
     return say_stopped(l);
 }
 
-static int run_stop(leader *l)
-{
-    return stop(l, "stop");
-}
-
-static int run_estop(leader *l)
-{
-    return stop(l, "estop");
-}
-
-/* The latch first, then what the engines keep. */
+/* The latch first, then what the engines keep. A stop that came after this command is none that it
+ * may take back. */
 static int run_reset(leader *l)
 {
-    (void)leader_latch(l, NULL);
-    (void)leader_wait(l, STATE_US, NULL);
+    const char *id = l->latch ? fleet_text(l->latch, "id") : NULL;
+    if (id && json_is_true(json_object_get(l->latch, "stopped"))) {
+        if (strcmp(id, l->stood) != 0) {
+            return app_fail(l->a, EXIT_ROBOT, "STATE",
+                            "fleet: another stop was given meanwhile: it stands; 'grctl fleet "
+                            "reset' again releases it");
+        }
+        (void)leader_latch(l, NULL);
+        (void)leader_wait(l, STATE_US, NULL);
+    }
     if (leader_choose(l) == 0) {
         return fail_nobody(l, "");
     }
@@ -339,14 +364,26 @@ static bool any_ended(const leader *l)
     return false;
 }
 
+/* All have ended, but for those of which nothing will be heard. */
 static bool all_ended(const leader *l)
 {
     for (int i = 0; i < l->n; i++) {
-        if (l->peers[i].chosen && !l->peers[i].ended) {
+        const peer *p = &l->peers[i];
+        if (p->chosen && !p->gone && !p->ended) {
             return false;
         }
     }
     return true;
+}
+
+static bool any_lost(const leader *l)
+{
+    return any_ended(l) || leader_lacks(l);
+}
+
+static bool all_ended_or_one_lost(const leader *l)
+{
+    return all_ended(l) || leader_lacks(l);
 }
 
 /* "HH:MM[:SS]", the next one, by the clock of who leads: as an instant. False: it is none. */
@@ -408,8 +445,13 @@ static int say_ended(leader *l)
         size_t k;
         json_t *robot;
         if (p->chosen && !p->ended) {
-            status =
-                app_fail(l->a, EXIT_ROBOT, "TIMEOUT", "%s: does not say how it ended", p->host);
+            status = p->gone
+                         ? app_fail(l->a, EXIT_ROBOT, "UNREACHABLE",
+                                    "%s: its agent went away in the motion; see what its robots "
+                                    "do, or use their switches",
+                                    p->host)
+                         : app_fail(l->a, EXIT_ROBOT, "TIMEOUT", "%s: does not say how it ended",
+                                    p->host);
         }
         json_array_foreach(json_object_get(p->ended, "robots"), k, robot)
         {
@@ -446,7 +488,7 @@ static void wait_for_time(leader *l, int64_t at_us)
     int64_t rest_us = at_us - grobo_now_us() - BEFORE_US;
     if (rest_us > 0) {
         app_note(l->a, "all are ready; they begin in %.1f s", (double)(rest_us + BEFORE_US) / 1e6);
-        (void)leader_wait(l, rest_us, any_ended);
+        (void)leader_wait(l, rest_us, any_lost);
     }
 }
 
@@ -456,6 +498,9 @@ static int set_off(leader *l, int64_t at_us)
     /* The answers to `prepare` waited for robots: a round trip is measured by another order. */
     leader_order(l, "ping", json_object());
     (void)leader_wait(l, ANSWER_US, leader_answered);
+    if (leader_lacks(l)) { /* before anybody begins without it */
+        return say_answers(l, "start");
+    }
     int64_t ahead_us = TRIPS * slowest_us(l) > LEAD_US ? TRIPS * slowest_us(l) : LEAD_US;
     int64_t soonest_us = grobo_now_us() + ahead_us;
     if (at_us && at_us < soonest_us) {
@@ -469,20 +514,28 @@ static int set_off(leader *l, int64_t at_us)
     return status;
 }
 
-/* To the end of what they play. */
+static int fail_lost(leader *l)
+{
+    return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE",
+                    "fleet: the broker is lost: the robots act by --on-link-lost");
+}
+
+/* To the end of what they play. An agent that goes away is a robot that is lost. */
 static int see_through(leader *l)
 {
-    while (!leader_wait(l, 3600000000, all_ended) && !l->link.signal && !l->lost) {
+    const cli_value *if_lost = app_option(l->a, OPT_IF_LOST);
+    bool goes_on = if_lost->given && if_lost->choice == IF_LOST_CONTINUE;
+    bool (*const done)(const leader *) = goes_on ? all_ended : all_ended_or_one_lost;
+    while (!leader_wait(l, 3600000000, done) && !l->link.signal && !l->lost) {
         continue;
     }
     int signal = l->link.signal;
-    if (signal) {
+    if (signal || (!l->lost && !all_ended(l))) {
         (void)call_off(l, 0);
         (void)leader_wait(l, ANSWER_US, all_ended);
     }
     if (l->lost) {
-        return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE",
-                        "fleet: the broker is lost: the robots act by --on-link-lost");
+        return fail_lost(l);
     }
     int status = say_ended(l);
     return signal ? EXIT_SIGNAL + signal : status;
@@ -496,7 +549,10 @@ static int play(leader *l, const char *path, int64_t at_us)
         wait_for_time(l, at_us);
     }
     int signal = l->link.signal;
-    if ((status || signal) && !l->lost) {
+    if (l->lost) {
+        return fail_lost(l);
+    }
+    if (status || signal) {
         return call_off(l, signal ? EXIT_SIGNAL + signal : status);
     }
     status = set_off(l, at_us);
@@ -552,7 +608,7 @@ static const struct {
     int (*run)(leader *l);
     bool asks; /* for files, and agents must be there */
 } verbs[] = {{"list", run_list, false}, {"status", run_status, false}, {"play", run_play, true},
-             {"stop", run_stop, false}, {"estop", run_estop, false},   {"reset", run_reset, false},
+             {"stop", run_stop, false}, {"estop", run_stop, false},    {"reset", run_reset, false},
              {"push", run_push, true},  {"log", run_log, false}};
 
 /* "all" where somebody meant a group: what is not asked for is a mistake. 0, or the status. */
@@ -603,14 +659,14 @@ static int run(app *a)
     if (status) {
         return status;
     }
-    bool stops = verbs[v].run == run_stop || verbs[v].run == run_estop; /* they stop first */
+    bool stops = verbs[v].run == run_stop; /* they stop first */
     status = stops ? 0 : check_files(a, verbs[v].asks);
     status = status ? status : broker_read(&b, a);
     if (status) {
         return status;
     }
     status = leader_begin(&l, a, &b.config, group->given ? group->text : FLEET_ALL,
-                          host->given ? host->text : NULL);
+                          host->given ? host->text : NULL, stops ? verbs[v].word : NULL);
     if (!status) {
         int n = leader_choose(&l);
         status = verbs[v].asks && n == 0 ? fail_nobody(&l, "") : verbs[v].run(&l);

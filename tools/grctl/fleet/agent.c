@@ -30,6 +30,15 @@ static void stop_now(agent *g, bool brakes)
     troupe_look(&g->all);
 }
 
+/* The broker keeps something else than the stop that stands: who comes later would not hear of it,
+ * and nobody could take it back, who has to know its id. */
+static void remind_broker(agent *g, const agent_group *group)
+{
+    if (group->latch) {
+        say_latch(g, group);
+    }
+}
+
 /* The retained stop of a group: it stands until who has its id takes it back. */
 static void take_latch(agent *g, agent_group *group, json_t *latch)
 {
@@ -37,7 +46,8 @@ static void take_latch(agent *g, agent_group *group, json_t *latch)
     const char *before = group->latch ? fleet_text(group->latch, "id") : NULL;
     bool known = id && before && strcmp(id, before) == 0;
     if (!id || strlen(id) != FLEET_ID_BYTES - 1) {
-        return; /* what cannot be read changes nothing */
+        remind_broker(g, group); /* what cannot be read changes nothing */
+        return;
     }
     if (json_is_true(json_object_get(latch, "stopped"))) {
         json_decref(group->latch);
@@ -52,6 +62,8 @@ static void take_latch(agent *g, agent_group *group, json_t *latch)
         group->latch = NULL;
         group->telling = false;
         say_event(g, NULL, "released", "the stop of the group was released");
+    } else {
+        remind_broker(g, group);
     }
 }
 
@@ -223,8 +235,9 @@ static void on_refused(void *ctx, const char *why)
     app_note(g->a, "the broker refuses: %s", why);
 }
 
-static void on_taken(void *ctx, int message)
+static void on_taken(void *ctx, int message, bool taken)
 {
+    (void)taken; /* what is refused is refused again: it does not wait on disk */
     say_taken(ctx, message);
 }
 

@@ -48,6 +48,7 @@ typedef struct agent_order {
     unsigned char correlation[64];
     size_t correlation_bytes;
     int64_t came_us;
+    uint64_t number; /* in the order in which they came */
 } agent_order;
 
 typedef struct agent {
@@ -72,6 +73,7 @@ typedef struct agent {
     fleet_seen seen;
     agent_leader leaders[AGENT_LEADERS];
     agent_order orders[AGENT_PENDING];
+    uint64_t taken; /* orders, in all */
     /* what is played */
     bool plays, started;
     agent_order play; /* whose answer is due until all are ready */

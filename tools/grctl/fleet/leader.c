@@ -6,7 +6,13 @@
 #include "tools/grctl/fleet/wire.h"
 #include "tools/grctl/lang/lang.h"
 
-enum { CONNECT_US = 5000000, SEEN_US = 200000, ORDER_EXPIRY_S = 2 };
+enum {
+    CONNECT_US = 5000000, /* a broker that is not there is tried so long */
+    SAY_US = 1000000,     /* one that does not answer is spoken of after this */
+    SEEN_US = 200000,
+    UNKNOWN_US = 1000000, /* an agent says what it has before it says that it is there */
+    ORDER_EXPIRY_S = 2
+};
 
 /* ---- agents ---------------------------------------------------------------------------------- */
 
@@ -51,6 +57,7 @@ static void take_connection(peer *p, const json_t *said)
         bool old =
             strcmp(state, "CONNECTIONBROKEN") == 0 && *p->epoch && strcmp(p->epoch, epoch) != 0;
         if (!old) {
+            p->gone = p->gone || strcmp(state, "ONLINE") != 0 || strcmp(p->epoch, epoch) != 0;
             snprintf(p->state, sizeof p->state, "%s", state);
             snprintf(p->epoch, sizeof p->epoch, "%s", epoch);
         }
@@ -116,6 +123,16 @@ static void take_of_host(leader *l, char part[4][FLEET_NAME_BYTES], int n, json_
     }
 }
 
+/* retained: it stood before we came. */
+static void take_latch(leader *l, json_t *latch, bool retained)
+{
+    const char *id = fleet_text(latch, "id");
+    keep(&l->latch, latch);
+    if (retained && l->ups == 1 && id && json_is_true(json_object_get(latch, "stopped"))) {
+        snprintf(l->stood, sizeof l->stood, "%s", id);
+    }
+}
+
 static void on_message(void *ctx, const mqtt_message *message)
 {
     leader *l = ctx;
@@ -133,7 +150,7 @@ static void on_message(void *ctx, const mqtt_message *message)
         take_ping(l, object);
     } else if (strcmp(part[0], "group") == 0) {
         if (n == 3 && strcmp(part[2], "latch") == 0 && strcmp(part[1], l->group) == 0) {
-            keep(&l->latch, object);
+            take_latch(l, object, message->retained);
         }
     } else {
         take_of_host(l, part, n, object);
@@ -143,10 +160,42 @@ static void on_message(void *ctx, const mqtt_message *message)
 
 /* ---- the connection -------------------------------------------------------------------------- */
 
+/* The latch of l->stop. False: it is not out. */
+static bool publish_latch(leader *l, const char *how)
+{
+    json_t *latch = json_pack("{s:i,s:b,s:s,s:s,s:I}", "v", FLEET_VERSION, "stopped", how != NULL,
+                              "id", l->stop, "by", l->id, "at_ms", (json_int_t)wire_wall_ms());
+    if (how) {
+        json_object_set_new(latch, "how", json_string(how));
+    }
+    l->stop_taken = l->stop_refused = false;
+    l->stop_number =
+        wire_tell(l->m, "group", l->group, "latch", json_incref(latch), WIRE_SURE | WIRE_KEPT);
+    if (l->stop_number > 0) {
+        keep(&l->latch, latch); /* the broker tells us nothing of our own */
+    }
+    json_decref(latch);
+    return l->stop_number > 0;
+}
+
+/* As a connection before could not bring it there, the same again: it is one stop. */
+static void stop_first(leader *l)
+{
+    if (l->first && !l->stop_taken) {
+        if (!*l->stop) {
+            fleet_make_id(l->stop);
+            l->stop_us = grobo_now_us();
+        }
+        (void)publish_latch(l, l->first);
+    }
+}
+
 static void on_up(void *ctx)
 {
     leader *l = ctx;
     l->up = true;
+    l->ups++;
+    stop_first(l);
     wire_subscribe(l->m, "ack", l->id, NULL, false);
     wire_subscribe(l->m, "time", l->id, "ping", false);
     wire_subscribe(l->m, "group", l->group, "latch", true);
@@ -171,6 +220,15 @@ static void on_refused(void *ctx, const char *why)
     leader *l = ctx;
     l->refused++;
     app_note(l->a, "the broker refuses: %s", why);
+}
+
+static void on_taken(void *ctx, int number, bool taken)
+{
+    leader *l = ctx;
+    if (number == l->stop_number) {
+        l->stop_taken = taken;
+        l->stop_refused = !taken;
+    }
 }
 
 static void on_tick(evutil_socket_t fd, short what, void *ctx)
@@ -214,16 +272,15 @@ bool leader_wait(leader *l, int64_t bound_us, bool (*done)(const leader *l))
     return is_done(l, done);
 }
 
-static bool is_up(const leader *l)
+bool leader_is_unknown(const peer *p)
 {
-    return l->up;
+    return strcmp(p->state, "ONLINE") == 0 && !p->facts;
 }
 
-/* An agent that is there and has not said yet of which groups it is. */
 static bool anybody_unknown(const leader *l)
 {
     for (int i = 0; i < l->n; i++) {
-        if (strcmp(l->peers[i].state, "ONLINE") == 0 && !l->peers[i].facts) {
+        if (leader_is_unknown(&l->peers[i])) {
             return true;
         }
     }
@@ -233,13 +290,43 @@ static bool anybody_unknown(const leader *l)
 /* Until nothing of what the broker retains has come for a while: nobody is left out of a stop. */
 static void hear_retained(leader *l)
 {
-    int64_t until_us = grobo_now_us() + CONNECT_US;
+    int64_t began_us = grobo_now_us(), took_us = 0;
     unsigned before;
+    bool more;
     do {
         before = l->kept;
         (void)leader_wait(l, SEEN_US, NULL);
-    } while ((l->kept != before || anybody_unknown(l)) && l->up && !l->link.signal &&
-             grobo_now_us() < until_us);
+        took_us = grobo_now_us() - began_us;
+        more = l->kept != before || (anybody_unknown(l) && took_us < UNKNOWN_US);
+    } while (more && l->up && !l->link.signal && took_us < CONNECT_US);
+}
+
+static bool is_up(const leader *l)
+{
+    return l->up;
+}
+
+static bool is_up_or_not(const leader *l)
+{
+    return l->up || l->why;
+}
+
+/* What is said of a broker that is not there. The exit status. */
+static int fail_broker(leader *l, const char *so)
+{
+    return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE", "fleet: %s: %s%s", l->broker,
+                    l->why ? l->why : _("the broker does not answer"), so);
+}
+
+/* Who stops is told at once that this way does not lead to the robots; it is tried on meanwhile. */
+static int await_broker(leader *l)
+{
+    (void)leader_wait(l, l->first ? SAY_US : CONNECT_US, is_up_or_not);
+    if (!l->up && l->first && !l->link.signal) {
+        (void)fail_broker(l, _(": nothing is stopped; use the switches; it is tried for 5 s"));
+        (void)leader_wait(l, CONNECT_US, is_up);
+    }
+    return l->up ? EXIT_DONE : fail_broker(l, l->first ? _(": use the switches") : "");
 }
 
 static int connect_it(leader *l, const mqtt_config *with)
@@ -252,7 +339,9 @@ static int connect_it(leader *l, const mqtt_config *with)
     config.on_down = on_down;
     config.on_message = on_message;
     config.on_refused = on_refused;
+    config.on_taken = on_taken;
     config.ctx = l;
+    l->broker = with->host;
     l->m = mqtt_new(&config, &why);
     if (!l->m) {
         return app_fail(l->a, EXIT_ROBOT, "IO", "fleet: %s: %s", config.host, why);
@@ -262,20 +351,15 @@ static int connect_it(leader *l, const mqtt_config *with)
         return app_fail_error(l->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "fleet");
     }
     mqtt_start(l->m);
-    if (!leader_wait(l, CONNECT_US, is_up)) {
-        return app_fail(l->a, EXIT_ROBOT, "UNREACHABLE", "fleet: %s: %s", config.host,
-                        l->why ? l->why : _("the broker does not answer"));
-    }
-    hear_retained(l);
     return EXIT_DONE;
 }
 
-int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group, const char *host)
+int leader_open(leader *l, app *a, const mqtt_config *broker, const char *group, const char *stop)
 {
     memset(l, 0, sizeof *l);
     l->a = a;
     l->group = group;
-    l->host = host;
+    l->first = stop;
     fleet_make_id(l->id);
     l->peers = calloc(LEADER_PEERS, sizeof *l->peers);
     if (!l->peers || !fleet_topic(l->ack, "ack", l->id, NULL, NULL) ||
@@ -284,6 +368,18 @@ int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group
     }
     conn_link_watch(&l->link);
     return connect_it(l, broker);
+}
+
+int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group, const char *host,
+                 const char *stop)
+{
+    int status = leader_open(l, a, broker, group, stop);
+    l->host = host;
+    status = status ? status : await_broker(l);
+    if (!status) {
+        hear_retained(l);
+    }
+    return status;
 }
 
 void leader_end(leader *l)
@@ -323,6 +419,7 @@ int leader_choose(leader *l)
     for (int i = 0; i < l->n; i++) {
         peer *p = &l->peers[i];
         p->chosen = strcmp(p->state, "ONLINE") == 0 && leader_has(l, p);
+        p->gone = false;
         n += p->chosen;
     }
     return n;
@@ -365,11 +462,21 @@ void leader_order(leader *l, const char *verb, json_t *body)
 bool leader_answered(const leader *l)
 {
     for (int i = 0; i < l->n; i++) {
-        if (l->peers[i].chosen && *l->peers[i].waiting) {
+        if (l->peers[i].chosen && !l->peers[i].gone && *l->peers[i].waiting) {
             return false;
         }
     }
     return true;
+}
+
+bool leader_lacks(const leader *l)
+{
+    for (int i = 0; i < l->n; i++) {
+        if (l->peers[i].chosen && l->peers[i].gone) {
+            return true;
+        }
+    }
+    return false;
 }
 
 bool leader_latch(leader *l, const char *how)
@@ -381,18 +488,7 @@ bool leader_latch(leader *l, const char *how)
         snprintf(l->stop, sizeof l->stop, "%s", before);
     }
     l->stop_us = grobo_now_us();
-    json_t *latch = json_pack("{s:i,s:b,s:s,s:s,s:I}", "v", FLEET_VERSION, "stopped", how != NULL,
-                              "id", l->stop, "by", l->id, "at_ms", (json_int_t)wire_wall_ms());
-    if (how) {
-        json_object_set_new(latch, "how", json_string(how));
-    }
-    bool done =
-        wire_tell(l->m, "group", l->group, "latch", json_incref(latch), WIRE_SURE | WIRE_KEPT) > 0;
-    if (done) {
-        keep(&l->latch, latch); /* the broker tells us nothing of our own */
-    }
-    json_decref(latch);
-    return done;
+    return publish_latch(l, how);
 }
 
 void leader_listen(leader *l, const char *what)

@@ -173,6 +173,7 @@ void orders_take(agent *g, const char *verb, const mqtt_message *message)
         json_decref(body);
         return;
     }
+    order.number = ++g->taken;
     *place = order;
     agent_leader *l = leader_of(g, order.is.from);
     if (is_fresh(l, grobo_now_us())) {
@@ -398,13 +399,19 @@ static void prepare(agent *g, agent_order *order)
 
 /* ---- the others ------------------------------------------------------------------------------ */
 
-static void start(agent *g, agent_order *order)
+/* What is played was prepared by the order that this one names, and by the same sender. */
+static bool is_for_play(const agent *g, const agent_order *order)
 {
     const char *of = fleet_text(order->is.body, "of");
+    return g->plays && of && strcmp(of, g->play.is.id) == 0 &&
+           strcmp(g->play.is.from, order->is.from) == 0;
+}
+
+static void start(agent *g, agent_order *order)
+{
     int64_t at_us = fleet_number(order->is.body, "at_us", -1), offset_us, bound_us;
     const agent_leader *l = leader_of(g, order->is.from);
-    if (!g->plays || !of || strcmp(of, g->play.is.id) != 0 ||
-        strcmp(g->play.is.from, order->is.from) != 0) {
+    if (!is_for_play(g, order)) {
         answer(g, order, "state", "nothing was prepared by that order");
         return;
     }
@@ -433,8 +440,13 @@ static void start(agent *g, agent_order *order)
                          (json_int_t)g->start_us));
 }
 
+/* Of one's own motion: a stop of the group is for everybody's. */
 static void cancel(agent *g, agent_order *order)
 {
+    if (!is_for_play(g, order)) {
+        answer(g, order, "state", "nothing was prepared by that order");
+        return;
+    }
     if (g->all.team) {
         (void)grobo_team_stop(g->all.team, false);
         troupe_look(&g->all);
@@ -558,15 +570,26 @@ static void end_play(agent *g)
     forget_play(g);
 }
 
+/* In the order in which they came: what is called off was prepared before. */
+static agent_order *next_due(agent *g)
+{
+    agent_order *first = NULL;
+    for (int i = 0; i < AGENT_PENDING; i++) {
+        agent_order *order = &g->orders[i];
+        if (order->used && order->timed && (!first || order->number < first->number)) {
+            first = order;
+        }
+    }
+    return first;
+}
+
 void orders_work(agent *g)
 {
-    for (int i = 0; i < AGENT_PENDING; i++) {
-        agent_order order = g->orders[i];
-        if (order.used && order.timed) {
-            memset(&g->orders[i], 0, sizeof order); /* it may take a while: others may come */
-            carry_out(g, &order);
-            json_decref(order.is.body);
-        }
+    for (agent_order *due = next_due(g); due; due = next_due(g)) {
+        agent_order order = *due;
+        memset(due, 0, sizeof *due); /* it may take a while: others may come */
+        carry_out(g, &order);
+        json_decref(order.is.body);
     }
     end_play(g);
 }

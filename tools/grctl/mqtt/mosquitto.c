@@ -219,7 +219,7 @@ static void on_publish(struct mosquitto *client, void *ctx, int id, int reason,
         m->config.on_refused(m->config.ctx, mosquitto_reason_string(reason));
     }
     if (m->config.on_taken) {
-        m->config.on_taken(m->config.ctx, id);
+        m->config.on_taken(m->config.ctx, id, reason < 128);
     }
 }
 
@@ -311,8 +311,9 @@ int mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
 
 bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained)
 {
-    int options = MQTT_SUB_OPT_NO_LOCAL | MQTT_SUB_OPT_RETAIN_AS_PUBLISHED |
-                  (retained ? MQTT_SUB_OPT_SEND_RETAIN_ALWAYS : MQTT_SUB_OPT_SEND_RETAIN_NEVER);
+    int options = MQTT_SUB_OPT_NO_LOCAL |
+                  (retained ? MQTT_SUB_OPT_SEND_RETAIN_ALWAYS
+                            : MQTT_SUB_OPT_SEND_RETAIN_NEVER | MQTT_SUB_OPT_RETAIN_AS_PUBLISHED);
     bool done = mqtt_is_up(m) && mosquitto_subscribe_v5(m->client, NULL, filter, qos, options,
                                                         NULL) == MOSQ_ERR_SUCCESS;
     arm(m);

@@ -44,7 +44,8 @@ typedef struct mqtt_config {
     void (*on_down)(void *ctx, const char *why);
     void (*on_message)(void *ctx, const mqtt_message *message);
     void (*on_refused)(void *ctx, const char *why); /* what was published with QoS 1 */
-    void (*on_taken)(void *ctx, int number);        /* by the broker, of what mqtt_publish() took */
+    /* The broker has taken, or refused, what mqtt_publish() gave this number; QoS 1 alone. */
+    void (*on_taken)(void *ctx, int number, bool taken);
     bool (*may_block)(void *ctx); /* may a name be looked up now? It may take seconds. NULL: yes */
     void *ctx;
 } mqtt_config;

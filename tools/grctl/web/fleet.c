@@ -524,7 +524,7 @@ int web_run_fleet(app *a, const web_options *options, const broker *b, const cha
     v.options = options;
     v.b = b;
     v.events.began_us = grobo_now_us();
-    int status = leader_begin(&v.l, a, &b->config, group, NULL);
+    int status = leader_begin(&v.l, a, &b->config, group, NULL, NULL);
     if (!status) {
         status = run(&v, a);
     }
