@@ -165,8 +165,10 @@ GROBO_API int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_comman
 GROBO_API int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number);
 
 /**
- * What servos do when a program ends: stops a motion, carries the policy out and reads it back,
- * within exit_bound_us. Takes the place of a job that runs (that one ends with
+ * What servos do when a program ends: stops a motion, carries the policy out and reads it back:
+ * with GROBO_EXIT_HOLD until each joint with torque was read to stand (docs/guide/safety.md,
+ * Standing). All is sent within exit_bound_us; where that is too short to read it back, the result
+ * is GROBO_ERR_TIMEOUT. Takes the place of a job that runs (that one ends with
  * GROBO_ERR_CANCELED); where an exit of the same policy runs it returns the number of that one.
  * Works when tripped; then GROBO_EXIT_SIT is carried out as GROBO_EXIT_HOLD.
  * @param policy GROBO_EXIT_DEFAULT: the configuration's.

@@ -145,6 +145,10 @@ typedef struct grobo_robot_axis {
     bool held;         /* goal read back to be the present angle: torque may come on */
     bool off_way;      /* read to be elsewhere: it lost the frame of its way */
     bool adrift;       /* moves though we sent it nowhere, and did not tell where to */
+    bool goal_is_read; /* its goal was read since it was told last */
+    double still_rad;  /* the first of the positions that show that it stands */
+    int64_t still_us;  /* when that came; GROBO_NEVER_US: none since it was told last */
+    int64_t stood_us;  /* when the last of them was asked for */
 } grobo_robot_axis;
 
 /** A job that runs. Private. */
@@ -180,6 +184,7 @@ typedef struct grobo_robot_task {
     int64_t begun_us; /* when it started */
     int64_t until_us; /* end of waiting */
     int64_t bound_us; /* end of patience */
+    bool lets_go;     /* by then its joints were told to be without torque */
 } grobo_robot_task;
 
 /** A move or a reading that waits for its turn. Private. */

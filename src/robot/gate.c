@@ -691,6 +691,7 @@ static void forget(grobo_robot *robot, grobo_joint_mask joints, bool torque_too)
             axis->wants_torque = axis->wants_torque && !torque_too;
             axis->torque_known = axis->torque_known && !torque_too;
             axis->own_until_us = 0;
+            grobo_i_stand_forget(axis);
         }
     }
     grobo_i_gate_soften(robot);
@@ -803,6 +804,7 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(told, j)) {
             robot->axes[j].told_us = robot->now_us;
+            grobo_i_stand_forget(&robot->axes[j]);
             robot->axes[j].last = slot->order.number;
         }
     }

@@ -76,6 +76,7 @@ int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot
     job->reply_bytes = 0;
     job->begun_us = robot->now_us;
     job->until_us = job->bound_us = GROBO_NEVER_US;
+    job->lets_go = false;
     return job->number;
 }
 
@@ -282,12 +283,29 @@ static int advance(grobo_robot *robot)
     return 0;
 }
 
+/* The bound is over. Who was to be limp is told so once more, in a frame that outlives the job: the
+ * one of the job may not have left. */
+static void run_out(grobo_robot *robot)
+{
+    grobo_robot_task *job = robot->job;
+    grobo_joint_mask joints = 0;
+    for (int j = 0; job->lets_go && j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool limp = axis->torque_known && axis->state.torque == GROBO_TORQUE_OFF;
+        joints |= limp ? 0 : GROBO_JOINT_BIT(j);
+    }
+    job->failed |= job->pending;
+    if (joints != 0) {
+        (void)grobo_i_gate_torque(robot, joints, GROBO_TORQUE_OFF, GROBO_I_WHOLE);
+    }
+    grobo_i_job_end(robot, GROBO_ERR_TIMEOUT);
+}
+
 static void run(grobo_robot *robot)
 {
     while (robot->job->kind != GROBO_JOB_NONE) {
         if (robot->now_us >= robot->job->bound_us) {
-            robot->job->failed |= robot->job->pending;
-            grobo_i_job_end(robot, GROBO_ERR_TIMEOUT);
+            run_out(robot);
             return;
         }
         robot->acting = robot->job->number;

@@ -121,6 +121,7 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
 {
     grobo_robot_axis *axis = &robot->axes[joint];
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
+        grobo_i_stand_seen(robot, joint, asked_us, axis->state.angle_rad);
         axis->sensed = true;
         grobo_i_axis_seen(axis, asked_us, got);
         take_move(robot, joint, got);
@@ -206,6 +207,14 @@ bool grobo_i_is_loss(int result)
            result == GROBO_ERR_CHECKSUM || result == GROBO_ERR_MISMATCH;
 }
 
+/* The answer to a goal shows that it came, not what the servo made of it. */
+static void note_goal(const grobo_robot_slot *slot, const grobo_joint_state *got)
+{
+    grobo_robot_axis *axis = &slot->robot->axes[slot->joint];
+    bool read = (slot->reads || slot->many) && (got->valid & GROBO_FIELD_GOAL) != 0;
+    axis->goal_is_read = axis->goal_is_read || (read && slot->asked_us >= axis->told_us);
+}
+
 /* What a servo says shows that it does not restart; that it has torque, only a reading shows: the
  * answer to a goal comes from one that the goal has woken, too. */
 static void note_heard(const grobo_robot_slot *slot, const grobo_joint_state *got)
@@ -251,6 +260,7 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
     if (result >= 0) {
         result = GROBO_OK;
         take_reading(robot, joint, slot->asked_us, got);
+        note_goal(slot, got);
         if (GROBO_I_EXTRA(robot->driver, goal_wakes)) {
             note_heard(slot, got);
         }

@@ -535,6 +535,7 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
     int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, script, 0);
     robot->job->joints = grobo_i_all_joints(robot);
     robot->job->torque = GROBO_TORQUE_OFF;
+    robot->job->lets_go = script == grobo_i_script_exit_off;
     robot->job->bound_us =
         robot->now_us + grobo_i_sooner(robot->config.exit_bound_us, GROBO_NEVER_US - robot->now_us);
     robot->free_joints = 0;

@@ -103,6 +103,7 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
         grobo_robot_axis *axis = &robot->axes[j];
         axis->angle_us = axis->full_us = axis->goal_us = GROBO_NEVER_US;
         axis->seen_dps = GROBO_I_NO_SPEED;
+        grobo_i_stand_forget(axis);
         axis->current_since_us = GROBO_NEVER_US;
         axis->status = GROBO_ERR_EMPTY;
     }
@@ -297,6 +298,7 @@ static void forget(grobo_robot *robot)
         axis->status = GROBO_ERR_UNPLUGGED;
         axis->lost = 0;
         axis->seen_dps = GROBO_I_NO_SPEED;
+        grobo_i_stand_forget(axis);
         axis->current_since_us = GROBO_NEVER_US;
         axis->way.to_us = robot->now_us;
     }

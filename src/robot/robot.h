@@ -9,6 +9,7 @@
  *   query.c      what may be asked
  *   slot.c       frames under way: from an exchange to a transaction and back
  *   budget.c     how many motion frames a second leave time to read
+ *   stand.c      whether a joint stands
  *   reading.c    what a reading tells of a joint
  *   ways.c       ways that are told in segments
  *   gate.c       the only way to motors: judges and notes each order as its frame leaves
@@ -214,6 +215,21 @@ bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_
                         grobo_torque torque);
 /* True if a frame of this use is under way. */
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
+
+/* ---- stand.c --------------------------------------------------------------------------------- */
+
+/* Two positions show that a joint stands where they are so far apart: 0.5 s and more. */
+int64_t grobo_i_stand_us(const grobo_robot *robot);
+
+/* A frame tells the joint something: what was read before shows nothing of it. */
+void grobo_i_stand_forget(grobo_robot_axis *axis);
+/* Where it is, by a reading that was asked for since then. */
+void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double angle_rad);
+/* True if it was read to stand since then. */
+bool grobo_i_stands(const grobo_robot *robot, int joint);
+/* True if the goal read is the one that it was sent to, or of a way told in segments lies ahead of
+ * where it was by then. */
+bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint);
 
 /* ---- reading.c ------------------------------------------------------------------------------- */
 

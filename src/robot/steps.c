@@ -483,28 +483,13 @@ static int step_read_back(grobo_robot *robot)
     return step_read_pending(robot);
 }
 
-/* True if the goal read is the one that the joint was sent to, or of a way told in segments lies
- * ahead of where the joint was by then. */
-static bool has_taken(const grobo_robot *robot, const grobo_robot_axis *axis)
-{
-    double same_rad = grobo_i_same_goal_rad(robot);
-    const grobo_robot_way *way = &axis->way;
-    double goal_rad = axis->state.goal_rad;
-    if (!axis->in_segments || axis->goal_us >= way->to_us) {
-        return near_rad(goal_rad, way->to_rad, same_rad);
-    }
-    double here_rad = grobo_i_way_at(way, axis->goal_us);
-    return goal_rad >= fmin(here_rad, way->to_rad) - same_rad &&
-           goal_rad <= fmax(here_rad, way->to_rad) + same_rad;
-}
-
 /* Of the joints just read, those whose goal is not the one they were sent to. */
 static grobo_joint_mask not_taken(const grobo_robot *robot)
 {
     grobo_joint_mask read = robot->job->pending & ~robot->job->failed;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(read, j) && !has_taken(robot, &robot->axes[j])) {
+        if (grobo_i_has(read, j) && !grobo_i_goal_is_taken(robot, j)) {
             bad |= GROBO_JOINT_BIT(j);
         }
     }
@@ -602,15 +587,22 @@ static int step_aim_last(grobo_robot *robot)
 
 /* ---- leaving --------------------------------------------------------------------------------- */
 
+/* Half of its time is for making the robot limp, whatever moves yet. */
+static bool is_pressed(const grobo_robot *robot)
+{
+    const grobo_robot_task *job = robot->job;
+    return job->lets_go && robot->now_us - job->begun_us >= (job->bound_us - job->begun_us) / 2;
+}
+
 static int step_quiet(grobo_robot *robot)
 {
     bool still = !grobo_robot_is_playing(robot) && !grobo_i_slots_busy(robot, GROBO_I_USE_HALT);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool ends = axis->way.to_us <= robot->now_us || !grobo_i_may_halt(robot);
+        bool ends = !grobo_i_axis_moves(axis, robot->now_us) || !grobo_i_may_halt(robot);
         still = still && axis->next == 0 && ends;
     }
-    if (still) {
+    if (still || is_pressed(robot)) {
         return GROBO_I_NEXT;
     }
     grobo_i_job_goto(robot, step_quiet);
@@ -653,6 +645,15 @@ static bool arrives(grobo_robot *robot, int joint)
     return arrives;
 }
 
+/* Where to, nobody knows: it stops where it was, and moves until its halt has left. */
+static void send_astray(grobo_robot *robot, int joint)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    grobo_i_axis_here(axis, robot->now_us);
+    axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ASTRAY_US);
+    axis->has_target = axis->off_way = true;
+}
+
 /* True if the servo, just read, says that it is on a way; notes that way. */
 static bool is_astray(grobo_robot *robot, int joint)
 {
@@ -669,19 +670,42 @@ static bool is_astray(grobo_robot *robot, int joint)
     if (creeps) {
         axis->own_until_us = grobo_i_later(axis->own_until_us, axis->goal_us + left_us);
     }
-    grobo_i_axis_here(axis, robot->now_us);
-    /* To where nobody knows: it stops where it was. */
-    axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ASTRAY_US);
-    axis->has_target = axis->off_way = true;
+    send_astray(robot, joint);
     return true;
 }
 
-/* Nothing goes on behind our back: a halt may be lost, or another program may have been killed. An
- * emergency stop is not over before each joint was read to stand. */
-static int step_strays(grobo_robot *robot)
+/* Joints with torque that were not read to stand. */
+static grobo_joint_mask doubtful(const grobo_robot *robot)
+{
+    grobo_joint_mask on =
+        joints_with(robot, robot->job->joints & ~robot->job->failed, GROBO_TORQUE_ON);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        on &= grobo_i_stands(robot, j) ? ~GROBO_JOINT_BIT(j) : on;
+    }
+    return on;
+}
+
+/* Those that go on are stopped anew, but for those that are arriving, and all are looked at again;
+ * an emergency stop is not over before each joint was read to stand. */
+static int stop_strays(grobo_robot *robot, grobo_joint_mask astray, grobo_joint_mask arriving)
 {
     grobo_robot_task *job = robot->job;
     bool emergency = job->kind == GROBO_JOB_ESTOP;
+    if (astray != 0 && (emergency || job->rounds < ROUNDS)) {
+        grobo_i_gate_halt(robot, grobo_i_all_joints(robot) & ~arriving);
+    }
+    astray |= arriving;
+    if (emergency) {
+        astray |= job->failed;
+        job->joints = astray | doubtful(robot);
+    }
+    return again(robot, astray, step_quiet);
+}
+
+/* Nothing goes on behind our back: a halt may be lost, or another program may have been killed. */
+static int step_strays(grobo_robot *robot)
+{
+    grobo_robot_task *job = robot->job;
     grobo_joint_mask astray = 0, arriving = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         bool asked = grobo_i_has(job->joints & ~job->failed, j);
@@ -691,17 +715,38 @@ static int step_strays(grobo_robot *robot)
             astray |= GROBO_JOINT_BIT(j);
         }
     }
-    if (astray != 0 && (emergency || job->rounds < ROUNDS)) {
-        grobo_i_gate_halt(robot, grobo_i_all_joints(robot) & ~arriving);
-    }
-    astray |= arriving;
-    if (emergency) {
-        job->joints = astray | job->failed;
-        return again(robot, job->joints, step_quiet);
-    }
-    return again(robot, astray, step_quiet);
+    return stop_strays(robot, astray, arriving);
 }
 
+/* Who was not read to stand is looked at again when that shows it. */
+static int step_doubt(grobo_robot *robot)
+{
+    grobo_robot_task *job = robot->job;
+    job->pending = doubtful(robot);
+    job->until_us = robot->now_us;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        int64_t since_us = robot->axes[j].still_us;
+        since_us = since_us == GROBO_NEVER_US ? robot->now_us : since_us;
+        if (grobo_i_has(job->pending, j)) {
+            job->until_us = grobo_i_later(job->until_us, since_us + grobo_i_stand_us(robot));
+        }
+    }
+    return job->pending != 0 ? GROBO_I_WAIT : GROBO_I_NEXT;
+}
+
+/* Then it moves, however slowly, and whatever speed its servo tells. */
+static int step_moved(grobo_robot *robot)
+{
+    grobo_robot_task *job = robot->job;
+    grobo_joint_mask moved = job->pending & doubtful(robot), lost = job->pending & job->failed;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (grobo_i_has(moved, j)) {
+            send_astray(robot, j);
+        }
+    }
+    job->pending = 0;
+    return stop_strays(robot, moved, lost);
+}
 /* Sits down with the joints that hold; a robot that is limp stays so. */
 static int step_aim_rest(grobo_robot *robot)
 {
@@ -742,7 +787,8 @@ const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, step_watchdog_clear, SWITCH,
                                                        NULL};
 const grobo_robot_step_fn grobo_i_script_exit_hold[] = {
-    step_quiet, step_read, TWICE, step_hear_all, step_strays, step_watchdog_clear, NULL};
+    step_quiet, step_read,         TWICE,      step_hear_all,       step_strays,
+    step_doubt, step_read_pending, step_moved, step_watchdog_clear, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
     step_quiet,    step_read, step_read_again, step_require,        step_from_here,
     step_aim_rest, MOVE,      step_require,    step_watchdog_clear, SWITCH,

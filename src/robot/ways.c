@@ -133,6 +133,7 @@ void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(target->posture.set, j)) {
             robot->axes[j].told_to_us = robot->now_us + target->joint_time_us[j];
+            grobo_i_stand_forget(&robot->axes[j]);
         }
     }
 }

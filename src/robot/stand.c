@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Whether a joint stands, by what was read since the last frame that told it something. A speed
+ * that a servo reports is not believed: below a few degrees a second many report none. Either two
+ * positions lie so far apart in time and so near in place that a joint which creeps at CREEPS_RAD_S
+ * would show, or the servo's own goal was read back and reached.
+ */
+#include <math.h>
+
+#include "src/robot/robot.h"
+
+#define STANDS_RAD (0.5 * 0.017453292519943295)
+#define CREEPS_RAD_S (0.9 * 0.017453292519943295)
+
+static double still_rad(const grobo_robot *robot)
+{
+    return fmax(STANDS_RAD, 2 * robot->driver->angle_step_rad);
+}
+
+int64_t grobo_i_stand_us(const grobo_robot *robot)
+{
+    double apart_rad = still_rad(robot) + robot->driver->angle_step_rad;
+    return (int64_t)(apart_rad / CREEPS_RAD_S * 1e6);
+}
+
+void grobo_i_stand_forget(grobo_robot_axis *axis)
+{
+    axis->still_us = GROBO_NEVER_US;
+    axis->goal_is_read = false;
+}
+
+void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double angle_rad)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    bool known = axis->still_us != GROBO_NEVER_US && axis->sensed &&
+                 asked_us - axis->stood_us <= GROBO_WATCH_US;
+    if (!known || fabs(angle_rad - axis->still_rad) > still_rad(robot)) {
+        axis->still_rad = angle_rad;
+        axis->still_us = robot->now_us;
+    }
+    axis->stood_us = asked_us;
+}
+
+bool grobo_i_stands(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool known = axis->sensed && axis->still_us != GROBO_NEVER_US;
+    bool there = axis->goal_is_read &&
+                 fabs(axis->state.goal_rad - axis->state.angle_rad) <= still_rad(robot);
+    return known && (there || axis->stood_us - axis->still_us >= grobo_i_stand_us(robot));
+}
+
+bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    const grobo_robot_way *way = &axis->way;
+    double same_rad = grobo_i_same_goal_rad(robot);
+    double goal_rad = axis->state.goal_rad;
+    if (!axis->in_segments || axis->goal_us >= way->to_us) {
+        return fabs(goal_rad - way->to_rad) <= same_rad;
+    }
+    double here_rad = grobo_i_way_at(way, axis->goal_us);
+    return goal_rad >= fmin(here_rad, way->to_rad) - same_rad &&
+           goal_rad <= fmax(here_rad, way->to_rad) + same_rad;
+}
