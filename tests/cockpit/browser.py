@@ -108,7 +108,7 @@ class Server:
     def settle(self):
         """The next test finds a robot that stands, with nobody driving."""
         if self.state()['stop']['latched']:
-            self.call('POST', '/api/reset', {})
+            self.call('POST', '/api/reset', {'sequence': self.call('GET', '/api/state')['sequence']})
         self.wait(lambda s: s['lease']['holder'] is None and not s['stop']['latched'] and
                   s['play']['state'] not in ('playing', 'approaching', 'paused', 'stopping'), 'rest')
 
@@ -375,7 +375,7 @@ def escape_stops_in_any_focus_and_without_control(browser, server):
         page.locator(focus).focus()
         page.keyboard.press(key)
         stopped(page)
-        server.call('POST', '/api/reset', {})
+        server.call('POST', '/api/reset', {'sequence': server.state()['sequence']})
         until(page, '!cockpit.state.stop.latched')
 
 
@@ -386,7 +386,7 @@ def a_page_without_the_token_watches_and_stops(browser, server):
     page.click('#stop')
     server.wait(lambda s: s['stop']['latched'], 'a stop')
     stopped(page)
-    server.call('POST', '/api/reset', {})
+    server.call('POST', '/api/reset', {'sequence': server.state()['sequence']})
 
 
 @test
@@ -1682,7 +1682,7 @@ def pictures_of_each_view(browser, server):
             until(page, "cockpit.state.stop.confirmed && document.getElementById('stopped').matches('.ok')")
             page.screenshot(path=f'{folder}/{size}-stopped-{look}.png')
             page.close()
-            server.call('POST', '/api/reset', {})
+            server.call('POST', '/api/reset', {'sequence': server.state()['sequence']})
     return None
 
 

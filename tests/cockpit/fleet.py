@@ -38,7 +38,7 @@ class Server:
 
     def settle(self):
         if self.view.state()['latch']:
-            self.view.post('reset')
+            self.view.target('reset')
         self.view.wait('rest', lambda s: s['latch'] is None and not any(r['stopped'] for r in s['robots']))
 
 

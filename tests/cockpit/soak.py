@@ -126,7 +126,7 @@ def drive(server):
     """Takes the lease; plays, jogs, moves, stops; or falls silent in the middle of it."""
     page = Page(server, "soak")
     if page.state()["stop"]["latched"]:
-        page.post("reset")
+        page.target("reset")
     page.take().keep_beating()
     try:
         page.target("play", motion=MOTION, speed_pct=200, on_lost=random.choice(("stop", "finish", "exit")))
@@ -135,7 +135,7 @@ def drive(server):
         if way == 0:
             page.ask("POST", "/stop", b"{}", {}, server.stop_port)
             page.wait("confirmed", lambda s: s["stop"]["confirmed"])
-            page.post("reset")
+            page.target("reset")
         elif way == 1:
             page.post("halt")
             for angle in range(0, -30, -2):

@@ -313,8 +313,6 @@ def refusals():
             same(post([json_type, own, own], path, port), 403, "two Origins")
             same(post([json_type, "Sec-Fetch-Site: cross-site"], path, port), 403, "cross-site")
             same(post([json_type, own, "Sec-Fetch-Site: cross-site"], path, port), 403, "both")
-            same(post(["Content-Type: application/x-www-form-urlencoded"], path, port), 415, "form")
-            same(post(["Content-Type: multipart/form-data; boundary=x"], path, port), 415, "form")
         same(post([json_type, "Sec-Fetch-Site: same-site"], "/api/stop"), 403, "another port's page")
         assert not page.state()["stop"]["latched"], "one of these stopped the robot"
         for path in ("/api/play", "/api/torque", "/api/reset", "/api/preview"):
@@ -615,7 +613,7 @@ def names():
             page.wait_event(re.escape(told + " drives"))
             page.post("stop", name=given)
             same(page.state()["stop"]["by"], told)
-            page.post("reset")
+            page.target("reset")
 
 
 def driving():
@@ -639,9 +637,9 @@ def driving():
         page.post("pause")
         page.wait_played("paused")
         page.target("seek", t_ms=2000)
-        page.post("resume")
+        page.target("resume")
         state = page.wait_played("playing")
-        page.post("speed", speed_pct=1000)
+        page.target("speed", speed_pct=1000)
         page.wait("bow is played", lambda s: s["play"]["motion"] == "bow.pseq")
         page.wait_played("finished")
         page.target("torque", joints=["right_arm"], mode="limp")
@@ -658,13 +656,211 @@ def stale():
     with Server() as server:
         page = Page(server).take().keep_beating()
         old = page.state()["sequence"]
-        for bad in (0, -1, 10 ** 9, "7", None, 1.5):
-            expect(409, "stale", page.post, "move", pose="init", sequence=bad)
+        for bad in (0, -1, "7", None, 1.5, True, [7]):
+            expect(400, "arg", page.post, "move", pose="init", sequence=bad)
+        expect(409, "stale", page.post, "move", pose="init", sequence=10 ** 9)
         page.wait("a second has passed", lambda s: s["sequence"] > old + 45)
         expect(409, "stale", page.post, "move", pose="init", sequence=old)
         same(page.beat(drawn=old), 409, "a page that draws nothing")
         same(page.beat(lease="0" * 32), 409, "a lease that is none")
         page.fall_silent()
+
+
+def fields():
+    """A body is taken whole or refused: no mistake in it means all joints, or a default."""
+    with Server() as server:
+        page = Page(server).take().keep_beating()
+        page.target("torque", joints="all", mode="on")
+        page.wait("all hold", lambda s: set(s["torque"]) == {"on"})
+        elbow = {"joints": ["R_ELBOW_P"], "mode": "off"}
+        for bad in ({"joints": "R_ELBOW_P"}, {"joints": []}, {"joints": None}, {"joints": 16},
+                    {"joints": {}}, {"joints": [16]}, {"joints": ["R_ELBOW_P", None]},
+                    {"joints": "ALL"}, {"mode": "offf"}, {"mode": 0}, {"mode": None},
+                    {"joint": ["R_ELBOW_P"]}, {"Joints": ["R_ELBOW_P"]}, {"on": True}):
+            no = expect(400, "arg", page.target, "torque", **{**elbow, **bad})
+            assert "expected" in no.error["message"], no.error
+        no = expect(400, "arg", page.target, "torque", mode="off")
+        same(no.error["message"], "torque: joints is missing; expected a list of names of joints "
+                                  "or groups, or \"all\"")
+        expect(400, "arg", page.post, "torque", **elbow)  # no sequence
+        expect(400, "notfound", page.target, "torque", joints=["R_ELBOW"], mode="off")
+        wrong = {
+            "move": [{}, {"angle_deg": {}}, {"angle_deg": [0]}, {"angle_deg": {"CHEST_P": "1"}},
+                     {"angle_deg": {"CHEST_P": None}}, {"pose": "sit"}, {"pose": None},
+                     {"pose": "init", "angle_deg": {"CHEST_P": 1}}, {"pose": "init", "time": 100},
+                     {"pose": "init", "time_ms": -1}, {"pose": "init", "time_ms": "100"},
+                     {"pose": "init", "time_ms": 163831}],
+            "jog": [{}, {"angle_deg": {}}, {"angle_deg": {"CHEST_P": 1}, "pose": "init"}],
+            "play": [{}, {"motion": 7}, {"motion": "greet.pseq", "speed_pct": 0},
+                     {"motion": "greet.pseq", "speed_pct": 1001},
+                     {"motion": "greet.pseq", "speed_pct": 50.5},
+                     {"motion": "greet.pseq", "loop": "no"}, {"motion": "greet.pseq", "mirror": 1},
+                     {"motion": "greet.pseq", "repeat": 0}, {"motion": "greet.pseq", "speed": 50},
+                     {"motion": "greet.pseq", "on_lost": "sit"},
+                     {"motion": "greet.pseq", "from_ms": -1}],
+            "queue": [{}, {"motion": "greet.pseq", "on_lost": "stop"}],
+            "seek": [{}, {"t_ms": -1}, {"t_ms": "0"}, {"t": 0}],
+            "speed": [{}, {"speed_pct": 0}, {"speed_pct": 1e9}, {"pct": 50}],
+            "resume": [{"motion": "greet.pseq"}], "reset": [{"force": True}],
+        }
+        for verb, bodies in wrong.items():
+            for body in bodies:
+                no = expect(400, "arg", page.target, verb, **body)
+                assert no.error["message"].startswith(verb), no.error
+                assert "expected" in no.error["message"], no.error
+        for verb in ("resume", "reset"):
+            expect(400, "arg", page.post, verb)
+        for verb, body in (("pause", {"sequence": 1}), ("halt", {"now": True}),
+                           ("capture", {"joints": []}), ("capture", {"joints": "R_ELBOW_P"}),
+                           ("capture", {"joint": ["R_ELBOW_P"]}),
+                           ("lease", {"action": "steal"}), ("lease", {}),
+                           ("lease", {"action": "take", "name": 7}),
+                           ("lease", {"action": "take", "operator": True}),
+                           ("preview", {"motion": 7}), ("preview", {}),
+                           ("preview", {"motion": "greet.pseq", "rate": 30}),
+                           ("preview", {"motion": "greet.pseq", "speed_pct": "50"}),
+                           ("ik", {"angle_deg": [0.0] * 20, "handle": "waist", "p_m": [0, 0, 0],
+                                   "rot": []})):
+            expect(400, "arg", page.post, verb, **body)
+        for path in ("/api/state?x=1", "/api/motions?rate=7", "/api/motions/greet.pseq?rate=x",
+                     "/api/motions/greet.pseq?rat=50"):
+            expect(400, "arg", page.get, path)
+        for beat in ({"drawn": 1}, {"lease": page.lease, "drawn": "1"}, {"lease": 7, "drawn": 1},
+                     {"lease": page.lease, "drawn": 1, "x": 1}):
+            same(page.ask("POST", "/heartbeat", beat, port=server.stop_port)[0], 400, beat)
+        state = page.wait("every joint was read", lambda s: None not in s["torque"])
+        same((set(state["torque"]), state["limp"], state["moving"]), ({"on"}, [], False))
+        page.target("torque", **elbow)
+        state = page.wait("the elbow is limp", lambda s: s["torque"][16] == "off")
+        same(sum(t == "on" for t in state["torque"]), 19)
+        page.target("torque", joints=["all"], mode="off")
+        page.wait("all are limp", lambda s: set(s["torque"]) == {"off"})
+        page.fall_silent()
+
+
+def delayed():
+    """What was held up on its way acts on no newer situation."""
+    with Server() as server:
+        page, other = Page(server).take().keep_beating(), Page(server, "Ben")
+        page.target("play", motion="greet.pseq", loop=True)
+        page.wait_played("playing")
+        # Released before a stop was pressed, and it arrives after that.
+        before = page.state()["sequence"]
+        other.post("stop", name="Ben")
+        no = expect(409, "stale", page.post, "reset", sequence=before)
+        assert "stop by Ben" in no.error["message"], no.error
+        assert no.error["sequence"] > before, no.error
+        assert page.state()["stop"]["latched"]
+        # Released as it was seen, but somebody pressed again meanwhile.
+        seen = page.wait("confirmed", lambda s: s["stop"]["confirmed"])["sequence"]
+        other.post("stop", name="Carla")
+        no = expect(409, "stale", page.post, "reset", sequence=seen)
+        assert "stop by Carla" in no.error["message"], no.error
+        assert page.state()["stop"]["latched"]
+        page.target("reset")
+        assert not page.state()["stop"]["latched"]
+        # A move from before the stop does not begin after its release.
+        page.fall_silent()
+        page.take().keep_beating()
+        for verb, body in (("move", {"pose": "init"}), ("play", {"motion": "greet.pseq"}),
+                           ("queue", {"motion": "greet.pseq"}), ("seek", {"t_ms": 0}),
+                           ("jog", {"angle_deg": {"R_ELBOW_P": -10}}), ("resume", {}),
+                           ("speed", {"speed_pct": 400}),
+                           ("torque", {"joints": "all", "mode": "off"}),
+                           ("torque", {"joints": "all", "mode": "on"})):
+            expect(409, "stale", page.post, verb, sequence=seen, **body)
+        # A resume from before a halt, or from before the pause.
+        page.target("play", motion="greet.pseq", loop=True)
+        playing = page.wait_played("playing")["sequence"]
+        done = page.post("pause")
+        page.wait_played("paused")
+        no = expect(409, "stale", page.post, "resume", sequence=playing)
+        assert "paused" in no.error["message"], no.error
+        same(page.state()["play"]["state"], "paused")
+        assert done["sequence"] > playing
+        paused = page.state()["sequence"]
+        page.post("halt")
+        expect(409, "stale", page.post, "resume", sequence=paused)
+        page.wait("it stands", lambda s: not s["moving"])
+        # A jog that comes after the halt that ended it; and a move after torque was switched off.
+        before = page.state()["sequence"]
+        page.post("halt")
+        expect(409, "stale", page.post, "jog", sequence=before, angle_deg={"R_ELBOW_P": -10})
+        before = page.state()["sequence"]
+        page.target("torque", joints=["R_ELBOW_P"], mode="off")
+        expect(409, "stale", page.post, "move", sequence=before, angle_deg={"R_ELBOW_P": -10})
+        # What the answers name is the situation that they made.
+        told = page.post("halt")
+        page.post("move", sequence=told["sequence"], angle_deg={"L_ELBOW_P": -10})
+        page.fall_silent()
+
+
+def unreadable():
+    """A stop is carried out whatever its body is, also where it never comes."""
+    broken = [b"{", b"[]", b"nothing", b'{"name": 7}', b'{"a": 1, "a": 2}', b'{"unknown": 1}',
+              b"\xff\xfe", b"\x00", b'"' + b"x" * 100 + b'"']
+    with Server() as server:
+        page = Page(server)
+
+        def stopped(what):
+            state = page.wait(f"stopped: {what}", lambda s: s["stop"]["latched"])
+            page.wait("confirmed", lambda s: s["stop"]["confirmed"])
+            page.target("reset")
+            assert not page.state()["stop"]["latched"]
+            return state
+
+        def head(port, path, *lines):
+            return "\r\n".join([f"POST {path} HTTP/1.1", f"Host: 127.0.0.1:{port}", *lines, "",
+                                ""]).encode()
+
+        for port, path in ((server.port, "/api/stop"), (server.stop_port, "/stop")):
+            for body in broken:
+                status = page.ask("POST", path, body, {"Content-Type": "application/json"}, port)[0]
+                assert status in (200, 204), f"{path} {body[:20]}: {status}"
+                stopped(f"{path} {body[:20]}")
+            for kind in ("application/x-www-form-urlencoded", "multipart/form-data; boundary=x",
+                         "application/octet-stream", "application/jsonx", "\tnonsense"):
+                assert page.ask("POST", path, b"{}", {"Content-Type": kind}, port)[0] < 300, kind
+                stopped(f"{path} {kind}")
+            raw(port, head(port, path + "?why=because", "Connection: close"))
+            stopped("with a query, without a length")
+            for lines in (("Content-Length: 65537",), ("Content-Length: 100000000",),
+                          ("Content-Length: none",), ("Content-Length: -1",),
+                          ("Content-Length: 10", "Content-Length: 20"),
+                          ("Transfer-Encoding: chunked",), ("Transfer-Encoding: gzip",),
+                          ("Content-Length: 50",)):
+                with socket.create_connection(("127.0.0.1", port), PATIENCE_S) as s:
+                    s.sendall(head(port, path, *lines) + b"{")  # and the rest never comes
+                    stopped(f"{path} {lines}")
+            with socket.create_connection(("127.0.0.1", port), PATIENCE_S) as s:
+                for byte in head(port, path, "Content-Length: 9", "X: " + "y" * 99) + b"{":
+                    s.sendall(bytes([byte]))
+                stopped(f"{path}, byte by byte")
+            large = b'{"name": "' + b"x" * 100000
+            page.ask("POST", path, large[:70000 if port == server.port else 60000], {}, port)
+            stopped("a large body that is no JSON")
+        # What comes from another page, or is no stop, is none however early it is looked at.
+        for lines in (("Origin: http://evil.example",), ("Sec-Fetch-Site: cross-site",),
+                      ("Host: evil.example",)):
+            with socket.create_connection(("127.0.0.1", server.port), PATIENCE_S) as s:
+                s.sendall(head(server.port, "/api/stop", *lines, "Content-Length: 9"))
+                s.sendall(b"{")
+                time.sleep(0.1)
+        for text in (b"GET /api/stop HTTP/1.1", b"POST /api/stopx HTTP/1.1",
+                     b"POST /stop HTTP/1.1", b"POST http://evil.example/api/stop HTTP/1.1"):
+            raw(server.port, text + f"\r\nHost: 127.0.0.1:{server.port}\r\nConnection: close"
+                                    "\r\n\r\n".encode())
+        assert not page.state()["stop"]["latched"], "one of these stopped the robot"
+        # Who stops is told as soon as it is known, and once.
+        with socket.create_connection(("127.0.0.1", server.stop_port), PATIENCE_S) as s:
+            s.sendall(head(server.stop_port, "/stop", "Content-Length: 16"))
+            page.wait("stopped", lambda s: s["stop"]["latched"])
+            s.sendall(b'{"name": "Anna"}')
+            s.recv(4096)
+            page.wait("its name", lambda s: s["stop"]["by"] in ("Anna", "a request that is not whole"))
+        page.target("reset")
+        page.post("stop", name="Ben")
+        same(page.state()["stop"]["by"], "Ben")
 
 
 def stopping():
@@ -692,7 +888,7 @@ def stopping():
         other.post("stop", name="again")
         same(other.state()["stop"]["by"], "other", "it is one stop")
         page.fall_silent()
-        other.post("reset")
+        other.target("reset")
         state = other.state()
         assert not state["stop"]["latched"] and not state["moving"], state["stop"]
         assert max(abs(a - b) for a, b in zip(where, state["angle_deg"])) < 1, "it moved by itself"
@@ -730,7 +926,7 @@ def on_the_way():
             time.sleep(0.3)  # what was not stopped would go on
             last = page.state()["angle_deg"][14]
             assert abs(last - where) < 30, f"{way}: from {where} to {last} after a stop"
-            page.post("reset")
+            page.target("reset")
         page.fall_silent()
 
 
@@ -776,7 +972,7 @@ def latency():
             state = page.wait("confirmed", lambda s: s["stop"]["confirmed"])
             assert not state["moving"]
             stops.append((wall, time.time()))
-            page.post("reset")
+            page.target("reset")
         for s in deaf:
             s.close()
         page.fall_silent()
@@ -1309,6 +1505,21 @@ class Schemas:
                     f"{method} {path}: {status}"
             same(page.ask("GET", real, port=other)[0], 404, f"{path} at the other port")
 
+    def bodies(self, page, *but):
+        """Every body that is told has the fields that are taken, no more and no less."""
+        for path, methods in self.api["paths"].items():
+            content = methods.get("post", {}).get("requestBody", {}).get("content", {})
+            for schema in [c["schema"]["$ref"] for c in content.values() if "$ref" in c["schema"]]:
+                if path in but:
+                    continue
+                port = page.server.stop_port if "servers" in methods else page.server.port
+                status, _, got = page.ask("POST", path, {"zzz": 1}, port=port)
+                same(status, 400, path)
+                said = json.loads(got)["error"]["message"]
+                taken = re.search("unknown field 'zzz'; expected (.*)$", said).group(1).split(", ")
+                told = self.api["components"]["schemas"][schema.rsplit("/", 1)[1]]["properties"]
+                same(sorted(taken), sorted(told) or ["none"], path)
+
     def routes(self, source, *but):
         """Every path that the source has is told: a string of it that begins with a slash is one."""
         with open(source, encoding="utf-8") as f:
@@ -1331,7 +1542,8 @@ def schema():
         page = Page(server)
         fits.paths(page, {"name": "greet.pseq"})
         fits.routes("tools/grctl/web/routes.c", "/api/motions/NAME", "/api/motions/NAME/file")
-        page.post("reset")
+        fits.bodies(page, "/api/stop", "/api/estop")
+        page.target("reset")
         fits("robot", page.get("/api/robot"))
         fits("state", page.state())
         fits("motions", page.get("/api/motions"))

@@ -164,7 +164,9 @@ def stopping():
     with Fleet() as fleet, Server(broker=fleet.url) as server:
         view = View(server)
         view.wait_all()
-        expect(409, "state", view.post, "reset")
+        expect(409, "state", view.target, "reset")
+        expect(400, "arg", view.post, "reset")
+        expect(400, "arg", view.target, "reset", group="all")
         fleet.play()
         view.wait("they play", lambda s: all(
             view.robots(s)[r]["play"] == "playing" and view.robots(s)[r]["motion"] == "greet.pseq"
@@ -185,7 +187,11 @@ def stopping():
         view.wait("as an emergency stop", lambda s: s["latch"] and s["latch"]["kind"] == "estop" and
                   all(view.robots(s)[r]["stop"] == "stopped" for r in "abc"))
         expect(401, "token", view.call, "POST", "/api/reset", {}, {"X-Grobo-Token": None})
-        view.post("reset", name="test")
+        seen = view.state()["sequence"]
+        view.post("estop", name="Anna")
+        no = expect(409, "stale", view.post, "reset", sequence=seen)  # it was held up on its way
+        assert "by Anna" in no.error["message"], no.error
+        view.target("reset", name="test")
         view.wait("released", lambda s: s["latch"] is None and not any(
             r["stopped"] for r in s["robots"]))
         view.wait("no trip is left", lambda s: all(r["trip"] is None for r in s["robots"]))
@@ -194,7 +200,7 @@ def stopping():
         same(fleet.order("stop")[0], 1, "d is not there")
         state = view.wait("a stop of another is seen", lambda s: s["latch"] is not None)
         same(state["latch"]["ours"], False)
-        view.post("reset")
+        view.target("reset")
         view.wait("and released", lambda s: s["latch"] is None)
         fleet.end("lab")
         gone = view.wait("the lab is gone", lambda s: all(
@@ -216,7 +222,7 @@ def broker_away():
         no = expect(503, "unreachable", view.post, "stop", name="test")
         assert "use the switches" in no.error["message"], no
         same(view.ask("POST", "/stop", b"{}", {}, server.stop_port)[0], 503)
-        expect(503, "unreachable", view.post, "reset")
+        expect(503, "unreachable", view.target, "reset")
         view.wait("it is kept", lambda s: s["wanted"])
         fleet.begin_broker()
         view.wait("it went out", lambda s: s["latch"] is not None and not s["wanted"])
@@ -250,7 +256,6 @@ def walls():
             for port, path in ((server.port, "/api/stop"), (server.stop_port, "/stop")):
                 same(post([json_type, "Origin: http://evil.example"], path, port), 403, path)
                 same(post([json_type, "Sec-Fetch-Site: cross-site"], path, port), 403, path)
-                same(post(["Content-Type: application/x-www-form-urlencoded"], path, port), 415, path)
             same(view.state()["latch"], None, "one of these stopped the robots")
             same(post([json_type], "/api/reset"), 401, "reset without token")
             for path in ("/api/play", "/api/robot", "/api/motions", "/api/lease", "/nothing"):
@@ -320,9 +325,10 @@ def schema():
         view = View(server)
         fits = Schemas("docs/serve-fleet.openapi.json")
         fits.paths(view, {})
+        fits.bodies(view, "/api/stop", "/api/estop", "/stop", "/estop")
         fits.routes("tools/grctl/web/fleet.c", "/index.html", "/fleet.html")
         view.wait("stopped by that", lambda s: s["latch"] is not None)
-        view.post("reset")
+        view.target("reset")
         view.wait_all()
         fits("fleet", view.get("/api/fleet"))
         fits("state", view.state())

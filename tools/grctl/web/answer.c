@@ -27,14 +27,17 @@ bool serve_is_moving(const serve *s)
                        grobo_robot_job(s->c.robot) == GROBO_JOB_PLAY);
 }
 
-bool serve_is_fresh(const serve *s, const json_t *sequence)
+bool serve_is_based(serve *s, http_request *r, const json_t *body, const char *doing)
 {
-    json_int_t n = json_integer_value(sequence);
-    if (!json_is_integer(sequence) || n <= 0 || (uint64_t)n > s->sequence ||
-        s->sequence - (uint64_t)n >= SERVE_SEQUENCES) {
-        return false;
+    char complaint[BASED_COMPLAINT_BYTES];
+    bool fine =
+        based_check(&s->based, json_object_get(body, "sequence"), grobo_now_us(), doing, complaint);
+    if (!fine) {
+        json_t *refusal = serve_refusal("stale", complaint);
+        json_object_set_new(refusal, "sequence", json_integer((json_int_t)s->based.sequence));
+        http_reply_json(r, 409, json_pack("{s:o}", "error", refusal));
     }
-    return grobo_now_us() - s->sequence_us[n % SERVE_SEQUENCES] <= SERVE_STALE_US;
+    return fine;
 }
 
 int serve_note_job(serve *s, int job, const char *doing)
@@ -125,7 +128,8 @@ void serve_accept(serve *s, http_request *r, int result, const char *doing)
         serve_refuse(s, r, result, doing);
         return;
     }
-    json_t *body = json_pack("{s:b,s:I}", "done", result == 0, "sequence", (json_int_t)s->sequence);
+    json_t *body =
+        json_pack("{s:b,s:I}", "done", result == 0, "sequence", (json_int_t)s->based.sequence);
     if (result > 0) {
         json_object_set_new(body, "job", json_integer(result));
     }

@@ -7,6 +7,7 @@
 #include "tools/grctl/cli/heap.h"
 #include "tools/grctl/play/play.h"
 #include "tools/grctl/web/edit.h"
+#include "tools/grctl/web/fields.h"
 #include "tools/grctl/web/library.h"
 #include "tools/grctl/web/pose.h"
 
@@ -34,6 +35,38 @@ static int complain(const making *m, int error, const char *what)
 }
 
 /* ---- what a key gives ------------------------------------------------------------------------ */
+
+static const field key_fields[] = {
+    {.name = "from", .kind = FIELD_WHOLE, .least = 0, .most = 1e9},
+    {.name = "mirror", .kind = FIELD_FLAG},
+    {.name = "time_ms", .kind = FIELD_NUMBER, .least = -1e15, .most = 1e15},
+    {.name = "name", .kind = FIELD_TEXT},
+    {.name = "angle_deg", .kind = FIELD_OBJECT},
+    {.name = "links", .kind = FIELD_LIST},
+    {.name = "stationary", .kind = FIELD_NUMBERS, .most = GROBO_JOINTS_MAX},
+    {.name = "zmp_m", .kind = FIELD_NUMBERS, .nullable = true, .least = 3, .most = 3},
+    {.name = "max_transition_ms", .kind = FIELD_NUMBER, .least = 0, .most = 1e12},
+    {.name = NULL}};
+static const field link_fields[] = {
+    {.name = "link", .kind = FIELD_TEXT, .needed = true},
+    {.name = "p_m", .kind = FIELD_NUMBERS, .least = 3, .most = 3},
+    {.name = "rotation", .kind = FIELD_NUMBERS, .least = 9, .most = 9},
+    {.name = "base", .kind = FIELD_FLAG},
+    {.name = "stationary", .kind = FIELD_FLAG},
+    {.name = "touching", .kind = FIELD_FLAG},
+    {.name = "slave", .kind = FIELD_FLAG},
+    {.name = NULL}};
+
+/* The fields of one key, or of one link of it. */
+static int check_fields(const making *m, const json_t *given, const field *fields, const char *what)
+{
+    char complaint[FIELDS_TEXT_BYTES];
+    if (fields_fit(given, fields, what, complaint)) {
+        return GROBO_OK;
+    }
+    snprintf(m->result->complaint, sizeof m->result->complaint, "key %zu: %s", m->key, complaint);
+    return GROBO_ERR_ARG;
+}
 
 static int read_angles(const making *m, const json_t *angles, grobo_posture *posture)
 {
@@ -176,15 +209,14 @@ static int set_links(const making *m, const json_t *list, const source *from)
     }
     for (size_t i = 0; i < count; i++) {
         const json_t *link = json_array_get(list, i);
-        const char *name = json_string_value(json_object_get(link, "link"));
-        was[i] = name ? find_link(from, name) : -1;
-        int error =
-            !name
-                ? complain(m, GROBO_ERR_ARG, "a link has its name, p_m and rotation")
-                : read_link(m, link,
-                            was[i] < 0 ? NULL
-                                       : &grobo_motion_ik_links(from->of, from->n, &n_old)[was[i]],
-                            &links[i]);
+        int error = check_fields(m, link, link_fields, "links");
+        if (error) {
+            return error;
+        }
+        was[i] = find_link(from, json_string_value(json_object_get(link, "link")));
+        const grobo_ik_link *old =
+            was[i] < 0 ? NULL : &grobo_motion_ik_links(from->of, from->n, &n_old)[was[i]];
+        error = read_link(m, link, old, &links[i]);
         if (error) {
             return error;
         }
@@ -289,7 +321,10 @@ static int add_key(making *m, const json_t *key)
     grobo_key_info info = {0};
     double time_s = json_number_value(time) / 1e3;
     source from;
-    int error = find_source(m, key, &from);
+    int error = check_fields(m, key, key_fields, "keys");
+    if (!error) {
+        error = find_source(m, key, &from);
+    }
     if (error) {
         return error;
     }
@@ -379,6 +414,10 @@ static int read_shift(making *m, const json_t *key, double end_s, size_t *n, shi
 {
     const json_t *time = json_object_get(key, "time_ms");
     grobo_posture was, wanted;
+    int error = check_fields(m, key, key_fields, "keys");
+    if (error) {
+        return error;
+    }
     s->time_s = json_number_value(time) / 1e3;
     if (!json_is_number(time) || !(s->time_s >= 0 && s->time_s <= end_s + 1e-3)) {
         return complain(m, GROBO_ERR_ARG, "it has no time_ms within the frames");
@@ -392,7 +431,7 @@ static int read_shift(making *m, const json_t *key, double end_s, size_t *n, shi
     m->before_s = s->time_s;
     sample_base(m, s->time_s, n, &was);
     grobo_posture_init(&wanted, m->model->n_joints);
-    int error = read_angles(m, json_object_get(key, "angle_deg"), &wanted);
+    error = read_angles(m, json_object_get(key, "angle_deg"), &wanted);
     for (int j = 0; !error && j < m->model->n_joints; j++) {
         if (wanted.set & ~was.set & GROBO_JOINT_BIT(j)) {
             return complain(m, GROBO_ERR_NOTFOUND, "the frames have no such joint");
@@ -450,11 +489,20 @@ static int edit_frames(making *m, const json_t *keys)
     return error;
 }
 
+static const field edit_fields[] = {
+    {.name = "keys", .kind = FIELD_LIST, .needed = true},
+    {.name = "base", .kind = FIELD_OBJECT}, /* of a PUT, which reads it */
+    {.name = "kind", .kind = FIELD_WORD, .words = "postures, keys, steps, frames"},
+    {.name = NULL}};
+
 int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion *base,
                grobo_motion_format format, edit_result *result)
 {
     const json_t *keys = json_object_get(edit, "keys");
     making m = {.model = model, .base = base, .before_s = -INFINITY, .result = result};
+    if (!fields_fit(edit, edit_fields, "edit", result->complaint)) {
+        return GROBO_ERR_ARG;
+    }
     if (json_array_size(keys) == 0) {
         snprintf(result->complaint, sizeof result->complaint, "keys is no list of key poses");
         return GROBO_ERR_EMPTY;

@@ -11,7 +11,7 @@
 
 typedef struct edit_result {
     grobo_motion *motion; /* the caller's */
-    char complaint[256];  /* one line, where there is an error */
+    char complaint[384];  /* one line, where there is an error */
 } edit_result;
 
 /*

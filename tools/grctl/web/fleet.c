@@ -9,7 +9,9 @@
 #include <grobo/version.h>
 
 #include "tools/grctl/fleet/leader.h"
+#include "tools/grctl/web/based.h"
 #include "tools/grctl/web/door.h"
+#include "tools/grctl/web/fields.h"
 #include "tools/grctl/web/page.h"
 
 enum { STATE_HZ = 5, JOINTS_MAX = 64, TEXT_BYTES = 128 };
@@ -33,7 +35,7 @@ typedef struct view {
     http *http;
     events events;
     struct event *tick;
-    uint64_t sequence;
+    based based; /* which state a request had seen */
     bool was_up;
     /* the stop that is wanted, and not out yet */
     const char *wanted; /* NULL: none */
@@ -201,11 +203,12 @@ static json_t *state_json(const view *v)
             }
         }
     }
-    return json_pack("{s:I,s:I,s:b,s:I,s:o,s:b,s:b,s:o,s:i}", "sequence", (json_int_t)v->sequence,
-                     "time_ms", (json_int_t)((grobo_now_us() - v->events.began_us) / 1000),
-                     "broker", v->l.up, "news", (json_int_t)v->l.news, "latch", latch_json(v),
-                     "wanted", v->wanted != NULL, "confirmed", is_latched(v) && confirmed, "robots",
-                     robots, "clients", http_streams(v->http));
+    return json_pack("{s:I,s:I,s:b,s:I,s:o,s:b,s:b,s:o,s:i}", "sequence",
+                     (json_int_t)v->based.sequence, "time_ms",
+                     (json_int_t)((grobo_now_us() - v->events.began_us) / 1000), "broker", v->l.up,
+                     "news", (json_int_t)v->l.news, "latch", latch_json(v), "wanted",
+                     v->wanted != NULL, "confirmed", is_latched(v) && confirmed, "robots", robots,
+                     "clients", http_streams(v->http));
 }
 
 static json_t *joints_json(const json_t *robot)
@@ -278,6 +281,7 @@ static void want_stop(view *v, const char *how, const char *name)
 {
     int64_t now_us = grobo_now_us();
     bool same = v->published && strcmp(v->published, how) == 0;
+    based_change(&v->based, now_us, "%s of all robots by %s", how, name);
     if (same && now_us - v->published_us < AGAIN_US) {
         return;
     }
@@ -305,14 +309,29 @@ static void serve_stop(view *v, http_request *r, const json_t *body)
     } else if (r->second) {
         http_reply_empty(r);
     } else {
-        http_reply_json(
-            r, 200,
-            json_pack("{s:b,s:I}", "done", is_latched(v), "sequence", (json_int_t)v->sequence));
+        http_reply_json(r, 200,
+                        json_pack("{s:b,s:I}", "done", is_latched(v), "sequence",
+                                  (json_int_t)v->based.sequence));
     }
+}
+
+/* A stop that was pressed after this release was sent stands. */
+static bool is_based(view *v, http_request *r, const json_t *body)
+{
+    char complaint[BASED_COMPLAINT_BYTES];
+    bool fine = based_check(&v->based, json_object_get(body, "sequence"), grobo_now_us(), "reset",
+                            complaint);
+    if (!fine) {
+        http_refuse(r, 409, "stale", "%s", complaint);
+    }
+    return fine;
 }
 
 static void serve_reset(view *v, http_request *r, const json_t *body)
 {
+    if (!is_based(v, r, body)) {
+        return;
+    }
     if (!v->l.up) {
         http_refuse(r, 503, "unreachable", "the broker is away");
     } else if (!is_latched(v)) {
@@ -323,8 +342,9 @@ static void serve_reset(view *v, http_request *r, const json_t *body)
         v->release_us = grobo_now_us() + RELEASE_US;
         events_tell(&v->events, "stop", "info", NULL, "the stop is released by %s",
                     door_name(body).name);
-        http_reply_json(r, 200,
-                        json_pack("{s:b,s:I}", "done", false, "sequence", (json_int_t)v->sequence));
+        http_reply_json(
+            r, 200,
+            json_pack("{s:b,s:I}", "done", false, "sequence", (json_int_t)v->based.sequence));
     }
 }
 
@@ -357,6 +377,9 @@ static void remind_broker(view *v, int64_t now_us)
 static void look_after_stop(view *v, int64_t now_us)
 {
     const char *id = is_latched(v) ? fleet_text(v->l.latch, "id") : NULL;
+    if (id && strcmp(id, v->latch_id) != 0) { /* of this view, or of another */
+        based_change(&v->based, now_us, "a stop of the fleet");
+    }
     if (!id || strcmp(id, v->latch_id) != 0) {
         snprintf(v->latch_id, sizeof v->latch_id, "%s", id ? id : "");
         v->latched_us = now_us;
@@ -408,16 +431,25 @@ static void serve_events(view *v, http_request *r, const json_t *body)
     events_stream(&v->events, r);
 }
 
+static const field no_fields[] = {{.name = NULL}};
+static const field reset_fields[] = {
+    FIELD_SEQUENCE, {.name = "name", .kind = FIELD_TEXT}, {.name = NULL}};
+
 static const struct path {
     const char *path;
     wall_rule rule;
     bool second; /* on the second port */
     void (*run)(view *v, http_request *r, const json_t *body);
+    const field *fields; /* NULL: whatever its body has, it is carried out */
 } paths[] = {
-    {"/api/fleet", WALL_READ, false, serve_fleet},   {"/api/state", WALL_READ, false, serve_state},
-    {"/api/events", WALL_READ, false, serve_events}, {"/api/stop", WALL_STOP, false, serve_stop},
-    {"/api/estop", WALL_STOP, false, serve_stop},    {"/stop", WALL_STOP, true, serve_stop},
-    {"/estop", WALL_STOP, true, serve_stop},         {"/api/reset", WALL_ACT, false, serve_reset},
+    {"/api/fleet", WALL_READ, false, serve_fleet, no_fields},
+    {"/api/state", WALL_READ, false, serve_state, no_fields},
+    {"/api/events", WALL_READ, false, serve_events, no_fields},
+    {"/api/stop", WALL_STOP, false, serve_stop, NULL},
+    {"/api/estop", WALL_STOP, false, serve_stop, NULL},
+    {"/stop", WALL_STOP, true, serve_stop, NULL},
+    {"/estop", WALL_STOP, true, serve_stop, NULL},
+    {"/api/reset", WALL_ACT, false, serve_reset, reset_fields},
 };
 
 static const struct path *find_path(const http_request *r)
@@ -449,11 +481,19 @@ static void answer(void *ctx, http_request *r)
         page_serve(r);
         return;
     }
-    json_t *body = http_object(r);
-    if (body) {
-        p->run(ctx, r, body);
-        json_decref(body);
+    json_t *body = p->fields ? http_object(r) : http_object_if_any(r);
+    char complaint[FIELDS_TEXT_BYTES];
+    if (!body && p->fields) {
+        return;
     }
+    if (p->fields && *r->query) {
+        http_refuse(r, 400, "arg", "%s: a query is not expected; the body has the fields", r->path);
+    } else if (p->fields && !fields_fit(body, p->fields, strrchr(r->path, '/') + 1, complaint)) {
+        http_refuse(r, 400, "arg", "%s", complaint);
+    } else {
+        p->run(ctx, r, body);
+    }
+    json_decref(body);
 }
 
 /* ---- the loop -------------------------------------------------------------------------------- */
@@ -480,7 +520,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     int64_t now_us = grobo_now_us();
     (void)fd;
     (void)what;
-    v->sequence++;
+    based_tell(&v->based, now_us);
     if (v->l.up != v->was_up) {
         v->was_up = v->l.up;
         v->check_us = now_us + CHECK_US;

@@ -523,7 +523,7 @@ const char *http_body(const http_request *r, size_t *size)
     return *size ? (const char *)evbuffer_pullup(body, -1) : "";
 }
 
-json_t *http_object(http_request *r)
+static json_t *read_object(http_request *r)
 {
     size_t size;
     json_error_t error;
@@ -531,10 +531,25 @@ json_t *http_object(http_request *r)
     json_t *body = size ? json_loadb(text, size, JSON_REJECT_DUPLICATES, &error) : json_object();
     if (!json_is_object(body)) {
         json_decref(body);
-        http_refuse(r, 400, "syntax", "the body is no JSON object");
         return NULL;
     }
     return body;
+}
+
+json_t *http_object(http_request *r)
+{
+    json_t *body = read_object(r);
+    if (!body) {
+        http_refuse(r, 400, "syntax", "the body is no JSON object");
+    }
+    return body;
+}
+
+json_t *http_object_if_any(http_request *r)
+{
+    size_t size;
+    http_body(r, &size);
+    return size <= HTTP_BODY_BYTES ? read_object(r) : NULL;
 }
 
 wall_answer http_check_token(const http_request *r, const char *token)
@@ -610,7 +625,7 @@ static wall_answer judge_amount(http_request *r, wall_rule rule)
 {
     size_t size;
     http_body(r, &size);
-    if (size > HTTP_BODY_BYTES && rule != WALL_SAVE && rule != WALL_DRAFT) {
+    if (size > HTTP_BODY_BYTES && rule != WALL_SAVE && rule != WALL_DRAFT && rule != WALL_STOP) {
         return (wall_answer){413, "too_large", "the body is larger than 64 kB"};
     }
     if ((rule == WALL_ACT || rule == WALL_SAVE || rule == WALL_DRAFT) && is_flood(r->server)) {

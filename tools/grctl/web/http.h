@@ -83,6 +83,8 @@ const char *http_header(const http_request *r, const char *name);
 const char *http_body(const http_request *r, size_t *size);
 /* The same as a JSON object, to be released; NULL: it is none, and was refused. */
 json_t *http_object(http_request *r);
+/* The same of a request that needs none: NULL where it cannot be read. */
+json_t *http_object_if_any(http_request *r);
 /* The wall's judgement of a token that stood in the body. */
 wall_answer http_check_token(const http_request *r, const char *token);
 

@@ -12,6 +12,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/web/analyse.h"
 #include "tools/grctl/web/edit.h"
+#include "tools/grctl/web/fields.h"
 #include "tools/grctl/web/library.h"
 #include "tools/grctl/web/serve.h"
 
@@ -630,14 +631,19 @@ static void write_edited(ask *q, const grobo_motion *made)
     analysis_end(&n);
 }
 
+static const field base_fields[] = {{.name = "motion", .kind = FIELD_TEXT, .needed = true},
+                                    {.name = "etag", .kind = FIELD_TEXT},
+                                    {.name = NULL}};
+
 static void run_put(ask *q)
 {
     if (!read_sent(q)) {
         return;
     }
     const json_t *base = json_object_get(q->body, "base");
-    if (base && !text_in(base, "motion")) {
-        refuse(q, 400, "arg", "base has the name of a motion");
+    char complaint[FIELDS_TEXT_BYTES];
+    if (base && !fields_fit(base, base_fields, "base", complaint)) {
+        refuse(q, 400, "arg", complaint);
         return;
     }
     bool from_file = *q->match != '\0' && !base;
@@ -699,6 +705,17 @@ static void set_options(ask *q, analysis *n)
     }
 }
 
+static const field preview_fields[] = {
+    {.name = "motion", .kind = FIELD_TEXT},
+    {.name = "edit", .kind = FIELD_OBJECT},
+    {.name = "etag", .kind = FIELD_TEXT},
+    {.name = "speed_pct", .kind = FIELD_WHOLE, .least = 1, .most = GROBO_PLAY_SPEED_MAX_PCT},
+    {.name = "mirror", .kind = FIELD_FLAG},
+    {.name = "reverse", .kind = FIELD_FLAG},
+    {.name = "clamp", .kind = FIELD_FLAG},
+    {.name = "rate_hz", .kind = FIELD_NUMBER, .least = 1, .most = 100},
+    {.name = NULL}};
+
 /* What a preview asks for. False: it is refused. */
 static bool read_preview(ask *q)
 {
@@ -706,15 +723,17 @@ static bool read_preview(ask *q)
         return false;
     }
     const char *name = text_in(q->body, "motion");
-    const json_t *rate = json_object_get(q->body, "rate_hz"),
-                 *speed = json_object_get(q->body, "speed_pct");
-    double speed_pct = speed ? json_number_value(speed) : 100;
-    q->rate_hz = rate ? json_number_value(rate) : 30;
-    if ((!name && !json_object_get(q->body, "edit")) || !(q->rate_hz >= 1 && q->rate_hz <= 100) ||
-        !(speed_pct >= 1 && speed_pct <= GROBO_PLAY_SPEED_MAX_PCT)) {
-        refuse(q, 400, "arg", "preview: motion or edit, speed_pct 1 to 1000, rate_hz 1 to 100");
+    const json_t *rate = json_object_get(q->body, "rate_hz");
+    char complaint[FIELDS_TEXT_BYTES];
+    if (!fields_fit(q->body, preview_fields, "preview", complaint)) {
+        refuse(q, 400, "arg", complaint);
         return false;
     }
+    if (!name && !json_object_get(q->body, "edit")) {
+        refuse(q, 400, "arg", "preview: expected motion or edit");
+        return false;
+    }
+    q->rate_hz = rate ? json_number_value(rate) : 30;
     snprintf(q->name, sizeof q->name, "%s", name ? name : "");
     return true;
 }

@@ -42,38 +42,30 @@ static void set(app *a, int option, double number)
     a->line.option[option] = (cli_value){.given = 1, .number = number};
 }
 
-/* A number of the body within its range, or `otherwise` where there is none. */
-static bool read_number(const json_t *body, const char *key, double least, double most,
-                        double *value)
+/* A number of the body, or `otherwise` where there is none. */
+static double number_of(const json_t *body, const char *key, double otherwise)
 {
     const json_t *number = json_object_get(body, key);
-    if (!number) {
-        return true;
-    }
-    *value = json_number_value(number);
-    return json_is_number(number) && *value >= least && *value <= most;
+    return number ? json_number_value(number) : otherwise;
 }
 
-static bool read_lost(const json_t *body, player_lost *lost)
+static player_lost lost_of(const json_t *body)
 {
-    const json_t *word = json_object_get(body, "on_lost");
-    for (int i = 0; word && i < 3; i++) {
-        if (json_is_string(word) && strcmp(json_string_value(word), lost_words[i]) == 0) {
-            *lost = (player_lost)i;
-            return true;
-        }
+    const char *word = json_string_value(json_object_get(body, "on_lost"));
+    int i = 0;
+    while (word && i < PLAYER_EXIT && strcmp(word, lost_words[i]) != 0) {
+        i++;
     }
-    return !word;
+    return (player_lost)i;
 }
 
-/* The options of `grctl play`, by their names here. False: one is not as it should be. */
-static bool read_options(load *l, const json_t *body)
+/* The options of `grctl play`, by their names here. */
+static void read_options(load *l, const json_t *body)
 {
     static const struct {
         const char *name;
         int option;
     } flags[] = {{"mirror", PLAY_MIRROR}, {"reverse", PLAY_REVERSE}, {"by_keys", PLAY_KEY}};
-    double speed_pct = 100, repeat = 1, from_ms = 0;
     l->app.line = (cli_line){
         .command = cli_find_command("play"), .argument = {l->item->name}, .n_arguments = 1};
     memcpy(l->app.line.global, l->s->a->line.global, sizeof l->app.line.global);
@@ -84,13 +76,10 @@ static bool read_options(load *l, const json_t *body)
     }
     l->app.clamps = json_is_true(json_object_get(body, "clamp"));
     l->item->loop = json_is_true(json_object_get(body, "loop"));
-    bool fine = read_number(body, "speed_pct", 1, GROBO_PLAY_SPEED_MAX_PCT, &speed_pct) &&
-                read_number(body, "repeat", 1, 1e6, &repeat) &&
-                read_number(body, "from_ms", 0, 1e9, &from_ms) && read_lost(body, &l->on_lost);
-    set(&l->app, PLAY_SPEED, round(speed_pct));
-    set(&l->app, PLAY_REPEAT, l->item->loop ? 1e9 : round(repeat));
-    set(&l->app, PLAY_FROM, from_ms);
-    return fine;
+    l->on_lost = lost_of(body);
+    set(&l->app, PLAY_SPEED, number_of(body, "speed_pct", 100));
+    set(&l->app, PLAY_REPEAT, l->item->loop ? 1e9 : number_of(body, "repeat", 1));
+    set(&l->app, PLAY_FROM, number_of(body, "from_ms", 0));
 }
 
 static void free_item(player_item *item)
@@ -221,9 +210,8 @@ static void load_motion(serve *s, http_request *r, json_t *body, bool queued)
     snprintf(l->secret, sizeof l->secret, "%s", s->lease.holder.secret);
     if (!name || !library_is_name(name)) {
         http_refuse(r, 404, "noent", "play: there is no motion of this name");
-    } else if (!read_options(l, body)) {
-        http_refuse(r, 400, "arg", "play: an option is out of its range");
     } else {
+        read_options(l, body);
         worker_put(s->worker, &l->task);
         return;
     }

@@ -5,39 +5,126 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/web/door.h"
+#include "tools/grctl/web/fields.h"
 #include "tools/grctl/web/page.h"
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
+
+/* ---- what a body has ------------------------------------------------------------------------- */
+
+enum { NAME_MOST = LIBRARY_NAME_BYTES - 1, TIME_MOST_MS = 163830 };
+
+#define FIELD_MOTION                                                                               \
+    {                                                                                              \
+        .name = "motion", .kind = FIELD_TEXT, .needed = true                                       \
+    }
+#define FIELD_SPEED                                                                                \
+    {                                                                                              \
+        .name = "speed_pct", .kind = FIELD_WHOLE, .least = 1, .most = GROBO_PLAY_SPEED_MAX_PCT     \
+    }
+#define FIELD_TIME                                                                                 \
+    {                                                                                              \
+        .name = "time_ms", .kind = FIELD_NUMBER, .least = 0, .most = TIME_MOST_MS                  \
+    }
+/* Of how a motion is played. */
+#define FIELDS_OF_PLAY                                                                             \
+    FIELD_MOTION, FIELD_SEQUENCE, FIELD_SPEED, {.name = "mirror", .kind = FIELD_FLAG},             \
+        {.name = "reverse", .kind = FIELD_FLAG}, {.name = "loop", .kind = FIELD_FLAG},             \
+        {.name = "repeat", .kind = FIELD_WHOLE, .least = 1, .most = 1e6},                          \
+        {.name = "clamp", .kind = FIELD_FLAG},                                                     \
+    {                                                                                              \
+        .name = "by_keys", .kind = FIELD_FLAG                                                      \
+    }
+
+static const field no_fields[] = {{.name = NULL}};
+static const field sequence_fields[] = {FIELD_SEQUENCE, {.name = NULL}};
+static const field play_fields[] = {
+    FIELDS_OF_PLAY,
+    {.name = "from_ms", .kind = FIELD_NUMBER, .least = 0, .most = 1e9},
+    {.name = "on_lost", .kind = FIELD_WORD, .words = "stop, finish, exit"},
+    {.name = NULL}};
+static const field queue_fields[] = {FIELDS_OF_PLAY, {.name = NULL}};
+static const field seek_fields[] = {
+    {.name = "t_ms", .kind = FIELD_NUMBER, .needed = true, .least = 0, .most = 1e10},
+    FIELD_SEQUENCE,
+    {.name = NULL}};
+static const field speed_fields[] = {{.name = "speed_pct",
+                                      .kind = FIELD_WHOLE,
+                                      .needed = true,
+                                      .least = 1,
+                                      .most = GROBO_PLAY_SPEED_MAX_PCT},
+                                     FIELD_SEQUENCE,
+                                     {.name = NULL}};
+static const field move_fields[] = {{.name = "angle_deg", .kind = FIELD_ANGLES},
+                                    {.name = "pose", .kind = FIELD_WORD, .words = "init"},
+                                    FIELD_TIME,
+                                    FIELD_SEQUENCE,
+                                    {.name = NULL}};
+static const field jog_fields[] = {{.name = "angle_deg", .kind = FIELD_ANGLES, .needed = true},
+                                   FIELD_TIME,
+                                   FIELD_SEQUENCE,
+                                   {.name = NULL}};
+static const field torque_fields[] = {
+    {.name = "joints", .kind = FIELD_JOINTS, .needed = true},
+    {.name = "mode", .kind = FIELD_WORD, .needed = true, .words = "on, off, brake, limp, hold"},
+    FIELD_SEQUENCE,
+    {.name = NULL}};
+static const field capture_fields[] = {{.name = "joints", .kind = FIELD_JOINTS}, {.name = NULL}};
+static const field ik_fields[] = {
+    {.name = "angle_deg",
+     .kind = FIELD_NUMBERS,
+     .needed = true,
+     .least = 1,
+     .most = GROBO_JOINTS_MAX},
+    {.name = "handle", .kind = FIELD_WORD, .needed = true, .words = "right_foot, left_foot, waist"},
+    {.name = "p_m", .kind = FIELD_NUMBERS, .needed = true, .least = 3, .most = 3},
+    {.name = "rotation", .kind = FIELD_NUMBERS, .least = 9, .most = 9},
+    {.name = "root", .kind = FIELD_OBJECT},
+    {.name = NULL}};
+/* Lease and token stand in the body where no header can be set. */
+static const field lease_fields[] = {
+    {.name = "action", .kind = FIELD_WORD, .needed = true, .words = "take, ask, give, deny"},
+    {.name = "name", .kind = FIELD_TEXT},
+    {.name = "lease", .kind = FIELD_TEXT},
+    {.name = "token", .kind = FIELD_TEXT},
+    {.name = NULL}};
+static const field heartbeat_fields[] = {
+    {.name = "lease", .kind = FIELD_TEXT, .needed = true},
+    {.name = "drawn", .kind = FIELD_WHOLE, .needed = true, .least = 0, .most = FIELD_NO_END},
+    {.name = "token", .kind = FIELD_TEXT},
+    {.name = NULL}};
+
+/* ---- what a verb needs ----------------------------------------------------------------------- */
 
 /* What a verb asks for. */
 enum {
     NEEDS_LEASE = 1,
     NEEDS_LINE = 2,
-    MOVES = 4 /* refused after a stop, and without the state it is based on */
+    BASED = 4, /* refused where its state is old, or where something happened since */
+    MOVES = 8  /* the same, and refused after a stop */
 };
 
 typedef struct verb {
     const char *path;
     serve_verb_fn run;
     unsigned needs;
+    const field *fields;
 } verb;
 
 static const verb verbs[] = {
-    {"/api/play", verb_play, NEEDS_LEASE | NEEDS_LINE | MOVES},
-    {"/api/queue", verb_queue, NEEDS_LEASE | NEEDS_LINE | MOVES},
-    {"/api/pause", verb_pause, NEEDS_LEASE | NEEDS_LINE},
-    {"/api/resume", verb_resume, NEEDS_LEASE | NEEDS_LINE},
-    {"/api/seek", verb_seek, NEEDS_LEASE | NEEDS_LINE | MOVES},
-    {"/api/speed", verb_speed, NEEDS_LEASE | NEEDS_LINE},
-    {"/api/halt", verb_halt, NEEDS_LEASE | NEEDS_LINE},
-    {"/api/move", verb_move, NEEDS_LEASE | NEEDS_LINE | MOVES},
-    {"/api/jog", verb_jog, NEEDS_LEASE | NEEDS_LINE | MOVES},
-    {"/api/torque", verb_torque, NEEDS_LEASE | NEEDS_LINE},
-    {"/api/capture", verb_capture, NEEDS_LINE},
-    {"/api/reset", verb_reset, 0},
+    {"/api/play", verb_play, NEEDS_LEASE | NEEDS_LINE | MOVES, play_fields},
+    {"/api/queue", verb_queue, NEEDS_LEASE | NEEDS_LINE | MOVES, queue_fields},
+    {"/api/pause", verb_pause, NEEDS_LEASE | NEEDS_LINE, no_fields},
+    {"/api/resume", verb_resume, NEEDS_LEASE | NEEDS_LINE | MOVES, sequence_fields},
+    {"/api/seek", verb_seek, NEEDS_LEASE | NEEDS_LINE | MOVES, seek_fields},
+    {"/api/speed", verb_speed, NEEDS_LEASE | NEEDS_LINE | BASED, speed_fields},
+    {"/api/halt", verb_halt, NEEDS_LEASE | NEEDS_LINE, no_fields},
+    {"/api/move", verb_move, NEEDS_LEASE | NEEDS_LINE | MOVES, move_fields},
+    {"/api/jog", verb_jog, NEEDS_LEASE | NEEDS_LINE | MOVES, jog_fields},
+    {"/api/torque", verb_torque, NEEDS_LEASE | NEEDS_LINE | BASED, torque_fields},
+    {"/api/capture", verb_capture, NEEDS_LINE, capture_fields},
+    {"/api/reset", verb_reset, BASED, sequence_fields},
 };
-
-/* ---- what a verb needs ----------------------------------------------------------------------- */
 
 static void refuse_lease(serve *s, http_request *r)
 {
@@ -55,15 +142,19 @@ static void refuse_lease(serve *s, http_request *r)
     http_reply_json(r, 409, json_pack("{s:o}", "error", refusal));
 }
 
-static bool is_granted(serve *s, http_request *r, const json_t *body, unsigned needs)
+static bool is_granted(serve *s, http_request *r, const json_t *body, const verb *v)
 {
+    const char *doing = strrchr(v->path, '/') + 1;
+    unsigned needs = v->needs;
     if ((needs & NEEDS_LINE) && !s->c.up) {
         serve_refuse(s, r, GROBO_ERR_CLOSED, "robot");
     } else if ((needs & NEEDS_LEASE) &&
                !lease_is_holder(&s->lease, http_header(r, "X-Grobo-Lease"))) {
         refuse_lease(s, r);
+    } else if (needs & MOVES) {
+        return stops_may_move(s, r, body, doing);
     } else {
-        return !(needs & MOVES) || stops_may_move(s, r, body);
+        return !(needs & BASED) || serve_is_based(s, r, body, doing);
     }
     return false;
 }
@@ -117,7 +208,7 @@ static void serve_lease(serve *s, http_request *r, const json_t *body)
         take(s, r, body);
     } else if (strcmp(action, "ask") == 0) {
         ask(s, r, body);
-    } else if (strcmp(action, "give") == 0 || strcmp(action, "deny") == 0) {
+    } else { /* give, deny */
         bool gives = *action == 'g';
         if (gives && lease_is_holder(&s->lease, secret) && s->jogs) {
             stops_halt(s);
@@ -133,8 +224,6 @@ static void serve_lease(serve *s, http_request *r, const json_t *body)
                     : lease_is_held(&s->lease) ? "the lease was handed over"
                                                : "nobody drives");
         http_reply_json(r, 200, json_pack("{s:b}", "held", !gives));
-    } else {
-        http_refuse(r, 400, "arg", "lease: action is take, ask, give or deny");
     }
 }
 
@@ -163,7 +252,7 @@ static void serve_heartbeat(serve *s, http_request *r, const json_t *body)
     const char *secret = door_text(body, "lease");
     if (!lease_is_holder(&s->lease, secret)) {
         refuse_lease(s, r);
-    } else if (!serve_is_fresh(s, json_object_get(body, "drawn"))) {
+    } else if (!based_is_fresh(&s->based, json_object_get(body, "drawn"), grobo_now_us())) {
         http_refuse(r, 409, "stale", "the page draws nothing: this counts as no heartbeat");
     } else {
         lease_beat(&s->lease, secret, grobo_now_us());
@@ -178,6 +267,7 @@ typedef struct plain {
     wall_rule rule;
     bool second; /* on the second port */
     void (*run)(serve *s, http_request *r, const json_t *body);
+    const field *fields; /* NULL: whatever its body has, it is carried out */
 } plain;
 
 static void serve_robot(serve *s, http_request *r, const json_t *body)
@@ -205,18 +295,18 @@ static void serve_motions(serve *s, http_request *r, const json_t *body)
 }
 
 static const plain plains[] = {
-    {"/api/motions", WALL_READ, false, serve_motions},
-    {"/api/preview", WALL_DRAFT, false, NULL}, /* its body is read by the worker */
-    {"/api/ik", WALL_ACT, false, pose_ik},
-    {"/api/robot", WALL_READ, false, serve_robot},
-    {"/api/state", WALL_READ, false, serve_state},
-    {"/api/events", WALL_READ, false, serve_events},
-    {"/api/lease", WALL_PLAIN, false, serve_lease},
-    {"/api/stop", WALL_STOP, false, serve_stop},
-    {"/api/estop", WALL_STOP, false, serve_stop},
-    {"/stop", WALL_STOP, true, serve_stop},
-    {"/estop", WALL_STOP, true, serve_stop},
-    {"/heartbeat", WALL_PLAIN, true, serve_heartbeat},
+    {"/api/motions", WALL_READ, false, serve_motions, no_fields},
+    {"/api/preview", WALL_DRAFT, false, NULL, NULL}, /* its body is read by the worker */
+    {"/api/ik", WALL_ACT, false, pose_ik, ik_fields},
+    {"/api/robot", WALL_READ, false, serve_robot, no_fields},
+    {"/api/state", WALL_READ, false, serve_state, no_fields},
+    {"/api/events", WALL_READ, false, serve_events, no_fields},
+    {"/api/lease", WALL_PLAIN, false, serve_lease, lease_fields},
+    {"/api/stop", WALL_STOP, false, serve_stop, NULL},
+    {"/api/estop", WALL_STOP, false, serve_stop, NULL},
+    {"/stop", WALL_STOP, true, serve_stop, NULL},
+    {"/estop", WALL_STOP, true, serve_stop, NULL},
+    {"/heartbeat", WALL_PLAIN, true, serve_heartbeat, heartbeat_fields},
 };
 
 static const plain *find_plain(const http_request *r)
@@ -263,7 +353,8 @@ static bool find_motion(const http_request *r, char name[LIBRARY_NAME_BYTES], bo
 static double rate_of(const http_request *r)
 {
     double rate_hz = 30;
-    if (strncmp(r->query, "rate=", 5) == 0 && !cli_read_number(r->query + 5, &rate_hz)) {
+    if (*r->query &&
+        (strncmp(r->query, "rate=", 5) != 0 || !cli_read_number(r->query + 5, &rate_hz))) {
         return 0;
     }
     return rate_hz >= 1 && rate_hz <= 100 ? rate_hz : 0;
@@ -279,7 +370,7 @@ static void serve_motion(serve *s, http_request *r, const char *name, bool file)
     } else if (rate_hz > 0) {
         library_get(s, r, name, rate_hz);
     } else {
-        http_refuse(r, 400, "arg", "rate is 1 to 100");
+        http_refuse(r, 400, "arg", "motions: unknown query; expected rate=1 to rate=100");
     }
 }
 
@@ -301,6 +392,35 @@ bool serve_rule(void *ctx, const http_request *r, wall_rule *rule)
     return *rule == WALL_ACT || (!r->second && page_has(r->path));
 }
 
+/* Its body is whole and as it should be: it is carried out. */
+static void carry_out(serve *s, http_request *r, json_t *body, const plain *p, const verb *v)
+{
+    if (p) {
+        p->run(s, r, body);
+    } else if (is_granted(s, r, body, v)) {
+        v->run(s, r, body);
+    }
+}
+
+/* Of a verb, or a plain path whose body is read here. */
+static void take_body(serve *s, http_request *r, const plain *p, const verb *v)
+{
+    const field *fields = p ? p->fields : v->fields;
+    json_t *body = fields ? http_object(r) : http_object_if_any(r);
+    char complaint[FIELDS_TEXT_BYTES];
+    if (fields && !body) {
+        return;
+    }
+    if (fields && *r->query) {
+        http_refuse(r, 400, "arg", "%s: a query is not expected; the body has the fields", r->path);
+    } else if (fields && !fields_fit(body, fields, strrchr(r->path, '/') + 1, complaint)) {
+        http_refuse(r, 400, "arg", "%s", complaint);
+    } else {
+        carry_out(s, r, body, p, v);
+    }
+    json_decref(body);
+}
+
 void serve_request(void *ctx, http_request *r)
 {
     serve *s = ctx;
@@ -320,14 +440,5 @@ void serve_request(void *ctx, http_request *r)
         library_preview(s, r);
         return;
     }
-    json_t *body = http_object(r);
-    if (!body) {
-        return;
-    }
-    if (p) {
-        p->run(s, r, body);
-    } else if (is_granted(s, r, body, v->needs)) {
-        v->run(s, r, body);
-    }
-    json_decref(body);
+    take_body(s, r, p, v);
 }

@@ -59,7 +59,7 @@ static void answer_capture(serve *s, const serve_job *j, const grobo_event_job *
     grobo_robot_posture(s->c.robot, GROBO_NEVER_US, &posture);
     posture.set &= j->joints & ~job->failed;
     http_reply_json(j->waiting, 200,
-                    json_pack("{s:I,s:o}", "sequence", (json_int_t)s->sequence, "angle_deg",
+                    json_pack("{s:I,s:o}", "sequence", (json_int_t)s->based.sequence, "angle_deg",
                               pose_angles_json(&posture, s->model->n_joints, 2)));
 }
 
@@ -93,6 +93,7 @@ static void say_trip(serve *s)
         json_object_set_new(more, "joint", json_integer(s->c.trip.joint));
     }
     s->jogs = s->jog_waits = false;
+    based_change(&s->based, grobo_now_us(), "safety stop: %s", grobo_trip_name(s->c.trip.trip));
     events_tell(&s->events, "trip", "error", more, "%s", said);
 }
 
@@ -112,9 +113,11 @@ static void on_event(conn *c, const grobo_event *event)
     case GROBO_EVENT_LINK_DOWN:
         s->jogs = s->jog_waits = false;
         s->limp = 0;
+        based_change(&s->based, event->now_us, "the line was lost");
         events_tell(&s->events, "link", "error", NULL, "the line is lost");
         break;
     case GROBO_EVENT_LINK_UP:
+        based_change(&s->based, event->now_us, "the line came back");
         events_tell(&s->events, "link", "info", NULL, "the line is up: %s", conn_device(c));
         break;
     case GROBO_EVENT_UNWATCHED:
@@ -218,8 +221,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     int64_t now_us = grobo_now_us();
     (void)fd;
     (void)what;
-    s->sequence++;
-    s->sequence_us[s->sequence % SERVE_SEQUENCES] = now_us;
+    based_tell(&s->based, now_us);
     measure_load(s, now_us);
     stops_look(s);
     look_after_lease(s);

@@ -4,6 +4,7 @@
 #define GRCTL_WEB_SERVE_H
 
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/web/based.h"
 #include "tools/grctl/web/events.h"
 #include "tools/grctl/web/http.h"
 #include "tools/grctl/web/lease.h"
@@ -13,14 +14,13 @@
 #include "tools/grctl/web/web.h"
 #include "tools/grctl/web/worker.h"
 
-/* How often a state is told; what is based on an older one than STALE is refused. */
+/* How often a state is told. */
 #define SERVE_STATE_US INT64_C(33333)
-#define SERVE_STALE_US INT64_C(1000000)
 /* Silence of who drives: jogging ends; a motion ends, and the lease. */
 #define SERVE_JOG_LOST_US INT64_C(1000000)
 #define SERVE_PLAY_LOST_US INT64_C(3000000)
 
-enum { SERVE_SEQUENCES = 64, SERVE_JOBS = 16, SERVE_HEARTBEAT_MS = 200 };
+enum { SERVE_JOBS = 16, SERVE_HEARTBEAT_MS = 200 };
 
 /* A job of the engine's that a request began. */
 typedef struct serve_job {
@@ -40,8 +40,7 @@ struct serve {
     http *http;
     struct event *tick;
     int64_t began_us;
-    uint64_t sequence;
-    int64_t sequence_us[SERVE_SEQUENCES]; /* when the last ones were told */
+    based based; /* which state a request had seen */
     events events;
     lease lease;
     int64_t left_us; /* when the lease was given back with something under way, 0: not */
@@ -74,8 +73,8 @@ bool serve_is_moving(const serve *s);
 /* The engine's configuration while it serves. */
 grobo_robot_config serve_config(const serve *s);
 
-/* A state was told less than a second ago under this number. */
-bool serve_is_fresh(const serve *s, const json_t *sequence);
+/* What a request is based on is still so; else it is refused. `doing`: "reset". */
+bool serve_is_based(serve *s, http_request *r, const json_t *body, const char *doing);
 
 /* ---- requests: by path ----------------------------------------------------------------------- */
 

@@ -140,7 +140,7 @@ static const char *link_word(const serve *s)
 
 json_t *serve_state_json(serve *s)
 {
-    json_t *state = json_pack("{s:I,s:I,s:s}", "sequence", (json_int_t)s->sequence, "time_ms",
+    json_t *state = json_pack("{s:I,s:I,s:s}", "sequence", (json_int_t)s->based.sequence, "time_ms",
                               (json_int_t)serve_ms(s, grobo_now_us()), "link", link_word(s));
     const char *job = job_word(grobo_robot_job(s->c.robot));
     add_joints(s, state);
@@ -243,7 +243,7 @@ json_t *serve_robot_json(serve *s)
         "budget", budget_json(s), "stop_port", http_stop_port(s->http), "state_hz", number(30),
         "token", http_is_open(s->http), "lease", "heartbeat_ms", SERVE_HEARTBEAT_MS, "jog_lost_ms",
         (int)(SERVE_JOG_LOST_US / 1000), "play_lost_ms", (int)(SERVE_PLAY_LOST_US / 1000), "ask_ms",
-        (int)(LEASE_ASK_US / 1000), "stale_ms", (int)(SERVE_STALE_US / 1000));
+        (int)(LEASE_ASK_US / 1000), "stale_ms", (int)(BASED_STALE_US / 1000));
     json_object_update_new(robot, more);
     return robot;
 }

@@ -13,6 +13,8 @@
 #define STOPS_ON_ITS_WAY_US INT64_C(20000)
 /* As in free mode: below that a joint stands. */
 enum { STOPS_SLOW_DPS = 8 };
+/* A request that stops before it is whole has this time to bring its name. */
+#define STOPS_UNTOLD_US INT64_C(150000)
 static const double stops_near_deg = 3;
 
 static const char *word_of(stops_joint joint)
@@ -46,6 +48,32 @@ static grobo_joint_mask unconfirmed(const serve *s)
     return joints;
 }
 
+static void tell_stop(serve *s)
+{
+    s->stops.untold = false;
+    events_tell(&s->events, "stop", "warning", NULL, "%s by %s",
+                s->stops.estop ? "emergency stop" : "stop", s->stops.by);
+}
+
+/* What was asked for before the stop is void: each stop, also one that repeats another. */
+static void note_stop(serve *s, const char *by, bool estop, bool news)
+{
+    stops *t = &s->stops;
+    const char *name = by ? by : "a request that is not whole";
+    based_change(&s->based, grobo_now_us(), "%s by %s", estop ? "emergency stop" : "stop", name);
+    if (news) {
+        lease_end(&s->lease);
+        s->player.epoch++; /* what was asked for and has not begun does not begin */
+    }
+    if (news || (t->untold && by)) {
+        snprintf(t->by, sizeof t->by, "%s", name);
+        t->untold = true;
+    }
+    if (t->untold && by) {
+        tell_stop(s);
+    }
+}
+
 int stops_ask(serve *s, const char *by, bool estop)
 {
     stops *t = &s->stops;
@@ -57,7 +85,6 @@ int stops_ask(serve *s, const char *by, bool estop)
         t->estop = estop;
         t->held = false;
         t->at_us = grobo_now_us();
-        snprintf(t->by, sizeof t->by, "%s", by);
         memset(t->joints, 0, sizeof t->joints);
     }
     if (estop && news) {
@@ -65,12 +92,7 @@ int stops_ask(serve *s, const char *by, bool estop)
     } else if (!t->estop) { /* again: a frame may have been lost */
         (void)grobo_robot_stop(s->c.robot, true);
     }
-    if (news) {
-        lease_end(&s->lease);
-        s->player.epoch++; /* what was asked for and has not begun does not begin */
-        events_tell(&s->events, "stop", "warning", NULL, "%s by %s",
-                    estop ? "emergency stop" : "stop", by);
-    }
+    note_stop(s, by, estop, news);
     stops_look(s);
     return result;
 }
@@ -122,6 +144,9 @@ void stops_look(serve *s)
 {
     stops *t = &s->stops;
     grobo_joint_mask missing = t->latched ? unconfirmed(s) : 0;
+    if (t->untold && grobo_now_us() - t->at_us > STOPS_UNTOLD_US) {
+        tell_stop(s);
+    }
     if (!t->latched || !s->c.up) {
         return;
     }
@@ -144,6 +169,7 @@ int stops_reset(serve *s)
     }
     memset(&s->stops, 0, sizeof s->stops);
     s->c.trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE, .joint = -1};
+    based_change(&s->based, grobo_now_us(), "the stop was released");
     return GROBO_OK;
 }
 
@@ -157,22 +183,19 @@ void stops_halt(serve *s)
 {
     s->jogs = s->jog_waits = false;
     s->player.epoch++;
+    based_change(&s->based, grobo_now_us(), "what moved was halted");
     if (s->c.up) {
         (void)grobo_robot_stop(s->c.robot, false);
     }
 }
 
-bool stops_may_move(serve *s, http_request *r, const json_t *body)
+bool stops_may_move(serve *s, http_request *r, const json_t *body, const char *doing)
 {
     if (stops_is_latched(s)) {
         serve_refuse(s, r, GROBO_ERR_LATCHED, "robot");
         return false;
     }
-    if (!serve_is_fresh(s, json_object_get(body, "sequence"))) {
-        http_refuse(r, 409, "stale", "sequence is not that of a state told less than a second ago");
-        return false;
-    }
-    return true;
+    return serve_is_based(s, r, body, doing);
 }
 
 json_t *stops_json(serve *s)

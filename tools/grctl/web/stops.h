@@ -23,14 +23,18 @@ typedef enum stops_joint {
 typedef struct stops {
     bool latched; /* by a stop of ours */
     bool estop;
-    bool held; /* the engine is latched too */
+    bool held;   /* the engine is latched too */
+    bool untold; /* who stops is not known yet: no event has told it */
     int64_t at_us;
     int reading; /* number of the job that confirms, 0: none */
     char by[LEASE_NAME_BYTES];
     stops_joint joints[GROBO_JOINTS_MAX];
 } stops;
 
-/* A stop, again as often as it is asked for. Returns the number of a job, 0, or an error. */
+/*
+ * A stop, again as often as it is asked for. by NULL: of a request that is not read yet; the same
+ * may come again with its name. Returns the number of a job, 0, or an error.
+ */
 int stops_ask(serve *s, const char *by, bool estop);
 /* From each reading, each end of a job, and 30 times a second: confirms, latches. */
 void stops_on_event(serve *s, const grobo_event *event);
@@ -39,8 +43,8 @@ void stops_look(serve *s);
 int stops_reset(serve *s);
 /* Ours, an emergency stop of another program, or the engine's own. */
 bool stops_is_latched(serve *s);
-/* For what moves: no stop stands, and it is based on a fresh state; else it is refused. */
-bool stops_may_move(serve *s, http_request *r, const json_t *body);
+/* For what moves: no stop stands, and what it is based on is still so; else it is refused. */
+bool stops_may_move(serve *s, http_request *r, const json_t *body, const char *doing);
 /* Ends jogging; what moves stops softly. Latches nothing. */
 void stops_halt(serve *s);
 json_t *stops_json(serve *s);

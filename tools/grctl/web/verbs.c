@@ -7,28 +7,30 @@
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/web/serve.h"
 
-enum { MOVE_MS = 1000, JOG_MS = 300, LONGEST_MS = 163830 };
+enum { MOVE_MS = 1000, JOG_MS = 300 };
 
 /* ---- what a body has ------------------------------------------------------------------------- */
 
-/* The joints that are named; false: refused. All where none is. */
-static bool read_joints(serve *s, http_request *r, const json_t *body, grobo_joint_mask *joints)
+/* The joints of a FIELD_JOINTS: a list of names, or "all"; false: refused. */
+static bool read_joints(serve *s, http_request *r, const json_t *given, grobo_joint_mask *joints)
 {
-    const json_t *list = json_object_get(body, "joints");
     const char *names[CLI_ARGUMENTS_MAX];
     char said[APP_LINE_BYTES];
     app quiet = *s->a;
-    size_t n = json_array_size(list);
-    app_hush(&quiet, said);
-    for (size_t i = 0; i < n && i < CLI_ARGUMENTS_MAX; i++) {
-        names[i] = json_string_value(json_array_get(list, i));
-        if (!names[i]) {
-            http_refuse(r, 400, "arg", "joints: a name is no text");
-            return false;
-        }
+    size_t n = json_array_size(given);
+    if (json_is_string(given)) {
+        *joints = GROBO_JOINTS_ALL(s->model->n_joints);
+        return true;
     }
-    int status =
-        n > CLI_ARGUMENTS_MAX ? EXIT_USAGE : joints_parse_all(&quiet, (int)n, names, joints);
+    if (n == 0 || n > CLI_ARGUMENTS_MAX) { /* no name is not all names, as on a command line */
+        http_refuse(r, 400, "arg", "joints: %zu names; expected 1 to %d", n, CLI_ARGUMENTS_MAX);
+        return false;
+    }
+    for (size_t i = 0; i < n; i++) {
+        names[i] = json_string_value(json_array_get(given, i));
+    }
+    app_hush(&quiet, said);
+    int status = joints_parse_all(&quiet, (int)n, names, joints);
     if (status) {
         serve_refuse_said(r, status, &quiet);
     }
@@ -46,17 +48,9 @@ static bool read_angles(serve *s, http_request *r, const json_t *angles, const c
     int status = 0;
     app_hush(&quiet, said);
     grobo_posture_init(target, s->model->n_joints);
-    if (json_object_size(angles) == 0) {
-        http_refuse(r, 400, "arg", "%s: angle_deg names no joint", doing);
-        return false;
-    }
     json_object_foreach((json_t *)angles, name, value)
     {
         int joint = joints_parse_one(&quiet, name, strlen(name), &status);
-        if (joint >= 0 && !json_is_number(value)) {
-            http_refuse(r, 400, "arg", "%s: the angle of %s is no number", doing, name);
-            return false;
-        }
         if (joint < 0) {
             serve_refuse_said(r, status, &quiet);
             return false;
@@ -74,16 +68,10 @@ static bool read_angles(serve *s, http_request *r, const json_t *angles, const c
     return status == 0;
 }
 
-static bool read_time(http_request *r, const json_t *body, double otherwise, grobo_posture *target)
+static void read_time(const json_t *body, double otherwise, grobo_posture *target)
 {
     const json_t *time = json_object_get(body, "time_ms");
-    double ms = time ? json_number_value(time) : otherwise;
-    if ((time && !json_is_number(time)) || !(ms >= 0 && ms <= LONGEST_MS)) {
-        http_refuse(r, 400, "arg", "time_ms is 0 to %d", LONGEST_MS);
-        return false;
-    }
-    grobo_posture_set_time_ms(target, ms);
-    return true;
+    grobo_posture_set_time_ms(target, time ? json_number_value(time) : otherwise);
 }
 
 /* ---- a motion -------------------------------------------------------------------------------- */
@@ -91,7 +79,11 @@ static bool read_time(http_request *r, const json_t *body, double otherwise, gro
 void verb_pause(serve *s, http_request *r, json_t *body)
 {
     (void)body;
-    serve_accept(s, r, grobo_robot_pause(s->c.robot), "pause");
+    int result = grobo_robot_pause(s->c.robot);
+    if (result >= 0) {
+        based_change(&s->based, grobo_now_us(), "the motion was paused");
+    }
+    serve_accept(s, r, result, "pause");
 }
 
 void verb_resume(serve *s, http_request *r, json_t *body)
@@ -102,23 +94,13 @@ void verb_resume(serve *s, http_request *r, json_t *body)
 
 void verb_seek(serve *s, http_request *r, json_t *body)
 {
-    const json_t *t = json_object_get(body, "t_ms");
-    double ms = json_number_value(t);
-    if (!json_is_number(t) || !(ms >= 0 && ms <= 1e10)) {
-        http_refuse(r, 400, "arg", "seek: t_ms is no time");
-        return;
-    }
+    double ms = json_number_value(json_object_get(body, "t_ms"));
     serve_accept(s, r, grobo_robot_seek(s->c.robot, (int64_t)(ms * 1000)), "seek");
 }
 
 void verb_speed(serve *s, http_request *r, json_t *body)
 {
-    const json_t *speed = json_object_get(body, "speed_pct");
-    double pct = json_number_value(speed);
-    if (!json_is_number(speed) || !(pct >= 1 && pct <= GROBO_PLAY_SPEED_MAX_PCT)) {
-        http_refuse(r, 400, "arg", "speed: speed_pct is 1 to %d", GROBO_PLAY_SPEED_MAX_PCT);
-        return;
-    }
+    double pct = json_number_value(json_object_get(body, "speed_pct"));
     int result = grobo_robot_speed(s->c.robot, (int)pct);
     if (result >= 0) {
         s->player.speed_pct = (uint16_t)pct;
@@ -140,17 +122,16 @@ void verb_move(serve *s, http_request *r, json_t *body)
     const json_t *pose = json_object_get(body, "pose"),
                  *angles = json_object_get(body, "angle_deg");
     grobo_posture target;
-    if (pose && !angles && json_is_string(pose) && strcmp(json_string_value(pose), "init") == 0) {
-        grobo_posture_init_pose(&target, s->model);
-    } else if (pose) {
-        http_refuse(r, 400, "arg", "move: pose is \"init\", and without angle_deg");
+    if (!pose == !angles) {
+        http_refuse(r, 400, "arg", "move: expected either angle_deg or pose");
         return;
+    }
+    if (pose) {
+        grobo_posture_init_pose(&target, s->model);
     } else if (!read_angles(s, r, angles, "move", &target)) {
         return;
     }
-    if (!read_time(r, body, MOVE_MS, &target)) {
-        return;
-    }
+    read_time(body, MOVE_MS, &target);
     s->jogs = s->jog_waits = false;
     int job = grobo_robot_move(s->c.robot, &target);
     serve_accept(s, r, serve_note_job(s, job, "move"), "move");
@@ -184,10 +165,10 @@ void verb_jog_on(serve *s)
 void verb_jog(serve *s, http_request *r, json_t *body)
 {
     grobo_posture target;
-    if (!read_angles(s, r, json_object_get(body, "angle_deg"), "jog", &target) ||
-        !read_time(r, body, JOG_MS, &target)) {
+    if (!read_angles(s, r, json_object_get(body, "angle_deg"), "jog", &target)) {
         return;
     }
+    read_time(body, JOG_MS, &target);
     if (!s->jogs && serve_is_moving(s)) {
         serve_refuse(s, r, GROBO_ERR_STATE, "jog");
         return;
@@ -248,18 +229,21 @@ void verb_torque(serve *s, http_request *r, json_t *body)
                  {"hold", true, false, GROBO_TORQUE_ON}};
     const char *word = json_string_value(json_object_get(body, "mode"));
     grobo_joint_mask joints;
-    if (!read_joints(s, r, body, &joints)) {
+    if (!read_joints(s, r, json_object_get(body, "joints"), &joints)) {
         return;
     }
     for (size_t i = 0; word && i < sizeof modes / sizeof modes[0]; i++) {
         if (strcmp(word, modes[i].word) == 0) {
             if (modes[i].mode == GROBO_TORQUE_ON || modes[i].limp) {
-                if (!stops_may_move(s, r, body)) {
+                if (!stops_may_move(s, r, body, "torque")) {
                     return;
                 }
             }
             int result = modes[i].limp ? set_limp(s, joints, modes[i].on)
                                        : switch_torque(s, joints, modes[i].mode);
+            if (result >= 0) {
+                based_change(&s->based, grobo_now_us(), "torque was switched (%s)", word);
+            }
             serve_accept(s, r, serve_note_job(s, result, "torque"), "torque");
             return;
         }
@@ -269,8 +253,9 @@ void verb_torque(serve *s, http_request *r, json_t *body)
 
 void verb_capture(serve *s, http_request *r, json_t *body)
 {
-    grobo_joint_mask joints;
-    if (!read_joints(s, r, body, &joints)) {
+    const json_t *given = json_object_get(body, "joints");
+    grobo_joint_mask joints = GROBO_JOINTS_ALL(s->model->n_joints);
+    if (given && !read_joints(s, r, given, &joints)) {
         return;
     }
     int job = grobo_robot_sense(s->c.robot, joints, GROBO_SENSE_FULL);

@@ -22,7 +22,7 @@ enum {
 typedef enum wall_rule {
     WALL_PAGE,  /* GET of the page: anybody who reaches it, the token is in none of it */
     WALL_READ,  /* GET of data */
-    WALL_STOP,  /* POST that stops: as PLAIN, and it needs no content type */
+    WALL_STOP,  /* POST that stops: its content type and its body do not matter */
     WALL_PLAIN, /* POST whose token may stand in its text/plain body: judged by who reads it */
     WALL_ACT,   /* POST that changes something */
     WALL_SAVE,  /* PUT */

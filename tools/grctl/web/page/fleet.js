@@ -179,7 +179,7 @@ class View {
     }
 
     listen() {
-        id('reset').addEventListener('click', () => this.api.post('/api/reset', { name: this.stopper.name() })
+        id('reset').addEventListener('click', () => this.api.post('/api/reset', { name: this.stopper.name(), sequence: this.drawn })
             .catch((error) => this.fail(error)));
         id('close').addEventListener('click', () => this.choose(null));
         for (const [name, kind] of [['text', 'input'], ['group', 'change'], ['trouble', 'change']]) {

@@ -18,7 +18,7 @@ export class Joints {
         all('torque-on', () => app.command('/api/torque', { joints: ['all'], mode: 'on' }, true));
         all('torque-off', async () => {
             if (app.robot.arm || !app.robot.body || await ask(app.t('Without torque the robot sinks or falls. Hold it. Switch torque off?'))) {
-                app.command('/api/torque', { joints: ['all'], mode: 'off' });
+                app.command('/api/torque', { joints: ['all'], mode: 'off' }, true);
             }
         });
     }
@@ -51,7 +51,7 @@ export class Joints {
         const one = () => [this.app.name(this.app.selected)];
         this.buttons = [
             button('Torque on', () => this.app.command('/api/torque', { joints: one(), mode: 'on' }, true)),
-            button('Torque off', () => this.app.command('/api/torque', { joints: one(), mode: 'off' })),
+            button('Torque off', () => this.app.command('/api/torque', { joints: one(), mode: 'off' }, true)),
             button('Limp', () => this.app.command('/api/torque', { joints: one(), mode: 'limp' }, true)),
             button('Hold', () => this.app.command('/api/torque', { joints: one(), mode: 'hold' }, true)),
         ];

@@ -272,7 +272,7 @@ class App {
 
     listen() {
         document.addEventListener('keydown', (event) => event.key === 'Escape' || this.onKey(event), true);
-        id('reset').addEventListener('click', () => this.command('/api/reset'));
+        id('reset').addEventListener('click', () => this.command('/api/reset', {}, true));
         id('lease').addEventListener('click', () => this.leaseButton());
         id('lease-keep').addEventListener('click', () => this.command('/api/lease', { action: 'deny' }));
         id('home').addEventListener('click', () => this.figure.home());

@@ -30,7 +30,7 @@ export class Play {
         this.look = null;
         this.at = 0;
         this.seek = new Newest((target) => app.command('/api/seek', target));
-        this.speed = new Newest((pct) => app.command('/api/speed', { speed_pct: pct }));
+        this.speed = new Newest((target) => app.command('/api/speed', target));
         const click = (name, what) => this.id(name).addEventListener('click', what);
         click('play', () => this.playOrPause());
         click('preview', () => this.togglePreview());
@@ -193,7 +193,7 @@ export class Play {
             this.app.command('/api/play', { motion: this.name, ...this.options(),
                                             on_lost: this.app.onLost() }, true);
         } else if (live.state === 'paused') {
-            this.app.command('/api/resume', {}, false);
+            this.app.command('/api/resume', {}, true);
         } else {
             this.app.command('/api/pause');
         }
@@ -234,7 +234,7 @@ export class Play {
     sped() {
         const pct = Number(this.id('speed').value);
         if (this.live() && this.app.mayMove()) {
-            this.speed.push(pct);
+            this.speed.push({ speed_pct: pct, sequence: this.app.drawn });
         }
         clearTimeout(this.later);
         this.later = setTimeout(() => this.load(), 250);
