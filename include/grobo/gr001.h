@@ -141,10 +141,12 @@ GROBO_API int grobo_gr001_print_posture(const grobo_posture *posture, FILE *stre
 #define GROBO_GR001_RECORD_AGE_US 2000000
 
 /**
- * Appends the posture read last, as a whole, to a motion.
+ * Appends the posture read last, as a whole, to a motion. An empty one of increments or frames
+ * becomes one of postures.
  * @param time_us time to reach it; 0: the default time.
- * @return number of postures then; GROBO_ERR_STALE (a joint was not read lately), or the errors of
- *   grobo_motion_append().
+ * @return number of postures then; GROBO_ERR_STALE (a joint was not read lately), GROBO_ERR_TYPE
+ *   (increments, or frames at a rate: it has no place for where a joint is, or for its time), or
+ *   the errors of grobo_motion_append().
  */
 GROBO_API int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t time_us);
 

@@ -99,7 +99,11 @@ GROBO_API int grobo_motion_new(grobo_motion_kind kind, int n_joints, const grobo
 GROBO_API void grobo_motion_free(grobo_motion *motion);
 /** A deep copy, with the same allocator. @return 0 or GROBO_ERR_NOMEM. */
 GROBO_API int grobo_motion_dup(const grobo_motion *motion, grobo_motion **copy);
-/** Deletes all postures; names, rate, joints and the motion's own kept keys stay. */
+/**
+ * Deletes all postures; names, rate, joints and the motion's own kept keys stay. One of increments
+ * becomes one of postures: what is appended then is where the joints go, not by how much.
+ * grobo_motion_renew() makes an empty one of increments.
+ */
 GROBO_API void grobo_motion_clear(grobo_motion *motion);
 /**
  * Makes it an empty motion of a kind, as grobo_motion_new() does: what it has goes, but for the
@@ -176,6 +180,7 @@ GROBO_API int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t def
 /**
  * Appends a posture, reached posture->time_us after the last one (frames at a rate: the next
  * frame). Its joints must fit the motion's: grobo_motion_set_joints() makes room.
+ * In a motion of increments its angles are increments.
  * @return 0, GROBO_ERR_ARG (more joints than the motion, time negative or above INT64_MAX / 4, in a
  *   motion of postures or increments GROBO_MOTION_STEP_MAX_US or more, an angle beyond 10^6
  *   radians), GROBO_ERR_NAN, GROBO_ERR_CAP (GROBO_MOTION_FRAMES_MAX), GROBO_ERR_NOMEM.

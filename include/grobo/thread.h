@@ -408,7 +408,8 @@ GROBO_API int grobo_control_get_motion(grobo_control *control, grobo_motion **mo
 /** Makes it an empty motion of postures. What is being played continues. At once. */
 GROBO_API void grobo_control_clear_motion(grobo_control *control);
 /** Appends the posture sensed last, with the default time. At once. @return postures,
- *  GROBO_ERR_STALE (nothing was sensed), or as grobo_motion_append(). */
+ *  GROBO_ERR_STALE (nothing was sensed), GROBO_ERR_TYPE (frames at a rate have no place for its
+ *  time), or as grobo_motion_append(). */
 GROBO_API int grobo_control_append_current_posture(grobo_control *control);
 /** Appends the posture sensed last, with a time from 0 (the default time) to below
  *  GROBO_MOTION_STEP_MAX_US, which .m files cannot tell from the default. As above. */

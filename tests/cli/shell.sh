@@ -83,6 +83,13 @@ check "a word nearly right" both script 2 'claer
 ' --- told "input:1: no command 'claer'; did you mean 'Clear'?$"
 check "a command nearly right" both script 2 'stauts
 ' --- told "no command 'stauts'; did you mean 'status'?$"
+check "increments take no posture" both script 2 "l $PWD/motions/greet.mseq
+Push" --- told 'record: it holds increments, not where joints go; .Clear. it before$'
+check "nor do frames at a rate" both script 2 "l $PWD/motions/greet.yaml
+Push" --- told 'record: it holds frames at a rate; '
+check "emptied they do" both script 0 "l $PWD/motions/greet.mseq
+Clear
+Push" --- told '^1 posture in the record'
 check "help on a command" both script 0 'help move
 ' --- says '^usage: grctl move JOINT DEG'
 check "help on a letter" both script 0 'help m

@@ -377,6 +377,44 @@ static void a_record_is_made_by_hand_and_played(void **state)
     grobo_motion_free(motion);
 }
 
+/* The record is a motion that was something else: what is read is no increment to it. */
+static void a_record_is_what_was_read(void **state)
+{
+    (void)state;
+    grobo_posture step;
+    grobo_clip clip;
+    start();
+    turn(-20);
+    for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
+        grobo_motion *motion = NULL;
+        assert_int_equal(grobo_motion_new((grobo_motion_kind)kind, 20, NULL, &motion), 0);
+        if (kind == GROBO_MOTION_FRAMES) {
+            assert_int_equal(grobo_motion_set_frame_rate(motion, 100), 0);
+        }
+        assert_int_equal(grobo_posture_init(&step, 20), 0);
+        step.set = GROBO_JOINT_BIT(NECK);
+        step.angle_rad[NECK] = -0.1;
+        step.time_us = 400000;
+        assert_int_equal(grobo_motion_append(motion, &step), 0);
+        bool takes = kind == GROBO_MOTION_POSTURES || kind == GROBO_MOTION_KEYS;
+        assert_int_equal(record(motion, 400000), takes ? 2 : GROBO_ERR_TYPE);
+        assert_int_equal(grobo_motion_size(motion), takes ? 2 : 1);
+        assert_int_equal(grobo_motion_get_kind(motion), kind);
+
+        grobo_motion_clear(motion);
+        assert_int_equal(record(motion, 400000), 1);
+        assert_int_equal(grobo_motion_step_us(motion, 0), 400000);
+        rig_forget(&rig);
+        rig_expect(&rig, grobo_gr001_play_record(motion, &rig.robot, NULL, &clip), 0);
+        rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+        rig_run(&rig, 100000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) + 20) < 0.2);
+        read_all();
+        grobo_motion_clip_free(&clip);
+        grobo_motion_free(motion);
+    }
+}
+
 /* The driver says what answers its readings without looking at the frame again. */
 static void a_reading_is_answered_as_its_frame_says(void **state)
 {
@@ -411,6 +449,7 @@ int main(void)
         cmocka_unit_test(voltages_and_currents_are_printed),
         cmocka_unit_test(a_posture_is_printed_as_the_body_stands),
         cmocka_unit_test(a_stream_that_takes_nothing_is_told),
+        cmocka_unit_test(a_record_is_what_was_read),
         cmocka_unit_test(a_record_is_made_by_hand_and_played),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);

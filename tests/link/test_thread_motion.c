@@ -298,6 +298,26 @@ static void an_emptied_motion_takes_postures(void **state)
     }
 }
 
+/* Frames at a rate have no place for a posture's time: it would be reached in one frame's. */
+static void frames_take_no_postures(void **state)
+{
+    grobo_motion *frames = NULL;
+    grobo_posture posture;
+
+    (void)state;
+    control_come_up();
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_FRAMES, 20, NULL, &frames), 0);
+    assert_int_equal(grobo_motion_set_frame_rate(frames, 50), 0);
+    (void)grobo_posture_init(&posture, 20);
+    (void)grobo_posture_set_deg(&posture, ELBOW, 3);
+    assert_int_equal(grobo_motion_append(frames, &posture), 0);
+    assert_int_equal(grobo_control_set_motion(control, frames), 1);
+    grobo_motion_free(frames);
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
+    assert_int_equal(grobo_control_append_current_posture_us(control, 700000), GROBO_ERR_TYPE);
+    assert_int_equal(control_motion_size(control), 1);
+}
+
 static int total_ms(void *arg, grobo_control *from)
 {
     grobo_play_progress progress;
@@ -509,6 +529,7 @@ int main(void)
         WITH_AND_WITHOUT_THREAD(the_motion_is_kept),
         WITH_AND_WITHOUT_THREAD(postures_count_in_playing_direction),
         WITH_AND_WITHOUT_THREAD(the_nth_posture_is_gone_to),
+        WITH_AND_WITHOUT_THREAD(frames_take_no_postures),
         WITH_AND_WITHOUT_THREAD(increments_become_postures),
         WITH_AND_WITHOUT_THREAD(an_emptied_motion_takes_postures),
         WITH_AND_WITHOUT_THREAD(the_default_time_is_what_is_played),

@@ -278,6 +278,23 @@ static void test_walk(void **state)
     grobo_motion_free(motion);
 }
 
+/* What is appended to an empty motion is absolute, whatever was in it. */
+static void test_cleared_increments(void **state)
+{
+    (void)state;
+    for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
+        grobo_motion *motion = counting((grobo_motion_kind)kind, 1, 2);
+        assert_int_equal(grobo_motion_set_name(motion, "wave"), 0);
+        grobo_motion_clear(motion);
+        assert_int_equal(grobo_motion_get_kind(motion),
+                         kind == GROBO_MOTION_STEPS ? GROBO_MOTION_POSTURES : kind);
+        assert_string_equal(grobo_motion_name(motion), "wave");
+        grobo_motion_renew(motion, GROBO_MOTION_STEPS);
+        assert_int_equal(grobo_motion_get_kind(motion), GROBO_MOTION_STEPS);
+        grobo_motion_free(motion);
+    }
+}
+
 static void test_joints_grow_and_shrink(void **state)
 {
     (void)state;
@@ -514,6 +531,7 @@ int main(void)
         cmocka_unit_test(test_steps),
         cmocka_unit_test(test_frames_at_a_rate),
         cmocka_unit_test(test_walk),
+        cmocka_unit_test(test_cleared_increments),
         cmocka_unit_test(test_joints_grow_and_shrink),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_dup_is_deep_and_equal),

@@ -4,6 +4,8 @@
 
 #include <grobo/gr001.h>
 
+#include "src/motion/store/container.h"
+
 static const grobo_model *model_of(const grobo_robot *robot)
 {
     return grobo_robot_driver(robot)->model;
@@ -239,7 +241,7 @@ int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t t
         return GROBO_ERR_STALE;
     }
     sensed.time_us = time_us;
-    int result = grobo_motion_append(record, &sensed);
+    int result = grobo_i_record(record, &sensed);
     return result < 0 ? result : (int)grobo_motion_size(record);
 }
 

@@ -6,6 +6,7 @@
 #include "src/base/sized.h"
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
+#include "src/motion/store/container.h"
 
 /* ---- the whole ---------------------------------------------------------------------------- */
 
@@ -229,7 +230,7 @@ static int append(grobo_control *control, grobo_posture *sensed, int64_t time_us
     }
     sensed->time_us = time_us;
     grobo_i_control_lock(control);
-    r = grobo_motion_append(control->motion, sensed);
+    r = grobo_i_record(control->motion, sensed);
     if (r >= 0) {
         r = (int)grobo_motion_size(control->motion);
     }

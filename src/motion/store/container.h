@@ -107,6 +107,9 @@ bool grobo_i_is_named_for(const grobo_motion *motion, const grobo_model *model);
 /* Where a motion starts: at the posture given; NULL: where grobo_motion_start() says. */
 void grobo_i_start(const grobo_motion *motion, const grobo_model *model, const grobo_posture *given,
                    grobo_posture *start);
+/* Appends what was read of a robot: absolute angles, reached in their own time. An empty motion of
+ * frames becomes one of postures; GROBO_ERR_TYPE for one of increments or of frames at a rate. */
+int grobo_i_record(grobo_motion *motion, const grobo_posture *sensed);
 /* Moves all postures of a motion into an empty one of the same allocator. */
 void grobo_i_take_rows(grobo_motion *to, grobo_motion *from);
 /* Exchanges all contents of two motions of the same allocator. */

@@ -90,6 +90,17 @@ int grobo_motion_append(grobo_motion *motion, const grobo_posture *posture)
     return motion == NULL ? GROBO_ERR_ARG : grobo_motion_insert(motion, motion->size, posture);
 }
 
+int grobo_i_record(grobo_motion *motion, const grobo_posture *sensed)
+{
+    if (motion->size == 0 && (motion->kind == GROBO_MOTION_STEPS || grobo_i_at_rate(motion))) {
+        motion->kind = GROBO_MOTION_POSTURES;
+        motion->frame_rate_hz = 0;
+    }
+    return motion->kind == GROBO_MOTION_STEPS || grobo_i_at_rate(motion)
+               ? GROBO_ERR_TYPE
+               : grobo_motion_append(motion, sensed);
+}
+
 int grobo_motion_append_at(grobo_motion *motion, double time_s, const grobo_posture *posture)
 {
     return motion == NULL || posture == NULL ? GROBO_ERR_ARG

@@ -129,6 +129,7 @@ void grobo_motion_renew(grobo_motion *motion, grobo_motion_kind kind)
     motion->name = motion->target_body = NULL;
     motion->kept = NULL;
     motion->frame_rate_hz = 0;
+    motion->line_items = 0;
     motion->frame_times = motion->reverse = false;
     motion->kind = kind;
 }

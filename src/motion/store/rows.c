@@ -295,6 +295,9 @@ void grobo_motion_clear(grobo_motion *motion)
     grobo_i_free(motion->mem, motion->chunks, motion->chunk_room * sizeof *motion->chunks);
     motion->chunks = NULL;
     motion->n_chunks = motion->chunk_room = motion->size = motion->place = 0;
+    if (motion->kind == GROBO_MOTION_STEPS) {
+        motion->kind = GROBO_MOTION_POSTURES;
+    }
 }
 
 /* ---- times -------------------------------------------------------------------------------- */

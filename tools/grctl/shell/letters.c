@@ -56,6 +56,22 @@ static int need_record(shell *s)
         s, grobo_motion_new(GROBO_MOTION_POSTURES, app_model(&s->one)->n_joints, NULL, &s->record));
 }
 
+/* What was read is where joints are: no increment, and no frame at a rate, which has no time. */
+static int may_push(shell *s)
+{
+    const grobo_motion *of = s->record;
+    grobo_motion_kind kind = grobo_motion_get_kind(of);
+    bool frames = kind == GROBO_MOTION_FRAMES && !grobo_motion_has_frame_times(of);
+    if (grobo_motion_size(of) == 0 || (kind != GROBO_MOTION_STEPS && !frames)) {
+        return 0;
+    }
+    return app_fail(&s->one, EXIT_USAGE, "TYPE",
+                    frames ? _("record: it holds frames at a rate; 'Clear' it before, or convert "
+                               "its file to .pseq")
+                           : _("record: it holds increments, not where joints go; 'Clear' it "
+                               "before"));
+}
+
 /* Those that a hand may move: in free mode the others hold, and are read each second anyway. */
 static grobo_joint_mask joints_that_move(conn *c, const shell *s)
 {
@@ -69,8 +85,12 @@ static grobo_joint_mask joints_that_move(conn *c, const shell *s)
 static int push(conn *c, shell *s, double ms)
 {
     grobo_posture posture;
+    int status = may_push(s);
+    if (status) {
+        return status;
+    }
     int error = conn_sense(c, joints_that_move(c, s), GROBO_SENSE_FULL);
-    int status = error ? conn_fail(c, error, "record") : need_record(s);
+    status = error ? conn_fail(c, error, "record") : need_record(s);
     if (status) {
         return status;
     }

@@ -361,7 +361,9 @@ static int begin(making *m, grobo_motion_format format)
     }
     error = grobo_motion_dup(m->base, &m->motion);
     if (!error) {
-        grobo_motion_clear(m->motion);
+        while (grobo_motion_size(m->motion) > 0) { /* increments stay increments */
+            grobo_motion_delete_keep_times(m->motion, grobo_motion_size(m->motion) - 1);
+        }
         error = grobo_motion_joints(m->motion) < m->model->n_joints
                     ? grobo_motion_set_joints(m->motion, m->model->n_joints)
                     : 0;
