@@ -30,7 +30,11 @@ make_root() {
     mkdir -p "$work/roots"
     if [ ! -s "$tarball" ]; then
         case $1 in
-        noble) set -- "$1" "$2" http://archive.ubuntu.com/ubuntu gutsy main,universe ;;
+        jammy | noble | resolute)
+            set -- "$1" "$2" http://archive.ubuntu.com/ubuntu gutsy main,universe
+            ;;
+        # A release that is being made: debootstrap of the one before does not know its name.
+        forky) set -- "$1" "$2" http://deb.debian.org/debian sid main ;;
         *) set -- "$1" "$2" http://deb.debian.org/debian '' main ;;
         esac
         # shellcheck disable=SC2086
@@ -42,6 +46,8 @@ make_root() {
     else
         mkdir "$root" && tar -C "$root" -xf "$tarball" || return 1
     fi
+    # A mirror that stands still has lists of testing that are older than they should be.
+    echo 'Acquire::Check-Valid-Until "false";' >"$root/etc/apt/apt.conf.d/90-as-it-is"
     cp /etc/resolv.conf "$root/etc/resolv.conf" && in_root apt-get -q update
 }
 
