@@ -10,8 +10,14 @@
  * where they are, reads them again, and releases the port, all within GROBO_GUARD_BOUND_US. Torque
  * stays on, unless the exit policy of the moment is GROBO_EXIT_OFF: then it goes off after that.
  * GROBO_EXIT_SIT takes longer than a guard has, so the robot holds. A robot under an emergency stop
- * is stopped that way again. On Linux the guard also stops what moves when the program is stopped
- * (SIGSTOP) for about 100 ms: the session reports GROBO_ERR_STALLED when the program continues.
+ * is stopped that way again.
+ *
+ * On Linux the guard also stops what moves when the program is stopped (SIGSTOP) for about 100 ms,
+ * and when its loop has not turned for GROBO_GUARD_SILENCE_US: a callback that does not return, a
+ * deadlock, a debugger. The session sends nothing more then, and reports GROBO_ERR_STALLED when the
+ * program continues. Torque stays on, as the program may continue; where the policy is
+ * GROBO_EXIT_OFF, it goes off if the program dies before another one has had the robot. While no
+ * joint moves, a program may hold its loop up for as long as it likes.
  *
  * @code
  *   grobo_guard *guard = NULL;
@@ -45,6 +51,9 @@ GROBO_BEGIN_DECLS
 
 /** From the death of the program until the port is released, at most. */
 #define GROBO_GUARD_BOUND_US INT64_C(2000000)
+
+/** A program whose loop does not turn for so long while joints move has lost its robot. */
+#define GROBO_GUARD_SILENCE_US INT64_C(1000000)
 
 /** Most bytes of grobo_session_config.guard_data. */
 #define GROBO_GUARD_DATA_BYTES 2048
@@ -90,8 +99,9 @@ GROBO_CORE int grobo_guard_pid(const grobo_guard *guard);
 
 /** Why a guard stopped the robot. */
 typedef enum grobo_guard_cause {
-    GROBO_GUARD_DIED,   /**< the program has died */
-    GROBO_GUARD_STOPPED /**< the program is stopped by a signal while joints move */
+    GROBO_GUARD_DIED,    /**< the program has died */
+    GROBO_GUARD_STOPPED, /**< the program is stopped by a signal while joints move */
+    GROBO_GUARD_SILENT   /**< its loop does not turn while joints move */
 } grobo_guard_cause;
 
 /** What runs a guard. Zero means default. */

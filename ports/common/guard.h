@@ -45,18 +45,28 @@ void grobo_i_guard_end(grobo_i_guard_process *process, int64_t patience_us);
  * Sends all of the bytes or nothing that can be used, without waiting; with GROBO_HANDLE_NULL no
  * handle goes with them.
  * @return GROBO_OK, GROBO_ERR_FULL (the other side does not read), GROBO_ERR_CLOSED (it has
- *   ended), GROBO_ERR_IO.
+ *   ended), GROBO_ERR_IO (this is no such socket any more).
  */
 int grobo_i_guard_send(grobo_socket socket, const void *bytes, size_t size, grobo_handle handle);
 
 /*
  * Takes what has come, at most `size` bytes, without waiting. *handle is set when one came with
  * them, which the caller closes; `handle` may be NULL where none is expected.
- * @return count; 0 nothing now; GROBO_ERR_CLOSED: the other side has ended; GROBO_ERR_IO.
+ * @return count; 0 nothing now; GROBO_ERR_CLOSED: the other side has ended; GROBO_ERR_IO: this is
+ *   no such socket any more.
  */
 int grobo_i_guard_receive(grobo_socket socket, void *bytes, size_t size, grobo_handle *handle);
 
 /* ---- the process's side ------------------------------------------------------------------- */
+
+/*
+ * Memory of so many bytes, zeroed, that two processes have: one makes it, and the other maps what
+ * it got the handle of. The handle is not needed any more then.
+ * @return GROBO_OK, GROBO_ERR_UNSUPPORTED (Linux only), GROBO_ERR_NOMEM, GROBO_ERR_IO.
+ */
+int grobo_i_guard_share(size_t size, void **at, grobo_handle *handle);
+int grobo_i_guard_map(grobo_handle handle, size_t size, void **at);
+void grobo_i_guard_unmap(void *at, size_t size);
 
 /* What the process watches. */
 typedef struct grobo_i_guard_watch {
@@ -88,7 +98,7 @@ enum {
 
 /*
  * Waits for one of these. `line` is GROBO_HANDLE_NULL where there is none; whether the program is
- * stopped is looked for only while `moves`.
+ * stopped is looked for only while `moves`, and then it returns 50 ms later with nothing found.
  */
 unsigned grobo_i_guard_await(grobo_i_guard_watch *watch, grobo_handle line, bool moves);
 
@@ -100,5 +110,11 @@ void grobo_i_guard_drop(grobo_handle handle);
 
 /* Has the ops' close() leave the device as it is: the guard has it now, and releases it. */
 void grobo_i_port_abandon(grobo_port *port);
+
+/* Lets other programs have the device, which stays open here; a connection stays as it is. */
+void grobo_i_port_lend(grobo_port *port);
+
+/* Takes it back for this process alone. GROBO_OK; GROBO_ERR_BUSY: another program has it. */
+int grobo_i_port_reclaim(grobo_port *port);
 
 #endif

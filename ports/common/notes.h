@@ -40,6 +40,10 @@ void grobo_i_note_folders_find(grobo_i_note_folders *folders);
 int grobo_i_note_read(const grobo_i_note_folders *in, int folder, const char *name, char *text,
                       size_t text_bytes);
 
+/* What a note of one directory has until it is written again, 0 where there is none; takes no
+ * descriptor. */
+uint64_t grobo_i_note_stamp(const grobo_i_note_folders *in, int folder, const char *name);
+
 /* Removes a note everywhere. GROBO_OK, also where there was none, or why one is left. */
 int grobo_i_note_remove(const char *name, grobo_os_cause *cause);
 

@@ -28,6 +28,9 @@ enum { ARGUMENTS_MAX = 16 };
 /* How often the program is looked at where no descriptor tells of its death, or of a stop. */
 enum { LOOK_DEATH_MS = 20, LOOK_STATE_MS = 50, STILL_LOOKS = 2 };
 
+/* More than stopping a robot takes: 256 joints, and what a report of it is printed with. */
+enum { STACK_BYTES = 256 * 1024, PAGE_BYTES = 1024 };
+
 #ifndef MSG_NOSIGNAL /* then SO_NOSIGPIPE, or SIGPIPE is ignored */
 #define MSG_NOSIGNAL 0
 #endif
@@ -230,7 +233,8 @@ int grobo_i_guard_send(grobo_socket socket, const void *bytes, size_t size, grob
     if (sent == (ssize_t)size) {
         return GROBO_OK;
     }
-    if (sent >= 0 || errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOBUFS) {
+    if (sent >= 0 || errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOBUFS ||
+        errno == ENOMEM) {
         return GROBO_ERR_FULL;
     }
     return errno == EPIPE || errno == ECONNRESET ? GROBO_ERR_CLOSED : GROBO_ERR_IO;
@@ -277,7 +281,7 @@ int grobo_i_guard_receive(grobo_socket socket, void *bytes, size_t size, grobo_h
     if (got == 0 || errno == ECONNRESET) {
         return GROBO_ERR_CLOSED;
     }
-    return errno == EAGAIN || errno == EWOULDBLOCK ? 0 : GROBO_ERR_IO;
+    return errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOMEM ? 0 : GROBO_ERR_IO;
 }
 
 /* ---- the process's side ------------------------------------------------------------------- */
@@ -300,6 +304,16 @@ static void ignore_signals(void)
     }
 }
 
+/* What the stack may grow to later is there now: then there may be no memory for it. */
+static void fill_stack(void)
+{
+    volatile char room[STACK_BYTES];
+
+    for (size_t i = 0; i < sizeof room; i += PAGE_BYTES) {
+        room[i] = 0;
+    }
+}
+
 int grobo_i_guard_begin(grobo_i_guard_watch *watch)
 {
     pid_t parent = getppid();
@@ -308,6 +322,7 @@ int grobo_i_guard_begin(grobo_i_guard_watch *watch)
     if (!is_socket(STDIN_FILENO)) {
         return GROBO_ERR_ARG;
     }
+    fill_stack();
     ignore_signals();
     if (setsid() < 0 && getsid(0) != getpid()) {
         return GROBO_ERR_IO;
@@ -353,11 +368,10 @@ unsigned grobo_i_guard_await(grobo_i_guard_watch *watch, grobo_handle line, bool
     struct pollfd what[] = {{.fd = watch->socket, .events = POLLIN},
                             {.fd = watch->death, .events = POLLIN},
                             {.fd = line, .events = 0}};
-    bool looks = moves && watch->state >= 0;
-    int limit_ms = watch->death < 0 ? LOOK_DEATH_MS : looks ? LOOK_STATE_MS : -1;
+    int limit_ms = watch->death < 0 ? LOOK_DEATH_MS : moves ? LOOK_STATE_MS : -1;
     unsigned found = 0;
 
-    (void)poll(what, sizeof what / sizeof what[0], limit_ms);
+    (void)grobo_i_posix_poll(what, sizeof what / sizeof what[0], limit_ms);
     if ((what[0].revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
         found |= GROBO_I_GUARD_NEWS;
     }
@@ -367,7 +381,7 @@ unsigned grobo_i_guard_await(grobo_i_guard_watch *watch, grobo_handle line, bool
     if ((what[2].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) {
         found |= GROBO_I_GUARD_HUNG_UP;
     }
-    if (found == 0 && looks) {
+    if (found == 0 && moves && watch->state >= 0) {
         found = look_at_state(watch);
     } else {
         watch->stillness = 0;

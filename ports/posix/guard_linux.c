@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Linux: death by a pidfd, a stop by /proc, descriptors by close_range(). Systems with kqueue tell
- * of a death by that; elsewhere the guard looks at its parent. Their answers are at the end.
+ * Linux: death by a pidfd, a stop by /proc, descriptors by close_range(), shared memory by memfd.
+ * Systems with kqueue tell of a death by that; elsewhere the guard looks at its parent. Their
+ * answers are at the end.
  */
 #include <limits.h>
 #include <unistd.h>
 
+#include "ports/common/guard.h"
 #include "ports/posix/posix.h"
 
 /* Where the system cannot say which descriptors are open, so many are tried. */
@@ -25,9 +27,11 @@ static void close_each(int first)
 
 #ifdef __linux__
 
+#include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 
@@ -38,6 +42,9 @@ static void close_each(int first)
 #ifndef SYS_close_range
 #define SYS_close_range 436
 #endif
+
+/* MFD_CLOEXEC of the kernel, which headers hide or do not have. */
+enum { CLOSED_ON_EXEC = 1 };
 
 void grobo_i_posix_close_from(int first)
 {
@@ -62,6 +69,40 @@ int grobo_i_posix_watch_state(pid_t pid)
 
     snprintf(path, sizeof path, "/proc/%ld/stat", (long)pid);
     return open(path, O_RDONLY | O_CLOEXEC);
+}
+
+int grobo_i_guard_share(size_t size, void **at, grobo_handle *handle)
+{
+    int fd = (int)syscall(SYS_memfd_create, GROBO_GUARD_NAME, CLOSED_ON_EXEC);
+    int r;
+
+    if (fd < 0) {
+        return grobo_i_posix_error(errno);
+    }
+    r = ftruncate(fd, (off_t)size) == 0 ? grobo_i_guard_map(fd, size, at)
+                                        : grobo_i_posix_error(errno);
+    if (r < 0) {
+        (void)close(fd);
+        return r;
+    }
+    *handle = fd;
+    return GROBO_OK;
+}
+
+int grobo_i_guard_map(grobo_handle handle, size_t size, void **at)
+{
+    void *mapped = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, handle, 0);
+
+    if (mapped == MAP_FAILED) {
+        return grobo_i_posix_error(errno);
+    }
+    *at = mapped;
+    return GROBO_OK;
+}
+
+void grobo_i_guard_unmap(void *at, size_t size)
+{
+    (void)munmap(at, size);
 }
 
 /* "1234 (name) T ...", see proc(5); the name may hold any character. */
@@ -114,6 +155,28 @@ int grobo_i_posix_watch_death(pid_t pid)
 }
 
 #endif
+
+int grobo_i_guard_share(size_t size, void **at, grobo_handle *handle)
+{
+    (void)size;
+    (void)at;
+    (void)handle;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+int grobo_i_guard_map(grobo_handle handle, size_t size, void **at)
+{
+    (void)handle;
+    (void)size;
+    (void)at;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+void grobo_i_guard_unmap(void *at, size_t size)
+{
+    (void)at;
+    (void)size;
+}
 
 void grobo_i_posix_close_from(int first)
 {

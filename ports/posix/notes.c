@@ -267,6 +267,18 @@ int grobo_i_note_read(const grobo_i_note_folders *in, int folder, const char *na
     return GROBO_OK;
 }
 
+/* A note that is replaced is another file, with a time of its own. */
+uint64_t grobo_i_note_stamp(const grobo_i_note_folders *in, int folder, const char *name)
+{
+    char path[PATH_BYTES];
+    struct stat st;
+
+    if (!join(in->path[folder], name, path) || lstat(path, &st) != 0) {
+        return 0;
+    }
+    return ((uint64_t)st.st_ino << 32 ^ (uint64_t)st.st_mtime) + 1;
+}
+
 int grobo_i_note_remove(const char *name, grobo_os_cause *cause)
 {
     char path[PATH_BYTES];

@@ -4,6 +4,9 @@
 #include <limits.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/ioctl.h>
+#include <sys/select.h>
+#include <termios.h>
 #include <time.h>
 
 #include "ports/posix/posix.h"
@@ -171,6 +174,64 @@ void grobo_cond_deinit(grobo_cond *cond)
 
 /* ---- waiting for a descriptor ------------------------------------------------------------- */
 
+/* Notes who is asked about an event. The highest descriptor, -1: none, FD_SETSIZE: too high. */
+static int choose(const struct pollfd *what, int n, short event, fd_set *chosen)
+{
+    int most = -1;
+
+    FD_ZERO(chosen);
+    for (int i = 0; i < n; i++) {
+        if (what[i].fd >= FD_SETSIZE) {
+            return FD_SETSIZE;
+        }
+        if (what[i].fd >= 0 && (what[i].events & event) != 0) {
+            FD_SET(what[i].fd, chosen);
+            most = what[i].fd > most ? what[i].fd : most;
+        }
+    }
+    return most;
+}
+
+static bool is_hung_up(int fd)
+{
+    int left;
+
+    return ioctl(fd, TIOCOUTQ, &left) != 0 && errno == EIO;
+}
+
+/* select() for poll(): who is asked about no event is looked at for a hang-up, at the end. */
+static int select_each(struct pollfd *what, int n, int limit_ms)
+{
+    struct timeval span = {limit_ms / 1000, limit_ms % 1000 * 1000};
+    fd_set in;
+    fd_set out;
+    int to_read = choose(what, n, POLLIN, &in);
+    int to_write = choose(what, n, POLLOUT, &out);
+    int most = to_read > to_write ? to_read : to_write;
+    int ready =
+        most < FD_SETSIZE ? select(most + 1, &in, &out, NULL, limit_ms < 0 ? NULL : &span) : -1;
+
+    for (int i = 0; i < n; i++) {
+        what[i].revents = 0;
+        if (ready >= 0 && what[i].fd >= 0) {
+            what[i].revents = (short)((FD_ISSET(what[i].fd, &in) ? POLLIN : 0) |
+                                      (FD_ISSET(what[i].fd, &out) ? POLLOUT : 0));
+        }
+        if (ready >= 0 && what[i].events == 0 && is_hung_up(what[i].fd)) {
+            what[i].revents = POLLHUP;
+            ready++;
+        }
+    }
+    return ready;
+}
+
+int grobo_i_posix_poll(struct pollfd *what, int n, int limit_ms)
+{
+    int ready = poll(what, (nfds_t)n, limit_ms);
+
+    return ready < 0 && errno == EINVAL ? select_each(what, n, limit_ms) : ready;
+}
+
 int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeout_us)
 {
     struct pollfd one = {.fd = socket, .events = 0};
@@ -183,7 +244,7 @@ int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeout_us)
     if ((what & GROBO_PORT_WRITABLE) != 0) {
         one.events |= POLLOUT;
     }
-    ready = poll(&one, 1, ms > INT_MAX ? INT_MAX : (int)ms);
+    ready = grobo_i_posix_poll(&one, 1, ms > INT_MAX ? INT_MAX : (int)ms);
     if (ready < 0) {
         return errno == EINTR ? 0 : GROBO_ERR_IO;
     }

@@ -28,6 +28,11 @@ int grobo_i_posix_file_error(int code);
 /* Fills cause from an errno, with `what` saying what was tried; returns the GROBO_ERR_* for it. */
 int grobo_i_posix_fail(grobo_os_cause *cause, int code, const char *what);
 
+struct pollfd;
+
+/* poll(), which refuses all where the process may have fewer descriptors than are asked about. */
+int grobo_i_posix_poll(struct pollfd *what, int n, int limit_ms);
+
 /* Makes a descriptor non-blocking and closed on exec. */
 int grobo_i_posix_prepare(int fd, grobo_os_cause *cause);
 

@@ -9,6 +9,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "ports/common/guard.h"
 #include "ports/posix/posix.h"
 
 /* On the wire, with start, parity and stop bits. */
@@ -40,15 +41,14 @@ static int check_kind(const char *device, struct stat *st, grobo_os_cause *cause
 }
 
 /* flock keeps out programs that ask for it, root's too; TIOCEXCL the others, but not root's. */
-static int take(int fd, const char *device, const struct stat *st, grobo_os_cause *cause)
+static int take(int fd, const struct stat *st, grobo_os_cause *cause)
 {
     if (isatty(fd) == 0) {
         return errno == EIO ? grobo_i_posix_fail(cause, EIO, "isatty")
                             : grobo_i_port_refuse(cause, GROBO_ERR_TYPE, "not a serial port");
     }
     if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
-        return errno == EWOULDBLOCK ? refuse_busy(device, cause)
-                                    : grobo_i_posix_fail(cause, errno, "flock");
+        return errno == EWOULDBLOCK ? GROBO_ERR_BUSY : grobo_i_posix_fail(cause, errno, "flock");
     }
     if (!grobo_i_posix_exclusive_sticks(st->st_rdev) && ioctl(fd, TIOCEXCL) != 0) {
         return grobo_i_posix_fail(cause, errno, "TIOCEXCL");
@@ -101,10 +101,10 @@ static int serial_open(grobo_port *port, const char *device, int baud_bps, grobo
         return errno == EBUSY ? refuse_busy(device, cause)
                               : grobo_i_posix_fail(cause, errno, "open");
     }
-    r = take(fd, device, &st, cause);
+    r = take(fd, &st, cause);
     if (r < 0) {
         (void)close(fd);
-        return r;
+        return r == GROBO_ERR_BUSY ? refuse_busy(device, cause) : r;
     }
     r = grobo_i_posix_make_raw(fd, cause);
     if (r >= 0) {
@@ -148,6 +148,25 @@ static void let_leave(int fd)
     if (left > 0) {
         (void)tcflush(fd, TCOFLUSH);
     }
+}
+
+void grobo_i_port_lend(grobo_port *port)
+{
+    if (isatty(port->fd) == 1) {
+        let_leave(port->fd);
+        let_others(port->fd);
+    }
+}
+
+int grobo_i_port_reclaim(grobo_port *port)
+{
+    struct stat st;
+    grobo_os_cause cause;
+
+    if (isatty(port->fd) != 1) {
+        return GROBO_OK;
+    }
+    return fstat(port->fd, &st) == 0 ? take(port->fd, &st, &cause) : GROBO_ERR_IO;
 }
 
 static void serial_close(grobo_port *port)

@@ -51,6 +51,28 @@ int grobo_i_guard_receive(grobo_socket socket, void *bytes, size_t size, grobo_h
     return GROBO_ERR_UNSUPPORTED;
 }
 
+int grobo_i_guard_share(size_t size, void **at, grobo_handle *handle)
+{
+    (void)size;
+    (void)at;
+    (void)handle;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+int grobo_i_guard_map(grobo_handle handle, size_t size, void **at)
+{
+    (void)handle;
+    (void)size;
+    (void)at;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+void grobo_i_guard_unmap(void *at, size_t size)
+{
+    (void)at;
+    (void)size;
+}
+
 int grobo_i_guard_begin(grobo_i_guard_watch *watch)
 {
     (void)watch;
@@ -84,4 +106,15 @@ void grobo_i_guard_drop(grobo_handle handle)
 void grobo_i_port_abandon(grobo_port *port)
 {
     (void)port;
+}
+
+void grobo_i_port_lend(grobo_port *port)
+{
+    (void)port;
+}
+
+int grobo_i_port_reclaim(grobo_port *port)
+{
+    (void)port;
+    return GROBO_ERR_UNSUPPORTED;
 }

@@ -128,6 +128,52 @@ stopped() {
 }
 check "SIGSTOP: the guard stops the joint, and the program says so when it continues" stopped
 
+# It is stopped and holds, as it may continue; when it is dead, its policy is.
+stopped_and_killed() {
+    moves --on-exit off || return 1
+    kill -s STOP $mover
+    stands && wait_for exits 0 on_robot ports || return 1
+    ends KILL
+    written "$work/moving" 'its guard stopped the robot' && wait_for sim_shows 5 'torque off' &&
+        wait_for guard_is_gone && exits 0 on_robot status m5
+}
+check "SIGSTOP, then SIGKILL: torque goes off where the exit policy says so" stopped_and_killed
+
+# by_debugger COMMAND...: of gdb, to the mover.
+by_debugger() {
+    gdb -p $mover -nx -batch "$@" >"$work/debugger" 2>&1
+}
+debugged() {
+    moves || return 1
+    by_debugger -ex 'shell sleep 3' # what a person takes to look
+    wait $mover
+    ended=$?
+    [ $ended -eq 4 ] && grep -q 'stopped for safety: host stalled' "$work/moving" &&
+        stands && wait_for guard_is_gone
+}
+closed() {
+    moves || return 1
+    by_debugger -ex 'print (int)close_range(3, ~0u, 0)'
+    wait $mover
+    ended=$?
+    [ $ended -eq 1 ] && stands && wait_for guard_is_gone && ! grep '^\[' "$work/moving"
+}
+has_debugger() {
+    [ -z "${EMULATOR:-}" ] && command -v gdb >/dev/null 2>&1 || return 1
+    sleep 60 &
+    mover=$!
+    by_debugger -ex 'print (int)getpid()'
+    kill $mover
+    wait $mover 2>/dev/null
+    grep -q "= $mover\$" "$work/debugger"
+}
+if has_debugger; then
+    check "a debugger holds it: the guard stops the joint" debugged
+    check "it closes all its descriptors: the guard stops the joint" closed
+else
+    skip "a debugger holds it, or closes its descriptors" "needs gdb, and to be allowed"
+fi
+
 suspended() {
     moves || return 1
     kill -s TSTP $mover

@@ -209,6 +209,12 @@ static bool guard_is_gone(void)
     return stat != NULL && state == 'Z';
 }
 
+/* Memory that two programs share. */
+static bool has_heartbeat(void)
+{
+    return access("/proc/self/stat", R_OK) == 0;
+}
+
 static void run_until_it_dies(const char *how)
 {
     start(how);
@@ -346,6 +352,164 @@ static void a_program_that_continues_too_early(void **state)
     await_word("STALLED");
     assert_false(is_free());
     await(is_free);
+}
+
+/* Stopped first and killed then: the policy is that of one that died. */
+static void a_program_that_is_stopped_and_then_killed(void **state)
+{
+    (void)state;
+    if (access("/proc/self/stat", R_OK) != 0) {
+        skip(); /* only Linux tells */
+    }
+    serve(false);
+    start("stop");
+    await_word("moving");
+    await(stands);
+    await(is_free);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    await(guard_is_gone);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_OFF);
+    assert_true(is_free());
+}
+
+/* Nobody's torque goes off behind his back: another program has had the robot meanwhile. */
+static void a_program_that_is_stopped_and_followed_by_another(void **state)
+{
+    const grobo_session_config config = {GROBO_SESSION_CONFIG_INIT, .base = base, .device = device,
+                                         .baud_bps = GUARDED_BPS};
+    grobo_session *session = NULL;
+    int64_t end_us = grobo_now_us() + 20000000;
+
+    (void)state;
+    if (access("/proc/self/stat", R_OK) != 0) {
+        skip(); /* only Linux tells */
+    }
+    serve(false);
+    start("stop");
+    await_word("moving");
+    await(stands);
+    await(is_free);
+    assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    while (grobo_session_get_state(session) != GROBO_SESSION_UP) {
+        assert_true(grobo_now_us() < end_us);
+        loop_run_for(base, 5000);
+    }
+    grobo_session_free(session);
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    await(guard_is_gone);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+    assert_true(is_free());
+}
+
+/* Its loop is held up, and nobody but its heart tells. */
+static void a_program_that_hangs(void **state)
+{
+    size_t bytes;
+
+    (void)state;
+    if (!has_heartbeat()) {
+        skip(); /* only Linux has one */
+    }
+    serve(false);
+    start("hang");
+    await_word("hanging");
+    await(stands);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON); /* not off: it may continue */
+    await(is_free);
+    assert_false(guard_is_gone());
+    bytes = bytes_sent;
+    assert_int_equal(kill(program, SIGUSR1), 0);
+    await_word("STALLED"); /* before anything is sent */
+    assert_int_equal(bytes_sent, bytes);
+    await_word("up");
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    await(guard_is_gone);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_OFF);
+}
+
+/* Where nothing moves, it may wait for a person as long as it likes. */
+static void a_program_that_asks_a_person(void **state)
+{
+    (void)state;
+    serve(false);
+    start("ask");
+    await_word("hanging");
+    loop_run_for(base, 2000000);
+    assert_false(is_free()); /* the guard would have released it */
+    assert_int_equal(kill(program, SIGUSR1), 0);
+    loop_run_for(base, 200000);
+    assert_string_equal(said + understood, " ");
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    await(guard_is_gone);
+}
+
+/* One whose loop turns is left alone for longer than a silence, also while nothing is sent. */
+static void a_program_that_only_waits(void **state)
+{
+    (void)state;
+    serve(false);
+    start("watch");
+    await_word("moving");
+    loop_run_for(base, 2500000);
+    assert_true(look().moving);
+    assert_string_equal(said + understood, " ");
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    await(guard_is_gone);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+}
+
+/* Without its descriptors it has no loop, no port and no guard to tell: that guard stops. */
+static void a_program_that_closes_all_its_descriptors(void **state)
+{
+    (void)state;
+    serve(false);
+    start("deaf");
+    await_word("moving");
+    await(stands);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+    await(has_ended);
+    await(is_free);
+    await(guard_is_gone);
+}
+
+static void a_program_that_closes_them_and_hangs(void **state)
+{
+    (void)state;
+    serve(false);
+    start("dumb");
+    await_word("hanging");
+    await(stands);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+    await(is_free);
+    await(guard_is_gone);
+}
+
+/* Nothing that it needs then is still to be had from the system. */
+static void a_guard_that_gets_nothing_any_more(void **state)
+{
+    char command[128];
+
+    (void)state;
+    serve(false);
+    start("watch");
+    await_word("moving");
+    snprintf(command, sizeof command, "exec prlimit --nofile=0 --as=1 --pid %d", guard_pid);
+    if (system(command) != 0) {
+        skip(); /* no such tool, or no such system */
+    }
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    await(stands);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+    await(guard_is_gone);
+    assert_true(is_free());
 }
 
 static void a_program_that_ends_well(void **state)
@@ -569,7 +733,15 @@ int main(int argc, char **argv)
         TEST(an_emergency_stop_stays_one),
         TEST(a_child_that_survives),
         TEST(a_program_that_is_stopped),
+        TEST(a_program_that_is_stopped_and_then_killed),
+        TEST(a_program_that_is_stopped_and_followed_by_another),
         TEST(a_program_that_continues_too_early),
+        TEST(a_program_that_hangs),
+        TEST(a_program_that_asks_a_person),
+        TEST(a_program_that_only_waits),
+        TEST(a_program_that_closes_all_its_descriptors),
+        TEST(a_program_that_closes_them_and_hangs),
+        TEST(a_guard_that_gets_nothing_any_more),
         TEST(a_program_that_ends_well),
         TEST(a_port_that_is_closed),
         TEST(a_guard_that_is_killed),

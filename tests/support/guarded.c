@@ -78,7 +78,7 @@ static void on_line(void *ctx, grobo_session *session, grobo_session_event event
         grobo_posture_init(&target, grobo_gr001_model.n_joints);
         grobo_posture_set_deg(
             &target, grobo_model_joint_of_motor(&grobo_gr001_model, GUARDED_MOTOR), GUARDED_TO_DEG);
-        target.time_us = is_mode("rest") ? 300000 : 20000000;
+        target.time_us = is_mode("rest") || is_mode("ask") ? 300000 : 20000000;
         if (grobo_robot_move(grobo_session_robot(session), &target) < 0) {
             end_program("moves-not");
         }
@@ -115,8 +115,49 @@ static void leave_child(void)
     (void)read(ends[0], &byte, 1);
 }
 
+static void hang(void);
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    if (is_mode("ask") && event->kind == GROBO_EVENT_JOB && event->u.job.kind == GROBO_JOB_MOVE) {
+        hang();
+    }
+}
+
+/* Holds the loop up until SIGUSR1 comes. */
+static void hang(void)
+{
+    sigset_t wanted;
+    int number;
+
+    sigemptyset(&wanted);
+    sigaddset(&wanted, SIGUSR1);
+    (void)sigprocmask(SIG_BLOCK, &wanted, NULL);
+    say("hanging");
+    (void)sigwait(&wanted, &number);
+}
+
+static void close_all(void)
+{
+    for (int fd = STDERR_FILENO; fd < 64; fd++) {
+        (void)close(fd);
+    }
+}
+
 static void do_as_the_mode_says(void)
 {
+    if (is_mode("hang")) {
+        hang();
+        return;
+    }
+    if (is_mode("deaf") || is_mode("dumb")) {
+        close_all();
+        if (is_mode("dumb")) {
+            hang();
+        }
+        return;
+    }
     if (is_mode("fork")) {
         leave_child();
     }
@@ -149,7 +190,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
         }
         return;
     }
-    if (ticks == 0 && !moving) {
+    if ((ticks == 0 && !moving) || is_mode("ask")) {
         return;
     }
     ticks++;
@@ -174,6 +215,7 @@ static int be_program(const char *self, const char *device)
                                    .robot = &robot,
                                    .reconnect = !is_mode("halt"),
                                    .on_event = on_line,
+                                   .on_robot = on_robot,
                                    .guard_data = is_mode("strange") ? "other" : "known",
                                    .guard_bytes = 5};
     struct event *tick;
@@ -182,7 +224,8 @@ static int be_program(const char *self, const char *device)
     if (dup(STDOUT_FILENO) < 0 || guarded_new(self, &its_guard) != GROBO_OK) {
         return 8;
     }
-    robot.on_exit = is_mode("off") || is_mode("stop") ? GROBO_EXIT_OFF : GROBO_EXIT_DEFAULT;
+    robot.on_exit =
+        is_mode("off") || is_mode("stop") || is_mode("hang") ? GROBO_EXIT_OFF : GROBO_EXIT_DEFAULT;
     its_base = grobo_loop_new();
     config.base = its_base;
     config.guard = its_guard;

@@ -9,7 +9,10 @@
  * emergency stop; "fork" too, and leaves a child that has all its descriptors; "strange" too, with
  * a driver that the guard does not know; "stop" stops itself, with torque off as its exit policy;
  * "halt" too, and does not open a lost line again; "end" ends well; "watch" goes on; "close" closes
- * the port, says "closed", and goes on; "rest" moves for a short time, says "resting", and goes on.
+ * the port, says "closed", and goes on; "rest" moves for a short time, says "resting", and goes on;
+ * "hang" holds its loop up until it gets SIGUSR1, and goes on; "deaf" closes every descriptor but
+ * its output, and goes on while it has a loop, and "dumb" does so and hangs;
+ * "ask" moves as in "rest", and hangs in the callback that tells it the end of the move.
  */
 #ifndef GROBO_TESTS_GUARDED_H
 #define GROBO_TESTS_GUARDED_H

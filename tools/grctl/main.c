@@ -2,6 +2,8 @@
 #include <locale.h>
 #include <string.h>
 
+#include <event2/event.h>
+
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/run.h"
 #include "tools/grctl/cmd/commands.h"
@@ -25,10 +27,18 @@ static void choose_language(void)
     }
 }
 
+/* What libevent would print, of an address or a descriptor: the complaint is that of the caller. */
+static void keep_silent(int severity, const char *text)
+{
+    (void)severity;
+    (void)text;
+}
+
 int main(int argc, char **argv)
 {
     static app a;
     os_start();
+    event_set_log_callback(keep_silent);
     cli_commands = commands;
     cli_n_commands = sizeof commands / sizeof commands[0];
     if (argc > 1 && strcmp(argv[1], "__complete") == 0) { /* by the script of a shell */

@@ -411,6 +411,22 @@ void grobo_i_estop_watch_end(grobo_i_estop_watch *watch)
     *watch = (grobo_i_estop_watch){.on = false};
 }
 
+uint64_t grobo_i_estop_holder_stamp(const grobo_i_device_names *names)
+{
+    grobo_i_note_folders in;
+    char note[NOTE_NAME_BYTES];
+    uint64_t sum = 0;
+
+    grobo_i_note_folders_find(&in);
+    for (int i = 0; i < names->n; i++) {
+        note_of("holder", names->name[i], note);
+        for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
+            sum = sum * 31 + grobo_i_note_stamp(&in, folder, note);
+        }
+    }
+    return sum;
+}
+
 static bool has(char list[][sizeof((grobo_estop *)0)->id], int n, const char *id)
 {
     int at = 0;

@@ -33,6 +33,10 @@ void grobo_i_estop_watch_end(grobo_i_estop_watch *watch);
  */
 bool grobo_i_estop_watch_look(grobo_i_estop_watch *watch, bool *pending);
 
+/* Changes when another process than the last one is registered for the device; 0: none is. Takes no
+ * descriptor. */
+uint64_t grobo_i_estop_holder_stamp(const grobo_i_device_names *names);
+
 /* Writes what is to be said. */
 void grobo_i_estop_watch_answer(grobo_i_estop_watch *watch);
 

@@ -6,9 +6,11 @@
 #include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"
 
-/* Longest the guard may take to come up, and to end. */
+/* Longest the guard may take to come up, and to end, where it does not stop the robot first. */
 #define READY_US INT64_C(2000000)
 #define END_US INT64_C(1000000)
+
+_Static_assert(ATOMIC_INT_LOCK_FREE == 2, "two processes may use what is lock-free only");
 
 /* ---- starting and ending ------------------------------------------------------------------ */
 
@@ -37,6 +39,34 @@ static int await_hello(const grobo_guard *guard)
                : GROBO_ERR_MISMATCH;
 }
 
+/* Gives the guard the memory that both have. Where there is none, it watches for the program's
+ * death and for a stop only. */
+static int share(grobo_guard *guard)
+{
+    guard_message message;
+    grobo_handle handle;
+    void *at;
+    int r = grobo_i_guard_share(sizeof *guard->shared, &at, &handle);
+
+    if (r < 0) {
+        return r == GROBO_ERR_UNSUPPORTED ? GROBO_OK : r;
+    }
+    guard->shared = at;
+    memset(&message, 0, sizeof message);
+    message.magic = GUARD_MAGIC;
+    message.kind = GUARD_SHARE;
+    r = grobo_i_guard_send(guard->process.socket, &message, sizeof message, handle);
+    grobo_i_guard_drop(handle);
+    return r;
+}
+
+static void unshare(grobo_guard *guard)
+{
+    if (guard->shared != &guard->own) {
+        grobo_i_guard_unmap(guard->shared, sizeof *guard->shared);
+    }
+}
+
 int grobo_guard_new(const grobo_guard_config *config, grobo_guard **guard)
 {
     static const char *const word[] = {"guard", NULL};
@@ -52,15 +82,20 @@ int grobo_guard_new(const grobo_guard_config *config, grobo_guard **guard)
         return GROBO_ERR_NOMEM;
     }
     made->mem = from.mem;
+    made->shared = &made->own;
     r = grobo_i_guard_spawn(from.program != NULL ? from.program : grobo_i_guard_default(),
                             from.arguments != NULL ? from.arguments : word, &made->process);
     if (r >= 0) {
         r = await_hello(made);
+        if (r >= 0) {
+            r = share(made);
+        }
         if (r < 0) {
             grobo_i_guard_end(&made->process, 0);
         }
     }
     if (r < 0) {
+        unshare(made);
         grobo_i_free(from.mem, made, sizeof *made);
         return r;
     }
@@ -72,7 +107,10 @@ void grobo_guard_free(grobo_guard *guard)
 {
     if (guard != NULL) {
         grobo_i_guard_release(guard);
-        grobo_i_guard_end(&guard->process, END_US);
+        bool stops = guard->taken || atomic_load(&guard->shared->line) == GUARD_LINE_GUARD;
+
+        grobo_i_guard_end(&guard->process, END_US + (stops ? GROBO_GUARD_BOUND_US : 0));
+        unshare(guard);
         grobo_i_free(guard->mem, guard, sizeof *guard);
     }
 }
@@ -87,12 +125,34 @@ int grobo_guard_pid(const grobo_guard *guard)
 
 /* ---- what is said ------------------------------------------------------------------------- */
 
-/* One that does not listen must not take the robot later: it is ended. */
-static void give_up(grobo_guard *guard)
+/* The program has the line no more, unless the guard has. */
+static void withdraw(grobo_guard *guard)
+{
+    unsigned had = GUARD_LINE_PROGRAM;
+
+    if (!atomic_compare_exchange_strong(&guard->shared->line, &had, GUARD_LINE_NOBODY)) {
+        guard->taken = guard->taken || had == GUARD_LINE_GUARD;
+    }
+}
+
+/*
+ * One that does not listen must not take the robot later: it is ended. But where it is this program
+ * that has lost its descriptors, the guard finds them closed, takes the line, and must live.
+ */
+static void give_up(grobo_guard *guard, int error)
 {
     guard->ended = true;
-    guard->has_port = false;
+    if (error == GROBO_ERR_IO) {
+        guard->taken = guard->has_port;
+        guard->process.socket = GROBO_SOCKET_NULL; /* what is closed, or somebody else's */
+        return;
+    }
+    if (guard->has_port) {
+        withdraw(guard);
+    }
     grobo_i_guard_kill(&guard->process);
+    guard->has_port = guard->taken;
+    atomic_store(&guard->shared->line, guard->taken ? GUARD_LINE_GUARD : GUARD_LINE_PROGRAM);
 }
 
 static bool can_be_told(const grobo_guard *guard)
@@ -102,8 +162,10 @@ static bool can_be_told(const grobo_guard *guard)
 
 static void send(grobo_guard *guard, const void *bytes, size_t size, grobo_handle handle)
 {
-    if (grobo_i_guard_send(guard->process.socket, bytes, size, handle) < 0) {
-        give_up(guard);
+    int r = grobo_i_guard_send(guard->process.socket, bytes, size, handle);
+
+    if (r < 0) {
+        give_up(guard, r);
     }
 }
 
@@ -126,6 +188,7 @@ void grobo_i_guard_take(grobo_guard *guard, const guard_message *message, const 
     guard->message = *message;
     guard->taken = guard->refused = false;
     guard->has_port = true;
+    atomic_store(&guard->shared->line, GUARD_LINE_PROGRAM);
     send(guard, &all, sizeof all.message + message->data_bytes, handle);
 }
 
@@ -133,6 +196,7 @@ void grobo_i_guard_tell(grobo_guard *guard, guard_policy policy, bool moves)
 {
     guard_message *told = &guard->message;
 
+    atomic_fetch_add_explicit(&guard->shared->beats, 1, memory_order_relaxed);
     if (!can_be_told(guard) || !guard->has_port ||
         (told->policy == (uint32_t)policy && told->moves == (uint32_t)moves)) {
         return;
@@ -146,7 +210,9 @@ void grobo_i_guard_tell(grobo_guard *guard, guard_policy policy, bool moves)
 
 void grobo_i_guard_release(grobo_guard *guard)
 {
+    grobo_i_guard_hear(guard);
     if (can_be_told(guard) && guard->has_port) {
+        withdraw(guard);
         guard->has_port = false;
         if (guard->taken) {
             return; /* it has released it already, or will */
@@ -168,7 +234,12 @@ void grobo_i_guard_hear(grobo_guard *guard)
         guard->taken = guard->taken || (words[i] == GUARD_TAKEN && guard->has_port);
         guard->refused = guard->refused || words[i] == GUARD_REFUSED;
     }
+    guard->taken =
+        guard->taken || (guard->has_port && atomic_load(&guard->shared->line) == GUARD_LINE_GUARD);
+    if (guard->taken) {
+        atomic_store(&guard->shared->line, GUARD_LINE_GUARD); /* where the memory is not shared */
+    }
     if (got < 0) {
-        give_up(guard);
+        give_up(guard, got);
     }
 }

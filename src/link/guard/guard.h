@@ -4,18 +4,25 @@
  * session uses it.
  *
  * What goes over the socket, between two builds of the same library:
- * - to the guard: messages of guard_message and its data. TAKE brings the port, and how to speak on
- *   it; STATE what changed since; RELEASE takes the port back; at the end of the stream the program
- *   has ended well where it had no port there, else it has died.
+ * - to the guard: messages of guard_message and its data. SHARE brings the memory that both have;
+ *   TAKE the port, and how to speak on it; STATE what changed since; RELEASE takes the port back;
+ *   at the end of the stream the program has ended well where it had no port there, else it has
+ *   died, or has closed its descriptors.
  * - to the program: guard_hello once, then a byte for each of guard_word.
  *
  * States of the process: idle (no port), watching (a port, the program lives), stopping (it died,
- * or is stopped). A stopped program is told GUARD_TAKEN before anything is sent: when it continues,
- * it reads that before it sends anything, and leaves the port, which is then the guard's alone to
- * release.
+ * is stopped, or has not been heard), and lent (it has stopped the robot, another program may have
+ * the port, and torque goes off if the program dies before one had it).
+ *
+ * Who has the line is one word in the shared memory. The program gives it up, and the guard takes
+ * it, by one exchange; the program looks at it before each of its bytes leaves. So whoever wakes up
+ * after the guard has taken it sends nothing, and is told GUARD_TAKEN; the port is then the guard's
+ * alone to release. The memory holds the program's heartbeat too.
  */
 #ifndef GROBO_LINK_GUARD_I_H
 #define GROBO_LINK_GUARD_I_H
+
+#include <stdatomic.h>
 
 #include <grobo/guard.h>
 #include <grobo/robot.h>
@@ -23,9 +30,18 @@
 #include "ports/common/guard.h"
 
 /* Changes with the layout of guard_message. */
-#define GUARD_MAGIC UINT32_C(0x47524432)
+#define GUARD_MAGIC UINT32_C(0x47524433)
 
-typedef enum guard_kind { GUARD_TAKE = 1, GUARD_STATE, GUARD_RELEASE } guard_kind;
+typedef enum guard_kind { GUARD_TAKE = 1, GUARD_STATE, GUARD_RELEASE, GUARD_SHARE } guard_kind;
+
+/* Who has the line. */
+enum guard_line { GUARD_LINE_PROGRAM, GUARD_LINE_GUARD, GUARD_LINE_NOBODY };
+
+/* What both processes have; where the system has no such memory, each has one of its own. */
+typedef struct guard_shared {
+    atomic_uint line;  /* guard_line: bytes leave the program only while it is 0 */
+    atomic_uint beats; /* counts the rounds of the program's loop, and wraps around */
+} guard_shared;
 
 /* Bytes from the guard. */
 enum guard_word {
@@ -53,11 +69,14 @@ typedef struct guard_message {
     grobo_wiring wiring;
     grobo_robot_config robot;
     char driver[32];
+    char device[GROBO_DEVICE_MAX_BYTES];
 } guard_message;
 
 struct grobo_guard {
     grobo_i_guard_process process;
     const grobo_mem *mem;
+    guard_shared *shared; /* `own`, or mapped */
+    guard_shared own;
     guard_message message; /* what it knows of the port it has */
     bool has_port;
     bool taken;   /* it stops the robot: nothing may be sent on the port given to it */
@@ -71,10 +90,10 @@ struct grobo_guard {
 void grobo_i_guard_take(grobo_guard *guard, const guard_message *message, const void *data,
                         grobo_handle handle);
 
-/* Says what has changed, if it has. */
+/* Says what has changed, if it has, and that the program lives. */
 void grobo_i_guard_tell(grobo_guard *guard, guard_policy policy, bool moves);
 
-/* Takes the port back. */
+/* Takes the port back, before it is closed; where the guard has taken it, `taken`. */
 void grobo_i_guard_release(grobo_guard *guard);
 
 /* Reads what it says, without waiting: `taken`, `refused` and `ended` are new then. */

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The guard's process. It waits for one of: a message of the program, the program's death, the
- * program being stopped while joints move, the line's hang-up. For the second and third it runs the
- * engine of robot.h on the port it was given: the exit policy is carried out by the same code that
- * `grctl stop` uses.
+ * program being stopped or silent while joints move, the line's hang-up. For death, stop and
+ * silence it runs the engine of robot.h on the port it was given: the exit policy is carried out by
+ * the same code that `grctl stop` uses. What that takes it has as soon as it has the port: later
+ * the system may have neither descriptors nor memory for it.
  */
 #include <string.h>
 
@@ -12,12 +13,17 @@
 
 #include "src/base/instant.h"
 #include "src/base/sized.h"
+#include "src/link/guard/estop.h"
 #include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"
 
 /* Of GROBO_GUARD_BOUND_US: what stopping may take, and what it leaves for switching torque off. */
 #define STOP_US (GROBO_GUARD_BOUND_US - 300000)
 #define OFF_US 600000
+
+/* So much of a silence counts between two looks: where this process is held up, the program may
+ * have been too. */
+#define LOOK_MAX_US 100000
 
 /* A frame on its way to the board, on to the servo, and its reply; and the servo's thinking. */
 #define QUIET_BYTES (3 * GROBO_FRAME_MAX_BYTES)
@@ -28,6 +34,11 @@
 typedef struct guard_run {
     const grobo_guard_program *program;
     grobo_i_guard_watch watch;
+    guard_shared *shared; /* `own`, or mapped */
+    guard_shared own;
+    /* since when nothing was heard of the program */
+    unsigned beats;
+    int64_t silent_us, looked_us;
     /* what comes */
     struct {
         guard_message message;
@@ -37,6 +48,9 @@ typedef struct guard_run {
     grobo_handle came; /* with the message that is not complete yet */
     /* the port it has */
     bool has_port;
+    bool lent; /* the robot was stopped: another program may have the port */
+    grobo_i_device_names names;
+    uint64_t holder; /* grobo_i_estop_holder_stamp() of the program */
     grobo_handle line;
     guard_message how;
     const grobo_driver *driver;
@@ -52,7 +66,7 @@ typedef struct guard_run {
 
 static void forget(guard_run *run)
 {
-    run->has_port = false;
+    run->has_port = run->lent = false;
     run->line = GROBO_HANDLE_NULL;
 }
 
@@ -69,6 +83,35 @@ static void say(guard_run *run, char word)
 {
     /* Nobody may be left to hear it. */
     (void)grobo_i_guard_send(run->watch.socket, &word, 1, GROBO_HANDLE_NULL);
+}
+
+/* False where it cannot be had. */
+static bool share(guard_run *run)
+{
+    void *at;
+
+    if (run->came == GROBO_HANDLE_NULL || run->shared != &run->own ||
+        grobo_i_guard_map(run->came, sizeof *run->shared, &at) < 0) {
+        return false;
+    }
+    run->shared = at;
+    return true;
+}
+
+static void unshare(guard_run *run)
+{
+    if (run->shared != &run->own) {
+        grobo_i_guard_unmap(run->shared, sizeof *run->shared);
+    }
+}
+
+/* The line is the guard's from now on. False: the program is just giving it up. */
+static bool claim(guard_run *run)
+{
+    unsigned had = GUARD_LINE_PROGRAM;
+
+    return atomic_compare_exchange_strong(&run->shared->line, &had, GUARD_LINE_GUARD) ||
+           had == GUARD_LINE_GUARD;
 }
 
 static const grobo_driver *find_driver(guard_run *run)
@@ -99,11 +142,18 @@ static void take(guard_run *run)
     run->came = GROBO_HANDLE_NULL;
     run->how = run->in.message;
     run->ops = run->how.connection ? grobo_port_tcp_ops() : grobo_port_serial_ops();
+    run->own.line = GUARD_LINE_PROGRAM;
+    grobo_i_device_names_find(run->how.device, &run->names);
+    run->holder = grobo_i_estop_holder_stamp(&run->names);
 }
 
-static void obey(guard_run *run)
+/* False: it asks for what this system does not have. */
+static bool obey(guard_run *run)
 {
+    bool can = true;
+
     run->in.message.driver[sizeof run->in.message.driver - 1] = '\0';
+    run->in.message.device[sizeof run->in.message.device - 1] = '\0';
     switch ((guard_kind)run->in.message.kind) {
     case GUARD_TAKE:
         take(run);
@@ -115,11 +165,15 @@ static void obey(guard_run *run)
     case GUARD_RELEASE:
         drop(run);
         break;
+    case GUARD_SHARE:
+        can = share(run);
+        break;
     }
     if (run->came != GROBO_HANDLE_NULL) {
         grobo_i_guard_drop(run->came);
         run->came = GROBO_HANDLE_NULL;
     }
+    return can;
 }
 
 /* Takes what has come of a message. False at the end of the stream, or where it makes no sense. */
@@ -144,8 +198,8 @@ static bool take_some(guard_run *run)
         return false;
     }
     if (run->have == sizeof run->in.message + run->in.message.data_bytes) {
-        obey(run);
         run->have = 0;
+        return obey(run);
     }
     return true;
 }
@@ -296,28 +350,98 @@ static int stop_robot(guard_run *run, guard_policy policy)
     return exit_by(run, GROBO_EXIT_HOLD, end_us);
 }
 
-static void stop(guard_run *run, grobo_guard_cause cause)
+static void report(const guard_run *run, grobo_guard_cause cause, int result)
 {
-    guard_policy policy = (guard_policy)run->how.policy;
-    int result;
-
-    if (cause == GROBO_GUARD_STOPPED && policy == GUARD_OFF) {
-        policy = GUARD_HOLD; /* it may continue; a robot that fell does not */
-    }
-    grobo_i_port_adopt(run->port, run->line);
-    result = stop_robot(run, policy);
-    run->ops->close(run->port);
-    forget(run);
     if (run->program->on_stop != NULL) {
         run->program->on_stop(run->program->ctx, cause, result);
     }
 }
 
+/* Whoever wants the robot may have it; if the program dies before anybody had, torque is still owed
+ * to go off. */
+static void lend(guard_run *run)
+{
+    grobo_i_port_lend(run->port);
+    run->lent = true;
+}
+
+static void stop(guard_run *run, grobo_guard_cause cause)
+{
+    guard_policy policy = (guard_policy)run->how.policy;
+    bool may_continue = cause != GROBO_GUARD_DIED;
+    int result;
+
+    grobo_i_port_adopt(run->port, run->line);
+    /* A program may continue; a robot that fell does not. */
+    result = stop_robot(run, may_continue && policy == GUARD_OFF ? GUARD_HOLD : policy);
+    if (may_continue && policy == GUARD_OFF) {
+        lend(run);
+    } else {
+        run->ops->close(run->port);
+        forget(run);
+    }
+    report(run, cause, result);
+}
+
+/* The program that was stopped has died. Where another one has had the robot since, it is that
+ * one's; where no process could register, only who has it now is known. */
+static void settle(guard_run *run)
+{
+    bool is_its = run->holder == 0 || run->holder == grobo_i_estop_holder_stamp(&run->names);
+
+    if (run->how.policy == GUARD_OFF && is_its && grobo_i_port_reclaim(run->port) == GROBO_OK) {
+        int result = stop_robot(run, GUARD_OFF);
+
+        run->ops->close(run->port);
+        forget(run);
+        report(run, GROBO_GUARD_DIED, result);
+    }
+    drop(run);
+}
+
 /* ---- waiting for it ----------------------------------------------------------------------- */
+
+/* Has the program's loop not turned for too long? */
+static bool is_silent(guard_run *run, bool heard)
+{
+    int64_t now_us = grobo_now_us();
+    unsigned beats = atomic_load_explicit(&run->shared->beats, memory_order_relaxed);
+
+    if (heard || run->shared == &run->own || beats != run->beats) {
+        run->silent_us = 0;
+    } else {
+        run->silent_us +=
+            now_us - run->looked_us < LOOK_MAX_US ? now_us - run->looked_us : LOOK_MAX_US;
+    }
+    run->beats = beats;
+    run->looked_us = now_us;
+    return run->silent_us >= GROBO_GUARD_SILENCE_US;
+}
+
+/* Takes the line from a program that may continue. */
+static void take_over(guard_run *run, grobo_guard_cause cause)
+{
+    run->silent_us = 0;
+    if (claim(run)) {
+        say(run, GUARD_TAKEN);
+        stop(run, cause);
+    }
+}
+
+static void end(guard_run *run)
+{
+    if (run->has_port && run->lent) {
+        settle(run);
+    } else if (run->has_port && claim(run)) {
+        stop(run, GROBO_GUARD_DIED);
+    }
+}
 
 static bool look(guard_run *run)
 {
-    unsigned found = grobo_i_guard_await(&run->watch, run->line, run->has_port && run->how.moves);
+    bool moves = run->has_port && !run->lent && run->how.moves;
+    unsigned found = grobo_i_guard_await(&run->watch, run->line, moves);
+    bool silent = is_silent(run, !moves || (found & GROBO_I_GUARD_NEWS) != 0);
 
     /* What the program said before it died is read first: it may have released the port. */
     if ((found & GROBO_I_GUARD_NEWS) != 0) {
@@ -330,14 +454,11 @@ static bool look(guard_run *run)
         drop(run);
     }
     if ((found & GROBO_I_GUARD_DEAD) != 0) {
-        if (run->has_port) {
-            stop(run, GROBO_GUARD_DIED);
-        }
+        end(run);
         return false;
     }
-    if ((found & GROBO_I_GUARD_STOPPED) != 0) {
-        say(run, GUARD_TAKEN);
-        stop(run, GROBO_GUARD_STOPPED);
+    if (run->has_port && ((found & GROBO_I_GUARD_STOPPED) != 0 || silent)) {
+        take_over(run, silent ? GROBO_GUARD_SILENT : GROBO_GUARD_STOPPED);
     }
     return true;
 }
@@ -365,6 +486,7 @@ int grobo_guard_run(const grobo_guard_program *program)
         return GROBO_ERR_NOMEM;
     }
     run->program = &taken;
+    run->shared = &run->own;
     run->came = GROBO_HANDLE_NULL;
     forget(run);
     run->port = grobo_i_new(NULL, port_bytes());
@@ -376,6 +498,7 @@ int grobo_guard_run(const grobo_guard_program *program)
         grobo_i_guard_cease(&run->watch);
     }
     drop(run);
+    unshare(run);
     grobo_i_free(NULL, run->port, port_bytes());
     grobo_i_free(NULL, run, sizeof *run);
     return r < 0 ? r : GROBO_OK;

@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <string.h>
 
+#include "ports/common/guard.h"
 #include "src/base/assert.h"
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
@@ -124,9 +125,14 @@ int grobo_i_serial_take(grobo_serial *serial, void *buf, size_t size)
     return got < 0 ? grobo_i_serial_lose(serial, got) : got;
 }
 
-/* Writes once; the port is closed when that fails. */
+/* Writes once; the port is closed when that fails. What another process has stopped meanwhile is
+ * not moved by a byte from before. */
 static int put(grobo_serial *serial, const void *bytes, size_t size)
 {
+    if (serial->barred != NULL && atomic_load(serial->barred) != 0) {
+        grobo_i_port_abandon(serial->port);
+        return grobo_i_serial_lose(serial, GROBO_ERR_STALLED);
+    }
     int done = serial->ops->write(serial->port, bytes, size, &serial->cause);
 
     if (done < 0) {

@@ -3,6 +3,8 @@
 #ifndef GROBO_LINK_SERIAL_I_H
 #define GROBO_LINK_SERIAL_I_H
 
+#include <stdatomic.h>
+
 #include <event2/event.h>
 
 #include <grobo/serial.h>
@@ -57,6 +59,8 @@ struct grobo_serial {
     uint8_t *queue; /* a ring */
     size_t head;
     size_t used;
+
+    const atomic_uint *barred; /* not 0: another process has the line; NULL: none can have it */
 
     unsigned pins; /* callbacks running; the object stays while there are any */
     bool freed;    /* grobo_serial_free() came in one of them */

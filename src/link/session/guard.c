@@ -83,10 +83,13 @@ void grobo_i_session_guard_take(grobo_session *session)
     message.wiring = grobo_driver_wiring(driver);
     message.robot = session->robot.config;
     (void)snprintf(message.driver, sizeof message.driver, "%s", driver->name);
+    (void)snprintf(message.device, sizeof message.device, "%s", session->used);
     grobo_i_guard_take(config->guard, &message, config->guard_data,
                        grobo_serial_handle(session->serial));
     if (config->guard->ended) {
         event_active(session->guard_news, EV_READ, 0);
+    } else {
+        session->serial->barred = &config->guard->shared->line;
     }
 }
 
@@ -95,10 +98,11 @@ void grobo_i_session_guard_release(grobo_session *session)
     if (session->guard_news == NULL) {
         return;
     }
+    grobo_i_guard_release(session->config.guard);
+    session->serial->barred = NULL;
     if (session->config.guard->taken && grobo_serial_is_open(session->serial)) {
         grobo_i_port_abandon(session->serial->port);
     }
-    grobo_i_guard_release(session->config.guard);
 }
 
 bool grobo_i_session_guard_has_it(grobo_session *session)

@@ -226,6 +226,7 @@ static void on_robot(void *ctx, const grobo_event *event)
         ask_who(session);
     }
     if (!checking || stop) {
+        grobo_i_session_guard_tell(session); /* who is told may hold up the loop */
         grobo_i_session_tell_robot(session, event);
     }
 }

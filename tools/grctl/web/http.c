@@ -776,13 +776,6 @@ static void set_walls(http *h)
     h->second.wall.port = number;
 }
 
-/* What libevent would print of an address: the complaint is that of the caller. */
-static void keep_silent(int severity, const char *text)
-{
-    (void)severity;
-    (void)text;
-}
-
 int http_new(const http_config *config, http **server, const char **complaint)
 {
     const struct timeval period = {0, SWEEP_US};
@@ -800,7 +793,6 @@ int http_new(const http_config *config, http **server, const char **complaint)
     }
     *complaint = config->address ? "the port is in use, or --listen is no address of this machine"
                                  : "the port is in use, or is not ours; --port chooses another";
-    event_set_log_callback(keep_silent);
     if (!open_port(h, &h->first, config->port) ||
         !open_port(h, &h->second, config->port ? (uint16_t)(config->port + 1) : 0)) {
         http_free(h);
