@@ -17,6 +17,7 @@ check "states come 30 times a second, events are kept" pages stream
 check "a stream that sends something is dropped" pages greedy
 check "a stream that does not read is dropped, the others miss nothing" pages slow
 check "a stop comes through where all places are taken" pages crowd
+check "a stop comes through where connections stay half open" pages half_open
 check "a stop comes through where another page holds all places" pages foreign
 check "motions are listed, previewed, edited to the bit" pages motions
 check "key poses are mirrored, feet moved, motions saved elsewhere" pages making

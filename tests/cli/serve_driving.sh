@@ -8,6 +8,7 @@ check "a name is told as it was given, or cut at a character" pages names
 check "what is based on an old state is refused" pages stale
 check "a body that is not as it should be is refused, and names what is" pages fields
 check "what was held up on its way acts on no newer situation" pages delayed
+check "a stop is carried out whatever its body is" pages unreadable
 check "a stop latches, is confirmed by each joint, is taken back" pages stopping
 check "a stop on the way of a move, a jog, an approach" pages on_the_way
 check "a stop beside streams that stand still" pages latency

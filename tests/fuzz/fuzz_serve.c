@@ -76,10 +76,19 @@ static void answer(void *ctx, http_request *r)
     json_decref(body);
 }
 
+/* A stop whose body has not come. */
+static void stop_early(void *ctx, const http_request *r)
+{
+    (void)ctx;
+    MUST(strcmp(r->path, "/stop") == 0 && strcmp(r->method, "POST") == 0);
+    http_send(server, "event: stop\ndata: 1\n\n", 21, false);
+}
+
 static void start(void)
 {
     const char *complaint;
     http_config config = {.token = "0123456789abcdef", .rule = rule_of, .serve = answer};
+    config.early = stop_early;
     config.base = base = event_base_new();
     MUST(base && http_new(&config, &server, &complaint) == GROBO_OK);
     json_t *keys =

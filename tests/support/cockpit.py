@@ -565,6 +565,63 @@ def crowd():
         assert page.state()["stop"]["latched"]
 
 
+def half_open():
+    """Connections that never make a request hold no place where somebody comes with one."""
+    ways = (b"", b"POST /stop HTT", b"POST /stop HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nX: ",
+            b"GET /api/state HTTP/1.1\r\n",
+            b"POST /api/ik HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nContent-Length: 9\r\n\r\n{")
+    with Server() as server:
+        page = Page(server)
+        for port, path in ((server.stop_port, "/stop"), (server.port, "/api/stop")):
+            for n, way in enumerate(ways):
+                held = [socket.create_connection(("127.0.0.1", port), PATIENCE_S) for _ in range(64)]
+                for s in held:
+                    s.sendall(way.replace(b"%d", b"%d" % port))
+                began = time.monotonic()
+                status = page.ask("POST", path, b"{}", {}, port)[0]
+                took = time.monotonic() - began
+                print(f"# {path} beside 64 half open, {way[:20]}: {took * 1e3:.1f} ms")
+                same(status, 204 if path == "/stop" else 200)
+                assert took < 2, f"{path}, way {n}: {took} s"
+                for s in held:
+                    s.close()
+        # Who opens them again and again, faster than they end by themselves.
+        stop, opened = threading.Event(), []
+
+        def flood(port):
+            while not stop.is_set():
+                try:
+                    opened.append(socket.create_connection(("127.0.0.1", port), 1))
+                except OSError:
+                    pass
+                if len(opened) > 300:
+                    opened.pop(0).close()
+
+        flooders = [threading.Thread(target=flood, args=(server.stop_port,)) for _ in range(2)]
+        for one in flooders:
+            one.start()
+        for _ in range(5):
+            began = time.monotonic()
+            same(page.ask("POST", "/stop", b"{}", {}, server.stop_port)[0], 204)
+            took = time.monotonic() - began
+            print(f"# /stop in a flood of connections: {took * 1e3:.1f} ms")
+            assert took < PATIENCE_S, took  # the system makes who comes wait a second, or three
+        stop.set()
+        for one in flooders:
+            one.join()
+        for s in opened:
+            s.close()
+        # The page and its stream are there still.
+        stream = Stream(server)
+        held = [socket.create_connection(("127.0.0.1", server.port), PATIENCE_S) for _ in range(80)]
+        for _ in range(40):
+            stream.next()
+        for s in held:
+            s.close()
+        stream.close()
+        page.wait("they are gone", lambda s: s["clients"] == 0)
+
+
 def foreign():
     """Connections that are kept, and asked for refusals again and again, hold no place for long."""
     with Server() as server:

@@ -296,6 +296,11 @@ static void want_stop(view *v, const char *how, const char *name)
     }
 }
 
+static void stop_early(void *ctx, const http_request *r)
+{
+    want_stop(ctx, strstr(r->path, "estop") ? "estop" : "stop", "a request that is not whole");
+}
+
 static void serve_stop(view *v, http_request *r, const json_t *body)
 {
     bool estop = strstr(r->path, "estop") != NULL;
@@ -537,7 +542,8 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
 
 static int run(view *v, app *a)
 {
-    http_config config = {.base = v->l.link.base, .rule = rule_of, .serve = answer, .ctx = v};
+    http_config config = {
+        .base = v->l.link.base, .rule = rule_of, .serve = answer, .early = stop_early, .ctx = v};
     int status = door_open(a, v->options, &config, &v->events);
     if (status) {
         return status;

@@ -16,6 +16,7 @@
 
 #include "tools/grctl/cli/heap.h"
 #include "tools/grctl/os/net.h"
+#include "tools/grctl/web/head.h"
 #include "tools/grctl/web/http.h"
 
 enum {
@@ -26,11 +27,14 @@ enum {
     DROP_US = 3000000,   /* so long without reading */
     SWEEP_US = 100000,
     LISTENERS = 2,
-    SPARE = 8, /* accepted before the door is closed */
+    SPARE = 8, /* accepted while others that were ended are going */
     GUESTS = 2 * (HTTP_CONNECTIONS_MAX + SPARE)
 };
 /* A whole request comes within this time, however slowly. */
 #define REQUEST_US INT64_C(20000000)
+
+/* Who has made no whole request for so long may have to make room for who comes. */
+#define HALF_OPEN_US INT64_C(1000000)
 
 /* One of the two ports. */
 typedef struct port {
@@ -42,19 +46,21 @@ typedef struct port {
 } port;
 
 /*
- * A connection. libevent does not tell when one ends that never made a request: such a one is known
- * by its heap alone, which is compared and not used, and is taken for gone when it was silent for
- * longer than evhttp lets it be.
+ * A connection. libevent does not tell when one ends that never made a request: such a one is gone
+ * when its socket is, or is that of another connection.
  */
 typedef struct guest {
     port *at;                /* NULL: this place is free */
-    struct bufferevent *bev; /* for when it is heard, as it is there then */
+    struct bufferevent *bev; /* for when it is heard or was just accepted, as it is there then */
     const struct evbuffer *input;
     struct evhttp_connection *connection; /* from the first request on */
+    evutil_socket_t fd;                   /* -1 until it is known */
+    char words[80];                       /* of its connection */
     char address[64];                     /* "" on loopback, and until it is known */
     int64_t heard_us;                     /* when it sent something, or came */
     int64_t began_us;                     /* a request that is not whole, 0: none */
-    bool named, ended;
+    size_t head_bytes, got;               /* of the request that is not whole: kept, and came */
+    bool ended, judged;                   /* judged: its head is whole, and was looked at */
 } guest;
 
 typedef struct stream {
@@ -71,9 +77,10 @@ struct http {
     http_config config;
     port first, second;
     guest guests[GUESTS];
+    char heads[GUESTS][HTTP_HEADER_BYTES + 1]; /* of requests that are not whole */
     stream *streams;
     http_request *waiting;
-    struct event *sweep, *reap;
+    struct event *sweep, *reap, *greet;
     int64_t second_us; /* the second in which changes are counted */
     int changes;
 };
@@ -111,55 +118,132 @@ static void open_door(port *p, bool open)
     }
 }
 
-/* It has had its reply, and is kept for a next request. */
-static bool is_idle(const guest *g)
+/* A request of it waits for its reply: true where that is a refusal which only lets it wait. */
+static bool is_waiting(const guest *g, bool *refused)
 {
-    const http *h = g->at->of;
-    if (!g->connection || g->began_us || g->ended) {
-        return false;
-    }
-    for (const stream *s = h->streams; s; s = s->next) {
-        if (s->connection == g->connection) {
-            return false;
-        }
-    }
-    for (const http_request *r = h->waiting; r; r = r->next) {
+    for (const http_request *r = g->at->of->waiting; r; r = r->next) {
         if (evhttp_request_get_connection(r->raw) == g->connection) {
-            return false;
+            *refused = r->refused_us != 0;
+            return true;
         }
     }
-    struct bufferevent *bev = evhttp_connection_get_bufferevent(g->connection);
-    return evbuffer_get_length(bufferevent_get_output(bev)) == 0;
+    return false;
 }
 
-/* Where all places are taken, the one that was silent longest makes room: it may come again. */
-static void make_room(port *p)
+static bool is_stream(const guest *g)
 {
-    guest *idlest = NULL;
-    bool full = guests_of(p, NULL) >= HTTP_CONNECTIONS_MAX;
-    open_door(p, !full);
-    for (int i = 0; full && i < GUESTS; i++) {
-        guest *g = &p->of->guests[i];
-        if (g->at == p && is_idle(g) && (!idlest || g->heard_us < idlest->heard_us)) {
-            idlest = g;
+    for (const stream *s = g->at->of->streams; s; s = s->next) {
+        if (s->connection == g->connection) {
+            return true;
         }
     }
-    if (idlest) {
-        idlest->ended = true;
-        net_end(bufferevent_getfd(evhttp_connection_get_bufferevent(idlest->connection)));
+    return false;
+}
+
+/* How well it can be spared; STAYS: it is served. */
+enum { STAYS, NEW, IDLE, WAITS_IN_VAIN };
+
+/*
+ * One that had its reply and is kept for a next request may come again. One that has not made a
+ * whole request for a second is spared first: it is half open.
+ */
+static int spare(const guest *g, int64_t now_us)
+{
+    bool refused = false;
+    if (g->ended || g->fd < 0) {
+        return STAYS;
+    }
+    if (!g->connection || g->began_us) {
+        int64_t since_us = g->began_us ? g->began_us : g->heard_us;
+        return now_us - since_us > HALF_OPEN_US ? WAITS_IN_VAIN : NEW;
+    }
+    if (is_waiting(g, &refused)) {
+        return refused ? WAITS_IN_VAIN : STAYS;
+    }
+    struct bufferevent *bev = evhttp_connection_get_bufferevent(g->connection);
+    bool idle = !is_stream(g) && evbuffer_get_length(bufferevent_get_output(bev)) == 0;
+    return idle ? IDLE : STAYS;
+}
+
+/* The order in which guests make room: the address that has most, how well, how long. */
+static bool goes_before(const guest *a, const guest *b, int64_t now_us)
+{
+    int of_a = guests_of(a->at, a->address), of_b = guests_of(b->at, b->address);
+    int how_a = spare(a, now_us), how_b = spare(b, now_us);
+    int64_t since_a = a->began_us ? a->began_us : a->heard_us;
+    int64_t since_b = b->began_us ? b->began_us : b->heard_us;
+    return of_a != of_b ? of_a > of_b : how_a != how_b ? how_a > how_b : since_a < since_b;
+}
+
+/* The guest of a port that makes room first, of one address or of any (NULL). NULL: none can. */
+static guest *first_to_go(port *p, const char *address)
+{
+    int64_t now_us = grobo_now_us();
+    guest *first = NULL;
+    for (int i = 0; i < GUESTS; i++) {
+        guest *g = &p->of->guests[i];
+        bool asked = g->at == p && (!address || strcmp(g->address, address) == 0);
+        if (asked && spare(g, now_us) != STAYS && (!first || goes_before(g, first, now_us))) {
+            first = g;
+        }
+    }
+    return first;
+}
+
+/* Its socket is that of its connection still; one with a whole request says when it ends. */
+static bool is_there(const guest *g)
+{
+    char words[sizeof g->words];
+    return g->connection || g->fd < 0 ||
+           (net_connection(g->fd, words, sizeof words) && strcmp(words, g->words) == 0);
+}
+
+static void end_guest(guest *g)
+{
+    g->ended = true;
+    if (is_there(g)) {
+        net_end(g->fd); /* libevent sees that, and frees it */
     }
 }
 
 /* Forgets those that have gone without a word. */
-static void sweep_guests(http *h)
+static void forget_gone(port *p)
 {
-    int64_t now_us = grobo_now_us();
     for (int i = 0; i < GUESTS; i++) {
-        guest *g = &h->guests[i];
-        if (g->at && !g->connection && now_us - g->heard_us > (IDLE_S + 1) * INT64_C(1000000)) {
+        guest *g = &p->of->guests[i];
+        if (g->at == p && !is_there(g)) {
             g->at = NULL;
         }
     }
+}
+
+static int served(const port *p)
+{
+    int n = 0;
+    for (int i = 0; i < GUESTS; i++) {
+        n += p->of->guests[i].at == p && !p->of->guests[i].ended;
+    }
+    return n;
+}
+
+/* There is a place for who comes next: nobody who has one without using it keeps it. */
+static void make_room(port *p)
+{
+    guest *g;
+    if (guests_of(p, NULL) >= HTTP_CONNECTIONS_MAX) {
+        forget_gone(p);
+    }
+    while (served(p) >= HTTP_CONNECTIONS_MAX && (g = first_to_go(p, NULL)) != NULL) {
+        end_guest(g);
+    }
+    open_door(p, served(p) < HTTP_CONNECTIONS_MAX &&
+                     guests_of(p, NULL) < HTTP_CONNECTIONS_MAX + SPARE);
+}
+
+static void sweep_guests(http *h)
+{
+    forget_gone(&h->first);
+    forget_gone(&h->second);
     make_room(&h->first);
     make_room(&h->second);
 }
@@ -171,21 +255,46 @@ static guest *take_place(port *p, const struct evbuffer *input)
         g = p->of->guests[i].at ? NULL : &p->of->guests[i];
     }
     if (g) {
-        *g = (guest){.at = p, .input = input, .heard_us = grobo_now_us()};
+        *g = (guest){.at = p, .input = input, .fd = -1, .heard_us = grobo_now_us()};
     }
     return g;
 }
 
-/* Whose request never gets whole, or whose address has too many connections. */
-static bool is_rude(port *p, guest *g)
+/* Where it comes from, which is known from the moment after it was accepted. */
+static void name_guest(guest *g)
+{
+    g->fd = bufferevent_getfd(g->bev);
+    if (!net_connection(g->fd, g->words, sizeof g->words)) {
+        *g->words = '\0';
+    }
+    net_peer(g->fd, g->address, sizeof g->address);
+    if (*g->address && guests_of(g->at, g->address) > HTTP_ADDRESS_CONNECTIONS_MAX) {
+        guest *first = first_to_go(g->at, g->address);
+        end_guest(first ? first : g);
+    }
+}
+
+/* Right behind the accepting of connections: none of them has been read or freed. */
+static void on_greet(evutil_socket_t fd, short what, void *ctx)
+{
+    http *h = ctx;
+    (void)fd;
+    (void)what;
+    for (int i = 0; i < GUESTS; i++) {
+        if (h->guests[i].at && h->guests[i].fd < 0) {
+            name_guest(&h->guests[i]);
+        }
+    }
+    make_room(&h->first);
+    make_room(&h->second);
+}
+
+/* Whose request never gets whole. */
+static bool is_rude(guest *g)
 {
     g->heard_us = grobo_now_us();
-    if (!g->named) {
-        g->named = true;
-        net_peer(bufferevent_getfd(g->bev), g->address, sizeof g->address);
-        if (*g->address && guests_of(p, g->address) > HTTP_ADDRESS_CONNECTIONS_MAX) {
-            return true;
-        }
+    if (g->fd < 0) {
+        name_guest(g);
     }
     if (g->began_us == 0) {
         g->began_us = g->heard_us;
@@ -194,16 +303,25 @@ static bool is_rude(port *p, guest *g)
 }
 
 static void end_stream_of(http *h, const struct evhttp_connection *connection);
+static void hear_head(guest *g, const struct evbuffer *input, size_t added);
 
 /* A connection has sent something. */
 static void on_input(struct evbuffer *input, const struct evbuffer_cb_info *info, void *ctx)
 {
     port *p = ctx;
     guest *g = info->n_added > 0 ? find_guest(p->of, input, NULL) : NULL;
-    if (g && is_rude(p, g)) {
-        net_end(bufferevent_getfd(g->bev)); /* libevent sees that, and frees it */
+    if (!g) {
+        return;
     }
-    if (g && g->connection) {
+    if (g->began_us == 0) {
+        g->head_bytes = g->got = 0;
+        g->judged = false;
+    }
+    if (is_rude(g)) {
+        end_guest(g);
+    }
+    hear_head(g, input, info->n_added);
+    if (g->connection) {
         end_stream_of(p->of, g->connection); /* nobody would read it there */
     }
 }
@@ -217,6 +335,7 @@ static struct bufferevent *on_connection(struct event_base *base, void *ctx)
     if (g) {
         g->bev = bev;
         evbuffer_add_cb(bufferevent_get_input(bev), on_input, p);
+        event_active(p->of->greet, 0, 0);
     }
     make_room(p);
     return bev;
@@ -276,23 +395,13 @@ static void add_headers(const http_request *r)
     add(r, "Cross-Origin-Resource-Policy", r->second ? "cross-origin" : "same-origin");
 }
 
-/* Of the statuses that libevent has no phrase for; NULL: it has. */
-static const char *reason_of(int status)
-{
-    return status == 413   ? "Content Too Large"
-           : status == 422 ? "Unprocessable Content"
-           : status == 428 ? "Precondition Required"
-           : status == 429 ? "Too Many Requests"
-                           : NULL;
-}
-
 static void send_reply(http_request *r, int status, const void *bytes, size_t size)
 {
     struct evbuffer *body = evbuffer_new();
     if (body && size) {
         evbuffer_add(body, bytes, size);
     }
-    evhttp_send_reply(r->raw, status, reason_of(status), body);
+    evhttp_send_reply(r->raw, status, head_reason(status), body);
     if (body) {
         evbuffer_free(body);
     }
@@ -557,41 +666,6 @@ wall_answer http_check_token(const http_request *r, const char *token)
     return wall_check_token(&port_of(r)->wall, token);
 }
 
-/* Path and query of the URI; false where they are too long or no text. */
-static bool split(http_request *r)
-{
-    const char *uri = evhttp_request_get_uri(r->raw);
-    size_t length = strcspn(uri, "?#");
-    char raw[HTTP_PATH_BYTES];
-    size_t decoded = 0;
-    if (length >= sizeof raw) {
-        return false;
-    }
-    memcpy(raw, uri, length);
-    raw[length] = '\0';
-    char *path = evhttp_uridecode(raw, 0, &decoded);
-    bool fits = path && decoded < sizeof r->path && strlen(path) == decoded;
-    if (fits) {
-        memcpy(r->path, path, decoded + 1);
-        snprintf(r->query, sizeof r->query, "%s", uri[length] == '?' ? uri + length + 1 : "");
-    }
-    free(path);
-    return fits;
-}
-
-static const char *method_of(struct evhttp_request *raw)
-{
-    switch ((int)evhttp_request_get_command(raw)) {
-    case EVHTTP_REQ_GET:
-        return "GET";
-    case EVHTTP_REQ_POST:
-        return "POST";
-    case EVHTTP_REQ_PUT:
-        return "PUT";
-    }
-    return "";
-}
-
 /* One that changes something, and is one too many in this second? */
 static bool is_flood(http *h)
 {
@@ -614,7 +688,8 @@ static wall_answer judge(http_request *r, wall_rule *rule)
     const wall *w = &port_of(r)->wall;
     wall_request q = as_wall(r);
     wall_answer no = wall_check_source(w, &q);
-    if (!no.status && (!split(r) || !r->server->config.rule(r->server->config.ctx, r, rule))) {
+    if (!no.status && (!head_split(q.uri, r->path, r->query) ||
+                       !r->server->config.rule(r->server->config.ctx, r, rule))) {
         no = (wall_answer){404, "notfound", "there is no such path"};
     }
     return no.status ? no : wall_check_right(w, &q, *rule);
@@ -633,6 +708,64 @@ static wall_answer judge_amount(http_request *r, wall_rule rule)
     }
     return (wall_answer){0};
 }
+
+/* ---- a stop before its body ------------------------------------------------------------------ */
+
+/* A stop that comes from where it may come. */
+static bool may_stop(http_request *r, const char *uri, struct evkeyvalq *headers)
+{
+    const wall *w = &port_of(r)->wall;
+    wall_request q = {.method = "POST", .uri = uri, .headers = headers};
+    wall_rule rule = WALL_PAGE;
+    return wall_check_source(w, &q).status == 0 && head_split(uri, r->path, r->query) &&
+           r->server->config.rule(r->server->config.ctx, r, &rule) && rule == WALL_STOP &&
+           (!w->open ||
+            wall_check_token(w, evhttp_find_header(headers, "X-Grobo-Token")).status == 0);
+}
+
+static void judge_head(guest *g, char *text, size_t body_bytes)
+{
+    http *h = g->at->of;
+    struct evkeyvalq headers = {.tqh_first = NULL};
+    http_request r = {.server = h, .second = g->at == &h->second, .method = "POST"};
+    char *uri = NULL;
+    headers.tqh_last = &headers.tqh_first;
+    if (head_read(text, &uri, &headers) && !head_has_body(&headers, body_bytes) &&
+        may_stop(&r, uri, &headers)) {
+        h->config.early(h->config.ctx, &r);
+    }
+    evhttp_clear_headers(&headers);
+}
+
+/*
+ * Has what came of a request beside libevent, which hands over nothing before the body is there and
+ * refuses what it cannot read. A stop needs no body.
+ */
+static void hear_head(guest *g, const struct evbuffer *input, size_t added)
+{
+    http *h = g->at->of;
+    char *text = h->heads[g - h->guests];
+    size_t take = HTTP_HEADER_BYTES - g->head_bytes, length = evbuffer_get_length(input);
+    struct evbuffer_ptr at;
+    g->got += added;
+    take = take < added ? take : added;
+    if (g->judged || !h->config.early || added > length ||
+        evbuffer_ptr_set((struct evbuffer *)(uintptr_t)input, &at, length - added,
+                         EVBUFFER_PTR_SET) < 0 ||
+        evbuffer_copyout_from((struct evbuffer *)(uintptr_t)input, &at, text + g->head_bytes,
+                              take) < 0) {
+        return;
+    }
+    g->head_bytes += take;
+    text[g->head_bytes] = '\0';
+    size_t size = head_end(text);
+    g->judged = size > 0 || g->head_bytes == HTTP_HEADER_BYTES;
+    if (size > 0) {
+        judge_head(g, text, g->got - size);
+    }
+}
+
+/* ---- whole requests -------------------------------------------------------------------------- */
 
 static void serve_or_refuse(http_request *r)
 {
@@ -679,7 +812,7 @@ static void on_request(struct evhttp_request *raw, void *ctx)
     r->second = p == &p->of->second;
     r->next = p->of->waiting;
     p->of->waiting = r;
-    snprintf(r->method, sizeof r->method, "%s", method_of(raw));
+    snprintf(r->method, sizeof r->method, "%s", head_method((int)evhttp_request_get_command(raw)));
     serve_or_refuse(r);
 }
 
@@ -787,7 +920,8 @@ int http_new(const http_config *config, http **server, const char **complaint)
     h->config = *config;
     h->sweep = event_new(config->base, -1, EV_PERSIST, on_sweep, h);
     h->reap = event_new(config->base, -1, 0, on_reap, h);
-    if (!h->sweep || !h->reap) {
+    h->greet = event_new(config->base, -1, 0, on_greet, h);
+    if (!h->sweep || !h->reap || !h->greet) {
         http_free(h);
         return GROBO_ERR_NOMEM;
     }
@@ -828,6 +962,9 @@ void http_free(http *server)
     }
     if (server->reap) {
         event_free(server->reap);
+    }
+    if (server->greet) {
+        event_free(server->greet);
     }
     free(server);
 }

@@ -49,6 +49,11 @@ typedef struct http_request {
 typedef bool (*http_rule_fn)(void *ctx, const http_request *r, wall_rule *rule);
 /* Answers it by one of the replies, now or later. */
 typedef void (*http_serve_fn)(void *ctx, http_request *r);
+/*
+ * A stop whose head alone came, and which may stop: method, path and second are known. Its body may
+ * never come, or be refused; where it comes, http_serve_fn gets the same request.
+ */
+typedef void (*http_early_fn)(void *ctx, const http_request *r);
 
 typedef struct http_config {
     struct event_base *base;
@@ -59,6 +64,7 @@ typedef struct http_config {
     int64_t wrong_us;    /* who brings a wrong token waits so long for the answer */
     http_rule_fn rule;
     http_serve_fn serve;
+    http_early_fn early; /* or NULL */
     void *ctx;
 } http_config;
 

@@ -227,6 +227,11 @@ static void serve_lease(serve *s, http_request *r, const json_t *body)
     }
 }
 
+void serve_early(void *ctx, const http_request *r)
+{
+    (void)stops_ask(ctx, NULL, strstr(r->path, "estop") != NULL);
+}
+
 /* From anybody; beyond loopback from who has the token. */
 static void serve_stop(serve *s, http_request *r, const json_t *body)
 {

@@ -234,7 +234,11 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
 
 static int start(serve *s)
 {
-    http_config config = {.base = s->c.base, .rule = serve_rule, .serve = serve_request, .ctx = s};
+    http_config config = {.base = s->c.base,
+                          .rule = serve_rule,
+                          .serve = serve_request,
+                          .early = serve_early,
+                          .ctx = s};
     int status = door_open(s->a, s->options, &config, &s->events);
     if (status) {
         return status;

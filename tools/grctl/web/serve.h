@@ -80,6 +80,7 @@ bool serve_is_based(serve *s, http_request *r, const json_t *body, const char *d
 
 bool serve_rule(void *ctx, const http_request *r, wall_rule *rule);
 void serve_request(void *ctx, http_request *r);
+void serve_early(void *ctx, const http_request *r);
 
 /* ---- JSON ------------------------------------------------------------------------------------ */
 

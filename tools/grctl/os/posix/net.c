@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
 
@@ -24,25 +25,43 @@ int net_is_loopback(const char *address)
            strncmp(address, "::ffff:127.", 11) == 0;
 }
 
-void net_peer(evutil_socket_t fd, char *text, size_t capacity)
+/* Address and port at the other end; the port is 0 where they are not known. */
+static uint16_t peer_of(evutil_socket_t fd, char *text, size_t capacity)
 {
     struct sockaddr_storage from;
     socklen_t size = sizeof from;
+    uint16_t port = 0;
     memset(&from, 0, sizeof from);
     *text = '\0';
     if (getpeername(fd, (struct sockaddr *)&from, &size) < 0) {
-        return;
+        return 0;
     }
     if (from.ss_family == AF_INET6) {
-        inet_ntop(AF_INET6, &((const struct sockaddr_in6 *)&from)->sin6_addr, text,
-                  (socklen_t)capacity);
+        const struct sockaddr_in6 *six = (const struct sockaddr_in6 *)&from;
+        inet_ntop(AF_INET6, &six->sin6_addr, text, (socklen_t)capacity);
+        port = ntohs(six->sin6_port);
     } else if (from.ss_family == AF_INET) {
-        inet_ntop(AF_INET, &((const struct sockaddr_in *)&from)->sin_addr, text,
-                  (socklen_t)capacity);
+        const struct sockaddr_in *four = (const struct sockaddr_in *)&from;
+        inet_ntop(AF_INET, &four->sin_addr, text, (socklen_t)capacity);
+        port = ntohs(four->sin_port);
     }
+    return port;
+}
+
+void net_peer(evutil_socket_t fd, char *text, size_t capacity)
+{
+    (void)peer_of(fd, text, capacity);
     if (net_is_loopback(text)) {
         *text = '\0';
     }
+}
+
+bool net_connection(evutil_socket_t fd, char *text, size_t capacity)
+{
+    uint16_t port = fd >= 0 ? peer_of(fd, text, capacity) : 0;
+    size_t n = port ? strlen(text) : 0;
+    snprintf(text + n, capacity - n, port ? " %u" : "", (unsigned)port);
+    return port != 0;
 }
 
 void net_end(evutil_socket_t fd)

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT */
+/* The head of a stop whose body may never come. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <event2/http.h>
+#include <event2/keyvalq_struct.h>
+
+#include "tools/grctl/web/head.h"
+
+static struct evkeyvalq headers;
+static char text[1024], *uri;
+
+static int begin(void **state)
+{
+    (void)state;
+    headers.tqh_first = NULL;
+    headers.tqh_last = &headers.tqh_first;
+    uri = NULL;
+    return 0;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    evhttp_clear_headers(&headers);
+    return 0;
+}
+
+static bool read_head(const char *head)
+{
+    (void)end(NULL);
+    (void)begin(NULL);
+    snprintf(text, sizeof text, "%s", head);
+    return head_read(text, &uri, &headers);
+}
+
+static void a_head_ends_with_an_empty_line(void **state)
+{
+    (void)state;
+    assert_int_equal(head_end(""), 0);
+    assert_int_equal(head_end("POST / HTTP/1.1\r\nHost: a\r\n"), 0);
+    assert_int_equal(head_end("a\r\n\r\nb\n\n"), 5);
+    assert_int_equal(head_end("a\n\nb\r\n\r\n"), 3);
+}
+
+static void a_head_is_read_or_left_to_libevent(void **state)
+{
+    static const char *const others[] = {"\r\n\r\n",
+                                         "GET /stop HTTP/1.1\r\n\r\n",
+                                         "POST http://a/stop HTTP/1.1\r\n\r\n",
+                                         "POST /stop\r\n\r\n",
+                                         "POST /stop HTTP/2\r\n\r\n",
+                                         "POST /stop HTTP/1.1\r\nHost\r\n\r\n",
+                                         "POST /stop HTTP/1.1\r\nHost : a\r\n\r\n",
+                                         "POST /stop HTTP/1.1\r\nA: b\r\n c\r\n\r\n",
+                                         "POST /stop HTTP/1.1\r\n: a\r\n\r\n"};
+    (void)state;
+    assert_true(
+        read_head("POST /stop?x HTTP/1.1\r\nHost: a:1\r\nX:\tb  c\r\n\r\nrest: no\r\n\r\n"));
+    assert_string_equal(uri, "/stop?x");
+    assert_string_equal(evhttp_find_header(&headers, "host"), "a:1");
+    assert_string_equal(evhttp_find_header(&headers, "X"), "b  c");
+    assert_null(evhttp_find_header(&headers, "rest"));
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        assert_false(read_head(others[i]));
+    }
+}
+
+static bool has_body(const char *lines, size_t bytes)
+{
+    char head[512];
+    snprintf(head, sizeof head, "POST /stop HTTP/1.1\r\n%s\r\n", lines);
+    assert_true(read_head(head));
+    return head_has_body(&headers, bytes);
+}
+
+static void a_body_is_there_or_not(void **state)
+{
+    (void)state;
+    assert_true(has_body("", 0));
+    assert_true(has_body("Content-Length: 0\r\n", 0));
+    assert_true(has_body("Content-Length: 2\r\n", 2));
+    assert_false(has_body("Content-Length: 2\r\n", 1));
+    assert_false(has_body("Content-Length: none\r\n", 99));
+    assert_false(has_body("Content-Length: -1\r\n", 99));
+    assert_false(has_body("Content-Length: 99999999\r\n", 99));
+    assert_false(has_body("Content-Length: 2\r\nContent-Length: 2\r\n", 2));
+    assert_false(has_body("Transfer-Encoding: chunked\r\n", 9));
+    assert_false(has_body("Content-Length: 2\r\nTransfer-Encoding: gzip\r\n", 9));
+}
+
+static void a_uri_has_path_and_query(void **state)
+{
+    char path[HTTP_PATH_BYTES], query[HTTP_PATH_BYTES], longer[2 * HTTP_PATH_BYTES];
+    (void)state;
+    assert_true(head_split("/a%20b?c=d#e", path, query));
+    assert_string_equal(path, "/a b");
+    assert_string_equal(query, "c=d#e");
+    assert_true(head_split("/", path, query));
+    assert_string_equal(query, "");
+    assert_false(head_split("/a%00b", path, query));
+    memset(longer, '/', sizeof longer - 1);
+    longer[sizeof longer - 1] = '\0';
+    assert_false(head_split(longer, path, query));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_head_ends_with_an_empty_line),
+        cmocka_unit_test_setup_teardown(a_head_is_read_or_left_to_libevent, begin, end),
+        cmocka_unit_test_setup_teardown(a_body_is_there_or_not, begin, end),
+        cmocka_unit_test(a_uri_has_path_and_query),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
