@@ -243,7 +243,8 @@ GROBO_API int grobo_robot_pause(grobo_robot *robot);
 /** Continues a paused motion. */
 GROBO_API int grobo_robot_resume(grobo_robot *robot);
 /** Ends the motion: smoothly, or at the present posture at once. Also a move, what was only sent,
- *  and a raw frame that moves: their jobs end with GROBO_ERR_CANCELED. */
+ *  and a raw frame that moves: their jobs end with GROBO_ERR_CANCELED. Returns at once; the joints
+ *  that it stops are read back then, and GROBO_EVENT_HALTED says how that ended. */
 GROBO_API int grobo_robot_stop(grobo_robot *robot, bool at_once);
 /** Continues at another time of the clip, softly. @param clip_us from its beginning */
 GROBO_API int grobo_robot_seek(grobo_robot *robot, int64_t clip_us);
@@ -281,7 +282,8 @@ GROBO_API int grobo_robot_posture(const grobo_robot *robot, int64_t max_age_us,
 /** The posture asked for last; joints never asked for are not set. @return joints set. */
 GROBO_API int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture);
 
-/** True from the request that starts a motion until its last posture's time is over. */
+/** True from the request that starts a motion until its last posture's time is over; of what was
+ *  stopped, also until GROBO_EVENT_HALTED. */
 GROBO_API bool grobo_robot_moving(const grobo_robot *robot);
 
 /**

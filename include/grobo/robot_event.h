@@ -62,7 +62,8 @@ typedef enum grobo_event_kind {
     GROBO_EVENT_LINK_DOWN, /**< the line is gone */
     GROBO_EVENT_LINK_UP,   /**< the line is there */
     GROBO_EVENT_UNWATCHED, /**< a clip begins that is played unwatched: unwatched */
-    GROBO_EVENT_SLOW_CALLBACK /**< of a session: a callback held the loop too long: slow */
+    GROBO_EVENT_SLOW_CALLBACK, /**< of a session: a callback held the loop too long: slow */
+    GROBO_EVENT_HALTED         /**< what was told to stop was read back, or could not be: halted */
 } grobo_event_kind;
 
 /** GROBO_EVENT_JOB. */
@@ -105,6 +106,17 @@ typedef struct grobo_event_unwatched {
     uint16_t watched_hz; /**< largest rate at which the joints are watched: grobo_budget */
 } grobo_event_unwatched;
 
+/**
+ * GROBO_EVENT_HALTED: the end of what a stop, a cancel, a pause or a trip began. Each joint that it
+ * halted was read back, and halted again where the frame was lost; until then grobo_robot_moving()
+ * is true. It comes some milliseconds after the frame, or 2.5 s where joints do not answer. None
+ * comes where nothing moved, or all of it was sent elsewhere since.
+ */
+typedef struct grobo_event_halted {
+    grobo_joint_mask joints; /**< their servos have the goal that stops them, stand, or are limp */
+    grobo_joint_mask failed; /**< not read back, or not obeyed: these may move */
+} grobo_event_halted;
+
 /** What grobo_robot.on_event gets. Borrowed: valid during the call only. */
 typedef struct grobo_event {
     grobo_event_kind kind;
@@ -116,6 +128,7 @@ typedef struct grobo_event {
         grobo_trip_info trip;
         grobo_event_unwatched unwatched;
         grobo_event_slow slow;
+        grobo_event_halted halted;
     } u; /**< as kind says */
 } grobo_event;
 

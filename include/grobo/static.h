@@ -241,6 +241,12 @@ struct grobo_robot {
     grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
     grobo_joint_mask halts_owed;    /* they moved when they were to halt, and may have restarted */
     grobo_joint_mask heard_round;   /* of the joints that were not heard for long */
+    grobo_joint_mask halted;        /* whose halt has left and was not read back yet */
+    grobo_joint_mask halted_all;    /* and those of which it was, by the same stop */
+    grobo_joint_mask halted_round;  /* of those that are read for it one by one */
+    int64_t halted_us;              /* they are not asked before */
+    int64_t halted_by_us;           /* nor after that */
+    bool halted_read;               /* the last reading was for that */
     uint8_t reply[GROBO_FRAME_MAX_BYTES];
     grobo_exchange built;                     /* the frame that is being made */
     grobo_exchange asked;                     /* of the request that begins, */

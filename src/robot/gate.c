@@ -808,6 +808,7 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
             robot->axes[j].last = slot->order.number;
         }
     }
+    grobo_i_halt_left(robot, told, halts || slot->order.rests);
     grobo_i_gate_unwait(robot, &slot->order);
 }
 

@@ -217,6 +217,13 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
     }
 }
 
+void grobo_i_gate_halt_again(grobo_robot *robot, grobo_joint_mask joints)
+{
+    if (grobo_i_may_halt(robot)) {
+        send_halt(robot, joints, false);
+    }
+}
+
 void grobo_i_gate_halt_owed(grobo_robot *robot)
 {
     grobo_joint_mask joints = 0;

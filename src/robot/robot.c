@@ -210,6 +210,7 @@ static void step(grobo_robot *robot)
     grobo_i_play_reserve(robot);
     grobo_i_job_run(robot);
     grobo_i_queue_step(robot);
+    grobo_i_halted_step(robot);
     grobo_i_sense_step(robot);
 }
 
@@ -251,6 +252,7 @@ static int64_t deadline(const grobo_robot *robot, int64_t now_us)
     at_us = grobo_i_sooner(at_us, grobo_i_segments_deadline(robot));
     at_us = grobo_i_sooner(at_us, grobo_i_job_deadline(robot));
     at_us = grobo_i_sooner(at_us, grobo_i_queue_deadline(robot));
+    at_us = grobo_i_sooner(at_us, grobo_i_halted_deadline(robot));
     return grobo_i_sooner(at_us, grobo_i_sense_deadline(robot));
 }
 
@@ -303,6 +305,7 @@ static void forget(grobo_robot *robot)
         axis->way.to_us = robot->now_us;
     }
     robot->free_joints = robot->played_joints = robot->halts_owed = 0;
+    robot->halted = robot->halted_all = 0;
     robot->low_readings = robot->fast_lost = 0;
 }
 

@@ -14,6 +14,7 @@
  *   ways.c       ways that are told in segments
  *   gate.c       the only way to motors: judges and notes each order as its frame leaves
  *   orders.c     orders to motors: into frames that wait for the line
+ *   halted.c     reads back what was halted, and repeats what was lost
  *   job.c        runs the script of a job, step by step
  *   stop.c       what ends the engine's own work and stops joints that move
  *   trip.c       stops for safety
@@ -231,6 +232,9 @@ bool grobo_i_stands(const grobo_robot *robot, int joint);
  * where it was by then. */
 bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint);
 
+/* A frame that tells these joints something has left: to stop, or anything else. */
+void grobo_i_halt_left(grobo_robot *robot, grobo_joint_mask joints, bool halts);
+
 /* ---- reading.c ------------------------------------------------------------------------------- */
 
 /* A joint slower than this does not move: in free mode it holds again (protocol 5). */
@@ -325,6 +329,8 @@ void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints);
  * cancelled. One that may have restarted is owed its halt until it was heard, or is silent for
  * longer than that takes. */
 void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints);
+/* Halts these once more; nothing else is cancelled for it. */
+void grobo_i_gate_halt_again(grobo_robot *robot, grobo_joint_mask joints);
 /* Halts those that are owed it, where it is time; when it is. */
 void grobo_i_gate_halt_owed(grobo_robot *robot);
 int64_t grobo_i_gate_halt_at(const grobo_robot *robot);
@@ -341,6 +347,22 @@ int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torqu
                         grobo_i_chunk chunk);
 /* True if all of these were sensed and hold. */
 bool grobo_i_gate_ready(const grobo_robot *robot, grobo_joint_mask joints);
+
+/* ---- halted.c -------------------------------------------------------------------------------- */
+
+/* A joint, just read, moves though it was not sent there: it stops where it is. */
+void grobo_i_astray(grobo_robot *robot, int joint);
+/* A joint was just read: what is known by that of its halt. */
+void grobo_i_halted_look(grobo_robot *robot, int joint);
+/* True if halted joints are to be read now. When they are; GROBO_NEVER_US: there are none. */
+bool grobo_i_halted_due(const grobo_robot *robot);
+int64_t grobo_i_halted_at(const grobo_robot *robot);
+/* Which of them is read next, one by one; or all of them. */
+int grobo_i_halted_next(grobo_robot *robot);
+grobo_joint_mask grobo_i_halted_ask(grobo_robot *robot);
+/* Tells what was read back when that is all, and what was not when it takes too long; when. */
+void grobo_i_halted_step(grobo_robot *robot);
+int64_t grobo_i_halted_deadline(const grobo_robot *robot);
 
 /* ---- job.c ----------------------------------------------------------------------------------- */
 

@@ -118,7 +118,7 @@ static bool background_wanted(const grobo_robot *robot)
         return false;
     }
     return robot->config.sense_interval_us != GROBO_SENSE_NEVER || robot->free_joints != 0 ||
-           unheard_at(robot) != GROBO_NEVER_US;
+           unheard_at(robot) != GROBO_NEVER_US || grobo_i_halted_at(robot) != GROBO_NEVER_US;
 }
 
 /* How often each joint is to be read. */
@@ -318,19 +318,46 @@ static int ask_next(grobo_robot *robot, grobo_robot_slot *slot)
                          &robot->built);
 }
 
+/* Where those that were halted go, in one frame if there is one. */
+static int ask_halted(grobo_robot *robot, grobo_robot_slot *slot)
+{
+    const grobo_driver *driver = robot->driver;
+    slot->kind = GROBO_SENSE_GOAL;
+    if (GROBO_I_EXTRA(driver, sense_many) != NULL) {
+        slot->many = true;
+        slot->unread = grobo_i_halted_ask(robot);
+        return driver->sense_many(driver, robot->driver_ctx, slot->unread, GROBO_SENSE_GOAL,
+                                  &robot->built);
+    }
+    slot->joint = (uint8_t)grobo_i_halted_next(robot);
+    slot->reads = true;
+    return driver->sense(driver, robot->driver_ctx, slot->joint, GROBO_SENSE_GOAL, &robot->built);
+}
+
+/* Joints that were halted in turn with all others: one that is silent hides none. */
+static int ask_some(grobo_robot *robot, grobo_robot_slot *slot)
+{
+    bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL && robot->free_joints == 0;
+    robot->halted_read = grobo_i_halted_due(robot) && !(robot->halted_read && is_due(robot));
+    if (robot->halted_read) {
+        robot->heard_read = false;
+        return ask_halted(robot, slot);
+    }
+    return many ? ask_all(robot, slot) : ask_next(robot, slot);
+}
+
 void grobo_i_sense_step(grobo_robot *robot)
 {
     hurry(robot);
-    if ((!is_due(robot) && unheard(robot) == 0) || !background_wanted(robot) ||
-        grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
+    bool due = is_due(robot) || unheard(robot) != 0 || grobo_i_halted_due(robot);
+    if (!due || !background_wanted(robot) || grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
         return;
     }
     grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_SENSE);
     if (slot == NULL) {
         return;
     }
-    bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL && robot->free_joints == 0;
-    if ((many ? ask_all(robot, slot) : ask_next(robot, slot)) < 0) {
+    if (ask_some(robot, slot) < 0) {
         grobo_i_slot_drop(slot);
         return;
     }
@@ -350,7 +377,7 @@ void grobo_i_sense_done(const grobo_robot_slot *slot, int result)
     if (slot->fast) {
         note_fast(robot, result);
     }
-    if (robot->round == 0 && (is_free || robot->free_joints == 0)) {
+    if (!robot->halted_read && robot->round == 0 && (is_free || robot->free_joints == 0)) {
         grobo_event event = {.kind = GROBO_EVENT_ROUND};
         grobo_i_tell(robot, &event);
     }
@@ -372,6 +399,7 @@ int64_t grobo_i_sense_deadline(const grobo_robot *robot)
     int64_t due_us = robot->free_joints != 0 ? robot->now_us
                      : never                 ? GROBO_NEVER_US
                                              : robot->sense_us;
+    due_us = grobo_i_sooner(due_us, grobo_i_halted_at(robot));
     return GROBO_I_EXTRA(robot->driver, goal_wakes) ? grobo_i_sooner(due_us, unheard_at(robot))
                                                     : due_us;
 }

@@ -63,3 +63,20 @@ bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint)
     return goal_rad >= fmin(here_rad, way->to_rad) - same_rad &&
            goal_rad <= fmax(here_rad, way->to_rad) + same_rad;
 }
+
+/* A servo that restarts hears again by then. */
+#define HALTED_BY_US 2500000
+
+void grobo_i_halt_left(grobo_robot *robot, grobo_joint_mask joints, bool halts)
+{
+    grobo_joint_mask before = robot->halted;
+    if (!halts) {
+        robot->halted &= ~joints;
+        robot->halted_all &= ~joints;
+        return;
+    }
+    robot->halted_by_us = before == 0 ? robot->now_us + HALTED_BY_US : robot->halted_by_us;
+    robot->halted_us = (joints & ~before) != 0 ? robot->now_us : robot->halted_us;
+    robot->halted |= joints;
+    robot->halted_all |= joints;
+}

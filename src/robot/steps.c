@@ -613,9 +613,6 @@ static int step_quiet(grobo_robot *robot)
 /* Nearer than this to its goal, a servo is there. */
 #define THERE_RAD (0.2 * 0.017453292519943295)
 
-/* Where nobody knows to: it moves until its halt has left, and the halt is refused no sooner. */
-#define ASTRAY_US 100000
-
 /* A servo that turns yet so near the end of its way comes to rest there; nearer and slower, it
  * stands and trembles. */
 #define ARRIVES_RAD (3 * 0.017453292519943295)
@@ -645,15 +642,6 @@ static bool arrives(grobo_robot *robot, int joint)
     return arrives;
 }
 
-/* Where to, nobody knows: it stops where it was, and moves until its halt has left. */
-static void send_astray(grobo_robot *robot, int joint)
-{
-    grobo_robot_axis *axis = &robot->axes[joint];
-    grobo_i_axis_here(axis, robot->now_us);
-    axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ASTRAY_US);
-    axis->has_target = axis->off_way = true;
-}
-
 /* True if the servo, just read, says that it is on a way; notes that way. */
 static bool is_astray(grobo_robot *robot, int joint)
 {
@@ -670,7 +658,7 @@ static bool is_astray(grobo_robot *robot, int joint)
     if (creeps) {
         axis->own_until_us = grobo_i_later(axis->own_until_us, axis->goal_us + left_us);
     }
-    send_astray(robot, joint);
+    grobo_i_astray(robot, joint);
     return true;
 }
 
@@ -741,7 +729,7 @@ static int step_moved(grobo_robot *robot)
     grobo_joint_mask moved = job->pending & doubtful(robot), lost = job->pending & job->failed;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(moved, j)) {
-            send_astray(robot, j);
+            grobo_i_astray(robot, j);
         }
     }
     job->pending = 0;

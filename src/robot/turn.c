@@ -46,6 +46,7 @@ static int take_reading(const grobo_robot_slot *slot, int result, const grobo_pa
     int taken = grobo_i_reading_take(slot, result, reply, &got);
     if (taken >= 0) {
         grobo_i_watch_reading(robot, slot->joint, &got);
+        grobo_i_halted_look(robot, slot->joint);
     } else if (grobo_i_is_loss(taken)) {
         grobo_i_watch_lost(robot, slot->joint);
     }

@@ -8,12 +8,14 @@
 
 #include <cmocka.h>
 
+#include "src/robot/robot.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/rig.h"
 
 enum { JOINTS = FAMILY_JOINTS, MILLI = 1000, SECOND = 1000000 };
 
 static family_kit kit;
+static grobo_test_rig rig;
 
 /* ---- creeping joints ------------------------------------------------------------------------- */
 
@@ -40,15 +42,21 @@ static void another_program(const family *f)
     family_listen(&kit);
 }
 
+static double at_now_deg(int joint)
+{
+    grobo_sim_step(&kit.sim, kit.now_us);
+    return family_angle_deg(&kit, joint);
+}
+
 static void stands_from_now_on(double dps, const char *how)
 {
     double at_deg[JOINTS];
     for (int j = 0; j < JOINTS; j++) {
-        at_deg[j] = family_angle_deg(&kit, j);
+        at_deg[j] = at_now_deg(j);
     }
     family_run(&kit, SECOND);
     for (int j = 0; j < JOINTS; j++) {
-        double on_deg = fabs(family_angle_deg(&kit, j) - at_deg[j]);
+        double on_deg = fabs(at_now_deg(j) - at_deg[j]);
         if (on_deg > 0.6) {
             fail_msg("%s: verified at %g deg/s by %s, and joint %d went on by %.1f degrees",
                      kit.family->name, dps, how, j, on_deg);
@@ -131,12 +139,184 @@ static void a_short_bound_switches_torque_off(void **state)
     }
 }
 
+/* ---- what was halted is read back ------------------------------------------------------------ */
+
+typedef enum stop_kind { AT_ONCE, SMOOTH, CANCEL, TRIP, PAUSE, KINDS } stop_kind;
+
+static const char *const stop_names[] = {"stop", "smooth stop", "cancel", "trip", "pause"};
+
+static void halt(grobo_robot *robot, stop_kind kind)
+{
+    switch (kind) {
+    case AT_ONCE:
+    case SMOOTH:
+        assert_int_equal(grobo_robot_stop(robot, kind == AT_ONCE), GROBO_OK);
+        break;
+    case CANCEL:
+        assert_int_equal(grobo_robot_cancel(robot), GROBO_OK);
+        break;
+    case TRIP:
+        grobo_i_enter(robot, robot->now_us);
+        grobo_i_trip(robot, GROBO_TRIP_CURRENT, 1, 900, true);
+        grobo_i_leave(robot);
+        break;
+    case PAUSE:
+        assert_int_equal(grobo_robot_pause(robot), GROBO_OK);
+        break;
+    case KINDS:
+        break;
+    }
+}
+
+/* A motion of all joints, to one posture and to another. */
+static int key_of(void *ctx, size_t key, grobo_posture *posture, int64_t *at_us)
+{
+    const family_kit *of = ctx;
+    *posture = family_posture(of, key == 0 ? 60 : -60, key == 0 ? 100 : 6000);
+    *at_us = key == 0 ? 0 : 6 * (int64_t)SECOND;
+    return GROBO_OK;
+}
+
+static void set_going(const family *f, stop_kind kind)
+{
+    family_start(&kit, f, &unread, NULL);
+    assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+    if (kind == PAUSE) {
+        const grobo_clip clip = {.key = key_of,
+                                 .ctx = &kit,
+                                 .length_us = 6 * (int64_t)SECOND,
+                                 .n_keys = 2,
+                                 .n_joints = JOINTS};
+        const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_KEY};
+        assert_true(grobo_robot_play(&kit.robot, &clip, &options) > 0);
+        family_run(&kit, 3 * (int64_t)SECOND);
+    } else {
+        grobo_posture p = family_posture(&kit, -60, 6000);
+        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+        family_run(&kit, 2 * (int64_t)SECOND);
+    }
+}
+
+/* One frame or two of a halt do not arrive: until what it stops was read back, the robot moves; the
+ * halt is repeated, and nothing goes on. */
+static void a_halt_that_is_lost_is_repeated(void **state)
+{
+    (void)state;
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        for (int kind = 0; kind < KINDS; kind++) {
+            for (int lost = 0; lost < 3; lost++) {
+                set_going(f, (stop_kind)kind);
+                double from_deg = at_now_deg(0);
+                int64_t begun_us = kit.now_us;
+                halt(&kit.robot, (stop_kind)kind);
+                kit.lose = lost;
+                do {
+                    assert_true(kit.now_us - begun_us < SECOND);
+                    family_run(&kit, MILLI);
+                } while (kit.n_halted == 0 || (grobo_robot_moving(&kit.robot) && kind != PAUSE));
+                if (kit.halted.joints != GROBO_JOINTS_ALL(JOINTS) || kit.halted.failed != 0) {
+                    fail_msg("%s: %s, %d lost: %#x were read back, %#x not", f->name,
+                             stop_names[kind], lost, (unsigned)kit.halted.joints,
+                             (unsigned)kit.halted.failed);
+                }
+                family_run(&kit, 200 * MILLI);
+                double on_deg = fabs(at_now_deg(0) - from_deg);
+                if (on_deg > 8) {
+                    fail_msg("%s: %s, %d lost: %.1f degrees on", f->name, stop_names[kind], lost,
+                             on_deg);
+                }
+                stands_from_now_on(20, stop_names[kind]);
+                assert_int_equal(kit.n_halted, 1);
+            }
+        }
+    }
+}
+
+/* The one of the board is not answered at all. */
+static void a_halt_of_gr001_that_is_lost_is_repeated(void **state)
+{
+    (void)state;
+    for (int kind = AT_ONCE; kind < PAUSE; kind++) {
+        rig_start_at(&rig, 0, &quiet);
+        grobo_posture p = rig_posture(&rig, R_ELBOW, -80, 4000);
+        assert_true(grobo_robot_move(&rig.robot, &p) > 0);
+        rig_run(&rig, 1300 * MILLI);
+        double from_deg = rig_angle_deg(&rig, R_ELBOW);
+        rig.judged = true;
+        rig.lose = 1;
+        halt(&rig.robot, (stop_kind)kind);
+        int64_t begun_us = rig.now_us;
+        do {
+            assert_true(rig.now_us - begun_us < SECOND);
+            rig_run(&rig, MILLI);
+        } while (grobo_robot_moving(&rig.robot));
+        assert_int_equal(rig_count(&rig, GROBO_EVENT_HALTED), 1);
+        const grobo_event *event = rig_last(&rig, GROBO_EVENT_HALTED);
+        assert_true(event->u.halted.joints == GROBO_JOINT_BIT(R_ELBOW));
+        assert_true(event->u.halted.failed == 0);
+        double at_deg = rig_angle_deg(&rig, R_ELBOW);
+        assert_true(fabs(at_deg - from_deg) < 6);
+        rig_run(&rig, SECOND);
+        assert_true(fabs(rig_angle_deg(&rig, R_ELBOW) - at_deg) < 0.5);
+    }
+}
+
+/* Who does not answer is named, in time. */
+static void who_cannot_be_read_back_is_named(void **state)
+{
+    (void)state;
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        set_going(f, AT_ONCE);
+        halt(&kit.robot, AT_ONCE);
+        kit.lose = INT32_MAX;
+        int64_t begun_us = kit.now_us;
+        while (grobo_robot_moving(&kit.robot)) {
+            assert_true(kit.now_us - begun_us < 4 * (int64_t)SECOND);
+            family_run(&kit, MILLI);
+        }
+        assert_true(kit.now_us - begun_us > 2 * (int64_t)SECOND);
+        assert_int_equal(kit.n_halted, 1);
+        assert_true(kit.halted.failed == GROBO_JOINTS_ALL(JOINTS));
+        assert_true(kit.halted.joints == 0);
+    }
+}
+
+/* Targets that follow a stop at once are sent at their rate: nothing is waited for. */
+static void a_stream_behind_a_stop_is_not_held_up(void **state)
+{
+    (void)state;
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        set_going(f, AT_ONCE);
+        halt(&kit.robot, AT_ONCE);
+        family_run(&kit, 10 * MILLI);
+        double at_deg = at_now_deg(0);
+        for (int i = 0; i < 100; i++) {
+            grobo_posture p = family_posture(&kit, at_deg - 0.1 * i, 20);
+            assert_int_equal(grobo_robot_send(&kit.robot, &p), GROBO_OK);
+            family_run(&kit, 10 * MILLI);
+        }
+        family_run(&kit, 200 * MILLI);
+        assert_int_equal(kit.n_trips, 0);
+        assert_true(fabs(at_now_deg(0) - (at_deg - 9.9)) < 1.5);
+        if (kit.n_halted > 1) {
+            fail_msg("%s: %u stops were told of", f->name, kit.n_halted);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(who_leaves_says_so_of_joints_that_stand),
         cmocka_unit_test(who_stands_where_it_was_sent_is_believed_at_once),
         cmocka_unit_test(a_short_bound_switches_torque_off),
+        cmocka_unit_test(a_halt_that_is_lost_is_repeated),
+        cmocka_unit_test(who_cannot_be_read_back_is_named),
+        cmocka_unit_test(a_stream_behind_a_stop_is_not_held_up),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest on_both[] = {
+        cmocka_unit_test(a_halt_of_gr001_that_is_lost_is_repeated),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) +
+           rig_on_both_wirings(on_both, sizeof on_both / sizeof on_both[0]);
 }

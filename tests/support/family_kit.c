@@ -49,6 +49,9 @@ static void on_event(void *ctx, const grobo_event *event)
         kit->done[kit->n_done++ % FAMILY_EVENTS] = event->u.job;
     } else if (event->kind == GROBO_EVENT_TRIP) {
         kit->trips[kit->n_trips++ % FAMILY_EVENTS] = event->u.trip.trip;
+    } else if (event->kind == GROBO_EVENT_HALTED) {
+        kit->halted = event->u.halted;
+        kit->n_halted++;
     }
 }
 
@@ -183,7 +186,9 @@ void family_run(family_kit *kit, int64_t us)
         grobo_robot_step(&kit->robot, kit->now_us);
         int size = grobo_robot_tx(&kit->robot, b, sizeof b, kit->now_us);
         assert_true(size >= 0);
-        if (size > 0) {
+        if (size > 0 && kit->lose > 0) {
+            kit->lose--;
+        } else if (size > 0) {
             note_sent(kit, b, (size_t)size);
             assert_int_equal(grobo_sim_rx(&kit->sim, b, (size_t)size, kit->now_us), size);
         }

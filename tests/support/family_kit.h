@@ -37,10 +37,13 @@ typedef struct family_kit {
     unsigned n_done;
     grobo_trip trips[FAMILY_EVENTS];
     unsigned n_trips;
+    grobo_event_halted halted; /* the last one */
+    unsigned n_halted;
     double most_dps;                                  /* that a shaft was seen to turn */
     uint8_t sent[FAMILY_SENT][GROBO_FRAME_MAX_BYTES]; /* the last frames, as a ring */
     size_t sent_bytes[FAMILY_SENT];
     unsigned n_sent;
+    int lose;     /* so many of the next frames do not arrive */
     bool made_up; /* the packet that servos heard last was none of these */
     /* Called at every look at the shafts, and at what servos do; NULL: not. */
     void (*on_look)(struct family_kit *kit);

@@ -500,6 +500,7 @@ void judge_event(judge *w, const grobo_event *event)
     case GROBO_EVENT_ROUND:
     case GROBO_EVENT_UNWATCHED:
     case GROBO_EVENT_SLOW_CALLBACK:
+    case GROBO_EVENT_HALTED:
         break;
     }
 }

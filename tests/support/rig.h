@@ -65,6 +65,7 @@ typedef struct grobo_test_rig {
     unsigned torque_on;                       /* torques switched on */
     unsigned excused;                         /* goals and torques that a made-up packet explains */
     unsigned frames;                          /* sent */
+    unsigned lose;                            /* so many of the next ones do not arrive */
 } grobo_test_rig;
 
 /* Joints of GR001 that tests move, in joint order, and the ids of some. */

@@ -85,6 +85,12 @@ static void on_robot(void *ctx, const grobo_event *event)
     if (event->kind == GROBO_EVENT_TRIP) {
         c->trip = event->u.trip;
     }
+    if (event->kind == GROBO_EVENT_HALTED && event->u.halted.failed) {
+        app_note(c->a,
+                 "stopped, but joints cannot be read back and may still move: %d; switch the robot "
+                 "off",
+                 grobo_joints_count(event->u.halted.failed));
+    }
     if (c->on_event) {
         c->on_event(c, event);
     }

@@ -130,6 +130,13 @@ static void on_event(conn *c, const grobo_event *event)
     case GROBO_EVENT_PLAY:
     case GROBO_EVENT_SLOW_CALLBACK:
         break;
+    case GROBO_EVENT_HALTED:
+        if (event->u.halted.failed) {
+            events_tell(&s->events, "stop", "error", NULL,
+                        "joints that cannot be read back may still move: %d",
+                        grobo_joints_count(event->u.halted.failed));
+        }
+        break;
     }
 }
 

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a stop has halted is read back: a frame may be lost, and then a joint goes on to its goal. A
+ * joint waits in grobo_robot.halted from the moment its halt has left. Each reading of it, whatever
+ * asked for it, ends that or has the halt repeated; the background asks for one at once. Where a
+ * job reads all joints for that (an exit, an emergency stop), it repeats by itself.
+ */
+#include <math.h>
+
+#include "src/base/instant.h"
+#include "src/robot/robot.h"
+
+/* Where the last reading showed nothing the next one waits so long. */
+#define AGAIN_US 40000
+/* Where nobody knows to: it moves until its halt has left, and the halt is refused no sooner. */
+#define ASTRAY_US 100000
+/* Of servos that tell no goal: one that is so far beside its halt so long after it was to be there
+ * has lost it. */
+#define LATE_US 40000
+#define BESIDE_RAD (3 * 0.017453292519943295)
+
+static bool is_read_by_a_job(const grobo_robot *robot)
+{
+    return robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
+}
+
+static bool is_limp(const grobo_robot_axis *axis)
+{
+    return axis->torque_known && axis->state.torque != GROBO_TORQUE_ON;
+}
+
+/* Its goal was read, or its servo has answered the halt itself. */
+static bool tells_goal(const grobo_robot_axis *axis)
+{
+    return axis->goal_us != GROBO_NEVER_US && axis->goal_us > axis->told_us;
+}
+
+static bool has_lost_it(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    if (tells_goal(axis)) {
+        return !grobo_i_goal_is_taken(robot, joint);
+    }
+    return GROBO_I_EXTRA(robot->driver, no_speed) && robot->now_us > axis->way.to_us + LATE_US &&
+           fabs(axis->state.angle_rad - axis->way.to_rad) > BESIDE_RAD;
+}
+
+void grobo_i_astray(grobo_robot *robot, int joint)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    grobo_i_axis_here(axis, robot->now_us);
+    axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ASTRAY_US);
+    axis->has_target = axis->off_way = true;
+}
+
+void grobo_i_halted_look(grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    if (!grobo_i_has(robot->halted, joint) || axis->still_us == GROBO_NEVER_US) {
+        return; /* this was asked for before */
+    }
+    bool taken = tells_goal(axis) && grobo_i_goal_is_taken(robot, joint);
+    if (taken || is_limp(axis) || grobo_i_stands(robot, joint)) {
+        robot->halted &= ~GROBO_JOINT_BIT(joint);
+    } else if (has_lost_it(robot, joint) && !is_read_by_a_job(robot)) {
+        grobo_i_astray(robot, joint);
+        grobo_i_gate_halt_again(robot, GROBO_JOINT_BIT(joint));
+    }
+}
+
+int64_t grobo_i_halted_at(const grobo_robot *robot)
+{
+    return robot->halted == 0 || is_read_by_a_job(robot) ? GROBO_NEVER_US : robot->halted_us;
+}
+
+bool grobo_i_halted_due(const grobo_robot *robot)
+{
+    return grobo_i_halted_at(robot) <= robot->now_us;
+}
+
+int grobo_i_halted_next(grobo_robot *robot)
+{
+    robot->halted_round &= robot->halted;
+    robot->halted_round = robot->halted_round == 0 ? robot->halted : robot->halted_round;
+    int joint = grobo_i_lowest(robot->halted_round);
+    robot->halted_round &= ~GROBO_JOINT_BIT(joint);
+    robot->halted_us = robot->halted_round == 0 ? robot->now_us + AGAIN_US : robot->halted_us;
+    return joint;
+}
+
+grobo_joint_mask grobo_i_halted_ask(grobo_robot *robot)
+{
+    robot->halted_us = robot->now_us + AGAIN_US;
+    return robot->halted;
+}
+
+/* All is read back, and nothing that stops waits for the line. */
+static bool is_over(const grobo_robot *robot)
+{
+    bool over = robot->halted == 0 && robot->halted_all != 0;
+    for (int i = 0; over && i < robot->slots_end; i++) {
+        over = robot->slots[i].use == GROBO_I_USE_FREE || !robot->slots[i].order.stops;
+    }
+    return over;
+}
+
+int64_t grobo_i_halted_deadline(const grobo_robot *robot)
+{
+    return is_over(robot)                               ? robot->now_us
+           : grobo_i_halted_at(robot) == GROBO_NEVER_US ? GROBO_NEVER_US
+                                                        : robot->halted_by_us;
+}
+
+void grobo_i_halted_step(grobo_robot *robot)
+{
+    if (grobo_i_halted_deadline(robot) > robot->now_us) {
+        return;
+    }
+    grobo_event event = {.kind = GROBO_EVENT_HALTED};
+    event.u.halted.joints = robot->halted_all & ~robot->halted;
+    event.u.halted.failed = robot->halted;
+    grobo_i_tell(robot, &event);
+    robot->halted = robot->halted_all = robot->halted_round = 0;
+}
