@@ -29,7 +29,7 @@ typedef struct grobo_timer grobo_timer;
 
 /**
  * Called when a deadline has come. The timer is not armed any more; it may be set again or freed
- * in here. `late_us` >= 0 is how long ago the deadline was.
+ * in here. `late_us` >= 0 is how long ago the deadline was. Without memory it may come early.
  */
 typedef void (*grobo_timer_fn)(void *ctx, grobo_timer *timer, int64_t late_us);
 
@@ -50,7 +50,7 @@ GROBO_CORE void grobo_timer_free(grobo_timer *timer);
  * Arms the timer for a moment of grobo_now_us(), in place of the one before. A moment that has
  * passed is called back in the loop's next round, not in here. GROBO_NEVER_US disarms.
  * A periodic timer adds its period to the deadline, never to the present: it does not drift.
- * @return GROBO_OK, GROBO_ERR_NOMEM.
+ * @return GROBO_OK; GROBO_ERR_NOMEM (it is not armed; one that is armed already is never refused).
  */
 GROBO_CORE int grobo_timer_set(grobo_timer *timer, int64_t deadline_us);
 

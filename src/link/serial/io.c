@@ -162,6 +162,14 @@ static void enqueue(grobo_serial *serial, const uint8_t *bytes, size_t size)
     serial->used += size;
 }
 
+/* What waits leaves when the port takes it. A port that cannot tell that is lost: the bytes would
+ * wait for ever. */
+static int await_room(grobo_serial *serial)
+{
+    return event_add(serial->tx, NULL) == 0 ? GROBO_OK
+                                            : grobo_i_serial_lose(serial, GROBO_ERR_NOMEM);
+}
+
 int grobo_i_serial_flush(grobo_serial *serial)
 {
     size_t capacity = serial->config.tx_queue_bytes;
@@ -178,7 +186,7 @@ int grobo_i_serial_flush(grobo_serial *serial)
         serial->head = (serial->head + (size_t)done) % capacity;
         serial->used -= (size_t)done;
         if ((size_t)done < size) {
-            return event_add(serial->tx, NULL) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
+            return await_room(serial);
         }
     }
     if (had) {
@@ -203,11 +211,9 @@ static int send_async(grobo_serial *serial, const uint8_t *bytes, size_t size)
     }
     if ((size_t)done < size) {
         enqueue(serial, bytes + done, size - (size_t)done);
-        if (serial->ready && event_add(serial->tx, NULL) != 0) {
-            return GROBO_ERR_NOMEM;
-        }
+        done = serial->ready ? await_room(serial) : 0;
     }
-    return (int)size;
+    return done < 0 ? done : (int)size;
 }
 
 /* ---- waiting ------------------------------------------------------------------------------ */

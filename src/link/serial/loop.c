@@ -72,9 +72,12 @@ static int arm(grobo_timer *timer)
     int64_t span_us = timer->deadline_us - grobo_now_us();
     struct timeval tv = grobo_i_link_timeval(span_us < SPAN_MAX_US ? span_us : SPAN_MAX_US);
 
-    bool added = event_add(timer->event, &tv) == 0;
-    timer->armed_us = added ? timer->deadline_us : GROBO_NEVER_US;
-    return added ? GROBO_OK : GROBO_ERR_NOMEM;
+    if (event_add(timer->event, &tv) != 0) {
+        timer->deadline_us = timer->armed_us = GROBO_NEVER_US;
+        return GROBO_ERR_NOMEM;
+    }
+    timer->armed_us = timer->deadline_us;
+    return GROBO_OK;
 }
 
 static void on_time(evutil_socket_t fd, short what, void *arg)
@@ -84,11 +87,12 @@ static void on_time(evutil_socket_t fd, short what, void *arg)
 
     (void)fd;
     (void)what;
-    if (late_us < 0) {
-        /* A base with a coarse clock or a cached time calls early. Re-adding takes no memory. */
-        (void)arm(timer);
+    /* A base with a coarse clock or a cached time calls early. Other events may have taken the
+     * memory meanwhile: then early is better than never. */
+    if (late_us < 0 && arm(timer) == GROBO_OK) {
         return;
     }
+    late_us = late_us < 0 ? 0 : late_us;
     timer->deadline_us = timer->armed_us = GROBO_NEVER_US;
     timer->fn(timer->ctx, timer, late_us);
 }
@@ -152,6 +156,14 @@ int grobo_timer_set(grobo_timer *timer, int64_t deadline_us)
      * present round, and a timer that is set anew in every round would never be called.
      */
     return is_due && deadline_us <= now_us ? GROBO_OK : arm(timer);
+}
+
+void grobo_i_timer_instead(grobo_timer *timer)
+{
+    timer->deadline_us = grobo_now_us();
+    event_active(timer->event, EV_TIMEOUT, 1);
+    /* Else the loop would go on with this one, and never look at its descriptors. */
+    (void)event_base_loopcontinue(event_get_base(timer->event));
 }
 
 int64_t grobo_timer_deadline(const grobo_timer *timer)

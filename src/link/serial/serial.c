@@ -100,8 +100,9 @@ static void on_resume(evutil_socket_t fd, short what, void *arg)
     (void)fd;
     (void)what;
     serial->paused = false;
-    /* Cannot fail: the event has been added before. */
-    (void)event_add(serial->rx, NULL);
+    if (event_add(serial->rx, NULL) != 0) {
+        (void)grobo_i_serial_lose(serial, GROBO_ERR_NOMEM);
+    }
 }
 
 /* Waits for the port to become writable; span_us < 0: for ever. */

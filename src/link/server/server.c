@@ -406,7 +406,8 @@ static void await_callers(grobo_sim_server *server)
         if (heard || server->door_us != GROBO_NEVER_US) {
             (void)event_del(server->callers);
         } else {
-            (void)event_add(server->callers, NULL);
+            server->door_us =
+                event_add(server->callers, NULL) == 0 ? GROBO_NEVER_US : grobo_now_us() + LOOK_US;
         }
     }
 }
@@ -446,7 +447,9 @@ void grobo_sim_server_pump(grobo_sim_server *server)
         hang_up(server);
     }
     await_callers(server);
-    (void)grobo_timer_set(server->timer, next_look_us(server));
+    if (grobo_timer_set(server->timer, next_look_us(server)) < 0) {
+        grobo_i_timer_instead(server->timer);
+    }
 }
 
 static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)

@@ -132,6 +132,10 @@ void grobo_i_session_send(grobo_session *session)
         grobo_i_session_rest(session);
         break;
     }
-    /* Cannot fail: the timer's event has been added before, or adding takes no memory. */
-    (void)grobo_timer_set(session->timer, deadline_us);
+    /* Without memory for it, the wake-up socket has the loop look again at once, and again, until
+     * there is some: what is due leaves when it is due. */
+    session->untimed = grobo_timer_set(session->timer, deadline_us) < 0;
+    if (session->untimed) {
+        grobo_i_session_wake(session);
+    }
 }

@@ -425,12 +425,8 @@ static void try_again(grobo_session *session)
     }
 }
 
-static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
+void grobo_i_session_on_time(grobo_session *session)
 {
-    grobo_session *session = ctx;
-
-    (void)timer;
-    (void)late_us;
     grobo_i_session_enter(session);
     switch (session->state) {
     case GROBO_SESSION_OPENING:
@@ -447,6 +443,13 @@ static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
         break;
     }
     grobo_i_session_leave(session);
+}
+
+static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
+{
+    (void)timer;
+    (void)late_us;
+    grobo_i_session_on_time(ctx);
 }
 
 static void on_guard(evutil_socket_t fd, short what, void *ctx)

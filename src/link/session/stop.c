@@ -176,6 +176,10 @@ static void on_wake(evutil_socket_t socket, short what, void *ctx)
     (void)what;
     while (recv(socket, bytes, sizeof bytes, 0) == (int)sizeof bytes) {
     }
+    if (session->untimed) {
+        grobo_i_session_on_time(session);
+        return;
+    }
     grobo_i_session_enter(session);
     grobo_i_session_leave(session); /* obeys, and sends what was asked for */
 }

@@ -118,8 +118,10 @@ void grobo_i_control_round(grobo_control *control, int64_t end_us)
     if (control->tick_us == GROBO_NEVER_US) {
         control->tick_us = grobo_now_us() + grobo_control_get_period_us(control);
     }
-    /* Cannot fail: the timer's event has been added before, or adding takes no memory. */
-    (void)grobo_timer_set(control->timer, end_us < control->tick_us ? end_us : control->tick_us);
+    if (grobo_timer_set(control->timer, end_us < control->tick_us ? end_us : control->tick_us) <
+        0) {
+        grobo_i_session_wake(control->session); /* a round that does not wait, and the next one */
+    }
     (void)event_base_loop(control->base, EVLOOP_ONCE);
     grobo_i_control_look_at_play(control);
     serve(control);
