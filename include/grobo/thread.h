@@ -399,8 +399,8 @@ GROBO_API int grobo_control_wait(grobo_control *control, int64_t timeout_us);
  * posture for joints that were not sensed.
  */
 
-/** Replaces the motion by a copy. At once. @return postures, GROBO_ERR_ARG (more joints than the
- *  robot), GROBO_ERR_NOMEM. */
+/** Replaces the motion by a copy. At once. @return postures, GROBO_ERR_ARG (a motion of another
+ *  robot: grobo_motion_is_for()), GROBO_ERR_NOMEM. */
 GROBO_API int grobo_control_set_motion(grobo_control *control, const grobo_motion *motion);
 /** A copy of the motion. At once. @param[out] motion owned by the caller. @return postures,
  *  GROBO_ERR_NOMEM. */
@@ -419,7 +419,7 @@ GROBO_API int grobo_control_append_current_posture_us(grobo_control *control, in
  * NAME itself where it has an extension. At once but for the reading, which is the caller's time.
  * @param list diagnostics of the file are added to it, or NULL.
  * @return postures; or, and then the motion is empty, as grobo_motion_find() and
- *   grobo_motion_read_file(), GROBO_ERR_ARG (a motion for more joints).
+ *   grobo_motion_read_file(), GROBO_ERR_ARG (a motion of another robot: grobo_motion_is_for()).
  */
 GROBO_API int grobo_control_load_motion(grobo_control *control, const char *name,
                                         grobo_diagnostics *list);

@@ -128,6 +128,42 @@ strangers() {
         grep -q 'wide.m: has 22 joints, GR001 has 20$' "$work/err"
 }
 check "motions with joints that the robot does not have" strangers
+# Of another robot: nothing may move, not even the first joints.
+sed '/^targetBody/d' motions/so101-wave.yaml >"$work/nameless.yaml"
+printf '500 0 0 0 0 0 0\n1000 0 0 0 0 0 0\n' >"$work/six.m"
+printf '%s\n' 'type: PoseSeq' 'name: nod' 'targetBody: KNIGHT' 'refs:' \
+    '  - {time: 1, refer: {type: Pose, joints: [ 2 ], q: [ 0 ]}}' >"$work/knight.pseq"
+of_another() {
+    for option in --dry-run -q; do
+        fails 2 'wave.yaml: made for so101, not for GR001; choose that robot with --robot;' \
+            "$GRCTL" -d sim play $option motions/so101-wave.yaml &&
+            fails 2 'knight.pseq: made for KNIGHT, not for GR001' \
+                "$GRCTL" -d sim play $option "$work/knight.pseq" &&
+            fails 2 'nameless.yaml: has fewer angles than GR001 has joints (20), and names ' \
+                "$GRCTL" -d sim play $option "$work/nameless.yaml" &&
+            exits 2 "$GRCTL" -d sim play $option "$work/six.m" && [ ! -s "$work/out" ] &&
+            grep -q 'six.m: has fewer angles than GR001 has joints' "$work/err" || return 1
+    done
+    fails 2 'made for so101, not for GR001' "$GRCTL" -d sim pose @motions/so101-wave.yaml:9 &&
+        fails 2 'made for so101, not for GR001' "$GRCTL" -d sim monitor motions/so101-wave.yaml &&
+        fails 2 'made for so101, not for GR001' \
+            "$GRCTL" -d sim play motions/greet.pseq motions/so101-wave.yaml &&
+        fails 2 'made for so101, not for koch' \
+            "$GRCTL" --robot koch -d sim play motions/so101-wave.yaml
+}
+check "a motion of another robot is refused" of_another
+forced() {
+    exits 0 "$GRCTL" play --force --dry-run "$work/six.m" &&
+        exits 0 "$GRCTL" play --force --clamp --speed 50 --dry-run "$work/nameless.yaml" &&
+        exits 0 "$GRCTL" play --force --clamp --speed 50 --dry-run motions/so101-wave.yaml &&
+        exits 0 "$GRCTL" --robot so101 play --dry-run "$work/nameless.yaml"
+}
+check "and played where that is forced" forced
+named_fewer() {
+    sed 's/^targetBody.*/targetBody: GR001/' motions/so101-wave.yaml >"$work/legs.yaml"
+    exits 0 "$GRCTL" play --clamp --speed 50 --dry-run "$work/legs.yaml"
+}
+check "some joints of the same robot are played" named_fewer
 upright='rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]'
 links="ikLinks: [ { name: WAIST, isBaseLink: true, translation: [ 0, 0, 0.15 ], $upright }, \
 { name: R_ANKLE_R, translation: [ 0, -0.0221, 0.0225 ], $upright } ]"

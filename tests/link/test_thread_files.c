@@ -154,11 +154,32 @@ static void what_cannot_be_loaded_leaves_nothing(void **state)
     assert_int_equal(grobo_control_load_motion(control, "a", NULL), GROBO_ERR_NOENT);
 }
 
+/* Six angles would move the first six of twenty joints. */
+static void a_motion_of_another_robot_is_not_loaded(void **state)
+{
+    const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model};
+    const char *text = "500 0 0 0 0 0 0\n";
+    grobo_motion *motion;
+
+    (void)state;
+    assert_int_equal(grobo_motion_read_memory(text, strlen(text), &options, NULL, &motion), 0);
+    assert_int_equal(grobo_control_set_motion(control, motion), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_set_target_body(motion, "so101"), 0);
+    assert_int_equal(grobo_control_set_motion(control, motion), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_set_target_body(motion, "GR001"), 0);
+    assert_int_equal(grobo_control_set_motion(control, motion), 1);
+    grobo_motion_free(motion);
+    put_file(in_folder("a.m"), text);
+    assert_int_equal(grobo_control_load_motion(control, "a", NULL), GROBO_ERR_ARG);
+    assert_int_equal(control_motion_size(control), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         WITH_AND_WITHOUT_THREAD(motions_are_saved_and_loaded),
         WITH_AND_WITHOUT_THREAD(what_cannot_be_loaded_leaves_nothing),
+        WITH_AND_WITHOUT_THREAD(a_motion_of_another_robot_is_not_loaded),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -168,10 +168,12 @@ static void test_curve(void **state)
 static void test_postures(void **state)
 {
     (void)state;
-    /* Motor 2 is the neck: 40 degrees in 20 ms; a restart that takes the default time. */
+    /* Motor 2 is the neck: 40 degrees in 20 ms; a restart that takes the default time. Two angles
+     * are perhaps those of another robot. */
     checked found = check("500 0 0\n520 0 400\n100 0 390\n", true);
 
-    assert_int_equal(found.errors, 1);
+    assert_int_equal(found.errors, 2);
+    assert_true(has_diagnostic(found.list, "joint-missing", 0, 0));
     assert_true(has_diagnostic(found.list, "too-fast", 2, 7));
     assert_true(has_diagnostic(found.list, "step-default", 3, 0));
     grobo_diagnostics_free(found.list);
@@ -200,7 +202,7 @@ static void test_frames(void **state)
               "    frames: [\n[ 0 ],\n[ 1 ],\n[ 1 ],\n[ 0 ],\n[ 1 ] ] }\n",
               true);
 
-    assert_int_equal(found.errors, 2);
+    assert_int_equal(found.errors, 3); /* another robot's too */
     assert_true(has_diagnostic(found.list, "limit", 7, 3));
     assert_true(has_diagnostic(found.list, "limit", 10, 3));
     assert_true(has_diagnostic(found.list, "target-body", 0, 0));
@@ -336,6 +338,48 @@ static void test_real_motion(void **state)
     free(text);
 }
 
+/* Which robot a motion may move: by its name, or where it has none by the number of angles. */
+static void test_robot_it_is_for(void **state)
+{
+    static const struct {
+        const char *text;
+        bool fits;
+    } motions[] = {
+        {"500 0 0 0 0 0 0\n", false},
+        {"500 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n", true},
+        {"type: PoseSeq\nrefs: [ { time: 1, refer: { type: Pose, joints: [ 2 ], q: [ 0 ] } } ]\n",
+         true},
+        {"type: PoseSeq\ntargetBody: so101\n"
+         "refs: [ { time: 1, refer: { type: Pose, joints: [ 2 ], q: [ 0 ] } } ]\n",
+         false},
+#define FRAMES                                                                                     \
+    "components: [ { type: MultiValueSeq, content: JointPosition, frameRate: 1, numParts: 2, "     \
+    "frames: [ [ 0, 0 ] ] } ]\n"
+        {"type: BodyMotion\n" FRAMES, false},
+        {"type: BodyMotion\ntargetBody: SerialRobot\n" FRAMES, false},
+        {"type: BodyMotion\ntargetBody: GR001\n" FRAMES, true},
+        {"type: BodyMotion\ntargetBody: gr001\n" FRAMES, false},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) {
+        const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model};
+        grobo_motion *motion, *copy;
+        assert_int_equal(grobo_motion_read_memory(motions[i].text, strlen(motions[i].text),
+                                                  &options, NULL, &motion),
+                         0);
+        assert_int_equal(grobo_motion_is_for(motion, &grobo_gr001_model), motions[i].fits);
+        assert_int_equal(grobo_motion_check(motion, &grobo_gr001_model, NULL, NULL) > 0,
+                         !motions[i].fits);
+        assert_int_equal(grobo_motion_dup(motion, &copy), 0);
+        assert_int_equal(grobo_motion_is_for(copy, &grobo_gr001_model), motions[i].fits);
+        assert_int_equal(grobo_motion_set_target_body(copy, "GR001"), 0);
+        assert_true(grobo_motion_is_for(copy, &grobo_gr001_model));
+        grobo_motion_free(copy);
+        grobo_motion_free(motion);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -346,6 +390,7 @@ int main(void)
         cmocka_unit_test(test_warnings),        cmocka_unit_test(test_speed_it_is_played_at),
         cmocka_unit_test(test_unknown_once),    cmocka_unit_test(test_empty),
         cmocka_unit_test(test_list_is_bounded), cmocka_unit_test(test_real_motion),
+        cmocka_unit_test(test_robot_it_is_for),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -33,8 +33,9 @@ static int resolve(grobo_control *control, grobo_motion *motion)
 static int adopt(grobo_control *control, grobo_motion *motion)
 {
     int n_joints = control->driver->model->n_joints;
-    int r = grobo_motion_joints(motion) > n_joints ? GROBO_ERR_ARG
-                                                   : grobo_motion_set_joints(motion, n_joints);
+    int r = grobo_motion_is_for(motion, control->driver->model)
+                ? grobo_motion_set_joints(motion, n_joints)
+                : GROBO_ERR_ARG;
 
     if (r >= 0) {
         r = resolve(control, motion);

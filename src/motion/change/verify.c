@@ -58,7 +58,7 @@ static void expect_angles(verification *v, uint32_t line, double t_s, const grob
             (there && fabs(found->angle_rad[j] - wanted->angle_rad[j]) <= v->near_rad)) {
             continue;
         }
-        bool named = grobo_motion_is_for(v->source, model);
+        bool named = grobo_i_has_joints_of(v->source, model);
         long long deg = tenths(grobo_deg_from_rad(wanted->angle_rad[j]));
         v->told |= bit;
         say_at(v, line, "angle-lost", "%s%.*d at %lld ms: %s%lld.%lld degrees are not in the copy",

@@ -40,6 +40,7 @@ static int set_columns(m_file *file, int columns)
 
     file->columns = columns;
     if (by_motor && columns < model->n_joints) {
+        reader->motion->few_columns = true;
         grobo_i_warn(reader, "columns", place, "%d angles for the %d motors of %s", columns,
                      model->n_joints, model->name);
     } else if (model != NULL && !by_motor) {

@@ -67,25 +67,44 @@ static grobo_i_said at_joint(const check *c, size_t row, int joint, const char *
 
 /* ---- the motion as a whole ---------------------------------------------------------------- */
 
+/* Rows of angles are of all joints of a robot: fewer of them, or more, are another's. */
+static void check_rows(check *c, bool named_for)
+{
+    bool frames = c->motion->kind == GROBO_MOTION_FRAMES;
+    int n_joints = grobo_motion_joints(c->motion), has = c->model->n_joints;
+    bool is_for = grobo_motion_is_for(c->motion, c->model);
+    grobo_i_said said = {c->file, n_joints > has ? "joint-unknown" : "joint-missing", 0, 0,
+                         is_for || !named_for ? GROBO_SEVERITY_WARNING : GROBO_SEVERITY_ERROR};
+
+    if (frames && n_joints != has) {
+        grobo_i_say(c->list, &said, "frames of %d joint%s for the %d of %s", n_joints,
+                    n_joints == 1 ? "" : "s", has, c->model->name);
+    } else if (c->motion->kind == GROBO_MOTION_POSTURES && !is_for && named_for) {
+        grobo_i_say(c->list, &said, "postures of another number of joints than the %d of %s", has,
+                    c->model->name);
+    } else {
+        return;
+    }
+    c->n_errors += said.severity == GROBO_SEVERITY_ERROR;
+}
+
 static void check_body(check *c)
 {
-    int n_joints = grobo_motion_joints(c->motion);
-    grobo_i_said said = {c->file, "target-body", 0, 0, GROBO_SEVERITY_WARNING};
+    grobo_i_said said = {c->file, "empty", 0, 0, GROBO_SEVERITY_WARNING};
+    bool named_for = grobo_i_is_named_for(c->motion, c->model);
 
     if (c->motion->size == 0) {
-        said.code = "empty";
         grobo_i_say(c->list, &said, "no postures");
         return;
     }
-    if (!grobo_i_is_named_for(c->motion, c->model)) {
+    if (!named_for) {
+        said.code = "target-body";
+        said.severity = GROBO_SEVERITY_ERROR;
+        c->n_errors++;
         grobo_i_say(c->list, &said, "made for %.60s, not for %s",
                     grobo_motion_target_body(c->motion), c->model->name);
     }
-    if (c->motion->kind == GROBO_MOTION_FRAMES && n_joints != c->model->n_joints) {
-        said.code = n_joints > c->model->n_joints ? "joint-unknown" : "joint-missing";
-        grobo_i_say(c->list, &said, "frames of %d joint%s for the %d of %s", n_joints,
-                    n_joints == 1 ? "" : "s", c->model->n_joints, c->model->name);
-    }
+    check_rows(c, named_for);
 }
 
 static void check_times(check *c)

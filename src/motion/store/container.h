@@ -64,6 +64,7 @@ struct grobo_motion {
     grobo_motion_kind kind;
     uint8_t n_joints;
     uint8_t line_items; /* joints that a line of .pseq has */
+    bool few_columns;   /* its lines of .m had fewer angles than the robot has motors */
     bool frame_times;
     bool reverse;
 };
@@ -104,6 +105,8 @@ int grobo_i_copy_rows(grobo_motion *motion, const grobo_motion *from, size_t fir
 int grobo_i_new_like(const grobo_motion *like, grobo_motion **motion);
 /* True for a motion whose target body is the model, any robot of the original library, or none. */
 bool grobo_i_is_named_for(const grobo_motion *motion, const grobo_model *model);
+/* Its joints can be those of the model, which need not be so: grobo_motion_is_for(). */
+bool grobo_i_has_joints_of(const grobo_motion *motion, const grobo_model *model);
 /* Where a motion starts: at the posture given; NULL: where grobo_motion_start() says. */
 void grobo_i_start(const grobo_motion *motion, const grobo_model *model, const grobo_posture *given,
                    grobo_posture *start);

@@ -53,6 +53,7 @@ int grobo_i_new_like(const grobo_motion *like, grobo_motion **motion)
     }
     made->frame_rate_hz = like->frame_rate_hz;
     made->line_items = like->line_items;
+    made->few_columns = like->few_columns;
     made->frame_times = like->frame_times;
     made->reverse = like->reverse;
     result = grobo_motion_set_name(made, grobo_motion_name(like));
@@ -127,6 +128,7 @@ void grobo_motion_renew(grobo_motion *motion, grobo_motion_kind kind)
     grobo_i_free_text(motion->mem, motion->target_body);
     grobo_i_kept_free(motion->mem, motion->kept);
     motion->name = motion->target_body = NULL;
+    motion->few_columns = false;
     motion->kept = NULL;
     motion->frame_rate_hz = 0;
     motion->line_items = 0;
@@ -143,10 +145,26 @@ bool grobo_i_is_named_for(const grobo_motion *motion, const grobo_model *model)
     return body[0] == '\0' || strcmp(body, "SerialRobot") == 0 || strcmp(body, model->name) == 0;
 }
 
-bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model)
+/* Key poses number their joints; rows of angles are of all joints, of which the robot is not named:
+ * a row of six on a robot of twenty would move its first six joints. */
+static bool has_other_rows(const grobo_motion *motion, const grobo_model *model)
+{
+    bool rows = motion->kind == GROBO_MOTION_FRAMES || motion->kind == GROBO_MOTION_POSTURES;
+
+    return rows && motion->size > 0 &&
+           (motion->few_columns || motion->n_joints != model->n_joints) &&
+           strcmp(grobo_motion_target_body(motion), model->name) != 0;
+}
+
+bool grobo_i_has_joints_of(const grobo_motion *motion, const grobo_model *model)
 {
     return motion != NULL && model != NULL && motion->n_joints <= model->n_joints &&
            grobo_i_is_named_for(motion, model);
+}
+
+bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model)
+{
+    return grobo_i_has_joints_of(motion, model) && !has_other_rows(motion, model);
 }
 
 void grobo_motion_start(const grobo_motion *motion, const grobo_model *model, grobo_posture *start)
@@ -154,7 +172,7 @@ void grobo_motion_start(const grobo_motion *motion, const grobo_model *model, gr
     if (motion == NULL || start == NULL) {
         return;
     }
-    if (grobo_motion_is_for(motion, model)) {
+    if (grobo_i_has_joints_of(motion, model)) {
         grobo_posture_init_pose(start, model);
     } else {
         (void)grobo_posture_init(start, motion->n_joints);

@@ -42,14 +42,29 @@ const grobo_model *file_model(const app *a, const grobo_motion *motion)
     return NULL;
 }
 
-int file_fits(app *a, const char *path, const grobo_motion *motion)
+int file_fits(app *a, const char *path, const grobo_motion *motion, bool forced)
 {
-    int n_joints = grobo_motion_joints(motion), has = app_model(a)->n_joints;
-    if (n_joints <= has) {
+    const grobo_model *model = app_model(a);
+    const char *body = grobo_motion_target_body(motion), *name = file_shown_name(path);
+    int n_joints = grobo_motion_joints(motion), has = model->n_joints;
+    bool other = *body && strcmp(body, "SerialRobot") != 0 && strcmp(body, model->name) != 0;
+    if (grobo_motion_is_for(motion, model) || (forced && n_joints <= has)) {
         return 0;
     }
-    return app_fail(a, EXIT_FILE, grobo_error_name(GROBO_ERR_ARG), "%s: has %d joints, %s has %d",
-                    file_shown_name(path), n_joints, app_model(a)->name, has);
+    if (n_joints > has) {
+        return app_fail(a, EXIT_FILE, grobo_error_name(GROBO_ERR_ARG),
+                        "%s: has %d joints, %s has %d", name, n_joints, model->name, has);
+    }
+    if (other) {
+        return app_fail(a, EXIT_USAGE, "TYPE",
+                        "%s: made for %s, not for %s; choose that robot with --robot; 'play "
+                        "--force' moves the first joints of this one",
+                        name, body, model->name);
+    }
+    return app_fail(a, EXIT_USAGE, "TYPE",
+                    "%s: has fewer angles than %s has joints (%d), and names no robot; 'play "
+                    "--force' moves the first ones",
+                    name, model->name, has);
 }
 
 /* What a code means, where the language is not that of the library's text. */

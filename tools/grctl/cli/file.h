@@ -22,8 +22,13 @@ int file_load(app *a, const char *path, const grobo_read_options *options, grobo
  */
 const grobo_model *file_model(const app *a, const grobo_motion *motion);
 
-/* Refuses a motion of more joints than the robot has: 0, or the exit status with it said. */
-int file_fits(app *a, const char *path, const grobo_motion *motion);
+/*
+ * The one rule of which motion may move the robot, for every command and the cockpit: refuses one
+ * that names another robot, one of angles whose number is not that of the joints and which names no
+ * robot (grobo_motion_is_for()), and one of more joints than the robot has. forced: that only. 0,
+ * or the exit status with it said.
+ */
+int file_fits(app *a, const char *path, const grobo_motion *motion, bool forced);
 
 /* Says a warning on standard error, a note only with -v. */
 void file_say_one(const app *a, const grobo_diagnostic *d);

@@ -130,7 +130,7 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
     if (status) {
         return status;
     }
-    status = file_fits(a, path, motion);
+    status = file_fits(a, path, motion, false);
     if (!status && grobo_motion_get(motion, (size_t)number - 1, target) < 0) {
         status = app_fail(a, EXIT_USAGE, "ARG", "pose: %s has %zu postures, no number %.0f", path,
                           grobo_motion_size(motion), number);

@@ -26,7 +26,8 @@ static const cli_option options[PLAY_OPTIONS] = {
         OPTION_FLAG("key", 'k', "one frame a key pose, the servos interpolate (m and mseq)"),
     [PLAY_CLAMP] = OPTION_FLAG("clamp", 0, "play angles outside a joint's limits at the limit"),
     [PLAY_UNWATCHED] = OPTION_FLAG("unwatched", 0, "allow a rate at which joints cannot be read"),
-    [PLAY_FORCE] = OPTION_FLAG("force", 0, "do not warn of a fall"),
+    [PLAY_FORCE] =
+        OPTION_FLAG("force", 0, "play what was made for another robot; do not warn of a fall"),
     [PLAY_DRY_RUN] = OPTION_FLAG("dry-run", 0, "print 'time_ms hex' a frame; touch no port"),
     [PLAY_TABLE] = OPTION_FLAG("table", 0, "at the end, target, reached and error of every joint"),
     [PLAY_IF_LOST] = OPTION_CHOICE("if-lost", 0, "stop|pause|continue",

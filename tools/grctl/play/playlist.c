@@ -26,11 +26,18 @@ static bool is_limit(const grobo_diagnostic *d)
     return strcmp(d->code, "limit") == 0 || strcmp(d->code, "limit-between") == 0;
 }
 
+/* A motion of another robot was judged by file_fits(). */
+static bool is_of_another(const grobo_diagnostic *d)
+{
+    return strcmp(d->code, "target-body") == 0 || strcmp(d->code, "joint-missing") == 0;
+}
+
 /* The first error that would be refused in play; false: there is none. */
 static bool find_refused(const app *a, const grobo_diagnostics *found, grobo_diagnostic *d)
 {
     for (size_t k = 0; grobo_diagnostics_get(found, k, d) == 0; k++) {
-        if (d->severity == GROBO_SEVERITY_ERROR && !(a->clamps && is_limit(d))) {
+        if (d->severity == GROBO_SEVERITY_ERROR && !(a->clamps && is_limit(d)) &&
+            !is_of_another(d)) {
             return true;
         }
     }
@@ -171,7 +178,7 @@ static int take(playlist *list, app *a, const char *path, grobo_motion *motion,
     int i = list->n++;
     list->path[i] = path;
     list->motion[i] = motion;
-    int status = file_fits(a, path, motion);
+    int status = file_fits(a, path, motion, app_option(a, PLAY_FORCE)->given > 0);
     if (status) {
         return status;
     }
