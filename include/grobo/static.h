@@ -231,6 +231,7 @@ struct grobo_robot {
     int64_t sense_us;       /* when the background reads next */
     uint32_t motion;        /* number of the last target */
     int64_t renewed_us;     /* when the ways in segments were told further */
+    int64_t halt_us;        /* when the halts that are owed were asked for */
     int64_t hear_us;        /* joints that were not heard for long are not asked before */
     uint32_t told_item;     /* clip of the sequencer of which it was said that none watches it */
     uint32_t motion_us;     /* wire time of the last motion frames */
@@ -239,7 +240,7 @@ struct grobo_robot {
     grobo_joint_mask clip_joints;   /* of the motion that is played, and those behind it */
     grobo_joint_mask played_joints; /* sent where they go by the sequencer */
     grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
-    grobo_joint_mask halts_owed;    /* they moved when they were to halt, and may have restarted */
+    grobo_joint_mask halts_owed;    /* to halt, and to be read before: their place is unknown */
     grobo_joint_mask heard_round;   /* of the joints that were not heard for long */
     grobo_joint_mask halted;        /* whose halt has left and was not read back yet */
     grobo_joint_mask halted_all;    /* and those of which it was, by the same stop */

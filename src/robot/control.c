@@ -46,15 +46,16 @@ int grobo_robot_stop(grobo_robot *robot, bool at_once)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us);
+    int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us), joint;
     grobo_i_make_way(robot); /* it might send again what is stopped here */
-    bool moves = grobo_i_jobs_any(robot, grobo_i_job_moves) || robot->queued > 0 ||
+    bool moves = grobo_i_adrift(robot, grobo_i_all_joints(robot), &joint) ||
+                 grobo_i_jobs_any(robot, grobo_i_job_moves) || robot->queued > 0 ||
                  grobo_i_moving(robot, robot->now_us);
     grobo_i_jobs_end(robot, grobo_i_job_moves, GROBO_ERR_CANCELED);
     grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
     grobo_i_stop_moves(robot);
     grobo_i_end(robot);
-    return moves ? GROBO_OK : result;
+    return moves || robot->halts_owed != 0 ? GROBO_OK : result;
 }
 
 int grobo_robot_seek(grobo_robot *robot, int64_t clip_us)

@@ -324,6 +324,12 @@ static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad
     return (int64_t)fmin(fmax(steps, 1), most) * step_us;
 }
 
+/* Of one that was read once, and tells no speed, nobody knows whether it moves. */
+static bool is_mute(const grobo_robot *robot, int joint)
+{
+    return GROBO_I_EXTRA(robot->driver, no_speed) && !robot->axes[joint].has_target;
+}
+
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
 static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
@@ -333,7 +339,8 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     int64_t rest_us = grobo_i_later(order->asked_us + HALT_AHEAD_US, robot->now_us + HALT_LEAST_US);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool goes_on = grobo_i_axis_moves(axis, robot->now_us) || grobo_i_axis_lags(robot, j);
+        bool goes_on = grobo_i_axis_moves(axis, robot->now_us) || grobo_i_axis_lags(robot, j) ||
+                       axis->adrift || (order->owed && is_mute(robot, j));
         bool moves = axis->sensed && goes_on &&
                      (!GROBO_I_EXTRA(robot->driver, goal_wakes) || axis->wants_torque ||
                       grobo_i_axis_is_on(axis));

@@ -188,24 +188,37 @@ static void send_halt(grobo_robot *robot, grobo_joint_mask joints, bool owed)
                      &(way_out){GROBO_I_USE_HALT, GROBO_PRIORITY_STOP, GROBO_NEVER_US});
 }
 
-/* When a joint that may have restarted may be halted: by then a servo that has would have said so.
- * One that is still silent then may hear what it does not answer. */
+/* True where nobody knows where a joint is: it was not read since the line is there, or its servo
+ * may have restarted and a goal would wake it, wherever it sank to. */
+static bool is_unknown(const grobo_robot *robot, int joint)
+{
+    return !robot->axes[joint].sensed || grobo_i_may_sleep(robot, joint);
+}
+
+/* Such a joint is halted once it was read. By then a servo that has restarted would have said so:
+ * one that is still silent may hear what it does not answer. */
 static int64_t may_halt_at(const grobo_robot *robot, int joint)
 {
-    bool sleeps = grobo_i_may_sleep(robot, joint);
-    return sleeps ? robot->axes[joint].heard_us + 3 * GROBO_I_RESTART_US : robot->now_us;
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool read = axis->sensed && axis->angle_us >= robot->halt_us;
+    if (read || !is_unknown(robot, joint)) {
+        return robot->now_us;
+    }
+    return (axis->sensed ? axis->heard_us : robot->halt_us) + 3 * GROBO_I_RESTART_US;
 }
 
 void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
 {
     grobo_i_slots_cancel(robot, GROBO_I_USE_MOTION);
     grobo_i_slots_cancel(robot, GROBO_I_USE_SEGMENT);
-    if (!grobo_i_may_halt(robot)) {
+    if (!grobo_i_may_halt(robot) || !robot->link) {
         return;
     }
+    grobo_i_slots_hurry(robot);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(joints, j) && may_halt_at(robot, j) > robot->now_us) {
+        if (grobo_i_has(joints, j) && is_unknown(robot, j)) {
             robot->halts_owed |= GROBO_JOINT_BIT(j);
+            robot->halt_us = robot->now_us;
             if (robot->axes[j].in_segments) {
                 grobo_i_axis_cut(&robot->axes[j]);
             }

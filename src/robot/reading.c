@@ -260,6 +260,10 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
     if (result >= 0) {
         result = GROBO_OK;
         take_reading(robot, joint, slot->asked_us, got);
+        grobo_robot_axis *axis = &robot->axes[joint];
+        if (axis->seen_us == slot->asked_us) { /* mostly it answers the last attempt */
+            axis->seen_us = grobo_i_later(axis->seen_us, slot->txn.sent_us);
+        }
         note_goal(slot, got);
         if (GROBO_I_EXTRA(robot->driver, goal_wakes)) {
             note_heard(slot, got);

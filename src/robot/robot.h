@@ -200,6 +200,8 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
 int grobo_i_slot_renew(grobo_robot_slot *slot);
 /* Gives a slot back that was not sent. */
 void grobo_i_slot_drop(grobo_robot_slot *slot);
+/* A stop waits: the reply on the line gets no more time than the shortest margin. */
+void grobo_i_slots_hurry(grobo_robot *robot);
 /* Takes back every frame of this use, but for one that waits to bring a motion to rest. */
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use);
 /* Takes back every frame that a step of this job made. */

@@ -91,16 +91,22 @@ static bool is_unheard(const grobo_robot_axis *axis, int64_t now_us)
     return grobo_i_axis_is_on(axis) && now_us - axis->heard_us >= HEAR_US;
 }
 
+/* Those that are to halt come first. */
 static grobo_joint_mask unheard(const grobo_robot *robot)
 {
-    bool now = GROBO_I_EXTRA(robot->driver, goal_wakes) && robot->now_us >= robot->hear_us;
-    return now ? grobo_i_joints_that(robot, is_unheard) : 0;
+    if (robot->now_us < robot->hear_us) {
+        return 0;
+    }
+    bool wakes = GROBO_I_EXTRA(robot->driver, goal_wakes);
+    return robot->halts_owed != 0 ? robot->halts_owed
+           : wakes                ? grobo_i_joints_that(robot, is_unheard)
+                                  : 0;
 }
 
 /* When the first of them will be. */
 static int64_t unheard_at(const grobo_robot *robot)
 {
-    int64_t at_us = GROBO_NEVER_US;
+    int64_t at_us = robot->halts_owed != 0 ? robot->now_us : GROBO_NEVER_US;
     for (int j = 0; GROBO_I_EXTRA(robot->driver, goal_wakes) && j < robot->driver->model->n_joints;
          j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
@@ -227,7 +233,7 @@ static void hurry(grobo_robot *robot)
 /* Of a joint in free mode everything, and of one that nothing is known of: it may be on a way. */
 static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
 {
-    if (robot->heard_read) {
+    if (robot->heard_read && robot->axes[joint].sensed) {
         return grobo_i_may_sleep(robot, joint) ? GROBO_SENSE_GOAL : GROBO_SENSE_POSITION;
     }
     if (grobo_i_has(robot->free_joints, joint)) {
@@ -245,7 +251,8 @@ static int next_reading(grobo_robot *robot)
 {
     grobo_joint_mask all = grobo_i_all_joints(robot);
     grobo_joint_mask quiet = unheard(robot);
-    robot->heard_read = quiet != 0 && !(robot->heard_read && is_due(robot));
+    bool in_turn = robot->heard_read && is_due(robot) && robot->halts_owed == 0;
+    robot->heard_read = quiet != 0 && !in_turn;
     if (robot->heard_read) {
         return next_of(&robot->heard_round, quiet);
     }
@@ -318,6 +325,13 @@ static int ask_next(grobo_robot *robot, grobo_robot_slot *slot)
                          &robot->built);
 }
 
+/* What is read of joints that are to halt goes before everything but halts, and whatever else was
+ * to be read gives way. */
+static bool is_urgent(const grobo_robot *robot)
+{
+    return robot->halts_owed != 0 && robot->now_us >= robot->hear_us;
+}
+
 /* Where those that were halted go, in one frame if there is one. */
 static int ask_halted(grobo_robot *robot, grobo_robot_slot *slot)
 {
@@ -338,7 +352,8 @@ static int ask_halted(grobo_robot *robot, grobo_robot_slot *slot)
 static int ask_some(grobo_robot *robot, grobo_robot_slot *slot)
 {
     bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL && robot->free_joints == 0;
-    robot->halted_read = grobo_i_halted_due(robot) && !(robot->halted_read && is_due(robot));
+    robot->halted_read =
+        !is_urgent(robot) && grobo_i_halted_due(robot) && !(robot->halted_read && is_due(robot));
     if (robot->halted_read) {
         robot->heard_read = false;
         return ask_halted(robot, slot);
@@ -346,8 +361,22 @@ static int ask_some(grobo_robot *robot, grobo_robot_slot *slot)
     return many ? ask_all(robot, slot) : ask_next(robot, slot);
 }
 
+static void give_way(grobo_robot *robot, grobo_robot_slot *waiting)
+{
+    grobo_joint_mask asked = waiting->many ? waiting->unread : GROBO_JOINT_BIT(waiting->joint);
+    if ((asked & robot->halts_owed) != 0) {
+        (void)grobo_bus_raise(&robot->bus, &waiting->txn, GROBO_PRIORITY_MOTION);
+    } else {
+        (void)grobo_bus_cancel(&robot->bus, &waiting->txn);
+    }
+}
+
 void grobo_i_sense_step(grobo_robot *robot)
 {
+    int waiting = is_urgent(robot) ? find_waiting(robot) : -1;
+    if (waiting >= 0) {
+        give_way(robot, &robot->slots[waiting]);
+    }
     hurry(robot);
     bool due = is_due(robot) || unheard(robot) != 0 || grobo_i_halted_due(robot);
     if (!due || !background_wanted(robot) || grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
@@ -361,7 +390,8 @@ void grobo_i_sense_step(grobo_robot *robot)
         grobo_i_slot_drop(slot);
         return;
     }
-    (void)grobo_i_slot_send(slot, &robot->built, GROBO_PRIORITY_SENSE);
+    (void)grobo_i_slot_send(slot, &robot->built,
+                            is_urgent(robot) ? GROBO_PRIORITY_MOTION : GROBO_PRIORITY_SENSE);
 }
 
 void grobo_i_sense_done(const grobo_robot_slot *slot, int result)
@@ -369,8 +399,9 @@ void grobo_i_sense_done(const grobo_robot_slot *slot, int result)
     grobo_robot *robot = slot->robot;
     int joint = slot->joint;
     bool is_free = !slot->many && grobo_i_has(robot->free_joints, joint);
+    bool last = robot->halts_owed == 0 || (robot->heard_round & robot->halts_owed) == 0;
     robot->hear_us =
-        result < 0 && robot->heard_read ? robot->now_us + HEAR_AGAIN_US : robot->hear_us;
+        result < 0 && robot->heard_read && last ? robot->now_us + HEAR_AGAIN_US : robot->hear_us;
     if (result >= 0 && is_free) {
         free_joint(robot, joint);
     }
@@ -390,7 +421,7 @@ int64_t grobo_i_sense_deadline(const grobo_robot *robot)
         return GROBO_NEVER_US;
     }
     if (grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
-        return hurry_at(robot);
+        return is_urgent(robot) && find_waiting(robot) >= 0 ? robot->now_us : hurry_at(robot);
     }
     if (grobo_i_slot_find(robot, GROBO_I_USE_SENSE) < 0) {
         return GROBO_NEVER_US; /* the end of one that waits for the line makes room */
@@ -400,6 +431,5 @@ int64_t grobo_i_sense_deadline(const grobo_robot *robot)
                      : never                 ? GROBO_NEVER_US
                                              : robot->sense_us;
     due_us = grobo_i_sooner(due_us, grobo_i_halted_at(robot));
-    return GROBO_I_EXTRA(robot->driver, goal_wakes) ? grobo_i_sooner(due_us, unheard_at(robot))
-                                                    : due_us;
+    return grobo_i_sooner(due_us, unheard_at(robot));
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "src/base/assert.h"
+#include "src/base/instant.h"
 #include "src/robot/robot.h"
 
 /* Slots that only a halt may take: there is always room for what stops the robot. */
@@ -185,8 +186,9 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
     const grobo_robot_config *config = &slot->robot->config;
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&slot->txn));
     bool had_its_chance = slot->reads && slot->robot->axes[slot->joint].lost > 0;
-    /* Where several are asked the next round asks again. */
-    bool once = slot->many || (had_its_chance && slot->use == GROBO_I_USE_SENSE);
+    bool in_turn = slot->use == GROBO_I_USE_SENSE && priority == GROBO_PRIORITY_SENSE;
+    /* Where several are asked the next round asks again, but for joints that are to halt. */
+    bool once = in_turn && (slot->many || had_its_chance);
     if (!has_room(slot->robot, (grobo_i_use)slot->use, exchange->frame_bytes)) {
         grobo_i_slot_drop(slot);
         return GROBO_ERR_FULL;
@@ -223,6 +225,15 @@ static void cancel(grobo_robot_slot *slot)
 static bool brings_rest(const grobo_robot_slot *slot)
 {
     return slot->order.rests && waits(slot);
+}
+
+void grobo_i_slots_hurry(grobo_robot *robot)
+{
+    grobo_bus *bus = &robot->bus;
+    if (bus->active != NULL) {
+        int64_t over_us = grobo_i_later(bus->over_us, robot->now_us);
+        bus->limit_us = grobo_i_sooner(bus->limit_us, over_us + GROBO_BUS_MARGIN_MIN_US);
+    }
 }
 
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use)

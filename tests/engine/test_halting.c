@@ -211,9 +211,112 @@ static void a_joint_that_moves_stops_where_it_can(void **state)
     }
 }
 
+/* ---- joints of which nobody knows where they are --------------------------------------------- */
+
+static const grobo_robot_config whole = {GROBO_ROBOT_CONFIG_INIT, .goals = GROBO_GOALS_WHOLE,
+                                         .lost_replies = -1};
+
+/* One frame on the line takes at most 5 ms on the slowest of these lines. */
+static void expect_a_frame_at_once(unsigned n_sent)
+{
+    family_run(&kit, 15 * MS);
+    if (kit.n_sent == n_sent) {
+        fail_msg("%s: nothing has left, %u before", kit.family->name, n_sent);
+    }
+}
+
+/* Of the first joint, by now. */
+static double at_deg(void)
+{
+    grobo_sim_step(&kit.sim, kit.now_us);
+    return family_angle_deg(&kit, 0);
+}
+
+static void expect_rest(int within_ms, double most_deg)
+{
+    double from_deg = at_deg();
+    family_run(&kit, within_ms * MS);
+    double then_deg = at_deg();
+    family_run(&kit, S);
+    if (fabs(at_deg() - then_deg) > 0.5 || fabs(then_deg - from_deg) > most_deg) {
+        fail_msg("%s: from %.1f to %.1f, and on to %.1f deg", kit.family->name, from_deg, then_deg,
+                 at_deg());
+    }
+}
+
+/* The line was away while a joint moved: whenever the stop comes, what was not read since is read
+ * at once, and halted. */
+static void a_stop_after_a_replug_reads_and_halts(void **state)
+{
+    (void)state;
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        for (int i = 0; i < 12; i++) {
+            family_start(&kit, f, &whole, NULL);
+            assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+            grobo_posture p = family_posture(&kit, -60, 4000);
+            assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+            family_run(&kit, S);
+            grobo_robot_link_down(&kit.robot, kit.now_us);
+            family_run(&kit, 50 * MS);
+            grobo_robot_link_up(&kit.robot, kit.now_us);
+            family_run(&kit, i / 3 * 3 * MS);
+            unsigned n_sent = kit.n_sent;
+            switch (i % 3) {
+            case 0:
+                assert_int_equal(grobo_robot_stop(&kit.robot, true), GROBO_OK);
+                break;
+            case 1:
+                assert_true(grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD) > 0);
+                break;
+            case 2:
+                assert_true(grobo_robot_estop(&kit.robot) > 0);
+                break;
+            }
+            expect_a_frame_at_once(n_sent);
+            expect_rest(400, 10);
+        }
+    }
+}
+
+/* A raw goal far away to a joint that is limp: its way never ends, and nobody waits for that. */
+static void a_limp_joint_holds_up_no_emergency_stop(void **state)
+{
+    (void)state;
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        grobo_exchange goal;
+        family_start(&kit, f, &whole, NULL);
+        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+        int off = grobo_robot_torque(&kit.robot, GROBO_JOINT_BIT(3), GROBO_TORQUE_OFF);
+        assert_int_equal(family_wait(&kit, off), GROBO_OK);
+        grobo_posture p = family_posture(&kit, -60, 6000);
+        p.set = GROBO_JOINT_BIT(0);
+        assert_int_equal(grobo_robot_send(&kit.robot, &p), GROBO_OK);
+        family_run(&kit, 100 * MS);
+        grobo_target target = {.posture = family_posture(&kit, 0, 0)};
+        target.posture.set = GROBO_JOINT_BIT(3);
+        target.posture.angle_rad[3] = RAD(-80);
+        target.joint_time_us[3] = 12 * S;
+        target.from_rad[3] = RAD(30);
+        memset(&goal, 0, sizeof goal);
+        assert_int_equal(kit.driver.posture(&kit.driver, NULL, &target, 0, &goal), 1);
+        int raw = grobo_robot_raw(&kit.robot, goal.frame, goal.frame_bytes);
+        assert_true(raw > 0 || kit.driver.goal_wakes);
+        family_run(&kit, 100 * MS);
+        unsigned n_sent = kit.n_sent;
+        int number = grobo_robot_estop(&kit.robot);
+        expect_a_frame_at_once(n_sent);
+        int64_t from_us = kit.now_us;
+        assert_int_equal(family_wait(&kit, number), GROBO_OK);
+        assert_true(kit.now_us - from_us < 3 * (int64_t)S);
+        expect_rest(1, 0.5);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_stop_after_a_replug_reads_and_halts),
+        cmocka_unit_test(a_limp_joint_holds_up_no_emergency_stop),
         cmocka_unit_test(a_joint_that_stands_is_not_thrown),
         cmocka_unit_test(a_joint_that_moves_stops_where_it_can),
     };

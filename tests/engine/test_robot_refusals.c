@@ -262,7 +262,7 @@ static void each_is_taken_or_refused_for_its_reason(void **state)
         void (*make)(void);
         const char *expected; /* a letter a request */
     } rows[] = {
-        {make_down, "ccccccc-cccccc=------c"},     {make_new, "+++++?+-+?++++=------="},
+        {make_down, "ccccccc-cccccc=------c"},     {make_new, "+++++?+-+?++++=-=----="},
         {make_limp, "+++++-+-++++++=------="},     {make_ready, "+++++=+-++++++=------="},
         {make_moving, "-++++---++--++===-----"},   {make_playing, "++-+---++++-++=-==-==-"},
         {make_paused, "++-+---++++-++=-=-===-"},   {make_sent, "+++++=+-+++-++=-=----="},
