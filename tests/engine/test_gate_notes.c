@@ -269,9 +269,9 @@ static void a_goal_in_segments_is_noted_of_its_joints_alone(void **state)
                                                        .deed = GROBO_I_DEED_GOAL,
                                                        .each = true}),
                              GROBO_OK);
-            far_goal = whole ? j : -1;
+            doubled_goal = whole ? j : -1;
             expect_goals(bits(j, other_of(j)), 5, GROBO_SEGMENT_US);
-            far_goal = -1;
+            doubled_goal = -1;
             note_goal(j, 10, time_us);
             note_goal(other_of(j), 5, GROBO_SEGMENT_US);
             before[j].in_segments = !whole;

@@ -61,7 +61,7 @@ void expect_packet(const uint8_t *packet, int size)
     assert_int_equal(robot.built.settle_us, 0);
 }
 
-int far_goal = -1;
+int doubled_goal = -1;
 
 void expect_goals(grobo_joint_mask of, double way_deg, int64_t time_us)
 {
@@ -70,7 +70,7 @@ void expect_goals(grobo_joint_mask of, double way_deg, int64_t time_us)
     size_t n = 0;
     for (int j = 0; j < N; j++) {
         if ((of & GROBO_JOINT_BIT(j)) != 0) {
-            double deg = j - 20 + way_deg * (j == far_goal ? 2 : 1);
+            double deg = j - 20 + way_deg * (j == doubled_goal ? 2 : 1);
             goals[n++] = (grobo_rs30x_goal){(uint8_t)(j + 1), (int16_t)lround(deg * 10),
                                             (uint16_t)(time_us / 10000)};
         }

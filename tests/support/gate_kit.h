@@ -24,7 +24,7 @@ void drop(void);
 void expect_packet(const uint8_t *packet, int size);
 /* It has a goal for each of these joints, in the order of motors, so far from where it is. */
 void expect_goals(grobo_joint_mask of, double way_deg, int64_t time_us);
-extern int far_goal; /* of these the joint that goes twice as far; -1: none */
+extern int doubled_goal; /* of these the joint that goes twice as far; -1: none */
 void expect_torque(int joint, grobo_torque torque);
 /* Changes `before` to what a goal that leaves now makes of it. */
 void note_goal(int joint, double way_deg, int64_t time_us);
