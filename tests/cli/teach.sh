@@ -184,5 +184,39 @@ check "e is the emergency stop" [ $ended -eq 4 ]
 check "all joints are braked then" torque_is brake all
 check "and teaching is refused" fails 4 'stopped by' on_robot teach
 
+
+# ---- no key can come: nothing goes limp ----------------------------------------------------------
+
+exits 0 on_robot estop --reset
+exits 0 on_robot servo on
+no_key="no key can come: standard input is neither this terminal nor an open pipe"
+deaf() {
+    fails 2 "^grctl: teach: $no_key" on_robot teach -o "$work/deaf.m" &&
+        fails 2 "^grctl: record: $no_key" on_robot record --key --limp -o "$work/deaf.m" ||
+        return 1
+    # Whether standard input is closed, a file, or a pipe at its end.
+    for command in teach 'record --key'; do
+        # shellcheck disable=SC2086
+        "$GRCTL" -d "$robot" --timeout 500 $command <&- >"$work/out" 2>"$work/err"
+        status_was 2 "$command, closed" && complains "$no_key" || return 1
+        # shellcheck disable=SC2086
+        "$GRCTL" -d "$robot" --timeout 500 $command <"$0" >"$work/out" 2>"$work/err"
+        status_was 2 "$command, a file" && complains "$no_key" || return 1
+        mkfifo "$work/ended"
+        true >"$work/ended" & # opened, and closed at once
+        # shellcheck disable=SC2086
+        "$GRCTL" -d "$robot" --timeout 500 $command <"$work/ended" >"$work/out" 2>"$work/err"
+        status_was 2 "$command, a pipe at its end" && complains "$no_key" || return 1
+        rm "$work/ended"
+    done
+}
+check "a teaching that no key could end is refused" deaf
+check "and all joints hold" torque_is on all
+calibrates_none() {
+    fails 2 '^grctl: calibrate: needs a person to press enter' "$GRCTL" --robot so101 -d sim \
+        calibrate -o "$work/none.json"
+}
+check "so is a calibration" calibrates_none
+
 stop_sim
 done_testing

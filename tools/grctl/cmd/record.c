@@ -582,6 +582,18 @@ static int prepare(recorder *r, app *a)
     return 0;
 }
 
+/* Before a joint goes limp: what only a key ends must have keys. */
+static int refuse_deaf(const recorder *r)
+{
+    if (!r->by_key || keys_can_come()) {
+        return 0;
+    }
+    return app_fail(r->c.a, EXIT_USAGE, "ARG",
+                    "%s: no key can come: standard input is neither this terminal nor an open "
+                    "pipe; run it on a terminal",
+                    name_of(r));
+}
+
 static int run(app *a, bool teaches)
 {
     static recorder r;
@@ -591,7 +603,8 @@ static int run(app *a, bool teaches)
     if (!status) {
         status = conn_open_to_move(&r.c, a);
         if (!status) {
-            status = record(&r);
+            status = refuse_deaf(&r);
+            status = status ? status : record(&r);
         }
         status = conn_close(&r.c, status);
     }

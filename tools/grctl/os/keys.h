@@ -29,6 +29,9 @@ typedef struct keys {
  */
 bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, void *ctx);
 void keys_stop(keys *k);
+/* Whether a key can come at all: from a terminal in the foreground, or from a pipe that has one or
+ * that some program may still write to. */
+bool keys_can_come(void);
 /* The terminal is as it was, until the process is continued after a suspension. */
 void keys_pause(void);
 

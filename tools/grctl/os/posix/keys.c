@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <errno.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -71,6 +73,19 @@ static bool is_pipe(void)
 {
     struct stat s;
     return fstat(STDIN_FILENO, &s) == 0 && (S_ISFIFO(s.st_mode) || S_ISSOCK(s.st_mode));
+}
+
+bool keys_can_come(void)
+{
+    struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
+    int n = 0;
+    if (!is_pipe()) {
+        return in_foreground();
+    }
+    if (poll(&input, 1, 0) <= 0) {
+        return true; /* nothing yet, and it is open */
+    }
+    return ioctl(STDIN_FILENO, FIONREAD, &n) == 0 && n > 0;
 }
 
 bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, void *ctx)

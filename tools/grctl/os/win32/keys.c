@@ -116,6 +116,16 @@ static void on_input(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
+bool keys_can_come(void)
+{
+    HANDLE input = GetStdHandle(STD_INPUT_HANDLE);
+    DWORD mode;
+    if (GetFileType(input) == FILE_TYPE_PIPE) {
+        return PeekNamedPipe(input, NULL, 0, NULL, NULL, NULL) != 0; /* else it is at its end */
+    }
+    return GetConsoleMode(input, &mode) != 0;
+}
+
 bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, void *ctx)
 {
     static bool registered;
