@@ -242,6 +242,55 @@ static void a_canceled_goal_keeps_no_other_waiting(void **state)
     assert_in_range(p.sent[1].at_us, 100, 5 * MS); /* a reply would be waited for 100 ms */
 }
 
+/* Makes a question, takes it back while it is on the wire, and asks the same again. */
+static void ask_again_after_a_cancel(peer *p, request *a, request *b, grobo_priority priority)
+{
+    peer_submit_read(p, a, 1, 0);
+    peer_run(p, 300);
+    assert_int_equal(grobo_bus_cancel(&p->bus, &a->txn), GROBO_OK);
+    peer_read(p, b, 1, 2, priority);
+    b->txn.retries = 0;
+    assert_int_equal(grobo_bus_submit(&p->bus, &b->txn), GROBO_OK);
+}
+
+/* A servo may answer sooner than after its return delay, which is an assumption: that is its reply
+ * all the same, and nothing is owed behind it. */
+static void a_reply_that_comes_soon_is_owed_no_more(void **state)
+{
+    (void)state;
+    enum { DELAY_US = 500, OVER_US = BUS_READ_US - 100 + DELAY_US };
+    const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol,
+                                     .return_delay_us = DELAY_US};
+    peer p;
+    request a, b;
+    peer_init(&p, &config);
+    ask_again_after_a_cancel(&p, &a, &b, GROBO_PRIORITY_USER);
+    peer_position_at(&p, OVER_US - DELAY_US + 100, 1, 11);
+    peer_position_at(&p, 2 * OVER_US + GROBO_BUS_QUIET_US, 1, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.sent_count, 2);
+    assert_in_range(p.sent[1].at_us, OVER_US, OVER_US + GROBO_BUS_QUIET_US);
+    assert_int_equal(p.ended[1].value, 22);
+}
+
+/* Anything else would wait for what may come yet, 100 ms here. */
+static void a_stop_waits_for_no_reply_that_is_late(void **state)
+{
+    (void)state;
+    const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol};
+    for (int stop = 0; stop < 2; stop++) {
+        peer p;
+        request a, b;
+        peer_init(&p, &config);
+        ask_again_after_a_cancel(&p, &a, &b, stop ? GROBO_PRIORITY_STOP : GROBO_PRIORITY_USER);
+        peer_run(&p, S);
+        assert_int_equal(p.sent_count, 2);
+        int64_t least_us = BUS_READ_US + (stop ? 0 : GROBO_BUS_HOLD_US / 2);
+        int64_t most_us = BUS_READ_US + (stop ? 6 * MS : 2 * GROBO_BUS_HOLD_US);
+        assert_in_range(p.sent[1].at_us, least_us, most_us);
+    }
+}
+
 /* An ACK has no name: however soon replies have come, the next one is not asked for before. */
 static void an_ack_that_is_owed_holds_the_next_for_all_of_the_time(void **state)
 {
@@ -524,6 +573,8 @@ int main(void)
         cmocka_unit_test(a_reply_is_owed_to_the_last_microsecond),
         cmocka_unit_test(a_reply_that_was_given_up_settles_no_later_one),
         cmocka_unit_test(a_canceled_goal_keeps_no_other_waiting),
+        cmocka_unit_test(a_reply_that_comes_soon_is_owed_no_more),
+        cmocka_unit_test(a_stop_waits_for_no_reply_that_is_late),
         cmocka_unit_test(an_ack_that_is_owed_holds_the_next_for_all_of_the_time),
         cmocka_unit_test(one_wrong_byte_is_a_short_reply),
         cmocka_unit_test(an_echo_is_found_behind_a_late_echo_and_a_late_reply),
