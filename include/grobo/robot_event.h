@@ -146,6 +146,8 @@ typedef struct grobo_joint_info {
     int status;              /**< last reading: GROBO_OK, its error, or GROBO_ERR_EMPTY: none yet */
     bool has_target;         /**< false: nothing was asked of it since the link came up */
     bool torque_known;       /**< state.torque was read back or switched since the link came up */
+    bool stands;             /**< it was read to stand since it was told anything: by two positions
+                                  0.5 s apart and more, or at the goal that its servo has */
 } grobo_joint_info;
 
 /** Monotonic counters since grobo_robot_init(); those of the wire are in grobo_bus_stats. */

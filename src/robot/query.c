@@ -57,6 +57,7 @@ int grobo_robot_joint(const grobo_robot *robot, int joint, grobo_joint_info *inf
     info->status = axis->status;
     info->has_target = axis->has_target || axis->next != 0;
     info->torque_known = axis->torque_known;
+    info->stands = grobo_i_stands(robot, joint);
     grobo_i_unlock(robot);
     return GROBO_OK;
 }

@@ -10,6 +10,7 @@ check "a body that is not as it should be is refused, and names what is" pages f
 check "what was held up on its way acts on no newer situation" pages delayed
 check "a stop is carried out whatever its body is" pages unreadable
 check "a stop latches, is confirmed by each joint, is taken back" pages stopping
+check "a stop for safety is confirmed by each joint" pages tripped
 check "a stop on the way of a move, a jog, an approach" pages on_the_way
 check "a stop beside streams that stand still" pages latency
 check "jogging stops when the page is silent" pages lost_in_jog

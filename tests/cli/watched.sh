@@ -59,5 +59,21 @@ hot_init() {
 check "heat ends init" hot_init
 check "it moves again then too" recovers temperature 12 25
 
+# A servo that has cut its torque says so until its torque is written, however cold it is.
+cold_and_flagged() {
+    exits 0 on_robot servo on && tell temperature 12 90 && exits 4 on_robot servo on m12 &&
+        tell temperature 12 25 && exits 4 on_robot servo on m12 &&
+        complains "servo overheated (25 deg C) at motor 12 .*then 'grctl servo off m12'" &&
+        on_robot status >"$work/out" && grep -q "R_KNEE_P .*cut its torque for heat" "$work/out" &&
+        exits 1 on_robot doctor &&
+        grep -q "grctl servo off m12; if it is reported again" "$work/out"
+}
+check "a servo that was too hot says what clears it" cold_and_flagged
+clears() {
+    exits 0 on_robot servo off m12 && exits 0 on_robot servo on m12 &&
+        exits 0 on_robot init --time 500
+}
+check "that clears it" clears
+
 stop_sim
 done_testing

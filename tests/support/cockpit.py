@@ -959,6 +959,31 @@ def stopping():
         page.fall_silent()
 
 
+def tripped():
+    """A stop of the engine for safety: each joint is read until it stands, as after one of a page."""
+    words = [GRCTL, "sim"]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as robot:
+        device = robot.stdout.readline().strip()
+        with Server(device=device) as server:
+            page = Page(server).take().keep_beating()
+            page.target("move", pose="init", time_ms=300)
+            page.wait_event("move: done")
+            page.target("move", angle_deg={"R_ELBOW_P": -120}, time_ms=20000)
+            page.wait("it moves", lambda s: s["angle_deg"][16] < -5)
+            robot.stdin.write("temperature 12 68\n")
+            robot.stdin.flush()
+            state = page.wait("a stop for safety", lambda s: s["stop"]["kind"] == "trip")
+            same(len(state["stop"]["joints"]), len(state["angle_deg"]))
+            state = page.wait("confirmed", lambda s: s["stop"]["confirmed"])
+            same(state["stop"]["kind"], "trip")
+            same(set(state["stop"]["joints"]), {"stopped"})
+            where = state["angle_deg"][16]
+            time.sleep(0.3)  # what was not stopped would go on
+            assert abs(page.state()["angle_deg"][16] - where) < 1, "it goes on"
+            page.fall_silent()
+        robot.terminate()
+
+
 def on_the_way():
     """A stop in the middle of a slow move of one frame, of a jog and of an approach: each joint stays
     where it was. The line is busy with readings nearly always, so the frame that stops has to wait."""

@@ -192,7 +192,12 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
     bool rs30x = family_is(driver, "rs30x");
     char fix[FIX_BYTES];
     snprintf(fix, sizeof fix, _("let it cool down: grctl servo off m%d"), j->motor);
-    if (s->overheated) {
+    if (s->overheated) { /* it says so until it is told, however cold it is */
+        snprintf(
+            fix, sizeof fix,
+            _("let it cool down, then: grctl servo off m%d; if it is reported again, switch the "
+              "power off and on"),
+            j->motor);
         checkup_found(&p->k, name, fix, "%s has cut its torque for heat (%d C)", j->name,
                       s->temperature_c);
     } else if ((rs30x && (s->flags & GROBO_RS30X_STATUS_HOT)) ||

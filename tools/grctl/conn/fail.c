@@ -103,6 +103,15 @@ static int fail_trip(conn *c, const char *doing)
     const grobo_model *model = conn_model(c);
     char value[48];
     conn_trip_value(t, value, sizeof value);
+    if (t->joint >= 0 && t->joint < model->n_joints && t->trip == GROBO_TRIP_OVERHEATED) {
+        return app_fail_trip(
+            c->a, t->trip,
+            "%s: stopped for safety: %s%s at motor %d (%s); let it cool down, then "
+            "'grctl servo off m%d'; if it is reported again, switch the power off "
+            "and on",
+            doing, _(grobo_trip_name(t->trip)), value, model->joints[t->joint].motor,
+            model->joints[t->joint].name, model->joints[t->joint].motor);
+    }
     if (t->joint >= 0 && t->joint < model->n_joints) {
         return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s at motor %d (%s)", doing,
                              _(grobo_trip_name(t->trip)), value, model->joints[t->joint].motor,

@@ -112,6 +112,9 @@ void render_status(const conn *c, grobo_joint_mask joints)
         if (i.status != GROBO_OK) {
             app_print("  %s%s%s", color ? "\033[31m" : "", grobo_error_text(i.status),
                       color ? "\033[0m" : "");
+        } else if (i.state.overheated) {
+            app_print("  %scut its torque for heat: see 'grctl doctor'%s", color ? "\033[31m" : "",
+                      color ? "\033[0m" : "");
         }
         app_print("\n");
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/estop.h>
@@ -11,11 +11,10 @@
 /* A reading that was on the line when the stop left tells nothing of it; a frame of all joints
  * takes 10 ms at 115200 bps. */
 #define STOPS_ON_ITS_WAY_US INT64_C(20000)
-/* As in free mode: below that a joint stands. */
-enum { STOPS_SLOW_DPS = 8 };
+/* A joint that is faster moves; one that is slower, and was not read to stand for so long, too. */
+enum { STOPS_SLOW_DPS = 8, STOPS_CREEPS_US = 3000000 };
 /* A request that stops before it is whole has this time to bring its name. */
 #define STOPS_UNTOLD_US INT64_C(150000)
-static const double stops_near_deg = 3;
 
 static const char *word_of(stops_joint joint)
 {
@@ -107,15 +106,19 @@ static stops_joint judge(const serve *s, int joint)
         (s->limp & GROBO_JOINT_BIT(joint))) {
         return STOPS_LIMP;
     }
-    if (i.state.valid & GROBO_FIELD_SPEED) {
-        return i.state.speed_dps <= STOPS_SLOW_DPS && i.state.speed_dps >= -STOPS_SLOW_DPS
-                   ? STOPS_STOPPED
-                   : STOPS_MOVING;
+    if (i.stands) {
+        return STOPS_STOPPED;
     }
-    return !i.has_target ||
-                   fabs(grobo_deg_from_rad(i.state.angle_rad - i.target_rad)) < stops_near_deg
-               ? STOPS_STOPPED
-               : STOPS_MOVING;
+    bool turns = (i.state.valid & GROBO_FIELD_SPEED) && abs(i.state.speed_dps) > STOPS_SLOW_DPS;
+    return turns || grobo_now_us() - s->stops.at_us > STOPS_CREEPS_US ? STOPS_MOVING : STOPS_SENT;
+}
+
+/* A stop of ours, or one of the engine for safety: its joints are read until they stand. */
+static bool is_stopped(const serve *s)
+{
+    grobo_trip_info trip;
+    grobo_robot_tripped(s->c.robot, &trip);
+    return s->stops.latched || (trip.trip != GROBO_TRIP_NONE && trip.latched);
 }
 
 void stops_on_event(serve *s, const grobo_event *event)
@@ -124,7 +127,11 @@ void stops_on_event(serve *s, const grobo_event *event)
     if (event->kind == GROBO_EVENT_JOB && event->u.job.number == t->reading) {
         t->reading = 0;
     }
-    if (!t->latched) {
+    if (event->kind == GROBO_EVENT_TRIP && event->u.trip.latched && !t->latched) {
+        t->at_us = event->now_us;
+        memset(t->joints, 0, sizeof t->joints);
+    }
+    if (!is_stopped(s)) {
         return;
     }
     if (event->kind == GROBO_EVENT_JOINT && event->now_us - t->at_us > STOPS_ON_ITS_WAY_US) {
@@ -152,11 +159,11 @@ void stops_look(serve *s)
     }
     /* The engine refuses too, from when it stands: once it does, the frame that stops is refused
      * as well where it still waits for the line. */
-    if (!t->held && !t->estop && !grobo_robot_moving(s->c.robot)) {
+    if (t->latched && !t->held && !t->estop && !grobo_robot_moving(s->c.robot)) {
         t->held = grobo_robot_latch(s->c.robot) == GROBO_OK;
     }
     if (missing && !t->reading && grobo_now_us() - t->at_us > STOPS_ON_ITS_WAY_US) {
-        int job = grobo_robot_sense(s->c.robot, missing, GROBO_SENSE_FULL);
+        int job = grobo_robot_sense(s->c.robot, missing, GROBO_SENSE_GOAL);
         t->reading = job > 0 ? job : 0;
     }
 }
@@ -206,7 +213,8 @@ json_t *stops_json(serve *s)
     grobo_robot_tripped(s->c.robot, &trip);
     bool tripped = trip.trip != GROBO_TRIP_NONE && trip.latched;
     bool own = tripped && !t->latched;
-    for (int j = 0; t->latched && j < s->model->n_joints; j++) {
+    bool stopped = is_stopped(s);
+    for (int j = 0; stopped && j < s->model->n_joints; j++) {
         json_array_append_new(joints, json_string(word_of(t->joints[j])));
     }
     const char *kind = t->estop ? "estop" : t->latched ? "stop" : tripped ? "trip" : NULL;
@@ -216,5 +224,5 @@ json_t *stops_json(serve *s)
                      own ? app_json_number(trip.value, 3) : NULL, "by",
                      t->latched ? app_json_text(t->by) : NULL, "age_ms",
                      t->latched ? json_integer((grobo_now_us() - t->at_us) / 1000) : NULL,
-                     "confirmed", t->latched && unconfirmed(s) == 0, "joints", joints);
+                     "confirmed", stopped && unconfirmed(s) == 0, "joints", joints);
 }
