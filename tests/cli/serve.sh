@@ -23,6 +23,7 @@ check "motions are listed, previewed, edited to the bit" pages motions
 check "key poses are mirrored, feet moved, motions saved elsewhere" pages making
 check "a motion that would fall says when" pages falls
 check "feet and waist are dragged" pages ik
+check "a motion of another robot says so, and is not played" pages other_motion
 check "a robot that is no humanoid" pages other_robot
 if has_jsonschema; then
     check "what is answered is what the OpenAPI file tells" pages schema

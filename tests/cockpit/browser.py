@@ -65,7 +65,7 @@ class Server:
         self.folder = folder or tempfile.mkdtemp()
         if self.own:
             for file in MOTIONS.iterdir():
-                if file.suffix in ('.pseq', '.m', '.yaml') and not file.name.startswith('so101'):
+                if file.suffix in ('.pseq', '.m', '.yaml'):
                     shutil.copy(file, self.folder)
         self.port = port or free_ports()
         self.options = options
@@ -856,6 +856,31 @@ def a_page_keeps_control_while_it_paints_the_list(browser, server):
           limit_ms=30000)
     note(f'the page was busy for {page.evaluate("worst"):.0f} ms at most')
     assert page.evaluate('cockpit.lease.status()') == 'mine'
+
+
+@test
+def a_motion_of_another_robot_says_so_and_keeps_no_card_blank(browser, server):
+    page = browser.page(server.link)
+    page.click('#tab-play')
+    until(page, "document.querySelectorAll('.file').length > 3")
+    until(page, "[...document.querySelectorAll('.badge')].every((b) => !b.textContent.includes('…'))")
+    until(page, """[...document.querySelectorAll('.file')].every((card) =>
+        card.textContent.includes('so101') || card.querySelector('canvas[data-painted]'))""")
+    blank = page.evaluate("""[...document.querySelectorAll('.file')].filter((card) => {
+        const canvas = card.querySelector('canvas'), pen = canvas.getContext('2d');
+        return !pen.getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v);
+    }).map((card) => card.textContent)""")
+    assert len(blank) == 1 and 'so101-wave.yaml' in blank[0], blank
+    said = page.locator('.file', has_text='so101-wave').locator('.badge')
+    assert 'for another robot' in said.inner_text(), said.inner_text()
+    assert 'made for so101, not for GR001' in said.inner_text(), said.inner_text()
+    assert said.evaluate('(b) => b.scrollWidth <= b.clientWidth'), 'it cannot be read whole'
+    drive(page)
+    page.click('#tab-play')
+    choose(page, 'so101-wave.yaml')
+    until(page, "document.getElementById('verdict').textContent.includes('made for so101')")
+    assert page.locator('#play').is_disabled()
+    still(server, 0.3)
 
 
 @test

@@ -1663,6 +1663,37 @@ def schema():
         fits("state", Page(server).state())
 
 
+def other_motion():
+    """A motion that was made for another robot is in the list with its reason, and is not played."""
+    with Server() as server:
+        page = Page(server).take().keep_beating()
+        until = time.monotonic() + PATIENCE_S
+        while True:
+            files = {m["name"]: m for m in page.get("/api/motions")["motions"]}
+            if all(m["state"] != "pending" for m in files.values()):
+                break
+            assert time.monotonic() < until, files
+            time.sleep(0.05)
+        wave = files["so101-wave.yaml"]
+        same((wave["check"]["ok"], wave["check"]["refused"]["code"]), (False, "type"))
+        assert "made for so101, not for GR001" in wave["check"]["message"], wave["check"]
+        same(wave["thumbnail"]["angle_deg"], [])
+        others = [n for n, m in files.items() if not m["check"]["ok"]]
+        same(others, ["so101-wave.yaml"], "what cannot be played")
+        for verb in ("play", "queue"):
+            no = expect(422, "type", page.target, verb, motion="so101-wave.yaml")
+            assert "made for so101, not for GR001" in no.error["message"], no.error
+            expect(422, "type", page.target, verb, motion="so101-wave.yaml", clamp=True)
+        look = page.post("preview", motion="so101-wave.yaml")
+        same((look["check"]["ok"], look["frames"]["angle_deg"]), (False, []))
+        state = page.state()
+        same((state["moving"], state["play"]["state"], state["play"]["queue"]), (False, "idle", []))
+        page.target("play", motion="so101-wave.yaml", force=True, clamp=True, speed_pct=50)
+        page.wait_played("approaching", "playing")
+        page.post("halt")
+        page.fall_silent()
+
+
 def other_robot():
     """A robot without a body: links of its file, no balance."""
     server = Server(motions="motions")

@@ -147,6 +147,11 @@ static void check(analysis *n, bool balance)
         n->status = app_fail_error(&n->app, EXIT_ROBOT, GROBO_ERR_NOMEM, "play");
         return;
     }
+    n->status = file_fits(&n->app, path_of(n), n->motion, false);
+    if (n->status) {
+        grobo_motion_free(copy);
+        return;
+    }
     n->app.line.option[PLAY_FORCE].given = 1; /* where it would fall is known already */
     n->status = playlist_take(&n->list, &n->app, path_of(n), copy);
     if (!n->status) {

@@ -119,6 +119,9 @@ void serve_refuse_said(http_request *r, int status, const app *a)
     bool missing = strcmp(a->failed, grobo_error_name(GROBO_ERR_NOENT)) == 0;
     json_t *refusal = serve_refusal(a->failed, a->hushed);
     int found = status > 0 && status <= EXIT_SAFETY ? statuses[status] : 409;
+    if (strcmp(a->failed, grobo_error_name(GROBO_ERR_TYPE)) == 0) {
+        found = 422; /* a motion of another robot */
+    }
     http_reply_json(r, missing ? 404 : found, json_pack("{s:o}", "error", refusal));
 }
 

@@ -65,7 +65,10 @@ static void read_options(load *l, const json_t *body)
     static const struct {
         const char *name;
         int option;
-    } flags[] = {{"mirror", PLAY_MIRROR}, {"reverse", PLAY_REVERSE}, {"by_keys", PLAY_KEY}};
+    } flags[] = {{"mirror", PLAY_MIRROR},
+                 {"reverse", PLAY_REVERSE},
+                 {"by_keys", PLAY_KEY},
+                 {"force", PLAY_FORCE}};
     l->app.line = (cli_line){
         .command = cli_find_command("play"), .argument = {l->item->name}, .n_arguments = 1};
     memcpy(l->app.line.global, l->s->a->line.global, sizeof l->app.line.global);

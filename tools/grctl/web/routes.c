@@ -31,7 +31,7 @@ enum { NAME_MOST = LIBRARY_NAME_BYTES - 1, TIME_MOST_MS = 163830 };
     FIELD_MOTION, FIELD_SEQUENCE, FIELD_SPEED, {.name = "mirror", .kind = FIELD_FLAG},             \
         {.name = "reverse", .kind = FIELD_FLAG}, {.name = "loop", .kind = FIELD_FLAG},             \
         {.name = "repeat", .kind = FIELD_WHOLE, .least = 1, .most = 1e6},                          \
-        {.name = "clamp", .kind = FIELD_FLAG},                                                     \
+        {.name = "clamp", .kind = FIELD_FLAG}, {.name = "force", .kind = FIELD_FLAG},              \
     {                                                                                              \
         .name = "by_keys", .kind = FIELD_FLAG                                                      \
     }

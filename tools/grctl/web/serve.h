@@ -40,7 +40,8 @@ struct serve {
     http *http;
     struct event *tick;
     int64_t began_us;
-    based based; /* which state a request had seen */
+    based based;     /* which state a request had seen */
+    uint64_t paused; /* the state that the last pause made */
     events events;
     lease lease;
     int64_t left_us; /* when the lease was given back with something under way, 0: not */

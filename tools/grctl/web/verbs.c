@@ -80,15 +80,23 @@ void verb_pause(serve *s, http_request *r, json_t *body)
 {
     (void)body;
     int result = grobo_robot_pause(s->c.robot);
-    if (result >= 0) {
-        based_change(&s->based, grobo_now_us(), "the motion was paused");
+    if (result >= 0) { /* a resume from before is void; where to go on from may be chosen */
+        based_tell(&s->based, grobo_now_us());
+        s->paused = s->based.sequence;
     }
     serve_accept(s, r, result, "pause");
 }
 
 void verb_resume(serve *s, http_request *r, json_t *body)
 {
-    (void)body;
+    json_int_t seen = json_integer_value(json_object_get(body, "sequence"));
+    if ((uint64_t)seen < s->paused) {
+        http_refuse(r, 409, "stale",
+                    "resume: based on state %lld, but since then: the motion was paused; look at "
+                    "the present state first",
+                    (long long)seen);
+        return;
+    }
     serve_accept(s, r, grobo_robot_resume(s->c.robot), "resume");
 }
 

@@ -21,6 +21,23 @@ export function sample(frames, ms, toMatrix) {
     return { q, root: root ? toMatrix(root) : null };
 }
 
+/** A motion that cannot be played on this robot has no poses to show. */
+export function hasPoses(thumbnail) {
+    return Boolean(thumbnail && thumbnail.angle_deg.length);
+}
+
+/** Why a motion is not played here: of another robot without what a command line would do about it. */
+export function refusal({ code, message }, t) {
+    return code === 'type' ? `✕ ${t('for another robot, cannot be played')}: ${message.split('; ')[0]}`
+                           : `✕ ${message}`;
+}
+
+/** What a check has found, as far as it can be read at a glance. */
+export function firstOf(diagnostics, most = 3) {
+    const texts = diagnostics.map((one) => one.message);
+    return texts.slice(0, most).join('; ') + (texts.length > most ? '; …' : '');
+}
+
 export class Play {
     constructor(app) {
         this.app = app;
@@ -89,7 +106,7 @@ export class Play {
             return ['bad', t('✕ not readable')];
         }
         if (check.refused) {
-            return ['bad', `✕ ${check.refused.message}`];
+            return ['bad', refusal(check.refused, t)];
         }
         if (check.falls_ms !== null) {
             return ['bad', t('▲ falls at {0} s', seconds(check.falls_ms))];
@@ -102,6 +119,10 @@ export class Play {
         const canvas = element('canvas', { width: 240, height: 132 });
         canvas.setAttribute('aria-hidden', 'true');
         const [level, words] = this.badge(file);
+        const refused = Boolean(file.check && file.check.refused);
+        if (refused) {
+            canvas.classList.add('none');
+        }
         const length = file.length_ms === undefined ? '' : `${seconds(file.length_ms)} s`;
         const button = element('button', { type: 'button', className: 'file',
                                            onclick: () => this.choose(file.name) },
@@ -119,11 +140,15 @@ export class Play {
         if (!body || !theme || !this.pictures || this.id('motions').hidden) {
             return;
         }
-        const next = this.pictures.find(({ file, canvas }) => file.thumbnail &&
+        const next = this.pictures.find(({ file, canvas }) => hasPoses(file.thumbnail) &&
                                         canvas.dataset.painted !== this.app.themeName);
         if (next) {
             next.canvas.dataset.painted = this.app.themeName;
-            this.picture(next.canvas, next.file.thumbnail, body, theme);
+            try {
+                this.picture(next.canvas, next.file.thumbnail, body, theme);
+            } catch (error) { // one picture that cannot be drawn keeps none of the others
+                console.warn(`${next.file.name}: ${error.message}`);
+            }
             this.painting = setTimeout(() => this.paint(), 25);
         }
     }
@@ -339,14 +364,15 @@ export class Play {
         const t = this.app.t, node = this.id('verdict'), check = this.look && this.look.check;
         let level = '', words = '';
         if (refused) {
-            [level, words] = ['bad', `✕ ${refused.message}`];
+            [level, words] = ['bad', refusal(refused, t)];
         } else if (check && check.falls_ms !== null) {
             [level, words] = ['bad', t('▲ would fall at {0} s', seconds(check.falls_ms))];
         } else if (check && check.message) {
             [level, words] = [check.warnings || check.errors ? 'warn' : 'ok', check.message];
         } else if (check) {
             [level, words] = check.warnings || check.errors
-                ? ['warn', t('▲ {0} warnings', check.warnings + check.errors)]
+                ? ['warn', [t('▲ {0} warnings', check.warnings + check.errors),
+                            firstOf(this.look.diagnostics)].filter(Boolean).join(': ')]
                 : ['ok', t('✓ stays within limits and balance')];
         }
         const why = !live && this.app.whyNot();
