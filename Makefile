@@ -122,7 +122,7 @@ HEAP := src/base/memory.c
 CORE_SRCS := $(filter-out $(HEAP),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
 OTHER_SRCS := $(sort $(HEAP) $(wildcard src/team/*.c) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))
-CHOSEN := tools/grctl/edit/% tools/grctl/screen/% tools/grctl/xml/% tools/grctl/web/% tools/grctl/mqtt/%
+CHOSEN := tools/grctl/edit/% tools/grctl/screen/% tools/grctl/xml/% tools/grctl/web/% $(patsubst %,tools/grctl/mqtt/%.c,mosquitto none)
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out $(CHOSEN),\
     $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
     tools/grctl/screen/$(SCREEN).c tools/grctl/xml/$(XML).c tools/grctl/mqtt/$(MQTT).c \

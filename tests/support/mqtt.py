@@ -17,6 +17,8 @@ usage: mqtt.py PORT floor N         round trips of N messages by the broker alon
                                     is ended
        mqtt.py PORT goodbye         is a broker itself: takes who comes, and says that it shuts down
        mqtt.py PORT mute            is one that takes connections and says nothing
+       mqtt.py PORT hostile         is one that takes who comes, and then says what ends libmosquitto
+                                    2.0.11 by an assertion, or packets of any content
        mqtt.py 0 fits FILE          these lines are as docs/fleet.schema.json says, but for orders
                                     of strangers; prints how many of each kind
 """
@@ -284,6 +286,29 @@ def goodbye(port):
         kept.append(client)
 
 
+def hostile(port):
+    import random
+    any_of = random.Random(1)
+    listener, n = listen(port), 0
+    while True:
+        client = listener.accept()[0]
+        client.recv(1000)
+        packets = b"\xf0\x03\0\x68\0" if n % 2 == 0 else b"".join(
+            bytes([any_of.randrange(256), size]) + any_of.randbytes(size)
+            for size in (any_of.randrange(100) for _ in range(8)))
+        n += 1
+        try:
+            client.sendall(b"\x20\x03\0\0\0" + packets)
+            client.shutdown(socket.SHUT_WR)
+            client.settimeout(5)
+            while client.recv(1 << 16):
+                pass
+        except OSError:
+            pass
+        client.close()
+        print("served", n, flush=True)
+
+
 def mute(port):
     listener, kept = listen(port), []
     while True:
@@ -327,6 +352,8 @@ def main(words):
         goodbye(int(words[0]))
     if words[1] == "mute":
         mute(int(words[0]))
+    if words[1] == "hostile":
+        hostile(int(words[0]))
     client = Client(int(words[0]))
     if words[1] == "floor":
         floor(client, int(words[2]))

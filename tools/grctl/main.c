@@ -9,6 +9,8 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/lang/lang.h"
+#include "tools/grctl/mqtt/host.h"
+#include "tools/grctl/mqtt/mqtt.h"
 #include "tools/grctl/os/os.h"
 
 #define POINTER(name) &cmd_##name,
@@ -50,6 +52,10 @@ int main(int argc, char **argv)
     if (argc == 2 && strcmp(argv[1], "guard") == 0) {
         return guard_main();
     }
+    if (argc == 2 && strcmp(argv[1], MQTT_HOST_WORD) == 0) {
+        return mqtt_host_main();
+    }
     guard_note_program(argv[0]);
+    mqtt_note_program(argv[0]);
     return app_finish(&a, run_line(&a, argc, argv, NULL, NULL));
 }

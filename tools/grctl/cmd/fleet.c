@@ -30,6 +30,7 @@ enum {
     ANSWER_US = 3000000,
     READY_US = 35000000,
     STOPPED_US = 12000000,
+    UNHEARD_US = 3000000, /* a stop that the broker did not take yet, where nobody is seen */
     STATE_US = 400000,
     BEFORE_US = 1500000, /* clocks are compared so long before a time that was told */
     WATCH_US = 500000,
@@ -289,7 +290,7 @@ static int say_stopped(leader *l)
 static int run_stop(leader *l)
 {
     int n = leader_choose(l);
-    (void)leader_wait(l, STOPPED_US, all_told);
+    (void)leader_wait(l, n > 0 ? STOPPED_US : UNHEARD_US, all_told);
     if (n == 0) {
         (void)say_unheard(l);
         return fail_nobody(l, _(": nothing was seen to stop; use the switches"));

@@ -378,8 +378,9 @@ int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group
     status = status ? status : await_broker(l);
     if (!status) {
         hear_retained(l);
+        status = l->up ? EXIT_DONE : fail_broker(l, l->first ? _(": use the switches") : "");
     }
-    return status;
+    return l->first && l->ups ? EXIT_DONE : status; /* who stops goes on trying */
 }
 
 void leader_end(leader *l)

@@ -16,11 +16,11 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/lang/lang.h"
-#include "tools/grctl/mqtt/mqtt.h"
+#include "tools/grctl/mqtt/direct.h"
 
-enum { FIRST_MS = 100, LONGEST_MS = 5000, MISC_MS = 500, CONNECT_MS = 5000, AT_ONCE = 10 };
+enum { MISC_MS = 500, CONNECT_MS = 5000, AT_ONCE = 10 };
 
-struct mqtt {
+struct direct {
     mqtt_config config;
     struct mosquitto *client;
     struct event *ready, *misc, *again; /* ready: NULL without a connection */
@@ -34,7 +34,7 @@ struct mqtt {
 
 /* ---- the descriptor -------------------------------------------------------------------------- */
 
-static void forget_socket(mqtt *m)
+static void forget_socket(direct *m)
 {
     if (m->ready) {
         event_free(m->ready);
@@ -45,7 +45,7 @@ static void forget_socket(mqtt *m)
 static void on_ready(evutil_socket_t fd, short what, void *ctx);
 
 /* What any call of the library may have left to be written. */
-static void arm(mqtt *m)
+static void arm(direct *m)
 {
     if (!m->ready) {
         return;
@@ -66,23 +66,20 @@ static struct timeval of_ms(int ms)
     return (struct timeval){.tv_sec = ms / 1000, .tv_usec = ms % 1000 * 1000};
 }
 
-/* The pause doubles, and is up to half longer by chance: 4000 agents do not come back together. */
-static void try_later(mqtt *m)
+static void try_later(direct *m)
 {
-    unsigned char chance;
-    evutil_secure_rng_get_bytes(&chance, sizeof chance);
-    struct timeval pause = of_ms(m->pause_ms + m->pause_ms * chance / 512);
-    m->pause_ms = 2 * m->pause_ms < LONGEST_MS ? 2 * m->pause_ms : LONGEST_MS;
+    struct timeval pause = of_ms(pause_next_ms(&m->pause_ms));
     m->connecting = false;
     (void)evtimer_add(m->again, &pause);
 }
 
-static void lost(mqtt *m, const char *why)
+static void lost(direct *m, const char *why)
 {
     bool was = m->up || m->connecting;
     forget_socket(m);
-    if (m->up && grobo_now_us() - m->tried_us > INT64_C(1000) * LONGEST_MS) {
-        m->pause_ms = FIRST_MS; /* a broker that takes and closes is not asked ten times a second */
+    if (m->up && grobo_now_us() - m->tried_us > INT64_C(1000) * PAUSE_LONGEST_MS) {
+        m->pause_ms =
+            PAUSE_FIRST_MS; /* a broker that takes and closes is not asked ten times a second */
     }
     m->up = false;
     if (was) {
@@ -98,7 +95,7 @@ static const char *error_text(int error)
     return error >= 128 ? mosquitto_reason_string(error) : mosquitto_strerror(error);
 }
 
-static void check(mqtt *m, int result)
+static void check(direct *m, int result)
 {
     if (result != MOSQ_ERR_SUCCESS && m->ready) {
         lost(m, error_text(result));
@@ -115,7 +112,7 @@ static bool has_ended(evutil_socket_t fd)
 
 static void on_ready(evutil_socket_t fd, short what, void *ctx)
 {
-    mqtt *m = ctx;
+    direct *m = ctx;
     if (what & EV_WRITE) {
         check(m, mosquitto_loop_write(m->client, AT_ONCE));
     }
@@ -129,7 +126,7 @@ static void on_ready(evutil_socket_t fd, short what, void *ctx)
 
 static void on_misc(evutil_socket_t fd, short what, void *ctx)
 {
-    mqtt *m = ctx;
+    direct *m = ctx;
     (void)fd;
     (void)what;
     if (m->connecting && grobo_now_us() - m->tried_us > INT64_C(1000) * CONNECT_MS) {
@@ -139,7 +136,7 @@ static void on_misc(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
-static void take_socket(mqtt *m)
+static void take_socket(direct *m)
 {
     evutil_socket_t fd = mosquitto_socket(m->client);
     if (fd < 0) {
@@ -154,10 +151,38 @@ static void take_socket(mqtt *m)
     arm(m);
 }
 
-static void connect_now(mqtt *m)
+/* Of a host: the numeric address. */
+static bool look_up(direct *m, const char **why)
+{
+    static grobo_os_cause cause;
+    char device[300], numeric[sizeof m->address];
+    const char *host = m->config.host;
+    bool six = strchr(host, ':') != NULL;
+    snprintf(device, sizeof device, "tcp:%s%s%s:%d", six ? "[" : "", host, six ? "]" : "",
+             m->config.port);
+    if (grobo_port_resolve(device, numeric, sizeof numeric, &cause) < 0) {
+        *why = *cause.text ? cause.text : _("no such host");
+        return false;
+    }
+    char *begin = numeric + strlen("tcp:"), *end = strrchr(begin, ':');
+    if (*begin == '[') {
+        begin++;
+        end--;
+    }
+    snprintf(m->address, sizeof m->address, "%.*s", (int)(end - begin), begin);
+    return true;
+}
+
+static void connect_now(direct *m)
 {
     const mqtt_config *c = &m->config;
+    const char *why;
     m->connecting = true;
+    m->tried_us = grobo_now_us();
+    if (!c->ca && !*m->address && !look_up(m, &why)) {
+        lost(m, why);
+        return;
+    }
     m->tried_us = grobo_now_us();
     int result =
         mosquitto_connect_async(m->client, c->ca ? c->host : m->address, c->port, c->keepalive_s);
@@ -172,10 +197,11 @@ static void connect_now(mqtt *m)
 
 static void on_again(evutil_socket_t fd, short what, void *ctx)
 {
-    mqtt *m = ctx;
+    direct *m = ctx;
     (void)fd;
     (void)what;
-    if (m->config.ca && m->config.may_block && !m->config.may_block(m->config.ctx)) {
+    bool looks_up = m->config.ca || !*m->address;
+    if (looks_up && m->config.may_block && !m->config.may_block(m->config.ctx)) {
         struct timeval pause = of_ms(MISC_MS);
         (void)evtimer_add(m->again, &pause);
         return;
@@ -188,7 +214,7 @@ static void on_again(evutil_socket_t fd, short what, void *ctx)
 static void on_connect(struct mosquitto *client, void *ctx, int reason, int flags,
                        const mosquitto_property *properties)
 {
-    mqtt *m = ctx;
+    direct *m = ctx;
     (void)client;
     (void)flags;
     (void)properties;
@@ -212,7 +238,7 @@ static void on_disconnect(struct mosquitto *client, void *ctx, int reason,
 static void on_publish(struct mosquitto *client, void *ctx, int id, int reason,
                        const mosquitto_property *properties)
 {
-    mqtt *m = ctx;
+    direct *m = ctx;
     (void)client;
     (void)properties;
     if (reason >= 128) {
@@ -226,7 +252,7 @@ static void on_publish(struct mosquitto *client, void *ctx, int id, int reason,
 static void on_subscribe(struct mosquitto *client, void *ctx, int id, int n, const int *granted,
                          const mosquitto_property *properties)
 {
-    mqtt *m = ctx;
+    direct *m = ctx;
     (void)client;
     (void)id;
     (void)properties;
@@ -240,7 +266,7 @@ static void on_subscribe(struct mosquitto *client, void *ctx, int id, int n, con
 static void on_message(struct mosquitto *client, void *ctx, const struct mosquitto_message *raw,
                        const mosquitto_property *properties)
 {
-    mqtt *m = ctx;
+    direct *m = ctx;
     char *response = NULL;
     void *correlation = NULL;
     uint16_t correlation_bytes = 0;
@@ -265,21 +291,21 @@ static void on_message(struct mosquitto *client, void *ctx, const struct mosquit
 
 /* ---- requests -------------------------------------------------------------------------------- */
 
-bool mqtt_possible(void)
+bool direct_possible(void)
 {
     return true;
 }
 
-bool mqtt_is_up(const mqtt *m)
+bool direct_is_up(const direct *m)
 {
     return m && m->up;
 }
 
-int mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
+int direct_publish(direct *m, const mqtt_message *message, int qos, int expiry_s)
 {
     mosquitto_property *properties = NULL;
     int number = 0;
-    if (!mqtt_is_up(m)) {
+    if (!direct_is_up(m)) {
         return 0;
     }
     if (qos == 0 && m->queued_bytes > MQTT_QUEUE_MAX_BYTES) {
@@ -309,42 +335,20 @@ int mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
     return result == MOSQ_ERR_SUCCESS ? number : 0;
 }
 
-bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained)
+bool direct_subscribe(direct *m, const char *filter, int qos, bool retained)
 {
     int options = MQTT_SUB_OPT_NO_LOCAL |
                   (retained ? MQTT_SUB_OPT_SEND_RETAIN_ALWAYS
                             : MQTT_SUB_OPT_SEND_RETAIN_NEVER | MQTT_SUB_OPT_RETAIN_AS_PUBLISHED);
-    bool done = mqtt_is_up(m) && mosquitto_subscribe_v5(m->client, NULL, filter, qos, options,
-                                                        NULL) == MOSQ_ERR_SUCCESS;
+    bool done = direct_is_up(m) && mosquitto_subscribe_v5(m->client, NULL, filter, qos, options,
+                                                          NULL) == MOSQ_ERR_SUCCESS;
     arm(m);
     return done;
 }
 
 /* ---- a connection ---------------------------------------------------------------------------- */
 
-/* Of a host: the numeric address. */
-static bool look_up(mqtt *m, const char **why)
-{
-    static grobo_os_cause cause;
-    char device[300], numeric[sizeof m->address];
-    const char *host = m->config.host;
-    bool six = strchr(host, ':') != NULL;
-    snprintf(device, sizeof device, "tcp:%s%s%s:%d", six ? "[" : "", host, six ? "]" : "",
-             m->config.port);
-    if (grobo_port_resolve(device, numeric, sizeof numeric, &cause) < 0) {
-        *why = *cause.text ? cause.text : _("no such host");
-        return false;
-    }
-    char *begin = numeric + strlen("tcp:"), *end = strrchr(begin, ':');
-    if (*begin == '[') {
-        begin++;
-        end--;
-    }
-    snprintf(m->address, sizeof m->address, "%.*s", (int)(end - begin), begin);
-    return true;
-}
-
-static int set_up(mqtt *m)
+static int set_up(direct *m)
 {
     const mqtt_config *c = &m->config;
     struct mosquitto *client = m->client;
@@ -370,7 +374,7 @@ static int set_up(mqtt *m)
     return result;
 }
 
-static void destroy(mqtt *m)
+static void destroy(direct *m)
 {
     forget_socket(m);
     if (m->misc) {
@@ -384,15 +388,15 @@ static void destroy(mqtt *m)
     free(m);
 }
 
-mqtt *mqtt_new(const mqtt_config *config, const char **why)
+direct *direct_new(const mqtt_config *config, const char **why)
 {
-    mqtt *m = calloc(1, sizeof *m);
+    direct *m = calloc(1, sizeof *m);
     *why = _("not enough memory");
     if (!m) {
         return NULL;
     }
     m->config = *config;
-    m->pause_ms = FIRST_MS;
+    m->pause_ms = PAUSE_FIRST_MS;
     mosquitto_lib_init();
     m->client = mosquitto_new(config->id, true, m);
     m->misc = event_new(config->base, -1, EV_PERSIST, on_misc, m);
@@ -402,21 +406,21 @@ mqtt *mqtt_new(const mqtt_config *config, const char **why)
         *why = result == MOSQ_ERR_INVAL && config->ca ? _("a certificate or key cannot be read")
                                                       : mosquitto_strerror(result);
     }
-    if (result != MOSQ_ERR_SUCCESS || (!config->ca && !look_up(m, why))) {
+    if (result != MOSQ_ERR_SUCCESS) {
         destroy(m);
         return NULL;
     }
     return m;
 }
 
-void mqtt_start(mqtt *m)
+void direct_start(direct *m)
 {
     struct timeval period = of_ms(MISC_MS);
     (void)event_add(m->misc, &period);
     connect_now(m);
 }
 
-void mqtt_free(mqtt *m)
+void direct_free(direct *m)
 {
     if (!m) {
         return;

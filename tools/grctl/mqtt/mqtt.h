@@ -2,7 +2,8 @@
 /*
  * A connection to an MQTT 5 broker, on the event loop. It is made again when it is lost, with a
  * growing, random pause; nothing of before is delivered then (clean start). All handlers are called
- * from the loop.
+ * from the loop. The connection itself is in a process of its own, which a broker may end by what
+ * it says: then it is lost. Where the system has no such process it is in this one.
  */
 #ifndef GRCTL_MQTT_H
 #define GRCTL_MQTT_H
@@ -46,14 +47,18 @@ typedef struct mqtt_config {
     void (*on_refused)(void *ctx, const char *why); /* what was published with QoS 1 */
     /* The broker has taken, or refused, what mqtt_publish() gave this number; QoS 1 alone. */
     void (*on_taken)(void *ctx, int number, bool taken);
-    bool (*may_block)(void *ctx); /* may a name be looked up now? It may take seconds. NULL: yes */
+    /* In this process: may a name be looked up now? It may take seconds. NULL: yes */
+    bool (*may_block)(void *ctx);
     void *ctx;
 } mqtt_config;
+
+/* What this program was called as: it is what the process of a connection is. */
+void mqtt_note_program(const char *argv0);
 
 /* Is this build able to? */
 bool mqtt_possible(void);
 
-/* Texts are borrowed. NULL: why says it. */
+/* Texts are borrowed for this call. May wait a moment. NULL: why says it. */
 mqtt *mqtt_new(const mqtt_config *config, const char **why);
 /* Begins, and goes on trying. */
 void mqtt_start(mqtt *m);

@@ -1,31 +1,31 @@
 /* SPDX-License-Identifier: MIT */
 #include "tools/grctl/lang/lang.h"
-#include "tools/grctl/mqtt/mqtt.h"
+#include "tools/grctl/mqtt/direct.h"
 
-bool mqtt_possible(void)
+bool direct_possible(void)
 {
     return false;
 }
 
-mqtt *mqtt_new(const mqtt_config *config, const char **why)
+direct *direct_new(const mqtt_config *config, const char **why)
 {
     (void)config;
     *why = _("this grctl was built without libmosquitto");
     return NULL;
 }
 
-void mqtt_start(mqtt *m)
+void direct_start(direct *m)
 {
     (void)m;
 }
 
-bool mqtt_is_up(const mqtt *m)
+bool direct_is_up(const direct *m)
 {
     (void)m;
     return false;
 }
 
-int mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
+int direct_publish(direct *m, const mqtt_message *message, int qos, int expiry_s)
 {
     (void)m;
     (void)message;
@@ -34,7 +34,7 @@ int mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
     return 0;
 }
 
-bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained)
+bool direct_subscribe(direct *m, const char *filter, int qos, bool retained)
 {
     (void)m;
     (void)filter;
@@ -43,7 +43,7 @@ bool mqtt_subscribe(mqtt *m, const char *filter, int qos, bool retained)
     return false;
 }
 
-void mqtt_free(mqtt *m)
+void direct_free(direct *m)
 {
     (void)m;
 }

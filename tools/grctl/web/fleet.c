@@ -36,7 +36,7 @@ typedef struct view {
     events events;
     struct event *tick;
     based based; /* which state a request had seen */
-    bool was_up;
+    int broker;  /* as it was told: 1 there, -1 away, 0 not known yet */
     /* the stop that is wanted, and not out yet */
     const char *wanted; /* NULL: none */
     int64_t wanted_us;
@@ -519,6 +519,22 @@ static void on_fleet_event(leader *l, const peer *p, json_t *event)
                 text && *text ? ": " : "", text ? text : "");
 }
 
+/* The page is there before the broker is, and without it. */
+static void look_at_broker(view *v, int64_t now_us)
+{
+    int is = v->l.up ? 1 : v->l.why ? -1 : 0;
+    if (is == v->broker) {
+        return;
+    }
+    v->broker = is;
+    v->check_us = now_us + CHECK_US;
+    events_tell(&v->events, "link", v->l.up ? "info" : "error", NULL, "%s",
+                v->l.up ? "the broker is there" : "the broker is away: no stop reaches a robot");
+    if (!v->l.up) {
+        app_note(v->l.a, "the broker is away: %s", v->l.why);
+    }
+}
+
 static void on_tick(evutil_socket_t fd, short what, void *ctx)
 {
     view *v = ctx;
@@ -526,13 +542,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     (void)fd;
     (void)what;
     based_tell(&v->based, now_us);
-    if (v->l.up != v->was_up) {
-        v->was_up = v->l.up;
-        v->check_us = now_us + CHECK_US;
-        events_tell(&v->events, "link", v->l.up ? "info" : "error", NULL, "%s",
-                    v->l.up ? "the broker is there"
-                            : "the broker is away: no stop reaches a robot");
-    }
+    look_at_broker(v, now_us);
     look_after_stop(v, now_us);
     look_after_reset(v, now_us);
     if (http_streams(v->http) > 0) {
@@ -570,7 +580,7 @@ int web_run_fleet(app *a, const web_options *options, const broker *b, const cha
     v.options = options;
     v.b = b;
     v.events.began_us = grobo_now_us();
-    int status = leader_begin(&v.l, a, &b->config, group, NULL, NULL);
+    int status = leader_open(&v.l, a, &b->config, group, NULL);
     if (!status) {
         status = run(&v, a);
     }
