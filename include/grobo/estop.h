@@ -15,7 +15,9 @@
  * $XDG_RUNTIME_DIR, and "grobo-UID" in /tmp (Windows: in the local AppData). Directories or files
  * of other users, symbolic links, and directories open to others are not trusted. Marks last until
  * they are cleared or these directories are, as a rule when the machine is started again. The
- * programs of another user have other directories: marks do not reach them.
+ * programs of another user have other directories. Root's mark is set there too, with the rights of
+ * that user, where a program of his has the device (a serial port; Linux): root's emergency stop
+ * reaches everybody. A mark of anybody else does not reach the programs of another user.
  *
  * The simulator in the same process (GROBO_DEVICE_SIM) has no marks. All functions are thread safe;
  * they read and write small files, and do not wait for any program.
@@ -39,7 +41,7 @@ typedef struct grobo_estop {
 
 /** What the program that has the device did about a mark. */
 typedef enum grobo_estop_answer {
-    GROBO_ESTOP_NOBODY = 0, /**< no session of this user has the device */
+    GROBO_ESTOP_NOBODY = 0, /**< no session of this user (root: of any) has the device */
     GROBO_ESTOP_SILENT,     /**< a session has it, and has not answered */
     GROBO_ESTOP_HEARD,      /**< latched: nothing else leaves. Not verified, or no line */
     GROBO_ESTOP_DONE,       /**< every joint was read back and is stopped */
@@ -77,6 +79,25 @@ GROBO_API int grobo_estop_clear(const char *device, grobo_os_cause *cause);
 
 /** True while a mark stands for a device. */
 GROBO_API bool grobo_estop_stands(const char *device);
+
+/** How a program that does not obey a mark is kept from moving the robot. */
+typedef enum grobo_estop_means {
+    GROBO_ESTOP_BY_GUARD =
+        0,                 /**< its guard (guard.h) takes the line, stops every joint and releases
+                               *   the port; the program sends nothing more */
+    GROBO_ESTOP_BY_SIGTERM /**< the program gets SIGTERM */
+} grobo_estop_means;
+
+/**
+ * Turns to the programs that have a serial port and do not obey: they cannot read a mark, hang, or
+ * are not of this library. Only to a process that the system shows to have this device open, with
+ * its lock if one has that, and that is not stopped (SIGSTOP): no number in a file counts. What
+ * becomes of it is seen when the port can be opened. Linux 5.3 or later.
+ * @return how many processes were reached, 0: none has the device; GROBO_ERR_ARG; GROBO_ERR_PERM:
+ *   it is another user's; GROBO_ERR_STATE: it is stopped; GROBO_ERR_NOENT: it has just released the
+ *   device; GROBO_ERR_UNSUPPORTED; GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_estop_force(const char *device, grobo_estop_means means);
 
 /**
  * Asks what the program that has a device did about a mark. A program is known by its number and

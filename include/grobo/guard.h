@@ -101,6 +101,7 @@ GROBO_CORE int grobo_guard_pid(const grobo_guard *guard);
 typedef enum grobo_guard_cause {
     GROBO_GUARD_DIED,    /**< the program has died */
     GROBO_GUARD_STOPPED, /**< the program is stopped by a signal while joints move */
+    GROBO_GUARD_ASKED,   /**< an emergency stop asked for it: the program had not obeyed */
     GROBO_GUARD_SILENT   /**< its loop does not turn while joints move */
 } grobo_guard_cause;
 

@@ -74,6 +74,7 @@ typedef struct grobo_i_guard_watch {
     int parent;    /* the program */
     int death;     /* descriptor that becomes readable at its death, -1: none */
     int state;     /* of Linux: its /proc/PID/stat, -1: none */
+    int asked;     /* becomes readable when grobo_i_holder_end() asks for a stop, -1: none */
     int stillness; /* looks in a row that found it stopped */
 } grobo_i_guard_watch;
 
@@ -93,7 +94,8 @@ enum {
     GROBO_I_GUARD_NEWS = 1,    /* the socket is readable, or at its end */
     GROBO_I_GUARD_DEAD = 2,    /* the program is dead */
     GROBO_I_GUARD_STOPPED = 4, /* it is stopped (SIGSTOP), and has been for 100 ms */
-    GROBO_I_GUARD_HUNG_UP = 8  /* the line's device is gone */
+    GROBO_I_GUARD_HUNG_UP = 8, /* the line's device is gone */
+    GROBO_I_GUARD_ASKED = 16   /* an emergency stop asks for it; told once */
 };
 
 /*

@@ -63,6 +63,43 @@ void grobo_i_process_self(grobo_i_process *self);
  */
 int grobo_i_process_look(const grobo_i_process *process, bool wake);
 
+/* ---- whoever has a device: owner_linux.c ---------------------------------------------------- */
+
+/* A process that the system shows to have a device open. */
+typedef struct grobo_i_holder {
+    int pid;
+    unsigned user, group;
+    bool guard; /* it is called GROBO_GUARD_NAME */
+} grobo_i_holder;
+
+/*
+ * Finds them, but for the calling process: those with the lock, where one has it. What the caller
+ * may not look into is not found.
+ * Returns their number, at most `max`; 0 for a device that is no serial port;
+ * GROBO_ERR_UNSUPPORTED.
+ */
+int grobo_i_holders_find(const char *device, grobo_i_holder *holders, int max);
+
+/*
+ * Ends one of them by SIGTERM; asks a guard to stop the robot. By a pidfd, behind which the process
+ * is looked at again: never another one that has its number by now. One that is stopped (SIGSTOP)
+ * is left alone.
+ * Returns GROBO_OK, GROBO_ERR_NOENT (it has the device no more), GROBO_ERR_STATE (it is stopped),
+ * GROBO_ERR_PERM, GROBO_ERR_UNSUPPORTED.
+ */
+int grobo_i_holder_end(const char *device, const grobo_i_holder *holder);
+
+/* ---- another user: notes.c, process_linux.c ------------------------------------------------- */
+
+/*
+ * Until the other call the notes are those of another user, and this thread has his rights on files
+ * and no more: what he may have put into his directories leads nowhere else.
+ * Returns GROBO_OK, GROBO_ERR_PERM (the caller is not root), GROBO_ERR_UNSUPPORTED.
+ */
+int grobo_i_note_user_begin(unsigned user, unsigned group);
+bool grobo_i_is_root(void); /* it may do that */
+void grobo_i_note_user_end(void);
+
 /* ---- names of a device: names.c ------------------------------------------------------------- */
 
 enum { DEVICE_NAMES = 6 };

@@ -335,6 +335,7 @@ int grobo_i_guard_begin(grobo_i_guard_watch *watch)
     *watch = (grobo_i_guard_watch){.socket = STDIN_FILENO, .parent = (int)parent};
     watch->death = grobo_i_posix_watch_death(parent);
     watch->state = grobo_i_posix_watch_state(parent);
+    watch->asked = grobo_i_posix_watch_asked();
     /* Looked at last: what was opened before is this very process's, and no other's number. */
     if (getppid() != parent) {
         grobo_i_guard_cease(watch);
@@ -345,7 +346,7 @@ int grobo_i_guard_begin(grobo_i_guard_watch *watch)
 
 void grobo_i_guard_cease(grobo_i_guard_watch *watch)
 {
-    int *const descriptors[] = {&watch->death, &watch->state, &watch->socket};
+    int *const descriptors[] = {&watch->death, &watch->state, &watch->asked, &watch->socket};
 
     for (size_t i = 0; i < sizeof descriptors / sizeof descriptors[0]; i++) {
         if (*descriptors[i] >= 0) {
@@ -367,7 +368,8 @@ unsigned grobo_i_guard_await(grobo_i_guard_watch *watch, grobo_handle line, bool
 {
     struct pollfd what[] = {{.fd = watch->socket, .events = POLLIN},
                             {.fd = watch->death, .events = POLLIN},
-                            {.fd = line, .events = 0}};
+                            {.fd = line, .events = 0},
+                            {.fd = watch->asked, .events = POLLIN}};
     int limit_ms = watch->death < 0 ? LOOK_DEATH_MS : moves ? LOOK_STATE_MS : -1;
     unsigned found = 0;
 
@@ -380,6 +382,10 @@ unsigned grobo_i_guard_await(grobo_i_guard_watch *watch, grobo_handle line, bool
     }
     if ((what[2].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) {
         found |= GROBO_I_GUARD_HUNG_UP;
+    }
+    if ((what[3].revents & POLLIN) != 0) {
+        grobo_i_posix_take_asked(watch->asked);
+        found |= GROBO_I_GUARD_ASKED;
     }
     if (found == 0 && moves && watch->state >= 0) {
         found = look_at_state(watch);

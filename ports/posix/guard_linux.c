@@ -29,10 +29,12 @@ static void close_each(int first)
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/signalfd.h>
 #include <sys/syscall.h>
 
 /* In headers since Linux 5.3 and 5.9; the numbers are those of every architecture. */
@@ -69,6 +71,27 @@ int grobo_i_posix_watch_state(pid_t pid)
 
     snprintf(path, sizeof path, "/proc/%ld/stat", (long)pid);
     return open(path, O_RDONLY | O_CLOEXEC);
+}
+
+int grobo_i_posix_watch_asked(void)
+{
+    sigset_t one;
+
+    sigemptyset(&one);
+    sigaddset(&one, GUARD_SIGNAL);
+    /* Blocked it waits for being read; ignored it would be dropped. */
+    if (sigprocmask(SIG_BLOCK, &one, NULL) != 0 || signal(GUARD_SIGNAL, SIG_DFL) == SIG_ERR) {
+        return -1;
+    }
+    return signalfd(-1, &one, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+void grobo_i_posix_take_asked(int fd)
+{
+    struct signalfd_siginfo info;
+
+    while (read(fd, &info, sizeof info) == (ssize_t)sizeof info) {
+    }
 }
 
 int grobo_i_guard_share(size_t size, void **at, grobo_handle *handle)
@@ -155,6 +178,16 @@ int grobo_i_posix_watch_death(pid_t pid)
 }
 
 #endif
+
+int grobo_i_posix_watch_asked(void)
+{
+    return -1;
+}
+
+void grobo_i_posix_take_asked(int fd)
+{
+    (void)fd;
+}
 
 int grobo_i_guard_share(size_t size, void **at, grobo_handle *handle)
 {

@@ -16,6 +16,42 @@ enum { PATH_BYTES = NOTE_FOLDER_BYTES + NOTE_NAME_BYTES + 32 };
 
 static const char shared_parent[] = "/tmp";
 
+/* ---- whose notes -------------------------------------------------------------------------- */
+
+static _Thread_local struct {
+    bool on;
+    uid_t user;
+} other;
+
+static uid_t its_user(void)
+{
+    return other.on ? other.user : geteuid();
+}
+
+bool grobo_i_is_root(void)
+{
+    return geteuid() == 0;
+}
+
+int grobo_i_note_user_begin(unsigned user, unsigned group)
+{
+    int r = grobo_i_is_root() ? grobo_i_posix_be_user((uid_t)user, (gid_t)group) : GROBO_ERR_PERM;
+
+    if (r >= 0) {
+        other.on = true;
+        other.user = (uid_t)user;
+    }
+    return r;
+}
+
+void grobo_i_note_user_end(void)
+{
+    if (other.on) {
+        other.on = false;
+        (void)grobo_i_posix_be_user(geteuid(), getegid());
+    }
+}
+
 /* ---- directories -------------------------------------------------------------------------- */
 
 /* Belongs to the user, and nobody else may look into it. */
@@ -23,7 +59,7 @@ static bool is_private(const char *path)
 {
     struct stat st;
 
-    return lstat(path, &st) == 0 && S_ISDIR(st.st_mode) && st.st_uid == geteuid() &&
+    return lstat(path, &st) == 0 && S_ISDIR(st.st_mode) && st.st_uid == its_user() &&
            (st.st_mode & 077) == 0;
 }
 
@@ -33,7 +69,7 @@ static bool is_safe_parent(const char *path)
     struct stat st;
 
     return stat(path, &st) == 0 && S_ISDIR(st.st_mode) &&
-           (st.st_uid == geteuid() || st.st_uid == 0) &&
+           (st.st_uid == its_user() || st.st_uid == 0) &&
            ((st.st_mode & 022) == 0 || (st.st_mode & S_ISVTX) != 0);
 }
 
@@ -45,8 +81,13 @@ static bool make_private(const char *path)
 /* That of the login session, which a service or a job of cron does not have. */
 static bool session_folder(char *path, bool make)
 {
+    char its[32];
     const char *run = getenv("XDG_RUNTIME_DIR");
 
+    if (other.on) { /* as pam_systemd(8) makes it */
+        snprintf(its, sizeof its, "/run/user/%lu", (unsigned long)other.user);
+        run = its;
+    }
     if (run == NULL || run[0] != '/') {
         return false;
     }
@@ -90,7 +131,7 @@ static const char *shared_name(char buf[64])
 {
     static const char prefix[] = "/grobo-";
     const size_t in = sizeof shared_parent - 1, size = sizeof prefix - 1;
-    unsigned long uid = geteuid();
+    unsigned long uid = its_user();
     char *at = buf + 63;
 
     *at = '\0';
@@ -242,7 +283,7 @@ int grobo_i_note_write(const char *name, const char *text, grobo_os_cause *cause
 /* A file that the user made, and that nobody else may have written to. */
 static bool is_own(const struct stat *st)
 {
-    return S_ISREG(st->st_mode) && st->st_uid == geteuid() && (st->st_mode & 022) == 0;
+    return S_ISREG(st->st_mode) && st->st_uid == its_user() && (st->st_mode & 022) == 0;
 }
 
 int grobo_i_note_read(const grobo_i_note_folders *in, int folder, const char *name, char *text,

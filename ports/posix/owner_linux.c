@@ -2,6 +2,7 @@
 /* Linux: who has a device open, by /proc. The other systems' answer is at the end. */
 #include <stdio.h>
 
+#include "ports/common/notes.h"
 #include "ports/posix/posix.h"
 
 #ifdef __linux__
@@ -158,6 +159,84 @@ int grobo_i_posix_owner(const char *device, char *name, size_t name_bytes, bool 
     return pid;
 }
 
+/* One process of /proc, if it has the device. */
+static bool look_at(int pid, const struct stat *node, bool locked, grobo_i_holder *holder)
+{
+    char path[32];
+    char name[64];
+    struct stat st;
+
+    snprintf(path, sizeof path, "/proc/%d", pid);
+    if (pid == getpid() || !has_open(pid, node, locked) || stat(path, &st) != 0) {
+        return false;
+    }
+    name_of(pid, name, sizeof name);
+    *holder = (grobo_i_holder){.pid = pid,
+                               .user = (unsigned)st.st_uid,
+                               .group = (unsigned)st.st_gid,
+                               .guard = strcmp(name, GROBO_GUARD_NAME) == 0};
+    return true;
+}
+
+static int find_holders(const struct stat *node, bool locked, grobo_i_holder *holders, int max)
+{
+    DIR *proc = opendir("/proc");
+    const struct dirent *entry;
+    int n = 0;
+
+    while (proc != NULL && n < max && (entry = readdir(proc)) != NULL) {
+        char *end;
+        long pid = strtol(entry->d_name, &end, 10);
+
+        n += *end == '\0' && pid > 0 && look_at((int)pid, node, locked, &holders[n]);
+    }
+    if (proc != NULL) {
+        (void)closedir(proc);
+    }
+    return n;
+}
+
+static bool is_port(const char *device, struct stat *node)
+{
+    return stat(device, node) == 0 && S_ISCHR(node->st_mode);
+}
+
+int grobo_i_holders_find(const char *device, grobo_i_holder *holders, int max)
+{
+    struct stat node;
+    int n = 0;
+
+    if (is_port(device, &node)) {
+        n = find_holders(&node, true, holders, max);
+        n = n > 0 ? n : find_holders(&node, false, holders, max);
+    }
+    return n;
+}
+
+int grobo_i_holder_end(const char *device, const grobo_i_holder *holder)
+{
+    const grobo_i_process process = {.pid = holder->pid};
+    struct stat node;
+    grobo_i_holder now;
+    int pidfd = grobo_i_posix_open_process(holder->pid);
+    int r;
+
+    if (pidfd < 0) {
+        return pidfd;
+    }
+    /* From here on the number is that of this process, or of nobody. */
+    if (!is_port(device, &node) || !look_at(holder->pid, &node, false, &now) ||
+        now.user != holder->user || now.guard != holder->guard) {
+        r = GROBO_ERR_NOENT;
+    } else if (grobo_i_process_look(&process, false) == 1) {
+        r = GROBO_ERR_STATE;
+    } else {
+        r = grobo_i_posix_signal(pidfd, now.guard ? GUARD_SIGNAL : SIGTERM);
+    }
+    (void)close(pidfd);
+    return r;
+}
+
 bool grobo_i_posix_exclusive_sticks(dev_t device)
 {
     /* Unix 98 pty slaves: Documentation/admin-guide/devices.txt of the kernel. */
@@ -165,6 +244,21 @@ bool grobo_i_posix_exclusive_sticks(dev_t device)
 }
 
 #else
+
+int grobo_i_holders_find(const char *device, grobo_i_holder *holders, int max)
+{
+    (void)device;
+    (void)holders;
+    (void)max;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+int grobo_i_holder_end(const char *device, const grobo_i_holder *holder)
+{
+    (void)device;
+    (void)holder;
+    return GROBO_ERR_UNSUPPORTED;
+}
 
 int grobo_i_posix_owner(const char *device, char *name, size_t name_bytes, bool *locked)
 {

@@ -98,6 +98,17 @@ bool grobo_i_posix_exclusive_sticks(dev_t device);
 /* grobo_port_owner() that also tells whether the owner holds the lock (flock). */
 int grobo_i_posix_owner(const char *device, char *name, size_t name_bytes, bool *locked);
 
+/* This thread's rights on files are those of the user and his group. GROBO_OK, GROBO_ERR_PERM,
+ * GROBO_ERR_UNSUPPORTED. */
+int grobo_i_posix_be_user(uid_t user, gid_t group);
+
+/* Sends a signal to a process behind a pidfd. GROBO_OK, GROBO_ERR_NOENT, GROBO_ERR_PERM,
+ * GROBO_ERR_UNSUPPORTED. */
+int grobo_i_posix_signal(int pidfd, int number);
+
+/* A pidfd, or GROBO_ERR_NOENT, GROBO_ERR_UNSUPPORTED (a kernel before 5.3), GROBO_ERR_NOMEM. */
+int grobo_i_posix_open_process(int pid);
+
 /* ---- of a guard process, guard.c ---- */
 
 /* Closes every descriptor from this one on. */
@@ -111,6 +122,13 @@ int grobo_i_posix_watch_death(pid_t pid);
 
 /* What grobo_i_posix_is_stopped() reads, or -1. */
 int grobo_i_posix_watch_state(pid_t pid);
+
+/* By this one a guard is asked to stop the robot. */
+#define GUARD_SIGNAL SIGUSR1
+
+/* A descriptor that becomes readable when that comes, from now on, or -1; and takes it. */
+int grobo_i_posix_watch_asked(void);
+void grobo_i_posix_take_asked(int fd);
 
 /* Is the process stopped by a signal? Not by a debugger. */
 bool grobo_i_posix_is_stopped(int fd);

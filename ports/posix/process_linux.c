@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "ports/common/notes.h"
+#include "ports/posix/posix.h"
 
 #ifdef __linux__
 
@@ -12,6 +13,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/fsuid.h>
 #include <sys/syscall.h>
 
 /* proc(5), /proc/PID/stat: field 3 is the state, field 22 the start time in ticks. */
@@ -49,6 +51,48 @@ static int open_process(int pid)
     errno = ENOSYS;
     return -1;
 #endif
+}
+
+int grobo_i_posix_open_process(int pid)
+{
+    int pidfd = open_process(pid);
+
+    if (pidfd >= 0) {
+        return pidfd;
+    }
+    return errno == ESRCH || errno == EINVAL ? GROBO_ERR_NOENT
+           : errno == ENOSYS                 ? GROBO_ERR_UNSUPPORTED
+                                             : GROBO_ERR_NOMEM;
+}
+
+int grobo_i_posix_signal(int pidfd, int number)
+{
+#ifdef SYS_pidfd_send_signal
+    if (syscall(SYS_pidfd_send_signal, pidfd, number, NULL, 0) == 0) {
+        return GROBO_OK;
+    }
+    return errno == ESRCH   ? GROBO_ERR_NOENT
+           : errno == EPERM ? GROBO_ERR_PERM
+                            : GROBO_ERR_UNSUPPORTED;
+#else
+    (void)pidfd;
+    (void)number;
+    return GROBO_ERR_UNSUPPORTED;
+#endif
+}
+
+/* Of the thread alone, see setfsuid(2): other threads stay who they are. */
+int grobo_i_posix_be_user(uid_t user, gid_t group)
+{
+    (void)setfsgid(group);
+    (void)setfsuid(user);
+    /* They tell who it was, and an impossible user changes nothing. */
+    if (setfsuid((uid_t)-1) == (int)user && setfsgid((gid_t)-1) == (int)group) {
+        return GROBO_OK;
+    }
+    (void)setfsuid(geteuid());
+    (void)setfsgid(getegid());
+    return GROBO_ERR_PERM;
 }
 
 static int proceed(int pidfd, int pid)
@@ -111,6 +155,26 @@ void grobo_i_process_self(grobo_i_process *self)
 {
     self->pid = (int)getpid();
     self->started = 0;
+}
+
+int grobo_i_posix_open_process(int pid)
+{
+    (void)pid;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+int grobo_i_posix_signal(int pidfd, int number)
+{
+    (void)pidfd;
+    (void)number;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+int grobo_i_posix_be_user(uid_t user, gid_t group)
+{
+    (void)user;
+    (void)group;
+    return GROBO_ERR_UNSUPPORTED;
 }
 
 /* Whether it is stopped is not known here; a process that runs does not mind. */

@@ -156,6 +156,37 @@ int grobo_i_process_look(const grobo_i_process *process, bool wake)
     return alive ? 0 : GROBO_ERR_NOENT;
 }
 
+int grobo_i_holders_find(const char *device, grobo_i_holder *holders, int max)
+{
+    (void)device;
+    (void)holders;
+    (void)max;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+int grobo_i_holder_end(const char *device, const grobo_i_holder *holder)
+{
+    (void)device;
+    (void)holder;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+bool grobo_i_is_root(void)
+{
+    return false;
+}
+
+int grobo_i_note_user_begin(unsigned user, unsigned group)
+{
+    (void)user;
+    (void)group;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+void grobo_i_note_user_end(void)
+{
+}
+
 /* ---- names of a device -------------------------------------------------------------------- */
 
 void grobo_i_device_names_find(const char *device, grobo_i_device_names *names)

@@ -117,6 +117,7 @@ static void estop_refuses_null(void **state)
     REFUSES(grobo_estop_set(NULL, &mark, &cause));
     REFUSES(grobo_estop_clear(NULL, &cause));
     assert_false(grobo_estop_stands(NULL));
+    REFUSES(grobo_estop_force(NULL, GROBO_ESTOP_BY_GUARD));
     REFUSES(grobo_estop_ask(NULL, &mark, &holder));
     REFUSES(grobo_estop_ask(text, &mark, NULL));
 }

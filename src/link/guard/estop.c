@@ -24,6 +24,9 @@ enum { NAME_PART = 180 };
 /* A mark in which no id could be written, for want of room on the disk. */
 static const char nameless[] = "none";
 
+/* Users whose programs have a device at a time, and their processes. */
+enum { USERS_MAX = 4, HOLDERS_MAX = 16 };
+
 /* ---- names of notes ----------------------------------------------------------------------- */
 
 static char *put(char *to, const char *text, size_t size)
@@ -159,6 +162,20 @@ static int set_mark(const char *note, const char *text, grobo_estop *stop, grobo
     return r < 0 ? r : GROBO_OK;
 }
 
+/* Sets all marks of a stop in the directories as they are. Returns the first error. */
+static int set_marks(char note[][NOTE_NAME_BYTES], int n, const char *text, grobo_estop *stop,
+                     grobo_os_cause *cause)
+{
+    int r = GROBO_OK;
+
+    for (int i = 0; i < n; i++) {
+        int error = set_mark(note[i], text, stop, cause);
+
+        r = error < 0 ? error : r;
+    }
+    return r;
+}
+
 /* The answers to marks that are replaced are of no use to anybody. */
 static void forget_answers(const char *note)
 {
@@ -175,8 +192,42 @@ static void forget_answers(const char *note)
     }
 }
 
+/* The processes of other users that have the device, guards left out; 0: the caller is not root. */
+static int find_others(const char *device, grobo_i_holder *others, int max)
+{
+    grobo_i_holder all[HOLDERS_MAX];
+    int n = grobo_i_is_root() ? grobo_i_holders_find(device, all, HOLDERS_MAX) : 0;
+    int n_others = 0;
+
+    for (int i = 0; i < n && n_others < max; i++) {
+        if (!all[i].guard && all[i].user != 0) {
+            others[n_others++] = all[i];
+        }
+    }
+    return n_others;
+}
+
+/* Root's stop is that of every user whose program has the device: it is set beside them, by their
+ * rights. Where that fails, they do not answer. */
+static void set_beside(const grobo_i_holder *others, int n_others, char note[][NOTE_NAME_BYTES],
+                       int n, const char *text, grobo_estop *stop)
+{
+    grobo_os_cause cause;
+
+    for (int i = 0; i < n_others; i++) {
+        grobo_estop theirs = {.places = 0};
+
+        if (grobo_i_note_user_begin(others[i].user, others[i].group) >= 0) {
+            (void)set_marks(note, n, text, &theirs, &cause);
+            grobo_i_note_user_end();
+        }
+        stop->places |= theirs.places << NOTE_FOLDERS;
+    }
+}
+
 int grobo_estop_set(const char *device, grobo_estop *stop, grobo_os_cause *cause)
 {
+    grobo_i_holder others[USERS_MAX];
     grobo_i_device_names names;
     char note[DEVICE_NAMES][NOTE_NAME_BYTES];
     char text[NOTE_TEXT_BYTES];
@@ -201,12 +252,14 @@ int grobo_estop_set(const char *device, grobo_estop *stop, grobo_os_cause *cause
             forget_answers(note[i]);
             size += snprintf(text + size, sizeof text - (size_t)size, "%s\n", note[i]);
         }
-        r = n > 0 ? GROBO_OK : GROBO_ERR_ARG;
-        for (int i = 0; i < n; i++) {
-            int error = set_mark(note[i], text, &made, cause != NULL ? cause : &why);
+        int n_others = find_others(device, others, USERS_MAX);
 
-            r = error < 0 ? error : r;
+        for (int i = 0; i < n_others; i++) {
+            size += snprintf(text + size, sizeof text - (size_t)size, "user %u %u\n",
+                             others[i].user, others[i].group);
         }
+        set_beside(others, n_others, note, n, text, &made);
+        r = n > 0 ? set_marks(note, n, text, &made, cause != NULL ? cause : &why) : GROBO_ERR_ARG;
     }
     if (stop != NULL) {
         *stop = made;
@@ -214,8 +267,9 @@ int grobo_estop_set(const char *device, grobo_estop *stop, grobo_os_cause *cause
     return r;
 }
 
-/* Removes the marks that were set together, as a mark's text lists them. */
-static int clear_group(const char *text, grobo_os_cause *cause)
+/* Removes the marks that were set together, as a mark's text lists them, in the directories as they
+ * are. */
+static int remove_group(const char *text, grobo_os_cause *cause)
 {
     char note[NOTE_NAME_BYTES];
     int r = GROBO_OK;
@@ -230,6 +284,26 @@ static int clear_group(const char *text, grobo_os_cause *cause)
             note[size] = '\0';
             r = strpbrk(note, "/\\") == NULL && grobo_i_note_remove(note, cause) < 0 ? GROBO_ERR_IO
                                                                                      : r;
+        }
+    }
+    return r;
+}
+
+/* The same, and where root has set them beside programs of other users. */
+static int clear_group(const char *text, grobo_os_cause *cause)
+{
+    int r = remove_group(text, cause);
+
+    for (const char *at = strstr(text, "\nuser "); at != NULL; at = strstr(at + 1, "\nuser ")) {
+        unsigned user;
+        unsigned group;
+
+        if (sscanf(at, "\nuser %u %u", &user, &group) == 2 &&
+            grobo_i_note_user_begin(user, group) >= 0) {
+            int error = remove_group(text, cause);
+
+            grobo_i_note_user_end();
+            r = error < 0 ? error : r;
         }
     }
     return r;
@@ -342,11 +416,66 @@ static bool is_final(int answer)
     return answer == GROBO_ESTOP_DONE || answer == GROBO_ESTOP_FAILED;
 }
 
+/* Takes the answer to a stop from the directories as they are. */
+static void take_answer(const grobo_estop *stop, grobo_estop_holder *holder)
+{
+    int answer;
+    int result;
+
+    if (stop != NULL && stop->id[0] != '\0' && read_answer(stop->id, &answer, &result) &&
+        (is_final(answer) || (answer == GROBO_ESTOP_HEARD && holder->pid != 0))) {
+        holder->answer = (grobo_estop_answer)answer;
+        holder->result = result;
+    }
+}
+
+/*
+ * A process of another user that is registered in his directories, and its answer. Only one that
+ * the system shows to have the device counts: a note of his may name any process.
+ */
+static bool ask_other(const grobo_i_device_names *names, const grobo_i_holder *other,
+                      const grobo_estop *stop, grobo_estop_holder *holder)
+{
+    note_walk holders;
+    grobo_i_process process;
+    bool wake = stop != NULL && stop->places >> NOTE_FOLDERS != 0;
+    bool found = false;
+
+    if (grobo_i_note_user_begin(other->user, other->group) < 0) {
+        return false;
+    }
+    walk_notes(&holders, "holder", names);
+    while (!found && next_holder(&holders, &process)) {
+        found = process.pid == other->pid;
+    }
+    if (found) {
+        *holder = (grobo_estop_holder){.answer = GROBO_ESTOP_SILENT, .pid = other->pid};
+        take_answer(stop, holder);
+    }
+    grobo_i_note_user_end();
+    if (found) {
+        holder->stopped = grobo_i_process_look(&process, wake) == 1;
+        holder->resumed = holder->stopped && wake;
+    }
+    return found;
+}
+
+static void ask_others(const char *device, const grobo_i_device_names *names,
+                       const grobo_estop *stop, grobo_estop_holder *holder)
+{
+    grobo_i_holder others[USERS_MAX];
+    int n = find_others(device, others, USERS_MAX);
+
+    for (int i = 0; i < n; i++) {
+        if (ask_other(names, &others[i], stop, holder)) {
+            return;
+        }
+    }
+}
+
 int grobo_estop_ask(const char *device, const grobo_estop *stop, grobo_estop_holder *holder)
 {
     grobo_i_device_names names;
-    int answer;
-    int result;
 
     if (!is_device(device) || holder == NULL) {
         return GROBO_ERR_ARG;
@@ -359,12 +488,33 @@ int grobo_estop_ask(const char *device, const grobo_estop *stop, grobo_estop_hol
     if (find_holder(&names, stop, holder)) {
         holder->answer = GROBO_ESTOP_SILENT;
     }
-    if (stop != NULL && stop->id[0] != '\0' && read_answer(stop->id, &answer, &result) &&
-        (is_final(answer) || (answer == GROBO_ESTOP_HEARD && holder->pid != 0))) {
-        holder->answer = (grobo_estop_answer)answer;
-        holder->result = result;
+    take_answer(stop, holder);
+    if (holder->answer == GROBO_ESTOP_NOBODY) {
+        ask_others(device, &names, stop, holder);
     }
     return GROBO_OK;
+}
+
+int grobo_estop_force(const char *device, grobo_estop_means means)
+{
+    grobo_i_holder holders[HOLDERS_MAX];
+    int reached = 0;
+    int r = GROBO_OK;
+
+    if (!is_device(device) || (unsigned)means > GROBO_ESTOP_BY_SIGTERM) {
+        return GROBO_ERR_ARG;
+    }
+    int n = grobo_i_holders_find(device, holders, HOLDERS_MAX);
+
+    for (int i = 0; i < n; i++) {
+        if (holders[i].guard == (means == GROBO_ESTOP_BY_GUARD)) {
+            int error = grobo_i_holder_end(device, &holders[i]);
+
+            reached += error >= 0;
+            r = error < 0 ? error : r;
+        }
+    }
+    return n < 0 ? n : reached > 0 ? reached : r;
 }
 
 /* ---- a session's side --------------------------------------------------------------------- */

@@ -367,7 +367,7 @@ static void lend(guard_run *run)
 
 static void stop(guard_run *run, grobo_guard_cause cause)
 {
-    guard_policy policy = (guard_policy)run->how.policy;
+    guard_policy policy = cause == GROBO_GUARD_ASKED ? GUARD_ESTOP : (guard_policy)run->how.policy;
     bool may_continue = cause != GROBO_GUARD_DIED;
     int result;
 
@@ -457,8 +457,11 @@ static bool look(guard_run *run)
         end(run);
         return false;
     }
-    if (run->has_port && ((found & GROBO_I_GUARD_STOPPED) != 0 || silent)) {
-        take_over(run, silent ? GROBO_GUARD_SILENT : GROBO_GUARD_STOPPED);
+    if (run->has_port && !run->lent &&
+        (silent || (found & (GROBO_I_GUARD_STOPPED | GROBO_I_GUARD_ASKED)) != 0)) {
+        take_over(run, (found & GROBO_I_GUARD_ASKED) != 0 ? GROBO_GUARD_ASKED
+                       : silent                           ? GROBO_GUARD_SILENT
+                                                          : GROBO_GUARD_STOPPED);
     }
     return true;
 }

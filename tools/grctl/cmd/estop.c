@@ -4,13 +4,15 @@
  *
  * The device is marked first. Then either the port can be had, and the joints are stopped and read
  * back from here; or another program has it, which is asked until it has confirmed the stop. Who
- * exits while it is asked releases the port: then the first way is taken. What was done and what
- * was not is said in one line; only a verified stop under a mark that was written is a success.
+ * exits while it is asked releases the port: then the first way is taken. From a program that does
+ * not obey its guard takes the port; where it has none, it is ended. What was done and what was not
+ * is said in one line; only a verified stop under a mark that was written is a success.
  */
 #include <stdarg.h>
 #include <string.h>
 
 #include <grobo/estop.h>
+#include <grobo/guard.h>
 #include <grobo/port.h>
 
 #include "tools/grctl/cli/config.h"
@@ -25,6 +27,10 @@ enum { OPT_RESET };
  * 10 s).
  */
 enum { AGAIN_US = 20000, SILENT_US = 3000000, HEARD_US = 12000000 };
+/* When the guard of a program is turned to that has the port and does not obey, and how long that
+ * takes at most; the same of the program itself, where no session of this library has the port. */
+enum { GUARD_AFTER_US = 1000000, GUARD_US = GROBO_GUARD_BOUND_US + 500000 };
+enum { END_AFTER_US = 1000000, END_US = 3000000 };
 enum { ROBOTS = 8 };
 
 static const cli_option estop_options[] = {
@@ -39,6 +45,11 @@ typedef struct target {
     int marked; /* GROBO_OK, or why the mark could not be written */
     grobo_os_cause cause;
     grobo_estop_holder holder; /* who has the port, and what it says */
+    bool spared;               /* nobody named it: what has its port may be no robot's program */
+    int forced;                /* the means that come next, see force() */
+    bool guarded, ended;       /* its guard was asked last; it got SIGTERM */
+    int64_t waited_us;         /* since it was asked */
+    int64_t forced_until_us;   /* so long what was done last may take */
     char said[APP_LINE_BYTES]; /* why the port cannot be had */
 } target;
 
@@ -104,8 +115,8 @@ static int fail_silent(const target *t)
     return fail(t, GROBO_ERR_BUSY,
                 "%s: NOT stopped: process %d has the port%s and has not answered in %d s; end it "
                 "('kill -9 %d') and repeat, or switch the robot off",
-                t->device, h->pid, h->resumed ? _(", was resumed") : "", SILENT_US / 1000000,
-                h->pid);
+                t->device, h->pid, h->resumed ? _(", was resumed") : "",
+                (int)(t->waited_us / 1000000), h->pid);
 }
 
 /* The port cannot be had: what its holder says. */
@@ -128,6 +139,12 @@ static int report_holder(const target *t, int error)
         return fail_silent(t);
     case GROBO_ESTOP_NOBODY:
         break;
+    }
+    if (error == GROBO_ERR_BUSY && t->ended) {
+        return fail(t, error,
+                    "%s; NOT stopped, nothing was sent: that program has not ended on SIGTERM; "
+                    "switch the robot off",
+                    t->said);
     }
     if (error == GROBO_ERR_BUSY) {
         return fail(t, error,
@@ -158,6 +175,35 @@ static int64_t patience_us(const target *t, const conn *c)
                                                                                      : 0;
 }
 
+/* How long a program may be silent before a means is due. */
+static int64_t due_us(const target *t, grobo_estop_means means)
+{
+    if (t->marked < 0) {
+        return 0; /* it cannot know */
+    }
+    return means == GROBO_ESTOP_BY_GUARD            ? GUARD_AFTER_US
+           : t->holder.answer == GROBO_ESTOP_SILENT ? SILENT_US
+                                                    : END_AFTER_US;
+}
+
+/* Turns to a program that has the port and does not obey: one means after the other. */
+static void force(target *t, const conn *c)
+{
+    grobo_estop_means means = (grobo_estop_means)t->forced;
+    if (c->open_error != GROBO_ERR_BUSY || t->holder.answer == GROBO_ESTOP_HEARD ||
+        means > GROBO_ESTOP_BY_SIGTERM || t->waited_us < due_us(t, means) ||
+        grobo_now_us() < t->forced_until_us || (means == GROBO_ESTOP_BY_SIGTERM && t->spared)) {
+        return;
+    }
+    t->forced++;
+    if (grobo_estop_force(t->device, means) > 0) {
+        bool by_guard = means == GROBO_ESTOP_BY_GUARD;
+        t->forced_until_us = grobo_now_us() + (by_guard ? GUARD_US : END_US);
+        t->guarded = by_guard;
+        t->ended = !by_guard;
+    }
+}
+
 /* Who is there is not asked: it is to be stopped. False: the holder's answer is all there is. */
 static bool take_port(conn *c, target *t)
 {
@@ -171,7 +217,12 @@ static bool take_port(conn *c, target *t)
         }
         grobo_estop_ask(t->device, &t->stop, &t->holder);
         c->link_error = 0;
-        if (is_over(t->holder.answer) || grobo_now_us() - begin_us >= patience_us(t, c) ||
+        t->waited_us = grobo_now_us() - begin_us;
+        if (!is_over(t->holder.answer)) {
+            force(t, c);
+        }
+        if (is_over(t->holder.answer) ||
+            (t->waited_us >= patience_us(t, c) && grobo_now_us() >= t->forced_until_us) ||
             conn_sleep_until(c, grobo_now_us() + AGAIN_US) < 0) {
             return false;
         }
@@ -185,9 +236,12 @@ static bool take_port(conn *c, target *t)
 /* With the port: the session may have carried it out when it was opened. */
 static int stop_here(conn *c, const target *t)
 {
+    const char *by = t->ended     ? _(", after the end (SIGTERM) of a program that did not obey,")
+                     : t->guarded ? _(", by the guard of a program that did not obey,")
+                                  : "";
     int error = c->estop_ended ? c->estop_result
                                : conn_wait_shown(c, grobo_robot_estop(c->robot), "estop", 0);
-    return error ? fail_verify(t, "", error) : succeed(t, "");
+    return error ? fail_verify(t, by, error) : succeed(t, by);
 }
 
 static int stop_marked(target *t)
@@ -216,7 +270,8 @@ static int mark_busy(void *ctx, const grobo_port_info *info)
     }
     grobo_estop_ask(info->path, NULL, &holder);
     if (busy->all || holder.answer != GROBO_ESTOP_NOBODY) {
-        mark(&busy->t[busy->n++], busy->a, info->path);
+        mark(&busy->t[busy->n], busy->a, info->path);
+        busy->t[busy->n++].spared = holder.answer == GROBO_ESTOP_NOBODY;
     }
     return 0;
 }
@@ -381,9 +436,10 @@ const cli_command cmd_estop = {
         "refuses to move the robot (grctl with exit status 4), until --reset. Then brakes\n"
         "every joint ahead of all else, reads each one back, and repeats what did not take.\n"
         "Where another program has the port, that one stops the robot and confirms it; if it\n"
-        "is stopped itself (Ctrl-Z), it is resumed. Exit status 0 only when the stop is\n"
-        "verified; else the message says what was done and what was not. A robot that stands\n"
-        "may sink: hold it.\n"
+        "is stopped itself (Ctrl-Z), it is resumed. If it does not obey, its guard stops the\n"
+        "robot; if it has none, it gets SIGTERM. The stop of root reaches the programs of all\n"
+        "users. Exit status 0 only when the stop is verified; else the message says what was\n"
+        "done and what was not. A robot that stands may sink: hold it.\n"
         "\n"
         "A mistake on the command line, a bad configuration and a trace that cannot be written\n"
         "are reported after the stop, with their exit status. Signals wait for it.\n",

@@ -261,8 +261,8 @@ int conn_fail(conn *c, int error, const char *doing)
     if (c->link_error == GROBO_ERR_STALLED) {
         return app_fail_trip(
             c->a, GROBO_TRIP_HOST_STALL,
-            "%s: stopped for safety: host stalled: grctl was stopped by a signal, and "
-            "the guard stopped the robot",
+            "%s: stopped for safety: host stalled: grctl was stopped or held up, or did not obey "
+            "an emergency stop, and the guard stopped the robot",
             doing);
     }
     if (c->link_error) {
