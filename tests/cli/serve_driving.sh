@@ -9,6 +9,7 @@ check "what is based on an old state is refused" pages stale
 check "a body that is not as it should be is refused, and names what is" pages fields
 check "what was held up on its way acts on no newer situation" pages delayed
 check "a stop is carried out whatever its body is" pages unreadable
+check "a stop is heard before there is a robot" pages first_of_all
 check "a stop latches, is confirmed by each joint, is taken back" pages stopping
 check "a stop for safety is confirmed by each joint" pages tripped
 check "a stop on the way of a move, a jog, an approach" pages on_the_way

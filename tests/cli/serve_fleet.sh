@@ -17,6 +17,7 @@ fi
 
 check "robots are shown, who goes is seen to go" fleet shown
 check "a stop of all stands, is told robot by robot, is released" fleet stopping
+check "a stop is heard before there is a broker" fleet first_of_all
 check "a stop while the broker is away goes out when it is back" fleet broker_away
 check "hosts, origins and tokens are judged as elsewhere" fleet walls
 check "what strangers say is bounded" fleet strangers

@@ -920,6 +920,84 @@ def unreadable():
         same(page.state()["stop"]["by"], "Ben")
 
 
+def free_port():
+    """Two ports in a row that nobody has."""
+    while True:
+        with socket.socket() as one, socket.socket() as two:
+            one.bind(("127.0.0.1", 0))
+            port = one.getsockname()[1]
+            try:
+                two.bind(("127.0.0.1", port + 1))
+                return port
+            except (OSError, OverflowError):
+                pass
+
+
+def first_of_all():
+    """Both ports are open, and a stop is answered, before there is a robot; it holds when it comes."""
+    for path, answered in (("/stop", 204), ("/api/estop", 200)):
+        port, token = free_port(), "0123456789abcdef"
+        with tempfile.TemporaryDirectory() as folder:
+            link = os.path.join(folder, "robot")
+            with socket.create_server(("127.0.0.1", 0)) as nobody:  # takes a line, and says nothing
+                device = f"tcp:127.0.0.1:{nobody.getsockname()[1]}"
+                server = subprocess.Popen([GRCTL, "-d", device, "serve", "--port", str(port)],
+                                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                          env={**os.environ, "GRCTL_TOKEN": token})
+                until = time.monotonic() + PATIENCE_S
+                at = port + 1 if path == "/stop" else port
+                while True:
+                    try:
+                        got = raw(at, f"POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{at}\r\n"
+                                      "Content-Length: 2\r\nConnection: close\r\n\r\n{}".encode())
+                        break
+                    except ConnectionRefusedError:
+                        assert server.poll() is None and time.monotonic() < until, "no port"
+                        time.sleep(0.01)
+                same(int(got.split()[1]), answered, path)
+                other = raw(port, f"GET /api/state HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n"
+                                  "Connection: close\r\n\r\n".encode())
+                same(int(other.split()[1]), 503, "there is no robot yet")
+                assert server.poll() is None
+                server.terminate()
+                server.communicate()
+        # And one that is there a moment later.
+        with tempfile.TemporaryDirectory() as folder:
+            link = os.path.join(folder, "robot")
+            sim = subprocess.Popen([GRCTL, "sim", "--link", link], stdout=subprocess.DEVNULL)
+            while not os.path.exists(link):
+                time.sleep(0.01)
+            os.kill(sim.pid, signal.SIGSTOP)  # it does not answer yet
+            server = Server(device=link, env={"GRCTL_TOKEN": token})
+            server.words[server.words.index("--port") + 1] = str(port)
+            pressed = threading.Event()
+
+            def press(port=port, path=path, pressed=pressed, sim=sim):
+                at = port + 1 if path == "/stop" else port
+                while not pressed.is_set():
+                    try:
+                        raw(at, f"POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{at}\r\n"
+                                "Content-Length: 2\r\nConnection: close\r\n\r\n{}".encode())
+                        pressed.set()
+                    except ConnectionRefusedError:
+                        time.sleep(0.01)
+                os.kill(sim.pid, signal.SIGCONT)
+
+            thread = threading.Thread(target=press)
+            thread.start()
+            with server:
+                assert pressed.is_set()
+                page = Page(server)
+                state = page.wait("confirmed", lambda s: s["stop"]["confirmed"])
+                same(state["stop"]["kind"], "stop" if path == "/stop" else "estop")
+                page.take()
+                expect(409, "latched", page.target, "move", pose="init")
+                page.target("reset")
+            thread.join()
+            sim.terminate()
+            sim.wait()
+
+
 def stopping():
     """A stop latches, is confirmed joint by joint, takes the lease, and is taken back."""
     with Server() as server:

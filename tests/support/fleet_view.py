@@ -12,7 +12,8 @@ import sys
 import tempfile
 import time
 
-from cockpit import GRCTL, PATIENCE_S, Page, Refused, Server, Stream, expect, raw, same
+from cockpit import (GRCTL, PATIENCE_S, Page, Refused, Server, Stream, expect, raw, same,
+                     free_port as ports_in_a_row)
 
 HOSTS = {"stage": ["a", "b"], "lab": ["c", "d"]}
 
@@ -209,6 +210,29 @@ def stopping():
         view.post("stop")
         if left:  # a busy machine may have broken it off, and that is waited for
             view.wait("who left is not waited for", lambda s: s["confirmed"])
+
+
+def first_of_all():
+    """The stop port is open before the broker has answered, and says what it cannot do."""
+    ports = ports_in_a_row()
+    with socket.create_server(("127.0.0.1", 0)) as nobody:  # takes a connection, and says nothing
+        url = f"mqtt://127.0.0.1:{nobody.getsockname()[1]}"
+        server = subprocess.Popen([GRCTL, "serve", "--broker", url, "--port", str(ports)],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        until = time.monotonic() + PATIENCE_S
+        while True:
+            try:
+                got = raw(ports + 1, f"POST /stop HTTP/1.1\r\nHost: 127.0.0.1:{ports + 1}\r\n"
+                                     "Content-Length: 2\r\nConnection: close\r\n\r\n{}".encode())
+                break
+            except ConnectionRefusedError:
+                assert server.poll() is None and time.monotonic() < until, "no port"
+                time.sleep(0.01)
+        same(int(got.split()[1]), 503)
+        assert "use the switches" in got, got
+        assert server.poll() is None, "it waits for the broker still"
+        server.terminate()
+        server.communicate()
 
 
 def broker_away():

@@ -370,17 +370,22 @@ int leader_open(leader *l, app *a, const mqtt_config *broker, const char *group,
     return connect_it(l, broker);
 }
 
-int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group, const char *host,
-                 const char *stop)
+int leader_meet(leader *l)
 {
-    int status = leader_open(l, a, broker, group, stop);
-    l->host = host;
-    status = status ? status : await_broker(l);
+    int status = await_broker(l);
     if (!status) {
         hear_retained(l);
         status = l->up ? EXIT_DONE : fail_broker(l, l->first ? _(": use the switches") : "");
     }
     return l->first && l->ups ? EXIT_DONE : status; /* who stops goes on trying */
+}
+
+int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group, const char *host,
+                 const char *stop)
+{
+    int status = leader_open(l, a, broker, group, stop);
+    l->host = host;
+    return status ? status : leader_meet(l);
 }
 
 void leader_end(leader *l)

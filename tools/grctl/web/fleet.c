@@ -563,9 +563,13 @@ static int run(view *v, app *a)
     if (!v->tick) {
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "serve");
     }
+    on_tick(-1, 0, v);
+    status = leader_meet(&v->l); /* the ports are open: a stop of meanwhile goes out first */
+    if (status) {
+        return status;
+    }
     v->l.on_event = on_fleet_event;
     leader_listen(&v->l, "state");
-    on_tick(-1, 0, v);
     door_announce(a, v->http);
     while (!v->l.link.signal) {
         (void)leader_wait(&v->l, INT64_C(3600000000), NULL);

@@ -432,8 +432,12 @@ void serve_request(void *ctx, http_request *r)
     const plain *p = find_plain(r);
     const verb *v = find_verb(r);
     char name[LIBRARY_NAME_BYTES];
-    bool file;
-    if (find_motion(r, name, &file)) {
+    bool file, motion = find_motion(r, name, &file);
+    if (!s->ready && (motion || v || (p && p->rule != WALL_STOP))) {
+        http_refuse(r, 503, "closed", "serve: the robot is being opened; a stop is heard already");
+        return;
+    }
+    if (motion) {
         serve_motion(s, r, name, file);
         return;
     }

@@ -239,18 +239,24 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
-static int start(serve *s)
+/* Before anything else: whoever presses STOP while the robot is being opened is heard. */
+static int open_ports(serve *s)
 {
-    http_config config = {.base = s->c.base,
+    if (conn_link_init(s->a->link) != GROBO_OK) {
+        return app_fail_error(s->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "serve");
+    }
+    http_config config = {.base = s->a->link->base,
                           .rule = serve_rule,
                           .serve = serve_request,
                           .early = serve_early,
                           .ctx = s};
     int status = door_open(s->a, s->options, &config, &s->events);
-    if (status) {
-        return status;
-    }
     s->http = s->events.to;
+    return status;
+}
+
+static int start(serve *s)
+{
     s->tick = conn_every(s->c.base, SERVE_STATE_US, on_tick, s);
     s->worker = worker_new(s->c.base);
     s->library = library_new(s->a, s->options->folder);
@@ -277,7 +283,6 @@ static int run(serve *s)
     c->ctx = s;
     c->on_event = on_event;
     s->model = conn_model(c);
-    s->began_us = s->events.began_us = grobo_now_us();
     s->load_pct = s->load_hz = NAN;
     grobo_robot_config config = serve_config(s);
     int error = grobo_session_configure(c->session, &config);
@@ -285,12 +290,26 @@ static int run(serve *s)
     if (status) {
         return status;
     }
+    s->ready = true;
+    stops_begin(s);
     on_tick(-1, 0, s); /* there is a state from the first request on */
     door_announce(s->a, s->http);
     error = conn_wait_until(c, NULL);
     c->moving = c->up && serve_is_moving(s);
     c->on_event = NULL; /* nobody is told any more */
     return error ? conn_fail(c, error, "serve") : EXIT_DONE;
+}
+
+static int open_and_run(serve *s)
+{
+    int status = conn_open(&s->c, s->a);
+    if (!status) {
+        status = run(s);
+    }
+    finish(s);
+    status = conn_close(&s->c, status);
+    player_free(s); /* not before: the motion was played until then */
+    return status;
 }
 
 int web_run(app *a, const web_options *options)
@@ -302,14 +321,18 @@ int web_run(app *a, const web_options *options)
     memset(&s, 0, sizeof s);
     s.a = a;
     s.options = options;
+    s.began_us = s.events.began_us = grobo_now_us();
     a->moves = a->reconnects = true;
-    int status = conn_open(&s.c, a);
+    conn_link *lent = a->link; /* a shell's */
+    a->link = lent ? lent : &s.link;
+    int status = open_ports(&s);
     if (!status) {
-        status = run(&s);
+        status = open_and_run(&s);
+    } else {
+        finish(&s);
+        conn_link_deinit(&s.link);
     }
-    finish(&s);
-    status = conn_close(&s.c, status);
-    player_free(&s); /* not before: the motion was played until then */
+    a->link = lent;
     a->reconnects = false;
     return status;
 }

@@ -34,6 +34,8 @@ typedef struct serve_job {
 typedef struct serve serve;
 struct serve {
     conn c;
+    conn_link link; /* its loop, from before the robot is opened */
+    bool ready;     /* the robot is there: before that only a stop is answered */
     app *a;
     const web_options *options;
     const grobo_model *model;

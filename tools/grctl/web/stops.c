@@ -86,7 +86,9 @@ int stops_ask(serve *s, const char *by, bool estop)
         t->at_us = grobo_now_us();
         memset(t->joints, 0, sizeof t->joints);
     }
-    if (estop && news) {
+    if (!s->c.robot) { /* not yet: stops_begin() */
+        result = GROBO_OK;
+    } else if (estop && (news || !s->ready)) {
         result = grobo_robot_estop(s->c.robot);
     } else if (!t->estop) { /* again: a frame may have been lost */
         (void)grobo_robot_stop(s->c.robot, true);
@@ -147,21 +149,37 @@ void stops_on_event(serve *s, const grobo_event *event)
     }
 }
 
-void stops_look(serve *s)
+void stops_begin(serve *s)
 {
     stops *t = &s->stops;
-    grobo_joint_mask missing = t->latched ? unconfirmed(s) : 0;
-    if (t->untold && grobo_now_us() - t->at_us > STOPS_UNTOLD_US) {
-        tell_stop(s);
+    if (t->latched) {
+        t->at_us = grobo_now_us();
+        t->held = false;
+        (void)(t->estop ? grobo_robot_estop(s->c.robot) : grobo_robot_stop(s->c.robot, true));
     }
-    if (!t->latched || !s->c.up) {
-        return;
-    }
-    /* The engine refuses too, from when it stands: once it does, the frame that stops is refused
-     * as well where it still waits for the line. */
+}
+
+/* The engine refuses too, from when it stands: once it does, the frame that stops is refused
+ * as well where it still waits for the line. */
+static void hold(serve *s)
+{
+    stops *t = &s->stops;
     if (t->latched && !t->held && !t->estop && !grobo_robot_moving(s->c.robot)) {
         t->held = grobo_robot_latch(s->c.robot) == GROBO_OK;
     }
+}
+
+void stops_look(serve *s)
+{
+    stops *t = &s->stops;
+    grobo_joint_mask missing = s->ready ? unconfirmed(s) : 0;
+    if (t->untold && grobo_now_us() - t->at_us > STOPS_UNTOLD_US) {
+        tell_stop(s);
+    }
+    if (!t->latched || !s->ready || !s->c.up) {
+        return;
+    }
+    hold(s);
     if (missing && !t->reading && grobo_now_us() - t->at_us > STOPS_ON_ITS_WAY_US) {
         int job = grobo_robot_sense(s->c.robot, missing, GROBO_SENSE_GOAL);
         t->reading = job > 0 ? job : 0;

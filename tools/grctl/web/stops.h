@@ -36,6 +36,8 @@ typedef struct stops {
  * may come again with its name. Returns the number of a job, 0, or an error.
  */
 int stops_ask(serve *s, const char *by, bool estop);
+/* The robot is there: a stop that was asked for before is carried out. */
+void stops_begin(serve *s);
 /* From each reading, each end of a job, and 30 times a second: confirms, latches. */
 void stops_on_event(serve *s, const grobo_event *event);
 void stops_look(serve *s);
