@@ -60,6 +60,17 @@ static void on_session(void *ctx, grobo_session *session, grobo_session_event ev
     link->news |= !link->user && link->link_error;
 }
 
+static void note_halted(conn *c, grobo_joint_mask failed)
+{
+    c->unstopped = failed;
+    if (failed) {
+        app_note(c->a,
+                 "stopped, but joints cannot be read back and may still move: %d; switch the robot "
+                 "off",
+                 grobo_joints_count(failed));
+    }
+}
+
 static void on_robot(void *ctx, const grobo_event *event)
 {
     conn_link *link = ctx;
@@ -85,11 +96,8 @@ static void on_robot(void *ctx, const grobo_event *event)
     if (event->kind == GROBO_EVENT_TRIP) {
         c->trip = event->u.trip;
     }
-    if (event->kind == GROBO_EVENT_HALTED && event->u.halted.failed) {
-        app_note(c->a,
-                 "stopped, but joints cannot be read back and may still move: %d; switch the robot "
-                 "off",
-                 grobo_joints_count(event->u.halted.failed));
+    if (event->kind == GROBO_EVENT_HALTED) {
+        note_halted(c, event->u.halted.failed);
     }
     if (c->on_event) {
         c->on_event(c, event);

@@ -78,7 +78,8 @@ struct conn {
     grobo_trip_info trip; /* why the engine stopped, if it did */
     bool estop_ended;     /* an emergency stop was carried out, with this result: */
     int estop_result;
-    int open_error; /* why it could not be opened, 0: it was not tried, or it could */
+    grobo_joint_mask unstopped; /* joints of the last stop that could not be read back */
+    int open_error;             /* why it could not be opened, 0: it was not tried, or it could */
     bool up;        /* the line is open, and the robot has answered where that was asked */
     bool moving;    /* a motion is or may be under way; the exit policy ends it */
     bool leaving;   /* the exit policy is being carried out: signals wait */

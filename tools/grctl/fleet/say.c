@@ -251,8 +251,9 @@ void say_stopped(agent *g, const agent_group *group)
     for (int i = 0; i < g->all.n; i++) {
         const seat *s = &g->all.seats[i];
         bool there = s->is_open && s->c.up && !s->c.link_error;
-        bool sure = there && (agent_brakes(group) ? s->c.estop_ended && s->c.estop_result >= 0
-                                                  : !grobo_robot_moving(s->c.robot));
+        bool sure =
+            there && (agent_brakes(group) ? s->c.estop_ended && s->c.estop_result >= 0
+                                          : !grobo_robot_moving(s->c.robot) && s->c.unstopped == 0);
         json_array_append_new(
             robots, json_pack("{s:s,s:b,s:b}", "name", s->name, "there", there, "stopped", sure));
     }
