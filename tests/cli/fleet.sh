@@ -346,6 +346,9 @@ two_at_once() {
         '{"file":"greet.pseq"}' &&
         answered '"nothing was prepared" in lines[0]["message"]' one start \
             '{"of":"00112233445566778899aabbccddeeff"}' at_ms=500 &&
+        answered '"nothing was prepared" in lines[0]["message"]' one abort \
+            '{"of":"00112233445566778899aabbccddeeff"}' &&
+        answered '"nothing was prepared" in lines[0]["message"]' one abort '{}' &&
         answered 'lines[0]["code"] == "busy"' one put '{"file":"y.m","text":""}' && moves
     two_status=$?
     kill -INT "$play"

@@ -147,8 +147,19 @@ says_switches() {
     written "$work/err" "127.0.0.1: $2: nothing is stopped; use the switches" &&
         kill -0 $stopper
 }
+"$GRCTL" fleet log --broker "$broker" >"$work/log.out" 2>"$work/log.err" </dev/null 3>&- &
+log=$!
+echo $log >>"$work/pids"
+logs() { # what it hears is told; a stop is heard
+    fleet stop --group both >/dev/null 2>&1 && fleet reset --group both >/dev/null 2>&1 &&
+        grep -q '^one: released' "$work/log.out"
+}
+check "a log hears what agents say" wait_for logs
 kill "$broker_pid"
 wait "$broker_pid"
+check "and says that the broker is away" written "$work/log.err" 'the broker is away: '
+kill -INT $log
+wait $log
 dead() {
     says_switches "$port" 'the broker cannot be reached' && begin_open_broker && {
         wait "$stopper"

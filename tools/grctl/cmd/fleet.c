@@ -593,11 +593,25 @@ static void say_event(leader *l, const peer *p, json_t *event)
     output_flush();
 }
 
+static bool is_up(const leader *l)
+{
+    return l->up;
+}
+
+static bool is_away(const leader *l)
+{
+    return !l->up;
+}
+
+/* Nothing is heard while the broker is away: that is told. */
 static int run_log(leader *l)
 {
     l->on_event = say_event;
     while (!l->link.signal) {
-        (void)leader_wait(l, 3600000000, NULL);
+        if (leader_wait(l, 3600000000, is_away)) {
+            app_note(l->a, "the broker is away: %s", l->why);
+            (void)leader_wait(l, 3600000000, is_up);
+        }
     }
     return EXIT_SIGNAL + l->link.signal;
 }

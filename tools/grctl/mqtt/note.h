@@ -7,6 +7,8 @@
 #ifndef GRCTL_MQTT_NOTE_H
 #define GRCTL_MQTT_NOTE_H
 
+#include <stdint.h>
+
 #include "tools/grctl/mqtt/mqtt.h"
 
 struct evbuffer;
