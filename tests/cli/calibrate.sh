@@ -139,6 +139,26 @@ check "it was never calibrated" fails 1 "never calibrated, offset is 0.*'grctl c
     on_robot move shoulder_pan 5
 check "it is not switched on" fails 1 "never calibrated" on_robot servo on
 check "it is made limp" exits 0 on_robot servo off
+# Its ids are right: nothing else is said of them.
+new_arm() {
+    exits 1 on_robot doctor && ! grep 'two servos\|NEW --flash' "$work/out" || return 1
+    [ "$(grep -c '^BAD .*: its servo was never calibrated, offset is 0 as from the factory$' \
+        "$work/out")" -eq 6 ] || return 1
+    [ "$(grep -c -e "-> 'grctl calibrate' does it$" "$work/out")" -eq 6 ]
+}
+check "doctor says what a new arm needs" new_arm
+status_says_why() {
+    exits 1 on_robot status && [ "$(grep -c "^motor [1-6] ([a-z_]*): its servo was never \
+calibrated, offset is 0 as from the factory; 'grctl calibrate' does it$" "$work/err")" -eq 6 ]
+}
+check "so does status" status_says_why
+setup_says_why() {
+    XDG_CONFIG_HOME="$work/new-home" exits 0 on_robot --yes setup &&
+        grep -q "^  shoulder_pan .*its servo was never calibrated" "$work/err" &&
+        grep -q 'has its name, but 6 of its 6 joints cannot move yet' "$work/err" &&
+        ! grep '^done' "$work/err"
+}
+check "and setup, which is not done" setup_says_why
 check "it is shown" exits 1 on_robot --json status
 check "with its heat, without an angle" \
     grep -q '"angle_deg":null.*"torque":"off".*"temperature_c":[23]' "$work/out"

@@ -15,6 +15,8 @@
 #include "tools/grctl/servo/family.h"
 
 enum { READ_BYTES = 30 /* the longest */, NAME_BYTES = 16, FIX_BYTES = 512 };
+/* How often a servo is asked again whose reply came broken, and how many of those show two. */
+enum { ASKED_AGAIN = 8, BROKEN_AGAIN = 2 };
 
 typedef struct patient {
     checkup k;
@@ -167,6 +169,40 @@ static bool check_reply(patient *p, const char *device)
 
 /* ---- the servos ------------------------------------------------------------------------------ */
 
+/* Asking again may hide that two talk at once. */
+static uint64_t broken_replies(const patient *p)
+{
+    return grobo_robot_get_bus_stats(p->c.robot)->bad_sums;
+}
+
+/* Two servos that answer at once break each other's replies, again and again; noise breaks one. */
+static bool break_each_other(patient *p, int id)
+{
+    const grobo_servo_register *reg =
+        grobo_servo_register_of(family_servo(grobo_robot_driver(p->c.robot), id), GROBO_ROLE_MODEL);
+    uint8_t bytes[4];
+    int n = 0;
+    for (int i = 0; i < ASKED_AGAIN && reg && !p->c.signal && !p->c.link_error; i++) {
+        uint64_t broken = broken_replies(p);
+        int error = servos_read(&p->c, id, reg->address, reg->bytes, bytes);
+        n += broken_replies(p) > broken || (error && error != GROBO_ERR_TIMEOUT);
+    }
+    return n >= BROKEN_AGAIN;
+}
+
+/* A servo that answers, but is set up for another joint, or as it left its factory. */
+static void say_setup(patient *p, const char *name, int joint)
+{
+    const char *who = p->model->joints[joint].name;
+    conn_setup why;
+    if (conn_setup_of(&p->c, joint, &why)) {
+        checkup_found(&p->k, name, why.fix, "%s: %s", who, why.fact);
+    } else {
+        checkup_found(&p->k, name, "compare its registers with the robot's file: servo-get",
+                      "%s: %s", who, app_error_text(GROBO_ERR_SETUP));
+    }
+}
+
 static void say_silent(patient *p, const char *name, int joint, int error)
 {
     const grobo_joint *j = &p->model->joints[joint];
@@ -175,12 +211,15 @@ static void say_silent(patient *p, const char *name, int joint, int error)
         snprintf(fix, sizeof fix, _("push its cable in; has it another id? grctl%s scan"),
                  app_global(p->k.a, GLOBAL_WIRING)->choice ? " --wiring bus" : "");
         checkup_found(&p->k, name, fix, "%s does not answer", j->name);
-    } else {
+    } else if (conn_is_of_reply(error) && break_each_other(p, j->motor)) {
         snprintf(fix, sizeof fix,
                  _("unplug all servos but one of id %d, and: grctl servo-set %d id NEW --flash"),
                  j->motor, j->motor);
         checkup_found(&p->k, name, fix, "%s answers, but: %s; two servos with id %d?", j->name,
                       app_error_text(error), j->motor);
+    } else {
+        checkup_found(&p->k, name, "look at its cable and plugs, and run doctor again",
+                      "%s: a reply came broken: %s", j->name, app_error_text(error));
     }
 }
 
@@ -258,12 +297,6 @@ static void check_model(patient *p, const char *name, int joint, const grobo_ser
     }
 }
 
-/* Asking again may hide that two talk at once. */
-static uint64_t broken_replies(const patient *p)
-{
-    return grobo_robot_get_bus_stats(p->c.robot)->bad_sums;
-}
-
 static void check_servo(patient *p, int joint)
 {
     const grobo_joint *j = &p->model->joints[joint];
@@ -286,6 +319,11 @@ static void check_servo(patient *p, int joint)
         error = grobo_robot_joint(p->c.robot, joint, &i);
     }
     broken = broken_replies(p) - broken;
+    if (error == GROBO_ERR_SETUP && grobo_robot_joint(p->c.robot, joint, &i) == GROBO_OK) {
+        keep_extremes(p, &i.state);
+        say_setup(p, name, joint);
+        return;
+    }
     if (error || broken) {
         say_silent(p, name, joint, broken && !error ? GROBO_ERR_CHECKSUM : error);
         return;

@@ -27,6 +27,19 @@ static void show(conn *c, grobo_joint_mask joints)
                              "joints", render_joints_json(c, joints), "link", conn_link_json(c)));
 }
 
+/* Why a joint is shown as not set up, and what fixes it: once, not at each round. */
+static void say_setups(const conn *c, grobo_joint_mask joints)
+{
+    const grobo_model *model = conn_model(c);
+    conn_setup why;
+    for (int j = 0; j < model->n_joints && !app_option(c->a, OPT_WATCH)->given; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) && conn_setup_of(c, j, &why)) {
+            app_note(c->a, "motor %d (%s): %s; %s", model->joints[j].motor, model->joints[j].name,
+                     why.fact, why.fix);
+        }
+    }
+}
+
 /* One round; the exit status: a joint that stays silent is shown, and makes it 1. */
 static int sense_and_show(conn *c, grobo_joint_mask joints)
 {
@@ -35,6 +48,7 @@ static int sense_and_show(conn *c, grobo_joint_mask joints)
         return conn_fail(c, error, "status");
     }
     show(c, joints);
+    say_setups(c, joints);
     return error ? EXIT_ROBOT : EXIT_DONE;
 }
 

@@ -164,6 +164,15 @@ void conn_trip_value(const grobo_trip_info *t, char *text, size_t text_bytes);
 /* Whether an error says that a reply did not come, or came broken. */
 bool conn_is_of_reply(int error);
 
+/* What is set up otherwise at a joint's servo than the joint needs, and what fixes it. */
+typedef struct conn_setup {
+    char fact[256]; /* register, value, what is wanted */
+    char fix[256];
+} conn_setup;
+
+/* False: nothing is, by what was read of it last. */
+bool conn_setup_of(const conn *c, int joint, conn_setup *s);
+
 /* Of conn_fail(): what the job's joint did. The prefix ("init: ") is put before that. */
 int conn_fail_job(conn *c, int error, const char *prefix);
 

@@ -149,53 +149,67 @@ static int fail_reply(conn *c, int error, int id, const char *prefix, const char
     return status;
 }
 
-/* What is wrong with a servo, and what puts it right. */
-static void setup_text(const grobo_driver *driver, int joint, const grobo_setup_fault *fault,
-                       char *text, size_t capacity)
+/* Of a register with a wrong value. */
+static void setup_of_value(const grobo_driver *driver, int joint, const grobo_setup_fault *fault,
+                           conn_setup *s)
 {
     const int id = driver->model->joints[joint].motor;
     const char *name = fault->reg->name;
     const bool calibrates = driver->model->joints[joint].calibrated;
     const bool is_min = fault->reg->role == GROBO_ROLE_MIN_POSITION;
     const bool is_max = fault->reg->role == GROBO_ROLE_MAX_POSITION;
-    const grobo_servo_model *servo = family_servo(driver, id);
-    if (fault->low > fault->high) {
-        snprintf(text, capacity,
-                 _("its servo was never calibrated, %s is %d as from the factory; "
-                   "'grctl calibrate' does it"),
-                 name, (int)fault->found);
-    } else if (fault->reg->role == GROBO_ROLE_MODEL) {
-        const grobo_servo_model *other = family_numbered(driver, (uint16_t)fault->found);
-        snprintf(text, capacity, _("its servo is %s (%d), not %s (%d); say so in the robot file"),
-                 other ? other->name : _("another"), (int)fault->found, servo->name, servo->number);
-    } else {
-        snprintf(text, capacity, _("%s is %d, %d%s is wanted; 'grctl servo-set %d %s %d%s'%s"),
-                 name, (int)fault->found, (int)(is_min ? fault->high : fault->low),
-                 fault->low == fault->high ? ""
-                 : is_min                  ? _(" or less")
-                                           : _(" or more"),
-                 id, name, (int)(is_min ? fault->high : fault->low),
-                 servo->table->keeps == GROBO_KEEPS_LIMP ? "" : " --flash",
-                 calibrates && (is_min || is_max) ? _(" or 'grctl calibrate' sets it")
-                 : is_min || is_max               ? _(" sets it, or narrow limits_deg")
-                 : fault->reg->role == GROBO_ROLE_OFFSET
-                     ? _(" sets it, or say 'calibrated: true' in the robot file")
-                     : _(" sets it"));
+    const int wanted = (int)(is_min ? fault->high : fault->low);
+    snprintf(s->fact, sizeof s->fact, _("%s is %d, %d%s is wanted"), name, (int)fault->found,
+             wanted,
+             fault->low == fault->high ? ""
+             : is_min                  ? _(" or less")
+                                       : _(" or more"));
+    snprintf(s->fix, sizeof s->fix, _("'grctl servo-set %d %s %d%s'%s"), id, name, wanted,
+             family_servo(driver, id)->table->keeps == GROBO_KEEPS_LIMP ? "" : " --flash",
+             calibrates && (is_min || is_max) ? _(" or 'grctl calibrate' sets it")
+             : is_min || is_max               ? _(" sets it, or narrow limits_deg")
+             : fault->reg->role == GROBO_ROLE_OFFSET
+                 ? _(" sets it, or say 'calibrated: true' in the robot file")
+                 : _(" sets it"));
+}
+
+bool conn_setup_of(const conn *c, int joint, conn_setup *s)
+{
+    const grobo_driver *driver = grobo_robot_driver(c->robot);
+    grobo_joint_info info;
+    const grobo_setup_fault *fault = &info.state.setup;
+    *s = (conn_setup){.fact = ""};
+    if (grobo_robot_joint(c->robot, joint, &info) < 0 || info.status != GROBO_ERR_SETUP ||
+        !fault->reg) {
+        return false;
     }
+    if (fault->low > fault->high) {
+        snprintf(s->fact, sizeof s->fact,
+                 _("its servo was never calibrated, %s is %d as from the factory"),
+                 fault->reg->name, (int)fault->found);
+        snprintf(s->fix, sizeof s->fix, "%s", _("'grctl calibrate' does it"));
+    } else if (fault->reg->role == GROBO_ROLE_MODEL) {
+        const grobo_servo_model *servo = family_servo(driver, driver->model->joints[joint].motor);
+        const grobo_servo_model *other = family_numbered(driver, (uint16_t)fault->found);
+        snprintf(s->fact, sizeof s->fact, _("its servo is %s (%d), not %s (%d)"),
+                 other ? other->name : _("another"), (int)fault->found, servo->name, servo->number);
+        snprintf(s->fix, sizeof s->fix, "%s", _("say so in the robot file"));
+    } else {
+        setup_of_value(driver, joint, fault, s);
+    }
+    return true;
 }
 
 static int fail_setup(conn *c, int joint, const char *prefix, const char *who)
 {
-    grobo_joint_info info;
-    char text[APP_LINE_BYTES] = "";
+    conn_setup s;
     const char *name = grobo_error_name(GROBO_ERR_SETUP);
-    if (grobo_robot_joint(c->robot, joint, &info) < 0 || !info.state.setup.reg) {
+    if (!conn_setup_of(c, joint, &s)) {
         return app_fail(c->a, app_status_of(GROBO_ERR_SETUP), name, "%s: %s%s: %s", conn_device(c),
                         prefix, who, grobo_error_text(GROBO_ERR_SETUP));
     }
-    setup_text(grobo_robot_driver(c->robot), joint, &info.state.setup, text, sizeof text);
-    return app_fail(c->a, app_status_of(GROBO_ERR_SETUP), name, "%s: %s%s: %s", conn_device(c),
-                    prefix, who, text);
+    return app_fail(c->a, app_status_of(GROBO_ERR_SETUP), name, "%s: %s%s: %s; %s", conn_device(c),
+                    prefix, who, s.fact, s.fix);
 }
 
 /* Where its servo keeps a narrower range than the robot's file, the file is not what was hit. */

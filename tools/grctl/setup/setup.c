@@ -26,7 +26,9 @@ typedef struct guide {
     char config[CONFIG_PATH_BYTES];
     int baud_bps; /* 0: the robot's own */
     int n_read;   /* joints that answered */
+    int n_setup;  /* joints that answered, and are not set up */
     bool named;   /* in the configuration */
+    bool calibrated;
 } guide;
 
 static void set_global(app *a, int global, const char *text)
@@ -336,8 +338,12 @@ static int read_joints(guide *g)
         grobo_joint_info i;
         bool read =
             grobo_robot_joint(c.robot, j, &i) == 0 && (i.state.valid & GROBO_FIELD_ANGLE) != 0;
+        conn_setup why;
         g->n_read += read;
-        if (read) {
+        if (!read && conn_setup_of(&c, j, &why)) {
+            g->n_setup++;
+            app_note(a, "  %-16s %s; %s", model->joints[j].name, why.fact, why.fix);
+        } else if (read) {
             app_note(a, "  %-16s %7.1f deg", model->joints[j].name,
                      grobo_deg_from_rad(i.state.angle_rad));
         } else {
@@ -361,7 +367,9 @@ static int offer_calibration(guide *g)
         app_note(g->a, "to calibrate it later: grctl -d %s calibrate", g->name);
         return 0;
     }
-    return homing_run(g->a, &orders);
+    int status = homing_run(g->a, &orders);
+    g->calibrated = status == EXIT_DONE;
+    return status;
 }
 
 /* From here on the command speaks to the robot that was found. */
@@ -384,7 +392,20 @@ static void report(const guide *g)
                                  app_model(g->a)->n_joints, "n_read", g->n_read));
         return;
     }
-    app_note(g->a, "done. From now on: grctl -d %s status --watch", g->name);
+    int n = app_model(g->a)->n_joints, unread = n - g->n_read - (g->calibrated ? g->n_setup : 0);
+    if (unread == 0) {
+        app_note(g->a, "done. From now on: grctl -d %s status --watch", g->name);
+    } else if (unread == g->n_setup) {
+        app_note(g->a,
+                 "%s has its name, but %d of its %d joints cannot move yet: first fix what is "
+                 "said above; 'grctl -d %s doctor' says it again",
+                 g->name, unread, n, g->name);
+    } else {
+        app_note(g->a,
+                 "%s has its name, but %d of its %d joints do not answer: 'grctl -d %s doctor' "
+                 "says why",
+                 g->name, unread, n, g->name);
+    }
 }
 
 int setup_run(app *a)
