@@ -6,8 +6,10 @@
 
 # A number that no user has, and no other test at this time.
 user=$((61000 + $$ % 4000))
+# In the background the process is that of the command: $instead is exec there.
+instead=
 as_user() {
-    setpriv --reuid=$user --regid=$user --clear-groups \
+    $instead setpriv --reuid=$user --regid=$user --clear-groups \
         env -u XDG_RUNTIME_DIR -u XDG_CONFIG_HOME -u XDG_STATE_HOME HOME=/nowhere "$@"
 }
 if [ "$(id -u)" -ne 0 ] || ! unshare -m true 2>/dev/null; then
@@ -33,17 +35,21 @@ chmod 666 "$sim_pty"
 under_way() {
     exits 0 "$GRCTL" -d "$robot" servo on && exits 0 "$GRCTL" -d "$robot" move m5 0 500 || return 1
     : >"$work/moving"
+    instead=exec
     "$@" >"$work/moving" 2>&1 </dev/null &
     mover=$!
+    instead=
     wait_for sim_shows 5 ' -[1-9][0-9]\.[0-9] deg'
 }
 moves_there() {
     as_user "$@" "$GRCTL" -d "$sim_pty" move m5 -120 20000
 }
-# Where no mark is seen that is in /tmp.
+# Where another directory has the name of that with the marks.
 moves_apart() {
+    (instead= && as_user sh -c 'umask 077; mkdir -p "$1"' sh "/tmp/grobo-$user") || return 1
     # shellcheck disable=SC2016
-    unshare -m sh -c 'mount -t tmpfs -o mode=1777 none /tmp && exec "$@"' sh \
+    $instead unshare -m sh -c 'mount -t tmpfs -o "mode=700,uid=$1" none "/tmp/grobo-$1" && shift &&
+        exec "$@"' sh $user \
         setpriv --reuid=$user --regid=$user --clear-groups \
         env -u XDG_RUNTIME_DIR -u XDG_CONFIG_HOME -u XDG_STATE_HOME HOME=/nowhere "$@" \
         "$GRCTL" -d "$sim_pty" move m5 -120 20000
@@ -97,8 +103,10 @@ check "nor has it a guard: it is ended, and the robot stopped" by_sigterm
 
 # It ignores that too.
 stubborn() {
+    instead=exec
     as_user sh -c 'trap "" TERM; exec flock -F "$1" sleep 100' sh "$sim_pty" &
     mover=$!
+    instead=
     wait_for fails 1 'in use by' "$GRCTL" -d "$robot" status || return 1
     fails 1 'NOT stopped, nothing was sent: that program has not ended on SIGTERM; switch' \
         "$GRCTL" -d "$robot" estop || return 1
@@ -111,8 +119,10 @@ check "it does not end: that is said" stubborn
 
 # The number in a note of the user's is that of a process of root's, which has no port.
 liar() {
+    instead=exec
     as_user sh -c 'exec flock -F "$1" sleep 100' sh "$sim_pty" &
     mover=$!
+    instead=
     wait_for fails 1 'in use by' "$GRCTL" -d "$robot" status || return 1
     sleep 100 &
     victim=$!
