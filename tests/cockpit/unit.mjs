@@ -540,5 +540,16 @@ await test('every text of the page is there in Japanese', () => {
     }
 });
 
+await test('a motion that cannot be played has no picture, and says why', async () => {
+    const { hasPoses, refusal, firstOf } = await page('play');
+    const t = (text) => text;
+    same([null, { angle_deg: [] }, { angle_deg: [[0]] }].map(hasPoses), [false, false, true]);
+    same(refusal({ code: 'type', message: 'a.yaml: made for so101, not for GR001; choose that robot' }, t),
+         '✕ for another robot, cannot be played: a.yaml: made for so101, not for GR001');
+    same(refusal({ code: 'limit', message: 'a.m: 200 degrees; --clamp' }, t), '✕ a.m: 200 degrees; --clamp');
+    const found = ['a', 'b', 'c', 'd'].map((message) => ({ message }));
+    same([firstOf([]), firstOf(found.slice(0, 1)), firstOf(found)], ['', 'a', 'a; b; c; …']);
+});
+
 console.log(`1..${tests}`);
 process.exit(failed ? 1 : 0);
