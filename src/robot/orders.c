@@ -232,9 +232,7 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
 
 void grobo_i_gate_halt_again(grobo_robot *robot, grobo_joint_mask joints)
 {
-    if (grobo_i_may_halt(robot)) {
-        send_halt(robot, joints, false);
-    }
+    send_halt(robot, joints, !grobo_i_may_halt(robot));
 }
 
 void grobo_i_gate_halt_owed(grobo_robot *robot)

@@ -331,7 +331,7 @@ void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints);
  * cancelled. One that may have restarted is owed its halt until it was heard, or is silent for
  * longer than that takes. */
 void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints);
-/* Halts these once more; nothing else is cancelled for it. */
+/* Halts these once more, behind a latch as well; nothing else is cancelled for it. */
 void grobo_i_gate_halt_again(grobo_robot *robot, grobo_joint_mask joints);
 /* Halts those that are owed it, where it is time; when it is. */
 void grobo_i_gate_halt_owed(grobo_robot *robot);

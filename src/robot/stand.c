@@ -11,6 +11,8 @@
 
 #define STANDS_RAD (0.5 * 0.017453292519943295)
 #define CREEPS_RAD_S (0.9 * 0.017453292519943295)
+/* Of servos that are coarser than any that is known. */
+#define STANDS_MOST_US 1000000
 
 static double still_rad(const grobo_robot *robot)
 {
@@ -20,7 +22,7 @@ static double still_rad(const grobo_robot *robot)
 int64_t grobo_i_stand_us(const grobo_robot *robot)
 {
     double apart_rad = still_rad(robot) + robot->driver->angle_step_rad;
-    return (int64_t)(apart_rad / CREEPS_RAD_S * 1e6);
+    return (int64_t)fmin(apart_rad / CREEPS_RAD_S * 1e6, STANDS_MOST_US);
 }
 
 void grobo_i_stand_forget(grobo_robot_axis *axis)

@@ -141,9 +141,10 @@ static void a_short_bound_switches_torque_off(void **state)
 
 /* ---- what was halted is read back ------------------------------------------------------------ */
 
-typedef enum stop_kind { AT_ONCE, SMOOTH, CANCEL, TRIP, PAUSE, KINDS } stop_kind;
+typedef enum stop_kind { AT_ONCE, SMOOTH, CANCEL, TRIP, LATCH, PAUSE, KINDS } stop_kind;
 
-static const char *const stop_names[] = {"stop", "smooth stop", "cancel", "trip", "pause"};
+static const char *const stop_names[] = {"stop", "smooth stop",    "cancel",
+                                         "trip", "stop and latch", "pause"};
 
 static void halt(grobo_robot *robot, stop_kind kind)
 {
@@ -159,6 +160,10 @@ static void halt(grobo_robot *robot, stop_kind kind)
         grobo_i_enter(robot, robot->now_us);
         grobo_i_trip(robot, GROBO_TRIP_CURRENT, 1, 900, true);
         grobo_i_leave(robot);
+        break;
+    case LATCH: /* as a page's STOP, where the latch comes too early */
+        assert_int_equal(grobo_robot_stop(robot, true), GROBO_OK);
+        assert_int_equal(grobo_robot_latch(robot), GROBO_OK);
         break;
     case PAUSE:
         assert_int_equal(grobo_robot_pause(robot), GROBO_OK);
@@ -243,6 +248,7 @@ static void a_halt_of_gr001_that_is_lost_is_repeated(void **state)
         rig_run(&rig, 1300 * MILLI);
         double from_deg = rig_angle_deg(&rig, R_ELBOW);
         rig.judged = true;
+        rig.halts_at_estop = kind == LATCH;
         rig.lose = 1;
         halt(&rig.robot, (stop_kind)kind);
         int64_t begun_us = rig.now_us;
