@@ -211,24 +211,33 @@ static bool has_course(const grobo_robot *robot, int joint)
     return grobo_i_axis_tells_turn(robot, joint) && known;
 }
 
-/* A servo slower than this part of its way is too weak for it; one that begins softly keeps up. */
-#define WEAK_PART 0.9
+/* True of one that was read, since it was told, to be elsewhere than its way was by then: it is too
+ * weak, or the frame before was lost. */
+static bool is_beside(const grobo_robot_axis *axis)
+{
+    double asked_rad = fabs(axis->seen_rad - grobo_i_way_at(&axis->way, axis->seen_us));
+    double came_rad = fabs(axis->seen_rad - grobo_i_way_at(&axis->way, axis->angle_us));
+    return axis->seen_us >= axis->told_us && fmin(asked_rad, came_rad) > GROBO_I_OFF_WAY_RAD;
+}
 
-/* Of a servo that tells the time of its way: there, but for one that is too weak and was read to be
- * further behind than it can have come since. */
+/* Of a servo that tells the time of its way: there, but for one beside it, which goes on to its
+ * goal at the speed that it told, and one that cannot have come there since it was read. */
 static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double way_rad = grobo_i_axis_commanded(axis, now_us);
-    double speed_rad_s = grobo_rad_from_deg(abs(axis->state.speed_dps));
-    bool weak = (axis->state.valid & GROBO_FIELD_SPEED) != 0 && !axis->off_way &&
-                axis->way.to_us > axis->way.from_us &&
-                speed_rad_s < WEAK_PART * way_speed(&axis->way);
-    double most_rad =
-        robot->driver->model->joints[joint].max_speed_rad_s * seconds(axis->seen_us, now_us);
-    double left_rad = way_rad - axis->seen_rad;
-    bool behind = weak && fabs(left_rad) - most_rad > GROBO_I_OFF_WAY_RAD;
-    return behind ? axis->seen_rad + copysign(most_rad, left_rad) : way_rad;
+    double rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
+    if ((axis->state.valid & GROBO_FIELD_SPEED) == 0 || axis->off_way) {
+        return way_rad;
+    }
+    bool beside = is_beside(axis);
+    if (beside) {
+        rad_s = fmin(grobo_rad_from_deg(abs(axis->state.speed_dps)), rad_s);
+    }
+    double left_rad = (beside ? axis->way.to_rad : way_rad) - axis->seen_rad;
+    double most_rad = rad_s * seconds(axis->seen_us, now_us);
+    bool behind = beside || fabs(left_rad) - most_rad > GROBO_I_OFF_WAY_RAD;
+    return behind ? axis->seen_rad + copysign(fmin(most_rad, fabs(left_rad)), left_rad) : way_rad;
 }
 
 /* Of servos that do not tell how they turn, or that have no ramps: on a way that is known. */
@@ -259,6 +268,12 @@ double grobo_i_axis_speed(const grobo_robot *robot, int joint)
                                                         axis->angle_us, axis->own_until_us}
                                     : axis->way;
     return way.to_us > robot->now_us ? way_speed(&way) : 0;
+}
+
+double grobo_i_axis_brake_us(const grobo_robot *robot, int joint)
+{
+    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
+    return accel_rad_s2 > 0 ? grobo_i_axis_speed(robot, joint) / accel_rad_s2 * 1e6 : 0;
 }
 
 double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us)
@@ -341,6 +356,18 @@ bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
            robot->now_us - robot->axes[joint].heard_us > GROBO_I_RESTART_US;
 }
 
+/* What was read of a joint that goes where nobody knows is too old by then. */
+#define ASTRAY_OLD_US 20000
+
+bool grobo_i_axis_is_unknown(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool astray = axis->off_way && axis->own_until_us <= robot->now_us &&
+                  abs(axis->state.speed_dps) >= GROBO_I_SLOW_DPS &&
+                  robot->now_us - axis->angle_us > ASTRAY_OLD_US;
+    return !axis->sensed || astray || grobo_i_may_sleep(robot, joint);
+}
+
 bool grobo_i_may_halt(const grobo_robot *robot)
 {
     return robot->trip.trip != GROBO_TRIP_ESTOP || robot->holds_at_stop;
@@ -367,7 +394,8 @@ static bool turns(const grobo_robot_axis *axis)
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    if (!turns(axis) || !tells_speed(axis) || !axis->sensed || !axis->has_target ||
+    bool stood = !turns(axis) && (axis->off_way || axis->seen_us >= axis->way.to_us);
+    if (stood || !tells_speed(axis) || !axis->sensed || !axis->has_target ||
         axis->seen_us < axis->told_us || !grobo_i_axis_is_on(axis)) {
         return false;
     }

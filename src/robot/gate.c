@@ -138,15 +138,39 @@ static double time_of_way(const grobo_robot *robot, int joint, double from_rad, 
     return soft && axis->way.to_us > robot->now_us ? fmax(time_us, HALT_TIME_US) : time_us;
 }
 
-/* The same in the wire's unit; GROBO_NEVER_US where the wire has no time that is long enough. */
-static int64_t time_needed(const grobo_robot *robot, int joint, double from_rad, double to_rad,
-                           bool soft)
+/* In the wire's unit; GROBO_NEVER_US where the wire has no time that is long enough. */
+static int64_t on_time_grid(const grobo_robot *robot, double needed_us)
 {
     int64_t step_us = robot->driver->time_step_us;
-    double needed_us = time_of_way(robot, joint, from_rad, to_rad, soft);
     double steps = fmax(ceil(needed_us / (double)step_us), 1);
     double most = (double)(robot->driver->time_max_us / step_us);
     return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
+}
+
+/* The same in the wire's unit. */
+static int64_t time_needed(const grobo_robot *robot, int joint, double from_rad, double to_rad,
+                           bool soft)
+{
+    return on_time_grid(robot, time_of_way(robot, joint, from_rad, to_rad, soft));
+}
+
+/* A halt, and a stop at once, never ask for more than the joint's speed from where it was read,
+ * either, where it was not read since its last frame: that may be lost. The end of a motion gives a
+ * joint the time to brake. */
+static int64_t time_of_order(const grobo_robot *robot, const grobo_robot_order *order, int joint,
+                             double to_rad)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double from_rad = begin_of(robot, order, joint);
+    int64_t needed_us = time_needed(robot, joint, from_rad, to_rad, robot->soft || order->soft);
+    bool at_once = order->rests && axis->next_time_us < HALT_TIME_US;
+    if (axis->seen_us < axis->told_us && (at_once || order->deed == GROBO_I_DEED_HALT)) {
+        int64_t unsure_us = time_needed(robot, joint, axis->seen_rad, to_rad, false);
+        needed_us = grobo_i_later(needed_us, unsure_us);
+    }
+    double brake_us = order->rests ? grobo_i_axis_brake_us(robot, joint) : 0;
+    return brake_us > 0 ? grobo_i_later(needed_us, on_time_grid(robot, brake_us + HALT_LEAST_US))
+                        : needed_us;
 }
 
 /* True where this time, a multiple of the wire's unit, is surely enough at full speed: without the
@@ -162,7 +186,8 @@ static bool is_ample(const grobo_robot *robot, int joint, double to_rad, grobo_i
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
     bool soft = robot->soft || order->soft;
-    bool on_grid = order->deed == GROBO_I_DEED_GOAL; /* its times, as they were asked for */
+    /* Its times, as they were asked for; from where it is by its way. */
+    bool on_grid = order->deed == GROBO_I_DEED_GOAL && !order->rests;
     bool stretched = false;
     int64_t longest_us = 0, asked_us = -1;
     grobo_i_span asked = 0;
@@ -181,8 +206,7 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
         if (asked > 0 && is_ample(robot, j, to_rad, asked)) {
             continue;
         }
-        double from_rad = begin_of(robot, order, j);
-        int64_t needed_us = time_needed(robot, j, from_rad, to_rad, soft);
+        int64_t needed_us = time_of_order(robot, order, j, to_rad);
         if (needed_us == GROBO_NEVER_US) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
@@ -250,7 +274,9 @@ static bool aim_goal(const grobo_robot *robot, const grobo_robot_order *order, b
         const grobo_robot_axis *axis = &robot->axes[j];
         bool last = axis->next == 0 && axis->last == order->number; /* again, or its next part */
         bool meant = grobo_i_has(order->joints, j) && (axis->next == order->number || last);
-        if (meant && wakes && grobo_i_may_sleep(robot, j)) {
+        bool unknown =
+            order->rests ? grobo_i_axis_is_unknown(robot, j) : wakes && grobo_i_may_sleep(robot, j);
+        if (meant && unknown) {
             sleeps = true;
         } else if (meant) {
             target->posture.angle_rad[j] = order->rests ? rest_of(robot, j, soft) : axis->next_rad;

@@ -188,11 +188,22 @@ static void send_halt(grobo_robot *robot, grobo_joint_mask joints, bool owed)
                      &(way_out){GROBO_I_USE_HALT, GROBO_PRIORITY_STOP, GROBO_NEVER_US});
 }
 
-/* True where nobody knows where a joint is: it was not read since the line is there, or its servo
- * may have restarted and a goal would wake it, wherever it sank to. */
-static bool is_unknown(const grobo_robot *robot, int joint)
+grobo_joint_mask grobo_i_unknown(const grobo_robot *robot)
 {
-    return !robot->axes[joint].sensed || grobo_i_may_sleep(robot, joint);
+    grobo_joint_mask found = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        found |= grobo_i_axis_is_unknown(robot, j) ? GROBO_JOINT_BIT(j) : 0;
+    }
+    return found;
+}
+
+/* True of a joint of an arm that has arrived by what it was told, and was not read since: all of an
+ * arm is read in the time of a frame or two. */
+static bool is_unread(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    return robot->driver->arm && axis->has_target && axis->angle_us < axis->told_us &&
+           !grobo_i_axis_moves(axis, robot->now_us);
 }
 
 /* Such a joint is halted once it was read. By then a servo that has restarted would have said so:
@@ -201,10 +212,11 @@ static int64_t may_halt_at(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool read = axis->sensed && axis->angle_us >= robot->halt_us;
-    if (read || !is_unknown(robot, joint)) {
+    if (read || (!grobo_i_axis_is_unknown(robot, joint) && !is_unread(robot, joint))) {
         return robot->now_us;
     }
-    return (axis->sensed ? axis->heard_us : robot->halt_us) + 3 * GROBO_I_RESTART_US;
+    bool sleeps = axis->sensed && grobo_i_may_sleep(robot, joint);
+    return (sleeps ? axis->heard_us : robot->halt_us) + 3 * GROBO_I_RESTART_US;
 }
 
 void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
@@ -216,7 +228,7 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
     }
     grobo_i_slots_hurry(robot);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(joints, j) && is_unknown(robot, j)) {
+        if (grobo_i_has(joints, j) && (grobo_i_axis_is_unknown(robot, j) || is_unread(robot, j))) {
             robot->halts_owed |= GROBO_JOINT_BIT(j);
             robot->halt_us = robot->now_us;
             if (robot->axes[j].in_segments) {

@@ -572,10 +572,7 @@ int grobo_robot_estop(grobo_robot *robot)
     grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
     grobo_sequencer_reset(&robot->sequencer);
     grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
-    /* What is only read moves nothing: a reply that is on its way is not waited for twice. */
-    (void)grobo_bus_cancel_all(&robot->bus,
-                               GROBO_PRIORITY_ALL & ~GROBO_PRIORITY_BIT(GROBO_PRIORITY_SENSE),
-                               GROBO_ERR_CANCELED);
+    grobo_i_slots_cancel_all(robot);
     grobo_i_slots_hurry(robot);
     grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
     robot->halts_owed = 0;

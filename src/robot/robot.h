@@ -86,6 +86,8 @@ bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint);
 double grobo_i_axis_place(const grobo_robot *robot, int joint);
 /* How fast it turns by that, in radians a second. */
 double grobo_i_axis_speed(const grobo_robot *robot, int joint);
+/* How long it needs to come to rest, in microseconds; 0 of servos without ramps. */
+double grobo_i_axis_brake_us(const grobo_robot *robot, int joint);
 /* Where it comes to rest that is told so now, and no sooner than by then. */
 double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us);
 /* What was read of where a joint is; and that it is told to go elsewhere from now on. */
@@ -113,6 +115,10 @@ bool grobo_i_axis_is_on(const grobo_robot_axis *axis);
 /* True if its servo may have restarted since it was known to have torque, and its next goal would
  * wake it, wherever it sank to: nothing came from it for so long, or a reply was lost. */
 bool grobo_i_may_sleep(const grobo_robot *robot, int joint);
+/* True where nobody knows where a joint is: it was not read since the line is there, it was read to
+ * turn beside its way a while ago, or its servo may have restarted. A stop reads it before it halts
+ * it. */
+bool grobo_i_axis_is_unknown(const grobo_robot *robot, int joint);
 /* False behind an emergency stop, which halts nobody where it takes the torque; of halts from
  * before it those alone leave that grobo_robot_latch() has found waiting. */
 bool grobo_i_may_halt(const grobo_robot *robot);
@@ -202,6 +208,8 @@ int grobo_i_slot_renew(grobo_robot_slot *slot);
 void grobo_i_slot_drop(grobo_robot_slot *slot);
 /* A stop waits: the reply on the line gets no more time than the shortest margin. */
 void grobo_i_slots_hurry(grobo_robot *robot);
+/* Takes back every frame that has not left. */
+void grobo_i_slots_cancel_all(grobo_robot *robot);
 /* Takes back every frame of this use, but for one that waits to bring a motion to rest. */
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use);
 /* Takes back every frame that a step of this job made. */
@@ -333,6 +341,8 @@ void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints);
 void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints);
 /* Halts these once more, behind a latch as well; nothing else is cancelled for it. */
 void grobo_i_gate_halt_again(grobo_robot *robot, grobo_joint_mask joints);
+/* Joints of which nobody knows where they are: a stop reads them before it halts them. */
+grobo_joint_mask grobo_i_unknown(const grobo_robot *robot);
 /* Halts those that are owed it, where it is time; when it is. */
 void grobo_i_gate_halt_owed(grobo_robot *robot);
 int64_t grobo_i_gate_halt_at(const grobo_robot *robot);

@@ -233,7 +233,7 @@ static void hurry(grobo_robot *robot)
 /* Of a joint in free mode everything, and of one that nothing is known of: it may be on a way. */
 static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
 {
-    if (robot->heard_read && robot->axes[joint].sensed) {
+    if (robot->heard_read && robot->axes[joint].sensed && !robot->axes[joint].off_way) {
         return grobo_i_may_sleep(robot, joint) ? GROBO_SENSE_GOAL : GROBO_SENSE_POSITION;
     }
     if (grobo_i_has(robot->free_joints, joint)) {

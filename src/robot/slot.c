@@ -216,9 +216,29 @@ static bool waits(const grobo_robot_slot *slot)
     return slot->use != GROBO_I_USE_FREE && slot->txn.sent_us < 0;
 }
 
+/* What awaits its reply has left: it is not tried again. The bus would hold back whatever is
+ * answered alike, a halt of the same servo too, for a reply that nobody awaits. */
 static void cancel(grobo_robot_slot *slot)
 {
-    (void)grobo_bus_cancel(&slot->robot->bus, &slot->txn);
+    grobo_robot *robot = slot->robot;
+    if (robot->bus.active != &slot->txn || slot->txn.reply.kind == GROBO_REPLY_NONE) {
+        (void)grobo_bus_cancel(&robot->bus, &slot->txn);
+        return;
+    }
+    slot->txn.retries = 0;
+    slot->job = 0;
+    if (slot->use == GROBO_I_USE_JOB) {
+        slot->use = slot->reads ? GROBO_I_USE_SENSE : GROBO_I_USE_PLAIN;
+    }
+}
+
+void grobo_i_slots_cancel_all(grobo_robot *robot)
+{
+    for (int i = 0; i < robot->slots_end; i++) {
+        if (robot->slots[i].use != GROBO_I_USE_FREE) {
+            cancel(&robot->slots[i]);
+        }
+    }
 }
 
 /* Nothing comes behind what brings a motion to rest: it leaves, but for joints of later targets. */

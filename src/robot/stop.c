@@ -25,7 +25,9 @@ static grobo_joint_mask joints_of_motion(const grobo_robot *robot)
 
 void grobo_i_stop_moves(grobo_robot *robot)
 {
-    grobo_joint_mask joints = grobo_i_all_joints(robot) & ~joints_of_motion(robot);
+    /* The frame that ends a motion leaves out those that it would wake. */
+    grobo_joint_mask rest = joints_of_motion(robot) & ~grobo_i_unknown(robot);
+    grobo_joint_mask joints = grobo_i_all_joints(robot) & ~rest;
     grobo_i_slots_cancel_goals(robot, grobo_i_all_joints(robot), true);
     if (joints != 0) {
         grobo_i_gate_halt(robot, joints);

@@ -746,6 +746,7 @@ static void nothing_rests_outside_the_limits(void **state)
         for (int halts = 0; halts < 2; halts++) {
             start();
             robot.axes[j].way = (grobo_robot_way){RAD(72 + j), RAD(78 + j), NOW - S, NOW + S};
+            robot.axes[j].seen_rad = RAD(75 + j);
             robot.axes[j].next = NUMBER;
             robot.axes[j].next_rad = RAD(70 + j);
             robot.axes[j].next_time_us = 10 * MS;

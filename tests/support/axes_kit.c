@@ -73,7 +73,8 @@ void start_with(const grobo_robot_config *config)
         axis->way = (grobo_robot_way){here_rad(j), here_rad(j), NOW - 20, NOW - 10};
         axis->angle_us = axis->full_us = axis->goal_us = axis->torque_us = NOW - 5;
         axis->own_until_us = NOW - 3;
-        axis->told_us = axis->told_to_us = NOW - 7;
+        axis->told_us = axis->told_to_us = axis->seen_us = NOW - 7;
+        axis->seen_rad = here_rad(j);
         axis->last = 3;
         axis->sensed = axis->has_target = axis->torque_known = true;
         axis->wants_torque = axis->held = true;
