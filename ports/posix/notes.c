@@ -297,7 +297,8 @@ int grobo_i_note_read(const grobo_i_note_folders *in, int folder, const char *na
     if (!join(in->path[folder], name, path) || lstat(path, &st) != 0 || !is_own(&st)) {
         return GROBO_ERR_NOENT;
     }
-    fd = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    /* Where another user's is read, he may put a pipe in its place meanwhile: it must not wait. */
+    fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (fd >= 0) {
         got = read(fd, text, text_bytes - 1);
         (void)close(fd);
