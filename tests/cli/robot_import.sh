@@ -86,6 +86,41 @@ check_json "and has its joints" \
     "$GRCTL" --robot "$work/so101.yaml" joints --json
 check_json "and its parts" 'lines[0]["n_links"] == 8 and lines[0]["mass_kg"] == 0.632' \
     "$GRCTL" robot show "$work/so101.yaml" --json
+# As its makers' URDF: the gripper first. No servo may move another joint for that.
+{
+    sed -n 1,3p "$urdf"
+    sed -n 39,45p "$urdf"
+    sed -n 4,38p "$urdf"
+    sed -n '46,$p' "$urdf"
+} >"$work/first.urdf"
+right_ids() {
+    "$GRCTL" --robot "$work/first.yaml" joints >"$work/joints"
+    [ "$(awk 'NR > 1 { print $1 "=" $4 }' "$work/joints" | paste -sd,)" = "$all_ids" ]
+}
+all_ids=shoulder_pan=1,shoulder_lift=2,elbow_flex=3,wrist_flex=4,wrist_roll=5,gripper=6
+for ids in '--ids 1-6' '' "--ids gripper=6,${all_ids%,*}"; do
+    # shellcheck disable=SC2086
+    check "a gripper that comes first: ${ids:-no ids}" both exits 0 take "$work/first.urdf" --yes \
+        -o "$work/first.yaml" --family feetech --servo STS3215 $ids --- right_ids
+done
+check "ids of a known robot are said" both exits 0 take "$work/first.urdf" --- \
+    complains "ids as of so101, whose joints have these names: $all_ids"
+check "others are refused" fails 2 '--ids 2-7 gives shoulder_pan the id 2, in so101 it has 1' \
+    take "$work/first.urdf" --ids 2-7
+check "unless the joints are named" exits 0 take "$work/first.urdf" --yes -o "$work/swapped.yaml" \
+    --ids shoulder_pan=6,shoulder_lift=2,elbow_flex=3,wrist_flex=4,wrist_roll=5,gripper=1
+check "of which a check warns" both exits 0 "$GRCTL" robot check "$work/swapped.yaml" --- \
+    grep -q 'warning: gripper has the id 1, in so101 it has 6' "$work/err"
+check "a joint without an id" fails 2 'no id for gripper' take "$work/first.urdf" \
+    --ids "${all_ids%,*}"
+check "the same joint twice" fails 2 'each joint once' take "$work/first.urdf" \
+    --ids "$all_ids,gripper=7"
+sed 's/gripper"/claw"/g' "$work/first.urdf" >"$work/other.urdf"
+check "of an unknown robot a list is shown" both exits 2 take "$work/other.urdf" --ids 1-6 --- \
+    grep -q '^ids: shoulder_pan=1,.*,claw=6$' "$work/err"
+check "and taken when that is said" exits 0 take "$work/other.urdf" --ids 1-6 --yes
+check "a guess is said" both exits 0 take "$work/other.urdf" --- \
+    complains 'ids are a GUESS.* --ids shoulder_pan=1,'
 cat >"$work/geared.urdf" <<'END'
 <robot name="geared"><link name="base"/><link name="a"/><link name="b"/>
 <transmission name="t1"><type>transmission_interface/SimpleTransmission</type>
@@ -100,7 +135,7 @@ cat >"$work/geared.urdf" <<'END'
   <joint name="lift" role="j"><mechanical_reduction>4</mechanical_reduction><offset>0.0</offset>
   </joint><actuator name="m2" role="a"/></transmission></ros2_control></robot>
 END
-check "gears of transmissions" both exits 0 take "$work/geared.urdf" --ids 1-2 \
+check "gears of transmissions" both exits 0 take "$work/geared.urdf" --ids turn=1,lift=2 \
     -o "$work/geared.yaml" --family feetech --servo STS3215 --- grep -q \
     'turn, .* sign: -1, gear: 2.5, speed_deg_s: 57.2958} # gear: 1 if' "$work/geared.yaml"
 check "those of ros2_control, with the servo's middle where it reaches" grep -q \

@@ -5,6 +5,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/setup/ask.h"
 #include "tools/grctl/setup/found.h"
 
 enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_NAME, OPT_OUT };
@@ -14,7 +15,8 @@ static const cli_option options[] = {
                                  "family of its servos (import: feetech; new: all)"),
     [OPT_SERVO] = OPTION_TEXT("servo", 0, "MODEL[,MODEL]...",
                               "import: its servos, one for all or for each joint"),
-    [OPT_IDS] = OPTION_TEXT("ids", 0, "1-4,7", "import: ids of the joints, in order (1, 2, 3...)"),
+    [OPT_IDS] =
+        OPTION_TEXT("ids", 0, "JOINT=ID,...", "import: id of each joint, or 1-4,7 along the chain"),
     [OPT_NAME] = OPTION_TEXT("name", 0, "NAME", "import, new: name of the robot"),
     [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE", "import, new: the robot's file (standard output)"),
 };
@@ -137,6 +139,23 @@ static int run_show(app *a, const char *name)
 
 /* ---- what is wrong -------------------------------------------------------------------------- */
 
+/* A joint that another servo moves than in the robot whose joints are called so. */
+static bool warn_of_ids(const app *a, const grobo_robot_def *def)
+{
+    const grobo_robot_def *known = sketch_namesake(def->model);
+    int n = 0;
+    for (int j = 0; known && j < def->model->n_joints; j++) {
+        const grobo_joint *joint = &def->model->joints[j];
+        int at = grobo_model_find_joint(known->model, joint->name, strlen(joint->name));
+        if (at >= 0 && known->model->joints[at].motor != joint->motor) {
+            app_note(a, "%s: warning: %s has the id %d, in %s it has %d", def->name, joint->name,
+                     joint->motor, known->name, known->model->joints[at].motor);
+            n++;
+        }
+    }
+    return n > 0;
+}
+
 static int run_check(app *a, const char *path)
 {
     grobo_diagnostics *list = NULL;
@@ -156,7 +175,7 @@ static int run_check(app *a, const char *path)
     }
     if (a->json) {
         app_print_json(json_pack("{s:b,s:o}", "ok", !error, "diagnostics", file_json(list)));
-    } else if (!error) {
+    } else if (!error && !warn_of_ids(a, def)) {
         app_note(a, "%s: %d joints, nothing wrong", def->name, def->model->n_joints);
     }
     grobo_robot_def_free(def);
@@ -220,11 +239,14 @@ static int run(app *a)
         return run_servos(a, name);
     }
     if (strcmp(what, "import") == 0 && name) {
+        bool asks = a->tty_in && !app_global(a, GLOBAL_YES)->given;
         const sketch_orders orders = {.family = app_option(a, OPT_FAMILY)->text,
                                       .servos = app_option(a, OPT_SERVO)->text,
                                       .ids = app_option(a, OPT_IDS)->text,
                                       .name = app_option(a, OPT_NAME)->text,
-                                      .out = app_option(a, OPT_OUT)->text};
+                                      .out = app_option(a, OPT_OUT)->text,
+                                      .ask = asks ? ask_line : NULL};
+        _Static_assert((int)ASK_BYTES <= (int)SKETCH_ANSWER_BYTES, "an answer fits");
         return sketch_import(a, name, &orders);
     }
     if (strcmp(what, "new") == 0 && !name) {
@@ -248,9 +270,11 @@ const cli_command cmd_robot = {
         "\n"
         "import: a robot's file from a URDF or a body of Choreonoid: joints, limits, speeds,\n"
         "parts with their masses. What these do not contain (servos, ids, which way each turns)\n"
-        "is guessed and marked by a comment, unless --family, --servo and --ids give it. Limits\n"
-        "that the servo does not reach are cut; joints that slide or follow another are treated\n"
-        "as fixed.\n"
+        "is guessed and marked by a comment, unless --family and --servo give it. Limits that the\n"
+        "servo does not reach are cut; joints that slide or follow another are treated as fixed.\n"
+        "Ids are those of --ids; else those of a known robot whose joints have the same names;\n"
+        "else they are asked for on a terminal, and marked as a guess without one. A list without\n"
+        "names goes along the chain: it is shown, and needs a yes or --yes.\n"
         "\n"
         "new: a robot's file of the servos that answer on the line of -d, of every family at its\n"
         "usual rates, or of --family, or at the rate of -b. Joints are called joint1 and so on;\n"

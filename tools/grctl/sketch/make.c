@@ -46,66 +46,6 @@ static int give_servos(app *a, sketch *s, const sketch_orders *orders)
     return EXIT_DONE;
 }
 
-/* A number at *text, which is moved behind it; -1: there is none. */
-static long take_id(const char **text)
-{
-    char *end;
-    if (**text < '0' || **text > '9') {
-        return -1;
-    }
-    long id = strtol(*text, &end, 10);
-    *text = end;
-    return id > GROBO_SERVO_ID_MAX ? -1 : id;
-}
-
-/* "1,2,5-8": as many as there are joints. */
-static bool read_ids(sketch *s, const char *text)
-{
-    int n = 0, wanted = sketch_joints(s);
-    while (n < wanted) {
-        long first = take_id(&text), last = first;
-        if (first >= 0 && *text == '-') {
-            text++;
-            last = take_id(&text);
-        }
-        if (first < 0 || last < first) {
-            return false;
-        }
-        for (long id = first; id <= last; id++) {
-            if (n == wanted) {
-                return false;
-            }
-            sketch_joint(s, n++)->id = (int)id;
-        }
-        if (*text != ',') {
-            break;
-        }
-        text++;
-    }
-    return n == wanted && *text == '\0';
-}
-
-static int give_ids(app *a, sketch *s, const sketch_orders *orders)
-{
-    for (int i = 0; i < sketch_joints(s); i++) {
-        sketch_joint(s, i)->id = i + 1;
-    }
-    if (orders->ids && !read_ids(s, orders->ids)) {
-        return app_fail(a, EXIT_USAGE, "ARG",
-                        "--ids %s: %d ids are wanted, one for each joint: 1-4,7", orders->ids,
-                        sketch_joints(s));
-    }
-    const grobo_protocol *protocol = family_driver(s->family)->protocol;
-    for (int i = 0; i < sketch_joints(s); i++) {
-        int id = sketch_joint(s, i)->id;
-        if (id < protocol->id_min || id > protocol->id_max) {
-            return app_fail(a, EXIT_USAGE, "LIMIT", "id %d: servos of family %s have %d to %d", id,
-                            s->family->name, protocol->id_min, protocol->id_max);
-        }
-    }
-    return EXIT_DONE;
-}
-
 /* ---- out ------------------------------------------------------------------------------------ */
 
 typedef struct text_source {
@@ -214,10 +154,9 @@ static int describe(app *a, sketch *s, const char *path, const sketch_orders *or
     }
     s->family = family_called(orders->family ? orders->family : "feetech");
     s->guessed_servos = !orders->family || !orders->servos;
-    s->guessed_ids = !orders->ids;
     int status = give_servos(a, s, orders);
     if (!status) {
-        status = give_ids(a, s, orders);
+        status = sketch_give_ids(a, s, orders);
     }
     if (status) {
         return status;
@@ -225,7 +164,11 @@ static int describe(app *a, sketch *s, const char *path, const sketch_orders *or
     if (!sketch_fit(s, complaint, sizeof complaint)) {
         return app_fail(a, EXIT_FILE, "LIMIT", "%s: %s", path, complaint);
     }
-    return sketch_write(a, s, orders->out, NULL);
+    status = sketch_write(a, s, orders->out, NULL);
+    if (!status) {
+        sketch_say_ids(a, s, orders);
+    }
+    return status;
 }
 
 int sketch_import(app *a, const char *path, const sketch_orders *orders)
@@ -243,6 +186,7 @@ int sketch_import(app *a, const char *path, const sketch_orders *orders)
     s.name[0] = s.usb[0] = '\0';
     snprintf(s.source, sizeof s.source, "%s", path);
     bool xml = is_xml(bytes, size);
+    s.ordered = !xml; /* a body numbers its joints */
     bool fine = xml ? sketch_read_urdf(&s, path, bytes, size, complaint, sizeof complaint)
                     : sketch_read_body(&s, path, bytes, size, complaint, sizeof complaint);
     free(bytes);

@@ -5,16 +5,33 @@
 
 #include "tools/grctl/sketch/sketch.h"
 
+enum { SKETCH_ANSWER_BYTES = 256 };
+
 typedef struct sketch_orders {
     const char *family; /* as a robot's file names it; NULL: a guess */
     const char *servos; /* "STS3215", or one for each joint with commas; NULL: a guess */
-    const char *ids;    /* "1-4,7"; NULL: from 1 on */
+    const char *ids;    /* "turn=3,lift=4", or "1-4,7" along the chain; NULL: not told */
     const char *name;   /* of the robot; NULL: that of the description */
     const char *out;    /* the file; NULL: standard output */
+    /* Asks a person for a line of at most SKETCH_ANSWER_BYTES; false: none came. NULL: no person is
+     * there. */
+    bool (*ask)(const app *a, const char *question, const char *usual, char *answer);
 } sketch_orders;
 
 /* Reads a URDF or a body, and writes a robot's file. Returns the exit status. */
 int sketch_import(app *a, const char *path, const sketch_orders *orders);
+
+/*
+ * The id of each joint: as told by name; as of the robot of the library whose joints have these
+ * names; as listed, along the chain, once a person has seen which joint gets which, or with --yes;
+ * or as a person answers. What is left is a guess. 0, or the exit status.
+ */
+int sketch_give_ids(app *a, sketch *s, const sketch_orders *orders);
+/* Says which ids nobody told. */
+void sketch_say_ids(const app *a, sketch *s, const sketch_orders *orders);
+
+/* The robot of the library whose joints have the names of a model's, in any order; NULL: none. */
+const grobo_robot_def *sketch_namesake(const grobo_model *model);
 
 /* Writes the file of a sketch whose joints have servos and ids, once its reader has nothing against
  * it. A file that is there is replaced with --yes only. fits: names of robots for JSON, borrowed,

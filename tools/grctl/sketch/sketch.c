@@ -191,11 +191,12 @@ static bool check_parts(const sketch *s, char *complaint, size_t capacity)
     return true;
 }
 
-/* Joints by their order, those of the same in that of the description. */
+/* Joints by their order, those of the same along the chain: a URDF may begin with the gripper. */
 static void sort_joints(sketch *s)
 {
     s->n_joints = 0;
-    for (int i = 0; i < s->n; i++) {
+    for (int k = 0; k < s->n; k++) {
+        int i = s->bare ? k : s->along[k];
         if (s->part[i].motion != SKETCH_TURNS) {
             continue;
         }

@@ -55,6 +55,7 @@ typedef struct sketch {
     char usb[16];                     /* its adapter, "1a86:55d3", or "" */
     int baud_bps;                     /* 0: the factory's */
     bool guessed_servos, guessed_ids; /* nobody told them */
+    bool ordered;                     /* the description numbers its joints */
     bool calibrated;                  /* its servos keep a middle that was found by hand */
     bool bare;                        /* parts are joints alone, and have no geometry */
     int n, n_joints;

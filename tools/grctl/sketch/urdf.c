@@ -403,7 +403,6 @@ static bool join(sketch *s, const sketch *joints, char *complaint, size_t capaci
         double mass_kg = link->mass_kg;
         *link = *joint;
         link->mass_kg = mass_kg;
-        link->order = j;
     }
     return true;
 }
