@@ -179,12 +179,19 @@ tell_row() {
             if (phase == "read" && n > (said == "")) {
                 said = said (said == "" ? "" : ", ") n " read"
             } else if (phase == "sent") {
-                said = said (said == "" ? "" : ", ") \
-                    (by == "guard" ? n " stopped" : "stopped softly")
+                said = said (said == "" ? "" : ", ") "stopped softly"
             }
             phase = ""
             n = 0
             split("", seen)
+        }
+        # A guard halts a joint as soon as it has read it, and may repeat that: how many joints it
+        # read, how many of these it stopped, and whether it read all of those behind that.
+        function what_the_guard_did(  i, reads, stops, owed) {
+            for (i in read_by_it) { reads++ }
+            for (i in stopped_by_it) { stops++; owed += stopped_by_it[i] }
+            return reads " read" (stops == 0 ? "" : ", " stops " stopped, " \
+                (owed == 0 ? "read again" : owed " not read again"))
         }
         NR == n0 { last = $1 }
         NR == n0 + 1 { first = $1 }
@@ -216,6 +223,10 @@ tell_row() {
             }
             match($0, /servo [0-9]+/)
             id = substr($0, RSTART + 6, RLENGTH - 6)
+            read_by_it[id] = 1
+            if (id in stopped_by_it) {
+                stopped_by_it[id] = 0
+            }
             n += !(id in seen)
             seen[id] = 1
         }
@@ -224,10 +235,18 @@ tell_row() {
                 end_phase()
                 phase = "sent"
             }
+            if (match($0, /servo [0-9]+/)) {
+                stopped_by_it[substr($0, RSTART + 6, RLENGTH - 6)] = 1
+            } else { # several in one frame: none of these deaths leaves so many moving
+                stopped_by_it["several"] = 1
+            }
             n += match($0, /write [0-9]+ servos/) ? substr($0, RSTART + 6, RLENGTH - 13) : 1
         }
         END {
             end_phase()
+            if (by == "guard") {
+                said = what_the_guard_did()
+            }
             printf "%-37s %-22s", by ~ /^goes on/ ? by : by ": " said, goal
             printf "%.0f", (first_us + (goal_ms - first) * 1000 - struck_us) / 1000 >times
         }' "$work/whole" >"$work/row"
