@@ -79,7 +79,7 @@ wait $hostile 2>/dev/null
 begin_open_broker
 check "the agent is there when a good one is" wait_for is_listed one ONLINE
 stands() {
-    mosquitto_sub -h 127.0.0.1 -p "$port" -W 5 -C 1 -t grobo/v1/group/all/latch |
+    mosquitto_sub -h 127.0.0.1 -p "$port" -W 1 -C 1 -t grobo/v1/group/all/latch |
         grep -q '"stopped":true'
 }
 check "the page's STOP comes with it" wait_for stands
