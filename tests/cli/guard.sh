@@ -167,7 +167,35 @@ has_debugger() {
     wait $mover 2>/dev/null
     grep -q "= $mover\$" "$work/debugger"
 }
+# Nothing moves, so nobody has missed it: the stop asks its guard.
+held() {
+    : >"$work/moving"
+    mkfifo "$work/lines"
+    "$GRCTL" -d "$robot" --timeout 500 -v shell <"$work/lines" >"$work/moved" 2>"$work/moving" &
+    mover=$!
+    exec 7>"$work/lines"
+    rm "$work/lines"
+    echo 'init --time 500' >&7
+    written "$work/moving" '^done' || return 1
+    by_debugger -ex "shell while [ ! -e '$work/go' ]; do sleep 0.05; done" &
+    debugger=$!
+    wait_for is_held && exits 0 on_robot estop && grep -q 'by the guard of a program' "$work/err"
+    held_status=$?
+    : >"$work/go"
+    wait $debugger
+    exec 7>&-
+    wait $mover
+    [ $held_status -eq 0 ] && sim_shows 5 'torque brake' && exits 0 on_robot estop --reset &&
+        exits 0 on_robot servo on
+}
+is_held() {
+    case $(ps -o stat= -p $mover) in
+    t*) ;;
+    *) return 1 ;;
+    esac
+}
 if has_debugger; then
+    check "a debugger holds one that moves nothing: its guard obeys an emergency stop" held
     check "a debugger holds it: the guard stops the joint" debugged
     check "it closes all its descriptors: the guard stops the joint" closed
 else
