@@ -8,7 +8,10 @@
 enum {
     BITS_PER_BYTE = 10, /* 8N1 */
     US_PER_MS = 1000,
-    MS_PER_S = 1000
+    MS_PER_S = 1000,
+    /* A stop waits so much longer than a reply needs for one that is owed to the same question: its
+     * first frame is not to be late, and what it halts is read back. */
+    STOP_HOLD_US = 5000
 };
 
 /* In two steps, so that products fit 32 bits: no 64-bit division on small machines. */
@@ -154,15 +157,12 @@ void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
     hold->until_us = from_us + span_us;
 }
 
-/* The return delay of a servo is an assumption: it may answer at once. Of a hold that is
- * older than half an hour either answer will do. */
+/* The return delay of a servo is an assumption: it may answer at once. */
 grobo_bus_hold *grobo_i_bus_owed(grobo_bus *bus, uint32_t key)
 {
     grobo_bus_hold *hold = find_hold(bus, key);
-    return hold != NULL && hold->owed > 0 &&
-                   (int32_t)(hold->due_us - bus->now_us) <= (int32_t)bus->config.return_delay_us
-               ? hold
-               : NULL;
+    int64_t soonest_us = bus->now_us + bus->config.return_delay_us;
+    return hold != NULL && hold->owed > 0 && soonest_us >= hold->due_us ? hold : NULL;
 }
 
 static void learn_late(grobo_bus *bus, int64_t due_us)
@@ -210,13 +210,16 @@ void grobo_i_bus_release_holds(grobo_bus *bus)
 static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
 {
     uint32_t key = grobo_i_bus_key(&txn->reply);
+    int64_t until_us = 0;
     for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
         const grobo_bus_hold *hold = &bus->hold[i];
         if (hold->key == key && hold->owed > 0 && (hold->owner != txn || txn->attempts_ == 0)) {
-            return hold->until_us;
+            until_us = txn->priority == GROBO_PRIORITY_STOP
+                           ? grobo_i_sooner(hold->until_us, hold->due_us + STOP_HOLD_US)
+                           : hold->until_us;
         }
     }
-    return 0;
+    return until_us;
 }
 
 bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)

@@ -180,18 +180,6 @@ static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *r
     slot.robot->over(&slot, result, reply);
 }
 
-/* A stop waits so much longer than a reply needs for one that is owed to the same question: its
- * first frame is not to be late, and what it halts is read back. */
-#define STOP_HOLD_US 5000
-
-static void shorten_holds(grobo_bus *bus)
-{
-    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
-        grobo_bus_hold *hold = &bus->hold[i];
-        hold->until_us = grobo_i_sooner(hold->until_us, hold->due_us + STOP_HOLD_US);
-    }
-}
-
 int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
                       grobo_priority priority)
 {
@@ -204,9 +192,6 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
     if (!has_room(slot->robot, (grobo_i_use)slot->use, exchange->frame_bytes)) {
         grobo_i_slot_drop(slot);
         return GROBO_ERR_FULL;
-    }
-    if (priority == GROBO_PRIORITY_STOP) {
-        shorten_holds(&slot->robot->bus);
     }
     take_bytes(slot, exchange);
     slot->txn.priority = priority;

@@ -170,7 +170,11 @@ static void the_frame_that_was_chosen_is_lost(void **state)
     assert_int_equal(far.lost_frames, 1);
     send("55 55 03 07 01 6B 03 E8 03 9B");
     far_step(&far, now_us + 2 * SECOND_US);
-    assert_true(fabs(far_angle(&far, 2, now_us + 2 * SECOND_US) - 90) < 0.5);
+    now_us += 2 * SECOND_US;
+    assert_true(fabs(far_angle(&far, 2, now_us) - 90) < 0.5);
+    assert_true(far.joint[2].missed); /* the host has not heard of it */
+    send("55 55 03 03 1C DD");
+    expect("55 55 03 05 1C 6B 03 6D");
     assert_false(far.joint[2].missed);
 }
 

@@ -312,30 +312,9 @@ static void a_limp_joint_holds_up_no_emergency_stop(void **state)
     }
 }
 
-/* A reply that is owed to the same question holds it up for 5 ms at most once a stop waits. */
-static void a_stop_waits_for_no_reply_that_is_late(void **state)
-{
-    (void)state;
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        family_start(&kit, f, &whole, NULL);
-        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
-        grobo_posture p = family_posture(&kit, -60, 4000);
-        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
-        family_run(&kit, S);
-        grobo_bus_hold *hold = &kit.robot.bus.hold[1];
-        hold->owed = 1;
-        hold->due_us = kit.now_us;
-        hold->until_us = kit.now_us + 100 * MS;
-        assert_int_equal(grobo_robot_stop(&kit.robot, true), GROBO_OK);
-        family_run(&kit, MS);
-        assert_true(hold->until_us <= kit.now_us + 5 * MS);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_stop_waits_for_no_reply_that_is_late),
         cmocka_unit_test(a_stop_after_a_replug_reads_and_halts),
         cmocka_unit_test(a_limp_joint_holds_up_no_emergency_stop),
         cmocka_unit_test(a_joint_that_stands_is_not_thrown),

@@ -64,9 +64,7 @@ static void report(far_side *far, far_joint *joint, far_news *news)
         far->missed |= 1U << i;
         return;
     }
-    news->missed = joint->missed && joint->told_us > far->obeyed->left_us;
-    news->missed = news->missed || (joint->missed && joint->told_us < far->lost_us);
-    joint->missed = false;
+    news->missed = joint->missed;
     news->joint = i;
     news->now_us = far->now_us;
     news->left_us = far->obeyed->left_us;
@@ -210,8 +208,8 @@ void far_answer(far_side *far, far_joint *told, const uint8_t *bytes, int n)
         far->lost_us = far->now_us;
         return;
     }
-    if (told != NULL) {
-        told->told_us = due_us;
+    if (told != NULL && due_us > far->lost_us + FAR_TELLS_US) {
+        told->missed = false;
     }
     add_reply(far, bytes, n, due_us);
 }

@@ -22,6 +22,7 @@ enum {
     FAR_FRAME_BYTES = 260,
     FAR_FRAMES = 16,
     FAR_REPLIES = 48,
+    FAR_TELLS_US = 200000, /* after a lost goal a reading shows that the shaft is elsewhere */
     FAR_NEVER = -1
 };
 
@@ -44,8 +45,7 @@ typedef struct far_joint {
     int64_t wakes_us;
     int64_t heard_us; /* of the watchdog */
     bool deaf;        /* it answers, and obeys nothing */
-    bool missed;      /* a goal or torque for it was lost, and it took none since */
-    int64_t told_us;  /* when the host last heard where it is */
+    bool missed; /* a goal or torque for it was lost, and it told nothing since that shows it */
     int celsius;
     bool leaps; /* torque came on: it goes to its goal as fast as it can */
     uint8_t reg[FAR_REGISTERS];

@@ -110,7 +110,7 @@ static const void *take_bytes(reader *r, size_t most, size_t *size)
     return r->at - n;
 }
 
-/* It has one end, which is its last byte. */
+/* UTF-8 with one end, which is its last byte. */
 static const char *take_text(reader *r)
 {
     size_t size;
@@ -118,7 +118,11 @@ static const char *take_text(reader *r)
     if (!text) {
         return NULL;
     }
-    r->bad = r->bad || size == 0 || memchr(text, '\0', size) != text + size - 1;
+    json_t *whole = size > 0 && memchr(text, '\0', size) == text + size - 1
+                        ? json_stringn(text, size - 1)
+                        : NULL;
+    r->bad = r->bad || !whole;
+    json_decref(whole);
     return r->bad ? NULL : text;
 }
 
@@ -180,16 +184,9 @@ void note_drop(struct evbuffer *from)
 
 /* ---- judging --------------------------------------------------------------------------------- */
 
-static bool is_utf8(const char *text)
-{
-    json_t *whole = json_string(text);
-    json_decref(whole);
-    return whole != NULL;
-}
-
 static bool is_topic(const char *text)
 {
-    return text && *text && !strpbrk(text, "+#") && is_utf8(text);
+    return text && *text && !strpbrk(text, "+#");
 }
 
 bool note_is_why(const char *text)
@@ -200,7 +197,7 @@ bool note_is_why(const char *text)
             return false;
         }
     }
-    return size > 0 && size <= NOTE_WHY_MAX_BYTES && is_utf8(text);
+    return size > 0 && size <= NOTE_WHY_MAX_BYTES;
 }
 
 bool note_is_news(const note *n)

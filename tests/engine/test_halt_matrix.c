@@ -1,0 +1,542 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Stops at every moment, judged by a far side that is not ours (tests/support/far_side.h).
+ *
+ * A cell is one stop: of one family, while a joint was brought on its way in one of six ways, by
+ * one of eight ways to stop, at a moment from a second before it arrives to a second after, with
+ * keys that hold or clips of some joints alone, on a clean line or with one lost frame. Cells that
+ * share what comes before the stop share it: the world is kept at each moment, and goes on from
+ * there once for each stop.
+ *
+ * Rules, by what the far side saw (tests/support/halt_kit.c):
+ *   - no halt sends a joint further than its braking way and 2 degrees from where it is;
+ *   - none comes to rest further away than that;
+ *   - no goal asks for more than the joint's speed;
+ *   - the first frame leaves within a frame on the line and 10 ms;
+ *   - nothing moves once the stop is reported done.
+ * A halt of a joint that missed a frame, and has not told since where it is, is excused, and
+ * counted. A cell that fails prints the command that repeats it.
+ *
+ * Environment: GROBO_HALT=all runs every moment (make soak); GROBO_HALT_CELL="dxl2 keys stop 200
+ * hold clean" one cell, and what the far side saw of it; GROBO_HALT_FAMILY one family.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/halt_kit.h"
+#include "tests/support/next_random.h"
+
+#define RAD(deg) ((deg)*0.017453292519943295)
+#define FROM_DEG (-60.0)
+#define TO_DEG 60.0
+
+/* The longest attempt of a reading whose reply is lost. */
+#define LOST_REPLY_US 45000
+
+enum { STREAM_US = 20000, FOLLOW_US = 40000, TAIL_US = 1500000, AROUND_MS = 1000, STEP_MS = 5 };
+
+typedef enum way_in { KEYS, RATE, SEND, MOVE, RETARGET, FOLLOW, WAYS_IN } way_in;
+typedef enum stop_kind { STOP, SMOOTH, CANCEL, PAUSE, ESTOP, EXIT, TRIP, GUARD, STOPS } stop_kind;
+typedef enum clip_shape { HOLD, PARTIAL, SHAPES } clip_shape;
+/* LOST: a frame or a reply behind the request. MISSED: a motor frame before it. */
+typedef enum line_loss { CLEAN, LOST, MISSED, LOSSES } line_loss;
+
+static const char *const way_names[] = {"keys", "rate", "send", "move", "retarget", "follow"};
+static const char *const stop_names[] = {"stop",  "smooth", "cancel", "pause",
+                                         "estop", "exit",   "trip",   "guard"};
+static const char *const shape_names[] = {"hold", "partial"};
+static const char *const loss_names[] = {"clean", "lost", "missed"};
+
+typedef struct cell {
+    int family;
+    way_in way;
+    stop_kind stop;
+    int moment_ms;
+    clip_shape shape;
+    line_loss loss;
+} cell;
+
+static struct {
+    unsigned long cells, failed, refused, excused;
+    int told;
+} sum;
+
+/* ---- how a joint is brought on its way ------------------------------------------------------- */
+
+static struct script {
+    way_in way;
+    clip_shape shape;
+    int64_t begun_us, way_us, next_us;
+    bool turned; /* the second target was given */
+} script, kept_script;
+
+static halt_world kept;
+
+static int key_at(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
+{
+    (void)ctx;
+    bool whole = script.shape == HOLD;
+    *at_us = i == 0 ? 0 : i == 1 ? script.way_us : script.way_us + TAIL_US;
+    *posture = halt_posture(i == 0 ? FROM_DEG : TO_DEG, 0, whole);
+    if (!whole && i == 2) { /* another joint alone */
+        posture->set = GROBO_JOINT_BIT(halt.of->other);
+        posture->angle_rad[halt.of->moved] = 0;
+        posture->angle_rad[halt.of->other] = RAD(20);
+    } else if (!whole && i == 0) {
+        posture->set |= GROBO_JOINT_BIT(halt.of->other);
+    }
+    posture->time_us = i == 0 ? 0 : i == 1 ? script.way_us : TAIL_US;
+    return 0;
+}
+
+static double where(int64_t t_us)
+{
+    double part = fmin((double)t_us / (double)script.way_us, 1);
+    return FROM_DEG + (TO_DEG - FROM_DEG) * fmax(part, 0);
+}
+
+static int sample_at(void *ctx, int64_t t_us, grobo_posture *posture)
+{
+    (void)ctx;
+    bool whole = script.shape == HOLD;
+    *posture = halt_posture(where(t_us), 0, whole);
+    if (!whole) {
+        double part = fmax((double)(t_us - script.way_us) / TAIL_US, 0);
+        posture->set |= GROBO_JOINT_BIT(halt.of->other);
+        posture->angle_rad[halt.of->other] = RAD(20 * part);
+    }
+    return 0;
+}
+
+static void begin_play(bool at_rate)
+{
+    const grobo_clip clip = {.key = key_at,
+                             .sample = sample_at,
+                             .length_us = script.way_us + TAIL_US,
+                             .n_keys = HALT_KEYS,
+                             .n_joints = halt.of->driver.model->n_joints};
+    const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
+                                        .mode = at_rate ? GROBO_PLAY_RATE : GROBO_PLAY_KEY};
+    assert_true(grobo_robot_play(&halt.robot, &clip, &options) > 0);
+    for (int i = 0; i < 20000; i++) {
+        if (grobo_robot_play_state(&halt.robot) == GROBO_SEQUENCER_PLAYING) {
+            return;
+        }
+        halt_run(HALT_MS);
+    }
+    fail_msg("%s: the motion does not begin", halt.of->far->name);
+}
+
+static void ask_move(double deg, int64_t time_us)
+{
+    grobo_posture p = halt_posture(deg, time_us, script.shape == HOLD);
+    int r = grobo_robot_move(&halt.robot, &p);
+    if (r <= 0) {
+        fail_msg("%s: move refused: %d", halt.of->far->name, r);
+    }
+}
+
+static void set_out(const cell *c)
+{
+    halt_begin(halt_robot_of(c->family), FROM_DEG);
+    script = (struct script){.way = c->way, .shape = c->shape};
+    script.way_us = (int64_t)((TO_DEG - FROM_DEG) / (c->shape == HOLD ? 200 : 110) * HALT_S);
+    halt_run(500 * HALT_MS);
+    if (c->way == KEYS || c->way == RATE) {
+        begin_play(c->way == RATE);
+    } else {
+        halt_make_ready(FROM_DEG);
+        if (c->way == MOVE) {
+            ask_move(TO_DEG, script.way_us);
+        } else if (c->way == RETARGET) {
+            ask_move(0, script.way_us / 2);
+        } else if (c->way == FOLLOW) {
+            ask_move(where(FOLLOW_US), FOLLOW_US);
+        }
+    }
+    script.begun_us = halt.now_us;
+    script.next_us = halt.now_us + (c->way == FOLLOW ? FOLLOW_US : 0);
+}
+
+static void stream(int64_t period_us)
+{
+    int64_t t_us = halt.now_us - script.begun_us + period_us;
+    grobo_posture p = halt_posture(where(t_us), period_us, script.shape == HOLD);
+    if (script.way == SEND) {
+        (void)grobo_robot_send(&halt.robot, &p);
+    } else if (grobo_robot_retarget(&halt.robot, &p) == GROBO_ERR_STATE &&
+               grobo_robot_job(&halt.robot) == GROBO_JOB_NONE) {
+        (void)grobo_robot_move(&halt.robot, &p);
+    }
+    script.next_us += period_us;
+}
+
+/* Lets time pass while the script goes on. */
+static void go_on(int64_t until_us)
+{
+    while (halt.now_us < until_us) {
+        int64_t end_us = until_us;
+        if (script.way == SEND || script.way == FOLLOW) {
+            if (halt.now_us >= script.next_us) {
+                stream(script.way == SEND ? STREAM_US : FOLLOW_US);
+            }
+            end_us = script.next_us < end_us ? script.next_us : end_us;
+        } else if (script.way == RETARGET && !script.turned &&
+                   halt.now_us >= script.begun_us + script.way_us / 4) {
+            grobo_posture p = halt_posture(TO_DEG, script.way_us * 3 / 4, script.shape == HOLD);
+            script.turned = grobo_robot_retarget(&halt.robot, &p) > 0;
+            end_us = halt.now_us + HALT_MS < end_us ? halt.now_us + HALT_MS : end_us;
+        } else if (script.way == RETARGET && !script.turned) {
+            end_us = halt.now_us + HALT_MS < end_us ? halt.now_us + HALT_MS : end_us;
+        }
+        halt_run(end_us - halt.now_us);
+    }
+}
+
+/* ---- how it is stopped ----------------------------------------------------------------------- */
+
+/* What a program's guard does: its engine knows nothing, and the line is quiet first. */
+static int guard_stops(void)
+{
+    static const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                              .sense_interval_us = GROBO_SENSE_NEVER};
+    uint8_t dropped[512];
+    int64_t until_us = halt.now_us + 10000 + far_wire_us(halt.of->far, 444);
+    while (halt.now_us < until_us) {
+        (void)far_give(&halt.far, dropped, (int)sizeof dropped, halt.now_us);
+        halt.now_us += HALT_MS;
+    }
+    halt_judge(0);
+    halt_new_engine(&config);
+    return grobo_robot_exit(&halt.robot, GROBO_EXIT_HOLD);
+}
+
+/* A servo is too hot: the stop is asked for when that was read. */
+static int trip(int64_t soft_us)
+{
+    halt.far.joint[halt.of->driver.model->joints[halt.of->moved].motor - 1].celsius = 95;
+    halt.trip_us = 0;
+    halt.trip_soft_us = soft_us;
+    halt.judges_trip = true;
+    for (int i = 0; i < 3000 && halt.trip_us == 0; i++) {
+        go_on(halt.now_us + HALT_MS);
+    }
+    return halt.trip_us > 0 ? GROBO_OK : GROBO_ERR_TIMEOUT;
+}
+
+/* Number of the job that carries it out, 0 where there is none, or an error. */
+static int ask_stop(stop_kind stop)
+{
+    int64_t soft_us = script.way == KEYS || script.way == RATE ? GROBO_PLAY_STOP_US : 0;
+    switch (stop) {
+    case STOP:
+        halt_judge(0);
+        return grobo_robot_stop(&halt.robot, true);
+    case SMOOTH:
+        halt_judge(soft_us);
+        return grobo_robot_stop(&halt.robot, false);
+    case CANCEL:
+        halt_judge(0);
+        return grobo_robot_cancel(&halt.robot);
+    case PAUSE:
+        halt_judge(soft_us);
+        return grobo_robot_pause(&halt.robot);
+    case ESTOP:
+        halt_judge(0);
+        return grobo_robot_estop(&halt.robot);
+    case EXIT:
+        halt_judge(soft_us);
+        return grobo_robot_exit(&halt.robot, GROBO_EXIT_HOLD);
+    case TRIP:
+        return trip(soft_us);
+    case GUARD:
+        return guard_stops();
+    case STOPS:
+        break;
+    }
+    return GROBO_ERR_ARG;
+}
+
+/* A motion that pauses is still one: nothing says when its joints stand but the time it takes. */
+static bool is_done(const cell *c, int job)
+{
+    if (c->stop == PAUSE) {
+        return grobo_robot_play_state(&halt.robot) == GROBO_SEQUENCER_PAUSED &&
+               halt.now_us >= halt.asked_us + GROBO_PLAY_STOP_US + 2 * halt.of->frame_us + 10000;
+    }
+    return (job <= 0 || halt.over) && !grobo_robot_settling(&halt.robot) &&
+           !grobo_robot_moving(&halt.robot);
+}
+
+/* Whoever knows nothing reads first; a reply that was lost costs it a time-out. So it does where
+ * each frame of a motion is answered (KRS), but for an emergency stop, which waits for none. */
+static int64_t bound_of(const cell *c)
+{
+    int64_t bound_us = halt.of->frame_us + 10000;
+    bool waits = c->stop == GUARD || (halt.of->far == &far_ics && c->stop != ESTOP);
+    int64_t lost_us = c->loss != CLEAN && waits ? LOST_REPLY_US : 0;
+    return c->stop == GUARD ? bound_us + halt.of->reading_us + lost_us : bound_us + lost_us;
+}
+
+/* Of a way in segments, or of a stream, the next frame makes good what one did not do: the joint is
+ * behind by what it would have gone until then. */
+static double lag_deg(const cell *c)
+{
+    double dps = (TO_DEG - FROM_DEG) / (double)script.way_us * HALT_S;
+    return dps * (GROBO_SEGMENT_RENEW_US + (c->way == FOLLOW ? FOLLOW_US : 0)) / HALT_S;
+}
+
+static bool stop_and_judge(const cell *c)
+{
+    halt.awaited = 0;
+    halt.over = false;
+    if (c->loss == LOST) { /* of what comes now: the first or second frame, or a reply */
+        int which = (c->moment_ms + AROUND_MS) / STEP_MS % 3;
+        halt.far.lose_motor = which < 2 ? which : FAR_NEVER;
+        halt.far.lose_reply = which == 2 ? 0 : FAR_NEVER;
+    }
+    halt.streamed = c->way == RATE || c->way == SEND || c->way == FOLLOW;
+    halt.blind = c->stop == GUARD;
+    halt.lag_deg = c->loss == MISSED && halt.of->driver.arm ? lag_deg(c) : 0;
+    int job = ask_stop(c->stop);
+    if (job < 0) {
+        sum.refused++;
+        return true;
+    }
+    halt.awaited = job;
+    for (int i = 0; i < 3000 && !is_done(c, job); i++) {
+        halt_run(HALT_MS);
+    }
+    if (is_done(c, job)) {
+        halt_done();
+    }
+    halt_run(600 * HALT_MS);
+    halt_verdict(bound_of(c));
+    sum.excused += (unsigned)halt.excused;
+    return halt.fault[0] == '\0';
+}
+
+/* ---- what is known to break a rule ----------------------------------------------------------- */
+
+/* Each with its reason, and counted: open defects, not permissions. */
+typedef struct excuse {
+    const char *family, *stop, *loss, *rule; /* the rule's first words; NULL: any */
+    const char *why;
+    unsigned long cells;
+} excuse;
+
+static excuse excuses[] = {
+    {"board", NULL, "lost", "comes to rest", "4: 2 deg too far, 20 ms before it arrives", 0},
+    {"board", NULL, "missed", "comes to rest", "1 moment: a lost key that was not read yet", 0},
+    {"bus", NULL, "missed", "comes to rest", "the same", 0},
+    {"bus", "trip", "lost", "a halt throws", "12: a reply is lost as a target is changed", 0},
+    {"dxl2", "guard", NULL, "a halt throws", "told 5 deg beyond its goal as it arrives", 0},
+    {"dxl2", NULL, "lost", "comes to rest", "12: a lost reply and a lost halt", 0},
+    {"dxl1", NULL, "missed", NULL, "behind by a lost segment, it goes on to its end", 0},
+    {"sts", NULL, NULL, "goes on", "for 1.3 deg, on its ramp, where the engine has it at its goal",
+     0},
+    {"ics", "pause", NULL, "is never done", "3: a soft stop whose frames were lost stays one", 0},
+    {"lx16a", NULL, "lost", NULL, "it tells no speed: repeated by two positions, 6 deg beyond", 0},
+    {NULL, NULL, NULL, NULL, NULL, 0},
+};
+
+static bool fits(const char *wanted, const char *is)
+{
+    return wanted == NULL || strncmp(wanted, is, strlen(wanted)) == 0;
+}
+
+static bool is_excused(const cell *c)
+{
+    for (excuse *e = excuses; e->why != NULL; e++) {
+        if (fits(e->family, halt.of->far->name) && fits(e->stop, stop_names[c->stop]) &&
+            fits(e->loss, loss_names[c->loss]) && fits(e->rule, halt.fault)) {
+            e->cells++;
+            return true;
+        }
+    }
+    return false;
+}
+
+static void tell_excuses(bool all)
+{
+    for (const excuse *e = excuses; e->why != NULL; e++) {
+        if (e->cells > 0 || all) {
+            print_message("%lu known: %s %s, %s\n", e->cells, e->family,
+                          e->stop != NULL ? e->stop : "all stops", e->why);
+        }
+    }
+}
+
+/* ---- cells ----------------------------------------------------------------------------------- */
+
+enum { TOLD = 40 }; /* of the cells that fail; GROBO_HALT_TOLD=1: all */
+
+static void judge_cell(const cell *c)
+{
+    sum.cells++;
+    if (stop_and_judge(c) || is_excused(c)) {
+        return;
+    }
+    sum.failed++;
+    if (sum.told++ < TOLD || getenv("GROBO_HALT_TOLD") != NULL) {
+        print_message("GROBO_HALT_CELL=\"%s %s %s %d %s %s\" build/tests/engine/test_halt_matrix"
+                      " # %s\n",
+                      halt.of->far->name, way_names[c->way], stop_names[c->stop], c->moment_ms,
+                      shape_names[c->shape], loss_names[c->loss], halt.fault);
+    }
+}
+
+/* When the joint arrives, by the far side, counted from the script's begin. */
+static int64_t arrival_us(const cell *c)
+{
+    set_out(c);
+    int moved = halt.of->driver.model->joints[halt.of->moved].motor - 1;
+    for (int i = 0; i < 5000; i++) {
+        go_on(halt.now_us + HALT_MS);
+        if (fabs(far_angle(&halt.far, moved, halt.now_us) - TO_DEG) < 0.5 &&
+            halt.far.joint[moved].dps == 0) {
+            return halt.now_us - script.begun_us;
+        }
+    }
+    const far_joint *joint = &halt.far.joint[moved];
+    fail_msg("%s %s %s: it does not arrive: at %.2f, goal %.2f, trip %d, state %d",
+             halt.of->far->name, way_names[c->way], shape_names[c->shape], joint->at_deg,
+             joint->goal_deg, (int)halt.trip, (int)grobo_robot_play_state(&halt.robot));
+    return 0;
+}
+
+typedef bool (*chooser)(const cell *c, void *ctx);
+
+/* Of what is sent before the stop the first motor frame of the way is lost, or a later one where
+ * there are many. */
+static void lose_before(const cell *c)
+{
+    bool many = c->way == RATE || c->way == SEND || c->way == FOLLOW;
+    halt.far.lose_motor = many ? 5 : 0;
+}
+
+static void run_moments(cell c, int64_t arrives_us, chooser chosen, void *ctx)
+{
+    set_out(&c);
+    if (c.loss == MISSED) {
+        lose_before(&c);
+    }
+    for (c.moment_ms = -AROUND_MS; c.moment_ms <= AROUND_MS; c.moment_ms += STEP_MS) {
+        int64_t at_us = script.begun_us + arrives_us + c.moment_ms * (int64_t)HALT_MS;
+        if (at_us < halt.now_us) {
+            continue;
+        }
+        go_on(at_us);
+        kept = halt;
+        kept_script = script;
+        for (c.stop = STOP; c.stop < STOPS; c.stop++) {
+            if (chosen(&c, ctx)) {
+                judge_cell(&c);
+                halt = kept;
+                script = kept_script;
+            }
+        }
+    }
+}
+
+static void run_family(int family, chooser chosen, void *ctx)
+{
+    for (way_in way = KEYS; way < WAYS_IN; way++) {
+        for (clip_shape shape = HOLD; shape < SHAPES; shape++) {
+            cell c = {.family = family, .way = way, .shape = shape};
+            int64_t arrives_us = arrival_us(&c);
+            for (c.loss = CLEAN; c.loss < LOSSES; c.loss++) {
+                run_moments(c, arrives_us, chosen, ctx);
+            }
+        }
+    }
+}
+
+static int named(const char *const *names, int n, const char *name)
+{
+    for (int i = 0; i < n; i++) {
+        if (strcmp(names[i], name) == 0) {
+            return i;
+        }
+    }
+    fail_msg("no such name: %s", name);
+    return 0;
+}
+
+static bool same_cell(const cell *c, void *ctx)
+{
+    const cell *other = ctx;
+    return c->stop == other->stop && c->moment_ms == other->moment_ms;
+}
+
+static void run_one(const char *text)
+{
+    char family[16], way[16], stop[16], shape_name[16], loss_name[16];
+    cell c = {0};
+    int n = sscanf(text, "%15s %15s %15s %d %15s %15s", family, way, stop, &c.moment_ms, shape_name,
+                   loss_name);
+    assert_int_equal(n, 6);
+    while (strcmp(halt_robot_of(c.family)->far->name, family) != 0) {
+        c.family++;
+    }
+    c.way = (way_in)named(way_names, WAYS_IN, way);
+    c.stop = (stop_kind)named(stop_names, STOPS, stop);
+    c.shape = (clip_shape)named(shape_names, SHAPES, shape_name);
+    c.loss = (line_loss)named(loss_names, LOSSES, loss_name);
+    cell wanted = c;
+    halt_traced = true;
+    run_moments(c, arrival_us(&c), same_cell, &wanted);
+}
+
+static bool every(const cell *c, void *ctx)
+{
+    (void)c;
+    (void)ctx;
+    return true;
+}
+
+/* Around arrival in steps of 50 ms, and some others by chance. */
+static bool some(const cell *c, void *ctx)
+{
+    uint32_t *seed = ctx;
+    bool lucky = next_random(seed) % 200 == 0;
+    return lucky || (c->loss == CLEAN && c->moment_ms % 50 == 0 && abs(c->moment_ms) <= 300);
+}
+
+static void stops_throw_no_joint(void **state)
+{
+    (void)state;
+    const char *one = getenv("GROBO_HALT_CELL"), *all = getenv("GROBO_HALT");
+    const char *family = getenv("GROBO_HALT_FAMILY");
+    uint32_t seed = 29;
+    memset(&sum, 0, sizeof sum);
+    if (one != NULL) {
+        run_one(one);
+    }
+    for (int i = 0; one == NULL && halt_robot_of(i) != NULL; i++) {
+        if (family == NULL || *family == '\0' || strcmp(halt_robot_of(i)->far->name, family) == 0) {
+            unsigned long before = sum.failed, cells = sum.cells;
+            run_family(i, all != NULL && *all != '\0' ? every : some, &seed);
+            print_message("%s: %lu of %lu stops broke a rule\n", halt_robot_of(i)->far->name,
+                          sum.failed - before, sum.cells - cells);
+        }
+    }
+    tell_excuses(all != NULL && *all != '\0' && (family == NULL || *family == '\0'));
+    print_message("%lu stops, %lu refused, %lu excused, %lu broke a rule\n", sum.cells, sum.refused,
+                  sum.excused, sum.failed);
+    assert_int_equal(sum.failed, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(stops_throw_no_joint),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,499 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/dxl1.h>
+#include <grobo/dxl2.h>
+#include <grobo/feetech.h>
+#include <grobo/gr001.h>
+#include <grobo/ics.h>
+#include <grobo/lx16a.h>
+
+#include "src/base/instant.h"
+#include "tests/support/halt_kit.h"
+
+#define RAD(deg) ((deg)*0.017453292519943295)
+#define DEG(rad) ((rad)*57.29577951308232)
+
+/* What the issue of stops allows beyond the braking way. */
+#define SLACK_DEG 2.0
+/* A shaft that stands; of a reading's step. */
+#define STILL_DEG 0.5
+#define STILL_DPS 0.05
+/* A speed in counts of its register is rounded up: of KRS that is 3.9 deg/s. */
+#define COUNT_DPS 4.0
+#define COUNT_S 0.6
+/* A lost frame is repeated when its halt should be over and every joint was read; a reading whose
+ * reply is lost takes so much longer. */
+#define HALT_TIME_US 100000
+#define LOST_REPLY_US 45000
+/* Servos without ramps slow down evenly over 100 ms: the way of half that time at their speed. */
+#define BRAKE_S 0.05
+/* From one target of a stream to the next; and of readings of servos that tell no speed. */
+#define PAUSE_US 20000
+#define UNKNOWN_US 100000
+
+halt_world halt;
+bool halt_traced;
+
+/* ---- robots ---------------------------------------------------------------------------------- */
+
+enum { SMALL_JOINTS = 3, FAMILIES = 7 };
+
+typedef struct recipe {
+    const far_family *far;
+    const grobo_servo_table *table;
+    const char *servo;
+    int (*init)(grobo_driver *driver, const grobo_model *model);
+    int64_t frame_us;
+    int64_t reading_us; /* all joints; twice where servos tell no speed */
+} recipe;
+
+static const recipe recipes[FAMILIES] = {
+    {&far_board, NULL, NULL, NULL, 19000, 210000},
+    {&far_bus, NULL, NULL, NULL, 9500, 110000},
+    {&far_dxl2, &grobo_dxl2_table, "XL430-W250", grobo_dxl2_driver_init, 2500, 8000},
+    {&far_dxl1, &grobo_dxl1_table, "AX-12A", grobo_dxl1_driver_init, 1500, 5000},
+    {&far_sts, &grobo_sts_table, "STS3215", grobo_feetech_driver_init, 1500, 5000},
+    {&far_ics, &grobo_ics_table, "KRS-3301", grobo_ics_driver_init, 7500, 135000},
+    {&far_lx16a, &grobo_lx16a_table, "LX-16A", grobo_lx16a_driver_init, 3000, 160000},
+};
+static halt_robot robots[FAMILIES];
+
+static void make_gr001(halt_robot *robot, const recipe *from)
+{
+    robot->driver =
+        *grobo_gr001_driver(from->far == &far_board ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS);
+    robot->n_joints = robot->driver.model->n_joints;
+    robot->moved = grobo_model_joint_of_motor(robot->driver.model, 3);
+    robot->other = grobo_model_joint_of_motor(robot->driver.model, 6);
+}
+
+static void make_small(halt_robot *robot, const recipe *from)
+{
+    static const char *const names[SMALL_JOINTS] = {"A", "B", "C"};
+    const grobo_servo_model *servo = grobo_servo_model_named(from->table, from->servo);
+    assert_non_null(servo);
+    robot->n_joints = SMALL_JOINTS;
+    robot->other = 1;
+    for (int j = 0; j < SMALL_JOINTS; j++) {
+        robot->joints[j] = (grobo_joint){.name = names[j],
+                                         .min_rad = RAD(-100),
+                                         .max_rad = RAD(100),
+                                         .max_speed_rad_s = RAD(0.8 * servo->speed_dps),
+                                         .servo_model = servo->number,
+                                         .motor = (uint8_t)(j + 1),
+                                         .mirror = (uint8_t)j,
+                                         .mirror_sign = 1,
+                                         .sign = 1};
+    }
+    robot->model =
+        (grobo_model){.name = from->servo, .joints = robot->joints, .n_joints = SMALL_JOINTS};
+    assert_int_equal(from->init(&robot->driver, &robot->model), GROBO_OK);
+    robot->driver.arm = true;
+}
+
+const halt_robot *halt_robot_of(int family)
+{
+    if (family < 0 || family >= FAMILIES) {
+        return NULL;
+    }
+    halt_robot *robot = &robots[family];
+    if (robot->far == NULL) {
+        const recipe *from = &recipes[family];
+        robot->far = from->far;
+        robot->frame_us = from->frame_us;
+        robot->reading_us = from->reading_us;
+        if (from->table == NULL) {
+            make_gr001(robot, from);
+        } else {
+            make_small(robot, from);
+        }
+    }
+    return robot;
+}
+
+const halt_robot *halt_robot_named(const char *name)
+{
+    for (int i = 0; i < FAMILIES; i++) {
+        if (strcmp(halt_robot_of(i)->far->name, name) == 0) {
+            return halt_robot_of(i);
+        }
+    }
+    return NULL;
+}
+
+int halt_joint_of(int servo)
+{
+    return grobo_model_joint_of_motor(halt.of->driver.model, (uint8_t)(servo + 1));
+}
+
+static int far_of(int joint)
+{
+    return halt.of->driver.model->joints[joint].motor - 1;
+}
+
+/* ---- the world ------------------------------------------------------------------------------- */
+
+static void on_event(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.number == halt.awaited) {
+        halt.result = event->u.job.result;
+        halt.over = true;
+    } else if (event->kind == GROBO_EVENT_TRIP && halt.trip_us == 0) {
+        halt.trip_us = event->now_us;
+        halt.trip = event->u.trip.trip;
+        if (halt.judges_trip) {
+            halt_judge(halt.trip_soft_us);
+        }
+    }
+}
+
+static void hear(void *ctx, const far_news *news);
+
+void halt_new_engine(const grobo_robot_config *asked)
+{
+    grobo_robot_config config = *asked;
+    config.bus.baud_bps = (uint32_t)halt.of->far->baud_bps;
+    config.bus.echo = halt.of->far->echo;
+    assert_int_equal(grobo_robot_init(&halt.robot, &halt.of->driver, NULL, &config, halt.now_us),
+                     GROBO_OK);
+    grobo_robot_on_event(&halt.robot, on_event, NULL);
+    grobo_robot_link_up(&halt.robot, halt.now_us);
+}
+
+void halt_begin(const halt_robot *robot, double deg)
+{
+    static const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT};
+    memset(&halt, 0, sizeof halt);
+    halt.of = robot;
+    halt.now_us = HALT_S;
+    far_begin(&halt.far, robot->far, robot->n_joints, halt.now_us);
+    halt.far.hear = hear;
+    far_put(&halt.far, far_of(robot->moved), deg, false, halt.now_us);
+    halt_new_engine(&config);
+}
+
+/* GROBO_HALT_CELL: what was on the wire from the stop on. */
+static void trace(char way, const uint8_t *bytes, int n)
+{
+    if (!halt_traced || !halt.judged) {
+        return;
+    }
+    printf("%9.3f ms %c", (double)(halt.now_us - halt.asked_us) / HALT_MS, way);
+    for (int i = 0; i < n; i++) {
+        printf(" %02X", bytes[i]);
+    }
+    printf("\n");
+}
+
+void halt_run(int64_t us)
+{
+    int64_t until_us = halt.now_us + us;
+    for (int spins = 0;; spins++) {
+        uint8_t bytes[512];
+        int n;
+        assert_true(spins < 4000000);
+        while ((n = far_give(&halt.far, bytes, (int)sizeof bytes, halt.now_us)) > 0) {
+            trace('<', bytes, n);
+            grobo_robot_rx(&halt.robot, bytes, (size_t)n, halt.now_us);
+        }
+        grobo_robot_step(&halt.robot, halt.now_us);
+        n = grobo_robot_tx(&halt.robot, bytes, sizeof bytes, halt.now_us);
+        assert_true(n >= 0);
+        if (n > 0) {
+            trace('>', bytes, n);
+            far_take(&halt.far, bytes, n, halt.now_us);
+        }
+        int64_t next_us =
+            grobo_i_sooner(grobo_robot_deadline(&halt.robot, halt.now_us), far_next_us(&halt.far));
+        if (next_us > until_us) {
+            halt.now_us = until_us;
+            return;
+        }
+        halt.now_us = grobo_i_later(halt.now_us, next_us);
+    }
+}
+
+int halt_wait(int number, int64_t us)
+{
+    int64_t end_us = halt.now_us + us;
+    halt.awaited = number;
+    halt.over = false;
+    while (number > 0 && !halt.over && halt.now_us < end_us) {
+        halt_run(HALT_MS);
+    }
+    return number <= 0 ? number : halt.over ? halt.result : GROBO_ERR_TIMEOUT;
+}
+
+grobo_posture halt_posture(double deg, int64_t time_us, bool whole)
+{
+    grobo_posture p;
+    const grobo_model *model = halt.of->driver.model;
+    assert_int_equal(grobo_posture_init(&p, model->n_joints), 0);
+    p.angle_rad[halt.of->moved] = RAD(deg);
+    p.set = whole ? GROBO_JOINTS_ALL(model->n_joints) : GROBO_JOINT_BIT(halt.of->moved);
+    p.time_us = time_us;
+    return p;
+}
+
+void halt_make_ready(double deg)
+{
+    int n = halt.of->driver.model->n_joints;
+    int r = halt_wait(grobo_robot_torque(&halt.robot, GROBO_JOINTS_ALL(n), GROBO_TORQUE_ON),
+                      10 * HALT_S);
+    grobo_posture p = halt_posture(deg, 200 * HALT_MS, true);
+    r = r < 0 ? r : halt_wait(grobo_robot_move(&halt.robot, &p), 10 * HALT_S);
+    if (r < 0) {
+        fail_msg("%s: cannot be made ready: %s", halt.of->far->name, grobo_error_name(r));
+    }
+    halt_run(100 * HALT_MS);
+}
+
+/* ---- the judge ------------------------------------------------------------------------------- */
+
+void halt_blame(const char *rule, int joint, double is, double may)
+{
+    if (halt.fault[0] == '\0') {
+        (void)snprintf(halt.fault, sizeof halt.fault,
+                       "%s: joint %d, %+.1f ms after the request: %.2f, allowed %.2f", rule,
+                       joint + 1, (double)(halt.now_us - halt.asked_us) / HALT_MS, is, may);
+    }
+}
+
+static double most_dps(int servo)
+{
+    return DEG(halt.of->driver.model->joints[halt_joint_of(servo)].max_speed_rad_s);
+}
+
+/* One that arrived just now may be about to go on with the next target of a stream; of a KRS nobody
+ * but its program knows where it goes. */
+static double turning_dps(const far_joint *joint)
+{
+    bool unknown = halt.blind && joint->family == &far_ics;
+    int64_t ago_us = unknown ? UNKNOWN_US : halt.streamed ? PAUSE_US : 0;
+    bool just_now = halt.now_us - joint->last_us < ago_us;
+    return joint->dps != 0 || !just_now ? joint->dps : joint->last_dps;
+}
+
+static double braking_deg(const far_joint *joint, double dps)
+{
+    double ramp_deg = joint->accel_dps2 > 0 ? dps * dps / (2 * joint->accel_dps2) : 0;
+    return fmax(ramp_deg, fabs(dps) * BRAKE_S);
+}
+
+/* A speed that is rounded up has a joint ahead of where it was sent. */
+static double slack_deg(const far_joint *joint)
+{
+    return SLACK_DEG + joint->family->step_deg + joint->family->count_dps * COUNT_S + halt.lag_deg;
+}
+
+/* How far out of from..to. */
+static double outside(double deg, double from_deg, double to_deg)
+{
+    return fmax(fmax(from_deg - deg, deg - to_deg), 0);
+}
+
+/* Where a halt may send a joint that it reaches now: from where it was as the frame left, over
+ * where it is, to where it can come to rest; a soft stop, so much further on its way. */
+static void may_go(const far_joint *joint, const far_news *news, const halt_base *base,
+                   double *from_deg, double *to_deg)
+{
+    double dead_s = (double)joint->family->dead_us / HALT_S;
+    double dps = turning_dps(joint);
+    bool just_asked = halt.now_us - halt.asked_us < 2 * halt.of->frame_us;
+    if (base->begins && just_asked && fabs(base->asked_dps) > fabs(dps)) {
+        dps = base->asked_dps;
+    }
+    double soft_s = (double)(base->turned || dps != 0 ? halt.soft_us : 0) / HALT_S;
+    double brake_deg = copysign(braking_deg(joint, dps), dps) + dps * dead_s;
+    double soft_deg = (fabs(dps) > fabs(base->asked_dps) ? dps : base->asked_dps) * soft_s;
+    double on_deg = joint->at_deg + brake_deg + soft_deg;
+    *from_deg = fmin(fmin(news->left_deg, joint->at_deg), on_deg);
+    *to_deg = fmax(fmax(news->left_deg, joint->at_deg), on_deg);
+}
+
+static void judge_speed(const far_joint *joint, const far_news *news)
+{
+    double way_deg = fabs(news->goal_deg - joint->at_deg);
+    double lag_deg = fabs(joint->at_deg - news->left_deg) + joint->family->step_deg + halt.lag_deg;
+    double most = most_dps(news->joint) + COUNT_DPS;
+    double asked_dps = news->ask_dps > 0 ? news->ask_dps : INFINITY;
+    if (way_deg > lag_deg + SLACK_DEG / 2) {
+        asked_dps = isinf(asked_dps) ? asked_dps : asked_dps * (way_deg - lag_deg) / way_deg;
+        if (asked_dps > most * 1.01) {
+            halt_blame("faster than the joint may", news->joint, asked_dps, most);
+        }
+    }
+}
+
+static void judge_goal(const far_joint *joint, const far_news *news)
+{
+    halt_base *base = &halt.base[news->joint];
+    double from_deg, to_deg;
+    may_go(joint, news, base, &from_deg, &to_deg);
+    if (!base->halted) {
+        base->halted = true;
+        base->halt_left_us = news->left_us;
+        base->from_deg = from_deg;
+        base->to_deg = to_deg;
+    } else { /* a halt after a soft one */
+        from_deg = fmin(from_deg, base->from_deg);
+        to_deg = fmax(to_deg, base->to_deg);
+    }
+    halt.judged_goals++;
+    double off_deg = outside(news->goal_deg, from_deg, to_deg);
+    if (off_deg > slack_deg(joint)) {
+        if (news->missed) {
+            halt.excused++;
+            base->excused = true;
+        } else {
+            halt_blame("a halt throws a joint", news->joint, news->goal_deg, joint->at_deg);
+        }
+    }
+    if (!news->missed) {
+        judge_speed(joint, news);
+    }
+}
+
+/* A frame that was on the line when the stop was asked for sets the joint going yet. */
+static void note_last(const far_joint *joint, const far_news *news)
+{
+    halt_base *base = &halt.base[news->joint];
+    double dps = news->ask_dps > 0 ? fmin(news->ask_dps, joint->top_dps) : joint->top_dps;
+    base->turned = base->begins = true;
+    base->asked_dps = copysign(dps, news->goal_deg - joint->at_deg);
+}
+
+static void hear(void *ctx, const far_news *news)
+{
+    const far_joint *joint = &halt.far.joint[news->joint];
+    (void)ctx;
+    if (halt_traced && halt.judged) {
+        printf("%9.3f ms   joint %d at %.2f turns %.1f/s: %s %.2f at %.1f deg/s\n",
+               (double)(halt.now_us - halt.asked_us) / HALT_MS, news->joint + 1, joint->at_deg,
+               joint->dps, news->is_goal ? "goal" : "torque",
+               news->is_goal ? news->goal_deg : news->torque, news->ask_dps);
+    }
+    if (halt.judged && news->is_goal && news->left_us < halt.asked_us) {
+        note_last(joint, news);
+    }
+    if (!halt.judged || news->left_us < halt.asked_us) {
+        return;
+    }
+    if (news->is_goal) {
+        judge_goal(joint, news);
+    } else if (news->torque != 1 && !halt.base[news->joint].halted) {
+        halt_base *base = &halt.base[news->joint];
+        base->halted = true;
+        base->halt_left_us = news->left_us;
+        base->from_deg = fmin(news->left_deg, joint->at_deg);
+        base->to_deg = fmax(news->left_deg, joint->at_deg);
+    }
+}
+
+/* For how long it turns yet if nobody stops it. */
+static int64_t left_us(const far_joint *joint)
+{
+    double left_deg = fabs(joint->goal_deg - joint->at_deg);
+    bool ends = left_deg <= braking_deg(joint, joint->dps) + SLACK_DEG; /* where a halt would */
+    return joint->torque != 1 || joint->dps == 0 || ends
+               ? 0
+               : (int64_t)(left_deg / fabs(joint->dps) * HALT_S);
+}
+
+void halt_judge(int64_t soft_us)
+{
+    halt.judged = true;
+    halt.now_us++; /* behind what has left by now */
+    halt.asked_us = halt.now_us;
+    halt.done_us = 0;
+    halt.soft_us = soft_us;
+    halt.far.motor_left_us = halt.far.first_left_us = FAR_NEVER;
+    memset(halt.base, 0, sizeof halt.base);
+    for (int j = 0; j < halt.far.n_joints; j++) {
+        halt.base[j].asked_deg = far_angle(&halt.far, j, halt.now_us);
+        halt.base[j].asked_dps = halt.far.joint[j].dps;
+        halt.base[j].turned = far_turns(&halt.far, j, halt.now_us);
+        halt.base[j].missed = halt.far.joint[j].missed;
+        halt.base[j].halt_left_us = FAR_NEVER;
+        if (halt.far.joint[j].waits) { /* its dead time is not over */
+            const far_joint *joint = &halt.far.joint[j];
+            far_news news = {.joint = j};
+            double accel_dps2;
+            joint->family->plan(joint, &news.goal_deg, &news.ask_dps, &accel_dps2);
+            note_last(joint, &news);
+        }
+        halt.base[j].left_us = left_us(&halt.far.joint[j]);
+    }
+}
+
+void halt_done(void)
+{
+    halt.done_us = halt.now_us;
+    for (int j = 0; j < halt.far.n_joints; j++) {
+        halt.base[j].done_deg = far_angle(&halt.far, j, halt.now_us);
+        halt.base[j].done_dps = halt.far.joint[j].dps;
+    }
+}
+
+/* A joint that no halt reached goes on for as long as the first frame may take. */
+static void judge_rest(int j, int64_t bound_us)
+{
+    const halt_base *base = &halt.base[j];
+    far_joint *joint = &halt.far.joint[j];
+    double at_deg = far_angle(&halt.far, j, halt.now_us);
+    double from_deg = base->from_deg, to_deg = base->to_deg;
+    bool lost = halt.far.lost_frames > 0 && halt.far.lost_us >= halt.asked_us;
+    if (lost) { /* until it is repeated, when every joint was read */
+        bound_us += HALT_TIME_US + halt.of->reading_us + halt.of->frame_us + LOST_REPLY_US;
+        halt.excused += !base->halted && base->turned;
+    }
+    if (!base->halted) {
+        double on_deg = base->asked_deg + base->asked_dps * ((double)bound_us / HALT_S + BRAKE_S);
+        from_deg = fmin(base->asked_deg, on_deg);
+        to_deg = fmax(base->asked_deg, on_deg);
+    }
+    bool far_off = outside(at_deg, from_deg, to_deg) > slack_deg(joint);
+    if (base->excused || joint->missed) { /* nobody knew where it was */
+        halt.excused += far_off;
+        return;
+    }
+    if (far_off) {
+        halt_blame("comes to rest too far away", j, at_deg, base->asked_deg);
+    }
+    if (far_turns(&halt.far, j, halt.now_us) && fabs(joint->dps) > STILL_DPS) {
+        halt_blame("still turns", j, joint->dps, 0);
+    }
+    /* The engine takes a frame to arrive at once (docs/guide/safety.md): 19 ms through a board. */
+    double on_s = (double)(halt.of->frame_us + joint->family->dead_us) / HALT_S;
+    double still_deg = STILL_DEG + joint->family->step_deg + fabs(base->done_dps) * on_s +
+                       joint->family->count_dps * COUNT_S + halt.lag_deg;
+    if (halt.done_us > 0 && fabs(at_deg - base->done_deg) > still_deg) {
+        halt_blame("goes on after the stop was done", j, at_deg, base->done_deg);
+    }
+}
+
+void halt_verdict(int64_t bound_us)
+{
+    bool turned = false;
+    int64_t waited_us = halt.far.motor_left_us - halt.asked_us;
+    for (int j = 0; j < halt.far.n_joints; j++) {
+        turned = turned || (halt.base[j].left_us > bound_us && !halt.base[j].missed);
+        judge_rest(j, bound_us);
+    }
+    if (turned && (halt.far.motor_left_us == FAR_NEVER || waited_us > bound_us)) {
+        halt_blame(halt.far.motor_left_us == FAR_NEVER ? "no frame left"
+                                                       : "the first frame is late",
+                   -1, (double)waited_us / HALT_MS, (double)bound_us / HALT_MS);
+    }
+    if (halt.done_us == 0) {
+        halt_blame("is never done", -1, 0, 0);
+    }
+}
