@@ -366,9 +366,8 @@ static int watch(monitor *m)
 {
     struct event *tick = conn_every(m->c.base, DRAW_US, on_draw, m);
     struct event *input = event_new(m->c.base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, m);
-    int error = tick && input ? GROBO_OK : GROBO_ERR_NOMEM;
+    int error = tick && input && event_add(input, NULL) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
     if (!error) {
-        event_add(input, NULL);
         monitor_draw(m);
         error = conn_wait_until(&m->c, is_over);
     }

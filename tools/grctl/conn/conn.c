@@ -250,10 +250,10 @@ int conn_sleep_until(conn *c, int64_t at_us)
     struct timeval rest = conn_timeval(rest_us > 0 ? rest_us : 0);
     struct event *timer = evtimer_new(c->base, conn_note, &awake);
     int error = GROBO_OK;
-    if (!timer) {
+    if (!timer || evtimer_add(timer, &rest) != 0) {
+        conn_forget(timer);
         return GROBO_ERR_NOMEM;
     }
-    evtimer_add(timer, &rest);
     while (!awake && (!c->signal || c->a->stops) && !c->link_error && !error) {
         if (event_base_loop(c->base, EVLOOP_ONCE) != 0) {
             error = GROBO_ERR_IO;

@@ -94,7 +94,9 @@ void conn_link_watch(conn_link *link)
         return;
     }
     for (int i = 0; i < link->n_signals; i++) {
-        event_add(link->signals[i], NULL);
+        if (event_add(link->signals[i], NULL) != 0 && link->user) {
+            link->user->link_error = GROBO_ERR_NOMEM; /* it could not be ended in order */
+        }
     }
 }
 

@@ -921,7 +921,7 @@ int http_new(const http_config *config, http **server, const char **complaint)
     h->sweep = event_new(config->base, -1, EV_PERSIST, on_sweep, h);
     h->reap = event_new(config->base, -1, 0, on_reap, h);
     h->greet = event_new(config->base, -1, 0, on_greet, h);
-    if (!h->sweep || !h->reap || !h->greet) {
+    if (!h->sweep || !h->reap || !h->greet || event_add(h->sweep, &period) != 0) {
         http_free(h);
         return GROBO_ERR_NOMEM;
     }
@@ -933,7 +933,6 @@ int http_new(const http_config *config, http **server, const char **complaint)
         return GROBO_ERR_BUSY;
     }
     set_walls(h);
-    event_add(h->sweep, &period);
     *server = h;
     return GROBO_OK;
 }

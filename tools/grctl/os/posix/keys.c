@@ -105,12 +105,14 @@ bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, vo
     k->on_key = on_key;
     k->ctx = ctx;
     k->events[0] = event_new(base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, k);
-    for (int i = 0; i < KEYS_EVENTS; i++) {
-        if (k->events[i]) {
-            event_add(k->events[i], NULL);
-        }
+    bool heard = k->events[0] != NULL;
+    for (int i = 0; i < KEYS_EVENTS && heard; i++) {
+        heard = !k->events[i] || event_add(k->events[i], NULL) == 0;
     }
-    return true;
+    if (!heard) {
+        keys_stop(k);
+    }
+    return heard;
 }
 
 void keys_pause(void)
