@@ -41,17 +41,6 @@ bool grobo_i_jobs_have_room(const grobo_robot *robot, bool last)
     return false;
 }
 
-bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_task *job))
-{
-    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
-        const grobo_robot_task *job = &robot->jobs[i];
-        if (job->kind != GROBO_JOB_NONE && (is == NULL || is(job))) {
-            return true;
-        }
-    }
-    return false;
-}
-
 int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script,
                       int number)
 {

@@ -37,6 +37,17 @@ bool grobo_i_has_frame(const grobo_robot *robot, int64_t now_us)
     return has;
 }
 
+bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_task *job))
+{
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        const grobo_robot_task *job = &robot->jobs[i];
+        if (job->kind != GROBO_JOB_NONE && (is == NULL || is(job))) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static int64_t age(int64_t read_us, int64_t now_us)
 {
     return read_us == GROBO_NEVER_US ? GROBO_NEVER_US : now_us - read_us;

@@ -159,6 +159,9 @@ bool grobo_i_is_latched(const grobo_robot *robot);
 /* True if a frame waits that the wire has time for now. */
 bool grobo_i_has_frame(const grobo_robot *robot, int64_t now_us);
 
+/* True if that is true of a job that runs; NULL: if one runs. */
+bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_task *job));
+
 /* True while joints are being moved, by a job or by the sequencer. */
 bool grobo_i_in_motion(const grobo_robot *robot);
 
@@ -406,8 +409,6 @@ void grobo_i_jobs_close_up(grobo_robot *robot);
 void grobo_i_job_end(grobo_robot *robot, int result);
 /* The same for each job of which that is true; NULL: of all. */
 void grobo_i_jobs_end(grobo_robot *robot, bool (*is)(const grobo_robot_task *job), int result);
-/* True if that is true of a job that runs; NULL: if one runs. */
-bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_task *job));
 /* Moves and torques that run leave these joints to another; one that has no joint left ends. */
 void grobo_i_jobs_leave(grobo_robot *robot, grobo_joint_mask joints);
 /* Tells how one that waited for its turn has ended. */

@@ -425,7 +425,7 @@ static void try_again(grobo_session *session)
     }
 }
 
-void grobo_i_session_on_time(grobo_session *session)
+static void attend_time(grobo_session *session)
 {
     grobo_i_session_enter(session);
     switch (session->state) {
@@ -449,7 +449,7 @@ static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
 {
     (void)timer;
     (void)late_us;
-    grobo_i_session_on_time(ctx);
+    attend_time(ctx);
 }
 
 static void on_guard(evutil_socket_t fd, short what, void *ctx)
@@ -542,6 +542,7 @@ static int make_parts(grobo_session *session)
     if (r >= 0) {
         r = grobo_i_session_guard_new(session, on_guard);
     }
+    session->on_time = attend_time;
     return r < 0 ? r : grobo_i_session_wake_new(session);
 }
 

@@ -91,6 +91,7 @@ struct grobo_session {
     atomic_bool obeying;         /* one that was posted, or that another program asked for */
     grobo_socket wake_socket[2]; /* a byte from 1 to 0 wakes the loop */
     struct event *wake;
+    void (*on_time)(grobo_session *session); /* the deadline has come, or may have */
     bool untimed;        /* the timer could not be set: each wake-up is its time */
     bool always_listens; /* also while closed */
     bool exit_owed;      /* asked for while an emergency stop is carried out */
@@ -136,9 +137,6 @@ void grobo_i_session_tell_tap(void *ctx, grobo_direction direction, int64_t now_
 
 /* Any thread, signal handlers: has the loop make a round. */
 void grobo_i_session_wake(grobo_session *session);
-
-/* The deadline has come, or may have. */
-void grobo_i_session_on_time(grobo_session *session);
 
 /* Any thread: true while a posted request has not been looked at. */
 bool grobo_i_session_has_asked(const grobo_session *session);

@@ -177,7 +177,7 @@ static void on_wake(evutil_socket_t socket, short what, void *ctx)
     while (recv(socket, bytes, sizeof bytes, 0) == (int)sizeof bytes) {
     }
     if (session->untimed) {
-        grobo_i_session_on_time(session);
+        session->on_time(session);
         return;
     }
     grobo_i_session_enter(session);
