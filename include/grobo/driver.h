@@ -63,6 +63,7 @@ typedef struct grobo_setup_fault {
     int32_t found;                   /**< its counts */
     int32_t low, high;               /**< what would do, in counts; low > high: the servo is as it
                                           left its factory, and the joint is a calibrated one */
+    uint8_t more;                    /**< registers beside it that are wrong, too */
 } grobo_setup_fault;
 
 /** One reading of one joint. Plain data; a field means something only where `valid` has its bit. */

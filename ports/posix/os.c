@@ -174,15 +174,18 @@ void grobo_cond_deinit(grobo_cond *cond)
 
 /* ---- waiting for a descriptor ------------------------------------------------------------- */
 
-/* Notes who is asked about an event. The highest descriptor, -1: none, FD_SETSIZE: too high. */
+/* A number of one type, which the systems' own is not. */
+enum { SET_SIZE = FD_SETSIZE };
+
+/* Notes who is asked about an event. The highest descriptor, -1: none, SET_SIZE: too high. */
 static int choose(const struct pollfd *what, int n, short event, fd_set *chosen)
 {
     int most = -1;
 
     FD_ZERO(chosen);
     for (int i = 0; i < n; i++) {
-        if (what[i].fd >= FD_SETSIZE) {
-            return FD_SETSIZE;
+        if (what[i].fd >= SET_SIZE) {
+            return SET_SIZE;
         }
         if (what[i].fd >= 0 && (what[i].events & event) != 0) {
             FD_SET(what[i].fd, chosen);
@@ -209,7 +212,7 @@ static int select_each(struct pollfd *what, int n, int limit_ms)
     int to_write = choose(what, n, POLLOUT, &out);
     int most = to_read > to_write ? to_read : to_write;
     int ready =
-        most < FD_SETSIZE ? select(most + 1, &in, &out, NULL, limit_ms < 0 ? NULL : &span) : -1;
+        most < SET_SIZE ? select(most + 1, &in, &out, NULL, limit_ms < 0 ? NULL : &span) : -1;
 
     for (int i = 0; i < n; i++) {
         what[i].revents = 0;

@@ -219,11 +219,20 @@ static void note_goal(const grobo_robot_slot *slot, const grobo_joint_state *got
  * answer to a goal comes from one that the goal has woken, too. */
 static void note_heard(const grobo_robot_slot *slot, const grobo_joint_state *got)
 {
-    grobo_robot_axis *axis = &slot->robot->axes[slot->joint];
+    grobo_robot *robot = slot->robot;
+    grobo_robot_axis *axis = &robot->axes[slot->joint];
     bool read = slot->reads || slot->many;
+    bool slept = grobo_i_may_sleep(robot, slot->joint);
     bool on = (got->valid & GROBO_FIELD_TORQUE) != 0 && got->torque == GROBO_TORQUE_ON;
     if ((read && on) || slot->robot->now_us - axis->heard_us <= GROBO_I_RESTART_US) {
         axis->heard_us = grobo_i_later(axis->heard_us, slot->asked_us);
+    }
+    /* Where one broken reply of many puts joints to sleep, that is often: the part of its way that
+     * it was not sent follows at once, since its last one ends soon. */
+    bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL;
+    if (many && slept && axis->in_segments && !grobo_i_may_sleep(robot, slot->joint) &&
+        !grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT)) {
+        grobo_i_gate_renew(robot, grobo_i_ways_renewed(robot) & GROBO_JOINT_BIT(slot->joint));
     }
 }
 

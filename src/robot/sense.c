@@ -348,6 +348,34 @@ static int ask_halted(grobo_robot *robot, grobo_robot_slot *slot)
     return driver->sense(driver, robot->driver_ctx, slot->joint, GROBO_SENSE_GOAL, &robot->built);
 }
 
+/* Joints that hold and may have restarted. */
+static grobo_joint_mask sleepers(const grobo_robot *robot)
+{
+    grobo_joint_mask joints = unheard(robot);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        joints &= ~(grobo_i_may_sleep(robot, j) ? 0 : GROBO_JOINT_BIT(j));
+    }
+    return joints;
+}
+
+/* They are asked one by one, in turn with all of them: in one frame with others a reply that is
+ * lost would keep others without a goal, too. */
+static bool asks_sleepers(grobo_robot *robot)
+{
+    bool now = !is_urgent(robot) && sleepers(robot) != 0;
+    robot->heard_read = now && !(robot->heard_read && is_due(robot));
+    return robot->heard_read;
+}
+
+static int ask_sleeper(grobo_robot *robot, grobo_robot_slot *slot)
+{
+    slot->joint = (uint8_t)next_of(&robot->heard_round, sleepers(robot));
+    slot->reads = true;
+    slot->kind = GROBO_SENSE_GOAL;
+    return robot->driver->sense(robot->driver, robot->driver_ctx, slot->joint, GROBO_SENSE_GOAL,
+                                &robot->built);
+}
+
 /* Joints that were halted in turn with all others: one that is silent hides none. */
 static int ask_some(grobo_robot *robot, grobo_robot_slot *slot)
 {
@@ -357,6 +385,9 @@ static int ask_some(grobo_robot *robot, grobo_robot_slot *slot)
     if (robot->halted_read) {
         robot->heard_read = false;
         return ask_halted(robot, slot);
+    }
+    if (many && asks_sleepers(robot)) {
+        return ask_sleeper(robot, slot);
     }
     return many ? ask_all(robot, slot) : ask_next(robot, slot);
 }

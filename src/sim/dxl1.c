@@ -470,7 +470,7 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
         calibrate(sim, index, servo->model->middle);
         grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, servo->plant.torque == GROBO_TORQUE_ON);
     }
-    if (goal && !is_feetech(servo)) { /* a goal brings the torque by itself */
+    if (goal) { /* brings the torque by itself: of STS measured (feetech-cli 0.1.8, simulator.py) */
         grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 1);
     }
     go(sim, index, moves(servo, reg));

@@ -119,6 +119,11 @@ check "another mode" exits 0 on_robot --yes servo-set 3 mode 3 --flash
 check "it is not moved, and the fix is named" fails 1 \
     "elbow_flex.*mode is 3, 0 is wanted; 'grctl servo-set 3 mode 0 --flash'" \
     on_robot move elbow_flex 5
+check "its resolution, too" exits 0 on_robot --yes servo-set 3 angular_resolution 2 --flash
+check "that more is wrong is said" fails 1 \
+    "elbow_flex.*mode is 3, 0 is wanted, and 1 more register is wrong; 'grctl servo-set 3 mode 0" \
+    on_robot move elbow_flex 5
+check "put right" exits 0 on_robot --yes servo-set 3 angular_resolution 1 --flash
 check "nor anything with it" fails 1 'elbow_flex' on_robot init
 check "it is read" exits 1 on_robot status
 check "its registers, too" exits 0 on_robot servo-get 3 mode

@@ -279,6 +279,7 @@ static void servos_with_one_id_act_together(void **state)
     static const uint8_t goal[] = {1, 0x00, 0x05}, both[] = {1, 3};
     start("STS3215", 3);
     assert_int_equal(put(1, GROBO_ROLE_TORQUE, 1), 0);
+    assert_int_equal(put(2, GROBO_ROLE_TORQUE_LIMIT, 0), 0); /* it stays: their answers differ */
     (void)put(2, GROBO_ROLE_ID, 1);
     chain_send(&chain, GROBO_DXL1_ID_ALL, GROBO_DXL1_SYNC_WRITE, 42, 2, goal, sizeof goal);
     simkit_run(&chain.kit, 1000000);
@@ -295,6 +296,32 @@ static void servos_with_one_id_act_together(void **state)
     before = chain.kit.sim.stats.collisions;
     simkit_ask(&chain.kit, "FF FF 01 02 01 FC", 50000); /* a wrong sum */
     assert_int_equal(chain.kit.sim.stats.collisions, before + 1);
+}
+
+/* A goal alone, without torque before: in its own write, in the maker's block, by a sync write.
+ * What is written beside it wakes nobody. */
+static void a_goal_switches_torque_on(void **state)
+{
+    (void)state;
+    static const char *const servos[] = {"STS3215", "SCS0009", "AX-12A"};
+    for (size_t i = 0; i < sizeof servos / sizeof *servos; i++) {
+        start(servos[i], 1);
+        assert_int_equal(put(1, GROBO_ROLE_SPEED, 100), 0);
+        assert_int_equal(value(0, GROBO_ROLE_TORQUE), 0);
+        assert_int_equal(put(1, GROBO_ROLE_GOAL, value(0, GROBO_ROLE_POSITION)), 0);
+        assert_int_equal(value(0, GROBO_ROLE_TORQUE), 1);
+        assert_int_equal(put(1, GROBO_ROLE_TORQUE, 0), 0);
+        assert_int_equal(value(0, GROBO_ROLE_TORQUE), 0);
+    }
+    static const uint8_t goal[] = {1, 0x00, 0x05};
+    static const uint8_t block[] = {0, 0x00, 0x04, 0, 0, 0x64, 0};
+    start("STS3215", 1);
+    chain_send(&chain, GROBO_DXL1_ID_ALL, GROBO_DXL1_SYNC_WRITE, 42, 2, goal, sizeof goal);
+    simkit_run(&chain.kit, 1000000);
+    assert_int_equal(value(0, GROBO_ROLE_POSITION), 0x500);
+    assert_int_equal(put(1, GROBO_ROLE_TORQUE, 0), 0);
+    chain_send(&chain, 1, GROBO_DXL1_WRITE, 41, 0, block, sizeof block);
+    assert_int_equal(value(0, GROBO_ROLE_TORQUE), 1);
 }
 
 /* Two families on one line: each hears its own packets and no other. */
@@ -342,6 +369,7 @@ int main(void)
         cmocka_unit_test(ax_loses_its_force),
         cmocka_unit_test(mx_is_read_in_bulk),
         cmocka_unit_test(servos_with_one_id_act_together),
+        cmocka_unit_test(a_goal_switches_torque_on),
         cmocka_unit_test(families_share_a_line),
     };
     return cmocka_run_group_tests_name("sim_dxl1", tests, NULL, NULL);

@@ -260,6 +260,9 @@ static int misbehave(const char *how)
 {
     int fd = os_child_settle();
     char byte;
+    if (strcmp(how, "never") == 0) {
+        return 1;
+    }
     send_note(fd, NOTE_READY, 0, NULL);
     if (strcmp(how, "garbage") == 0) {
         say_garbage(fd);
@@ -328,6 +331,24 @@ static void ends_one_that_hangs(void **state)
     is_ended("hangs", "the process of the connection hangs");
 }
 
+/* As where a system has no such process: the connection is in this one. */
+static void stays_inside(void **state)
+{
+    rig r;
+    (void)state;
+    setenv(as_what, "never", 1);
+    begin(&r);
+    r.keeps = true;
+    join(&r);
+    unsetenv(as_what);
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); /* there is none */
+    await_up(&r);
+    const mqtt_message message = {.topic = "t", .payload = "x", .size = 1};
+    assert_true(mqtt_publish(r.m, &message, 0, 0) > 0);
+    assert_true(mqtt_subscribe(r.m, "t", 0, false));
+    leave(&r);
+}
+
 static int is_left_out(void **state)
 {
     (void)state;
@@ -339,7 +360,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ends_nobody_else),    cmocka_unit_test(survives_random_sessions),
         cmocka_unit_test(checks_what_it_says), cmocka_unit_test(starts_it_again),
-        cmocka_unit_test(ends_one_that_hangs),
+        cmocka_unit_test(ends_one_that_hangs), cmocka_unit_test(stays_inside),
     };
     const char *how = getenv(as_what);
     if (argc == 2 && strcmp(argv[1], MQTT_HOST_WORD) == 0) {

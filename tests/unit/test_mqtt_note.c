@@ -135,6 +135,8 @@ static void judges_each_kind(void **state)
     refuse(&(note){.kind = NOTE_MESSAGE, .message = {.topic = ""}});
     refuse(&(note){.kind = NOTE_MESSAGE, .message = {.topic = "a/#"}});
     refuse(&(note){.kind = NOTE_MESSAGE, .message = {.topic = "a", .response = "+"}});
+    refuse(&(note){.kind = NOTE_MESSAGE, .message = {.topic = "a\xff"}});
+    refuse(&(note){.kind = NOTE_REFUSED, .text = {"\xe3\x83"}});
     refuse(&(note){.kind = NOTE_DOWN});
     refuse(&(note){.kind = NOTE_DOWN, .text = {longest}});
     refuse(&(note){.kind = NOTE_REFUSED, .text = {"\x1b[2J"}});
@@ -147,6 +149,32 @@ static void judges_each_kind(void **state)
     assert_true(note_is_news(&(note){.kind = NOTE_UP, .number = {1}}));
     assert_true(note_is_news(&(note){.kind = NOTE_TAKEN, .number = {1, 0}}));
     assert_true(note_is_news(&message));
+}
+
+/* A password and the name of a file are bytes. */
+static void tells_a_configuration(void **state)
+{
+    const mqtt_config said = {.host = "h",
+                              .port = 1883,
+                              .id = "i",
+                              .password = "\xff\xe9",
+                              .ca = "caf\xe9.crt",
+                              .keepalive_s = 5};
+    mqtt_config heard = {.base = NULL};
+    struct evbuffer *b = evbuffer_new();
+    note n = note_of_config(&said);
+    (void)state;
+    assert_true(note_write(b, &n));
+    assert_int_equal(note_read(b, &n), 1);
+    note_to_config(&n, &heard);
+    assert_string_equal(heard.host, "h");
+    assert_string_equal(heard.password, "\xff\xe9");
+    assert_string_equal(heard.ca, "caf\xe9.crt");
+    assert_null(heard.user);
+    assert_null(heard.will);
+    assert_int_equal(heard.port, 1883);
+    assert_int_equal(heard.keepalive_s, 5);
+    evbuffer_free(b);
 }
 
 /* A length that is none is refused at once; one that is too long is never written. */
@@ -171,7 +199,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(comes_as_it_went),      cmocka_unit_test(waits_for_its_end),
         cmocka_unit_test(bounds_whatever_comes), cmocka_unit_test(judges_each_kind),
-        cmocka_unit_test(bounds_the_length),
+        cmocka_unit_test(bounds_the_length),     cmocka_unit_test(tells_a_configuration),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

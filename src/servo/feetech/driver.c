@@ -50,5 +50,9 @@ static const grobo_i_family family = {
 
 int grobo_feetech_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    return grobo_i_table_driver(driver, model, &grobo_feetech_protocol, &family);
+    int result = grobo_i_table_driver(driver, model, &grobo_feetech_protocol, &family);
+    if (result >= 0) {
+        driver->goal_wakes = true; /* measured on an STS3215 (feetech-cli 0.1.8, simulator.py) */
+    }
+    return result;
 }

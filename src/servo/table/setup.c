@@ -12,11 +12,22 @@ static bool value_of(const grobo_i_block *b, grobo_register_role role, int32_t *
     return grobo_i_table_value(b->servo, role, b->address, b->data, b->n, value);
 }
 
+/* The first register that is wrong is the one that is named, the others are counted. */
+static int refuse_register(const grobo_servo_register *reg, int32_t found, int32_t low,
+                           int32_t high, grobo_joint_state *state)
+{
+    if (state->setup.reg == NULL) {
+        state->setup = (grobo_setup_fault){reg, found, low, high, 0};
+    } else {
+        state->setup.more++;
+    }
+    return GROBO_ERR_SETUP;
+}
+
 static int refuse(const grobo_i_block *b, grobo_register_role role, int32_t found, int32_t low,
                   int32_t high, grobo_joint_state *state)
 {
-    state->setup = (grobo_setup_fault){grobo_servo_register_of(b->servo, role), found, low, high};
-    return GROBO_ERR_SETUP;
+    return refuse_register(grobo_servo_register_of(b->servo, role), found, low, high, state);
 }
 
 static int32_t wanted_of(const grobo_i_family *family, const grobo_joint *joint,
@@ -78,37 +89,51 @@ static int judge_limits(const grobo_joint *joint, const grobo_i_block *b, int32_
     return GROBO_OK;
 }
 
-/* Model, mode, sense and middle. */
-static int judge_values(const grobo_i_family *family, const grobo_joint *joint,
-                        const grobo_i_block *b, grobo_joint_state *state)
+/* What a servo keeps of its torque over power-off. */
+static int judge_kept_torque(const grobo_joint *joint, const grobo_i_block *b,
+                             grobo_joint_state *state)
 {
-    static const grobo_register_role roles[] = {GROBO_ROLE_MODEL, GROBO_ROLE_MODE,
-                                                GROBO_ROLE_DIRECTION, GROBO_ROLE_OFFSET};
-    for (size_t i = 0; i < sizeof roles / sizeof roles[0]; i++) {
-        int32_t found;
-        if (value_of(b, roles[i], &found)) {
-            int32_t wanted = wanted_of(family, joint, b, roles[i], found);
-            if (wanted != found) {
-                return refuse(b, roles[i], found, wanted, wanted, state);
-            }
-        }
-    }
     int32_t most, limit;
     const grobo_servo_register *reg = grobo_i_table_limit(joint, b->servo, &most);
     if (joint->torque_limit_pct > 0 && reg != NULL && (reg->flags & GROBO_REGISTER_KEPT) != 0 &&
         value_of(b, (grobo_register_role)reg->role, &limit) && limit > most) {
         return refuse(b, (grobo_register_role)reg->role, limit, most, most, state);
     }
+    return GROBO_OK;
+}
+
+/* Model, mode, sense and middle. The registers of another model are not looked at. */
+static int judge_values(const grobo_i_family *family, const grobo_joint *joint,
+                        const grobo_i_block *b, grobo_joint_state *state)
+{
+    static const grobo_register_role roles[] = {GROBO_ROLE_MODEL, GROBO_ROLE_MODE,
+                                                GROBO_ROLE_DIRECTION, GROBO_ROLE_OFFSET};
+    int result = GROBO_OK;
+    for (size_t i = 0; i < sizeof roles / sizeof roles[0]; i++) {
+        int32_t found;
+        if (value_of(b, roles[i], &found)) {
+            int32_t wanted = wanted_of(family, joint, b, roles[i], found);
+            if (wanted != found) {
+                result = refuse(b, roles[i], found, wanted, wanted, state);
+            }
+            if (result < 0 && roles[i] == GROBO_ROLE_MODEL) {
+                return result;
+            }
+        }
+    }
+    if (judge_kept_torque(joint, b, state) < 0) {
+        result = GROBO_ERR_SETUP;
+    }
     if (joint->calibrated && is_new(b)) {
         int32_t found = 0;
         bool offset = value_of(b, GROBO_ROLE_OFFSET, &found);
         bool min = !offset && value_of(b, GROBO_ROLE_MIN_POSITION, &found);
         if (offset || min) {
-            return refuse(b, offset ? GROBO_ROLE_OFFSET : GROBO_ROLE_MIN_POSITION, found, 1, 0,
-                          state);
+            result =
+                refuse(b, offset ? GROBO_ROLE_OFFSET : GROBO_ROLE_MIN_POSITION, found, 1, 0, state);
         }
     }
-    return GROBO_OK;
+    return result;
 }
 
 /* A count of a position is worth what the table says: of STS, and of MX that count turns (FTServo's
@@ -126,8 +151,7 @@ static int judge_scale(const grobo_joint *joint, const grobo_i_block *b, grobo_j
     if (found == reg->factory) {
         return GROBO_OK;
     }
-    state->setup = (grobo_setup_fault){reg, found, reg->factory, reg->factory};
-    return GROBO_ERR_SETUP;
+    return refuse_register(reg, found, reg->factory, reg->factory, state);
 }
 
 static int judge_turns(const grobo_i_family *family, const grobo_i_block *b, int32_t min,
@@ -143,8 +167,12 @@ int grobo_i_table_setup(const grobo_i_family *family, const grobo_joint *joint,
                         const grobo_i_block *block, grobo_joint_state *state)
 {
     int32_t min, max, mode = 0;
+    state->setup = (grobo_setup_fault){NULL, 0, 0, 0, 0};
     int result = judge_values(family, joint, block, state);
-    result = result < 0 ? result : judge_scale(joint, block, state);
+    if (result == GROBO_OK || state->setup.reg->role != GROBO_ROLE_MODEL) {
+        int scale = judge_scale(joint, block, state);
+        result = result < 0 ? result : scale;
+    }
     if (result < 0 || !value_of(block, GROBO_ROLE_MIN_POSITION, &min) ||
         !value_of(block, GROBO_ROLE_MAX_POSITION, &max)) {
         return result;

@@ -3,6 +3,8 @@
  * Why something failed, in words: what, where, what to do; with -v the bytes of the failure, with
  * -vv all of them.
  */
+#include <string.h>
+
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/lang/lang.h"
@@ -196,6 +198,13 @@ bool conn_setup_of(const conn *c, int joint, conn_setup *s)
         snprintf(s->fix, sizeof s->fix, "%s", _("say so in the robot file"));
     } else {
         setup_of_value(driver, joint, fault, s);
+    }
+    if (fault->more) {
+        size_t used = strlen(s->fact);
+        snprintf(s->fact + used, sizeof s->fact - used,
+                 fault->more == 1 ? _(", and %d more register is wrong")
+                                  : _(", and %d more registers are wrong"),
+                 fault->more);
     }
     return true;
 }

@@ -370,7 +370,7 @@ int leader_open(leader *l, app *a, const mqtt_config *broker, const char *group,
     return connect_it(l, broker);
 }
 
-int leader_meet(leader *l)
+static int meet(leader *l)
 {
     int status = await_broker(l);
     if (!status) {
@@ -385,7 +385,7 @@ int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group
 {
     int status = leader_open(l, a, broker, group, stop);
     l->host = host;
-    return status ? status : leader_meet(l);
+    return status ? status : meet(l);
 }
 
 void leader_end(leader *l)

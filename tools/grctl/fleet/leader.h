@@ -66,9 +66,7 @@ typedef struct leader {
  * case.
  */
 int leader_open(leader *l, app *a, const mqtt_config *broker, const char *group, const char *stop);
-/* After that: waits for the broker, and finds the agents. 0 or the exit status. */
-int leader_meet(leader *l);
-/* Both, one behind the other. host: NULL, or that of whom it asks alone. */
+/* The same; waits for the broker, and finds the agents. host: NULL, or that of whom it asks. */
 int leader_begin(leader *l, app *a, const mqtt_config *broker, const char *group, const char *host,
                  const char *stop);
 void leader_end(leader *l);

@@ -267,7 +267,7 @@ bool mqtt_is_up(const mqtt *m)
 
 int mqtt_publish(mqtt *m, const mqtt_message *message, int qos, int expiry_s)
 {
-    if (!mqtt_is_up(m)) {
+    if (!mqtt_is_up(m) || message->size > MQTT_PAYLOAD_MAX_BYTES) {
         return 0;
     }
     if (m->inside) {
@@ -302,44 +302,56 @@ static void on_wait(evutil_socket_t fd, short what, void *ctx)
     *(short *)ctx = what;
 }
 
-/* One round of waiting for its words, on a loop of its own. False: none came. */
-static bool hear(mqtt *m, struct event_base *alone, const struct timeval *most)
+/* One round of waiting for its words, on a loop of its own. False: none came, and none will. */
+static bool hear(mqtt *m, struct event_base *alone)
 {
+    static const struct timeval most = {.tv_sec = READY_MS / 1000};
     short what = 0;
-    if (event_base_once(alone, m->child.socket, EV_READ, on_wait, &what, most) != 0 ||
-        event_base_loop(alone, EVLOOP_ONCE) < 0) {
-        return false;
-    }
-    return (what & EV_READ) && evbuffer_read(m->in, m->child.socket, -1) > 0;
+    return event_base_once(alone, m->child.socket, EV_READ, on_wait, &what, &most) == 0 &&
+           event_base_loop(alone, EVLOOP_ONCE) >= 0 && (what & EV_READ) &&
+           evbuffer_read(m->in, m->child.socket, -1) > 0;
 }
 
-/* What a configuration lacks is told before anything begins. One that says nothing may later. */
-static bool await_ready(mqtt *m, const char **why)
+/* Its first words: READY, FAILED with why, or NOTE_BYE: it does not run here. */
+static note_kind await_first(mqtt *m)
 {
-    const struct timeval most = {.tv_sec = READY_MS / 1000};
     struct event_base *alone = event_base_new();
-    note n = {.kind = NOTE_BEAT};
+    note_kind first = NOTE_BYE;
     on_writable(m->child.socket, 0, m);
-    bool hears = alone != NULL, good = true;
-    while (hears && good && n.kind != NOTE_READY && n.kind != NOTE_FAILED) {
+    for (bool hears = alone != NULL; hears && first == NOTE_BYE;) {
+        note n;
         int is = note_read(m->in, &n);
-        good = is >= 0 && (is == 0 || note_is_news(&n));
         if (is == 0) {
-            n.kind = NOTE_BEAT;
-            hears = hear(m, alone, &most);
-        } else if (good && n.kind != NOTE_FAILED) {
+            hears = hear(m, alone);
+        } else if (is < 0 || !note_is_news(&n)) {
+            break;
+        } else {
+            bool says = n.kind == NOTE_READY || n.kind == NOTE_FAILED;
+            first = says ? n.kind : NOTE_BYE;
+            snprintf(m->why, sizeof m->why, "%s", n.text[0] ? n.text[0] : "");
             note_drop(m->in);
         }
     }
     if (alone) {
         event_base_free(alone);
     }
-    if (good && n.kind == NOTE_FAILED) {
-        snprintf(m->why, sizeof m->why, "%s", n.text[0]);
+    return first;
+}
+
+/* What a configuration lacks is told before anything begins. No byte of a broker was heard yet: a
+ * process that does not come so far is one that this system does not run. */
+static bool begin(mqtt *m, const mqtt_config *config, const char **why)
+{
+    note_kind first = begin_child(m) ? await_first(m) : NOTE_BYE;
+    if (first == NOTE_FAILED) {
         *why = m->why;
         return false;
     }
-    return true;
+    if (first != NOTE_READY) {
+        end_child(m);
+        m->inside = direct_new(config, why);
+    }
+    return first == NOTE_READY || m->inside;
 }
 
 static void destroy(mqtt *m)
@@ -389,14 +401,7 @@ mqtt *mqtt_new(const mqtt_config *config, const char **why)
     if (!m) {
         return NULL;
     }
-    bool good = true;
-    if (begin_child(m)) {
-        good = await_ready(m, why);
-    } else {
-        m->inside = direct_new(config, why);
-        good = m->inside != NULL;
-    }
-    if (!good) {
+    if (!begin(m, config, why)) {
         snprintf(kept, sizeof kept, "%s", *why);
         *why = kept;
         end_child(m);

@@ -110,7 +110,7 @@ static const void *take_bytes(reader *r, size_t most, size_t *size)
     return r->at - n;
 }
 
-/* UTF-8 with one end, which is its last byte. */
+/* It has one end, which is its last byte. */
 static const char *take_text(reader *r)
 {
     size_t size;
@@ -118,11 +118,7 @@ static const char *take_text(reader *r)
     if (!text) {
         return NULL;
     }
-    json_t *whole = size > 0 && memchr(text, '\0', size) == text + size - 1
-                        ? json_stringn(text, size - 1)
-                        : NULL;
-    r->bad = r->bad || !whole;
-    json_decref(whole);
+    r->bad = r->bad || size == 0 || memchr(text, '\0', size) != text + size - 1;
     return r->bad ? NULL : text;
 }
 
@@ -184,9 +180,16 @@ void note_drop(struct evbuffer *from)
 
 /* ---- judging --------------------------------------------------------------------------------- */
 
+static bool is_utf8(const char *text)
+{
+    json_t *whole = json_string(text);
+    json_decref(whole);
+    return whole != NULL;
+}
+
 static bool is_topic(const char *text)
 {
-    return text && *text && !strpbrk(text, "+#");
+    return text && *text && !strpbrk(text, "+#") && is_utf8(text);
 }
 
 bool note_is_why(const char *text)
@@ -197,7 +200,7 @@ bool note_is_why(const char *text)
             return false;
         }
     }
-    return size > 0 && size <= NOTE_WHY_MAX_BYTES;
+    return size > 0 && size <= NOTE_WHY_MAX_BYTES && is_utf8(text);
 }
 
 bool note_is_news(const note *n)

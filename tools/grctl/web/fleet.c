@@ -564,10 +564,6 @@ static int run(view *v, app *a)
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "serve");
     }
     on_tick(-1, 0, v);
-    status = leader_meet(&v->l); /* the ports are open: a stop of meanwhile goes out first */
-    if (status) {
-        return status;
-    }
     v->l.on_event = on_fleet_event;
     leader_listen(&v->l, "state");
     door_announce(a, v->http);
