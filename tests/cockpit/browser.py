@@ -879,7 +879,9 @@ def a_motion_of_another_robot_says_so_and_keeps_no_card_blank(browser, server):
     page.click('#tab-play')
     choose(page, 'so101-wave.yaml')
     until(page, "document.getElementById('verdict').textContent.includes('made for so101')")
-    assert page.locator('#play').is_disabled()
+    assert page.locator('#play').is_disabled() and page.locator('#preview').is_disabled()
+    page.locator('#seek').fill('1000')
+    until(page, 'old => cockpit.drawn > old + 5', server.state()['sequence'])
     still(server, 0.3)
 
 

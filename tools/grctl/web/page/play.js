@@ -272,7 +272,7 @@ export class Play {
         if (live) {
             return live.ghost_deg && { q: live.ghost_deg.map((v) => v === null ? NaN : v * DEG) };
         }
-        if (!this.look || document.body.dataset.tab !== 'play' || this.at <= 0 && !this.previewing) {
+        if (!this.look || !hasPoses(this.look.frames) || document.body.dataset.tab !== 'play' || this.at <= 0 && !this.previewing) {
             return null;
         }
         const pose = sample(this.look.frames, this.at, toMatrix);
@@ -329,7 +329,7 @@ export class Play {
                                       : `▶ ${t('Play')}`);
         this.id('play').disabled = !may || !live && (!this.look || Boolean(refused));
         setText(this.id('preview'), this.previewing ? `❚❚ ${t('Preview')}` : `▷ ${t('Preview')}`);
-        this.id('preview').disabled = !this.look;
+        this.id('preview').disabled = !this.look || !hasPoses(this.look.frames);
         this.id('preview').hidden = Boolean(live);
         for (const name of ['queue', 'halt']) {
             this.id(name).hidden = !live;
