@@ -8,7 +8,7 @@ arm() {
     on_robot --robot "$family_robot" "$@"
 }
 plays() {
-    arm play --repeat 5 motions/so101-wave.yaml >"$work/out" 2>"$work/said" </dev/null &
+    arm play --repeat 5 "$work/$family_robot-wave.yaml" >"$work/out" 2>"$work/said" </dev/null &
     player=$!
     wait_for sim_moves_or_play_ended && kill -0 "$player" 2>/dev/null && return
     wait "$player"
@@ -48,6 +48,8 @@ all_stand() {
 
 for family_robot in so101 koch; do
     start_told_sim --robot "$family_robot" || { echo "Bail out! no simulator"; exit 1; }
+    sed "s/^targetBody:.*/targetBody: $family_robot/" motions/so101-wave.yaml \
+        >"$work/$family_robot-wave.yaml"
     check "$family_robot stands ready" exits 0 arm init
     check "is unplugged in motion" unplugged
     check "which is said" says_so
@@ -56,8 +58,8 @@ for family_robot in so101 koch; do
     check "it is plugged in" tell plug in
     check "and all joints answer" all_are_there
     check "it moves" both exits 0 arm init --- written "$work/err" 'done; largest error 0\.[0-9]'
-    check "and plays to the end" both exits 0 arm play --speed 200 motions/so101-wave.yaml --- \
-        says '^largest error at the end'
+    check "and plays to the end" both exits 0 arm play --speed 200 \
+        "$work/$family_robot-wave.yaml" --- says '^largest error at the end'
     stop_sim
 done
 done_testing
