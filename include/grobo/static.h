@@ -240,6 +240,7 @@ struct grobo_robot {
     grobo_joint_mask clip_joints;   /* of the motion that is played, and those behind it */
     grobo_joint_mask played_joints; /* sent where they go by the sequencer */
     grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
+    grobo_joint_mask renews_owed;   /* to be told more of their ways at once */
     grobo_joint_mask halts_owed;    /* to halt, and to be read before: their place is unknown */
     grobo_joint_mask heard_round;   /* of the joints that were not heard for long */
     grobo_joint_mask halted;        /* whose halt has left and was not read back yet */

@@ -9,8 +9,9 @@ enum {
     BITS_PER_BYTE = 10, /* 8N1 */
     US_PER_MS = 1000,
     MS_PER_S = 1000,
-    /* A stop waits so much longer than a reply needs for one that is owed to the same question: its
-     * first frame is not to be late, and what it halts is read back. */
+    /* A stop waits so much longer than a reply needs for one that is owed to the same question,
+     * however late they come here: its first frame is not to be late, and what it halts is read
+     * back. */
     STOP_HOLD_US = 5000
 };
 
@@ -66,15 +67,15 @@ uint32_t grobo_i_bus_margin_us(const grobo_bus *bus, unsigned attempts)
     if (bus->config.margin_us != 0) {
         return bus->config.margin_us;
     }
-    int64_t margin_us = GROBO_BUS_MARGIN_FIRST_US;
+    int32_t margin_us = GROBO_BUS_MARGIN_FIRST_US; /* 32 bits hold twice the most */
     if (bus->learnt) {
         margin_us = bus->overhead_us + 4 * bus->deviation_us;
     }
-    margin_us = grobo_i_later(margin_us, GROBO_BUS_MARGIN_MIN_US);
+    margin_us = margin_us < GROBO_BUS_MARGIN_MIN_US ? GROBO_BUS_MARGIN_MIN_US : margin_us;
     for (; attempts > 1 && margin_us < GROBO_BUS_MARGIN_MAX_US; attempts--) {
         margin_us *= 2;
     }
-    return (uint32_t)grobo_i_sooner(margin_us, GROBO_BUS_MARGIN_MAX_US);
+    return (uint32_t)(margin_us < GROBO_BUS_MARGIN_MAX_US ? margin_us : GROBO_BUS_MARGIN_MAX_US);
 }
 
 static int32_t clip(int64_t late_us, int32_t most_us)
@@ -93,11 +94,11 @@ void grobo_i_bus_learn(grobo_bus *bus)
     if (!bus->learnt) {
         bus->learnt = true;
         bus->overhead_us = sample_us;
-        bus->deviation_us = sample_us / 2;
+        bus->deviation_us = sample_us >> 1;
         return;
     }
     int32_t error_us = sample_us - bus->overhead_us;
-    bus->overhead_us += error_us / 8;
+    bus->overhead_us += error_us >> 3;
     bus->deviation_us += ((error_us < 0 ? -error_us : error_us) - bus->deviation_us) / 4;
 }
 
@@ -118,9 +119,9 @@ uint32_t grobo_i_bus_packet_key(const grobo_packet *packet)
 }
 
 /* The hold for replies that would be taken for this one, though none may be owed; or NULL. */
-static grobo_bus_hold *find_hold(grobo_bus *bus, uint32_t key)
+static const grobo_bus_hold *find_hold(const grobo_bus *bus, uint32_t key)
 {
-    for (grobo_bus_hold *hold = bus->hold; hold < bus->hold + GROBO_BUS_HOLDS; hold++) {
+    for (const grobo_bus_hold *hold = bus->hold; hold < bus->hold + GROBO_BUS_HOLDS; hold++) {
         if (hold->key == key) {
             return hold;
         }
@@ -131,7 +132,7 @@ static grobo_bus_hold *find_hold(grobo_bus *bus, uint32_t key)
 void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
 {
     uint32_t key = grobo_i_bus_key(&txn->reply);
-    grobo_bus_hold *hold = find_hold(bus, key);
+    grobo_bus_hold *hold = (grobo_bus_hold *)find_hold(bus, key);
     uint32_t span_us = 2 * (uint32_t)bus->worst_us;
     if (txn->reply.kind == GROBO_REPLY_NONE) {
         return;
@@ -157,12 +158,15 @@ void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
     hold->until_us = from_us + span_us;
 }
 
-/* The return delay of a servo is an assumption: it may answer at once. */
+/* The return delay of a servo is an assumption: it may answer at once. Of a hold that is
+ * older than half an hour either answer will do. */
 grobo_bus_hold *grobo_i_bus_owed(grobo_bus *bus, uint32_t key)
 {
-    grobo_bus_hold *hold = find_hold(bus, key);
-    int64_t soonest_us = bus->now_us + bus->config.return_delay_us;
-    return hold != NULL && hold->owed > 0 && soonest_us >= hold->due_us ? hold : NULL;
+    grobo_bus_hold *hold = (grobo_bus_hold *)find_hold(bus, key);
+    return hold != NULL && hold->owed > 0 &&
+                   (int32_t)(hold->due_us - bus->now_us) <= (int32_t)bus->config.return_delay_us
+               ? hold
+               : NULL;
 }
 
 static void learn_late(grobo_bus *bus, int64_t due_us)
@@ -209,17 +213,11 @@ void grobo_i_bus_release_holds(grobo_bus *bus)
 
 static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
 {
-    uint32_t key = grobo_i_bus_key(&txn->reply);
-    int64_t until_us = 0;
-    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
-        const grobo_bus_hold *hold = &bus->hold[i];
-        if (hold->key == key && hold->owed > 0 && (hold->owner != txn || txn->attempts_ == 0)) {
-            until_us = txn->priority == GROBO_PRIORITY_STOP
-                           ? grobo_i_sooner(hold->until_us, hold->due_us + STOP_HOLD_US)
-                           : hold->until_us;
-        }
+    const grobo_bus_hold *hold = find_hold(bus, grobo_i_bus_key(&txn->reply));
+    if (hold == NULL || hold->owed == 0 || (hold->owner == txn && txn->attempts_ != 0)) {
+        return 0;
     }
-    return until_us;
+    return txn->priority == GROBO_PRIORITY_STOP ? hold->due_us + STOP_HOLD_US : hold->until_us;
 }
 
 bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)

@@ -230,9 +230,8 @@ static void note_heard(const grobo_robot_slot *slot, const grobo_joint_state *go
     /* Where one broken reply of many puts joints to sleep, that is often: the part of its way that
      * it was not sent follows at once, since its last one ends soon. */
     bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL;
-    if (many && slept && axis->in_segments && !grobo_i_may_sleep(robot, slot->joint) &&
-        !grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT)) {
-        grobo_i_gate_renew(robot, grobo_i_ways_renewed(robot) & GROBO_JOINT_BIT(slot->joint));
+    if (many && slept && axis->in_segments && !grobo_i_may_sleep(robot, slot->joint)) {
+        robot->renews_owed |= GROBO_JOINT_BIT(slot->joint);
     }
 }
 

@@ -304,7 +304,7 @@ static void forget(grobo_robot *robot)
         axis->current_since_us = GROBO_NEVER_US;
         axis->way.to_us = robot->now_us;
     }
-    robot->free_joints = robot->played_joints = robot->halts_owed = 0;
+    robot->free_joints = robot->played_joints = robot->halts_owed = robot->renews_owed = 0;
     robot->halted = robot->halted_all = 0;
     robot->low_readings = robot->fast_lost = 0;
 }

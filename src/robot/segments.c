@@ -80,6 +80,13 @@ static void give_up(grobo_robot *robot)
     grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
 }
 
+/* True if a joint that had missed its part of the way is to get it before the others. */
+static bool renews_early(const grobo_robot *robot)
+{
+    return !GROBO_DRIVERS_PLAIN && (grobo_i_ways_renewed(robot) & robot->renews_owed) != 0 &&
+           !grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT);
+}
+
 void grobo_i_segments_step(grobo_robot *robot)
 {
     if (robot->halts_owed != 0) {
@@ -96,7 +103,12 @@ void grobo_i_segments_step(grobo_robot *robot)
     if (due_us <= robot->now_us && !grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT)) {
         bool late = due_us + GROBO_SEGMENT_RENEW_US <= robot->now_us;
         robot->renewed_us = late ? robot->now_us : due_us; /* on its grid, so that ends are exact */
+        robot->renews_owed = 0;
         grobo_i_gate_renew(robot, grobo_i_ways_renewed(robot));
+    } else if (renews_early(robot)) {
+        grobo_joint_mask joints = grobo_i_ways_renewed(robot) & robot->renews_owed;
+        robot->renews_owed = 0;
+        grobo_i_gate_renew(robot, joints);
     }
 }
 
@@ -109,6 +121,7 @@ int64_t grobo_i_segments_deadline(const grobo_robot *robot)
     at_us = grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT)
                 ? at_us
                 : grobo_i_sooner(at_us, grobo_i_segments_due(robot));
+    at_us = renews_early(robot) ? robot->now_us : at_us;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_way_is_short(axis) && axis->told_to_us < at_us) {
