@@ -67,7 +67,8 @@ static bool is_valid(const json_t *value, const field *f)
     }
     switch (f->kind) {
     case FIELD_TEXT:
-        return json_is_string(value) && (f->most <= 0 || json_string_length(value) <= f->most);
+        return json_is_string(value) &&
+               (f->most <= 0 || (double)json_string_length(value) <= f->most);
     case FIELD_FLAG:
         return json_is_boolean(value);
     case FIELD_NUMBER:

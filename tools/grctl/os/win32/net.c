@@ -59,7 +59,10 @@ bool net_connection(evutil_socket_t fd, char *text, size_t capacity)
 {
     uint16_t port = fd >= 0 ? peer_of(fd, text, capacity) : 0;
     size_t n = port ? strlen(text) : 0;
-    snprintf(text + n, capacity - n, port ? " %u" : "", (unsigned)port);
+    text[n] = '\0';
+    if (port != 0) {
+        snprintf(text + n, capacity - n, " %u", (unsigned)port);
+    }
     return port != 0;
 }
 
