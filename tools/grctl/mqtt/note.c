@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Writes the notes between the two processes of a connection, and reads them as foreign bytes. */
 #include <string.h>
 
 #include <event2/buffer.h>

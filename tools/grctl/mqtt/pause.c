@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* How long a connection that was lost pauses before the next attempt. */
 #include <event2/util.h>
 
 #include "tools/grctl/mqtt/direct.h"

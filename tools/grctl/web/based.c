@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Refuses requests that are based on a situation that is past. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>

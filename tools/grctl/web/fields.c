@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Checks the fields of a request's body, and says what was expected. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Reads the head of a request without its body, and names methods and statuses. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

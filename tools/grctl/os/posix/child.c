@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Starts this program again as a child with a socket to it, ends it, and settles in as one. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
