@@ -119,11 +119,11 @@ uint32_t grobo_i_bus_packet_key(const grobo_packet *packet)
 }
 
 /* The hold for replies that would be taken for this one, though none may be owed; or NULL. */
-static const grobo_bus_hold *find_hold(const grobo_bus *bus, uint32_t key)
+static grobo_bus_hold *find_hold(const grobo_bus *bus, uint32_t key)
 {
     for (const grobo_bus_hold *hold = bus->hold; hold < bus->hold + GROBO_BUS_HOLDS; hold++) {
         if (hold->key == key) {
-            return hold;
+            return (grobo_bus_hold *)hold; /* as writable as its bus is to the caller */
         }
     }
     return NULL;
@@ -132,7 +132,7 @@ static const grobo_bus_hold *find_hold(const grobo_bus *bus, uint32_t key)
 void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
 {
     uint32_t key = grobo_i_bus_key(&txn->reply);
-    grobo_bus_hold *hold = (grobo_bus_hold *)find_hold(bus, key);
+    grobo_bus_hold *hold = find_hold(bus, key);
     uint32_t span_us = 2 * (uint32_t)bus->worst_us;
     if (txn->reply.kind == GROBO_REPLY_NONE) {
         return;
@@ -162,7 +162,7 @@ void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
  * older than half an hour either answer will do. */
 grobo_bus_hold *grobo_i_bus_owed(grobo_bus *bus, uint32_t key)
 {
-    grobo_bus_hold *hold = (grobo_bus_hold *)find_hold(bus, key);
+    grobo_bus_hold *hold = find_hold(bus, key);
     return hold != NULL && hold->owed > 0 &&
                    (int32_t)(hold->due_us - bus->now_us) <= (int32_t)bus->config.return_delay_us
                ? hold

@@ -350,6 +350,11 @@ bool grobo_i_axis_is_on(const grobo_robot_axis *axis)
     return axis->torque_known && axis->state.torque == GROBO_TORQUE_ON;
 }
 
+bool grobo_i_axis_is_limp(const grobo_robot_axis *axis)
+{
+    return axis->torque_known && axis->state.torque != GROBO_TORQUE_ON;
+}
+
 bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
 {
     return GROBO_I_EXTRA(robot->driver, goal_wakes) &&
@@ -382,8 +387,8 @@ void grobo_i_axis_cut(grobo_robot_axis *axis)
 
 bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
 {
-    bool limp = axis->torque_known && axis->state.torque != GROBO_TORQUE_ON;
-    return !limp && grobo_i_later(grobo_i_axis_until(axis), axis->way.to_us) > now_us;
+    return !grobo_i_axis_is_limp(axis) &&
+           grobo_i_later(grobo_i_axis_until(axis), axis->way.to_us) > now_us;
 }
 
 static bool turns(const grobo_robot_axis *axis)

@@ -24,11 +24,6 @@ static bool is_read_by_a_job(const grobo_robot *robot)
     return robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
 }
 
-static bool is_limp(const grobo_robot_axis *axis)
-{
-    return axis->torque_known && axis->state.torque != GROBO_TORQUE_ON;
-}
-
 /* Its goal was read, or its servo has answered the halt itself. */
 static bool tells_goal(const grobo_robot_axis *axis)
 {
@@ -60,7 +55,7 @@ void grobo_i_halted_look(grobo_robot *robot, int joint)
         return; /* this was asked for before */
     }
     bool taken = tells_goal(axis) && grobo_i_goal_is_taken(robot, joint);
-    if (taken || is_limp(axis) || grobo_i_stands(robot, joint)) {
+    if (taken || grobo_i_axis_is_limp(axis) || grobo_i_stands(robot, joint)) {
         robot->halted &= ~GROBO_JOINT_BIT(joint);
     } else if (has_lost_it(robot, joint) && !is_read_by_a_job(robot)) {
         grobo_i_astray(robot, joint);

@@ -109,6 +109,8 @@ grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint);
 bool grobo_i_torque_is_limited(const grobo_robot *robot, int joint);
 /* True if it is known to have torque. */
 bool grobo_i_axis_is_on(const grobo_robot_axis *axis);
+/* True if it is known to have none, or to brake. */
+bool grobo_i_axis_is_limp(const grobo_robot_axis *axis);
 /* A servo that restarts hears nothing for longer: KRS find out for 500 ms how they are to be driven
  * (ICS 3.5 manual). Of the others the makers do not say. */
 #define GROBO_I_RESTART_US 400000
