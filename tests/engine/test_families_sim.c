@@ -207,7 +207,7 @@ static void a_drive_mode_without_time_is_refused(void **state)
 static void a_servo_set_up_otherwise_is_made_limp(void **state)
 {
     (void)state;
-    static const char *const names[] = {"dxl2", "dxl1", "feetech", "scs"};
+    static const char *const names[] = {"dxl2", "dxl1", "sts", "scs"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         grobo_sim_view view;
         family_start(&kit, family_named(names[i]), &watched, NULL);
@@ -360,7 +360,7 @@ static void a_weak_joint_stops_where_it_is(void **state)
     static const struct {
         const char *name;
         double on_deg; /* 50 ms at the speed, and what it takes to get there */
-    } rows[] = {{"dxl2", 16}, {"feetech", 22}, {"dxl1", 19}, {"lx16a", 20}};
+    } rows[] = {{"dxl2", 16}, {"sts", 22}, {"dxl1", 19}, {"lx16a", 20}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         for (int ms = 350; ms <= 450; ms += 10) {
             double on_deg, back_deg;
@@ -443,7 +443,7 @@ static void a_stalled_host_blames_no_servo(void **state)
 static void a_joint_that_is_behind_stops_in_time(void **state)
 {
     (void)state;
-    static const char *const told_speeds[] = {"feetech", "dxl1"}; /* the first has ramps */
+    static const char *const told_speeds[] = {"sts", "dxl1"}; /* the first has ramps */
     for (int i = 0; i < 2; i++) {
         family_start(&kit, family_named(told_speeds[i]), &watched, NULL);
         assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
@@ -559,7 +559,7 @@ static void a_joint_that_turns_back_stops_where_it_is(void **state)
 {
     (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        bool ramps = strcmp(f->name, "feetech") == 0;
+        bool ramps = strcmp(f->name, "sts") == 0;
         for (int i = 0; i < TURNS * (int)HOWS; i++) {
             turn_back t = {.turned = i % 2 != 0,
                            .how = (how_to_stop)(i / TURNS),
@@ -584,7 +584,7 @@ static void a_joint_that_turns_back_stops_where_it_is(void **state)
 static void a_stop_reaches_a_joint_read_for_its_angle_alone(void **state)
 {
     (void)state;
-    static const char *const names[] = {"feetech", "dxl1", "dxl2"};
+    static const char *const names[] = {"sts", "dxl1", "dxl2"};
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .goals = GROBO_GOALS_WHOLE,
                                        .sense_interval_us = GROBO_SENSE_NEVER, .voltage_mv = -1};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -634,7 +634,7 @@ static void a_driver_tells_the_ramps_of_its_servos(void **state)
 {
     (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        double told_dps2 = strcmp(f->name, "feetech") == 0 ? 254 * 8.79 : 0;
+        double told_dps2 = strcmp(f->name, "sts") == 0 ? 254 * 8.79 : 0;
         family_start(&kit, f, &watched, NULL);
         assert_true(fabs(kit.driver.accel_rad_s2 / grobo_rad_from_deg(1) - told_dps2) < 0.01);
     }
@@ -645,7 +645,7 @@ static void a_driver_tells_the_ramps_of_its_servos(void **state)
     }
     assert_int_equal(grobo_dxl1_driver_init(&mx, &kit.model), GROBO_OK);
     assert_true(mx.accel_rad_s2 == 0);
-    family_start(&kit, family_named("feetech"), &watched, NULL);
+    family_start(&kit, family_named("sts"), &watched, NULL);
     for (int j = 0; j < JOINTS; j++) {
         kit.joints[j].gear = 0.5;
     }

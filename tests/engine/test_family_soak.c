@@ -739,7 +739,11 @@ int main(void)
         }
     }
     if (n == 0) {
-        print_message("# no such family: %s\n", only_family);
+        print_message("# no such family: %s; there are rs30x", only_family);
+        for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+            print_message(" %s", f->name);
+        }
+        print_message("\n");
         return 1;
     }
     tests[n++] = (struct CMUnitTest){"everything was done", everything_was_done, NULL, NULL, NULL};

@@ -20,7 +20,7 @@ enum { MS = 1000, S = 1000000 };
 
 static const family families[] = {
     {"dxl2", &grobo_dxl2_table, "XM430-W350", grobo_dxl2_driver_init, 0.5, 1000000, false},
-    {"feetech", &grobo_sts_table, "STS3215", grobo_feetech_driver_init, 0.5, 1000000, false},
+    {"sts", &grobo_sts_table, "STS3215", grobo_feetech_driver_init, 0.5, 1000000, false},
     {"scs", &grobo_scs_table, "SCS0009", grobo_feetech_driver_init, 1, 1000000, false},
     {"dxl1", &grobo_dxl1_table, "AX-12A", grobo_dxl1_driver_init, 1, 1000000, false},
     {"lx16a", &grobo_lx16a_table, "LX-16A", grobo_lx16a_driver_init, 0.5, 115200, true},
