@@ -123,6 +123,12 @@ check "its resolution, too" exits 0 on_robot --yes servo-set 3 angular_resolutio
 check "that more is wrong is said" fails 1 \
     "elbow_flex.*mode is 3, 0 is wanted, and 1 more register is wrong; 'grctl servo-set 3 mode 0" \
     on_robot move elbow_flex 5
+one_setup() {
+    exits 1 on_robot --json status && [ "$(grep -o '"setup":{[^}]*}' "$work/out")" = \
+        "\"setup\":{\"message\":\"mode is 3, 0 is wanted, and 1 more register is wrong\",\
+\"fix\":\"'grctl servo-set 3 mode 0 --flash' sets it\"}" ]
+}
+check "so JSON says, of that joint alone" one_setup
 check "put right" exits 0 on_robot --yes servo-set 3 angular_resolution 1 --flash
 check "nor anything with it" fails 1 'elbow_flex' on_robot init
 check "it is read" exits 1 on_robot status
@@ -167,6 +173,12 @@ check "and setup, which is not done" setup_says_why
 check "it is shown" exits 1 on_robot --json status
 check "with its heat, without an angle" \
     grep -q '"angle_deg":null.*"torque":"off".*"temperature_c":[23]' "$work/out"
+json_says_why() {
+    why='its servo was never calibrated, offset is 0 as from the factory'
+    [ "$(grep -o "\"setup\":{\"message\":\"$why\",\"fix\":\"'grctl calibrate' does it\"}" \
+        "$work/out" | wc -l)" -eq 6 ]
+}
+check "and with the reason of each joint" json_says_why
 check_json "a calibration is shown" \
     'lines[0]["written"] is False and lines[0]["joints"][2]["before_range"][1] == 4095' \
     on_robot --json calibrate --from "$work/so101.json" --dry-run

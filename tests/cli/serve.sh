@@ -25,6 +25,7 @@ check "a motion that would fall says when" pages falls
 check "feet and waist are dragged" pages ik
 check "a motion of another robot says so, and is not played" pages other_motion
 check "a robot that is no humanoid" pages other_robot
+check "a joint that is not set up says why" pages not_set_up
 if has_jsonschema; then
     check "what is answered is what the OpenAPI file tells" pages schema
 else

@@ -59,8 +59,9 @@ def free_ports():
 class Server:
     """grctl serve with a simulator of its own and a copy of the motions."""
 
-    def __init__(self, *options, port=None, folder=None, device='sim'):
+    def __init__(self, *options, port=None, folder=None, device='sim', wait=None):
         self.device = device
+        self.answers = wait or (lambda s: None not in s['angle_deg'])
         self.own = folder is None
         self.folder = folder or tempfile.mkdtemp()
         if self.own:
@@ -81,7 +82,7 @@ class Server:
         told = json.loads(line)
         self.url, self.stop_url = told['url'].split('#')[0], told['stop_url']
         self.link = f'{self.url}#token={TOKEN}'
-        self.wait(lambda s: s['link'] == 'up' and None not in s['angle_deg'])
+        self.wait(lambda s: s['link'] == 'up' and self.answers(s))
 
     def call(self, method, path, body=None, **headers):
         if body is not None:
@@ -883,6 +884,32 @@ def a_motion_of_another_robot_says_so_and_keeps_no_card_blank(browser, server):
     page.locator('#seek').fill('1000')
     until(page, 'old => cockpit.drawn > old + 5', server.state()['sequence'])
     still(server, 0.3)
+
+
+@test
+def a_joint_that_is_not_set_up_says_why(browser, server):
+    environment = dict(os.environ, GRCTL_ROBOT='so101')
+    grctl = os.environ['GRCTL']
+    with subprocess.Popen([grctl, 'sim'], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                          env=environment) as robot:
+        device = robot.stdout.readline().strip()
+        for servo in ('3', '4'):
+            subprocess.run([grctl, '-d', device, '--yes', 'servo-set', servo, 'mode', '3', '--flash'],
+                           env=environment, check=True, capture_output=True)
+        of_it = Server('--robot', 'so101', device=device, wait=lambda s: 'setup' in s['status'])
+        try:
+            page = browser.page(of_it.link)
+            page.click('#tab-joints')
+            until(page, "document.querySelectorAll('#setup-hint li').length === 2")
+            said = page.locator('#setup-hint').inner_text()
+            assert 'elbow_flex: not set up: mode is 3, 0 is wanted' in said, said
+            assert "'grctl servo-set 4 mode 0 --flash' sets it" in said, said
+            row_text = page.locator('#joints tbody tr').nth(2).inner_text()
+            assert 'not set up' in row_text, row_text
+            assert page.evaluate('document.body.scrollWidth <= innerWidth'), 'too wide'
+        finally:
+            of_it.close()
+            robot.terminate()
 
 
 @test

@@ -343,6 +343,15 @@ await test('a robot of a fleet is told by the worst that is known of it', () => 
     same(is({ link: 'away', trip: 'over_current' }), 'off signed off');
 });
 
+const { setupLines } = await page('joints');
+await test('joints that are not set up are told by reason', () => {
+    const name = (n) => ['pan', 'lift', 'grip'][n];
+    const why = (n, message) => ({ joint: n, message, fix: 'do it' });
+    const words = (text, ...values) => text.replace(/\{(\d)\}/g, (_, n) => values[n]);
+    same(setupLines([why(0, 'no offset'), why(1, 'mode is 3'), why(2, 'no offset')], name, words),
+         ['pan, grip: not set up: no offset; do it', 'lift: not set up: mode is 3; do it']);
+    same(setupLines([], name, words), []);
+});
 await test('the joint nearest to a limit, as far as joints are known', () => {
     const joints = [{ name: 'a', limits_deg: [-90, 90] }, { name: 'b', limits_deg: [0, 100] },
                     { name: 'c', limits_deg: [null, null] }];

@@ -1794,5 +1794,27 @@ def other_robot():
         page.fall_silent()
 
 
+def not_set_up():
+    """A joint whose servo has another mode: which register differs, and what fixes it."""
+    env = dict(os.environ, GRCTL_ROBOT="so101")
+    with subprocess.Popen([GRCTL, "sim"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env,
+                          text=True) as robot:
+        device = robot.stdout.readline().strip()
+        subprocess.run([GRCTL, "-d", device, "--yes", "servo-set", "3", "mode", "3", "--flash"],
+                       env=env, check=True, capture_output=True)
+        with Server(device=device, env=env) as server:
+            page = Page(server).take()
+            page.keep_beating()
+            state = page.wait("a reading", lambda s: s["status"][2] == "setup")
+            why = {"joint": 2, "message": "mode is 3, 0 is wanted",
+                   "fix": "'grctl servo-set 3 mode 0 --flash' sets it"}
+            same(state["setup"], [why])
+            page.target("move", angle_deg={"elbow_flex": 10}, time_ms=200)
+            refused = page.wait_event("elbow_flex")
+            assert why["message"] in refused["message"], refused
+            page.fall_silent()
+        robot.terminate()
+
+
 if __name__ == "__main__":
     globals()[sys.argv[1]]()

@@ -43,6 +43,15 @@ static json_t *integer_or_null(bool known, long value)
     return known ? json_integer(value) : NULL;
 }
 
+json_t *render_setup_json(const conn *c, int joint)
+{
+    conn_setup why;
+    return conn_setup_of(c, joint, &why)
+               ? json_pack("{s:o,s:o}", "message", app_json_text(why.fact), "fix",
+                           app_json_text(why.fix))
+               : NULL;
+}
+
 static json_t *joint_json(const conn *c, int joint)
 {
     const grobo_joint *j = &model_of(c)->joints[joint];
@@ -53,8 +62,8 @@ static json_t *joint_json(const conn *c, int joint)
     }
     bool fresh = i.angle_age_us != GROBO_NEVER_US, targeted = render_target(&i, &target_rad);
     return json_pack(
-        "{s:i,s:i,s:s,s:o,s:o,s:s?,s:o?,s:o?,s:o?,s:o,s:o?,s:o}", "joint", joint, "motor", j->motor,
-        "name", j->name, "angle_deg",
+        "{s:i,s:i,s:s,s:o,s:o,s:s?,s:o?,s:o?,s:o?,s:o,s:o?,s:o,s:o*}", "joint", joint, "motor",
+        j->motor, "name", j->name, "angle_deg",
         app_json_number(fresh ? grobo_deg_from_rad(i.state.angle_rad) : NAN, 1), "target_deg",
         app_json_number(targeted ? grobo_deg_from_rad(target_rad) : NAN, 1), "torque",
         i.torque_known ? render_torque(&i) : NULL, "speed_dps",
@@ -63,7 +72,7 @@ static json_t *joint_json(const conn *c, int joint)
         integer_or_null(has(&i, GROBO_FIELD_TEMPERATURE), i.state.temperature_c), "voltage_v",
         app_json_number(has(&i, GROBO_FIELD_VOLTAGE) ? i.state.voltage_mv / 1e3 : NAN, 2), "age_ms",
         integer_or_null(fresh, fresh ? (long)(i.angle_age_us / 1000) : 0), "status",
-        app_json_code(grobo_error_name(i.status)));
+        app_json_code(grobo_error_name(i.status)), "setup", render_setup_json(c, joint));
 }
 
 json_t *render_joints_json(const conn *c, grobo_joint_mask joints)

@@ -8,6 +8,9 @@
 /* The joints of a mask, as `status --json` promises them. */
 json_t *render_joints_json(const conn *c, grobo_joint_mask joints);
 
+/* What of a joint's servo is not as the joint needs it: {"message", "fix"}. NULL: nothing is. */
+json_t *render_setup_json(const conn *c, int joint);
+
 /* The table of `status`; joints in the mask only. */
 void render_status(const conn *c, grobo_joint_mask joints);
 

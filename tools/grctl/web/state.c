@@ -59,6 +59,20 @@ static void add_joints(serve *s, json_t *state)
     }
 }
 
+/* Joints that cannot move because of how their servos are set up, each with the reason. */
+static json_t *setups_json(serve *s)
+{
+    json_t *list = json_array();
+    for (int j = 0; j < s->model->n_joints; j++) {
+        json_t *why = render_setup_json(&s->c, j);
+        if (why) {
+            json_object_set_new(why, "joint", json_integer(j));
+            json_array_append_new(list, why);
+        }
+    }
+    return list;
+}
+
 static json_t *line_json(serve *s)
 {
     grobo_robot_counters n;
@@ -144,12 +158,12 @@ json_t *serve_state_json(serve *s)
                               (json_int_t)serve_ms(s, grobo_now_us()), "link", link_word(s));
     const char *job = job_word(grobo_robot_job(s->c.robot));
     add_joints(s, state);
-    json_t *more =
-        json_pack("{s:o,s:b,s:s?,s:o,s:o,s:o,s:o,s:{s:o,s:o},s:i}", "limp", joints_json(s->limp),
-                  "moving", grobo_robot_moving(s->c.robot), "job", job, "play", player_json(s),
-                  "stop", stops_json(s), "line", line_json(s), "body", body_json(s), "lease",
-                  "holder", page_json(s, &s->lease.holder), "asked", page_json(s, &s->lease.asker),
-                  "clients", http_streams(s->http));
+    json_t *more = json_pack("{s:o,s:o,s:b,s:s?,s:o,s:o,s:o,s:o,s:{s:o,s:o},s:i}", "limp",
+                             joints_json(s->limp), "setup", setups_json(s), "moving",
+                             grobo_robot_moving(s->c.robot), "job", job, "play", player_json(s),
+                             "stop", stops_json(s), "line", line_json(s), "body", body_json(s),
+                             "lease", "holder", page_json(s, &s->lease.holder), "asked",
+                             page_json(s, &s->lease.asker), "clients", http_streams(s->http));
     json_object_update_new(state, more);
     return state;
 }

@@ -3,7 +3,17 @@
 // follows while it is dragged, if this page drives.
 
 import { Newest } from './api.js';
-import { ask, element, setText, stepByKeys, tremble } from './dom.js';
+import { ask, element, replace, setText, stepByKeys, tremble } from './dom.js';
+
+/** Joints that do not move as their servos are set up: a line for each reason, with its joints. */
+export function setupLines(setup, name, t) {
+    const joints = new Map();
+    for (const { joint, message, fix } of setup) {
+        const why = `${message}; ${fix}`;
+        joints.set(why, [...joints.get(why) || [], name(joint)]);
+    }
+    return [...joints].map(([why, names]) => t('{0}: not set up: {1}', names.join(', '), why));
+}
 
 const SIGNS = { on: '●', off: '○', brake: '◐' };
 
@@ -153,6 +163,9 @@ export class Joints {
                 node.disabled = !may || node === this.slider && !this.known;
             }
             setText(document.getElementById('jog-hint'), this.app.whyNot() || '');
+            const lines = setupLines(state.setup, (joint) => this.app.name(joint), this.app.t);
+            replace(document.getElementById('setup-hint'),
+                    ...lines.map((line) => element('li', {}, line)));
         }
     }
 
@@ -170,7 +183,7 @@ export class Joints {
         const torque = state.torque[n], limp = state.limp.includes(n);
         const said = limp ? `◌ ${t('limp')}` : torque ? `${SIGNS[torque]} ${t(torque)}` : '–';
         setText(cells.torque, said + (state.status[n] !== 'ok' && state.status[n] !== 'empty'
-            ? ` · ${state.status[n]}` : '') + (old && state.age_ms[n] > 500
+            ? ` · ${state.status[n] === 'setup' ? t('not set up') : state.status[n]}` : '') + (old && state.age_ms[n] > 500
             ? ` · ${(state.age_ms[n] / 1000).toFixed(1)} s` : ''));
     }
 }
