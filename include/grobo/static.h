@@ -249,6 +249,7 @@ struct grobo_robot {
     int64_t halted_us;              /* they are not asked before */
     int64_t halted_by_us;           /* nor after that */
     bool halted_read;               /* the last reading was for that */
+    int64_t stop_us; /* when the last exit or emergency stop was asked for; 0: none was */
     uint8_t reply[GROBO_FRAME_MAX_BYTES];
     grobo_exchange built;                     /* the frame that is being made */
     grobo_exchange asked;                     /* of the request that begins, */

@@ -170,10 +170,12 @@ static void take_speed(const grobo_robot *robot, int joint, grobo_joint_state *g
 }
 
 /* Between an angle from before it was told to go elsewhere and one since then lies the speed of
- * neither way. */
+ * neither way; between one from before a stop and one since then, that of a joint that another
+ * program may have set going meanwhile. */
 static bool is_of_one_way(const grobo_robot *robot, const grobo_robot_axis *axis)
 {
-    return !GROBO_I_EXTRA(robot->driver, no_speed) || axis->angle_us >= axis->told_us;
+    return !GROBO_I_EXTRA(robot->driver, no_speed) ||
+           axis->angle_us >= grobo_i_later(axis->told_us, robot->stop_us);
 }
 
 /* asked_us: when the joint was asked first. A late answer may be of before a frame that has left

@@ -533,6 +533,7 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
     displace(robot, true);
     grobo_i_slots_cancel(robot, GROBO_I_USE_PLAIN); /* such as torque that free mode asked for */
     int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, script, 0);
+    robot->stop_us = robot->now_us;
     robot->job->joints = grobo_i_all_joints(robot);
     robot->job->torque = GROBO_TORQUE_OFF;
     robot->job->lets_go = script == grobo_i_script_exit_off;
@@ -548,6 +549,7 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
 int grobo_i_estop_start(grobo_robot *robot)
 {
     int number = grobo_i_job_start(robot, GROBO_JOB_ESTOP, grobo_i_script_torque_off, 0);
+    robot->stop_us = robot->now_us;
     robot->job->joints = grobo_i_all_joints(robot);
     robot->job->torque =
         robot->config.estop_torque == GROBO_ESTOP_OFF ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Whether a joint stands, by what was read since the last frame that told it something. A speed
- * that a servo reports is not believed: below a few degrees a second many report none. Either two
- * positions lie so far apart in time and so near in place that a joint which creeps at CREEPS_RAD_S
- * would show, or the servo's own goal was read back and reached.
+ * Whether a joint stands, by what was read since the last frame that told it something and since
+ * the last exit or emergency stop was asked for. A speed that a servo reports is not believed:
+ * below a few degrees a second many report none. Either two positions lie so far apart in time and
+ * so near in place that a joint which creeps at CREEPS_RAD_S would show, or the servo's own goal
+ * was read back and reached.
  */
 #include <math.h>
 
@@ -25,6 +26,12 @@ int64_t grobo_i_stand_us(const grobo_robot *robot)
     return (int64_t)fmin(apart_rad / CREEPS_RAD_S * 1e6, STANDS_MOST_US);
 }
 
+/* A joint may have been set going by another program since what was read before that. */
+static bool is_since_stop(const grobo_robot *robot, int64_t at_us)
+{
+    return at_us != GROBO_NEVER_US && at_us >= robot->stop_us;
+}
+
 void grobo_i_stand_forget(grobo_robot_axis *axis)
 {
     axis->still_us = GROBO_NEVER_US;
@@ -34,7 +41,10 @@ void grobo_i_stand_forget(grobo_robot_axis *axis)
 void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double angle_rad)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
-    bool known = axis->still_us != GROBO_NEVER_US && axis->sensed &&
+    if (!is_since_stop(robot, asked_us)) {
+        return;
+    }
+    bool known = is_since_stop(robot, axis->still_us) && axis->sensed &&
                  asked_us - axis->stood_us <= GROBO_WATCH_US;
     if (!known || fabs(angle_rad - axis->still_rad) > still_rad(robot)) {
         axis->still_rad = angle_rad;
@@ -46,8 +56,8 @@ void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double 
 bool grobo_i_stands(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool known = axis->sensed && axis->still_us != GROBO_NEVER_US;
-    bool there = axis->goal_is_read &&
+    bool known = axis->sensed && is_since_stop(robot, axis->still_us);
+    bool there = axis->goal_is_read && is_since_stop(robot, axis->goal_us) &&
                  fabs(axis->state.goal_rad - axis->state.angle_rad) <= still_rad(robot);
     return known && (there || axis->stood_us - axis->still_us >= grobo_i_stand_us(robot));
 }
