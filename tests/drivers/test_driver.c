@@ -5,9 +5,6 @@
  * GROBO_TEST_DRIVER the first one's driver, 8250 or ftdi_sio.
  */
 #include <linux/serial.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,11 +12,10 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include <grobo/serial.h>
 
 #include "tests/support/line.h"
+#include "tests/support/test.h"
 
 /* Speeds are of both kinds: with a B constant and without. The lists end with 0. */
 typedef struct driver {
@@ -53,20 +49,20 @@ static const driver *expected;
 static test_line line;
 static grobo_serial *serial;
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     serial = test_line_open_serial(&line, 2000);
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     grobo_serial_free(serial);
     test_line_close(&line);
     return 0;
 }
+
+static const test_fixture on_line[] = {{NULL, set_up, tear_down}};
 
 static void assert_bytes_pass(void)
 {
@@ -80,9 +76,8 @@ static void assert_bytes_pass(void)
     assert_memory_equal(back, "again", 5);
 }
 
-static void speeds_it_has_are_set_on_an_open_port(void **state)
+TEST_WITH(on_line, speeds_it_has_are_set_on_an_open_port)
 {
-    (void)state;
     for (const int *bps = expected->takes_bps; *bps != 0; bps++) {
         int r = grobo_serial_set_baud(serial, *bps);
 
@@ -94,9 +89,8 @@ static void speeds_it_has_are_set_on_an_open_port(void **state)
     assert_bytes_pass();
 }
 
-static void speeds_it_has_not_are_refused_and_leave_the_old_one(void **state)
+TEST_WITH(on_line, speeds_it_has_not_are_refused_and_leave_the_old_one)
 {
-    (void)state;
     assert_int_equal(grobo_serial_set_baud(serial, 57600), 57600);
     for (const int *bps = expected->refuses_bps; *bps != 0; bps++) {
         int r = grobo_serial_set_baud(serial, *bps);
@@ -111,11 +105,10 @@ static void speeds_it_has_not_are_refused_and_leave_the_old_one(void **state)
     assert_bytes_pass();
 }
 
-static void opening_asks_for_low_latency(void **state)
+TEST_WITH(on_line, opening_asks_for_low_latency)
 {
     struct serial_struct settings;
 
-    (void)state;
     assert_int_equal(grobo_serial_low_latency(serial), GROBO_OK);
     assert_int_equal(ioctl(grobo_serial_handle(serial), TIOCGSERIAL, &settings), 0);
     assert_true((settings.flags & (int)ASYNC_LOW_LATENCY) != 0);
@@ -132,11 +125,10 @@ static int keep(void *ctx, const grobo_port_info *info)
     return 1;
 }
 
-static void the_list_describes_it(void **state)
+TEST_WITH(on_line, the_list_describes_it)
 {
     grobo_port_info info;
 
-    (void)state;
     assert_int_equal(grobo_port_list(keep, &info), 1);
     assert_int_equal(info.usb_vendor, expected->usb_vendor);
     assert_int_equal(info.usb_product, expected->usb_product);
@@ -150,13 +142,12 @@ static void the_list_describes_it(void **state)
 }
 
 /* The system waits 30 s at close for a line that takes nothing. */
-static void closing_waits_no_longer_than_the_line_needs(void **state)
+TEST_WITH(on_line, closing_waits_no_longer_than_the_line_needs)
 {
     static uint8_t block[65536];
     int64_t start_us = grobo_now_us();
     int taken = sizeof block;
 
-    (void)state;
     test_line_close(&line);
     while (taken == sizeof block && grobo_now_us() - start_us < 2000000) {
         taken = grobo_serial_write(serial, block, sizeof block);
@@ -171,16 +162,8 @@ static void closing_waits_no_longer_than_the_line_needs(void **state)
     assert_true(grobo_now_us() - start_us < 2000000);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
-#define ON_LINE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        ON_LINE(speeds_it_has_are_set_on_an_open_port),
-        ON_LINE(speeds_it_has_not_are_refused_and_leave_the_old_one),
-        ON_LINE(opening_asks_for_low_latency),
-        ON_LINE(the_list_describes_it),
-        ON_LINE(closing_waits_no_longer_than_the_line_needs),
-    };
     const char *name = getenv("GROBO_TEST_DRIVER");
 
     for (size_t i = 0; name != NULL && i < sizeof drivers / sizeof drivers[0]; i++) {
@@ -192,5 +175,5 @@ int main(void)
         fprintf(stderr, "GROBO_TEST_SERIAL and GROBO_TEST_DRIVER say what to test\n");
         return 2;
     }
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_main(argc, argv);
 }

@@ -5,9 +5,6 @@
  * name to open, GROBO_TEST_NAME the one under /dev/serial/by-id. The caller pulls the adapter when
  * this prints "@unplug", plugs the other one in at "@other", and the robot's at "@plug".
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,13 +12,13 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include "tests/support/guarded.h"
 #include "tests/support/loop.h"
 #include "tests/support/os.h"
 #include "tests/support/session_kit.h"
+#include "tests/support/test.h"
 
 static const char *self;
 static grobo_guard *guard;
@@ -127,14 +124,38 @@ static void leave_the_other_alone(const char *device)
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
 }
 
-static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
+static struct event *changes; /* below /dev */
+
+static int set_up(void)
+{
+    guard = NULL;
+    assert_int_equal(guarded_new(self, &guard), GROBO_OK);
+    session_kit_begin();
+    watch = inotify_init1(IN_NONBLOCK);
+    assert_true(inotify_add_watch(watch, "/dev", IN_DELETE) >= 0);
+    assert_true(inotify_add_watch(watch, "/dev/serial/by-id", IN_CREATE | IN_MOVED_TO) >= 0);
+    changes = event_new(base, watch, EV_READ | EV_PERSIST, on_change, NULL);
+    assert_non_null(changes);
+    return event_add(changes, NULL);
+}
+
+static int tear_down(void)
+{
+    event_free(changes);
+    session_kit_end();
+    grobo_guard_free(guard);
+    return close(watch);
+}
+
+static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
+
+TEST_WITH(fixture, an_adapter_pulled_out_in_a_motion_and_put_back)
 {
     const char *device = getenv("GROBO_TEST_DEVICE");
     int16_t before_ddeg[JOINTS];
     int16_t after_ddeg[JOINTS];
     uint64_t frames;
 
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = device,
                                             .reconnect = true, .guard = guard,
                                             .guard_data = "known", .guard_bytes = 5});
@@ -158,37 +179,8 @@ static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
     assert_int_equal(seen.fails + seen.unguarded, 0);
 }
 
-static int set_up(void **state)
-{
-    struct event *changes;
-
-    guard = NULL;
-    assert_int_equal(guarded_new(self, &guard), GROBO_OK);
-    session_kit_begin();
-    watch = inotify_init1(IN_NONBLOCK);
-    assert_true(inotify_add_watch(watch, "/dev", IN_DELETE) >= 0);
-    assert_true(inotify_add_watch(watch, "/dev/serial/by-id", IN_CREATE | IN_MOVED_TO) >= 0);
-    changes = event_new(base, watch, EV_READ | EV_PERSIST, on_change, NULL);
-    assert_non_null(changes);
-    *state = changes;
-    return event_add(changes, NULL);
-}
-
-static int tear_down(void **state)
-{
-    event_free(*state);
-    session_kit_end();
-    grobo_guard_free(guard);
-    return close(watch);
-}
-
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(an_adapter_pulled_out_in_a_motion_and_put_back, set_up,
-                                        tear_down),
-    };
-
     int status = guarded_main(argc, argv);
 
     if (status >= 0) {
@@ -199,5 +191,5 @@ int main(int argc, char **argv)
         fprintf(stderr, "GROBO_TEST_DEVICE and GROBO_TEST_NAME say what to test\n");
         return 2;
     }
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_main(argc, argv);
 }

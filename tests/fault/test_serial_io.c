@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* A serial port whose n-th call to the system fails, for every n and every way to fail. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/serial.h>
 
 #include "tests/support/line.h"
+#include "tests/support/test.h"
 
 #define BYTES 300
 
@@ -219,9 +216,8 @@ static void try_one(fate what, int n)
     grobo_timer_free(guard);
 }
 
-static void every_call_fails_once(void **state)
+TEST(every_call_fails_once)
 {
-    (void)state;
     real = grobo_port_serial_ops();
     base = grobo_loop_new();
     assert_non_null(base);
@@ -266,13 +262,12 @@ static int set_baud(grobo_serial *serial)
     return grobo_serial_set_baud(serial, 57600);
 }
 
-static void a_call_that_finds_the_device_gone_closes_the_port(void **state)
+TEST(a_call_that_finds_the_device_gone_closes_the_port)
 {
     int (*const calls[])(grobo_serial * serial) = {set_baud, grobo_serial_set_low_latency,
                                                    grobo_serial_waiting};
     grobo_port_ops ops = *grobo_port_serial_ops();
 
-    (void)state;
     test_line_open(&line);
     for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
         grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device, .ops = &ops};
@@ -289,14 +284,4 @@ static void a_call_that_finds_the_device_gone_closes_the_port(void **state)
         grobo_serial_free(serial);
     }
     test_line_close(&line);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_call_fails_once),
-        cmocka_unit_test(a_call_that_finds_the_device_gone_closes_the_port),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,9 +5,6 @@
  * process of a connection, see main().
  */
 #include <netinet/in.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,12 +13,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/buffer.h>
 #include <event2/event.h>
 #include <event2/listener.h>
 
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tools/grctl/mqtt/host.h"
 #include "tools/grctl/mqtt/mqtt.h"
 #include "tools/grctl/mqtt/note.h"
@@ -183,11 +180,10 @@ static void leave(rig *r)
 /* ---- what a broker says ---------------------------------------------------------------------- */
 
 /* An AUTH with properties that it must not have: an assertion of libmosquitto 2.0.11. */
-static void ends_nobody_else(void **state)
+TEST(ends_nobody_else)
 {
     static const unsigned char packet[] = {0xf0, 0x03, 0x00, 0x68, 0x00};
     rig r;
-    (void)state;
     begin(&r);
     says(&r, packet, sizeof packet);
     r.keeps = true;
@@ -221,10 +217,9 @@ static void say_random(rig *r, uint32_t seed)
     }
 }
 
-static void survives_random_sessions(void **state)
+TEST(survives_random_sessions)
 {
     int died = 0;
-    (void)state;
     for (uint32_t seed = 1; seed <= SESSIONS; seed++) {
         rig r;
         begin(&r);
@@ -303,19 +298,17 @@ static void is_ended(const char *how, const char *why)
     unsetenv(as_what);
 }
 
-static void checks_what_it_says(void **state)
+TEST(checks_what_it_says)
 {
     static const char *const hows[] = {"garbage", "order", "early", "wild", "taken"};
-    (void)state;
     for (size_t i = 0; i < sizeof hows / sizeof hows[0]; i++) {
         is_ended(hows[i], "what the process of the connection says is not understood");
     }
 }
 
-static void starts_it_again(void **state)
+TEST(starts_it_again)
 {
     rig r;
-    (void)state;
     setenv(as_what, "dies", 1);
     begin(&r);
     join(&r);
@@ -325,17 +318,15 @@ static void starts_it_again(void **state)
     leave(&r);
 }
 
-static void ends_one_that_hangs(void **state)
+TEST(ends_one_that_hangs)
 {
-    (void)state;
     is_ended("hangs", "the process of the connection hangs");
 }
 
 /* As where a system has no such process: the connection is in this one. */
-static void stays_inside(void **state)
+TEST(stays_inside)
 {
     rig r;
-    (void)state;
     setenv(as_what, "never", 1);
     begin(&r);
     r.keeps = true;
@@ -349,27 +340,16 @@ static void stays_inside(void **state)
     leave(&r);
 }
 
-static int is_left_out(void **state)
-{
-    (void)state;
-    return mqtt_possible() ? 0 : -1;
-}
-
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ends_nobody_else),    cmocka_unit_test(survives_random_sessions),
-        cmocka_unit_test(checks_what_it_says), cmocka_unit_test(starts_it_again),
-        cmocka_unit_test(ends_one_that_hangs), cmocka_unit_test(stays_inside),
-    };
     const char *how = getenv(as_what);
     if (argc == 2 && strcmp(argv[1], MQTT_HOST_WORD) == 0) {
         return how ? misbehave(how) : mqtt_host_main();
     }
     mqtt_note_program(argv[0]);
-    if (is_left_out(NULL)) {
+    if (!mqtt_possible()) {
         printf("1..0 # SKIP built without libmosquitto\n");
         return 0;
     }
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_main(argc, argv);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The life of a control: its thread or the caller's, its rounds, its end; one caller at a time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
-
 #include <grobo/thread.h>
+
+#include "tests/support/test.h"
 
 enum { CALLS = 100 };
 
@@ -78,11 +75,10 @@ static int is_self(void *arg, grobo_control *from)
     return grobo_thread_is_self(*thread);
 }
 
-static void the_thread_runs_until_it_is_told_to_stop(void **state)
+TEST(the_thread_runs_until_it_is_told_to_stop)
 {
     grobo_thread thread;
 
-    (void)state;
     make();
     assert_false(grobo_control_is_active(control));
     assert_int_equal(grobo_control_stop_thread(control), GROBO_ERR_STATE);
@@ -106,9 +102,8 @@ static void the_thread_runs_until_it_is_told_to_stop(void **state)
     assert_int_equal(grobo_control_free(control), GROBO_OK);
 }
 
-static void freeing_lets_the_robot_go_first(void **state)
+TEST(freeing_lets_the_robot_go_first)
 {
-    (void)state;
     for (int threaded = 0; threaded < 2; threaded++) {
         make();
         if (threaded) {
@@ -121,9 +116,8 @@ static void freeing_lets_the_robot_go_first(void **state)
     }
 }
 
-static void rounds_are_made_by_whoever_asks(void **state)
+TEST(rounds_are_made_by_whoever_asks)
 {
-    (void)state;
     make();
     int64_t end_us = grobo_now_us() + 5000000;
     while (rounds < 5) {
@@ -143,9 +137,8 @@ static int64_t time_of_rounds(int n)
     return grobo_now_us() - begun_us;
 }
 
-static void rounds_keep_the_period_that_is_set(void **state)
+TEST(rounds_keep_the_period_that_is_set)
 {
-    (void)state;
     make();
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
     assert_int_equal(grobo_control_set_period_us(control, 100000), GROBO_OK);
@@ -166,12 +159,11 @@ static GROBO_THREAD_FUNC run_it(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void the_loop_runs_on_a_thread_of_ones_own(void **state)
+TEST(the_loop_runs_on_a_thread_of_ones_own)
 {
     grobo_thread mine;
     grobo_thread none;
 
-    (void)state;
     make();
     assert_int_equal(grobo_thread_start(&mine, run_it, control), GROBO_OK);
     int64_t end_us = grobo_now_us() + 5000000;
@@ -211,9 +203,8 @@ static GROBO_THREAD_FUNC call_often(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void callers_are_kept_apart(void **state)
+TEST(callers_are_kept_apart)
 {
-    (void)state;
     for (int threaded = 0; threaded < 2; threaded++) {
         grobo_thread thread[3];
         int failed[3] = {0, 0, 0};
@@ -232,17 +223,4 @@ static void callers_are_kept_apart(void **state)
         assert_int_equal(together, 0);
         assert_int_equal(grobo_control_free(control), GROBO_OK);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_thread_runs_until_it_is_told_to_stop),
-        cmocka_unit_test(freeing_lets_the_robot_go_first),
-        cmocka_unit_test(rounds_are_made_by_whoever_asks),
-        cmocka_unit_test(rounds_keep_the_period_that_is_set),
-        cmocka_unit_test(the_loop_runs_on_a_thread_of_ones_own),
-        cmocka_unit_test(callers_are_kept_apart),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

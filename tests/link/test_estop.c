@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Emergency stops across programs: a session and the marks of its device. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/estop.h>
@@ -17,6 +13,7 @@
 #include "ports/common/notes.h"
 #include "tests/support/loop.h"
 #include "tests/support/os.h"
+#include "tests/support/test.h"
 
 enum { ELBOW = 16, FRAME_BYTES = 256 };
 
@@ -69,9 +66,8 @@ static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const u
     }
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     memset(&at, 0, sizeof at);
     base = grobo_loop_new();
     assert_non_null(base);
@@ -81,14 +77,15 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     assert_int_equal(grobo_estop_clear(device, NULL), GROBO_OK);
     grobo_sim_server_free(server);
     event_base_free(base);
     return 0;
 }
+
+static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
 
 static grobo_session *open_session(void)
 {
@@ -146,12 +143,11 @@ static grobo_estop_holder ask(const grobo_estop *stop)
 
 /* ---- a mark that stands ------------------------------------------------------------------- */
 
-static void one_that_did_not_reach_the_robot_does_when_a_session_opens(void **state)
+TEST_WITH(fixture, one_that_did_not_reach_the_robot_does_when_a_session_opens)
 {
     grobo_estop stop;
     grobo_session *session;
 
-    (void)state;
     assert_int_equal(grobo_estop_set(device, &stop, NULL), GROBO_OK);
     assert_true(grobo_estop_stands(device));
     assert_int_equal(ask(&stop).answer, GROBO_ESTOP_NOBODY);
@@ -164,11 +160,10 @@ static void one_that_did_not_reach_the_robot_does_when_a_session_opens(void **st
     grobo_session_free(session);
 }
 
-static void one_that_did_latches_and_sends_nothing(void **state)
+TEST_WITH(fixture, one_that_did_latches_and_sends_nothing)
 {
     grobo_session *session;
 
-    (void)state;
     assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
     grobo_session_free(open_session());
     assert_int_equal(at.estops, 1);
@@ -179,11 +174,10 @@ static void one_that_did_latches_and_sends_nothing(void **state)
     grobo_session_free(session);
 }
 
-static void a_reset_clears_it_for_all(void **state)
+TEST_WITH(fixture, a_reset_clears_it_for_all)
 {
     grobo_session *session;
 
-    (void)state;
     assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
     session = open_session();
     assert_latched(session);
@@ -198,11 +192,10 @@ static void a_reset_clears_it_for_all(void **state)
 }
 
 /* Not restarted by somebody else's hand: ISO 13850. */
-static void cleared_by_another_program_the_session_stays_latched(void **state)
+TEST_WITH(fixture, cleared_by_another_program_the_session_stays_latched)
 {
     grobo_session *session;
 
-    (void)state;
     session = open_session();
     assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
     loop_run_until(base, &at.estops, 1);
@@ -215,11 +208,10 @@ static void cleared_by_another_program_the_session_stays_latched(void **state)
 }
 
 /* The stop of a reason of the engine's own is no answer to a mark. */
-static void a_reset_obeys_a_mark_that_was_just_set(void **state)
+TEST_WITH(fixture, a_reset_obeys_a_mark_that_was_just_set)
 {
     grobo_session *session = open_session();
 
-    (void)state;
     assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
     assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_ERR_STATE);
     assert_true(grobo_estop_stands(device));
@@ -228,7 +220,7 @@ static void a_reset_obeys_a_mark_that_was_just_set(void **state)
     grobo_session_free(session);
 }
 
-static void a_control_obeys_it_too(void **state)
+TEST_WITH(fixture, a_control_obeys_it_too)
 {
     /* The simulator runs on this thread's loop, not while this thread waits. */
     const grobo_control_config config = {
@@ -238,7 +230,6 @@ static void a_control_obeys_it_too(void **state)
     grobo_control *control;
     grobo_estop stop;
 
-    (void)state;
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
     assert_int_equal(grobo_control_open_port(control), GROBO_OK);
@@ -260,14 +251,13 @@ static void a_control_obeys_it_too(void **state)
 
 /* ---- while a session is open -------------------------------------------------------------- */
 
-static void a_moving_robot_stops(void **state)
+TEST_WITH(fixture, a_moving_robot_stops)
 {
     grobo_session *session = open_session();
     grobo_estop stop;
     int32_t before_mdeg = look().angle_mdeg;
     int64_t set_us;
 
-    (void)state;
     assert_true(grobo_robot_torque(grobo_session_robot(session), GROBO_JOINT_BIT(ELBOW),
                                    GROBO_TORQUE_ON) > 0);
     loop_run_for(base, 300000);
@@ -291,13 +281,12 @@ static void a_moving_robot_stops(void **state)
     assert_int_equal(ask(NULL).answer, GROBO_ESTOP_NOBODY);
 }
 
-static void a_second_mark_is_answered_too(void **state)
+TEST_WITH(fixture, a_second_mark_is_answered_too)
 {
     grobo_session *session = open_session();
     grobo_estop first;
     grobo_estop second;
 
-    (void)state;
     assert_int_equal(grobo_estop_set(device, &first, NULL), GROBO_OK);
     loop_run_until(base, &at.estops, 1);
     assert_int_equal(grobo_estop_set(device, &second, NULL), GROBO_OK);
@@ -309,14 +298,13 @@ static void a_second_mark_is_answered_too(void **state)
 }
 
 /* A program that was stopped, or busy: the mark comes before whatever was due meanwhile. */
-static void who_was_held_up_looks_before_it_sends(void **state)
+TEST_WITH(fixture, who_was_held_up_looks_before_it_sends)
 {
     grobo_session *session = open_session();
     uint8_t stop_frame[FRAME_BYTES];
     size_t stop_bytes;
     int64_t end_us;
 
-    (void)state;
     at.listens = true;
     assert_true(grobo_robot_estop(grobo_session_robot(session)) > 0);
     stop_bytes = at.size;
@@ -351,12 +339,11 @@ static void hear_without_a_line(grobo_estop *stop)
     assert_int_equal(ask(stop).answer, GROBO_ESTOP_HEARD);
 }
 
-static void without_a_line_it_is_carried_out_when_that_is_back(void **state)
+TEST_WITH(fixture, without_a_line_it_is_carried_out_when_that_is_back)
 {
     grobo_session *session = open_session();
     grobo_estop stop;
 
-    (void)state;
     hear_without_a_line(&stop);
     assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
     loop_run_until(base, &at.ups, 2);
@@ -367,12 +354,11 @@ static void without_a_line_it_is_carried_out_when_that_is_back(void **state)
 }
 
 /* The program that heard it has exited before it could send it. */
-static void the_next_session_carries_out_what_one_owed(void **state)
+TEST_WITH(fixture, the_next_session_carries_out_what_one_owed)
 {
     grobo_session *session = open_session();
     grobo_estop stop;
 
-    (void)state;
     hear_without_a_line(&stop);
     grobo_session_free(session);
     assert_int_equal(ask(&stop).answer, GROBO_ESTOP_NOBODY);
@@ -384,14 +370,13 @@ static void the_next_session_carries_out_what_one_owed(void **state)
     grobo_session_free(session);
 }
 
-static void who_looks_uses_no_processor(void **state)
+TEST_WITH(fixture, who_looks_uses_no_processor)
 {
     grobo_session *session = open_session();
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER};
     int64_t before_us;
     int64_t used_us;
 
-    (void)state;
     assert_int_equal(grobo_session_configure(session, &config), GROBO_OK);
     loop_run_for(base, 200000);
     before_us = test_cpu_us();
@@ -404,13 +389,12 @@ static void who_looks_uses_no_processor(void **state)
 
 /* ---- who has it --------------------------------------------------------------------------- */
 
-static void a_loop_that_stands_still_is_silent(void **state)
+TEST_WITH(fixture, a_loop_that_stands_still_is_silent)
 {
     grobo_session *session = open_session();
     grobo_estop stop;
     grobo_i_process self;
 
-    (void)state;
     grobo_i_process_self(&self);
     assert_int_equal(grobo_estop_set(device, &stop, NULL), GROBO_OK);
     assert_int_equal(ask(&stop).answer, GROBO_ESTOP_SILENT);
@@ -420,14 +404,13 @@ static void a_loop_that_stands_still_is_silent(void **state)
 }
 
 /* A number that another process has by now is not the one that registered. */
-static void a_process_that_has_exited_has_nothing(void **state)
+TEST_WITH(fixture, a_process_that_has_exited_has_nothing)
 {
     char note[NOTE_NAME_BYTES];
     char text[64];
     grobo_i_process self;
     grobo_os_cause cause;
 
-    (void)state;
     snprintf(note, sizeof note, "holder-%.200s", device);
     for (char *c = note; *c != '\0'; c++) {
         *c = *c == ':' ? '!' : *c;
@@ -444,12 +427,11 @@ static void a_process_that_has_exited_has_nothing(void **state)
     assert_int_equal(grobo_i_note_remove(note, &cause), GROBO_OK);
 }
 
-static void what_callers_get_wrong(void **state)
+TEST_WITH(fixture, what_callers_get_wrong)
 {
     char name[2 * GROBO_DEVICE_MAX_BYTES];
     grobo_estop_holder holder;
 
-    (void)state;
     memset(name, 'x', sizeof name);
     name[sizeof name - 1] = '\0';
     assert_int_equal(grobo_estop_set(NULL, NULL, NULL), GROBO_ERR_ARG);
@@ -465,12 +447,11 @@ static void what_callers_get_wrong(void **state)
 }
 
 /* A name as long as they come, of a device that is not there. */
-static void a_long_name_is_marked(void **state)
+TEST_WITH(fixture, a_long_name_is_marked)
 {
     char name[GROBO_DEVICE_MAX_BYTES];
     char other[GROBO_DEVICE_MAX_BYTES];
 
-    (void)state;
     memset(name, 'x', sizeof name);
     memcpy(name, "/nowhere/", 9);
     name[sizeof name - 1] = '\0';
@@ -481,29 +462,4 @@ static void a_long_name_is_marked(void **state)
     assert_false(grobo_estop_stands(other));
     assert_int_equal(grobo_estop_clear(name, NULL), GROBO_OK);
     assert_false(grobo_estop_stands(name));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-        TEST(one_that_did_not_reach_the_robot_does_when_a_session_opens),
-        TEST(one_that_did_latches_and_sends_nothing),
-        TEST(a_reset_clears_it_for_all),
-        TEST(cleared_by_another_program_the_session_stays_latched),
-        TEST(a_reset_obeys_a_mark_that_was_just_set),
-        TEST(a_control_obeys_it_too),
-        TEST(a_moving_robot_stops),
-        TEST(a_second_mark_is_answered_too),
-        TEST(who_was_held_up_looks_before_it_sends),
-        TEST(without_a_line_it_is_carried_out_when_that_is_back),
-        TEST(the_next_session_carries_out_what_one_owed),
-        TEST(who_looks_uses_no_processor),
-        TEST(a_loop_that_stands_still_is_silent),
-        TEST(a_process_that_has_exited_has_nothing),
-        TEST(what_callers_get_wrong),
-        TEST(a_long_name_is_marked),
-    };
-
-    return cmocka_run_group_tests_name("estop", tests, NULL, NULL);
 }

@@ -3,10 +3,7 @@
  * A guard stops the robot of a program that dies. The test serves a simulated robot; this same
  * executable is the program and its guard, see guarded.h.
  */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +11,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/guard.h>
@@ -24,6 +20,7 @@
 #include "tests/support/guarded.h"
 #include "tests/support/leash.h"
 #include "tests/support/loop.h"
+#include "tests/support/test.h"
 
 /* How much longer than it says a busy machine may take. */
 #define GRACE_US INT64_C(700000)
@@ -222,9 +219,47 @@ static void run_until_it_dies(const char *how)
     await(has_ended);
 }
 
-static void a_killed_program(void **state)
+static int set_up(void)
 {
-    (void)state;
+    (void)folder_set_up();
+    base = grobo_loop_new();
+    assert_non_null(base);
+    server = NULL;
+    program = 0;
+    its_leash.end = -1;
+    program_ended = false;
+    from_program = NULL;
+    heard = NULL;
+    snprintf(said, sizeof said, " ");
+    understood = 0;
+    guard_pid = 0;
+    bytes_sent = 0;
+    return 0;
+}
+
+static int tear_down(void)
+{
+    leash_take(&its_leash);
+    if (program > 0) {
+        (void)kill(-program, SIGKILL); /* with a child that it left */
+    }
+    if (program > 0 && !program_ended) {
+        (void)waitpid(program, NULL, 0);
+    }
+    if (from_program != NULL) {
+        event_free(heard);
+        (void)fclose(from_program);
+    }
+    grobo_sim_server_free(server);
+    event_base_free(base);
+    folder_remove(NULL, 0);
+    return 0;
+}
+
+static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
+
+TEST_WITH(fixture, a_killed_program)
+{
     serve(false);
     run_until_it_dies("kill");
     await(stands);
@@ -234,9 +269,8 @@ static void a_killed_program(void **state)
     await(guard_is_gone);
 }
 
-static void a_robot_behind_a_connection(void **state)
+TEST_WITH(fixture, a_robot_behind_a_connection)
 {
-    (void)state;
     serve(true);
     run_until_it_dies("kill");
     await(stands);
@@ -245,9 +279,8 @@ static void a_robot_behind_a_connection(void **state)
 }
 
 /* Servos that do not answer cost the guard all its time, and not more. */
-static void a_robot_that_is_silent(void **state)
+TEST_WITH(fixture, a_robot_that_is_silent)
 {
-    (void)state;
     serve(false);
     start("kill");
     await_word("moving");
@@ -260,9 +293,8 @@ static void a_robot_that_is_silent(void **state)
     await(guard_is_gone);
 }
 
-static void torque_goes_off_where_the_policy_says_so(void **state)
+TEST_WITH(fixture, torque_goes_off_where_the_policy_says_so)
 {
-    (void)state;
     serve(false);
     run_until_it_dies("off");
     await(guard_is_gone);
@@ -270,12 +302,11 @@ static void torque_goes_off_where_the_policy_says_so(void **state)
 }
 
 /* The servo does not hear the program's, but the guard's. */
-static void an_emergency_stop_stays_one(void **state)
+TEST_WITH(fixture, an_emergency_stop_stays_one)
 {
     grobo_sim *sim;
     int elbow;
 
-    (void)state;
     serve(false);
     sim = grobo_sim_server_sim(server);
     elbow = grobo_sim_find(sim, GUARDED_MOTOR);
@@ -289,11 +320,10 @@ static void an_emergency_stop_stays_one(void **state)
 }
 
 /* The child has the port, its lock and the guard's socket, and lives on. */
-static void a_child_that_survives(void **state)
+TEST_WITH(fixture, a_child_that_survives)
 {
     int64_t end_us;
 
-    (void)state;
     serve(false);
     run_until_it_dies("fork");
     end_us = ended_us + GROBO_GUARD_BOUND_US + GRACE_US;
@@ -305,9 +335,8 @@ static void a_child_that_survives(void **state)
     assert_int_equal(kill(-program, SIGKILL), 0); /* it was there */
 }
 
-static void a_program_that_is_stopped(void **state)
+TEST_WITH(fixture, a_program_that_is_stopped)
 {
-    (void)state;
     if (access("/proc/self/stat", R_OK) != 0) {
         skip(); /* only Linux tells */
     }
@@ -329,11 +358,10 @@ static void a_program_that_is_stopped(void **state)
 }
 
 /* It continues while the guard is still busy: the port stays the guard's. */
-static void a_program_that_continues_too_early(void **state)
+TEST_WITH(fixture, a_program_that_continues_too_early)
 {
     size_t bytes;
 
-    (void)state;
     if (access("/proc/self/stat", R_OK) != 0) {
         skip(); /* only Linux tells */
     }
@@ -355,9 +383,8 @@ static void a_program_that_continues_too_early(void **state)
 }
 
 /* Stopped first and killed then: the policy is that of one that died. */
-static void a_program_that_is_stopped_and_then_killed(void **state)
+TEST_WITH(fixture, a_program_that_is_stopped_and_then_killed)
 {
-    (void)state;
     if (access("/proc/self/stat", R_OK) != 0) {
         skip(); /* only Linux tells */
     }
@@ -375,14 +402,13 @@ static void a_program_that_is_stopped_and_then_killed(void **state)
 }
 
 /* Nobody's torque goes off behind his back: another program has had the robot meanwhile. */
-static void a_program_that_is_stopped_and_followed_by_another(void **state)
+TEST_WITH(fixture, a_program_that_is_stopped_and_followed_by_another)
 {
     const grobo_session_config config = {GROBO_SESSION_CONFIG_INIT, .base = base, .device = device,
                                          .baud_bps = GUARDED_BPS};
     grobo_session *session = NULL;
     int64_t end_us = grobo_now_us() + 20000000;
 
-    (void)state;
     if (access("/proc/self/stat", R_OK) != 0) {
         skip(); /* only Linux tells */
     }
@@ -406,11 +432,10 @@ static void a_program_that_is_stopped_and_followed_by_another(void **state)
 }
 
 /* Its loop is held up, and nobody but its heart tells. */
-static void a_program_that_hangs(void **state)
+TEST_WITH(fixture, a_program_that_hangs)
 {
     size_t bytes;
 
-    (void)state;
     if (!has_heartbeat()) {
         skip(); /* only Linux has one */
     }
@@ -433,9 +458,8 @@ static void a_program_that_hangs(void **state)
 }
 
 /* Where nothing moves, it may wait for a person as long as it likes. */
-static void a_program_that_asks_a_person(void **state)
+TEST_WITH(fixture, a_program_that_asks_a_person)
 {
-    (void)state;
     serve(false);
     start("ask");
     await_word("hanging");
@@ -450,9 +474,8 @@ static void a_program_that_asks_a_person(void **state)
 }
 
 /* One whose loop turns is left alone for longer than a silence, also while nothing is sent. */
-static void a_program_that_only_waits(void **state)
+TEST_WITH(fixture, a_program_that_only_waits)
 {
-    (void)state;
     serve(false);
     start("watch");
     await_word("moving");
@@ -466,9 +489,8 @@ static void a_program_that_only_waits(void **state)
 }
 
 /* Without its descriptors it has no loop, no port and no guard to tell: that guard stops. */
-static void a_program_that_closes_all_its_descriptors(void **state)
+TEST_WITH(fixture, a_program_that_closes_all_its_descriptors)
 {
-    (void)state;
     serve(false);
     start("deaf");
     await_word("moving");
@@ -479,9 +501,8 @@ static void a_program_that_closes_all_its_descriptors(void **state)
     await(guard_is_gone);
 }
 
-static void a_program_that_closes_them_and_hangs(void **state)
+TEST_WITH(fixture, a_program_that_closes_them_and_hangs)
 {
-    (void)state;
     serve(false);
     start("dumb");
     await_word("hanging");
@@ -492,11 +513,10 @@ static void a_program_that_closes_them_and_hangs(void **state)
 }
 
 /* Nothing that it needs then is still to be had from the system. */
-static void a_guard_that_gets_nothing_any_more(void **state)
+TEST_WITH(fixture, a_guard_that_gets_nothing_any_more)
 {
     char command[128];
 
-    (void)state;
     serve(false);
     start("watch");
     await_word("moving");
@@ -512,11 +532,10 @@ static void a_guard_that_gets_nothing_any_more(void **state)
     assert_true(is_free());
 }
 
-static void a_program_that_ends_well(void **state)
+TEST_WITH(fixture, a_program_that_ends_well)
 {
     size_t bytes;
 
-    (void)state;
     serve(false);
     run_until_it_dies("end");
     assert_true(guard_is_gone()); /* it was waited for */
@@ -527,11 +546,10 @@ static void a_program_that_ends_well(void **state)
     assert_true(look().moving); /* no exit policy was asked for */
 }
 
-static void a_guard_that_is_killed(void **state)
+TEST_WITH(fixture, a_guard_that_is_killed)
 {
     size_t bytes;
 
-    (void)state;
     serve(false);
     start("watch");
     await_word("moving");
@@ -580,9 +598,8 @@ static bool guard_has_no_terminal(void)
 }
 
 /* A device that is unplugged keeps its name only if nobody has it open any more. */
-static void a_line_that_is_lost_and_comes_back(void **state)
+TEST_WITH(fixture, a_line_that_is_lost_and_comes_back)
 {
-    (void)state;
     serve(false);
     start("watch");
     await_word("moving");
@@ -600,9 +617,8 @@ static void a_line_that_is_lost_and_comes_back(void **state)
     assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
 }
 
-static void a_line_that_is_lost_while_the_program_cannot_say_so(void **state)
+TEST_WITH(fixture, a_line_that_is_lost_while_the_program_cannot_say_so)
 {
-    (void)state;
     serve(false);
     start("rest");
     await_word("resting");
@@ -612,11 +628,10 @@ static void a_line_that_is_lost_while_the_program_cannot_say_so(void **state)
     await(guard_has_no_terminal);
 }
 
-static void a_port_that_is_closed(void **state)
+TEST_WITH(fixture, a_port_that_is_closed)
 {
     size_t bytes;
 
-    (void)state;
     serve(false);
     start("close");
     await_word("moving");
@@ -631,9 +646,8 @@ static void a_port_that_is_closed(void **state)
     assert_int_equal(bytes_sent, bytes); /* it was the program's no more */
 }
 
-static void a_robot_that_it_does_not_know(void **state)
+TEST_WITH(fixture, a_robot_that_it_does_not_know)
 {
-    (void)state;
     serve(false);
     start("strange");
     await_word("refused");
@@ -642,14 +656,13 @@ static void a_robot_that_it_does_not_know(void **state)
     assert_true(look().moving);
 }
 
-static void what_is_no_guard(void **state)
+TEST_WITH(fixture, what_is_no_guard)
 {
     const char *const nothing[] = {NULL};
     const char *many[20] = {0};
     grobo_guard_config config = {GROBO_GUARD_CONFIG_INIT, .program = "true", .arguments = nothing};
     grobo_guard *guard = NULL;
 
-    (void)state;
     assert_int_equal(grobo_guard_new(&config, &guard), GROBO_ERR_MISMATCH);
     config.program = "/nowhere/guard";
     assert_int_equal(grobo_guard_new(&config, &guard), GROBO_ERR_NOENT);
@@ -663,7 +676,7 @@ static void what_is_no_guard(void **state)
     grobo_guard_free(NULL);
 }
 
-static void what_the_caller_gets_wrong(void **state)
+TEST_WITH(fixture, what_the_caller_gets_wrong)
 {
     static const uint8_t data[GROBO_GUARD_DATA_BYTES + 1];
     grobo_session_config config = {GROBO_SESSION_CONFIG_INIT, .base = base, .device = "/dev/null",
@@ -671,7 +684,6 @@ static void what_the_caller_gets_wrong(void **state)
     grobo_session *session = NULL;
     grobo_guard *guard = NULL;
 
-    (void)state;
     assert_int_equal(guarded_new(self, &guard), GROBO_OK);
     assert_true(grobo_guard_pid(guard) > 0);
     config.guard = guard;
@@ -684,79 +696,13 @@ static void what_the_caller_gets_wrong(void **state)
     assert_int_equal(grobo_guard_run(NULL), GROBO_ERR_ARG); /* not what a guard started */
 }
 
-static int set_up(void **state)
-{
-    (void)folder_set_up(state);
-    base = grobo_loop_new();
-    assert_non_null(base);
-    server = NULL;
-    program = 0;
-    its_leash.end = -1;
-    program_ended = false;
-    from_program = NULL;
-    heard = NULL;
-    snprintf(said, sizeof said, " ");
-    understood = 0;
-    guard_pid = 0;
-    bytes_sent = 0;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    leash_take(&its_leash);
-    if (program > 0) {
-        (void)kill(-program, SIGKILL); /* with a child that it left */
-    }
-    if (program > 0 && !program_ended) {
-        (void)waitpid(program, NULL, 0);
-    }
-    if (from_program != NULL) {
-        event_free(heard);
-        (void)fclose(from_program);
-    }
-    grobo_sim_server_free(server);
-    event_base_free(base);
-    folder_remove(NULL, 0);
-    return 0;
-}
-
 int main(int argc, char **argv)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(a_killed_program),
-        TEST(a_robot_behind_a_connection),
-        TEST(a_robot_that_is_silent),
-        TEST(torque_goes_off_where_the_policy_says_so),
-        TEST(an_emergency_stop_stays_one),
-        TEST(a_child_that_survives),
-        TEST(a_program_that_is_stopped),
-        TEST(a_program_that_is_stopped_and_then_killed),
-        TEST(a_program_that_is_stopped_and_followed_by_another),
-        TEST(a_program_that_continues_too_early),
-        TEST(a_program_that_hangs),
-        TEST(a_program_that_asks_a_person),
-        TEST(a_program_that_only_waits),
-        TEST(a_program_that_closes_all_its_descriptors),
-        TEST(a_program_that_closes_them_and_hangs),
-        TEST(a_guard_that_gets_nothing_any_more),
-        TEST(a_program_that_ends_well),
-        TEST(a_port_that_is_closed),
-        TEST(a_guard_that_is_killed),
-        TEST(a_line_that_is_lost_and_comes_back),
-        TEST(a_line_that_is_lost_while_the_program_cannot_say_so),
-        TEST(a_robot_that_it_does_not_know),
-        TEST(what_is_no_guard),
-        TEST(what_the_caller_gets_wrong),
-    };
-
     int status = guarded_main(argc, argv);
 
     if (status >= 0) {
         return status;
     }
     self = argv[0];
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_main(argc, argv);
 }

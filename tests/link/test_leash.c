@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What a test starts does not outlive it, see support/leash.h. */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "tests/support/leash.h"
+#include "tests/support/test.h"
 
 /* The end of a pipe that all processes of a test have, but the one that reads it here. */
 typedef struct family {
@@ -68,11 +63,10 @@ static void start_family(family *f, bool stopped)
     assert_int_equal(read(f->all, &f->child, sizeof f->child), sizeof f->child);
 }
 
-static void a_child_goes_with_its_test(void **state)
+TEST(a_child_goes_with_its_test)
 {
     char byte;
 
-    (void)state;
     for (int stopped = 0; stopped < 2; stopped++) {
         family f;
 
@@ -85,13 +79,12 @@ static void a_child_goes_with_its_test(void **state)
     }
 }
 
-static void a_leash_that_is_taken_ends_nothing(void **state)
+TEST(a_leash_that_is_taken_ends_nothing)
 {
     pid_t child = start_child(false);
     leash l;
     int status;
 
-    (void)state;
     leash_put(&l, child);
     leash_take(&l);
     leash_take(&l);
@@ -99,14 +92,4 @@ static void a_leash_that_is_taken_ends_nothing(void **state)
     assert_int_equal(kill(child, SIGTERM), 0);
     assert_int_equal(waitpid(child, &status, 0), child);
     assert_int_equal(WTERMSIG(status), SIGTERM);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_child_goes_with_its_test),
-        cmocka_unit_test(a_leash_that_is_taken_ends_nothing),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/loop.h>
 #include <grobo/port.h>
+
+#include "tests/support/test.h"
 
 typedef struct {
     struct event_base *base;
@@ -58,20 +56,18 @@ static void run_ticks(struct event_base *base)
     event_base_free(base);
 }
 
-static void a_period_is_kept_and_never_early(void **state)
+TEST(a_period_is_kept_and_never_early)
 {
     struct event_base *base = grobo_loop_new();
 
-    (void)state;
     assert_non_null(base);
     run_ticks(base);
 }
 
-static void a_base_with_a_coarse_clock_is_never_early_either(void **state)
+TEST(a_base_with_a_coarse_clock_is_never_early_either)
 {
     struct event_base *base = event_base_new();
 
-    (void)state;
     assert_non_null(base);
     run_ticks(base);
 }
@@ -83,14 +79,13 @@ static void free_in_callback(void *ctx, grobo_timer *timer, int64_t late_us)
     grobo_timer_free(timer);
 }
 
-static void a_past_deadline_is_called_from_the_loop_and_may_free(void **state)
+TEST(a_past_deadline_is_called_from_the_loop_and_may_free)
 {
     static const int64_t passed_us[] = {0, -1, INT64_MIN};
     struct event_base *base = grobo_loop_new();
     grobo_timer *timer;
     int calls = 0;
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         assert_int_equal(grobo_timer_new(base, free_in_callback, &calls, NULL, &timer), GROBO_OK);
         assert_int_equal(grobo_timer_set(timer, passed_us[i]), GROBO_OK);
@@ -101,13 +96,12 @@ static void a_past_deadline_is_called_from_the_loop_and_may_free(void **state)
     event_base_free(base);
 }
 
-static void never_disarms(void **state)
+TEST(never_disarms)
 {
     struct event_base *base = grobo_loop_new();
     grobo_timer *timer;
     int calls = 0;
 
-    (void)state;
     assert_int_equal(grobo_timer_new(base, free_in_callback, &calls, NULL, &timer), GROBO_OK);
     assert_int_equal(grobo_timer_set(timer, grobo_now_us() - 1), GROBO_OK);
     assert_int_equal(grobo_timer_set(timer, GROBO_NEVER_US), GROBO_OK);
@@ -149,13 +143,12 @@ static void end_busy_loop(void *ctx, grobo_timer *timer, int64_t late_us)
     event_base_loopbreak(busy->base);
 }
 
-static void what_is_due_is_called_though_it_is_set_anew(void **state)
+TEST(what_is_due_is_called_though_it_is_set_anew)
 {
     busy_loop busy = {.base = grobo_loop_new()};
     evutil_socket_t pair[2];
     struct event *event;
 
-    (void)state;
     assert_int_equal(grobo_timer_new(busy.base, end_busy_loop, &busy, NULL, &busy.timer), GROBO_OK);
     assert_int_equal(evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, pair), 0);
     assert_int_equal(send(pair[1], "", 1, 0), 1);
@@ -180,30 +173,15 @@ static void *no_memory(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
     return NULL;
 }
 
-static void refusals(void **state)
+TEST(refusals)
 {
     static const grobo_mem none = {no_memory, NULL};
     struct event_base *base = grobo_loop_new();
     grobo_timer *timer = NULL;
 
-    (void)state;
     assert_int_equal(grobo_timer_new(NULL, on_tick, NULL, NULL, &timer), GROBO_ERR_ARG);
     assert_int_equal(grobo_timer_new(base, NULL, NULL, NULL, &timer), GROBO_ERR_ARG);
     assert_int_equal(grobo_timer_new(base, on_tick, NULL, &none, &timer), GROBO_ERR_NOMEM);
     assert_null(timer);
     event_base_free(base);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_period_is_kept_and_never_early),
-        cmocka_unit_test(a_base_with_a_coarse_clock_is_never_early_either),
-        cmocka_unit_test(a_past_deadline_is_called_from_the_loop_and_may_free),
-        cmocka_unit_test(never_disarms),
-        cmocka_unit_test(what_is_due_is_called_though_it_is_set_anew),
-        cmocka_unit_test(refusals),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Ports, sessions, threads and their like refuse NULL for each thing that must be there.
  * grobo_guard_run() takes it: NULL stands for all defaults. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/estop.h>
@@ -19,6 +15,8 @@
 #include <grobo/sim_server.h>
 #include <grobo/static.h>
 #include <grobo/thread.h>
+
+#include "tests/support/test.h"
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
 
@@ -77,9 +75,8 @@ static int on_control(void *arg, grobo_control *from)
     return 0;
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     base = grobo_loop_new();
     assert_non_null(base);
     assert_int_equal(grobo_timer_new(base, on_timer, NULL, NULL, &timer), GROBO_OK);
@@ -98,9 +95,8 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     (void)fclose(stream);
     grobo_motion_free(motion);
     assert_int_equal(grobo_control_free(control), GROBO_OK);
@@ -111,9 +107,8 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void estop_refuses_null(void **state)
+TEST(estop_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_estop_set(NULL, &mark, &cause));
     REFUSES(grobo_estop_clear(NULL, &cause));
     assert_false(grobo_estop_stands(NULL));
@@ -122,9 +117,8 @@ static void estop_refuses_null(void **state)
     REFUSES(grobo_estop_ask(text, &mark, NULL));
 }
 
-static void gr001_refuses_null(void **state)
+TEST(gr001_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_gr001_torque(NULL, 1, 0));
     REFUSES(grobo_gr001_servo(NULL, 0, 0));
     REFUSES(grobo_gr001_move(NULL, 1, 0, 0));
@@ -157,17 +151,15 @@ static void gr001_refuses_null(void **state)
     REFUSES(grobo_gr001_play_record(motion, &robot, &play_options, NULL));
 }
 
-static void guard_refuses_null(void **state)
+TEST(guard_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_guard_new(&guard_config, NULL));
     grobo_guard_free(NULL);
     REFUSES(grobo_guard_pid(NULL));
 }
 
-static void loop_refuses_null(void **state)
+TEST(loop_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_timer_new(NULL, on_timer, NULL, grobo_mem_default(), &made_timer));
     REFUSES(grobo_timer_new(base, NULL, NULL, grobo_mem_default(), &made_timer));
     REFUSES(grobo_timer_new(base, on_timer, NULL, grobo_mem_default(), NULL));
@@ -176,9 +168,8 @@ static void loop_refuses_null(void **state)
     assert_true(grobo_timer_deadline(NULL) == GROBO_NEVER_US);
 }
 
-static void serial_refuses_null_in_its_first_functions(void **state)
+TEST(serial_refuses_null_in_its_first_functions)
 {
-    (void)state;
     REFUSES(grobo_serial_new(&serial_config, NULL));
     grobo_serial_free(NULL);
     REFUSES(grobo_serial_set_device(NULL, text));
@@ -198,9 +189,8 @@ static void serial_refuses_null_in_its_first_functions(void **state)
     grobo_serial_get_counters(serial, NULL);
 }
 
-static void serial_refuses_null_in_its_second_functions(void **state)
+TEST(serial_refuses_null_in_its_second_functions)
 {
-    (void)state;
     REFUSES(grobo_serial_read(NULL, bytes, 1));
     REFUSES(grobo_serial_read(serial, NULL, 1));
     REFUSES(grobo_serial_write(NULL, bytes, 1));
@@ -220,9 +210,8 @@ static void serial_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_hex_print(NULL, 1, stream));
 }
 
-static void session_refuses_null_in_its_first_functions(void **state)
+TEST(session_refuses_null_in_its_first_functions)
 {
-    (void)state;
     REFUSES(grobo_session_new(NULL, &made_session));
     REFUSES(grobo_session_new(&session_config, NULL));
     grobo_session_free(NULL);
@@ -250,9 +239,8 @@ static void session_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_robot_raw(grobo_session_robot(NULL), bytes, 1));
 }
 
-static void session_refuses_null_in_its_second_functions(void **state)
+TEST(session_refuses_null_in_its_second_functions)
 {
-    (void)state;
     REFUSES(grobo_robot_raw(grobo_session_robot(session), NULL, 1));
     REFUSES(grobo_robot_raw_until(grobo_session_robot(NULL), bytes, 1, 1000));
     REFUSES(grobo_robot_raw_until(grobo_session_robot(session), NULL, 1, 1000));
@@ -280,9 +268,8 @@ static void session_refuses_null_in_its_second_functions(void **state)
     assert_false(grobo_session_is_latched(NULL));
 }
 
-static void sim_server_refuses_null(void **state)
+TEST(sim_server_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_sim_server_new(NULL, &made_server, &cause));
     REFUSES(grobo_sim_server_new(&server_config, NULL, &cause));
     grobo_sim_server_free(NULL);
@@ -293,9 +280,8 @@ static void sim_server_refuses_null(void **state)
     REFUSES(grobo_sim_server_plug(NULL, true));
 }
 
-static void thread_refuses_null_in_its_first_functions(void **state)
+TEST(thread_refuses_null_in_its_first_functions)
 {
-    (void)state;
     REFUSES(grobo_control_new(NULL, &made_control));
     REFUSES(grobo_control_new(&control_config, NULL));
     assert_int_equal(grobo_control_free(NULL), GROBO_OK);
@@ -330,9 +316,8 @@ static void thread_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_control_set_period_us(NULL, 10000));
 }
 
-static void thread_refuses_null_in_its_second_functions(void **state)
+TEST(thread_refuses_null_in_its_second_functions)
 {
-    (void)state;
     assert_true(grobo_control_get_period_us(NULL) == 0);
     REFUSES(grobo_control_set_motion_count(NULL, 1));
     grobo_control_set_reverse(NULL, true);
@@ -361,9 +346,8 @@ static void thread_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_control_read_angle(control, 1, NULL, 1000));
 }
 
-static void thread_refuses_null_in_its_third_functions(void **state)
+TEST(thread_refuses_null_in_its_third_functions)
 {
-    (void)state;
     REFUSES(grobo_control_set_init_posture(NULL, &posture));
     REFUSES(grobo_control_set_init_posture(control, NULL));
     grobo_control_get_init_posture(NULL, &posture);
@@ -394,9 +378,8 @@ static void thread_refuses_null_in_its_third_functions(void **state)
     REFUSES(grobo_control_load_motion_format(control, 0, NULL, list));
 }
 
-static void thread_refuses_null_in_its_fourth_functions(void **state)
+TEST(thread_refuses_null_in_its_fourth_functions)
 {
-    (void)state;
     REFUSES(grobo_control_save_motion(NULL, 0, text, text, sizeof bytes));
     REFUSES(grobo_control_get_nth_posture(NULL, 1, &posture));
     REFUSES(grobo_control_get_nth_posture(control, 1, NULL));
@@ -422,22 +405,4 @@ static void thread_refuses_null_in_its_fourth_functions(void **state)
     REFUSES(grobo_control_post_stop(NULL, true));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(estop_refuses_null),
-        cmocka_unit_test(gr001_refuses_null),
-        cmocka_unit_test(guard_refuses_null),
-        cmocka_unit_test(loop_refuses_null),
-        cmocka_unit_test(serial_refuses_null_in_its_first_functions),
-        cmocka_unit_test(serial_refuses_null_in_its_second_functions),
-        cmocka_unit_test(session_refuses_null_in_its_first_functions),
-        cmocka_unit_test(session_refuses_null_in_its_second_functions),
-        cmocka_unit_test(sim_server_refuses_null),
-        cmocka_unit_test(thread_refuses_null_in_its_first_functions),
-        cmocka_unit_test(thread_refuses_null_in_its_second_functions),
-        cmocka_unit_test(thread_refuses_null_in_its_third_functions),
-        cmocka_unit_test(thread_refuses_null_in_its_fourth_functions),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_BETWEEN(set_up, tear_down)

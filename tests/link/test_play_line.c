@@ -3,20 +3,16 @@
  * `grctl play` on a real pty: which frames arrive, when, and where the robot ends. Real time, with
  * bounds wide enough for a busy machine; bench_play has the narrow ones.
  */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/loop.h>
 
 #include "tests/support/files.h"
 #include "tests/support/spy.h"
+#include "tests/support/test.h"
 
 enum { LIMIT_S = 60, MOTORS = 20, KEYS_MAX = 64 };
 enum {
@@ -33,20 +29,20 @@ static const int init_ddeg[MOTORS] = {0, 0,    200,  0, -200, -200, 0, 200, 0,  
 static spy s;
 static grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT};
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     sim = (grobo_sim_config){GROBO_SIM_CONFIG_INIT};
     memset(&s, 0, sizeof s);
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     spy_close(&s);
     return 0;
 }
+
+static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
 
 static int play(const char *a, const char *b, const char *c)
 {
@@ -128,11 +124,10 @@ static void expect_keys(const char *path)
     }
 }
 
-static void test_keys(void **state)
+TEST_WITH(fixture, test_keys)
 {
     static const int bow =
         9; /* on the way to the ninth key pose: CHEST_P to -20 degrees, 3.6 s to 4.2 s */
-    (void)state;
     assert_int_equal(play("--key", greet, NULL), 0);
     expect_keys(greet);
     for (int motor = 1; motor <= MOTORS; motor++) {
@@ -145,11 +140,10 @@ static void test_keys(void **state)
     expect_end(init_ddeg);
 }
 
-static void test_keys_of_a_real_motion(void **state)
+TEST_WITH(fixture, test_keys_of_a_real_motion)
 {
     char *path = strdup(shared_file("data/choreonoid/GR001-SampleMotion1.pseq"));
     int last_ddeg[MOTORS];
-    (void)state;
     assert_int_equal(play("--key", path, NULL), 0);
     expect_keys(path);
     free(path);
@@ -162,9 +156,8 @@ static void test_keys_of_a_real_motion(void **state)
 
 /* ---- resampled ---------------------------------------------------------------------------- */
 
-static void test_rate(void **state)
+TEST_WITH(fixture, test_rate)
 {
-    (void)state;
     assert_int_equal(play("--rate=50", "--speed=200", greet), 0);
     /* The goals, and 2.5 s less what a busy machine skips. */
     assert_in_range(s.n_poses, 127 - (size_t)said("late_frames"), 127);
@@ -215,9 +208,8 @@ static int play_with_a_stall(int64_t length_us)
     return status;
 }
 
-static void test_short_stall(void **state)
+TEST_WITH(fixture, test_short_stall)
 {
-    (void)state;
     assert_int_equal(play_with_a_stall(150000), 0);
     /* 150 ms are seven frames; the last of them still fits. What was missed is not sent: when
      * frames arrive tells nothing, as this process may have been stalled too. */
@@ -227,10 +219,9 @@ static void test_short_stall(void **state)
     expect_end(init_ddeg);
 }
 
-static void test_long_stall(void **state)
+TEST_WITH(fixture, test_long_stall)
 {
     size_t after = 0;
-    (void)state;
     assert_int_equal(play_with_a_stall(700000), 4);
     for (size_t i = 0; i < s.n_poses; i++) {
         after += s.poses[i].at_us >= awake_us;
@@ -260,9 +251,8 @@ static void on_sim(void *ctx, const grobo_sim_event *event)
 }
 
 /* Joints anywhere: they hold where they are, then go to the first posture slowly. */
-static void test_limp_robot(void **state)
+TEST_WITH(fixture, test_limp_robot)
 {
-    (void)state;
     memset(goal_set, 0, sizeof goal_set);
     torque_on = 0;
     sim = (grobo_sim_config){GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 7,
@@ -287,13 +277,12 @@ static void test_limp_robot(void **state)
 }
 
 /* A motion with an angle outside limits: not one byte leaves. */
-static void test_outside_limits(void **state)
+TEST_WITH(fixture, test_outside_limits)
 {
     char path[] = "/tmp/test_play_line.XXXXXX";
     int fd = mkstemp(path);
     FILE *file = fd >= 0 ? fdopen(fd, "w") : NULL;
     int status;
-    (void)state;
     assert_non_null(file);
     fputs("1000 0 0 200 0 -200 -200 0 200 0 200 0 -400 -200 0 0 -200 0 400 200 0\n"
           "2000 0 0 200 0 -200 -200 0 200 0 200 0 -1330 -200 0 0 -200 0 400 200 0\n",
@@ -305,18 +294,4 @@ static void test_outside_limits(void **state)
     assert_int_equal(s.bytes, 0);
     assert_non_null(strstr(s.out, ":2:"));
     assert_non_null(strstr(s.out, "R_KNEE_P"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_keys, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_keys_of_a_real_motion, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_rate, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_short_stall, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_long_stall, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_limp_robot, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_outside_limits, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

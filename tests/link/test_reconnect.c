@@ -4,20 +4,17 @@
  * moves because of it. In real time: of several hang-ups most must keep their bound, as any one may
  * meet a busy machine.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include "tests/support/folder.h"
 #include "tests/support/loop.h"
 #include "tests/support/os.h"
 #include "tests/support/session_kit.h"
+#include "tests/support/test.h"
 
 enum { NECK = 13, HANG_UPS = 9, MOST = 5, IDLE_US = 2000000 };
 
@@ -53,13 +50,13 @@ static void on_sim(void *ctx, const grobo_sim_event *event)
 
 /* ---- set-up ------------------------------------------------------------------------------- */
 
-static int set_up(void **state)
+static int set_up(void)
 {
     static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 300000};
     grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .hook = on_sim};
     const char *link;
 
-    (void)folder_set_up(state);
+    (void)folder_set_up();
     link = in_folder("gr001");
     memset(&heard, 0, sizeof heard);
     rounds = 0;
@@ -74,14 +71,15 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     grobo_sim_server_free(server);
     session_kit_end();
     folder_remove(NULL, 0);
     return 0;
 }
+
+static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
 
 static void unplug(void)
 {
@@ -112,12 +110,11 @@ static grobo_sim_view look(int servo)
 
 /* ---- tests -------------------------------------------------------------------------------- */
 
-static void a_lost_port_is_told_within_10_ms_and_found_within_250(void **state)
+TEST_WITH(fixture, a_lost_port_is_told_within_10_ms_and_found_within_250)
 {
     int told = 0;
     int found = 0;
 
-    (void)state;
     loop_run_until(base, &seen.ups, 1);
     for (int i = 0; i < HANG_UPS; i++) {
         int64_t from_us = grobo_now_us();
@@ -135,11 +132,10 @@ static void a_lost_port_is_told_within_10_ms_and_found_within_250(void **state)
     assert_int_equal(seen.fails, 0);
 }
 
-static void waiting_for_a_port_takes_less_than_a_hundredth(void **state)
+TEST_WITH(fixture, waiting_for_a_port_takes_less_than_a_hundredth)
 {
     int64_t cpu_us;
 
-    (void)state;
     loop_run_until(base, &seen.ups, 1);
     unplug();
     loop_run_for(base, 500000); /* the first attempts follow each other fast */
@@ -180,12 +176,11 @@ static grobo_posture neck(double angle_deg, int64_t time_us)
     return target;
 }
 
-static void nothing_moves_by_itself_after_a_move_was_cut(void **state)
+TEST_WITH(fixture, nothing_moves_by_itself_after_a_move_was_cut)
 {
     grobo_posture target = neck(30, 500000);
     int move;
 
-    (void)state;
     loop_run_until(base, &seen.ups, 1);
     assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session),
                                                           GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
@@ -213,12 +208,11 @@ static int nod_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
     return 0;
 }
 
-static void nothing_moves_by_itself_after_a_motion_was_cut(void **state)
+TEST_WITH(fixture, nothing_moves_by_itself_after_a_motion_was_cut)
 {
     const grobo_clip nod = {
         .key = nod_key, .n_keys = 100, .n_joints = 20, .length_us = 100 * 200000LL};
 
-    (void)state;
     loop_run_until(base, &seen.ups, 1);
     assert_int_equal(session_kit_await(grobo_robot_play(grobo_session_robot(session), &nod, NULL)),
                      GROBO_OK);
@@ -228,17 +222,4 @@ static void nothing_moves_by_itself_after_a_motion_was_cut(void **state)
     expect_stillness();
     assert_int_equal(session_kit_await(grobo_robot_play(grobo_session_robot(session), &nod, NULL)),
                      GROBO_OK);
-}
-
-#define RECONNECT(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        RECONNECT(a_lost_port_is_told_within_10_ms_and_found_within_250),
-        RECONNECT(waiting_for_a_port_takes_less_than_a_hundredth),
-        RECONNECT(nothing_moves_by_itself_after_a_move_was_cut),
-        RECONNECT(nothing_moves_by_itself_after_a_motion_was_cut),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The serial port on an event loop, on a pty or a cable. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/serial.h>
@@ -16,6 +12,7 @@
 #include "tests/support/line.h"
 #include "tests/support/loop.h"
 #include "tests/support/os.h"
+#include "tests/support/test.h"
 
 static test_line line;
 /* Of the calls that wait, which none of this mode does: longer than a busy machine may take. */
@@ -101,7 +98,7 @@ static void run_until_event(grobo_serial_event event)
     assert_false(loop_run(base, 5000000));
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
     const grobo_serial_config config = {
         GROBO_SERIAL_CONFIG_INIT, .device = line.device, .mode = GROBO_SERIAL_ASYNC,
@@ -110,7 +107,6 @@ static int set_up(void **state)
     };
     grobo_serial_config with_base = config;
 
-    (void)state;
     counter = (counted_mem){0};
     mem = counted_mem_of(&counter);
     with_base.mem = &mem;
@@ -127,20 +123,20 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     grobo_serial_free(serial);
     event_base_free(base);
     test_line_close(&line);
     return 0;
 }
 
-static void bytes_come_by_callback_and_leave_by_send(void **state)
+static const test_fixture on_line[] = {{NULL, set_up, tear_down}};
+
+TEST_WITH(on_line, bytes_come_by_callback_and_leave_by_send)
 {
     uint8_t back[3];
 
-    (void)state;
     test_line_write(&line, "hello", 5);
     run_until_bytes(5);
     assert_memory_equal(seen.bytes, "hello", 5);
@@ -152,12 +148,11 @@ static void bytes_come_by_callback_and_leave_by_send(void **state)
     assert_int_equal(grobo_serial_pending(serial), 0);
 }
 
-static void nothing_waits_in_this_mode(void **state)
+TEST_WITH(on_line, nothing_waits_in_this_mode)
 {
     uint8_t byte;
     int64_t start_us = grobo_now_us();
 
-    (void)state;
     assert_int_equal(grobo_serial_receive(serial, &byte, 1), GROBO_ERR_STATE);
     assert_int_equal(grobo_serial_read(serial, &byte, 1), 0);
     assert_int_equal(grobo_serial_set_mode(serial, GROBO_SERIAL_SYNC), GROBO_ERR_STATE);
@@ -205,13 +200,12 @@ static void on_master(evutil_socket_t fd, short what, void *arg)
     seen.size += test_line_read_some(&line, seen.bytes + seen.size, 1000);
 }
 
-static void a_full_queue_refuses_and_drains_in_order(void **state)
+TEST_WITH(on_line, a_full_queue_refuses_and_drains_in_order)
 {
     size_t total = fill(500);
     grobo_serial_counters counters;
     struct event *reader;
 
-    (void)state;
     assert_true(grobo_serial_pending(serial) > 0);
     assert_true(grobo_serial_pending(serial) <= GROBO_SERIAL_QUEUE_BYTES);
     assert_int_equal(grobo_serial_write(serial, "x", 1), 0);
@@ -277,12 +271,11 @@ static void assert_works_after_flood(void)
     assert_memory_equal(seen.bytes, "hello", 5);
 }
 
-static void a_flood_is_read_no_faster_than_a_line_brings_bytes(void **state)
+TEST_WITH(on_line, a_flood_is_read_no_faster_than_a_line_brings_bytes)
 {
     int64_t budget_us = READ_BUDGET_US - grobo_now_us();
     grobo_serial_counters counters;
 
-    (void)state;
     test_line_needs_pty("more bytes than a line brings");
     counters = run_flooded(READ_BYTES);
     budget_us += grobo_now_us();
@@ -291,12 +284,11 @@ static void a_flood_is_read_no_faster_than_a_line_brings_bytes(void **state)
     assert_works_after_flood();
 }
 
-static void a_flood_of_single_bytes_wakes_the_loop_no_faster(void **state)
+TEST_WITH(on_line, a_flood_of_single_bytes_wakes_the_loop_no_faster)
 {
     int64_t budget_us = READ_BUDGET_US - grobo_now_us();
     grobo_serial_counters counters;
 
-    (void)state;
     test_line_needs_pty("more bytes than a line brings");
     counters = run_flooded(1);
     budget_us += grobo_now_us();
@@ -305,13 +297,12 @@ static void a_flood_of_single_bytes_wakes_the_loop_no_faster(void **state)
 }
 
 /* A callback that reads until nothing is left, as a session does, comes to an end. */
-static void reading_a_flood_in_one_callback_ends(void **state)
+TEST_WITH(on_line, reading_a_flood_in_one_callback_ends)
 {
     static uint8_t buf[READ_BYTES];
     int64_t end_us = grobo_now_us() + 500000;
     size_t total = 0;
 
-    (void)state;
     test_line_needs_pty("more bytes than a line brings");
     while (grobo_now_us() < end_us) {
         int got = grobo_serial_read(serial, buf, sizeof buf);
@@ -325,9 +316,8 @@ static void reading_a_flood_in_one_callback_ends(void **state)
     assert_works_after_flood();
 }
 
-static void queued_bytes_can_be_dropped(void **state)
+TEST_WITH(on_line, queued_bytes_can_be_dropped)
 {
-    (void)state;
     (void)fill(500);
     grobo_serial_discard_output(serial);
     assert_int_equal(grobo_serial_pending(serial), 0);
@@ -335,12 +325,11 @@ static void queued_bytes_can_be_dropped(void **state)
     assert_int_equal(seen.events[GROBO_SERIAL_DRAINED], 0);
 }
 
-static void a_hang_up_is_one_event_and_then_silence(void **state)
+TEST_WITH(on_line, a_hang_up_is_one_event_and_then_silence)
 {
     int64_t hung_up_us;
     int64_t cpu_before_us;
 
-    (void)state;
     test_line_needs_pty("a hang-up");
     test_line_close(&line);
     hung_up_us = grobo_now_us();
@@ -357,9 +346,8 @@ static void a_hang_up_is_one_event_and_then_silence(void **state)
     assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_CLOSED);
 }
 
-static void a_hang_up_with_bytes_queued_is_one_event(void **state)
+TEST_WITH(on_line, a_hang_up_with_bytes_queued_is_one_event)
 {
-    (void)state;
     test_line_needs_pty("a hang-up");
     (void)fill(500);
     test_line_close(&line);
@@ -370,9 +358,8 @@ static void a_hang_up_with_bytes_queued_is_one_event(void **state)
     assert_int_equal(grobo_serial_pending(serial), 0);
 }
 
-static void a_hang_up_found_by_send_is_told_from_the_loop(void **state)
+TEST_WITH(on_line, a_hang_up_found_by_send_is_told_from_the_loop)
 {
-    (void)state;
     test_line_needs_pty("a hang-up");
     test_line_close(&line);
     assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_UNPLUGGED);
@@ -381,9 +368,8 @@ static void a_hang_up_found_by_send_is_told_from_the_loop(void **state)
     assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 1);
 }
 
-static void closing_drops_what_was_not_told_yet(void **state)
+TEST_WITH(on_line, closing_drops_what_was_not_told_yet)
 {
-    (void)state;
     test_line_needs_pty("a hang-up");
     test_line_close(&line);
     assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_UNPLUGGED);
@@ -392,11 +378,10 @@ static void closing_drops_what_was_not_told_yet(void **state)
     assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 0);
 }
 
-static void a_lost_port_may_be_opened_again_in_its_event(void **state)
+TEST_WITH(on_line, a_lost_port_may_be_opened_again_in_its_event)
 {
     test_line old = line;
 
-    (void)state;
     test_line_needs_pty("a hang-up");
     test_line_open(&line);
     seen.reopen_on_event = true;
@@ -409,9 +394,8 @@ static void a_lost_port_may_be_opened_again_in_its_event(void **state)
     assert_memory_equal(seen.bytes, "back", 4);
 }
 
-static void it_may_be_freed_in_on_data(void **state)
+TEST_WITH(on_line, it_may_be_freed_in_on_data)
 {
-    (void)state;
     seen.free_on_data = true;
     test_line_write(&line, "x", 1);
     run_until_bytes(1);
@@ -420,9 +404,8 @@ static void it_may_be_freed_in_on_data(void **state)
     assert_int_equal(counter.bytes, 0);
 }
 
-static void it_may_be_freed_in_on_event(void **state)
+TEST_WITH(on_line, it_may_be_freed_in_on_event)
 {
-    (void)state;
     test_line_needs_pty("a hang-up");
     seen.free_on_event = true;
     test_line_close(&line);
@@ -431,7 +414,7 @@ static void it_may_be_freed_in_on_event(void **state)
     assert_true(loop_run(base, 10000));
 }
 
-static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
+TEST_WITH(on_line, each_lack_of_memory_is_told_and_leaks_nothing)
 {
     counted_mem few;
     const grobo_mem few_mem = counted_mem_of(&few);
@@ -441,7 +424,6 @@ static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
     int failures = 0;
     int r = GROBO_ERR_NOMEM;
 
-    (void)state;
     grobo_serial_close(serial);
     for (size_t n = 1; r == GROBO_ERR_NOMEM; n++) {
         grobo_serial *made = NULL;
@@ -460,28 +442,4 @@ static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
     }
     assert_int_equal(r, GROBO_OK);
     assert_int_equal(failures, 3);
-}
-
-int main(void)
-{
-#define ON_LINE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        ON_LINE(bytes_come_by_callback_and_leave_by_send),
-        ON_LINE(nothing_waits_in_this_mode),
-        ON_LINE(a_full_queue_refuses_and_drains_in_order),
-        ON_LINE(a_flood_is_read_no_faster_than_a_line_brings_bytes),
-        ON_LINE(a_flood_of_single_bytes_wakes_the_loop_no_faster),
-        ON_LINE(reading_a_flood_in_one_callback_ends),
-        ON_LINE(queued_bytes_can_be_dropped),
-        ON_LINE(a_hang_up_is_one_event_and_then_silence),
-        ON_LINE(a_hang_up_with_bytes_queued_is_one_event),
-        ON_LINE(a_hang_up_found_by_send_is_told_from_the_loop),
-        ON_LINE(closing_drops_what_was_not_told_yet),
-        ON_LINE(a_lost_port_may_be_opened_again_in_its_event),
-        ON_LINE(it_may_be_freed_in_on_data),
-        ON_LINE(it_may_be_freed_in_on_event),
-        ON_LINE(each_lack_of_memory_is_told_and_leaks_nothing),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What can and what cannot be opened, and who has it. */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,14 +10,13 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include <grobo/serial.h>
 
 #include "tests/support/files.h"
 #include "tests/support/folder.h"
 #include "tests/support/line.h"
 #include "tests/support/nobody.h"
+#include "tests/support/test.h"
 
 /* Opens a device; returns the result, leaves the cause's text. */
 static int try_open(const char *device, char *text, size_t text_bytes)
@@ -39,7 +35,7 @@ static int try_open(const char *device, char *text, size_t text_bytes)
     return r;
 }
 
-static void no_descriptor_is_left(void **state)
+TEST(no_descriptor_is_left)
 {
     char text[GROBO_CAUSE_MAX_BYTES];
     struct rlimit before;
@@ -47,7 +43,6 @@ static void no_descriptor_is_left(void **state)
     int serial;
     int tcp;
 
-    (void)state;
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
     none = before;
     none.rlim_cur = 0;
@@ -59,13 +54,13 @@ static void no_descriptor_is_left(void **state)
     assert_int_equal(tcp, GROBO_ERR_NOMEM);
 }
 
-static void what_is_no_serial_port_is_refused(void **state)
+TEST(what_is_no_serial_port_is_refused)
 {
     static const char *const names[] = {"file"};
     const char *file;
     char text[GROBO_CAUSE_MAX_BYTES];
 
-    (void)folder_set_up(state);
+    (void)folder_set_up();
     file = in_folder(names[0]);
     assert_int_equal(try_open(file, text, sizeof text), GROBO_ERR_NOENT);
     assert_string_equal(text, "stat: No such file or directory");
@@ -111,7 +106,7 @@ static void stop_holder(pid_t pid)
     assert_int_equal(waitpid(pid, &status, 0), pid);
 }
 
-static void a_second_open_is_refused_and_names_the_holder(void **state)
+TEST(a_second_open_is_refused_and_names_the_holder)
 {
     test_line line;
     char text[GROBO_CAUSE_MAX_BYTES];
@@ -119,7 +114,6 @@ static void a_second_open_is_refused_and_names_the_holder(void **state)
     char name[64];
     pid_t pid;
 
-    (void)state;
     test_line_open(&line);
     pid = start_holder(line.device);
     assert_int_equal(try_open(line.device, text, sizeof text), GROBO_ERR_BUSY);
@@ -144,11 +138,10 @@ static int open_and_close(void *device)
     return try_open(device, text, sizeof text);
 }
 
-static void without_permission_it_is_refused(void **state)
+TEST(without_permission_it_is_refused)
 {
     test_line line;
 
-    (void)state;
     test_line_open(&line);
     assert_int_equal(chmod(line.device, 0600), 0);
     assert_int_equal(as_nobody(open_and_close, line.device), GROBO_ERR_PERM);
@@ -157,11 +150,10 @@ static void without_permission_it_is_refused(void **state)
     test_line_close(&line);
 }
 
-static void a_killed_holder_does_not_lock_other_users_out(void **state)
+TEST(a_killed_holder_does_not_lock_other_users_out)
 {
     test_line line;
 
-    (void)state;
     test_line_open(&line);
     assert_int_equal(chmod(line.device, 0666), 0);
     stop_holder(start_holder(line.device));
@@ -169,7 +161,7 @@ static void a_killed_holder_does_not_lock_other_users_out(void **state)
     test_line_close(&line);
 }
 
-static void the_line_is_raw_8n1(void **state)
+TEST(the_line_is_raw_8n1)
 {
     test_line line;
     grobo_serial *serial;
@@ -177,7 +169,6 @@ static void the_line_is_raw_8n1(void **state)
     uint8_t byte = 0;
     grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device};
 
-    (void)state;
     test_line_open(&line);
     assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
     assert_int_equal(grobo_serial_open(serial), GROBO_OK);
@@ -194,18 +185,4 @@ static void the_line_is_raw_8n1(void **state)
     assert_int_equal(byte, 'x');
     grobo_serial_free(serial);
     test_line_close(&line);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_descriptor_is_left),
-        cmocka_unit_test(what_is_no_serial_port_is_refused),
-        cmocka_unit_test(a_second_open_is_refused_and_names_the_holder),
-        cmocka_unit_test(without_permission_it_is_refused),
-        cmocka_unit_test(a_killed_holder_does_not_lock_other_users_out),
-        cmocka_unit_test(the_line_is_raw_8n1),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The serial port without a loop: rows SC01..SC22 of the original, on a pty or a cable. */
 #include <fcntl.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,36 +10,34 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include <grobo/serial.h>
 
 #include "tests/support/line.h"
+#include "tests/support/test.h"
 
 static test_line line;
 static grobo_serial *serial;
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     serial = test_line_open_serial(&line, 30);
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     grobo_serial_free(serial);
     test_line_close(&line);
     return 0;
 }
 
-static void a_port_without_a_device_waits_for_one(void **state)
+static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
+
+TEST(a_port_without_a_device_waits_for_one)
 {
     grobo_serial *made;
     char name[] = "/dev/somewhere";
 
-    (void)state;
     assert_int_equal(grobo_serial_new(NULL, &made), GROBO_OK);
     assert_null(grobo_serial_device(made));
     assert_int_equal(grobo_serial_baud(made), 115200);
@@ -59,13 +54,12 @@ static void a_port_without_a_device_waits_for_one(void **state)
     grobo_serial_free(NULL);
 }
 
-static void bad_configurations_are_refused(void **state)
+TEST(bad_configurations_are_refused)
 {
     char long_name[GROBO_DEVICE_MAX_BYTES + 1];
     grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .baud_bps = -1};
     grobo_serial *made = NULL;
 
-    (void)state;
     memset(long_name, 'x', sizeof long_name - 1);
     long_name[sizeof long_name - 1] = '\0';
     assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_ARG);
@@ -82,12 +76,11 @@ static void bad_configurations_are_refused(void **state)
     assert_null(made);
 }
 
-static void a_closed_port_says_so(void **state)
+TEST_WITH(fixture, a_closed_port_says_so)
 {
     uint8_t byte = 0;
     grobo_handle handle = grobo_serial_handle(serial);
 
-    (void)state;
     assert_int_equal(write(handle, "h", 1), 1); /* it is the line's */
     test_line_read(&line, &byte, 1);
     assert_int_equal(byte, 'h');
@@ -110,9 +103,8 @@ static void a_closed_port_says_so(void **state)
     assert_int_equal(grobo_serial_open(serial), GROBO_ERR_STATE);
 }
 
-static void an_open_port_keeps_device_and_mode(void **state)
+TEST_WITH(fixture, an_open_port_keeps_device_and_mode)
 {
-    (void)state;
     assert_int_equal(grobo_serial_set_device(serial, "/dev/other"), GROBO_ERR_STATE);
     assert_string_equal(grobo_serial_device(serial), line.device);
     assert_int_equal(grobo_serial_set_mode(serial, GROBO_SERIAL_SYNC), GROBO_ERR_STATE);
@@ -122,13 +114,12 @@ static void an_open_port_keeps_device_and_mode(void **state)
     assert_int_equal(grobo_serial_get_mode(serial), GROBO_SERIAL_SYNC);
 }
 
-static void every_byte_passes_both_ways(void **state)
+TEST_WITH(fixture, every_byte_passes_both_ways)
 {
     uint8_t out[256];
     uint8_t in[256];
     grobo_serial_counters counters;
 
-    (void)state;
     for (size_t i = 0; i < sizeof out; i++) {
         out[i] = (uint8_t)i;
     }
@@ -147,11 +138,10 @@ static void every_byte_passes_both_ways(void **state)
     assert_int_equal(grobo_serial_receive(serial, in, 0), 0);
 }
 
-static void receive_takes_exactly_what_is_asked_for(void **state)
+TEST_WITH(fixture, receive_takes_exactly_what_is_asked_for)
 {
     uint8_t buf[4];
 
-    (void)state;
     test_line_write(&line,
                     "\x07"
                     "abcd",
@@ -162,13 +152,12 @@ static void receive_takes_exactly_what_is_asked_for(void **state)
     assert_memory_equal(buf, "abcd", 4);
 }
 
-static void silence_ends_a_receive_and_drops_what_came(void **state)
+TEST_WITH(fixture, silence_ends_a_receive_and_drops_what_came)
 {
     int64_t start_us = grobo_now_us();
     uint8_t buf[26];
     grobo_serial_counters counters;
 
-    (void)state;
     assert_int_equal(grobo_serial_receive(serial, buf, sizeof buf), GROBO_ERR_TIMEOUT);
     assert_true(grobo_now_us() - start_us >= 30000);
     test_line_write(&line, "0123456789", 10);
@@ -196,7 +185,7 @@ static int read_slowly(grobo_port *port, void *buf, size_t size, grobo_os_cause 
     return 1;
 }
 
-static void a_trickle_does_not_stretch_a_receive(void **state)
+TEST_WITH(fixture, a_trickle_does_not_stretch_a_receive)
 {
     grobo_port_ops ops = *grobo_port_serial_ops();
     const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device,
@@ -205,7 +194,6 @@ static void a_trickle_does_not_stretch_a_receive(void **state)
     uint8_t buf[400];
     int64_t start_us;
 
-    (void)state;
     grobo_serial_free(serial);
     ops.read = read_slowly;
     assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
@@ -241,14 +229,13 @@ static int read_and_hold_up(grobo_port *port, void *buf, size_t size, grobo_os_c
     return got;
 }
 
-static void what_has_come_is_read_before_there_is_silence(void **state)
+TEST_WITH(fixture, what_has_come_is_read_before_there_is_silence)
 {
     grobo_port_ops ops = *grobo_port_serial_ops();
     const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device,
                                         .silence_ms = 30, .ops = &ops};
     uint8_t byte = 0;
 
-    (void)state;
     grobo_serial_free(serial);
     ops.read = read_and_hold_up;
     assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
@@ -272,13 +259,12 @@ static void await_bytes(int count)
     assert_int_equal(grobo_serial_waiting(serial), count);
 }
 
-static void silence_is_100_ms_where_nothing_else_is_said(void **state)
+TEST_WITH(fixture, silence_is_100_ms_where_nothing_else_is_said)
 {
     const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device};
     uint8_t byte = 0;
     int64_t start_us;
 
-    (void)state;
     grobo_serial_free(serial);
     assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
     assert_int_equal(grobo_serial_open(serial), GROBO_OK);
@@ -287,11 +273,10 @@ static void silence_is_100_ms_where_nothing_else_is_said(void **state)
     assert_in_range(grobo_now_us() - start_us, 100000, 1000000);
 }
 
-static void low_level_read_and_write_take_what_there_is(void **state)
+TEST_WITH(fixture, low_level_read_and_write_take_what_there_is)
 {
     uint8_t buf[16];
 
-    (void)state;
     assert_int_equal(grobo_serial_read(serial, buf, sizeof buf), 0);
     test_line_write(&line, "abc", 3);
     await_bytes(3);
@@ -302,9 +287,8 @@ static void low_level_read_and_write_take_what_there_is(void **state)
     assert_memory_equal(buf, "xyz", 3);
 }
 
-static void waiting_bytes_are_counted_and_dropped(void **state)
+TEST_WITH(fixture, waiting_bytes_are_counted_and_dropped)
 {
-    (void)state;
     assert_int_equal(grobo_serial_waiting(serial), 0);
     assert_int_equal(grobo_serial_discard(serial), 0);
     test_line_write(&line, "abcde", 5);
@@ -313,11 +297,10 @@ static void waiting_bytes_are_counted_and_dropped(void **state)
     assert_int_equal(grobo_serial_waiting(serial), 0);
 }
 
-static void bytes_from_before_open_are_gone(void **state)
+TEST_WITH(fixture, bytes_from_before_open_are_gone)
 {
     uint8_t byte = 0;
 
-    (void)state;
     grobo_serial_close(serial);
     test_line_write(&line, "old", 3);
     test_line_await_arrival(&line);
@@ -327,13 +310,12 @@ static void bytes_from_before_open_are_gone(void **state)
     assert_int_equal(byte, 'n');
 }
 
-static void a_line_that_takes_nothing_ends_a_send(void **state)
+TEST_WITH(fixture, a_line_that_takes_nothing_ends_a_send)
 {
     static uint8_t much[100000];
     int64_t start_us = grobo_now_us();
     grobo_serial_counters counters;
 
-    (void)state;
     test_line_needs_pty("a line that takes nothing");
     assert_int_equal(grobo_serial_send(serial, much, sizeof much), GROBO_ERR_TIMEOUT);
     assert_true(grobo_now_us() - start_us >= 1000000);
@@ -350,11 +332,10 @@ static speed_t line_speed(void)
     return cfgetospeed(&tio);
 }
 
-static void speed_changes_on_an_open_port(void **state)
+TEST_WITH(fixture, speed_changes_on_an_open_port)
 {
     static const int rates[] = {9600, 19200, 57600, 115200, 230400, 460800};
 
-    (void)state;
     test_line_needs_pty("any speed");
     for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
         assert_int_equal(grobo_serial_set_baud(serial, rates[i]), rates[i]);
@@ -376,11 +357,10 @@ static void speed_changes_on_an_open_port(void **state)
     assert_int_equal(grobo_serial_set_baud(serial, 115200), 115200);
 }
 
-static void speeds_need_not_be_those_of_a_table(void **state)
+TEST_WITH(fixture, speeds_need_not_be_those_of_a_table)
 {
     static const int rates[] = {14400, 76800, 153600, 250000};
 
-    (void)state;
     test_line_needs_pty("any speed");
     const char *emulator = getenv("EMULATOR");
     if (emulator != NULL && *emulator != '\0') {
@@ -394,21 +374,19 @@ static void speeds_need_not_be_those_of_a_table(void **state)
     assert_int_equal(grobo_serial_set_baud(serial, 115200), 115200);
 }
 
-static void low_latency_is_reported_where_there_is_none(void **state)
+TEST_WITH(fixture, low_latency_is_reported_where_there_is_none)
 {
-    (void)state;
     test_line_needs_pty("a line without low latency");
     assert_int_equal(grobo_serial_low_latency(serial), GROBO_ERR_UNSUPPORTED);
     assert_int_equal(grobo_serial_set_low_latency(serial), GROBO_ERR_UNSUPPORTED);
     assert_true(strlen(grobo_serial_cause(serial)->text) > 0);
 }
 
-static void a_hang_up_is_told_once_and_closes(void **state)
+TEST_WITH(fixture, a_hang_up_is_told_once_and_closes)
 {
     uint8_t byte = 0;
     grobo_serial_counters counters;
 
-    (void)state;
     test_line_needs_pty("a hang-up");
     test_line_close(&line);
     assert_int_equal(grobo_serial_receive(serial, &byte, 1), GROBO_ERR_UNPLUGGED);
@@ -418,9 +396,8 @@ static void a_hang_up_is_told_once_and_closes(void **state)
     assert_int_equal(counters.unplugs, 1);
 }
 
-static void a_hang_up_is_found_by_sending_too(void **state)
+TEST_WITH(fixture, a_hang_up_is_found_by_sending_too)
 {
-    (void)state;
     test_line_needs_pty("a hang-up");
     test_line_close(&line);
     assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_UNPLUGGED);
@@ -435,7 +412,7 @@ static void on_alarm(int number)
     alarms++;
 }
 
-static void signals_do_not_cut_a_wait_short(void **state)
+TEST_WITH(fixture, signals_do_not_cut_a_wait_short)
 {
     const struct itimerval every_ms = {{0, 1000}, {0, 1000}};
     const struct itimerval off = {{0, 0}, {0, 0}};
@@ -445,7 +422,6 @@ static void signals_do_not_cut_a_wait_short(void **state)
     uint8_t byte = 0;
     int r;
 
-    (void)state;
     act.sa_handler = on_alarm; /* without SA_RESTART */
     assert_int_equal(sigaction(SIGALRM, &act, &before), 0);
     assert_int_equal(setitimer(ITIMER_REAL, &every_ms, NULL), 0);
@@ -457,14 +433,13 @@ static void signals_do_not_cut_a_wait_short(void **state)
     assert_true(alarms > 0);
 }
 
-static void hex_is_written_to_buffer_and_stream(void **state)
+TEST(hex_is_written_to_buffer_and_stream)
 {
     static const uint8_t packet[] = {0xFA, 0xAF, 0x03};
     char text[9] = "unchange";
     char read_back[32] = "";
     FILE *stream = tmpfile();
 
-    (void)state;
     assert_int_equal(grobo_hex(packet, sizeof packet, text, 8), GROBO_ERR_SPACE);
     assert_string_equal(text, "unchange");
     assert_int_equal(grobo_hex(packet, sizeof packet, text, sizeof text), 8);
@@ -477,38 +452,4 @@ static void hex_is_written_to_buffer_and_stream(void **state)
     assert_non_null(fgets(read_back, sizeof read_back, stream));
     assert_string_equal(read_back, "FA AF 03\n");
     assert_int_equal(fclose(stream), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_port_without_a_device_waits_for_one),
-        cmocka_unit_test(bad_configurations_are_refused),
-        cmocka_unit_test_setup_teardown(a_closed_port_says_so, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(an_open_port_keeps_device_and_mode, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(every_byte_passes_both_ways, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(receive_takes_exactly_what_is_asked_for, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(silence_ends_a_receive_and_drops_what_came, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(a_trickle_does_not_stretch_a_receive, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(silence_is_100_ms_where_nothing_else_is_said, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(what_has_come_is_read_before_there_is_silence, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(low_level_read_and_write_take_what_there_is, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(waiting_bytes_are_counted_and_dropped, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bytes_from_before_open_are_gone, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_line_that_takes_nothing_ends_a_send, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(speed_changes_on_an_open_port, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(speeds_need_not_be_those_of_a_table, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(low_latency_is_reported_where_there_is_none, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(a_hang_up_is_told_once_and_closes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_hang_up_is_found_by_sending_too, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(signals_do_not_cut_a_wait_short, set_up, tear_down),
-        cmocka_unit_test(hex_is_written_to_buffer_and_stream),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

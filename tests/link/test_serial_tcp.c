@@ -4,21 +4,18 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/serial.h>
 
 #include "tests/support/line.h"
+#include "tests/support/test.h"
 
 static int listener;
 static char device[64];
@@ -28,12 +25,11 @@ static size_t seen_size;
 static int events[4];
 static int last_error;
 
-static int set_up(void **state)
+static int set_up(void)
 {
     struct sockaddr_in address = {.sin_family = AF_INET};
     socklen_t size = sizeof address;
 
-    (void)state;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     listener = socket(AF_INET, SOCK_STREAM, 0);
     assert_true(listener >= 0);
@@ -49,13 +45,14 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     event_base_free(base);
     assert_int_equal(close(listener), 0);
     return 0;
 }
+
+static const test_fixture with_server[] = {{NULL, set_up, tear_down}};
 
 static void accept_peer(test_line *peer)
 {
@@ -96,13 +93,12 @@ static int open_async(const char *name, grobo_serial **serial)
     return grobo_serial_open(*serial);
 }
 
-static void bytes_sent_before_the_connection_stands_arrive(void **state)
+TEST_WITH(with_server, bytes_sent_before_the_connection_stands_arrive)
 {
     grobo_serial *serial;
     test_line peer;
     uint8_t back[5];
 
-    (void)state;
     assert_int_equal(open_async(device, &serial), GROBO_OK);
     assert_int_equal(grobo_serial_send(serial, "hello", 5), 5);
     accept_peer(&peer);
@@ -121,11 +117,10 @@ static void bytes_sent_before_the_connection_stands_arrive(void **state)
     grobo_serial_free(serial);
 }
 
-static void a_refused_connection_is_told(void **state)
+TEST_WITH(with_server, a_refused_connection_is_told)
 {
     grobo_serial *serial;
 
-    (void)state;
     assert_int_equal(close(listener), 0);
     listener = dup(0);
     last_error = open_async(device, &serial);
@@ -139,7 +134,7 @@ static void a_refused_connection_is_told(void **state)
     grobo_serial_free(serial);
 }
 
-static void a_synchronous_port_waits_for_its_connection(void **state)
+TEST_WITH(with_server, a_synchronous_port_waits_for_its_connection)
 {
     const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = device,
                                         .silence_ms = 2000};
@@ -147,7 +142,6 @@ static void a_synchronous_port_waits_for_its_connection(void **state)
     test_line peer;
     uint8_t back[4];
 
-    (void)state;
     assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
     assert_int_equal(grobo_serial_open(serial), GROBO_OK);
     accept_peer(&peer);
@@ -162,13 +156,12 @@ static void a_synchronous_port_waits_for_its_connection(void **state)
     grobo_serial_free(serial);
 }
 
-static void malformed_names_are_refused(void **state)
+TEST(malformed_names_are_refused)
 {
     static const char *const names[] = {
         "tcp:",          "tcp:host",  "tcp::80",           "tcp:1.2.3.4:",
         "tcp:1.2.3.4:x", "tcp:[]:80", "tcp:1.2.3.4:65536", "tcp:1.2.3.4:12345678901"};
 
-    (void)state;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = names[i]};
         grobo_serial *serial;
@@ -180,7 +173,7 @@ static void malformed_names_are_refused(void **state)
     }
 }
 
-static void names_are_looked_up_beforehand_only(void **state)
+TEST(names_are_looked_up_beforehand_only)
 {
     const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT,
                                         .device = "tcp:no-such-host.invalid:80"};
@@ -188,7 +181,6 @@ static void names_are_looked_up_beforehand_only(void **state)
     grobo_os_cause cause;
     grobo_serial *serial;
 
-    (void)state;
     assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
     assert_int_equal(grobo_serial_open(serial), GROBO_ERR_NOENT);
     grobo_serial_free(serial);
@@ -201,18 +193,4 @@ static void names_are_looked_up_beforehand_only(void **state)
     assert_int_equal(grobo_port_resolve("/dev/ttyS0", numeric, 5, &cause), GROBO_ERR_SPACE);
     assert_int_equal(grobo_port_resolve("tcp:x", numeric, sizeof numeric, &cause), GROBO_ERR_ARG);
     assert_string_equal(numeric, "/dev/ttyS0");
-}
-
-int main(void)
-{
-#define WITH_SERVER(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        WITH_SERVER(bytes_sent_before_the_connection_stands_arrive),
-        WITH_SERVER(a_refused_connection_is_told),
-        WITH_SERVER(a_synchronous_port_waits_for_its_connection),
-        cmocka_unit_test(malformed_names_are_refused),
-        cmocka_unit_test(names_are_looked_up_beforehand_only),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* A robot on a loop: over the simulator in process, over a pty, over TCP; lost and back. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/robot_file.h>
@@ -20,6 +16,7 @@
 #include "tests/support/line.h"
 #include "tests/support/loop.h"
 #include "tests/support/session_kit.h"
+#include "tests/support/test.h"
 
 static void free_it(grobo_session *from)
 {
@@ -41,19 +38,19 @@ static void open_it(grobo_session *from)
     assert_int_equal(grobo_session_open(from), GROBO_OK);
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     session_kit_begin();
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     session_kit_end();
     return 0;
 }
+
+static const test_fixture on_loop[] = {{NULL, set_up, tear_down}};
 
 static void come_up(void)
 {
@@ -100,9 +97,8 @@ static void assert_it_works(void)
 
 /* ---- lines that work ---------------------------------------------------------------------- */
 
-static void a_simulator_in_the_process(void **state)
+TEST_WITH(on_loop, a_simulator_in_the_process)
 {
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     assert_null(grobo_session_sim(session));
     come_up();
@@ -118,11 +114,10 @@ static void a_simulator_in_the_process(void **state)
     assert_true(seen.taps[GROBO_DIR_RX] <= seen.tapped[GROBO_DIR_RX] / 13);
 }
 
-static void a_simulator_keeps_its_state_while_closed(void **state)
+TEST_WITH(on_loop, a_simulator_keeps_its_state_while_closed)
 {
     grobo_sim_view view;
 
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     come_up();
     assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session),
@@ -135,12 +130,11 @@ static void a_simulator_keeps_its_state_while_closed(void **state)
     assert_int_equal(view.torque, GROBO_TORQUE_ON);
 }
 
-static void a_pseudo_terminal(void **state)
+TEST_WITH(on_loop, a_pseudo_terminal)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
 
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT,
                                             .device = grobo_sim_server_device(server)});
     come_up();
@@ -149,13 +143,12 @@ static void a_pseudo_terminal(void **state)
     grobo_sim_server_free(server);
 }
 
-static void a_connection(void **state)
+TEST_WITH(on_loop, a_connection)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .no_pty = true,
                                                    .tcp = "tcp:127.0.0.1:0"});
 
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT,
                                             .device = grobo_sim_server_device(server)});
     come_up();
@@ -163,7 +156,7 @@ static void a_connection(void **state)
     grobo_sim_server_free(server);
 }
 
-static void auto_takes_the_first_port_that_answers(void **state)
+TEST_WITH(on_loop, auto_takes_the_first_port_that_answers)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
@@ -172,7 +165,6 @@ static void auto_takes_the_first_port_that_answers(void **state)
     test_line silent;
     const char *scan[5] = {"/dev/no-such-port", NULL, NULL, NULL, NULL};
 
-    (void)state;
     test_line_open(&silent);
     scan[1] = silent.device;
     scan[2] = grobo_sim_server_device(server);
@@ -192,11 +184,10 @@ static void auto_takes_the_first_port_that_answers(void **state)
 
 /* ---- lines that do not -------------------------------------------------------------------- */
 
-static void what_cannot_be_opened_is_told_at_once(void **state)
+TEST_WITH(on_loop, what_cannot_be_opened_is_told_at_once)
 {
     const char *none[1] = {NULL};
 
-    (void)state;
     session_kit_make(
         (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "/dev/no-such-port"});
     assert_int_equal(grobo_session_open(session), GROBO_ERR_NOENT);
@@ -211,13 +202,12 @@ static void what_cannot_be_opened_is_told_at_once(void **state)
     assert_int_equal(seen.fails, 0);
 }
 
-static void nobody_answers(void **state)
+TEST_WITH(on_loop, nobody_answers)
 {
     test_line silent;
     int64_t start_us = grobo_now_us();
     const char *scan[2] = {silent.device, NULL};
 
-    (void)state;
     test_line_open(&silent);
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = silent.device,
                                             .reconnect = true});
@@ -240,13 +230,12 @@ static void nobody_answers(void **state)
     test_line_close(&silent);
 }
 
-static void only_the_check_is_sent_before_somebody_answers(void **state)
+TEST_WITH(on_loop, only_the_check_is_sent_before_somebody_answers)
 {
     test_line silent;
     uint8_t bytes[256];
     size_t size;
 
-    (void)state;
     test_line_open(&silent);
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = silent.device});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
@@ -260,11 +249,10 @@ static void only_the_check_is_sent_before_somebody_answers(void **state)
     test_line_close(&silent);
 }
 
-static void nobody_needs_to_answer_if_so_configured(void **state)
+TEST_WITH(on_loop, nobody_needs_to_answer_if_so_configured)
 {
     test_line silent;
 
-    (void)state;
     test_line_open(&silent);
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = silent.device,
                                             .skip_check = true});
@@ -274,11 +262,10 @@ static void nobody_needs_to_answer_if_so_configured(void **state)
     assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
 }
 
-static void requests_need_a_robot(void **state)
+TEST_WITH(on_loop, requests_need_a_robot)
 {
     grobo_trip_info trip;
 
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     assert_int_equal(grobo_robot_check(grobo_session_robot(session)), GROBO_ERR_CLOSED);
     assert_int_equal(grobo_robot_sense(grobo_session_robot(session), 1, GROBO_SENSE_FULL),
@@ -300,13 +287,13 @@ static void requests_need_a_robot(void **state)
 
 /* ---- lost and back ------------------------------------------------------------------------ */
 
-static void a_lost_port_is_found_again(void **state)
+TEST_WITH(on_loop, a_lost_port_is_found_again)
 {
     const char *link;
     grobo_sim_server *server;
     int sense;
 
-    (void)folder_set_up(state);
+    (void)folder_set_up();
     link = in_folder("gr001");
     server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .link = link});
@@ -335,9 +322,8 @@ static void a_lost_port_is_found_again(void **state)
     folder_remove(NULL, 0);
 }
 
-static void a_simulator_that_hung_up_is_plugged_in_again(void **state)
+TEST_WITH(on_loop, a_simulator_that_hung_up_is_plugged_in_again)
 {
-    (void)state;
     session_kit_make(
         (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim", .reconnect = true});
     come_up();
@@ -358,9 +344,8 @@ static grobo_torque torque_of(int servo)
 }
 
 /* Whatever the session was about when a person stopped the robot. */
-static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **state)
+TEST_WITH(on_loop, an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found)
 {
-    (void)state;
     session_kit_make(
         (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim", .reconnect = true});
     come_up();
@@ -401,7 +386,7 @@ static void note_asked(grobo_session *from)
 
 /* Until the robot has answered nothing is asked but who it is, whatever is configured meanwhile; a
  * configuration that is refused changes nothing. */
-static void who_is_checked_is_not_read(void **state)
+TEST_WITH(on_loop, who_is_checked_is_not_read)
 {
     static const grobo_robot_config eager = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     static const grobo_robot_config bad = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = -2};
@@ -409,7 +394,6 @@ static void who_is_checked_is_not_read(void **state)
     grobo_driver driver;
     grobo_robot_sim sim;
 
-    (void)state;
     while (strcmp((*arm)->name, "so101") != 0) {
         arm++;
     }
@@ -448,12 +432,11 @@ static void who_is_checked_is_not_read(void **state)
     assert_int_equal(asked[1], asked[0]);
 }
 
-static void without_reconnect_a_lost_port_is_closed(void **state)
+TEST_WITH(on_loop, without_reconnect_a_lost_port_is_closed)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
 
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT,
                                             .device = grobo_sim_server_device(server)});
     come_up();
@@ -467,12 +450,11 @@ static void without_reconnect_a_lost_port_is_closed(void **state)
 
 /* ---- inside callbacks --------------------------------------------------------------------- */
 
-static void it_may_be_freed_in_its_event(void **state)
+TEST_WITH(on_loop, it_may_be_freed_in_its_event)
 {
     counted_mem counter = {0};
     const grobo_mem mem = counted_mem_of(&counter);
 
-    (void)state;
     session_kit_make(
         (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim", .mem = &mem});
     seen.then_line = free_it;
@@ -483,9 +465,8 @@ static void it_may_be_freed_in_its_event(void **state)
     assert_int_equal(counter.bytes, 0);
 }
 
-static void it_may_be_freed_in_an_event_of_the_engine(void **state)
+TEST_WITH(on_loop, it_may_be_freed_in_an_event_of_the_engine)
 {
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     come_up();
     seen.then_robot = free_it_then;
@@ -495,9 +476,8 @@ static void it_may_be_freed_in_an_event_of_the_engine(void **state)
     assert_int_equal(seen.robot, 1);
 }
 
-static void it_may_be_closed_in_its_event(void **state)
+TEST_WITH(on_loop, it_may_be_closed_in_its_event)
 {
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     seen.then_line = grobo_session_close;
     assert_int_equal(grobo_session_open(session), GROBO_OK);
@@ -508,9 +488,8 @@ static void it_may_be_closed_in_its_event(void **state)
     come_up();
 }
 
-static void it_may_be_opened_again_when_lost(void **state)
+TEST_WITH(on_loop, it_may_be_opened_again_when_lost)
 {
-    (void)state;
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     come_up();
     seen.then_line = open_it;
@@ -523,7 +502,7 @@ static void it_may_be_opened_again_when_lost(void **state)
 
 /* ---- refusals ----------------------------------------------------------------------------- */
 
-static void bad_configurations_and_lack_of_memory(void **state)
+TEST_WITH(on_loop, bad_configurations_and_lack_of_memory)
 {
     counted_mem counter;
     const grobo_mem mem = counted_mem_of(&counter);
@@ -534,7 +513,6 @@ static void bad_configurations_and_lack_of_memory(void **state)
     size_t failures = 0;
     int r = GROBO_ERR_NOMEM;
 
-    (void)state;
     while (r == GROBO_ERR_NOMEM) {
         counter = (counted_mem){.fail_at = ++failures};
         r = grobo_session_new(&config, &made);
@@ -565,33 +543,4 @@ static void bad_configurations_and_lack_of_memory(void **state)
     assert_int_equal(grobo_session_configure(session, NULL), GROBO_OK);
     assert_int_equal(grobo_session_set_device(session, NULL), GROBO_ERR_ARG);
     assert_string_equal(grobo_session_device(session), GROBO_DEVICE_SIM);
-}
-
-int main(void)
-{
-#define ON_LOOP(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        ON_LOOP(a_simulator_in_the_process),
-        ON_LOOP(a_simulator_keeps_its_state_while_closed),
-        ON_LOOP(a_pseudo_terminal),
-        ON_LOOP(a_connection),
-        ON_LOOP(auto_takes_the_first_port_that_answers),
-        ON_LOOP(what_cannot_be_opened_is_told_at_once),
-        ON_LOOP(nobody_answers),
-        ON_LOOP(only_the_check_is_sent_before_somebody_answers),
-        ON_LOOP(nobody_needs_to_answer_if_so_configured),
-        ON_LOOP(requests_need_a_robot),
-        ON_LOOP(a_lost_port_is_found_again),
-        ON_LOOP(a_simulator_that_hung_up_is_plugged_in_again),
-        ON_LOOP(an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found),
-        ON_LOOP(who_is_checked_is_not_read),
-        ON_LOOP(without_reconnect_a_lost_port_is_closed),
-        ON_LOOP(it_may_be_freed_in_its_event),
-        ON_LOOP(it_may_be_freed_in_an_event_of_the_engine),
-        ON_LOOP(it_may_be_closed_in_its_event),
-        ON_LOOP(it_may_be_opened_again_when_lost),
-        ON_LOOP(bad_configurations_and_lack_of_memory),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* A line that holds bytes back: nothing waits behind the judgement of the engine, and what has not
  * left by a stop never moves the robot. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include "src/link/serial/serial.h"
@@ -18,6 +14,7 @@
 #include "tests/support/folder.h"
 #include "tests/support/loop.h"
 #include "tests/support/session_kit.h"
+#include "tests/support/test.h"
 
 enum { NECK = 13, GOALS = 110, TORQUES = 50, UNLIMITED = 1 << 30 };
 
@@ -64,11 +61,11 @@ static grobo_robot *robot(void)
 }
 
 /* A robot that holds, on a line that does as it is told. */
-static int set_up(void **state)
+static int set_up(void)
 {
     grobo_joint_mask all = GROBO_JOINTS_ALL(20);
 
-    assert_int_equal(folder_set_up(state), 0);
+    assert_int_equal(folder_set_up(), 0);
     far_robot_start(&far, in_folder("robot"));
     session_kit_begin();
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = far.link,
@@ -89,16 +86,17 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
     static const char *const names[] = {"robot"};
 
-    (void)state;
     session_kit_end();
     far_robot_end(&far);
     folder_remove(names, 1);
     return 0;
 }
+
+static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
 
 /* Sends every joint somewhere, of which the line takes so many bytes. */
 static void send_goals(int taken_bytes)
@@ -157,9 +155,8 @@ static int stop_and_let_go(int taken_bytes)
     return session_kit_await(job);
 }
 
-static void a_frame_that_has_not_left_by_a_stop_never_does(void **state)
+TEST_WITH(fixture, a_frame_that_has_not_left_by_a_stop_never_does)
 {
-    (void)state;
     assert_int_equal(stop_and_let_go(0), GROBO_OK);
     assert_stop_at(0);
     assert_true(neck_deg() < 0.2);
@@ -167,11 +164,10 @@ static void a_frame_that_has_not_left_by_a_stop_never_does(void **state)
 
 /* Its rest is awaited at the other end: it comes, with a wrong sum, and the stop behind it is
  * understood at once. */
-static void a_torn_frame_is_spoilt_by_a_stop(void **state)
+TEST_WITH(fixture, a_torn_frame_is_spoilt_by_a_stop)
 {
     static const int taken[] = {1, 2, 40, GOALS - 1};
 
-    (void)state;
     for (size_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
         n_written = 0;
         assert_int_equal(stop_and_let_go(taken[i]), GROBO_OK);
@@ -190,11 +186,10 @@ static void a_torn_frame_is_spoilt_by_a_stop(void **state)
 }
 
 /* A stop that is held back itself is not taken back, however long its readings wait behind it. */
-static void a_stop_is_not_taken_back(void **state)
+TEST_WITH(fixture, a_stop_is_not_taken_back)
 {
     int job;
 
-    (void)state;
     budget_bytes = 20;
     job = grobo_robot_estop(grobo_session_robot(session));
     assert_true(loop_run(base, 60000));
@@ -205,9 +200,8 @@ static void a_stop_is_not_taken_back(void **state)
 }
 
 /* What the system holds back counts as well. */
-static void no_frame_is_taken_behind_one_that_has_not_left(void **state)
+TEST_WITH(fixture, no_frame_is_taken_behind_one_that_has_not_left)
 {
-    (void)state;
     send_goals(GOALS);
     budget_bytes = UNLIMITED;
     unsent_bytes = 1;
@@ -223,9 +217,8 @@ static void no_frame_is_taken_behind_one_that_has_not_left(void **state)
 }
 
 /* A frame that was answered has left: nothing is asked, until one goes that nothing answers. */
-static void the_line_is_not_asked_about_what_was_answered(void **state)
+TEST_WITH(fixture, the_line_is_not_asked_about_what_was_answered)
 {
-    (void)state;
     (void)neck_deg();
     questions = 0;
     (void)neck_deg();
@@ -241,9 +234,8 @@ static void the_line_is_not_asked_about_what_was_answered(void **state)
 
 /* ---- the simulator --------------------------------------------------------------------------- */
 
-static int set_up_sim(void **state)
+static int set_up_sim(void)
 {
-    (void)state;
     session_kit_begin();
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
                                             .robot = &quiet});
@@ -255,12 +247,13 @@ static int set_up_sim(void **state)
     return 0;
 }
 
-static int tear_down_sim(void **state)
+static int tear_down_sim(void)
 {
-    (void)state;
     session_kit_end();
     return 0;
 }
+
+static const test_fixture on_sim[] = {{NULL, set_up_sim, tear_down_sim}};
 
 /* Moves what is on the line to the simulator, and what will be, in time. */
 static void delay_line(grobo_sim *sim, int64_t span_ns)
@@ -272,7 +265,7 @@ static void delay_line(grobo_sim *sim, int64_t span_ns)
 }
 
 /* Its line stands still until it takes a frame in part. */
-static void what_the_simulator_has_not_taken_by_a_stop_moves_nothing(void **state)
+TEST_WITH(on_sim, what_the_simulator_has_not_taken_by_a_stop_moves_nothing)
 {
     enum { GOAL = 30, FRAMES_MAX = 2 * GROBO_SIM_WIRE_BYTES / GOALS };
     const int64_t hour_ns = INT64_C(3600000000000);
@@ -280,7 +273,6 @@ static void what_the_simulator_has_not_taken_by_a_stop_moves_nothing(void **stat
     int32_t goal_ddeg = -1;
     int n = 0;
 
-    (void)state;
     delay_line(sim, hour_ns);
     while (session->backlog_bytes == 0 && n < FRAMES_MAX) {
         grobo_posture target;
@@ -300,21 +292,4 @@ static void what_the_simulator_has_not_taken_by_a_stop_moves_nothing(void **stat
     int servo = grobo_sim_find(sim, grobo_gr001_model.joints[NECK].motor);
     assert_int_equal(grobo_sim_get_register(sim, servo, GOAL, &goal_ddeg), GROBO_OK);
     assert_in_range(goal_ddeg, 10, 10 * (n - 1));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_frame_that_has_not_left_by_a_stop_never_does, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(a_torn_frame_is_spoilt_by_a_stop, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_stop_is_not_taken_back, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_line_is_not_asked_about_what_was_answered, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(no_frame_is_taken_behind_one_that_has_not_left, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(what_the_simulator_has_not_taken_by_a_stop_moves_nothing,
-                                        set_up_sim, tear_down_sim),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Robots of one joint and of as many as there may be: those whose frames are the longest. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/board.h>
 #include <grobo/session.h>
 
 #include "tests/support/loop.h"
+#include "tests/support/test.h"
 
 static struct event_base *base;
 static int ends, result;
@@ -67,14 +64,13 @@ static void move_all(const grobo_model *model, grobo_wiring wiring)
     grobo_session_free(session);
 }
 
-static void every_number_of_joints_moves(void **state)
+TEST(every_number_of_joints_moves)
 {
     /* 24 and 25: the most that a relay frame's packet holds, and one more. */
     static const uint8_t numbers[] = {1, 24, 25, GROBO_JOINTS_MAX};
     static grobo_joint joints[GROBO_JOINTS_MAX];
     static char names[GROBO_JOINTS_MAX][8];
 
-    (void)state;
     base = grobo_loop_new();
     assert_non_null(base);
     for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
@@ -94,13 +90,4 @@ static void every_number_of_joints_moves(void **state)
         move_all(&model, GROBO_WIRING_BUS);
     }
     event_base_free(base);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_number_of_joints_moves),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A process that is held up does not take what waits for it for a servo's silence. */
 #include <poll.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/session.h>
@@ -14,6 +10,7 @@
 
 #include "tests/support/line.h"
 #include "tests/support/loop.h"
+#include "tests/support/test.h"
 
 static const uint8_t ACK = 0x07; /* of the board, to a check */
 
@@ -67,7 +64,7 @@ static void on_answer(void *ctx, grobo_timer *timer, int64_t late_us)
     assert_int_equal(poll(&near, 1, 5000), 1);
 }
 
-static void what_has_come_is_read_before_time_is_up(void **state)
+TEST(what_has_come_is_read_before_time_is_up)
 {
     /* No smaller than what a loaded machine may take between the request and on_request(). */
     const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .bus.margin_us = 1000000};
@@ -76,7 +73,6 @@ static void what_has_come_is_read_before_time_is_up(void **state)
     const grobo_bus_stats *stats;
     struct event *request;
 
-    (void)state;
     test_line_open(&line);
     base = grobo_loop_new();
     assert_non_null(base);
@@ -99,11 +95,4 @@ static void what_has_come_is_read_before_time_is_up(void **state)
     event_free(request);
     event_base_free(base);
     test_line_close(&line);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_has_come_is_read_before_time_is_up)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

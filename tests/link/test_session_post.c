@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Stops that signal handlers post, to a control and to a session, with nothing to be had. */
 #include <errno.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include "src/link/session/session.h"
@@ -19,6 +15,7 @@
 #include "tests/support/hold.h"
 #include "tests/support/loop.h"
 #include "tests/support/session_kit.h"
+#include "tests/support/test.h"
 
 enum { ERRNO = 4711, SLOW_US = GROBO_CALLBACK_SLOW_US + 5000 };
 
@@ -92,9 +89,8 @@ static int new_with_descriptors(rlim_t more)
 }
 
 /* libevent ends a program that has no descriptor for a loop: the library returns before. */
-static void no_descriptor_for_a_loop_is_an_error(void **state)
+TEST(no_descriptor_for_a_loop_is_an_error)
 {
-    (void)state;
     for (rlim_t more = 0; more < 8; more++) { /* a loop and two pairs need them */
         assert_int_equal(new_with_descriptors(more), GROBO_ERR_NOMEM);
     }
@@ -144,9 +140,8 @@ static void assert_braked(void)
 }
 
 /* The handler runs while the loop is held, and while its own thread has the control's lock. */
-static void a_handler_needs_no_lock(void **state)
+TEST(a_handler_needs_no_lock)
 {
-    (void)state;
     start(true);
     hold_begin(&gate);
     grobo_i_control_lock(control);
@@ -163,9 +158,8 @@ static void a_handler_needs_no_lock(void **state)
 }
 
 /* More of them than the wake-up socket takes bytes. */
-static void a_handler_never_waits(void **state)
+TEST(a_handler_never_waits)
 {
-    (void)state;
     start(true);
     hold_begin(&gate);
     for (int i = 0; i < 20000; i++) {
@@ -185,9 +179,8 @@ static int raise_it(void *arg, grobo_control *from)
     return raise(SIGUSR1);
 }
 
-static void a_handler_may_interrupt_the_loop(void **state)
+TEST(a_handler_may_interrupt_the_loop)
 {
-    (void)state;
     start(false);
     assert_int_equal(grobo_control_call(control, raise_it, NULL), 0);
     assert_int_equal(failed, 0);
@@ -211,12 +204,11 @@ static GROBO_THREAD_FUNC send_signals(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void handlers_may_interrupt_anything(void **state)
+TEST(handlers_may_interrupt_anything)
 {
     sender self = {.to = pthread_self()};
     double angle_rad;
 
-    (void)state;
     start(false);
     assert_int_equal(grobo_thread_start(&self.thread, send_signals, &self), GROBO_OK);
     for (int i = 0; i < 20; i++) {
@@ -237,12 +229,11 @@ static GROBO_THREAD_FUNC wait_for_rest(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void nothing_takes_a_descriptor(void **state)
+TEST(nothing_takes_a_descriptor)
 {
     grobo_thread other;
     int result = 1;
 
-    (void)state;
     start(true);
     assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
     assert_int_equal(grobo_control_set_motion_time_us(control, 60000000), GROBO_OK);
@@ -267,21 +258,21 @@ static void nothing_takes_a_descriptor(void **state)
 
 /* ---- a session ---------------------------------------------------------------------------- */
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     session_kit_begin();
     session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
                                             .baud_bps = 1000000});
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     session_kit_end();
     return 0;
 }
+
+static const test_fixture on_loop[] = {{NULL, set_up, tear_down}};
 
 static void come_up(void)
 {
@@ -311,11 +302,10 @@ static void post_it(const grobo_event *event)
     }
 }
 
-static void a_session_takes_all_three(void **state)
+TEST_WITH(on_loop, a_session_takes_all_three)
 {
     grobo_joint_info info;
 
-    (void)state;
     come_up();
     assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session), EVERY_JOINT,
                                                           GROBO_TORQUE_ON)),
@@ -343,14 +333,13 @@ static GROBO_THREAD_FUNC post_from_far(void *arg)
 }
 
 /* Nothing else wakes this loop. */
-static void another_thread_wakes_the_loop(void **state)
+TEST_WITH(on_loop, another_thread_wakes_the_loop)
 {
     static const grobo_robot_config still = {GROBO_ROBOT_CONFIG_INIT,
                                              .sense_interval_us = GROBO_SENSE_NEVER};
     grobo_thread other;
     int result = 1;
 
-    (void)state;
     come_up();
     assert_int_equal(grobo_session_configure(session, &still), GROBO_OK);
     posted = 1;
@@ -365,13 +354,12 @@ static void another_thread_wakes_the_loop(void **state)
 }
 
 /* As where another thread posts between the last look for requests and the sending. */
-static void nothing_is_sent_before_a_posted_stop(void **state)
+TEST_WITH(on_loop, nothing_is_sent_before_a_posted_stop)
 {
     static const grobo_robot_config still = {GROBO_ROBOT_CONFIG_INIT,
                                              .sense_interval_us = GROBO_SENSE_NEVER};
     size_t sent;
 
-    (void)state;
     come_up();
     assert_int_equal(grobo_session_configure(session, &still), GROBO_OK);
     loop_run_for(base, 50000); /* the line is quiet */
@@ -393,9 +381,8 @@ static void nothing_is_sent_before_a_posted_stop(void **state)
     loop_run_until(base, &estops, 1);
 }
 
-static void a_closed_session_keeps_no_loop_alive(void **state)
+TEST_WITH(on_loop, a_closed_session_keeps_no_loop_alive)
 {
-    (void)state;
     assert_int_equal(event_base_dispatch(base), 1); /* 1: there is nothing to wait for */
     come_up();
     grobo_session_close(session);
@@ -498,7 +485,7 @@ static int ask_reports(void *arg, grobo_control *from)
     return reports[*callback];
 }
 
-static void a_slow_callback_is_reported(void **state)
+TEST(a_slow_callback_is_reported)
 {
     const grobo_control_config config = {
         GROBO_CONTROL_CONFIG_INIT,
@@ -507,7 +494,6 @@ static void a_slow_callback_is_reported(void **state)
                                            .on_robot = slow_robot, .on_tap = slow_tap},
         .control_period_us = 1000, .skip_exit = true, .on_svc = slow_svc};
 
-    (void)state;
     for (int c = GROBO_CALLBACK_EVENT; c <= GROBO_CALLBACK_CALL; c++) {
         int64_t end_us = grobo_now_us() + 20000000;
 
@@ -532,11 +518,10 @@ static void a_slow_callback_is_reported(void **state)
 }
 
 /* A machine that is busy may make any callback slow, but not each of many. */
-static void a_quick_callback_is_not_reported(void **state)
+TEST_WITH(on_loop, a_quick_callback_is_not_reported)
 {
     int64_t since_us;
 
-    (void)state;
     do {
         session->slow.count = 0;
         since_us = grobo_i_session_enter_callback(session);
@@ -556,25 +541,4 @@ static void a_quick_callback_is_not_reported(void **state)
     assert_int_equal(session->slow.count, 2);
     assert_int_equal(session->slow.callback, GROBO_CALLBACK_ROBOT);
     assert_true(session->slow.held_us >= 90000);
-}
-
-int main(void)
-{
-#define ON_LOOP(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_handler_needs_no_lock),
-        cmocka_unit_test(a_handler_never_waits),
-        cmocka_unit_test(a_handler_may_interrupt_the_loop),
-        cmocka_unit_test(handlers_may_interrupt_anything),
-        cmocka_unit_test(nothing_takes_a_descriptor),
-        cmocka_unit_test(no_descriptor_for_a_loop_is_an_error),
-        ON_LOOP(a_session_takes_all_three),
-        ON_LOOP(another_thread_wakes_the_loop),
-        ON_LOOP(nothing_is_sent_before_a_posted_stop),
-        ON_LOOP(a_closed_session_keeps_no_loop_alive),
-        cmocka_unit_test(a_slow_callback_is_reported),
-        ON_LOOP(a_quick_callback_is_not_reported),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

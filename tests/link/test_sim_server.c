@@ -2,9 +2,6 @@
 /* The simulated robot behind a pseudo-terminal and TCP, with clients on the same loop. */
 #include <fcntl.h>
 #include <netinet/in.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +11,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/estop.h>
@@ -24,6 +20,7 @@
 #include "tests/support/folder.h"
 #include "tests/support/loop.h"
 #include "tests/support/os.h"
+#include "tests/support/test.h"
 
 /* Frames of the original: check, torque of servo 1 on, state of servo 1. */
 static const uint8_t check[] = {0x41, 0x00};
@@ -107,24 +104,24 @@ static int torque_of_servo_1(client *c)
 
 /* ---- set-up ------------------------------------------------------------------------------- */
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     base = grobo_loop_new();
     assert_non_null(base);
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     event_base_free(base);
     return 0;
 }
 
+static const test_fixture on_loop[] = {{NULL, set_up, tear_down}};
+
 /* ---- tests -------------------------------------------------------------------------------- */
 
-static void the_board_answers_in_its_own_time(void **state)
+TEST_WITH(on_loop, the_board_answers_in_its_own_time)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
@@ -132,7 +129,6 @@ static void the_board_answers_in_its_own_time(void **state)
     int64_t start_us;
     int64_t took_us;
 
-    (void)state;
     client_open(&c, grobo_sim_server_device(server), 0);
     assert_answers(&c);
     start_us = grobo_now_us();
@@ -145,13 +141,12 @@ static void the_board_answers_in_its_own_time(void **state)
     grobo_sim_server_free(server);
 }
 
-static void programs_come_and_go_and_the_robot_stays(void **state)
+TEST_WITH(on_loop, programs_come_and_go_and_the_robot_stays)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
     client c;
 
-    (void)state;
     client_open(&c, grobo_sim_server_device(server), 0);
     assert_int_equal(torque_of_servo_1(&c), 0);
     assert_false(ask(&c, torque_on, sizeof torque_on, 0, 20000));
@@ -165,13 +160,12 @@ static void programs_come_and_go_and_the_robot_stays(void **state)
     grobo_sim_server_free(server);
 }
 
-static void a_program_at_another_speed_is_not_understood(void **state)
+TEST_WITH(on_loop, a_program_at_another_speed_is_not_understood)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
     client c;
 
-    (void)state;
     client_open(&c, grobo_sim_server_device(server), 9600);
     assert_false(ask(&c, check, sizeof check, 1, 50000));
     assert_int_equal(grobo_serial_set_baud(c.serial, 115200), 115200);
@@ -180,7 +174,7 @@ static void a_program_at_another_speed_is_not_understood(void **state)
     grobo_sim_server_free(server);
 }
 
-static void many_robots_live_in_one_process(void **state)
+TEST_WITH(on_loop, many_robots_live_in_one_process)
 {
     grobo_sim_server *one =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
@@ -189,7 +183,6 @@ static void many_robots_live_in_one_process(void **state)
     client a;
     client b;
 
-    (void)state;
     assert_string_not_equal(grobo_sim_server_device(one), grobo_sim_server_device(two));
     client_open(&a, grobo_sim_server_device(one), 0);
     client_open(&b, grobo_sim_server_device(two), 0);
@@ -202,7 +195,7 @@ static void many_robots_live_in_one_process(void **state)
     grobo_sim_server_free(two);
 }
 
-static void the_link_follows_the_terminal(void **state)
+TEST_WITH(on_loop, the_link_follows_the_terminal)
 {
     const char *link;
     char target[64] = "";
@@ -212,7 +205,7 @@ static void the_link_follows_the_terminal(void **state)
     client c;
     struct stat st;
 
-    (void)folder_set_up(state);
+    (void)folder_set_up();
     link = in_folder("gr001");
     config.link = link;
     /* As a simulator that was killed leaves it: no such terminal any more. */
@@ -252,9 +245,9 @@ static void the_link_follows_the_terminal(void **state)
     folder_remove(NULL, 0);
 }
 
-static void behind_a_link_a_stop_of_the_terminal_was_meant_for_another(void **state)
+TEST_WITH(on_loop, behind_a_link_a_stop_of_the_terminal_was_meant_for_another)
 {
-    (void)folder_set_up(state);
+    (void)folder_set_up();
     const char *link = in_folder("gr001");
     grobo_sim_server *server = loop_serve(
         base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .base = base, .link = link});
@@ -286,9 +279,8 @@ static void behind_a_link_a_stop_of_the_terminal_was_meant_for_another(void **st
 }
 
 /* Whoever has no link knows the terminal alone: a stop while it was away holds. */
-static void without_a_link_a_stop_of_the_terminal_stays(void **state)
+TEST_WITH(on_loop, without_a_link_a_stop_of_the_terminal_stays)
 {
-    (void)state;
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .base = base});
     char device[64];
@@ -303,13 +295,12 @@ static void without_a_link_a_stop_of_the_terminal_stays(void **state)
     grobo_sim_server_free(server);
 }
 
-static void a_fault_hangs_up_and_the_port_comes_back(void **state)
+TEST_WITH(on_loop, a_fault_hangs_up_and_the_port_comes_back)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .replug_ms = 30});
     client c;
 
-    (void)state;
     client_open(&c, grobo_sim_server_device(server), 0);
     assert_int_equal(grobo_sim_set_fault(grobo_sim_server_sim(server), GROBO_SIM_FAULT_HANG_UP, 1),
                      0);
@@ -327,7 +318,7 @@ static void a_fault_hangs_up_and_the_port_comes_back(void **state)
     grobo_sim_server_free(server);
 }
 
-static void tcp_serves_one_caller_at_a_time(void **state)
+TEST_WITH(on_loop, tcp_serves_one_caller_at_a_time)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT,
@@ -335,7 +326,6 @@ static void tcp_serves_one_caller_at_a_time(void **state)
     client a;
     client b;
 
-    (void)state;
     assert_true(grobo_sim_server_tcp_port(server) > 0);
     client_open(&a, grobo_sim_server_device(server), 0);
     assert_answers(&a);
@@ -352,7 +342,7 @@ static void tcp_serves_one_caller_at_a_time(void **state)
     grobo_sim_server_free(server);
 }
 
-static void both_ends_reach_one_board(void **state)
+TEST_WITH(on_loop, both_ends_reach_one_board)
 {
     grobo_sim_server *server = loop_serve(
         base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .tcp = "tcp:localhost:0"});
@@ -360,7 +350,6 @@ static void both_ends_reach_one_board(void **state)
     client a;
     client b;
 
-    (void)state;
     snprintf(tcp, sizeof tcp, "tcp:localhost:%d", grobo_sim_server_tcp_port(server));
     client_open(&a, grobo_sim_server_device(server), 0);
     client_open(&b, tcp, 0);
@@ -374,7 +363,7 @@ static void both_ends_reach_one_board(void **state)
 }
 
 /* A wire without pace takes whatever comes: others on the loop have their turn all the same. */
-static void a_flood_leaves_the_loop_to_others(void **state)
+TEST_WITH(on_loop, a_flood_leaves_the_loop_to_others)
 {
     static const uint8_t flood[4096] = {0};
     const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .unpaced = true};
@@ -385,7 +374,6 @@ static void a_flood_leaves_the_loop_to_others(void **state)
     size_t sent = 0;
     client c;
 
-    (void)state;
     client_open(&c, grobo_sim_server_device(server), 0);
     while (sent < 16 * sizeof flood && grobo_serial_pending(c.serial) == 0) {
         assert_int_equal(grobo_serial_send(c.serial, flood, sizeof flood), sizeof flood);
@@ -405,7 +393,7 @@ static void a_flood_leaves_the_loop_to_others(void **state)
 }
 
 /* A caller that waits for want of a descriptor costs nothing, and is let in when there is one. */
-static void nobody_can_be_let_in(void **state)
+TEST_WITH(on_loop, nobody_can_be_let_in)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .no_pty = true,
@@ -415,7 +403,6 @@ static void nobody_can_be_let_in(void **state)
     int64_t cpu_before_us;
     client c;
 
-    (void)state;
     client_open(&c, grobo_sim_server_device(server), 0);
     grobo_serial_close(c.serial);
     (void)loop_run(base, 50000);
@@ -435,7 +422,7 @@ static void nobody_can_be_let_in(void **state)
     grobo_sim_server_free(server);
 }
 
-static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
+TEST_WITH(on_loop, a_flood_is_taken_at_the_wires_pace_and_idle_is_idle)
 {
     static uint8_t flood[4096];
     grobo_sim_server *server =
@@ -444,7 +431,6 @@ static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
     int64_t start_us = grobo_now_us();
     int64_t cpu_before_us;
 
-    (void)state;
     client_open(&c, grobo_sim_server_device(server), 0);
     memset(flood, 0x55, sizeof flood);
     assert_int_equal(grobo_serial_send(c.serial, flood, sizeof flood), sizeof flood);
@@ -499,11 +485,10 @@ static int pieces_of_a_state(uint32_t baud_bps)
 
 /* A program is given a packet, not bytes: in one piece, and in two where the machine was held up
  * while the packet began. Of one that takes 27 ms it has some before, unless held up so long. */
-static void a_packet_comes_whole_unless_it_takes_long(void **state)
+TEST_WITH(on_loop, a_packet_comes_whole_unless_it_takes_long)
 {
     int pieces = 0;
 
-    (void)state;
     assert_in_range(pieces_of_a_state(460800), 1, 2);
     for (int i = 0; i < 100 && pieces < 3; i++) {
         pieces = pieces_of_a_state(9600);
@@ -569,12 +554,11 @@ static int open_raw(const grobo_sim_server *server)
     return fd;
 }
 
-static void a_terminal_flooded_and_closed_answers_the_next(void **state)
+TEST_WITH(on_loop, a_terminal_flooded_and_closed_answers_the_next)
 {
     grobo_sim_server *server = serve_slowly();
     char tcp[64];
 
-    (void)state;
     snprintf(tcp, sizeof tcp, "tcp:127.0.0.1:%d", grobo_sim_server_tcp_port(server));
     for (int by_tcp = 0; by_tcp < 2; by_tcp++) {
         int fd = open_raw(server);
@@ -586,12 +570,11 @@ static void a_terminal_flooded_and_closed_answers_the_next(void **state)
     grobo_sim_server_free(server);
 }
 
-static void a_connection_flooded_and_closed_answers_the_next(void **state)
+TEST_WITH(on_loop, a_connection_flooded_and_closed_answers_the_next)
 {
     grobo_sim_server *server = serve_slowly();
     char tcp[64];
 
-    (void)state;
     snprintf(tcp, sizeof tcp, "tcp:127.0.0.1:%d", grobo_sim_server_tcp_port(server));
     for (int round = 0; round < 4; round++) {
         const struct linger killed = {.l_onoff = round / 2, .l_linger = 0};
@@ -628,13 +611,12 @@ static void run_until_heard(grobo_sim_server *server, uint32_t frames)
     assert_int_equal(grobo_sim_server_sim(server)->stats.frames, frames);
 }
 
-static void all_that_was_written_before_a_close_is_heard(void **state)
+TEST_WITH(on_loop, all_that_was_written_before_a_close_is_heard)
 {
     grobo_sim_server *server = loop_serve(
         base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .tcp = "tcp:127.0.0.1:0"});
     int fd = open_raw(server);
 
-    (void)state;
     write_frames(fd);
     (void)close(fd);
     run_until_heard(server, LEFT_FRAMES);
@@ -647,14 +629,13 @@ static void all_that_was_written_before_a_close_is_heard(void **state)
 }
 
 /* A caller at the door costs the one that is there nothing, however far ahead it writes. */
-static void who_waits_takes_nothing_from_who_is_there(void **state)
+TEST_WITH(on_loop, who_waits_takes_nothing_from_who_is_there)
 {
     grobo_sim_server *server = loop_serve(
         base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .tcp = "tcp:127.0.0.1:0"});
     int fd = connect_raw(server);
     int waits;
 
-    (void)state;
     (void)loop_run(base, 20000);
     waits = connect_raw(server);
     write_frames(fd);
@@ -668,7 +649,7 @@ static void who_waits_takes_nothing_from_who_is_there(void **state)
     grobo_sim_server_free(server);
 }
 
-static void refusals_leave_nothing_behind(void **state)
+TEST_WITH(on_loop, refusals_leave_nothing_behind)
 {
     counted_mem counter;
     const grobo_mem mem = counted_mem_of(&counter);
@@ -679,7 +660,6 @@ static void refusals_leave_nothing_behind(void **state)
     int r = GROBO_ERR_NOMEM;
     size_t failures = 0;
 
-    (void)state;
     while (r == GROBO_ERR_NOMEM) {
         counter = (counted_mem){.fail_at = ++failures};
         r = grobo_sim_server_new(&config, &server, &cause);
@@ -703,32 +683,4 @@ static void refusals_leave_nothing_behind(void **state)
     config.sim = &bad_sim;
     assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_ERR_ARG);
     assert_int_equal(counter.bytes, 0);
-}
-
-int main(void)
-{
-#define ON_LOOP(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        ON_LOOP(the_board_answers_in_its_own_time),
-        ON_LOOP(programs_come_and_go_and_the_robot_stays),
-        ON_LOOP(a_program_at_another_speed_is_not_understood),
-        ON_LOOP(many_robots_live_in_one_process),
-        ON_LOOP(the_link_follows_the_terminal),
-        ON_LOOP(behind_a_link_a_stop_of_the_terminal_was_meant_for_another),
-        ON_LOOP(without_a_link_a_stop_of_the_terminal_stays),
-        ON_LOOP(a_fault_hangs_up_and_the_port_comes_back),
-        ON_LOOP(tcp_serves_one_caller_at_a_time),
-        ON_LOOP(both_ends_reach_one_board),
-        ON_LOOP(a_flood_leaves_the_loop_to_others),
-        ON_LOOP(nobody_can_be_let_in),
-        ON_LOOP(a_flood_is_taken_at_the_wires_pace_and_idle_is_idle),
-        ON_LOOP(a_packet_comes_whole_unless_it_takes_long),
-        ON_LOOP(a_terminal_flooded_and_closed_answers_the_next),
-        ON_LOOP(a_connection_flooded_and_closed_answers_the_next),
-        ON_LOOP(all_that_was_written_before_a_close_is_heard),
-        ON_LOOP(who_waits_takes_nothing_from_who_is_there),
-        ON_LOOP(refusals_leave_nothing_behind),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

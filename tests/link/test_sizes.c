@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Structures with a size: shorter ones of older programs, longer ones of newer, and nonsense. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/grobo.h>
 #include <grobo/loop.h>
 #include <grobo/sim_static.h>
 #include <grobo/static.h>
+
+#include "tests/support/test.h"
 
 /* What takes a structure; each returns GROBO_OK and frees what it made. */
 static grobo_robot engine;
@@ -279,9 +277,8 @@ static void look_at_nonsense(int (*take)(const void *config), const void *good, 
     assert_int_equal(take(&own), GROBO_OK);
 }
 
-static void nonsense_is_refused(void **state)
+TEST(nonsense_is_refused)
 {
-    (void)state;
     assert_int_equal(for_each(look_at_nonsense), 24);
 }
 
@@ -295,17 +292,15 @@ static void look_at_longer(int (*take)(const void *config), const void *good, si
     assert_int_equal(take(&own), GROBO_OK);
 }
 
-static void what_a_newer_program_sets_is_refused(void **state)
+TEST(what_a_newer_program_sets_is_refused)
 {
-    (void)state;
     assert_int_equal(for_each(look_at_longer), 24);
 }
 
 /* What is behind a shorter structure is not looked at. */
-static void fields_that_an_older_program_lacks_are_zero(void **state)
+TEST(fields_that_an_older_program_lacks_are_zero)
 {
     grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = 50, .retries = 1000};
-    (void)state;
     assert_int_equal(make_robot(&robot), GROBO_ERR_ARG); /* retries */
     robot.size = offsetof(grobo_robot_config, retries);
     assert_int_equal(make_robot(&robot), GROBO_OK);
@@ -321,9 +316,8 @@ static void fields_that_an_older_program_lacks_are_zero(void **state)
     assert_int_equal(make_control(&control), GROBO_OK);
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     const grobo_control_config control = {GROBO_CONTROL_CONFIG_INIT, .session = &good_session};
     grobo_posture posture;
     base = grobo_loop_new();
@@ -335,21 +329,12 @@ static int set_up(void **state)
            grobo_control_new(&control, &control_of) < 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     grobo_body_free(body);
     grobo_motion_free(keys);
     event_base_free(base);
     return grobo_control_free(control_of);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nonsense_is_refused),
-        cmocka_unit_test(what_a_newer_program_sets_is_refused),
-        cmocka_unit_test(fields_that_an_older_program_lacks_are_zero),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_BETWEEN(set_up, tear_down)

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* 64 robots on one loop begin a motion together: within a millisecond where the machine is free. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/loop.h>
@@ -16,6 +12,7 @@
 #include <grobo/team.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { N = 64, MOTION = 110, BOUND_US = 60000000 };
 
@@ -138,12 +135,11 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void sixty_four_robots_begin_together(void **state)
+TEST(sixty_four_robots_begin_together)
 {
     static const rig_key nod[] = {{0, {{NECK, 0}}}, {400, {{NECK, 20}}}, {800, {{NECK, 0}}}};
     static rig_clip clip;
     int64_t late_us[N];
-    (void)state;
     begin();
     rig_clip_init(&clip, nod, 3);
     const grobo_clip *one = &clip.clip;
@@ -166,12 +162,4 @@ static void sixty_four_robots_begin_together(void **state)
     print_message("# first frames of %d robots: %lld to %lld us behind the start\n", N,
                   (long long)late_us[0], (long long)late_us[N - 1]);
     end();
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sixty_four_robots_begin_together),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

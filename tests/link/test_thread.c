@@ -3,26 +3,22 @@
  * Every function of a control, over the simulator, from a thread that is not the loop's: once
  * while a control thread runs the loop, and once without, where the calls run it themselves.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include "tests/support/control_kit.h"
 #include "tests/support/counted_mem.h"
 #include "tests/support/folder.h"
+#include "tests/support/test.h"
 
 /* ---- facts and settings ------------------------------------------------------------------- */
 
-static void name_and_joints(void **state)
+TEST_WITH(with_and_without_thread, name_and_joints)
 {
-    (void)state;
     assert_string_equal(grobo_control_name(control), "GR001");
     assert_int_equal(grobo_control_joints(control), 20);
 
@@ -46,12 +42,11 @@ static void name_and_joints(void **state)
     assert_int_equal(grobo_control_free(leg), GROBO_OK);
 }
 
-static void settings_are_kept(void **state)
+TEST_WITH(with_and_without_thread, settings_are_kept)
 {
     char dir[sizeof folder];
     char longer[GROBO_PATH_MAX_BYTES + 1];
 
-    (void)state;
     assert_int_equal(grobo_control_get_motion_dir(control, dir, sizeof dir), (int)strlen(folder));
     assert_string_equal(dir, folder);
     assert_int_equal(grobo_control_get_motion_dir(control, dir, strlen(folder)), GROBO_ERR_SPACE);
@@ -120,11 +115,10 @@ static int bytes_in(int64_t span_us)
     return grobo_control_call(control, rx_bytes, NULL) - before;
 }
 
-static void settings_take_effect(void **state)
+TEST_WITH(with_and_without_thread, settings_take_effect)
 {
     grobo_posture posture;
 
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_control_set_sense_interval_us(control, GROBO_SENSE_NEVER), GROBO_OK);
     assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20); /* what was under way */
@@ -141,12 +135,11 @@ static void settings_take_effect(void **state)
     assert_int_equal(grobo_control_call(control, goal_time_cs, NULL), 34);
 }
 
-static void postures_are_kept(void **state)
+TEST_WITH(with_and_without_thread, postures_are_kept)
 {
     grobo_posture posture;
     grobo_posture got;
 
-    (void)state;
     grobo_control_get_init_posture(control, &got);
     assert_int_equal(got.n_joints, 20);
     assert_true(got.set == EVERY_JOINT);
@@ -210,13 +203,12 @@ static int serial_is_closed(void *arg, grobo_control *from)
                : 0;
 }
 
-static void the_line_opens_and_closes(void **state)
+TEST_WITH(with_and_without_thread, the_line_opens_and_closes)
 {
     char device[GROBO_DEVICE_MAX_BYTES];
     char longer[GROBO_DEVICE_MAX_BYTES + 1];
     grobo_os_cause cause;
 
-    (void)state;
     assert_false(grobo_control_is_connected(control));
     assert_int_equal(grobo_control_check_connection(control, 0), GROBO_ERR_CLOSED);
     assert_int_equal(grobo_control_start_motion(control), GROBO_ERR_CLOSED);
@@ -252,11 +244,10 @@ static void the_line_opens_and_closes(void **state)
 
 /* ---- servos, postures --------------------------------------------------------------------- */
 
-static void servo_states(void **state)
+TEST_WITH(with_and_without_thread, servo_states)
 {
     int states[20];
 
-    (void)state;
     assert_int_equal(grobo_control_set_servo_state(control, ELBOW, GROBO_TORQUE_ON, 0),
                      GROBO_ERR_CLOSED);
     control_come_up();
@@ -292,14 +283,13 @@ static int cut_elbow(void *arg, grobo_control *from)
                                GROBO_SIM_CABLE_MUTE);
 }
 
-static void readings(void **state)
+TEST_WITH(with_and_without_thread, readings)
 {
     grobo_posture posture;
     grobo_posture current;
     double angle_rad = -99;
     int32_t angle_mdeg = 12000;
 
-    (void)state;
     assert_int_equal(grobo_control_read_posture(control, &posture, 0), GROBO_ERR_CLOSED);
     assert_int_equal(grobo_control_get_current_posture(control, &posture), 0);
     control_come_up();
@@ -322,13 +312,12 @@ static void readings(void **state)
 
 /* ---- raw commands ------------------------------------------------------------------------- */
 
-static void raw_commands(void **state)
+TEST_WITH(with_and_without_thread, raw_commands)
 {
     static const uint8_t check[] = {0x41, 0x00};
     uint8_t longer[GROBO_CONTROL_COMMAND_BYTES + 1] = {0};
     uint8_t got[GROBO_CONTROL_RECEIVE_BYTES + 1];
 
-    (void)state;
     assert_int_equal(grobo_control_get_command(control, NULL, 0), 0);
     assert_int_equal(grobo_control_set_command(control, NULL, 0), 0);
     assert_int_equal(grobo_control_send_command(control, NULL, 0, 0), GROBO_ERR_EMPTY);
@@ -352,7 +341,7 @@ static void raw_commands(void **state)
 }
 
 /* Of what was only sent nobody waits for the end, but it can be stopped. */
-static void a_raw_move_is_stopped_like_any_other(void **state)
+TEST_WITH(with_and_without_thread, a_raw_move_is_stopped_like_any_other)
 {
     /* Motor 5 to -90.0 degrees in 60 s. */
     static const uint8_t slow[] = {0x53, 0x0C, 0xFA, 0xAF, 0x05, 0x00, 0x1E,
@@ -360,7 +349,6 @@ static void a_raw_move_is_stopped_like_any_other(void **state)
     double stood_rad;
     double angle_rad;
 
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
     assert_int_equal(grobo_robot_stop(grobo_control_robot(control), false), GROBO_ERR_STATE);
@@ -377,9 +365,8 @@ static void a_raw_move_is_stopped_like_any_other(void **state)
 
 /* ---- safety ------------------------------------------------------------------------------- */
 
-static void stops_are_latched_until_reset(void **state)
+TEST_WITH(with_and_without_thread, stops_are_latched_until_reset)
 {
-    (void)state;
     assert_int_equal(grobo_control_exit(control, GROBO_EXIT_OFF, 0), GROBO_ERR_CLOSED);
     control_come_up();
     assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0),
@@ -399,7 +386,7 @@ static void stops_are_latched_until_reset(void **state)
 
 /* ---- making ------------------------------------------------------------------------------- */
 
-static void bad_configurations_and_lack_of_memory(void **state)
+TEST(bad_configurations_and_lack_of_memory)
 {
     struct event_base *base = grobo_loop_new();
     grobo_session_config session = {GROBO_SESSION_CONFIG_INIT};
@@ -410,7 +397,6 @@ static void bad_configurations_and_lack_of_memory(void **state)
     const grobo_mem mem = counted_mem_of(&counter);
     int r = GROBO_ERR_NOMEM;
 
-    (void)state;
     assert_int_equal(grobo_control_new(NULL, &made), GROBO_ERR_ARG);
     assert_int_equal(grobo_control_new(&config, &made), GROBO_ERR_ARG);
     session.device = GROBO_DEVICE_SIM;
@@ -448,23 +434,4 @@ static void bad_configurations_and_lack_of_memory(void **state)
     assert_int_equal(counter.bytes, 0);
     assert_int_equal(grobo_control_free(NULL), GROBO_OK);
     event_base_free(base);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        WITH_AND_WITHOUT_THREAD(name_and_joints),
-        WITH_AND_WITHOUT_THREAD(settings_are_kept),
-        WITH_AND_WITHOUT_THREAD(settings_take_effect),
-        WITH_AND_WITHOUT_THREAD(postures_are_kept),
-        WITH_AND_WITHOUT_THREAD(the_line_opens_and_closes),
-        WITH_AND_WITHOUT_THREAD(servo_states),
-        WITH_AND_WITHOUT_THREAD(readings),
-        WITH_AND_WITHOUT_THREAD(raw_commands),
-        WITH_AND_WITHOUT_THREAD(a_raw_move_is_stopped_like_any_other),
-        WITH_AND_WITHOUT_THREAD(stops_are_latched_until_reset),
-        cmocka_unit_test(bad_configurations_and_lack_of_memory),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* A command that nobody waits for any more does not leave. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/thread.h>
+
+#include "tests/support/test.h"
 
 enum { ELBOW = 13, PATIENCE_US = 1500000 };
 
@@ -63,7 +60,7 @@ static void fill_line(grobo_control *control)
     assert_int_equal(grobo_control_play_motion(control, &full), GROBO_OK);
 }
 
-static void a_command_that_took_too_long_does_not_leave(void **state)
+TEST(a_command_that_took_too_long_does_not_leave)
 {
     grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT,
                                    .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT,
@@ -72,7 +69,6 @@ static void a_command_that_took_too_long_does_not_leave(void **state)
                                    .skip_exit = true};
     grobo_control *control;
 
-    (void)state;
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
     assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
@@ -87,12 +83,4 @@ static void a_command_that_took_too_long_does_not_leave(void **state)
     assert_int_equal(grobo_control_send_command(control, goal, sizeof goal, 0), sizeof goal);
     assert_int_equal(grobo_control_free(control), GROBO_OK);
     assert_int_equal(times_sent(), 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_command_that_took_too_long_does_not_leave)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

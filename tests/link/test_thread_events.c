@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* A control's events and snapshot, for who wants no code on its loop. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,9 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "tests/support/control_kit.h"
+#include "tests/support/test.h"
 
 enum { CAPACITY = 8 };
 
@@ -49,7 +45,7 @@ static void on_event(void *ctx, grobo_session *session, grobo_session_event even
     all->told++;
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
     const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
                                       .sense_interval_us = GROBO_SENSE_NEVER};
@@ -62,28 +58,27 @@ static int set_up(void **state)
         .skip_exit = true,
         .events = CAPACITY,
     };
-    (void)state;
     heard = (chronicle){.told = 0};
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
     return 0;
 }
 
-static int set_up_threaded(void **state)
+static int set_up_threaded(void)
 {
-    (void)set_up(state);
+    (void)set_up();
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     assert_int_equal(grobo_control_free(control), GROBO_OK);
     return 0;
 }
 
-#define ALONE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-#define THREADED(test) cmocka_unit_test_setup_teardown(test, set_up_threaded, tear_down)
+static const test_fixture threaded[] = {{NULL, set_up_threaded, tear_down}};
+
+static const test_fixture alone[] = {{NULL, set_up, tear_down}};
 
 /* Whether the descriptor says that there are events. */
 static bool says_so(void)
@@ -123,10 +118,9 @@ static grobo_posture elbow_at(double angle_deg)
 
 /* ---- events ------------------------------------------------------------------------------- */
 
-static void a_descriptor_tells_of_events(void **state)
+TEST_WITH(alone, a_descriptor_tells_of_events)
 {
     grobo_control_event event = {GROBO_CONTROL_EVENT_INIT};
-    (void)state;
     assert_false(says_so());
     assert_int_equal(grobo_control_next_event(control, &event), 0);
     control_come_up();
@@ -140,9 +134,8 @@ static void a_descriptor_tells_of_events(void **state)
     assert_false(says_so());
 }
 
-static void a_job_ends_in_the_ring(void **state)
+TEST_WITH(threaded, a_job_ends_in_the_ring)
 {
-    (void)state;
     control_come_up();
     grobo_posture target = elbow_at(10);
     int job = grobo_robot_move(grobo_control_robot(control), &target);
@@ -154,9 +147,8 @@ static void a_job_ends_in_the_ring(void **state)
     assert_null(event.event.u.job.data);
 }
 
-static void what_was_read_of_registers_is_in_the_event(void **state)
+TEST_WITH(threaded, what_was_read_of_registers_is_in_the_event)
 {
-    (void)state;
     control_come_up();
     const grobo_register_io io = {.id = 14, .address = 0, .length = 4};
     int job = grobo_robot_registers(grobo_control_robot(control), &io);
@@ -170,10 +162,9 @@ static void what_was_read_of_registers_is_in_the_event(void **state)
     assert_memory_equal(event.data, heard.data, 4);
 }
 
-static void data_of_an_event_is_the_takers_own(void **state)
+TEST_WITH(alone, data_of_an_event_is_the_takers_own)
 {
     grobo_control_event event = {GROBO_CONTROL_EVENT_INIT};
-    (void)state;
     control_come_up();
     const grobo_register_io io = {.id = 14, .address = 0, .length = 4};
     int job = grobo_robot_registers(grobo_control_robot(control), &io);
@@ -192,12 +183,11 @@ static void data_of_an_event_is_the_takers_own(void **state)
 
 /* ---- a flood ------------------------------------------------------------------------------ */
 
-static void a_flood_of_readings_displaces_no_end_of_a_job(void **state)
+TEST_WITH(alone, a_flood_of_readings_displaces_no_end_of_a_job)
 {
     grobo_robot *robot = grobo_control_robot(control);
     grobo_control_event event = {GROBO_CONTROL_EVENT_INIT};
     int jobs[CAPACITY / 2];
-    (void)state;
     control_come_up();
     while (grobo_control_next_event(control, &event) == 1) {
     }
@@ -226,12 +216,11 @@ static void a_flood_of_readings_displaces_no_end_of_a_job(void **state)
     assert_false(says_so());
 }
 
-static void the_newest_of_too_many_ends_are_kept(void **state)
+TEST_WITH(alone, the_newest_of_too_many_ends_are_kept)
 {
     grobo_control_event event = {GROBO_CONTROL_EVENT_INIT};
     enum { MANY = CAPACITY * 3 };
     int jobs[MANY];
-    (void)state;
     control_come_up();
     while (grobo_control_next_event(control, &event) == 1) {
     }
@@ -289,10 +278,9 @@ static GROBO_THREAD_FUNC listen(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void a_second_thread_hears_of_every_move(void **state)
+TEST_WITH(threaded, a_second_thread_hears_of_every_move)
 {
     listener other = {.last = 0};
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_thread_start(&other.thread, listen, &other), GROBO_OK);
     for (int i = 0; i < MOVES; i++) {
@@ -306,10 +294,9 @@ static void a_second_thread_hears_of_every_move(void **state)
     assert_int_equal(other.ends, MOVES);
 }
 
-static void a_child_process_takes_nothing_away(void **state)
+TEST_WITH(alone, a_child_process_takes_nothing_away)
 {
     int status = -1;
-    (void)state;
     control_come_up();
     pid_t child = fork();
     assert_true(child >= 0);
@@ -329,9 +316,8 @@ static void a_child_process_takes_nothing_away(void **state)
     assert_int_equal(system(command), 0); /* a program that is executed does not have it */
 }
 
-static void events_outlive_the_close(void **state)
+TEST_WITH(alone, events_outlive_the_close)
 {
-    (void)state;
     control_come_up();
     int job = grobo_robot_check(grobo_control_robot(control));
     assert_int_equal(grobo_control_wait_job(control, job, 0), GROBO_OK);
@@ -345,10 +331,9 @@ static void events_outlive_the_close(void **state)
 
 /* ---- the snapshot ------------------------------------------------------------------------- */
 
-static void a_snapshot_says_what_is_known(void **state)
+TEST_WITH(alone, a_snapshot_says_what_is_known)
 {
     grobo_snapshot seen = {GROBO_SNAPSHOT_INIT};
-    (void)state;
     assert_int_equal(grobo_control_snapshot(control, &seen), 20);
     assert_false(seen.connected);
     assert_int_equal(seen.joints[ELBOW].angle_age_us, GROBO_NEVER_US);
@@ -399,12 +384,11 @@ static int hold(void *arg, grobo_control *from)
     return GROBO_OK;
 }
 
-static void a_snapshot_does_not_wait_for_the_loop(void **state)
+TEST_WITH(threaded, a_snapshot_does_not_wait_for_the_loop)
 {
     gate one = {.held = false};
     grobo_snapshot seen = {GROBO_SNAPSHOT_INIT};
     grobo_control_event event = {GROBO_CONTROL_EVENT_INIT};
-    (void)state;
     assert_int_equal(grobo_mutex_init(&one.lock), GROBO_OK);
     assert_int_equal(grobo_cond_init(&one.changed), GROBO_OK);
     control_come_up();
@@ -430,11 +414,10 @@ static void a_snapshot_does_not_wait_for_the_loop(void **state)
 
 /* ---- refusals ----------------------------------------------------------------------------- */
 
-static void a_size_that_is_nonsense_is_refused(void **state)
+TEST_WITH(alone, a_size_that_is_nonsense_is_refused)
 {
     grobo_control_event event = {GROBO_CONTROL_EVENT_INIT};
     grobo_snapshot seen = {.size = 0};
-    (void)state;
     control_come_up();
     event.size = 0;
     assert_int_equal(grobo_control_next_event(control, &event), GROBO_ERR_ARG);
@@ -445,10 +428,9 @@ static void a_size_that_is_nonsense_is_refused(void **state)
 }
 
 /* A program of before `play` was added gets what it knows, and nothing is written behind it. */
-static void an_older_snapshot_gets_what_it_knows(void **state)
+TEST_WITH(alone, an_older_snapshot_gets_what_it_knows)
 {
     grobo_snapshot seen = {.size = offsetof(grobo_snapshot, play), .n_joints = -7};
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_control_snapshot(control, &seen), 20);
     assert_true(seen.connected);
@@ -456,39 +438,17 @@ static void an_older_snapshot_gets_what_it_knows(void **state)
     assert_int_equal(seen.size, offsetof(grobo_snapshot, play));
 }
 
-static void a_control_without_a_ring_says_so(void **state)
+TEST(a_control_without_a_ring_says_so)
 {
     grobo_control_config config = {
         GROBO_CONTROL_CONFIG_INIT,
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM}};
     grobo_control_event event = {GROBO_CONTROL_EVENT_INIT};
     grobo_control *plain;
-    (void)state;
     assert_int_equal(grobo_control_new(&config, &plain), GROBO_OK);
     assert_int_equal(grobo_control_next_event(plain, &event), GROBO_ERR_STATE);
     assert_true(grobo_control_event_socket(plain) == GROBO_SOCKET_NULL);
     assert_int_equal(grobo_control_free(plain), GROBO_OK);
     config.events = GROBO_CONTROL_EVENTS_MAX + 1;
     assert_int_equal(grobo_control_new(&config, &plain), GROBO_ERR_ARG);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        ALONE(a_descriptor_tells_of_events),
-        THREADED(a_job_ends_in_the_ring),
-        THREADED(what_was_read_of_registers_is_in_the_event),
-        ALONE(data_of_an_event_is_the_takers_own),
-        ALONE(a_flood_of_readings_displaces_no_end_of_a_job),
-        ALONE(the_newest_of_too_many_ends_are_kept),
-        THREADED(a_second_thread_hears_of_every_move),
-        ALONE(a_child_process_takes_nothing_away),
-        ALONE(events_outlive_the_close),
-        ALONE(a_snapshot_says_what_is_known),
-        THREADED(a_snapshot_does_not_wait_for_the_loop),
-        ALONE(a_size_that_is_nonsense_is_refused),
-        ALONE(an_older_snapshot_gets_what_it_knows),
-        cmocka_unit_test(a_control_without_a_ring_says_so),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,18 +4,14 @@
  * while a control thread runs the loop, and once without, where the calls run it themselves.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/control_kit.h"
 #include "tests/support/files.h"
 #include "tests/support/folder.h"
+#include "tests/support/test.h"
 
 enum { POSTURES = 4, STEP_US = 100000 };
 
@@ -75,13 +71,12 @@ static void expect_every_joint(int n, bool sampled)
     grobo_motion_free(motion);
 }
 
-static void motions_are_saved_and_loaded(void **state)
+TEST_WITH(with_and_without_thread, motions_are_saved_and_loaded)
 {
     static const grobo_motion_format formats[] = {GROBO_FORMAT_M, GROBO_FORMAT_PSEQ,
                                                   GROBO_FORMAT_YAML, GROBO_FORMAT_MSEQ};
     char path[sizeof folder + 64];
 
-    (void)state;
     for (size_t i = 0; i < 4; i++) {
         have_every_joint();
         assert_int_equal(grobo_control_save_motion(control, formats[i], "a", NULL, 0), POSTURES);
@@ -118,12 +113,11 @@ static void motions_are_saved_and_loaded(void **state)
     assert_true(grobo_control_load_motion(control, "a.pseq", NULL) >= 3);
 }
 
-static void what_cannot_be_loaded_leaves_nothing(void **state)
+TEST_WITH(with_and_without_thread, what_cannot_be_loaded_leaves_nothing)
 {
     grobo_diagnostics *list;
     char path[8];
 
-    (void)state;
     assert_int_equal(grobo_diagnostics_new(NULL, &list), GROBO_OK);
     control_have_motion(2);
     assert_int_equal(grobo_control_load_motion(control, "none", list), GROBO_ERR_NOENT);
@@ -155,13 +149,12 @@ static void what_cannot_be_loaded_leaves_nothing(void **state)
 }
 
 /* Six angles would move the first six of twenty joints. */
-static void a_motion_of_another_robot_is_not_loaded(void **state)
+TEST_WITH(with_and_without_thread, a_motion_of_another_robot_is_not_loaded)
 {
     const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model};
     const char *text = "500 0 0 0 0 0 0\n";
     grobo_motion *motion;
 
-    (void)state;
     assert_int_equal(grobo_motion_read_memory(text, strlen(text), &options, NULL, &motion), 0);
     assert_int_equal(grobo_control_set_motion(control, motion), GROBO_ERR_ARG);
     assert_int_equal(grobo_motion_set_target_body(motion, "so101"), 0);
@@ -172,15 +165,4 @@ static void a_motion_of_another_robot_is_not_loaded(void **state)
     put_file(in_folder("a.m"), text);
     assert_int_equal(grobo_control_load_motion(control, "a", NULL), GROBO_ERR_ARG);
     assert_int_equal(control_motion_size(control), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        WITH_AND_WITHOUT_THREAD(motions_are_saved_and_loaded),
-        WITH_AND_WITHOUT_THREAD(what_cannot_be_loaded_leaves_nothing),
-        WITH_AND_WITHOUT_THREAD(a_motion_of_another_robot_is_not_loaded),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

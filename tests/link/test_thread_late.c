@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* A control that is held up does not take what waits on the line for silence. */
 #include <poll.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <grobo/thread.h>
 
 #include "tests/support/line.h"
+#include "tests/support/test.h"
 
 enum { PATIENCE_US = 300000, HELD_UP_US = GROBO_SILENCE_DEFAULT_MS * 1000 + 1000 };
 
@@ -60,12 +56,11 @@ static grobo_control *ask(grobo_control_fn on_svc)
     return control;
 }
 
-static void what_has_come_is_read_before_there_is_silence(void **state)
+TEST(what_has_come_is_read_before_there_is_silence)
 {
     grobo_control *control = ask(NULL);
     uint8_t got[2] = {0, 0};
 
-    (void)state;
     assert_int_equal(grobo_control_post(control, hold_up, NULL), GROBO_OK);
     assert_int_equal(grobo_control_receive(control, got, 1), 1);
     assert_int_equal(got[0], ACK);
@@ -89,13 +84,12 @@ static int send_a_byte(void *arg, grobo_control *control)
     return GROBO_OK;
 }
 
-static void a_trickle_does_not_stretch_a_receive(void **state)
+TEST(a_trickle_does_not_stretch_a_receive)
 {
     grobo_control *control = ask(send_a_byte);
     uint8_t got[400];
     int64_t start_us = grobo_now_us();
 
-    (void)state;
     trickles = true;
     /* A byte in each round of 10 ms: 400 would take 4 s. */
     assert_int_equal(grobo_control_receive(control, got, sizeof got), GROBO_ERR_SHORT);
@@ -103,13 +97,4 @@ static void a_trickle_does_not_stretch_a_receive(void **state)
     trickles = false;
     assert_int_equal(grobo_control_free(control), GROBO_OK);
     test_line_close(&line);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_has_come_is_read_before_there_is_silence),
-        cmocka_unit_test(a_trickle_does_not_stretch_a_receive)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Stops and exits of a control that their callers cannot wait for. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include "src/link/thread/thread.h"
 #include "tests/support/stop_kit.h"
+#include "tests/support/test.h"
 
 static int leave_off(grobo_control *from)
 {
@@ -34,9 +30,8 @@ static void have_no_slot(caller callers[4])
 }
 
 /* A stop is the engine's at once, and leaves when the loop turns. */
-static void a_stop_waits_for_no_loop(void **state)
+TEST(a_stop_waits_for_no_loop)
 {
-    (void)state;
     for (int at_once = 0; at_once < 2; at_once++) {
         stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
         move_for_long();
@@ -57,7 +52,7 @@ static void a_stop_waits_for_no_loop(void **state)
     }
 }
 
-static void calls_give_up_in_the_configured_time(void **state)
+TEST(calls_give_up_in_the_configured_time)
 {
     const grobo_control_config bad = {
         GROBO_CONTROL_CONFIG_INIT,
@@ -66,7 +61,6 @@ static void calls_give_up_in_the_configured_time(void **state)
     grobo_control *made;
     int64_t begun_us;
 
-    (void)state;
     assert_int_equal(grobo_control_new(&bad, &made), GROBO_ERR_ARG);
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
                                           .timeout_us = SHORT_US});
@@ -94,13 +88,12 @@ static int wait_shortly(grobo_control *from)
     return grobo_i_control_wait(from, hold_and_go_on, NULL, SHORT_US);
 }
 
-static void a_caller_gives_up_when_its_function_returns(void **state)
+TEST(a_caller_gives_up_when_its_function_returns)
 {
     int64_t end_us = grobo_now_us() + LONG_US / 2;
     caller other;
     bool impatient;
 
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     hold_init(&other_gate);
     other_gate.wanted = true;
@@ -118,9 +111,8 @@ static void a_caller_gives_up_when_its_function_returns(void **state)
     stop_kit_end();
 }
 
-static void a_posted_stop_is_smooth_or_at_once(void **state)
+TEST(a_posted_stop_is_smooth_or_at_once)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     for (int kinds = 1; kinds <= 3; kinds++) {
         play_for_long();
@@ -140,11 +132,10 @@ static void a_posted_stop_is_smooth_or_at_once(void **state)
 }
 
 /* The control thread sleeps for a second if nothing wakes it. */
-static void calls_wake_a_loop_that_is_closed(void **state)
+TEST(calls_wake_a_loop_that_is_closed)
 {
     int64_t end_us;
 
-    (void)state;
     stop_kit_make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_set_period_us(control, 1000000), GROBO_OK);
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
@@ -158,9 +149,8 @@ static void calls_wake_a_loop_that_is_closed(void **state)
     stop_kit_end();
 }
 
-static void an_exit_that_nobody_awaits_is_carried_out(void **state)
+TEST(an_exit_that_nobody_awaits_is_carried_out)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
@@ -174,9 +164,8 @@ static void an_exit_that_nobody_awaits_is_carried_out(void **state)
     stop_kit_end();
 }
 
-static void an_exit_that_has_begun_is_not_begun_again(void **state)
+TEST(an_exit_that_has_begun_is_not_begun_again)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_exit(control, GROBO_EXIT_SIT, 300000), GROBO_ERR_TIMEOUT);
     (void)grobo_control_wait(control, LONG_US);
@@ -186,11 +175,10 @@ static void an_exit_that_has_begun_is_not_begun_again(void **state)
     stop_kit_end();
 }
 
-static void no_table_is_too_full_for_a_stop(void **state)
+TEST(no_table_is_too_full_for_a_stop)
 {
     caller callers[4];
 
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
                                           .timeout_us = LONG_US});
     move_for_long();
@@ -218,9 +206,8 @@ static int leave_it(grobo_control *from)
            grobo_robot_stop(grobo_control_robot(from), true) == GROBO_OK;
 }
 
-static void a_callback_may_stop_and_leave(void **state)
+TEST(a_callback_may_stop_and_leave)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
@@ -235,9 +222,8 @@ static void a_callback_may_stop_and_leave(void **state)
     stop_kit_end();
 }
 
-static void a_posted_stop_ends_what_is_asked_for_before_its_turn(void **state)
+TEST(a_posted_stop_ends_what_is_asked_for_before_its_turn)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(6)), GROBO_OK);
     hold_begin(&gate);
@@ -276,9 +262,8 @@ static void a_posted_stop_ends_what_is_asked_for_before_its_turn(void **state)
     stop_kit_end();
 }
 
-static void the_last_policy_prevails(void **state)
+TEST(the_last_policy_prevails)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     hold_begin(&gate);
     assert_int_equal(grobo_control_post_exit(control, GROBO_EXIT_OFF), GROBO_OK);
@@ -291,12 +276,11 @@ static void the_last_policy_prevails(void **state)
     stop_kit_end();
 }
 
-static void a_port_is_not_closed_before_the_robot_is_left(void **state)
+TEST(a_port_is_not_closed_before_the_robot_is_left)
 {
     static const grobo_robot_config leave_off = {GROBO_ROBOT_CONFIG_INIT,
                                                  .on_exit = GROBO_EXIT_OFF};
 
-    (void)state;
     stop_kit_start((grobo_control_config){
         GROBO_CONTROL_CONFIG_INIT,
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .robot = &leave_off},
@@ -310,24 +294,4 @@ static void a_port_is_not_closed_before_the_robot_is_left(void **state)
     assert_int_equal(told.exits, 1);
     assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_OFF);
     stop_kit_end();
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_stop_waits_for_no_loop),
-        cmocka_unit_test(calls_give_up_in_the_configured_time),
-        cmocka_unit_test(a_caller_gives_up_when_its_function_returns),
-        cmocka_unit_test(an_exit_that_has_begun_is_not_begun_again),
-        cmocka_unit_test(a_posted_stop_is_smooth_or_at_once),
-        cmocka_unit_test(calls_wake_a_loop_that_is_closed),
-        cmocka_unit_test(an_exit_that_nobody_awaits_is_carried_out),
-        cmocka_unit_test(no_table_is_too_full_for_a_stop),
-        cmocka_unit_test(a_callback_may_stop_and_leave),
-        cmocka_unit_test(a_posted_stop_ends_what_is_asked_for_before_its_turn),
-        cmocka_unit_test(the_last_policy_prevails),
-        cmocka_unit_test(a_port_is_not_closed_before_the_robot_is_left),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,20 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* A control over a line that is lost, and how it leaves a robot: by a pty, served by a thread. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include "tests/support/control_kit.h"
 #include "tests/support/far_robot.h"
 #include "tests/support/folder.h"
+#include "tests/support/test.h"
 
 static const grobo_robot_config leave_off = {GROBO_ROBOT_CONFIG_INIT, .on_exit = GROBO_EXIT_OFF};
 static far_robot robot;
@@ -22,25 +19,25 @@ static char device[128];
 
 static void choose_device(void)
 {
-    (void)folder_set_up(NULL);
+    (void)folder_set_up();
     assert_true(snprintf(device, sizeof device, "%s", in_folder("robot")) < (int)sizeof device);
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     choose_device();
     far_robot_start(&robot, device);
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     far_robot_end(&robot);
     folder_remove(NULL, 0);
     return 0;
 }
+
+static const test_fixture on_line[] = {{NULL, set_up, tear_down}};
 
 static void make(grobo_control_config config, bool threaded)
 {
@@ -67,6 +64,53 @@ static void have_torque(void)
     assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0),
                      GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 20);
+}
+
+/* ---- at the end of a program: the first, as it forks -------------------------------------- */
+
+static void free_it(void)
+{
+    (void)grobo_control_free(control);
+}
+
+/* A program that ends without a word, but for its own atexit() handler. */
+static void be_a_program(int until)
+{
+    grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = device,
+                                           .baud_bps = FAR_ROBOT_BPS, .robot = &leave_off}};
+    char go;
+    bool well = read(until, &go, 1) == 1 && atexit(free_it) == 0 &&
+                grobo_control_new(&config, &control) >= 0 &&
+                grobo_control_start_thread(control) >= 0 &&
+                grobo_control_connect(control, 0) >= 0 &&
+                grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0) >= 0;
+
+    exit(well ? 0 : 1);
+}
+
+TEST(a_program_may_free_it_at_exit)
+{
+    int start[2];
+    int status = -1;
+    pid_t child;
+
+    choose_device();
+    assert_int_equal(pipe(start), 0);
+    child = fork(); /* before there are threads */
+    assert_true(child >= 0);
+    if (child == 0) {
+        be_a_program(start[0]);
+    }
+    far_robot_start(&robot, device);
+    assert_int_equal(write(start[1], "", 1), 1);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    assert_int_equal(far_robot_torqued(&robot), 0);
+    assert_int_equal(close(start[0]), 0);
+    assert_int_equal(close(start[1]), 0);
+    (void)tear_down();
 }
 
 /* ---- losing the line ---------------------------------------------------------------------- */
@@ -108,12 +152,11 @@ static GROBO_THREAD_FUNC wait_for_loss(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void nobody_waits_for_a_robot_that_is_gone(void **state)
+TEST_WITH(on_line, nobody_waits_for_a_robot_that_is_gone)
 {
     waiter waiters[4] = {0};
     int unplugged = 0;
 
-    (void)state;
     for (int threaded = 0; threaded < 2; threaded++) {
         int64_t begin_us;
 
@@ -158,11 +201,10 @@ static GROBO_THREAD_FUNC connect_again(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void who_waits_for_its_return_is_told(void **state)
+TEST_WITH(on_line, who_waits_for_its_return_is_told)
 {
     waiter self = {0};
 
-    (void)state;
     make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT,
                                 .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT,
                                                                    .reconnect = true}},
@@ -181,9 +223,8 @@ static void who_waits_for_its_return_is_told(void **state)
 
 /* ---- leaving the robot -------------------------------------------------------------------- */
 
-static void every_way_out_leaves_the_robot_well(void **state)
+TEST_WITH(on_line, every_way_out_leaves_the_robot_well)
 {
-    (void)state;
     make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT}, true);
     have_torque();
     assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
@@ -203,9 +244,8 @@ static void every_way_out_leaves_the_robot_well(void **state)
     assert_int_equal(far_robot_torqued(&robot), 0);
 }
 
-static void a_robot_is_left_as_it_is_if_so_configured(void **state)
+TEST_WITH(on_line, a_robot_is_left_as_it_is_if_so_configured)
 {
-    (void)state;
     make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true}, true);
     have_torque();
     assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
@@ -224,12 +264,11 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-static void a_robot_whose_owner_is_gone_is_left_well(void **state)
+TEST_WITH(on_line, a_robot_whose_owner_is_gone_is_left_well)
 {
     evutil_socket_t pair[2];
     char told;
 
-    (void)state;
     assert_int_equal(evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, pair), 0);
     make(
         (grobo_control_config){
@@ -257,67 +296,4 @@ static void a_robot_whose_owner_is_gone_is_left_well(void **state)
     assert_int_equal(grobo_control_free(control), GROBO_OK);
     assert_int_equal(close(pair[0]), 0);
     assert_int_equal(close(pair[1]), 0);
-}
-
-/* ---- at the end of a program -------------------------------------------------------------- */
-
-static void free_it(void)
-{
-    (void)grobo_control_free(control);
-}
-
-/* A program that ends without a word, but for its own atexit() handler. */
-static void be_a_program(int until)
-{
-    grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
-        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = device,
-                                           .baud_bps = FAR_ROBOT_BPS, .robot = &leave_off}};
-    char go;
-    bool well = read(until, &go, 1) == 1 && atexit(free_it) == 0 &&
-                grobo_control_new(&config, &control) >= 0 &&
-                grobo_control_start_thread(control) >= 0 &&
-                grobo_control_connect(control, 0) >= 0 &&
-                grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0) >= 0;
-
-    exit(well ? 0 : 1);
-}
-
-static void a_program_may_free_it_at_exit(void **state)
-{
-    int start[2];
-    int status = -1;
-    pid_t child;
-
-    (void)state;
-    choose_device();
-    assert_int_equal(pipe(start), 0);
-    child = fork(); /* before there are threads */
-    assert_true(child >= 0);
-    if (child == 0) {
-        be_a_program(start[0]);
-    }
-    far_robot_start(&robot, device);
-    assert_int_equal(write(start[1], "", 1), 1);
-    assert_int_equal(waitpid(child, &status, 0), child);
-    assert_int_equal(status, 0);
-    assert_int_equal(far_robot_torqued(&robot), 0);
-    assert_int_equal(close(start[0]), 0);
-    assert_int_equal(close(start[1]), 0);
-    (void)tear_down(state);
-}
-
-int main(void)
-{
-#define ON_LINE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_program_may_free_it_at_exit), /* first: it forks */
-        ON_LINE(nobody_waits_for_a_robot_that_is_gone),
-        ON_LINE(who_waits_for_its_return_is_told),
-        ON_LINE(every_way_out_leaves_the_robot_well),
-        ON_LINE(a_robot_is_left_as_it_is_if_so_configured),
-        ON_LINE(a_robot_whose_owner_is_gone_is_left_well),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

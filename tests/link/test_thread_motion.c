@@ -5,16 +5,12 @@
  */
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/control_kit.h"
+#include "tests/support/test.h"
 
 /* ---- the target --------------------------------------------------------------------------- */
 
@@ -23,11 +19,10 @@ static int engine_target(void *arg, grobo_control *from)
     return grobo_robot_target(grobo_session_robot(grobo_control_session(from)), arg);
 }
 
-static void a_target_is_sent_once(void **state)
+TEST_WITH(with_and_without_thread, a_target_is_sent_once)
 {
     grobo_posture sent;
 
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_control_start_motion(control), GROBO_ERR_EMPTY);
     assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
@@ -71,11 +66,10 @@ static int frames_sent(void *arg, grobo_control *from)
 }
 
 /* Targets of a program's own rate: each leaves while the one before is on its way. */
-static void each_target_of_a_stream_is_sent(void **state)
+TEST_WITH(with_and_without_thread, each_target_of_a_stream_is_sent)
 {
     int frames;
 
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_control_init_position(control), GROBO_OK);
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
@@ -113,9 +107,8 @@ static int ask_behind_a_reading(void *arg, grobo_control *from)
     return r < 0 ? r : grobo_control_command_count(from);
 }
 
-static void a_target_that_waits_is_counted(void **state)
+TEST_WITH(with_and_without_thread, a_target_that_waits_is_counted)
 {
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(5)), GROBO_OK);
     assert_int_equal(grobo_control_call(control, ask_behind_a_reading, NULL), 1);
@@ -133,12 +126,11 @@ static void a_target_that_waits_is_counted(void **state)
 
 /* ---- the motion --------------------------------------------------------------------------- */
 
-static void the_motion_is_kept(void **state)
+TEST_WITH(with_and_without_thread, the_motion_is_kept)
 {
     grobo_motion *copy = NULL;
     grobo_posture posture;
 
-    (void)state;
     assert_int_equal(control_motion_size(control), 0);
     assert_int_equal(grobo_control_get_last_posture(control, &posture), GROBO_ERR_EMPTY);
     assert_int_equal(grobo_control_get_first_posture(control, &posture), GROBO_ERR_EMPTY);
@@ -191,11 +183,10 @@ static double nth_deg(size_t n)
     return angle_deg;
 }
 
-static void postures_count_in_playing_direction(void **state)
+TEST_WITH(with_and_without_thread, postures_count_in_playing_direction)
 {
     grobo_posture posture = {.n_joints = 7};
 
-    (void)state;
     control_have_motion(3);
     assert_int_equal((int)(nth_deg(0) + 0.5), 2);
     assert_int_equal((int)(nth_deg(2) + 0.5), 6);
@@ -215,11 +206,10 @@ static void postures_count_in_playing_direction(void **state)
     assert_int_equal((int)(nth_deg(0) + 0.5), 6);
 }
 
-static void the_nth_posture_is_gone_to(void **state)
+TEST_WITH(with_and_without_thread, the_nth_posture_is_gone_to)
 {
     grobo_posture target;
 
-    (void)state;
     control_have_motion(3);
     assert_int_equal(grobo_control_do_nth_motion(control, 1), GROBO_ERR_CLOSED);
     control_come_up();
@@ -252,11 +242,10 @@ static void have_increments(void)
 }
 
 /* Resolved where the robot is, so that each posture can be had and gone to. */
-static void increments_become_postures(void **state)
+TEST_WITH(with_and_without_thread, increments_become_postures)
 {
     grobo_posture posture;
 
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
     assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
@@ -273,11 +262,10 @@ static void increments_become_postures(void **state)
 }
 
 /* An emptied motion takes absolute postures, whatever it was. */
-static void an_emptied_motion_takes_postures(void **state)
+TEST_WITH(with_and_without_thread, an_emptied_motion_takes_postures)
 {
     grobo_posture posture;
 
-    (void)state;
     control_come_up();
     for (int i = 0; i < 2; i++) {
         have_increments();
@@ -299,12 +287,11 @@ static void an_emptied_motion_takes_postures(void **state)
 }
 
 /* Frames at a rate have no place for a posture's time: it would be reached in one frame's. */
-static void frames_take_no_postures(void **state)
+TEST_WITH(with_and_without_thread, frames_take_no_postures)
 {
     grobo_motion *frames = NULL;
     grobo_posture posture;
 
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_motion_new(GROBO_MOTION_FRAMES, 20, NULL, &frames), 0);
     assert_int_equal(grobo_motion_set_frame_rate(frames, 50), 0);
@@ -328,13 +315,12 @@ static int total_ms(void *arg, grobo_control *from)
 }
 
 /* Postures without a time take the time that is reported, also where none was set. */
-static void the_default_time_is_what_is_played(void **state)
+TEST_WITH(with_and_without_thread, the_default_time_is_what_is_played)
 {
     grobo_posture posture;
     grobo_motion *motion = NULL;
     int64_t default_us = grobo_control_get_default_time_us(control);
 
-    (void)state;
     assert_int_equal(default_us, GROBO_POSTURE_TIME_US);
     assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), 0);
     (void)grobo_posture_init(&posture, 20);
@@ -374,9 +360,8 @@ static int play_state(void *arg, grobo_control *from)
     return (int)grobo_robot_play_state(grobo_session_robot(grobo_control_session(from)));
 }
 
-static void the_motion_is_played(void **state)
+TEST_WITH(with_and_without_thread, the_motion_is_played)
 {
-    (void)state;
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_ERR_CLOSED);
     control_come_up();
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_ERR_EMPTY);
@@ -406,14 +391,13 @@ static int ask_to_play(void *arg, grobo_control *from)
     return r < 0 ? r : grobo_control_command_count(from);
 }
 
-static void every_repetition_is_counted(void **state)
+TEST_WITH(with_and_without_thread, every_repetition_is_counted)
 {
     const grobo_play_options at_a_rate = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
                                           .rate_hz = 20};
     int most = 3 * 4;
     int left;
 
-    (void)state;
     control_come_up();
     control_have_motion(4);
     assert_int_equal(grobo_control_set_motion_count(control, -3), GROBO_OK);
@@ -439,13 +423,12 @@ static void every_repetition_is_counted(void **state)
     assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_CANCELED);
 }
 
-static void a_negative_count_plays_in_reverse(void **state)
+TEST_WITH(with_and_without_thread, a_negative_count_plays_in_reverse)
 {
     const grobo_play_options at_a_rate = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE};
     const grobo_play_options too_fast = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
                                          .rate_hz = 1000};
 
-    (void)state;
     control_come_up();
     control_have_motion(4);
     assert_int_equal(grobo_control_set_motion_count(control, 3), GROBO_OK);
@@ -476,9 +459,8 @@ static void a_negative_count_plays_in_reverse(void **state)
     control_assert_elbow_at(2);
 }
 
-static void playing_is_stopped(void **state)
+TEST_WITH(with_and_without_thread, playing_is_stopped)
 {
-    (void)state;
     control_come_up();
     control_have_motion(4);
     assert_int_equal(grobo_control_set_motion_count(control, 10000), GROBO_OK);
@@ -497,9 +479,8 @@ static void playing_is_stopped(void **state)
 }
 
 /* What cannot be done now is refused now, and changes nothing. */
-static void what_the_engine_refuses_is_told_at_once(void **state)
+TEST_WITH(with_and_without_thread, what_the_engine_refuses_is_told_at_once)
 {
-    (void)state;
     control_come_up();
     control_have_motion(4);
     assert_int_equal(grobo_control_set_motion_count(control, 10000), GROBO_OK);
@@ -518,27 +499,4 @@ static void what_the_engine_refuses_is_told_at_once(void **state)
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_ERR_STATE); /* it moves */
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        WITH_AND_WITHOUT_THREAD(a_target_is_sent_once),
-        WITH_AND_WITHOUT_THREAD(each_target_of_a_stream_is_sent),
-        WITH_AND_WITHOUT_THREAD(a_target_that_waits_is_counted),
-        WITH_AND_WITHOUT_THREAD(the_motion_is_kept),
-        WITH_AND_WITHOUT_THREAD(postures_count_in_playing_direction),
-        WITH_AND_WITHOUT_THREAD(the_nth_posture_is_gone_to),
-        WITH_AND_WITHOUT_THREAD(frames_take_no_postures),
-        WITH_AND_WITHOUT_THREAD(increments_become_postures),
-        WITH_AND_WITHOUT_THREAD(an_emptied_motion_takes_postures),
-        WITH_AND_WITHOUT_THREAD(the_default_time_is_what_is_played),
-        WITH_AND_WITHOUT_THREAD(the_motion_is_played),
-        WITH_AND_WITHOUT_THREAD(every_repetition_is_counted),
-        WITH_AND_WITHOUT_THREAD(a_negative_count_plays_in_reverse),
-        WITH_AND_WITHOUT_THREAD(playing_is_stopped),
-        WITH_AND_WITHOUT_THREAD(what_the_engine_refuses_is_told_at_once),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

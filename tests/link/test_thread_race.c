@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* A control called by many threads at once, in its callbacks, while it starts, stops and goes. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/control_kit.h"
+#include "tests/support/test.h"
 
 /* What threads of a test count of their calls; each has its own. */
 typedef struct worker {
@@ -99,11 +95,10 @@ static GROBO_THREAD_FUNC hammer(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void many_threads_call_at_once(void **state)
+TEST_WITH(with_and_without_thread, many_threads_call_at_once)
 {
     worker workers[4] = {0};
 
-    (void)state;
     control_come_up();
     run_together(hammer, workers, 4);
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
@@ -124,11 +119,12 @@ static GROBO_THREAD_FUNC cycle(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void the_thread_is_started_and_stopped_while_others_call(void **state)
+static const test_fixture alone[] = {{NULL, control_set_up, control_tear_down}};
+
+TEST_WITH(alone, the_thread_is_started_and_stopped_while_others_call)
 {
     worker workers[3] = {0};
 
-    (void)state;
     control_come_up();
     run_together(cycle, workers, 3);
 }
@@ -164,9 +160,8 @@ static bool is_back(stopper *of)
 }
 
 /* Who waits for the end of one thread does not wait for that of the next. */
-static void a_stop_returns_though_the_thread_is_started_again(void **state)
+TEST_WITH(alone, a_stop_returns_though_the_thread_is_started_again)
 {
-    (void)state;
     control_come_up();
     for (int i = 0; i < 200; i++) {
         stopper other = {.is_back = false};
@@ -190,12 +185,11 @@ static void a_stop_returns_though_the_thread_is_started_again(void **state)
     }
 }
 
-static void the_thread_starts_and_stops(void **state)
+TEST_WITH(alone, the_thread_starts_and_stops)
 {
     grobo_thread thread;
     double angle_rad;
 
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_control_stop_thread(control), GROBO_ERR_STATE);
     for (int i = 0; i < 10; i++) {
@@ -222,13 +216,12 @@ static GROBO_THREAD_FUNC run_it(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void a_thread_of_the_callers_may_be_the_control_thread(void **state)
+TEST_WITH(alone, a_thread_of_the_callers_may_be_the_control_thread)
 {
     worker self = {.control = control};
     grobo_thread thread;
     double angle_rad;
 
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_thread_start(&self.thread, run_it, &self), GROBO_OK);
     while (!grobo_control_is_active(control)) {
@@ -253,11 +246,10 @@ static int count(void *arg, grobo_control *from)
     return ++*n;
 }
 
-static void rounds_may_be_the_callers(void **state)
+TEST_WITH(alone, rounds_may_be_the_callers)
 {
     int64_t end_us = grobo_now_us() + 5000000;
 
-    (void)state;
     assert_int_equal(grobo_control_open_port(control), GROBO_OK);
     while (!grobo_control_is_connected(control)) {
         assert_int_equal(grobo_control_svc(control), 1);
@@ -265,11 +257,10 @@ static void rounds_may_be_the_callers(void **state)
     }
 }
 
-static void what_is_posted_is_done_once(void **state)
+TEST_WITH(alone, what_is_posted_is_done_once)
 {
     int n = 0;
 
-    (void)state;
     assert_int_equal(grobo_control_post(control, NULL, &n), GROBO_ERR_ARG);
     assert_int_equal(grobo_control_call(control, NULL, &n), GROBO_ERR_ARG);
     for (int i = 0; i < GROBO_CONTROL_CALLS_MAX; i++) {
@@ -297,7 +288,7 @@ static int post_another(void *arg, grobo_control *of)
     return GROBO_OK;
 }
 
-static void what_is_posted_last_is_done_by_free(void **state)
+TEST(what_is_posted_last_is_done_by_free)
 {
     grobo_control_config config = {
         GROBO_CONTROL_CONFIG_INIT,
@@ -306,7 +297,6 @@ static void what_is_posted_last_is_done_by_free(void **state)
     int n = 0;
     int chain[2] = {0, 0};
 
-    (void)state;
     for (int skip = 0; skip < 2; skip++) {
         config.skip_exit = skip == 1;
         assert_int_equal(grobo_control_new(&config, &other), GROBO_OK);
@@ -318,12 +308,11 @@ static void what_is_posted_last_is_done_by_free(void **state)
     }
 }
 
-static void a_call_gives_up_in_its_time(void **state)
+TEST_WITH(with_and_without_thread, a_call_gives_up_in_its_time)
 {
     grobo_posture posture = {.n_joints = 7};
     double angle_rad;
 
-    (void)state;
     control_come_up();
     for (int i = 0; i < 20; i++) {
         assert_int_equal(grobo_control_read_posture(control, &posture, 1), GROBO_ERR_TIMEOUT);
@@ -415,7 +404,7 @@ static int order_stop(void *arg, grobo_control *from)
     return 0;
 }
 
-static void callbacks_may_call(void **state)
+TEST(callbacks_may_call)
 {
     grobo_control_config config = {
         GROBO_CONTROL_CONFIG_INIT,
@@ -427,7 +416,6 @@ static void callbacks_may_call(void **state)
     };
     grobo_posture posture;
 
-    (void)state;
     for (int threaded = 0; threaded < 2; threaded++) {
         memset(&seen, 0, sizeof seen);
         assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
@@ -474,7 +462,7 @@ static int ask_other(void *arg, grobo_control *outer)
     return grobo_control_read_angle(inner, 0, &angle_rad, 0);
 }
 
-static void a_callback_may_wait_for_another_robot(void **state)
+TEST_WITH(with_and_without_thread, a_callback_may_wait_for_another_robot)
 {
     grobo_control *other;
     grobo_control_config config = {
@@ -485,7 +473,6 @@ static void a_callback_may_wait_for_another_robot(void **state)
         .on_svc = on_inner,
     };
 
-    (void)state;
     memset(&seen, 0, sizeof seen);
     assert_int_equal(grobo_control_new(&config, &other), GROBO_OK);
     assert_int_equal(grobo_control_connect(other, 0), GROBO_OK);
@@ -515,7 +502,7 @@ static int follow(const grobo_driver *self, void *ctx, const grobo_posture *sens
     return GROBO_OK;
 }
 
-static void a_stabilizer_may_ask_another_robot(void **state)
+TEST_WITH(with_and_without_thread, a_stabilizer_may_ask_another_robot)
 {
     grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
     grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
@@ -525,7 +512,6 @@ static void a_stabilizer_may_ask_another_robot(void **state)
     grobo_control *follower;
     double angle_rad;
 
-    (void)state;
     control_come_up();
     assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
     assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
@@ -543,25 +529,4 @@ static void a_stabilizer_may_ask_another_robot(void **state)
     assert_int_equal(grobo_control_free(follower), GROBO_OK);
     assert_int_equal(seen.wrong, 0);
     assert_true(seen.events > 0);
-}
-
-int main(void)
-{
-#define ALONE(test) cmocka_unit_test_setup_teardown(test, control_set_up, control_tear_down)
-    const struct CMUnitTest tests[] = {
-        WITH_AND_WITHOUT_THREAD(many_threads_call_at_once),
-        WITH_AND_WITHOUT_THREAD(a_call_gives_up_in_its_time),
-        WITH_AND_WITHOUT_THREAD(a_callback_may_wait_for_another_robot),
-        WITH_AND_WITHOUT_THREAD(a_stabilizer_may_ask_another_robot),
-        ALONE(the_thread_is_started_and_stopped_while_others_call),
-        ALONE(a_stop_returns_though_the_thread_is_started_again),
-        ALONE(the_thread_starts_and_stops),
-        ALONE(a_thread_of_the_callers_may_be_the_control_thread),
-        ALONE(rounds_may_be_the_callers),
-        ALONE(what_is_posted_is_done_once),
-        cmocka_unit_test(what_is_posted_last_is_done_by_free),
-        cmocka_unit_test(callbacks_may_call),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

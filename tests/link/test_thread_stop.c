@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Emergency stops of a control whose loop is held, has no thread, or has no line. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/stop_kit.h"
+#include "tests/support/test.h"
 
 /* ---- emergency stops ---------------------------------------------------------------------- */
 
-static void an_emergency_stop_stands_while_a_callback_blocks(void **state)
+TEST(an_emergency_stop_stands_while_a_callback_blocks)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
@@ -35,9 +30,8 @@ static void an_emergency_stop_stands_while_a_callback_blocks(void **state)
 }
 
 /* Whoever asks for a motion behind it is told so at once, and not by the loop that drops it. */
-static void nothing_that_moves_is_taken_behind_an_emergency_stop(void **state)
+TEST(nothing_that_moves_is_taken_behind_an_emergency_stop)
 {
-    (void)state;
     static const grobo_rs30x_goal far = {5, 100, 1000};
     uint8_t raw[GROBO_FRAME_MAX_BYTES];
     int n = grobo_frame_goals(grobo_wiring_protocol(GROBO_WIRING_BOARD), &far, 1, raw, sizeof raw);
@@ -70,9 +64,8 @@ static void nothing_that_moves_is_taken_behind_an_emergency_stop(void **state)
     stop_kit_end();
 }
 
-static void an_emergency_stop_needs_no_lock_of_the_programs(void **state)
+TEST(an_emergency_stop_needs_no_lock_of_the_programs)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     grobo_mutex_lock(&users);
@@ -83,9 +76,8 @@ static void an_emergency_stop_needs_no_lock_of_the_programs(void **state)
     stop_kit_end();
 }
 
-static void several_emergency_stops_are_one(void **state)
+TEST(several_emergency_stops_are_one)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
@@ -99,9 +91,8 @@ static void several_emergency_stops_are_one(void **state)
     stop_kit_end();
 }
 
-static void the_next_frame_is_the_stop(void **state)
+TEST(the_next_frame_is_the_stop)
 {
-    (void)state;
     for (int round = 0; round < 5; round++) {
         stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
         play_for_long();
@@ -134,9 +125,8 @@ static void stop_when_up(void *ctx, grobo_session *session, grobo_session_event 
     }
 }
 
-static void no_frame_leaves_before_a_posted_stop(void **state)
+TEST(no_frame_leaves_before_a_posted_stop)
 {
-    (void)state;
     stop_kit_make((grobo_control_config){
         GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .on_event = stop_when_up}});
@@ -146,9 +136,8 @@ static void no_frame_leaves_before_a_posted_stop(void **state)
     stop_kit_end();
 }
 
-static void without_a_thread_the_next_call_stops_first(void **state)
+TEST(without_a_thread_the_next_call_stops_first)
 {
-    (void)state;
     stop_kit_make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_estop(control), GROBO_OK); /* nothing is open yet */
     assert_true(grobo_control_is_latched(control));
@@ -176,9 +165,8 @@ static int stop_twice(grobo_control *from)
            grobo_control_estop(from) == GROBO_OK && grobo_control_reset(from) == GROBO_ERR_STATE;
 }
 
-static void a_callback_may_stop(void **state)
+TEST(a_callback_may_stop)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
@@ -193,9 +181,8 @@ static void a_callback_may_stop(void **state)
     stop_kit_end();
 }
 
-static void an_emergency_stop_waits_for_the_line(void **state)
+TEST(an_emergency_stop_waits_for_the_line)
 {
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
     assert_int_equal(grobo_control_estop(control), GROBO_OK);
@@ -206,9 +193,8 @@ static void an_emergency_stop_waits_for_the_line(void **state)
     stop_kit_end();
 }
 
-static void a_program_that_ends_is_stopped_before(void **state)
+TEST(a_program_that_ends_is_stopped_before)
 {
-    (void)state;
     for (int threaded = 0; threaded < 2; threaded++) {
         stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
         if (!threaded) {
@@ -223,11 +209,10 @@ static void a_program_that_ends_is_stopped_before(void **state)
 
 /* ---- resets ------------------------------------------------------------------------------- */
 
-static void a_reset_does_not_clear_a_later_stop(void **state)
+TEST(a_reset_does_not_clear_a_later_stop)
 {
     caller other;
 
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
                                           .timeout_us = LONG_US});
     assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK); /* it stays latched then */
@@ -248,11 +233,10 @@ static int stop_session(grobo_control *from)
     return grobo_robot_estop(grobo_session_robot(grobo_control_session(from)));
 }
 
-static void nor_one_that_a_callback_made(void **state)
+TEST(nor_one_that_a_callback_made)
 {
     caller other;
 
-    (void)state;
     stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
                                           .timeout_us = LONG_US});
     assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
@@ -264,24 +248,4 @@ static void nor_one_that_a_callback_made(void **state)
     assert_int_equal(callback_result, GROBO_ERR_CLOSED);
     assert_true(grobo_control_is_latched(control));
     stop_kit_end();
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_emergency_stop_stands_while_a_callback_blocks),
-        cmocka_unit_test(nothing_that_moves_is_taken_behind_an_emergency_stop),
-        cmocka_unit_test(an_emergency_stop_needs_no_lock_of_the_programs),
-        cmocka_unit_test(several_emergency_stops_are_one),
-        cmocka_unit_test(the_next_frame_is_the_stop),
-        cmocka_unit_test(no_frame_leaves_before_a_posted_stop),
-        cmocka_unit_test(without_a_thread_the_next_call_stops_first),
-        cmocka_unit_test(a_callback_may_stop),
-        cmocka_unit_test(an_emergency_stop_waits_for_the_line),
-        cmocka_unit_test(a_program_that_ends_is_stopped_before),
-        cmocka_unit_test(a_reset_does_not_clear_a_later_stop),
-        cmocka_unit_test(nor_one_that_a_callback_made),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* One set of verbs: the engine of a control, used by any thread. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include <grobo/gr001.h>
 
 #include "tests/support/control_kit.h"
+#include "tests/support/test.h"
 
 enum { THREADS = 4, ROUNDS = 25 };
 
@@ -24,9 +19,8 @@ static grobo_posture target_of(int joint, double angle_deg, int time_ms)
     return target;
 }
 
-static void a_program_is_three_lines(void **state)
+TEST_WITH(with_and_without_thread, a_program_is_three_lines)
 {
-    (void)state;
     control_come_up();
     grobo_robot *robot = grobo_control_robot(control);
     grobo_posture target = target_of(13, 20, 200);
@@ -37,9 +31,8 @@ static void a_program_is_three_lines(void **state)
     assert_in_range((unsigned)grobo_ddeg_from_rad(angle_rad), 195, 205);
 }
 
-static void an_error_of_the_request_is_the_result(void **state)
+TEST_WITH(with_and_without_thread, an_error_of_the_request_is_the_result)
 {
-    (void)state;
     control_come_up();
     grobo_robot *robot = grobo_control_robot(control);
     grobo_posture target = target_of(13, 400, 200);
@@ -80,9 +73,8 @@ static GROBO_THREAD_FUNC move_to_and_fro(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void threads_move_joints_of_their_own(void **state)
+TEST_WITH(with_and_without_thread, threads_move_joints_of_their_own)
 {
-    (void)state;
     caller callers[THREADS];
     control_come_up();
     for (int i = 0; i < THREADS; i++) {
@@ -96,9 +88,8 @@ static void threads_move_joints_of_their_own(void **state)
     }
 }
 
-static void an_emergency_stop_ends_the_moves_of_all_threads(void **state)
+TEST_WITH(with_and_without_thread, an_emergency_stop_ends_the_moves_of_all_threads)
 {
-    (void)state;
     control_come_up();
     grobo_robot *robot = grobo_control_robot(control);
     grobo_posture target = target_of(13, 30, 5000);
@@ -110,15 +101,4 @@ static void an_emergency_stop_ends_the_moves_of_all_threads(void **state)
     assert_true(result == GROBO_ERR_CANCELED || result == GROBO_ERR_LATCHED);
     assert_int_equal(grobo_robot_move(robot, &target), GROBO_ERR_LATCHED);
     assert_int_equal(grobo_robot_reset(robot), GROBO_ERR_STATE); /* the loop's alone */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        WITH_AND_WITHOUT_THREAD(a_program_is_three_lines),
-        WITH_AND_WITHOUT_THREAD(an_error_of_the_request_is_the_result),
-        WITH_AND_WITHOUT_THREAD(threads_move_joints_of_their_own),
-        WITH_AND_WITHOUT_THREAD(an_emergency_stop_ends_the_moves_of_all_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

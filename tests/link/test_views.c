@@ -1,23 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* The views of the engine, gr001.h and hrpsys.h, on a robot that runs: on its control thread. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/gr001.h>
 #include <grobo/hrpsys.h>
 #include <grobo/thread.h>
+
+#include "tests/support/test.h"
 
 enum { NECK = 13, NECK_ID = 2 };
 
 static grobo_control *control;
 static grobo_hrpsys hrpsys;
 
-static int set_up(void **state)
+static int set_up(void)
 {
     static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
                                              .sense_interval_us = GROBO_SENSE_NEVER};
@@ -25,19 +21,19 @@ static int set_up(void **state)
         GROBO_CONTROL_CONFIG_INIT,
         .session =
             &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim", .robot = &robot}};
-    (void)state;
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
     assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     assert_int_equal(grobo_control_free(control), GROBO_OK);
     return 0;
 }
+
+static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
 
 /* Does something with the engine on the thread that runs it, and waits until it is done. */
 typedef int (*engine_fn)(grobo_robot *robot);
@@ -77,9 +73,8 @@ static int neck_to_twelve(grobo_robot *robot)
     return grobo_gr001_move(robot, NECK_ID, 120, 20);
 }
 
-static void a_motor_moves_by_its_number(void **state)
+TEST_WITH(fixture, a_motor_moves_by_its_number)
 {
-    (void)state;
     grobo_posture posture;
     assert_true(engine(arms_on) > 0);
     assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
@@ -107,19 +102,9 @@ static int hrpsys_step(grobo_robot *robot)
     return grobo_hrpsys_one_step(&hrpsys);
 }
 
-static void a_step_moves_as_hrpsys_does(void **state)
+TEST_WITH(fixture, a_step_moves_as_hrpsys_does)
 {
-    (void)state;
     assert_true(engine(hrpsys_on) > 0);
     assert_int_equal(engine(hrpsys_step), GROBO_OK);
     assert_neck_comes_to(50);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_motor_moves_by_its_number, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_step_moves_as_hrpsys_does, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

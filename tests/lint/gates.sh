@@ -367,14 +367,11 @@ typedef struct grobo_b {
 int grobo_a(void);
 C
 sample tests/unit/test_a.c <<'C'
-static void works(void **state)
+TEST_WITH(line, works)
 {
     assert_int_equal(grobo_a(), 0);
+    idle();
 }
-static void idle(void **state)
-{
-}
-int main(void) { return run(works); }
 C
 printf '%s\n' "check 'it plays' grctl" | sample tests/cli/a.sh
 seed_rows >docs/seed-map.md

@@ -4,7 +4,8 @@
 set -u
 
 . tests/support/tap.sh
-run=$(pwd)/tests/mutants/run.py
+top=$(pwd)
+run=$top/tests/mutants/run.py
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -117,38 +118,28 @@ cat >map.md <<'M'
 | SC01 | limit | `core_limit` |  | `unit/test_rows.c:it_trips` |
 | SC02 | sum | `core_sum` |  | `unit/test_rows.c:it_adds` |
 M
-cat >tests_rows.c <<'C'
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+mkdir tests
+cat >tests/test_rows.c <<'C'
+#include "tests/support/test.h"
 int core_limit(int value);
 int core_sum(int n);
-static void it_trips(void **state)
+TEST(it_trips)
 {
-    (void)state;
     assert_int_equal(core_limit(11), 1);
 }
-static void it_adds(void **state)
+TEST(it_adds)
 {
-    (void)state;
     if (core_sum(4) != 10) {
         *(volatile int *)0 = 0;
     }
 }
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(it_trips), cmocka_unit_test(it_adds)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
 C
-mkdir tests
-mv tests_rows.c tests/test_rows.c
-$cc -c -o objects/unit/test_rows.o tests/test_rows.c || exit 1
+$cc -I "$top" -c -o objects/unit/test_rows.o tests/test_rows.c &&
+    $cc -I "$top" -c "$top/tests/support/test.c" "$top/tests/support/test_main.c" || exit 1
 rows() {
     python3 "${run%/*}/rows.py" --map map.md --rows rows --sources core.c \
-        --objects objects --libs 'libcore.a -lcmocka' --compile "$cc -O1" --link "$cc" \
+        --objects objects \
+        --libs 'test.o test_main.o libcore.a -lcmocka' --compile "$cc -O1" --link "$cc" \
         --work "$work/build" "$@" >said 2>&1
 }
 

@@ -35,15 +35,6 @@ sys.dont_write_bytecode = True
 import run  # noqa: E402
 
 TEST_LIMIT_S = 30
-# cmocka runs the tests that match a pattern, which only a call can set.
-CHOOSE = """
-#include <stdlib.h>
-void cmocka_set_test_filter(const char *pattern);
-__attribute__((constructor)) static void choose(void)
-{
-    cmocka_set_test_filter(getenv("GROBO_TEST"));
-}
-"""
 
 
 class Row:
@@ -102,23 +93,20 @@ class Trial(run.Builder):
 
     def __init__(self, options, work):
         super().__init__(options, work)
-        self.chooser = os.path.join(work, "choose.o")
         self.originals, self.lock = {}, threading.Lock()
-        self.call(shlex.split(options.compile) +
-                  ["-w", "-x", "c", "-", "-c", "-o", self.chooser], CHOOSE)
 
     def link(self, test, objects, out):
         source = test.split(":")[0]
         program = os.path.join(self.options.objects, source[:-2] + ".o")
-        self.call(shlex.split(self.options.link) + ["-o", out, self.chooser, program] + objects +
+        self.call(shlex.split(self.options.link) + ["-o", out, program] + objects +
                   shlex.split(self.options.libs))
 
     def run(self, program, test):
         """'passed', 'skipped', 'asserted', or what else happened."""
         name = test.split(":")[1]
-        env = dict(os.environ, CMOCKA_MESSAGE_OUTPUT="TAP", GROBO_TEST=name)
+        env = dict(os.environ, CMOCKA_MESSAGE_OUTPUT="TAP")
         try:
-            done = subprocess.run([program], env=env, cwd=self.options.root, check=False, text=True,
+            done = subprocess.run([program, name], env=env, cwd=self.options.root, check=False, text=True,
                                   preexec_fn=run.limit(TEST_LIMIT_S), timeout=2 * TEST_LIMIT_S,
                                   errors="replace", stdin=subprocess.DEVNULL,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -126,8 +114,8 @@ class Trial(run.Builder):
             return f"no end within {2 * TEST_LIMIT_S} s"
         if done.returncode < 0:
             return f"killed by signal {-done.returncode}"
-        # A program may run its table for each wiring: a result for each.
-        results = re.findall(rf"^(ok|not ok) \d+ (?:- |# SKIP ){name}$", done.stdout, re.M)
+        # A test may be run with several fixtures or rows: a result for each.
+        results = re.findall(rf"^(ok|not ok) \d+ (?:- |# SKIP ){name}(?:[,:] .*)?$", done.stdout, re.M)
         if "# SKIP" in done.stdout:
             return "skipped"
         if done.returncode == 0 and results and "not ok" not in results:

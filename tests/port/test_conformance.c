@@ -5,17 +5,14 @@
  * GROBO_TEST_SERIAL names two serial ports joined by a null-modem cable: "COM10,COM11"; with
  * GROBO_TEST_NO_PARITY they need have no parity bit.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/port.h>
+
+#include "tests/support/test.h"
 
 /* Two ends of a line, and what kind of line it is. */
 typedef struct {
@@ -77,12 +74,11 @@ static void await_silence(const grobo_port_ops *ops, grobo_port *port)
     }
 }
 
-static int set_up_serial(void **state)
+static int set_up_serial(void)
 {
     const char *pair = getenv("GROBO_TEST_SERIAL");
     line *l = &the_line;
 
-    *state = l;
     memset(l, 0, sizeof *l);
     l->serial = true;
     l->near_ops = grobo_port_serial_ops();
@@ -112,14 +108,13 @@ static int set_up_serial(void **state)
     return 0;
 }
 
-static int set_up_tcp(void **state)
+static int set_up_tcp(void)
 {
     line *l = &the_line;
     grobo_socket listener;
     int tcp_port;
     int r;
 
-    *state = l;
     memset(l, 0, sizeof *l);
     l->near_ops = grobo_port_tcp_ops();
     l->far_ops = grobo_port_tcp_ops();
@@ -144,9 +139,9 @@ static int set_up_tcp(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    line *l = *state;
+    line *l = &the_line;
 
     close_near(l);
     close_far(l);
@@ -155,10 +150,14 @@ static int tear_down(void **state)
     return 0;
 }
 
+static const test_fixture on_serial[] = {{NULL, set_up_serial, tear_down}};
+static const test_fixture on_both[] = {{"serial", set_up_serial, tear_down},
+                                       {"tcp", set_up_tcp, tear_down}};
+
 /* The line of this test; skips it where there is none. */
-static line *line_of(void **state)
+static line *line_of(void)
 {
-    line *l = *state;
+    line *l = &the_line;
 
     if (l->near_port == NULL) {
         skip();
@@ -199,9 +198,9 @@ static void read_all(const grobo_port_ops *ops, grobo_port *port, uint8_t *bytes
 
 /* ---- what must hold ----------------------------------------------------------------------- */
 
-static void every_byte_value_passes_in_both_directions(void **state)
+TEST_WITH(on_both, every_byte_value_passes_in_both_directions)
 {
-    line *l = line_of(state);
+    line *l = line_of();
     uint8_t out[256];
     uint8_t in[256];
 
@@ -217,9 +216,9 @@ static void every_byte_value_passes_in_both_directions(void **state)
     assert_memory_equal(in, out, sizeof out);
 }
 
-static void nothing_there_is_nothing_and_takes_no_time(void **state)
+TEST_WITH(on_both, nothing_there_is_nothing_and_takes_no_time)
 {
-    line *l = line_of(state);
+    line *l = line_of();
     int64_t start_us = grobo_now_us();
     uint8_t byte;
 
@@ -232,10 +231,10 @@ static void nothing_there_is_nothing_and_takes_no_time(void **state)
     assert_true(grobo_now_us() - start_us >= 20000);
 }
 
-static void a_full_line_takes_less_and_never_waits(void **state)
+TEST_WITH(on_both, a_full_line_takes_less_and_never_waits)
 {
     static uint8_t block[65536];
-    line *l = line_of(state);
+    line *l = line_of();
     int64_t start_us = grobo_now_us();
     bool was_short = false;
 
@@ -254,9 +253,9 @@ static void a_full_line_takes_less_and_never_waits(void **state)
     assert_true(was_short);
 }
 
-static void waiting_bytes_are_counted(void **state)
+TEST_WITH(on_both, waiting_bytes_are_counted)
 {
-    line *l = line_of(state);
+    line *l = line_of();
     uint8_t bytes[5];
     int64_t end_us = grobo_now_us() + 5000000;
 
@@ -269,19 +268,19 @@ static void waiting_bytes_are_counted(void **state)
     assert_memory_equal(bytes, "abcde", 5);
 }
 
-static void handle_and_socket_are_there(void **state)
+TEST_WITH(on_both, handle_and_socket_are_there)
 {
-    line *l = line_of(state);
+    line *l = line_of();
 
     assert_true(l->near_ops->handle(l->near_port) != GROBO_HANDLE_NULL);
     assert_true(l->near_ops->socket(l->near_port) != GROBO_SOCKET_NULL);
     assert_true(strlen(l->near_ops->name) > 0);
 }
 
-static void a_speed_is_set_on_an_open_port(void **state)
+TEST_WITH(on_both, a_speed_is_set_on_an_open_port)
 {
     static const int rates[] = {9600, 57600, 460800, 115200};
-    line *l = line_of(state);
+    line *l = line_of();
 
     for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
         int r = l->near_ops->set_baud(l->near_port, rates[i], &cause);
@@ -291,18 +290,18 @@ static void a_speed_is_set_on_an_open_port(void **state)
     assert_int_equal(l->near_ops->set_baud(l->near_port, 115200, &cause), 115200);
 }
 
-static void low_latency_is_set_or_refused_with_a_reason(void **state)
+TEST_WITH(on_both, low_latency_is_set_or_refused_with_a_reason)
 {
-    line *l = line_of(state);
+    line *l = line_of();
     int r = l->near_ops->set_low_latency(l->near_port, &cause);
 
     assert_true(r == GROBO_OK ||
                 ((r == GROBO_ERR_UNSUPPORTED || r == GROBO_ERR_PERM) && strlen(cause.text) > 0));
 }
 
-static void the_far_end_gone_is_unplugged(void **state)
+TEST_WITH(on_both, the_far_end_gone_is_unplugged)
 {
-    line *l = line_of(state);
+    line *l = line_of();
     uint8_t byte;
 
     if (l->far_ops == grobo_port_serial_ops()) {
@@ -316,9 +315,9 @@ static void the_far_end_gone_is_unplugged(void **state)
     assert_true(strlen(cause.text) > 0);
 }
 
-static void a_port_may_be_opened_again_in_the_same_storage(void **state)
+TEST_WITH(on_serial, a_port_may_be_opened_again_in_the_same_storage)
 {
-    line *l = line_of(state);
+    line *l = line_of();
     uint8_t byte = 0;
 
     for (int i = 0; i < 3; i++) {
@@ -330,9 +329,9 @@ static void a_port_may_be_opened_again_in_the_same_storage(void **state)
     }
 }
 
-static void bytes_from_before_open_are_dropped(void **state)
+TEST_WITH(on_serial, bytes_from_before_open_are_dropped)
 {
-    line *l = line_of(state);
+    line *l = line_of();
     uint8_t byte = 0;
 
     close_near(l);
@@ -348,9 +347,9 @@ static void bytes_from_before_open_are_dropped(void **state)
     assert_int_equal(byte, 'n');
 }
 
-static void a_second_open_is_refused(void **state)
+TEST_WITH(on_serial, a_second_open_is_refused)
 {
-    line *l = line_of(state);
+    line *l = line_of();
     grobo_port *second = malloc(l->near_ops->size_bytes);
 
     assert_non_null(second);
@@ -359,9 +358,9 @@ static void a_second_open_is_refused(void **state)
     free(second);
 }
 
-static void a_port_that_is_not_there_is_refused(void **state)
+TEST_WITH(on_both, a_port_that_is_not_there_is_refused)
 {
-    line *l = line_of(state);
+    line *l = line_of();
     const char *missing = l->serial ? "/dev/no-such-port" : "tcp:no such host:1";
 
     close_near(l);
@@ -370,11 +369,11 @@ static void a_port_that_is_not_there_is_refused(void **state)
 }
 
 /* Whatever the kind, bytes go on; of a serial port the speed may be set afterwards. */
-static void a_form_of_bytes_may_be_asked_for(void **state)
+TEST_WITH(on_both, a_form_of_bytes_may_be_asked_for)
 {
     static const grobo_line_format formats[] = {
         {GROBO_PARITY_EVEN, 1, false}, {GROBO_PARITY_ODD, 2, false}, {GROBO_PARITY_NONE, 0, false}};
-    line *l = *state;
+    line *l = &the_line;
 
     if (l->near_ops == NULL || !l->near_is_open) {
         skip();
@@ -403,36 +402,4 @@ static void a_form_of_bytes_may_be_asked_for(void **state)
         assert_int_equal(l->near_ops->set_format(l->near_port, &three, &cause), GROBO_ERR_ARG);
         assert_int_equal(l->near_ops->set_format(l->near_port, &mark, &cause), GROBO_ERR_ARG);
     }
-}
-
-int main(void)
-{
-#define ON(line, test) cmocka_unit_test_setup_teardown(test, set_up_##line, tear_down)
-    const struct CMUnitTest tests[] = {
-        ON(serial, a_form_of_bytes_may_be_asked_for),
-        ON(tcp, a_form_of_bytes_may_be_asked_for),
-        ON(serial, every_byte_value_passes_in_both_directions),
-        ON(serial, nothing_there_is_nothing_and_takes_no_time),
-        ON(serial, a_full_line_takes_less_and_never_waits),
-        ON(serial, waiting_bytes_are_counted),
-        ON(serial, handle_and_socket_are_there),
-        ON(serial, a_speed_is_set_on_an_open_port),
-        ON(serial, low_latency_is_set_or_refused_with_a_reason),
-        ON(serial, the_far_end_gone_is_unplugged),
-        ON(serial, a_port_may_be_opened_again_in_the_same_storage),
-        ON(serial, bytes_from_before_open_are_dropped),
-        ON(serial, a_second_open_is_refused),
-        ON(serial, a_port_that_is_not_there_is_refused),
-        ON(tcp, every_byte_value_passes_in_both_directions),
-        ON(tcp, nothing_there_is_nothing_and_takes_no_time),
-        ON(tcp, a_full_line_takes_less_and_never_waits),
-        ON(tcp, waiting_bytes_are_counted),
-        ON(tcp, handle_and_socket_are_there),
-        ON(tcp, a_speed_is_set_on_an_open_port),
-        ON(tcp, low_latency_is_set_or_refused_with_a_reason),
-        ON(tcp, the_far_end_gone_is_unplugged),
-        ON(tcp, a_port_that_is_not_there_is_refused),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

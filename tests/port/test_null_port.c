@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What a port makes of the system refuses NULL for each thing that must be there. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include <grobo/port.h>
+
+#include "tests/support/test.h"
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
 
@@ -29,9 +26,8 @@ static GROBO_THREAD_FUNC thread_main(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     port = calloc(1, grobo_port_serial_ops()->size_bytes);
     assert_non_null(port);
     assert_int_equal(grobo_mutex_init(&mutex), GROBO_OK);
@@ -39,18 +35,16 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     grobo_cond_deinit(&cond);
     grobo_mutex_deinit(&mutex);
     free(port);
     return 0;
 }
 
-static void port_refuses_null(void **state)
+TEST(port_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_thread_start(NULL, thread_main, NULL));
     REFUSES(grobo_thread_start(&thread, NULL, NULL));
     REFUSES(grobo_mutex_init(NULL));
@@ -82,10 +76,4 @@ static void port_refuses_null(void **state)
     REFUSES(grobo_port_owner(text, NULL, sizeof bytes));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(port_refuses_null),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_BETWEEN(set_up, tear_down)

@@ -1,23 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* Clock, threads, locks and waiting: what every port brings. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include <grobo/port.h>
 
 #include "ports/common/common.h"
+#include "tests/support/test.h"
 
-static void the_clock_goes_on(void **state)
+TEST(the_clock_goes_on)
 {
     int64_t before_us = grobo_now_us();
 
-    (void)state;
     assert_true(before_us > 0);
     for (int i = 0; i < 1000; i++) {
         int64_t now_us = grobo_now_us();
@@ -39,13 +34,12 @@ static grobo_socket silent_socket(void)
     return made;
 }
 
-static void the_clock_counts_microseconds(void **state)
+TEST(the_clock_counts_microseconds)
 {
     grobo_socket silent = silent_socket();
     int64_t start_us = grobo_now_us();
     int64_t took_us;
 
-    (void)state;
     assert_int_equal(grobo_port_wait(silent, GROBO_PORT_READABLE, 50000), 0);
     took_us = grobo_now_us() - start_us;
     assert_true(took_us >= 50000);
@@ -71,12 +65,11 @@ static GROBO_THREAD_FUNC count_up(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void threads_exclude_each_other(void **state)
+TEST(threads_exclude_each_other)
 {
     shared s = {.count = 0};
     grobo_thread threads[4];
 
-    (void)state;
     assert_int_equal(grobo_mutex_init(&s.mutex), GROBO_OK);
     for (int i = 0; i < 4; i++) {
         assert_int_equal(grobo_thread_start(&threads[i], count_up, &s), GROBO_OK);
@@ -116,11 +109,10 @@ static GROBO_THREAD_FUNC take_odd_turns(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void a_condition_wakes_who_sleeps(void **state)
+TEST(a_condition_wakes_who_sleeps)
 {
     static const int64_t untils_us[] = {GROBO_NEVER_US, GROBO_NEVER_US - 1};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         passing p = {.turn = 0, .until_us = untils_us[i]};
         grobo_thread other;
@@ -144,13 +136,12 @@ static void a_condition_wakes_who_sleeps(void **state)
     }
 }
 
-static void sleeping_at_a_condition_ends_in_time(void **state)
+TEST(sleeping_at_a_condition_ends_in_time)
 {
     passing p = {.turn = 0};
     int64_t start_us;
     int sleeps = 0;
 
-    (void)state;
     assert_int_equal(grobo_mutex_init(&p.mutex), GROBO_OK);
     assert_int_equal(grobo_cond_init(&p.cond), GROBO_OK);
     grobo_mutex_lock(&p.mutex);
@@ -177,11 +168,10 @@ static GROBO_THREAD_FUNC join_self(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void a_thread_does_not_join_itself(void **state)
+TEST(a_thread_does_not_join_itself)
 {
     shared s = {.count = 0};
 
-    (void)state;
     assert_int_equal(grobo_mutex_init(&s.mutex), GROBO_OK);
     grobo_mutex_lock(&s.mutex);
     assert_int_equal(grobo_thread_start(&s.self, join_self, &s), GROBO_OK);
@@ -210,11 +200,10 @@ static GROBO_THREAD_FUNC call_later(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void waiting_may_have_no_end(void **state)
+TEST(waiting_may_have_no_end)
 {
     static const int64_t timeouts_us[] = {GROBO_NEVER_US, GROBO_NEVER_US - 1};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         grobo_os_cause cause;
         grobo_socket listener;
@@ -233,7 +222,7 @@ static void waiting_may_have_no_end(void **state)
     }
 }
 
-static void waiting_tells_what_is_ready(void **state)
+TEST(waiting_tells_what_is_ready)
 {
     const grobo_port_ops *ops = grobo_port_tcp_ops();
     grobo_port *port = malloc(ops->size_bytes);
@@ -242,7 +231,6 @@ static void waiting_tells_what_is_ready(void **state)
     char device[64];
     int tcp_port;
 
-    (void)state;
     assert_non_null(port);
     assert_int_equal(grobo_port_listen("tcp:127.0.0.1:0", &listener, &tcp_port, &cause), GROBO_OK);
     assert_int_equal(grobo_port_wait(listener, GROBO_PORT_READABLE, 0), 0);
@@ -265,30 +253,12 @@ static int rate_taken(int asked_bps, int actual_bps)
     return grobo_i_port_check_baud(asked_bps, actual_bps, &cause);
 }
 
-static void a_tolerance_of_two_percent(void **state)
+TEST(a_tolerance_of_two_percent)
 {
-    (void)state;
     assert_int_equal(rate_taken(115200, 115200), 115200);
     assert_int_equal(rate_taken(115200, 117504), 117504);
     assert_int_equal(rate_taken(115200, 117600), GROBO_ERR_UNSUPPORTED);
     assert_int_equal(rate_taken(76800, 76923), 76923);
     assert_int_equal(rate_taken(115200, 0), GROBO_ERR_UNSUPPORTED);
     assert_int_equal(rate_taken(2000000, 115200), GROBO_ERR_UNSUPPORTED);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_clock_goes_on),
-        cmocka_unit_test(the_clock_counts_microseconds),
-        cmocka_unit_test(threads_exclude_each_other),
-        cmocka_unit_test(a_condition_wakes_who_sleeps),
-        cmocka_unit_test(sleeping_at_a_condition_ends_in_time),
-        cmocka_unit_test(a_thread_does_not_join_itself),
-        cmocka_unit_test(waiting_may_have_no_end),
-        cmocka_unit_test(waiting_tells_what_is_ready),
-        cmocka_unit_test(a_tolerance_of_two_percent),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

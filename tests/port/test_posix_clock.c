@@ -3,18 +3,15 @@
  * The clock of the POSIX port and a machine that sleeps: in a time namespace of Linux, where the
  * time since boot has a day more than that which the machine was awake.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 
-#include <cmocka.h>
-
 #include <grobo/port.h>
+
+#include "tests/support/test.h"
 
 enum { NOT_KNOWN = 2, STOOD = 99, APART_S = 60 };
 
@@ -38,11 +35,10 @@ static int counts_sleep(void)
     return apart_s > -APART_S && apart_s < APART_S ? 0 : STOOD;
 }
 
-static void the_clock_goes_on_while_the_machine_sleeps(void **state)
+TEST(the_clock_goes_on_while_the_machine_sleeps)
 {
     char line[1024];
 
-    (void)state;
     int n = snprintf(line, sizeof line,
                      "u=-T; unshare -T true 2>/dev/null || u=-rT; unshare $u true 2>/dev/null || "
                      "exit %d; exec unshare $u --boottime 86400 '%s' sleeps",
@@ -58,13 +54,12 @@ static void the_clock_goes_on_while_the_machine_sleeps(void **state)
 }
 
 /* A condition sleeps by a clock of its own. */
-static void a_condition_wakes_in_time(void **state)
+TEST(a_condition_wakes_in_time)
 {
     grobo_mutex mutex;
     grobo_cond cond;
     int64_t start_us = grobo_now_us();
 
-    (void)state;
     assert_int_equal(grobo_mutex_init(&mutex), GROBO_OK);
     assert_int_equal(grobo_cond_init(&cond), GROBO_OK);
     grobo_mutex_lock(&mutex);
@@ -79,19 +74,14 @@ static void a_condition_wakes_in_time(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_clock_goes_on_while_the_machine_sleeps),
-        cmocka_unit_test(a_condition_wakes_in_time),
-    };
-
     program = argv[0];
     if (argc == 2 && strcmp(argv[1], "sleeps") == 0) {
         int status = counts_sleep();
 
         if (status == 0) {
-            a_condition_wakes_in_time(NULL);
+            a_condition_wakes_in_time();
         }
         return status;
     }
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_main(argc, argv);
 }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* What a form of bytes does to a terminal, by termios; and RS-485 where the driver has none. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <termios.h>
 
-#include <cmocka.h>
-
 #include "ports/posix/posix.h"
+#include "tests/support/test.h"
 
-static void stop_bits_and_parity_reach_the_terminal(void **state)
+TEST(stop_bits_and_parity_reach_the_terminal)
 {
     const grobo_port_ops *serial = grobo_port_serial_ops();
     const grobo_port_ops *pty = grobo_port_pty_ops();
@@ -20,7 +15,6 @@ static void stop_bits_and_parity_reach_the_terminal(void **state)
     struct termios tio;
     char path[64];
 
-    (void)state;
     assert_int_equal(pty->open(&far, "", 1000000, &cause), GROBO_OK);
     assert_int_equal(grobo_port_pty_path(&far, path, sizeof path), GROBO_OK);
     assert_int_equal(serial->open(&near, path, 3000000, &cause), GROBO_OK);
@@ -39,12 +33,4 @@ static void stop_bits_and_parity_reach_the_terminal(void **state)
     assert_int_equal(serial->set_format(&near, &format, &cause), GROBO_ERR_UNSUPPORTED);
     serial->close(&near);
     pty->close(&far);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stop_bits_and_parity_reach_the_terminal),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

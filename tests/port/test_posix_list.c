@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* The list of ports, on a made-up /sys and /dev; the real ones are only looked through. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "ports/posix/posix.h"
 #include "tests/support/folder.h"
 #include "tests/support/line.h"
 #include "tests/support/nobody.h"
+#include "tests/support/test.h"
 
 static test_line line;
 
@@ -28,11 +23,11 @@ static void shell(const char *command)
     assert_int_equal(system(whole), 0);
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
     char command[256];
 
-    (void)folder_set_up(state);
+    (void)folder_set_up();
     test_line_open(&line);
     /* An FTDI adapter as ttyUSB0, a chip as ttyS0, a node without a chip, a virtual console. */
     shell("mkdir -p class/tty dev/serial/by-id drivers/ftdi_sio drivers/serial8250 "
@@ -54,9 +49,8 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     test_line_close(&line);
     shell("rm -r class dev devices drivers");
     folder_remove(NULL, 0);
@@ -84,11 +78,10 @@ static int list(found *f)
                               f);
 }
 
-static void each_port_with_a_device_is_described(void **state)
+TEST(each_port_with_a_device_is_described)
 {
     found f = {.count = 0};
 
-    (void)state;
     assert_int_equal(list(&f), 2);
     assert_string_equal(f.info[0].path, in_folder("dev/ttyS0"));
     assert_string_equal(f.info[0].driver, "serial8250");
@@ -111,11 +104,10 @@ static void each_port_with_a_device_is_described(void **state)
     assert_int_equal(f.info[1].open_result, GROBO_OK);
 }
 
-static void without_sysfs_adapters_are_found_by_their_names(void **state)
+TEST(without_sysfs_adapters_are_found_by_their_names)
 {
     found f = {.count = 0};
 
-    (void)state;
     assert_int_equal(grobo_i_posix_list("/no/such/folder", "/none", in_folder("dev"), collect, &f),
                      1);
     assert_string_equal(f.info[0].path, in_folder("dev/ttyUSB0"));
@@ -130,7 +122,7 @@ static void without_sysfs_adapters_are_found_by_their_names(void **state)
 
 /* ttyUSB2 before ttyUSB10: the order in which adapters are tried. */
 /* ttyAMA0 has a Bluetooth chip, ttyAMA10 is a console, ttyS0 one of the kernel's command line. */
-static void consoles_and_bluetooth_are_told_apart(void **state)
+TEST(consoles_and_bluetooth_are_told_apart)
 {
     static const struct {
         const char *name;
@@ -142,7 +134,6 @@ static void consoles_and_bluetooth_are_told_apart(void **state)
                 {"ttyUSB0", false, false}};
     found f = {.count = 0};
 
-    (void)state;
     shell("mkdir proc && printf 'tty0   -WU (EC p  ) 4:7\\nttyAMA10 -W- (EC   ) 204:64\\n' "
           ">proc/consoles");
     shell("echo 'quiet earlyconsole=ttyAMA1 console=ttyS0,115200 rw' >proc/cmdline");
@@ -158,12 +149,11 @@ static void consoles_and_bluetooth_are_told_apart(void **state)
     shell("rm -r proc devices/uart* class/tty/ttyAMA* dev/ttyAMA*");
 }
 
-static void ports_are_in_the_order_of_their_numbers(void **state)
+TEST(ports_are_in_the_order_of_their_numbers)
 {
     static const char *const names[] = {"ttyS0", "ttyUSB0", "ttyUSB1", "ttyUSB2", "ttyUSB10"};
     found f = {.count = 0};
 
-    (void)state;
     shell("for n in 10 2 1; do mkdir -p devices/usb1/1-1/1-1:1.0/ttyUSB$n && "
           "ln -s ../../devices/usb1/1-1/1-1:1.0/ttyUSB$n class/tty/ttyUSB$n && "
           "ln -s .. class/tty/ttyUSB$n/device && : >dev/ttyUSB$n; done");
@@ -181,11 +171,10 @@ static void ports_are_in_the_order_of_their_numbers(void **state)
           "rm -r devices/usb1/1-1/1-1:1.0/ttyUSB$n class/tty/ttyUSB$n dev/ttyUSB$n; done");
 }
 
-static void a_visit_can_be_ended(void **state)
+TEST(a_visit_can_be_ended)
 {
     found f = {.stop = 7};
 
-    (void)state;
     assert_int_equal(list(&f), 7);
     assert_int_equal(f.count, 1);
 }
@@ -201,7 +190,7 @@ static void own_name(char *name, size_t name_bytes)
     name[strcspn(name, "\n")] = '\0';
 }
 
-static void a_port_in_use_names_its_owner(void **state)
+TEST(a_port_in_use_names_its_owner)
 {
     char name[64];
     const grobo_port_ops *ops = grobo_port_serial_ops();
@@ -209,7 +198,6 @@ static void a_port_in_use_names_its_owner(void **state)
     grobo_os_cause cause;
     found f = {.count = 0};
 
-    (void)state;
     own_name(name, sizeof name);
     assert_int_equal(ops->open(&port, line.device, 115200, &cause), GROBO_OK);
     assert_int_equal(list(&f), 2);
@@ -227,50 +215,32 @@ static int result_of_opening(void *ctx)
     return list(&f) == 2 ? f.info[1].open_result : GROBO_OK;
 }
 
-static void a_port_of_somebody_else_is_not_to_be_opened(void **state)
+TEST(a_port_of_somebody_else_is_not_to_be_opened)
 {
-    (void)state;
     assert_int_equal(chmod(folder, 0755), 0);
     assert_int_equal(chmod(line.device, 0600), 0);
     assert_int_equal(as_nobody(result_of_opening, NULL), GROBO_ERR_PERM);
 }
 
-static void a_device_without_a_link_is_its_own_identity(void **state)
+TEST(a_device_without_a_link_is_its_own_identity)
 {
     char name[GROBO_DEVICE_MAX_BYTES] = "";
 
-    (void)state;
     assert_int_equal(grobo_port_identity(line.device, name, sizeof name), GROBO_OK);
     assert_string_equal(name, line.device);
     assert_int_equal(grobo_port_identity(line.device, name, 3), GROBO_ERR_SPACE);
     assert_int_equal(grobo_port_identity(NULL, name, sizeof name), GROBO_ERR_ARG);
 }
 
-static void this_machines_ports_can_be_listed(void **state)
+TEST(this_machines_ports_can_be_listed)
 {
     found f = {.stop = 1};
     int r = grobo_port_list(collect, &f);
 
-    (void)state;
     assert_true(r >= 0);
     for (int i = 0; i < f.count; i++) {
         assert_int_equal(access(f.info[i].path, F_OK), 0);
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_port_with_a_device_is_described),
-        cmocka_unit_test(without_sysfs_adapters_are_found_by_their_names),
-        cmocka_unit_test(consoles_and_bluetooth_are_told_apart),
-        cmocka_unit_test(ports_are_in_the_order_of_their_numbers),
-        cmocka_unit_test(a_visit_can_be_ended),
-        cmocka_unit_test(a_port_in_use_names_its_owner),
-        cmocka_unit_test(a_port_of_somebody_else_is_not_to_be_opened),
-        cmocka_unit_test(a_device_without_a_link_is_its_own_identity),
-        cmocka_unit_test(this_machines_ports_can_be_listed),
-    };
-
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_BETWEEN(set_up, tear_down)

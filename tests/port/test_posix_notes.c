@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Notes between the programs of one user: only those that the user alone can have written. */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,12 +8,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include <grobo/estop.h>
 
 #include "ports/common/notes.h"
 #include "tests/support/folder.h"
+#include "tests/support/test.h"
 
 enum { NOBODY = 65534 };
 
@@ -25,23 +20,24 @@ enum { NOBODY = 65534 };
 static char device[64];
 
 /* The directory of notes in $XDG_RUNTIME_DIR, which is the test's folder. */
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)folder_set_up(state);
+    (void)folder_set_up();
     assert_int_equal(setenv("XDG_RUNTIME_DIR", folder, 1), 0);
     snprintf(device, sizeof device, "/nowhere/robot-%ld", (long)getpid());
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
     char command[400];
 
-    (void)state;
     assert_int_equal(grobo_estop_clear(device, NULL), GROBO_OK);
     snprintf(command, sizeof command, "rm -rf '%s'", folder);
     return system(command);
 }
+
+static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
 
 /* The path of a note in the directory of the session. */
 static const char *note_path(const char *name)
@@ -84,11 +80,10 @@ static void make_folder(mode_t mode)
 
 /* ---- what is trusted ---------------------------------------------------------------------- */
 
-static void a_mark_is_for_the_user_alone(void **state)
+TEST_WITH(fixture, a_mark_is_for_the_user_alone)
 {
     struct stat st;
 
-    (void)state;
     assert_false(grobo_estop_stands(device));
     assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
     assert_true(grobo_estop_stands(device));
@@ -101,19 +96,17 @@ static void a_mark_is_for_the_user_alone(void **state)
     assert_int_not_equal(lstat(mark_path(), &st), 0);
 }
 
-static void a_file_made_by_hand_counts(void **state)
+TEST_WITH(fixture, a_file_made_by_hand_counts)
 {
-    (void)state;
     make_folder(0700);
     write_file(mark_path(), 0600);
     assert_true(grobo_estop_stands(device));
 }
 
-static void a_directory_open_to_others_is_not_trusted(void **state)
+TEST_WITH(fixture, a_directory_open_to_others_is_not_trusted)
 {
     static const mode_t modes[] = {0777, 0770, 0755, 0701};
 
-    (void)state;
     make_folder(0700);
     write_file(mark_path(), 0600);
     for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
@@ -124,9 +117,8 @@ static void a_directory_open_to_others_is_not_trusted(void **state)
     assert_true(grobo_estop_stands(device));
 }
 
-static void nor_is_a_link_to_a_directory(void **state)
+TEST_WITH(fixture, nor_is_a_link_to_a_directory)
 {
-    (void)state;
     make_folder(0700);
     write_file(mark_path(), 0600);
     assert_int_equal(rename(in_folder("grobo"), in_folder("other")), 0);
@@ -134,9 +126,8 @@ static void nor_is_a_link_to_a_directory(void **state)
     assert_false(grobo_estop_stands(device));
 }
 
-static void nor_is_a_directory_that_others_can_replace(void **state)
+TEST_WITH(fixture, nor_is_a_directory_that_others_can_replace)
 {
-    (void)state;
     make_folder(0700);
     write_file(mark_path(), 0600);
     assert_int_equal(chmod(folder, 0777), 0);
@@ -145,9 +136,8 @@ static void nor_is_a_directory_that_others_can_replace(void **state)
     assert_true(grobo_estop_stands(device));
 }
 
-static void nor_is_a_mark_that_is_a_link_or_open_to_others(void **state)
+TEST_WITH(fixture, nor_is_a_mark_that_is_a_link_or_open_to_others)
 {
-    (void)state;
     make_folder(0700);
     write_file(in_folder("file"), 0600);
     assert_int_equal(symlink(in_folder("file"), mark_path()), 0);
@@ -161,9 +151,8 @@ static void nor_is_a_mark_that_is_a_link_or_open_to_others(void **state)
     assert_int_equal(rmdir(mark_path()), 0);
 }
 
-static void nor_is_what_belongs_to_another_user(void **state)
+TEST_WITH(fixture, nor_is_what_belongs_to_another_user)
 {
-    (void)state;
     if (geteuid() != 0) {
         print_message("only root can give files away\n");
         skip();
@@ -180,22 +169,20 @@ static void nor_is_what_belongs_to_another_user(void **state)
 }
 
 /* The other directory has it then. */
-static void a_directory_that_cannot_be_had_does_not_keep_a_mark_from_being_set(void **state)
+TEST_WITH(fixture, a_directory_that_cannot_be_had_does_not_keep_a_mark_from_being_set)
 {
     struct stat st;
 
-    (void)state;
     make_folder(0755);
     assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
     assert_int_not_equal(lstat(mark_path(), &st), 0);
     assert_true(grobo_estop_stands(device));
 }
 
-static void a_link_in_its_place_is_replaced_and_not_followed(void **state)
+TEST_WITH(fixture, a_link_in_its_place_is_replaced_and_not_followed)
 {
     struct stat st;
 
-    (void)state;
     make_folder(0700);
     write_file(in_folder("file"), 0600);
     assert_int_equal(symlink(in_folder("file"), mark_path()), 0);
@@ -208,12 +195,11 @@ static void a_link_in_its_place_is_replaced_and_not_followed(void **state)
 
 /* ---- names of a device -------------------------------------------------------------------- */
 
-static void a_mark_by_one_name_is_one_by_all(void **state)
+TEST_WITH(fixture, a_mark_by_one_name_is_one_by_all)
 {
     char link[300];
     char other[300];
 
-    (void)state;
     snprintf(link, sizeof link, "%s", in_folder("link"));
     snprintf(other, sizeof other, "%s", in_folder("other"));
     write_file(in_folder("node"), 0600);
@@ -228,11 +214,10 @@ static void a_mark_by_one_name_is_one_by_all(void **state)
 }
 
 /* The link of a device that is unplugged leads nowhere, and is there again with the device. */
-static void a_missing_device_is_marked_by_its_names(void **state)
+TEST_WITH(fixture, a_missing_device_is_marked_by_its_names)
 {
     char link[300];
 
-    (void)state;
     snprintf(link, sizeof link, "%s", in_folder("link"));
     assert_int_equal(symlink("node", link), 0);
     assert_int_equal(grobo_estop_set(link, NULL, NULL), GROBO_OK);
@@ -249,12 +234,11 @@ static void a_missing_device_is_marked_by_its_names(void **state)
 
 /* ---- processes ---------------------------------------------------------------------------- */
 
-static void a_stopped_process_is_resumed_if_asked(void **state)
+TEST_WITH(fixture, a_stopped_process_is_resumed_if_asked)
 {
     grobo_i_process child = {.started = 0};
     int status;
 
-    (void)state;
     child.pid = (int)fork();
     if (child.pid == 0) {
         (void)raise(SIGSTOP);
@@ -273,13 +257,12 @@ static void a_stopped_process_is_resumed_if_asked(void **state)
     assert_int_equal(grobo_i_process_look(&child, true), GROBO_ERR_NOENT);
 }
 
-static void another_process_with_its_number_is_not_touched(void **state)
+TEST_WITH(fixture, another_process_with_its_number_is_not_touched)
 {
     grobo_i_process self;
     grobo_i_process child;
     int status;
 
-    (void)state;
     grobo_i_process_self(&self);
     assert_int_equal(self.pid, getpid());
     assert_int_equal(grobo_i_process_look(&self, true), 0);
@@ -299,26 +282,4 @@ static void another_process_with_its_number_is_not_touched(void **state)
     assert_int_equal(waitpid(child.pid, &status, WUNTRACED | WNOHANG | WCONTINUED), 0);
     assert_int_equal(kill(child.pid, SIGKILL), 0);
     assert_int_equal(waitpid(child.pid, &status, 0), child.pid);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-        TEST(a_mark_is_for_the_user_alone),
-        TEST(a_file_made_by_hand_counts),
-        TEST(a_directory_open_to_others_is_not_trusted),
-        TEST(nor_is_a_link_to_a_directory),
-        TEST(nor_is_a_directory_that_others_can_replace),
-        TEST(nor_is_a_mark_that_is_a_link_or_open_to_others),
-        TEST(nor_is_what_belongs_to_another_user),
-        TEST(a_directory_that_cannot_be_had_does_not_keep_a_mark_from_being_set),
-        TEST(a_link_in_its_place_is_replaced_and_not_followed),
-        TEST(a_mark_by_one_name_is_one_by_all),
-        TEST(a_missing_device_is_marked_by_its_names),
-        TEST(a_stopped_process_is_resumed_if_asked),
-        TEST(another_process_with_its_number_is_not_touched),
-    };
-
-    return cmocka_run_group_tests_name("notes", tests, NULL, NULL);
 }

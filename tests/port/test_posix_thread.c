@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Threads of the POSIX port and signals. */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include <grobo/port.h>
+
+#include "tests/support/test.h"
 
 static GROBO_THREAD_FUNC look_at_mask(void *arg)
 {
@@ -19,25 +15,15 @@ static GROBO_THREAD_FUNC look_at_mask(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-static void a_thread_takes_no_signals(void **state)
+TEST(a_thread_takes_no_signals)
 {
     grobo_thread thread;
     sigset_t mask;
     int blocked = -1;
 
-    (void)state;
     assert_int_equal(grobo_thread_start(&thread, look_at_mask, &blocked), GROBO_OK);
     assert_int_equal(grobo_thread_join(thread), GROBO_OK);
     assert_int_equal(blocked, 1);
     pthread_sigmask(SIG_SETMASK, NULL, &mask);
     assert_int_equal(sigismember(&mask, SIGINT), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_thread_takes_no_signals),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

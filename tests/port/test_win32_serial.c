@@ -1,24 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* The Win32 port: names of COM ports, the lock that names its holder, what errors mean. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "ports/win32/win32.h"
+#include "tests/support/test.h"
 
 static grobo_os_cause cause;
 
-static void a_port_has_three_names(void **state)
+TEST(a_port_has_three_names)
 {
     static const char *const names[] = {"COM10", "com10", "\\\\.\\COM10", "\\\\.\\com10"};
     char text[64];
 
-    (void)state;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         assert_int_equal(grobo_port_identity(names[i], text, sizeof text), GROBO_OK);
         assert_string_equal(text, "COM10");
@@ -33,12 +27,11 @@ static void a_port_has_three_names(void **state)
     assert_int_equal(grobo_i_win32_path("\\\\.\\", text, sizeof text), GROBO_ERR_ARG);
 }
 
-static void what_is_no_port_is_told_apart(void **state)
+TEST(what_is_no_port_is_told_apart)
 {
     const grobo_port_ops *ops = grobo_port_serial_ops();
     grobo_port *port = malloc(ops->size_bytes);
 
-    (void)state;
     assert_non_null(port);
     assert_int_equal(ops->open(port, "", 115200, &cause), GROBO_ERR_ARG);
     assert_int_equal(ops->open(port, "COM250", 115200, &cause), GROBO_ERR_NOENT);
@@ -49,12 +42,11 @@ static void what_is_no_port_is_told_apart(void **state)
     free(port);
 }
 
-static void a_lock_names_its_holder(void **state)
+TEST(a_lock_names_its_holder)
 {
     char name[64] = "nobody";
     HANDLE lock = grobo_i_win32_lock("COM77");
 
-    (void)state;
     assert_non_null(lock);
     assert_null(grobo_i_win32_lock("\\\\.\\com77"));
     assert_int_equal(grobo_port_owner("com77", name, sizeof name), GetCurrentProcessId());
@@ -64,7 +56,7 @@ static void a_lock_names_its_holder(void **state)
     assert_int_equal(grobo_port_owner("COM77", name, sizeof name), 0);
 }
 
-static void every_way_to_lose_a_device_is_unplugged(void **state)
+TEST(every_way_to_lose_a_device_is_unplugged)
 {
     static const DWORD codes[] = {ERROR_ACCESS_DENIED,     ERROR_NOT_READY,
                                   ERROR_BAD_COMMAND,       ERROR_GEN_FAILURE,
@@ -72,7 +64,6 @@ static void every_way_to_lose_a_device_is_unplugged(void **state)
                                   ERROR_OPERATION_ABORTED, ERROR_DEVICE_NOT_CONNECTED,
                                   WSAECONNRESET,           WSAECONNABORTED};
 
-    (void)state;
     for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
         assert_int_equal(grobo_i_win32_fail(&cause, codes[i], "read"), GROBO_ERR_UNPLUGGED);
         assert_int_equal(cause.code, codes[i]);
@@ -91,24 +82,10 @@ static int count(void *ctx, const grobo_port_info *info)
     return 0;
 }
 
-static void the_ports_of_this_machine_can_be_listed(void **state)
+TEST(the_ports_of_this_machine_can_be_listed)
 {
     int n = 0;
     int listed = grobo_port_list(count, &n);
 
-    (void)state;
     assert_int_equal(listed, n);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_port_has_three_names),
-        cmocka_unit_test(what_is_no_port_is_told_apart),
-        cmocka_unit_test(a_lock_names_its_holder),
-        cmocka_unit_test(every_way_to_lose_a_device_is_unplugged),
-        cmocka_unit_test(the_ports_of_this_machine_can_be_listed),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

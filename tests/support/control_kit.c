@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "tests/support/control_kit.h"
 #include "tests/support/folder.h"
@@ -24,33 +18,36 @@ static void make(grobo_control_config config)
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
 }
 
-int control_set_up(void **state)
+int control_set_up(void)
 {
     grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .motion_dir = "/nowhere"};
 
-    (void)folder_set_up(state);
+    (void)folder_set_up();
     make(config);
     assert_int_equal(grobo_control_set_motion_dir(control, folder), GROBO_OK);
     return 0;
 }
 
-int control_set_up_threaded(void **state)
+int control_set_up_threaded(void)
 {
-    (void)control_set_up(state);
+    (void)control_set_up();
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
     return 0;
 }
 
-int control_tear_down(void **state)
+int control_tear_down(void)
 {
     static const char *const files[] = {"Motion1.m", "Motion2.m", "a.m",   "a.yaml",
                                         "a.pseq",    "a.mseq",    "bad.m", "b.yaml"};
 
-    (void)state;
     assert_int_equal(grobo_control_free(control), GROBO_OK);
     folder_remove(files, sizeof files / sizeof files[0]);
     return 0;
 }
+
+const test_fixture with_and_without_thread[2] = {
+    {NULL, control_set_up, control_tear_down},
+    {"threaded", control_set_up_threaded, control_tear_down}};
 
 void control_come_up(void)
 {

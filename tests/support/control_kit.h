@@ -5,23 +5,20 @@
 
 #include <grobo/thread.h>
 
+#include "tests/support/test.h"
+
 #define ELBOW 13
 #define EVERY_JOINT GROBO_JOINTS_ALL(20)
 
 /* What the set-ups make; its motions are in the folder of folder.h. */
 extern grobo_control *control;
 
-/* cmocka's set-ups and tear-down: a control without a thread, and one with it. */
-int control_set_up(void **state);
-int control_set_up_threaded(void **state);
-int control_tear_down(void **state);
+int control_set_up(void);
+int control_set_up_threaded(void);
+int control_tear_down(void);
 
-/* Both of them, as entries of a table of tests. */
-#define WITH_AND_WITHOUT_THREAD(test)                                                              \
-    cmocka_unit_test_setup_teardown(test, control_set_up, control_tear_down),                      \
-    {                                                                                              \
-        "threaded: " #test, test, control_set_up_threaded, control_tear_down, NULL                 \
-    }
+/* A control without a thread, and one with it. */
+extern const test_fixture with_and_without_thread[2];
 
 /* Connects. */
 void control_come_up(void);

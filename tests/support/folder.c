@@ -1,20 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #include "tests/support/folder.h"
 #include "tests/support/os.h"
+#include "tests/support/test.h"
 
 char folder[256];
 
-int folder_set_up(void **state)
+int folder_set_up(void)
 {
-    (void)state;
     test_folder_new(folder, sizeof folder);
     return 0;
 }

@@ -8,8 +8,8 @@
 /* The one that folder_set_up() made last. */
 extern char folder[256];
 
-/* cmocka's set-up: a new folder. */
-int folder_set_up(void **state);
+/* A set-up: a new folder. */
+int folder_set_up(void);
 
 /* The path of a name in it; good until four others were asked for. */
 const char *in_folder(const char *name);

@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What is sure of angles: by the bits of doubles, as on processors without them, and by doubles. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "src/base/angle.h"
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 
 #define PI 3.14159265358979323846
 
@@ -44,9 +40,8 @@ static bool is_inside(double min, double value, double max)
     return isfinite(value) && value >= min && value <= max;
 }
 
-static void inside_is_never_said_of_what_is_outside(void **state)
+TEST(inside_is_never_said_of_what_is_outside)
 {
-    (void)state;
     static const double special[] = {0.0, -0.0, 5e-324, -5e-324, 1.0, -1.0, 1e308, -1e308};
     uint32_t seed = 1;
     for (int i = 0; i < MANY; i++) {
@@ -77,9 +72,8 @@ static void inside_is_never_said_of_what_is_outside(void **state)
 }
 
 /* The unit of the wire that is nearest, where that is said. */
-static void units_are_the_nearest_or_left_open(void **state)
+TEST(units_are_the_nearest_or_left_open)
 {
-    (void)state;
     uint32_t seed = 2;
     int said = 0;
     for (int i = 0; i < MANY; i++) {
@@ -99,9 +93,8 @@ static void units_are_the_nearest_or_left_open(void **state)
 }
 
 /* A way takes its time; what is nearer than a millionth is left open. */
-static void no_joint_gets_there_sooner_than_it_can(void **state)
+TEST(no_joint_gets_there_sooner_than_it_can)
 {
-    (void)state;
     static const double parts[] = {0, 0.5, 0.99, 0.9999, 1, 1 + 1e-9, 1.00001, 1.5};
     uint32_t seed = 3;
     for (int i = 0; i < MANY; i++) {
@@ -125,9 +118,8 @@ static void no_joint_gets_there_sooner_than_it_can(void **state)
 }
 
 /* At the speed of a servo nearly all that can be is said to be. */
-static void little_is_left_open(void **state)
+TEST(little_is_left_open)
 {
-    (void)state;
     for (int64_t time_us = 20000; time_us <= 4000000; time_us += 20000) {
         for (int pct = 10; pct <= 100; pct += 10) {
             double most_rad = (double)time_us * 1e-6 * 6.5 * pct / 100;
@@ -136,16 +128,4 @@ static void little_is_left_open(void **state)
             assert_true(grobo_i_soft_gets_there(1.5, 1.5 - most_rad * 0.99999, 6.5, span));
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inside_is_never_said_of_what_is_outside),
-        cmocka_unit_test(units_are_the_nearest_or_left_open),
-        cmocka_unit_test(no_joint_gets_there_sooner_than_it_can),
-        cmocka_unit_test(little_is_left_open),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,24 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of the controller board, both ends, and the frames that GR001 uses. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/board.h>
 
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
 enum { MAX = GROBO_FRAME_MAX_BYTES, MS = 1000, JOINTS = 20 };
 
-static void frames_for_the_board_itself(void **state)
+TEST(frames_for_the_board_itself)
 {
-    (void)state;
     uint8_t b[MAX];
     vector_expect(grobo_board_check(b, MAX), b, "41 00");
     vector_expect(grobo_board_slot(7, b, MAX), b, "50 4D 07");
@@ -27,9 +22,8 @@ static void frames_for_the_board_itself(void **state)
     assert_int_equal(grobo_board_slot(0, b, 2), GROBO_ERR_SPACE);
 }
 
-static void single_joint_frames(void **state)
+TEST(single_joint_frames)
 {
-    (void)state;
     uint8_t b[MAX];
     const grobo_rs30x_goal down = {3, -10, 0};
     const grobo_rs30x_goal right_angle = {3, 900, 10};
@@ -44,9 +38,8 @@ static void single_joint_frames(void **state)
                   "FA AF 03 00 1E 04 01 F6 FF 00 00 11");
 }
 
-static void all_joints_in_one_frame(void **state)
+TEST(all_joints_in_one_frame)
 {
-    (void)state;
     static const int16_t init_ddeg[JOINTS] = {0, 0,    200,  0, -200, -200, 0, 200, 0,   200,
                                               0, -400, -200, 0, 0,    -200, 0, 400, 200, 0};
     uint8_t b[MAX];
@@ -70,9 +63,8 @@ static void all_joints_in_one_frame(void **state)
     assert_int_equal(b[109], 0x04);
 }
 
-static void torque_frames(void **state)
+TEST(torque_frames)
 {
-    (void)state;
     uint8_t b[MAX];
     const grobo_wiring board = GROBO_WIRING_BOARD;
     vector_expect(grobo_frame_torque(grobo_wiring_protocol(board), 1, GROBO_TORQUE_ON, b, MAX), b,
@@ -100,9 +92,8 @@ static void torque_frames(void **state)
                      GROBO_ERR_ARG);
 }
 
-static void read_frames(void **state)
+TEST(read_frames)
 {
-    (void)state;
     uint8_t b[MAX];
     const grobo_wiring board = GROBO_WIRING_BOARD;
     vector_expect(grobo_frame_read(grobo_wiring_protocol(board), 1, GROBO_STATE_ADDRESS,
@@ -120,9 +111,8 @@ static void read_frames(void **state)
                   "FA AF 01 0F 2A 02 00 26");
 }
 
-static void any_packet_is_wrapped_by_what_it_asks_for(void **state)
+TEST(any_packet_is_wrapped_by_what_it_asks_for)
 {
-    (void)state;
     uint8_t b[MAX];
     int n = grobo_rs30x_write_u8(1, GROBO_RS30X_WANT_ACK, GROBO_RS30X_TORQUE, 1, b, MAX);
     vector_expect(grobo_frame_wrap(&grobo_board_protocol, b, (size_t)n, b, MAX), b,
@@ -138,9 +128,8 @@ static void any_packet_is_wrapped_by_what_it_asks_for(void **state)
                      GROBO_ERR_FRAME);
 }
 
-static void relays_know_their_bounds(void **state)
+TEST(relays_know_their_bounds)
 {
-    (void)state;
     uint8_t b[MAX];
     static const uint8_t packet[GROBO_RELAY_MAX_BYTES + 1] = {0xFA, 0xAF};
     assert_int_equal(grobo_board_send(packet, 127, b, MAX), 129);
@@ -170,9 +159,8 @@ static void relays_know_their_bounds(void **state)
     }
 }
 
-static void hosts_know_what_a_frame_is_answered_by(void **state)
+TEST(hosts_know_what_a_frame_is_answered_by)
 {
-    (void)state;
     static const struct {
         const char *frame;
         grobo_reply_kind kind;
@@ -240,9 +228,8 @@ static const char *const frames[] = {
 
 enum { FRAMES = (int)(sizeof frames / sizeof frames[0]) };
 
-static void every_split_of_every_frame_gives_it_back(void **state)
+TEST(every_split_of_every_frame_gives_it_back)
 {
-    (void)state;
     for (int i = 0; i < FRAMES; i++) {
         uint8_t b[MAX];
         size_t n = (size_t)vector_from_hex(frames[i], b, MAX);
@@ -270,9 +257,8 @@ static void every_split_of_every_frame_gives_it_back(void **state)
 }
 
 /* Letters of frames occur in rubbish and in packets: they must not swallow the frame behind. */
-static void rubbish_before_a_frame_is_dropped(void **state)
+TEST(rubbish_before_a_frame_is_dropped)
 {
-    (void)state;
     static const uint8_t rubbish[] = {0x53, 0x41, 0x01, 0x50, 0x50, 0x54, 0x09,
                                       0xFA, 0x53, 0x20, 0xFA, 0x00, 0x41, 0x54};
     for (int i = 0; i < FRAMES; i++) {
@@ -289,9 +275,8 @@ static void rubbish_before_a_frame_is_dropped(void **state)
     }
 }
 
-static void a_frame_that_stands_still_is_abandoned(void **state)
+TEST(a_frame_that_stands_still_is_abandoned)
 {
-    (void)state;
     uint8_t b[MAX];
     size_t n = (size_t)vector_from_hex(frames[4], b, MAX);
     grobo_board_parser parser;
@@ -313,9 +298,8 @@ static void a_frame_that_stands_still_is_abandoned(void **state)
     assert_int_equal(h.frames, 1);
 }
 
-static void a_whole_frame_behind_a_stump_outlives_the_stall(void **state)
+TEST(a_whole_frame_behind_a_stump_outlives_the_stall)
 {
-    (void)state;
     uint8_t b[MAX];
     size_t stump = (size_t)vector_from_hex("53 7F FA AF 01", b, MAX);
     size_t n = (size_t)vector_from_hex(frames[4], b + stump, MAX - stump);
@@ -381,28 +365,7 @@ static bool check_vector(const vector *v)
     return true;
 }
 
-static void collected_vectors_parse_and_build_byte_for_byte(void **state)
+TEST(collected_vectors_parse_and_build_byte_for_byte)
 {
-    (void)state;
     vectors_check(check_vector, 20);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_for_the_board_itself),
-        cmocka_unit_test(single_joint_frames),
-        cmocka_unit_test(all_joints_in_one_frame),
-        cmocka_unit_test(torque_frames),
-        cmocka_unit_test(read_frames),
-        cmocka_unit_test(any_packet_is_wrapped_by_what_it_asks_for),
-        cmocka_unit_test(relays_know_their_bounds),
-        cmocka_unit_test(hosts_know_what_a_frame_is_answered_by),
-        cmocka_unit_test(every_split_of_every_frame_gives_it_back),
-        cmocka_unit_test(rubbish_before_a_frame_is_dropped),
-        cmocka_unit_test(a_frame_that_stands_still_is_abandoned),
-        cmocka_unit_test(a_whole_frame_behind_a_stump_outlives_the_stall),
-        cmocka_unit_test(collected_vectors_parse_and_build_byte_for_byte),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

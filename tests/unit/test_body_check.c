@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Balance, and the lint that tells whether a motion falls. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "src/body/polygon.h"
 #include "tests/support/body_script.h"
+#include "tests/support/test.h"
 
 struct watch {
     int frames;
@@ -71,14 +67,13 @@ static void script_slow_step(struct script *script)
     script->keys[0].time_s = 0;
 }
 
-static void the_balancer_brings_the_zmp_to_the_desired_one(void **state)
+TEST(the_balancer_brings_the_zmp_to_the_desired_one)
 {
     grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .zmp = GROBO_BODY_ZMP_AUTO,
                                   .rate_hz = 100};
     struct script script;
     struct watch off, on;
 
-    (void)state;
     script_slow_step(&script);
     (void)check(&script, &options, &off);
     options.balance = GROBO_BODY_BALANCE_ON;
@@ -90,14 +85,13 @@ static void the_balancer_brings_the_zmp_to_the_desired_one(void **state)
 
 /* It does so too with a foot as base, and where the base changes on the way: what the balancer sees
  * of the body's speeds must not depend on the link they are told from. */
-static void the_balancer_works_from_any_base(void **state)
+TEST(the_balancer_works_from_any_base)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .zmp = GROBO_BODY_ZMP_AUTO,
                                         .balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100};
     struct script script;
     struct run waist, foot;
 
-    (void)state;
     script_slow_step(&script);
     run_start(&waist, &grobo_gr001_body, &script, &options);
     for (int change = 0; change < 2; change++) {
@@ -124,13 +118,12 @@ static void the_balancer_works_from_any_base(void **state)
 
 /* A body that stands has its ZMP under its centre of mass; bent far over, it falls, and the lint
  * says when. */
-static void the_lint_tells_a_fall(void **state)
+TEST(the_lint_tells_a_fall)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     struct script script;
     struct watch watch;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_stand(&script, 0.01, 0, 0.145);
@@ -148,14 +141,13 @@ static void the_lint_tells_a_fall(void **state)
 }
 
 /* The same lean eight times as fast: inertia counts 64 times, and the servos hurry. */
-static void the_lint_knows_the_speed(void **state)
+TEST(the_lint_knows_the_speed)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const uint16_t speeds_pct[] = {0, 100, 800};
     int findings[3][2];
     struct script script;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_joint(&script, 14, -1);
@@ -191,14 +183,13 @@ static void last_frame(void *ctx, const grobo_body_balance_frame *frame)
 }
 
 /* Balance is judged with the chest where it is played: at its limit. */
-static void the_lint_takes_slack(void **state)
+TEST(the_lint_takes_slack)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const double chest_rad[] = {0, 0.01, 0.01, 0.03};
     const bool takes[] = {false, true, false, true};
     double com_m[4];
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         grobo_body_balance_frame frame;
         grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
@@ -221,13 +212,12 @@ static void the_lint_takes_slack(void **state)
     assert_true(fabs(com_m[3] - com_m[2]) > 1e-5);
 }
 
-static void the_lint_tells_what_else_is_wrong(void **state)
+TEST(the_lint_tells_what_else_is_wrong)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     struct script script;
     struct watch watch;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_joint(&script, 13, 0);
@@ -259,31 +249,15 @@ static void the_lint_tells_what_else_is_wrong(void **state)
 }
 
 /* A unit square with a point inside and one on an edge. */
-static void margins_of_a_hull(void **state)
+TEST(margins_of_a_hull)
 {
     double points[6][2] = {{1, 1}, {0, 0}, {0.4, 0.3}, {1, 0}, {0, 1}, {0.5, 0}};
     double hull[13][2];
     const double inside[2] = {0.2, 0.5}, outside[2] = {2, 2}, beside[2] = {0.5, -0.25};
     const int n = grobo_i_convex_hull(points, 6, hull);
 
-    (void)state;
     assert_int_equal(n, 4);
     assert_true(fabs(grobo_i_polygon_margin(hull, n, inside) - 0.2) < 1e-15);
     assert_true(fabs(grobo_i_polygon_margin(hull, n, outside) + sqrt(2)) < 1e-15);
     assert_true(fabs(grobo_i_polygon_margin(hull, n, beside) + 0.25) < 1e-15);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_balancer_brings_the_zmp_to_the_desired_one),
-        cmocka_unit_test(the_balancer_works_from_any_base),
-        cmocka_unit_test(the_lint_tells_a_fall),
-        cmocka_unit_test(the_lint_knows_the_speed),
-        cmocka_unit_test(the_lint_takes_slack),
-        cmocka_unit_test(the_lint_tells_what_else_is_wrong),
-        cmocka_unit_test(margins_of_a_hull),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,20 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Motions with link targets, as files have them, through the bridge to the body and back. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/body_motion.h>
 #include <grobo/motion_io.h>
 
 #include "tests/support/body_script.h"
 #include "tests/support/counted_mem.h"
+#include "tests/support/test.h"
 
 /* Feet on the ground, the waist goes down and up; the head turns. The left foot has a name that
  * the body has not: its index tells which link it is. */
@@ -74,7 +70,7 @@ static grobo_motion *read_bow(const char *height)
     return motion;
 }
 
-static void a_file_and_a_script_give_the_same(void **state)
+TEST(a_file_and_a_script_give_the_same)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 50};
     grobo_motion *motion = read_bow("0.13");
@@ -82,7 +78,6 @@ static void a_file_and_a_script_give_the_same(void **state)
     struct script script;
     struct run run;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_joint(&script, 13, 0.2);
@@ -111,7 +106,7 @@ static void a_file_and_a_script_give_the_same(void **state)
     grobo_body_free(body);
 }
 
-static void a_clip_plays_the_body(void **state)
+TEST(a_clip_plays_the_body)
 {
     grobo_motion *motion = read_bow("0.13");
     grobo_body *body = NULL;
@@ -120,7 +115,6 @@ static void a_clip_plays_the_body(void **state)
     int64_t at_us = 0;
     double q[JOINTS];
 
-    (void)state;
     assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), 0);
     grobo_motion_free(motion);
     grobo_body_clip(body, true, &clip);
@@ -140,7 +134,7 @@ static void a_clip_plays_the_body(void **state)
     grobo_body_free(body);
 }
 
-static void a_clip_stops_where_a_leg_does_not_reach(void **state)
+TEST(a_clip_stops_where_a_leg_does_not_reach)
 {
     grobo_motion *motion = read_bow("0.19");
     grobo_motion *frames = NULL;
@@ -149,7 +143,6 @@ static void a_clip_stops_where_a_leg_does_not_reach(void **state)
     grobo_posture posture;
     int unreached;
 
-    (void)state;
     assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), 0);
     grobo_motion_free(motion);
     grobo_body_clip(body, true, &clip);
@@ -164,7 +157,7 @@ static void a_clip_stops_where_a_leg_does_not_reach(void **state)
     grobo_body_free(body);
 }
 
-static void frames_are_the_body_s(void **state)
+TEST(frames_are_the_body_s)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .balance = GROBO_BODY_BALANCE_ON,
                                         .rate_hz = 30};
@@ -172,7 +165,6 @@ static void frames_are_the_body_s(void **state)
     grobo_motion *frames = NULL;
     grobo_body *body = NULL;
 
-    (void)state;
     assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, &options, NULL, &body), 0);
     grobo_motion_free(motion);
     assert_int_equal(grobo_body_frames(body, NULL, &frames), 0);
@@ -195,12 +187,11 @@ static void frames_are_the_body_s(void **state)
     grobo_body_free(body);
 }
 
-static void other_motions_are_refused(void **state)
+TEST(other_motions_are_refused)
 {
     grobo_motion *motion = NULL;
     grobo_body *body = NULL;
 
-    (void)state;
     assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &motion), 0);
     assert_false(grobo_body_wanted(&grobo_gr001_body, motion));
     assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), GROBO_ERR_EMPTY);
@@ -212,12 +203,11 @@ static void other_motions_are_refused(void **state)
 }
 
 /* Every allocation fails once: nothing is lost, nothing made. */
-static void each_allocation_may_fail(void **state)
+TEST(each_allocation_may_fail)
 {
     grobo_motion *motion = read_bow("0.13");
     bool whole = false;
 
-    (void)state;
     for (size_t n = 1; !whole; n++) {
         counted_mem counter = {.fail_at = n};
         const grobo_mem mem = counted_mem_of(&counter);
@@ -236,18 +226,4 @@ static void each_allocation_may_fail(void **state)
         assert_int_equal(counter.bytes, 0);
     }
     grobo_motion_free(motion);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_file_and_a_script_give_the_same),
-        cmocka_unit_test(a_clip_plays_the_body),
-        cmocka_unit_test(a_clip_stops_where_a_leg_does_not_reach),
-        cmocka_unit_test(frames_are_the_body_s),
-        cmocka_unit_test(other_motions_are_refused),
-        cmocka_unit_test(each_allocation_may_fail),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,48 +4,44 @@
  * added is a case more. */
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/body_motion.h>
 #include <grobo/motion_io.h>
 
 #include "tests/support/files.h"
+#include "tests/support/test.h"
 
 #define GOLDEN "data/golden/"
 #define SAMPLE "SampleMotion1" /* lies elsewhere: Choreonoid brings it along */
 
 struct mode {
-    const char *name;
+    const char *name; /* of the mode in the names of files */
     grobo_body_options options;
     double tolerance_rad;
 };
 
-/* The frames have nine digits or more: 5e-9 rad is their rounding. */
-static struct mode plain = {"plain", {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC}, 1e-8};
-/* The analytic reference solves its offsets approximately: 9e-5 rad off the exact answer. */
-static struct mode plain_grobot = {
-    "plain_grobot", {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_EXACT}, 1e-4};
-static struct mode as_the_gui = {"default",
-                                 {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC,
-                                  .step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO},
-                                 1e-8};
-static struct mode balancer = {"balancer",
-                               {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC,
-                                .step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO,
-                                .balance = GROBO_BODY_BALANCE_ON},
-                               1e-7};
-static struct mode compat11 = {"compat11",
-                               {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC,
-                                .zmp = GROBO_BODY_ZMP_AUTO, .balance = GROBO_BODY_BALANCE_COMPAT11},
-                               1e-7};
+static const struct mode modes[] = {
+    /* The frames have nine digits or more: 5e-9 rad is their rounding. */
+    {"plain", {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC}, 1e-8},
+    /* The analytic reference solves its offsets approximately: 9e-5 rad off the exact answer. */
+    {"plain_grobot", {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_EXACT}, 1e-4},
+    /* As Choreonoid's window has them. */
+    {"default",
+     {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC, .step = GROBO_BODY_STEP_STEALTHY,
+      .zmp = GROBO_BODY_ZMP_AUTO},
+     1e-8},
+    {"balancer",
+     {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC, .step = GROBO_BODY_STEP_STEALTHY,
+      .zmp = GROBO_BODY_ZMP_AUTO, .balance = GROBO_BODY_BALANCE_ON},
+     1e-7},
+    {"compat11",
+     {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC, .zmp = GROBO_BODY_ZMP_AUTO,
+      .balance = GROBO_BODY_BALANCE_COMPAT11},
+     1e-7},
+};
 
 /* Largest difference to the frames of an open file; every frame must be there, none beyond. */
 static double compare(grobo_body *body, FILE *golden)
@@ -118,9 +114,8 @@ static bool of_mode(const char *csv, const struct mode *mode, char motion[256], 
 }
 
 /* Every file of a mode. */
-static void all_agree(void **state)
+TEST_EACH(struct mode, modes, all_agree)
 {
-    const struct mode *mode = *state;
     char path[4096];
     DIR *folder;
     const struct dirent *entry;
@@ -134,27 +129,12 @@ static void all_agree(void **state)
         char motion[256];
         double rate_hz = 0;
 
-        if (of_mode(entry->d_name, mode, motion, &rate_hz)) {
+        if (of_mode(entry->d_name, row, motion, &rate_hz)) {
             n++;
-            n_wrong += !agrees(entry->d_name, motion, rate_hz, mode);
+            n_wrong += !agrees(entry->d_name, motion, rate_hz, row);
         }
     }
     (void)closedir(folder);
     assert_int_equal(n_wrong, 0);
     assert_true(n > 0);
-}
-
-#define TEST_OF(which)                                                                             \
-    {                                                                                              \
-        .name = #which, .test_func = all_agree, .initial_state = &(which)                          \
-    }
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST_OF(plain),    TEST_OF(plain_grobot), TEST_OF(as_the_gui),
-        TEST_OF(balancer), TEST_OF(compat11),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* The rigid-body tree and leg IK, from first principles: no data but the table. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "src/body/body.h"
 #include "src/body/vec.h"
 #include "tests/support/body_scaled.h"
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tests/support/transforms.h"
 
 static uint32_t seed;
@@ -49,9 +45,8 @@ static void in_frame_of(const grobo_transform *frame, const grobo_transform *at,
     mat_t_mul(local->r, frame->r, at->r);
 }
 
-static void gr001_is_a_model(void **state)
+TEST(gr001_is_a_model)
 {
-    (void)state;
     assert_int_equal(grobo_body_model_check(&grobo_gr001_body), 0);
     assert_int_equal(grobo_gr001_body.n_joints, grobo_gr001_model.n_joints);
     for (int i = 1; i < grobo_gr001_body.n_links; i++) {
@@ -61,11 +56,10 @@ static void gr001_is_a_model(void **state)
     }
 }
 
-static void broken_models_are_refused(void **state)
+TEST(broken_models_are_refused)
 {
     struct body_scaled scaled;
 
-    (void)state;
     assert_int_equal(grobo_body_model_check(NULL), GROBO_ERR_ARG);
     body_scaled_init(&scaled, 1, 1);
     scaled.links[3].parent = 3;
@@ -92,13 +86,12 @@ static void broken_models_are_refused(void **state)
 
 /* Without angles a link stands at the sum of the offsets above it, and the centre of mass is the
  * sum of what is written in the table. */
-static void straight_pose_is_a_sum_of_offsets(void **state)
+TEST(straight_pose_is_a_sum_of_offsets)
 {
     const double q[20] = {0};
     grobo_transform links[21];
     double sum[3] = {0}, com[3], mass = 0;
 
-    (void)state;
     grobo_body_forward(&grobo_gr001_body, NULL, q, links);
     for (int i = 0; i < 21; i++) {
         double at[3] = {0};
@@ -124,12 +117,11 @@ static void straight_pose_is_a_sum_of_offsets(void **state)
 }
 
 /* A quarter turn of one joint, by hand: the chest bows forward about -Y. */
-static void one_joint_turns_what_hangs_on_it(void **state)
+TEST(one_joint_turns_what_hangs_on_it)
 {
     double q[20] = {0};
     grobo_transform links[21];
 
-    (void)state;
     q[12] = -BODY_PI / 2;
     grobo_body_forward(&grobo_gr001_body, NULL, q, links);
     /* the neck, (-0.012, 0, 0.056) above the chest, comes to (0.056, 0, 0.012) */
@@ -139,11 +131,10 @@ static void one_joint_turns_what_hangs_on_it(void **state)
 }
 
 /* Momentum against differences of positions: P = m dc/dt, L = sum c x m dc/dt + R I R^T w. */
-static void momentum_is_what_moves(void **state)
+TEST(momentum_is_what_moves)
 {
     const double dt = 1e-6;
 
-    (void)state;
     seed = 1;
     for (int round = 0; round < 20; round++) {
         const double linear[3] = {random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)};
@@ -200,7 +191,7 @@ static void momentum_is_what_moves(void **state)
 
 /* A body at rest has its ZMP below its centre of mass; one pushed forward, behind it by
  * c_z a / g, as a point mass on a massless leg has. */
-static void zmp_of_rest_and_of_a_push(void **state)
+TEST(zmp_of_rest_and_of_a_push)
 {
     const double com[3] = {0.01, -0.02, 0.15}, mass = 0.9, push = 0.7;
     const grobo_momentum rest = {{0, 0, 0}, {0, 0, 0}};
@@ -208,7 +199,6 @@ static void zmp_of_rest_and_of_a_push(void **state)
                                    {0, com[2] * mass * push, -com[1] * mass * push}};
     double zmp[3] = {0, 0, 0};
 
-    (void)state;
     grobo_body_zmp(com, mass, &rest, zmp);
     assert_true(fabs(zmp[0] - com[0]) < 1e-15 && fabs(zmp[1] - com[1]) < 1e-15);
     grobo_body_zmp(com, mass, &pushed, zmp);
@@ -249,26 +239,23 @@ static void hit_targets(const grobo_body_model *model, double tolerance_m)
     }
 }
 
-static void exact_ik_hits_the_target(void **state)
+TEST(exact_ik_hits_the_target)
 {
-    (void)state;
     hit_targets(&grobo_gr001_body, 1e-9);
 }
 
-static void exact_ik_hits_the_target_of_a_larger_robot(void **state)
+TEST(exact_ik_hits_the_target_of_a_larger_robot)
 {
     struct body_scaled scaled;
 
-    (void)state;
     body_scaled_init(&scaled, 3.7, 40);
     assert_int_equal(grobo_body_model_check(&scaled.model), 0);
     hit_targets(&scaled.model, 3.7e-9);
 }
 
 /* With a foot no steeper than a walker's the answer is the pose itself, not another one. */
-static void exact_ik_finds_the_pose_again(void **state)
+TEST(exact_ik_finds_the_pose_again)
 {
-    (void)state;
     seed = 3;
     for (int round = 0; round < 2000; round++) {
         double q[20] = {0}, answer[6];
@@ -295,9 +282,8 @@ static void exact_ik_finds_the_pose_again(void **state)
 }
 
 /* Beside a straight knee, where a small error of the ankle's place is a large one of the knee. */
-static void exact_ik_is_exact_beside_a_straight_knee(void **state)
+TEST(exact_ik_is_exact_beside_a_straight_knee)
 {
-    (void)state;
     for (double knee = 0.1; knee > 1e-5; knee *= 0.7) {
         for (int foot = 0; foot < 2; foot++) {
             const double side = foot == 0 ? 1 : -1;
@@ -322,13 +308,12 @@ static void exact_ik_is_exact_beside_a_straight_knee(void **state)
     }
 }
 
-static void far_targets_are_unreachable(void **state)
+TEST(far_targets_are_unreachable)
 {
     const double q[20] = {0};
     double answer[6] = {9, 9, 9, 9, 9, 9};
     grobo_transform links[21], target;
 
-    (void)state;
     grobo_body_forward(&grobo_gr001_body, NULL, q, links);
     in_frame_of(&links[0], &links[6], &target);
     assert_int_equal(grobo_body_leg_exact(&grobo_gr001_body, 0, &target, answer), 0);
@@ -344,9 +329,8 @@ static void far_targets_are_unreachable(void **state)
 }
 
 /* The numeric loop comes to the exact answer but for its tolerance: 1.4e-3 rad of attitude. */
-static void numeric_ik_comes_near_the_exact_answer(void **state)
+TEST(numeric_ik_comes_near_the_exact_answer)
 {
-    (void)state;
     seed = 4;
     for (int round = 0; round < 200; round++) {
         double want[20] = {0}, q[6];
@@ -377,11 +361,10 @@ static void numeric_ik_comes_near_the_exact_answer(void **state)
 }
 
 /* The Jacobian against differences, walked down from the waist and up from the foot. */
-static void jacobian_is_the_derivative(void **state)
+TEST(jacobian_is_the_derivative)
 {
     const double step = 1e-6;
 
-    (void)state;
     seed = 5;
     for (int round = 0; round < 20; round++) {
         double q[20];
@@ -416,9 +399,8 @@ static void jacobian_is_the_derivative(void **state)
     }
 }
 
-static void roll_pitch_yaw_come_back(void **state)
+TEST(roll_pitch_yaw_come_back)
 {
-    (void)state;
     seed = 6;
     for (int round = 0; round < 1000; round++) {
         const double rpy[3] = {random_in(-3.1, 3.1), random_in(-1.5, 1.5), random_in(-3.1, 3.1)};
@@ -449,12 +431,11 @@ static void roll_pitch_yaw_come_back(void **state)
 }
 
 /* w(R) is the rotation vector, and nothing below 1.4e-3 rad. */
-static void omega_has_a_dead_zone(void **state)
+TEST(omega_has_a_dead_zone)
 {
     const double axis[3] = {0.6, 0, -0.8};
     double r[9], w[3];
 
-    (void)state;
     mat_axis_angle(r, axis, 0.3);
     grobo_i_omega(w, r);
     assert_true(fabs(w[0] - 0.18) < 1e-12 && fabs(w[1]) < 1e-12 && fabs(w[2] + 0.24) < 1e-12);
@@ -464,27 +445,4 @@ static void omega_has_a_dead_zone(void **state)
     mat_axis_angle(r, axis, 1.41e-3);
     grobo_i_omega(w, r);
     assert_true(w[0] == 0 && w[1] == 0 && w[2] == 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gr001_is_a_model),
-        cmocka_unit_test(broken_models_are_refused),
-        cmocka_unit_test(straight_pose_is_a_sum_of_offsets),
-        cmocka_unit_test(one_joint_turns_what_hangs_on_it),
-        cmocka_unit_test(momentum_is_what_moves),
-        cmocka_unit_test(zmp_of_rest_and_of_a_push),
-        cmocka_unit_test(exact_ik_hits_the_target),
-        cmocka_unit_test(exact_ik_hits_the_target_of_a_larger_robot),
-        cmocka_unit_test(exact_ik_finds_the_pose_again),
-        cmocka_unit_test(exact_ik_is_exact_beside_a_straight_knee),
-        cmocka_unit_test(far_targets_are_unreachable),
-        cmocka_unit_test(numeric_ik_comes_near_the_exact_answer),
-        cmocka_unit_test(jacobian_is_the_derivative),
-        cmocka_unit_test(roll_pitch_yaw_come_back),
-        cmocka_unit_test(omega_has_a_dead_zone),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

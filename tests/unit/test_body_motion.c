@@ -1,20 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Key poses to frames, from first principles: a step made here, no data. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "src/body/body.h"
 #include "src/body/vec.h"
 #include "tests/support/body_scaled.h"
 #include "tests/support/body_script.h"
+#include "tests/support/test.h"
 #include "tests/support/transforms.h"
 
 /* Where a foot is in a frame that was solved. */
@@ -27,13 +23,12 @@ static void foot_of(const grobo_body_model *model, const double *q_rad,
     *foot = links[link];
 }
 
-static void a_foot_without_new_keys_does_not_move(void **state)
+TEST(a_foot_without_new_keys_does_not_move)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     struct script script;
     struct run run;
 
-    (void)state;
     script_step(&script);
     run_start(&run, &grobo_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame_count(run.body), 201);
@@ -117,20 +112,19 @@ static void mirrored(const grobo_body_options *options)
     run_finish(&opposite);
 }
 
-static void mirrored_input_gives_mirrored_output(void **state)
+TEST(mirrored_input_gives_mirrored_output)
 {
     const grobo_body_options exact = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 50};
     const grobo_body_options numeric = {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_NUMERIC,
                                         .step = GROBO_BODY_STEP_STEALTHY,
                                         .zmp = GROBO_BODY_ZMP_AUTO, .rate_hz = 50};
 
-    (void)state;
     mirrored(&exact);
     mirrored(&numeric);
 }
 
 /* Nothing but the table names GR001: three times as large, the same angles. */
-static void a_larger_robot_does_the_same(void **state)
+TEST(a_larger_robot_does_the_same)
 {
     /* at keys: between them a change below 1e-3 m is none, which does not scale */
     const int frames[] = {0, 30, 50, 70, 100};
@@ -139,7 +133,6 @@ static void a_larger_robot_does_the_same(void **state)
     struct script script, large;
     struct run run, other;
 
-    (void)state;
     body_scaled_init(&scaled, 3, 20);
     script_step(&script);
     script_step(&large);
@@ -166,14 +159,13 @@ static void a_larger_robot_does_the_same(void **state)
 }
 
 /* A waist too high for the legs: they keep their own keys' angles, and it is reported. */
-static void unreachable_targets_are_told(void **state)
+TEST(unreachable_targets_are_told)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 20};
     struct script script;
     struct run run;
     int missed = 0;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     for (int j = 0; j < 12; j++) {
@@ -201,7 +193,7 @@ static void unreachable_targets_are_told(void **state)
 }
 
 /* With a foot as base the waist is solved from it, and the other foot from the waist. */
-static void a_foot_can_be_the_base(void **state)
+TEST(a_foot_can_be_the_base)
 {
     for (int ik = GROBO_BODY_IK_EXACT; ik <= GROBO_BODY_IK_NUMERIC; ik++) {
         const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .ik = (grobo_body_ik)ik,
@@ -209,7 +201,6 @@ static void a_foot_can_be_the_base(void **state)
         struct script script, from_foot;
         struct run run, other;
 
-        (void)state;
         script_step(&script);
         script_step(&from_foot);
         for (size_t i = 0; i < script.n_keys; i++) {
@@ -234,7 +225,7 @@ static void a_foot_can_be_the_base(void **state)
 }
 
 /* Without a waist target the waist follows from the base foot. */
-static void the_waist_is_told_without_a_target(void **state)
+TEST(the_waist_is_told_without_a_target)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 50};
     struct script script;
@@ -243,7 +234,6 @@ static void the_waist_is_told_without_a_target(void **state)
     grobo_body_report report;
     grobo_transform foot;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_joint(&script, 2, 0.4);
@@ -259,7 +249,7 @@ static void the_waist_is_told_without_a_target(void **state)
 }
 
 /* What waits for its first key is at that key's place: a foot stands there. */
-static void a_foot_stands_before_its_first_key(void **state)
+TEST(a_foot_stands_before_its_first_key)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 10};
     struct script script;
@@ -267,7 +257,6 @@ static void a_foot_stands_before_its_first_key(void **state)
     double q[JOINTS];
     grobo_body_report report;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0.5);
     script_stand(&script, 0, 0, 0.145);
@@ -283,7 +272,7 @@ static void a_foot_stands_before_its_first_key(void **state)
 
 /* A slave foot follows the joints' own keys while both its keys are slaves, and comes to its
  * target where one is not. */
-static void a_slave_foot_follows_its_joints(void **state)
+TEST(a_slave_foot_follows_its_joints)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 50};
     struct script script;
@@ -292,7 +281,6 @@ static void a_slave_foot_follows_its_joints(void **state)
     grobo_body_report report;
     grobo_transform foot;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     for (int i = 0; i < 3; i++) {
         script_key(&script, 0.5 * i);
@@ -319,7 +307,7 @@ static void a_slave_foot_follows_its_joints(void **state)
 
 /* The stealthy step: in the lowest 5 mm the foot goes straight up and comes straight down, and it
  * touches down slower than the cubic alone would. */
-static void a_stealthy_step_does_not_slide(void **state)
+TEST(a_stealthy_step_does_not_slide)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .step = GROBO_BODY_STEP_STEALTHY,
                                         .rate_hz = 1000};
@@ -327,7 +315,6 @@ static void a_stealthy_step_does_not_slide(void **state)
     struct run run;
     double top_m = 0, before_m = 0, fastest_m_s = 0;
 
-    (void)state;
     script_step(&script);
     run_start(&run, &grobo_gr001_body, &script, &options);
     for (int i = 0; i <= 2000; i++) {
@@ -357,7 +344,7 @@ static void a_stealthy_step_does_not_slide(void **state)
 }
 
 /* The desired ZMP lies under the standing foot while the other swings. */
-static void automatic_zmp_is_under_the_standing_foot(void **state)
+TEST(automatic_zmp_is_under_the_standing_foot)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .zmp = GROBO_BODY_ZMP_AUTO,
                                         .rate_hz = 50};
@@ -366,7 +353,6 @@ static void automatic_zmp_is_under_the_standing_foot(void **state)
     double q[JOINTS];
     grobo_body_report report;
 
-    (void)state;
     script_step(&script);
     run_start(&run, &grobo_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame(run.body, 0, q, &report), 0);
@@ -387,14 +373,13 @@ static void automatic_zmp_is_under_the_standing_foot(void **state)
 
 /* Angles of joints alone follow the rules of every key-pose player: stationary where asked, held
  * where the transition is short, constant outside. */
-static void joints_keep_their_own_keys(void **state)
+TEST(joints_keep_their_own_keys)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     struct script script;
     struct run run;
     double q[JOINTS];
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0.5);
     script_joint(&script, 13, 0.1);
@@ -422,7 +407,7 @@ static void joints_keep_their_own_keys(void **state)
 }
 
 /* A frame is the same whichever was asked for before it. */
-static void frames_come_in_any_order(void **state)
+TEST(frames_come_in_any_order)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .step = GROBO_BODY_STEP_STEALTHY,
                                         .zmp = GROBO_BODY_ZMP_AUTO,
@@ -431,7 +416,6 @@ static void frames_come_in_any_order(void **state)
     struct run run;
     double forward[151][JOINTS], q[JOINTS];
 
-    (void)state;
     script_step(&script);
     run_start(&run, &grobo_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame_count(run.body), 151);
@@ -449,7 +433,7 @@ static void frames_come_in_any_order(void **state)
     run_finish(&run);
 }
 
-static void ik_can_be_off(void **state)
+TEST(ik_can_be_off)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .ik = GROBO_BODY_IK_OFF,
                                         .rate_hz = 50};
@@ -458,7 +442,6 @@ static void ik_can_be_off(void **state)
     double q[JOINTS];
     grobo_body_report report;
 
-    (void)state;
     script_step(&script);
     run_start(&run, &grobo_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame(run.body, 50, q, &report), 0);
@@ -470,7 +453,7 @@ static void ik_can_be_off(void **state)
     run_finish(&run);
 }
 
-static void bad_setups_are_refused(void **state)
+TEST(bad_setups_are_refused)
 {
     struct script script;
     grobo_body_setup setup = {&grobo_gr001_body, script.keys, 0, {.rate_hz = 50}};
@@ -478,7 +461,6 @@ static void bad_setups_are_refused(void **state)
     size_t bytes = 77;
     char *workspace;
 
-    (void)state;
     script_step(&script);
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), GROBO_ERR_ARG);
     setup.n_keys = script.n_keys;
@@ -532,13 +514,12 @@ static unsigned dirty_the_stack(void)
 }
 
 /* Seen once under ThreadSanitizer: GROBO_ERR_CAP out of what was on the stack. */
-static void what_was_on_the_stack_does_not_matter(void **state)
+TEST(what_was_on_the_stack_does_not_matter)
 {
     struct script script;
     grobo_body *body = NULL;
     size_t bytes = 0;
 
-    (void)state;
     script_step(&script);
     grobo_body_setup setup = {&grobo_gr001_body, script.keys, script.n_keys, {.rate_hz = 50}};
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), 0);
@@ -546,27 +527,4 @@ static void what_was_on_the_stack_does_not_matter(void **state)
     assert_true(dirty_the_stack() > 0);
     assert_int_equal(grobo_body_init(&setup, workspace, bytes, &body), 0);
     free(workspace);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_foot_without_new_keys_does_not_move),
-        cmocka_unit_test(mirrored_input_gives_mirrored_output),
-        cmocka_unit_test(a_larger_robot_does_the_same),
-        cmocka_unit_test(unreachable_targets_are_told),
-        cmocka_unit_test(a_foot_can_be_the_base),
-        cmocka_unit_test(the_waist_is_told_without_a_target),
-        cmocka_unit_test(a_foot_stands_before_its_first_key),
-        cmocka_unit_test(a_slave_foot_follows_its_joints),
-        cmocka_unit_test(a_stealthy_step_does_not_slide),
-        cmocka_unit_test(automatic_zmp_is_under_the_standing_foot),
-        cmocka_unit_test(joints_keep_their_own_keys),
-        cmocka_unit_test(frames_come_in_any_order),
-        cmocka_unit_test(ik_can_be_off),
-        cmocka_unit_test(bad_setups_are_refused),
-        cmocka_unit_test(what_was_on_the_stack_does_not_matter),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The motions this project brings along stand by its own lint: within limits and speeds, no foot
  * slips, and the ZMP well inside the soles, however they are played. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include <grobo/body_motion.h>
 #include <grobo/motion_io.h>
+
+#include "tests/support/test.h"
 
 #define MARGIN_M 0.015
 
@@ -44,24 +40,12 @@ static void stands(const char *path)
     grobo_motion_free(motion);
 }
 
-static void a_step_in_place_stands(void **state)
+TEST(a_step_in_place_stands)
 {
-    (void)state;
     stands("motions/step.pseq");
 }
 
-static void a_bow_with_the_knees_stands(void **state)
+TEST(a_bow_with_the_knees_stands)
 {
-    (void)state;
     stands("motions/kneebow.pseq");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_step_in_place_stands),
-        cmocka_unit_test(a_bow_with_the_knees_stands),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,23 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* A pose on the ground, of which only the angles are known. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/body.h>
+
+#include "tests/support/test.h"
 
 static const grobo_body_model *const gr001 = &grobo_gr001_body;
 
 static double initial_rad[GROBO_JOINTS_MAX];
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     for (int j = 0; j < gr001->n_joints; j++) {
         initial_rad[j] = grobo_gr001_model.joints[j].init_rad;
     }
@@ -29,10 +24,9 @@ static int joint(const char *name)
     return grobo_model_find_joint(&grobo_gr001_model, name, strlen(name));
 }
 
-static void stands_on_both_feet(void **state)
+TEST(stands_on_both_feet)
 {
     grobo_body_stand s;
-    (void)state;
     assert_int_equal(grobo_body_stand_pose(gr001, initial_rad, NULL, &s), 0);
     assert_true(s.standing[0] && s.standing[1]);
     assert_int_equal(s.n_support, 4); /* two soles side by side */
@@ -46,10 +40,9 @@ static void stands_on_both_feet(void **state)
 }
 
 /* The lifted foot is in the air, whichever it is; what carries is the sole of the other. */
-static void stands_on_the_lower_foot(void **state)
+TEST(stands_on_the_lower_foot)
 {
     static const char *const knees[] = {"R_KNEE_P", "L_KNEE_P"};
-    (void)state;
     for (int lifted = 0; lifted < 2; lifted++) {
         double q_rad[GROBO_JOINTS_MAX];
         grobo_body_stand s;
@@ -68,12 +61,11 @@ static void stands_on_the_lower_foot(void **state)
 }
 
 /* A leaning trunk leans, the foot does not: its attitude in the world is the ground's. */
-static void the_foot_lies_flat(void **state)
+TEST(the_foot_lies_flat)
 {
     double q_rad[GROBO_JOINTS_MAX];
     grobo_body_stand s;
     grobo_transform links[GROBO_BODY_LINKS_MAX];
-    (void)state;
     memcpy(q_rad, initial_rad, sizeof q_rad);
     q_rad[joint("R_ANKLE_P")] += 0.2;
     q_rad[joint("L_ANKLE_P")] -= 0.2;
@@ -84,11 +76,10 @@ static void the_foot_lies_flat(void **state)
     assert_true(fabs(s.root.r[2]) > 0.1); /* the trunk leans forward or back */
 }
 
-static void a_root_that_is_given_stays(void **state)
+TEST(a_root_that_is_given_stays)
 {
     const grobo_transform root = {{0.1, 0.2, 0.5}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     grobo_body_stand s;
-    (void)state;
     assert_int_equal(grobo_body_stand_pose(gr001, initial_rad, &root, &s), 0);
     assert_true(s.root.p_m[0] == 0.1 && s.root.p_m[2] == 0.5);
     assert_false(s.standing[0] || s.standing[1]);
@@ -96,11 +87,10 @@ static void a_root_that_is_given_stays(void **state)
     assert_true(grobo_body_stand_margin(&s, s.com_m) == -INFINITY);
 }
 
-static void a_number_that_is_none_is_refused(void **state)
+TEST(a_number_that_is_none_is_refused)
 {
     double q_rad[GROBO_JOINTS_MAX];
     grobo_body_stand s = {.foot = 7};
-    (void)state;
     memcpy(q_rad, initial_rad, sizeof q_rad);
     q_rad[3] = NAN;
     assert_int_equal(grobo_body_stand_pose(gr001, q_rad, NULL, &s), GROBO_ERR_NAN);
@@ -108,14 +98,13 @@ static void a_number_that_is_none_is_refused(void **state)
 }
 
 /* At rest the ZMP lies below the centre of mass; a body pushed forward has it behind. */
-static void the_zmp_is_that_of_the_motion(void **state)
+TEST(the_zmp_is_that_of_the_motion)
 {
     const double *const q_rad[3] = {initial_rad, initial_rad, initial_rad};
     const double dt_s = 0.02, push_m_s2 = 2;
     grobo_transform root[3];
     grobo_body_stand s;
     double still_m[3], pushed_m[3];
-    (void)state;
     assert_int_equal(grobo_body_stand_pose(gr001, initial_rad, NULL, &s), 0);
     for (int i = 0; i < 3; i++) {
         root[i] = s.root;
@@ -130,15 +119,4 @@ static void the_zmp_is_that_of_the_motion(void **state)
     assert_int_equal(grobo_body_zmp_of_poses(gr001, root, q_rad, 0, pushed_m), GROBO_ERR_ARG);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stands_on_both_feet),
-        cmocka_unit_test(stands_on_the_lower_foot),
-        cmocka_unit_test(the_foot_lies_flat),
-        cmocka_unit_test(a_root_that_is_given_stays),
-        cmocka_unit_test(a_number_that_is_none_is_refused),
-        cmocka_unit_test(the_zmp_is_that_of_the_motion),
-    };
-    return cmocka_run_group_tests(tests, set_up, NULL);
-}
+TESTS_BETWEEN(set_up, NULL)

@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* What is made of an author's keys before anything is solved: curves, holds, steps, ZMP. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "src/body/body.h"
 #include "src/body/vec.h"
 #include "tests/support/body_script.h"
+#include "tests/support/test.h"
 #include "tests/support/transforms.h"
 
 #define NEAR 1e-12
@@ -48,11 +44,10 @@ static double at(const struct shelf *shelf, double t_s)
     return v;
 }
 
-static void slopes_are_mean_secants(void **state)
+TEST(slopes_are_mean_secants)
 {
     struct shelf shelf;
 
-    (void)state;
     open_shelf(&shelf, 1);
     put(&shelf, 0, 0.098);
     put(&shelf, 1, 0.1);
@@ -72,11 +67,10 @@ static void slopes_are_mean_secants(void **state)
     assert_true(fabs(at(&shelf, -1) - 0.098) < NEAR && fabs(at(&shelf, 9) - 0.1) < NEAR);
 }
 
-static void close_keys_jump(void **state)
+TEST(close_keys_jump)
 {
     struct shelf shelf;
 
-    (void)state;
     open_shelf(&shelf, 1);
     put(&shelf, 0, 0);
     put(&shelf, 1, 0.1);
@@ -88,11 +82,10 @@ static void close_keys_jump(void **state)
     assert_true(isfinite(at(&shelf, 1.5)) && at(&shelf, 1.5) > 0.7 && at(&shelf, 1.5) < 0.9);
 }
 
-static void a_hold_repeats_a_key_and_levels_both(void **state)
+TEST(a_hold_repeats_a_key_and_levels_both)
 {
     struct shelf shelf;
 
-    (void)state;
     open_shelf(&shelf, 1);
     put(&shelf, 0, 0);
     put(&shelf, 1, 0.2);
@@ -114,11 +107,10 @@ static void a_hold_repeats_a_key_and_levels_both(void **state)
     assert_true(fabs(at(&shelf, 2.3) - 0.2) < NEAR);
 }
 
-static void a_full_track_says_so(void **state)
+TEST(a_full_track_says_so)
 {
     struct shelf shelf;
 
-    (void)state;
     open_shelf(&shelf, 1);
     for (int i = 0; i < 16; i++) {
         put(&shelf, i, i);
@@ -130,14 +122,13 @@ static void a_full_track_says_so(void **state)
 }
 
 /* Angles take the short way round, positions do not. */
-static void angles_are_unwrapped(void **state)
+TEST(angles_are_unwrapped)
 {
     const double a[6] = {9, 0, 0, 3, 0, -3}, b[6] = {-9, 0, 0, -3, 0, 3},
                  c[6] = {9, 0, 0, -2, 0, 2};
     struct shelf shelf;
     double v[6];
 
-    (void)state;
     open_shelf(&shelf, 6);
     grobo_i_track_add(&shelf.track, 0, a, 0);
     grobo_i_track_add(&shelf.track, 1, b, 0);
@@ -152,7 +143,7 @@ static void angles_are_unwrapped(void **state)
 
 /* ---- which link the tree is walked from ---- */
 
-static void the_base_is_the_latest_that_says_so(void **state)
+TEST(the_base_is_the_latest_that_says_so)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 10};
     struct script script;
@@ -160,7 +151,6 @@ static void the_base_is_the_latest_that_says_so(void **state)
     grobo_body_report first, later;
     double q[JOINTS];
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_joint(&script, 2, 0.3);
@@ -228,9 +218,8 @@ static double smooth(double r)
     return r * r * (3 - 2 * r);
 }
 
-static void slave_feet_are_blended(void **state)
+TEST(slave_feet_are_blended)
 {
-    (void)state;
     assert_true(fabs(own_weight(0, 0.25)) < NEAR);
     assert_true(fabs(own_weight(P_SLAVE | N_SLAVE, 0.25) - 1) < NEAR); /* ignored: own keys */
     assert_true(fabs(own_weight(P_SLAVE, 0.25) - smooth(0.75)) < NEAR);
@@ -284,13 +273,12 @@ static const grobo_body_options automatic = {GROBO_BODY_OPTIONS_INIT,
 
 /* The author's ZMP comes too late before the lift, and too early after the landing: the foot
  * rests on the ground the longer. */
-static void feet_wait_for_the_zmp(void **state)
+TEST(feet_wait_for_the_zmp)
 {
     struct script script;
     struct run run;
     unsigned flags = 0;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_stand(&script, 0, 0, 0.145);
@@ -322,13 +310,12 @@ static void feet_wait_for_the_zmp(void **state)
 /* The first ZMP key of the author comes with the first key of the swing foot in the air. The foot
  * rests until half the way there. The key for the support is inserted behind the author's, which
  * is later: until that one the ZMP stays at its place, then it jumps to the sole. */
-static void a_first_zmp_key_behind_the_lift(void **state)
+TEST(a_first_zmp_key_behind_the_lift)
 {
     struct script script;
     struct run run;
     unsigned flags = 0;
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_stand(&script, 0, 0, 0.145);
@@ -372,11 +359,10 @@ static void same_foot_twice(double stand_s, const grobo_body_options *options, s
     run_start(run, &grobo_gr001_body, &script, options);
 }
 
-static void the_zmp_visits_the_middle(void **state)
+TEST(the_zmp_visits_the_middle)
 {
     struct run run;
 
-    (void)state;
     same_foot_twice(0.3, &automatic, &run); /* more than 0.2: it stays there from 0.1 to 0.1 */
     zmp_is(&run, 1.6, SOLE_X, SOLE_Y);
     zmp_is(&run, 1.7, SOLE_X, 0);
@@ -396,13 +382,12 @@ static void the_zmp_visits_the_middle(void **state)
     run_finish(&run);
 }
 
-static void an_author_s_zmp_keys_are_held(void **state)
+TEST(an_author_s_zmp_keys_are_held)
 {
     struct script script;
     struct run run;
     unsigned flags = 0;
 
-    (void)state;
     script_step(&script);
     script.keys[0].has_zmp = true;
     script.keys[0].zmp_m[0] = SOLE_X;
@@ -418,7 +403,7 @@ static void an_author_s_zmp_keys_are_held(void **state)
 
 /* ---- a waist shifted beyond reach ---- */
 
-static void a_leg_gives_up_the_least_of_a_shift(void **state)
+TEST(a_leg_gives_up_the_least_of_a_shift)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const double shift[2] = {0.06, 0.08};
@@ -428,7 +413,6 @@ static void a_leg_gives_up_the_least_of_a_shift(void **state)
     grobo_transform links[21], nearer;
     double q[6], given_up[2];
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_stand(&script, 0, 0, 0.148);
@@ -454,7 +438,7 @@ static void a_leg_gives_up_the_least_of_a_shift(void **state)
 }
 
 /* A foot between full contact and its joints' own keys follows the shift by its blending ratio. */
-static void a_slave_foot_follows_the_shifted_waist(void **state)
+TEST(a_slave_foot_follows_the_shifted_waist)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const double shift[2] = {0.004, 0.006};
@@ -463,7 +447,6 @@ static void a_slave_foot_follows_the_shifted_waist(void **state)
     grobo_body_report report;
     grobo_transform links[21];
 
-    (void)state;
     memset(&script, 0, sizeof script);
     for (int i = 0; i < 2; i++) {
         script_key(&script, i);
@@ -488,7 +471,7 @@ static void a_slave_foot_follows_the_shifted_waist(void **state)
 
 /* With a foot as base the waist is the goal. Where it is shifted beyond reach the leg stays as its
  * joints' keys have it, and the waist is where that leg puts it; the base foot does not move. */
-static void a_waist_shifted_beyond_its_base_foot(void **state)
+TEST(a_waist_shifted_beyond_its_base_foot)
 {
     const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT, .rate_hz = 100};
     const double shift[2] = {0.06, 0.08};
@@ -497,7 +480,6 @@ static void a_waist_shifted_beyond_its_base_foot(void **state)
     grobo_body_report report;
     grobo_transform links[21];
 
-    (void)state;
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     for (int j = 0; j < 12; j++) {
@@ -515,26 +497,4 @@ static void a_waist_shifted_beyond_its_base_foot(void **state)
     grobo_body_forward(&grobo_gr001_body, &report.root, run.body->q_rad, links);
     assert_true(transforms_apart(&links[LEFT], &script.targets[0][2].at) < NEAR);
     run_finish(&run);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slopes_are_mean_secants),
-        cmocka_unit_test(close_keys_jump),
-        cmocka_unit_test(a_hold_repeats_a_key_and_levels_both),
-        cmocka_unit_test(a_full_track_says_so),
-        cmocka_unit_test(angles_are_unwrapped),
-        cmocka_unit_test(the_base_is_the_latest_that_says_so),
-        cmocka_unit_test(slave_feet_are_blended),
-        cmocka_unit_test(feet_wait_for_the_zmp),
-        cmocka_unit_test(a_first_zmp_key_behind_the_lift),
-        cmocka_unit_test(the_zmp_visits_the_middle),
-        cmocka_unit_test(an_author_s_zmp_keys_are_held),
-        cmocka_unit_test(a_leg_gives_up_the_least_of_a_shift),
-        cmocka_unit_test(a_slave_foot_follows_the_shifted_waist),
-        cmocka_unit_test(a_waist_shifted_beyond_its_base_foot),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

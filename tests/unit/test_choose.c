@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Which ports `grctl -d auto` tries, in which order, and what it only names. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/conn/choose.h"
 
 static choice all;
@@ -38,9 +33,8 @@ static void expect(const char *first, const char *second, const char *third)
     assert_null(all.scan[3]);
 }
 
-static void the_port_used_last_comes_first(void **state)
+TEST(the_port_used_last_comes_first)
 {
-    (void)state;
     take_three();
     choose_end(&all, "");
     expect("/dev/ttyUSB0", "/dev/ttyUSB1", "/dev/ttyUSB2");
@@ -55,12 +49,11 @@ static void the_port_used_last_comes_first(void **state)
     expect("/dev/ttyUSB0", "/dev/ttyUSB1", "/dev/ttyUSB2");
 }
 
-static void uarts_of_the_board_are_named_but_not_tried(void **state)
+TEST(uarts_of_the_board_are_named_but_not_tried)
 {
     grobo_port_info console = {.path = "/dev/ttyAMA10", .usb_vendor = -1, .console = true};
     grobo_port_info bluetooth = {.path = "/dev/ttyAMA0", .usb_vendor = -1, .bluetooth = true};
 
-    (void)state;
     choose_begin(&all);
     take("/dev/ttyTHS1", "", -1, GROBO_OK);
     (void)choose_take(&all, &console);
@@ -71,11 +64,10 @@ static void uarts_of_the_board_are_named_but_not_tried(void **state)
     assert_string_equal(all.uart[0].path, "/dev/ttyTHS1");
 }
 
-static void blocked_adapters_are_kept_with_their_fix(void **state)
+TEST(blocked_adapters_are_kept_with_their_fix)
 {
     char fix[256];
 
-    (void)state;
     choose_begin(&all);
     take("/dev/ttyUSB0", "", 0x403, GROBO_ERR_PERM);
     take("/dev/ttyACM0", "", -1, GROBO_ERR_BUSY); /* without sysfs: an adapter by its name */
@@ -88,15 +80,4 @@ static void blocked_adapters_are_kept_with_their_fix(void **state)
     assert_string_equal(fix, "sudo usermod -aG dialout $USER, and log in again");
     choose_fix(&all.blocked[1], fix, sizeof fix);
     assert_string_equal(fix, "end minicom (pid 42)");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_port_used_last_comes_first),
-        cmocka_unit_test(uarts_of_the_board_are_named_but_not_tried),
-        cmocka_unit_test(blocked_adapters_are_kept_with_their_fix),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What grctl decode makes of the frames of other families: the vectors of the reference, each
  * explained, broken ones called broken. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 #include "tests/support/wire_vectors.h"
 #include "tools/grctl/decode/words.h"
@@ -133,33 +129,28 @@ static void check_ics(const wire_vector *v)
     check(&dialect_ics, v);
 }
 
-static void dynamixel2_is_explained(void **state)
+TEST(dynamixel2_is_explained)
 {
-    (void)state;
     wire_vectors_check("dynamixel2.json", check_dxl2, 100);
 }
 
-static void dynamixel1_is_explained(void **state)
+TEST(dynamixel1_is_explained)
 {
-    (void)state;
     wire_vectors_check("dynamixel1.json", check_dxl1, 90);
 }
 
-static void feetech_is_explained(void **state)
+TEST(feetech_is_explained)
 {
-    (void)state;
     wire_vectors_check("feetech.json", check_feetech, 90);
 }
 
-static void lx16a_is_explained(void **state)
+TEST(lx16a_is_explained)
 {
-    (void)state;
     wire_vectors_check("lx16a.json", check_lx16a, 60);
 }
 
-static void ics_is_explained(void **state)
+TEST(ics_is_explained)
 {
-    (void)state;
     wire_vectors_check("ics.json", check_ics, 60);
 }
 
@@ -190,20 +181,9 @@ static void garble(const wire_vector *v)
     }
 }
 
-static void whatever_comes_is_told(void **state)
+TEST(whatever_comes_is_told)
 {
-    (void)state;
     wire_vectors_check("dynamixel2.json", garble, 100);
     wire_vectors_check("feetech.json", garble, 90);
     wire_vectors_check("ics.json", garble, 60);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(dynamixel2_is_explained), cmocka_unit_test(dynamixel1_is_explained),
-        cmocka_unit_test(feetech_is_explained),    cmocka_unit_test(lx16a_is_explained),
-        cmocka_unit_test(ics_is_explained),        cmocka_unit_test(whatever_comes_is_told),
-    };
-    return cmocka_run_group_tests_name("dialects", tests, NULL, NULL);
 }

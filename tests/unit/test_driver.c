@@ -1,19 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Driver tables: the frames they build, what they read, what is wrong with a table. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/driver.h>
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
 #include <grobo/sequencer.h>
+
+#include "tests/support/test.h"
 
 static grobo_exchange exchange;
 
@@ -41,9 +38,8 @@ static grobo_target zero_target(int64_t time_us)
     return target;
 }
 
-static void check_asks_the_board_or_the_servos(void **state)
+TEST(check_asks_the_board_or_the_servos)
 {
-    (void)state;
     const grobo_driver *board = fresh(GROBO_WIRING_BOARD);
     assert_int_equal(board->check(board, NULL, 0, &exchange), 1);
     expect_frame("\x41\x00", 2);
@@ -56,9 +52,8 @@ static void check_asks_the_board_or_the_servos(void **state)
     assert_int_equal(bus->check(bus, NULL, 20, &exchange), 0);
 }
 
-static void all_joints_go_in_motor_order(void **state)
+TEST(all_joints_go_in_motor_order)
 {
-    (void)state;
     const grobo_driver *driver = fresh(GROBO_WIRING_BOARD);
     grobo_target target = zero_target(1000000);
     assert_int_equal(driver->posture(driver, NULL, &target, 0, &exchange), 1);
@@ -71,9 +66,8 @@ static void all_joints_go_in_motor_order(void **state)
     assert_int_equal(driver->posture(driver, NULL, &target, 1, &exchange), 0);
 }
 
-static void one_joint_goes_in_a_short_packet(void **state)
+TEST(one_joint_goes_in_a_short_packet)
 {
-    (void)state;
     const grobo_driver *driver = fresh(GROBO_WIRING_BOARD);
     grobo_target target = zero_target(100000);
     int joint = grobo_model_joint_of_motor(driver->model, 3);
@@ -83,9 +77,8 @@ static void one_joint_goes_in_a_short_packet(void **state)
     expect_frame("\x53\x0C\xFA\xAF\x03\x00\x1E\x04\x01\x84\x03\x0A\x00\x95", 14);
 }
 
-static void angles_are_rounded_to_nearest(void **state)
+TEST(angles_are_rounded_to_nearest)
 {
-    (void)state;
     const grobo_driver *driver = fresh(GROBO_WIRING_BUS);
     grobo_target target = zero_target(14000);
     target.posture.set = GROBO_JOINT_BIT(2);
@@ -95,9 +88,8 @@ static void angles_are_rounded_to_nearest(void **state)
     assert_int_equal(exchange.frame[9] | exchange.frame[10] << 8, 1);
 }
 
-static void torque_frames_are_those_of_the_board(void **state)
+TEST(torque_frames_are_those_of_the_board)
 {
-    (void)state;
     const grobo_driver *driver = fresh(GROBO_WIRING_BOARD);
     grobo_joint_mask first = GROBO_JOINT_BIT(grobo_model_joint_of_motor(driver->model, 1));
     assert_int_equal(driver->torque(driver, NULL, first, GROBO_TORQUE_BRAKE, 0, &exchange), 1);
@@ -109,9 +101,8 @@ static void torque_frames_are_those_of_the_board(void **state)
     assert_int_equal(exchange.frame[49], 0x26);
 }
 
-static void more_joints_than_a_frame_holds_make_more_frames(void **state)
+TEST(more_joints_than_a_frame_holds_make_more_frames)
 {
-    (void)state;
     static grobo_joint joints[40];
     static const char names[40][4] = {"a0", "a1", "a2", "a3", "a4", "a5", "a6", "a7", "a8", "a9",
                                       "b0", "b1", "b2", "b3", "b4", "b5", "b6", "b7", "b8", "b9",
@@ -153,9 +144,8 @@ static void more_joints_than_a_frame_holds_make_more_frames(void **state)
     assert_null(grobo_gr001_driver((grobo_wiring)2));
 }
 
-static void senses_ask_for_what_they_say(void **state)
+TEST(senses_ask_for_what_they_say)
 {
-    (void)state;
     static const uint8_t blocks[][2] = {{36, 18}, {42, 2}, {30, 18}, {30, 24}};
     for (int kind = 0; kind < 4; kind++) {
         const grobo_driver *driver = fresh(GROBO_WIRING_BOARD);
@@ -179,9 +169,8 @@ static int parse(const uint8_t *data, size_t n, uint8_t address, grobo_joint_sta
     return driver->parse(driver, NULL, 12, &reply, got);
 }
 
-static void replies_become_readings(void **state)
+TEST(replies_become_readings)
 {
-    (void)state;
     grobo_joint_state got;
     /* No.30-53: goal -1.5, time, torque 1, position 20.0, 0.10 s, -30 deg/s, 120 mA, 41 C, 7.4 V */
     uint8_t all[24] = {0xF1, 0xFF, 0,  0, 0,    77,   1,   0, 0,  0, 0,    0,
@@ -203,9 +192,8 @@ static void replies_become_readings(void **state)
     assert_int_equal(got.valid, 0x7F);
 }
 
-static void what_no_servo_says_is_not_believed(void **state)
+TEST(what_no_servo_says_is_not_believed)
 {
-    (void)state;
     grobo_joint_state got;
     static const struct {
         int at;
@@ -260,9 +248,8 @@ static int read_as(const table_row *row, int32_t value)
     return driver.parse(&driver, NULL, 0, &reply, &got);
 }
 
-static void nor_what_no_servo_of_registers_says(void **state)
+TEST(nor_what_no_servo_of_registers_says)
 {
-    (void)state;
     static const table_row rows[] = {
         {grobo_dxl2_driver_init, 1200, GROBO_ROLE_PRESENT_SPEED, 32767, 32768},
         {grobo_dxl2_driver_init, 1200, GROBO_ROLE_PRESENT_SPEED, -32767, -32768},
@@ -282,9 +269,8 @@ static void nor_what_no_servo_of_registers_says(void **state)
     }
 }
 
-static void bad_tables_are_refused(void **state)
+TEST(bad_tables_are_refused)
 {
-    (void)state;
     static const grobo_readback nowhere[] = {{0.1, 20}};
     static const double rest_outside[20] = {[3] = 1.0};
     static grobo_protocol others;
@@ -315,9 +301,8 @@ static void bad_tables_are_refused(void **state)
     assert_int_equal(grobo_driver_check(NULL), GROBO_ERR_ARG);
 }
 
-static void raw_frames_are_read(void **state)
+TEST(raw_frames_are_read)
 {
-    (void)state;
     const grobo_driver *driver = fresh(GROBO_WIRING_BOARD);
     grobo_target target = zero_target(0);
     grobo_joint_mask torqued[3] = {0};
@@ -338,23 +323,4 @@ static void raw_frames_are_read(void **state)
                         &target, torqued),
         0);
     assert_true(torqued[1] == GROBO_JOINTS_ALL(20) && target.posture.set == 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(check_asks_the_board_or_the_servos),
-        cmocka_unit_test(all_joints_go_in_motor_order),
-        cmocka_unit_test(one_joint_goes_in_a_short_packet),
-        cmocka_unit_test(angles_are_rounded_to_nearest),
-        cmocka_unit_test(torque_frames_are_those_of_the_board),
-        cmocka_unit_test(more_joints_than_a_frame_holds_make_more_frames),
-        cmocka_unit_test(senses_ask_for_what_they_say),
-        cmocka_unit_test(replies_become_readings),
-        cmocka_unit_test(what_no_servo_says_is_not_believed),
-        cmocka_unit_test(nor_what_no_servo_of_registers_says),
-        cmocka_unit_test(bad_tables_are_refused),
-        cmocka_unit_test(raw_frames_are_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of DYNAMIXEL Protocol 1.0 and of Feetech, both ends. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/feetech.h>
 #include <grobo/protocol.h>
 
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 #include "tests/support/wire_vectors.h"
 
@@ -59,9 +55,8 @@ static void same_packet(const grobo_dxl1_packet *a, const grobo_dxl1_packet *b)
     }
 }
 
-static void frames_are_built_and_taken_apart(void **state)
+TEST(frames_are_built_and_taken_apart)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof printed / sizeof printed[0]; i++) {
         const grobo_dxl1_packet *packet = &printed[i].packet;
         uint8_t frame[MAX];
@@ -82,9 +77,8 @@ static void frames_are_built_and_taken_apart(void **state)
     }
 }
 
-static void broken_input_is_refused(void **state)
+TEST(broken_input_is_refused)
 {
-    (void)state;
     static const struct {
         const char *hex;
         unsigned accept;
@@ -122,9 +116,8 @@ static void broken_input_is_refused(void **state)
     assert_int_equal(grobo_dxl1_build(&packet, bytes, sizeof bytes), GROBO_ERR_CAP);
 }
 
-static void a_status_answers_only_what_it_fits(void **state)
+TEST(a_status_answers_only_what_it_fits)
 {
-    (void)state;
     static const char read2[] = "FF FF 01 04 02 24 02 D2";
     static const char sync[] = "FF FF FE 07 82 38 04 01 02 04 35";
     static const char bulk[] = "FF FF FE 0C 92 00 08 04 24 02 05 24 02 06 44 BC";
@@ -163,9 +156,8 @@ static void a_status_answers_only_what_it_fits(void **state)
     }
 }
 
-static void rubbish_does_no_harm(void **state)
+TEST(rubbish_does_no_harm)
 {
-    (void)state;
     static const uint8_t sent[] = {0xFF, 0xFF, 0xFE, 0x07, 0x82, 0x38,
                                    0x04, 0x01, 0x02, 0x04, 0x35};
     static const uint8_t usual[] = {0xFF, 0xFF, 0x01, 0x02, 0x04, 0xFE, 0x82, 0x92};
@@ -227,27 +219,12 @@ static void vector_holds(const wire_vector *v)
     assert_memory_equal(frame, v->whole.bytes, v->whole.n);
 }
 
-static void collected_vectors_of_dynamixel_hold(void **state)
+TEST(collected_vectors_of_dynamixel_hold)
 {
-    (void)state;
     wire_vectors_check("dynamixel1.json", vector_holds, 80);
 }
 
-static void collected_vectors_of_feetech_hold(void **state)
+TEST(collected_vectors_of_feetech_hold)
 {
-    (void)state;
     wire_vectors_check("feetech.json", vector_holds, 80);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_are_built_and_taken_apart),
-        cmocka_unit_test(broken_input_is_refused),
-        cmocka_unit_test(a_status_answers_only_what_it_fits),
-        cmocka_unit_test(rubbish_does_no_harm),
-        cmocka_unit_test(collected_vectors_of_dynamixel_hold),
-        cmocka_unit_test(collected_vectors_of_feetech_hold),
-    };
-    return cmocka_run_group_tests_name("dxl1", tests, NULL, NULL);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of DYNAMIXEL Protocol 2.0, both ends. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/dxl2.h>
 #include <grobo/protocol.h>
 
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 #include "tests/support/wire_vectors.h"
 
@@ -63,9 +59,8 @@ static void same_packet(const grobo_dxl2_packet *a, const grobo_dxl2_packet *b)
     }
 }
 
-static void frames_are_built_and_taken_apart(void **state)
+TEST(frames_are_built_and_taken_apart)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof printed / sizeof printed[0]; i++) {
         const grobo_dxl2_packet *packet = &printed[i].packet;
         uint8_t frame[MAX], data[MAX];
@@ -88,17 +83,15 @@ static void frames_are_built_and_taken_apart(void **state)
 }
 
 /* The manual's name for the sum is CRC-16 (IBM), without reflection. */
-static void the_crc_is_that_of_the_manual(void **state)
+TEST(the_crc_is_that_of_the_manual)
 {
-    (void)state;
     assert_int_equal(grobo_dxl2_crc(0, (const uint8_t *)"123456789", 9), 0xFEE8);
     uint16_t half = grobo_dxl2_crc(0, (const uint8_t *)"1234", 4);
     assert_int_equal(grobo_dxl2_crc(half, (const uint8_t *)"56789", 5), 0xFEE8);
 }
 
-static void every_pattern_is_stuffed_and_back(void **state)
+TEST(every_pattern_is_stuffed_and_back)
 {
-    (void)state;
     static const uint8_t letters[] = {0xFF, 0xFD, 0x00};
     uint32_t seed = 1;
     for (int round = 0; round < 20000; round++) {
@@ -126,9 +119,8 @@ static void every_pattern_is_stuffed_and_back(void **state)
     }
 }
 
-static void broken_input_is_refused(void **state)
+TEST(broken_input_is_refused)
 {
-    (void)state;
     static const struct {
         const char *hex;
         unsigned accept;
@@ -188,9 +180,8 @@ static void broken_input_is_refused(void **state)
     "FF FF FD 00 FE 19 00 55 00 01 A6 00 00 00 77 88 00 02 1F 08 00 00 86 8E 00 03 00 08 00 00 "   \
     "98 88"
 
-static void blocks_of_a_fast_status_have_their_own_crc(void **state)
+TEST(blocks_of_a_fast_status_have_their_own_crc)
 {
-    (void)state;
     static const uint8_t values[3][4] = {{0xA6}, {0x1F, 0x08}, {0x00, 0x08}};
     uint8_t frame[64], data[64];
     grobo_dxl2_packet block, packet;
@@ -217,9 +208,8 @@ static void blocks_of_a_fast_status_have_their_own_crc(void **state)
     assert_int_equal(grobo_dxl2_block(frame, (size_t)n, 8, 4, &block), GROBO_ERR_CHECKSUM);
 }
 
-static void rubbish_does_no_harm(void **state)
+TEST(rubbish_does_no_harm)
 {
-    (void)state;
     static const uint8_t usual[] = {0xFF, 0xFF, 0xFD, 0x00, 0x01, 0x55, 0xFE, 0x82};
     uint8_t bytes[64], data[64];
     uint32_t seed = 7;
@@ -280,22 +270,7 @@ static void vector_holds(const wire_vector *v)
     assert_memory_equal(frame, v->whole.bytes, v->whole.n);
 }
 
-static void collected_vectors_hold(void **state)
+TEST(collected_vectors_hold)
 {
-    (void)state;
     wire_vectors_check("dynamixel2.json", vector_holds, 100);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_are_built_and_taken_apart),
-        cmocka_unit_test(the_crc_is_that_of_the_manual),
-        cmocka_unit_test(every_pattern_is_stuffed_and_back),
-        cmocka_unit_test(broken_input_is_refused),
-        cmocka_unit_test(blocks_of_a_fast_status_have_their_own_crc),
-        cmocka_unit_test(rubbish_does_no_harm),
-        cmocka_unit_test(collected_vectors_hold),
-    };
-    return cmocka_run_group_tests_name("dxl2", tests, NULL, NULL);
 }

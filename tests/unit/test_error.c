@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/error.h>
+
+#include "tests/support/test.h"
 
 typedef struct row {
     const char *name;
@@ -24,9 +20,8 @@ static const row rows[] = {
 
 enum { ROWS = (int)(sizeof rows / sizeof rows[0]) };
 
-static void each_error_is_found_by_its_value(void **state)
+TEST(each_error_is_found_by_its_value)
 {
-    (void)state;
     for (int i = 0; i < ROWS; i++) {
         assert_true(rows[i].value < 0);
         assert_int_equal(rows[i].enumerator, rows[i].value);
@@ -35,9 +30,8 @@ static void each_error_is_found_by_its_value(void **state)
     }
 }
 
-static void values_names_and_texts_are_unique(void **state)
+TEST(values_names_and_texts_are_unique)
 {
-    (void)state;
     for (int i = 0; i < ROWS; i++) {
         for (int k = i + 1; k < ROWS; k++) {
             assert_int_not_equal(rows[i].value, rows[k].value);
@@ -48,17 +42,15 @@ static void values_names_and_texts_are_unique(void **state)
 }
 
 /* Values are binary interface: a list without gaps shows that nothing was removed or renumbered. */
-static void values_count_down_from_minus_one(void **state)
+TEST(values_count_down_from_minus_one)
 {
-    (void)state;
     for (int i = 0; i < ROWS; i++) {
         assert_int_equal(rows[i].value, -1 - i);
     }
 }
 
-static void texts_are_phrases_that_fit_into_a_sentence(void **state)
+TEST(texts_are_phrases_that_fit_into_a_sentence)
 {
-    (void)state;
     for (int i = 0; i < ROWS; i++) {
         size_t length = strlen(rows[i].text);
         assert_true(length > 0);
@@ -67,34 +59,19 @@ static void texts_are_phrases_that_fit_into_a_sentence(void **state)
     }
 }
 
-static void success_and_counts_are_ok(void **state)
+TEST(success_and_counts_are_ok)
 {
-    (void)state;
     assert_string_equal(grobo_error_name(GROBO_OK), "OK");
     assert_string_equal(grobo_error_name(110), "OK");
     assert_string_equal(grobo_error_name(INT32_MAX), "OK");
     assert_string_equal(grobo_error_text(GROBO_OK), "success");
 }
 
-static void numbers_that_are_no_error_are_unknown(void **state)
+TEST(numbers_that_are_no_error_are_unknown)
 {
-    (void)state;
     static const int strangers[] = {-1 - ROWS, -1000, INT32_MIN};
     for (size_t i = 0; i < sizeof strangers / sizeof strangers[0]; i++) {
         assert_string_equal(grobo_error_name(strangers[i]), "UNKNOWN");
         assert_string_equal(grobo_error_text(strangers[i]), "unknown error");
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_error_is_found_by_its_value),
-        cmocka_unit_test(values_names_and_texts_are_unique),
-        cmocka_unit_test(values_count_down_from_minus_one),
-        cmocka_unit_test(texts_are_phrases_that_fit_into_a_sentence),
-        cmocka_unit_test(success_and_counts_are_ok),
-        cmocka_unit_test(numbers_that_are_no_error_are_unknown),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

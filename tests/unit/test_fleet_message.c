@@ -1,22 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* What a fleet says: names, orders, what was done before, another's clock. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/fleet/message.h"
 
 static const char id[] = "00112233445566778899aabbccddeeff";
 static const char other[] = "ffeeddccbbaa99887766554433221100";
 
-static void names_leave_no_way_out_of_a_topic(void **state)
+TEST(names_leave_no_way_out_of_a_topic)
 {
-    (void)state;
     char long_name[FLEET_NAME_BYTES + 1];
     memset(long_name, 'a', FLEET_NAME_BYTES);
     long_name[FLEET_NAME_BYTES] = '\0';
@@ -30,9 +25,8 @@ static void names_leave_no_way_out_of_a_topic(void **state)
     assert_false(fleet_is_name(NULL));
 }
 
-static void topics_are_taken_apart(void **state)
+TEST(topics_are_taken_apart)
 {
-    (void)state;
     char part[4][FLEET_NAME_BYTES], topic[FLEET_TOPIC_BYTES];
     assert_true(fleet_topic(topic, "h", "cmd", "stop", NULL));
     assert_string_equal(topic, "grobo/v1/h/cmd/stop");
@@ -57,9 +51,8 @@ static void topics_are_taken_apart(void **state)
     assert_false(fleet_topic(topic, word, NULL, NULL, NULL));
 }
 
-static void payloads_are_objects_of_this_version(void **state)
+TEST(payloads_are_objects_of_this_version)
 {
-    (void)state;
     static const char *const bad[] = {"",
                                       "[]",
                                       "{}",
@@ -104,9 +97,8 @@ static const char *read_order(json_t *object)
     return why;
 }
 
-static void orders_are_whole(void **state)
+TEST(orders_are_whole)
 {
-    (void)state;
     assert_null(read_order(body(id, 5, 9)));
     assert_string_equal(read_order(body("0011", 5, 9)), "it has no id");
     assert_string_equal(read_order(body("00112233445566778899AABBCCDDEEFF", 5, 9)), "it has no id");
@@ -134,9 +126,8 @@ static const char *judge(int64_t issued_us, int64_t deadline_us, int64_t now_us,
     return why;
 }
 
-static void orders_are_of_now(void **state)
+TEST(orders_are_of_now)
 {
-    (void)state;
     int64_t s = 1000000;
     assert_null(judge(10 * s, 12 * s, 10 * s, id));
     assert_null(judge(10 * s, 12 * s, 12 * s, id));
@@ -148,9 +139,8 @@ static void orders_are_of_now(void **state)
                         "it is for another life of this agent");
 }
 
-static void an_order_is_done_once(void **state)
+TEST(an_order_is_done_once)
 {
-    (void)state;
     static fleet_seen seen;
     char made[FLEET_ID_BYTES];
     assert_null(fleet_seen_find(&seen, id));
@@ -172,9 +162,8 @@ static void an_order_is_done_once(void **state)
     fleet_seen_free(&seen);
 }
 
-static void the_shortest_exchange_tells_the_clock(void **state)
+TEST(the_shortest_exchange_tells_the_clock)
 {
-    (void)state;
     fleet_clock clock = {.n = 0};
     int64_t offset_us = 7, bound_us, true_us = 123456789;
     assert_false(fleet_clock_read(&clock, 0, &offset_us, &bound_us));
@@ -187,18 +176,4 @@ static void the_shortest_exchange_tells_the_clock(void **state)
     assert_true(bound_us <= 110);
     assert_true(fleet_clock_read(&clock, 1390000 + 100000000, &offset_us, &bound_us));
     assert_in_range(bound_us, 5000, 5200); /* crystals differ */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_leave_no_way_out_of_a_topic),
-        cmocka_unit_test(topics_are_taken_apart),
-        cmocka_unit_test(payloads_are_objects_of_this_version),
-        cmocka_unit_test(orders_are_whole),
-        cmocka_unit_test(orders_are_of_now),
-        cmocka_unit_test(an_order_is_done_once),
-        cmocka_unit_test(the_shortest_exchange_tells_the_clock),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

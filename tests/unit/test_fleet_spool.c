@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Events that wait on disk for a broker. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/fleet/message.h"
 #include "tools/grctl/fleet/spool.h"
 
@@ -39,17 +35,17 @@ static void add(int number)
     json_decref(event);
 }
 
-static int clean(void **state)
+static int clean(void)
 {
-    (void)state;
     (void)remove(path);
     (void)remove(old);
     return 0;
 }
 
-static void what_is_kept_comes_in_its_order_once(void **state)
+static const test_fixture fixture[] = {{NULL, clean, clean}};
+
+TEST_WITH(fixture, what_is_kept_comes_in_its_order_once)
 {
-    (void)state;
     for (int i = 0; i < 5; i++) {
         add(i);
     }
@@ -61,10 +57,9 @@ static void what_is_kept_comes_in_its_order_once(void **state)
 }
 
 /* As a full disk or a power failure leaves it. */
-static void half_a_line_takes_no_other_with_it(void **state)
+TEST_WITH(fixture, half_a_line_takes_no_other_with_it)
 {
     static const char half[] = "{\"v\":1,\"n\":0,\"mess";
-    (void)state;
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     assert_int_equal(fwrite(half, 1, sizeof half - 1, file), sizeof half - 1);
@@ -86,10 +81,9 @@ static long size_of(const char *name)
     return size;
 }
 
-static void the_oldest_go_where_it_is_full(void **state)
+TEST_WITH(fixture, the_oldest_go_where_it_is_full)
 {
     enum { MANY = 12000 };
-    (void)state;
     for (int i = 0; i < MANY; i++) {
         add(i);
     }
@@ -99,9 +93,8 @@ static void the_oldest_go_where_it_is_full(void **state)
     assert_in_range(n, 2000, MANY - 1);
 }
 
-static void lines_that_cannot_be_read_are_dropped(void **state)
+TEST_WITH(fixture, lines_that_cannot_be_read_are_dropped)
 {
-    (void)state;
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     fputs("{\"v\":1,\"n\":\nrubbish\n{\"v\":2,\"n\":3}\n", file);
@@ -110,15 +103,4 @@ static void lines_that_cannot_be_read_are_dropped(void **state)
     empty();
     assert_int_equal(n, 1);
     assert_int_equal(first, 7);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(what_is_kept_comes_in_its_order_once, clean, clean),
-        cmocka_unit_test_setup_teardown(half_a_line_takes_no_other_with_it, clean, clean),
-        cmocka_unit_test_setup_teardown(the_oldest_go_where_it_is_full, clean, clean),
-        cmocka_unit_test_setup_teardown(lines_that_cannot_be_read_are_dropped, clean, clean),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What grctl makes of a line's bytes: frames, what is cut off, rubbish; and who answered whom. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 #include "tools/grctl/decode/ledger.h"
 
@@ -68,9 +64,8 @@ static const struct {
 
 enum { ROWS = (int)(sizeof rows / sizeof rows[0]) };
 
-static void bytes_come_out_as_what_they_are(void **state)
+TEST(bytes_come_out_as_what_they_are)
 {
-    (void)state;
     for (int i = 0; i < ROWS; i++) {
         uint8_t bytes[256];
         char hex[512];
@@ -99,9 +94,8 @@ static void bytes_come_out_as_what_they_are(void **state)
     }
 }
 
-static void a_frame_that_stands_still_is_over(void **state)
+TEST(a_frame_that_stands_still_is_over)
 {
-    (void)state;
     static const uint8_t start[] = {0x53, 0x0C, 0xFA};
     static const uint8_t check[] = {0x41, 0x00};
     static frames f;
@@ -116,9 +110,8 @@ static void a_frame_that_stands_still_is_over(void **state)
 }
 
 /* Nothing is lost, whatever comes: bytes by a fixed generator, those of frames more often. */
-static void every_byte_comes_out_once(void **state)
+TEST(every_byte_comes_out_once)
 {
-    (void)state;
     static const uint8_t likely[] = {0x53, 0x0C, 0xFA, 0xAF, 0xFD, 0xDF, 0x54, 0x01,
                                      0x00, 0x24, 0x41, 0x50, 0x07, 0x09, 0x12, 0x4D};
     uint32_t random = 12345;
@@ -174,9 +167,8 @@ static bool answer(ledger *l, int side, uint8_t id, int64_t *asked_us)
     return ledger_take(l, side, &f, asked_us);
 }
 
-static void answers_find_their_requests(void **state)
+TEST(answers_find_their_requests)
 {
-    (void)state;
     static ledger l;
     book b = {.text = ""};
     int64_t asked_us = 0;
@@ -203,9 +195,8 @@ static void answers_find_their_requests(void **state)
 }
 
 /* A reply goes to the last repetition; if another comes, it was asked for as well. */
-static void asked_twice_may_be_answered_twice(void **state)
+TEST(asked_twice_may_be_answered_twice)
 {
-    (void)state;
     static ledger l;
     book b = {.text = ""};
     int64_t asked_us = 0;
@@ -226,9 +217,8 @@ static void asked_twice_may_be_answered_twice(void **state)
     assert_false(answer(&l, 0, 1, &asked_us));
 }
 
-static void a_full_ledger_pushes_the_oldest_out(void **state)
+TEST(a_full_ledger_pushes_the_oldest_out)
 {
-    (void)state;
     static ledger l;
     book b = {.text = ""};
     int64_t asked_us = 0;
@@ -240,17 +230,4 @@ static void a_full_ledger_pushes_the_oldest_out(void **state)
     assert_false(answer(&l, 0, 1, &asked_us));
     assert_true(answer(&l, 0, LEDGER_ENTRIES + 1, &asked_us));
     assert_int_equal(l.requests, LEDGER_ENTRIES + 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bytes_come_out_as_what_they_are),
-        cmocka_unit_test(a_frame_that_stands_still_is_over),
-        cmocka_unit_test(every_byte_comes_out_once),
-        cmocka_unit_test(answers_find_their_requests),
-        cmocka_unit_test(asked_twice_may_be_answered_twice),
-        cmocka_unit_test(a_full_ledger_pushes_the_oldest_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of Kondo KRS servos, both ends. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/ics.h>
 
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 #include "tests/support/wire_vectors.h"
 
@@ -57,9 +53,8 @@ static void same_packet(const grobo_ics_packet *a, const grobo_ics_packet *b)
     assert_int_equal(a->value, b->value);
 }
 
-static void frames_are_built_and_taken_apart(void **state)
+TEST(frames_are_built_and_taken_apart)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof printed / sizeof printed[0]; i++) {
         uint8_t sent[MAX], got[MAX];
         grobo_ics_packet found;
@@ -80,9 +75,8 @@ static void frames_are_built_and_taken_apart(void **state)
     }
 }
 
-static void the_eeprom_goes_as_a_whole(void **state)
+TEST(the_eeprom_goes_as_a_whole)
 {
-    (void)state;
     uint8_t nibbles[GROBO_ICS_EEPROM_BYTES] = {5, 10, 3, 12}, frame[MAX], sent[2];
     grobo_ics_packet packet = {.command = GROBO_ICS_WRITE, .id = 5, .data = nibbles}, found;
     assert_int_equal(grobo_ics_build(&packet, frame, MAX), 66);
@@ -102,9 +96,8 @@ static void the_eeprom_goes_as_a_whole(void **state)
     assert_int_equal(grobo_ics_build(&packet, frame, MAX), GROBO_ERR_ARG);
 }
 
-static void what_is_none_is_refused(void **state)
+TEST(what_is_none_is_refused)
 {
-    (void)state;
     static const grobo_ics_packet bad[] = {
         {.command = GROBO_ICS_POSITION, .id = 32},
         {.command = GROBO_ICS_POSITION, .value = 16384},
@@ -129,9 +122,8 @@ static void what_is_none_is_refused(void **state)
         GROBO_ERR_FRAME);
 }
 
-static void rubbish_does_no_harm(void **state)
+TEST(rubbish_does_no_harm)
 {
-    (void)state;
     uint32_t seed = 9;
     for (int round = 0; round < 50000; round++) {
         uint8_t bytes[80], sent[80];
@@ -217,20 +209,7 @@ static void vector_holds(const wire_vector *v)
     assert_memory_equal(frame + old, v->whole.bytes + old, v->whole.n - old);
 }
 
-static void collected_vectors_hold(void **state)
+TEST(collected_vectors_hold)
 {
-    (void)state;
     wire_vectors_check("ics.json", vector_holds, 80);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_are_built_and_taken_apart),
-        cmocka_unit_test(the_eeprom_goes_as_a_whole),
-        cmocka_unit_test(what_is_none_is_refused),
-        cmocka_unit_test(rubbish_does_no_harm),
-        cmocka_unit_test(collected_vectors_hold),
-    };
-    return cmocka_run_group_tests_name("ics", tests, NULL, NULL);
 }

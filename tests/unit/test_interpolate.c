@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/interpolate.h>
 
 #include "tests/support/files.h"
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 
 #define NEAR 1e-6
 
@@ -57,9 +53,8 @@ static double at(const fixture *f, double t_s)
  *          3 s^2 - 2 s^3 = 0.169427401, q = -0.34906585 - 0.076883716 = -0.425949566
  *   1.2291666665 s (half way): q = -0.34906585 - 0.226892803 = -0.575958653
  */
-static void a_maximum_transition_time_holds_the_value_before(void **state)
+TEST(a_maximum_transition_time_holds_the_value_before)
 {
-    (void)state;
     fixture f;
     const pose poses[] = {{0.0, -0.34906585, 0, false}, {1.5, -0.802851456, 0.541666667, false}};
     build(&f, poses, 2);
@@ -84,9 +79,8 @@ static void a_maximum_transition_time_holds_the_value_before(void **state)
  *   1.25 s: 0.84375*0.5 + 0.140625*0.75 + 0.15625*1.5 = 0.421875 + 0.10546875 + 0.234375
  *         = 0.76171875
  */
-static void a_reversal_has_no_slope_and_others_the_mean(void **state)
+TEST(a_reversal_has_no_slope_and_others_the_mean)
 {
-    (void)state;
     fixture f;
     const pose poses[] = {
         {0, 0, 0, false}, {1, 0.5, 0, false}, {2, 1.5, 0, false}, {3, 1, 0, false}};
@@ -103,9 +97,8 @@ static void a_reversal_has_no_slope_and_others_the_mean(void **state)
  * The same with the key at 1 s in spJoints: all slopes 0, so a segment is a + d (3 s^2 - 2 s^3):
  *   0.25 s: 0.5 * 0.15625 = 0.078125    1.25 s: 0.5 + 1.0 * 0.15625 = 0.65625
  */
-static void a_stationary_key_has_no_slope(void **state)
+TEST(a_stationary_key_has_no_slope)
 {
-    (void)state;
     fixture f;
     const pose poses[] = {
         {0, 0, 0, false}, {1, 0.5, 0, true}, {2, 1.5, 0, false}, {3, 1, 0, false}};
@@ -115,9 +108,8 @@ static void a_stationary_key_has_no_slope(void **state)
     assert_near(at(&f, 1.25), 0.65625, NEAR);
 }
 
-static void nearly_flat_neighbours_have_no_slope(void **state)
+TEST(nearly_flat_neighbours_have_no_slope)
 {
-    (void)state;
     fixture f;
     const pose poses[] = {{0, 0, 0, false},   {1, 0.000999, 0, false}, {2, 0.5, 0, false},
                           {3, 1.0, 0, false}, {4, 1.000999, 0, false}, {5, 2.0, 0, false}};
@@ -130,9 +122,8 @@ static void nearly_flat_neighbours_have_no_slope(void **state)
     assert_near(f.track.keys[1].slope, 0.0015, NEAR);
 }
 
-static void outside_the_keys_the_ends_hold(void **state)
+TEST(outside_the_keys_the_ends_hold)
 {
-    (void)state;
     fixture f;
     const pose poses[] = {{1, 0.5, 0, false}, {2, 0.7, 0, false}};
     build(&f, poses, 2);
@@ -143,9 +134,8 @@ static void outside_the_keys_the_ends_hold(void **state)
     assert_near(grobo_spline_at(NULL, 0, 1.0, NULL), 0.0, 0.0);
 }
 
-static void keys_at_one_time_jump_to_the_later(void **state)
+TEST(keys_at_one_time_jump_to_the_later)
 {
-    (void)state;
     fixture f;
     const pose poses[] = {{0, 0, 0, false}, {1, 1, 0, false}, {1, 2, 0, false}, {2, 3, 0, false}};
     build(&f, poses, 4);
@@ -155,9 +145,8 @@ static void keys_at_one_time_jump_to_the_later(void **state)
     assert_near(at(&f, 1.5), 2.5, NEAR);
 }
 
-static void a_gap_of_just_the_transition_time_needs_no_hold(void **state)
+TEST(a_gap_of_just_the_transition_time_needs_no_hold)
 {
-    (void)state;
     fixture f;
     const pose poses[] = {{0, 0, 0, false}, {0.5, 1, 0.5, false}, {1, 2, -1.0, false}};
     build(&f, poses, 3);
@@ -165,9 +154,8 @@ static void a_gap_of_just_the_transition_time_needs_no_hold(void **state)
     assert_near(f.track.keys[1].slope, 2.0, NEAR);
 }
 
-static void appending_refuses_what_it_cannot_take(void **state)
+TEST(appending_refuses_what_it_cannot_take)
 {
-    (void)state;
     grobo_spline_key room[2];
     grobo_spline_track track = {.keys = room, .capacity = 2};
     assert_int_equal(grobo_spline_append(&track, (double)NAN, 0, 0, false), GROBO_ERR_NAN);
@@ -183,9 +171,8 @@ static void appending_refuses_what_it_cannot_take(void **state)
     assert_int_equal(grobo_spline_append(&track, 3.0, 0.2, 0, false), GROBO_ERR_SPACE);
 }
 
-static void poses_come_by_time_and_equal_ones_backwards(void **state)
+TEST(poses_come_by_time_and_equal_ones_backwards)
 {
-    (void)state;
     static const double t_s[] = {0, 1, 0.5, 1, 3, 1, 2, 0};
     static const size_t expected[] = {7, 0, 2, 5, 3, 1, 6, 4};
     size_t order[8];
@@ -204,9 +191,8 @@ static double next_part(uint32_t *seed)
     return next_random(seed) / 16777216.0;
 }
 
-static void a_cursor_changes_nothing_but_the_effort(void **state)
+TEST(a_cursor_changes_nothing_but_the_effort)
 {
-    (void)state;
     fixture f;
     pose poses[24];
     uint32_t seed = 1;
@@ -334,34 +320,13 @@ static void compare_upper_body(const char *pseq, const char *csv)
     assert_near(worst, 0.0, NEAR);
 }
 
-static void the_upper_body_follows_choreonoid_in_sample_motion_1(void **state)
+TEST(the_upper_body_follows_choreonoid_in_sample_motion_1)
 {
-    (void)state;
     compare_upper_body("data/choreonoid/GR001-SampleMotion1.pseq",
                        "data/golden/SampleMotion1.r30.plain.csv");
 }
 
-static void the_upper_body_follows_choreonoid_in_odd_cases(void **state)
+TEST(the_upper_body_follows_choreonoid_in_odd_cases)
 {
-    (void)state;
     compare_upper_body("data/golden/misc.pseq", "data/golden/misc.r30.plain.csv");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_maximum_transition_time_holds_the_value_before),
-        cmocka_unit_test(a_reversal_has_no_slope_and_others_the_mean),
-        cmocka_unit_test(a_stationary_key_has_no_slope),
-        cmocka_unit_test(nearly_flat_neighbours_have_no_slope),
-        cmocka_unit_test(outside_the_keys_the_ends_hold),
-        cmocka_unit_test(keys_at_one_time_jump_to_the_later),
-        cmocka_unit_test(a_gap_of_just_the_transition_time_needs_no_hold),
-        cmocka_unit_test(appending_refuses_what_it_cannot_take),
-        cmocka_unit_test(poses_come_by_time_and_equal_ones_backwards),
-        cmocka_unit_test(a_cursor_changes_nothing_but_the_effort),
-        cmocka_unit_test(the_upper_body_follows_choreonoid_in_sample_motion_1),
-        cmocka_unit_test(the_upper_body_follows_choreonoid_in_odd_cases),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

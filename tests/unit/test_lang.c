@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Which language messages have, how they are found, and how wide they are. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/lang/lang.h"
 
 static const char known[] = "no reply in time";
 
-static void test_locales(void **state)
+TEST(test_locales)
 {
     static const struct {
         const char *locale;
@@ -39,16 +34,14 @@ static void test_locales(void **state)
         {"j", true, false},
         {"", true, false},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         assert_int_equal(lang_start(rows[i].locale, rows[i].utf8), rows[i].japanese);
         assert_int_equal(strcmp(lang_text(known), known) != 0, rows[i].japanese);
     }
 }
 
-static void test_every_text(void **state)
+TEST(test_every_text)
 {
-    (void)state;
     assert_true(lang_start("ja_JP.UTF-8", false));
     assert_true(lang_ja_count > 500);
     for (size_t i = 0; i < lang_ja_count; i++) {
@@ -58,19 +51,17 @@ static void test_every_text(void **state)
     }
 }
 
-static void test_other_texts(void **state)
+TEST(test_other_texts)
 {
     static const char unknown[] = "a text of nobody";
-    (void)state;
     lang_start("ja_JP.UTF-8", false);
     assert_ptr_equal(lang_text(unknown), unknown);
     assert_string_equal(lang_text(""), "");
     assert_string_equal(lang_text("\xff"), "\xff");
 }
 
-static void test_kept_english(void **state)
+TEST(test_kept_english)
 {
-    (void)state;
     lang_start("ja_JP.UTF-8", false);
     lang_keep_english(true);
     assert_ptr_equal(lang_text(known), known);
@@ -78,9 +69,8 @@ static void test_kept_english(void **state)
     assert_ptr_not_equal(lang_text(known), known);
 }
 
-static void test_columns(void **state)
+TEST(test_columns)
 {
-    (void)state;
     assert_int_equal(lang_columns("abc", 3), 3);
     assert_int_equal(lang_columns("abc", 0), 0);
     assert_int_equal(lang_columns("関節 1", strlen("関節 1")), 6);
@@ -91,9 +81,8 @@ static void test_columns(void **state)
     assert_int_equal(lang_columns("😀", strlen("😀")), 2);
 }
 
-static void test_fit(void **state)
+TEST(test_fit)
 {
-    (void)state;
     assert_int_equal(lang_fit("関節", 4), 6);
     assert_int_equal(lang_fit("関節", 3), 3);
     assert_int_equal(lang_fit("関節", 1), 0);
@@ -102,7 +91,7 @@ static void test_fit(void **state)
     assert_int_equal(lang_fit("\xe9\x96", 9), 2);
 }
 
-static void test_units(void **state)
+TEST(test_units)
 {
     static const struct {
         const char *text, *unit;
@@ -112,19 +101,7 @@ static void test_units(void **state)
         {"a-b=c d", "a-b=c"}, {"「動く」", "「動"},     {"く」 x", "く」"}, {" x", ""},
         {"x\ny", "x"},        {"\xe9\x96", "\xe9\x96"},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         assert_int_equal(lang_unit(rows[i].text), strlen(rows[i].unit));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_locales),     cmocka_unit_test(test_every_text),
-        cmocka_unit_test(test_other_texts), cmocka_unit_test(test_kept_english),
-        cmocka_unit_test(test_columns),     cmocka_unit_test(test_fit),
-        cmocka_unit_test(test_units),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

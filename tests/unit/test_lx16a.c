@@ -1,26 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of LewanSoul and Hiwonder servos, both ends. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/lx16a.h>
 
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 #include "tests/support/wire_vectors.h"
 
 enum { MAX = GROBO_LX16A_FRAME_MAX_BYTES };
 
 /* Captured from pylx16a 1.1.1 and lewansoul-lx16a 0.1. */
-static void frames_are_built_and_taken_apart(void **state)
+TEST(frames_are_built_and_taken_apart)
 {
-    (void)state;
     static const struct {
         const char *hex;
         grobo_lx16a_packet packet;
@@ -59,9 +54,8 @@ static void frames_are_built_and_taken_apart(void **state)
     assert_int_equal(grobo_lx16a_build(&packet, frame, MAX), GROBO_ERR_CAP);
 }
 
-static void an_answer_is_of_its_request(void **state)
+TEST(an_answer_is_of_its_request)
 {
-    (void)state;
     static const struct {
         const char *sent, *bytes;
         int result;
@@ -85,9 +79,8 @@ static void an_answer_is_of_its_request(void **state)
     }
 }
 
-static void rubbish_does_no_harm(void **state)
+TEST(rubbish_does_no_harm)
 {
-    (void)state;
     static const uint8_t usual[] = {0x55, 0x55, 0x01, 0x03, 0x05, 0x1C, 0xFE, 0x07};
     static const uint8_t sent[] = {0x55, 0x55, 0x01, 0x03, 0x1C, 0xDF};
     uint32_t seed = 5;
@@ -127,19 +120,7 @@ static void vector_holds(const wire_vector *v)
     assert_memory_equal(frame, v->whole.bytes, v->whole.n);
 }
 
-static void collected_vectors_hold(void **state)
+TEST(collected_vectors_hold)
 {
-    (void)state;
     wire_vectors_check("lx16a.json", vector_holds, 80);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_are_built_and_taken_apart),
-        cmocka_unit_test(an_answer_is_of_its_request),
-        cmocka_unit_test(rubbish_does_no_harm),
-        cmocka_unit_test(collected_vectors_hold),
-    };
-    return cmocka_run_group_tests_name("lx16a", tests, NULL, NULL);
 }

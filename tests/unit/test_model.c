@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/posture.h>
+
+#include "tests/support/test.h"
 
 static const grobo_model *const gr001 = &grobo_gr001_model;
 
@@ -40,9 +36,8 @@ static int joint_of(int motor)
     return grobo_model_joint_of_motor(gr001, motor);
 }
 
-static void gr001_is_as_its_sheet_says(void **state)
+TEST(gr001_is_as_its_sheet_says)
 {
-    (void)state;
     assert_int_equal(grobo_model_check(gr001), 0);
     assert_string_equal(gr001->name, "GR001");
     assert_int_equal(gr001->n_joints, 20);
@@ -57,13 +52,12 @@ static void gr001_is_as_its_sheet_says(void **state)
 }
 
 /* Motion files of GR001 may leave a limit by one degree, judged on the wire's grid. */
-static void slack_goes_to_the_limit(void **state)
+TEST(slack_goes_to_the_limit)
 {
     const double max_rad = gr001->joints[12].max_rad, min_rad = gr001->joints[12].min_rad;
     const double within_deg[] = {0.06, 0.3, 1, 1.04}, left_deg[] = {-20, 0, 0.04, 1.06, 30};
     grobo_model model = *gr001;
 
-    (void)state;
     for (size_t i = 0; i < sizeof within_deg / sizeof within_deg[0]; i++) {
         const double by_rad = grobo_rad_from_deg(within_deg[i]);
 
@@ -88,9 +82,8 @@ static void slack_goes_to_the_limit(void **state)
     assert_int_equal(grobo_model_check(&model), GROBO_ERR_ARG);
 }
 
-static void the_standard_pose_is_the_initial_posture_of_the_wire(void **state)
+TEST(the_standard_pose_is_the_initial_posture_of_the_wire)
 {
-    (void)state;
     for (int motor = 1; motor <= 20; motor++) {
         const grobo_joint *joint = &gr001->joints[joint_of(motor)];
         assert_int_equal(grobo_ddeg_from_rad(joint->init_rad), init_ddeg[motor - 1]);
@@ -103,9 +96,8 @@ static void the_standard_pose_is_the_initial_posture_of_the_wire(void **state)
     assert_int_equal(grobo_posture_check(&pose, gr001, NULL), 0);
 }
 
-static void servos_are_eleven_of_one_kind_and_nine_of_the_other(void **state)
+TEST(servos_are_eleven_of_one_kind_and_nine_of_the_other)
 {
-    (void)state;
     int rs301 = 0;
     for (int j = 0; j < 20; j++) {
         const grobo_joint *joint = &gr001->joints[j];
@@ -118,9 +110,8 @@ static void servos_are_eleven_of_one_kind_and_nine_of_the_other(void **state)
     assert_int_equal(rs301, 11);
 }
 
-static void the_mirror_fits_names_limits_and_pose(void **state)
+TEST(the_mirror_fits_names_limits_and_pose)
 {
-    (void)state;
     for (int j = 0; j < 20; j++) {
         const grobo_joint *joint = &gr001->joints[j];
         const grobo_joint *other = &gr001->joints[joint->mirror];
@@ -138,9 +129,8 @@ static void the_mirror_fits_names_limits_and_pose(void **state)
     assert_int_equal(gr001->joints[13].mirror_sign, -1);
 }
 
-static void motors_and_joints_lead_to_each_other(void **state)
+TEST(motors_and_joints_lead_to_each_other)
 {
-    (void)state;
     /* In joint order; hip roll and pitch swap (the reference's table of joints). */
     static const int motors[20] = {9,  11, 10, 12, 13, 14, 15, 17, 16, 18,
                                    19, 20, 1,  2,  3,  4,  5,  6,  7,  8};
@@ -160,9 +150,8 @@ static int find(const char *name)
     return grobo_model_find_joint(gr001, name, strlen(name));
 }
 
-static void joints_are_found_by_name_motor_and_id(void **state)
+TEST(joints_are_found_by_name_motor_and_id)
 {
-    (void)state;
     static const struct {
         const char *name;
         int joint;
@@ -180,9 +169,8 @@ static void joints_are_found_by_name_motor_and_id(void **state)
     assert_int_equal(grobo_model_find_joint(gr001, "NECK_Y=30", 6), 13);
 }
 
-static void groups_are_those_of_the_reference_library(void **state)
+TEST(groups_are_those_of_the_reference_library)
 {
-    (void)state;
     static const struct {
         const char *name;
         int first, last, first2, last2; /* motors */
@@ -211,9 +199,8 @@ static void groups_are_those_of_the_reference_library(void **state)
     }
 }
 
-static void sets_are_found_by_joint_too(void **state)
+TEST(sets_are_found_by_joint_too)
 {
-    (void)state;
     grobo_joint_mask joints = 5;
     assert_int_equal(grobo_model_find_joints(gr001, "m2", 2, &joints), 1);
     assert_true(joints == GROBO_JOINT_BIT(13));
@@ -225,9 +212,8 @@ static void sets_are_found_by_joint_too(void **state)
     assert_true(joints == 5);
 }
 
-static void joints_of_a_set_are_counted(void **state)
+TEST(joints_of_a_set_are_counted)
 {
-    (void)state;
     assert_int_equal(grobo_joints_count(0), 0);
     assert_int_equal(grobo_joints_count(GROBO_JOINT_BIT(0) | GROBO_JOINT_BIT(GROBO_JOINTS_MAX - 1)),
                      2);
@@ -268,9 +254,8 @@ static void make_two(void)
         assert_int_equal(grobo_model_check(&two), GROBO_ERR_ARG);                                  \
     } while (0)
 
-static void a_faulty_joint_is_refused(void **state)
+TEST(a_faulty_joint_is_refused)
 {
-    (void)state;
     assert_refused(arm[0].name = NULL);
     assert_refused(arm[0].name = "");
     assert_refused(arm[0].name = "right");
@@ -292,9 +277,8 @@ static void a_faulty_joint_is_refused(void **state)
 }
 
 /* Turned round, geared down by 2, and 0.5 away where the joint is at 0. */
-static void a_servo_may_be_mounted_any_way(void **state)
+TEST(a_servo_may_be_mounted_any_way)
 {
-    (void)state;
     make_two();
     assert_true(grobo_joint_to_servo(&arm[0], 0.25) == 0.25);
     assert_true(grobo_joint_from_servo(&arm[0], 0.25) == 0.25);
@@ -308,9 +292,8 @@ static void a_servo_may_be_mounted_any_way(void **state)
     assert_true(grobo_joint_to_servo(&arm[0], 0.25) == 0.75);
 }
 
-static void a_faulty_table_is_refused(void **state)
+TEST(a_faulty_table_is_refused)
 {
-    (void)state;
     assert_int_equal(grobo_model_check(NULL), GROBO_ERR_ARG);
     assert_refused(two.name = NULL);
     assert_refused(two.joints = NULL);
@@ -320,24 +303,4 @@ static void a_faulty_table_is_refused(void **state)
     assert_refused(arm_groups[1].name = "BOTH");
     assert_refused(arm_groups[1].name = NULL);
     assert_refused(arm_groups[1].joints = 4);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gr001_is_as_its_sheet_says),
-        cmocka_unit_test(slack_goes_to_the_limit),
-        cmocka_unit_test(the_standard_pose_is_the_initial_posture_of_the_wire),
-        cmocka_unit_test(servos_are_eleven_of_one_kind_and_nine_of_the_other),
-        cmocka_unit_test(the_mirror_fits_names_limits_and_pose),
-        cmocka_unit_test(motors_and_joints_lead_to_each_other),
-        cmocka_unit_test(joints_are_found_by_name_motor_and_id),
-        cmocka_unit_test(groups_are_those_of_the_reference_library),
-        cmocka_unit_test(sets_are_found_by_joint_too),
-        cmocka_unit_test(joints_of_a_set_are_counted),
-        cmocka_unit_test(a_faulty_joint_is_refused),
-        cmocka_unit_test(a_servo_may_be_mounted_any_way),
-        cmocka_unit_test(a_faulty_table_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

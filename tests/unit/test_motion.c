@@ -1,20 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* The container: storage, editing single postures, walking through. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/motion.h>
 #include <grobo/motion_io.h>
 
 #include "tests/support/counted_mem.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
 static grobo_posture posture_of(int n_joints, double angle_rad, int64_t time_us)
 {
@@ -49,9 +45,8 @@ static double first_angle(const grobo_motion *motion, size_t n)
     return posture.angle_rad[0];
 }
 
-static void test_new_refuses(void **state)
+TEST(test_new_refuses)
 {
-    (void)state;
     grobo_motion *motion = NULL;
 
     assert_int_equal(grobo_motion_new((grobo_motion_kind)9, 1, NULL, &motion), GROBO_ERR_ARG);
@@ -71,9 +66,8 @@ static void test_new_refuses(void **state)
     }
 }
 
-static void test_append_refuses(void **state)
+TEST(test_append_refuses)
 {
-    (void)state;
     grobo_motion *motion = counting(GROBO_MOTION_POSTURES, 3, 1);
     grobo_posture posture = posture_of(4, 0, 1000);
 
@@ -97,9 +91,8 @@ static void test_append_refuses(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_get_and_rget(void **state)
+TEST(test_get_and_rget)
 {
-    (void)state;
     grobo_motion *motion = counting(GROBO_MOTION_KEYS, 2, 5);
     grobo_posture posture = {.n_joints = 7};
 
@@ -120,9 +113,8 @@ static void test_get_and_rget(void **state)
 }
 
 /* Inserting and deleting at random places gives what an array gives. */
-static void test_insert_delete_against_array(void **state)
+TEST(test_insert_delete_against_array)
 {
-    (void)state;
     enum { OPERATIONS = 4000 };
     static double model[OPERATIONS];
     size_t size = 0;
@@ -157,9 +149,8 @@ static void test_insert_delete_against_array(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_insert_keeps_durations(void **state)
+TEST(test_insert_keeps_durations)
 {
-    (void)state;
     grobo_motion *motion = counting(GROBO_MOTION_KEYS, 1, 3);
     grobo_posture posture = posture_of(1, 9, 250000);
 
@@ -177,9 +168,8 @@ static void test_insert_keeps_durations(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_insert_at_time(void **state)
+TEST(test_insert_at_time)
 {
-    (void)state;
     grobo_motion *motion = counting(GROBO_MOTION_KEYS, 1, 3);
     grobo_posture posture = posture_of(1, 9, 0);
 
@@ -194,9 +184,8 @@ static void test_insert_at_time(void **state)
 }
 
 /* What the times of each kind mean as durations. */
-static void test_steps(void **state)
+TEST(test_steps)
 {
-    (void)state;
     static const double times_s[] = {0.5, 0.25, 0.25, 10.25, 20.2, -1};
     static const int64_t postures_us[] = {500000, 0, 0, 0, 9950000, 0};
     static const int64_t keys_us[] = {500000, 0, 0, 10000000, 9950000, 0};
@@ -226,9 +215,8 @@ static void test_steps(void **state)
     }
 }
 
-static void test_frames_at_a_rate(void **state)
+TEST(test_frames_at_a_rate)
 {
-    (void)state;
     grobo_motion *motion = counting(GROBO_MOTION_FRAMES, 1, 4);
 
     assert_int_equal(grobo_motion_set_frame_rate(motion, 0), GROBO_ERR_ARG);
@@ -250,9 +238,8 @@ static void test_frames_at_a_rate(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_walk(void **state)
+TEST(test_walk)
 {
-    (void)state;
     grobo_motion *motion = counting(GROBO_MOTION_KEYS, 1, 3);
     grobo_posture posture;
 
@@ -279,9 +266,8 @@ static void test_walk(void **state)
 }
 
 /* What is appended to an empty motion is absolute, whatever was in it. */
-static void test_cleared_increments(void **state)
+TEST(test_cleared_increments)
 {
-    (void)state;
     for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
         grobo_motion *motion = counting((grobo_motion_kind)kind, 1, 2);
         assert_int_equal(grobo_motion_set_name(motion, "wave"), 0);
@@ -295,9 +281,8 @@ static void test_cleared_increments(void **state)
     }
 }
 
-static void test_joints_grow_and_shrink(void **state)
+TEST(test_joints_grow_and_shrink)
 {
-    (void)state;
     grobo_motion *motion = counting(GROBO_MOTION_KEYS, 2, 40);
     grobo_posture posture = posture_of(5, 100, 0);
 
@@ -322,9 +307,8 @@ static void test_joints_grow_and_shrink(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_names(void **state)
+TEST(test_names)
 {
-    (void)state;
     grobo_motion *motion = counting(GROBO_MOTION_KEYS, 1, 1);
 
     assert_string_equal(grobo_motion_name(motion), "");
@@ -368,9 +352,8 @@ static grobo_motion *rich(const grobo_mem *mem)
     return motion;
 }
 
-static void test_dup_is_deep_and_equal(void **state)
+TEST(test_dup_is_deep_and_equal)
 {
-    (void)state;
     grobo_motion *motion = rich(NULL);
     grobo_motion *copy = NULL;
     size_t count = 0;
@@ -391,9 +374,8 @@ static void test_dup_is_deep_and_equal(void **state)
     grobo_motion_free(copy);
 }
 
-static void test_kept_keys(void **state)
+TEST(test_kept_keys)
 {
-    (void)state;
     grobo_motion *motion = rich(NULL);
     grobo_kept kept;
 
@@ -414,9 +396,8 @@ static void test_kept_keys(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_links_refused(void **state)
+TEST(test_links_refused)
 {
-    (void)state;
     grobo_motion *motion = rich(NULL);
     grobo_ik_link links[GROBO_IK_LINKS_MAX + 1];
 
@@ -435,9 +416,8 @@ static void test_links_refused(void **state)
 }
 
 /* 28 + 8 n bytes a posture, and little else: a million of 20 joints within 200 MB. */
-static void test_memory_of_a_long_motion(void **state)
+TEST(test_memory_of_a_long_motion)
 {
-    (void)state;
     enum { SIZE = 100000 };
     counted_mem counter = {0};
     grobo_mem mem = counted_mem_of(&counter);
@@ -456,7 +436,7 @@ static void test_memory_of_a_long_motion(void **state)
 }
 
 /* Beside its source a conversion holds one posture for each that it makes, and its time. */
-static void test_memory_of_a_conversion(void **state)
+TEST(test_memory_of_a_conversion)
 {
     static const struct {
         grobo_motion_kind from, to;
@@ -470,7 +450,6 @@ static void test_memory_of_a_conversion(void **state)
     };
     enum { SIZE = 10000 };
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         counted_mem counter = {0};
         grobo_mem mem = counted_mem_of(&counter);
@@ -495,9 +474,8 @@ static void test_memory_of_a_conversion(void **state)
 }
 
 /* Every allocation fails in turn: an error, and nothing is lost or leaked. */
-static void test_allocations_fail(void **state)
+TEST(test_allocations_fail)
 {
-    (void)state;
     bool done = false;
 
     for (size_t n = 1; !done; n++) {
@@ -517,30 +495,4 @@ static void test_allocations_fail(void **state)
         }
         assert_int_equal(counter.bytes, 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_new_refuses),
-        cmocka_unit_test(test_append_refuses),
-        cmocka_unit_test(test_get_and_rget),
-        cmocka_unit_test(test_insert_delete_against_array),
-        cmocka_unit_test(test_insert_keeps_durations),
-        cmocka_unit_test(test_insert_at_time),
-        cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_frames_at_a_rate),
-        cmocka_unit_test(test_walk),
-        cmocka_unit_test(test_cleared_increments),
-        cmocka_unit_test(test_joints_grow_and_shrink),
-        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_dup_is_deep_and_equal),
-        cmocka_unit_test(test_kept_keys),
-        cmocka_unit_test(test_links_refused),
-        cmocka_unit_test(test_memory_of_a_long_motion),
-        cmocka_unit_test(test_memory_of_a_conversion),
-        cmocka_unit_test(test_allocations_fail),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

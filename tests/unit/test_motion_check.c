@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Checking motions against GR001: what is said, where, and what is not. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/files.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
 typedef struct checked {
     grobo_diagnostics *list;
@@ -58,9 +54,8 @@ static bool says(const checked *found, const char *words)
 
 #define TOP "type: PoseSeq\nname: t\ntargetBody: GR001\nrefs:\n"
 
-static void test_clean(void **state)
+TEST(test_clean)
 {
-    (void)state;
     checked found = check(TOP "- { time: 0, refer: { type: Pose, joints: [ 13 ], q: [ 0 ] } }\n"
                               "- { time: 1, refer: { type: Pose, joints: [ 13 ], q: [ 0.5 ] } }\n"
                               "- { time: 2, refer: { type: Pose, joints: [ 13 ], q: [ 0 ] } }\n",
@@ -72,9 +67,8 @@ static void test_clean(void **state)
     grobo_diagnostics_free(found.list);
 }
 
-static void test_limits(void **state)
+TEST(test_limits)
 {
-    (void)state;
     static const char text[] =
         TOP "- { time: 0, refer: { type: Pose, joints: [ 13, 3 ], q: [ 0.8731, 0.01 ] } }\n";
     checked found = check(text, true);
@@ -90,11 +84,10 @@ static void test_limits(void **state)
 }
 
 /* Within a degree of a limit an angle is counted, beyond it is an error, on curves too. */
-static void test_slack(void **state)
+TEST(test_slack)
 {
     grobo_slack_taken slack = {0};
 
-    (void)state;
     checked found = check_with(
         TOP "- { time: 0, refer: { type: Pose, joints: [ 3, 12 ], q: [ 0, 0 ] } }\n"
             "- { time: 1, refer: { type: Pose, joints: [ 12, 3 ], q: [ 0.005, 0.01 ] } }\n"
@@ -125,9 +118,8 @@ static void test_slack(void **state)
     grobo_diagnostics_free(found.list);
 }
 
-static void test_too_fast(void **state)
+TEST(test_too_fast)
 {
-    (void)state;
     checked found =
         check(TOP "- { time: 0, refer: { type: Pose, joints: [ 14, 13 ], q: [ 0, 0 ] } }\n"
                   "- { time: 0.1, refer: { type: Pose, joints: [ 14 ], q: [ 1.5 ] } }\n"
@@ -145,9 +137,8 @@ static void test_too_fast(void **state)
 }
 
 /* The curve is steeper than its ends say, and swings further than its keys. */
-static void test_curve(void **state)
+TEST(test_curve)
 {
-    (void)state;
     checked found =
         check(TOP "- { time: 0, refer: { type: Pose, joints: [ 14 ], q: [ 0 ] } }\n"
                   "- { time: 0.25, refer: { type: Pose, joints: [ 14 ], q: [ 1.5 ] } }\n",
@@ -165,9 +156,8 @@ static void test_curve(void **state)
     grobo_diagnostics_free(found.list);
 }
 
-static void test_postures(void **state)
+TEST(test_postures)
 {
-    (void)state;
     /* Motor 2 is the neck: 40 degrees in 20 ms; a restart that takes the default time. Two angles
      * are perhaps those of another robot. */
     checked found = check("500 0 0\n520 0 400\n100 0 390\n", true);
@@ -179,9 +169,8 @@ static void test_postures(void **state)
     grobo_diagnostics_free(found.list);
 }
 
-static void test_increments(void **state)
+TEST(test_increments)
 {
-    (void)state;
     checked found = check("type: MotionSeq\nname: t\nrefs:\n"
                           "- { time: 0.5, refer: { type: Motion, joints: [ 13 ], q: [ 0.5 ] } }\n"
                           "- { time: 1, refer: { type: Motion, joints: [ 13 ], q: [ 0.5 ] } }\n",
@@ -192,9 +181,8 @@ static void test_increments(void **state)
     grobo_diagnostics_free(found.list);
 }
 
-static void test_frames(void **state)
+TEST(test_frames)
 {
-    (void)state;
     /* A fault that lasts is said once, and again when it comes back. */
     checked found =
         check("type: BodyMotion\ntargetBody: Other\ncomponents:\n"
@@ -210,9 +198,8 @@ static void test_frames(void **state)
     grobo_diagnostics_free(found.list);
 }
 
-static void test_warnings(void **state)
+TEST(test_warnings)
 {
-    (void)state;
 #define LINK "translation: [ 0, 0, 0 ], rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ] }"
     checked found = check(
         TOP "- { time: 1, refer: { type: Pose, joints: [ 13, 25, 26 ], q: [ 0, 0, 0 ] } }\n"
@@ -234,9 +221,8 @@ static void test_warnings(void **state)
 }
 
 /* Half the speed gives a move twice the time. */
-static void test_speed_it_is_played_at(void **state)
+TEST(test_speed_it_is_played_at)
 {
-    (void)state;
     static const struct {
         uint16_t speed_pct;
         int errors;
@@ -258,9 +244,8 @@ static void test_speed_it_is_played_at(void **state)
 }
 
 /* A motion of another robot: what this one has not is said once, where it is there first. */
-static void test_unknown_once(void **state)
+TEST(test_unknown_once)
 {
-    (void)state;
 #define AT "translation: [ 0, 0, 0 ], rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ] }"
     checked found =
         check(TOP "- { time: 0, refer: { type: Pose, joints: [ 13, 30, 31 ], q: [ 0, 0, 0 ] } }\n"
@@ -283,9 +268,8 @@ static void test_unknown_once(void **state)
     grobo_diagnostics_free(found.list);
 }
 
-static void test_empty(void **state)
+TEST(test_empty)
 {
-    (void)state;
     checked found = check("type: PoseSeq\nname: t\n", true);
 
     assert_int_equal(found.errors, 0);
@@ -294,9 +278,8 @@ static void test_empty(void **state)
 }
 
 /* The list keeps so many and counts the rest; names of several files stay apart. */
-static void test_list_is_bounded(void **state)
+TEST(test_list_is_bounded)
 {
-    (void)state;
     grobo_diagnostics *list = NULL;
     grobo_diagnostic said = {.file = "a", .code = "x", .message = "m", .line = 1};
 
@@ -324,9 +307,8 @@ static void test_list_is_bounded(void **state)
 }
 
 /* The real motion is within limits and speeds, and says what its legs need. */
-static void test_real_motion(void **state)
+TEST(test_real_motion)
 {
-    (void)state;
     size_t size;
     char *text = file_text(shared_file("data/choreonoid/GR001-SampleMotion1.pseq"), &size);
     checked found = check(text, true);
@@ -339,7 +321,7 @@ static void test_real_motion(void **state)
 }
 
 /* Which robot a motion may move: by its name, or where it has none by the number of angles. */
-static void test_robot_it_is_for(void **state)
+TEST(test_robot_it_is_for)
 {
     static const struct {
         const char *text;
@@ -361,7 +343,6 @@ static void test_robot_it_is_for(void **state)
         {"type: BodyMotion\ntargetBody: gr001\n" FRAMES, false},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) {
         const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model};
         grobo_motion *motion, *copy;
@@ -378,20 +359,4 @@ static void test_robot_it_is_for(void **state)
         grobo_motion_free(copy);
         grobo_motion_free(motion);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clean),           cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_slack),           cmocka_unit_test(test_too_fast),
-        cmocka_unit_test(test_curve),           cmocka_unit_test(test_postures),
-        cmocka_unit_test(test_increments),      cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_warnings),        cmocka_unit_test(test_speed_it_is_played_at),
-        cmocka_unit_test(test_unknown_once),    cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_list_is_bounded), cmocka_unit_test(test_real_motion),
-        cmocka_unit_test(test_robot_it_is_for),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Playing motions: keys and samples of every kind, by values worked out by hand. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/counted_mem.h"
 #include "tests/support/files.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
 static void assert_near(double value, double expected, double delta)
 {
@@ -50,9 +46,8 @@ static const char curve[] =
     "- { time: 4, maxTransitionTime: 1, refer: { type: Pose, joints: [ 0, 1, 2 ],"
     " q: [ 2.0005, 1, 7 ] } }\n";
 
-static void test_spline(void **state)
+TEST(test_spline)
 {
-    (void)state;
     grobo_motion *motion = motion_of(curve, GROBO_FORMAT_AUTO);
     grobo_clip clip = clip_of(motion, NULL);
 
@@ -77,9 +72,8 @@ static void test_spline(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_keys(void **state)
+TEST(test_keys)
 {
-    (void)state;
     grobo_motion *motion = motion_of(curve, GROBO_FORMAT_AUTO);
     grobo_clip clip = clip_of(motion, NULL);
     grobo_posture posture;
@@ -102,9 +96,8 @@ static void test_keys(void **state)
 }
 
 /* The seed: a posture is a copy of the one before, and the servos go straight. */
-static void test_seed_style(void **state)
+TEST(test_seed_style)
 {
-    (void)state;
     grobo_motion *motion = motion_of(curve, GROBO_FORMAT_AUTO);
     grobo_clip clip =
         clip_of(motion, &(grobo_clip_options){GROBO_CLIP_OPTIONS_INIT, .style = GROBO_STYLE_SEED});
@@ -117,9 +110,8 @@ static void test_seed_style(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_unsorted_keys(void **state)
+TEST(test_unsorted_keys)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("type: PoseSeq\nname: t\nrefs:\n"
                   "- { time: 2, refer: { type: Pose, joints: [ 0 ], q: [ 2 ] } }\n"
@@ -141,9 +133,8 @@ static void test_unsorted_keys(void **state)
 }
 
 /* .m: cumulated milliseconds; the third line restarts and takes the default time. */
-static void test_postures(void **state)
+TEST(test_postures)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("500 0 100\n1000 10 100\n500 20 100\n700 40 100\n", GROBO_FORMAT_M);
     grobo_clip clip =
@@ -171,9 +162,8 @@ static const char steps[] = "type: MotionSeq\nname:\nrefs:\n"
                             "- { time: 0.5, refer: { type: Motion, joints: [ 1 ], q: [ 0.2 ] } }\n"
                             "- { time: 1, refer: { type: Motion, joints: [ 0 ], q: [ 0.3 ] } }\n";
 
-static void test_increments(void **state)
+TEST(test_increments)
 {
-    (void)state;
     grobo_motion *motion = motion_of(steps, GROBO_FORMAT_AUTO);
     grobo_posture start, posture;
     int64_t at_us;
@@ -206,9 +196,8 @@ static void test_increments(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_frames(void **state)
+TEST(test_frames)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("type: BodyMotion\ncomponents:\n- { type: MultiValueSeq, purpose: JointPosition,"
                   " frameRate: 10, numParts: 1, frames: [ [ 0 ], [ 1 ], [ 4 ] ] }\n",
@@ -229,9 +218,8 @@ static void test_frames(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_frames_without_rate(void **state)
+TEST(test_frames_without_rate)
 {
-    (void)state;
     grobo_motion *motion = NULL;
     grobo_posture posture;
     grobo_clip clip;
@@ -243,9 +231,8 @@ static void test_frames_without_rate(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_resample(void **state)
+TEST(test_resample)
 {
-    (void)state;
     grobo_motion *motion = motion_of(curve, GROBO_FORMAT_AUTO);
     grobo_clip clip = clip_of(motion, NULL);
     grobo_motion *frames = NULL;
@@ -265,9 +252,8 @@ static void test_resample(void **state)
 }
 
 /* Frames resampled at their own rate are themselves, to the bit. */
-static void test_resample_is_exact_on_frames(void **state)
+TEST(test_resample_is_exact_on_frames)
 {
-    (void)state;
     grobo_motion *motion = NULL, *frames = NULL;
     grobo_posture posture;
 
@@ -288,9 +274,8 @@ static void test_resample_is_exact_on_frames(void **state)
 }
 
 /* Playing allocates nothing, and preparing takes failures. */
-static void test_allocations(void **state)
+TEST(test_allocations)
 {
-    (void)state;
     counted_mem counter = {0};
     grobo_mem mem = counted_mem_of(&counter);
     grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem};
@@ -351,36 +336,18 @@ static void compare_golden(const char *motion_name, const char *frames_name)
     grobo_motion_free(motion);
 }
 
-static void test_golden_sample(void **state)
+TEST(test_golden_sample)
 {
-    (void)state;
     compare_golden("data/choreonoid/GR001-SampleMotion1.pseq",
                    "data/golden/SampleMotion1.r30.plain.csv");
 }
 
-static void test_golden_misc(void **state)
+TEST(test_golden_misc)
 {
-    (void)state;
     compare_golden("data/golden/misc.pseq", "data/golden/misc.r30.plain.csv");
 }
 
-static void test_golden_walk(void **state)
+TEST(test_golden_walk)
 {
-    (void)state;
     compare_golden("data/golden/walk.pseq", "data/golden/walk.r30.plain.csv");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_spline),      cmocka_unit_test(test_keys),
-        cmocka_unit_test(test_seed_style),  cmocka_unit_test(test_unsorted_keys),
-        cmocka_unit_test(test_postures),    cmocka_unit_test(test_increments),
-        cmocka_unit_test(test_frames),      cmocka_unit_test(test_frames_without_rate),
-        cmocka_unit_test(test_resample),    cmocka_unit_test(test_resample_is_exact_on_frames),
-        cmocka_unit_test(test_allocations), cmocka_unit_test(test_golden_sample),
-        cmocka_unit_test(test_golden_misc), cmocka_unit_test(test_golden_walk),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

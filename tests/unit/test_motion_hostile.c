@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Files that mean harm, memory that runs out, and the odd ones of the reference material. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/counted_mem.h"
 #include "tests/support/files.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
 /* ---- caps and quadratic inputs ------------------------------------------------------------ */
 
@@ -49,9 +44,8 @@ static void assert_refused_early(const char *first, const char *then)
     assert_null(motion);
 }
 
-static void test_caps(void **state)
+TEST(test_caps)
 {
-    (void)state;
     assert_refused_early("", "[");
     assert_refused_early("", "[\n");
     assert_refused_early("", "{");
@@ -75,9 +69,8 @@ static void test_caps(void **state)
                          "0, 1 ] }, ");
 }
 
-static void test_many_keys(void **state)
+TEST(test_many_keys)
 {
-    (void)state;
     char text[20000] = "type: PoseSeq\n";
     size_t used = strlen(text);
 
@@ -88,9 +81,8 @@ static void test_many_keys(void **state)
 }
 
 /* Aliases of aliases: a small file that would be a large one. */
-static void test_billion_laughs(void **state)
+TEST(test_billion_laughs)
 {
-    (void)state;
     char text[4000] = "a0: &a0 [ x, x, x, x, x, x, x, x ]\n";
     size_t used = strlen(text);
 
@@ -112,9 +104,8 @@ static const char *const samples[] = {
     "10, numParts: 1, frames: [ [ 1 ], [ 2 ] ] }\n"};
 
 /* Every allocation of every reader fails in turn. */
-static void test_allocations_fail(void **state)
+TEST(test_allocations_fail)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof samples / sizeof samples[0]; i++) {
         int result = GROBO_ERR_NOMEM;
         for (size_t n = 1; result < 0; n++) {
@@ -135,9 +126,8 @@ static void test_allocations_fail(void **state)
 }
 
 /* Cut at every byte: a motion or an error with a place, and nothing left behind. */
-static void test_cut_anywhere(void **state)
+TEST(test_cut_anywhere)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof samples / sizeof samples[0]; i++) {
         size_t size = strlen(samples[i]);
         for (size_t cut = 0; cut < size; cut++) {
@@ -227,9 +217,8 @@ static bool may_miss(const char *line)
     return false;
 }
 
-static void test_each_key_missing(void **state)
+TEST(test_each_key_missing)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof keyed / sizeof keyed[0]; i++) {
         for (const char *line = keyed[i]; *line != '\0'; line = strchr(line, '\n') + 1) {
             char text[2000];
@@ -247,9 +236,8 @@ static void test_each_key_missing(void **state)
 }
 
 /* A value of another kind in each place: refused, but where a text may be any text. */
-static void test_each_value_of_the_wrong_kind(void **state)
+TEST(test_each_value_of_the_wrong_kind)
 {
-    (void)state;
     static const char *const wrong[] = {"{ a: b }", "[ [ x ] ]", "x y", ".nan", "-1e400", "*no"};
     for (size_t i = 0; i < sizeof keyed / sizeof keyed[0]; i++) {
         for (const char *line = keyed[i]; *line != '\0'; line = strchr(line, '\n') + 1) {
@@ -279,9 +267,8 @@ static void test_each_value_of_the_wrong_kind(void **state)
 /* ---- the reference material --------------------------------------------------------------- */
 
 /* Every file of the list does what its last column says. */
-static void test_edge_files(void **state)
+TEST(test_edge_files)
 {
-    (void)state;
     size_t size, files = 0;
     char *table = file_text(shared_file("data/edge/expected.tsv"), &size);
     char *next = NULL;
@@ -319,20 +306,4 @@ static void test_edge_files(void **state)
     }
     assert_true(files > 50);
     free(table);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_caps),
-        cmocka_unit_test(test_many_keys),
-        cmocka_unit_test(test_billion_laughs),
-        cmocka_unit_test(test_allocations_fail),
-        cmocka_unit_test(test_cut_anywhere),
-        cmocka_unit_test(test_each_key_missing),
-        cmocka_unit_test(test_each_value_of_the_wrong_kind),
-        cmocka_unit_test(test_edge_files),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,33 +1,26 @@
 /* SPDX-License-Identifier: MIT */
 /* Saving and finding motions where files have modes and links, as on POSIX. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "tests/support/files.h"
 #include "tests/support/folder.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
-static int remove_folder(void **state)
+static int remove_folder(void)
 {
     static const char *const names[] = {"a.m", "b.m", "link.m", "out", "open.m", "astray.m"};
 
-    (void)state;
     /* Fails if a temporary file was left behind. */
     folder_remove(names, sizeof names / sizeof names[0]);
     return 0;
 }
 
-static void test_mode(void **state)
+TEST(test_mode)
 {
-    (void)state;
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
     const char *path = in_folder("a.m");
     struct stat status;
@@ -40,9 +33,8 @@ static void test_mode(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_save_through_a_link(void **state)
+TEST(test_save_through_a_link)
 {
-    (void)state;
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
     struct stat status;
 
@@ -60,9 +52,8 @@ static void test_save_through_a_link(void **state)
 }
 
 /* /dev/stdout is such a link: to a pipe, by no path. It stays, and so does one to nothing. */
-static void test_save_through_a_link_to_no_file(void **state)
+TEST(test_save_through_a_link_to_no_file)
 {
-    (void)state;
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
     grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
     struct stat status;
@@ -89,9 +80,8 @@ static void test_save_through_a_link_to_no_file(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_find_through_links(void **state)
+TEST(test_find_through_links)
 {
-    (void)state;
     const grobo_files *files = grobo_files_os();
     char path[4096] = "untouched";
 
@@ -106,14 +96,4 @@ static void test_find_through_links(void **state)
     assert_string_equal(path, "untouched");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mode),
-        cmocka_unit_test(test_save_through_a_link),
-        cmocka_unit_test(test_save_through_a_link_to_no_file),
-        cmocka_unit_test(test_find_through_links),
-    };
-
-    return cmocka_run_group_tests(tests, folder_set_up, remove_folder);
-}
+TESTS_BETWEEN(folder_set_up, remove_folder)

@@ -2,21 +2,16 @@
 /* Numbers as text: exact both ways, in every locale. */
 #include <locale.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "src/motion/text/number.h"
+#include "tests/support/test.h"
 
-static void test_numbers(void **state)
+TEST(test_numbers)
 {
-    (void)state;
     static const struct {
         const char *text;
         double value;
@@ -53,9 +48,8 @@ static void test_numbers(void **state)
 }
 
 /* Written numbers read back as they were, whatever they are, and shortly where that is enough. */
-static void test_number_round_trip(void **state)
+TEST(test_number_round_trip)
 {
-    (void)state;
     char text[GROBO_I_NUMBER_BYTES];
     uint64_t bits = 88172645463325252U;
 
@@ -82,9 +76,8 @@ static void test_number_round_trip(void **state)
 }
 
 /* Of any digits and exponent the nearest double, as the C library finds it. */
-static void test_numbers_are_rounded_right(void **state)
+TEST(test_numbers_are_rounded_right)
 {
-    (void)state;
     uint64_t bits = 88172645463325252U;
 
     for (int i = 0; i < 300000; i++) {
@@ -115,9 +108,8 @@ static void test_numbers_are_rounded_right(void **state)
     }
 }
 
-static void test_locale(void **state)
+TEST(test_locale)
 {
-    (void)state;
     static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
     char text[GROBO_I_NUMBER_BYTES];
     double value;
@@ -136,16 +128,4 @@ static void test_locale(void **state)
     assert_true(parsed && value == 1.0 / 3);
     assert_int_equal(length, 19);
     assert_memory_equal(text, "0.33333333333333331", 19);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_number_round_trip),
-        cmocka_unit_test(test_numbers_are_rounded_right),
-        cmocka_unit_test(test_locale),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

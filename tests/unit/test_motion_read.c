@@ -1,24 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* Reading: what each format gives, and what is wrong with a file, where. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/counted_mem.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
 /* ---- .m ----------------------------------------------------------------------------------- */
 
-static void test_m(void **state)
+TEST(test_m)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("# recorded\n500  10 -20 30\r\n1000.5\t0 1.5 0\n\n\n", GROBO_FORMAT_AUTO);
     const grobo_model *model = &grobo_gr001_model;
@@ -37,9 +32,8 @@ static void test_m(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_m_of_other_robots(void **state)
+TEST(test_m_of_other_robots)
 {
-    (void)state;
     grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = GROBO_FORMAT_M};
     grobo_motion *motion = NULL;
     char text[1000] = "10";
@@ -56,9 +50,8 @@ static void test_m_of_other_robots(void **state)
     assert_int_equal(read_result(text, &options, NULL), GROBO_ERR_CAP);
 }
 
-static void test_m_refused(void **state)
+TEST(test_m_refused)
 {
-    (void)state;
     static const struct {
         const char *text, *code;
         unsigned line, column;
@@ -77,9 +70,8 @@ static void test_m_refused(void **state)
     }
 }
 
-static void test_m_line_too_long(void **state)
+TEST(test_m_line_too_long)
 {
-    (void)state;
     size_t size = 100000;
     char *text = malloc(size + 1);
 
@@ -95,9 +87,8 @@ static void test_m_line_too_long(void **state)
 /* ---- key poses ---------------------------------------------------------------------------- */
 
 /* A ZMP stands still at its key unless the file denies it. */
-static void test_zmp_stands_still(void **state)
+TEST(test_zmp_stands_still)
 {
-    (void)state;
     static const struct {
         const char *pose;
         bool has_zmp, stationary;
@@ -122,9 +113,8 @@ static void test_zmp_stands_still(void **state)
 }
 
 /* Choreonoid takes the words of YAML 1.1 for true and false, but for mixed case. */
-static void test_words_for_true_and_false(void **state)
+TEST(test_words_for_true_and_false)
 {
-    (void)state;
     static const char *const words[2][11] = {
         {"n", "N", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"},
         {"y", "Y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"}};
@@ -147,9 +137,8 @@ static void test_words_for_true_and_false(void **state)
     }
 }
 
-static void test_pose(void **state)
+TEST(test_pose)
 {
-    (void)state;
     grobo_motion *motion = motion_of(full_pose, GROBO_FORMAT_AUTO);
     grobo_key_info info;
     grobo_kept kept;
@@ -184,9 +173,8 @@ static void test_pose(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_positions(void **state)
+TEST(test_positions)
 {
-    (void)state;
     grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .keep_positions = true};
     grobo_motion *motion = NULL;
     uint32_t line = 0, column = 0;
@@ -248,9 +236,8 @@ static const struct bad_file {
 };
 #undef TOP
 
-static void test_pose_refused(void **state)
+TEST(test_pose_refused)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof bad_poses / sizeof bad_poses[0]; i++) {
         grobo_diagnostics *list = NULL;
         assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
@@ -267,9 +254,8 @@ static void test_pose_refused(void **state)
 }
 
 /* With keep_going one run says it all. */
-static void test_keep_going(void **state)
+TEST(test_keep_going)
 {
-    (void)state;
     static const char text[] =
         "type: PoseSeq\nname: t\nrefs:\n"
         "- { time: x, refer: { type: Pose, joints: [ 0, 1 ], q: [ y, z ] } }\n"
@@ -294,9 +280,8 @@ static void test_keep_going(void **state)
     grobo_diagnostics_free(list);
 }
 
-static void test_merge_and_alias(void **state)
+TEST(test_merge_and_alias)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("type: PoseSeq\nname: t\nrefs:\n"
                   "  - { time: 0, refer: &a { type: Pose, joints: [ 0 ], q: [ 1 ], mine: &s 5 } }\n"
@@ -317,9 +302,8 @@ static void test_merge_and_alias(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_type_behind_refs(void **state)
+TEST(test_type_behind_refs)
 {
-    (void)state;
     static const char text[] =
         "refs: [ { time: 0, refer: { type: Motion, joints: [ 0 ], q: [ 1 ] } } ]\n";
     char whole[200];
@@ -337,9 +321,8 @@ static void test_type_behind_refs(void **state)
 
 /* ---- body motion -------------------------------------------------------------------------- */
 
-static void test_body_motion_keys_behind(void **state)
+TEST(test_body_motion_keys_behind)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("components:\n"
                   "- { frames: [ [ 0, 1, 2 ], [ 0.5, 3, 4 ] ], hasFrameTime: true, numParts: 2,\n"
@@ -357,9 +340,8 @@ static void test_body_motion_keys_behind(void **state)
 }
 
 /* Frames with times of their own need no rate: Choreonoid takes 100 Hz for them. */
-static void test_frame_times_without_rate(void **state)
+TEST(test_frame_times_without_rate)
 {
-    (void)state;
     grobo_motion *motion = motion_of(
         "type: CompositeSeq\ncontent: BodyMotion\nformatVersion: 2\ncomponents:\n"
         "- { type: MultiValueSeq, content: JointDisplacement, numParts: 1, hasFrameTime: true, "
@@ -374,9 +356,8 @@ static void test_frame_times_without_rate(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_body_motion_refused(void **state)
+TEST(test_body_motion_refused)
 {
-    (void)state;
 #define PART "type: BodyMotion\nframeRate: 10\ncomponents:\n- { type: MultiValueSeq, "
     static const struct {
         const char *text, *code;
@@ -417,9 +398,8 @@ static void test_body_motion_refused(void **state)
 }
 
 /* As Choreonoid: version 1 is called BodyMotion. */
-static void test_composite_needs_a_version(void **state)
+TEST(test_composite_needs_a_version)
 {
-    (void)state;
     assert_int_equal(
         read_result("type: CompositeSeq\ncomponents:\n- { type: MultiValueSeq, content: "
                     "JointPosition, frameRate: 1, numParts: 1, frames: [ [ 1 ] ] }\n",
@@ -428,9 +408,8 @@ static void test_composite_needs_a_version(void **state)
 }
 
 /* A target that cannot be used is left out with a warning, and what it kept goes with it. */
-static void test_unusable_links_are_skipped(void **state)
+TEST(test_unusable_links_are_skipped)
 {
-    (void)state;
 #define LINK "rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ] }"
     static const char text[] =
         "type: PoseSeq\nname: t\nrefs:\n- { time: 0, refer: { type: Pose, ikLinks: [\n"
@@ -461,9 +440,8 @@ static void test_unusable_links_are_skipped(void **state)
 }
 
 /* Choreonoid does not look at the type: the refs say what the file is. */
-static void test_key_poses_of_another_type(void **state)
+TEST(test_key_poses_of_another_type)
 {
-    (void)state;
     static const char text[] = "type: Foo\nname: t\nrefs: [ { time: 0, refer: { type: Pose } } ]\n";
     grobo_diagnostics *list = NULL;
 
@@ -474,9 +452,8 @@ static void test_key_poses_of_another_type(void **state)
 }
 
 /* A posture of 20 joints takes 188 bytes, also where places are kept: those of the first alone. */
-static void test_memory_of_a_long_file(void **state)
+TEST(test_memory_of_a_long_file)
 {
-    (void)state;
     enum { POSTURES = 100000 };
     static const char line[] = "10 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n";
     size_t length = strlen(line);
@@ -504,9 +481,8 @@ static void test_memory_of_a_long_file(void **state)
 }
 
 /* What a ref says beside the name of an earlier pose is kept as anywhere else. */
-static void test_keys_beside_a_name(void **state)
+TEST(test_keys_beside_a_name)
 {
-    (void)state;
     static const char text[] =
         "type: PoseSeq\nname: t\nrefs:\n"
         "- { time: 0, mine: 1, refer: { type: Pose, name: a, of_pose: 2 } }\n"
@@ -528,9 +504,8 @@ static void test_keys_beside_a_name(void **state)
 /* ---- messages ----------------------------------------------------------------------------- */
 
 /* A long name is cut; what is left of it stays legible, and only what is no character is not. */
-static void test_long_names_in_messages(void **state)
+TEST(test_long_names_in_messages)
 {
-    (void)state;
 #define POSE_14 "\xE3\x81\x82\xE3\x82\x8B\xE3\x81\x8F" /* aruku, in 3 of 14 characters */
     static const char text[] =
         "type: PoseSeq\nname: t\nrefs:\n- { time: 0, refer: \"" POSE_14 POSE_14 POSE_14 POSE_14
@@ -556,9 +531,8 @@ static void test_long_names_in_messages(void **state)
 
 /* ---- formats ------------------------------------------------------------------------------ */
 
-static void test_format_by_content_and_name(void **state)
+TEST(test_format_by_content_and_name)
 {
-    (void)state;
     static const char key_poses[] = "type: PoseSeq\nname: t\n";
     grobo_diagnostics *list = NULL;
 
@@ -590,9 +564,8 @@ static void test_format_by_content_and_name(void **state)
     grobo_diagnostics_free(list);
 }
 
-static void test_files_refused(void **state)
+TEST(test_files_refused)
 {
-    (void)state;
     grobo_motion *motion = NULL;
     int folder = grobo_motion_read_file("/", NULL, NULL, &motion);
 
@@ -613,9 +586,8 @@ static int failing_read(void *ctx, void *buffer, size_t size)
     return 1;
 }
 
-static void test_source_fails(void **state)
+TEST(test_source_fails)
 {
-    (void)state;
     for (int format = GROBO_FORMAT_AUTO; format <= GROBO_FORMAT_YAML; format++) {
         int left = 3;
         grobo_motion *motion = NULL;
@@ -626,36 +598,4 @@ static void test_source_fails(void **state)
             GROBO_ERR_UNPLUGGED);
         assert_null(motion);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_m),
-        cmocka_unit_test(test_m_of_other_robots),
-        cmocka_unit_test(test_m_refused),
-        cmocka_unit_test(test_m_line_too_long),
-        cmocka_unit_test(test_zmp_stands_still),
-        cmocka_unit_test(test_words_for_true_and_false),
-        cmocka_unit_test(test_pose),
-        cmocka_unit_test(test_positions),
-        cmocka_unit_test(test_pose_refused),
-        cmocka_unit_test(test_keep_going),
-        cmocka_unit_test(test_merge_and_alias),
-        cmocka_unit_test(test_type_behind_refs),
-        cmocka_unit_test(test_body_motion_keys_behind),
-        cmocka_unit_test(test_frame_times_without_rate),
-        cmocka_unit_test(test_composite_needs_a_version),
-        cmocka_unit_test(test_unusable_links_are_skipped),
-        cmocka_unit_test(test_key_poses_of_another_type),
-        cmocka_unit_test(test_memory_of_a_long_file),
-        cmocka_unit_test(test_body_motion_refused),
-        cmocka_unit_test(test_keys_beside_a_name),
-        cmocka_unit_test(test_long_names_in_messages),
-        cmocka_unit_test(test_format_by_content_and_name),
-        cmocka_unit_test(test_files_refused),
-        cmocka_unit_test(test_source_fails),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

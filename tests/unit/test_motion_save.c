@@ -1,31 +1,25 @@
 /* SPDX-License-Identifier: MIT */
 /* Saving motions, and finding them in a directory, through the port's files. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "tests/support/files.h"
 #include "tests/support/folder.h"
 #include "tests/support/motion_texts.h"
 #include "tests/support/os.h"
+#include "tests/support/test.h"
 
 static const char saved[] = "500  10 -20\n1000  1 2\n";
 static const grobo_write_options in_motor_order = {GROBO_WRITE_OPTIONS_INIT,
                                                    .model = &grobo_gr001_model};
 
-static int remove_folder(void **state)
+static int remove_folder(void)
 {
     static const char *const names[] = {"a.m",       "b.m",    "Motion1.m", "Motion2.m",
                                         "Motion3.m", "walk.m", "walk.pseq", "walk.yaml",
                                         "walk.mseq", "c.pseq", "c.yaml"};
 
-    (void)state;
     (void)remove(in_folder("sub/c.yaml"));
     (void)test_folder_remove(in_folder("sub"));
     /* Fails if a temporary file was left behind. */
@@ -44,9 +38,8 @@ static grobo_motion *again_as(const char *path, const grobo_model *model, const 
     return again;
 }
 
-static void test_save(void **state)
+TEST(test_save)
 {
-    (void)state;
     grobo_motion *motion = motion_of(saved, GROBO_FORMAT_M);
     const char *path = in_folder("a.m");
     grobo_model short_model = grobo_gr001_model;
@@ -66,7 +59,7 @@ static void test_save(void **state)
 }
 
 /* The name tells the format, and what is read again is what was saved. */
-static void test_save_formats(void **state)
+TEST(test_save_formats)
 {
     static const struct {
         const char *name, *text, *type;
@@ -83,7 +76,6 @@ static void test_save_formats(void **state)
          "BodyMotion", GROBO_FORMAT_YAML},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const char *path = in_folder(rows[i].name);
         grobo_motion *motion = motion_of(rows[i].text, rows[i].format);
@@ -99,9 +91,8 @@ static void test_save_formats(void **state)
     }
 }
 
-static void test_save_refused(void **state)
+TEST(test_save_refused)
 {
-    (void)state;
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
     grobo_diagnostics *list = NULL;
 
@@ -124,9 +115,8 @@ static int few_writes(grobo_file *file, const void *data, size_t size)
     return writes_left-- > 0 ? real_files->write(file, data, size) : GROBO_ERR_IO;
 }
 
-static void test_save_never_destroys(void **state)
+TEST(test_save_never_destroys)
 {
-    (void)state;
     grobo_motion *motion = motion_of(saved, GROBO_FORMAT_M);
     real_files = grobo_files_os();
     grobo_files files = *real_files;
@@ -141,7 +131,7 @@ static void test_save_never_destroys(void **state)
 }
 
 /* Whatever the names say, what a file holds decides; `replace` takes anything. */
-static void test_save_keeps_other_formats(void **state)
+TEST(test_save_keeps_other_formats)
 {
     static const char *const held[] = {
         "100 1 2\n",
@@ -155,7 +145,6 @@ static void test_save_keeps_other_formats(void **state)
     const char *path = in_folder("a.m");
     grobo_diagnostics *list = NULL;
 
-    (void)state;
     assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     for (int h = 0; h < 3; h++) {
         for (int f = 0; f < 4; f++) {
@@ -184,9 +173,8 @@ static void test_save_keeps_other_formats(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_save_next(void **state)
+TEST(test_save_next)
 {
-    (void)state;
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
     grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
     char path[512] = "";
@@ -218,9 +206,8 @@ static const char *last_name(const char *path)
     return last;
 }
 
-static void test_find(void **state)
+TEST(test_find)
 {
-    (void)state;
     const grobo_files *files = grobo_files_os();
     char path[4096] = "untouched";
 
@@ -246,17 +233,4 @@ static void test_find(void **state)
     assert_int_equal(grobo_motion_find(files, folder, "walk", path, 3), GROBO_ERR_SPACE);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_save),
-        cmocka_unit_test(test_save_refused),
-        cmocka_unit_test(test_save_never_destroys),
-        cmocka_unit_test(test_save_keeps_other_formats),
-        cmocka_unit_test(test_save_formats),
-        cmocka_unit_test(test_save_next),
-        cmocka_unit_test(test_find),
-    };
-
-    return cmocka_run_group_tests(tests, folder_set_up, remove_folder);
-}
+TESTS_BETWEEN(folder_set_up, remove_folder)

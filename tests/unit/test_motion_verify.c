@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Whatever is written plays what its source plays, and grobo_motion_verify() notices where not. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
 enum { KEYS = 6, TRIALS = 25 };
 #define KEY_S 0.5 /* on a frame at GROBO_MOTION_RATE_HZ */
@@ -131,9 +127,8 @@ static void expect_lossless(grobo_motion *motion, grobo_joint_mask joints, bool 
 }
 
 /* Every pair of formats, with any joints, for any body that is this robot's. */
-static void test_nothing_is_lost(void **state)
+TEST(test_nothing_is_lost)
 {
-    (void)state;
     static const char *const bodies[] = {"", "GR001", "SerialRobot"};
     static const char *const kinds[] = {"postures", "keys", "steps", "frames"};
     uint32_t seed = 1;
@@ -167,9 +162,8 @@ static void test_nothing_is_lost(void **state)
 }
 
 /* verify() notices whatever is lost. */
-static void test_losses_are_noticed(void **state)
+TEST(test_losses_are_noticed)
 {
-    (void)state;
     static const char whole[] = "500  10 -20 30\n1000  40 50 60\n1500  0 0 0\n";
     static const struct {
         const char *text, *code;
@@ -212,9 +206,8 @@ static grobo_motion *frames_of(const grobo_motion *motion)
 }
 
 /* Frames: one that is wrong, and an end that is missing. */
-static void test_losses_of_frames_are_noticed(void **state)
+TEST(test_losses_of_frames_are_noticed)
 {
-    (void)state;
     grobo_motion *motion = motion_of("300  100\n600  0\n900  50\n", GROBO_FORMAT_M);
     grobo_diagnostics *list = NULL;
     grobo_motion *frames = frames_of(motion);
@@ -238,15 +231,4 @@ static void test_losses_of_frames_are_noticed(void **state)
     grobo_motion_free(frames);
     grobo_motion_free(motion);
     grobo_diagnostics_free(list);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing_is_lost),
-        cmocka_unit_test(test_losses_are_noticed),
-        cmocka_unit_test(test_losses_of_frames_are_noticed),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

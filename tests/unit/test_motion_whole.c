@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Editing and comparing whole motions. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/counted_mem.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
 static const char keys[] =
     "type: PoseSeq\nname: t\nrefs:\n"
@@ -48,9 +44,8 @@ static double sample(const grobo_motion *motion, double t_s, int joint)
     return angle_rad;
 }
 
-static void test_equal_and_near(void **state)
+TEST(test_equal_and_near)
 {
-    (void)state;
     grobo_motion *a = motion_of(keys, GROBO_FORMAT_AUTO), *b = NULL;
     grobo_posture posture;
 
@@ -71,9 +66,8 @@ static void test_equal_and_near(void **state)
     grobo_motion_free(b);
 }
 
-static void test_append_motion(void **state)
+TEST(test_append_motion)
 {
-    (void)state;
     grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO);
 
     assert_int_equal(grobo_motion_append_motion(motion, motion), 0);
@@ -123,14 +117,13 @@ static grobo_motion *any_of(grobo_motion_kind kind, double rate_hz)
     return motion;
 }
 
-static void test_append_another_kind(void **state)
+TEST(test_append_another_kind)
 {
     static const grobo_motion_kind kinds[] = {GROBO_MOTION_POSTURES, GROBO_MOTION_KEYS,
                                               GROBO_MOTION_FRAMES,   GROBO_MOTION_FRAMES,
                                               GROBO_MOTION_FRAMES,   GROBO_MOTION_STEPS};
     static const double rates_hz[] = {0, 0, 5, 10, 0, 0};
 
-    (void)state;
     for (int to = 0; to < 5; to++) {
         for (int from = 0; from < 6; from++) {
             for (int concat = 0; concat < 2; concat++) {
@@ -152,7 +145,7 @@ static void test_append_another_kind(void **state)
 }
 
 /* What cannot be converted without a guess is refused, and nothing has changed. */
-static void test_append_never_mixes(void **state)
+TEST(test_append_never_mixes)
 {
     grobo_motion *steps = any_of(GROBO_MOTION_STEPS, 0);
     grobo_motion *before = NULL;
@@ -160,7 +153,6 @@ static void test_append_never_mixes(void **state)
     grobo_motion *keys_of = any_of(GROBO_MOTION_KEYS, 0);
     grobo_motion *frames = NULL;
 
-    (void)state;
     assert_int_equal(grobo_motion_dup(steps, &before), 0);
     assert_int_equal(grobo_motion_append_motion(steps, keys_of), GROBO_ERR_TYPE);
     assert_int_equal(grobo_motion_concat(steps, keys_of, 0), GROBO_ERR_TYPE);
@@ -181,9 +173,8 @@ static void test_append_never_mixes(void **state)
     grobo_motion_free(frames);
 }
 
-static void test_concat_keys(void **state)
+TEST(test_concat_keys)
 {
-    (void)state;
     grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO);
     grobo_motion *other = NULL;
 
@@ -197,9 +188,8 @@ static void test_concat_keys(void **state)
     grobo_motion_free(other);
 }
 
-static void test_concat_frames(void **state)
+TEST(test_concat_frames)
 {
-    (void)state;
     grobo_motion *motion = frames_of(10, 2, 0), *other = frames_of(10, 2, 5);
 
     assert_int_equal(grobo_motion_concat(motion, other, 400000), 0);
@@ -215,9 +205,8 @@ static void test_concat_frames(void **state)
     grobo_motion_free(other);
 }
 
-static void test_concat_postures(void **state)
+TEST(test_concat_postures)
 {
-    (void)state;
     grobo_motion *motion = motion_of("500 0\n900 1\n", GROBO_FORMAT_M);
     grobo_motion *other = motion_of("700 2\n1000 3\n", GROBO_FORMAT_M);
 
@@ -228,9 +217,8 @@ static void test_concat_postures(void **state)
     grobo_motion_free(other);
 }
 
-static void test_mirror(void **state)
+TEST(test_mirror)
 {
-    (void)state;
     grobo_motion *motion = NULL, *back = NULL;
     grobo_posture posture;
     grobo_ik_link links[2] = {{.index = 6,
@@ -280,9 +268,8 @@ static void test_mirror(void **state)
 }
 
 /* Backwards the same curve is run, waits included, and twice backwards is the same again. */
-static void test_reverse_keys(void **state)
+TEST(test_reverse_keys)
 {
-    (void)state;
     grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO), *forward = NULL;
     grobo_key_info info;
 
@@ -304,9 +291,8 @@ static void test_reverse_keys(void **state)
     grobo_motion_free(forward);
 }
 
-static void test_reverse_keys_with_links(void **state)
+TEST(test_reverse_keys_with_links)
 {
-    (void)state;
     grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO);
     grobo_ik_link link = {.index = 6, .name = "R_ANKLE_R", .translation_m = {1, 2, 3}};
     size_t count;
@@ -323,9 +309,8 @@ static void test_reverse_keys_with_links(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_reverse_postures_and_steps(void **state)
+TEST(test_reverse_postures_and_steps)
 {
-    (void)state;
     grobo_motion *motion = motion_of("500 0\n900 1\n900 2\n1500 3\n", GROBO_FORMAT_M);
     static const int64_t steps_us[] = {500000, 600000, 0, 400000};
     int joint = grobo_model_joint_of_motor(&grobo_gr001_model, 1);
@@ -351,9 +336,8 @@ static void test_reverse_postures_and_steps(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_scale_time(void **state)
+TEST(test_scale_time)
 {
-    (void)state;
     grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO);
     grobo_key_info info;
 
@@ -381,9 +365,8 @@ static void test_scale_time(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_crop_keys(void **state)
+TEST(test_crop_keys)
 {
-    (void)state;
     grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO), *whole = NULL;
 
     assert_int_equal(grobo_motion_dup(motion, &whole), 0);
@@ -409,9 +392,8 @@ static void test_crop_keys(void **state)
     grobo_motion_free(whole);
 }
 
-static void test_crop_steps_and_frames(void **state)
+TEST(test_crop_steps_and_frames)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("type: MotionSeq\nname: t\nrefs:\n"
                   "- { time: 1, refer: { type: Motion, joints: [ 0 ], q: [ 1 ] } }\n"
@@ -447,9 +429,8 @@ static int edit(grobo_motion *motion, int what)
     }
 }
 
-static void test_allocations_fail(void **state)
+TEST(test_allocations_fail)
 {
-    (void)state;
     for (int what = 0; what < 5; what++) {
         int result = GROBO_ERR_NOMEM;
         for (size_t n = 1; result < 0; n++) {
@@ -470,27 +451,4 @@ static void test_allocations_fail(void **state)
             assert_int_equal(counter.bytes, 0);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_equal_and_near),
-        cmocka_unit_test(test_append_motion),
-        cmocka_unit_test(test_append_another_kind),
-        cmocka_unit_test(test_append_never_mixes),
-        cmocka_unit_test(test_concat_keys),
-        cmocka_unit_test(test_concat_frames),
-        cmocka_unit_test(test_concat_postures),
-        cmocka_unit_test(test_mirror),
-        cmocka_unit_test(test_reverse_keys),
-        cmocka_unit_test(test_reverse_keys_with_links),
-        cmocka_unit_test(test_reverse_postures_and_steps),
-        cmocka_unit_test(test_scale_time),
-        cmocka_unit_test(test_crop_keys),
-        cmocka_unit_test(test_crop_steps_and_frames),
-        cmocka_unit_test(test_allocations_fail),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

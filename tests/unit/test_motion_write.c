@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Writing and converting motions. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/counted_mem.h"
 #include "tests/support/files.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
 /* ---- layout ------------------------------------------------------------------------------- */
 
@@ -101,22 +96,19 @@ static void expect_same_pseq(const char *file)
     grobo_motion_free(motion);
 }
 
-static void test_later_pseq_layout(void **state)
+TEST(test_later_pseq_layout)
 {
-    (void)state;
     expect_same_pseq(later_pose_file);
 }
 
-static void test_pseq_layout(void **state)
+TEST(test_pseq_layout)
 {
-    (void)state;
     expect_same_pseq(pose_file);
 }
 
 /* Keys without a meaning here, of the file and of the component, and a content that is nothing. */
-static void test_yaml_keeps_keys(void **state)
+TEST(test_yaml_keeps_keys)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("type: BodyMotion\nauthor: me\ncomponents:\n"
                   "  - { type: MultiVector3Seq, content: ZMP, mine: 1, frames: [ ] }\n"
@@ -135,9 +127,8 @@ static void test_yaml_keeps_keys(void **state)
 }
 
 /* Names that are not words to YAML stay names. */
-static void test_pseq_odd_names(void **state)
+TEST(test_pseq_odd_names)
 {
-    (void)state;
     static const char *const names[] = {"null", "~", "NULL", "7", "True", "off", "-1", ".5", "- a"};
 
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -159,9 +150,8 @@ static void test_pseq_odd_names(void **state)
     }
 }
 
-static void test_yaml_layout(void **state)
+TEST(test_yaml_layout)
 {
-    (void)state;
     static const char file[] = "type: BodyMotion\n"
                                "components: \n"
                                "  - \n"
@@ -201,9 +191,8 @@ static void test_yaml_layout(void **state)
     }
 }
 
-static void test_m_layout(void **state)
+TEST(test_m_layout)
 {
-    (void)state;
     static const char file[] = "500  10 -20.5 0\n1000  1 2 3\n";
     grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
     grobo_motion *motion = motion_of(file, GROBO_FORMAT_M);
@@ -219,9 +208,8 @@ static void test_m_layout(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_print(void **state)
+TEST(test_print)
 {
-    (void)state;
     char text[256] = "";
     FILE *stream = tmpfile();
     grobo_motion *motion = motion_of("500  10 -20\n", GROBO_FORMAT_M);
@@ -253,9 +241,8 @@ static int failing_write(void *ctx, const void *data, size_t size)
     return 0;
 }
 
-static void test_sink_fails(void **state)
+TEST(test_sink_fails)
 {
-    (void)state;
     grobo_motion *motion = motion_of(pose_file, GROBO_FORMAT_PSEQ);
 
     for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
@@ -280,9 +267,8 @@ static grobo_motion *converted(const grobo_motion *motion, grobo_motion_kind kin
 }
 
 /* There and back again: every pair of kinds keeps sizes, times and angles, if told to. */
-static void test_every_pair(void **state)
+TEST(test_every_pair)
 {
-    (void)state;
     const grobo_write_options exact = {GROBO_WRITE_OPTIONS_INIT, .exact = true};
     static const char *const files[] = {
         "0  10 -20 30\n400  15 -20 31\n1000  40 0 0\n",
@@ -311,9 +297,8 @@ static void test_every_pair(void **state)
     }
 }
 
-static void test_conversion_says_what_is_dropped(void **state)
+TEST(test_conversion_says_what_is_dropped)
 {
-    (void)state;
     grobo_motion *motion = motion_of(pose_file, GROBO_FORMAT_PSEQ);
     grobo_diagnostics *list = NULL;
 
@@ -337,9 +322,8 @@ static void test_conversion_says_what_is_dropped(void **state)
 }
 
 /* Joints that a pose does not list: as before, at first as in their first pose. */
-static void test_conversion_fills_joints(void **state)
+TEST(test_conversion_fills_joints)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("type: PoseSeq\nname: t\nrefs:\n"
                   "- { time: 0, refer: { type: Pose, joints: [ 0 ], q: [ 1 ] } }\n"
@@ -370,9 +354,8 @@ static void test_conversion_fills_joints(void **state)
     grobo_diagnostics_free(list);
 }
 
-static void test_conversion_at_a_rate(void **state)
+TEST(test_conversion_at_a_rate)
 {
-    (void)state;
     grobo_motion *motion = motion_of("0  0\n1000  100\n", GROBO_FORMAT_M);
     grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .rate_hz = 10};
     grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES, &options, NULL);
@@ -397,9 +380,8 @@ static void test_conversion_at_a_rate(void **state)
 }
 
 /* Without a rate asked for, key poses become frames that programs which hold each can play. */
-static void test_frames_are_resampled(void **state)
+TEST(test_frames_are_resampled)
 {
-    (void)state;
     grobo_motion *motion =
         motion_of("type: PoseSeq\nname: t\nrefs:\n"
                   "- { time: 0.1, refer: { type: Pose, joints: [ 0 ], q: [ 1 ] } }\n"
@@ -429,9 +411,8 @@ static void test_frames_are_resampled(void **state)
 }
 
 /* An empty motion has a file in every format, and comes back from it. */
-static void test_empty_motions_are_written(void **state)
+TEST(test_empty_motions_are_written)
 {
-    (void)state;
     const grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
 
     for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
@@ -450,9 +431,8 @@ static void test_empty_motions_are_written(void **state)
 
 /* ---- memory ------------------------------------------------------------------------------- */
 
-static void test_allocations_fail(void **state)
+TEST(test_allocations_fail)
 {
-    (void)state;
     for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
         int result = GROBO_ERR_NOMEM;
         for (size_t n = 1; result < 0; n++) {
@@ -479,9 +459,8 @@ static const char *const real_names[] = {
     "data/choreonoid/SR1WalkPattern3.yaml", "data/choreonoid/SR1WalkPattern3.seq"};
 
 /* What Choreonoid wrote comes out as it wrote it. */
-static void test_real_key_poses_byte_for_byte(void **state)
+TEST(test_real_key_poses_byte_for_byte)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         size_t size, written;
         char *file = file_text(shared_file(real_names[i]), &size);
@@ -496,9 +475,8 @@ static void test_real_key_poses_byte_for_byte(void **state)
 }
 
 /* Read, written to each format and read, and back: the same sizes, times and angles. */
-static void test_real_files_there_and_back(void **state)
+TEST(test_real_files_there_and_back)
 {
-    (void)state;
     grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model,
                                    .exact = true};
 
@@ -534,9 +512,8 @@ static void test_real_files_there_and_back(void **state)
 }
 
 /* The walk in two versions of the format is the same walk. */
-static void test_versions_agree(void **state)
+TEST(test_versions_agree)
 {
-    (void)state;
     grobo_motion *a = NULL, *b = NULL;
 
     assert_int_equal(grobo_motion_read_file(shared_file(real_names[2]), NULL, NULL, &a), 0);
@@ -544,30 +521,4 @@ static void test_versions_agree(void **state)
     assert_true(grobo_motion_equal(a, b));
     grobo_motion_free(a);
     grobo_motion_free(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pseq_layout),
-        cmocka_unit_test(test_later_pseq_layout),
-        cmocka_unit_test(test_yaml_keeps_keys),
-        cmocka_unit_test(test_pseq_odd_names),
-        cmocka_unit_test(test_yaml_layout),
-        cmocka_unit_test(test_m_layout),
-        cmocka_unit_test(test_print),
-        cmocka_unit_test(test_sink_fails),
-        cmocka_unit_test(test_every_pair),
-        cmocka_unit_test(test_conversion_says_what_is_dropped),
-        cmocka_unit_test(test_conversion_fills_joints),
-        cmocka_unit_test(test_conversion_at_a_rate),
-        cmocka_unit_test(test_frames_are_resampled),
-        cmocka_unit_test(test_empty_motions_are_written),
-        cmocka_unit_test(test_allocations_fail),
-        cmocka_unit_test(test_real_key_poses_byte_for_byte),
-        cmocka_unit_test(test_real_files_there_and_back),
-        cmocka_unit_test(test_versions_agree),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* What the process of a connection says is foreign: every field of a note has its bounds. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <event2/buffer.h>
 
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tools/grctl/mqtt/note.h"
 
 enum { MUTATIONS = 200000 };
@@ -27,11 +24,10 @@ static const note message = {.kind = NOTE_MESSAGE,
                                          .correlation = correlation,
                                          .correlation_bytes = sizeof correlation}};
 
-static void comes_as_it_went(void **state)
+TEST(comes_as_it_went)
 {
     struct evbuffer *b = evbuffer_new();
     note n;
-    (void)state;
     assert_true(note_write(b, &message));
     const note second = {.kind = NOTE_DOWN, .text = {"ブローカ"}};
     assert_true(note_write(b, &second));
@@ -57,11 +53,10 @@ static void comes_as_it_went(void **state)
 }
 
 /* In pieces: nothing is read before its end has come. */
-static void waits_for_its_end(void **state)
+TEST(waits_for_its_end)
 {
     struct evbuffer *whole = evbuffer_new(), *b = evbuffer_new();
     note n;
-    (void)state;
     assert_true(note_write(whole, &message));
     size_t size = evbuffer_get_length(whole);
     const unsigned char *bytes = evbuffer_pullup(whole, -1);
@@ -89,12 +84,11 @@ static void look_at(const note *n)
 }
 
 /* Some bytes changed, some left out: it is refused, or within its bounds. */
-static void bounds_whatever_comes(void **state)
+TEST(bounds_whatever_comes)
 {
     struct evbuffer *whole = evbuffer_new();
     uint32_t seed = 1;
     int refused = 0;
-    (void)state;
     assert_true(note_write(whole, &message));
     size_t size = evbuffer_get_length(whole);
     const unsigned char *bytes = evbuffer_pullup(whole, -1);
@@ -125,10 +119,9 @@ static void refuse(const note *n)
     assert_false(note_is_news(n));
 }
 
-static void judges_each_kind(void **state)
+TEST(judges_each_kind)
 {
     char longest[NOTE_WHY_MAX_BYTES + 2];
-    (void)state;
     memset(longest, 'x', sizeof longest - 1);
     longest[sizeof longest - 1] = '\0';
     refuse(&(note){.kind = NOTE_MESSAGE});
@@ -152,7 +145,7 @@ static void judges_each_kind(void **state)
 }
 
 /* A password and the name of a file are bytes. */
-static void tells_a_configuration(void **state)
+TEST(tells_a_configuration)
 {
     const mqtt_config said = {.host = "h",
                               .port = 1883,
@@ -163,7 +156,6 @@ static void tells_a_configuration(void **state)
     mqtt_config heard = {.base = NULL};
     struct evbuffer *b = evbuffer_new();
     note n = note_of_config(&said);
-    (void)state;
     assert_true(note_write(b, &n));
     assert_int_equal(note_read(b, &n), 1);
     note_to_config(&n, &heard);
@@ -178,12 +170,11 @@ static void tells_a_configuration(void **state)
 }
 
 /* A length that is none is refused at once; one that is too long is never written. */
-static void bounds_the_length(void **state)
+TEST(bounds_the_length)
 {
     static const unsigned char short_one[] = {1, 0, 0, 0}, long_one[] = {0xff, 0xff, 0xff, 0x7f};
     struct evbuffer *b = evbuffer_new();
     note n = {.kind = NOTE_MESSAGE, .message = {.topic = "x", .size = NOTE_MAX_BYTES}};
-    (void)state;
     assert_false(note_write(b, &n));
     assert_int_equal(evbuffer_get_length(b), 0);
     evbuffer_add(b, short_one, sizeof short_one);
@@ -192,14 +183,4 @@ static void bounds_the_length(void **state)
     evbuffer_add(b, long_one, sizeof long_one);
     assert_int_equal(note_read(b, &n), -1);
     evbuffer_free(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(comes_as_it_went),      cmocka_unit_test(waits_for_its_end),
-        cmocka_unit_test(bounds_whatever_comes), cmocka_unit_test(judges_each_kind),
-        cmocka_unit_test(bounds_the_length),     cmocka_unit_test(tells_a_configuration),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Codecs, models, motions and bodies refuse NULL for each thing that must be there. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/body_motion.h>
@@ -21,6 +16,8 @@
 #include <grobo/motion_io.h>
 #include <grobo/robot_file.h>
 #include <grobo/rs30x.h>
+
+#include "tests/support/test.h"
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
 
@@ -88,9 +85,8 @@ static int write_nothing(void *ctx, const void *data, size_t size)
     return 0;
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     grobo_board_parser_init(&board_parser, 0);
     grobo_rs30x_parser_init(&parser, GROBO_ACCEPT_RETURNS);
     assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &motion), GROBO_OK);
@@ -115,9 +111,8 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     (void)fclose(stream);
     grobo_diagnostics_free(list);
     grobo_motion_clip_free(&clip);
@@ -126,9 +121,8 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void board_refuses_null(void **state)
+TEST(board_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_board_check(NULL, sizeof bytes));
     REFUSES(grobo_board_slot(0, NULL, sizeof bytes));
     REFUSES(grobo_board_scenario(0, NULL, sizeof bytes));
@@ -151,9 +145,8 @@ static void board_refuses_null(void **state)
     grobo_board_parser_reset(NULL);
 }
 
-static void body_refuses_null(void **state)
+TEST(body_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_body_model_check(NULL));
     grobo_body_forward(NULL, transforms, reals, transforms);
     grobo_body_forward(&grobo_gr001_body, transforms, NULL, transforms);
@@ -195,9 +188,8 @@ static void body_refuses_null(void **state)
     REFUSES(grobo_body_check(body, NULL));
 }
 
-static void body_motion_refuses_null(void **state)
+TEST(body_motion_refuses_null)
 {
-    (void)state;
     assert_false(grobo_body_wanted(&grobo_gr001_body, NULL));
     REFUSES(grobo_body_new(&grobo_gr001_body, motion, &body_options, grobo_mem_default(), NULL));
     REFUSES(grobo_body_new(NULL, motion, &body_options, grobo_mem_default(), &made_body));
@@ -210,9 +202,8 @@ static void body_motion_refuses_null(void **state)
     REFUSES(grobo_body_frames(body, grobo_mem_default(), NULL));
 }
 
-static void dxl_refuses_null(void **state)
+TEST(dxl_refuses_null)
 {
-    (void)state;
     static grobo_dxl2_packet packet2;
     static grobo_dxl1_packet packet1;
     const grobo_servo_model *model = &grobo_sts_table.models[0];
@@ -255,9 +246,8 @@ static void dxl_refuses_null(void **state)
     REFUSES(grobo_servo_baud_code(NULL, 115200));
 }
 
-static void lx16a_and_ics_refuse_null(void **state)
+TEST(lx16a_and_ics_refuse_null)
 {
-    (void)state;
     static grobo_lx16a_packet lx16a;
     static grobo_ics_packet ics;
     REFUSES(grobo_ics_measure(NULL, 1));
@@ -278,9 +268,8 @@ static void lx16a_and_ics_refuse_null(void **state)
     REFUSES(grobo_lx16a_build(&lx16a, bytes, sizeof bytes));
 }
 
-static void driver_refuses_null(void **state)
+TEST(driver_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_driver_check(NULL));
     assert_int_equal(grobo_driver_wiring(NULL), GROBO_WIRING_BOARD);
     REFUSES(grobo_dxl2_driver_init(NULL, &grobo_gr001_model));
@@ -300,9 +289,8 @@ static void driver_refuses_null(void **state)
     REFUSES(grobo_rs30x_driver_init(&made_driver, &grobo_gr001_model, NULL));
 }
 
-static void interpolate_refuses_null(void **state)
+TEST(interpolate_refuses_null)
 {
-    (void)state;
     grobo_spline_order(NULL, 1, sizes);
     grobo_spline_order(reals, 1, NULL);
     REFUSES(grobo_spline_append(NULL, 0, 0, 0, true));
@@ -312,9 +300,8 @@ static void interpolate_refuses_null(void **state)
     assert_true(grobo_spline_cubic(keys, NULL, 0) == 0);
 }
 
-static void model_refuses_null(void **state)
+TEST(model_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_model_check(NULL));
     assert_true(grobo_model_take_slack(NULL, 1, 0) == 0);
     REFUSES(grobo_model_joint_of_motor(NULL, 1));
@@ -326,9 +313,8 @@ static void model_refuses_null(void **state)
     REFUSES(grobo_model_find_joints(&grobo_gr001_model, text, 4, NULL));
 }
 
-static void motion_refuses_null_in_its_first_functions(void **state)
+TEST(motion_refuses_null_in_its_first_functions)
 {
-    (void)state;
     REFUSES(grobo_motion_new(0, 20, grobo_mem_default(), NULL));
     grobo_motion_free(NULL);
     REFUSES(grobo_motion_dup(NULL, &made_motion));
@@ -361,9 +347,8 @@ static void motion_refuses_null_in_its_first_functions(void **state)
     assert_true(grobo_motion_length_us(NULL, 0) == 0);
 }
 
-static void motion_refuses_null_in_its_second_functions(void **state)
+TEST(motion_refuses_null_in_its_second_functions)
 {
-    (void)state;
     REFUSES(grobo_motion_append(NULL, &posture));
     REFUSES(grobo_motion_append(motion, NULL));
     REFUSES(grobo_motion_append_at(NULL, 0, &posture));
@@ -397,9 +382,8 @@ static void motion_refuses_null_in_its_second_functions(void **state)
     assert_int_equal(grobo_motion_line(NULL, 1), 0);
 }
 
-static void motion_refuses_null_in_its_third_functions(void **state)
+TEST(motion_refuses_null_in_its_third_functions)
 {
-    (void)state;
     assert_false(grobo_motion_position(NULL, 1, 1, longs, longs));
     assert_false(grobo_motion_position(motion, 1, 1, NULL, longs));
     assert_false(grobo_motion_position(motion, 1, 1, longs, NULL));
@@ -432,9 +416,8 @@ static void motion_refuses_null_in_its_third_functions(void **state)
     REFUSES(grobo_motion_resample(&clip, 50.0, grobo_mem_default(), NULL));
 }
 
-static void motion_io_refuses_null_in_its_first_functions(void **state)
+TEST(motion_io_refuses_null_in_its_first_functions)
 {
-    (void)state;
     REFUSES(grobo_diagnostics_new(grobo_mem_default(), NULL));
     grobo_diagnostics_free(NULL);
     grobo_diagnostics_clear(NULL);
@@ -456,9 +439,8 @@ static void motion_io_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_motion_convert(motion, 0, &write_options, list, NULL));
 }
 
-static void motion_io_refuses_null_in_its_second_functions(void **state)
+TEST(motion_io_refuses_null_in_its_second_functions)
 {
-    (void)state;
     REFUSES(grobo_motion_verify(NULL, motion, &write_options, list));
     REFUSES(grobo_motion_verify(motion, NULL, &write_options, list));
     REFUSES(grobo_motion_write(NULL, 0, &write_options, &sink, list));
@@ -485,9 +467,8 @@ static void motion_io_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_motion_print(motion, &grobo_gr001_model, NULL));
 }
 
-static void posture_refuses_null_in_its_first_functions(void **state)
+TEST(posture_refuses_null_in_its_first_functions)
 {
-    (void)state;
     REFUSES(grobo_posture_init(NULL, 20));
     grobo_posture_init_pose(NULL, &grobo_gr001_model);
     grobo_posture_init_pose(&posture, NULL);
@@ -506,9 +487,8 @@ static void posture_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_posture_copy(&posture, NULL, 0));
 }
 
-static void posture_refuses_null_in_its_second_functions(void **state)
+TEST(posture_refuses_null_in_its_second_functions)
 {
-    (void)state;
     grobo_posture_merge(NULL, &posture);
     grobo_posture_merge(&posture, NULL);
     assert_false(grobo_posture_equal(NULL, &posture));
@@ -526,9 +506,8 @@ static void posture_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_posture_parse(&posture, &grobo_gr001_model, NULL, 4));
 }
 
-static void rs30x_refuses_null_in_its_first_functions(void **state)
+TEST(rs30x_refuses_null_in_its_first_functions)
 {
-    (void)state;
     REFUSES(grobo_rs30x_build(NULL, bytes, sizeof bytes));
     REFUSES(grobo_rs30x_build(&packet, NULL, sizeof bytes));
     REFUSES(grobo_rs30x_read(1, 0, 4, NULL, sizeof bytes));
@@ -551,9 +530,8 @@ static void rs30x_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_frame_goal(&grobo_rs30x_protocol, goals, NULL, sizeof bytes));
 }
 
-static void rs30x_refuses_null_in_its_second_functions(void **state)
+TEST(rs30x_refuses_null_in_its_second_functions)
 {
-    (void)state;
     REFUSES(grobo_frame_goals(NULL, goals, 1, bytes, sizeof bytes));
     REFUSES(grobo_frame_goals(&grobo_rs30x_protocol, NULL, 1, bytes, sizeof bytes));
     REFUSES(grobo_frame_goals(&grobo_rs30x_protocol, goals, 1, NULL, sizeof bytes));
@@ -582,9 +560,8 @@ static void rs30x_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_rs30x_state_decode(0, bytes, 1, NULL));
 }
 
-static void robot_file_refuses_null(void **state)
+TEST(robot_file_refuses_null)
 {
-    (void)state;
     const grobo_source bytes_of = {0};
     grobo_robot_def *def = NULL;
     grobo_driver driver;
@@ -599,27 +576,4 @@ static void robot_file_refuses_null(void **state)
     REFUSES(grobo_robot_def_sim(grobo_robot_defs[0], GROBO_WIRING_BUS, NULL));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(board_refuses_null),
-        cmocka_unit_test(body_refuses_null),
-        cmocka_unit_test(body_motion_refuses_null),
-        cmocka_unit_test(driver_refuses_null),
-        cmocka_unit_test(dxl_refuses_null),
-        cmocka_unit_test(lx16a_and_ics_refuse_null),
-        cmocka_unit_test(interpolate_refuses_null),
-        cmocka_unit_test(model_refuses_null),
-        cmocka_unit_test(motion_refuses_null_in_its_first_functions),
-        cmocka_unit_test(motion_refuses_null_in_its_second_functions),
-        cmocka_unit_test(motion_refuses_null_in_its_third_functions),
-        cmocka_unit_test(motion_io_refuses_null_in_its_first_functions),
-        cmocka_unit_test(motion_io_refuses_null_in_its_second_functions),
-        cmocka_unit_test(posture_refuses_null_in_its_first_functions),
-        cmocka_unit_test(posture_refuses_null_in_its_second_functions),
-        cmocka_unit_test(robot_file_refuses_null),
-        cmocka_unit_test(rs30x_refuses_null_in_its_first_functions),
-        cmocka_unit_test(rs30x_refuses_null_in_its_second_functions),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_BETWEEN(set_up, tear_down)

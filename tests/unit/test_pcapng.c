@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Traces of grctl: what is written is read; what others write is read; what is broken is told. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/conn/pcapng.h"
 #include "tools/grctl/os/os.h"
 
@@ -173,9 +169,8 @@ static int problem_of(image *i, const char *told)
     return result;
 }
 
-static void what_is_written_is_read(void **state)
+TEST(what_is_written_is_read)
 {
-    (void)state;
     static image i;
     static pcapng_reader r;
     pcapng_chunk chunk;
@@ -205,9 +200,8 @@ static void what_is_written_is_read(void **state)
 }
 
 /* Byte for byte what the format says: block type, length, interface, time, sizes, data, flags. */
-static void a_packet_block_is_as_the_format_has_it(void **state)
+TEST(a_packet_block_is_as_the_format_has_it)
 {
-    (void)state;
     static const uint8_t expected[] = {6, 0, 0, 0, 48, 0, 0, 0, 0, 0, 0, 0, 2,  0, 0, 0,
                                        1, 0, 0, 0, 1,  0, 0, 0, 1, 0, 0, 0, 7,  0, 0, 0,
                                        2, 0, 4, 0, 1,  0, 0, 0, 0, 0, 0, 0, 48, 0, 0, 0};
@@ -220,9 +214,8 @@ static void a_packet_block_is_as_the_format_has_it(void **state)
     assert_memory_equal(i.bytes, expected, sizeof expected);
 }
 
-static void texts_longer_than_kept_are_cut(void **state)
+TEST(texts_longer_than_kept_are_cut)
 {
-    (void)state;
     static image i;
     static pcapng_reader r;
     pcapng_interface interface = {.link_type = PCAPNG_LINK_USER0};
@@ -243,9 +236,8 @@ static void texts_longer_than_kept_are_cut(void **state)
     assert_int_equal(strlen(chunk.interface->name), PCAPNG_TEXT_BYTES - 1);
 }
 
-static void either_byte_order_any_resolution_several_sections(void **state)
+TEST(either_byte_order_any_resolution_several_sections)
 {
-    (void)state;
     static const struct {
         bool big_endian;
         int resolution;
@@ -284,9 +276,8 @@ static void either_byte_order_any_resolution_several_sections(void **state)
     assert_int_equal(pcapng_read(&r, &chunk), 0);
 }
 
-static void unknown_blocks_and_options_are_skipped(void **state)
+TEST(unknown_blocks_and_options_are_skipped)
 {
-    (void)state;
     static image i;
     static pcapng_reader r;
     pcapng_chunk chunk;
@@ -319,9 +310,8 @@ static void unknown_blocks_and_options_are_skipped(void **state)
     assert_int_equal(pcapng_read(&r, &chunk), 0);
 }
 
-static void what_is_broken_is_told(void **state)
+TEST(what_is_broken_is_told)
 {
-    (void)state;
     static image i;
     i = (image){.used = 0};
     assert_int_equal(problem_of(&i, "not a pcapng"), GROBO_ERR_TYPE);
@@ -352,9 +342,8 @@ static void what_is_broken_is_told(void **state)
     assert_int_equal(problem_of(&i, "version 2"), GROBO_ERR_SYNTAX);
 }
 
-static void lengths_that_lie_are_told(void **state)
+TEST(lengths_that_lie_are_told)
 {
-    (void)state;
     static image i;
     i = (image){0};
     add_section(&i, false);
@@ -395,9 +384,8 @@ static void lengths_that_lie_are_told(void **state)
     assert_int_equal(problem_of(&i, "interfaces"), GROBO_ERR_CAP);
 }
 
-static void a_file_cut_off_anywhere_gives_what_is_whole(void **state)
+TEST(a_file_cut_off_anywhere_gives_what_is_whole)
 {
-    (void)state;
     static image whole, part;
     static pcapng_reader reader;
     int clean = 0;
@@ -418,9 +406,8 @@ static void a_file_cut_off_anywhere_gives_what_is_whole(void **state)
     assert_int_equal(clean, 3);
 }
 
-static void no_flipped_byte_does_harm(void **state)
+TEST(no_flipped_byte_does_harm)
 {
-    (void)state;
     static image whole, bad;
     static pcapng_reader reader;
     static const uint8_t flips[] = {0x01, 0x80, 0xFF};
@@ -436,20 +423,4 @@ static void no_flipped_byte_does_harm(void **state)
             assert_true(result == 0 ? *reader.problem == '\0' : *reader.problem != '\0');
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_written_is_read),
-        cmocka_unit_test(a_packet_block_is_as_the_format_has_it),
-        cmocka_unit_test(texts_longer_than_kept_are_cut),
-        cmocka_unit_test(either_byte_order_any_resolution_several_sections),
-        cmocka_unit_test(unknown_blocks_and_options_are_skipped),
-        cmocka_unit_test(what_is_broken_is_told),
-        cmocka_unit_test(lengths_that_lie_are_told),
-        cmocka_unit_test(a_file_cut_off_anywhere_gives_what_is_whole),
-        cmocka_unit_test(no_flipped_byte_does_harm),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Looking at frames without a parser, good ones and those with a wrong sum. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/board.h>
+
+#include "tests/support/test.h"
 
 enum { EVERYTHING = GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS };
 
@@ -16,9 +13,8 @@ static const uint8_t goal[] = {0xFA, 0xAF, 0x03, 0x00, 0x1E, 0x04, 0x01,
                                0xF6, 0xFF, 0x00, 0x00, 0x11, 0xFA, 0xAF};
 enum { GOAL_BYTES = 12 };
 
-static void every_prefix_needs_more_and_the_whole_has_its_size(void **state)
+TEST(every_prefix_needs_more_and_the_whole_has_its_size)
 {
-    (void)state;
     grobo_rs30x_packet packet = {.id = 99};
     bool sum_ok = false;
     for (size_t n = 0; n < GOAL_BYTES; n++) {
@@ -35,9 +31,8 @@ static void every_prefix_needs_more_and_the_whole_has_its_size(void **state)
     assert_int_equal(packet.data_bytes, 4);
 }
 
-static void a_wrong_sum_is_told_with_the_packet(void **state)
+TEST(a_wrong_sum_is_told_with_the_packet)
 {
-    (void)state;
     uint8_t bad[GOAL_BYTES];
     grobo_rs30x_packet packet;
     bool sum_ok = true;
@@ -48,9 +43,8 @@ static void a_wrong_sum_is_told_with_the_packet(void **state)
     assert_int_equal(packet.address, GROBO_RS30X_GOAL);
 }
 
-static void only_what_is_accepted_is_seen(void **state)
+TEST(only_what_is_accepted_is_seen)
 {
-    (void)state;
     static const uint8_t back[] = {0xFD, 0xDF, 0x01, 0x00, 0x24, 0x01, 0x01, 0x01, 0x24};
     static const uint8_t ack[] = {GROBO_RS30X_ACK};
     grobo_rs30x_packet packet;
@@ -65,9 +59,8 @@ static void only_what_is_accepted_is_seen(void **state)
     assert_int_equal(packet.kind, GROBO_RS30X_ACK_BYTE);
 }
 
-static void a_board_frame_is_seen_before_what_follows(void **state)
+TEST(a_board_frame_is_seen_before_what_follows)
 {
-    (void)state;
     static const uint8_t bytes[] = {0x41, 0x00, 0x50, 0x4D, 0x07, 0x12};
     grobo_board_frame frame;
     assert_int_equal(grobo_board_peek(bytes, 0, &frame), 0);
@@ -78,15 +71,4 @@ static void a_board_frame_is_seen_before_what_follows(void **state)
     assert_int_equal(frame.kind, GROBO_BOARD_SLOT);
     assert_int_equal(frame.number, 7);
     assert_int_equal(grobo_board_peek(bytes + 5, 1, &frame), GROBO_ERR_FRAME);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_prefix_needs_more_and_the_whole_has_its_size),
-        cmocka_unit_test(a_wrong_sum_is_told_with_the_packet),
-        cmocka_unit_test(only_what_is_accepted_is_seen),
-        cmocka_unit_test(a_board_frame_is_seen_before_what_follows),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

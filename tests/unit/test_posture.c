@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/posture.h>
+
+#include "tests/support/test.h"
 
 #define PI 3.14159265358979323846
 
@@ -22,9 +19,8 @@ static grobo_posture make(int n_joints)
     return p;
 }
 
-static void angles_round_to_the_nearest_unit_of_the_wire(void **state)
+TEST(angles_round_to_the_nearest_unit_of_the_wire)
 {
-    (void)state;
     static const struct {
         double rad;
         int ddeg;
@@ -56,9 +52,8 @@ static void angles_round_to_the_nearest_unit_of_the_wire(void **state)
 }
 
 /* To the bit what one division and round() give, around each tie and far beyond the wire. */
-static void however_an_angle_is_rounded_it_is_the_same(void **state)
+TEST(however_an_angle_is_rounded_it_is_the_same)
 {
-    (void)state;
     for (int k = -70000; k <= 70000; k++) {
         const double tie_rad = k * 0.5 * PI / 1800.0;
         const double near_rad[] = {
@@ -73,9 +68,8 @@ static void however_an_angle_is_rounded_it_is_the_same(void **state)
     }
 }
 
-static void a_fresh_posture_sets_nothing(void **state)
+TEST(a_fresh_posture_sets_nothing)
 {
-    (void)state;
     grobo_posture p = make(20);
     double value = 7.0;
     assert_int_equal(p.n_joints, 20);
@@ -90,9 +84,8 @@ static void a_fresh_posture_sets_nothing(void **state)
     assert_int_equal(grobo_posture_init(&p, -1), GROBO_ERR_CAP);
 }
 
-static void degrees_and_radians_are_one_truth(void **state)
+TEST(degrees_and_radians_are_one_truth)
 {
-    (void)state;
     grobo_posture p = make(20);
     double rad, deg;
     assert_int_equal(grobo_posture_set_deg(&p, 3, -40.0), 0);
@@ -111,9 +104,8 @@ static void degrees_and_radians_are_one_truth(void **state)
     assert_near(rad, 0.5, 0.0);
 }
 
-static void all_angles_come_with_nan_for_those_not_set(void **state)
+TEST(all_angles_come_with_nan_for_those_not_set)
 {
-    (void)state;
     grobo_posture p = make(3);
     double rad[3], deg[3];
     grobo_posture_set_deg(&p, 0, 90.0);
@@ -127,9 +119,8 @@ static void all_angles_come_with_nan_for_those_not_set(void **state)
     assert_int_equal(grobo_posture_all_deg(&p, deg, 0), GROBO_ERR_SPACE);
 }
 
-static void times_are_what_a_register_can_hold(void **state)
+TEST(times_are_what_a_register_can_hold)
 {
-    (void)state;
     grobo_posture p = make(1);
     assert_int_equal(grobo_posture_set_time_ms(&p, 250.0), 0);
     assert_int_equal(p.time_us, 250000);
@@ -144,9 +135,8 @@ static void times_are_what_a_register_can_hold(void **state)
     assert_int_equal(p.time_us, 163830000);
 }
 
-static void a_copy_stands_alone(void **state)
+TEST(a_copy_stands_alone)
 {
-    (void)state;
     grobo_posture copy;
     {
         grobo_posture posture = make(4);
@@ -165,9 +155,8 @@ static void a_copy_stands_alone(void **state)
     assert_near(value_deg, 30, 1e-12);
 }
 
-static void copying_keeps_the_copys_own_number_of_joints(void **state)
+TEST(copying_keeps_the_copys_own_number_of_joints)
 {
-    (void)state;
     grobo_posture src = make(4);
     grobo_posture dst = make(6);
     double value;
@@ -196,9 +185,8 @@ static void copying_keeps_the_copys_own_number_of_joints(void **state)
     assert_int_equal(grobo_posture_copy(&two, &src, -1), GROBO_ERR_ARG);
 }
 
-static void copying_reaches_the_last_joint_there_can_be(void **state)
+TEST(copying_reaches_the_last_joint_there_can_be)
 {
-    (void)state;
     grobo_posture src = make(GROBO_JOINTS_MAX);
     grobo_posture dst = make(GROBO_JOINTS_MAX);
     grobo_posture_set_rad(&src, GROBO_JOINTS_MAX - 1, 1.5);
@@ -209,9 +197,8 @@ static void copying_reaches_the_last_joint_there_can_be(void **state)
     assert_int_equal(grobo_posture_copy(&dst, &src, GROBO_JOINTS_MAX), 0);
 }
 
-static void merging_takes_over_what_is_set(void **state)
+TEST(merging_takes_over_what_is_set)
 {
-    (void)state;
     grobo_posture p = make(3);
     grobo_posture over = make(3);
     grobo_posture_set_rad(&p, 0, 0.1);
@@ -231,9 +218,8 @@ static void merging_takes_over_what_is_set(void **state)
     assert_true(p.set == 7);
 }
 
-static void comparing_looks_at_what_is_set_only(void **state)
+TEST(comparing_looks_at_what_is_set_only)
 {
-    (void)state;
     grobo_posture a = make(3);
     grobo_posture b = make(3);
     assert_true(grobo_posture_equal(&a, &b));
@@ -255,9 +241,8 @@ static void comparing_looks_at_what_is_set_only(void **state)
     assert_false(grobo_posture_equal(&a, &b));
 }
 
-static void the_mirror_swaps_sides_and_comes_back(void **state)
+TEST(the_mirror_swaps_sides_and_comes_back)
 {
-    (void)state;
     grobo_posture p = make(20);
     grobo_posture_set_deg(&p, 14, 30.0);  /* R_SHOULDER_P */
     grobo_posture_set_deg(&p, 3, -70.0);  /* R_KNEE_P */
@@ -277,9 +262,8 @@ static void the_mirror_swaps_sides_and_comes_back(void **state)
     assert_int_equal(grobo_posture_mirror(&p, &grobo_gr001_model), GROBO_ERR_ARG);
 }
 
-static void limits_are_kept_on_the_grid_of_the_wire(void **state)
+TEST(limits_are_kept_on_the_grid_of_the_wire)
 {
-    (void)state;
     static const struct {
         double deg;
         int result;
@@ -307,9 +291,8 @@ static void limits_are_kept_on_the_grid_of_the_wire(void **state)
     }
 }
 
-static void what_is_no_number_is_found_and_never_clamped(void **state)
+TEST(what_is_no_number_is_found_and_never_clamped)
 {
-    (void)state;
     grobo_posture p = make(20);
     int joint = -5;
     p.angle_rad[2] = (double)NAN; /* not set: means nothing */
@@ -332,9 +315,8 @@ static int parse(grobo_posture *p, const char *text)
     return grobo_posture_parse(p, &grobo_gr001_model, text, strlen(text));
 }
 
-static void a_line_is_a_time_and_angles_in_motor_order(void **state)
+TEST(a_line_is_a_time_and_angles_in_motor_order)
 {
-    (void)state;
     grobo_posture p;
     grobo_posture pose;
     assert_int_equal(parse(&p, "250  0 0 200 0 -200 -200 0 200 0 200 0 -400 -200 0 0 -200 0 400 "
@@ -353,9 +335,8 @@ static void a_line_is_a_time_and_angles_in_motor_order(void **state)
     assert_int_equal(p.time_us, 163830000);
 }
 
-static void a_bad_line_leaves_the_posture_alone(void **state)
+TEST(a_bad_line_leaves_the_posture_alone)
 {
-    (void)state;
     static const struct {
         const char *text;
         int result;
@@ -383,27 +364,4 @@ static void a_bad_line_leaves_the_posture_alone(void **state)
     /* The length rules, not a NUL. */
     grobo_posture p;
     assert_int_equal(grobo_posture_parse(&p, &grobo_gr001_model, "100 12xyz", 6), 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(angles_round_to_the_nearest_unit_of_the_wire),
-        cmocka_unit_test(however_an_angle_is_rounded_it_is_the_same),
-        cmocka_unit_test(a_fresh_posture_sets_nothing),
-        cmocka_unit_test(degrees_and_radians_are_one_truth),
-        cmocka_unit_test(all_angles_come_with_nan_for_those_not_set),
-        cmocka_unit_test(times_are_what_a_register_can_hold),
-        cmocka_unit_test(a_copy_stands_alone),
-        cmocka_unit_test(copying_keeps_the_copys_own_number_of_joints),
-        cmocka_unit_test(copying_reaches_the_last_joint_there_can_be),
-        cmocka_unit_test(merging_takes_over_what_is_set),
-        cmocka_unit_test(comparing_looks_at_what_is_set_only),
-        cmocka_unit_test(the_mirror_swaps_sides_and_comes_back),
-        cmocka_unit_test(limits_are_kept_on_the_grid_of_the_wire),
-        cmocka_unit_test(what_is_no_number_is_found_and_never_clamped),
-        cmocka_unit_test(a_line_is_a_time_and_angles_in_motor_order),
-        cmocka_unit_test(a_bad_line_leaves_the_posture_alone),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

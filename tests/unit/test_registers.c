@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Register tables of every family: whole, found by name, address and role, values both ways. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
 #include <grobo/rs30x.h>
 
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
 static const grobo_servo_table *const tables[] = {
@@ -46,9 +42,8 @@ static void row_is_whole(const grobo_servo_model *model, const grobo_servo_regis
     }
 }
 
-static void tables_are_whole(void **state)
+TEST(tables_are_whole)
 {
-    (void)state;
     for (int t = 0; t < TABLES; t++) {
         for (int m = 0; m < tables[t]->model_count; m++) {
             const grobo_servo_model *model = &tables[t]->models[m];
@@ -79,9 +74,8 @@ static void tables_are_whole(void **state)
 }
 
 /* The same item differs by model: what the maker's pages say. */
-static void models_have_their_own_rows(void **state)
+TEST(models_have_their_own_rows)
 {
-    (void)state;
     static const struct {
         const char *model, *name;
         int address, factory; /* -1: the model has none */
@@ -105,9 +99,8 @@ static void models_have_their_own_rows(void **state)
 }
 
 /* Bytes as clients send and read them (LeRobot 0.6.1, rustypot 1.13.1, feetech-servo-sdk). */
-static void values_are_written_as_each_series_does(void **state)
+TEST(values_are_written_as_each_series_does)
 {
-    (void)state;
     static const struct {
         const grobo_servo_table *table;
         const char *model, *name;
@@ -139,9 +132,8 @@ static void values_are_written_as_each_series_does(void **state)
     }
 }
 
-static void codes_of_rates_go_both_ways(void **state)
+TEST(codes_of_rates_go_both_ways)
 {
-    (void)state;
     static const struct {
         const grobo_servo_table *table;
         const char *model;
@@ -170,9 +162,8 @@ static void codes_of_rates_go_both_ways(void **state)
     assert_int_equal(grobo_servo_baud_bps(ax, 252), GROBO_ERR_ARG);
 }
 
-static void what_is_not_there_is_null(void **state)
+TEST(what_is_not_there_is_null)
 {
-    (void)state;
     const grobo_servo_model *model = &grobo_sts_table.models[0];
     assert_null(grobo_servo_register_at(model, 4000));
     assert_null(grobo_servo_register_at(model, 50));
@@ -180,16 +171,4 @@ static void what_is_not_there_is_null(void **state)
     assert_null(grobo_servo_register_of(model, GROBO_ROLE_NONE));
     assert_null(grobo_servo_register_of(model, GROBO_ROLE_WATCHDOG));
     assert_null(grobo_servo_register_row(model, 1000));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_are_whole),
-        cmocka_unit_test(models_have_their_own_rows),
-        cmocka_unit_test(values_are_written_as_each_series_does),
-        cmocka_unit_test(codes_of_rates_go_both_ways),
-        cmocka_unit_test(what_is_not_there_is_null),
-    };
-    return cmocka_run_group_tests_name("registers", tests, NULL, NULL);
 }

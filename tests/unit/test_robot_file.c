@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Files of robots: what is read, and each mistake with its line and column. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
 #include <grobo/posture.h>
@@ -16,6 +11,7 @@
 
 #include "src/robots/file/draft.h"
 #include "tests/support/counted_mem.h"
+#include "tests/support/test.h"
 
 static grobo_diagnostics *list;
 
@@ -42,15 +38,13 @@ static int read_def(const char *text, const grobo_mem *mem, grobo_robot_def **de
     return grobo_robot_def_read(&(grobo_source){read_text, &source}, "arm.yaml", list, mem, def);
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     return grobo_diagnostics_new(NULL, &list);
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     grobo_diagnostics_free(list);
     return 0;
 }
@@ -86,9 +80,8 @@ static const char whole[] =
     "     origin_deg: [90, 0, -90], axis: [0, 0, -1], mass_kg: 0.25}\n";
 
 /* Behind a gear a joint turns slower than its servo. */
-static void a_gear_takes_speed(void **state)
+TEST(a_gear_takes_speed)
 {
-    (void)state;
     grobo_robot_def *def = NULL;
     assert_int_equal(
         read_def("name: arm\nfamily: feetech\njoints:\n"
@@ -102,9 +95,8 @@ static void a_gear_takes_speed(void **state)
     grobo_robot_def_free(def);
 }
 
-static void a_whole_file_is_read(void **state)
+TEST(a_whole_file_is_read)
 {
-    (void)state;
     grobo_robot_def *def = NULL;
     grobo_driver driver;
     assert_int_equal(read_def(whole, NULL, &def), GROBO_OK);
@@ -158,9 +150,8 @@ static void a_whole_file_is_read(void **state)
     grobo_robot_def_free(def);
 }
 
-static void what_is_not_said_is_the_familys(void **state)
+TEST(what_is_not_said_is_the_familys)
 {
-    (void)state;
     grobo_robot_def *def = NULL;
     assert_int_equal(read_def("name: a\nfamily: dynamixel2\njoints:\n"
                               "  - {name: x, id: 0, servo: XL330-M288, limits_deg: [-9, 9]}\n",
@@ -290,9 +281,8 @@ static const mistake mistakes[] = {
      4, 19, "an id from 0 to 252 is wanted", 0},
 };
 
-static void each_mistake_has_a_place(void **state)
+TEST(each_mistake_has_a_place)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof mistakes / sizeof mistakes[0]; i++) {
         const mistake *m = &mistakes[i];
         grobo_robot_def *def = NULL;
@@ -312,9 +302,8 @@ static void each_mistake_has_a_place(void **state)
 }
 
 /* One reading finds them all. */
-static void all_mistakes_are_told(void **state)
+TEST(all_mistakes_are_told)
 {
-    (void)state;
     grobo_robot_def *def = NULL;
     assert_int_equal(read_def("name: a\nfamily: feetech\nlien: 3\nexit: {}\njoints:\n"
                               "  - {name: x, id: 999, servo: STS3215, limits_deg: [-9, nan]}\n",
@@ -323,9 +312,8 @@ static void all_mistakes_are_told(void **state)
     assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR), 4);
 }
 
-static void too_much_is_refused(void **state)
+TEST(too_much_is_refused)
 {
-    (void)state;
     static char text[200000];
     grobo_robot_def *def = NULL;
     size_t n = (size_t)snprintf(text, sizeof text, HEAD);
@@ -345,9 +333,8 @@ static void too_much_is_refused(void **state)
     assert_null(def);
 }
 
-static void every_allocation_may_fail(void **state)
+TEST(every_allocation_may_fail)
 {
-    (void)state;
     for (int n = 1;; n++) {
         counted_mem counter = {.fail_at = (size_t)n};
         const grobo_mem mem = counted_mem_of(&counter);
@@ -365,9 +352,8 @@ static void every_allocation_may_fail(void **state)
 
 /* ---- the schema ----------------------------------------------------------------------------- */
 
-static void the_schema_has_the_same_keys(void **state)
+TEST(the_schema_has_the_same_keys)
 {
-    (void)state;
     static const char *const names[] = {
         [GROBO_I_BLOCK_LINE] = "line",   [GROBO_I_BLOCK_SAFETY] = "safety",
         [GROBO_I_BLOCK_JOINT] = "joint", [GROBO_I_BLOCK_GROUP] = "group",
@@ -408,17 +394,4 @@ static void the_schema_has_the_same_keys(void **state)
     json_decref(schema);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_whole_file_is_read),
-        cmocka_unit_test(a_gear_takes_speed),
-        cmocka_unit_test(what_is_not_said_is_the_familys),
-        cmocka_unit_test(each_mistake_has_a_place),
-        cmocka_unit_test(all_mistakes_are_told),
-        cmocka_unit_test(too_much_is_refused),
-        cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(the_schema_has_the_same_keys),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_BETWEEN(set_up, tear_down)

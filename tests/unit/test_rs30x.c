@@ -1,23 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* Builders of servo packets, and what a command is answered by. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/rs30x.h>
 
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
 enum { MAX = GROBO_RS30X_PACKET_MAX_BYTES };
 
-static void reads_are_those_of_the_manual(void **state)
+TEST(reads_are_those_of_the_manual)
 {
-    (void)state;
     uint8_t b[MAX];
     vector_expect(grobo_rs30x_read(1, 42, 2, b, MAX), b, "FA AF 01 0F 2A 02 00 26");
     vector_expect(grobo_rs30x_read(1, 42, 18, b, MAX), b, "FA AF 01 0F 2A 12 00 36");
@@ -31,9 +26,8 @@ static void reads_are_those_of_the_manual(void **state)
                   "FA AF 01 0B 00 00 01 0B");
 }
 
-static void writes_are_those_of_the_manual(void **state)
+TEST(writes_are_those_of_the_manual)
 {
-    (void)state;
     uint8_t b[MAX];
     vector_expect(grobo_rs30x_write_u8(1, 0, GROBO_RS30X_ID, 5, b, MAX), b,
                   "FA AF 01 00 04 01 01 05 00");
@@ -59,9 +53,8 @@ static void writes_are_those_of_the_manual(void **state)
                   "FA AF 00 00 24 02 03 01 01 02 01 05 01 22");
 }
 
-static void special_commands_are_those_of_the_manuals(void **state)
+TEST(special_commands_are_those_of_the_manuals)
 {
-    (void)state;
     uint8_t b[MAX];
     vector_expect(grobo_rs30x_control(1, GROBO_RS30X_FLASH | GROBO_RS30X_REBOOT, b, MAX), b,
                   "FA AF 01 60 FF 00 00 9E");
@@ -79,9 +72,8 @@ static void special_commands_are_those_of_the_manuals(void **state)
                   "FA AF 01 01 00 00 00 00");
 }
 
-static void returns_and_acks_are_built_for_the_other_end(void **state)
+TEST(returns_and_acks_are_built_for_the_other_end)
 {
-    (void)state;
     static const uint8_t data[] = {0x28, 0xFF, 0x00, 0x00, 0x3E, 0x00, 0x0C, 0x00};
     uint8_t b[MAX];
     grobo_rs30x_packet p = {GROBO_RS30X_RETURN, 1, 0, 42, sizeof data, 1, data, sizeof data};
@@ -94,9 +86,8 @@ static void returns_and_acks_are_built_for_the_other_end(void **state)
     vector_expect(grobo_rs30x_build(&p, b, MAX), b, "08");
 }
 
-static void builders_refuse_what_is_out_of_range(void **state)
+TEST(builders_refuse_what_is_out_of_range)
 {
-    (void)state;
     uint8_t b[MAX];
     const grobo_rs30x_goal far = {1, 1501, 0};
     const grobo_rs30x_goal slow = {1, 0, 16384};
@@ -123,9 +114,8 @@ static void builders_refuse_what_is_out_of_range(void **state)
     assert_int_equal(grobo_rs30x_write_u16(1, 0, 139, 0, b, MAX), GROBO_ERR_ARG);
 }
 
-static void builders_refuse_fields_that_contradict_each_other(void **state)
+TEST(builders_refuse_fields_that_contradict_each_other)
 {
-    (void)state;
     static const uint8_t data[MAX];
     uint8_t b[MAX];
     const grobo_rs30x_packet bad[] = {
@@ -145,9 +135,8 @@ static void builders_refuse_fields_that_contradict_each_other(void **state)
 }
 
 /* The buffer ends where cap says: the byte behind it stays as it was. */
-static void builders_never_write_past_the_capacity(void **state)
+TEST(builders_never_write_past_the_capacity)
 {
-    (void)state;
     const grobo_rs30x_goal goals[] = {{1, 100, 100}, {2, -100, 100}};
     for (size_t cap = 0; cap <= 20; cap++) {
         uint8_t b[MAX];
@@ -162,9 +151,8 @@ static void builders_never_write_past_the_capacity(void **state)
     }
 }
 
-static void every_want_has_the_reply_of_the_table(void **state)
+TEST(every_want_has_the_reply_of_the_table)
 {
-    (void)state;
     static const struct {
         uint8_t nibble, address, length;
         int bytes;
@@ -193,9 +181,8 @@ static void every_want_has_the_reply_of_the_table(void **state)
     assert_int_equal(r.kind, GROBO_REPLY_NONE);
 }
 
-static void no_reply_is_promised_for_broken_commands(void **state)
+TEST(no_reply_is_promised_for_broken_commands)
 {
-    (void)state;
     uint8_t b[MAX];
     grobo_reply r = {.kind = GROBO_REPLY_ACK, .id = 9};
     size_t n = (size_t)grobo_rs30x_read(7, 36, 18, b, MAX);
@@ -213,9 +200,8 @@ static void no_reply_is_promised_for_broken_commands(void **state)
 }
 
 /* The codec's addresses are those of the table. */
-static void registers_stand_where_the_codec_has_them(void **state)
+TEST(registers_stand_where_the_codec_has_them)
 {
-    (void)state;
     static const struct {
         const char *name;
         int address;
@@ -248,9 +234,8 @@ static void registers_stand_where_the_codec_has_them(void **state)
     assert_int_equal(GROBO_RS30X_DELAY_US(18), 1000);
 }
 
-static void states_are_taken_out_of_any_block(void **state)
+TEST(states_are_taken_out_of_any_block)
 {
-    (void)state;
     uint8_t b[MAX];
     grobo_rs30x_state s;
     /* The manual's return packet: -16.4 deg, 5.67 s, 7 mA; here with more of it filled in. */
@@ -276,22 +261,4 @@ static void states_are_taken_out_of_any_block(void **state)
     assert_int_equal(grobo_rs30x_state_decode(44, block36, 2, &s), 1);
     assert_int_equal(s.has, GROBO_RS30X_HAS_TIME);
     assert_int_equal(grobo_rs30x_state_decode(42, block36, 0, &s), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_are_those_of_the_manual),
-        cmocka_unit_test(writes_are_those_of_the_manual),
-        cmocka_unit_test(special_commands_are_those_of_the_manuals),
-        cmocka_unit_test(returns_and_acks_are_built_for_the_other_end),
-        cmocka_unit_test(builders_refuse_what_is_out_of_range),
-        cmocka_unit_test(builders_refuse_fields_that_contradict_each_other),
-        cmocka_unit_test(builders_never_write_past_the_capacity),
-        cmocka_unit_test(every_want_has_the_reply_of_the_table),
-        cmocka_unit_test(no_reply_is_promised_for_broken_commands),
-        cmocka_unit_test(registers_stand_where_the_codec_has_them),
-        cmocka_unit_test(states_are_taken_out_of_any_block),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The push parser of servo packets, in both directions. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/rs30x.h>
 
 #include "src/bus/framer.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
 enum { MAX = GROBO_RS30X_PACKET_MAX_BYTES };
@@ -75,9 +71,8 @@ static void expect_heard(const heard *h, const uint8_t *bytes, size_t n)
     assert_memory_equal(h->bytes, bytes, n);
 }
 
-static void every_split_of_every_packet_gives_it_back(void **state)
+TEST(every_split_of_every_packet_gives_it_back)
 {
-    (void)state;
     for (int i = 0; i < PACKETS; i++) {
         uint8_t b[MAX];
         size_t n = (size_t)vector_from_hex(packets[i], b, MAX);
@@ -97,9 +92,8 @@ static void every_split_of_every_packet_gives_it_back(void **state)
     }
 }
 
-static void rubbish_before_and_behind_is_dropped_and_counted(void **state)
+TEST(rubbish_before_and_behind_is_dropped_and_counted)
 {
-    (void)state;
     static const uint8_t rubbish[] = {0x00, 0xFA, 0xFD, 0xAF, 0xFA, 0xAF, 0xFD, 0xDF, 0x01, 0xFF};
     for (int i = 0; i < PACKETS; i++) {
         uint8_t b[MAX];
@@ -122,9 +116,8 @@ static void rubbish_before_and_behind_is_dropped_and_counted(void **state)
 }
 
 /* A header in rubbish announces 140 bytes: the packets inside and behind them are all found. */
-static void packets_behind_a_false_start_are_found(void **state)
+TEST(packets_behind_a_false_start_are_found)
 {
-    (void)state;
     uint8_t b[1024], wanted[1024];
     size_t n = (size_t)vector_from_hex("FD DF 01 00 00 8C 01", b, sizeof b);
     size_t rubbish = n;
@@ -145,9 +138,8 @@ static void packets_behind_a_false_start_are_found(void **state)
 }
 
 /* Any single flipped bit: either nothing is heard, or the packet is not the sent one by header. */
-static void no_flipped_bit_is_believed(void **state)
+TEST(no_flipped_bit_is_believed)
 {
-    (void)state;
     uint8_t b[MAX];
     size_t n = (size_t)vector_from_hex(packets[9], b, MAX);
     for (size_t bit = 0; bit < n * 8; bit++) {
@@ -165,9 +157,8 @@ static void no_flipped_bit_is_believed(void **state)
     }
 }
 
-static void only_what_is_accepted_is_heard(void **state)
+TEST(only_what_is_accepted_is_heard)
 {
-    (void)state;
     for (unsigned accept = 0; accept <= ANY; accept++) {
         grobo_rs30x_parser parser;
         heard h = {.n = 0};
@@ -189,9 +180,8 @@ static void only_what_is_accepted_is_heard(void **state)
 }
 
 /* A 07 inside a return packet is data, and stays data when the packet comes in pieces. */
-static void an_ack_inside_a_packet_is_data(void **state)
+TEST(an_ack_inside_a_packet_is_data)
 {
-    (void)state;
     uint8_t b[MAX];
     size_t n = (size_t)vector_from_hex(packets[10], b, MAX);
     grobo_rs30x_parser parser;
@@ -206,9 +196,8 @@ static void an_ack_inside_a_packet_is_data(void **state)
     assert_int_equal(h.packets, 4);
 }
 
-static void impossible_headers_are_given_up_early(void **state)
+TEST(impossible_headers_are_given_up_early)
 {
-    (void)state;
     static const char *const hopeless[] = {
         "FA AF 80",             /* id above 127 */
         "FD DF 00",             /* nobody returns as 0 */
@@ -235,9 +224,8 @@ static void impossible_headers_are_given_up_early(void **state)
     }
 }
 
-static void the_longest_packets_fit(void **state)
+TEST(the_longest_packets_fit)
 {
-    (void)state;
     uint8_t data[MAX], b[MAX];
     for (size_t i = 0; i < MAX; i++) {
         data[i] = (uint8_t)i;
@@ -259,9 +247,8 @@ static void the_longest_packets_fit(void **state)
     }
 }
 
-static void an_end_hands_out_what_hides_behind_a_stump(void **state)
+TEST(an_end_hands_out_what_hides_behind_a_stump)
 {
-    (void)state;
     uint8_t b[MAX];
     size_t stump = (size_t)vector_from_hex("FD DF 01 00 00 8C 01 00", b, MAX);
     size_t n = (size_t)vector_from_hex(packets[11], b + stump, MAX - stump);
@@ -280,9 +267,8 @@ static void an_end_hands_out_what_hides_behind_a_stump(void **state)
     assert_int_equal(h.packets, 2);
 }
 
-static void a_reset_forgets_and_counts(void **state)
+TEST(a_reset_forgets_and_counts)
 {
-    (void)state;
     uint8_t b[MAX];
     size_t n = (size_t)vector_from_hex(packets[11], b, MAX);
     grobo_rs30x_parser parser;
@@ -331,9 +317,8 @@ static bool check_vector(const vector *v)
     return true;
 }
 
-static void collected_vectors_parse_and_build_byte_for_byte(void **state)
+TEST(collected_vectors_parse_and_build_byte_for_byte)
 {
-    (void)state;
     vectors_check(check_vector, 40);
 }
 
@@ -346,9 +331,8 @@ static int always_more(const uint8_t *bytes, size_t n, unsigned accept)
     return 0;
 }
 
-static void a_full_buffer_waits_for_nothing(void **state)
+TEST(a_full_buffer_waits_for_nothing)
 {
-    (void)state;
     static const uint8_t bytes[4 * GROBO_FRAME_MAX_BYTES];
     static grobo_framer framer;
     size_t at = 0;
@@ -360,23 +344,4 @@ static void a_full_buffer_waits_for_nothing(void **state)
         assert_int_equal(grobo_i_framer_next(&framer, always_more, 0), 0);
     }
     assert_int_equal(framer.stats.dropped_bytes + grobo_i_framer_pending(&framer), sizeof bytes);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_full_buffer_waits_for_nothing),
-        cmocka_unit_test(every_split_of_every_packet_gives_it_back),
-        cmocka_unit_test(rubbish_before_and_behind_is_dropped_and_counted),
-        cmocka_unit_test(packets_behind_a_false_start_are_found),
-        cmocka_unit_test(no_flipped_bit_is_believed),
-        cmocka_unit_test(only_what_is_accepted_is_heard),
-        cmocka_unit_test(an_ack_inside_a_packet_is_data),
-        cmocka_unit_test(impossible_headers_are_given_up_early),
-        cmocka_unit_test(the_longest_packets_fit),
-        cmocka_unit_test(an_end_hands_out_what_hides_behind_a_stump),
-        cmocka_unit_test(a_reset_forgets_and_counts),
-        cmocka_unit_test(collected_vectors_parse_and_build_byte_for_byte),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

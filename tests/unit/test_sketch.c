@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Descriptions for other programs (URDF, Choreonoid's body) as robots. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/servo/family.h"
 #include "tools/grctl/sketch/sketch.h"
 #include "tools/grctl/xml/xml.h"
@@ -100,9 +95,8 @@ static const grobo_robot_def *shipped(const char *name)
 
 /* ---- what is read --------------------------------------------------------------------------- */
 
-static void so101_is_as_it_is_shipped(void **state)
+TEST(so101_is_as_it_is_shipped)
 {
-    (void)state;
     need_xml();
     const grobo_robot_def *own = shipped("so101");
     char *bytes = file_bytes("tests/cli/urdf/so101.urdf");
@@ -137,9 +131,8 @@ static void so101_is_as_it_is_shipped(void **state)
     grobo_robot_def_free(def);
 }
 
-static void gr001_has_the_limits_of_its_body(void **state)
+TEST(gr001_has_the_limits_of_its_body)
 {
-    (void)state;
     const char *shared = getenv("GROBO_SHARED");
     char path[1024];
     snprintf(path, sizeof path, "%s/data/choreonoid/GR001.body", shared ? shared : "../shared");
@@ -170,9 +163,8 @@ static void gr001_has_the_limits_of_its_body(void **state)
     "<joint name='two' type='revolute'><parent link='b'/><child link='c'/>"                        \
     "<limit lower='-1' upper='1' velocity='2'/></joint>"
 
-static void what_a_file_cannot_have_is_left_out(void **state)
+TEST(what_a_file_cannot_have_is_left_out)
 {
-    (void)state;
     need_xml();
     static const char *const types[] = {"prismatic", "planar", "floating", "fixed"};
     for (int i = 0; i < 4; i++) {
@@ -194,9 +186,8 @@ static void what_a_file_cannot_have_is_left_out(void **state)
     grobo_robot_def_free(def);
 }
 
-static void limits_fit_the_servo(void **state)
+TEST(limits_fit_the_servo)
 {
-    (void)state;
     need_xml();
     grobo_robot_def *def = arm("<robot name='r'>" LINKS ONE("continuous", "") TWO "</robot>");
     assert_string_equal(def->model->joints[0].name, "joint_j3"); /* j3 is a number */
@@ -227,9 +218,8 @@ static void limits_fit_the_servo(void **state)
 
 #define BODY "format: ChoreonoidBody\nlinks:\n - {name: a}\n"
 
-static void a_body_turns_as_choreonoid_does(void **state)
+TEST(a_body_turns_as_choreonoid_does)
 {
-    (void)state;
     /* Degrees by default; -Z; an axis with an angle; a list of such; order by jointId. */
     grobo_robot_def *def = def_of(
         BODY " - {name: b, parent: a, jointType: revolute, jointId: 1, jointAxis: -Z,\n"
@@ -285,9 +275,8 @@ static void refused(const char *bytes, bool urdf, const char *why)
     }
 }
 
-static void broken_urdf_is_refused_in_a_line(void **state)
+TEST(broken_urdf_is_refused_in_a_line)
 {
-    (void)state;
     need_xml();
     refused("<robot name='r'>\n<link name='a'>", true, "arm:2:16: no element found");
     refused("<!DOCTYPE r [<!ENTITY a 'aaaa'>]><robot name='r'>&a;</robot>", true,
@@ -326,17 +315,15 @@ static void broken_urdf_is_refused_in_a_line(void **state)
     refused(deep, true, "elements are nested too deeply");
 }
 
-static void parts_in_a_circle_are_refused(void **state)
+TEST(parts_in_a_circle_are_refused)
 {
-    (void)state;
     refused(BODY " - {name: b, parent: c}\n - {name: c, parent: b}\n", false, "hangs on itself");
     refused(BODY " - {name: b, parent: b}\n", false, "'b' hangs on itself");
     refused(BODY " - {name: b, parent: z}\n", false, "'b' hangs on 'z', which is not there");
 }
 
-static void a_broken_body_is_refused_in_a_line(void **state)
+TEST(a_broken_body_is_refused_in_a_line)
 {
-    (void)state;
     refused("links: [", false, "arm:2:1: did not find");
     refused("name: x\n", false, "neither a URDF nor a body");
     refused("- 1\n", false, "neither a URDF nor a body");
@@ -359,19 +346,4 @@ static void a_broken_body_is_refused_in_a_line(void **state)
             false, "arm:5: a number is wanted");
     refused("a: &a [x, x]\nb: &b [*a, *a]\nlinks: *b\nformat: ChoreonoidBody\n", false,
             "a link is a mapping");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(so101_is_as_it_is_shipped),
-        cmocka_unit_test(gr001_has_the_limits_of_its_body),
-        cmocka_unit_test(what_a_file_cannot_have_is_left_out),
-        cmocka_unit_test(limits_fit_the_servo),
-        cmocka_unit_test(a_body_turns_as_choreonoid_does),
-        cmocka_unit_test(broken_urdf_is_refused_in_a_line),
-        cmocka_unit_test(parts_in_a_circle_are_refused),
-        cmocka_unit_test(a_broken_body_is_refused_in_a_line),
-    };
-    return cmocka_run_group_tests_name("sketch", tests, NULL, NULL);
 }

@@ -1,17 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* What a message says that a trip measured. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/conn/conn.h"
 
-static void a_trip_says_what_it_measured(void **state)
+TEST(a_trip_says_what_it_measured)
 {
-    (void)state;
     static const struct {
         grobo_trip trip;
         double value;
@@ -35,10 +29,4 @@ static void a_trip_says_what_it_measured(void **state)
         conn_trip_value(&trip, text, sizeof text);
         assert_string_equal(text, rows[i].text);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_trip_says_what_it_measured)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* A request acts on the situation that its page had seen, or not at all. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/web/based.h"
 
 #define MS INT64_C(1000)
@@ -15,13 +11,14 @@
 static based b;
 static char said[BASED_COMPLAINT_BYTES];
 
-static int begin(void **state)
+static int begin(void)
 {
-    (void)state;
     memset(&b, 0, sizeof b);
     memset(said, 0, sizeof said);
     return 0;
 }
+
+static const test_fixture fixture[] = {{NULL, begin, NULL}};
 
 static bool check_number(json_int_t n, int64_t now_us)
 {
@@ -31,9 +28,8 @@ static bool check_number(json_int_t n, int64_t now_us)
     return fine;
 }
 
-static void a_state_is_fresh_for_a_second(void **state)
+TEST_WITH(fixture, a_state_is_fresh_for_a_second)
 {
-    (void)state;
     based_tell(&b, 0);
     assert_true(check_number(1, 1000 * MS));
     assert_false(check_number(1, 1001 * MS));
@@ -43,10 +39,9 @@ static void a_state_is_fresh_for_a_second(void **state)
     assert_false(check_number(1, 1001 * MS));
 }
 
-static void numbers_of_no_state_are_refused(void **state)
+TEST_WITH(fixture, numbers_of_no_state_are_refused)
 {
     static const json_int_t none[] = {0, -1, 3, INT64_MAX, INT64_MIN};
-    (void)state;
     based_tell(&b, 0);
     based_tell(&b, 0);
     for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
@@ -58,9 +53,8 @@ static void numbers_of_no_state_are_refused(void **state)
     json_decref(text);
 }
 
-static void what_came_before_a_change_is_void(void **state)
+TEST_WITH(fixture, what_came_before_a_change_is_void)
 {
-    (void)state;
     based_tell(&b, 0);
     assert_true(check_number(1, 10 * MS));
     based_change(&b, 10 * MS, "stop by %s", "Anna");
@@ -73,9 +67,8 @@ static void what_came_before_a_change_is_void(void **state)
     assert_true(check_number(2, 40 * MS));
 }
 
-static void a_second_stop_voids_what_was_based_on_the_first(void **state)
+TEST_WITH(fixture, a_second_stop_voids_what_was_based_on_the_first)
 {
-    (void)state;
     based_tell(&b, 0);
     based_change(&b, 10 * MS, "stop by Anna");
     based_change(&b, 20 * MS, "stop by Ben");
@@ -84,24 +77,11 @@ static void a_second_stop_voids_what_was_based_on_the_first(void **state)
     assert_true(check_number(3, 20 * MS));
 }
 
-static void many_states_within_a_second_forget_the_oldest(void **state)
+TEST_WITH(fixture, many_states_within_a_second_forget_the_oldest)
 {
-    (void)state;
     for (int i = 0; i < BASED_KEPT + 1; i++) {
         based_tell(&b, 0);
     }
     assert_false(check_number(1, 0));
     assert_true(check_number(2, 0));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_state_is_fresh_for_a_second, begin),
-        cmocka_unit_test_setup(numbers_of_no_state_are_refused, begin),
-        cmocka_unit_test_setup(what_came_before_a_change_is_void, begin),
-        cmocka_unit_test_setup(a_second_stop_voids_what_was_based_on_the_first, begin),
-        cmocka_unit_test_setup(many_states_within_a_second_forget_the_oldest, begin),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A body is taken whole or refused: which field, and what was expected. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/web/fields.h"
 
 static const field torque[] = {
@@ -46,9 +41,8 @@ static void refused(const char *text, const field *fields, const char *why)
     assert_string_equal(said, why);
 }
 
-static void what_is_whole_is_taken(void **state)
+TEST(what_is_whole_is_taken)
 {
-    (void)state;
     assert_true(
         fit("{\"joints\": [\"R_ELBOW_P\"], \"mode\": \"off\", \"sequence\": 7}", torque, "x"));
     assert_true(fit("{\"joints\": \"all\", \"mode\": \"on\", \"sequence\": 7}", torque, "x"));
@@ -63,13 +57,12 @@ static void what_is_whole_is_taken(void **state)
 }
 
 /* What dropped all joints of a robot. */
-static void joints_that_are_none_do_not_mean_all(void **state)
+TEST(joints_that_are_none_do_not_mean_all)
 {
     static const char *const wrong[] = {
         "\"R_ELBOW_P\"",         "[]",      "{}",  "null", "0", "true", "[1]",
         "[\"R_ELBOW_P\", null]", "\"ALL\"", "\"\""};
     char body[128];
-    (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         snprintf(body, sizeof body, "{\"joints\": %s, \"mode\": \"off\", \"sequence\": 7}",
                  wrong[i]);
@@ -83,7 +76,7 @@ static void joints_that_are_none_do_not_mean_all(void **state)
             "torque: unknown field 'joint'; expected joints, mode, sequence");
 }
 
-static void each_type_and_range_is_checked(void **state)
+TEST(each_type_and_range_is_checked)
 {
     static const char *const wrong[] = {"{\"text\": 1}",
                                         "{\"text\": \"five!\"}",
@@ -111,7 +104,6 @@ static void each_type_and_range_is_checked(void **state)
                                         "{\"object\": null}",
                                         "{\"Text\": \"\"}",
                                         "{\"\": 1}"};
-    (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         assert_false(fit(wrong[i], all, "x"));
     }
@@ -127,12 +119,11 @@ static void each_type_and_range_is_checked(void **state)
     refused("{\"x\": 1}", nothing, "torque: unknown field 'x'; expected none");
 }
 
-static void a_complaint_fits_and_has_whole_characters(void **state)
+TEST(a_complaint_fits_and_has_whole_characters)
 {
     static const char wide[] = "\xe3\x81\x82";
     char body[1024] = "{\"";
     size_t n = 2;
-    (void)state;
     for (int i = 0; i < 200; i++, n += 3) {
         memcpy(body + n, wide, 3);
     }
@@ -144,15 +135,4 @@ static void a_complaint_fits_and_has_whole_characters(void **state)
     json_decref(whole);
     assert_false(fit("{\"a\\u001b[2J\": 1}", nothing, "x"));
     assert_string_equal(said, "x: unknown field 'a?[2J'; expected none");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_whole_is_taken),
-        cmocka_unit_test(joints_that_are_none_do_not_mean_all),
-        cmocka_unit_test(each_type_and_range_is_checked),
-        cmocka_unit_test(a_complaint_fits_and_has_whole_characters),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

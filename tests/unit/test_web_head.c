@@ -1,54 +1,49 @@
 /* SPDX-License-Identifier: MIT */
 /* The head of a stop whose body may never come. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <event2/http.h>
 #include <event2/keyvalq_struct.h>
 
+#include "tests/support/test.h"
 #include "tools/grctl/web/head.h"
 
 static struct evkeyvalq headers;
 static char text[1024], *uri;
 
-static int begin(void **state)
+static int begin(void)
 {
-    (void)state;
     headers.tqh_first = NULL;
     headers.tqh_last = &headers.tqh_first;
     uri = NULL;
     return 0;
 }
 
-static int end(void **state)
+static int end(void)
 {
-    (void)state;
     evhttp_clear_headers(&headers);
     return 0;
 }
 
+static const test_fixture fixture[] = {{NULL, begin, end}};
+
 static bool read_head(const char *head)
 {
-    (void)end(NULL);
-    (void)begin(NULL);
+    (void)end();
+    (void)begin();
     snprintf(text, sizeof text, "%s", head);
     return head_read(text, &uri, &headers);
 }
 
-static void a_head_ends_with_an_empty_line(void **state)
+TEST(a_head_ends_with_an_empty_line)
 {
-    (void)state;
     assert_int_equal(head_end(""), 0);
     assert_int_equal(head_end("POST / HTTP/1.1\r\nHost: a\r\n"), 0);
     assert_int_equal(head_end("a\r\n\r\nb\n\n"), 5);
     assert_int_equal(head_end("a\n\nb\r\n\r\n"), 3);
 }
 
-static void a_head_is_read_or_left_to_libevent(void **state)
+TEST_WITH(fixture, a_head_is_read_or_left_to_libevent)
 {
     static const char *const others[] = {"\r\n\r\n",
                                          "GET /stop HTTP/1.1\r\n\r\n",
@@ -59,7 +54,6 @@ static void a_head_is_read_or_left_to_libevent(void **state)
                                          "POST /stop HTTP/1.1\r\nHost : a\r\n\r\n",
                                          "POST /stop HTTP/1.1\r\nA: b\r\n c\r\n\r\n",
                                          "POST /stop HTTP/1.1\r\n: a\r\n\r\n"};
-    (void)state;
     assert_true(
         read_head("POST /stop?x HTTP/1.1\r\nHost: a:1\r\nX:\tb  c\r\n\r\nrest: no\r\n\r\n"));
     assert_string_equal(uri, "/stop?x");
@@ -79,9 +73,8 @@ static bool has_body(const char *lines, size_t bytes)
     return head_has_body(&headers, bytes);
 }
 
-static void a_body_is_there_or_not(void **state)
+TEST_WITH(fixture, a_body_is_there_or_not)
 {
-    (void)state;
     assert_true(has_body("", 0));
     assert_true(has_body("Content-Length: 0\r\n", 0));
     assert_true(has_body("Content-Length: 2\r\n", 2));
@@ -94,10 +87,9 @@ static void a_body_is_there_or_not(void **state)
     assert_false(has_body("Content-Length: 2\r\nTransfer-Encoding: gzip\r\n", 9));
 }
 
-static void a_uri_has_path_and_query(void **state)
+TEST(a_uri_has_path_and_query)
 {
     char path[HTTP_PATH_BYTES], query[HTTP_PATH_BYTES], longer[2 * HTTP_PATH_BYTES];
-    (void)state;
     assert_true(head_split("/a%20b?c=d#e", path, query));
     assert_string_equal(path, "/a b");
     assert_string_equal(query, "c=d#e");
@@ -107,15 +99,4 @@ static void a_uri_has_path_and_query(void **state)
     memset(longer, '/', sizeof longer - 1);
     longer[sizeof longer - 1] = '\0';
     assert_false(head_split(longer, path, query));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_head_ends_with_an_empty_line),
-        cmocka_unit_test_setup_teardown(a_head_is_read_or_left_to_libevent, begin, end),
-        cmocka_unit_test_setup_teardown(a_body_is_there_or_not, begin, end),
-        cmocka_unit_test(a_uri_has_path_and_query),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Who drives, and for how long. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tools/grctl/web/lease.h"
 
 #define SECOND INT64_C(1000000)
@@ -15,14 +11,15 @@
 static lease l;
 static char anna[WALL_SECRET_BYTES], ben[WALL_SECRET_BYTES];
 
-static int anna_drives(void **state)
+static int anna_drives(void)
 {
-    (void)state;
     memset(&l, 0, sizeof l);
     assert_true(lease_take(&l, "Anna", "", false, 5 * SECOND));
     memcpy(anna, l.holder.secret, sizeof anna);
     return 0;
 }
+
+static const test_fixture fixture[] = {{NULL, anna_drives, NULL}};
 
 static void ben_asks(int64_t now_us)
 {
@@ -30,9 +27,8 @@ static void ben_asks(int64_t now_us)
     memcpy(ben, l.asker.secret, sizeof ben);
 }
 
-static void one_drives_at_a_time(void **state)
+TEST_WITH(fixture, one_drives_at_a_time)
 {
-    (void)state;
     assert_int_equal(strlen(anna), 32);
     assert_true(lease_is_holder(&l, anna));
     assert_false(lease_is_holder(&l, ""));
@@ -45,10 +41,9 @@ static void one_drives_at_a_time(void **state)
     assert_string_equal(l.holder.name, "Ben");
 }
 
-static void nobody_is_no_holder(void **state)
+TEST(nobody_is_no_holder)
 {
     lease none = {.beat_us = 0};
-    (void)state;
     assert_false(lease_is_holder(&none, ""));
     assert_false(lease_beat(&none, "", SECOND));
     assert_false(lease_give(&none, "", SECOND));
@@ -56,9 +51,8 @@ static void nobody_is_no_holder(void **state)
     assert_true(lease_silent_us(&none, 100 * SECOND) == 0);
 }
 
-static void silence_is_counted_from_the_last_beat(void **state)
+TEST_WITH(fixture, silence_is_counted_from_the_last_beat)
 {
-    (void)state;
     assert_true(lease_silent_us(&l, 6 * SECOND) == SECOND);
     assert_false(lease_beat(&l, "0123", 7 * SECOND));
     assert_true(lease_silent_us(&l, 7 * SECOND) == 2 * SECOND);
@@ -66,9 +60,8 @@ static void silence_is_counted_from_the_last_beat(void **state)
     assert_true(lease_silent_us(&l, 8 * SECOND) == 0);
 }
 
-static void who_asked_may_take_after_ten_seconds(void **state)
+TEST_WITH(fixture, who_asked_may_take_after_ten_seconds)
 {
-    (void)state;
     ben_asks(20 * SECOND);
     assert_false(lease_take(&l, "Ben", ben, false, 30 * SECOND - 1));
     assert_false(lease_take(&l, "Carl", "", false, 31 * SECOND));
@@ -78,18 +71,16 @@ static void who_asked_may_take_after_ten_seconds(void **state)
     assert_string_equal(l.asker.secret, ""); /* what was asked is over */
 }
 
-static void what_is_denied_is_over(void **state)
+TEST_WITH(fixture, what_is_denied_is_over)
 {
-    (void)state;
     ben_asks(20 * SECOND);
     assert_false(lease_deny(&l, ben));
     assert_true(lease_deny(&l, anna));
     assert_false(lease_take(&l, "Ben", ben, false, 40 * SECOND));
 }
 
-static void it_is_given_to_who_asked(void **state)
+TEST_WITH(fixture, it_is_given_to_who_asked)
 {
-    (void)state;
     ben_asks(20 * SECOND);
     assert_false(lease_give(&l, ben, 21 * SECOND));
     assert_true(lease_give(&l, anna, 21 * SECOND));
@@ -100,25 +91,10 @@ static void it_is_given_to_who_asked(void **state)
     assert_false(lease_is_held(&l));
 }
 
-static void a_stop_leaves_nobody(void **state)
+TEST_WITH(fixture, a_stop_leaves_nobody)
 {
-    (void)state;
     ben_asks(20 * SECOND);
     lease_end(&l);
     assert_false(lease_is_held(&l) || lease_is_holder(&l, anna) || lease_is_holder(&l, ben));
     assert_false(lease_take(&l, "Ben", ben, false, 40 * SECOND) && lease_is_holder(&l, ben));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(one_drives_at_a_time, anna_drives),
-        cmocka_unit_test(nobody_is_no_holder),
-        cmocka_unit_test_setup(silence_is_counted_from_the_last_beat, anna_drives),
-        cmocka_unit_test_setup(who_asked_may_take_after_ten_seconds, anna_drives),
-        cmocka_unit_test_setup(what_is_denied_is_over, anna_drives),
-        cmocka_unit_test_setup(it_is_given_to_who_asked, anna_drives),
-        cmocka_unit_test_setup(a_stop_leaves_nobody, anna_drives),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
