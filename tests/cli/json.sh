@@ -21,7 +21,7 @@ cat >"$work/rows" <<'END'
 0|lines[0]["robots"][1]["name"] == "so101"|robot list
 0|lines[0]["safety"]["voltage_mv"] == 6000|robot show
 0|lines[0]["servos"][0]["model"] == "LX-16A"|robot servos lx16a
-0|lines[0]["n_joints"] == 1 and "STS3215" in lines[0]["text"]|robot import WORK/one.body
+0|lines[0]["n_joints"] == 1 and "STS3215" in lines[0]["text"]|robot import WORK/one.body --ids b=1
 3|lines[0]["diagnostics"][0]["line"] == 3|robot check motions/greet.pseq
 0|lines[0]["joints"][0]["joint"] == 16 and lines[0]["joints"][0]["status"] == "ok"|-d sim status m5
 0|{"id": 5, "joint": 16, "name": "R_ELBOW_P"}.items() <= lines[0]["servos"][4].items()|-d sim scan

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 # grctl robot import and servos: robots as other programs describe them.
 . tests/support/cli.sh
+. tests/support/terminal.sh
 unset GRCTL_ROBOT
 
 check "servos of all families" both exits 0 "$GRCTL" robot servos --- says '^ics  *KRS-3301 '
@@ -24,38 +25,79 @@ links:
   - {name: LIFT, parent: TURN, jointType: revolute, jointId: 1, jointAxis: -Y,
      jointRange: [-20, 60], translation: [0, 0, 0.05]}
 END
+grep -v LIFT "$work/arm.body" | sed '/jointRange: \[-20/d' >"$work/one.body"
 take() {
     "$GRCTL" robot import "$@"
 }
 check "a body" both exits 0 take "$work/arm.body" -o "$work/arm.yaml" --family dynamixel2 \
-    --servo XL430-W250,XL330-M288 --ids 11-12 --- grep -q "^name: crane$" "$work/arm.yaml"
+    --servo XL430-W250,XL330-M288 --ids TURN=11,LIFT=12 --- grep -q "^name: crane$" "$work/arm.yaml"
 check "its file is a robot" fails 0 'crane: 2 joints, nothing wrong' \
     "$GRCTL" robot check "$work/arm.yaml"
-check "with the servos and ids that were told" \
+check "with the servos and ids that were given" \
     grep -q 'name: LIFT, id: 12, servo: XL330-M288, limits_deg: \[-20, 60\]}' "$work/arm.yaml"
 check "which moves in its simulator" both exits 0 \
     "$GRCTL" --robot "$work/arm.yaml" -d sim move LIFT 45 --- true
 check "a file is not replaced" fails 2 'arm.yaml is there already; --yes replaces it' \
-    take "$work/arm.body" -o "$work/arm.yaml"
-check "unless that is wanted" exits 0 take "$work/arm.body" -o "$work/arm.yaml" --yes
-check "what is not known is said" both exits 0 take "$work/arm.body" --- \
-    says 'to be filled in .* ids,'
+    take "$work/arm.body" -o "$work/arm.yaml" --ids TURN=11,LIFT=12
+check "unless that is wanted" exits 0 take "$work/arm.body" -o "$work/arm.yaml" --yes \
+    --ids TURN=11,LIFT=12
+check "what is not known is said" both exits 0 take "$work/arm.body" --ids TURN=1,LIFT=2 --- \
+    says 'to be filled in .* family and servos,$'
+# not_written COMMAND...: refused with status 2, and no file is there.
+not_written() {
+    rm -f "$work/none.yaml"
+    fails 2 "$@" -o "$work/none.yaml" && [ ! -e "$work/none.yaml" ]
+}
+check "ids are never guessed" not_written \
+    'import: the description has no ids of servos; give them: --ids TURN=ID,LIFT=ID$' \
+    take "$work/arm.body"
+check "nor with --yes" not_written 'no ids of servos' take "$work/arm.body" --yes
+check "numbers of joints are no ids: a list is refused" both exits 2 \
+    take "$work/arm.body" --ids 11-12 --- grep -q \
+    '; name the joints: --ids TURN=11,LIFT=12, or accept the list with --yes$' "$work/err"
+check "unless it is accepted" both exits 0 take "$work/arm.body" --ids 11-12 --yes --- \
+    says 'LIFT, id: 12,'
+asks() {
+    type_line "$GRCTL robot import $work/arm.body -o $work/asked.yaml" &&
+        until_screen '^id of the servo of TURN? *$' && keys Enter && until_screen "'' is no id" &&
+        keys 12 Enter && until_screen '^id of the servo of LIFT? *$' && keys 1x Enter &&
+        until_screen "'1x' is no id" && keys 11 Enter && until_screen '2 joints; check it' &&
+        grep -q 'TURN, id: 12,' "$work/asked.yaml" && grep -q 'LIFT, id: 11,' "$work/asked.yaml"
+}
+if have_terminal; then
+    open_screen || { echo "Bail out! no screen"; exit 1; }
+    check "on a terminal each is asked for, without a usual answer" asks
+else
+    skip "on a terminal each is asked for, without a usual answer" "no tmux"
+fi
+check "a list of one joint needs no name" exits 0 take "$work/one.body" --ids 7
+sed '1,/^joints:/b
+    s/id: 11/id: 5/' "$work/arm.yaml" >"$work/before.yaml"
+check "ids of a robot's file" both exits 0 take "$work/arm.body" --ids "@$work/before.yaml" --- \
+    says 'TURN, id: 5,'
+check "of a robot that comes with grctl" fails 2 "--ids @so101: so101 has no joint 'TURN'" \
+    take "$work/arm.body" --ids @so101
+check "of no file" fails 3 '--ids @none.yaml: none.yaml: no such file' \
+    take "$work/arm.body" --ids @none.yaml
 check_json "as JSON" 'lines[0]["name"] == "crane" and lines[0]["file"] is None and
-    "STS3215" in lines[0]["text"] and lines[0]["n_joints"] == 2' take "$work/arm.body" --json
-check "another name" both exits 0 take "$work/arm.body" --name lift-1 --- says '^name: lift-1$'
+    "STS3215" in lines[0]["text"] and lines[0]["n_joints"] == 2' \
+    take "$work/arm.body" --ids TURN=1,LIFT=2 --json
+check "another name" both exits 0 take "$work/arm.body" --ids TURN=1,LIFT=2 --name lift-1 --- \
+    says '^name: lift-1$'
 sed 's/jointType/joint_type/; s/jointRange/joint_range/; s/jointAxis/joint_axis/
     s/jointId: 0/joint_id: 1, joint_velocity_range: [-100, 90]/
     s/jointId: 1/joint_id: 0, max_joint_velocity: unlimited/' "$work/arm.body" >"$work/new.body"
-check "a body as Choreonoid writes it today" both exits 0 take "$work/new.body" --ids 1-2 \
+check "a body as Choreonoid writes it today" both exits 0 take "$work/new.body" --yes --ids 1-2 \
     --servo STS3215 --- says 'LIFT, id: 1, servo: STS3215, limits_deg: \[-20, 60\]}$'
 check "with the speed of its slower direction" \
     says 'TURN, id: 2, servo: STS3215, limits_deg: \[-90, 90\], speed_deg_s: 90}$'
 check "too few ids" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1
 check "too many" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1-3
 check "ids that are none" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1,x
-check "the same id twice" fails 3 'has the id of another joint' take "$work/arm.body" --ids 4,4
+check "the same id twice" fails 3 'has the id of another joint' \
+    take "$work/arm.body" --ids TURN=4,LIFT=4
 check "an id that the family has not" fails 2 'id 32: servos of family ics have 0 to 31' \
-    take "$work/arm.body" --family ics --servo KRS-3301 --ids 31,32
+    take "$work/arm.body" --family ics --servo KRS-3301 --ids TURN=31,LIFT=32
 check "a servo that is none" fails 2 "no servo of family feetech is called 'XL430-W250'" \
     take "$work/arm.body" --servo XL430-W250
 check "a list that is too short" fails 2 'one for each of 2 joints' \
@@ -64,7 +106,8 @@ check "no such file" fails 3 'none.urdf: no such file' take "$work/none.urdf"
 check "a folder" fails 3 'is a directory' take "$work"
 check "nothing" fails 3 'neither a URDF nor a body' take /dev/null
 check "no end of it" fails 3 'longer than 4 MiB' take /dev/zero
-check "no folder" fails 3 'no such folder' take "$work/arm.body" -o "$work/none/arm.yaml"
+check "no folder" fails 3 'no such folder' take "$work/arm.body" --ids TURN=1,LIFT=2 \
+    -o "$work/none/arm.yaml"
 
 # ---- URDF -----------------------------------------------------------------------------------
 
@@ -119,8 +162,12 @@ sed 's/gripper"/claw"/g' "$work/first.urdf" >"$work/other.urdf"
 check "of an unknown robot a list is shown" both exits 2 take "$work/other.urdf" --ids 1-6 --- \
     grep -q '^ids: shoulder_pan=1,.*,claw=6$' "$work/err"
 check "and taken when that is said" exits 0 take "$work/other.urdf" --ids 1-6 --yes
-check "a guess is said" both exits 0 take "$work/other.urdf" --- \
-    complains 'ids are a GUESS.* --ids shoulder_pan=1,'
+check "without one it has none" not_written \
+    'no ids of servos; give them: --ids shoulder_pan=ID,.*,claw=ID$' take "$work/other.urdf"
+check "with a joint's name of its own neither has a known robot's file" fails 2 \
+    "--ids @so101: so101 has no joint 'claw'" take "$work/other.urdf" --ids @so101
+check "of other servos the names of a known robot say nothing" not_written 'no ids of servos' \
+    take "$work/first.urdf" --family lx16a --servo LX-16A
 cat >"$work/geared.urdf" <<'END'
 <robot name="geared"><link name="base"/><link name="a"/><link name="b"/>
 <transmission name="t1"><type>transmission_interface/SimpleTransmission</type>
@@ -145,7 +192,7 @@ check "move in their simulator" both exits 0 \
 # geared SED COMPLAINT
 geared() {
     sed "$1" "$work/geared.urdf" >"$work/other.urdf"
-    fails 3 "$2" take "$work/other.urdf"
+    fails 3 "$2" take "$work/other.urdf" --ids turn=1,lift=2
 }
 check "a gear that is in the servo" geared 's/>4</>345</' \
     'lift: STS3215 does not reach its limits with a reduction of 345; take that out'

@@ -16,7 +16,7 @@ static const cli_option options[] = {
     [OPT_SERVO] = OPTION_TEXT("servo", 0, "MODEL[,MODEL]...",
                               "import: its servos, one for all or for each joint"),
     [OPT_IDS] =
-        OPTION_TEXT("ids", 0, "JOINT=ID,...", "import: id of each joint, or 1-4,7 along the chain"),
+        OPTION_TEXT("ids", 0, "JOINT=ID,...", "import: id of each joint, those of @FILE, or 1-4,7"),
     [OPT_NAME] = OPTION_TEXT("name", 0, "NAME", "import, new: name of the robot"),
     [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE", "import, new: the robot's file (standard output)"),
 };
@@ -269,12 +269,13 @@ const cli_command cmd_robot = {
         "robot is asked.\n"
         "\n"
         "import: a robot's file from a URDF or a body of Choreonoid: joints, limits, speeds,\n"
-        "parts with their masses. What these do not contain (servos, ids, which way each turns)\n"
-        "is guessed and marked by a comment, unless --family and --servo give it. Limits that the\n"
+        "parts with their masses. Servos that --family and --servo do not give are guessed, and a\n"
+        "comment marks them, as it marks which way each turns. Limits that the\n"
         "servo does not reach are cut; joints that slide or follow another are treated as fixed.\n"
         "Ids are those of --ids; else those of a known robot whose joints have the same names;\n"
-        "else they are asked for on a terminal, and marked as a guess without one. A list without\n"
-        "names goes along the chain: it is shown, and needs a yes or --yes.\n"
+        "else they are asked for on a terminal, and missing ids are an error without one. --ids\n"
+        "@FILE takes them from the robot in FILE by the names of joints. A list without names\n"
+        "goes along the chain: it is shown, and needs a yes or --yes.\n"
         "\n"
         "new: a robot's file of the servos that answer on the line of -d, of every family at its\n"
         "usual rates, or of --family, or at the rate of -b. Joints are called joint1 and so on;\n"

@@ -53,7 +53,7 @@ bool ask_line(const app *a, const char *question, const char *usual, char *answe
     bool person = a->tty_in && !no_questions(a), came = false;
     if (!ended_by) {
         output_flush();
-        output_complain("%s [%s] ", _(question), usual);
+        output_complain(*usual ? "%s [%s] " : "%s ", _(question), usual);
         came = (person || !a->tty_in) && read_line(answer);
     }
     if (!person || !came) {

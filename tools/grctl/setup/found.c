@@ -226,7 +226,7 @@ void found_sketch(app *a, const found_servos *all, const char *name, sketch *s)
     char path[GROBO_DEVICE_MAX_BYTES] = "";
     s->n = 0;
     s->bare = true;
-    s->guessed_servos = s->guessed_ids = s->calibrated = false;
+    s->guessed_servos = s->calibrated = false;
     s->usb[0] = '\0';
     s->family = all->servo[0].family;
     s->baud_bps = all->servo[0].baud_bps;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
 #include "tools/grctl/sketch/make.h"
@@ -114,6 +115,26 @@ const grobo_robot_def *sketch_namesake(const grobo_model *model)
     return NULL;
 }
 
+/* "@arm.yaml": as of that robot, whose joints have these names. */
+static int read_robot(app *a, sketch *s, const char *text)
+{
+    char complaint[APP_LINE_BYTES];
+    const grobo_robot_def *def = robot_find(text + 1, complaint, sizeof complaint);
+    if (!def) {
+        return app_fail(a, EXIT_FILE, "NOTFOUND", "--ids %s: %s", text, complaint);
+    }
+    for (int i = 0; i < sketch_joints(s); i++) {
+        sketch_part *part = sketch_joint(s, i);
+        int j = find_joint(def->model, part->called);
+        if (j < 0) {
+            return app_fail(a, EXIT_USAGE, "ARG", "--ids %s: %s has no joint '%s'", text, def->name,
+                            part->called);
+        }
+        part->id = def->model->joints[j].motor;
+    }
+    return EXIT_DONE;
+}
+
 /* The robot of the library, of this family, with joints of these names. */
 static const grobo_robot_def *known_robot(sketch *s)
 {
@@ -137,17 +158,28 @@ static int id_of(const grobo_robot_def *def, const sketch_part *part)
 
 /* ---- what a person sees --------------------------------------------------------------------- */
 
-/* "turn=3,lift=4", as --ids takes it; of a known robot its ids. */
-static const char *table_of(sketch *s, const grobo_robot_def *def)
+/* "turn=3,lift=4", as --ids takes it; without ids "turn=ID,lift=ID". */
+static const char *table_of(sketch *s, bool with_ids)
 {
     static char text[TABLE_BYTES];
     size_t used = 0;
     for (int i = 0; i < sketch_joints(s) && used < sizeof text; i++) {
         const sketch_part *part = sketch_joint(s, i);
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s=%d", i ? "," : "",
-                                 part->called, def ? id_of(def, part) : part->id);
+        char id[16] = "ID";
+        if (with_ids) {
+            snprintf(id, sizeof id, "%d", part->id);
+        }
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s=%s", i ? "," : "",
+                                 part->called, id);
     }
     return text;
+}
+
+static void take_ids_of(sketch *s, const grobo_robot_def *def)
+{
+    for (int i = 0; i < sketch_joints(s); i++) {
+        sketch_joint(s, i)->id = id_of(def, sketch_joint(s, i));
+    }
 }
 
 /* Does the chain branch? Then nothing says which branch comes first. */
@@ -165,24 +197,35 @@ static bool branches(const sketch *s)
     return false;
 }
 
-/* A list without names: it is wrong for a known robot, or somebody has to look at it. */
+/* A list that contradicts a known robot: the first joint that has another id there. */
+static int refuse_list(app *a, sketch *s, const sketch_orders *orders, const grobo_robot_def *def)
+{
+    for (int i = 0; i < sketch_joints(s); i++) {
+        const sketch_part part = *sketch_joint(s, i);
+        int known = id_of(def, &part);
+        if (part.id != known) {
+            take_ids_of(s, def);
+            return app_fail(a, EXIT_USAGE, "ARG",
+                            "--ids %s gives %s the id %d, in %s it has %d; name the joints: --ids "
+                            "%s",
+                            orders->ids, part.called, part.id, def->name, known, table_of(s, true));
+        }
+    }
+    return EXIT_DONE;
+}
+
+/* A list without names: it is that of a known robot, or a person accepts it. */
 static int confirm_list(app *a, sketch *s, const sketch_orders *orders)
 {
     const grobo_robot_def *def = known_robot(s);
     char answer[SKETCH_ANSWER_BYTES];
-    for (int i = 0; def && i < sketch_joints(s); i++) {
-        if (sketch_joint(s, i)->id != id_of(def, sketch_joint(s, i))) {
-            return app_fail(a, EXIT_USAGE, "ARG",
-                            "--ids %s gives %s the id %d, in %s it has %d; name the joints: --ids "
-                            "%s",
-                            orders->ids, sketch_joint(s, i)->called, sketch_joint(s, i)->id,
-                            def->name, id_of(def, sketch_joint(s, i)), table_of(s, def));
-        }
+    if (def) {
+        return refuse_list(a, s, orders, def);
     }
-    if (def || s->ordered || sketch_joints(s) == 1) {
+    if (sketch_joints(s) == 1) {
         return EXIT_DONE;
     }
-    app_note(a, "ids: %s", table_of(s, NULL));
+    app_note(a, "ids: %s", table_of(s, true));
     if (app_global(a, GLOBAL_YES)->given) {
         return EXIT_DONE;
     }
@@ -191,55 +234,64 @@ static int confirm_list(app *a, sketch *s, const sketch_orders *orders)
         return EXIT_DONE;
     }
     return app_fail(a, EXIT_USAGE, "ARG",
-                    "--ids %s: %s; name the joints: --ids %s, or --yes takes them so", orders->ids,
-                    branches(s) ? _("the chain branches, so the order of joints is a guess")
-                                : _("the description does not number its joints"),
-                    table_of(s, NULL));
+                    "--ids %s: %s; name the joints: --ids %s, or accept the list with --yes",
+                    orders->ids,
+                    branches(s) ? _("the chain branches, so the order of its joints is not certain")
+                                : _("the description does not say which servo moves which joint"),
+                    table_of(s, true));
+}
+
+/* Asks until the answer is an id; there is no usual one, which a person might accept by mistake. */
+static int ask_one(app *a, sketch_part *part, const sketch_orders *orders)
+{
+    char question[SKETCH_ANSWER_BYTES], answer[SKETCH_ANSWER_BYTES];
+    snprintf(question, sizeof question, _("id of the servo of %s?"), part->called);
+    while (orders->ask(a, question, "", answer)) {
+        const char *text = answer;
+        long id = take_id(&text);
+        if (id >= 0 && !*text) {
+            part->id = (int)id;
+            return EXIT_DONE;
+        }
+        app_note(a, "'%s' is no id", answer);
+    }
+    return app_fail(a, EXIT_USAGE, "ARG", "import: an id for %s is wanted; nothing is written",
+                    part->called);
 }
 
 static int ask_each(app *a, sketch *s, const sketch_orders *orders)
 {
-    char question[SKETCH_ANSWER_BYTES], answer[SKETCH_ANSWER_BYTES], usual[16];
-    for (int i = 0; i < sketch_joints(s); i++) {
-        const char *text = answer;
-        snprintf(question, sizeof question, _("id of the servo of %s?"),
-                 sketch_joint(s, i)->called);
-        snprintf(usual, sizeof usual, "%d", i + 1);
-        long id = orders->ask(a, question, usual, answer) ? take_id(&text) : -1;
-        if (id < 0 || *text) {
-            return app_fail(a, EXIT_USAGE, "ARG",
-                            "import: an id for %s is wanted; nothing is "
-                            "written",
-                            sketch_joint(s, i)->called);
-        }
-        sketch_joint(s, i)->id = (int)id;
+    int status = EXIT_DONE;
+    for (int i = 0; !status && i < sketch_joints(s); i++) {
+        status = ask_one(a, sketch_joint(s, i), orders);
     }
-    return EXIT_DONE;
+    return status;
 }
 
 /* ---- all of them ---------------------------------------------------------------------------- */
 
-/* Nobody told them. */
+/* Without --ids. A wrong id moves another joint, so none is guessed. */
 static int find_ids(app *a, sketch *s, const sketch_orders *orders)
 {
     const grobo_robot_def *def = known_robot(s);
-    for (int i = 0; i < sketch_joints(s); i++) {
-        sketch_joint(s, i)->id = def ? id_of(def, sketch_joint(s, i)) : i + 1;
+    if (def) {
+        take_ids_of(s, def);
+        return EXIT_DONE;
     }
-    s->guessed_ids = !def && !orders->ask;
-    return def || s->guessed_ids ? EXIT_DONE : ask_each(a, s, orders);
+    if (orders->ask) {
+        return ask_each(a, s, orders);
+    }
+    return app_fail(a, EXIT_USAGE, "ARG",
+                    "import: the description has no ids of servos; give them: --ids %s",
+                    table_of(s, false));
 }
 
 void sketch_say_ids(const app *a, sketch *s, const sketch_orders *orders)
 {
     const grobo_robot_def *def = known_robot(s);
-    if (s->guessed_ids) {
-        app_note(a,
-                 "ids are a GUESS, a wrong one moves another joint; correct them in the file, or "
-                 "name them: --ids %s",
-                 table_of(s, NULL));
-    } else if (!orders->ids && def) {
-        app_note(a, "ids as of %s, whose joints have these names: %s", def->name, table_of(s, def));
+    if (!orders->ids && def) {
+        app_note(a, "ids as of %s, whose joints have these names: %s", def->name,
+                 table_of(s, true));
     }
 }
 
@@ -259,9 +311,10 @@ static int check_range(app *a, sketch *s)
 int sketch_give_ids(app *a, sketch *s, const sketch_orders *orders)
 {
     int status = EXIT_DONE;
-    s->guessed_ids = false;
     if (!orders->ids) {
         status = find_ids(a, s, orders);
+    } else if (*orders->ids == '@') {
+        status = read_robot(a, s, orders->ids);
     } else if (strchr(orders->ids, '=')) {
         status = read_named(a, s, orders->ids);
     } else if (!read_list(s, orders->ids)) {

@@ -186,7 +186,6 @@ int sketch_import(app *a, const char *path, const sketch_orders *orders)
     s.name[0] = s.usb[0] = '\0';
     snprintf(s.source, sizeof s.source, "%s", path);
     bool xml = is_xml(bytes, size);
-    s.ordered = !xml; /* a body numbers its joints */
     bool fine = xml ? sketch_read_urdf(&s, path, bytes, size, complaint, sizeof complaint)
                     : sketch_read_body(&s, path, bytes, size, complaint, sizeof complaint);
     free(bytes);

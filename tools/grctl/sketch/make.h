@@ -10,7 +10,7 @@ enum { SKETCH_ANSWER_BYTES = 256 };
 typedef struct sketch_orders {
     const char *family; /* as a robot's file names it; NULL: a guess */
     const char *servos; /* "STS3215", or one for each joint with commas; NULL: a guess */
-    const char *ids;    /* "turn=3,lift=4", or "1-4,7" along the chain; NULL: not told */
+    const char *ids;    /* "turn=3,lift=4", "@FILE", or "1-4,7" along the chain; NULL: not given */
     const char *name;   /* of the robot; NULL: that of the description */
     const char *out;    /* the file; NULL: standard output */
     /* Asks a person for a line of at most SKETCH_ANSWER_BYTES; false: none came. NULL: no person is
@@ -22,12 +22,12 @@ typedef struct sketch_orders {
 int sketch_import(app *a, const char *path, const sketch_orders *orders);
 
 /*
- * The id of each joint: as told by name; as of the robot of the library whose joints have these
- * names; as listed, along the chain, once a person has seen which joint gets which, or with --yes;
- * or as a person answers. What is left is a guess. 0, or the exit status.
+ * The id of each joint: as given by name; as of a robot's file; as of the robot of the library
+ * whose joints have these names; as listed, along the chain, once a person has seen which joint
+ * gets which, or with --yes; or as a person answers. None is guessed. 0, or the exit status.
  */
 int sketch_give_ids(app *a, sketch *s, const sketch_orders *orders);
-/* Says which ids nobody told. */
+/* Reports the ids that were taken from a robot of the library. */
 void sketch_say_ids(const app *a, sketch *s, const sketch_orders *orders);
 
 /* The robot of the library whose joints have the names of a model's, in any order; NULL: none. */

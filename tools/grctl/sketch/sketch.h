@@ -52,12 +52,11 @@ typedef struct sketch {
     char name[SKETCH_TEXT_BYTES];
     char source[SKETCH_TEXT_BYTES]; /* what it was made of, for the first line */
     const grobo_robot_family *family;
-    char usb[16];                     /* its adapter, "1a86:55d3", or "" */
-    int baud_bps;                     /* 0: the factory's */
-    bool guessed_servos, guessed_ids; /* nobody told them */
-    bool ordered;                     /* the description numbers its joints */
-    bool calibrated;                  /* its servos keep a middle that was found by hand */
-    bool bare;                        /* parts are joints alone, and have no geometry */
+    char usb[16];        /* its adapter, "1a86:55d3", or "" */
+    int baud_bps;        /* 0: the factory's */
+    bool guessed_servos; /* the command line does not give them */
+    bool calibrated;     /* its servos keep a middle that was found by hand */
+    bool bare;           /* parts are joints alone, and have no geometry */
     int n, n_joints;
     int along[SKETCH_PARTS_MAX];  /* parts, each behind its parent */
     int joints[SKETCH_PARTS_MAX]; /* parts that turn, in the order of joints */

@@ -108,8 +108,8 @@ char *sketch_text(sketch *s)
 {
     heap to = {0};
     heap_print(&to, "# Made by grctl of %s.\n", plain(s->source));
-    heap_print(&to, "# Not known, and to be filled in (docs/guide/own-robot.md):%s%s%s\n",
-               s->guessed_servos ? " family and servos," : "", s->guessed_ids ? " ids," : "",
+    heap_print(&to, "# Not known, and to be filled in (docs/guide/own-robot.md):%s%s\n",
+               s->guessed_servos ? " family and servos," : "",
                s->bare ? " names, limits of the mechanics," : "");
     heap_print(&to,
                "# which way each servo turns (sign), and where its joint is at 0 (zero_deg).\n");
