@@ -245,7 +245,7 @@ corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%
 left_out = $(if $(strip $(call in_rings,,$(LEFT_OUT))),$(BUILD)/left_out.sh)
 # Those left out are counted as skipped, with the target's reason.
 $(BUILD)/left_out.sh: FORCE
-	@printf '%s\n' '. tests/support/tap.sh' $(foreach t,$(call in_rings,,$(LEFT_OUT)),'skip $(t) "$(t): $(LEFT_OUT_WHY)"') \
+	@printf '%s\n' '. tests/support/tap.sh' $(foreach t,$(call in_rings,,$(LEFT_OUT)),'test_case $(t)' 'skip $(t) "$(LEFT_OUT_WHY)"') \
 	    done_testing >$@
 
 chosen = $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(if $(filter fuzz,$(RING)),$(FUZZ_REPLAYS)) \

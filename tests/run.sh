@@ -167,6 +167,9 @@ function judge(status) {
     if (!bad && plan >= 0 && results != plan) {
         problem(results " results for " plan " planned tests")
     }
+    if (!bad && plan < 0 && results > 0) {
+        problem("ends without saying how many tests it has")
+    }
     if (!bad && results == 0 && !skipped_all) {
         problem("holds no test")
     }

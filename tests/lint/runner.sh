@@ -4,7 +4,8 @@
 set -u
 
 . tests/support/tap.sh
-runner=$(pwd)/tests/run.sh
+top=$(pwd)
+runner=$top/tests/run.sh
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -92,6 +93,51 @@ for f in "$@"; do echo "ok 1 - $f"; done
 S
 mkdir corpus && touch corpus/a 'corpus/b c'
 printf 'echo 1..1\necho ok 1 - from a script\n' >script.sh
+program no_plan <<'S'
+printf 'ok 1 - a\n'
+S
+# steps NAME: a script of the project's own, of which standard input has the tests.
+steps() {
+    { echo ". $top/tests/support/tap.sh" && cat && echo done_testing; } >"$1.sh"
+}
+steps named <<'S'
+test_case 'what stands'
+check 'one' true
+check 'two' true
+test_case 'what sits'
+check 'three' true
+shows 'what lies' true
+S
+steps broken <<'S'
+test_case 'what stands'
+check 'one' true
+check 'two' sh -c 'echo because; false'
+check 'three' true
+test_case 'what sits'
+check 'four' true
+S
+steps partly <<'S'
+test_case 'what stands'
+check 'one' true
+skip 'two' 'no robot here'
+skip 'three' 'no robot here'
+test_case 'what sits'
+check 'four' true
+S
+steps idle <<'S'
+test_case 'what stands'
+test_case 'what sits'
+check 'one' true
+S
+steps unnamed <<'S'
+check 'one' true
+check 'two' true
+S
+steps gone <<'S'
+test_case 'what stands'
+check 'one' true
+exit
+S
 
 check 'all pass' ends 0 '5 passed, 0 failed, 0 skipped' 'pass' ./good ./two_groups
 check 'a failure shows what was printed' \
@@ -124,5 +170,23 @@ check 'a missing program is a failure' ends 1 '0 passed, 1 failed, 0 skipped' st
 check 'a corpus goes to the program' ends 0 '2 passed, 0 failed, 0 skipped' pass ./files@corpus
 check 'an empty corpus is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no' ./files@no
 check 'a shell script' ends 0 '1 passed, 0 failed, 0 skipped' pass script.sh
+check 'a program that ends in the middle' \
+    ends 1 '1 passed, 1 failed, 0 skipped' 'without saying how many' ./no_plan
+check 'tests of a script are counted, not their steps' \
+    ends 0 '3 passed, 0 failed, 0 skipped' 'named.sh (3)' named.sh
+check 'a step that fails fails its test' \
+    ends 1 '1 passed, 1 failed, 0 skipped' 'not ok 1 - what stands' broken.sh
+check 'and is told with what was said' \
+    ends 1 '1 passed, 1 failed, 0 skipped' "# FAILED: two
+  #   because" broken.sh
+check 'a test of which a step is left out is skipped, its reason told once' \
+    ends 0 '1 passed, 0 failed, 1 skipped' 'partly.sh: what stands: no robot here
+' partly.sh
+check 'a test without a step is a failure' \
+    ends 1 '1 passed, 1 failed, 0 skipped' 'it has no step' idle.sh
+check 'steps before the first test are one' \
+    ends 0 '1 passed, 0 failed, 0 skipped' 'unnamed.sh (1)' unnamed.sh
+check 'a script that ends in the middle of a test' \
+    ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' gone.sh
 check 'nothing to run is a failure' ends 1 '0 passed, 0 failed, 0 skipped' 'nothing to run'
 done_testing
