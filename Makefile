@@ -183,15 +183,15 @@ include tools/baremetal/baremetal.mk
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all lib demo cockpit check robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
+.PHONY: help all lib demo cockpit check compile_commands robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports check-long check-mutants check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z_-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' Makefile
 	@echo 'Variables: BUILD=build CC= AR= CROSS_COMPILE= CFLAGS= SAN=address,undefined'
-	@echo '  RING="unit engine" (for test) PREFIX=/usr/local DESTDIR= V=1'
+	@echo '  ONLY=joints RING="unit engine" (for test) PREFIX=/usr/local DESTDIR= V=1'
 	@echo '  TARGET=one of $(TARGETS) (for cross)'
 
 all: lib $(GRCTL) $(GRCTL_RUN) $(ALSO) ## libraries and grctl, in build/
@@ -220,8 +220,13 @@ check: ## set up what is missing, build, lint, run every test
 lint: all $(ROBOTS) ## check the rules of the house: sources, objects, headers, symbols
 	@tools/lint/run.sh --all $(BUILD)
 
-lint-quick: ## the rules that sources alone can break; takes a second
-	@tools/lint/run.sh --quick
+lint-quick: ## the rules that sources alone can break; takes two seconds
+	@tools/lint/run.sh --quick $(BUILD)
+
+compile_commands: ## compile_commands.json, for language servers: how each file is compiled
+	@$(MAKE) --no-print-directory -nB V=1 all $(TEST_PROGRAMS) $(DRIVER_PROGRAMS) $(FUZZ_REPLAYS) \
+	    $(BENCHES) $(EXAMPLES) $(ROBOTS) $(PICTURE) | \
+	    awk -v folder="$(CURDIR)" -f tools/compile_commands.awk >compile_commands.json
 
 robots: $(ROBOTS) ## make the tables of src/robots from its files
 	@tools/robots/make.sh $(ROBOTS)
@@ -240,7 +245,6 @@ in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
 # What tests of a build for another machine must know.
 cross_env = $(if $(CROSS),$(foreach v,CROSS EMULATOR SYSROOT CXX,$(v)="$($(v))") \
     TEST_WRAPPER="$(or $(TEST_EMULATOR),$(EMULATOR))" TEST_TIMEOUT_S=600)
-corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
 
 left_out = $(if $(strip $(call in_rings,,$(LEFT_OUT))),$(BUILD)/left_out.sh)
 # Those left out are counted as skipped, with the target's reason.
@@ -248,13 +252,20 @@ $(BUILD)/left_out.sh: FORCE
 	@printf '%s\n' '. tests/support/tap.sh' $(foreach t,$(call in_rings,,$(LEFT_OUT)),'test_case $(t)' 'skip $(t) "$(LEFT_OUT_WHY)"') \
 	    done_testing >$@
 
-chosen = $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(if $(filter fuzz,$(RING)),$(FUZZ_REPLAYS)) \
-    $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES) $(PICTURE) $(BARE))
-test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit engine" chooses
+# ONLY=WORD: what may hold a test that is called so, in all rings; tests/run.sh asks it.
+ONLY ?=
+FOUND = $(call once,FOUND,$(shell tests/only.sh '$(ONLY)' $(TEST_SRCS) $(FUZZ_SRCS) $(TEST_SCRIPTS)))
+may = $(if $(ONLY),$(filter $(FOUND) $(patsubst %.c,$(BUILD)/%$(EXE),$(filter %.c,$(FOUND))),$(1)),$(1))
+test_programs = $(call may,$(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)))
+test_replays = $(if $(filter fuzz,$(RING)),$(call may,$(FUZZ_REPLAYS)))
+test_scripts = $(call may,$(call in_rings,,$(TEST_SCRIPTS)))
+corpora = $(foreach f,$(test_replays),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
+chosen = $(test_programs) $(test_replays) $(if $(ONLY),,$(if $(filter port,$(RING)),$(DRIVER_PROGRAMS))) \
+    $(if $(filter tests/export/%,$(test_scripts)),$(EXAMPLES) $(PICTURE) $(BARE))
+test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; ONLY=joints or RING="unit engine" chooses
 	@$(TEST_BEGIN) GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" TEST_FIRST="$(TEST_FIRST)" EDIT=$(EDIT) SCREEN=$(SCREEN) XML=$(XML) \
-	    $(cross_env) tests/run.sh \
-	    $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(call in_rings,,$(TEST_SCRIPTS)) \
-	    $(if $(filter fuzz,$(RING)),$(corpora)) $(left_out) $(TEST_END)
+	    TEST_ONLY="$(ONLY)" $(cross_env) tests/run.sh \
+	    $(test_programs) $(test_scripts) $(corpora) $(if $(ONLY),,$(left_out)) $(TEST_END)
 
 check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	@TEST_TIMEOUT_S=600 $(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
@@ -406,7 +417,6 @@ soak: $(SOAKS) ## all stops, and half an hour of virtual time on each bad line, 
 # Sabotages, each of which a test should notice (tests/mutants/). The folder is its own.
 SEED ?= 1
 COUNT ?=
-ONLY ?=
 MUTANT_DIR := $(BUILD)/mutants
 MUTANT_TESTS := $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/engine/%,$(TEST_SRCS)) \
     $(filter-out tests/unit/test_body% tests/unit/test_motion% tests/unit/test_pcapng%,$(filter \

@@ -10,6 +10,9 @@
 #   TEST_JOBS=N         how many at a time. Without it as many as processors; beside them, first
 #                       among equals, five for every two of those in real time, which wait
 #   TEST_TIMEOUT_S=300  how long one may take
+#   TEST_ONLY=WORD      only tests in whose names this stands, a blank as good as an underscore: all
+#                       of a program or script that is called so; of other programs those alone, of
+#                       other scripts all, as their tests build on each other
 #   TEST_WRAPPER=       put before each program, such as 'valgrind -q --error-exitcode=99'
 #   TEST_LOGS=DIR       keep the logs there (default: a temporary directory)
 #   TEST_FIRST=         names of long programs, which begin first: else the others wait for them
@@ -23,6 +26,29 @@ set -u
 processors=$(getconf _NPROCESSORS_ONLN 2>/dev/null) || processors=2
 limit_s=${TEST_TIMEOUT_S:-300}
 wrapper=${TEST_WRAPPER:-}
+
+alike() {
+    tr ' -' '__'
+}
+only=$(printf %s "${TEST_ONLY:-}" | alike)
+is_called() {
+    name=${1%@*}
+    case $(printf %s "${name##*/}" | alike) in
+    *"$only"*) ;;
+    *) return 1 ;;
+    esac
+}
+
+# is_wanted PROGRAM: there is a test in it that is called so.
+is_wanted() {
+    is_called "$1" && return
+    case $1 in
+    *.sh) grep -E '^ *(test_case|shows) ' "$1" ;;
+    *@*) ;;
+    # shellcheck disable=SC2086
+    *) $wrapper "$1" --list </dev/null 2>/dev/null ;;
+    esac | alike | grep -qF -e "$only"
+}
 
 # Runs one program; its output goes to LOGS/NUMBER.log with a last line of our own.
 run_one() {
@@ -43,7 +69,10 @@ run_one() {
     *.sh) set -- sh "$program" ;;
     # $wrapper is a command with its options: it is meant to be split.
     # shellcheck disable=SC2086
-    *) set -- $wrapper "$program" "$@" ;;
+    *)
+        is_called "$program" || set -- "$TEST_ONLY"
+        set -- $wrapper "$program" "$@"
+        ;;
     esac
     begin=$(date +%s)
     # timeout makes a process group of itself and all that begins below it.
@@ -115,9 +144,15 @@ fi
 
 count=0
 for program in "$@"; do
+    [ -z "$only" ] || is_wanted "$program" || continue
     count=$((count + 1))
     printf '%d:%s\n' "$count" "$program"
 done >"$logs/programs"
+if [ $count -eq 0 ]; then
+    echo "tests/run.sh: no test is called '$TEST_ONLY'"
+    echo '0 passed, 0 failed, 0 skipped'
+    exit 1
+fi
 
 # What runs in real time, and the rest. Under a wrapper all of it takes the processor all the time.
 awk -v logs="$logs" -v first=" ${TEST_FIRST:-} " -v one_pool="${TEST_JOBS:-}$wrapper" '

@@ -17,13 +17,14 @@ program() {
 }
 
 limit_s=60
+only=
 # ends STATUS LAST_LINE TEXT PROGRAM...: what the runner does with the programs.
 ends() {
     status=$1
     last=$2
     text=$3
     shift 3
-    said=$(TEST_LOGS= TEST_WRAPPER= TEST_TIMEOUT_S=$limit_s sh "$runner" "$@")
+    said=$(TEST_LOGS= TEST_WRAPPER= TEST_ONLY=$only TEST_TIMEOUT_S=$limit_s sh "$runner" "$@")
     got=$?
     printf '%s\n' "$said"
     [ "$got" = "$status" ] && [ "$(printf '%s\n' "$said" | tail -n 1)" = "$last" ] &&
@@ -133,6 +134,10 @@ steps unnamed <<'S'
 check 'one' true
 check 'two' true
 S
+program several <<'S'
+[ "${1:-}" != --list ] || { printf 'a_robot_stands\na_robot_sits\n'; exit; }
+printf '1..1\nok 1 - a_robot_%s\n' "${1:-and_all_others}"
+S
 steps gone <<'S'
 test_case 'what stands'
 check 'one' true
@@ -188,5 +193,19 @@ check 'steps before the first test are one' \
     ends 0 '1 passed, 0 failed, 0 skipped' 'unnamed.sh (1)' unnamed.sh
 check 'a script that ends in the middle of a test' \
     ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' gone.sh
+only=sits
+check 'a word chooses tests of programs and scripts by name' \
+    ends 0 '4 passed, 0 failed, 0 skipped' 'named.sh (3)
+pass  ./several (1)' good named.sh ./several script.sh files@corpus
+only='several'
+check 'and whole programs by theirs' \
+    ends 0 '1 passed, 0 failed, 0 skipped' 'several (1)' ./several ./good
+only='robot sits'
+check 'a blank is an underscore' \
+    ends 0 '1 passed, 0 failed, 0 skipped' 'several (1)' ./several ./good
+only=lies_down
+check 'a word that no test has is a failure' \
+    ends 1 '0 passed, 0 failed, 0 skipped' "no test is called 'lies_down'" ./several ./good
+only=
 check 'nothing to run is a failure' ends 1 '0 passed, 0 failed, 0 skipped' 'nothing to run'
 done_testing

@@ -17,7 +17,7 @@ awk '
     }
     next
 }
-/^[a-z][a-z-]*:.* ## ./ {
+/^[a-z][a-z_-]*:.* ## ./ {
     name = $0
     sub(/:.*/, "", name)
     told[name] = FNR

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Runs the gates over the tree and says which rule is broken where, one line each.
 #
-# usage: run.sh --quick          the gates that read sources only (a second)
+# usage: run.sh --quick BUILD    the gates that read sources only: two seconds, after the first time
 #        run.sh --all BUILD      all gates; BUILD holds the objects and the shared library
 # environment: CC, CXX, NM, CPPFLAGS
 set -u
@@ -81,6 +81,7 @@ headers=$(printf '%s\n' "$all" | grep '\.h$')
 library=$(printf '%s\n' "$all" | grep -E '^(include|src|ports)/')
 everything=$(texts)
 
+[ -z "${2:-}" ] || { mkdir -p "$2" && export FORMATTED="$2/.formatted"; }
 # shellcheck disable=SC2086
 beside format sh "$gates/format.sh" $all
 if [ "$1" = --all ]; then
