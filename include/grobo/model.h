@@ -62,6 +62,12 @@ typedef struct grobo_model {
      * played at the limit. 0..GROBO_LIMIT_SLACK_MAX_DEG degrees. See grobo_model_take_slack().
      */
     double limit_slack_deg;
+    /**
+     * Names of other models whose motions are for this one too, because their joints have the same
+     * names in the same order. NULL-terminated; NULL: none. grobo_robot_def_read() sets it to those
+     * of the library; see grobo_motion_is_for().
+     */
+    const char *const *alike;
 } grobo_model;
 
 /**

@@ -315,10 +315,10 @@ GROBO_API int grobo_motion_crop(grobo_motion *motion, int64_t from_us, int64_t t
 
 /**
  * True for a motion of a model's robot: it has no more joints, and names as its target body the
- * model, "SerialRobot" (as the original library calls any robot) or none; postures and frames that
- * do not name the model have exactly its number of joints. Everything else is a motion of another
- * robot, whose joints have no names here, and which must not move this one: see
- * grobo_motion_set_target_body(). False where the model is NULL.
+ * model, one of its `alike`, "SerialRobot" (as the original library calls any robot) or none;
+ * postures and frames that do not name the model have exactly its number of joints. Everything else
+ * is a motion of another robot, whose joints have no names here, and which must not move this one:
+ * see grobo_motion_set_target_body(). False where the model is NULL.
  */
 GROBO_CORE bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model);
 /**

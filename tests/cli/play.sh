@@ -152,6 +152,22 @@ of_another() {
             "$GRCTL" --robot koch -d sim play motions/so101-wave.yaml
 }
 check "a motion of another robot is refused" of_another
+# A robot of one's own whose joints are called as those of so101, in that order.
+sed 's/^name: so101$/name: mine/; /^model:/d' src/robots/so101.yaml >"$work/mine.yaml"
+sed 's/gripper/claw/g' "$work/mine.yaml" >"$work/clawed.yaml"
+sed 's/shoulder_pan/other/g; s/shoulder_lift/shoulder_pan/g; s/other/shoulder_lift/g' \
+    "$work/mine.yaml" >"$work/turned.yaml"
+same_joints() {
+    exits 0 "$GRCTL" --robot "$work/mine.yaml" play --dry-run motions/so101-wave.yaml &&
+        exits 0 "$GRCTL" --robot "$work/mine.yaml" check motions/so101-wave.yaml &&
+        exits 0 "$GRCTL" --robot "$work/mine.yaml" -d sim pose @motions/so101-wave.yaml:9 ||
+        return 1
+    for other in clawed turned; do
+        fails 2 'made for so101, not for mine' "$GRCTL" --robot "$work/$other.yaml" -d sim \
+            play motions/so101-wave.yaml || return 1
+    done
+}
+check "a robot with the same joints plays it, one with another order does not" same_joints
 forced() {
     exits 0 "$GRCTL" play --force --dry-run "$work/six.m" &&
         exits 0 "$GRCTL" play --force --clamp --speed 50 --dry-run "$work/nameless.yaml" &&

@@ -29,7 +29,7 @@ enum { JOINTS = 3, MS = 1000, S = 1000000 };
     static const grobo_joint name##_joints[] = {JOINT("A", 1, number, 1, 0, 0),                    \
                                                 JOINT("B", 2, number, -1, 0, 1),                   \
                                                 JOINT("C", 3, number, 1, 20, 1.5)};                \
-    static const grobo_model name = {#name, name##_joints, NULL, JOINTS, 0, 0}
+    static const grobo_model name = {#name, name##_joints, NULL, JOINTS, 0, 0, NULL}
 
 ARM(xl330, 1200);
 ARM(sts3215, 777);
@@ -543,7 +543,7 @@ static void a_coarser_count_is_refused(void **state)
     for (int way = 0; way < 3; way++) { /* where an MX counts no turns, it means nothing */
         const bool turns = way > 0;
         const uint8_t divider = way < 2 ? 2 : 1;
-        const grobo_model model = {"mx28", joints, NULL, JOINTS, 0, 0};
+        const grobo_model model = {.name = "mx28", .joints = joints, .n_joints = JOINTS};
         const family mx = {&model, grobo_dxl1_driver_init, 0.09, 0, true, false};
         memcpy(joints, ax12_joints, sizeof joints);
         for (int j = 0; j < JOINTS; j++) {

@@ -34,7 +34,7 @@ static const grobo_joint joints[SAMPLE_JOINTS] = {
      .mirror_sign = 1},
 };
 
-const grobo_model sample_model = {"SAMPLE", joints, NULL, SAMPLE_JOINTS, 0, 0};
+const grobo_model sample_model = {.name = "SAMPLE", .joints = joints, .n_joints = SAMPLE_JOINTS};
 
 static int sample_key_at(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
 {

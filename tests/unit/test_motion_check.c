@@ -343,6 +343,10 @@ TEST(test_robot_it_is_for)
         {"type: BodyMotion\ntargetBody: gr001\n" FRAMES, false},
     };
 
+    const char *const alike[] = {"cousin", "brother", NULL};
+    grobo_model like_brother = grobo_gr001_model;
+    like_brother.alike = alike;
+
     for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) {
         const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model};
         grobo_motion *motion, *copy;
@@ -356,6 +360,11 @@ TEST(test_robot_it_is_for)
         assert_int_equal(grobo_motion_is_for(copy, &grobo_gr001_model), motions[i].fits);
         assert_int_equal(grobo_motion_set_target_body(copy, "GR001"), 0);
         assert_true(grobo_motion_is_for(copy, &grobo_gr001_model));
+        assert_int_equal(grobo_motion_set_target_body(copy, "brother"), 0);
+        assert_false(grobo_motion_is_for(copy, &grobo_gr001_model));
+        assert_true(grobo_motion_is_for(copy, &like_brother));
+        assert_int_equal(grobo_motion_set_target_body(copy, "sister"), 0);
+        assert_false(grobo_motion_is_for(copy, &like_brother));
         grobo_motion_free(copy);
         grobo_motion_free(motion);
     }

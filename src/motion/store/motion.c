@@ -138,11 +138,22 @@ void grobo_motion_renew(grobo_motion *motion, grobo_motion_kind kind)
 
 /* ---- the robot it is for ------------------------------------------------------------------ */
 
+/* Is that the model's name, or that of one with the same joints? */
+static bool names(const char *body, const grobo_model *model)
+{
+    bool same = strcmp(body, model->name) == 0;
+
+    for (size_t i = 0; !same && model->alike != NULL && model->alike[i] != NULL; i++) {
+        same = strcmp(body, model->alike[i]) == 0;
+    }
+    return same;
+}
+
 bool grobo_i_is_named_for(const grobo_motion *motion, const grobo_model *model)
 {
     const char *body = grobo_motion_target_body(motion);
 
-    return body[0] == '\0' || strcmp(body, "SerialRobot") == 0 || strcmp(body, model->name) == 0;
+    return body[0] == '\0' || strcmp(body, "SerialRobot") == 0 || names(body, model);
 }
 
 /* Key poses number their joints; rows of angles are of all joints, of which the robot is not named:
@@ -153,7 +164,7 @@ static bool has_other_rows(const grobo_motion *motion, const grobo_model *model)
 
     return rows && motion->size > 0 &&
            (motion->few_columns || motion->n_joints != model->n_joints) &&
-           strcmp(grobo_motion_target_body(motion), model->name) != 0;
+           !names(grobo_motion_target_body(motion), model);
 }
 
 bool grobo_i_has_joints_of(const grobo_motion *motion, const grobo_model *model)

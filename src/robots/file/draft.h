@@ -78,6 +78,8 @@ grobo_i_place grobo_i_place_of(grobo_i_block block, const grobo_i_place *at, gro
 /* Whether the key was there. */
 bool grobo_i_has_key(grobo_i_block block, const grobo_i_place *at, const char *key);
 
+enum { GROBO_I_ALIKE_MAX = 8 };
+
 /* What a read file is kept in. */
 typedef struct grobo_i_robot_file {
     grobo_robot_def def;
@@ -89,6 +91,7 @@ typedef struct grobo_i_robot_file {
     grobo_readback readback[GROBO_JOINTS_MAX];
     grobo_robot_link links[GROBO_ROBOT_LINKS_MAX];
     grobo_usb_id usb[GROBO_ROBOT_USB_MAX];
+    const char *alike[GROBO_I_ALIKE_MAX + 1];
     grobo_i_name name, title, model_name, joint_names[GROBO_JOINTS_MAX],
         group_names[GROBO_ROBOT_GROUPS_MAX], link_names[GROBO_ROBOT_LINKS_MAX];
 } grobo_i_robot_file;

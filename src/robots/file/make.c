@@ -406,6 +406,31 @@ static void make_names(const maker *m)
                                   .n_links = (uint8_t)draft->n_links};
 }
 
+static bool has_same_joints(const grobo_model *a, const grobo_model *b)
+{
+    int j = 0;
+    while (a->n_joints == b->n_joints && j < a->n_joints &&
+           strcmp(a->joints[j].name, b->joints[j].name) == 0) {
+        j++;
+    }
+    return j == a->n_joints;
+}
+
+/* The robots of the library whose motions this one may play. */
+static void find_alike(const maker *m)
+{
+    grobo_i_robot_file *file = m->file;
+    int n = 0;
+    for (int i = 0; grobo_robot_defs[i] != NULL && n < GROBO_I_ALIKE_MAX; i++) {
+        const grobo_model *known = grobo_robot_defs[i]->model;
+        if (has_same_joints(&file->model, known)) {
+            file->alike[n++] = known->name;
+        }
+    }
+    file->alike[n] = NULL;
+    file->model.alike = file->alike;
+}
+
 int grobo_i_robot_make(const grobo_i_draft *draft, grobo_i_robot_file *file)
 {
     maker m = {.draft = draft, .reader = draft->reader, .file = file};
@@ -420,6 +445,7 @@ int grobo_i_robot_make(const grobo_i_draft *draft, grobo_i_robot_file *file)
     if (m.reader->result < 0) {
         return m.reader->result;
     }
+    find_alike(&m);
     check_mirrors(&m);
     check_servos(&m);
     make_safety(&m);
