@@ -131,13 +131,14 @@ GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target);
 /**
  * Sends a frame of the caller's as it is and waits for the reply it calls for, if any. The driver
  * reads its meaning first and it is checked as any other target, now and again when it leaves: by
- * then the job may end with GROBO_ERR_SPEED, _STALE, _STATE or _LATCHED, and nothing was sent. A
- * stop ends it with GROBO_ERR_CANCELED, if it moves. A joint in free mode is refused
- * (GROBO_ERR_STATE). Torque comes on only for a joint that holds already: GROBO_ERR_STATE where it
- * does not, GROBO_ERR_STALE where that was read more than 2 s ago. What the driver cannot read is
- * refused with GROBO_ERR_UNSUPPORTED unless accept_unknown_raw: other motors than the model's, ids,
- * directions, limits, flash and restarts, motions of the board's own. After one that was accepted
- * all joints must be read anew.
+ * then the job may end with GROBO_ERR_SPEED, _STALE, _STATE or _LATCHED, and nothing was sent. One
+ * that was not answered is not tried again where another frame has told its joints something since
+ * (GROBO_ERR_SUPERSEDED). A stop ends it with GROBO_ERR_CANCELED, if it moves. A joint in free mode
+ * is refused (GROBO_ERR_STATE). Torque comes on only for a joint that holds already:
+ * GROBO_ERR_STATE where it does not, GROBO_ERR_STALE where that was read more than 2 s ago. What
+ * the driver cannot read is refused with GROBO_ERR_UNSUPPORTED unless accept_unknown_raw: other
+ * motors than the model's, ids, directions, limits, flash and restarts, motions of the board's own.
+ * After one that was accepted all joints must be read anew.
  */
 GROBO_API int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size);
 /**

@@ -328,7 +328,7 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment
     }
     bool sleeps = aim_goal(robot, order, robot->soft || order->soft, target);
     if (target->posture.set == 0) {
-        return sleeps || order->rests ? GROBO_ERR_EMPTY : GROBO_ERR_STALE;
+        return sleeps || order->rests ? GROBO_ERR_EMPTY : GROBO_ERR_SUPERSEDED;
     }
     int result = judge_joints(robot, target->posture.set);
     if (result >= 0 && (when != BUILT || order->rests)) {
@@ -934,7 +934,7 @@ int grobo_i_gate_leave(grobo_robot_slot *slot)
     if (slot->order.deed == GROBO_I_DEED_NONE && slot->order.joints == 0) {
         return GROBO_OK; /* a reading: it tells no joint anything */
     }
-    int result = is_passed(robot, slot) ? GROBO_ERR_STALE
+    int result = is_passed(robot, slot) ? GROBO_ERR_SUPERSEDED
                                         : judge(robot, &slot->order, waiting(slot), when, &says);
     if (result >= 0 && is_built(&slot->order)) {
         result = build_anew(slot, &says);

@@ -243,7 +243,8 @@ static void give_up(grobo_robot *robot, int error)
 void grobo_i_play_done(grobo_robot_slot *slot, int result)
 {
     grobo_robot *robot = slot->robot;
-    bool refused = slot->refused && result != GROBO_ERR_EMPTY; /* its joints are read first */
+    /* Its joints are read first, or a later one has taken its place: one tried again, mostly. */
+    bool refused = slot->refused && result != GROBO_ERR_EMPTY && result != GROBO_ERR_SUPERSEDED;
     robot->counters.motion_frames += result >= 0;
     if (slot->due_us != GROBO_NEVER_US) {
         count_played(slot, result);

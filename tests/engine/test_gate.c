@@ -26,7 +26,7 @@ static void a_goal_is_judged_as_it_leaves(void **state)
         grobo_robot_order order = {
             .joints = bits(j, other_of(j)), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
         start();
-        assert_int_equal(judge(order), GROBO_ERR_STALE); /* none waits */
+        assert_int_equal(judge(order), GROBO_ERR_SUPERSEDED); /* none waits */
         await(j, 1, S);
         assert_int_equal(judge(order), GROBO_OK);
         robot.axes[other_of(j)].sensed = false; /* another one's is not needed any more */
@@ -122,10 +122,10 @@ static void a_goal_goes_again_until_another_takes_its_place(void **state)
         expect_goals(order.joints, 5, 2 * S);
         drop();
         robot.axes[j].next = NUMBER + 1;
-        assert_int_equal(judge(order), GROBO_ERR_STALE);
+        assert_int_equal(judge(order), GROBO_ERR_SUPERSEDED);
         robot.axes[j].next = 0;
         robot.axes[j].last = NUMBER + 1;
-        assert_int_equal(judge(order), GROBO_ERR_STALE);
+        assert_int_equal(judge(order), GROBO_ERR_SUPERSEDED);
     }
 }
 
@@ -364,13 +364,13 @@ static void a_second_attempt_is_passed_by_what_left_since(void **state)
             robot.axes[j].told_us = robot.axes[other_of(j)].told_us = NOW - 7;
             robot.axes[i == 0 ? j : other_of(j)].told_us = NOW - 6;
             keep_axes();
-            assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_SUPERSEDED);
             expect_axes();
         }
         slot->txn.sent_us = -1; /* a first attempt is passed by nothing */
         assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
         slot->txn.sent_us = 0; /* the clock may begin there */
-        assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_SUPERSEDED);
         drop();
     }
 }
@@ -471,7 +471,7 @@ static void several_joints_go_in_one_frame(void **state)
         whole = driver;
         driver.posture = posture_in_parts;
         parts = rows[i].parts;
-        assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), GROBO_ERR_STALE);
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), GROBO_ERR_SUPERSEDED);
         await(0, 1, S);
         await(1, 1, S);
         assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), rows[i].result);

@@ -340,7 +340,6 @@ static excuse excuses[] = {
     {"dxl2", NULL, "lost", "comes to rest", "a lost reply and a lost halt", 12, 0},
     {"dxl1", NULL, "missed", NULL, "behind by a lost segment, it goes on to its end", 26, 0},
     {"sts", NULL, NULL, "goes on", "on its ramp, where the engine has it at its goal", 21, 0},
-    {"ics", "pause", NULL, "is never done", "a soft stop whose frames were lost stays one", 3, 0},
     {"lx16a", NULL, "lost", "a halt throws", "no speed: 6 deg beyond when repeated", 137, 0},
     {NULL, NULL, NULL, NULL, NULL, 0, 0},
 };

@@ -42,7 +42,7 @@ static void a_raw_goal_is_not_tried_again_over_a_later_target(void **state)
     assert_int_equal(raw_times_sent(&rig), 1);
     grobo_posture target = rig_posture(&rig, NECK, -5, 1000);
     assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
-    rig_expect(&rig, number, GROBO_ERR_STALE);
+    rig_expect(&rig, number, GROBO_ERR_SUPERSEDED);
     assert_int_equal(raw_times_sent(&rig), 1);
 }
 

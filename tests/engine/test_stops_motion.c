@@ -857,7 +857,7 @@ static void a_raw_goal_is_not_tried_again_behind_a_later_target(void **state)
             grobo_posture target = rig_posture(&rig, NECK, -10, 1000);
             assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         }
-        rig_expect(&rig, number, later ? GROBO_ERR_STALE : GROBO_OK);
+        rig_expect(&rig, number, later ? GROBO_ERR_SUPERSEDED : GROBO_OK);
         rig_run(&rig, 2000000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - (later ? -10 : 20)) < 0.1);
     }
