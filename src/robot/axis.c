@@ -194,13 +194,23 @@ static double along(const grobo_robot *robot, int joint, int64_t now_us)
     return axis->seen_rad + copysign(fmin(fabs(left_rad), most_rad), left_rad);
 }
 
+/* One that nobody here has sent goes no further than the goal that its servo told of with that. */
+static bool tells_end(const grobo_robot_axis *axis)
+{
+    return axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->angle_us;
+}
+
 /* Of a servo that tells how it turns, and of which no way or its ramps are known. */
 static course turning(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return is_guided(axis)
-               ? on_ramps(robot, joint, now_us)
-               : go_on(seen(robot, joint), fmin(seconds(axis->seen_us, now_us), GOES_ON_S));
+    if (is_guided(axis)) {
+        return on_ramps(robot, joint, now_us);
+    }
+    double end_rad = axis->state.goal_rad;
+    course c = go_on(seen(robot, joint), fmin(seconds(axis->seen_us, now_us), GOES_ON_S));
+    bool there = tells_end(axis) && (end_rad - axis->seen_rad) * (end_rad - c.at_rad) < 0;
+    return there ? (course){end_rad, 0} : c;
 }
 
 static bool has_course(const grobo_robot *robot, int joint)
@@ -288,10 +298,11 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
     if (accel_rad_s2 > 0) {
         on_rad = fmax(on_rad, c.rad_s * c.rad_s / (2 * accel_rad_s2));
     }
-    double left_rad = axis->way.to_rad - c.at_rad;
-    bool beyond =
-        is_guided(axis) && !axis->off_way && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
-    return beyond ? axis->way.to_rad : c.at_rad + copysign(on_rad, c.rad_s);
+    bool guided = is_guided(axis) && !axis->off_way;
+    double end_rad = guided ? axis->way.to_rad : axis->state.goal_rad;
+    double left_rad = end_rad - c.at_rad;
+    bool beyond = (guided || tells_end(axis)) && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
+    return beyond ? end_rad : c.at_rad + copysign(on_rad, c.rad_s);
 }
 
 void grobo_i_axis_told(grobo_robot *robot, int joint)
@@ -396,6 +407,31 @@ static bool turns(const grobo_robot_axis *axis)
     return abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
 }
 
+bool grobo_i_axis_is_late(const grobo_robot_axis *axis)
+{
+    return !tells_speed(axis) && fabs(axis->state.angle_rad - axis->way.to_rad) > LAGS_RAD;
+}
+
+/* Of a servo with ramps: what it takes to come to rest at the end of its way, which it passes, and
+ * comes back to, where it is too fast for what is left. */
+static bool is_on_ramp(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
+    bool stood = !turns(axis) && axis->seen_us >= axis->way.to_us;
+    if (accel_rad_s2 <= 0 || stood || !axis->sensed || !has_course(robot, joint) ||
+        !is_guided(axis) || !grobo_i_axis_is_on(axis)) {
+        return false;
+    }
+    const course c = seen(robot, joint);
+    double left_rad =
+        copysign(axis->way.to_rad - c.at_rad, (axis->way.to_rad - c.at_rad) * c.rad_s);
+    double over_rad = c.rad_s * c.rad_s / (2 * accel_rad_s2) - left_rad;
+    double back_s = fabs(c.rad_s) / accel_rad_s2 + 2 * sqrt(fmax(over_rad, 0) / accel_rad_s2);
+    return grobo_i_axis_speed(robot, joint) >= grobo_rad_from_deg(GROBO_I_SLOW_DPS) ||
+           (over_rad > 0 && seconds(axis->seen_us, robot->now_us) < back_s);
+}
+
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
@@ -417,7 +453,7 @@ bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         if (axis->next != 0 || (axis->sensed && grobo_i_axis_moves(axis, now_us)) ||
-            (turns(axis) && grobo_i_axis_lags(robot, j))) {
+            (turns(axis) && grobo_i_axis_lags(robot, j)) || is_on_ramp(robot, j)) {
             return true;
         }
     }

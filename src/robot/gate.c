@@ -857,6 +857,17 @@ void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order)
     }
 }
 
+/* Joints whose target it is yet, and of which nobody knows where they are. */
+static grobo_joint_mask unknown_of(const grobo_robot *robot, const grobo_robot_order *order)
+{
+    grobo_joint_mask joints = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        bool waits = robot->axes[j].next == order->number && grobo_i_axis_is_unknown(robot, j);
+        joints |= waits ? order->joints & GROBO_JOINT_BIT(j) : 0;
+    }
+    return joints;
+}
+
 /* A frame tried again has been passed by where another one told its joints something since. */
 static bool is_passed(const grobo_robot *robot, const grobo_robot_slot *slot)
 {
@@ -933,6 +944,9 @@ int grobo_i_gate_leave(grobo_robot_slot *slot)
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && robot->link);
     if (slot->order.deed == GROBO_I_DEED_NONE && slot->order.joints == 0) {
         return GROBO_OK; /* a reading: it tells no joint anything */
+    }
+    if (slot->order.rests) { /* who became unknown while it waited is not brought to rest by it */
+        grobo_i_halt_owe(robot, unknown_of(robot, &slot->order));
     }
     int result = is_passed(robot, slot) ? GROBO_ERR_SUPERSEDED
                                         : judge(robot, &slot->order, waiting(slot), when, &says);

@@ -19,9 +19,11 @@
 #define LATE_US 40000
 #define BESIDE_RAD (3 * 0.017453292519943295)
 
+/* Not in its first step, which waits for what moves to stand: a lost halt is found before that. */
 static bool is_read_by_a_job(const grobo_robot *robot)
 {
-    return robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
+    const grobo_robot_task *job = robot->job;
+    return (job->kind == GROBO_JOB_EXIT || job->kind == GROBO_JOB_ESTOP) && job->at > 0;
 }
 
 /* Its goal was read, or its servo has answered the halt itself. */

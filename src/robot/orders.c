@@ -197,13 +197,13 @@ grobo_joint_mask grobo_i_unknown(const grobo_robot *robot)
     return found;
 }
 
-/* True of a joint of an arm that has arrived by what it was told, and was not read since: all of an
- * arm is read in the time of a frame or two. */
+/* True of a joint of an arm that has arrived by what it was told, and was not read since, or not to
+ * be there and whether it turns: all of an arm is read in the time of a frame or two. */
 static bool is_unread(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return robot->driver->arm && axis->has_target && axis->angle_us < axis->told_us &&
-           !grobo_i_axis_moves(axis, robot->now_us);
+    return robot->driver->arm && axis->has_target && !grobo_i_axis_moves(axis, robot->now_us) &&
+           (axis->angle_us < axis->told_us || grobo_i_axis_is_late(axis));
 }
 
 /* Such a joint is halted once it was read. By then a servo that has restarted would have said so:
@@ -227,15 +227,11 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
         return;
     }
     grobo_i_slots_hurry(robot);
+    grobo_joint_mask unread = grobo_i_unknown(robot);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(joints, j) && (grobo_i_axis_is_unknown(robot, j) || is_unread(robot, j))) {
-            robot->halts_owed |= GROBO_JOINT_BIT(j);
-            robot->halt_us = robot->now_us;
-            if (robot->axes[j].in_segments) {
-                grobo_i_axis_cut(&robot->axes[j]);
-            }
-        }
+        unread |= is_unread(robot, j) ? GROBO_JOINT_BIT(j) : 0;
     }
+    grobo_i_halt_owe(robot, joints & unread);
     joints &= ~robot->halts_owed;
     if (joints != 0) {
         send_halt(robot, joints, false);

@@ -117,7 +117,8 @@ bool grobo_robot_moving(const grobo_robot *robot)
     }
     grobo_i_lock(robot);
     bool moving = grobo_i_in_motion(robot) || robot->job->kind == GROBO_JOB_PLAY ||
-                  robot->halted_all != 0 || grobo_i_moving(robot, grobo_i_now(robot));
+                  robot->halted_all != 0 || robot->halts_owed != 0 ||
+                  grobo_i_moving(robot, grobo_i_now(robot));
     grobo_i_unlock(robot);
     return moving;
 }

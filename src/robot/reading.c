@@ -92,6 +92,19 @@ static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis
  * should be by then is not on it: a weak one is behind, one that turns back has done so. */
 #define TURNED_US 200000
 
+/* By then a joint that is sent somewhere so fast has begun to turn, and no frame is under way: one
+ * that stands so far beside its way is not on it. */
+#define BEGUN_US 100000
+#define BEGUN_RAD_S (30 * 0.017453292519943295)
+#define BESIDE_RAD (2 * 0.017453292519943295)
+
+static bool is_fast(const grobo_robot_way *way, int64_t then_us)
+{
+    double way_rad = fabs(way->to_rad - way->from_rad);
+    return way->to_us > then_us &&
+           way_rad * 1e6 > BEGUN_RAD_S * (double)(way->to_us - way->from_us);
+}
+
 /* A joint that stands still, or creeps, beside its way has lost the frame, and so has one that is
  * ahead of it, or before it for long, or whose goal is another. Until the next one it is where it
  * was read, or on the way that its servo told of: a stop would throw it to where it should be by
@@ -111,8 +124,11 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
     double beside_rad = fmin(fabs(got->angle_rad - then_rad), fabs(got->angle_rad - now_rad));
     bool between = (got->angle_rad - axis->way.from_rad) * (now_rad - got->angle_rad) >= 0;
     bool elsewhere = !between && asked_us - axis->told_us > TURNED_US;
-    return axis->has_target && !axis->in_segments && beside_rad > GROBO_I_OFF_WAY_RAD &&
-           (elsewhere || abs(got->speed_dps) < GROBO_I_SLOW_DPS);
+    bool stands = abs(got->speed_dps) < GROBO_I_SLOW_DPS;
+    bool never_began = stands && is_fast(&axis->way, asked_us) && beside_rad > BESIDE_RAD &&
+                       asked_us - axis->told_us > BEGUN_US;
+    return axis->has_target && !axis->in_segments &&
+           (never_began || (beside_rad > GROBO_I_OFF_WAY_RAD && (elsewhere || stands)));
 }
 
 /* What a reading tells of where the joint is by now. */

@@ -93,6 +93,8 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
 /* What was read of where a joint is; and that it is told to go elsewhere from now on. */
 void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got);
 void grobo_i_axis_told(grobo_robot *robot, int joint);
+/* True of one that an angle alone has shown not to be at the end of its way: it may turn. */
+bool grobo_i_axis_is_late(const grobo_robot_axis *axis);
 /* True of one whose way is over and that was read not to be there yet, or lately to turn and not to
  * be on it. */
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint);
@@ -249,6 +251,8 @@ bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint);
 
 /* A frame that tells these joints something has left: to stop, or anything else. */
 void grobo_i_halt_left(grobo_robot *robot, grobo_joint_mask joints, bool halts);
+/* These are halted once they were read. */
+void grobo_i_halt_owe(grobo_robot *robot, grobo_joint_mask joints);
 
 /* ---- reading.c ------------------------------------------------------------------------------- */
 

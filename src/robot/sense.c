@@ -234,7 +234,8 @@ static void hurry(grobo_robot *robot)
 static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
 {
     if (robot->heard_read && robot->axes[joint].sensed && !robot->axes[joint].off_way) {
-        return grobo_i_may_sleep(robot, joint) ? GROBO_SENSE_GOAL : GROBO_SENSE_POSITION;
+        bool halts = grobo_i_has(robot->halts_owed, joint); /* does it turn, and where to? */
+        return halts || grobo_i_may_sleep(robot, joint) ? GROBO_SENSE_GOAL : GROBO_SENSE_POSITION;
     }
     if (grobo_i_has(robot->free_joints, joint)) {
         return GROBO_SENSE_ALL;

@@ -92,3 +92,16 @@ void grobo_i_halt_left(grobo_robot *robot, grobo_joint_mask joints, bool halts)
     robot->halted |= joints;
     robot->halted_all |= joints;
 }
+
+void grobo_i_halt_owe(grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (grobo_i_has(joints, j)) {
+            robot->halts_owed |= GROBO_JOINT_BIT(j);
+            robot->halt_us = robot->now_us;
+            if (robot->axes[j].in_segments) {
+                grobo_i_axis_cut(&robot->axes[j]);
+            }
+        }
+    }
+}

@@ -531,6 +531,36 @@ static void a_joint_that_stands_is_off_its_way_by_twelve_degrees(void **state)
     }
 }
 
+/* One that should turn by 40 deg/s, and stands, has not begun: two degrees tell it. */
+static void a_joint_that_stands_on_a_fast_way_has_not_begun_it(void **state)
+{
+    (void)state;
+    static const struct {
+        double deg, way_deg;
+        int64_t told_ago_us;
+        int speed_dps;
+        bool off;
+    } rows[] = {{20 - 2.01, 40, 500000, 7, true},  {20 - 1.99, 40, 500000, 0, false},
+                {20 - 2.01, 40, 500000, 8, false}, {20 - 2.01, 40, 100000, 0, false},
+                {20 - 2.01, 40, 100001, 0, true},  {15 - 2.01, 29, 500000, 0, false},
+                {20 + 2.01, 40, 500000, 0, true}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            grobo_robot_axis *axis = on_a_way(j);
+            double way_rad = RAD(rows[i].way_deg);
+            axis->way = (grobo_robot_way){0, way_rad, NOW - 500000, NOW + 500000};
+            axis->told_us = NOW - rows[i].told_ago_us;
+            given.goal_rad = axis->state.goal_rad = way_rad;
+            given.angle_rad = RAD(rows[i].deg);
+            given.speed_dps = rows[i].speed_dps;
+            (void)take(j);
+            if (axis->off_way != rows[i].off) {
+                fail_msg("joint %d, row %zu", j, i);
+            }
+        }
+    }
+}
+
 /* Without its speed a reading tells nothing of that. */
 static void without_its_speed_a_joint_stays_on_its_way_or_off_it(void **state)
 {
@@ -756,6 +786,7 @@ int main(void)
         cmocka_unit_test(a_joint_is_adrift_that_moves_nobody_knows_where),
         cmocka_unit_test(a_joint_sent_nowhere_is_where_it_was_read),
         cmocka_unit_test(a_joint_that_stands_is_off_its_way_by_twelve_degrees),
+        cmocka_unit_test(a_joint_that_stands_on_a_fast_way_has_not_begun_it),
         cmocka_unit_test(without_its_speed_a_joint_stays_on_its_way_or_off_it),
         cmocka_unit_test(a_joint_whose_goal_is_another_is_off_its_way),
         cmocka_unit_test(what_is_at_the_bound_is_on_the_way),
