@@ -368,6 +368,7 @@ static void note_last(const far_joint *joint, const far_news *news)
     halt_base *base = &halt.base[news->joint];
     double dps = news->ask_dps > 0 ? fmin(news->ask_dps, joint->top_dps) : joint->top_dps;
     base->turned = base->begins = true;
+    base->begins_deg = joint->at_deg;
     base->asked_dps = copysign(dps, news->goal_deg - joint->at_deg);
 }
 
@@ -456,9 +457,10 @@ static void judge_rest(int j, int64_t bound_us)
         halt.excused += !base->halted && base->turned;
     }
     if (!base->halted) {
-        double on_deg = base->asked_deg + base->asked_dps * ((double)bound_us / HALT_S + BRAKE_S);
-        from_deg = fmin(base->asked_deg, on_deg);
-        to_deg = fmax(base->asked_deg, on_deg);
+        double begins_deg = base->begins ? base->begins_deg : base->asked_deg;
+        double on_deg = begins_deg + base->asked_dps * ((double)bound_us / HALT_S + BRAKE_S);
+        from_deg = fmin(fmin(base->asked_deg, begins_deg), on_deg);
+        to_deg = fmax(fmax(base->asked_deg, begins_deg), on_deg);
     }
     bool far_off = outside(at_deg, from_deg, to_deg) > slack_deg(joint);
     if (base->excused || joint->missed) { /* nobody knew where it was */

@@ -29,6 +29,7 @@ typedef struct halt_robot {
 /* Where a joint was when a stop was asked for, and when the first halt reached it. */
 typedef struct halt_base {
     double asked_deg, asked_dps;
+    double begins_deg;       /* where it was when the last frame before the stop came */
     double from_deg, to_deg; /* where its first halt may send it, slack left out */
     bool turned, halted;
     bool begins;          /* its goal came just before: its engine takes it to turn */
