@@ -30,7 +30,7 @@ GROBO_BEGIN_DECLS
 
 /** Frames that the engine may have under way at a time: some families need one for each joint. */
 #ifndef GROBO_ROBOT_SLOTS
-#define GROBO_ROBOT_SLOTS (GROBO_JOINTS_MAX > 20 ? 44 : 12)
+#define GROBO_ROBOT_SLOTS (GROBO_JOINTS_MAX > 20 ? GROBO_JOINTS_MAX + 8 : 12)
 #endif
 /** Bytes of these frames, each as long as it is. Three of the longest are kept for halts. */
 #ifndef GROBO_ROBOT_FRAMES_BYTES

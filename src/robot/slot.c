@@ -61,6 +61,7 @@ static uint8_t *bytes_of(const grobo_robot_slot *slot)
     return slot->robot->frames + (slot->txn.frame - slot->robot->frames);
 }
 
+_Static_assert(GROBO_ROBOT_SLOTS <= GROBO_BUS_QUEUE_MAX, "the bus takes all that are under way");
 _Static_assert(GROBO_ROBOT_FRAMES_BYTES > SLOTS_TO_HALT * GROBO_FRAME_MAX_BYTES,
                "frames that are no halts need room, too");
 
