@@ -70,6 +70,16 @@ static void printed_frames_are_answered(void **state)
     expect("FF FF 01 02 00 FC");
     send("FF FF 01 04 02 2B 01 CC"); /* temperature */
     expect("FF FF 01 03 00 23 D8");
+    begin(&far_mx);
+    send("FF FF 01 04 02 00 02 F6"); /* model */
+    expect("FF FF 01 04 00 1D 00 DD");
+    send("FF FF FE 09 92 00 02 01 1E 02 02 24 1D"); /* goal of 1, position of 2 */
+    expect("FF FF 01 04 00 00 08 F2 FF FF 02 04 00 00 08 F1");
+    begin(&far_scs);
+    send("FF FF 01 04 02 38 02 BE"); /* position, high byte first */
+    expect("FF FF 01 04 00 02 00 F8");
+    send("FF FF FE 05 82 38 02 01 3F"); /* they have no read of many */
+    expect("");
     begin(&far_ics);
     send("81 3A 4C");
     expect("81 3A 4C 01 3A 4C"); /* its echo first */
@@ -103,6 +113,8 @@ static const struct {
     {&far_bus, "FA AF 03 00 24 01 01 01 26", "FA AF 03 00 1E 04 01 84 03 64 00 FB"},
     {&far_board, "53 09 FA AF 03 00 24 01 01 01 26", "53 0C FA AF 03 00 1E 04 01 84 03 64 00 FB"},
     {&far_sts, "FF FF 03 04 03 28 01 CC", "FF FF 03 09 03 2A 00 0C 00 00 00 04 B6"},
+    {&far_mx, "FF FF 03 04 03 18 01 DC", "FF FF 03 07 03 1E 00 0C 84 00 44"},
+    {&far_scs, "FF FF 03 04 03 28 01 CC", "FF FF 03 09 03 2A 03 33 03 E8 00 00 A5"},
     {&far_lx16a, "55 55 03 04 1F 01 D8", "55 55 03 07 01 6B 03 E8 03 9B"},
 };
 

@@ -130,7 +130,7 @@ static void begin_play(bool at_rate)
         }
         halt_run(HALT_MS);
     }
-    fail_msg("%s: the motion does not begin", halt.of->far->name);
+    fail_msg("%s: the motion does not begin", halt.of->name);
 }
 
 static void ask_move(double deg, int64_t time_us)
@@ -138,7 +138,7 @@ static void ask_move(double deg, int64_t time_us)
     grobo_posture p = halt_posture(deg, time_us, script.shape == HOLD);
     int r = grobo_robot_move(&halt.robot, &p);
     if (r <= 0) {
-        fail_msg("%s: move refused: %d", halt.of->far->name, r);
+        fail_msg("%s: move refused: %d", halt.of->name, r);
     }
 }
 
@@ -206,8 +206,8 @@ static int guard_stops(void)
 {
     static const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
                                               .sense_interval_us = GROBO_SENSE_NEVER};
-    uint8_t dropped[512];
-    int64_t until_us = halt.now_us + 10000 + far_wire_us(halt.of->far, 444);
+    uint8_t dropped[FAR_FRAME_BYTES];
+    int64_t until_us = halt.now_us + 10000 + far_wire_us(&halt.far, 444);
     while (halt.now_us < until_us) {
         (void)far_give(&halt.far, dropped, (int)sizeof dropped, halt.now_us);
         halt.now_us += HALT_MS;
@@ -345,7 +345,7 @@ static bool fits(const char *wanted, const char *is)
 static bool is_excused(const cell *c)
 {
     for (excuse *e = excuses; e->why != NULL; e++) {
-        if (fits(e->family, halt.of->far->name) && fits(e->stop, stop_names[c->stop]) &&
+        if (fits(e->family, halt.of->name) && fits(e->stop, stop_names[c->stop]) &&
             fits(e->loss, loss_names[c->loss]) && fits(e->rule, halt.fault)) {
             e->cells++;
             return true;
@@ -381,9 +381,8 @@ static void judge_cell(const cell *c)
     if (told || (!known && sum.told++ < TOLD)) {
         print_message("%sGROBO_HALT_CELL=\"%s %s %s %d %s %s\""
                       " build/tests/engine/test_halt_matrix # %s\n",
-                      known ? "known: " : "", halt.of->far->name, way_names[c->way],
-                      stop_names[c->stop], c->moment_ms, shape_names[c->shape], loss_names[c->loss],
-                      halt.fault);
+                      known ? "known: " : "", halt.of->name, way_names[c->way], stop_names[c->stop],
+                      c->moment_ms, shape_names[c->shape], loss_names[c->loss], halt.fault);
     }
 }
 
@@ -400,9 +399,9 @@ static int64_t arrival_us(const cell *c)
         }
     }
     const far_joint *joint = &halt.far.joint[moved];
-    fail_msg("%s %s %s: it does not arrive: at %.2f, goal %.2f, trip %d, state %d",
-             halt.of->far->name, way_names[c->way], shape_names[c->shape], joint->at_deg,
-             joint->goal_deg, (int)halt.trip, (int)grobo_robot_play_state(&halt.robot));
+    fail_msg("%s %s %s: it does not arrive: at %.2f, goal %.2f, trip %d, state %d", halt.of->name,
+             way_names[c->way], shape_names[c->shape], joint->at_deg, joint->goal_deg,
+             (int)halt.trip, (int)grobo_robot_play_state(&halt.robot));
     return 0;
 }
 
@@ -477,7 +476,7 @@ static void run_one(const char *text)
     int n = sscanf(text, "%15s %15s %15s %d %15s %15s", family, way, stop, &c.moment_ms, shape_name,
                    loss_name);
     assert_int_equal(n, 6);
-    while (strcmp(halt_robot_of(c.family)->far->name, family) != 0) {
+    while (strcmp(halt_robot_of(c.family)->name, family) != 0) {
         c.family++;
     }
     c.way = (way_in)named(way_names, WAYS_IN, way);
@@ -514,11 +513,11 @@ static void stops_throw_no_joint(void **state)
     if (one != NULL) {
         run_one(one);
     }
-    for (int i = 0; one == NULL && halt_robot_of(i) != NULL; i++) {
-        if (family == NULL || *family == '\0' || strcmp(halt_robot_of(i)->far->name, family) == 0) {
+    for (int i = 0; one == NULL && i < HALT_FAMILIES; i++) {
+        if (family == NULL || *family == '\0' || strcmp(halt_robot_of(i)->name, family) == 0) {
             unsigned long before = sum.failed, cells = sum.cells;
             run_family(i, all != NULL && *all != '\0' ? every : some, &seed);
-            print_message("%s: %lu of %lu stops broke a rule\n", halt_robot_of(i)->far->name,
+            print_message("%s: %lu of %lu stops broke a rule\n", halt_robot_of(i)->name,
                           sum.failed - before, sum.cells - cells);
         }
     }

@@ -153,7 +153,7 @@ static int write(far_side *far, far_joint *joint, int at, const uint8_t *data, i
 
 static void status(far_side *far, far_joint *joint, int error, const uint8_t *data, int n)
 {
-    uint8_t back[FAR_FRAME_BYTES] = {0xFF, 0xFF, 0xFD, 0, (uint8_t)joint->id, 0, 0, 0x55};
+    uint8_t back[FAR_REPLY_BYTES] = {0xFF, 0xFF, 0xFD, 0, (uint8_t)joint->id, 0, 0, 0x55};
     int size = 8;
     back[size++] = (uint8_t)error;
     for (int i = 0; i < n; i++) {

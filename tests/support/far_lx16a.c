@@ -86,7 +86,7 @@ static bool moves(const uint8_t *frame, int n)
 
 static void answer(far_side *far, far_joint *joint, int command, int value, int n)
 {
-    uint8_t back[FAR_FRAME_BYTES] = {0x55, 0x55, (uint8_t)joint->id, (uint8_t)(n + 3),
+    uint8_t back[FAR_REPLY_BYTES] = {0x55, 0x55, (uint8_t)joint->id, (uint8_t)(n + 3),
                                      (uint8_t)command};
     back[5] = (uint8_t)((unsigned)value & 0xFF);
     for (int i = 1; i < n; i++) {

@@ -95,7 +95,7 @@ static void answer(far_side *far, far_joint *joint, const uint8_t *packet, int m
     static const struct {
         int at, n;
     } blocks[16] = {[3] = {0, 30}, [5] = {30, 30}, [7] = {20, 10}, [9] = {42, 18}, [11] = {30, 12}};
-    uint8_t back[FAR_FRAME_BYTES] = {0xFD, 0xDF, (uint8_t)joint->id};
+    uint8_t back[FAR_REPLY_BYTES] = {0xFD, 0xDF, (uint8_t)joint->id};
     int kind = packet[3] & 15, at = blocks[kind].at, n = blocks[kind].n;
     if (kind == 1) {
         far_answer(far, NULL, (const uint8_t[]){7}, 1);
@@ -169,7 +169,7 @@ static int measure_bus(const uint8_t *bytes, int n)
 static void obey_bus(far_side *far, const uint8_t *frame, int n)
 {
     (void)n;
-    obey_packet(far, frame, FAR_FRAME_BYTES);
+    obey_packet(far, frame, FAR_REPLY_BYTES);
 }
 
 static bool moves_bus(const uint8_t *frame, int n)
@@ -205,9 +205,9 @@ static bool moves_board(const uint8_t *frame, int n)
     return frame[0] != BOARD_CHECK && n > 2 + HEAD_BYTES && moves_packet(frame + 2);
 }
 
-static int64_t relay_us(const uint8_t *frame, int n)
+static int64_t relay_us(const far_side *far, const uint8_t *frame, int n)
 {
-    return frame[0] == BOARD_CHECK ? 0 : far_wire_us(&far_board, relayed(frame, n));
+    return frame[0] == BOARD_CHECK ? 0 : far_wire_us(far, relayed(frame, n));
 }
 
 /* A reply takes the way of the packet back. */
@@ -221,7 +221,7 @@ static void obey_board(far_side *far, const uint8_t *frame, int n)
     obey_packet(far, frame + 2, frame[0] == BOARD_ASK ? frame[n - 1] : 0);
     if (far->n_replies > before) {
         far_reply *reply = &far->reply[far->n_replies - 1];
-        reply->due_us += far_wire_us(far->family, reply->n);
+        reply->due_us += far_wire_us(far, reply->n);
     }
 }
 

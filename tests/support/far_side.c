@@ -5,9 +5,9 @@
 
 #include "tests/support/far_side.h"
 
-int64_t far_wire_us(const far_family *family, int bytes)
+int64_t far_wire_us(const far_side *far, int bytes)
 {
-    return (int64_t)bytes * family->bits_a_byte * 1000000 / family->baud_bps;
+    return (int64_t)bytes * far->family->bits_a_byte * 1000000 / far->baud_bps;
 }
 
 void far_put16(uint8_t *to, int value)
@@ -30,6 +30,7 @@ void far_begin(far_side *far, const far_family *family, int n_joints, int64_t no
 {
     memset(far, 0, sizeof *far);
     far->family = family;
+    far->baud_bps = family->baud_bps;
     far->n_joints = n_joints;
     far->now_us = far->free_us = now_us;
     far->lose_motor = far->lose_reply = FAR_NEVER;
@@ -61,7 +62,7 @@ static void report(far_side *far, far_joint *joint, far_news *news)
 {
     int i = (int)(joint - far->joint);
     if (far->loses) {
-        far->missed |= 1U << i;
+        far->missed |= UINT64_C(1) << i;
         return;
     }
     news->missed = joint->missed;
@@ -145,7 +146,7 @@ static void add_frame(far_side *far, const uint8_t *bytes, int n, int64_t now_us
     frame->left_us = now_us;
     frame->due_us = far->free_us;
     if (far->family->relay_us != NULL) {
-        frame->due_us += far->family->relay_us(bytes, n);
+        frame->due_us += far->family->relay_us(far, bytes, n);
     }
     frame->n = n;
     memcpy(frame->bytes, bytes, (size_t)n);
@@ -160,7 +161,7 @@ static void add_frame(far_side *far, const uint8_t *bytes, int n, int64_t now_us
 
 static void add_reply(far_side *far, const uint8_t *bytes, int n, int64_t due_us)
 {
-    if (far->n_replies < FAR_REPLIES) {
+    if (far->n_replies < FAR_REPLIES && n <= FAR_REPLY_BYTES) {
         far_reply *reply = &far->reply[far->n_replies++];
         reply->due_us = due_us;
         reply->n = n;
@@ -174,7 +175,7 @@ void far_take(far_side *far, const uint8_t *bytes, int n, int64_t now_us)
     far->free_us = far->free_us > now_us ? far->free_us : now_us;
     for (int i = 0; i < n; i++) {
         int size;
-        far->free_us += far_wire_us(far->family, 1);
+        far->free_us += far_wire_us(far, 1);
         far->in[far->n_in++] = bytes[i];
         while (far->n_in > 0 && (size = far->family->measure(far->in, far->n_in)) != 0) {
             int gone = size > 0 ? size : 1;
@@ -202,7 +203,7 @@ void far_answer(far_side *far, far_joint *told, const uint8_t *bytes, int n)
     for (int i = 0; i < far->n_replies; i++) {
         due_us = far->reply[i].due_us > due_us ? far->reply[i].due_us : due_us;
     }
-    due_us += far->family->think_us + far_wire_us(far->family, n);
+    due_us += far->family->think_us + far_wire_us(far, n);
     if (far->lose_reply != FAR_NEVER && far->lose_reply-- == 0) {
         far->lost_frames++;
         far->lost_us = far->now_us;

@@ -2,8 +2,8 @@
 /*
  * The far side of a servo line, written from the protocols' texts, with no code of the library and
  * none of its simulator: what it says of a stop is a second opinion. It takes bytes and the time,
- * turns shafts and answers. Six families: RS30x (on a bus, and behind GR001's board), DYNAMIXEL
- * protocol 2 and 1, Feetech STS, KRS (ICS 3.6) and LX-16A.
+ * turns shafts and answers. Families: RS30x (on a bus, and behind GR001's board), DYNAMIXEL
+ * protocol 2 and 1 (AX, MX), Feetech STS and SCS, KRS (ICS 3.6) and LX-16A.
  *
  * A shaft goes straight to its goal in the time or at the speed that its registers hold, with the
  * ramps of servos that have them, after the dead time of its servo. Angles are the servo's, in
@@ -17,11 +17,12 @@
 #include <stdint.h>
 
 enum {
-    FAR_JOINTS = 20,
+    FAR_JOINTS = 64,
     FAR_REGISTERS = 160,
-    FAR_FRAME_BYTES = 260,
+    FAR_FRAME_BYTES = 1024,
+    FAR_REPLY_BYTES = 260,
     FAR_FRAMES = 16,
-    FAR_REPLIES = 48,
+    FAR_REPLIES = 80,
     FAR_TELLS_US = 200000, /* after a lost goal a reading shows that the shaft is elsewhere */
     FAR_NEVER = -1
 };
@@ -74,14 +75,14 @@ typedef struct far_frame {
 typedef struct far_reply {
     int64_t due_us;
     int n;
-    uint8_t bytes[FAR_FRAME_BYTES];
+    uint8_t bytes[FAR_REPLY_BYTES];
 } far_reply;
 
 struct far_family {
     const char *name;
-    int baud_bps, bits_a_byte;
-    bool echo;       /* the host hears itself */
-    int64_t dead_us; /* from a goal to the first turn */
+    int baud_bps, bits_a_byte; /* as sold, or as robots have it */
+    bool echo;                 /* the host hears itself */
+    int64_t dead_us;           /* from a goal to the first turn */
     int64_t think_us;
     double top_dps;
     double step_deg;  /* of a goal on the wire */
@@ -89,8 +90,9 @@ struct far_family {
     /* Bytes of the first frame in n; 0: more must come; -1: the first byte begins no frame. */
     int (*measure)(const uint8_t *bytes, int n);
     bool (*sound)(const uint8_t *frame, int n);
-    bool (*moves)(const uint8_t *frame, int n);       /* a goal or a torque */
-    int64_t (*relay_us)(const uint8_t *frame, int n); /* on the way behind the line; NULL: none */
+    bool (*moves)(const uint8_t *frame, int n); /* a goal or a torque */
+    int64_t (*relay_us)(const far_side *far, const uint8_t *frame,
+                        int n); /* on the way behind the line; NULL: none */
     void (*obey)(far_side *far, const uint8_t *frame, int n);
     void (*begin)(far_joint *joint); /* registers at power-on */
     /* Cruise and ramps of the way to the goal that the registers hold; *ask_dps: what they ask. */
@@ -101,10 +103,12 @@ struct far_family {
     void (*watch)(far_joint *joint, int64_t now_us);
 };
 
-extern const far_family far_board, far_bus, far_dxl2, far_dxl1, far_sts, far_ics, far_lx16a;
+extern const far_family far_board, far_bus, far_dxl2, far_dxl1, far_mx, far_sts, far_scs, far_ics,
+    far_lx16a;
 
 struct far_side {
     const far_family *family;
+    int baud_bps; /* of the line; the family's, unless it is changed behind far_begin() */
     int n_joints;
     far_joint joint[FAR_JOINTS];
     uint8_t in[FAR_FRAME_BYTES];
@@ -115,7 +119,7 @@ struct far_side {
     int n_frames;
     far_frame *obeyed; /* the frame that is being obeyed */
     bool loses;        /* it is being lost; */
-    uint32_t missed;   /* by these joints */
+    uint64_t missed;   /* by these joints */
     far_reply reply[FAR_REPLIES];
     int n_replies;
     int lose_motor; /* motor frames until one is lost; FAR_NEVER */
@@ -142,7 +146,7 @@ bool far_turns(far_side *far, int joint, int64_t now_us);
 void far_put(far_side *far, int joint, double deg, bool holds, int64_t now_us);
 void far_foreign(far_side *far, int joint, double deg, double dps, int64_t now_us);
 /* Microseconds of so many bytes. */
-int64_t far_wire_us(const far_family *family, int bytes);
+int64_t far_wire_us(const far_side *far, int bytes);
 
 /* ---- for families ---------------------------------------------------------------------------- */
 

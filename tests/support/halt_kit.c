@@ -43,46 +43,92 @@ bool halt_traced;
 
 /* ---- robots ---------------------------------------------------------------------------------- */
 
-enum { SMALL_JOINTS = 3, FAMILIES = 7 };
+enum { SMALL_JOINTS = 3 };
 
+/* Where all joints are read in one exchange or written in one frame, frame_us grows with them; a
+ * frame of protocol 1 has 259 bytes at the most. reading_us: twice where servos tell no speed. */
 typedef struct recipe {
+    const char *name;
+    const far_family *far;
+    int n_joints, baud_bps;
+    int64_t frame_us;
+    int64_t reading_us; /* all joints */
+} recipe;
+
+enum { M1 = 1000000 };
+
+static const recipe recipes[] = {
+    {"board", &far_board, 20, 115200, 19000, 210000},
+    {"bus", &far_bus, 20, 115200, 9500, 110000},
+    {"dxl2", &far_dxl2, SMALL_JOINTS, M1, 2500, 8000},
+    {"dxl1", &far_dxl1, SMALL_JOINTS, M1, 1500, 5000},
+    {"mx", &far_mx, SMALL_JOINTS, M1, 1500, 5000},
+    {"sts", &far_sts, SMALL_JOINTS, M1, 1500, 5000},
+    {"scs", &far_scs, SMALL_JOINTS, M1, 1500, 5000},
+    {"ics", &far_ics, SMALL_JOINTS, 115200, 7500, 135000},
+    {"lx16a", &far_lx16a, SMALL_JOINTS, 115200, 3000, 160000},
+    {"bus-57600", &far_bus, 20, 57600, 19000, 220000},
+    {"bus-460800", &far_bus, 20, 460800, 2500, 40000},
+    {"dxl2-20", &far_dxl2, 20, M1, 15000, 20000},
+    {"dxl2-64", &far_dxl2, 64, M1, 66000, 140000},
+    {"dxl2-57600", &far_dxl2, SMALL_JOINTS, 57600, 53000, 110000},
+    {"dxl2-4000000", &far_dxl2, SMALL_JOINTS, 4 * M1, 2500, 8000},
+    {"dxl1-20", &far_dxl1, 20, M1, 3000, 20000},
+    {"dxl1-64", &far_dxl1, 64, M1, 3000, 60000},
+    {"dxl1-57600", &far_dxl1, SMALL_JOINTS, 57600, 10000, 50000},
+    {"mx-20", &far_mx, 20, M1, 3000, 20000},
+    {"mx-64", &far_mx, 64, M1, 3000, 60000},
+    {"mx-57600", &far_mx, SMALL_JOINTS, 57600, 10000, 50000},
+    {"mx-3000000", &far_mx, SMALL_JOINTS, 3 * M1, 1500, 5000},
+    {"sts-20", &far_sts, 20, M1, 7000, 20000},
+    {"sts-64", &far_sts, 64, M1, 21000, 60000},
+    {"sts-38400", &far_sts, SMALL_JOINTS, 38400, 30000, 80000},
+    {"scs-20", &far_scs, 20, M1, 3000, 20000},
+    {"scs-64", &far_scs, 64, M1, 3000, 60000},
+    {"scs-38400", &far_scs, SMALL_JOINTS, 38400, 15000, 80000},
+    {"ics-20", &far_ics, 20, 115200, 7500, 900000},
+    {"ics-20-1250000", &far_ics, 20, 1250000, 2000, 300000},
+    {"lx16a-20", &far_lx16a, 20, 115200, 3000, 500000},
+    {"lx16a-64", &far_lx16a, 64, 115200, 3000, 1500000},
+};
+enum { ROBOTS = sizeof recipes / sizeof recipes[0] };
+
+/* Servos of the families that robots are put together of. */
+static const struct kind {
     const far_family *far;
     const grobo_servo_table *table;
     const char *servo;
     int (*init)(grobo_driver *driver, const grobo_model *model);
-    int64_t frame_us;
-    int64_t reading_us; /* all joints; twice where servos tell no speed */
-} recipe;
-
-static const recipe recipes[FAMILIES] = {
-    {&far_board, NULL, NULL, NULL, 19000, 210000},
-    {&far_bus, NULL, NULL, NULL, 9500, 110000},
-    {&far_dxl2, &grobo_dxl2_table, "XL430-W250", grobo_dxl2_driver_init, 2500, 8000},
-    {&far_dxl1, &grobo_dxl1_table, "AX-12A", grobo_dxl1_driver_init, 1500, 5000},
-    {&far_sts, &grobo_sts_table, "STS3215", grobo_feetech_driver_init, 1500, 5000},
-    {&far_ics, &grobo_ics_table, "KRS-3301", grobo_ics_driver_init, 7500, 135000},
-    {&far_lx16a, &grobo_lx16a_table, "LX-16A", grobo_lx16a_driver_init, 3000, 160000},
+} kinds[] = {
+    {&far_dxl2, &grobo_dxl2_table, "XL430-W250", grobo_dxl2_driver_init},
+    {&far_dxl1, &grobo_dxl1_table, "AX-12A", grobo_dxl1_driver_init},
+    {&far_mx, &grobo_dxl1_table, "MX-28", grobo_dxl1_driver_init},
+    {&far_sts, &grobo_sts_table, "STS3215", grobo_feetech_driver_init},
+    {&far_scs, &grobo_scs_table, "SCS0009", grobo_feetech_driver_init},
+    {&far_ics, &grobo_ics_table, "KRS-3301", grobo_ics_driver_init},
+    {&far_lx16a, &grobo_lx16a_table, "LX-16A", grobo_lx16a_driver_init},
 };
-static halt_robot robots[FAMILIES];
 
-static void make_gr001(halt_robot *robot, const recipe *from)
+static halt_robot robots[ROBOTS];
+static char joint_names[GROBO_JOINTS_MAX][4];
+
+static void make_gr001(halt_robot *robot)
 {
     robot->driver =
-        *grobo_gr001_driver(from->far == &far_board ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS);
+        *grobo_gr001_driver(robot->far == &far_board ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS);
     robot->n_joints = robot->driver.model->n_joints;
     robot->moved = grobo_model_joint_of_motor(robot->driver.model, 3);
     robot->other = grobo_model_joint_of_motor(robot->driver.model, 6);
 }
 
-static void make_small(halt_robot *robot, const recipe *from)
+static void make_joints(halt_robot *robot, const struct kind *kind)
 {
-    static const char *const names[SMALL_JOINTS] = {"A", "B", "C"};
-    const grobo_servo_model *servo = grobo_servo_model_named(from->table, from->servo);
+    const grobo_servo_model *servo = grobo_servo_model_named(kind->table, kind->servo);
     assert_non_null(servo);
-    robot->n_joints = SMALL_JOINTS;
     robot->other = 1;
-    for (int j = 0; j < SMALL_JOINTS; j++) {
-        robot->joints[j] = (grobo_joint){.name = names[j],
+    for (int j = 0; j < robot->n_joints; j++) {
+        (void)snprintf(joint_names[j], sizeof joint_names[j], "J%d", j + 1);
+        robot->joints[j] = (grobo_joint){.name = joint_names[j],
                                          .min_rad = RAD(-100),
                                          .max_rad = RAD(100),
                                          .max_speed_rad_s = RAD(0.8 * servo->speed_dps),
@@ -92,36 +138,44 @@ static void make_small(halt_robot *robot, const recipe *from)
                                          .mirror_sign = 1,
                                          .sign = 1};
     }
-    robot->model =
-        (grobo_model){.name = from->servo, .joints = robot->joints, .n_joints = SMALL_JOINTS};
-    assert_int_equal(from->init(&robot->driver, &robot->model), GROBO_OK);
+    robot->model = (grobo_model){
+        .name = kind->servo, .joints = robot->joints, .n_joints = (uint8_t)robot->n_joints};
+    assert_int_equal(kind->init(&robot->driver, &robot->model), GROBO_OK);
     robot->driver.arm = true;
 }
 
-const halt_robot *halt_robot_of(int family)
+static void make(halt_robot *robot, const recipe *from)
 {
-    if (family < 0 || family >= FAMILIES) {
-        return NULL;
-    }
-    halt_robot *robot = &robots[family];
-    if (robot->far == NULL) {
-        const recipe *from = &recipes[family];
-        robot->far = from->far;
-        robot->frame_us = from->frame_us;
-        robot->reading_us = from->reading_us;
-        if (from->table == NULL) {
-            make_gr001(robot, from);
-        } else {
-            make_small(robot, from);
+    robot->name = from->name;
+    robot->far = from->far;
+    robot->baud_bps = from->baud_bps;
+    robot->n_joints = from->n_joints;
+    robot->frame_us = from->frame_us;
+    robot->reading_us = from->reading_us;
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        if (kinds[i].far == from->far) {
+            make_joints(robot, &kinds[i]);
+            return;
         }
     }
-    return robot;
+    make_gr001(robot);
+}
+
+const halt_robot *halt_robot_of(int number)
+{
+    if (number < 0 || number >= ROBOTS) {
+        return NULL;
+    }
+    if (robots[number].far == NULL) {
+        make(&robots[number], &recipes[number]);
+    }
+    return &robots[number];
 }
 
 const halt_robot *halt_robot_named(const char *name)
 {
-    for (int i = 0; i < FAMILIES; i++) {
-        if (strcmp(halt_robot_of(i)->far->name, name) == 0) {
+    for (int i = 0; i < ROBOTS; i++) {
+        if (strcmp(recipes[i].name, name) == 0) {
             return halt_robot_of(i);
         }
     }
@@ -160,7 +214,7 @@ static void hear(void *ctx, const far_news *news);
 void halt_new_engine(const grobo_robot_config *asked)
 {
     grobo_robot_config config = *asked;
-    config.bus.baud_bps = (uint32_t)halt.of->far->baud_bps;
+    config.bus.baud_bps = (uint32_t)halt.of->baud_bps;
     config.bus.echo = halt.of->far->echo;
     assert_int_equal(grobo_robot_init(&halt.robot, &halt.of->driver, NULL, &config, halt.now_us),
                      GROBO_OK);
@@ -175,6 +229,7 @@ void halt_begin(const halt_robot *robot, double deg)
     halt.of = robot;
     halt.now_us = HALT_S;
     far_begin(&halt.far, robot->far, robot->n_joints, halt.now_us);
+    halt.far.baud_bps = robot->baud_bps;
     halt.far.hear = hear;
     far_put(&halt.far, far_of(robot->moved), deg, false, halt.now_us);
     halt_new_engine(&config);
@@ -197,7 +252,7 @@ void halt_run(int64_t us)
 {
     int64_t until_us = halt.now_us + us;
     for (int spins = 0;; spins++) {
-        uint8_t bytes[512];
+        uint8_t bytes[FAR_FRAME_BYTES];
         int n;
         assert_true(spins < 4000000);
         while ((n = far_give(&halt.far, bytes, (int)sizeof bytes, halt.now_us)) > 0) {
@@ -251,7 +306,7 @@ void halt_make_ready(double deg)
     grobo_posture p = halt_posture(deg, 200 * HALT_MS, true);
     r = r < 0 ? r : halt_wait(grobo_robot_move(&halt.robot, &p), 10 * HALT_S);
     if (r < 0) {
-        fail_msg("%s: cannot be made ready: %s", halt.of->far->name, grobo_error_name(r));
+        fail_msg("%s: cannot be made ready: %s", halt.of->name, grobo_error_name(r));
     }
     halt_run(100 * HALT_MS);
 }

@@ -13,11 +13,13 @@
 
 #include "tests/support/far_side.h"
 
-enum { HALT_MS = 1000, HALT_S = 1000000, HALT_KEYS = 3 };
+enum { HALT_MS = 1000, HALT_S = 1000000, HALT_KEYS = 3, HALT_FAMILIES = 9 };
 
 /* A robot of one family: its joint `moved` is the one that moves, `other` one beside it. */
 typedef struct halt_robot {
+    const char *name; /* the family's, and what is special */
     const far_family *far;
+    int baud_bps;
     grobo_driver driver;
     grobo_model model;
     grobo_joint joints[GROBO_JOINTS_MAX];
@@ -67,8 +69,9 @@ typedef struct halt_world {
 extern halt_world halt;
 extern bool halt_traced; /* prints what is on the wire once a stop is judged */
 
-/* The robot of a family by its number; NULL behind the last. */
-const halt_robot *halt_robot_of(int family);
+/* Robots by their numbers; NULL behind the last. First one of each family, small and with the rate
+ * of its far side; from HALT_FAMILIES on larger ones, and other rates. */
+const halt_robot *halt_robot_of(int number);
 const halt_robot *halt_robot_named(const char *name);
 
 /* An engine that has just got its line, shafts limp: `moved` at deg, all others at 0. */
