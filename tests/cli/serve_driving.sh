@@ -8,6 +8,7 @@ check "a name is told as it was given, or cut at a character" pages names
 check "what is based on an old state is refused" pages stale
 check "a body that is not as it should be is refused, and names what is" pages fields
 check "what was held up on its way acts on no newer situation" pages delayed
+check "a stop beside a move, a reset or a resume stands, whichever comes first" pages order
 check "a stop is carried out whatever its body is" pages unreadable
 check "a stop is heard before there is a robot" pages first_of_all
 check "a stop latches, is confirmed by each joint, is taken back" pages stopping

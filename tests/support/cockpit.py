@@ -852,6 +852,74 @@ def delayed():
         page.fall_silent()
 
 
+def order():
+    """A stop beside a move, a reset or a resume: whichever comes first, the stop stands in the end,
+    and what comes behind it is refused."""
+    with Server() as server:
+        page, other = Page(server).take().keep_beating(), Page(server, "Ben")
+        page.target("move", pose="init", time_ms=300)
+        page.wait_event("move: done")
+        move = {"angle_deg": {"R_ELBOW_P": -60}, "time_ms": 5000}
+
+        def rests():
+            state = page.wait("confirmed", lambda s: s["stop"]["confirmed"])
+            assert state["stop"]["latched"] and not state["moving"], state
+            before = state["angle_deg"][16]
+            time.sleep(0.1)  # what was not stopped would go on
+            assert abs(page.state()["angle_deg"][16] - before) < 1, "it goes on"
+            page.target("reset")
+            page.fall_silent()
+            page.take().keep_beating()
+
+        # The stop first: a move that is based on the same state is refused.
+        based = page.state()["sequence"]
+        other.post("stop", name="Ben")
+        expect(409, "lease", page.post, "move", sequence=based, **move)
+        page.fall_silent()
+        page.take().keep_beating()
+        expect(409, "latched", page.post, "move", sequence=based, **move)
+        rests()
+        expect(409, "stale", page.post, "move", sequence=based, **move)
+        # The move first.
+        page.target("move", **move)
+        page.wait("it moves", lambda s: s["moving"])
+        other.post("stop", name="Ben")
+        rests()
+        # At the same moment, each from a connection of its own.
+        came = {"done": 0, "refused": 0}
+        for n in range(24):
+            verb = ("move", "reset", "resume")[n % 3]
+            if verb == "reset":
+                other.post("stop", name="Carla")
+                page.wait("confirmed", lambda s: s["stop"]["confirmed"])
+            elif verb == "resume":
+                page.target("play", motion="greet.pseq", loop=True)
+                page.wait_played("playing")
+                page.post("pause")
+                page.wait_played("paused")
+            based = page.state()["sequence"]
+            begin = threading.Barrier(2)
+
+            def press(begin=begin):
+                begin.wait()
+                other.post("stop", name="Ben")
+
+            thread = threading.Thread(target=press)
+            thread.start()
+            begin.wait()
+            try:
+                page.post(verb, sequence=based, **(move if verb == "move" else {}))
+                came["done"] += 1
+            except Refused as no:
+                assert no.status == 409 and no.code in ("stale", "lease", "latched"), no
+                came["refused"] += 1
+            thread.join()
+            assert page.state()["stop"]["latched"], verb
+            rests()
+        same(came["done"] + came["refused"], 24)
+        page.fall_silent()
+
+
 def unreadable():
     """A stop is carried out whatever its body is, also where it never comes."""
     broken = [b"{", b"[]", b"nothing", b'{"name": 7}', b'{"a": 1, "a": 2}', b'{"unknown": 1}',
