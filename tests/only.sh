@@ -14,5 +14,5 @@ shift
     # A name that is long stands in a line of its own.
     grep -l -e "^TEST.*$word" -e "^ *[a-z0-9_]*$word[a-z0-9_]*)\$" \
         -e '^TEST_FOR(' -e '^TEST_EACH(' -e "^ *test_case .*$word" \
-        -e "^ *shows .*$word" /dev/null "$@"
+        -e "^ *test_that .*$word" /dev/null "$@"
 } | sort -u

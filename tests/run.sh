@@ -43,7 +43,7 @@ is_called() {
 is_wanted() {
     is_called "$1" && return
     case $1 in
-    *.sh) grep -E '^ *(test_case|shows) ' "$1" ;;
+    *.sh) grep -E '^ *(test_case|test_that) ' "$1" ;;
     *@*) ;;
     # shellcheck disable=SC2086
     *) $wrapper "$1" --list </dev/null 2>/dev/null ;;

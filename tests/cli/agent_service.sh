@@ -12,12 +12,14 @@ knows() {
     fails 2 'agent: -d names a robot or a group' "$GRCTL" ${line#* }
 }
 line=$(echo "$command" | sed 's/%i/sim/; s|${BROKER}|mqtt://127.0.0.1:1|; s/ \$OPTIONS//')
+test_case "the unit gives grctl a line that it knows"
 if has_no_mqtt; then
     skip "grctl knows the line of the unit" "this grctl has no MQTT in it"
 else
     check "grctl knows the line of the unit" knows
 fi
 
+test_case "systemd takes the unit"
 if command -v systemd-analyze >/dev/null; then
     mkdir "$work/unit"
     made=$work/unit/grctl-agent@stage.service

@@ -60,6 +60,7 @@ register() {
 }
 
 # The arm is put together 20 degrees off in the shoulder: 228 counts.
+test_case "an arm is calibrated by hand"
 check "as it came" register 1 offset 0
 check "it had torque" exits 0 on_robot servo on
 by_hand on
@@ -82,6 +83,7 @@ rest() {
     done
     turned shoulder_pan 20
 }
+test_case "a joint that was not moved ends it"
 check "so do others" rest
 echo >&7
 ended
@@ -89,6 +91,7 @@ check "but the gripper was not moved" with_status 2
 check "that is said" grep -q 'gripper was not moved' "$work/said"
 
 by_hand off
+test_case "what was found is kept, and joints obey it"
 check "once more" written "$work/said" 'the middle of its range, then press enter'
 check "the shoulder is off again" turned shoulder_pan 20
 echo >&7
@@ -115,6 +118,7 @@ check "no further than the hand" fails 4 'shoulder_pan.*go from -25 to 75 deg' \
 check "it is let go" exits 0 on_robot servo off
 
 # Whose servos are set up otherwise than its file says.
+test_case "a servo that is set up otherwise is not moved"
 check "another mode" exits 0 on_robot --yes servo-set 3 mode 3 --flash
 check "it is not moved, and the fix is named" fails 1 \
     "elbow_flex.*mode is 3, 0 is wanted; 'grctl servo-set 3 mode 0 --flash'" \
@@ -143,6 +147,7 @@ as_new() {
         "$work/so101.json" >"$work/new.json"
     exits 0 on_robot calibrate --restore "$work/new.json"
 }
+test_case "an arm that was never calibrated is not moved, and says so"
 check "as it came from its factory" in_folder as_new
 check "its offset is none" register 1 offset 0
 check "its limits, too" register 1 max_position 4095
@@ -191,8 +196,10 @@ full() (
     [ "$(cat "$work/status")" -eq 3 ] && grep -q "so101-before[0-9]*\.json: " "$work/err" &&
         rm "$work/status" && ls | diff "$work/listed" -
 )
+test_case "a full disk leaves no half file"
 check "nor where a disk is full, and no half file is left" \
     both full --- register 3 max_position 4095
+test_case "a calibration is taken from a file, and taken back"
 check "a calibration is taken" in_folder exits 0 on_robot calibrate --from so101.json
 check "it moves again" exits 0 on_robot move elbow_flex 5 500
 check "all is as it came" in_folder exits 0 on_robot calibrate --restore so101-before.json
@@ -206,6 +213,7 @@ spoiled() {
     sed "$@" "$work/so101.json" >"$work/bad.json"
     fails 3 "bad.json:.*$spoiled_want" on_robot calibrate --from "$work/bad.json"
 }
+test_case "files that do not fit are refused"
 check "another name" spoiled 'elbow: so101 has no such joint' 's/elbow_flex/elbow/'
 check "another id" spoiled 'wrist_flex: id is 9; it is 4 in so101' 's/"id": 4/"id": 9/'
 check "a range without the middle" spoiled 'shoulder_pan: range 2100 to' \
@@ -218,6 +226,7 @@ check "a mirrored joint" spoiled 'gripper: drive_mode' \
 check "no JSON" spoiled '[0-9]*:[0-9]*: ' 's/{/[/'
 check "a joint is missing" spoiled 'gripper: needs' '/"gripper"/,$d;/"wrist_roll"/,$s/},$/}}/'
 check "no file" fails 3 'none.json' on_robot calibrate --from "$work/none.json"
+test_case "who cannot be calibrated says why"
 check "nobody presses enter" in_folder exits 2 on_robot calibrate
 check "that is said" grep -q 'needs a person to press enter' "$work/err"
 check "the file must say so" fails 2 "calibrated: true" "$GRCTL" --robot pan-tilt -d sim calibrate
@@ -252,6 +261,7 @@ dxl_calibrated() {
     register 1 homing_offset -22[78]
 }
 start_dxl
+test_case "a Koch arm takes a calibration"
 check "a Koch arm takes a calibration" dxl_calibrated
 stop_sim
 done_testing

@@ -9,6 +9,7 @@ calls_itself() {
     cp motions/README.md "$work/readme.pseq"
     exits 3 "$GRCTL" check motions/* "$work/readme.pseq"
 }
+test_case "our own motions are right"
 check "our own motions are right" fails 0 '^11 files, nothing wrong$' "$GRCTL" check motions/*
 check "what is no motion is passed by" both exits 0 "$GRCTL" check -v motions/* \
     --- says '^motions/README.md: note: .*skipped'
@@ -45,6 +46,7 @@ streamed() {
     pose 0 '13' 1 | motion streamed | "$GRCTL" check - >"$work/out"
     grep '^(standard input):10:12: NECK_Y: 57.3 ' "$work/out"
 }
+test_case "standard input and odd names"
 check "- is standard input" streamed
 named_oddly() {
     odd=$(printf 'odd\n\033[31m.pseq')
@@ -54,6 +56,7 @@ named_oddly() {
 check "an odd name stays one line without its escape codes" named_oddly
 
 { pose 0 '13' 0 && pose 1 '13, 3' '0.9, -0.5'; } | motion outside >"$work/outside.pseq"
+test_case "what is wrong in a file is found, to the column"
 check "an angle outside its limits, to the column" \
     found 3 "outside.pseq:16:12: NECK_Y: 51.6 degrees, outside -50..50 \[limit\]" \
     "$work/outside.pseq"
@@ -83,6 +86,7 @@ every_error() {
         grep -q '^2 errors, 1 warning$' "$work/err"
 }
 check "every error of a file in one run" every_error
+test_case "how it is told"
 check "a file that is not there" found 3 'nowhere.m: no such file \[open\]$' "$work/nowhere.m"
 check "quiet" both exits 0 "$GRCTL" -q check motions/greet.m --- [ ! -s "$work/err" ]
 json_list='not lines[0]["ok"] and [(d["file"][-12:], d["line"], d["column"], d["severity"],
@@ -98,7 +102,7 @@ else
     skip "a diagnostic as JSON" "no python3 to parse JSON with"
 fi
 
-# ---- the whole body -------------------------------------------------------------------------
+test_case "the whole body"
 
 # Bends so far forward that it falls; without balance nothing is wrong with it.
 stand='0, 0, 0.35, -0.7, -0.35, 0, 0, 0, -0.35, 0.7, 0.35, 0, 0, 0, 0.35, 0, -0.35, -0.35, 0, 0.35'
@@ -162,7 +166,7 @@ check "unless it is told apart" fails 2 "invalid value 'sideways' (off|on|compat
     "$GRCTL" check --balance=sideways motions/step.pseq
 check "with the balancer" fails 0 'nothing wrong' "$GRCTL" check --balance on motions/step.pseq
 
-# ---- reference material ---------------------------------------------------------------------
+test_case "reference material"
 
 # edge NAME VERDICT: as expected.tsv says of reading it.
 edge() {

@@ -22,6 +22,7 @@ robots:
     on_exit: hold
   cellar: {device: $work/none, wiring: bus, trim: {m5: 1}}
 EOF
+test_case "robots are found by name"
 check "the default robot" both exits 0 "$GRCTL" -v status m3 --- says R_SHOULDER_P
 if [ -z "${NATIVE_GRCTL:-}" ]; then
     check "the port used last is remembered" grep -qx -e "$robot" "$work/state/grctl/last-port"
@@ -38,7 +39,7 @@ check "a name nearly right" fails 1 "kitchne: no such file or device (did you me
 check "so for an emergency stop" fails 1 "(did you mean 'kitchen'?); NOT stopped" \
     "$GRCTL" -d kitchne estop
 
-# ---- trims ------------------------------------------------------------------------------------
+test_case "trims"
 
 check "calibrate sets a trim" both exits 0 "$GRCTL" -d kitchen calibrate R_ELBOW_P 2.5 --- \
     says 'R_ELBOW_P  *0\.0 ->  *2\.5'
@@ -143,7 +144,7 @@ else
 fi
 cp "$work/mine" "$config"
 
-# ---- the shell --------------------------------------------------------------------------------
+test_case "the shell"
 
 in_shell() {
     printf 'connect kitchen\nstatus m12\n' | "$GRCTL" -d sim shell >"$work/out" 2>"$work/err" ||
@@ -159,7 +160,7 @@ sits() {
 }
 check "a trim leaves room for the resting posture" sits
 
-# ---- mistakes ---------------------------------------------------------------------------------
+test_case "mistakes"
 
 # bad PLACE-AND-MESSAGE: the file on standard input is refused there.
 bad() {

@@ -25,7 +25,7 @@ alike() {
     [ -s "$work/first" ] && diff "$work/first" "$work/second"
 }
 
-# ---- greet, our own, in all four ------------------------------------------------------------
+test_case "greet, our own, in all four"
 
 remade() {
     convert $2 $greet "$work/greet.$1" || return 1
@@ -49,7 +49,7 @@ done
 check "key poses stay key poses" both convert motions/sit.pseq "$work/sit.pseq" \
     --- cmp motions/sit.pseq "$work/sit.pseq"
 
-# ---- names, formats, streams ----------------------------------------------------------------
+test_case "names, formats, streams"
 
 streams() {
     "$GRCTL" convert --from pseq --to m - - <$greet >"$work/streamed.m" || return 1
@@ -82,7 +82,7 @@ nothing_beside() {
 }
 check "nothing is left beside" nothing_beside
 
-# ---- what is lost, what is solved -----------------------------------------------------------
+test_case "what is lost, what is solved"
 
 check "what .m cannot hold is said" both convert --ik off motions/step.pseq "$work/step.m" \
     --- grep -q '^motions/step.pseq:[0-9]*: note: ikLinks are dropped' "$work/err"
@@ -132,7 +132,7 @@ else
     skip "a full disk" "no /dev/full here"
 fi
 
-# ---- what an old file holds ---------------------------------------------------------------------
+test_case "what an old file holds"
 
 cp $greet "$work/old.pseq"
 check "an old file of another format stays" fails 3 \
@@ -149,7 +149,7 @@ check "a motion of the same format is replaced" both convert motions/step.pseq "
 : >"$work/empty"
 check "an empty file is filled" convert --to yaml $greet "$work/empty"
 
-# ---- what cannot be written without loss ------------------------------------------------------
+test_case "what cannot be written without loss"
 
 # pseq FILE REF...: a file of key poses.
 pseq() {
@@ -202,7 +202,7 @@ check "and says who reads them" grep -q 'by Choreonoid from 2.1 on' "$work/err"
 check "--exact and --integers" fails 2 'cannot be used together' \
     "$GRCTL" convert --exact --integers $greet "$work/x.m"
 
-# ---- reference material ---------------------------------------------------------------------
+test_case "reference material"
 
 # Every file to each format; key poses and frames back to what they were.
 every_way() {

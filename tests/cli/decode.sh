@@ -39,7 +39,7 @@ refuses() {
     fails "$refuses_status" "$refuses_complaint" "$GRCTL" decode "$@"
 }
 
-# ---- other families
+test_case 'other families'
 
 check 'DYNAMIXEL 2.0: which registers a reply brings, its request says' \
     decodes --family dynamixel2 \
@@ -134,7 +134,7 @@ check_json 'and a reply' 'lines[1]["packet"]["servos"] == [{"id": 1, "name": Non
     "$GRCTL" decode --json --family dynamixel2 FFFFFD00010700028400 04001D15 \
     FFFFFD000108005500A60000008CC0
 
-# ---- frames in words
+test_case 'frames in words'
 
 check 'a goal, byte by byte' decodes 53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11 <<'TEXT'
 relay 12: write servo 3 (R_SHOULDER_P): goal -1.0 deg, goal_time 0 ms (full speed); \
@@ -233,7 +233,7 @@ check the board; reply: ACK
     41 00
 TEXT
 
-# ---- text
+test_case 'text'
 
 {
     printf '# a goal over two lines, and a check\n53 0C FA AF 03 00\n'
@@ -275,7 +275,7 @@ check 'a summary for people' sh -c '
 check '-q says no summary' sh -c '[ -z "$("$GRCTL" decode -q "$1/timed" 2>&1 >/dev/null)" ]' \
     sh "$work"
 
-# ---- JSON
+test_case 'JSON'
 
 check 'a frame as JSON' decodes --json 53 0C FA AF 03 00 1E 04 01 84 03 0A 00 95 <<'TEXT'
 {"from":"host","kind":"relay","bytes":14,"hex":"53 0C FA AF 03 00 1E 04 01 84 03 0A 00 95",\
@@ -297,7 +297,7 @@ check 'JSON is read again' sh -c '
     "$GRCTL" decode --json "$1/timed" >"$1/json" && "$GRCTL" decode "$1/json" >"$1/got" 2>/dev/null
     "$GRCTL" decode "$1/timed" 2>/dev/null | diff - "$1/got"' sh "$work"
 
-# ---- what is wrong
+test_case 'what is wrong'
 
 check 'no hex' refuses 2 "'G0' is neither a byte in hex nor a file" FA G0
 check 'an odd number of digits' refuses 2 "'F' is neither a byte in hex nor a file" FA F

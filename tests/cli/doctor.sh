@@ -20,12 +20,14 @@ finds() {
 }
 
 start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+test_case "a healthy robot"
 check "a healthy robot" both exits 0 doctor --- says '^ok .*all 20 answer'
 check "every servo with -v" both exits 0 doctor -v --- \
     says '^ok .*servo_12 .*R_KNEE_P: RS301CR, 25 C'
 check_json "as JSON" 'lines[0]["ok"] and len(lines[0]["checks"]) in (25, 26) and
      all(c["ok"] and c["fix"] is None for c in lines[0]["checks"])' doctor --json
 tell silent 12 on
+test_case "faults of servos are found, with what helps"
 check "a silent servo" finds 'R_KNEE_P does not answer' 'push its cable in'
 json_silent() {
     exits 1 doctor --json || return 1
@@ -53,6 +55,7 @@ tell id 3 3
 check "well again" exits 0 doctor
 
 exits 0 "$GRCTL" -d "$robot" estop
+test_case "what holds the robot or its port is found"
 check "an emergency stop that stands" finds 'an emergency stop stands' 'estop --reset'
 exits 0 "$GRCTL" -d "$robot" estop --reset
 
@@ -80,6 +83,7 @@ fi
 stop_sim
 exec 5>&-
 robot=$work/none
+test_case "faults of the way to the robot are found"
 check "no such device" finds 'is not there' "'grctl ports'"
 robot=$work
 check "a directory" finds 'is not a serial port' "'grctl ports'"
@@ -94,6 +98,7 @@ check "another wiring" finds 'straight on the line' "--wiring bus"
 check "as it should be asked" exits 0 doctor --wiring bus
 stop_sim
 start_sim --wiring bus --echo
+test_case "an echo nobody reckons with"
 check "an echo nobody reckons with" finds 'returns what is sent' '--wiring bus --echo' --wiring bus
 check "one that is expected" exits 0 doctor --wiring bus --echo
 stop_sim

@@ -80,26 +80,26 @@ by_mark() {
         braked && fails 4 "stopped by 'grctl estop'" moves_there && reset &&
         exits 0 as_user "$GRCTL" -d "$sim_pty" move m5 0 500
 }
-check "a mark beside it: it stops the robot, its user is stopped, and both are released" by_mark
+test_that "a mark beside it: it stops the robot, its user is stopped, and both are released" by_mark
 
 by_mark_of_auto() {
     under_way moves_there && exits 0 env GRCTL_DEVICE="$sim_pty" "$GRCTL" estop && ended_with 4 &&
         braked && reset
 }
-check "and where the device is named by the environment" by_mark_of_auto
+test_that "and where the device is named by the environment" by_mark_of_auto
 
 by_guard() {
     under_way moves_apart && estop && grep -q 'stopped, by the guard of a program' "$work/err" &&
         ended_with 4 && grep -q 'host stalled' "$work/moving" && braked && reset
 }
-check "it cannot read a mark: its guard stops the robot" by_guard
+test_that "it cannot read a mark: its guard stops the robot" by_guard
 
 by_sigterm() {
     under_way moves_apart GRCTL_GUARD= && estop &&
         grep -q 'stopped, after the end (SIGTERM) of' "$work/err" && ended_with 143 &&
         braked && reset
 }
-check "nor has it a guard: it is ended, and the robot stopped" by_sigterm
+test_that "nor has it a guard: it is ended, and the robot stopped" by_sigterm
 
 # It ignores that too.
 stubborn() {
@@ -115,7 +115,7 @@ stubborn() {
     mover=
     reset
 }
-check "it does not end: that is said" stubborn
+test_that "it does not end: that is said" stubborn
 
 # The number in a note of the user's is that of a process of root's, which has no port.
 liar() {
@@ -131,7 +131,7 @@ liar() {
     liar_status=$?
     kill -s 0 $victim && kill $victim && [ $liar_status -eq 0 ] && ended_with 143 && braked && reset
 }
-check "a number in its note ends nobody" liar
+test_that "a number in its note ends nobody" liar
 
 # A directory of the user's that leads to one of root's.
 linked() {
@@ -140,7 +140,7 @@ linked() {
     under_way moves_there && estop && ended_with 4 && braked && reset &&
         [ -z "$(ls "$work/roots")" ] && rm "/tmp/grobo-$user"
 }
-check "its directory is a link: nothing is written there" linked
+test_that "its directory is a link: nothing is written there" linked
 
 # A user's stop does not end who is another user.
 of_another() {
@@ -149,7 +149,7 @@ of_another() {
         sim_shows 5 moving && estop && ended_with 4 && reset &&
         exits 0 as_user "$GRCTL" -d "$sim_pty" estop --reset
 }
-check "a user's stop ends no program of root's" of_another
+test_that "a user's stop ends no program of root's" of_another
 
 read_only='mount --bind /tmp /tmp && mount -o remount,ro,bind /tmp'
 unwritable() {
@@ -159,6 +159,6 @@ unwritable() {
         "$GRCTL" -d "$sim_pty" estop || return 1
     ended_with 4 && exits 0 "$GRCTL" -d "$robot" servo on
 }
-check "no mark can be written: the guard stops the robot" unwritable
+test_that "no mark can be written: the guard stops the robot" unwritable
 stop_sim
 done_testing

@@ -23,7 +23,7 @@ process_of() {
     return 1
 }
 
-# ---- a hostile broker ----------------------------------------------------------------------------
+test_case "a hostile broker"
 
 python3 tests/support/mqtt.py "$port" hostile >"$work/hostile.out" 2>&1 3>&- &
 hostile=$!
@@ -72,7 +72,7 @@ EOF2
 }
 check "the page's STOP answers" page_stops
 
-# ---- a good one in its place ---------------------------------------------------------------------
+test_case "a good one in its place"
 
 kill $hostile
 wait $hostile 2>/dev/null
@@ -93,7 +93,7 @@ kill "$agent_one"
 wait "$agent_one"
 check "who is ended says goodbye" wait_for is_listed one OFFLINE
 
-# ---- the process ---------------------------------------------------------------------------------
+test_case "the process"
 
 begin_agent one --group stage
 agent_one=$agent

@@ -6,7 +6,7 @@
 . tests/support/fleet.sh
 need_fleet mosquitto_passwd openssl
 
-# ---- a broker with certificates and users --------------------------------------------------------
+test_case "a broker with certificates and users"
 
 certify() (
     cd "$work" || exit 1
@@ -68,7 +68,7 @@ check "no TLS where it is wanted" fails 1 'fleet: 127.0.0.1: ' \
 check "a file that is no certificate" fails 1 'a certificate or key cannot be read' \
     as operator "$GRCTL" fleet list --broker "mqtts://operator@127.0.0.1:$port" --ca "$work/users"
 
-# ---- an agent ------------------------------------------------------------------------------------
+test_case "an agent"
 
 mkdir -p "$work/config/grctl"
 printf 'robots: {a: {device: sim}}\n' >"$work/config/grctl/config.yaml"

@@ -16,6 +16,7 @@ EOF2
 begin_agent one --label both
 begin_agent two --label both
 agent_two=$agent
+test_case "agents are there"
 check "agents are there" both wait_for is_listed one ONLINE --- wait_for is_listed two ONLINE
 
 # plays [OPTIONS]: both hosts, slowly, though permits come late on a busy machine; returns when it
@@ -43,7 +44,7 @@ ended() {
     ended_with "$1" "$play"
 }
 
-# ---- who may call a motion off -------------------------------------------------------------------
+test_case "who may call a motion off"
 
 goes_on() { # another's is refused, and it is called off: its own, and nothing else
     plays && exits 1 fleet play greet.pseq --group both &&
@@ -56,7 +57,7 @@ goes_on() { # another's is refused, and it is called off: its own, and nothing e
 }
 check "a play that is refused leaves another's motion alone; who began it calls it off" goes_on
 
-# ---- an agent that dies in the motion ------------------------------------------------------------
+test_case "an agent that dies in the motion"
 
 dies() { # [OPTIONS]
     plays "$@" && kill -9 "$agent_two" && ended 1 &&
@@ -87,7 +88,7 @@ waits_for_time() { # all stand and wait for a time that is far away
 check "nobody waits for the time of one that is gone" waits_for_time
 comes_back
 
-# ---- the stop before anything else ---------------------------------------------------------------
+test_case "the stop before anything else"
 
 # said_first PATTERN: by the log of the broker, of the client that published the latch last: no
 # subscription stands before it.
@@ -116,7 +117,7 @@ check "without it all stopped" both exits 0 fleet stop --group both --- \
     grep -q 'all stopped' "$work/err"
 check "so the reset" exits 0 fleet reset --group both
 
-# ---- a stop that is newer than a reset, and one that a robot does not carry out ------------------
+test_case "a stop that is newer than a reset, and one that a robot does not carry out"
 
 # Where a ghost is online, a reset listens for seconds; another stop comes in that time.
 asked_latch() { # of a client that came behind that line
@@ -187,7 +188,7 @@ else
     stop_sim
 fi
 
-# ---- a stop whose message is gone ----------------------------------------------------------------
+test_case "a stop whose message is gone"
 
 deleted() {
     exits 0 fleet estop --group both && publish -q 1 -r -n -t grobo/v1/group/both/latch &&
@@ -203,7 +204,7 @@ check "so where another's release is in its place" overwritten \
     '{"v":1,"stopped":false,"id":"00112233445566778899aabbccddeeff","by":"x","at_ms":1}'
 check "so where rubbish is" overwritten '{"v":1'
 
-# ---- a broker that is not there ------------------------------------------------------------------
+test_case "a broker that is not there"
 
 # says_switches PORT WHY: that, while it still tries; $stopper is it.
 says_switches() {

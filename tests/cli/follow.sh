@@ -87,6 +87,7 @@ took() {
             END { if (last != state || took < least) { print last, took; exit 1 } }'
 }
 
+test_case "a follower goes where the leader is turned"
 check "the leader had torque" exits 0 "$GRCTL" --robot so101-leader -d "$leader" servo on
 follow
 check "it follows" becomes follow
@@ -98,12 +99,14 @@ check "within the follower's limits" turned wrist_flex 100 ' \(95.0\|94.9\|95.1\
 check "and back" turned wrist_flex 10 ' \(10.0\|9.9\|10.1\) deg'
 
 now_on
+test_case "a leader that jumps is approached slowly"
 check "the leader jumps" tell turn shoulder_pan -60
 check "it is approached, and followed again" becomes approach follow
 check "slowly: 90 degrees at 60 a second" took follow 1000
 check "it is there" shows shoulder_pan '-\(60.0\|59.9\|60.1\) deg'
 
 now_on
+test_case "a lost leader: the follower holds, and approaches it again"
 check "the leader is unplugged" tell plug out
 check "that is said" becomes lost
 check "the shaft turns meanwhile" tell turn shoulder_pan 20
@@ -114,12 +117,14 @@ check "there it is" shows shoulder_pan ' \(20.0\|19.9\|20.1\) deg'
 
 kill -s INT "$follow_pid"
 ended
+test_case "Ctrl-C leaves the follower holding"
 check "Ctrl-C" with_status 130
 check "the follower is left holding" shows shoulder_pan 'torque on'
 check "the leader is left limp" sim_shows shoulder_pan 'torque off'
 check "what it did is told" grep -q '"done":true.*"rate_hz":.*"late_us":{"p50":' "$work/events"
 
 follow
+test_case "a hot follower ends it"
 check "it follows once more" becomes follow
 echo "temperature shoulder_pan 64" >&7
 ended
@@ -129,6 +134,7 @@ echo "temperature shoulder_pan 25" >&7
 check "it has cooled down" shows shoulder_pan ' 2[0-9]\.[0-9] C'
 
 follow
+test_case "a lost follower ends it"
 check "and again" becomes follow
 echo "plug out" >&7
 ended
@@ -138,6 +144,7 @@ echo "cable elbow_flex out" >&7
 out() {
     exits 1 "$GRCTL" --robot so101 -d "$follower" --timeout 500 status elbow_flex
 }
+test_case "it does not begin where a servo is out"
 check "a servo of the follower is out" wait_for out
 check "it does not begin" fails 1 'elbow_flex' "$GRCTL" --timeout 500 follow \
     "so101-leader@$leader" "so101@$follower"
@@ -146,7 +153,9 @@ trace_of_one() {
     exits 0 "$GRCTL" --trace "$work/follow.pcapng" follow so101-leader@sim so101@sim --for 0.3 &&
         exits 0 "$GRCTL" --robot so101 decode "$work/follow.pcapng" && says 'sync write 6 servos'
 }
+test_case "a trace is whole"
 check "a trace of it is whole, and the follower's" trace_of_one
+test_case "which robots may follow which"
 check "for some time" exits 0 "$GRCTL" follow so101-leader@sim so101@sim --for 0.3
 check "no such robot" fails 2 "no robot called 'so102'" "$GRCTL" follow so102@sim so101@sim
 check "two robots with nothing in common" fails 2 'no joint of GR001 has the name' \

@@ -27,6 +27,7 @@ parts "$work/commands" docs/guide/motions.md docs/guide/whole-body.md docs/guide
 parts "$work/commands" docs/README.ja.md docs/guide/first-hour.ja.md
 parts "$work/arm-commands" docs/guide/arm.md docs/guide/lerobot.md # with an SO-101
 
+test_case "the commands of the guide work"
 check "the guide has commands and a file" [ -s "$work/commands" ] && [ -s "$work/desk/no.pseq" ]
 PATH=$work/bin:$PATH
 export PATH
@@ -45,7 +46,9 @@ drawn() {
     [ -s "$work/desk/greet.svg" ] && [ -s "$work/desk/no.svg" ] && [ -s "$work/desk/step.svg" ] &&
         [ -s "$work/desk/greet.m" ]
 }
+test_case "what the commands of the guide leave"
 check "its files are there" drawn
+test_case "a morning by a script of the guide"
 if have_json; then
     morning() {
         cp "$work/desk/morning.json" "$work/out" &&

@@ -3,6 +3,7 @@
 # The command line itself: help, versions, mistakes.
 . tests/support/cli.sh
 
+test_case "help and version"
 check "help lists commands" both exits 0 "$GRCTL" help --- says '^  play  '
 check "--help does too" both exits 0 "$GRCTL" --help --- says '^  play  '
 check "--version" both exits 0 "$GRCTL" --version --- says '^grctl [0-9]*\.[0-9]*\.[0-9]*$'
@@ -13,6 +14,7 @@ check_json "help as JSON" 'any(c["name"] == "play" for c in lines[0]["commands"]
 
 # Every command of the overview has a help page that names it.
 "$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p' >"$work/commands"
+test_case "every command has a page that fits"
 check "there are commands" [ -s "$work/commands" ]
 while read -r command; do
     check "help $command" both exits 0 "$GRCTL" help "$command" --- says "usage: grctl $command"
@@ -24,6 +26,7 @@ no_command() {
     exits 2 "$GRCTL" || return 1
     grep -q '^usage: grctl' "$work/err" && [ ! -s "$work/out" ]
 }
+test_case "mistakes in words get a near guess"
 check "no command at all: the overview, on standard error" no_command
 check "a command that is none" fails 2 "no command 'nonsense'" "$GRCTL" nonsense
 check "no guess where little is alike" fails 2 "no command 'nope'; see 'grctl help'$" "$GRCTL" nope
@@ -48,6 +51,7 @@ check "a group where one joint is wanted" fails 2 "^grctl: 'legs' is a group; on
 check "of a group" fails 2 'did you mean right_arm?$' "$GRCTL" status rightarm
 check "a group is no guess for one joint" fails 2 "joint called 'right_arn'; joints are named" \
     "$GRCTL" move right_arn 3
+test_case "joints are listed"
 check "the joints" both exits 0 "$GRCTL" joints --- \
     says '^R_KNEE_P  *j3  *m12  *12  *-130  *0  *-40  right_leg legs$'
 check "all of them" [ "$(wc -l <"$work/out")" -eq 21 ]
@@ -60,6 +64,7 @@ check_json "joints as JSON" \
     'lines[0]["joints"][0] == {"joint": 12, "motor": 1, "id": 1, "name": "CHEST_P",
         "limits_deg": [-95, 0], "init_deg": 0, "groups": ["all", "body"]}' \
     "$GRCTL" joints m1 --json
+test_case "mistakes in values are told in one line"
 check "a joint that is none, in joints" fails 2 'did you mean R_KNEE_P?$' "$GRCTL" joints R_KNE_P
 check "a word for a device, misspelled" fails 1 "^grctl: sin: .*(did you mean 'sim'?)$" \
     "$GRCTL" -d sin status
@@ -84,6 +89,7 @@ json_mistake() {
     exits 2 "$GRCTL" status --nonsense --json || return 1
     json 'lines[0]["error"]["code"] == "arg"'
 }
+test_case "with --json a mistake is JSON too"
 if have_json; then
     check "with --json a mistake is JSON too" json_mistake
 else

@@ -37,7 +37,7 @@ refuses() {
     exits 3 grctl check "$bad/$2" && says "^$bad/$2:"
 }
 
-# ---- files ----------------------------------------------------------------------------------
+test_case "files"
 
 check "a missing file" refuses 3 missing.pseq ' no such file$'
 mkdir "$bad/directory.pseq"
@@ -118,7 +118,7 @@ else
 fi
 as_other=
 
-# ---- devices --------------------------------------------------------------------------------
+test_case "devices"
 
 check "an unknown device" fails 1 '^grctl: /dev/none: no such file or device; see .grctl ports' \
     grctl -d /dev/none play "$greet"
@@ -185,7 +185,7 @@ check "no robot on it" fails 1 "$robot: no robot answers; is the robot switched 
     grctl -d "$robot" play "$greet"
 stop_sim
 
-# ---- standard streams -----------------------------------------------------------------------
+test_case "standard streams"
 
 if [ -c /dev/full ]; then
     for line in help version "show $greet" "check --json $greet" "play --dry-run $greet" \

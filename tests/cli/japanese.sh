@@ -10,7 +10,7 @@ ja() {
     LC_ALL=ja_JP.UTF-8 "$@"
 }
 
-# ---- which language ---------------------------------------------------------------------------
+test_case "which language"
 
 # speaks JA|EN VARIABLE=VALUE...
 speaks() {
@@ -32,7 +32,7 @@ check "an empty one does not count" speaks JA LC_ALL= LC_MESSAGES= LANG=ja_JP.UT
 check "another character set is not written" speaks EN LANG=ja_JP.eucJP
 check "no variable" speaks EN
 
-# ---- help -------------------------------------------------------------------------------------
+test_case "help"
 
 # Columns of each line: a character of three bytes is two wide.
 too_wide() {
@@ -85,7 +85,7 @@ else
     skip "groff on the manual" "no groff with mdoc here"
 fi
 
-# ---- messages ---------------------------------------------------------------------------------
+test_case "messages"
 
 # complains_ja STATUS PATTERN COMMAND...
 complains_ja() {
@@ -154,7 +154,7 @@ else
     skip "monitor and play on a screen" "$no_screen"
 fi
 
-# ---- the guides -------------------------------------------------------------------------------
+test_case "the guides"
 
 # tests/cli/guide.sh runs their commands; tests/cli/readme.sh and tests/export/python.sh run the
 # programs of README.md.
@@ -196,7 +196,7 @@ links() {
 }
 check "what they link to is there" links
 
-# ---- what programs read -----------------------------------------------------------------------
+test_case "what programs read"
 
 # same STATUS COMMAND...: it prints the same, byte for byte, in both languages.
 same() {
@@ -239,7 +239,7 @@ json_line() { # a line of a shell may ask for JSON alone
 }
 check "a line of a shell" json_line
 
-# ---- a decimal comma --------------------------------------------------------------------------
+test_case "a decimal comma"
 
 # German has one; the locale is made here, as few systems have it.
 has_comma() {

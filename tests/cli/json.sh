@@ -185,13 +185,14 @@ rows() {
     done <"$work/rows"
 }
 rows run
+test_case "options in JSON"
 check "--json of an option" both exits 0 "$GRCTL" move --help --json \
     --- json 'lines[0]["commands"][0]["name"] == "move"'
 check "as the schema says" fits help
 check "--json cut short, and a mistake behind it" both exits 2 "$GRCTL" --js status --nonsense \
     --- json 'lines[0]["error"]["code"] == "arg"'
 
-# ---- what speaks until it is ended, and what a person leads --------------------------------------
+test_case "what speaks until it is ended, and what a person leads"
 
 # speaks SIGNAL STATUS ARGUMENTS...: ended when it has said two lines, or has asked for keys.
 speaks() {
@@ -251,7 +252,7 @@ every_command() {
 }
 check "every command has a row, and a schema" every_command
 
-# ---- the page ------------------------------------------------------------------------------------
+test_case "the page"
 
 page_has_schema() {
     python3 "$work/schema.py" table >"$work/table"

@@ -24,6 +24,7 @@ terminal_closes() {
     wait_for exits 0 on_robot status m5
     says ' on '
 }
+test_case "a closed terminal: the exit policy is carried out"
 if have_terminal; then
     trap 'on_screen kill-server 2>/dev/null; end_cli_test' EXIT
     check "a closed terminal: the exit policy is carried out" terminal_closes
@@ -46,7 +47,7 @@ stopped() {
     stopped_got=$?
     [ $stopped_got -eq 4 ] && complains 'stopped for safety: host stalled'
 }
-check "a stopped process: the motion is over" stopped
+test_that "a stopped process: the motion is over" stopped
 check "and the robot holds" stands '[-0-9.]*'
 
 # Who is killed without a guard leaves nothing behind, but the servos know where they were sent.
@@ -62,7 +63,7 @@ killed() {
     on_robot status m5 | sed 's/ *[0-9]*$//' | diff "$work/first" - # but for the age
 }
 exits 0 on_robot init --time 500
-check "killed: stop stops what it left" killed
+test_that "killed: stop stops what it left" killed
 check "and it holds" stands '-[2-9][0-9]\.[0-9]'
 
 # The robot plays on where nobody reads what it says.
@@ -71,7 +72,7 @@ unread() {
         head -n 1 >"$work/out"
     grep -qx 141 "$work/status" || { cat "$work/status"; return 1; } # as if by SIGPIPE
 }
-check "nobody reads: the motion goes on" unread
+test_that "nobody reads: the motion goes on" unread
 check "and the robot holds then too" stands '[-0-9.]*'
 stop_sim
 done_testing

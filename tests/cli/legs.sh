@@ -35,6 +35,7 @@ differ() {
 long_choreonoid='--ik numeric --step stealthy --zmp auto --balance off'
 long_11='--ik numeric --step none --zmp auto --balance compat11'
 long_robot='--ik numeric --step none --zmp auto --balance on'
+test_case "presets mean the same to show, convert, play, plot"
 for command in show convert play plot; do
     for balance in on compat11; do
         check "$command: --balance $balance implies automatic ZMP" \
@@ -54,6 +55,7 @@ for command in show convert play plot; do
         seen_by $command --like robot --ik off --balance off
 done
 # Nothing is added to a motion whose ZMP shall be that of the file.
+test_case "presets of check"
 check "--zmp file is kept" differ show '--balance on --zmp file' '--balance on'
 check "check takes presets" exits 0 "$GRCTL" check --balance --like robot "$step"
 check "and keeps the preset's balancer at --balance without a word" fails 2 'cannot be used' \
@@ -66,7 +68,7 @@ idle() {
 }
 check "legs that are no targets" idle
 
-# ---- reference material ---------------------------------------------------------------------
+test_case "reference material"
 
 # golden MODE PRESET: every frame that Choreonoid's own code computes, within 1e-7 rad.
 golden() {

@@ -23,7 +23,7 @@ clean() {
 while read -r status line; do
     # $line is a command line, to be split.
     # shellcheck disable=SC2086
-    check "grctl $line" clean $status $line
+    test_that "grctl $line" clean $status $line
 done <<END
 0 -d sim status
 0 -d sim --json init --time 300

@@ -23,6 +23,7 @@ plain() {
     rounds "$GRCTL" -d "$robot" --timeout 500 monitor
     grep -q "this is 'grctl status --watch'" "$work/err" && says '^ *12  R_KNEE_P'
 }
+test_case "without a terminal it is a table"
 check "no terminal: the table" plain
 json_lines() {
     rounds "$GRCTL" -d "$robot" --timeout 500 monitor --json
@@ -60,6 +61,7 @@ check "nothing that it cannot take" no_escapes
 
 began=$(date +%s)
 type_line "$monitor"
+test_case "the screen shows the robot, and keys choose joints"
 check "the robot and its line" until_screen '^GR001  .*/robot'
 check "a joint of either leg" until_screen '12 KNEE_P  *-40.0 .* off .*18 KNEE_P  *40.0 .* off'
 check "battery and link" until_screen '^ 7.3[0-9] V  [0-9]* replies'
@@ -70,6 +72,7 @@ check "down: the next one" until_screen ' 3>SHOULDER_P'
 keys Right
 check "right: the other side" until_screen ' 6>SHOULDER_P'
 keys -l ']'
+test_case "torque is switched and joints are nudged"
 check "limp joints are not nudged" until_screen 'no torque there'
 keys 2
 check "a group" until_screen '^ 4>SHOULDER_R'
@@ -87,6 +90,7 @@ keys b
 check "brake" until_screen '^ 5>ELBOW_P .* bra '
 until_screen '^brake: done'
 keys Space
+test_case "moves and motions are seen, paused, slowed, stopped"
 check "no pause where nothing plays" until_screen '^nothing is playing'
 keys i
 check "what is under way is shown" until_screen '^[█░]*  move to the initial posture'
@@ -108,6 +112,7 @@ keys s
 check "a move is stopped too" until_screen '^move to the initial posture: stopped'
 
 tell temperature 13 60
+test_case "servos and line that fail are seen"
 check "a warm servo" until_screen '^13 ANKLE_P .* \(59\|60\) '
 tell silent 12 on
 check "a silent one" until_screen '^12 KNEE_P  *no reply'
@@ -121,6 +126,7 @@ check "the line comes back" until_screen '^ 5>ELBOW_P .* on '
 check "and is told of" until_screen 'line lost 1 times'
 
 on_screen resize-window -x 50 -y 12
+test_case "windows of all sizes"
 check "too small a window" until_screen 'terminal too small'
 on_screen resize-window -x 120 -y 40
 check "a large one: longer bars" until_screen 'NECK_Y  *[-0-9.]* .\{25,\} on '
@@ -143,6 +149,7 @@ else
 fi
 
 keys e
+test_case "an emergency stop, its end, and that of the monitor"
 check "emergency stop" until_screen 'EMERGENCY STOP: R releases it'
 check "all are braked" until_screen '^ 5>ELBOW_P .* bra .* 8 ELBOW_P .* bra '
 keys i
@@ -163,6 +170,7 @@ long=$work/$(printf '%0100d' 0)
 mkdir "$long"
 cp motions/greet.pseq "$long/$(printf '%0100d' 0).pseq"
 type_line "'$GRCTL' -d '$work/robot' --retries 10 monitor '$long/'*"
+test_case "names that are too long, letters that are not there"
 check "a long name ends with its row" until_screen ' idle .*/00*$'
 below_it() {
     until_screen '^arrows' && ! grep -q '^0' "$work/screen"
@@ -181,12 +189,14 @@ until_screen ' 1>CHEST_P'
 keys t
 until_screen '^torque on: done'
 keys -l ']'
+test_case "limits"
 check "at a limit a nudge is no move" until_screen '^CHEST_P is at its limit: 0 deg'
 keys q
 until_screen '^status 0'
 on_screen pipe-pane "cat >'$work/raw'"
 type_line "'$GRCTL' -d '$work/robot' scan; echo status \$?"
 until_screen '^status 0'
+test_case "a scan shows where it is"
 check "a scan shows where it is" written "$work/raw" '115200 bps, id [0-9]'
 cleared() {
     ! grep -q 'bps, id' "$work/screen"
@@ -194,6 +204,7 @@ cleared() {
 check "and leaves nothing of that behind" cleared
 on_screen pipe-pane
 type_line "'$GRCTL' -d '$work/none' monitor"
+test_case "no such device"
 check "no such device" until_screen 'none: no such file'
 
 # Robots of other shapes: one list, more joints than rows, names longer than their column.
@@ -206,6 +217,7 @@ robot_file() {
     done
 }
 type_line "'$GRCTL' -d sim --robot so101 monitor"
+test_case "an arm is one list"
 check "an arm is one list, longer bars" until_screen '^ 1>shoulder_pan  *[-0-9.]* .\{38,\} off '
 check "its last joint" until_screen '^ 6 gripper  *[-0-9.]* .* off '
 keys Up
@@ -217,6 +229,7 @@ keys q
 until_screen '^>'
 robot_file many 64 >"$work/many.yaml"
 type_line "'$GRCTL' -d sim --robot '$work/many.yaml' monitor"
+test_case "more joints than places: pages"
 check "more joints than places" until_screen '^0 more joints above, 40 below'
 check "a long name keeps its end" until_screen '^101>part_.*~.*_1  .* off .* 133 part_.*~.*_33 '
 keys Up

@@ -53,7 +53,7 @@ plays_on() {
     player=$!
     is_left_alone && ended 0 && ! grep -q stalled "$work/said" && grep -q '"done":true' "$work/read"
 }
-check "a full pipe: the motion goes on to its end" plays_on
+test_that "a full pipe: the motion goes on to its end" plays_on
 
 # Here and for a trace there is room for what is written before the robot is opened.
 complains_on() {
@@ -65,7 +65,7 @@ complains_on() {
     is_left_alone && ended 0 && grep -q 'largest error at the end' "$work/said" &&
         grep -q '^standard error: [1-9][0-9]* messages were dropped' "$work/read"
 }
-check "standard error too: what its queue cannot hold is counted" complains_on
+test_that "standard error too: what its queue cannot hold is counted" complains_on
 
 prints_on() {
     full=65536
@@ -79,7 +79,7 @@ prints_on() {
     kill $player
     [ $prints_status -eq 0 ] && ended 143
 }
-check "an emergency stop reaches who prints into it" prints_on
+test_that "an emergency stop reaches who prints into it" prints_on
 
 traces_on() {
     full=61440
@@ -99,7 +99,7 @@ traces_whole() {
     cat "$work/why"
     return 1
 }
-check "a trace into a full pipe: the motion goes on, and the trace is whole" traces_whole
+test_that "a trace into a full pipe: the motion goes on, and the trace is whole" traces_whole
 
 # ---- a terminal ----------------------------------------------------------------------------------
 
@@ -129,11 +129,13 @@ unread_screen() {
         { cat "$work/out" "$work/err"; return 1; }
     grep -q 'which has the port, and verified' "$work/out" && exits 0 on_robot estop --reset
 }
+test_case "one reaches a monitor whose terminal nobody reads"
 if have_full_screen && have_json; then
     check "one reaches a monitor whose terminal nobody reads" unread_screen
 else
     skip "one reaches a monitor whose terminal nobody reads" "no full screen or no python3 here"
 fi
+test_case "Ctrl-S: the motion goes on to its end"
 if have_full_screen; then
     open_screen
     trap end_paused EXIT

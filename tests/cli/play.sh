@@ -38,7 +38,7 @@ angle() {
     [ "$angle_got" = "$3" ] || { echo "frame $1, motor $2: $angle_got, not $3"; return 1; }
 }
 
-# ---- what is sent ---------------------------------------------------------------------------
+test_case "what is sent"
 
 # Ten key poses in 5 s, the last two keys 4.2 and 5 s. The first frame is the approach, 100 ms.
 check "a frame a key pose, as it begins" plays 10 4300 --key "$greet"
@@ -227,7 +227,7 @@ check_json "a dry run as JSON" \
     'len(lines) == 10 and all(len(l["hex"].split()) == 110 for l in lines)' \
     "$GRCTL" --json play --dry-run --key "$greet"
 
-# ---- a fall ---------------------------------------------------------------------------------
+test_case "a fall"
 
 # Leans over to where it falls.
 printf '%s\n' 'type: PoseSeq' 'name: falls' 'targetBody: GR001' 'refs:' \
@@ -258,7 +258,7 @@ check "what stands when it is slow" silent "$GRCTL" play --dry-run "$work/sways.
 check "falls when it is fast" both exits 0 "$GRCTL" play --dry-run --speed 800 "$work/sways.pseq" \
     --- grep -q 'sways.pseq.*the robot would fall' "$work/err"
 
-# ---- what is said ---------------------------------------------------------------------------
+test_case "what is said"
 
 start_sim
 check_json "JSON: a line a second, then the end" \
@@ -310,7 +310,7 @@ else
     skip "a bar of a long move" "no script(1) to make a terminal"
 fi
 
-# ---- how it leaves --------------------------------------------------------------------------
+test_case "how it leaves"
 
 # interrupted STATUS POLICY SIGNAL...: in mid-motion; the status tells, the policy was carried out.
 interrupted() {

@@ -20,6 +20,7 @@ start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 play="'$GRCTL' -d '$robot' --retries 10 play '$motion'; echo status \$?; stty -a"
 open_screen
 type_line "$play"
+test_case "keys pause, speed and stop a motion"
 check "the keys are told" until_screen '^space: pause'
 check "the progress tells the time left" until_screen 'playing .* s, .* s left at 100 %'
 keys Space
@@ -38,12 +39,14 @@ check "the terminal is as it was" until_screen ' icanon'
 type_line "$play"
 until_screen 'playing'
 keys C-c
+test_case "Ctrl-C is a signal still"
 check "Ctrl-C is a signal still" until_screen 'status 130'
 check "the terminal is as it was then too" until_screen ' icanon'
 
 type_line "$play"
 until_screen 'playing'
 keys e
+test_case "e is the emergency stop"
 check "e is the emergency stop" until_screen 'play: emergency stop; .*estop --reset'
 check "that is its status" until_screen '^status 4'
 check "it is braked" both exits 0 on_robot status m5 --- says ' brake '

@@ -48,6 +48,7 @@ count() {
 # The start of a .m line for a GR001 that stands: time and the twenty angles.
 stands='0 0 200 0 -200 -200 0 200 0 200 0 -400 -200 0 0 -200 0 400 200 0'
 
+test_case "every joint has its panel"
 check "every joint has its panel" plots $greet '>greet<' 'R_SHOULDER_R  m4' 'L_ANKLE_R  m20' \
     'Head and trunk' 'Left leg' '10 key poses, 5.000 s'
 check "twenty of them" count 'class="name"' 20
@@ -64,7 +65,7 @@ check "--joints of no such name" fails 2 "no joint or group called 'tail'" \
     "$GRCTL" plot -j tail $greet
 check "--rate beyond sense" fails 2 "'0' is not a number" "$GRCTL" plot --rate 0 $greet
 
-# ---- what it says of a motion ---------------------------------------------------------------
+test_case "what it says of a motion"
 
 {
     echo "100 $stands"
@@ -139,7 +140,7 @@ for path in "$data"/choreonoid/*.pseq "$data"/choreonoid/*.yaml "$data"/choreono
     fi
 done
 
-# ---- the whole body -------------------------------------------------------------------------
+test_case "the whole body"
 
 walk_json='lines[0]["balance"]["stands_always"] and lines[0]["balance"]["problems"] == 0 and
     15 < lines[0]["balance"]["margin_mm"] < 39 and not lines[0]["balance"]["assumed"]'
@@ -164,7 +165,7 @@ check_json "with the balancer it lasts a second longer" "$long_json" \
 check "of another robot nothing is known" fails 3 "no motion of GR001's" \
     "$GRCTL" plot --balance "$work/many.yaml"
 
-# ---- our own --------------------------------------------------------------------------------
+test_case "our own"
 
 check "motions/plots are what is drawn now" tools/plots.sh "$GRCTL" --check
 shown() {
@@ -178,7 +179,7 @@ shown() {
 }
 check "motions/README.md shows each" shown
 
-# ---- where it goes --------------------------------------------------------------------------
+test_case "where it goes"
 
 check "without -o to standard output" both exits 0 "$GRCTL" plot $greet --- says '^<svg '
 check "-o - too" both exits 0 "$GRCTL" plot -o - $greet --- says '^<svg '
@@ -225,7 +226,7 @@ else
     skip "a full disk is no success" "no /dev/full here"
 fi
 
-# ---- PNG: whatever draws it stands in PATH ---------------------------------------------------
+test_case "PNG: whatever draws it stands in PATH"
 
 # tool NAME SCRIPT: $work/tools/NAME runs it; PATH has nothing else.
 tool() {

@@ -10,7 +10,7 @@ block README.md example >"$work/example.c"
 root=$PWD
 build=$root/${BUILD:-build}
 
-# ---- the program ----------------------------------------------------------------------------
+test_case "the program"
 
 # Against the build tree, with the flags that pkg-config tells of it; instrumented code needs the
 # flags it was made with.
@@ -78,7 +78,7 @@ else
     skip "it builds and runs" "no C compiler"
 fi
 
-# ---- the tour -------------------------------------------------------------------------------
+test_case "the tour"
 
 # A checkout as after make, where the tour may write.
 mkdir -p "$work/checkout/build"

@@ -46,6 +46,7 @@ start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
 exits 0 on_robot servo on
 start_record --key -o wave.pseq
+test_case "postures are recorded by key"
 check "what holds is held in the hands" grep -q 'joints follow your hands' "$work/err"
 key ' '
 turn_elbow -90
@@ -61,6 +62,7 @@ start_record --key --json
 key 'd '
 exec 6>&-
 finish
+test_case "the end of the keys is the end, in JSON"
 check "the end of the keys is the end" [ $ended -eq 0 ]
 if have_json; then
     check "its name is the first free one" json \
@@ -81,6 +83,7 @@ wait_for sim_shows 5 ' -80\.0 deg'
 tell load 5 0
 kill -INT $record_pid
 finish
+test_case "a whole motion is recorded at a rate"
 check "Ctrl-C is told by the status" [ $ended -eq 130 ]
 check "no rate is called too high" fails_to_find 'sees nothing more' "$work/err"
 check "what was recorded is kept" counts "$(wc -l <"$work/all.m")" "$work/all.m"
@@ -88,6 +91,7 @@ check "it has more than a reading of all joints would see" [ "$(wc -l <"$work/al
 check "it is a motion" exits 0 "$GRCTL" show "$work/all.m"
 
 start_record --rate 50 -o lost.m arms
+test_case "a lost line: what was recorded is kept"
 check "a rate that the line does not allow is told" \
     grep -q 'each joint 20.8 times a second: a higher --rate sees nothing more' "$work/err"
 tell plug out
@@ -99,6 +103,7 @@ tell plug in
 start_record --key
 key q
 finish
+test_case "who cannot be recorded says why"
 check "nothing was shown" grep -q 'nothing was recorded' "$work/err"
 check "a name without a format" fails 2 'unknown file type' \
     on_robot record -o wave

@@ -19,7 +19,7 @@ restarted() {
     tell cable "$1" in
 }
 
-# ---- Feetech: a lock -------------------------------------------------------------------------
+test_case "Feetech: a lock"
 
 start_told_sim --robot so101 || { echo "Bail out! the simulator did not start"; exit 1; }
 check "scan names model, firmware and joint" both exits 0 of so101 scan --last 8 --- \
@@ -86,6 +86,7 @@ check "replay says that it cannot" fails 2 'replay: knows the frames of RS30x on
 check_json "registers in JSON" 'lines[0]["model"] == "STS3215" and lines[0]["registers"] == [
     {"name": "max_position", "address": 11, "value": 3150, "unit": "0.088 deg",
      "max_position_deg": 96.9}]' of so101 --json servo-get 3 max_position
+test_case "a servo may answer nothing but readings"
 check "a servo may answer nothing but readings" both \
     exits 0 of so101 servo-set 6 reply_level 0 --flash --- \
     said '^servo 6: reply_level 1 -> 0, kept$'
@@ -96,6 +97,7 @@ stop_sim
 
 # What is sent has the form of a status here: FF FF 01 04 02 38 02 BE would be -130.1 degrees.
 start_told_sim --robot so101 --echo
+test_case "an adapter that returns what is sent"
 check "an adapter that returns what is sent, though nobody said so" both \
     exits 0 of so101 servo-get 1 present_position --- \
     says '^ 56  present_position  *2048  *0.0 deg$'
@@ -105,7 +107,7 @@ check "what is written is read back" both exits 0 of so101 servo-set 1 offset 10
     said 'offset 0 (0.0 deg) -> 100 (8.8 deg); lost at power-off without --flash$'
 stop_sim
 
-# ---- DYNAMIXEL: kept at once, without torque only ----------------------------------------------
+test_case "DYNAMIXEL: kept at once, without torque only"
 
 start_told_sim --robot koch || { echo "Bail out! the simulator did not start"; exit 1; }
 check "two models on a line" both exits 0 of koch scan --last 4 --- \
@@ -137,7 +139,7 @@ check "and back" exits 0 of koch -b 57600 servo-set 6 baud 1000000
 check "doctor" both exits 0 of koch doctor --- says 'all 6 answer'
 stop_sim
 
-# ---- Hiwonder LX and Kondo KRS: values that go in pieces --------------------------------------
+test_case "Hiwonder LX and Kondo KRS: values that go in pieces"
 
 describe() {
     printf 'name: t\nfamily: %s\njoints:\n' "$1"
@@ -167,6 +169,7 @@ check "no brake" fails 4 'the servos of t have no brake' of "$work/lx.yaml" serv
 stop_sim
 
 start_told_sim --robot "$work/krs.yaml"
+test_case "Kondo KRS"
 check "KRS: scan" both exits 0 of "$work/krs.yaml" scan --- says '^  1  Kondo KRS .* turn$'
 check "its EEPROM" both exits 0 of "$work/krs.yaml" servo-get 1 max_position --- \
     says '^  8  max_position  *11500  *135.0 deg$'
@@ -192,7 +195,7 @@ check "ICS 3.5 does not tell where it stands" both \
     exits 3 "$GRCTL" robot check "$work/krs35.yaml" --- \
     says '4:.*turn: a KRS-2552RHV does not tell where it stands'
 
-# ---- whoever is there --------------------------------------------------------------------------
+test_case "whoever is there"
 
 for one in 3=LX-16A:lx16a 4=KRS-3301:ics; do
     start_sim --servo "${one%:*}"

@@ -11,6 +11,7 @@ same() {
     "$GRCTL" -q -d sim --trace "$work/trace" "$@" >"$work/out" 2>"$work/err" || return 1
     exits 0 "$GRCTL" replay "$work/trace" && says " $same_count equal, 0 differ, 0 missing, 0 extra"
 }
+test_case 'the simulator replies as it did'
 check 'status' same 21 status
 check 'a move' same '[1-9][0-9]*' move R_KNEE_P -80 200
 check 'a motion' same '[1-9][0-9]*' play motions/greet.pseq
@@ -19,7 +20,7 @@ check 'another baud rate' same 21 -b 57600 status
 check 'everything again, in less time than it took' \
     timeout 2 "$GRCTL" -q replay "$work/trace"
 
-# ---- what differs
+test_case 'what differs'
 
 READ1='54 09 FA AF 01 0F 2A 02 00 26 0A' # position of servo 1, which is 0.0 deg
 READ3='54 09 FA AF 03 0F 2A 02 00 24 0A' # of servo 3, 20.0 deg
@@ -80,7 +81,7 @@ many_differ() {
 }
 check 'the first five differences, with -v all' many_differ
 
-# ---- bad files
+test_case 'bad files'
 
 check 'no such file' fails 3 'none: no such file$' "$GRCTL" replay "$work/none"
 years() {
@@ -96,7 +97,7 @@ head -c 199 "$work/others" >"$work/cut"
 check 'cut off' fails 3 'cut off in the middle of a block' "$GRCTL" replay "$work/cut"
 check 'standard input' fails 2 'name a file' "$GRCTL" replay -
 
-# ---- to a robot
+test_case 'to a robot'
 
 start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 

@@ -50,6 +50,7 @@ for family_robot in so101 koch; do
     start_told_sim --robot "$family_robot" || { echo "Bail out! no simulator"; exit 1; }
     sed "s/^targetBody:.*/targetBody: $family_robot/" motions/so101-wave.yaml \
         >"$work/$family_robot-wave.yaml"
+    test_case "$family_robot is unplugged in a motion and comes back"
     check "$family_robot stands ready" exits 0 arm init
     check "is unplugged in motion" unplugged
     check "which is said" says_so

@@ -4,6 +4,7 @@
 . tests/support/cli.sh
 
 start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+test_case "the state of the robot is shown"
 check "sim keeps a link to its pty" [ "$(readlink "$work/robot")" = "$sim_pty" ]
 check "sim says that it is none" written "$work/sim.log" SIMULATED
 
@@ -27,6 +28,7 @@ watch_ends() {
 }
 check "status --watch ends with its reader" watch_ends
 
+test_case "torque is switched"
 check "servo on" both exits 0 on_robot servo on right_arm --- true
 check_json "torque stays on" '[j["torque"] for j in lines[0]["joints"]] == ["on"] * 3' \
     on_robot --json status 2
@@ -38,6 +40,7 @@ check_json "servo off" 'lines[0]["joints"][0]["torque"] == "off"' \
     on_robot --json servo off R_ELBOW_P
 check "servo up" fails 2 "'up' is not one of on, off, brake" on_robot servo up
 
+test_case "joints are moved"
 check_json "move gets there, and switches torque on" \
     'abs(lines[0]["joints"][0]["angle_deg"] + 60) <= 0.1 and lines[0]["max_error_deg"] <= 0.1' \
     on_robot --json move m5 -60 500
@@ -68,6 +71,7 @@ interrupted() {
     cat "$work/moving"
     return 1
 }
+test_case "signals: the exit policy is carried out"
 check "torque on before" exits 0 on_robot servo on m5
 check "SIGINT: the exit policy, then 130" interrupted INT 130
 check "a second program is told who has the port" grep -q "in use by.*$known_as (pid" "$work/busy"
@@ -87,6 +91,7 @@ watched=$?
 lost() {
     [ $watched -eq 1 ] && grep -q '^grctl: .*: device is gone while busy with status$' "$work/err"
 }
+test_case "a line that is lost or not there"
 check "status --watch tells of a line that is lost" lost
 check "no such device" fails 1 'nowhere: no such file or device' "$GRCTL" -d "$work/nowhere" status
 check "a directory" fails 1 'is a directory' "$GRCTL" -d "$work" status
@@ -95,6 +100,7 @@ check "a file" fails 1 'is not a serial port' "$GRCTL" -d "$work/file" status
 check "nobody listens" fails 1 'tcp:127.0.0.1:1: ' "$GRCTL" -d tcp:127.0.0.1:1 status
 
 start_sim --wiring bus
+test_case "servos straight on a bus"
 check "somebody else on the port: servos without a board" \
     fails 1 'no robot answers; is the robot switched on' on_robot status
 check "with the right wiring they answer" both exits 0 on_robot --wiring bus status m3 --- \
@@ -107,12 +113,14 @@ moved_by_another() {
     printf '\372\257\014\000\036\004\001\030\374\054\001\336' >"$sim_pty"
     fails 1 '(R_KNEE_P) moves, and not by this program' on_robot --wiring bus move m12 -40
 }
+test_case "what another program left moving is seen"
 check "a joint that another program has sent" moved_by_another
 check "and that stood when this one left" exits 0 on_robot --wiring bus move m12 -40
 stop_sim
 
 # Motor 7: its id in what comes back could be taken for an ACK.
 start_sim --wiring bus --echo
+test_case "an adapter that returns what is sent"
 check "an adapter that returns what is sent" both \
     exits 0 on_robot --wiring bus --echo status m3 m7 --- says L_SHOULDER_R
 check "an ACK behind the echo of one" exits 0 on_robot --wiring bus --echo servo-set 7 delay 1

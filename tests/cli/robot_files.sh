@@ -4,7 +4,7 @@
 . tests/support/cli.sh
 unset GRCTL_ROBOT
 
-# ---- which ----------------------------------------------------------------------------------
+test_case "which"
 
 check "those that come with it" both exits 0 "$GRCTL" robot list --- says '^pan-tilt  *feetech'
 check "one of them" both exits 0 "$GRCTL" robot show koch --- says 'family dynamixel2'
@@ -28,7 +28,7 @@ completes() {
 }
 check "completion knows both" completes
 
-# ---- a file ---------------------------------------------------------------------------------
+test_case "a file"
 
 cat >"$work/arm.yaml" <<'END'
 name: crane
@@ -59,7 +59,7 @@ check "and is found" both exits 3 "$GRCTL" robot check "$work/wrong.yaml" --- \
 check "no file" fails 3 'none.yaml: no such file' "$GRCTL" --robot "$work/none.yaml" joints
 check "a folder" fails 3 'is a folder' "$GRCTL" --robot "$work/" joints
 
-# ---- motions --------------------------------------------------------------------------------
+test_case "motions"
 
 arm() {
     "$GRCTL" --robot so101 -d sim "$@"
@@ -80,7 +80,7 @@ check "a humanoid's is refused" fails 3 'greet.pseq: has 20 joints, so101 has 6'
 check "motions of the board too" fails 2 'slot: so101 has no board here' arm slot 1
 check "torque by group" fails 0 'torque of 5 joints is on' arm servo on arm
 
-# ---- its simulator, its configuration -------------------------------------------------------
+test_case "its simulator, its configuration"
 
 own_sim
 start_told_sim --robot so101 || { echo "Bail out! the simulator did not start"; exit 1; }
@@ -166,7 +166,7 @@ guarded() {
 stands() {
     sim_shows 1 'torque on .* C$'
 }
-# ---- servos without registers ---------------------------------------------------------------
+test_case "servos without registers"
 
 for family in lx16a:LX-16A ics:KRS-3301; do
     cat >"$work/pair.yaml" <<END

@@ -5,6 +5,7 @@
 . tests/support/terminal.sh
 unset GRCTL_ROBOT
 
+test_case "servos are listed"
 check "servos of all families" both exits 0 "$GRCTL" robot servos --- says '^ics  *KRS-3301 '
 only_lx() {
     exits 0 "$GRCTL" robot servos lx16a &&
@@ -13,7 +14,7 @@ only_lx() {
 check "of one" only_lx
 check "of none" fails 2 "no family 'sts'" "$GRCTL" robot servos sts
 
-# ---- Choreonoid -----------------------------------------------------------------------------
+test_case "Choreonoid"
 
 cat >"$work/arm.body" <<'END'
 format: ChoreonoidBody
@@ -82,6 +83,7 @@ check "of no file" fails 3 '--ids @none.yaml: none.yaml: no such file' \
 check_json "as JSON" 'lines[0]["name"] == "crane" and lines[0]["file"] is None and
     "STS3215" in lines[0]["text"] and lines[0]["n_joints"] == 2' \
     take "$work/arm.body" --ids TURN=1,LIFT=2 --json
+test_case "bodies as Choreonoid writes them"
 check "another name" both exits 0 take "$work/arm.body" --ids TURN=1,LIFT=2 --name lift-1 --- \
     says '^name: lift-1$'
 sed 's/jointType/joint_type/; s/jointRange/joint_range/; s/jointAxis/joint_axis/
@@ -91,6 +93,7 @@ check "a body as Choreonoid writes it today" both exits 0 take "$work/new.body" 
     --servo STS3215 --- says 'LIFT, id: 1, servo: STS3215, limits_deg: \[-20, 60\]}$'
 check "with the speed of its slower direction" \
     says 'TURN, id: 2, servo: STS3215, limits_deg: \[-90, 90\], speed_deg_s: 90}$'
+test_case "mistakes in ids and files are refused"
 check "too few ids" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1
 check "too many" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1-3
 check "ids that are none" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1,x
@@ -109,7 +112,7 @@ check "no end of it" fails 3 'longer than 4 MiB' take /dev/zero
 check "no folder" fails 3 'no such folder' take "$work/arm.body" --ids TURN=1,LIFT=2 \
     -o "$work/none/arm.yaml"
 
-# ---- URDF -----------------------------------------------------------------------------------
+test_case "URDF"
 
 urdf=tests/cli/urdf/so101.urdf
 if [ "${XML:-expat}" = none ]; then
@@ -146,6 +149,7 @@ for ids in '--ids 1-6' '' "--ids gripper=6,${all_ids%,*}"; do
     check "a gripper that comes first: ${ids:-no ids}" both exits 0 take "$work/first.urdf" --yes \
         -o "$work/first.yaml" --family feetech --servo STS3215 $ids --- right_ids
 done
+test_case "ids are taken or refused"
 check "ids of a known robot are said" both exits 0 take "$work/first.urdf" --- \
     complains "ids as of so101, whose joints have these names: $all_ids"
 check "others are refused" fails 2 '--ids 2-7 gives shoulder_pan the id 2, in so101 it has 1' \
@@ -182,6 +186,7 @@ cat >"$work/geared.urdf" <<'END'
   <joint name="lift" role="j"><mechanical_reduction>4</mechanical_reduction><offset>0.0</offset>
   </joint><actuator name="m2" role="a"/></transmission></ros2_control></robot>
 END
+test_case "gears and offsets"
 check "gears of transmissions" both exits 0 take "$work/geared.urdf" --ids turn=1,lift=2 \
     -o "$work/geared.yaml" --family feetech --servo STS3215 --- grep -q \
     'turn, .* sign: -1, gear: 2.5, speed_deg_s: 57.2958} # gear: 1 if' "$work/geared.yaml"
@@ -206,6 +211,7 @@ check "a joint that is not there" geared 's/joint name="lift" role/joint name="x
 check "two for a joint" geared 's/joint name="lift" role/joint name="turn" role/' \
     "transmission 't2': 'turn' has another one already"
 sed 's/<axis/<axes>/' "$urdf" >"$work/broken.urdf"
+test_case "files that are broken"
 check "one that is broken" fails 3 'broken.urdf:[0-9]*:[0-9]*: mismatched tag' \
     take "$work/broken.urdf"
 {

@@ -11,6 +11,7 @@ new() {
 }
 
 start_sim --robot koch || { echo "Bail out! the simulator did not start"; exit 1; }
+test_case "a robot of servos that answer gets a file"
 check "of every family" both exits 0 new -b 1000000 -o "$work/arm.yaml" --name arm --- \
     said 'the ids and servos of koch (.*--robot koch$'
 check "its file is a robot" fails 0 'arm: 6 joints, nothing wrong' \
@@ -34,6 +35,7 @@ stop_sim
 
 start_told_sim --robot so101
 "$GRCTL" --robot so101 -d "$robot" --timeout 200 servo-set 2 max_position 3000 --flash 2>/dev/null
+test_case "limits and offsets are those of the servos"
 check "limits are those of the servos" both exits 0 new --family feetech -b 1000000 --- \
     says 'id: 2, servo: STS3215, limits_deg: \[-100, 83.6\]'
 "$GRCTL" --robot so101 -d "$robot" --timeout 200 servo-set 3 offset 40 --flash 2>/dev/null
@@ -46,6 +48,7 @@ check "offsets that servos keep are a calibration" offset_kept
 stop_sim
 
 start_sim --servo 4=LX-16A,9=LX-16A
+test_case "servos of other families"
 check "a model that is not told" both exits 0 new --family lx16a --- \
     says 'id: 9, servo: LX-16A, .*does not tell its model'
 stop_sim
@@ -56,6 +59,7 @@ check "of two families that of most" both exits 0 new -b 1000000 --- \
 check "who is nobody twice" [ "$(grep -c 'not known' "$work/err")" -eq 0 ]
 stop_sim
 
+test_case "a simulator of its own"
 check "a simulator of its own" fails 2 "looked for on a line; 'grctl sim --servo' makes one" \
     "$GRCTL" -d sim robot new
 done_testing

@@ -27,6 +27,6 @@ started() {
 for name in $("$GRCTL" robot list | sed 's/ .*//') own-STS3215.yaml own-SCS0009.yaml \
     own-XL430-W250.yaml own-AX-12A.yaml own-MX-28.yaml own-LX-16A.yaml own-KRS-3301.yaml \
     own-RS304MD.yaml one.yaml all64.yaml; do
-    check "$name starts every command" started "$name"
+    test_that "$name starts every command" started "$name"
 done
 done_testing

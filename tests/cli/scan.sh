@@ -65,7 +65,7 @@ cell() {
     start_sim $options --latency "$2" || { echo "Bail out! the simulator did not start"; exit 1; }
     [ "$3" = near ] || go_far
     [ "$4" = idle ] || burn
-    check "$1, $2 ms of latency, $3, $4" scan_finds_all
+    test_that "$1, $2 ms of latency, $3, $4" scan_finds_all
     burn_no_more
     far_no_more
     stop_sim
@@ -73,6 +73,7 @@ cell() {
 
 lines='--wiring=board|--wiring=bus|--wiring=bus --echo'
 if ! command -v python3 >/dev/null 2>&1; then
+    test_case "lines that are far away"
     skip "lines that are far away" "no python3"
     last=24
     cell '--wiring=bus --echo' 16 near busy
@@ -129,6 +130,7 @@ ends_beside_a_stranger() {
     cat "$work/out" "$work/err"
     return 1
 }
+test_case "another master asks a servo on the line"
 if command -v python3 >/dev/null 2>&1 && ! by_tcp; then
     stranger
     check "another master asks a servo on the line" ends_beside_a_stranger

@@ -34,6 +34,7 @@ answers() {
     return 1
 }
 
+test_case "a robot behind ser2net"
 check "it answers" answers
 check "a motion" exits 0 "$GRCTL" -d "$device" --timeout 500 play motions/greet.pseq
 check "doctor" both exits 0 "$GRCTL" -d "$device" --timeout 500 doctor --- \
@@ -46,6 +47,7 @@ wait "$server"
 wait "$player"
 status=$?
 server=
+test_case "the server ends"
 check "the server ends: the robot is gone" [ $status -eq 1 ]
 check "and that is said" grep -q "^grctl: $device: device is gone" "$work/played"
 check "nobody serves it" fails 1 "^grctl: $device: .*does a serial server listen there" \

@@ -15,12 +15,13 @@ if [ -n "$reason" ]; then
     exit
 fi
 
-check "robots are shown, who goes is seen to go" fleet shown
-check "a stop of all stands, is told robot by robot, is released" fleet stopping
-check "a stop is heard before there is a broker" fleet first_of_all
-check "a stop while the broker is away goes out when it is back" fleet broker_away
-check "hosts, origins and tokens are judged as elsewhere" fleet walls
-check "what strangers say is bounded" fleet strangers
+test_that "robots are shown, who goes is seen to go" fleet shown
+test_that "a stop of all stands, is told robot by robot, is released" fleet stopping
+test_that "a stop is heard before there is a broker" fleet first_of_all
+test_that "a stop while the broker is away goes out when it is back" fleet broker_away
+test_that "hosts, origins and tokens are judged as elsewhere" fleet walls
+test_that "what strangers say is bounded" fleet strangers
+test_case "what is answered is what the OpenAPI file tells"
 if python3 -c 'import jsonschema' 2>/dev/null; then
     check "what is answered is what the OpenAPI file tells" fleet schema
 else

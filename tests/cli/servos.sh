@@ -10,7 +10,7 @@ said() {
 
 start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
-# ---- scan, info ------------------------------------------------------------------------------
+test_case "scan, info"
 
 # It waits for each that is silent: not as long as on_robot() would.
 scan() {
@@ -76,7 +76,7 @@ check "-vv: every byte" both exits 0 on_robot -vv status m12 --- \
     said '^ *[0-9.]*  >  54 09 FA AF 0C 0F 1E 18 00 05 20$'
 check "and what came" said '^ *[0-9.]*  <  FD DF 0C 00 1E 18 01 '
 
-# ---- registers -------------------------------------------------------------------------------
+test_case "registers"
 
 check "servo-get" both exits 0 on_robot servo-get R_KNEE_P --- says '^ 52  voltage  *738  *7.38 V$'
 check "a word" says '^  0  model  *12304  *RS301CR$'
@@ -123,7 +123,7 @@ check "cw_limit of one that does not" both exits 0 on_robot servo-set 12 cw_limi
 check "flash does not keep it" fails 2 'flash does not keep register max_torque' \
     on_robot servo-set 12 max_torque 50 --flash
 
-# ---- poses -----------------------------------------------------------------------------------
+test_case "poses"
 
 initial=$(awk '{ for (i = 2; i < 22; i++) print $i / 10; exit }' motions/greet.m)
 check "pose by joints" both exits 0 on_robot pose --time 300 m5=-30 L_ELBOW_P=30 --- \
@@ -140,7 +140,7 @@ check "pose of a joint by two of its names" fails 2 "'m5=6': R_ELBOW_P is there 
 check "pose without a number" fails 2 "'m5=' is not" on_robot pose m5=
 check "pose of infinity" fails 2 "'m5=inf' is not" on_robot pose m5=inf
 
-# ---- the whole of it -------------------------------------------------------------------------
+test_case "the whole of it"
 
 check "slot" both exits 0 on_robot slot 3 --- said '^slot 3 was asked for'
 check "scenario" both exits 0 on_robot scenario 2 --- said '^scenario 2 was asked for'
@@ -172,7 +172,7 @@ check_json "ports as JSON" 'all(p["path"].startswith("/dev/") for p in lines[0][
     "$GRCTL" ports --json
 stop_sim
 
-# ---- on a bus of servos ----------------------------------------------------------------------
+test_case "on a bus of servos"
 
 start_sim --wiring bus --baud 57600
 check "--all-baud finds the rate" both exits 0 scan --wiring bus --all-baud --first 3 \

@@ -20,12 +20,14 @@ set_up() {
     "$GRCTL" -d "$robot" setup --yes "$@"
 }
 
+test_case "nothing to set up"
 check "nobody to ask" fails 2 "asks a person at a terminal; without one: 'grctl ports'" \
     "$GRCTL" setup
 check "nothing to undo" fails 2 'nothing that could be undone' "$GRCTL" setup --undo
 check "no port" both exits 1 "$GRCTL" -d "$work/nowhere" setup --yes --- said 'fix this'
 
 
+test_case "robots are named and taken back"
 check "a simulated robot" answered 0 '' "$GRCTL" -d sim --robot so101 setup --yes
 check "is named" grep -qx '  so101: {device: "sim", robot: "so101"}' "$config"
 check "and is the default" both exits 0 "$GRCTL" status --- says wrist_flex
@@ -52,6 +54,7 @@ else
 fi
 
 printf '# mine\nrobots:\n    # the first\n    one: {device: sim}\n' >"$config"
+test_case "what a person wrote stays"
 check "a name that is taken, then another" answered 0 'one\ntwo\n' "$GRCTL" -d sim setup --yes
 check "was told" said 'has a robot called one already'
 cat >"$work/want" <<'END'
@@ -82,6 +85,7 @@ check "names that are none" answered 2 'a b\nsim\n../x\na:b\nx y\n' "$GRCTL" -d 
 rm "$config"
 
 start_sim --robot koch || { echo "Bail out! the simulator did not start"; exit 1; }
+test_case "servos that answer become a robot"
 check "a robot that is known" answered 0 'spider\nkoch\nmine\n' set_up -b 1000000
 check "a wrong answer is asked again" said "no robot called 'spider'"
 check "it says who answers" said ' 3  XL330-M288 *1000000 bps  dynamixel2'
@@ -106,6 +110,7 @@ check "leaves no file behind" both said 'ant.yaml is removed again$' --- \
 stop_sim
 
 start_sim
+test_case "GR001's board is known"
 check "GR001's board" answered 0 '' set_up
 check "is known at once" both said "GR001's board answers" --- grep -q 'robot: "gr001"' "$config"
 stop_sim

@@ -20,6 +20,7 @@ told() {
     grep -q -e "$1" "$work/err" || { echo "no '$1' in:"; cat "$work/err"; return 1; }
 }
 
+test_case "scripts run, and mistakes end them"
 check "commands of grctl" both script 0 'status m3
 version
 ' --- says '^    3  R_SHOULDER_P'
@@ -83,6 +84,7 @@ check "a word nearly right" both script 2 'claer
 ' --- told "input:1: no command 'claer'; did you mean 'Clear'?$"
 check "a command nearly right" both script 2 'stauts
 ' --- told "no command 'stauts'; did you mean 'status'?$"
+test_case "motions of the shell"
 check "increments take no posture" both script 2 "l $PWD/motions/greet.mseq
 Push" --- told 'record: it holds increments, not where joints go; .Clear. it before$'
 check "nor do frames at a rate" both script 2 "l $PWD/motions/greet.yaml
@@ -90,6 +92,7 @@ Push" --- told 'record: it holds frames at a rate; '
 check "emptied they do" both script 0 "l $PWD/motions/greet.mseq
 Clear
 Push" --- told '^1 posture in the record'
+test_case "help in the shell"
 check "help on a command" both script 0 'help move
 ' --- says '^usage: grctl move JOINT DEG'
 check "help on a letter" both script 0 'help m
@@ -105,7 +108,7 @@ check "help lists commands" both script 0 'help
 check "and words" says '^ *f  *Free '
 check "elsewhere help knows no letters" fails 2 "no command 'w'; see 'grctl help'" "$GRCTL" help w
 
-# ---- one connection --------------------------------------------------------------------------
+test_case "one connection"
 
 one_connection() {
     script 0 'S m5
@@ -149,7 +152,7 @@ status m4
 }
 check "--trace holds all commands" traced
 
-# ---- letters and words ---------------------------------------------------------------------
+test_case "letters and words"
 
 letters='S arms
 S m2
@@ -242,7 +245,7 @@ else
 fi
 check "elsewhere there is no record" fails 3 '@record: only a shell has' "$GRCTL" show @record
 
-# ---- a person at a terminal -------------------------------------------------------------------
+test_case "a person at a terminal"
 
 no_person=
 have_terminal || no_person='no tmux here'

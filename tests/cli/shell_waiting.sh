@@ -64,7 +64,7 @@ braked() {
 
 start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
-# ---- an emergency stop of another grctl ----------------------------------------------------------
+test_case "an emergency stop of another grctl"
 
 stops() {
     holds && exits 0 on_robot estop && ended 4 &&
@@ -84,7 +84,7 @@ goes_on() {
 check "with -k it brakes, and goes on" goes_on
 exits 0 on_robot estop --reset
 
-# ---- what the robot does -------------------------------------------------------------------------
+test_case "what the robot does"
 
 hot() {
     holds && tell temperature 12 70 && ended 4 &&
@@ -118,7 +118,7 @@ signalled() {
 }
 check "SIGTERM: the exit policy" signalled
 
-# ---- lines of all kinds --------------------------------------------------------------------------
+test_case "lines of all kinds"
 
 # runs STATUS COMMAND...: what it prints is the shell's input, and the simulator in process answers.
 runs() {
@@ -185,7 +185,7 @@ from_fifo() {
 check "a script may be a pipe" from_fifo
 exits 0 on_robot estop --reset
 
-# ---- a person at a terminal ----------------------------------------------------------------------
+test_case "a person at a terminal"
 
 if ! have_terminal; then
     skip "a person at a terminal" "no tmux here"

@@ -6,6 +6,7 @@
 data=${GROBO_SHARED:-../shared}/data
 greet=motions/greet.pseq
 
+test_case "what a motion is"
 check "what it is" both exits 0 "$GRCTL" show $greet --- \
     says '^motions/greet.pseq: pseq "greet" for GR001, 10 key poses, 5.000 s, angles in degrees$'
 # Where there is no terminal a posture is a line, and its fields are where the names say.
@@ -38,7 +39,7 @@ anothers() {
 }
 check "another robot's are not promised" anothers
 
-# ---- as it is played ------------------------------------------------------------------------
+test_case "as it is played"
 
 between() {
     exits 0 "$GRCTL" show --rate 20 -j R_SHOULDER_P $greet || return 1
@@ -65,7 +66,7 @@ printf 'type: PoseSeq\nname: aeon\nrefs:\n  - time: 0\n    %s\n  - time: 1e6\n  
 check "more rows than sense" fails 3 'more than 10000000 rows' \
     "$GRCTL" show --rate 1000 "$work/aeon.pseq"
 
-# ---- JSON -----------------------------------------------------------------------------------
+test_case "JSON"
 
 greet_json='lines[0]["format"] == "pseq" and lines[0]["name"] == "greet" and
     lines[0]["length_ms"] == 5000 and len(lines[0]["joints"]) == 20 and
@@ -76,7 +77,7 @@ rate_json='[k["angle_deg"] for k in lines[0]["keys"][:2]] == [[0], [-120]]'
 check_json "played, as JSON" "$rate_json" \
     "$GRCTL" show --json --rate 1.25 -j R_SHOULDER_R motions/greet.pseq
 
-# ---- files that mean mischief ---------------------------------------------------------------
+test_case "files that mean mischief"
 
 printf 'type: PoseSeq\nname: "\\e[31mred\\x9b"\ntargetBody: "\\a"\nrefs: []\n' >"$work/evil.pseq"
 safe() {
@@ -97,7 +98,7 @@ wide() {
 }
 check "numbers do not run together, nor is there a -0.0" wide
 
-# ---- on a terminal --------------------------------------------------------------------------
+test_case "on a terminal"
 
 # on_terminal COLUMNS COMMAND...: its output on a terminal so wide is in $work/out.
 on_terminal() {
@@ -136,7 +137,7 @@ else
     skip "on a terminal it keeps to 80 columns" "no python3 to make a terminal with"
 fi
 
-# ---- reference material ---------------------------------------------------------------------
+test_case "reference material"
 
 shows() {
     exits 0 "$GRCTL" show "$1" && says "$2"

@@ -4,7 +4,7 @@
 . tests/support/cli.sh
 own_sim
 
-# ---- where it is ----------------------------------------------------------------------------
+test_case "where it is"
 
 start_sim
 check "the path is a terminal's" [ -c "$sim_pty" ]
@@ -97,7 +97,7 @@ done
 check "all three" [ $number -eq 3 ]
 stop_sim
 
-# ---- what it is -----------------------------------------------------------------------------
+test_case "what it is"
 
 start_sim --start zero
 check "--start zero" both exits 0 on_robot status m12 --- says 'R_KNEE_P  *0\.0 '
@@ -126,7 +126,7 @@ check "a poor line is made up for" exits 0 "$GRCTL" -d "$robot" --retries 10 \
     play --speed 500 motions/greet.pseq
 stop_sim
 
-# ---- any chain of servos --------------------------------------------------------------------
+test_case "any chain of servos"
 
 start_sim --servo 1=RS304MD,127=rs302cd,3=RS303MR,4=RS301CR
 for id_type in 1=RS304MD 127=RS302CD 3=RS303MR 4=RS301CR; do

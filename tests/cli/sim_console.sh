@@ -15,6 +15,7 @@ answers() {
 }
 
 start_told_sim --robots 2 || { echo "Bail out! the simulator did not start"; exit 1; }
+test_case "words turn, heat, unplug and silence servos"
 check "turn a shaft" answers '^sim: turn 5 -45$' turn 5 -45
 check_json "it is there" 'lines[0]["joints"][0]["angle_deg"] == -45' on_robot --json status m5
 check "look at a servo" answers 'R_ELBOW_P  *-45.0 deg' look R_ELBOW_P
@@ -30,6 +31,7 @@ check "a mute servo" answers '^sim: silent m13 on$' silent m13 on
 check "silence again" exits 1 on_robot status m13
 check "it speaks" answers '^sim: silent m13 off$' silent m13 off
 check "both answer" exits 0 on_robot status m13
+test_case "each robot has words of its own"
 check "a second robot" answers '^sim: robot 2$' robot 2
 check "its battery" answers '^sim: voltage 8$' voltage 8
 check_json "the first keeps its own" 'lines[0]["joints"][0]["voltage_v"] < 6.6' \
@@ -37,6 +39,7 @@ check_json "the first keeps its own" 'lines[0]["joints"][0]["voltage_v"] < 6.6' 
 first=$robot
 if by_tcp; then read -r robot <&6; else robot=${robot}2; fi
 check_json "the second has it" 'lines[0]["joints"][0]["voltage_v"] > 7.9' on_robot --json status m1
+test_case "the host's cable, and faults"
 check "the host's cable" answers '^sim: plug out$' plug out
 check "nobody is there" fails 1 "$robot: .*\(no such file\|refused\)" on_robot status
 check "plugged in again" answers '^sim: plug in$' plug in
@@ -44,6 +47,7 @@ check "somebody is there" exits 0 on_robot status m1
 check "a fault" answers '^sim: fault silent=1$' fault silent=1
 check "it strikes" exits 1 on_robot status m1
 
+test_case "words that are none"
 check "no such command" answers "'dance'? say: robot fault" dance
 check "no such servo" answers "'turn 21 0'? say: turn SERVO DEG" turn 21 0
 check "no angle" answers "'turn 5 up'? say: turn SERVO DEG" turn 5 up
@@ -55,6 +59,7 @@ check "a long line" answers 'more than 255 bytes' "$(printf '%0300d' 0)"
 
 robot=$first
 exec 5>&-
+test_case "its end"
 check "the end of its input is not its end" exits 0 on_robot status m1
 stop_sim
 

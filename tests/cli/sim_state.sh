@@ -16,6 +16,7 @@ delay_is() {
 }
 
 chain
+test_case "registers are kept over power-off"
 check "a file that is not there is made" [ "$(wc -l <"$state")" -eq 3 ]
 check "set without flash" exits 0 servo servo-set 2 delay 5
 stop_sim
@@ -41,6 +42,7 @@ kill -s KILL "$sim_pid"
 wait "$sim_pid" 2>/dev/null
 sim_pid=
 chain
+test_case "one file, one simulator, whole after SIGKILL"
 check "after SIGKILL it is there too" delay_is 2 11
 check "one file, one simulator" fails 3 'state: another simulator has it' timeout 5 "$GRCTL" sim \
     --servo 1=RS304MD,2=RS302CD --state "$state"
@@ -58,6 +60,7 @@ refused() {
         --servo 1=RS304MD,2=RS302CD --state "$work/bad" && cmp "$work/bad" "$work/bad.before"
 }
 : >"$work/bad"
+test_case "files that are none are refused"
 check "an empty file" refused
 head -c 300 /dev/urandom >"$work/bad"
 check "noise" refused
@@ -88,6 +91,7 @@ mkfifo "$work/fifo"
 check "a pipe" fails 3 'not a regular file' timeout 5 "$GRCTL" sim --state "$work/fifo"
 
 start_sim --robots 2 --state "$work/many"
+test_case "more robots, more files"
 check "more robots, more files" both exits 0 test -s "$work/many" --- exits 0 test -s "$work/many2"
 stop_sim
 done_testing

@@ -44,6 +44,7 @@ offends() {
 }
 
 if by_tcp || ! command -v python3 >/dev/null 2>&1; then
+    test_case 'offences against the protocol'
     skip 'offences against the protocol' 'needs a pty and python3'
     done_testing
     exit 0
@@ -58,7 +59,7 @@ t() {
     shift 3
     # shellcheck disable=SC2086 # options are words
     strict $chain --- "$@"
-    check "$name" offends "$code" "$bytes"
+    test_that "$name" offends "$code" "$bytes"
 }
 
 # shellcheck disable=SC2086 # options are words
@@ -68,10 +69,10 @@ faultless() {
     cat "$work/out"
     [ "$strict_status" -eq 0 ] && [ ! -s "$work/out" ]
 }
-check 'a client that keeps to the protocol: 0, and nothing is printed' faultless
+test_that 'a client that keeps to the protocol: 0, and nothing is printed' faultless
 t 'a wrong sum' sum 'FA AF 01 00 24 01 01 01 25' 'FA AF 01 00 24 01 01 01 25'
 t 'a value out of range' range 'FA AF 01 00 1E 02 01 D0 07 CB' 'FA AF 01 00 1E 02 01 D0 07 CB'
-check 'which' says 'goal 2000 is outside -1500..1500'
+test_that 'which' says 'goal 2000 is outside -1500..1500'
 t 'a register that is read-only' range 'FA AF 01 00 2A' 'FA AF 01 00 2A 02 01 00 00 28'
 t 'behind the last register' request 'FA AF 01 0F 8B' 'FA AF 01 0F 8B 05 00 80'
 t 'an id in a long packet' range 'FA AF 00 00 24' 'FA AF 00 00 24 02 01 80 01 A6'
@@ -88,13 +89,13 @@ t 'writing during a restart' busy 'FA AF 01 00 24 01 01 01 24' 'FA AF 01 20 FF 0
 t 'a pause inside a packet' stall 'FA AF 01' 'FA AF 01' 'wait 30' '00 24 01 01 01 24'
 
 strict --- '54 09 FA AF 01 0F 24 12 00 38 1A'
-check 'through the board: nothing' [ "$strict_status" = 0 ]
+test_that 'through the board: nothing' [ "$strict_status" = 0 ]
 strict --- '54 09 FA AF 01 0F 24 12 00 38 0A'
-check 'too few bytes asked of the board' offends relay '54 09 FA'
+test_that 'too few bytes asked of the board' offends relay '54 09 FA'
 strict --- '53 09 FA AF 01 00 24 01 01 01 25' 'wait 20' '41 00'
-check 'a wrong sum behind the board' offends sum '53 09 FA AF 01'
+test_that 'a wrong sum behind the board' offends sum '53 09 FA AF 01'
 strict --robots 2 --- '41 00'
-check 'two robots' [ "$strict_status" = 0 ]
+test_that 'two robots' [ "$strict_status" = 0 ]
 # A simulator that the machine holds up answers late, when grctl asks again: that alone is repeated.
 ours() {
     for _ in 1 2 3; do
@@ -110,7 +111,7 @@ ours() {
     done
     return 1
 }
-check 'grctl keeps to the protocol' ours board
+test_that 'grctl keeps to the protocol' ours board
 check 'on a bus too' ours bus
 start_sim --json --strict --wiring bus
 python3 "$work/client.py" "$robot" 'FA AF 01 00 24 01 01 01 25' 'wait 30'
@@ -123,7 +124,7 @@ stop_sim
 chain='--robot so101'
 # shellcheck disable=SC2086 # options are words
 strict $chain --- 'FF FF 01 04 02 38 02 BE' 'wait 30' 'FF FF 01 05 03 2A 00 08 C4'
-check "Feetech: a read and a goal" faultless
+test_that "Feetech: a read and a goal" faultless
 t 'Feetech: a wrong sum' sum 'FF FF 01 04 02 38 02 BF$' 'FF FF 01 04 02 38 02 BF'
 t 'Feetech: a read-only register' range 'FF FF 01 05 03 38 00 08 B6$' 'FF FF 01 05 03 38 00 08 B6'
 t 'Feetech: an unknown instruction' request 'FF FF 01 02 77 85$' 'FF FF 01 02 77 85'
@@ -133,6 +134,6 @@ t 'DYNAMIXEL: a value out of range' range 'FF FF FD 00 01 06 00 03 40 00 09 .*$'
     'FF FF FD 00 01 06 00 03 40 00 09 E8 E6'
 t "DYNAMIXEL: an instruction of Feetech's" request 'FF FF FD 00 01 03 00 0B 25 4E$' \
     'FF FF FD 00 01 03 00 0B 25 4E'
-check "two families on a line" fails 2 'knows one family on a line' \
+test_that "two families on a line" fails 2 'knows one family on a line' \
     "$GRCTL" sim --strict --servo 1=XL330-M288,2=STS3215
 done_testing

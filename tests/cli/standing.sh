@@ -43,8 +43,10 @@ stands_after() {
 }
 
 # A step is 0.088 degrees.
+test_case "a joint that creeps is stopped"
 check "3 deg/s: stop" stands_after 34 stop
 check "6 deg/s: stop" stands_after 68 stop
+test_case "a joint that creeps stands after an emergency stop"
 check "3 deg/s: estop" stands_after 34 estop
 check "it is released" exits 0 on_robot estop --reset
 check "6 deg/s: estop" stands_after 68 estop

@@ -38,7 +38,7 @@ halts() {
     return 1
 }
 
-# ---- the command line ----------------------------------------------------------------------------
+test_case "the command line"
 
 check "an unknown option behind it" brakes 2 'unknown option --now' -d "$robot" estop --now
 check "an unknown option before it" brakes 2 'unknown option --now' -d "$robot" --now estop
@@ -61,7 +61,7 @@ harmless() {
 }
 check "no stop where another command is meant" harmless
 
-# ---- the configuration ---------------------------------------------------------------------------
+test_case "the configuration"
 
 mkdir -p "$XDG_CONFIG_HOME/grctl"
 config=$XDG_CONFIG_HOME/grctl/config.yaml
@@ -80,7 +80,7 @@ check "a robot that the configuration no longer has: it says so" fails 1 \
     '^grctl: kitchen: no robot of the configuration.*; NOT stopped, nothing was sent' \
     "$GRCTL" -d kitchen estop
 
-# ---- the trace -----------------------------------------------------------------------------------
+test_case "the trace"
 
 check "a trace in a folder that is missing" brakes 3 'trace cannot be written: no such folder' \
     -d "$robot" --trace "$work/nowhere/trace" estop
@@ -100,7 +100,7 @@ if [ -z "${NATIVE_GRCTL:-}" ]; then # no pipes with a name
         -d "$robot" --trace "$work/unread" estop
 fi
 
-# ---- its output ----------------------------------------------------------------------------------
+test_case "its output"
 
 # run_closed HOW: with descriptors that are closed, or a pipe whose reader has gone.
 run_closed() {
@@ -134,7 +134,7 @@ if [ -z "${NATIVE_GRCTL:-}" ]; then
     exec 7>&-
 fi
 
-# ---- signals -------------------------------------------------------------------------------------
+test_case "signals"
 
 # signalled STATUS SIGNAL BIT: it gets a signal, which it catches or ignores (bit), while it waits
 # for the port, which another program has.

@@ -8,6 +8,7 @@ if ! command -v python3 >/dev/null; then
     exit 0
 fi
 start_sim
+test_case "a client of the bytes alone drives the simulator"
 check "a client of the bytes alone drives the simulator" \
     exits 0 timeout 60 python3 tests/support/stranger.py "$sim_pty"
 for did in check torque posture joint; do
@@ -22,6 +23,7 @@ has() {
     exits 0 timeout 60 python3 tests/support/habits.py "$sim_pty" "$1"
 }
 start_sim --wiring bus
+test_case "clients with habits of their own"
 check "a client that writes and reads byte by byte" has byte_by_byte
 stop_sim
 start_sim --wiring bus --baud-at-once

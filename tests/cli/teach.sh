@@ -66,7 +66,7 @@ counts() {
 
 start_told_sim --no-stops || { echo "Bail out! the simulator did not start"; exit 1; }
 
-# ---- record --limp -------------------------------------------------------------------------------
+test_case "record --limp"
 
 # Torque is off when the simulator starts.
 start_command record --key -o limp.m m5
@@ -100,7 +100,7 @@ kill -INT $command_pid
 finish
 check "limp joints are looked at in time" [ "$(wc -l <"$work/moved.m")" -gt 3 ]
 
-# ---- teach ---------------------------------------------------------------------------------------
+test_case "teach"
 
 exits 0 on_robot servo on
 start_command teach --time 300 -o wave.pseq right_arm
@@ -159,7 +159,7 @@ key q
 finish
 check "and teaching went on" [ $ended -eq 0 ]
 
-# ---- it ends while it plays ----------------------------------------------------------------------
+test_case "it ends while it plays"
 
 start_command teach --time 5000 m5
 turn 5 -90
@@ -185,7 +185,7 @@ check "all joints are braked then" torque_is brake all
 check "and teaching is refused" fails 4 'stopped by' on_robot teach
 
 
-# ---- no key can come: nothing goes limp ----------------------------------------------------------
+test_case "no key can come: nothing goes limp"
 
 exits 0 on_robot estop --reset
 exits 0 on_robot servo on

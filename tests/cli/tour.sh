@@ -61,6 +61,7 @@ tell silent 12 on
 tell temperature 13 70
 tell voltage 6.4
 run grctl doctor
+test_case "the commands of the guide do what it says"
 check "doctor" ends 'checks failed'
 shot doctor
 tell silent 12 off
@@ -103,6 +104,7 @@ until_screen '^\$'
 on_screen kill-server
 stop_sim
 
+test_case "the guide shows what they print"
 for name in doctor status check playing played monitor; do
     [ "${TOUR_WRITE:-}" != yes ] || replace_block "$tour" "screen $name" "$work/shots/$name"
     check "the guide shows $name as it is" is_true $name

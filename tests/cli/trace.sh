@@ -18,7 +18,7 @@ status_is_traced() {
         [ "$(frames "$work/status" ' robot .*returns No.30-53: .* its request')" -ge 20 ] &&
         [ "$(frames "$work/status" 'rubbish\|cut\|wrong\|nobody')" -eq 0 ]
 }
-check 'status: twenty questions, twenty answers' status_is_traced
+test_that 'status: twenty questions, twenty answers' status_is_traced
 
 says_what_it_is() {
     "$GRCTL" decode --json "$work/status" | head -n 1 >"$work/head"
@@ -36,7 +36,7 @@ torque_on_is_traced() {
         [ "$(frames "$work/bus" 'write servo 12 (R_KNEE_P): torque on\|torque; sum')" -ge 1 ] &&
         [ "$(frames "$work/bus" 'relay\|rubbish\|cut\|wrong')" -eq 0 ]
 }
-check 'servos straight on a bus' torque_on_is_traced
+test_that 'servos straight on a bus' torque_on_is_traced
 
 start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
@@ -46,8 +46,8 @@ refused() {
     "$GRCTL" -d "$robot" --timeout 500 status >"$work/out" || return 1
     ! says ' on ' >/dev/null && says ' off '
 }
-check 'no such folder: nothing is done' refused "$work/none/trace" 'no such folder$'
-check 'a folder: nothing is done' refused "$work" ': is a directory$'
+test_that 'no such folder: nothing is done' refused "$work/none/trace" 'no such folder$'
+test_that 'a folder: nothing is done' refused "$work" ': is a directory$'
 # So would one for whom --trace needs no FILE.
 no_trace() {
     cp motions/sit.pseq "$work/mine.pseq"
@@ -55,7 +55,8 @@ no_trace() {
         fails 3 'it is no trace' "$GRCTL" play --dry-run --trace "$work/mine.pseq" \
             motions/greet.pseq && cmp motions/sit.pseq "$work/mine.pseq"
 }
-check 'a file that is no trace: it stays, and nothing is done' no_trace
+test_that 'a file that is no trace: it stays, and nothing is done' no_trace
+test_case 'a full disk: nothing is done'
 if [ -c /dev/full ]; then
     check 'a full disk: nothing is done' refused /dev/full 'no room left on the disk$'
 else
@@ -71,14 +72,14 @@ a_watcher_goes() {
     [ $status -eq 3 ] && complains 'the trace cannot be written: Broken pipe' &&
         [ "$(wc -l <"$work/out")" -eq 21 ]
 }
-check 'a trace that breaks off: the command is done, and it is told' a_watcher_goes
+test_that 'a trace that breaks off: the command is done, and it is told' a_watcher_goes
 
 over_a_pty() {
     "$GRCTL" -d "$robot" --timeout 500 --trace "$work/pty" status >/dev/null || return 1
     "$GRCTL" decode --json "$work/pty" | grep -qF '"device":"'"$robot"'"' &&
         [ "$(frames "$work/pty" 'returns No.30-53')" -ge 20 ]
 }
-check 'a robot behind a port' over_a_pty
+test_that 'a robot behind a port' over_a_pty
 
 # The goal of the long move stands in the trace.
 is_moving() {
@@ -111,14 +112,14 @@ ends_by_a_signal() {
     [ $status -eq "$2" ] && is_whole &&
         grep -q 'write 20 servos: goal, goal_time; sum .. right' "$work/text"
 }
-check 'Ctrl-C: the trace is whole' ends_by_a_signal INT 130
-check 'SIGTERM: the trace is whole' ends_by_a_signal TERM 143
+test_that 'Ctrl-C: the trace is whole' ends_by_a_signal INT 130
+test_that 'SIGTERM: the trace is whole' ends_by_a_signal TERM 143
 
 killed() {
     interrupted KILL
     is_whole && grep -q 'goal_time 60000 ms' "$work/text"
 }
-check 'killed: the trace is whole up to then' killed
+test_that 'killed: the trace is whole up to then' killed
 
 sim_is_traced() {
     stop_sim
@@ -131,7 +132,7 @@ sim_is_traced() {
     done
     [ -s "$work/sim.text" ] && diff "$work/host.text" "$work/sim.text"
 }
-check 'sim --trace: what the host sees' sim_is_traced
+test_that 'sim --trace: what the host sees' sim_is_traced
 
 dry_run() {
     "$GRCTL" play --dry-run --trace "$work/dry" motions/greet.pseq >"$work/out" || return 1
@@ -140,8 +141,8 @@ dry_run() {
     "$GRCTL" replay "$work/dry" >"$work/out"
     says ' equal, 0 differ, 0 missing' # it may end between a question and its answer
 }
-check 'play --dry-run --trace: all that would go over the line' dry_run
-check 'a command that talks to no robot says so' both exits 0 "$GRCTL" --trace "$work/not" \
+test_that 'play --dry-run --trace: all that would go over the line' dry_run
+test_that 'a command that talks to no robot says so' both exits 0 "$GRCTL" --trace "$work/not" \
     decode 4100 --- both complains 'nothing was traced' --- test ! -e "$work/not"
 
 cut_trace() {
@@ -152,7 +153,7 @@ cut_trace() {
     [ $status -eq 3 ] && grep -q 'check the board' "$work/text" &&
         grep -q "^grctl: $work/cut: cut off in the .* of a block (byte 1001)\$" "$work/err"
 }
-check 'a trace cut off: all before it is shown, exit 3' cut_trace
+test_that 'a trace cut off: all before it is shown, exit 3' cut_trace
 
 hand_made() {
     make_trace >"$work/made" <<'LINES'
@@ -175,7 +176,7 @@ TEXT
     "$GRCTL" decode -q "$work/made" | sed 's/ sum 95 right; no reply//' |
         diff "$work/expected" -
 }
-check 'frames split over chunks, rubbish, a reply that never ends' hand_made
+test_that 'frames split over chunks, rubbish, a reply that never ends' hand_made
 # The blocks of the guide marked sh are run, line by line. Status 1 of replay is fine: on a busy
 # machine a servo may say that its motion has lasted for another step of 10 ms.
 guide() {
@@ -190,5 +191,5 @@ guide() {
     tail -n 20 "$work/guide.out"
     return 1
 }
-check "the guide's commands" guide
+test_that "the guide's commands" guide
 done_testing

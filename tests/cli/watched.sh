@@ -32,8 +32,10 @@ recovers() {
     tell "$@" && exits 0 on_robot init --time 500
 }
 
+test_case "heat of another joint ends a move"
 check "heat of another joint ends a move" stops "$heat" temperature 12 70 --- move m5 -120 20000
 check "it moves again when it is cool" recovers temperature 12 25
+test_case "low voltage ends a pose"
 check "low voltage ends a pose" stops 'stopped for safety: low voltage' voltage 5 --- \
     --json pose --time 20000 R_ELBOW_P=-120
 if have_json; then
@@ -43,6 +45,7 @@ else
     skip "and JSON says why" "no python3"
 fi
 check "it moves again with a full battery" recovers voltage 7.4
+test_case "a joint that is blocked ends a move"
 check "a joint that is blocked ends a move" stops 'stopped for safety: .*motor 5 (R_ELBOW_P)' \
     block 5 on --- move m5 -120 20000
 check "it moves again when it is free" recovers block 5 off
@@ -56,6 +59,7 @@ hot_init() {
     wait $hot_pid
     status_was 4 init && complains "$heat" && ! sim_shows 5 moving
 }
+test_case "heat ends init"
 check "heat ends init" hot_init
 check "it moves again then too" recovers temperature 12 25
 
@@ -68,6 +72,7 @@ cold_and_flagged() {
         exits 1 on_robot doctor &&
         grep -q "grctl servo off m12; if it is reported again" "$work/out"
 }
+test_case "a servo that was too hot says what clears it"
 check "a servo that was too hot says what clears it" cold_and_flagged
 clears() {
     exits 0 on_robot servo off m12 && exits 0 on_robot servo on m12 &&

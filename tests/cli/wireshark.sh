@@ -19,9 +19,10 @@ same_registers() {
     registers_in_header >"$work/header" && registers_in_dissector >"$work/lua" &&
         [ "$(wc -l <"$work/header")" -gt 20 ] && diff "$work/header" "$work/lua"
 }
-check 'the registers are those of the library' same_registers
+test_that 'the registers are those of the library' same_registers
 
 if ! command -v tshark >/dev/null 2>&1; then
+    test_case 'frames as grctl decode has them'
     skip 'frames as grctl decode has them' 'no tshark here (tools/setup.sh --check installs it)'
     done_testing
     exit 0
@@ -70,10 +71,10 @@ agree() {
 "$GRCTL" -q -d sim --trace "$work/move" init --time 100 >/dev/null
 "$GRCTL" -q -d sim --wiring bus --trace "$work/bus" init --time 100 >/dev/null
 "$GRCTL" -q -d sim --wiring bus --echo --trace "$work/echo" init --time 100 >/dev/null
-check 'status: the same frames' agree "$work/status"
-check 'init: the same frames' agree "$work/move"
-check 'on a bus: the same frames' agree "$work/bus"
-check 'of one wire: the same frames' agree "$work/echo"
+test_that 'status: the same frames' agree "$work/status"
+test_that 'init: the same frames' agree "$work/move"
+test_that 'on a bus: the same frames' agree "$work/bus"
+test_that 'of one wire: the same frames' agree "$work/echo"
 
 make_trace >"$work/made" <<'LINES'
 out 1000 41
@@ -89,7 +90,7 @@ out 904000 54 09 FA AF 03 0F 1E 02 00 10 0A
 out 2000000 41 00
 in 2001000 07
 LINES
-check 'rubbish, frames cut off, wrong sums, split frames: the same' agree "$work/made"
+test_that 'rubbish, frames cut off, wrong sums, split frames: the same' agree "$work/made"
 
 # A robot of which every byte in a hundred is hit: whatever came, both see the same in it.
 faults() {
@@ -104,7 +105,7 @@ faults() {
     done
     [ "$(grep -c . "$work/by-shark")" -gt 5 ]
 }
-check 'a line full of faults: the same frames' faults
+test_that 'a line full of faults: the same frames' faults
 
 # Ids, joints, values, sums of all frames, as numbers in their order.
 values() {
@@ -118,7 +119,7 @@ values() {
         -e grobo.reg.temperature -e grobo.reg.torque -E separator='|' >"$work/out"
     says '^R_KNEE_P|-40|7.3[0-9]*|25|'
 }
-check 'values in their units' values
+test_that 'values in their units' values
 
 joints_as_grctl() {
     shark "$work/status" -Y 'grobo.kind == return' -T fields -e grobo.id -e grobo.joint \
@@ -128,20 +129,20 @@ joints_as_grctl() {
         p
     }' | sort -n | diff "$work/by-shark" -
 }
-check 'names of joints' joints_as_grctl
+test_that 'names of joints' joints_as_grctl
 
 in_words() {
     shark "$work/made" >"$work/out" || return 1
     says 'host .* robot .*relay: write servo 3 (R_SHOULDER_P): goal 90 deg, goal_time 100 ms' &&
         says 'robot .* host .*ack' && says '\[wrong sum\]' && says 'play slot 7; .*play scenario 3'
 }
-check 'a line for people' in_words
+test_that 'a line for people' in_words
 
 expert() {
     shark "$work/made" -q -z expert >"$work/out" || return 1
     says 'Wrong sum' && says 'No frame' && says 'Nobody asked for it' && says 'Refused'
 }
-check 'what is wrong is told as expert information' expert
+test_that 'what is wrong is told as expert information' expert
 
 replies() {
     shark "$work/status" -2 -Y grobo.request_in -T fields -e grobo.request_in \
@@ -150,7 +151,7 @@ replies() {
     shark "$work/made" -2 -T fields -e frame.number -e grobo.continued_in \
         -E separator='|' >"$work/out" && says '^1|2$' && says '^2|4$'
 }
-check 'replies know their requests, split frames their ends' replies
+test_that 'replies know their requests, split frames their ends' replies
 
 # What an adapter of one wire returns is no request: a reply answers what the host sent, its time
 # counts from there, and a repeated request is the one that counts.
@@ -176,7 +177,7 @@ echoes() {
         tr , '\n' >"$work/requests" || return 1
     [ "$(wc -l <"$work/requests")" -ge 20 ] && ! grep -v -x -F -f "$work/host" "$work/requests"
 }
-check 'on an echoing line replies answer what the host sent' echoes
+test_that 'on an echoing line replies answer what the host sent' echoes
 
 # As the guide says: in the folder of a person's plugins.
 # shellcheck disable=SC2086
@@ -193,5 +194,5 @@ as_plugin() {
         2>/dev/null >"$work/out" &&
         says 'check'
 }
-check 'as a plugin' as_plugin
+test_that 'as a plugin' as_plugin
 done_testing

@@ -70,6 +70,7 @@ refused() {
     [ $status -eq "$wanted" ] && grep -q -e "$pattern" /tmp/said
 }
 
+test_case 'an adapter is known and found'
 check 'its group is dialout' [ "$(stat -c '%G %a' "$tty")" = 'dialout 660' ]
 check 'ports: USB ids and driver' says "^$tty .*free .*USB 0403:6001 .*(ftdi_sio)" grctl ports
 check 'ports: its name that stays' says " $robot\$" grctl ports
@@ -83,12 +84,14 @@ check 'auto: the robot is found' says "robot found on $tty" grctl -v status
 grctl -d "$robot" status --watch >/tmp/watch 2>&1 &
 watcher=$!
 wait_for test -s /tmp/watch
+test_case 'who holds a port is named'
 check 'a held port names its holder' refused 1 "held by grctl (pid $watcher)" \
     grctl -d "$robot" status
 check 'ports: and who holds it' says "open in grctl (pid $watcher)" grctl ports
 kill -INT $watcher
 wait $watcher
 
+test_case 'a motion, and one that loses its line'
 check 'a motion' says '' grctl -d "$robot" play /greet.pseq
 
 grctl -d "$robot" play /greet.pseq >/tmp/play 2>&1 &
@@ -105,6 +108,7 @@ check 'ports: it is gone' [ "$(grctl ports | grep -c ROBOT)" -eq 0 ]
 check 'it cannot be opened' refused 1 "$robot" grctl -d "$robot" status
 echo @plug
 appears "$robot"
+test_case 'plugged in again it answers and stands still'
 check 'plugged in, it answers under its name' says '' grctl -d "$robot" status
 # Each asks all servos, which takes the line more than a tenth of a second; compared without the
 # head, and the age of each reading at the end.
@@ -121,6 +125,7 @@ check 'and stands still, to a tenth of a degree' stands_still
 without_sys() {
     umount -l /sys && grctl ports && [ ! -e /sys/class ]
 }
+test_case 'without /sys'
 check 'ports: without /sys an adapter has its name' says "^ .*${robot##*/}\$" without_sys
 check 'ports: and may be used' says '' grctl -d "$robot" info
 done_testing

@@ -59,14 +59,15 @@ all_run() {
     done <"$work/list"
     [ "$(wc -l <"$work/list")" -ge 60 ] && return $status
 }
-check 'every block has its test' all_run
+test_that 'every block has its test' all_run
 notices() {
     ! is_run x sh docs/guide/arm.md:1 '' && ! is_run x python docs/design.md:1 '' &&
         ! is_run x sh docs/guide/tour.md:1 '<!-- run -->'
 }
-check 'a block without one is noticed' notices
+test_that 'a block without one is noticed' notices
 
 if [ -n "${CROSS:-}${EMULATOR:-}" ]; then
+    test_case 'the blocks in C and Python'
     skip 'the blocks in C and Python' 'only for this machine'
     done_testing
     exit 0
@@ -98,6 +99,7 @@ while read -r id language place mark; do
     [ "$language" = c ] || continue
     case $place:$mark in
     *:'<!-- program'*)
+        test_case "$place runs"
         needs=$(echo "$mark" | sed -n 's/<!-- program \(.*\) -->/\1/p')
         if [ -n "$needs" ] && ! pkg-config --exists "$needs"; then
             skip "$place runs" "no $needs (tools/setup.sh --ci installs it)"
@@ -110,21 +112,22 @@ while read -r id language place mark; do
     README.md:*) ;; # tests/cli/readme.sh
     *)
         if grep -q '^#include' "$work/$id.c"; then
-            check "$place compiles" compiles "$work/$id.c" -fsyntax-only
+            test_that "$place compiles" compiles "$work/$id.c" -fsyntax-only
         else
-            check "$place is part of an example" part_of_example "$place"
+            test_that "$place is part of an example" part_of_example "$place"
         fi
         ;;
     esac
     compiled=$((compiled + 1))
 done <"$work/list"
-check 'there are blocks in C' [ $compiled -ge 8 ]
+test_that 'there are blocks in C' [ $compiled -ge 8 ]
 
 asyncio() {
     copy_build "$build" "$work/built" && make_in_copy "$work/built" python &&
         PYTHONPATH=$work/built/python timeout 60 python3 "$(ls "$work"/*your-loop*.python)" \
             >"$work/said" && grep -q "'R_ELBOW_P': -0.[78]" "$work/said"
 }
+test_case 'the loop of asyncio'
 if ! python3 -c 'import cffi' 2>/dev/null; then
     skip 'the loop of asyncio' 'no cffi'
 elif instrumented; then

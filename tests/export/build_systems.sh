@@ -54,14 +54,15 @@ cmake_source() {
         cmake_builds source
 }
 
-check 'an installed tree, moved' installs
-check 'pkg-config: grobo-core needs nothing else' by_pkg_config
+test_that 'an installed tree, moved' installs
+test_that 'pkg-config: grobo-core needs nothing else' by_pkg_config
 if command -v cmake >/dev/null; then
-    check 'CMake: find_package' cmake_installed
-    check 'CMake: the static libraries' cmake_static
-    check 'CMake: find_package refuses what does not fit' cmake_refuses
-    check 'CMake: add_subdirectory' cmake_source
+    test_that 'CMake: find_package' cmake_installed
+    test_that 'CMake: the static libraries' cmake_static
+    test_that 'CMake: find_package refuses what does not fit' cmake_refuses
+    test_that 'CMake: add_subdirectory' cmake_source
 else
+    test_case 'CMake'
     skip 'CMake' 'no cmake (tools/setup.sh --ci installs it)'
 fi
 done_testing

@@ -16,7 +16,7 @@ short() {
 }
 # idea NAME LINE...
 idea() {
-    check "example: $1" short "$@"
+    test_that "example: $1" short "$@"
     ideas="${ideas:-} $1"
 }
 idea read_joints 'R_ELBOW_P *-20\.0 deg' 'R_SHOULDER_P *20\.0 deg'
@@ -30,7 +30,7 @@ idea follow followed
 idea own_model 'HEAD: success'
 idea robot_file 'SO-101 follower: success'
 idea pump 'there after [0-9]* ms'
-check 'a stabilizer: it moves with the gripper level' short stabilizer \
+test_that 'a stabilizer: it moves with the gripper level' short stabilizer \
     'wrist_flex -0\.5 rad: success'
 ideas="$ideas stabilizer"
 no_other() {
@@ -41,7 +41,7 @@ no_other() {
         esac
     done
 }
-check 'every example is run' no_other
+test_that 'every example is run' no_other
 
 # guide_is_true PROGRAM... GUIDE: each C block of the guide stands in a program, word for word.
 guide_is_true() {
@@ -61,9 +61,9 @@ guide_is_true() {
     END { exit bad || blocks == 0 }
     ' "$@"
 }
-check "a robot of one's own: the guide shows what is built" guide_is_true \
+test_that "a robot of one's own: the guide shows what is built" guide_is_true \
     docs/examples/own_model.c docs/examples/stabilizer.c docs/guide/own-robot.md
-check "a microcontroller: the guide shows what is built" guide_is_true \
+test_that "a microcontroller: the guide shows what is built" guide_is_true \
     docs/examples/firmware/player.c docs/guide/bare-metal.md
 
 done_testing

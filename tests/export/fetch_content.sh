@@ -18,8 +18,9 @@ cmake_fetched() {
 
 pack
 if command -v cmake >/dev/null; then
-    check 'CMake: FetchContent, shared, exports what the map lists' cmake_fetched
+    test_that 'CMake: FetchContent, shared, exports what the map lists' cmake_fetched
 else
+    test_case 'CMake: FetchContent'
     skip 'CMake: FetchContent' 'no cmake (tools/setup.sh --ci installs it)'
 fi
 done_testing

@@ -174,6 +174,7 @@ by_each() {
     done <"$work/compilers"
 }
 
+test_case "a tree is installed"
 check 'install' make_target install
 share=$tree/opt/grobo/share
 check 'the man page is there' grep -q '^\.Dt GRCTL 1' "$share/man/man1/grctl.1"
@@ -188,13 +189,16 @@ check 'completion for fish' grep -q '^complete ' "$share/fish/vendor_completions
 check 'pkg-config tells the version of the headers' same_version
 compilers >"$work/compilers"
 by_each
+test_case "a program that does not fit fails to link"
 check 'another GROBO_JOINTS_MAX fails to link' other_cap
 check 'a build for plain drivers refuses others' plain_drivers
 check 'headers with shorter structures' yesterdays_headers
+test_case "a program of yesterday runs with the library of today"
 check 'a program of yesterday runs with the library of today' yesterdays_program
 rm -f "$library"/libgrobo.so*
 by_each --static
 check 'another GROBO_JOINTS_MAX fails to link statically' other_cap --static
+test_case "it is uninstalled"
 check 'uninstall' make_target uninstall
 check 'uninstall leaves no file' test -z "$(find "$tree" -type f -o -type l ! -path "$tree/usr")"
 done_testing

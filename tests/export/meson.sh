@@ -32,12 +32,13 @@ meson_wrapped() {
         says "$work/wrapped/b/c" "$work/wrapped/b/cxx"
 }
 
-check 'an installed tree, moved' installs
+test_that 'an installed tree, moved' installs
 pack
 if command -v meson >/dev/null && command -v ninja >/dev/null; then
-    check 'Meson: dependency' meson_installed
-    check 'Meson: wrap' meson_wrapped
+    test_that 'Meson: dependency' meson_installed
+    test_that 'Meson: wrap' meson_wrapped
 else
+    test_case 'Meson'
     skip 'Meson' 'no meson (tools/setup.sh --ci installs it)'
 fi
 done_testing

@@ -16,10 +16,12 @@ if [ -z "${EMULATOR:-}" ] && command -v readelf >/dev/null 2>&1; then
     }
     check "it is linked with none of them" without
 fi
+test_case "what was left out is told"
 check "serve" fails 1 'serve: this grctl was built without evhttp' bare -d sim serve
 check "fleet" fails 1 'this grctl has no MQTT in it' bare fleet list --broker mqtt://127.0.0.1:1
 check "agent" fails 1 'this grctl has no MQTT in it' bare -d sim agent --broker mqtt://127.0.0.1:1
 check "a URDF" fails 3 'built without expat' bare robot import tests/cli/urdf/so101.urdf
+test_case "the rest works"
 check "a robot plays" both exits 0 bare -d sim play --speed 400 motions/greet.pseq --- \
     says '^largest error'
 printf 'status m2\n' >"$work/script"

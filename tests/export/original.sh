@@ -77,14 +77,16 @@ compiles() {
             -Wno-unused-but-set-variable -Iinclude -Iports/posix/include -c \
             -o "$work/original.o" "$work/original.c"
 }
-check 'it has each of the 190 members' all_members
-check 'each is served by what the map says' same_symbols
+test_that 'it has each of the 190 members' all_members
+test_that 'each is served by what the map says' same_symbols
 reference=${GROBO_SHARED:-../shared}/seed/class-reference.ja.txt
 if [ -r "$reference" ]; then
-    check 'its calls in C++ have the arguments of the reference document' same_arguments
+    test_that 'its calls in C++ have the arguments of the reference document' same_arguments
 else
+    test_case 'its calls in C++'
     skip 'its calls in C++' "no $reference"
 fi
+test_case 'its C compiles'
 if [ -n "${CROSS:-}" ]; then
     skip 'its C compiles' 'the same for all machines'
 elif [ -n "${CC:-}" ] || command -v cc >/dev/null; then

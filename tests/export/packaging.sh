@@ -156,23 +156,24 @@ uninstalls() {
 }
 
 if [ -n "${CROSS:-}${EMULATOR:-}" ]; then
+    test_case 'packaging'
     skip 'packaging' 'only for this machine'
     done_testing
     exit 0
 fi
-check 'a tarball, unpacked' tarball
+test_that 'a tarball, unpacked' tarball
 source=$(echo "$work"/libgrobo-*)
-check 'the same commit, the same tarball' same_tarball
-check 'a tarball of a tarball: one line, and no file' dist_needs_git
-check 'no command of a user makes a warning an error' no_warning_ends_a_build
+test_that 'the same commit, the same tarball' same_tarball
+test_that 'a tarball of a tarball: one line, and no file' dist_needs_git
+test_that 'no command of a user makes a warning an error' no_warning_ends_a_build
 if [ -e .ci/run ]; then
-    check '.ci/run gives -Werror to each stage' ci_is_strict
-    check 'and each build of them takes it along' strict_is_strict
+    test_that '.ci/run gives -Werror to each stage' ci_is_strict
+    test_that 'and each build of them takes it along' strict_is_strict
 fi
-check 'the libraries alone need libevent and libyaml' needs_no_more
-check 'blanks in BUILD and DESTDIR; nothing is compiled again' installs_what_was_built
-check 'grobo.pc: the tree may be moved' moved
-check 'uninstalled there, no file is left' uninstalls
-check 'CPPFLAGS of the command line reach the files that add some' takes_cppflags
-check 'other flags, when they are given, are used' compiles_again_for_other_flags
+test_that 'the libraries alone need libevent and libyaml' needs_no_more
+test_that 'blanks in BUILD and DESTDIR; nothing is compiled again' installs_what_was_built
+test_that 'grobo.pc: the tree may be moved' moved
+test_that 'uninstalled there, no file is left' uninstalls
+test_that 'CPPFLAGS of the command line reach the files that add some' takes_cppflags
+test_that 'other flags, when they are given, are used' compiles_again_for_other_flags
 done_testing

@@ -20,12 +20,14 @@ notices() {
     return 0
 }
 absolute="${EMULATOR:-} $(cd "$BUILD" && pwd)/tools/picture/picture"
+test_case 'docs/robot.svg is what is drawn now'
 if [ -x "$BUILD/tools/picture/picture" ]; then
     check 'docs/robot.svg is what is drawn now' tools/picture.sh "$picture" --check
     check 'a changed one is noticed' notices
 else
     skip 'docs/robot.svg is what is drawn now' 'a program for Windows ends lines in its own way'
 fi
+test_case 'the picture moves, is small, needs nothing else'
 check 'it moves' [ "$(grep -c '<animate ' docs/robot.svg)" -ge 20 ]
 alone() {
     ! grep -n -i -e '<script' -e '<image' -e 'url(' -e 'href="[^#]' docs/robot.svg

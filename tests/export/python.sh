@@ -12,6 +12,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 
 leave() {
+    test_case 'Python'
     skip 'Python' "$1"
     done_testing
     exit 0
@@ -65,7 +66,7 @@ shown() {
         >"$work/shown.py" && program "$work/shown.py" && grep -q -e "$2" "$work/out"
 }
 
-check 'the package is made' made
+test_that 'the package is made' made
 for file in tests/package/python/test_*.py; do
     name=${file##*/}
     run "${name%.py}"
@@ -74,9 +75,9 @@ played() {
     awk '/^```python/ { open = 1; next } /^```/ { open = 0 } open' README.md >"$work/played.py" &&
         grep -q play "$work/played.py" && program "$work/played.py"
 }
-check 'what README.md shows' played
-check 'what its README shows' shown tools/python/README.md '^-45\.8'
-check 'what its guide shows' shown docs/guide/python.md '^R_ELBOW_P '
+test_that 'what README.md shows' played
+test_that 'what its README shows' shown tools/python/README.md '^-45\.8'
+test_that 'what its guide shows' shown docs/guide/python.md '^R_ELBOW_P '
 plugin() {
     awk '/^<!-- lerobot -->/ { there = 1 } there && /^```python/ { open = 1; next }
         /^```/ { open = 0 } open' docs/guide/lerobot.md >"$work/plugin.py" &&
@@ -84,6 +85,7 @@ plugin() {
             "$python" "$work/plugin.py" >"$work/out" && grep -q "'elbow_flex.pos': 2" "$work/out"
 }
 stand_in=tests/package/python/lerobot_stand_in
+test_case 'what the guide for LeRobot shows'
 if "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))'; then
     check 'what the guide for LeRobot shows' plugin
 else
@@ -94,8 +96,10 @@ if "$python" -c 'import lerobot.robots' 2>/dev/null; then
     export GROBO_LEROBOT
     run test_lerobot
 else
+    test_case 'the plugin in LeRobot itself'
     skip 'the plugin in LeRobot itself' 'no lerobot'
 fi
+test_case 'its types'
 if "$python" -m mypy --version >/dev/null 2>&1; then
     check 'its types' sh -c 'cd "$2" && "$1" -m mypy --strict -p grobo' sh "$python" \
         "$work/built/python"

@@ -13,6 +13,7 @@ GIT_COMMITTER_EMAIL=a@example.org
 export GIT_AUTHOR_NAME GIT_AUTHOR_EMAIL GIT_COMMITTER_NAME GIT_COMMITTER_EMAIL
 
 if ! command -v git >/dev/null; then
+    test_case 'a release'
     skip 'a release' 'no git'
     done_testing
     exit 0
@@ -64,21 +65,22 @@ gone() {
 git init -q . && printf '/build/\n' >.gitignore && sed -i '/^## /,$d' CHANGELOG.md
 printf '## [Unreleased]\n\n- A change.\n\n## [%s] - 2026-01-01\n' "$version" >>CHANGELOG.md
 commit 'a change'
-check 'refused: changes that no version has' refused 'CHANGELOG.md: \[Unreleased\] has 1 lines'
+test_that 'refused: changes that no version has' refused 'CHANGELOG.md: \[Unreleased\] has 1 lines'
 printf '# Changelog\n\n## [Unreleased]\n' >CHANGELOG.md
 commit 'no section'
-check 'refused: no section of the version' refused "CHANGELOG.md: no section \"## \[$version\] - "
+test_that 'refused: no section of the version' \
+    refused "CHANGELOG.md: no section \"## \[$version\] - "
 printf '\n## [%s] - 2026-01-01\n\n- A change.\n' "$version" >>CHANGELOG.md
-check 'refused: what is not committed' refused 'the tree has changes'
+test_that 'refused: what is not committed' refused 'the tree has changes'
 commit 'a section'
 for step in check size check-abi; do
-    check "refused: make $step fails" env FAILS=$step sh -c \
+    test_that "refused: make $step fails" env FAILS=$step sh -c \
         'MAKE=$1/make BUILD=$1/build sh tools/package/release.sh 2>&1 |
             grep "^release: make $FAILS failed" && [ ! -e "$1/build" ]' sh "$work"
 done
 rm -f "$work/make.log"
-check 'released' released
+test_that 'released' released
 rm -rf "$work/build"
-check 'refused: a version that is released' tagged
-check 'refused: a function that is gone' gone
+test_that 'refused: a version that is released' tagged
+test_that 'refused: a function that is gone' gone
 done_testing

@@ -11,6 +11,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 
 leave() {
+    test_case 'the reference site'
     skip 'the reference site' "$1"
     done_testing
     exit 0
@@ -45,9 +46,9 @@ tasks() {
         grep -q "page_$page.html" "$work/site/html/index.html" || { echo "no $page"; return 1; }
     done
 }
-check 'it is made without a warning' tools/site/make.sh "$work/site"
-check 'all links lead somewhere' leads
+test_that 'it is made without a warning' tools/site/make.sh "$work/site"
+test_that 'all links lead somewhere' leads
 check 'a broken link is noticed' notices
-check 'each public function has a man page' described
-check 'the first page leads to each task' tasks
+test_that 'each public function has a man page' described
+test_that 'the first page leads to each task' tasks
 done_testing

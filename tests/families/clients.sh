@@ -14,9 +14,10 @@ against() {
     for one in "$@"; do
         if "$PYTHON" -c "import $package" 2>/dev/null; then
             start_sim --servo "$servos"
-            check "$one" "$PYTHON" tests/families/clients.py "$one" "$robot"
+            test_that "$one" "$PYTHON" tests/families/clients.py "$one" "$robot"
             stop_sim
         else
+            test_case "$one"
             skip "$one" "the package $package is not installed"
         fi
     done
@@ -34,6 +35,7 @@ plugin() {
     PYTHONPATH=${BUILD:-build}/python GROBO_LEROBOT=real "$PYTHON" -X dev \
         tests/package/python/test_lerobot.py 2>&1
 }
+test_case "the plugin in LeRobot itself"
 if "$PYTHON" -c 'import cffi, lerobot' 2>/dev/null; then
     check "the plugin in LeRobot itself" plugin
 else
@@ -45,10 +47,11 @@ rates() {
 
 if "$PYTHON" -c 'import grobo, lerobot, rustypot' 2>/dev/null; then
     start_sim --robot so101
-    check "an arm is read as fast as the wire allows, beside others" rates
+    test_that "an arm is read as fast as the wire allows, beside others" rates
     sed 's/^/# /' "$work/rates"
     stop_sim
 else
+    test_case "an arm is read beside others"
     skip "an arm is read beside others" "a package is not installed"
 fi
 done_testing

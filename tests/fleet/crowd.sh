@@ -16,7 +16,7 @@ mqtt() {
     python3 tests/support/mqtt.py "$port" "$@"
 }
 
-# ---- the crowd -----------------------------------------------------------------------------------
+test_case "the crowd"
 
 mkdir -p "$work/config/grctl" "$work/motions"
 cp motions/greet.pseq "$work/motions"
@@ -65,7 +65,7 @@ floor() {
 }
 check "a round trip by the broker alone" floor "robots stand"
 
-# ---- they begin together -------------------------------------------------------------------------
+test_case "they begin together"
 
 # The last result, as Python sees it: late is the first frame behind the start, by each agent's
 # clock; that clock is known to bound.
@@ -87,7 +87,7 @@ EOF2
 }
 check "all begin together and play to the end" begin_together
 
-# ---- they stop together --------------------------------------------------------------------------
+test_case "they stop together"
 
 # plays: slowly, until it is stopped; $play is its process.
 plays() {
@@ -126,7 +126,7 @@ EOF2
 }
 check "$RUNS emergency stops in the midst of a motion" stop_often
 
-# ---- the broker dies -----------------------------------------------------------------------------
+test_case "the broker dies"
 
 # seconds of the processor and memory, while they play.
 cost() {

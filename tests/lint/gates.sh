@@ -48,7 +48,7 @@ compile() {
     $cc -std=c11 -O2 ${2:-} -c -o "build/${1%.c}.o" "$1"
 }
 
-# ---- lang ----------------------------------------------------------------------------------
+test_case "lang"
 
 # speaks TEXT TRANSLATION [CODE]: a tree whose one message has that translation.
 speaks() {
@@ -105,7 +105,7 @@ renewed() {
 }
 check 'lang: a catalogue is made anew' renewed
 
-# ---- layers --------------------------------------------------------------------------------
+test_case "layers"
 
 fresh
 sample src/bus/a.c <<'C'
@@ -242,7 +242,7 @@ C
 compile src/bus/a.c '-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2'
 check 'layers: a fortified memcpy is a memcpy' sh "$gates/layers.sh" build
 
-# ---- symbols -------------------------------------------------------------------------------
+test_case "symbols"
 
 fresh
 sample include/grobo/a.h <<'C'
@@ -278,7 +278,7 @@ $cc -shared -fPIC -o alien.so lib.c
 check 'symbols: a name without grobo_' \
     refuses 'helper does not begin with grobo_' sh "$gates/symbols.sh" alien.so
 
-# ---- null ----------------------------------------------------------------------------------
+test_case "null"
 
 fresh
 sample include/grobo/a.h <<'C'
@@ -304,7 +304,7 @@ check 'null: one that takes it' sh "$gates/null.sh"
 echo 'GROBO_API void grobo_c(grobo_c_fn fn);' >>include/grobo/a.h
 check 'null: a function is a pointer' refuses 'to grobo_c' sh "$gates/null.sh"
 
-# ---- headers -------------------------------------------------------------------------------
+test_case "headers"
 
 fresh
 sample include/grobo/a.h <<'C'
@@ -337,7 +337,7 @@ C
 check 'headers: a private one' \
     refuses 'src/bus/private.h:1: headers' sh "$gates/headers.sh"
 
-# ---- seed map ------------------------------------------------------------------------------
+test_case "seed map"
 
 # A map whose 190 rows are alike, a header and a test that bear it out.
 seed_rows() {
@@ -407,7 +407,7 @@ check 'seed map: another member than the reference' \
     refuses 'SC03 is y, not x' sh "$gates/seed_map.sh"
 unset GROBO_SHARED
 
-# ---- safety --------------------------------------------------------------------------------
+test_case "safety"
 
 # safety_rows: a table whose rules name a test.
 safety_rows() {
@@ -434,7 +434,7 @@ check 'safety: no such check' safety_refuses 'cold: no check called so' 's/it pl
 check 'safety: a row cut short' safety_refuses 'heat: a row has four cells' '/heat/s/| - //'
 check 'safety: no rules' safety_refuses 'no table of rules' '/heat/d;/cold/d'
 
-# ---- banned --------------------------------------------------------------------------------
+test_case "banned"
 
 fresh
 sample src/link/a.c <<'C'
@@ -455,7 +455,7 @@ check 'banned: what only the library may not' scan banned tools/grctl/a.c
 echo 'void f(void) { usleep(3); }' | sample tests/unit/a.c
 check 'banned: a test that sleeps' refuses 'tests/unit/a.c:1: banned' scan banned tests/unit/a.c
 
-# ---- platform ------------------------------------------------------------------------------
+test_case "platform"
 
 fresh
 printf '#if defined(_WIN32)\n#endif\n' | tee a.c | sample src/bus/a.c
@@ -484,7 +484,7 @@ printf 'bool nearer;\nbool near = x < 1;\n' | sample tools/grctl/a.c
 check 'platform: a name that Windows takes' \
     refuses 'tools/grctl/a.c:2: platform: near and far' scan platform tools/grctl/a.c
 
-# ---- size ----------------------------------------------------------------------------------
+test_case "size"
 
 # body N LINE: a function whose body is N times LINE.
 body() {
@@ -513,7 +513,7 @@ check 'size: seven parameters' refuses 'many.c:1: size: f has 7 parameters' scan
 awk 'BEGIN { for (i = 0; i < 1001; i++) print "int x;" }' >file.c
 check 'size: a file of 1001 lines' refuses 'file.c:1001: size: file of 1001' scan size file.c long.c
 
-# ---- braces --------------------------------------------------------------------------------
+test_case "braces"
 
 fresh
 sample a.c <<'C'
@@ -555,7 +555,7 @@ C
 check 'braces: none after a condition of two lines' refuses 'b.c:4: braces' scan braces b.c
 check 'braces: none after else' refuses 'b.c:10: braces' scan braces b.c
 
-# ---- switch --------------------------------------------------------------------------------
+test_case "switch"
 
 fresh
 cat >a.h <<'C'
@@ -600,7 +600,7 @@ C
 check 'switch: default over a number that may hold anything' scan switch a.h c.c a.h c.c
 check 'switch: default over an enum' refuses 'b.c:13: switch' scan switch a.h b.c a.h b.c
 
-# ---- units ---------------------------------------------------------------------------------
+test_case "units"
 
 fresh
 cat >a.h <<'C'
@@ -620,7 +620,7 @@ for line in '    int64_t delay;' '    double goal_angles[20];' 'void f(int timeo
     check "units: $line" refuses 'a.h:1: units' scan units a.h
 done
 
-# ---- text, format, help, tree --------------------------------------------------------------
+test_case "text, format, help, tree"
 
 fresh
 licence='/* SPDX-License-Identifier: MIT */'
@@ -681,7 +681,7 @@ echo 'int y;' | sample src/robots/a_b.c
 check 'robots: not made of its file' refuses 'src/robots/a_b.c: robots: differs' \
     sh "$gates/../robots/make.sh" --check cat
 
-# ---- anchors -------------------------------------------------------------------------------
+test_case "anchors"
 
 # sabotaged FILE LINES: a tree with a function, and with these sabotages in that file.
 sabotaged() {

@@ -70,46 +70,47 @@ says() {
     [ $got = "$expected" ] && grep -Fq -- "$text" said
 }
 
-check 'all of a function that is well tested are noticed' \
+test_that 'all of a function that is well tested are noticed' \
     says 0 ' passed, 0 failed, 0 skipped' mutants --count 0
 check 'it ends with the line that all tests end with' \
     sh -c 'tail -n 1 said | grep -Eq "^[0-9]+ passed, 0 failed, 0 skipped$"'
 
 echo 'unit core_limit' >scope
-check 'what no test looks at is not noticed' \
+test_that 'what no test looks at is not noticed' \
     says 1 'not noticed: core_sum | statement | {sum += i + 1; => ;}' mutants --count 0
 check 'and the command that repeats it is there' \
     sh -c 'id=$(sed -n "s/.*check-mutants ONLY=//p" said | head -n 1) && [ -n "$id" ]'
 id=$(sed -n '/core_sum | statement | {sum +=/{n;s/.*ONLY=//p;}' said)
-check 'by its name alone' says 1 '0 passed, 1 failed, 0 skipped' mutants --only "$id"
+test_that 'by its name alone' says 1 '0 passed, 1 failed, 0 skipped' mutants --only "$id"
 TESTS='test_core.o test_sum.o'
-check 'a test of it notices, also what never ends' says 0 ' failed, 0 skipped' mutants --count 0
+test_that 'a test of it notices, also what never ends' says 0 ' failed, 0 skipped' mutants --count 0
 TESTS=
 
 cat >survivors <<'S'
 core_sum | statement | {sum += i + 1; => ;}
     Nobody needs the sum.
 S
-check 'a survivor with a reason is skipped' says 1 ' 1 skipped' mutants --count 0
+test_that 'a survivor with a reason is skipped' says 1 ' 1 skipped' mutants --count 0
 TESTS='test_core.o test_sum.o'
-check 'but not where it is noticed' says 1 'notices it' mutants --count 0
+test_that 'but not where it is noticed' says 1 'notices it' mutants --count 0
 TESTS=
 echo 'core_sum | statement | {sum += i + 1; => ;}' >survivors
-check 'each needs a reason' says 1 'no reason: core_sum' mutants --count 0
+test_that 'each needs a reason' says 1 'no reason: core_sum' mutants --count 0
 printf 'core_sum | statement | {product *= i; => ;}\n    Gone.\n' >survivors
-check 'one that is not in the tree is missing' says 1 'missing anchor: core_sum' mutants --count 0
+test_that 'one that is not in the tree is missing' \
+    says 1 'missing anchor: core_sum' mutants --count 0
 : >survivors
 
 echo 'unit core_product' >scope
-check 'so is a pattern without a function' says 1 'missing anchor: unit core_product' mutants
+test_that 'so is a pattern without a function' says 1 'missing anchor: unit core_product' mutants
 echo 'function core_limit' >scope
 printf 'core_limit\n- tripped = 0;\n+ ;\n' >named
-check 'a sabotage by hand is noticed' says 0 '1 passed, 0 failed' mutants --only named
+test_that 'a sabotage by hand is noticed' says 0 '1 passed, 0 failed' mutants --only named
 printf 'core_limit\n- tripped = 2;\n+ ;\n' >named
-check 'its text must be there' says 1 'found 0 times' mutants --only named
+test_that 'its text must be there' says 1 'found 0 times' mutants --only named
 printf 'core_gone\n- tripped = 0;\n+ ;\n' >named
-check 'and its function' says 1 'missing anchor: one function core_gone' mutants --only named
-check 'nothing is left behind but who noticed what' sh -c '[ "$(ls build)" = killers.json ]'
+test_that 'and its function' says 1 'missing anchor: one function core_gone' mutants --only named
+test_that 'nothing is left behind but who noticed what' sh -c '[ "$(ls build)" = killers.json ]'
 
 # ---- the sabotages of the rows of a map ----
 
@@ -144,22 +145,22 @@ rows() {
 }
 
 printf 'SC01 core_limit\n- tripped = 1;\n+ ;\n' >rows
-check 'a row is killed by an assertion of its test' \
+test_that 'a row is killed by an assertion of its test' \
     says 0 '1 passed, 0 failed' rows --only SC01
-check 'a row without a sabotage is a failure' says 1 '1 rows have no sabotage: SC02' rows
+test_that 'a row without a sabotage is a failure' says 1 '1 rows have no sabotage: SC02' rows
 printf 'SC01 core_limit\n- value > 10\n+ value > 9\n' >rows
-check 'what its test does not look at survives' \
+test_that 'what its test does not look at survives' \
     says 1 'SC01: survives: unit/test_rows.c:it_trips' rows
 printf 'SC02 core_sum\n- i + 1\n+ i\n' >rows
-check 'a crash is no assertion' says 1 'it_adds crashed' rows
+test_that 'a crash is no assertion' says 1 'it_adds crashed' rows
 printf 'SC01 core_limit\n- tripped = 2;\n+ ;\n' >rows
-check 'a text that is gone is a failure' \
+test_that 'a text that is gone is a failure' \
     says 1 'SC01: missing anchor: core_limit' rows
 printf 'SC01 core_gone\n- tripped = 2;\n+ ;\n' >rows
-check 'so is a function' says 1 'SC01: missing anchor: one function core_gone' rows
+test_that 'so is a function' says 1 'SC01: missing anchor: one function core_gone' rows
 printf 'SC01 core_sum\n- i + 1\n+ i\n' >rows
-check 'a function of another row is none' says 1 "core_sum is none of the row's functions" rows
+test_that 'a function of another row is none' says 1 "core_sum is none of the row's functions" rows
 printf 'SC01 core_limit\n- tripped = 1;\n+ return GROBO_ERR_IO;\n' >rows
-check 'an error is no sabotage' says 1 'no sabotage' rows
+test_that 'an error is no sabotage' says 1 'no sabotage' rows
 
 done_testing

@@ -107,7 +107,7 @@ check 'one' true
 check 'two' true
 test_case 'what sits'
 check 'three' true
-shows 'what lies' true
+test_that 'what lies' true
 S
 steps broken <<'S'
 test_case 'what stands'
@@ -144,68 +144,72 @@ check 'one' true
 exit
 S
 
-check 'all pass' ends 0 '5 passed, 0 failed, 0 skipped' 'pass' ./good ./two_groups
-check 'a failure shows what was printed' \
+test_that 'all pass' ends 0 '5 passed, 0 failed, 0 skipped' 'pass' ./good ./two_groups
+test_that 'a failure shows what was printed' \
     ends 1 '3 passed, 1 failed, 0 skipped' '# 1 != 2' ./bad ./good
-check 'a process left behind is a failure' \
+test_that 'a process left behind is a failure' \
     ends 1 '1 passed, 1 failed, 0 skipped' 'sleep 60' ./leaves
 nobody_left() {
     ! kill -0 "$(cat left.pid)" 2>/dev/null
 }
 check 'and it is ended' wait_for nobody_left
-check 'one that ends by itself is none' ends 0 '1 passed, 0 failed, 0 skipped' pass ./lingers
-check 'the slowest are told' \
+test_that 'one that ends by itself is none' ends 0 '1 passed, 0 failed, 0 skipped' pass ./lingers
+test_that 'the slowest are told' \
     ends 0 '3 passed, 0 failed, 0 skipped' 'slow  ./lingers: ' ./lingers ./good
-check 'what waits does so beside the others' \
+test_that 'what waits does so beside the others' \
     ends 0 '9 passed, 0 failed, 0 skipped' pass ./cli/1 ./cli/2 ./cli/3 ./good ./good ./good
-check 'a skip is told with its reason' \
+test_that 'a skip is told with its reason' \
     ends 0 '1 passed, 0 failed, 1 skipped' 'with_a_robot: no robot here' ./skips
-check 'a program may skip whole' ends 0 '0 passed, 0 failed, 1 skipped' 'no tool' ./skips_all
-check 'no output is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty
-check 'no test is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty_group
-check 'a crash is a failure' ends 1 '1 passed, 1 failed, 0 skipped' 'killed by signal 11' ./crash
+test_that 'a program may skip whole' ends 0 '0 passed, 0 failed, 1 skipped' 'no tool' ./skips_all
+test_that 'no output is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty
+test_that 'no test is a failure' \
+    ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty_group
+test_that 'a crash is a failure' \
+    ends 1 '1 passed, 1 failed, 0 skipped' 'killed by signal 11' ./crash
 limit_s=1
-check 'no end is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'no end within 1 s' ./hang
+test_that 'no end is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'no end within 1 s' ./hang
 limit_s=60
-check 'fewer tests than planned is a failure' \
+test_that 'fewer tests than planned is a failure' \
     ends 1 '2 passed, 1 failed, 0 skipped' '2 results for 3 planned' ./short
-check 'an exit status is a failure' ends 1 '1 passed, 1 failed, 0 skipped' 'exit status 3' ./status
-check 'a last line without newline' ends 0 '1 passed, 0 failed, 0 skipped' pass ./half_line
-check 'a missing program is a failure' ends 1 '0 passed, 1 failed, 0 skipped' status ./nothing
-check 'a corpus goes to the program' ends 0 '2 passed, 0 failed, 0 skipped' pass ./files@corpus
-check 'an empty corpus is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no' ./files@no
-check 'a shell script' ends 0 '1 passed, 0 failed, 0 skipped' pass script.sh
-check 'a program that ends in the middle' \
+test_that 'an exit status is a failure' \
+    ends 1 '1 passed, 1 failed, 0 skipped' 'exit status 3' ./status
+test_that 'a last line without newline' ends 0 '1 passed, 0 failed, 0 skipped' pass ./half_line
+test_that 'a missing program is a failure' ends 1 '0 passed, 1 failed, 0 skipped' status ./nothing
+test_that 'a corpus goes to the program' ends 0 '2 passed, 0 failed, 0 skipped' pass ./files@corpus
+test_that 'an empty corpus is a failure' \
+    ends 1 '0 passed, 1 failed, 0 skipped' 'holds no' ./files@no
+test_that 'a shell script' ends 0 '1 passed, 0 failed, 0 skipped' pass script.sh
+test_that 'a program that ends in the middle' \
     ends 1 '1 passed, 1 failed, 0 skipped' 'without saying how many' ./no_plan
-check 'tests of a script are counted, not their steps' \
+test_that 'tests of a script are counted, not their steps' \
     ends 0 '3 passed, 0 failed, 0 skipped' 'named.sh (3)' named.sh
-check 'a step that fails fails its test' \
+test_that 'a step that fails fails its test' \
     ends 1 '1 passed, 1 failed, 0 skipped' 'not ok 1 - what stands' broken.sh
 check 'and is told with what was said' \
     ends 1 '1 passed, 1 failed, 0 skipped' "# FAILED: two
   #   because" broken.sh
-check 'a test of which a step is left out is skipped, its reason told once' \
+test_that 'a test of which a step is left out is skipped, its reason told once' \
     ends 0 '1 passed, 0 failed, 1 skipped' 'partly.sh: what stands: no robot here
 ' partly.sh
-check 'a test without a step is a failure' \
+test_that 'a test without a step is a failure' \
     ends 1 '1 passed, 1 failed, 0 skipped' 'it has no step' idle.sh
-check 'steps before the first test are one' \
+test_that 'steps before the first test are one' \
     ends 0 '1 passed, 0 failed, 0 skipped' 'unnamed.sh (1)' unnamed.sh
-check 'a script that ends in the middle of a test' \
+test_that 'a script that ends in the middle of a test' \
     ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' gone.sh
 only=sits
-check 'a word chooses tests of programs and scripts by name' \
+test_that 'a word chooses tests of programs and scripts by name' \
     ends 0 '4 passed, 0 failed, 0 skipped' 'named.sh (3)
 pass  ./several (1)' good named.sh ./several script.sh files@corpus
 only='several'
-check 'and whole programs by theirs' \
+test_that 'and whole programs by theirs' \
     ends 0 '1 passed, 0 failed, 0 skipped' 'several (1)' ./several ./good
 only='robot sits'
-check 'a blank is an underscore' \
+test_that 'a blank is an underscore' \
     ends 0 '1 passed, 0 failed, 0 skipped' 'several (1)' ./several ./good
 only=lies_down
-check 'a word that no test has is a failure' \
+test_that 'a word that no test has is a failure' \
     ends 1 '0 passed, 0 failed, 0 skipped' "no test is called 'lies_down'" ./several ./good
 only=
-check 'nothing to run is a failure' ends 1 '0 passed, 0 failed, 0 skipped' 'nothing to run'
+test_that 'nothing to run is a failure' ends 1 '0 passed, 0 failed, 0 skipped' 'nothing to run'
 done_testing

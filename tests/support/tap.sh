@@ -27,8 +27,8 @@ test_case() {
     echo "# ---- $1"
 }
 
-# shows NAME COMMAND...: a test of one step.
-shows() {
+# test_that NAME COMMAND...: a test of one step.
+test_that() {
     test_case "$1"
     check "$@"
 }

@@ -76,6 +76,9 @@ typedef struct test_fixture {
         test_i_around = (test_fixture){NULL, before, after};                                       \
     }
 
+/* Of a test: what it tells, besides, where it does not come to its end; it gets the row. */
+void test_if_it_breaks(void (*tell)(const void *row));
+
 /* Runs the tests that the arguments choose; how many failed, 2 where none is called so. */
 int test_main(int argc, char **argv);
 

@@ -50,9 +50,11 @@ every_header() {
     builds "$1" "$work/all.c" && $EMULATOR "$place/bin/program.exe"
 }
 
+test_case "it is installed"
 check 'install' make_target install
 for compiler in "$CC -std=c11 -x c" "$CXX -std=c++11 -x c++"; do
     name=${compiler%% *}
+    test_case "$name"
     check "$name, grobo.dll: builds" builds "$compiler" tests/export/consumer.c
     check "$name, grobo.dll: runs" runs
     check "$name: imports grobo.dll" imports 1
@@ -61,6 +63,7 @@ for compiler in "$CC -std=c11 -x c" "$CXX -std=c++11 -x c++"; do
     check "$name, static: runs" runs
     check "$name, static: imports no grobo.dll" imports 0
 done
+test_case "it is uninstalled"
 check 'uninstall' make_target uninstall
 check 'uninstall leaves no file' test -z "$(find "$place" -type f ! -name program.exe)"
 done_testing

@@ -17,6 +17,7 @@ is_motion() {
 converts() {
     exits 0 "$GRCTL" convert "$1" "$2" && cmp greet.m "$3"
 }
+test_case "paths of Windows"
 check 'a drive and backslashes' converts "$dos\\greet.m" "$dos\\drive.m" drive.m
 check 'a drive and slashes' converts "Z:$work/greet.m" "Z:$work/slash.m" slash.m
 check 'here' converts '.\greet.m' '.\here.m' here.m
@@ -31,6 +32,7 @@ lines_of_windows() {
     exits 0 "$GRCTL" convert "greet.$1" "lf.$2" && exits 0 "$GRCTL" convert "dos.$1" "crlf.$2" &&
         cmp "lf.$2" "crlf.$2" && ! grep -q "$(printf '\r')" "crlf.$2"
 }
+test_case "lines of Windows"
 check 'lines of Windows: .m' lines_of_windows m pseq
 check 'lines of Windows: .pseq' lines_of_windows pseq m
 shell_of_windows() {
@@ -50,7 +52,9 @@ no_carriage_return() {
 check 'none on standard output' no_carriage_return convert --to pseq greet.m -
 check 'nor in JSON' no_carriage_return --json show greet.m
 
+test_case "names with blanks and of other scripts"
 for name in 'two words' 'grüße' '挨拶'; do
+    test_case "names with blanks and of other scripts"
     check "named $name" converts greet.m "$name.m" "$name.m"
     check "$name again" is_motion "$dos\\$name.m"
     check "$name that is none" fails 3 "^grctl: no $name: no such file" \
@@ -58,6 +62,7 @@ for name in 'two words' 'grüße' '挨拶'; do
 done
 check_json 'in JSON too' 'lines[0]["file"] == "挨拶.m"' "$GRCTL" --json show '挨拶.m'
 
+test_case "NUL"
 check 'NUL takes all' both exits 0 "$GRCTL" convert --to pseq greet.m NUL --- [ ! -e NUL ]
 check 'NUL gives nothing' fails 3 '^grctl: NUL:1:1: an empty file' "$GRCTL" -d sim play NUL
 check 'NUL is no robot' fails 1 '^grctl: NUL: is not a serial port' "$GRCTL" -d NUL status
@@ -66,5 +71,6 @@ patterns() {
     mkdir many && cp greet.m many/a.m && cp greet.m many/b.m &&
         exits 0 "$GRCTL" check "$dos\\many\\*.m" 'many/?.m' && cat err && grep -q '^4 files' err
 }
+test_case "patterns, which no shell fills in"
 check 'patterns, which no shell fills in' patterns
 done_testing

@@ -72,28 +72,28 @@ serves_tcp() {
 }
 
 start_told_sim
-check 'a COM port beyond COM9' on "$robot" status
+test_that 'a COM port beyond COM9' on "$robot" status
 check 'by its full name' on '\\.\'"$robot" status R_ELBOW_P
-check 'a joint moves and is read back' moves
-check 'a motion is played' plays
-check 'JSON has no carriage returns' no_carriage_returns
-check 'a trace is the same as anywhere' traces
+test_that 'a joint moves and is read back' moves
+test_that 'a motion is played' plays
+test_that 'JSON has no carriage returns' no_carriage_returns
+test_that 'a trace is the same as anywhere' traces
 start_play
-check 'a second program is told who holds the port' holder_is_named
+test_that 'a second program is told who holds the port' holder_is_named
 kill -INT "$player"
 wait "$player"
 player_status=$?
-check 'Ctrl-C leaves the servos as the policy says' \
+test_that 'Ctrl-C leaves the servos as the policy says' \
     player_ended 130 'interrupted: the servos hold'
 start_play
 tell plug out
 wait "$player"
 player_status=$?
-check 'a port that is unplugged ends the command' player_ended 1 "$robot: .*gone"
-check 'a port that is not there' nobody_there
+test_that 'a port that is unplugged ends the command' player_ended 1 "$robot: .*gone"
+test_that 'a port that is not there' nobody_there
 stop_sim
 start_told_sim -b 1000000
-check 'at a million bits per second' on "$robot" -b 1000000 --retries 20 status R_ELBOW_P
+test_that 'at a million bits per second' on "$robot" -b 1000000 --retries 20 status R_ELBOW_P
 stop_sim
-check 'grctl.exe serves another grctl.exe by TCP' serves_tcp
+test_that 'grctl.exe serves another grctl.exe by TCP' serves_tcp
 done_testing
