@@ -318,13 +318,38 @@ static bool leaving_for_long(void)
     return made;
 }
 
-/* The line took nothing for a while. */
-static bool line_held(void)
+/* The system took nothing for the line for a while. What had left goes on. */
+static bool held_for(int64_t us)
 {
     bool made = moving();
-    halt.now_us += 60 * HALT_MS;
+    halt.now_us += us;
     far_step(&halt.far, halt.now_us);
     return made;
+}
+
+static bool line_held(void)
+{
+    return held_for(60 * HALT_MS);
+}
+
+static bool line_held_longer(void)
+{
+    return held_for(100 * HALT_MS);
+}
+
+static bool line_held_for_long(void)
+{
+    return held_for(500 * HALT_MS);
+}
+
+/* Its frames wait in the system when the stop is asked for, a reading among them. */
+static bool held_while_sensing(void)
+{
+    bool made = moving();
+    int r = grobo_robot_sense(&halt.robot, all(), GROBO_SENSE_ALL);
+    halt.now_us += 250 * HALT_MS;
+    far_step(&halt.far, halt.now_us);
+    return r > 0 && made;
 }
 
 static const state states[] = {
@@ -357,7 +382,10 @@ static const state states[] = {
     {"latched", OTHERS, latched},
     {"exit", OURS, leaving},
     {"exit, moved by others", OTHERS, leaving_for_long},
-    {"line held", OURS, line_held},
+    {"line held for 60 ms", OURS, line_held},
+    {"line held for 100 ms", OURS, line_held_longer},
+    {"line held for 500 ms", OURS, line_held_for_long},
+    {"line held while sensing", OURS, held_while_sensing},
 };
 
 /* ---- what is known to break a rule ----------------------------------------------------------- */
