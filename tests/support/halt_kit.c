@@ -152,6 +152,7 @@ static void make(halt_robot *robot, const recipe *from)
     robot->n_joints = from->n_joints;
     robot->frame_us = from->frame_us;
     robot->reading_us = from->reading_us;
+    robot->no_rate = from->far == &far_lx16a && from->n_joints > 20; /* a frame a joint */
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         if (kinds[i].far == from->far) {
             make_joints(robot, &kinds[i]);

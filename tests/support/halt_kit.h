@@ -26,6 +26,7 @@ typedef struct halt_robot {
     int n_joints, moved, other;
     int64_t frame_us;   /* the longest that may be on the line: a frame, or a question and reply */
     int64_t reading_us; /* all joints in full */
+    bool no_rate;       /* its line does not carry a motion at a rate and readings: refused */
 } halt_robot;
 
 /* Where a joint was when a stop was asked for, and when the first halt reached it. */
