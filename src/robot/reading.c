@@ -131,6 +131,12 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
            (never_began || (beside_rad > GROBO_I_OFF_WAY_RAD && (elsewhere || stands)));
 }
 
+/* No frame has told it the way that it is taken to be on (grobo_i_astray()). */
+static bool is_astray(const grobo_robot_axis *axis)
+{
+    return axis->off_way && axis->way.from_us > axis->told_us;
+}
+
 /* What a reading tells of where the joint is by now. */
 static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
                        const grobo_joint_state *got)
@@ -141,7 +147,7 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
         axis->sensed = true;
         grobo_i_axis_seen(axis, asked_us, got);
         take_move(robot, joint, got);
-        axis->off_way = is_off_way(robot, joint, asked_us, got);
+        axis->off_way = is_astray(axis) || is_off_way(robot, joint, asked_us, got);
         if (!axis->has_target) {
             grobo_i_axis_here(axis, robot->now_us);
         }

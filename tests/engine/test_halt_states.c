@@ -22,7 +22,10 @@
 #define FROM_DEG (-60.0)
 
 /* TWICE_US: a servo that tells no speed is read again so much later. */
-enum { SLACK_US = 10000, TWICE_US = 200000, WAY_US = 1500 * HALT_MS, FOREIGN_DPS = 40 };
+enum { SLACK_US = 10000, TWICE_US = 200000, WAY_US = 1500 * HALT_MS };
+
+/* How fast others turn the joint. */
+static double others_dps;
 
 /* Who turns the joint when the stop is asked for. */
 typedef enum turner { OURS, OTHERS, NOBODY_KNOWS } turner;
@@ -45,7 +48,7 @@ static grobo_joint_mask all(void)
 
 static void turn_by_others(void)
 {
-    far_foreign(&halt.far, moved_servo(), 60, FOREIGN_DPS, halt.now_us);
+    far_foreign(&halt.far, moved_servo(), 60, others_dps, halt.now_us);
 }
 
 static int begin_move(double deg)
@@ -402,7 +405,7 @@ static struct known {
     {"sts-64", NULL, "the same: 48 ms, and given up before the last replies are there", 2, 0},
     {"sts-38400", NULL, "the same: 60 ms", 1, 0},
     {"scs-20", "nobody answers", "a time-out of 24 ms is waited for", 1, 0},
-    {"lx16a-20", NULL, "no speed: sent back by 2.4 deg as it sets out or was moved", 3, 0},
+    {"lx16a-20", NULL, "no speed: sent back by 2.4 deg as it sets out or was moved", 1, 0},
     {"lx16a-64", "approach", "the same", 1, 0},
 };
 enum { KNOWN = sizeof known / sizeof known[0] };
@@ -491,10 +494,14 @@ static void judge_state(const halt_robot *robot, const state *s)
     }
 }
 
-static void an_emergency_stop_waits_for_nothing(void **unused)
+static void judge_all(double dps)
 {
-    (void)unused;
     const char *family = getenv("GROBO_HALT_FAMILY");
+    others_dps = dps;
+    memset(&sum, 0, sizeof sum);
+    for (int i = 0; i < KNOWN; i++) {
+        known[i].cells = 0;
+    }
     for (int i = 0; halt_robot_of(i) != NULL; i++) {
         sum.worst_ms = 0;
         if (family != NULL && strcmp(family, halt_robot_of(i)->name) != 0) {
@@ -516,10 +523,24 @@ static void an_emergency_stop_waits_for_nothing(void **unused)
     assert_int_equal(sum.failed, 0);
 }
 
+static void an_emergency_stop_waits_for_nothing(void **unused)
+{
+    (void)unused;
+    judge_all(40);
+}
+
+/* So fast that a reading is no place to halt it at after 30 ms. */
+static void nor_where_others_turn_a_joint_fast(void **unused)
+{
+    (void)unused;
+    judge_all(150);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_emergency_stop_waits_for_nothing),
+        cmocka_unit_test(nor_where_others_turn_a_joint_fast),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
