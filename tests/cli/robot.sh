@@ -129,4 +129,14 @@ stop_sim
 check "and so in process" exits 0 "$GRCTL" -d sim --wiring bus --echo status m7
 check "through a board there is none" fails 2 'echo needs --wiring bus' \
     "$GRCTL" -d sim --echo status
+# A name of 13 letters shifts no column of its row.
+aligned() {
+    exits 0 "$GRCTL" --robot koch -d sim status && awk '
+        NR == 1 { end = index($0, "temp") + 3 }
+        NR > 1 && (substr($0, end, 1) !~ /[0-9]/ || substr($0, end + 1, 1) != " ") { exit 1 }' \
+        "$work/out"
+}
+check "columns of status stand below each other" aligned
+check "a voltage that all servos have is told once" both exits 0 \
+    "$GRCTL" --robot pan-tilt -d sim doctor --- says '^ok    voltage     7.40 V at the servos$'
 done_testing

@@ -351,6 +351,8 @@ static void check_servos(patient *p)
         checkup_found(&p->k, "voltage", "charge the battery",
                       "%.2f V at the servos: low; at %.1f V every motion is stopped",
                       p->low_mv / 1e3, grobo_robot_driver(p->c.robot)->limits.voltage_mv / 1e3);
+    } else if (p->low_mv == p->high_mv) {
+        checkup_found(&p->k, "voltage", NULL, "%.2f V at the servos", p->low_mv / 1e3);
     } else {
         checkup_found(&p->k, "voltage", NULL, "%.2f to %.2f V at the servos", p->low_mv / 1e3,
                       p->high_mv / 1e3);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
+#include <string.h>
 
 #include "tools/grctl/show/render.h"
 
@@ -96,11 +97,24 @@ static void cell(bool known, int width, int decimals, double value)
     }
 }
 
+/* Of the column of names: a longer one would shift its row. */
+static int name_width(const grobo_model *model)
+{
+    int width = 12;
+    for (int k = 0; k < model->n_joints; k++) {
+        int length = (int)strlen(model->joints[k].name);
+        width = length > width ? length : width;
+    }
+    return width;
+}
+
 void render_status(const conn *c, grobo_joint_mask joints)
 {
     const grobo_model *model = model_of(c);
     bool color = c->a->color_out;
-    app_print("motor  joint         angle  target  torque  speed  current  temp  volts  age ms\n");
+    int width = name_width(model);
+    app_print("motor  %-*s  angle  target  torque  speed  current  temp  volts  age ms\n", width,
+              "joint");
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
         double target_rad;
@@ -108,7 +122,7 @@ void render_status(const conn *c, grobo_joint_mask joints)
             continue;
         }
         bool known = i.angle_age_us != GROBO_NEVER_US;
-        app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
+        app_print("%5d  %-*s", model->joints[k].motor, width, model->joints[k].name);
         cell(known, 5, 1, grobo_deg_from_rad(i.state.angle_rad));
         bool targeted = render_target(&i, &target_rad);
         cell(targeted, 6, 1, grobo_deg_from_rad(target_rad));
@@ -151,14 +165,15 @@ double render_worst_error(const conn *c, int *joint)
 void render_reached(const conn *c)
 {
     const grobo_model *model = model_of(c);
-    app_print("motor  joint         target  reached  error deg\n");
+    int width = name_width(model);
+    app_print("motor  %-*s  target  reached  error deg\n", width, "joint");
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
         if (grobo_robot_joint(c->robot, k, &i) < 0) {
             continue;
         }
         bool both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
-        app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
+        app_print("%5d  %-*s", model->joints[k].motor, width, model->joints[k].name);
         cell(i.has_target, 6, 1, grobo_deg_from_rad(i.target_rad));
         cell(i.angle_age_us != GROBO_NEVER_US, 7, 1, grobo_deg_from_rad(i.state.angle_rad));
         cell(both, 9, 2, grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
