@@ -224,8 +224,12 @@ static void end_read(end *e)
     /* Without room the bytes stay where they are, and must not wake the loop. */
     armed = dry || !e->paused;
     if (e->readable != NULL && e->armed != armed) {
-        e->armed = armed;
-        (void)(armed ? event_add(e->readable, NULL) : event_del(e->readable));
+        /* One that could not be added is looked at with those that wait for room. */
+        e->armed = armed && event_add(e->readable, NULL) == 0;
+        e->paused = e->paused || e->armed != armed;
+        if (!armed) {
+            (void)event_del(e->readable);
+        }
     }
 }
 

@@ -356,9 +356,14 @@ static int serve(farm *f)
 {
     f->console = (sim_console){
         .a = f->a, .base = f->base, .model = f->model, .server = f->server, .n = f->n};
-    sim_console_start(&f->console);
-    event_base_dispatch(f->base);
+    int error = sim_console_start(&f->console) ? GROBO_OK : GROBO_ERR_NOMEM;
+    if (!error && event_base_dispatch(f->base) < 0) {
+        error = GROBO_ERR_IO;
+    }
     sim_console_stop(&f->console);
+    if (error) {
+        return app_fail_error(f->a, EXIT_ROBOT, error, "sim");
+    }
     if (app_option(f->a, OPT_STRICT)->given) {
         return strict_status(f);
     }

@@ -146,8 +146,9 @@ int conn_wait_until(conn *c, bool (*done)(conn *c))
             return GROBO_ERR_IO;
         }
     }
-    /* The engine may know what its events have not told yet: a stop that came by a key, say. */
-    (void)event_base_loop(c->base, EVLOOP_NONBLOCK);
+    /* The engine may know what its events have not told yet: a stop that came by a key, say. One
+     * round: there may always be something to do (a session without memory for its timer). */
+    (void)event_base_loop(c->base, EVLOOP_NONBLOCK | EVLOOP_ONCE);
     return GROBO_OK;
 }
 

@@ -94,8 +94,11 @@ void conn_link_watch(conn_link *link)
         return;
     }
     for (int i = 0; i < link->n_signals; i++) {
-        if (event_add(link->signals[i], NULL) != 0 && link->user) {
-            link->user->link_error = GROBO_ERR_NOMEM; /* it could not be ended in order */
+        if (event_add(link->signals[i], NULL) != 0) { /* it could not be ended in order */
+            link->link_error = GROBO_ERR_NOMEM;
+            if (link->user) {
+                link->user->link_error = GROBO_ERR_NOMEM;
+            }
         }
     }
 }

@@ -262,8 +262,9 @@ line_reader *line_open(const line_owner *owner)
     open_history(reader);
     el_source(reader->edit, NULL);
     reader->resumed = evsignal_new(owner->base, SIGCONT, on_resumed, reader);
-    if (reader->resumed) {
-        event_add(reader->resumed, NULL);
+    if (!reader->resumed || event_add(reader->resumed, NULL) != 0) {
+        line_close(reader);
+        return NULL;
     }
     return reader;
 }

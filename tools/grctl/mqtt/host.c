@@ -247,7 +247,7 @@ int mqtt_host_main(void)
 {
     static host h;
     h.socket = os_child_settle();
-    if (h.socket == EVUTIL_INVALID_SOCKET || !direct_possible()) {
+    if (!os_is_socket(h.socket) || !direct_possible()) {
         fprintf(stderr, _("grctl: broker: is started by grctl itself, for its connection\n"));
         return MISUSED;
     }

@@ -17,6 +17,7 @@
 
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/mqtt/direct.h"
+#include "tools/grctl/os/alarm.h"
 
 enum { MISC_MS = 500, CONNECT_MS = 5000, AT_ONCE = 10 };
 
@@ -43,6 +44,7 @@ static void forget_socket(direct *m)
 }
 
 static void on_ready(evutil_socket_t fd, short what, void *ctx);
+static void lost(direct *m, const char *why);
 
 /* What any call of the library may have left to be written. */
 static void arm(direct *m)
@@ -57,20 +59,16 @@ static void arm(direct *m)
         evutil_socket_t fd = event_get_fd(m->ready);
         (void)event_del(m->ready);
         (void)event_assign(m->ready, m->config.base, fd, wanted, on_ready, m);
-        (void)event_add(m->ready, NULL);
+        if (event_add(m->ready, NULL) != 0) {
+            lost(m, _("not enough memory"));
+        }
     }
-}
-
-static struct timeval of_ms(int ms)
-{
-    return (struct timeval){.tv_sec = ms / 1000, .tv_usec = ms % 1000 * 1000};
 }
 
 static void try_later(direct *m)
 {
-    struct timeval pause = of_ms(pause_next_ms(&m->pause_ms));
     m->connecting = false;
-    (void)evtimer_add(m->again, &pause);
+    alarm_set(m->again, INT64_C(1000) * pause_next_ms(&m->pause_ms));
 }
 
 static void lost(direct *m, const char *why)
@@ -200,10 +198,10 @@ static void on_again(evutil_socket_t fd, short what, void *ctx)
     direct *m = ctx;
     (void)fd;
     (void)what;
+    alarm_clear(m->again);
     bool looks_up = m->config.ca || !*m->address;
     if (looks_up && m->config.may_block && !m->config.may_block(m->config.ctx)) {
-        struct timeval pause = of_ms(MISC_MS);
-        (void)evtimer_add(m->again, &pause);
+        alarm_set(m->again, INT64_C(1000) * MISC_MS);
         return;
     }
     connect_now(m);
@@ -399,8 +397,8 @@ direct *direct_new(const mqtt_config *config, const char **why)
     m->pause_ms = PAUSE_FIRST_MS;
     mosquitto_lib_init();
     m->client = mosquitto_new(config->id, true, m);
-    m->misc = event_new(config->base, -1, EV_PERSIST, on_misc, m);
-    m->again = evtimer_new(config->base, on_again, m);
+    m->misc = alarm_new(config->base, on_misc, m);
+    m->again = alarm_new(config->base, on_again, m);
     int result = m->client && m->misc && m->again ? set_up(m) : MOSQ_ERR_NOMEM;
     if (result != MOSQ_ERR_SUCCESS) {
         *why = result == MOSQ_ERR_INVAL && config->ca ? _("a certificate or key cannot be read")
@@ -415,8 +413,7 @@ direct *direct_new(const mqtt_config *config, const char **why)
 
 void direct_start(direct *m)
 {
-    struct timeval period = of_ms(MISC_MS);
-    (void)event_add(m->misc, &period);
+    alarm_set(m->misc, INT64_C(1000) * MISC_MS);
     connect_now(m);
 }
 

@@ -17,6 +17,7 @@
 #include "tools/grctl/mqtt/direct.h"
 #include "tools/grctl/mqtt/host.h"
 #include "tools/grctl/mqtt/note.h"
+#include "tools/grctl/os/alarm.h"
 #include "tools/grctl/os/child.h"
 #include "tools/grctl/os/os.h"
 
@@ -102,9 +103,7 @@ static void lost(mqtt *m, const char *why)
 {
     end_child(m);
     tell_down(m, why);
-    int ms = pause_next_ms(&m->pause_ms);
-    const struct timeval pause = {.tv_sec = ms / 1000, .tv_usec = ms % 1000 * 1000};
-    (void)evtimer_add(m->again, &pause);
+    alarm_set(m->again, INT64_C(1000) * pause_next_ms(&m->pause_ms));
 }
 
 static bool begin_child(mqtt *m)
@@ -128,7 +127,7 @@ static bool begin_child(mqtt *m)
 
 static bool say(mqtt *m, const note *n)
 {
-    return m->child.socket != EVUTIL_INVALID_SOCKET && note_write(m->out, n) &&
+    return os_is_socket(m->child.socket) && note_write(m->out, n) &&
            event_add(m->writable, NULL) == 0;
 }
 
@@ -150,8 +149,8 @@ static void on_writable(evutil_socket_t fd, short what, void *ctx)
     mqtt *m = ctx;
     (void)what;
     (void)evbuffer_write(m->out, fd); /* its end is read */
-    if (evbuffer_get_length(m->out) > 0) {
-        (void)event_add(m->writable, NULL);
+    if (evbuffer_get_length(m->out) > 0 && event_add(m->writable, NULL) != 0) {
+        lost(m, _("not enough memory"));
     }
 }
 
@@ -160,6 +159,7 @@ static void on_again(evutil_socket_t fd, short what, void *ctx)
     mqtt *m = ctx;
     (void)fd;
     (void)what;
+    alarm_clear(m->again);
     if (begin_child(m)) {
         say_start(m);
     } else {
@@ -246,7 +246,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     mqtt *m = ctx;
     (void)fd;
     (void)what;
-    if (m->child.socket == EVUTIL_INVALID_SOCKET) {
+    if (!os_is_socket(m->child.socket)) {
         return;
     }
     bool full = evbuffer_get_length(m->out) > KEPT_MAX_BYTES;
@@ -383,8 +383,8 @@ static mqtt *make(const mqtt_config *config)
     m->setup = evbuffer_new();
     m->in = evbuffer_new();
     m->out = evbuffer_new();
-    m->tick = event_new(config->base, -1, EV_PERSIST, on_tick, m);
-    m->again = evtimer_new(config->base, on_again, m);
+    m->tick = alarm_new(config->base, on_tick, m);
+    m->again = alarm_new(config->base, on_again, m);
     if (!m->setup || !m->in || !m->out || !m->tick || !m->again || !note_write(m->setup, &setup)) {
         destroy(m);
         return NULL;
@@ -413,12 +413,11 @@ mqtt *mqtt_new(const mqtt_config *config, const char **why)
 
 void mqtt_start(mqtt *m)
 {
-    static const struct timeval period = {.tv_usec = 1000 * MQTT_BEAT_MS};
     if (m->inside) {
         direct_start(m->inside);
         return;
     }
-    (void)event_add(m->tick, &period);
+    alarm_set(m->tick, INT64_C(1000) * MQTT_BEAT_MS);
     m->started = true;
     say_start(m);
     if (m->readable) { /* more than its answer may have come */
@@ -431,7 +430,7 @@ void mqtt_free(mqtt *m)
     if (!m) {
         return;
     }
-    if (m->child.socket != EVUTIL_INVALID_SOCKET) {
+    if (os_is_socket(m->child.socket)) {
         say_kind(m, NOTE_BYE);
         size_t size = evbuffer_get_length(m->out);
         const unsigned char *last = evbuffer_pullup(m->out, -1);

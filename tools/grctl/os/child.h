@@ -12,6 +12,12 @@
 
 #include <event2/util.h>
 
+/* EVUTIL_INVALID_SOCKET is unsigned on Windows, where the type of a socket is not. */
+static inline bool os_is_socket(evutil_socket_t socket)
+{
+    return socket != (evutil_socket_t)EVUTIL_INVALID_SOCKET;
+}
+
 typedef struct os_child {
     evutil_socket_t socket; /* it never waits; EVUTIL_INVALID_SOCKET: none */
     intptr_t program;

@@ -128,6 +128,7 @@ bool os_input_take(FILE *from);
  */
 int os_wait_to_read(void);
 
+/* bytes NULL: nothing more is heard, for lack of memory. */
 typedef void (*os_input_fn)(void *ctx, const char *bytes, size_t size);
 
 typedef struct os_input {
@@ -139,9 +140,9 @@ typedef struct os_input {
 
 /*
  * Hears standard input from now on, if it is a pipe or a terminal that this process has in the
- * foreground; its end ends nothing.
+ * foreground; its end ends nothing. False: no memory; os_input_stop() follows all the same.
  */
-void os_input_start(os_input *input, struct event_base *base, os_input_fn fn, void *ctx);
+bool os_input_start(os_input *input, struct event_base *base, os_input_fn fn, void *ctx);
 void os_input_stop(os_input *input);
 
 /*

@@ -4,23 +4,29 @@
 #include <string.h>
 
 #include "tools/grctl/cli/robot.h"
+#include "tools/grctl/os/alarm.h"
 #include "tools/grctl/play/troupe.h"
+
+/* A team is looked at at least so often while it plays. */
+#define LOOK_MAX_US INT64_C(3600000000)
 
 void troupe_look(troupe *t)
 {
     int64_t now_us = grobo_now_us();
     int64_t at_us = t->team ? grobo_team_step(t->team, now_us) : GROBO_NEVER_US;
     if (at_us != GROBO_NEVER_US) {
-        const struct timeval rest = conn_timeval(at_us > now_us ? at_us - now_us : 0);
-        (void)evtimer_add(t->timer, &rest);
+        int64_t rest_us = at_us > now_us ? at_us - now_us : 0;
+        alarm_set(t->timer, rest_us < LOOK_MAX_US ? rest_us : LOOK_MAX_US);
     }
 }
 
 static void on_timer(evutil_socket_t fd, short what, void *ctx)
 {
+    troupe *t = ctx;
     (void)fd;
     (void)what;
-    troupe_look(ctx);
+    alarm_clear(t->timer);
+    troupe_look(t);
 }
 
 static void on_robot(conn *c, const grobo_event *event)
@@ -50,13 +56,16 @@ int troupe_begin(troupe *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n)
     int error = t->seats ? conn_link_init(&t->host) : GROBO_ERR_NOMEM;
     if (!error) {
         t->n = n;
-        t->timer = evtimer_new(t->host.base, on_timer, t);
+        t->timer = alarm_new(t->host.base, on_timer, t);
         error = t->timer ? GROBO_OK : GROBO_ERR_NOMEM;
     }
     if (error) {
         return app_fail_error(a, EXIT_ROBOT, error, "%s", a->line.command->name);
     }
     conn_link_watch(&t->host);
+    if (t->host.link_error) {
+        return app_fail_error(a, EXIT_ROBOT, t->host.link_error, "%s", a->line.command->name);
+    }
     for (int i = 0; i < n; i++) {
         t->seats[i].all = t;
         t->seats[i].name = names[i];

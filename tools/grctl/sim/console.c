@@ -300,14 +300,18 @@ static void take(sim_console *console, char c)
 
 static void on_input(void *ctx, const char *bytes, size_t size)
 {
+    sim_console *console = ctx;
+    if (!bytes) {
+        app_note(console->a, "sim: standard input: %s", app_error_text(GROBO_ERR_NOMEM));
+    }
     for (size_t i = 0; i < size; i++) {
-        take(ctx, bytes[i]);
+        take(console, bytes[i]);
     }
 }
 
-void sim_console_start(sim_console *console)
+bool sim_console_start(sim_console *console)
 {
-    os_input_start(&console->input, console->base, on_input, console);
+    return os_input_start(&console->input, console->base, on_input, console);
 }
 
 void sim_console_stop(sim_console *console)

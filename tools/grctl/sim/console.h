@@ -47,8 +47,9 @@ typedef struct sim_console {
 /*
  * Listens for commands on standard input, if that is a pipe or a terminal that this process has in
  * the foreground; its end ends nothing. The fields above `private` are the caller's to fill.
+ * False: no memory; sim_console_stop() follows all the same.
  */
-void sim_console_start(sim_console *console);
+bool sim_console_start(sim_console *console);
 void sim_console_stop(sim_console *console);
 
 #endif

@@ -11,6 +11,7 @@
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/lang/lang.h"
+#include "tools/grctl/os/alarm.h"
 #include "tools/grctl/os/pipe.h"
 #include "tools/grctl/sim/state.h"
 
@@ -80,9 +81,9 @@ static bool settle(sim_state *s)
 
 static void look_again(sim_state *s, long us)
 {
-    const struct timeval after = {.tv_sec = us / 1000000, .tv_usec = us % 1000000};
-    if (!evtimer_pending(s->settle, NULL)) {
-        (void)evtimer_add(s->settle, &after);
+    if (!s->settling) {
+        s->settling = true;
+        alarm_set(s->settle, us);
     }
 }
 
@@ -92,6 +93,8 @@ static void on_settle(evutil_socket_t fd, short what, void *ctx)
     bool busy = settle(s);
     (void)fd;
     (void)what;
+    s->settling = false;
+    alarm_clear(s->settle);
     keep(s);
     if (busy) {
         look_again(s, NEXT_LOOK_US);
@@ -229,7 +232,7 @@ int sim_state_start(sim_state *s, app *a, struct event_base *base, grobo_sim_ser
                         status == EWOULDBLOCK ? _("another simulator has it; name another file")
                                               : app_cause_text(status));
     }
-    s->settle = evtimer_new(base, on_settle, s);
+    s->settle = alarm_new(base, on_settle, s);
     if (!s->settle) {
         return fail(s, app_error_text(GROBO_ERR_NOMEM));
     }

@@ -14,7 +14,8 @@ typedef struct sim_state {
     app *a; /* NULL: nothing is kept */
     /* private */
     grobo_sim_server *server;
-    struct event *settle; /* a flash write is over */
+    struct event *settle; /* an alarm: a flash write is over */
+    bool settling;        /* it is set */
     os_lock lock;
     bool dirty, failed;
     char path[1024];

@@ -398,8 +398,8 @@ static void add_headers(const http_request *r)
 static void send_reply(http_request *r, int status, const void *bytes, size_t size)
 {
     struct evbuffer *body = evbuffer_new();
-    if (body && size) {
-        evbuffer_add(body, bytes, size);
+    if (size && (!body || evbuffer_add(body, bytes, size) != 0)) {
+        status = status < 400 ? 503 : status; /* what was done is done, but cannot be told */
     }
     evhttp_send_reply(r->raw, status, head_reason(status), body);
     if (body) {
@@ -559,9 +559,12 @@ int http_streams(const http *server)
 static void send_chunk(stream *s, const char *text, size_t size)
 {
     struct evbuffer *chunk = evbuffer_new();
-    if (chunk) {
-        evbuffer_add(chunk, text, size);
+    if (chunk && evbuffer_add(chunk, text, size) == 0) {
         evhttp_send_reply_chunk(s->raw, chunk);
+    } else {
+        end_stream(s); /* its page asks for another one, which misses nothing */
+    }
+    if (chunk) {
         evbuffer_free(chunk);
     }
 }

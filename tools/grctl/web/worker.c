@@ -5,6 +5,7 @@
 
 #include <grobo/port.h>
 
+#include "tools/grctl/os/alarm.h"
 #include "tools/grctl/web/worker.h"
 
 /* How often the loop looks while something is being worked on. */
@@ -71,7 +72,7 @@ static void on_look(evutil_socket_t fd, short what, void *ctx)
     (void)what;
     finish(w);
     if (w->n == 0) {
-        event_del(w->look);
+        alarm_clear(w->look);
     }
 }
 
@@ -81,7 +82,7 @@ worker *worker_new(struct event_base *base)
     if (!w) {
         return NULL;
     }
-    w->look = event_new(base, -1, EV_PERSIST, on_look, w);
+    w->look = alarm_new(base, on_look, w);
     if (w->look && grobo_mutex_init(&w->lock) == GROBO_OK) {
         if (grobo_cond_init(&w->changed) == GROBO_OK) {
             if (grobo_thread_start(&w->thread, run, w) == GROBO_OK) {
@@ -100,9 +101,8 @@ worker *worker_new(struct event_base *base)
 
 void worker_put(worker *w, worker_task *task)
 {
-    const struct timeval period = {0, LOOK_US};
     if (w->n++ == 0) {
-        event_add(w->look, &period);
+        alarm_set(w->look, LOOK_US);
     }
     grobo_mutex_lock(&w->lock);
     append(&w->first, task);

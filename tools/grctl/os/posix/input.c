@@ -100,26 +100,19 @@ static void on_resumed(evutil_socket_t number, short what, void *ctx)
     os_input *input = ctx;
     (void)number;
     (void)what;
-    if (may_listen()) {
-        event_add(input->readable, NULL);
+    if (may_listen() && event_add(input->readable, NULL) != 0) {
+        input->fn(input->ctx, NULL, 0);
     }
 }
 
-void os_input_start(os_input *input, struct event_base *base, os_input_fn fn, void *ctx)
+bool os_input_start(os_input *input, struct event_base *base, os_input_fn fn, void *ctx)
 {
     signal(SIGTTIN, SIG_IGN);
     *input = (os_input){.fn = fn, .ctx = ctx};
     input->readable = event_new(base, STDIN_FILENO, EV_READ | EV_PERSIST, on_readable, input);
     input->resumed = evsignal_new(base, SIGCONT, on_resumed, input);
-    if (!input->readable) {
-        return;
-    }
-    if (input->resumed) {
-        event_add(input->resumed, NULL);
-    }
-    if (may_listen()) {
-        event_add(input->readable, NULL);
-    }
+    return input->readable && input->resumed && event_add(input->resumed, NULL) == 0 &&
+           (!may_listen() || event_add(input->readable, NULL) == 0);
 }
 
 void os_input_stop(os_input *input)

@@ -91,6 +91,7 @@ bool keys_can_come(void)
 bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, void *ctx)
 {
     static bool registered;
+    int n = 1;
     memset(k, 0, sizeof *k);
     if (!(pipes && is_pipe())) {
         if (!registered && atexit(restore) != 0) {
@@ -101,13 +102,14 @@ bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, vo
             return false;
         }
         k->events[1] = evsignal_new(base, SIGCONT, on_continue, k);
+        n = KEYS_EVENTS;
     }
     k->on_key = on_key;
     k->ctx = ctx;
     k->events[0] = event_new(base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, k);
-    bool heard = k->events[0] != NULL;
-    for (int i = 0; i < KEYS_EVENTS && heard; i++) {
-        heard = !k->events[i] || event_add(k->events[i], NULL) == 0;
+    bool heard = true;
+    for (int i = 0; i < n && heard; i++) {
+        heard = k->events[i] && event_add(k->events[i], NULL) == 0;
     }
     if (!heard) {
         keys_stop(k);

@@ -124,16 +124,14 @@ static bool may_listen(void)
     return GetFileType(in) == FILE_TYPE_PIPE || GetConsoleMode(in, &mode);
 }
 
-void os_input_start(os_input *input, struct event_base *base, os_input_fn fn, void *ctx)
+bool os_input_start(os_input *input, struct event_base *base, os_input_fn fn, void *ctx)
 {
     *input = (os_input){.fn = fn, .ctx = ctx};
     if (!may_listen()) {
-        return;
+        return true;
     }
     input->readable = event_new(base, os_input_await(), EV_READ | EV_PERSIST, on_readable, input);
-    if (input->readable) {
-        event_add(input->readable, NULL);
-    }
+    return input->readable && event_add(input->readable, NULL) == 0;
 }
 
 void os_input_stop(os_input *input)

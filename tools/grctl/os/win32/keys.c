@@ -148,8 +148,9 @@ bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, vo
     k->ctx = ctx;
     k->events[0] = event_new(base, pipe ? os_input_await() : console.near_end, EV_READ | EV_PERSIST,
                              on_input, k);
-    if (k->events[0]) {
-        event_add(k->events[0], NULL);
+    if (!k->events[0] || event_add(k->events[0], NULL) != 0) {
+        keys_stop(k);
+        return false;
     }
     return true;
 }
