@@ -109,9 +109,11 @@ core_asks_little() {
 
 # try CPU MACHINE
 try() {
+    test_case "$1: the firmware asks for little"
     check "$1: the core asks for mem*, math and the compiler's library" core_asks_little \
         "$FIRMWARE/$1"
     check "$1: no malloc and no stdio in the firmware" links_bare "$FIRMWARE/$1"
+    test_case "$1: a robot is driven by it in $2"
     if ! command -v "$qemu" >/dev/null; then
         skip "$1: in $2" "$qemu is missing"
         return
@@ -142,7 +144,7 @@ try() {
         stop_sim
         [ $waved -ne 0 ] || break
     done
-    check "$1: plays a motion itself, on a simulated robot" waved
+    test_that "$1: plays a motion itself, on a simulated robot" waved
 }
 
 if [ ! -e "$FIRMWARE/cortex-m0/gr001.elf" ]; then

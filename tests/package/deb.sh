@@ -98,12 +98,14 @@ purges() {
 
 packages=$(sed -n 's/^Package: //p' tools/package/debian/control)
 for arch in ${ARCHS:-amd64 arm64}; do
+    test_case "a package for $arch"
     check "$arch: built" tools/package/deb.sh "$build" "$arch"
     check "$arch: complete" complete "$arch"
     check "$arch: lintian finds nothing" clean "$arch"
     [ "$arch" = "$here" ] || check "$arch: needs the same packages" same_needs "$arch"
 done
 for suite in ${SUITES:-bookworm noble}; do
+    test_case "the package in $suite"
     root=$work/root-$suite
     if [ "$(id -u)" -ne 0 ]; then
         skip "$suite" 'a fresh root is made by root'

@@ -116,10 +116,12 @@ P
     [ "$(in_root /venv/bin/python /tmp/five.py)" = '20 False' ]
 }
 
+test_case 'packages are made'
 check 'packages are there' made
 check 'a wheel is there' wheel_made
 # Debian stable, oldstable and testing, the last two long-term releases of Ubuntu.
 for suite in ${SUITES:-trixie bookworm forky resolute noble}; do
+    test_case "a fresh root of $suite"
     root=$work/root-$suite
     if ! fresh_root "$suite" >"$work/why" 2>&1; then
         skip "$suite" "no fresh root: $(tail -n 1 "$work/why")"

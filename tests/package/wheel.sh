@@ -73,6 +73,7 @@ P
 
 version=$(sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
 for processor in ${PROCESSORS:-x86_64 aarch64}; do
+    test_case "a wheel for $processor"
     check "$processor: made" made "$processor"
     check "$processor: shows the names of the map alone" hides_the_rest "$processor"
     if [ "$processor" = "$(uname -m)" ]; then
