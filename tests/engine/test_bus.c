@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Transactions on the bus: order, retries, ends, cancelling, in virtual time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES };
 
@@ -22,9 +18,8 @@ static void submit_read(peer *p, request *r, uint8_t id, grobo_priority priority
     assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
 }
 
-static void a_read_is_answered(void **state)
+TEST(a_read_is_answered)
 {
-    (void)state;
     peer p;
     request r;
     peer_init(&p, NULL);
@@ -47,9 +42,8 @@ static void a_read_is_answered(void **state)
 }
 
 /* Submitted in the opposite order of their priority, and two of each. */
-static void the_urgent_goes_first_and_the_early_within_a_priority(void **state)
+TEST(the_urgent_goes_first_and_the_early_within_a_priority)
 {
-    (void)state;
     peer p;
     request r[8];
     peer_init(&p, NULL);
@@ -68,9 +62,8 @@ static void the_urgent_goes_first_and_the_early_within_a_priority(void **state)
     }
 }
 
-static void only_one_is_on_the_wire(void **state)
+TEST(only_one_is_on_the_wire)
 {
-    (void)state;
     peer p;
     request a, b;
     uint8_t buf[FRAME];
@@ -86,9 +79,8 @@ static void only_one_is_on_the_wire(void **state)
     assert_int_equal(grobo_bus_tx(&p.bus, buf, FRAME, 100 * MS), 11);
 }
 
-static void a_silent_servo_costs_its_attempts_and_no_more(void **state)
+TEST(a_silent_servo_costs_its_attempts_and_no_more)
 {
-    (void)state;
     peer p;
     request a, b;
     const grobo_bus_config config = {.margin_us = 2 * MS};
@@ -114,9 +106,8 @@ static void a_silent_servo_costs_its_attempts_and_no_more(void **state)
     assert_int_equal(p.bus.stats.failed, 1);
 }
 
-static void a_cut_reply_is_short_and_retried(void **state)
+TEST(a_cut_reply_is_short_and_retried)
 {
-    (void)state;
     peer p;
     request r;
     static const uint8_t stump[] = {0xFD, 0xDF, 0x01, 0x00, 0x2A, 0x02, 0x01, 0x64};
@@ -130,9 +121,8 @@ static void a_cut_reply_is_short_and_retried(void **state)
 }
 
 /* All bytes there and the sum wrong: known at once, not after a time-out. */
-static void a_wrong_sum_is_retried_at_once_and_never_believed(void **state)
+TEST(a_wrong_sum_is_retried_at_once_and_never_believed)
 {
-    (void)state;
     peer p;
     request r;
     static const uint8_t bad[] = {0xFD, 0xDF, 0x01, 0x00, 0x2A, 0x02, 0x01, 0x64, 0x00, 0x4D};
@@ -166,9 +156,8 @@ static void submit_torque(peer *p, request *r, uint8_t retries)
     assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
 }
 
-static void a_refusal_is_never_retried(void **state)
+TEST(a_refusal_is_never_retried)
 {
-    (void)state;
     peer p;
     request r;
     uint8_t b[FRAME];
@@ -186,9 +175,8 @@ static void a_refusal_is_never_retried(void **state)
 }
 
 /* 08 may be the id in a reply that the line still owed to the program before this one. */
-static void a_byte_that_refuses_is_asked_for_again(void **state)
+TEST(a_byte_that_refuses_is_asked_for_again)
 {
-    (void)state;
     peer p;
     request r;
     static const uint8_t ack = GROBO_RS30X_ACK, nack = GROBO_RS30X_NACK;
@@ -211,9 +199,8 @@ static void a_byte_that_refuses_is_asked_for_again(void **state)
     assert_int_equal(p.bus.stats.refusals, 1);
 }
 
-static void a_stale_request_is_not_sent(void **state)
+TEST(a_stale_request_is_not_sent)
 {
-    (void)state;
     peer p;
     request a, b;
     peer_init(&p, NULL);
@@ -231,9 +218,8 @@ static void a_stale_request_is_not_sent(void **state)
 }
 
 /* A stop waits for the reply that is on its way, but not for one that is overdue. */
-static void a_stop_cuts_an_overdue_read_short(void **state)
+TEST(a_stop_cuts_an_overdue_read_short)
 {
-    (void)state;
     peer p;
     request read, stop;
     peer_init(&p, NULL);
@@ -251,9 +237,8 @@ static void a_stop_cuts_an_overdue_read_short(void **state)
     assert_int_equal(p.sent[2].id, 1);
 }
 
-static void queues_have_a_cap_that_a_stop_ignores(void **state)
+TEST(queues_have_a_cap_that_a_stop_ignores)
 {
-    (void)state;
     static request r[GROBO_BUS_QUEUE_MAX + 2];
     peer p;
     peer_init(&p, NULL);
@@ -275,9 +260,8 @@ static void queues_have_a_cap_that_a_stop_ignores(void **state)
     assert_int_equal(grobo_bus_pending(&p.bus), 0);
 }
 
-static void nonsense_is_not_submitted(void **state)
+TEST(nonsense_is_not_submitted)
 {
-    (void)state;
     peer p;
     request r;
     peer_init(&p, NULL);
@@ -305,9 +289,8 @@ static void nonsense_is_not_submitted(void **state)
     assert_int_equal(grobo_bus_init(&bus, &echo), GROBO_ERR_ARG);
 }
 
-static void cancelling_takes_one_out_wherever_it_is(void **state)
+TEST(cancelling_takes_one_out_wherever_it_is)
 {
-    (void)state;
     peer p;
     request r[4];
     peer_init(&p, NULL);
@@ -335,9 +318,8 @@ static void cancelling_takes_one_out_wherever_it_is(void **state)
     assert_int_equal(p.bus.stats.failed, 0);
 }
 
-static void a_raised_one_goes_behind_those_of_its_new_priority(void **state)
+TEST(a_raised_one_goes_behind_those_of_its_new_priority)
 {
-    (void)state;
     peer p;
     request r[4];
     peer_init(&p, NULL);
@@ -368,9 +350,8 @@ static void submit_again(peer *p, grobo_txn *txn, int result)
     }
 }
 
-static void a_callback_may_submit_again(void **state)
+TEST(a_callback_may_submit_again)
 {
-    (void)state;
     peer p;
     request r[2];
     peer_init(&p, NULL);
@@ -400,9 +381,8 @@ static void cancel_others(peer *p, grobo_txn *txn, int result)
     }
 }
 
-static void a_callback_may_cancel_others(void **state)
+TEST(a_callback_may_cancel_others)
 {
-    (void)state;
     peer p;
     request r[5];
     peer_init(&p, NULL);
@@ -438,9 +418,8 @@ static request *new_read(peer *p, uint8_t id)
 }
 
 /* By success, by failure, by cancelling; valgrind and ASan watch. */
-static void a_callback_may_free_its_transaction(void **state)
+TEST(a_callback_may_free_its_transaction)
 {
-    (void)state;
     peer p;
     peer_init(&p, NULL);
     p.obliging = true;
@@ -461,9 +440,8 @@ static void a_callback_may_free_its_transaction(void **state)
     assert_int_equal(p.ended_count, 6);
 }
 
-static void a_transaction_needs_no_callback(void **state)
+TEST(a_transaction_needs_no_callback)
 {
-    (void)state;
     peer p;
     request r;
     peer_init(&p, NULL);
@@ -472,29 +450,4 @@ static void a_transaction_needs_no_callback(void **state)
     peer_run(&p, S);
     assert_false(grobo_txn_is_pending(&r.txn));
     assert_int_equal(p.bus.stats.tx_frames, 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_read_is_answered),
-        cmocka_unit_test(the_urgent_goes_first_and_the_early_within_a_priority),
-        cmocka_unit_test(only_one_is_on_the_wire),
-        cmocka_unit_test(a_silent_servo_costs_its_attempts_and_no_more),
-        cmocka_unit_test(a_cut_reply_is_short_and_retried),
-        cmocka_unit_test(a_wrong_sum_is_retried_at_once_and_never_believed),
-        cmocka_unit_test(a_refusal_is_never_retried),
-        cmocka_unit_test(a_byte_that_refuses_is_asked_for_again),
-        cmocka_unit_test(a_stale_request_is_not_sent),
-        cmocka_unit_test(a_stop_cuts_an_overdue_read_short),
-        cmocka_unit_test(queues_have_a_cap_that_a_stop_ignores),
-        cmocka_unit_test(nonsense_is_not_submitted),
-        cmocka_unit_test(cancelling_takes_one_out_wherever_it_is),
-        cmocka_unit_test(a_raised_one_goes_behind_those_of_its_new_priority),
-        cmocka_unit_test(a_callback_may_submit_again),
-        cmocka_unit_test(a_callback_may_cancel_others),
-        cmocka_unit_test(a_callback_may_free_its_transaction),
-        cmocka_unit_test(a_transaction_needs_no_callback),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

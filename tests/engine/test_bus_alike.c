@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The same requests and replies on another clock: the same frames, the same ends. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES };
 
@@ -56,9 +52,8 @@ static void live(peer *p, uint32_t seed, int64_t origin_us)
     peer_run(p, p->now_us + S);
 }
 
-static void the_bus_does_not_care_where_the_clock_begins(void **state)
+TEST(the_bus_does_not_care_where_the_clock_begins)
 {
-    (void)state;
     static const int64_t origins_us[] = {7777777, INT64_C(86400000000) * 365};
     static peer first, p;
     for (uint32_t seed = 0; seed < 60; seed++) {
@@ -78,12 +73,4 @@ static void the_bus_does_not_care_where_the_clock_begins(void **state)
             assert_memory_equal(&p.bus.stats, &first.bus.stats, sizeof p.bus.stats);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_bus_does_not_care_where_the_clock_begins),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

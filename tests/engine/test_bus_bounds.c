@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The bus at its bounds: what is learnt, who waits for whom, what is remembered. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "src/bus/time.h"
 #include "tests/support/bus_peer.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, READ_US = 3488 };
 
@@ -27,9 +23,8 @@ static void submit_read(peer *p, request *r, uint8_t id, uint8_t retries, grobo_
 
 /* ---- beginning ------------------------------------------------------------------------------- */
 
-static void what_stood_in_the_memory_before_means_nothing(void **state)
+TEST(what_stood_in_the_memory_before_means_nothing)
 {
-    (void)state;
     static grobo_bus a, b;
     uint8_t frame[FRAME];
     grobo_txn x, y;
@@ -55,9 +50,8 @@ static void what_stood_in_the_memory_before_means_nothing(void **state)
     assert_int_equal(x.sent_us, -1);
 }
 
-static void a_line_may_be_as_slow_as_1200_bps(void **state)
+TEST(a_line_may_be_as_slow_as_1200_bps)
 {
-    (void)state;
     grobo_bus bus;
     for (uint32_t bps = 1199; bps <= 1200; bps++) {
         const grobo_bus_config line = {.protocol = &grobo_board_protocol, .baud_bps = bps};
@@ -68,9 +62,8 @@ static void a_line_may_be_as_slow_as_1200_bps(void **state)
     }
 }
 
-static void a_frame_may_fill_the_buffer(void **state)
+TEST(a_frame_may_fill_the_buffer)
 {
-    (void)state;
     peer p;
     request r;
     uint8_t buf[FRAME];
@@ -86,9 +79,8 @@ static void a_frame_may_fill_the_buffer(void **state)
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
 }
 
-static void asked_again_it_was_not_sent_yet(void **state)
+TEST(asked_again_it_was_not_sent_yet)
 {
-    (void)state;
     peer p;
     request r;
     peer_init(&p, NULL);
@@ -119,9 +111,8 @@ static uint32_t margin_after(peer *p, int64_t late_us)
 }
 
 /* Mean with weight 1/8 and four times the deviation with weight 1/4, as TCP reckons. */
-static void the_margin_is_the_mean_and_four_deviations(void **state)
+TEST(the_margin_is_the_mean_and_four_deviations)
 {
-    (void)state;
     peer p;
     peer_init(&p, NULL);
     p.now_us = S;
@@ -143,9 +134,8 @@ static void the_margin_is_the_mean_and_four_deviations(void **state)
 }
 
 /* Nobody knows which of its attempts was answered. */
-static void a_retried_read_teaches_nothing(void **state)
+TEST(a_retried_read_teaches_nothing)
 {
-    (void)state;
     peer p;
     request r;
     grobo_bus_cost cost;
@@ -159,9 +149,8 @@ static void a_retried_read_teaches_nothing(void **state)
 }
 
 /* Its last byte is there: the line is free, sooner than it was computed. */
-static void a_reply_that_comes_early_frees_the_line(void **state)
+TEST(a_reply_that_comes_early_frees_the_line)
 {
-    (void)state;
     peer p;
     request a, b;
     peer_init(&p, NULL);
@@ -194,9 +183,8 @@ static int64_t left_after(grobo_priority read, grobo_priority urgent, uint32_t t
 }
 
 /* It waits for a reply that may come in time, and longer only for its equals. */
-static void the_urgent_waits_for_no_overdue_reply_but_of_its_equals(void **state)
+TEST(the_urgent_waits_for_no_overdue_reply_but_of_its_equals)
 {
-    (void)state;
     const int64_t whole_us = READ_US + GROBO_BUS_MARGIN_FIRST_US;
     for (int read = 0; read < GROBO_PRIORITIES; read++) {
         for (int urgent = 0; urgent < GROBO_PRIORITIES; urgent++) {
@@ -209,9 +197,8 @@ static void the_urgent_waits_for_no_overdue_reply_but_of_its_equals(void **state
     assert_int_equal(left_after(GROBO_PRIORITY_SENSE, GROBO_PRIORITY_STOP, 3 * MS), READ_US);
 }
 
-static void a_short_time_out_is_not_made_longer_by_what_waits(void **state)
+TEST(a_short_time_out_is_not_made_longer_by_what_waits)
 {
-    (void)state;
     peer p;
     request a, b;
     peer_init(&p, NULL);
@@ -228,9 +215,8 @@ static void a_short_time_out_is_not_made_longer_by_what_waits(void **state)
 }
 
 /* Stale ones end in every queue, each as soon as it is, and never are sent. */
-static void what_is_stale_ends_in_every_queue(void **state)
+TEST(what_is_stale_ends_in_every_queue)
 {
-    (void)state;
     peer p;
     request busy, r[2 * GROBO_PRIORITIES];
     peer_init(&p, NULL);
@@ -256,9 +242,8 @@ static void what_is_stale_ends_in_every_queue(void **state)
     assert_int_equal(p.bus.stats.failed, 2 * GROBO_PRIORITIES);
 }
 
-static void all_that_are_too_late_end_at_once(void **state)
+TEST(all_that_are_too_late_end_at_once)
 {
-    (void)state;
     for (int priority = 0; priority < GROBO_PRIORITIES; priority++) {
         peer p;
         request r[3];
@@ -274,9 +259,8 @@ static void all_that_are_too_late_end_at_once(void **state)
     }
 }
 
-static void what_may_start_by_now_starts(void **state)
+TEST(what_may_start_by_now_starts)
 {
-    (void)state;
     peer p;
     request r;
     uint8_t buf[FRAME];
@@ -306,9 +290,8 @@ static int64_t patience(int64_t reserve_us, int64_t length_us)
     return p.ended[0].at_us - S - READ_US;
 }
 
-static void patience_ends_before_the_span_and_not_sooner_than_usual(void **state)
+TEST(patience_ends_before_the_span_and_not_sooner_than_usual)
 {
-    (void)state;
     assert_int_equal(patience(300 * MS, 10 * MS), GROBO_BUS_MARGIN_MAX_US);
     assert_int_equal(patience(READ_US + 31 * MS, 10 * MS), 30 * MS);
     assert_int_equal(patience(READ_US + 5 * MS, 10 * MS), GROBO_BUS_MARGIN_FIRST_US);
@@ -344,9 +327,8 @@ static bool may_ask(peer *p, uint8_t id)
     return asked;
 }
 
-static void the_latest_lost_replies_are_remembered(void **state)
+TEST(the_latest_lost_replies_are_remembered)
 {
-    (void)state;
     peer p;
     for (uint8_t id = 1; id < GROBO_BUS_HOLDS; id++) { /* one place is for the ACKs */
         lose_reads(&p, GROBO_BUS_HOLDS - 1);
@@ -372,9 +354,8 @@ static void the_latest_lost_replies_are_remembered(void **state)
 }
 
 /* What stands in memory behind the last lost reply is none of them. */
-static void nothing_is_remembered_behind_the_last(void **state)
+TEST(nothing_is_remembered_behind_the_last)
 {
-    (void)state;
     static struct {
         grobo_bus bus;
         grobo_bus_hold behind;
@@ -396,9 +377,8 @@ static void nothing_is_remembered_behind_the_last(void **state)
 }
 
 /* After a refusal of a second attempt the first one's answer may yet come. */
-static void a_refusal_of_a_retry_may_have_a_reply_behind_it(void **state)
+TEST(a_refusal_of_a_retry_may_have_a_reply_behind_it)
 {
-    (void)state;
     for (int attempts = 1; attempts <= 2; attempts++) {
         peer p;
         request a, b;
@@ -427,9 +407,8 @@ static void a_refusal_of_a_retry_may_have_a_reply_behind_it(void **state)
 }
 
 /* Flags tell of heat and of flash; one alone says that the servo did not take the request. */
-static void only_the_flag_for_it_refuses(void **state)
+TEST(only_the_flag_for_it_refuses)
 {
-    (void)state;
     for (int flag = 0x01; flag <= 0x80; flag <<= 1) {
         peer p;
         request r;
@@ -461,9 +440,8 @@ static int result_of(peer *p, const uint8_t *bytes, size_t n)
 }
 
 /* Each exchange is judged by its own bytes. */
-static void the_end_says_what_was_wrong_this_time(void **state)
+TEST(the_end_says_what_was_wrong_this_time)
 {
-    (void)state;
     static const uint8_t good[] = {0xFD, 0xDF, 3, 0, 42, 2, 1, 5, 0, 3 ^ 42 ^ 2 ^ 1 ^ 5};
     static const uint8_t bad_sum[] = {0xFD, 0xDF, 3, 0, 42, 2, 1, 5, 0, 0x99};
     static const uint8_t rubbish[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
@@ -478,9 +456,8 @@ static void the_end_says_what_was_wrong_this_time(void **state)
 }
 
 /* A head that is not complete may still become the reply. */
-static void rubbish_with_a_head_in_it_is_waited_for(void **state)
+TEST(rubbish_with_a_head_in_it_is_waited_for)
 {
-    (void)state;
     static const uint8_t head[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 0xFD};
     static const uint8_t rest[] = {0xDF, 3, 0, 42, 2, 1, 5, 0, 3 ^ 42 ^ 2 ^ 1 ^ 5};
     peer p;
@@ -495,9 +472,8 @@ static void rubbish_with_a_head_in_it_is_waited_for(void **state)
 }
 
 /* An ACK among other bytes is late, and counted so. */
-static void an_ack_that_is_not_believed_is_late(void **state)
+TEST(an_ack_that_is_not_believed_is_late)
 {
-    (void)state;
     static const uint8_t among[] = {0x55, GROBO_RS30X_ACK};
     peer p;
     request r;
@@ -520,9 +496,8 @@ static void an_ack_that_is_not_believed_is_late(void **state)
 }
 
 /* The echo came in part, then nothing: something was there. */
-static void a_stump_of_the_echo_is_short(void **state)
+TEST(a_stump_of_the_echo_is_short)
 {
-    (void)state;
     for (int some = 0; some < 2; some++) {
         peer p;
         request r;
@@ -538,9 +513,8 @@ static void a_stump_of_the_echo_is_short(void **state)
 }
 
 /* Something came before the silence, but nothing of what was waited for. */
-static void rubbish_and_then_silence_is_told_from_silence(void **state)
+TEST(rubbish_and_then_silence_is_told_from_silence)
 {
-    (void)state;
     static const uint8_t noise[] = {0x11, 0x22, 0x33, 0x44};
     for (int some = 0; some < 2; some++) {
         for (int echo = 0; echo < 2; echo++) {
@@ -562,9 +536,8 @@ static void rubbish_and_then_silence_is_told_from_silence(void **state)
 
 /* ---- taking back ----------------------------------------------------------------------------- */
 
-static void only_the_priorities_named_are_taken_back(void **state)
+TEST(only_the_priorities_named_are_taken_back)
 {
-    (void)state;
     for (unsigned bits = 0; bits <= GROBO_PRIORITY_ALL; bits++) {
         for (int active = 0; active < GROBO_PRIORITIES; active++) {
             peer p;
@@ -590,9 +563,8 @@ static void only_the_priorities_named_are_taken_back(void **state)
     }
 }
 
-static void what_was_never_submitted_is_not_taken_back(void **state)
+TEST(what_was_never_submitted_is_not_taken_back)
 {
-    (void)state;
     peer p;
     request a, b;
     peer_init(&p, NULL);
@@ -603,35 +575,4 @@ static void what_was_never_submitted_is_not_taken_back(void **state)
     assert_int_equal(grobo_bus_cancel(&p.bus, &b.txn), GROBO_ERR_NOTFOUND);
     assert_int_equal(grobo_bus_pending(&p.bus), 1);
     assert_int_equal(p.bus.stats.canceled, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_stood_in_the_memory_before_means_nothing),
-        cmocka_unit_test(a_line_may_be_as_slow_as_1200_bps),
-        cmocka_unit_test(a_frame_may_fill_the_buffer),
-        cmocka_unit_test(asked_again_it_was_not_sent_yet),
-        cmocka_unit_test(the_margin_is_the_mean_and_four_deviations),
-        cmocka_unit_test(a_retried_read_teaches_nothing),
-        cmocka_unit_test(a_reply_that_comes_early_frees_the_line),
-        cmocka_unit_test(the_urgent_waits_for_no_overdue_reply_but_of_its_equals),
-        cmocka_unit_test(a_short_time_out_is_not_made_longer_by_what_waits),
-        cmocka_unit_test(what_is_stale_ends_in_every_queue),
-        cmocka_unit_test(all_that_are_too_late_end_at_once),
-        cmocka_unit_test(what_may_start_by_now_starts),
-        cmocka_unit_test(patience_ends_before_the_span_and_not_sooner_than_usual),
-        cmocka_unit_test(the_latest_lost_replies_are_remembered),
-        cmocka_unit_test(nothing_is_remembered_behind_the_last),
-        cmocka_unit_test(a_refusal_of_a_retry_may_have_a_reply_behind_it),
-        cmocka_unit_test(only_the_flag_for_it_refuses),
-        cmocka_unit_test(the_end_says_what_was_wrong_this_time),
-        cmocka_unit_test(rubbish_with_a_head_in_it_is_waited_for),
-        cmocka_unit_test(an_ack_that_is_not_believed_is_late),
-        cmocka_unit_test(a_stump_of_the_echo_is_short),
-        cmocka_unit_test(rubbish_and_then_silence_is_told_from_silence),
-        cmocka_unit_test(only_the_priorities_named_are_taken_back),
-        cmocka_unit_test(what_was_never_submitted_is_not_taken_back),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Bytes that come when they should not: late replies, rubbish, ACKs without a name, echoes. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, MARGIN = 2 * MS };
 
@@ -26,9 +22,8 @@ static void start(peer *p)
     peer_init(p, &config);
 }
 
-static void bytes_that_nobody_awaits_are_late(void **state)
+TEST(bytes_that_nobody_awaits_are_late)
 {
-    (void)state;
     peer p;
     start(&p);
     peer_position_at(&p, MS, 1, 5);
@@ -38,9 +33,8 @@ static void bytes_that_nobody_awaits_are_late(void **state)
     assert_int_equal(p.bus.stats.resync_bytes, 0);
 }
 
-static void the_reply_of_a_dead_read_is_not_taken_for_another_motors(void **state)
+TEST(the_reply_of_a_dead_read_is_not_taken_for_another_motors)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p);
@@ -58,9 +52,8 @@ static void the_reply_of_a_dead_read_is_not_taken_for_another_motors(void **stat
 }
 
 /* The same registers of the same motor: only time, or another reply, tells the two apart. */
-static void the_same_read_again_waits_until_the_lost_reply_cannot_come(void **state)
+TEST(the_same_read_again_waits_until_the_lost_reply_cannot_come)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p);
@@ -74,9 +67,8 @@ static void the_same_read_again_waits_until_the_lost_reply_cannot_come(void **st
     assert_int_equal(p.bus.stats.late_bytes, 0);
 }
 
-static void the_same_read_again_waits_until_the_lost_reply_has_come(void **state)
+TEST(the_same_read_again_waits_until_the_lost_reply_has_come)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p);
@@ -91,9 +83,8 @@ static void the_same_read_again_waits_until_the_lost_reply_has_come(void **state
     assert_int_equal(p.bus.stats.late_bytes, 10);
 }
 
-static void another_reply_proves_that_the_lost_one_is_lost(void **state)
+TEST(another_reply_proves_that_the_lost_one_is_lost)
 {
-    (void)state;
     peer p;
     request a, b, c;
     start(&p);
@@ -109,9 +100,8 @@ static void another_reply_proves_that_the_lost_one_is_lost(void **state)
 }
 
 /* On a bus it proves that for the adapter only: a servo may answer after another one did. */
-static void on_a_bus_a_servo_may_answer_after_another_one(void **state)
+TEST(on_a_bus_a_servo_may_answer_after_another_one)
 {
-    (void)state;
     const grobo_bus_config config = {.margin_us = MARGIN, .protocol = &grobo_rs30x_protocol};
     for (int comes = 0; comes <= 1; comes++) {
         peer p;
@@ -138,9 +128,8 @@ static void on_a_bus_a_servo_may_answer_after_another_one(void **state)
 }
 
 /* The first attempt's reply answers the second; the second's must not answer the next read. */
-static void a_retry_that_succeeds_may_leave_a_reply_behind(void **state)
+TEST(a_retry_that_succeeds_may_leave_a_reply_behind)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p);
@@ -159,9 +148,8 @@ static void a_retry_that_succeeds_may_leave_a_reply_behind(void **state)
 }
 
 /* Also where the line was quick so far, so that the wait for the first one was soon over. */
-static void the_reply_behind_a_late_one_may_be_as_late(void **state)
+TEST(the_reply_behind_a_late_one_may_be_as_late)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p);
@@ -180,9 +168,8 @@ static void the_reply_behind_a_late_one_may_be_as_late(void **state)
     assert_int_equal(p.bus.stats.late_bytes, 10);
 }
 
-static void a_late_ack_is_not_taken_for_another_motors(void **state)
+TEST(a_late_ack_is_not_taken_for_another_motors)
 {
-    (void)state;
     peer p;
     request a, b, c;
     start(&p);
@@ -204,9 +191,8 @@ static void a_late_ack_is_not_taken_for_another_motors(void **state)
     assert_int_equal(p.ended[2].result, GROBO_OK);
 }
 
-static void reads_go_on_while_an_ack_is_outstanding_and_clear_it(void **state)
+TEST(reads_go_on_while_an_ack_is_outstanding_and_clear_it)
 {
-    (void)state;
     peer p;
     request a, b, c;
     start(&p);
@@ -227,9 +213,8 @@ static void reads_go_on_while_an_ack_is_outstanding_and_clear_it(void **state)
     assert_int_equal(p.ended[2].result, GROBO_OK);
 }
 
-static void an_ack_among_rubbish_is_not_believed(void **state)
+TEST(an_ack_among_rubbish_is_not_believed)
 {
-    (void)state;
     static const uint8_t rubbish[] = {0x55, GROBO_RS30X_ACK};
     peer p;
     request r;
@@ -242,9 +227,8 @@ static void an_ack_among_rubbish_is_not_believed(void **state)
 }
 
 /* 07 is an ACK byte, and the low byte of 7 mA, 7 deg... */
-static void an_ack_inside_a_late_reply_is_not_believed(void **state)
+TEST(an_ack_inside_a_late_reply_is_not_believed)
 {
-    (void)state;
     peer p;
     request r;
     start(&p);
@@ -258,9 +242,8 @@ static void an_ack_inside_a_late_reply_is_not_believed(void **state)
 }
 
 /* The stump announces 18 bytes of data: it must not swallow the reply of the next attempt. */
-static void a_stump_does_not_swallow_the_next_reply(void **state)
+TEST(a_stump_does_not_swallow_the_next_reply)
 {
-    (void)state;
     static const uint8_t stump[] = {0xFD, 0xDF, 0x01, 0x00, 0x2A, 0x12, 0x01};
     peer p;
     request r;
@@ -276,9 +259,8 @@ static void a_stump_does_not_swallow_the_next_reply(void **state)
     assert_int_equal(p.bus.stats.resync_bytes, sizeof stump);
 }
 
-static void an_ack_is_no_answer_to_a_read(void **state)
+TEST(an_ack_is_no_answer_to_a_read)
 {
-    (void)state;
     peer p;
     request r;
     start(&p);
@@ -290,9 +272,8 @@ static void an_ack_is_no_answer_to_a_read(void **state)
     assert_int_equal(p.bus.stats.resync_bytes, 1);
 }
 
-static void replies_that_fit_in_part_are_not_believed(void **state)
+TEST(replies_that_fit_in_part_are_not_believed)
 {
-    (void)state;
     static const struct {
         uint8_t id, address, length;
     } wrong[] = {{2, 42, 2}, {1, 44, 2}, {1, 42, 4}};
@@ -315,9 +296,8 @@ static void replies_that_fit_in_part_are_not_believed(void **state)
 }
 
 /* Every byte pushes the next request back, but not for ever. */
-static void a_babbling_line_is_waited_for_with_patience_and_no_more(void **state)
+TEST(a_babbling_line_is_waited_for_with_patience_and_no_more)
 {
-    (void)state;
     static const int64_t steps_us[] = {900, 500}; /* past the end of patience; at its end, too */
     for (int i = 0; i < 2; i++) {
         peer p;
@@ -344,9 +324,8 @@ static void a_babbling_line_is_waited_for_with_patience_and_no_more(void **state
 }
 
 /* It was quiet meanwhile: the patience with the first babble is no measure of the second. */
-static void a_line_that_babbles_again_is_waited_for_again(void **state)
+TEST(a_line_that_babbles_again_is_waited_for_again)
 {
-    (void)state;
     static const uint8_t rubbish = 0x55;
     peer p;
     request r;
@@ -360,9 +339,8 @@ static void a_line_that_babbles_again_is_waited_for_again(void **state)
     assert_int_equal(p.sent[0].at_us, 200 * MS + GROBO_BUS_QUIET_US);
 }
 
-static void motion_does_not_wait_for_quiet(void **state)
+TEST(motion_does_not_wait_for_quiet)
 {
-    (void)state;
     peer p;
     request a, b;
     const grobo_rs30x_goal goal = {2, 0, 0};
@@ -385,9 +363,8 @@ static void start_echo(peer *p)
     peer_init(p, &config);
 }
 
-static void an_echo_is_removed(void **state)
+TEST(an_echo_is_removed)
 {
-    (void)state;
     peer p;
     request a, b;
     start_echo(&p);
@@ -411,9 +388,8 @@ static void an_echo_is_removed(void **state)
     assert_int_equal(p.bus.stats.late_bytes, 0);
 }
 
-static void a_write_is_over_when_its_echo_is_there(void **state)
+TEST(a_write_is_over_when_its_echo_is_there)
 {
-    (void)state;
     peer p;
     request r;
     const grobo_rs30x_goal goal = {2, 0, 0};
@@ -434,9 +410,8 @@ static void a_write_is_over_when_its_echo_is_there(void **state)
     assert_int_equal(p.ended[0].at_us, 4 * MS);
 }
 
-static void an_adapter_without_echo_is_found_out(void **state)
+TEST(an_adapter_without_echo_is_found_out)
 {
-    (void)state;
     peer p;
     request r;
     start_echo(&p);
@@ -447,32 +422,4 @@ static void an_adapter_without_echo_is_found_out(void **state)
     peer_submit_read(&p, &r, 1, 0);
     peer_run(&p, 2 * S);
     assert_int_equal(p.ended[1].result, GROBO_ERR_TIMEOUT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bytes_that_nobody_awaits_are_late),
-        cmocka_unit_test(the_reply_of_a_dead_read_is_not_taken_for_another_motors),
-        cmocka_unit_test(the_same_read_again_waits_until_the_lost_reply_cannot_come),
-        cmocka_unit_test(the_same_read_again_waits_until_the_lost_reply_has_come),
-        cmocka_unit_test(another_reply_proves_that_the_lost_one_is_lost),
-        cmocka_unit_test(on_a_bus_a_servo_may_answer_after_another_one),
-        cmocka_unit_test(a_retry_that_succeeds_may_leave_a_reply_behind),
-        cmocka_unit_test(the_reply_behind_a_late_one_may_be_as_late),
-        cmocka_unit_test(a_late_ack_is_not_taken_for_another_motors),
-        cmocka_unit_test(reads_go_on_while_an_ack_is_outstanding_and_clear_it),
-        cmocka_unit_test(an_ack_among_rubbish_is_not_believed),
-        cmocka_unit_test(an_ack_inside_a_late_reply_is_not_believed),
-        cmocka_unit_test(a_stump_does_not_swallow_the_next_reply),
-        cmocka_unit_test(an_ack_is_no_answer_to_a_read),
-        cmocka_unit_test(replies_that_fit_in_part_are_not_believed),
-        cmocka_unit_test(a_babbling_line_is_waited_for_with_patience_and_no_more),
-        cmocka_unit_test(a_line_that_babbles_again_is_waited_for_again),
-        cmocka_unit_test(motion_does_not_wait_for_quiet),
-        cmocka_unit_test(an_echo_is_removed),
-        cmocka_unit_test(a_write_is_over_when_its_echo_is_there),
-        cmocka_unit_test(an_adapter_without_echo_is_found_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Transactions whose owner is asked at the moment they would leave. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES };
 
@@ -37,9 +33,8 @@ static int on_leave(void *ctx, grobo_txn *txn)
     return leave.refuse_from > 0 && leave.asked >= leave.refuse_from ? GROBO_ERR_SPEED : 1;
 }
 
-static void a_frame_that_must_not_leave_delays_nothing(void **state)
+TEST(a_frame_that_must_not_leave_delays_nothing)
 {
-    (void)state;
     peer p;
     request r[2];
     peer_init(&p, NULL);
@@ -62,9 +57,8 @@ static void a_frame_that_must_not_leave_delays_nothing(void **state)
     assert_int_equal(p.bus.stats.failed, 1);
 }
 
-static void every_attempt_is_asked_for(void **state)
+TEST(every_attempt_is_asked_for)
 {
-    (void)state;
     for (int refuse_from = 0; refuse_from < 4; refuse_from++) {
         peer p;
         request r;
@@ -94,9 +88,8 @@ static int write_anew(void *ctx, grobo_txn *txn)
     return 0;
 }
 
-static void a_frame_may_be_written_as_it_leaves(void **state)
+TEST(a_frame_may_be_written_as_it_leaves)
 {
-    (void)state;
     peer p;
     request r;
     peer_init(&p, NULL);
@@ -116,9 +109,8 @@ static void resubmit(peer *p, grobo_txn *txn, int result)
     }
 }
 
-static void one_that_is_submitted_again_and_again_does_not_spin(void **state)
+TEST(one_that_is_submitted_again_and_again_does_not_spin)
 {
-    (void)state;
     peer p;
     request r;
     uint8_t buf[FRAME];
@@ -132,15 +124,4 @@ static void one_that_is_submitted_again_and_again_does_not_spin(void **state)
     assert_int_equal(leave.asked, 1);
     assert_int_equal(grobo_bus_deadline(&p.bus, 0), 0);
     assert_int_equal(grobo_bus_cancel(&p.bus, &r.txn), GROBO_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_frame_that_must_not_leave_delays_nothing),
-        cmocka_unit_test(every_attempt_is_asked_for),
-        cmocka_unit_test(a_frame_may_be_written_as_it_leaves),
-        cmocka_unit_test(one_that_is_submitted_again_and_again_does_not_spin),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

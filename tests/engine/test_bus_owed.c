@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Replies that are late and still owed: whom they are credited to, and what they cost. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, MARGIN = 2 * MS, READ_US = 3488, READ_FAILED = READ_US + MARGIN };
 enum { BUS_READ_US = 695 + 100 + 869 }; /* 8 bytes, the return delay, 10 bytes */
@@ -27,9 +23,8 @@ static void start(peer *p, bool echo)
 
 /* ---- credit ---------------------------------------------------------------------------------- */
 
-static void a_late_reply_takes_the_place_of_the_next_attempt(void **state)
+TEST(a_late_reply_takes_the_place_of_the_next_attempt)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, false);
@@ -50,9 +45,8 @@ static void a_late_reply_takes_the_place_of_the_next_attempt(void **state)
     assert_int_equal(p.bus.stats.late_bytes, 0);
 }
 
-static void a_late_reply_is_credited_while_another_is_awaited(void **state)
+TEST(a_late_reply_is_credited_while_another_is_awaited)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, false);
@@ -72,9 +66,8 @@ static void a_late_reply_is_credited_while_another_is_awaited(void **state)
     assert_int_equal(p.sent_count, 2);
 }
 
-static void a_late_refusal_is_credited_too(void **state)
+TEST(a_late_refusal_is_credited_too)
 {
-    (void)state;
     uint8_t bytes[16];
     const uint8_t data[2] = {0};
     const grobo_rs30x_packet refused = {
@@ -93,9 +86,8 @@ static void a_late_refusal_is_credited_too(void **state)
 }
 
 /* The line keeps the order: what comes after a later reply is not the one that was lost. */
-static void what_is_not_owed_any_more_is_credited_to_nobody(void **state)
+TEST(what_is_not_owed_any_more_is_credited_to_nobody)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, false);
@@ -119,9 +111,8 @@ static void what_is_not_owed_any_more_is_credited_to_nobody(void **state)
 }
 
 /* Nothing can come before its time is over: a doubled reply settles nothing. */
-static void a_doubled_reply_is_not_taken_for_the_one_that_is_owed(void **state)
+TEST(a_doubled_reply_is_not_taken_for_the_one_that_is_owed)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, false);
@@ -152,9 +143,8 @@ static int64_t late_twice(peer *p, request *a, request *b, int64_t first_us, int
 }
 
 /* Every attempt that failed is owed a reply: the same question waits for all of them. */
-static void two_owed_replies_are_both_waited_for(void **state)
+TEST(two_owed_replies_are_both_waited_for)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, false);
@@ -168,9 +158,8 @@ static void two_owed_replies_are_both_waited_for(void **state)
 
 /* A reply so late that it was no longer expected comes while its question waits for a third
  * attempt: that to the second is owed still. */
-static void a_reply_that_was_given_up_settles_no_later_one(void **state)
+TEST(a_reply_that_was_given_up_settles_no_later_one)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, false);
@@ -190,9 +179,8 @@ static void a_reply_that_was_given_up_settles_no_later_one(void **state)
 
 /* One more question than there is room for is failed, and takes the place of the oldest: what was
  * owed to that one is not owed to it. */
-static void a_hold_that_is_used_again_owes_nothing_from_before(void **state)
+TEST(a_hold_that_is_used_again_owes_nothing_from_before)
 {
-    (void)state;
     peer p;
     request lost[GROBO_BUS_HOLDS], again;
     start(&p, false);
@@ -212,9 +200,8 @@ static void a_hold_that_is_used_again_owes_nothing_from_before(void **state)
 
 /* The second attempt fails at the very microsecond until which the first one's reply is waited for:
  * both are owed. */
-static void a_reply_is_owed_to_the_last_microsecond(void **state)
+TEST(a_reply_is_owed_to_the_last_microsecond)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, false);
@@ -226,9 +213,8 @@ static void a_reply_is_owed_to_the_last_microsecond(void **state)
 }
 
 /* No servo answers a goal: one that was canceled is owed nothing, and the next need not wait. */
-static void a_canceled_goal_keeps_no_other_waiting(void **state)
+TEST(a_canceled_goal_keeps_no_other_waiting)
 {
-    (void)state;
     const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol};
     peer p;
     request a, b;
@@ -255,9 +241,8 @@ static void ask_again_after_a_cancel(peer *p, request *a, request *b, grobo_prio
 
 /* A servo may answer sooner than after its return delay, which is an assumption: that is its reply
  * all the same, and nothing is owed behind it. */
-static void a_reply_that_comes_soon_is_owed_no_more(void **state)
+TEST(a_reply_that_comes_soon_is_owed_no_more)
 {
-    (void)state;
     enum { DELAY_US = 500, OVER_US = BUS_READ_US - 100 + DELAY_US };
     const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol,
                                      .return_delay_us = DELAY_US};
@@ -274,9 +259,8 @@ static void a_reply_that_comes_soon_is_owed_no_more(void **state)
 }
 
 /* Anything else would wait for what may come yet, 100 ms here. */
-static void a_stop_waits_for_no_reply_that_is_late(void **state)
+TEST(a_stop_waits_for_no_reply_that_is_late)
 {
-    (void)state;
     const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol};
     for (int stop = 0; stop < 2; stop++) {
         peer p;
@@ -292,9 +276,8 @@ static void a_stop_waits_for_no_reply_that_is_late(void **state)
 }
 
 /* An ACK has no name: however soon replies have come, the next one is not asked for before. */
-static void an_ack_that_is_owed_holds_the_next_for_all_of_the_time(void **state)
+TEST(an_ack_that_is_owed_holds_the_next_for_all_of_the_time)
 {
-    (void)state;
     enum { READS = 200 };
     peer p;
     request read, a, b;
@@ -314,9 +297,8 @@ static void an_ack_that_is_owed_holds_the_next_for_all_of_the_time(void **state)
 }
 
 /* A byte that begins no packet is less than a reply, and more than silence. */
-static void one_wrong_byte_is_a_short_reply(void **state)
+TEST(one_wrong_byte_is_a_short_reply)
 {
-    (void)state;
     for (int echo = 0; echo < 2; echo++) {
         static const uint8_t wrong = 0;
         peer p;
@@ -332,9 +314,8 @@ static void one_wrong_byte_is_a_short_reply(void **state)
 /* ---- echo ------------------------------------------------------------------------------------ */
 
 /* What the adapter hands over late, all of it: the echo and the reply of the request before. */
-static void an_echo_is_found_behind_a_late_echo_and_a_late_reply(void **state)
+TEST(an_echo_is_found_behind_a_late_echo_and_a_late_reply)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, true);
@@ -357,9 +338,8 @@ static void an_echo_is_found_behind_a_late_echo_and_a_late_reply(void **state)
 }
 
 /* With nothing but late bytes before its time is over it was silent, not wrong. */
-static void late_packets_are_no_broken_echo(void **state)
+TEST(late_packets_are_no_broken_echo)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, true);
@@ -373,9 +353,8 @@ static void late_packets_are_no_broken_echo(void **state)
     assert_int_equal(p.bus.stats.bad_echoes, 0);
 }
 
-static void a_late_reply_before_the_echo_of_the_next_attempt_is_believed(void **state)
+TEST(a_late_reply_before_the_echo_of_the_next_attempt_is_believed)
 {
-    (void)state;
     peer p;
     request a;
     start(&p, true);
@@ -393,9 +372,8 @@ static void a_late_reply_before_the_echo_of_the_next_attempt_is_believed(void **
 }
 
 /* The sum FA looks like the head of an echo: the packet is whole all the same. */
-static void a_reply_that_ends_as_an_echo_begins_is_credited(void **state)
+TEST(a_reply_that_ends_as_an_echo_begins_is_credited)
 {
-    (void)state;
     peer p;
     request a, b;
     start(&p, true);
@@ -416,9 +394,8 @@ static void a_reply_that_ends_as_an_echo_begins_is_credited(void **state)
 }
 
 /* A frame that begins with a part of itself: each place where it may begin is tried. */
-static void an_echo_is_found_behind_a_part_of_itself(void **state)
+TEST(an_echo_is_found_behind_a_part_of_itself)
 {
-    (void)state;
     peer p;
     request r;
     start(&p, true);
@@ -434,9 +411,8 @@ static void an_echo_is_found_behind_a_part_of_itself(void **state)
     assert_int_equal(p.bus.stats.bad_echoes, 0);
 }
 
-static void a_broken_echo_is_known_by_its_length(void **state)
+TEST(a_broken_echo_is_known_by_its_length)
 {
-    (void)state;
     peer p;
     request r;
     uint8_t hit[8];
@@ -531,9 +507,8 @@ static double poll(const grobo_bus_config *config, uint32_t late_us, bool lose)
     return (double)p.bare_us / (double)(p.now_us - begun_us);
 }
 
-static void polling_keeps_up_with_a_bare_loop_where_replies_are_late(void **state)
+TEST(polling_keeps_up_with_a_bare_loop_where_replies_are_late)
 {
-    (void)state;
     static const grobo_bus_config lines[] = {
         {.protocol = &grobo_board_protocol},
         {.protocol = &grobo_rs30x_protocol},
@@ -551,40 +526,10 @@ static void polling_keeps_up_with_a_bare_loop_where_replies_are_late(void **stat
 }
 
 /* Nothing comes that would end the hold: it is as long as the line has shown that it must be. */
-static void a_lost_reply_costs_what_the_line_has_taught(void **state)
+TEST(a_lost_reply_costs_what_the_line_has_taught)
 {
-    (void)state;
     const grobo_bus_config line = {.protocol = &grobo_rs30x_protocol, .baud_bps = 460800};
     double part = poll(&line, 0, true);
     print_message("# 1 reply of %d lost: %.3f of a bare loop\n", LATE_EVERY, part);
     assert_true(part > 0.6);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_late_reply_takes_the_place_of_the_next_attempt),
-        cmocka_unit_test(a_late_reply_is_credited_while_another_is_awaited),
-        cmocka_unit_test(a_late_refusal_is_credited_too),
-        cmocka_unit_test(what_is_not_owed_any_more_is_credited_to_nobody),
-        cmocka_unit_test(a_doubled_reply_is_not_taken_for_the_one_that_is_owed),
-        cmocka_unit_test(two_owed_replies_are_both_waited_for),
-        cmocka_unit_test(a_hold_that_is_used_again_owes_nothing_from_before),
-        cmocka_unit_test(a_reply_is_owed_to_the_last_microsecond),
-        cmocka_unit_test(a_reply_that_was_given_up_settles_no_later_one),
-        cmocka_unit_test(a_canceled_goal_keeps_no_other_waiting),
-        cmocka_unit_test(a_reply_that_comes_soon_is_owed_no_more),
-        cmocka_unit_test(a_stop_waits_for_no_reply_that_is_late),
-        cmocka_unit_test(an_ack_that_is_owed_holds_the_next_for_all_of_the_time),
-        cmocka_unit_test(one_wrong_byte_is_a_short_reply),
-        cmocka_unit_test(an_echo_is_found_behind_a_late_echo_and_a_late_reply),
-        cmocka_unit_test(late_packets_are_no_broken_echo),
-        cmocka_unit_test(a_late_reply_before_the_echo_of_the_next_attempt_is_believed),
-        cmocka_unit_test(a_reply_that_ends_as_an_echo_begins_is_credited),
-        cmocka_unit_test(an_echo_is_found_behind_a_part_of_itself),
-        cmocka_unit_test(a_broken_echo_is_known_by_its_length),
-        cmocka_unit_test(polling_keeps_up_with_a_bare_loop_where_replies_are_late),
-        cmocka_unit_test(a_lost_reply_costs_what_the_line_has_taught),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Several replies to one frame, replies of whoever is there, and what the frames of DYNAMIXEL and
  * Feetech are answered by, in virtual time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, POSITION = 132, BYTES = 4, BAUD = 1000000 };
 
@@ -81,9 +77,8 @@ static void ended(int64_t at_us, int result)
 }
 
 /* 17 bytes of request; three times 500 us and 15 bytes. */
-static void all_answer_and_the_time_is_that_of_all(void **state)
+TEST(all_answer_and_the_time_is_that_of_all)
 {
-    (void)state;
     grobo_bus_cost cost;
     submit_sync_read(GROBO_DXL2_SYNC_READ);
     grobo_bus_cost_of(&p.bus, &r.txn, &cost);
@@ -107,9 +102,8 @@ static void all_answer_and_the_time_is_that_of_all(void **state)
 }
 
 /* The last one ends it: nobody is waited for who comes before it in the list. */
-static void one_that_is_silent_costs_the_others_nothing(void **state)
+TEST(one_that_is_silent_costs_the_others_nothing)
 {
-    (void)state;
     submit_sync_read(GROBO_DXL2_SYNC_READ);
     position_at(820, 3);
     position_at(2120, 7);
@@ -128,9 +122,8 @@ static void one_that_is_silent_costs_the_others_nothing(void **state)
 }
 
 /* A packet of who was not asked, of another length, and one that came before: none is a reply. */
-static void what_was_not_asked_is_no_reply(void **state)
+TEST(what_was_not_asked_is_no_reply)
 {
-    (void)state;
     submit_sync_read(GROBO_DXL2_SYNC_READ);
     position_at(500, 2);
     status_at(600, 1, 0, (const uint8_t *)"ab", 2);
@@ -145,9 +138,8 @@ static void what_was_not_asked_is_no_reply(void **state)
 }
 
 /* A servo that refuses says so in a status without data. */
-static void a_refusal_is_one_of_the_replies(void **state)
+TEST(a_refusal_is_one_of_the_replies)
 {
-    (void)state;
     submit_sync_read(GROBO_DXL2_SYNC_READ);
     position_at(820, 3);
     status_at(1400, 1, GROBO_DXL2_NO_ACCESS, NULL, 0);
@@ -165,9 +157,8 @@ static void cancel_in_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
     assert_int_equal(grobo_bus_cancel(&p.bus, txn), GROBO_OK);
 }
 
-static void a_callback_may_cancel(void **state)
+TEST(a_callback_may_cancel)
 {
-    (void)state;
     submit_sync_read(GROBO_DXL2_SYNC_READ);
     r.txn.each = cancel_in_each;
     position_at(820, 3);
@@ -180,9 +171,8 @@ static void a_callback_may_cancel(void **state)
 
 /* A retry asks all again, and may be answered by who was late; what is owed is waited for before
  * anything is asked that it would answer. */
-static void a_late_status_is_no_answer_to_another_question(void **state)
+TEST(a_late_status_is_no_answer_to_another_question)
 {
-    (void)state;
     submit_sync_read(GROBO_DXL2_SYNC_READ);
     position_at(820, 3);
     position_at(2120, 7);
@@ -199,9 +189,8 @@ static void a_late_status_is_no_answer_to_another_question(void **state)
 }
 
 /* 26 bytes: three blocks of 8 behind a head of 8, and one return delay. */
-static void a_fast_read_is_one_packet_of_all(void **state)
+TEST(a_fast_read_is_one_packet_of_all)
 {
-    (void)state;
     grobo_reply reply;
     uint8_t data[3 * (4 + BYTES) - 2] = {0, 3, 42};
     grobo_bus_cost cost;
@@ -225,9 +214,8 @@ static void submit_call(void)
     submit(&(grobo_dxl2_packet){.id = GROBO_DXL2_ID_ALL, .instruction = GROBO_DXL2_PING});
 }
 
-static void whoever_is_there_answers_a_call(void **state)
+TEST(whoever_is_there_answers_a_call)
 {
-    (void)state;
     submit_call();
     assert_int_equal(r.txn.reply.kind, GROBO_REPLY_ANY);
     status_at(3 * MS, 1, 0, (const uint8_t *)"\x24\x04\x2D", 3);
@@ -244,9 +232,8 @@ static void whoever_is_there_answers_a_call(void **state)
     ended(772 * MS, GROBO_OK); /* nobody */
 }
 
-static void a_stop_does_not_wait_for_a_call(void **state)
+TEST(a_stop_does_not_wait_for_a_call)
 {
-    (void)state;
     static request stop;
     submit_call();
     peer_run(&p, 100 * MS);
@@ -266,9 +253,8 @@ static void a_stop_does_not_wait_for_a_call(void **state)
 }
 
 /* The servo received rubbish: it is asked again. What it refuses is not. */
-static void a_broken_request_is_repeated_and_a_refused_one_is_not(void **state)
+TEST(a_broken_request_is_repeated_and_a_refused_one_is_not)
 {
-    (void)state;
     const grobo_dxl2_packet write = {.id = 1,
                                      .instruction = GROBO_DXL2_WRITE,
                                      .address = 65,
@@ -291,9 +277,8 @@ static void a_broken_request_is_repeated_and_a_refused_one_is_not(void **state)
     assert_int_equal(p.sent_count, 1);
 }
 
-static void stuffing_is_taken_out_of_what_is_read(void **state)
+TEST(stuffing_is_taken_out_of_what_is_read)
 {
-    (void)state;
     peer_init(&p, &line);
     submit(
         &(grobo_dxl2_packet){.id = 1, .instruction = GROBO_DXL2_READ, .address = 126, .length = 6});
@@ -320,9 +305,8 @@ static void submit_old(const grobo_protocol *protocol, bool echo, const grobo_dx
 }
 
 /* FF FF 01 02 01 FB is a ping of servo 1, and its status that tells a low voltage. */
-static void an_echo_that_looks_like_a_status_is_an_echo(void **state)
+TEST(an_echo_that_looks_like_a_status_is_an_echo)
 {
-    (void)state;
     const uint8_t ping[] = {0xFF, 0xFF, 1, 2, 1, 0xFB};
     submit_old(&grobo_feetech_protocol, true, &(grobo_dxl1_packet){.id = 1, .instruction = 1});
     peer_bytes_at(&p, 100, ping, sizeof ping);
@@ -337,9 +321,8 @@ static void an_echo_that_looks_like_a_status_is_an_echo(void **state)
 
 /* An adapter returns what is sent and nobody reckons with it; or there is another host. What was
  * sent has the form of a status, in part of one that refuses. */
-static void what_a_host_sends_is_no_answer(void **state)
+TEST(what_a_host_sends_is_no_answer)
 {
-    (void)state;
     static const uint8_t goal[] = {0x00, 0x08, 0x64, 0x00};
     static const struct {
         const grobo_protocol *protocol;
@@ -375,9 +358,8 @@ static void what_a_host_sends_is_no_answer(void **state)
     }
 }
 
-static void feetech_answers_a_sync_read_one_by_one(void **state)
+TEST(feetech_answers_a_sync_read_one_by_one)
 {
-    (void)state;
     submit_old(&grobo_feetech_protocol, false,
                &(grobo_dxl1_packet){.id = GROBO_DXL1_ID_ALL,
                                     .instruction = GROBO_DXL1_SYNC_READ,
@@ -404,9 +386,8 @@ static void feetech_answers_a_sync_read_one_by_one(void **state)
 }
 
 /* Of DYNAMIXEL's errors some tell how the servo is, and some what became of the request. */
-static void errors_of_old_dynamixels_are_told_apart(void **state)
+TEST(errors_of_old_dynamixels_are_told_apart)
 {
-    (void)state;
     static const struct {
         uint8_t error;
         int result;
@@ -433,9 +414,8 @@ static void errors_of_old_dynamixels_are_told_apart(void **state)
 /* ---- time ------------------------------------------------------------------------------------ */
 
 /* A byte with parity has 11 bits. The longest frames at the slowest rate fit the numbers. */
-static void parity_and_length_count(void **state)
+TEST(parity_and_length_count)
 {
-    (void)state;
     static grobo_protocol odd;
     grobo_bus bus;
     grobo_bus_cost cost;
@@ -456,27 +436,4 @@ static void parity_and_length_count(void **state)
     assert_int_equal(grobo_bus_init(&bus, &slow), GROBO_OK);
     grobo_bus_cost_of(&bus, &txn, &cost);
     assert_int_equal(cost.request_us, 9386667);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_answer_and_the_time_is_that_of_all),
-        cmocka_unit_test(one_that_is_silent_costs_the_others_nothing),
-        cmocka_unit_test(what_was_not_asked_is_no_reply),
-        cmocka_unit_test(a_refusal_is_one_of_the_replies),
-        cmocka_unit_test(a_callback_may_cancel),
-        cmocka_unit_test(a_late_status_is_no_answer_to_another_question),
-        cmocka_unit_test(a_fast_read_is_one_packet_of_all),
-        cmocka_unit_test(whoever_is_there_answers_a_call),
-        cmocka_unit_test(a_stop_does_not_wait_for_a_call),
-        cmocka_unit_test(a_broken_request_is_repeated_and_a_refused_one_is_not),
-        cmocka_unit_test(stuffing_is_taken_out_of_what_is_read),
-        cmocka_unit_test(an_echo_that_looks_like_a_status_is_an_echo),
-        cmocka_unit_test(what_a_host_sends_is_no_answer),
-        cmocka_unit_test(feetech_answers_a_sync_read_one_by_one),
-        cmocka_unit_test(errors_of_old_dynamixels_are_told_apart),
-        cmocka_unit_test(parity_and_length_count),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,18 +6,14 @@
  * Every transaction has a number, which its replies carry as data; of an ACK it is known in whose
  * bytes it came. Nobody may be ended well by another's reply.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "src/bus/framer.h"
+#include "tests/support/test.h"
 
 enum {
     MS = 1000,
@@ -264,9 +260,8 @@ static void run(soak *s)
     }
 }
 
-static void no_fault_breaks_the_bus(void **state)
+TEST(no_fault_breaks_the_bus)
 {
-    (void)state;
     static soak s;
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         memset(&s, 0, sizeof s);
@@ -286,10 +281,4 @@ static void no_fault_breaks_the_bus(void **state)
         assert_true(s.bus.stats.late_bytes > 100);
         assert_true(s.bus.stats.canceled > 5);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(no_fault_breaks_the_bus)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

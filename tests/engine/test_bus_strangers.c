@@ -5,13 +5,8 @@
  * each family, in one piece and in two, split at every byte. What is read is what was told, or
  * nothing; and the next question is answered.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
@@ -22,6 +17,7 @@
 #include <grobo/rs30x.h>
 
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, ROOM = 200, OWN_ID = 7, OTHER_ID = 9, VALUE = 0x0BB8, OTHER_VALUE = 0x0664 };
 
@@ -238,9 +234,8 @@ static void reply_behind(const uint8_t *before, size_t n, bool found, const char
 
 /* ---- what comes before ----------------------------------------------------------------------- */
 
-static void others_are_passed_over(void **state)
+TEST(others_are_passed_over)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         uint8_t bytes[ROOM];
         static const uint8_t many[] = {0x3F, 0x06, 0x00, 0x01};
@@ -261,9 +256,8 @@ static void others_are_passed_over(void **state)
     }
 }
 
-static void the_first_of_two_is_the_reply(void **state)
+TEST(the_first_of_two_is_the_reply)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         uint8_t bytes[ROOM];
         start_line(&families[i]);
@@ -273,9 +267,8 @@ static void the_first_of_two_is_the_reply(void **state)
 }
 
 /* A whole reply of this servo, in what another tells. */
-static void a_reply_within_another_is_none(void **state)
+TEST(a_reply_within_another_is_none)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         uint8_t inner[ROOM], bytes[ROOM];
         start_line(&families[i]);
@@ -287,9 +280,8 @@ static void a_reply_within_another_is_none(void **state)
 }
 
 /* Any length, in the head of a reply of this servo or another that does not go on. */
-static void a_length_that_lies_makes_no_value(void **state)
+TEST(a_length_that_lies_makes_no_value)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         size_t at = families[i].length_at;
         for (int length = 0; at > 0 && length <= UINT8_MAX; length++) {
@@ -306,9 +298,8 @@ static void a_length_that_lies_makes_no_value(void **state)
     }
 }
 
-static void a_stump_makes_no_value(void **state)
+TEST(a_stump_makes_no_value)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES && families[i].checked; i++) {
         uint8_t bytes[ROOM];
         start_line(&families[i]);
@@ -325,9 +316,8 @@ static void a_stump_makes_no_value(void **state)
     }
 }
 
-static void noise_makes_no_value(void **state)
+TEST(noise_makes_no_value)
 {
-    (void)state;
     uint32_t seed = 11;
     for (int i = 0; i < FAMILIES && families[i].checked; i++) {
         for (int round = 0; round < 300; round++) {
@@ -342,17 +332,4 @@ static void noise_makes_no_value(void **state)
             reply_behind(bytes, n, false, "behind noise");
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(others_are_passed_over),
-        cmocka_unit_test(the_first_of_two_is_the_reply),
-        cmocka_unit_test(a_reply_within_another_is_none),
-        cmocka_unit_test(a_length_that_lies_makes_no_value),
-        cmocka_unit_test(a_stump_makes_no_value),
-        cmocka_unit_test(noise_makes_no_value),
-    };
-    return cmocka_run_group_tests_name("bus_strangers", tests, NULL, NULL);
 }

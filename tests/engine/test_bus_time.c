@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The bus and time: costs, deadlines, learnt margins, room for motion frames. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "src/bus/time.h"
 #include "tests/support/bus_peer.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, JOINTS = 20 };
 
@@ -27,9 +23,8 @@ static void make_pose(peer *p, request *r)
 }
 
 /* 11 + 8 + 26 + 26 bytes and 100 us, as the wire's description reckons: about 6.3 ms. */
-static void a_full_read_through_the_board_costs_71_bytes(void **state)
+TEST(a_full_read_through_the_board_costs_71_bytes)
 {
-    (void)state;
     peer p;
     request r;
     grobo_bus_cost cost;
@@ -46,9 +41,8 @@ static void a_full_read_through_the_board_costs_71_bytes(void **state)
     assert_int_equal(cost.timeout_us, 50 * MS);
 }
 
-static void other_costs_follow_the_same_rule(void **state)
+TEST(other_costs_follow_the_same_rule)
 {
-    (void)state;
     peer p;
     request r;
     grobo_bus_cost cost;
@@ -95,9 +89,8 @@ static void other_costs_follow_the_same_rule(void **state)
     assert_int_equal(cost.reply_us, 218);
 }
 
-static void a_write_keeps_the_line_until_the_servos_have_it(void **state)
+TEST(a_write_keeps_the_line_until_the_servos_have_it)
 {
-    (void)state;
     peer p;
     request a, b;
     peer_init(&p, NULL);
@@ -115,9 +108,8 @@ static void a_write_keeps_the_line_until_the_servos_have_it(void **state)
 }
 
 /* A board known to take the next frame while it forwards: the servo bus is the bottleneck. */
-static void an_overlapping_board_takes_the_next_frame_earlier(void **state)
+TEST(an_overlapping_board_takes_the_next_frame_earlier)
 {
-    (void)state;
     peer p;
     request a, b;
     const grobo_bus_config config = {.overlap = true};
@@ -133,9 +125,8 @@ static void an_overlapping_board_takes_the_next_frame_earlier(void **state)
     assert_int_equal(p.bus.over_us, 18924 + 695 + 100 + 2257 + 2257);
 }
 
-static void deadlines_say_when_to_come_back(void **state)
+TEST(deadlines_say_when_to_come_back)
 {
-    (void)state;
     peer p;
     request r;
     uint8_t buf[FRAME];
@@ -159,9 +150,8 @@ static void deadlines_say_when_to_come_back(void **state)
 }
 
 /* A process that slept past the deadline finds the reply in its buffer: it is taken, not lost. */
-static void a_late_pump_still_takes_what_came_in_time(void **state)
+TEST(a_late_pump_still_takes_what_came_in_time)
 {
-    (void)state;
     peer p;
     request r;
     uint8_t buf[FRAME];
@@ -195,9 +185,8 @@ static uint32_t timeout_after(peer *p, int replies, int64_t reply_after_us)
 }
 
 /* From the adapter nobody knows to the one that is there: a few ms, and back when it slows down. */
-static void the_margin_is_learnt_from_the_replies(void **state)
+TEST(the_margin_is_learnt_from_the_replies)
 {
-    (void)state;
     peer p;
     peer_init(&p, NULL);
     p.obliging = true;
@@ -214,9 +203,8 @@ static void the_margin_is_learnt_from_the_replies(void **state)
 
 /* The mean with an eighth of what is new, its deviation with a quarter, the worst slowly
  * forgotten; by hand. */
-static void what_is_learnt_of_each_reply(void **state)
+TEST(what_is_learnt_of_each_reply)
 {
-    (void)state;
     static const struct {
         int late_us, overhead_us, deviation_us, worst_us;
     } rows[] = {{2000, 2000, 1000, 2000},     {400, 1800, 1150, 1994},  {5000, 2200, 1662, 5000},
@@ -239,9 +227,8 @@ static void what_is_learnt_of_each_reply(void **state)
 }
 
 /* What comes late counts as that, up to half of what is waited for it; the next one is due then. */
-static void a_late_reply_is_the_worst_up_to_half_of_the_hold(void **state)
+TEST(a_late_reply_is_the_worst_up_to_half_of_the_hold)
 {
-    (void)state;
     static const struct {
         int64_t late_us;
         int32_t worst_us;
@@ -274,9 +261,8 @@ static size_t forward_some(const uint8_t *frame, size_t n)
 }
 
 /* On the servos' bus is what the board forwards, be it a single byte. */
-static void what_a_board_forwards_takes_its_time(void **state)
+TEST(what_a_board_forwards_takes_its_time)
 {
-    (void)state;
     grobo_relay relay = *grobo_board_protocol.relay;
     grobo_protocol protocol = grobo_board_protocol;
     static const uint32_t bytes_us[] = {0, 87, 174, 261}; /* rounded up */
@@ -296,9 +282,8 @@ static void what_a_board_forwards_takes_its_time(void **state)
     }
 }
 
-static void the_margin_doubles_with_every_retry(void **state)
+TEST(the_margin_doubles_with_every_retry)
 {
-    (void)state;
     peer p;
     request r;
     peer_init(&p, NULL);
@@ -334,9 +319,8 @@ static int64_t ask_patiently(peer *p, const grobo_bus_config *config, request *r
 }
 
 /* Three attempts are over after 3 x 3488 + 3000 + 6000 + 12000 and twice the quiet, 33 ms. */
-static void a_patient_read_outlasts_a_stall_at_the_other_end(void **state)
+TEST(a_patient_read_outlasts_a_stall_at_the_other_end)
 {
-    (void)state;
     peer p;
     request r;
     int64_t from_us = ask_patiently(&p, NULL, &r);
@@ -364,9 +348,8 @@ static int64_t given_up_after(const grobo_bus_config *config, grobo_priority pri
 }
 
 /* One of a motion or a stop is not, others of its kind would wait behind it. */
-static void patience_has_its_limits(void **state)
+TEST(patience_has_its_limits)
 {
-    (void)state;
     const grobo_bus_config fixed = {.margin_us = 4 * MS};
     const int64_t wire_us = 3 * 3488 + 2 * GROBO_BUS_QUIET_US;
     const int64_t patient_us = wire_us + (3 + 6 + 40) * MS;
@@ -382,9 +365,8 @@ static void patience_has_its_limits(void **state)
 
 /* Whenever one is due while it waits: announced or not through the board, announced on a servo bus,
  * where after a failure everything keeps quiet. */
-static void a_patient_read_delays_no_motion_frame(void **state)
+TEST(a_patient_read_delays_no_motion_frame)
 {
-    (void)state;
     static const grobo_bus_config on_bus = {.protocol = &grobo_rs30x_protocol};
     for (int i = 0; i < 108; i++) {
         bool bus = i % 3 == 0;
@@ -407,9 +389,8 @@ static void a_patient_read_delays_no_motion_frame(void **state)
     }
 }
 
-static void no_read_starts_that_would_reach_into_the_reserved_span(void **state)
+TEST(no_read_starts_that_would_reach_into_the_reserved_span)
 {
-    (void)state;
     peer p;
     request r[3];
     peer_init(&p, NULL);
@@ -438,9 +419,8 @@ static void no_read_starts_that_would_reach_into_the_reserved_span(void **state)
 }
 
 /* What nothing answers takes its wire time, however late replies are. */
-static void lateness_of_replies_delays_no_frame_without_one(void **state)
+TEST(lateness_of_replies_delays_no_frame_without_one)
 {
-    (void)state;
     peer p;
     request goal, read;
     peer_init(&p, NULL);
@@ -459,9 +439,8 @@ static void lateness_of_replies_delays_no_frame_without_one(void **state)
     assert_false(grobo_bus_fits(&p.bus, 20 * MS - of_read.total_us - 699, &read.txn));
 }
 
-static void a_short_request_goes_where_a_long_one_does_not_fit(void **state)
+TEST(a_short_request_goes_where_a_long_one_does_not_fit)
 {
-    (void)state;
     peer p;
     request longer, shorter;
     peer_init(&p, NULL);
@@ -517,9 +496,8 @@ static played play(peer *p, int64_t period_us, int frames, uint8_t silent_id)
 }
 
 /* 50 ms less 18.924 for the pose leaves 31.076: eight reads of 3.488 ms, and all are made. */
-static void the_gaps_are_filled_and_the_frames_are_on_time(void **state)
+TEST(the_gaps_are_filled_and_the_frames_are_on_time)
 {
-    (void)state;
     peer p;
     peer_init(&p, NULL);
     played all = play(&p, 50 * MS, 200, 0);
@@ -529,9 +507,8 @@ static void the_gaps_are_filled_and_the_frames_are_on_time(void **state)
 }
 
 /* With one servo silent a frame may wait for the reply that might come, not for its time-out. */
-static void a_silent_servo_does_not_delay_the_frames(void **state)
+TEST(a_silent_servo_does_not_delay_the_frames)
 {
-    (void)state;
     peer p;
     peer_init(&p, NULL);
     played all = play(&p, 50 * MS, 200, 7);
@@ -540,36 +517,8 @@ static void a_silent_servo_does_not_delay_the_frames(void **state)
     assert_true(all.reads > 200 * 7);
 }
 
-static void the_bus_is_small(void **state)
+TEST(the_bus_is_small)
 {
-    (void)state;
     assert_true(sizeof(grobo_bus) - GROBO_FRAME_MAX_BYTES <= 560);
     assert_true(sizeof(grobo_txn) <= 96);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_full_read_through_the_board_costs_71_bytes),
-        cmocka_unit_test(other_costs_follow_the_same_rule),
-        cmocka_unit_test(a_write_keeps_the_line_until_the_servos_have_it),
-        cmocka_unit_test(an_overlapping_board_takes_the_next_frame_earlier),
-        cmocka_unit_test(deadlines_say_when_to_come_back),
-        cmocka_unit_test(a_late_pump_still_takes_what_came_in_time),
-        cmocka_unit_test(the_margin_is_learnt_from_the_replies),
-        cmocka_unit_test(what_is_learnt_of_each_reply),
-        cmocka_unit_test(a_late_reply_is_the_worst_up_to_half_of_the_hold),
-        cmocka_unit_test(what_a_board_forwards_takes_its_time),
-        cmocka_unit_test(the_margin_doubles_with_every_retry),
-        cmocka_unit_test(a_patient_read_outlasts_a_stall_at_the_other_end),
-        cmocka_unit_test(patience_has_its_limits),
-        cmocka_unit_test(a_patient_read_delays_no_motion_frame),
-        cmocka_unit_test(no_read_starts_that_would_reach_into_the_reserved_span),
-        cmocka_unit_test(lateness_of_replies_delays_no_frame_without_one),
-        cmocka_unit_test(a_short_request_goes_where_a_long_one_does_not_fit),
-        cmocka_unit_test(the_gaps_are_filled_and_the_frames_are_on_time),
-        cmocka_unit_test(a_silent_servo_does_not_delay_the_frames),
-        cmocka_unit_test(the_bus_is_small),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

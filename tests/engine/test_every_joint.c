@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Each rule holds for each joint, and for that one alone. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { JOINTS = 20 };
 
@@ -83,9 +79,8 @@ static void expect_others_stay(int joint)
 
 /* ---- who may be moved ------------------------------------------------------------------------ */
 
-static void one_that_was_not_read_is_not_moved(void **state)
+TEST(one_that_was_not_read_is_not_moved)
 {
-    (void)state;
     for (int j = 0; j < JOINTS; j++) {
         double value;
         rig_start(&rig, &quiet, NULL);
@@ -103,9 +98,8 @@ static void one_that_was_not_read_is_not_moved(void **state)
     }
 }
 
-static void one_without_torque_is_not_sent_anywhere(void **state)
+TEST(one_without_torque_is_not_sent_anywhere)
 {
-    (void)state;
     start_in_the_middle(&quiet);
     for (int j = 0; j < JOINTS; j++) {
         rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_OFF),
@@ -122,9 +116,8 @@ static void one_without_torque_is_not_sent_anywhere(void **state)
     }
 }
 
-static void one_that_a_raw_frame_let_go_does_not_hold(void **state)
+TEST(one_that_a_raw_frame_let_go_does_not_hold)
 {
-    (void)state;
     start_in_the_middle(&quiet);
     for (int j = 0; j < JOINTS; j++) {
         rig_expect(&rig, raw_torque(j, GROBO_TORQUE_BRAKE), GROBO_OK);
@@ -136,9 +129,8 @@ static void one_that_a_raw_frame_let_go_does_not_hold(void **state)
     }
 }
 
-static void one_alone_is_switched_on_where_it_is(void **state)
+TEST(one_alone_is_switched_on_where_it_is)
 {
-    (void)state;
     for (int j = 0; j < JOINTS; j++) {
         grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .seed = (uint32_t)j,
                                  .start = GROBO_SIM_START_LIMP};
@@ -154,9 +146,8 @@ static void one_alone_is_switched_on_where_it_is(void **state)
 
 /* ---- limits and speed ------------------------------------------------------------------------ */
 
-static void each_goes_to_its_limits_and_not_beyond(void **state)
+TEST(each_goes_to_its_limits_and_not_beyond)
 {
-    (void)state;
     start_in_the_middle(&quiet);
     for (int j = 0; j < JOINTS; j++) {
         const double ends_deg[] = {grobo_deg_from_rad(joint_of(j)->min_rad),
@@ -187,9 +178,8 @@ static int least_ms(int joint, double way_deg, double most_dps)
     return (int)(ceil((way_deg - 0.1) / most * 100 - 1e-9) * 10);
 }
 
-static void each_gets_the_time_that_it_needs(void **state)
+TEST(each_gets_the_time_that_it_needs)
 {
-    (void)state;
     for (int pct = 40; pct <= 100; pct += 60) {
         grobo_robot_config config = quiet;
         config.speed_limit_pct = pct;
@@ -215,9 +205,8 @@ static void each_gets_the_time_that_it_needs(void **state)
 }
 
 /* A raw frame is as it is: in time or refused. */
-static void a_raw_goal_must_leave_each_its_time(void **state)
+TEST(a_raw_goal_must_leave_each_its_time)
 {
-    (void)state;
     start_in_the_middle(&quiet);
     for (int j = 0; j < JOINTS; j++) {
         double most_dps = grobo_deg_from_rad(joint_of(j)->max_speed_rad_s);
@@ -235,9 +224,8 @@ static void a_raw_goal_must_leave_each_its_time(void **state)
 }
 
 /* From the second move on, in a move all arrive together: with the one that needs longest. */
-static void in_a_move_all_take_the_longest_time(void **state)
+TEST(in_a_move_all_take_the_longest_time)
 {
-    (void)state;
     start_in_the_middle(&quiet);
     for (int slow = 0; slow < JOINTS; slow++) {
         grobo_posture target = middle();
@@ -293,9 +281,8 @@ static grobo_trip tripped_by(const grobo_robot_config *config)
     return trip.trip;
 }
 
-static void what_is_at_its_bound_is_within(void **state)
+TEST(what_is_at_its_bound_is_within)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_load(&rig.sim, R_KNEE, 300), 0);
@@ -326,9 +313,8 @@ static void what_is_at_its_bound_is_within(void **state)
 }
 
 /* So many in a row of one joint, while something moves. */
-static void lost_replies_are_counted(void **state)
+TEST(lost_replies_are_counted)
 {
-    (void)state;
     for (int limit = 1; limit <= 4; limit++) {
         grobo_robot_config config = quiet;
         grobo_trip_info trip;
@@ -352,9 +338,8 @@ static void lost_replies_are_counted(void **state)
 
 /* ---- stopping and watching ------------------------------------------------------------------- */
 
-static void each_is_stopped_where_it_is(void **state)
+TEST(each_is_stopped_where_it_is)
 {
-    (void)state;
     start_in_the_middle(&quiet);
     for (int j = 0; j < JOINTS; j++) {
         assert_int_equal(send(j, middle_deg(j) + 9, 3000), GROBO_OK);
@@ -374,9 +359,8 @@ static void each_is_stopped_where_it_is(void **state)
 }
 
 /* One that moves is let go when it stands: else it would fly on. */
-static void each_is_let_go_where_it_stands(void **state)
+TEST(each_is_let_go_where_it_stands)
 {
-    (void)state;
     for (int j = 0; j < JOINTS; j++) {
         start_in_the_middle(&quiet);
         assert_int_equal(send(j, middle_deg(j) + 9, 500), GROBO_OK);
@@ -392,9 +376,8 @@ static void each_is_let_go_where_it_stands(void **state)
     }
 }
 
-static void a_trip_names_the_joint(void **state)
+TEST(a_trip_names_the_joint)
 {
-    (void)state;
     for (int j = 0; j < JOINTS; j++) {
         for (int what = 0; what < 3; what++) {
             static const grobo_trip reasons[] = {GROBO_TRIP_TEMPERATURE, GROBO_TRIP_TORQUE_LOST,
@@ -421,24 +404,4 @@ static void a_trip_names_the_joint(void **state)
             assert_true(trip->latched);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_that_was_not_read_is_not_moved),
-        cmocka_unit_test(one_without_torque_is_not_sent_anywhere),
-        cmocka_unit_test(one_that_a_raw_frame_let_go_does_not_hold),
-        cmocka_unit_test(one_alone_is_switched_on_where_it_is),
-        cmocka_unit_test(each_goes_to_its_limits_and_not_beyond),
-        cmocka_unit_test(each_gets_the_time_that_it_needs),
-        cmocka_unit_test(a_raw_goal_must_leave_each_its_time),
-        cmocka_unit_test(in_a_move_all_take_the_longest_time),
-        cmocka_unit_test(what_is_at_its_bound_is_within),
-        cmocka_unit_test(lost_replies_are_counted),
-        cmocka_unit_test(each_is_stopped_where_it_is),
-        cmocka_unit_test(each_is_let_go_where_it_stands),
-        cmocka_unit_test(a_trip_names_the_joint),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

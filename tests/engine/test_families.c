@@ -2,17 +2,13 @@
 /* The engine on servos of each family that is a table of registers: it plays postures, trips, and
  * stops; what is set up otherwise, or guarded, is refused. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/rs30x.h>
 
 #include "tests/support/table_bus.h"
+#include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 
@@ -103,9 +99,8 @@ static const grobo_event *last(grobo_event_kind kind)
 
 /* Torque comes on where the joints stand, whatever the goal was; then they go where they are sent,
  * in the time asked for, and never faster than they can. */
-static void postures_are_played(void **state)
+TEST(postures_are_played)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         start(&families[i], &quiet);
         table_turn(&bus, 0, 30);
@@ -134,9 +129,8 @@ static void postures_are_played(void **state)
 }
 
 /* Half-way the way is straight: the host tells it in segments. */
-static void ways_are_straight_in_time(void **state)
+TEST(ways_are_straight_in_time)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         start(&families[i], &quiet);
         grobo_posture p = posture(0, 0, 0, 500);
@@ -150,9 +144,8 @@ static void ways_are_straight_in_time(void **state)
 }
 
 /* In DYNAMIXEL's X and in STS one frame asks all joints. */
-static void a_whole_robot_is_read_in_one_frame(void **state)
+TEST(a_whole_robot_is_read_in_one_frame)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         const grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 10 * MS};
         start(&families[i], &busy);
@@ -176,9 +169,8 @@ static void a_whole_robot_is_read_in_one_frame(void **state)
 }
 
 /* As fast as the wire allows: 98 % of what the bytes of request and replies let through. */
-static void the_wire_sets_the_rate_of_readings(void **state)
+TEST(the_wire_sets_the_rate_of_readings)
 {
-    (void)state;
     static const grobo_robot_config fast = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     for (int i = 0; i < FAMILIES; i++) {
         if (!families[i].many) {
@@ -205,9 +197,8 @@ static void the_wire_sets_the_rate_of_readings(void **state)
 }
 
 /* One that falls silent is missed, and the others are read on. */
-static void a_silent_joint_trips_a_motion_and_hides_no_other(void **state)
+TEST(a_silent_joint_trips_a_motion_and_hides_no_other)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         const grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 20 * MS};
         start(&families[i], &busy);
@@ -229,9 +220,8 @@ static void a_silent_joint_trips_a_motion_and_hides_no_other(void **state)
     }
 }
 
-static void heat_stops_for_safety(void **state)
+TEST(heat_stops_for_safety)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         const grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 20 * MS};
         start(&families[i], &busy);
@@ -254,9 +244,8 @@ static void heat_stops_for_safety(void **state)
 }
 
 /* These servos have no brake: by default they stop and hold; torque off is asked for. */
-static void an_emergency_stop_holds_or_lets_go(void **state)
+TEST(an_emergency_stop_holds_or_lets_go)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         for (int off = 0; off < 2; off++) {
             grobo_robot_config config = quiet;
@@ -296,9 +285,8 @@ static void refused(const family *f, int joint, grobo_register_role role, int32_
     assert_int_equal(table_count(&bus, GROBO_DXL2_SYNC_WRITE), 0);
 }
 
-static void what_is_set_up_otherwise_does_not_move(void **state)
+TEST(what_is_set_up_otherwise_does_not_move)
 {
-    (void)state;
     const family *x = &families[0], *sts = &families[1], *scs = &families[2], *ax = &families[3];
     refused(x, 1, GROBO_ROLE_MODEL, 1190);
     refused(x, 1, GROBO_ROLE_MODE, GROBO_DXL2_MODE_EXTENDED);
@@ -347,9 +335,8 @@ static int moved_to(double a_deg, double b_deg, double c_deg)
 }
 
 /* It may be read, and made limp; the fault says which register shows it. */
-static void a_joint_that_was_never_calibrated_does_not_move(void **state)
+TEST(a_joint_that_was_never_calibrated_does_not_move)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         begin_calibrated(&families[i]);
         assert_int_equal(moved_to(10, 10, 10), GROBO_ERR_SETUP);
@@ -376,9 +363,8 @@ static void faulty(int joint, double angle_deg)
 }
 
 /* Its limits are those of its servo, where they are narrower than the robot's. */
-static void a_calibrated_joint_goes_as_far_as_its_servo(void **state)
+TEST(a_calibrated_joint_goes_as_far_as_its_servo)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         begin_calibrated(&families[i]);
         for (int j = 0; j < JOINTS; j++) {
@@ -423,9 +409,8 @@ static void begin_gripper(size_t i)
 }
 
 /* It is there before the torque is, and again where another program has raised it. */
-static void a_gripper_has_its_limit_before_its_torque(void **state)
+TEST(a_gripper_has_its_limit_before_its_torque)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
         begin_gripper(i);
         assert_int_equal(moved_to(20, 20, 20), GROBO_OK);
@@ -447,9 +432,8 @@ static void a_gripper_has_its_limit_before_its_torque(void **state)
     }
 }
 
-static void a_gripper_that_takes_no_limit_gets_no_torque(void **state)
+TEST(a_gripper_that_takes_no_limit_gets_no_torque)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
         begin_gripper(i);
         bus.servo[0].frozen = grobo_servo_register_of(bus.servo[0].servo, limits[i].role)->address;
@@ -463,9 +447,8 @@ static void a_gripper_that_takes_no_limit_gets_no_torque(void **state)
 }
 
 /* One that keeps its limit over power-off is set up by hand; one that has none is refused. */
-static void a_limit_that_is_kept_is_a_setup(void **state)
+TEST(a_limit_that_is_kept_is_a_setup)
 {
-    (void)state;
     begin_with(&families[2], false, 30);
     assert_int_equal(moved_to(20, 20, 20), GROBO_ERR_SETUP);
     grobo_joint_info got;
@@ -494,9 +477,8 @@ static void a_limit_that_is_kept_is_a_setup(void **state)
 }
 
 /* Which register, what it holds, what it should. */
-static void a_fault_says_what_is_wanted(void **state)
+TEST(a_fault_says_what_is_wanted)
 {
-    (void)state;
     static const struct {
         int family;
         grobo_register_role role;
@@ -529,9 +511,8 @@ static void a_fault_says_what_is_wanted(void **state)
 }
 
 /* A count of a position that is worth more than the table says: a goal would lead further. */
-static void a_coarser_count_is_refused(void **state)
+TEST(a_coarser_count_is_refused)
 {
-    (void)state;
     static grobo_joint joints[JOINTS];
     grobo_joint_info got;
     start(&families[1], &quiet);
@@ -561,9 +542,8 @@ static void a_coarser_count_is_refused(void **state)
 
 /* A joint that lags behind its goal is not left to crawl there by the next frame with that goal: it
  * gets the speed of a first move. */
-static void the_same_goal_again_is_no_crawl(void **state)
+TEST(the_same_goal_again_is_no_crawl)
 {
-    (void)state;
     static const int by_speed[] = {1, 3};
     for (size_t i = 0; i < sizeof by_speed / sizeof by_speed[0]; i++) {
         start(&families[by_speed[i]], &quiet);
@@ -582,9 +562,8 @@ static void the_same_goal_again_is_no_crawl(void **state)
 }
 
 /* Outside its limits by a little, it is drawn in as it gets torque, and not at once. */
-static void a_joint_is_drawn_in_softly(void **state)
+TEST(a_joint_is_drawn_in_softly)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         start(&families[i], &quiet);
         table_turn(&bus, 0, 82.5);
@@ -609,9 +588,8 @@ static int write_register(grobo_register_role role)
 }
 
 /* Goals and torque are for requests; a setting needs a servo that holds nothing. */
-static void guarded_registers_are_refused(void **state)
+TEST(guarded_registers_are_refused)
 {
-    (void)state;
     static const grobo_register_role motor[] = {GROBO_ROLE_TORQUE,       GROBO_ROLE_GOAL,
                                                 GROBO_ROLE_GOAL_TIME,    GROBO_ROLE_SPEED,
                                                 GROBO_ROLE_GOAL_SPEED,   GROBO_ROLE_GOAL_PWM,
@@ -657,9 +635,8 @@ static int raw(uint8_t id, uint8_t code, uint16_t address, const uint8_t *data, 
 }
 
 /* A raw goal is checked as one of the engine's own; what nobody can read is refused. */
-static void raw_frames_are_judged(void **state)
+TEST(raw_frames_are_judged)
 {
-    (void)state;
     for (int i = 0; i < FAMILIES; i++) {
         static const uint8_t ends[4];
         start(&families[i], &quiet);
@@ -700,9 +677,8 @@ static int raw_up_to(grobo_register_role role)
 }
 
 /* A raw goal brings no other limit of the torque with it: the gripper would pinch harder. */
-static void a_raw_goal_leaves_a_gripper_its_limit(void **state)
+TEST(a_raw_goal_leaves_a_gripper_its_limit)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
         begin_gripper(i);
         assert_int_equal(moved_to(20, 20, 20), GROBO_OK);
@@ -711,9 +687,8 @@ static void a_raw_goal_leaves_a_gripper_its_limit(void **state)
     }
 }
 
-static void what_a_servo_cannot_reach_is_no_robot(void **state)
+TEST(what_a_servo_cannot_reach_is_no_robot)
 {
-    (void)state;
     grobo_joint joints[JOINTS];
     grobo_driver driver;
     for (int i = 0; i < FAMILIES; i++) {
@@ -729,32 +704,4 @@ static void what_a_servo_cannot_reach_is_no_robot(void **state)
         assert_int_equal(families[i].init(NULL, &model), GROBO_ERR_ARG);
         assert_int_equal(families[i].init(&driver, NULL), GROBO_ERR_ARG);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(postures_are_played),
-        cmocka_unit_test(ways_are_straight_in_time),
-        cmocka_unit_test(a_whole_robot_is_read_in_one_frame),
-        cmocka_unit_test(the_wire_sets_the_rate_of_readings),
-        cmocka_unit_test(a_silent_joint_trips_a_motion_and_hides_no_other),
-        cmocka_unit_test(heat_stops_for_safety),
-        cmocka_unit_test(an_emergency_stop_holds_or_lets_go),
-        cmocka_unit_test(what_is_set_up_otherwise_does_not_move),
-        cmocka_unit_test(a_joint_that_was_never_calibrated_does_not_move),
-        cmocka_unit_test(a_calibrated_joint_goes_as_far_as_its_servo),
-        cmocka_unit_test(a_fault_says_what_is_wanted),
-        cmocka_unit_test(a_coarser_count_is_refused),
-        cmocka_unit_test(the_same_goal_again_is_no_crawl),
-        cmocka_unit_test(a_joint_is_drawn_in_softly),
-        cmocka_unit_test(a_gripper_has_its_limit_before_its_torque),
-        cmocka_unit_test(a_gripper_that_takes_no_limit_gets_no_torque),
-        cmocka_unit_test(a_limit_that_is_kept_is_a_setup),
-        cmocka_unit_test(guarded_registers_are_refused),
-        cmocka_unit_test(raw_frames_are_judged),
-        cmocka_unit_test(a_raw_goal_leaves_a_gripper_its_limit),
-        cmocka_unit_test(what_a_servo_cannot_reach_is_no_robot),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine on simulated servos of each family: postures, a faulty line, an overload, stops. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
@@ -14,6 +10,7 @@
 
 #include "src/sim/shaft.h"
 #include "tests/support/family_kit.h"
+#include "tests/support/test.h"
 
 enum { JOINTS = FAMILY_JOINTS, MS = 1000, S = 1000000 };
 
@@ -21,9 +18,8 @@ static family_kit kit;
 
 static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS};
 
-static void postures_are_played(void **state)
+TEST(postures_are_played)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
@@ -41,9 +37,8 @@ static void postures_are_played(void **state)
 
 /* A line that loses and breaks bytes, and servos that do not hear: what was sent arrives all the
  * same, nothing kit.trips, and no servo goes faster than it may. */
-static void a_faulty_line_moves_nothing_wrong(void **state)
+TEST(a_faulty_line_moves_nothing_wrong)
 {
-    (void)state;
     static const char faults[] = "drop=0.002,flip=0.002,silent=0.01,rubbish=0.02,split=0.05";
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         grobo_robot_config config = watched;
@@ -69,9 +64,8 @@ static void a_faulty_line_moves_nothing_wrong(void **state)
     }
 }
 
-static void an_emergency_stop_stops(void **state)
+TEST(an_emergency_stop_stops)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
@@ -94,9 +88,8 @@ static void an_emergency_stop_stops(void **state)
 }
 
 /* The program dies: an arm ends within a segment of its way. */
-static void without_its_host_an_arm_stops(void **state)
+TEST(without_its_host_an_arm_stops)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 40, 1000), GROBO_OK);
@@ -110,9 +103,8 @@ static void without_its_host_an_arm_stops(void **state)
     }
 }
 
-static void heat_stops_for_safety(void **state)
+TEST(heat_stops_for_safety)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 20, 1000), GROBO_OK);
@@ -125,9 +117,8 @@ static void heat_stops_for_safety(void **state)
 }
 
 /* Of some families a goal switches torque on: none leaves for a joint that was let go. */
-static void a_limp_joint_is_not_sent_anywhere(void **state)
+TEST(a_limp_joint_is_not_sent_anywhere)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 20, 1000), GROBO_OK);
@@ -155,9 +146,8 @@ static void a_limp_joint_is_not_sent_anywhere(void **state)
 
 /* Another program has sent a joint on its way, and its servo tells no speed: it is seen all the
  * same, and not sent elsewhere from a place where it is no more. */
-static void a_joint_that_another_moves_is_not_sent_anywhere(void **state)
+TEST(a_joint_that_another_moves_is_not_sent_anywhere)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         static const grobo_robot_config quiet = {GROBO_ROBOT_CONFIG_INIT,
                                                  .sense_interval_us = GROBO_SENSE_NEVER};
@@ -194,9 +184,8 @@ static void a_joint_that_another_moves_is_not_sent_anywhere(void **state)
     }
 }
 
-static void a_drive_mode_without_time_is_refused(void **state)
+TEST(a_drive_mode_without_time_is_refused)
 {
-    (void)state;
     family_start(&kit, family_named("dxl2"), &watched, NULL);
     family_set_up(&kit, 2, GROBO_ROLE_DIRECTION, 0);
     assert_int_equal(family_move(&kit, 20, 1000), GROBO_ERR_SETUP);
@@ -204,9 +193,8 @@ static void a_drive_mode_without_time_is_refused(void **state)
 }
 
 /* What its angles mean is not known; its torque is. */
-static void a_servo_set_up_otherwise_is_made_limp(void **state)
+TEST(a_servo_set_up_otherwise_is_made_limp)
 {
-    (void)state;
     static const char *const names[] = {"dxl2", "dxl1", "sts", "scs"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         grobo_sim_view view;
@@ -230,9 +218,8 @@ static void a_servo_set_up_otherwise_is_made_limp(void **state)
 
 /* With a brake or without: a hand that overcomes a servo in free mode takes the joint along, and
  * the joint stays where it was left. KRS servos do not tell their goal: they hold on. */
-static void a_hand_moves_a_free_joint(void **state)
+TEST(a_hand_moves_a_free_joint)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         if (f->table == &grobo_ics_table) {
             continue;
@@ -279,9 +266,8 @@ static void dip(void)
 
 /* What sank stays where it is, in every family: also where the next goal would switch the torque
  * on, whoever sends it, and however seldom joints are read. */
-static void nothing_is_woken_after_a_dip(void **state)
+TEST(nothing_is_woken_after_a_dip)
 {
-    (void)state;
     enum { MOVE, STREAM, STOP, WAYS };
     static const int64_t intervals_us[] = {50 * MS, 500 * MS, GROBO_SENSE_NEVER};
     for (int run = 0; run < WAYS * 3 * 2; run++) {
@@ -311,9 +297,8 @@ static void nothing_is_woken_after_a_dip(void **state)
 }
 
 /* A reply that is lost is no dip: the arm goes on. */
-static void a_lost_reply_ends_no_way(void **state)
+TEST(a_lost_reply_ends_no_way)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         family_start(&kit, f, &watched, NULL);
         assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
@@ -354,9 +339,8 @@ static void stop_at(const family *f, int ms, uint32_t supply_pct, double *on_deg
 
 /* A weak supply: joints fall back behind ways that they cannot go. They stop where they are, and
  * not where the way is by then; nor is one thrown back that keeps up, or begins softly. */
-static void a_weak_joint_stops_where_it_is(void **state)
+TEST(a_weak_joint_stops_where_it_is)
 {
-    (void)state;
     static const struct {
         const char *name;
         double on_deg; /* 50 ms at the speed, and what it takes to get there */
@@ -383,9 +367,8 @@ static void a_weak_joint_stops_where_it_is(void **state)
 
 /* A stop is asked for, and latched at once: what was to stop does, also a servo that may just have
  * restarted, and whose halt has to wait for that. */
-static void a_latch_lets_a_stop_leave_that_waits(void **state)
+TEST(a_latch_lets_a_stop_leave_that_waits)
 {
-    (void)state;
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS,
                                        .goals = GROBO_GOALS_WHOLE, .lost_replies = -1};
     for (int silent = 0; silent < 2; silent++) {
@@ -416,9 +399,8 @@ static void a_latch_lets_a_stop_leave_that_waits(void **state)
 
 /* A host that was away has heard no servo meanwhile: that is no servo's fault, and nothing is
  * latched. */
-static void a_stalled_host_blames_no_servo(void **state)
+TEST(a_stalled_host_blames_no_servo)
 {
-    (void)state;
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS,
                                        .goals = GROBO_GOALS_SEGMENTS};
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
@@ -440,9 +422,8 @@ static void a_stalled_host_blames_no_servo(void **state)
 
 /* Servos that are told a speed and no time come to rest as soon as others, also where they were
  * read to be behind the way that they were sent on: at a speed for the way that is left. */
-static void a_joint_that_is_behind_stops_in_time(void **state)
+TEST(a_joint_that_is_behind_stops_in_time)
 {
-    (void)state;
     static const char *const told_speeds[] = {"sts", "dxl1"}; /* the first has ramps */
     for (int i = 0; i < 2; i++) {
         family_start(&kit, family_named(told_speeds[i]), &watched, NULL);
@@ -555,9 +536,8 @@ static void stop_turning(const family *f, turn_back *t)
  * way at first. It is not sent on to where its way is, nor pulled back, whatever stops it; and who
  * waits for the stop is told that it is done when it stands. Of what another program has sent, who
  * leaves has to find out first that it moves. */
-static void a_joint_that_turns_back_stops_where_it_is(void **state)
+TEST(a_joint_that_turns_back_stops_where_it_is)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         bool ramps = strcmp(f->name, "sts") == 0;
         for (int i = 0; i < TURNS * (int)HOWS; i++) {
@@ -581,9 +561,8 @@ static void a_joint_that_turns_back_stops_where_it_is(void **state)
 
 /* It is too weak for its way, behind whose end it turns yet: it was read to, and then for its angle
  * alone. */
-static void a_stop_reaches_a_joint_read_for_its_angle_alone(void **state)
+TEST(a_stop_reaches_a_joint_read_for_its_angle_alone)
 {
-    (void)state;
     static const char *const names[] = {"sts", "dxl1", "dxl2"};
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .goals = GROBO_GOALS_WHOLE,
                                        .sense_interval_us = GROBO_SENSE_NEVER, .voltage_mv = -1};
@@ -617,9 +596,8 @@ static void a_stop_reaches_a_joint_read_for_its_angle_alone(void **state)
 /* Those of servos that are told their acceleration with each goal: MX have such a register too far
  * away from the goal, and DYNAMIXEL X one that is a time. */
 /* The longest interval that there is means hardly ever, and not as fast as the wire allows. */
-static void a_very_long_interval_reads_once(void **state)
+TEST(a_very_long_interval_reads_once)
 {
-    (void)state;
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
                                        .sense_interval_us = GROBO_NEVER_US};
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
@@ -630,9 +608,8 @@ static void a_very_long_interval_reads_once(void **state)
     }
 }
 
-static void a_driver_tells_the_ramps_of_its_servos(void **state)
+TEST(a_driver_tells_the_ramps_of_its_servos)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         double told_dps2 = strcmp(f->name, "sts") == 0 ? 254 * 8.79 : 0;
         family_start(&kit, f, &watched, NULL);
@@ -654,31 +631,4 @@ static void a_driver_tells_the_ramps_of_its_servos(void **state)
     kit.joints[2].servo_model = grobo_servo_model_named(&grobo_scs_table, "SCS0009")->number;
     assert_int_equal(grobo_feetech_driver_init(&kit.driver, &kit.model), GROBO_OK);
     assert_true(kit.driver.accel_rad_s2 == 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_is_woken_after_a_dip),
-        cmocka_unit_test(a_lost_reply_ends_no_way),
-        cmocka_unit_test(a_weak_joint_stops_where_it_is),
-        cmocka_unit_test(a_stop_reaches_a_joint_read_for_its_angle_alone),
-        cmocka_unit_test(a_driver_tells_the_ramps_of_its_servos),
-        cmocka_unit_test(a_very_long_interval_reads_once),
-        cmocka_unit_test(a_joint_that_turns_back_stops_where_it_is),
-        cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
-        cmocka_unit_test(a_joint_that_is_behind_stops_in_time),
-        cmocka_unit_test(a_stalled_host_blames_no_servo),
-        cmocka_unit_test(a_servo_set_up_otherwise_is_made_limp),
-        cmocka_unit_test(postures_are_played),
-        cmocka_unit_test(a_faulty_line_moves_nothing_wrong),
-        cmocka_unit_test(an_emergency_stop_stops),
-        cmocka_unit_test(without_its_host_an_arm_stops),
-        cmocka_unit_test(heat_stops_for_safety),
-        cmocka_unit_test(a_joint_that_another_moves_is_not_sent_anywhere),
-        cmocka_unit_test(a_limp_joint_is_not_sent_anywhere),
-        cmocka_unit_test(a_hand_moves_a_free_joint),
-        cmocka_unit_test(a_drive_mode_without_time_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

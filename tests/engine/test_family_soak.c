@@ -21,17 +21,14 @@
  * alone. Without GROBO_SOAK: seed 1, a minute for each family.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "src/base/instant.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 
@@ -65,7 +62,6 @@ typedef struct run {
     const family *family;
     uint32_t seed;
     int line;
-    bool over;
     char name[120];
 } run;
 
@@ -102,8 +98,8 @@ static struct {
     unsigned runs, moves, torque_on, estops, jobs, refused, checked, retargets, stops, plays;
     int64_t virtual_us;
 } total;
-static struct CMUnitTest tests[RUNS_MAX];
 static run runs[RUNS_MAX];
+static size_t n_runs;
 static double minutes = 1;
 
 static uint32_t pick(uint32_t n)
@@ -656,10 +652,67 @@ static void calm_down(void)
     }
 }
 
-static void rules_hold(void **state)
+static uint32_t number(const char *name, uint32_t otherwise)
 {
-    run *r = *state;
-    start(r);
+    const char *text = getenv(name);
+    return text != NULL && text[0] != '\0' ? (uint32_t)strtoul(text, NULL, 10) : otherwise;
+}
+
+static void add_runs(const family *f, uint32_t seed, uint32_t only)
+{
+    for (int line = 0; line < LINES; line++) {
+        if ((only < LINES && (int)only != line) || n_runs >= RUNS_MAX) {
+            continue;
+        }
+        run *r = &runs[n_runs++];
+        *r = (run){.family = f, .seed = seed, .line = line};
+        (void)snprintf(r->name, sizeof r->name, "%s, seed %u, line %d: %s", f->name, (unsigned)seed,
+                       line, lines[line]);
+    }
+}
+
+/* As the environment wants them. */
+static void make_runs(void)
+{
+    const char *only_family = getenv("GROBO_SOAK_FAMILY");
+    bool is_long = getenv("GROBO_SOAK") != NULL;
+    uint32_t seeds = number("GROBO_SOAK", 1);
+    uint32_t first = number("GROBO_SOAK_FROM", is_long ? 0 : 1);
+    uint32_t only = number("GROBO_SOAK_LINE", LINES);
+    const char *length = getenv("GROBO_SOAK_MINUTES");
+    minutes = length != NULL && length[0] != '\0' ? strtod(length, NULL)
+              : is_long                           ? 30
+                                                  : 1.0 / LINES;
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        bool meant =
+            only_family == NULL || only_family[0] == '\0' || strcmp(only_family, f->name) == 0;
+        for (uint32_t seed = first; meant && seed < first + seeds; seed++) {
+            add_runs(f, seed, only);
+        }
+    }
+}
+
+static const run *next_run(const run *before)
+{
+    if (n_runs == 0) {
+        make_runs();
+    }
+    const run *next = before == NULL ? runs : before + 1;
+    return next < runs + n_runs ? next : NULL;
+}
+
+static void tell(const void *row)
+{
+    const run *r = row;
+    print_message("# A rule is broken at %.6f s. It is repeated by: make soak FAMILY=%s SEEDS=1 "
+                  "FROM=%u LINE=%d MINUTES=%g\n",
+                  (double)kit.now_us / 1e6, r->family->name, (unsigned)r->seed, r->line, minutes);
+}
+
+TEST_FOR(run, next_run, rules_hold)
+{
+    test_if_it_breaks(tell);
+    start(row);
     for (int64_t end_us = kit.now_us + (int64_t)(minutes * 60e6); kit.now_us < end_us;) {
         family_run(&kit, (1 + (int64_t)pick(pick(4) == 0 ? 2000 : 200)) * MS);
         look_at_jobs();
@@ -668,25 +721,17 @@ static void rules_hold(void **state)
     calm_down();
     total.virtual_us += kit.now_us;
     total.runs++;
-    r->over = true;
-}
-
-static int tell_if_broken(void **state)
-{
-    const run *r = *state;
-    if (!r->over) {
-        print_message(
-            "# A rule is broken at %.6f s. It is repeated by: make soak FAMILY=%s SEEDS=1 "
-            "FROM=%u LINE=%d MINUTES=%g\n",
-            (double)kit.now_us / 1e6, r->family->name, (unsigned)r->seed, r->line, minutes);
-    }
-    return 0;
 }
 
 /* It was a soak and not a stall. */
-static void everything_was_done(void **state)
+TEST(everything_was_done)
 {
-    (void)state;
+    if (n_runs == 0) {
+        fail_msg("no such family: %s", getenv("GROBO_SOAK_FAMILY"));
+    }
+    if (total.runs < n_runs) {
+        skip(); /* not all of it was asked for, or it has failed */
+    }
     print_message("# %u runs, %.1f virtual minutes: %u jobs, %u moves done, %u torques on, %u "
                   "emergency stops, %u requests refused, %u retargets, %u stops, %u motions, %u "
                   "joints true at the end\n",
@@ -696,56 +741,4 @@ static void everything_was_done(void **state)
     assert_true(total.moves > 0 && total.torque_on > 0 && total.checked > 0);
     assert_true(total.estops > 0 && total.refused > 0 && total.stops > 0);
     assert_true(total.plays > 0);
-}
-
-static uint32_t number(const char *name, uint32_t otherwise)
-{
-    const char *text = getenv(name);
-    return text != NULL && text[0] != '\0' ? (uint32_t)strtoul(text, NULL, 10) : otherwise;
-}
-
-static size_t add_runs(size_t n, const family *f, uint32_t seed, uint32_t only)
-{
-    for (int line = 0; line < LINES; line++) {
-        if ((only < LINES && (int)only != line) || n + 1 >= RUNS_MAX) {
-            continue;
-        }
-        run *r = &runs[n];
-        *r = (run){.family = f, .seed = seed, .line = line};
-        (void)snprintf(r->name, sizeof r->name, "%s, seed %u, line %d: %s", f->name, (unsigned)seed,
-                       line, lines[line]);
-        tests[n++] = (struct CMUnitTest){r->name, rules_hold, NULL, tell_if_broken, r};
-    }
-    return n;
-}
-
-int main(void)
-{
-    const char *only_family = getenv("GROBO_SOAK_FAMILY");
-    bool is_long = getenv("GROBO_SOAK") != NULL;
-    uint32_t seeds = number("GROBO_SOAK", 1);
-    uint32_t first = number("GROBO_SOAK_FROM", is_long ? 0 : 1);
-    uint32_t only = number("GROBO_SOAK_LINE", LINES);
-    const char *length = getenv("GROBO_SOAK_MINUTES");
-    size_t n = 0;
-    minutes = length != NULL && length[0] != '\0' ? strtod(length, NULL)
-              : is_long                           ? 30
-                                                  : 1.0 / LINES;
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        bool meant =
-            only_family == NULL || only_family[0] == '\0' || strcmp(only_family, f->name) == 0;
-        for (uint32_t seed = first; meant && seed < first + seeds; seed++) {
-            n = add_runs(n, f, seed, only);
-        }
-    }
-    if (n == 0) {
-        print_message("# no such family: %s; there are rs30x", only_family);
-        for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-            print_message(" %s", f->name);
-        }
-        print_message("\n");
-        return 1;
-    }
-    tests[n++] = (struct CMUnitTest){"everything was done", everything_was_done, NULL, NULL, NULL};
-    return _cmocka_run_group_tests("family_soak", tests, n, NULL, NULL);
 }

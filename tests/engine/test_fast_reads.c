@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Servos that answer a reading with one packet together are read so, where each of them does. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/dxl2.h>
 
 #include "tests/support/family_kit.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, OLD = 45, ENOUGH = 46 };
 
@@ -82,9 +78,8 @@ static void assert_read(void)
     assert_int_equal(kit.n_trips, 0);
 }
 
-static void all_that_answer_so_are_read_fast(void **state)
+TEST(all_that_answer_so_are_read_fast)
 {
-    (void)state;
     begin_with(ENOUGH);
     run(S);
     assert_in_range(plain, 1, 2); /* the first reading asks what they are */
@@ -95,9 +90,8 @@ static void all_that_answer_so_are_read_fast(void **state)
     assert_read();
 }
 
-static void one_old_servo_among_them_is_enough(void **state)
+TEST(one_old_servo_among_them_is_enough)
 {
-    (void)state;
     begin_with(OLD);
     run(S);
     assert_int_equal(fast, 0);
@@ -106,9 +100,8 @@ static void one_old_servo_among_them_is_enough(void **state)
 }
 
 /* Of other models it is not known. */
-static void other_models_are_not_asked_so(void **state)
+TEST(other_models_are_not_asked_so)
 {
-    (void)state;
     begin(&xm430);
     run(S);
     assert_int_equal(fast, 0);
@@ -116,9 +109,8 @@ static void other_models_are_not_asked_so(void **state)
 }
 
 /* Where an old one takes the place of a new one while the line stays up, one reading is lost. */
-static void a_servo_replaced_in_operation_is_read_on(void **state)
+TEST(a_servo_replaced_in_operation_is_read_on)
 {
-    (void)state;
     begin_with(ENOUGH);
     family_run(&kit, S);
     set_firmware(&kit, 2, OLD);
@@ -135,9 +127,8 @@ static void a_servo_replaced_in_operation_is_read_on(void **state)
 }
 
 /* A disturbance changes nothing for long: all are asked what they are, and read fast again. */
-static void a_lost_reading_is_no_end(void **state)
+TEST(a_lost_reading_is_no_end)
 {
-    (void)state;
     begin_with(ENOUGH);
     family_run(&kit, S);
     for (int i = 0; i < 10; i++) {
@@ -152,26 +143,12 @@ static void a_lost_reading_is_no_end(void **state)
 }
 
 /* One that says so and does not answer is asked so three times. */
-static void who_only_says_so_is_not_asked_for_ever(void **state)
+TEST(who_only_says_so_is_not_asked_for_ever)
 {
-    (void)state;
     begin_with(ENOUGH);
     pretends = true;
     run(2 * (int64_t)S);
     assert_int_equal(fast, 3);
     assert_in_range(plain, 180, 201);
     assert_read();
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_that_answer_so_are_read_fast),
-        cmocka_unit_test(one_old_servo_among_them_is_enough),
-        cmocka_unit_test(other_models_are_not_asked_so),
-        cmocka_unit_test(a_servo_replaced_in_operation_is_read_on),
-        cmocka_unit_test(a_lost_reading_is_no_end),
-        cmocka_unit_test(who_only_says_so_is_not_asked_for_ever),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

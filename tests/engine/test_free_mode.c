@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Free mode under a hand that turns a joint at 30 to 200 deg/s, on board and bus. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <grobo/gr001.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 #define STEP_US 1000
 /* A held servo draws this much more under a hand that does not overcome it. */
@@ -100,9 +96,8 @@ static void expect_ways(int joint, grobo_joint_mask taught, double dps)
                   waits_deg, forces_deg);
 }
 
-static void a_joint_gives_way_to_a_hand_and_stays_where_it_leaves_it(void **state)
+TEST_WITH(rig_wirings, a_joint_gives_way_to_a_hand_and_stays_where_it_leaves_it)
 {
-    (void)state;
     static const double speeds_dps[] = {30, HAND_DPS, 120, 200};
     static const grobo_joint_mask taught[] = {7u << SHOULDER, GROBO_JOINTS_ALL(20)};
     for (int i = 0; i < 8; i++) {
@@ -113,9 +108,8 @@ static void a_joint_gives_way_to_a_hand_and_stays_where_it_leaves_it(void **stat
 }
 
 /* A joint that is on a way of its own when free mode begins is not taken for one that is turned. */
-static void a_way_under_way_is_no_hand(void **state)
+TEST_WITH(rig_wirings, a_way_under_way_is_no_hand)
 {
-    (void)state;
     static const double to_deg = -80;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
@@ -129,13 +123,4 @@ static void a_way_under_way_is_no_hand(void **state)
     assert_int_equal(grobo_robot_free(&rig.robot, target.set, true), GROBO_OK);
     rig_run(&rig, 2500000);
     assert_true(fabs(rig_angle_deg(&rig, R_KNEE) - to_deg) < 0.2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_joint_gives_way_to_a_hand_and_stays_where_it_leaves_it),
-        cmocka_unit_test(a_way_under_way_is_no_hand),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

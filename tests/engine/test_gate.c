@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The gate, deed by deed: what each is refused for, by name, and which time it gets. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/gate_kit.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 /* ---- what is refused ------------------------------------------------------------------------- */
 
@@ -19,9 +15,8 @@ static int judge(grobo_robot_order order)
     return grobo_i_gate_judge(&robot, &order, NULL);
 }
 
-static void a_goal_is_judged_as_it_leaves(void **state)
+TEST_WITH(axes_wirings, a_goal_is_judged_as_it_leaves)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_robot_order order = {
             .joints = bits(j, other_of(j)), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
@@ -60,9 +55,8 @@ static void a_goal_is_judged_as_it_leaves(void **state)
 }
 
 /* Of servos that a goal switches on: those that are known to hold, and were heard lately. */
-static void a_goal_that_would_wake_a_servo_is_refused_by_name(void **state)
+TEST_WITH(axes_wirings, a_goal_that_would_wake_a_servo_is_refused_by_name)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_robot_order goal = {
             .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
@@ -84,9 +78,8 @@ static void a_goal_that_would_wake_a_servo_is_refused_by_name(void **state)
 }
 
 /* Torque that comes on and waits is not for a joint that is to be without; else it is. */
-static void torque_off_and_brake_take_back_torque_on_that_waits(void **state)
+TEST_WITH(axes_wirings, torque_off_and_brake_take_back_torque_on_that_waits)
 {
-    (void)state;
     static const grobo_torque modes[] = {GROBO_TORQUE_OFF, GROBO_TORQUE_ON, GROBO_TORQUE_BRAKE};
     for (int j = 0; j < N; j++) {
         for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
@@ -108,9 +101,8 @@ static void torque_off_and_brake_take_back_torque_on_that_waits(void **state)
 }
 
 /* What has left goes again, or its next part, until another one waits or has left. */
-static void a_goal_goes_again_until_another_takes_its_place(void **state)
+TEST_WITH(axes_wirings, a_goal_goes_again_until_another_takes_its_place)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
             .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
@@ -129,9 +121,8 @@ static void a_goal_goes_again_until_another_takes_its_place(void **state)
     }
 }
 
-static void a_halt_is_refused_by_name(void **state)
+TEST_WITH(axes_wirings, a_halt_is_refused_by_name)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
             .joints = GROBO_JOINT_BIT(j), .asked_us = NOW, .deed = GROBO_I_DEED_HALT, .each = true};
@@ -157,9 +148,8 @@ static void a_halt_is_refused_by_name(void **state)
 }
 
 /* 50 ms after it was asked for, or 25 ms from now; drawn to the limits; half the speed. */
-static void a_halt_stops_ahead_of_where_joints_are(void **state)
+TEST_WITH(axes_wirings, a_halt_stops_ahead_of_where_joints_are)
 {
-    (void)state;
     static const struct {
         int ago_ms;
         double way_deg;
@@ -181,9 +171,8 @@ static void a_halt_stops_ahead_of_where_joints_are(void **state)
     }
 }
 
-static void a_hold_is_refused_by_name(void **state)
+TEST_WITH(axes_wirings, a_hold_is_refused_by_name)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
             .joints = GROBO_JOINT_BIT(j), .deed = GROBO_I_DEED_HOLD, .each = true};
@@ -210,9 +199,8 @@ static void a_hold_is_refused_by_name(void **state)
     }
 }
 
-static void torque_is_refused_by_name(void **state)
+TEST_WITH(axes_wirings, torque_is_refused_by_name)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
                                    .asked_us = NOW,
@@ -252,9 +240,8 @@ static void torque_is_refused_by_name(void **state)
 }
 
 /* A frame for two joints of which one is not held switches the other alone. */
-static void torque_comes_on_for_those_that_are_held(void **state)
+TEST_WITH(axes_wirings, torque_comes_on_for_those_that_are_held)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         make_limp(j);
@@ -270,9 +257,8 @@ static void torque_comes_on_for_those_that_are_held(void **state)
     }
 }
 
-static void a_segment_is_refused_by_name(void **state)
+TEST_WITH(axes_wirings, a_segment_is_refused_by_name)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
             .joints = GROBO_JOINT_BIT(j), .deed = GROBO_I_DEED_SEGMENT, .each = true};
@@ -298,9 +284,8 @@ static void a_segment_is_refused_by_name(void **state)
     }
 }
 
-static void a_setting_is_refused_by_name(void **state)
+TEST_WITH(axes_wirings, a_setting_is_refused_by_name)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
                                          .deed = GROBO_I_DEED_SETTING};
@@ -323,9 +308,8 @@ static void a_setting_is_refused_by_name(void **state)
     }
 }
 
-static void what_needs_silence_is_refused_while_something_moves(void **state)
+TEST_WITH(axes_wirings, what_needs_silence_is_refused_while_something_moves)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_robot_order command = {.joints = GROBO_JOINT_BIT(other_of(j)),
                                            .deed = GROBO_I_DEED_COMMAND};
@@ -349,9 +333,8 @@ static void what_needs_silence_is_refused_while_something_moves(void **state)
 }
 
 /* Another frame has told one of its joints something since the first attempt. */
-static void a_second_attempt_is_passed_by_what_left_since(void **state)
+TEST_WITH(axes_wirings, a_second_attempt_is_passed_by_what_left_since)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         take((grobo_robot_order){.joints = bits(j, other_of(j)),
@@ -376,9 +359,8 @@ static void a_second_attempt_is_passed_by_what_left_since(void **state)
 }
 
 /* The driver has no such part, and so nothing leaves. */
-static void a_frame_that_there_is_not_does_not_leave(void **state)
+TEST_WITH(axes_wirings, a_frame_that_there_is_not_does_not_leave)
 {
-    (void)state;
     for (int deed = 0; deed < 2; deed++) {
         start();
         await(4, 1, S);
@@ -394,9 +376,8 @@ static void a_frame_that_there_is_not_does_not_leave(void **state)
 }
 
 /* What does not fit the first frame is in the second; in one frame is asked for or refused. */
-static void each_part_has_joints_of_its_own(void **state)
+TEST_WITH(axes_wirings, each_part_has_joints_of_its_own)
 {
-    (void)state;
     grobo_robot_order order = {.joints = GROBO_JOINTS_ALL(N), .number = 1};
     for (int deed = 0; deed < 2; deed++) {
         int next = 0;
@@ -443,9 +424,8 @@ static int posture_in_parts(const grobo_driver *self, void *ctx, const grobo_tar
 }
 
 /* Several joints go into one frame, or are asked for in smaller frames; one may need more. */
-static void several_joints_go_in_one_frame(void **state)
+TEST_WITH(axes_wirings, several_joints_go_in_one_frame)
 {
-    (void)state;
     static const struct {
         int joints, parts, part, result;
     } rows[] = {{1, 1, 0, 1},
@@ -478,9 +458,8 @@ static void several_joints_go_in_one_frame(void **state)
     }
 }
 
-static void only_the_target_of_that_number_waits_no_more(void **state)
+TEST_WITH(axes_wirings, only_the_target_of_that_number_waits_no_more)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         await(j, 1, S);
@@ -507,9 +486,8 @@ static int64_t steps_up(double time_us)
     return (int64_t)ceil(time_us / 10000 - 1e-9) * 10000;
 }
 
-static void times_are_what_speeds_make_them(void **state)
+TEST_WITH(axes_wirings, times_are_what_speeds_make_them)
 {
-    (void)state;
     static const struct {
         int pct;
         double approach_dps;
@@ -552,9 +530,8 @@ static void times_are_what_speeds_make_them(void **state)
 }
 
 /* What is long enough stays, each joint by itself; a unit less is stretched by it. */
-static void a_goal_keeps_a_time_that_is_long_enough(void **state)
+TEST_WITH(axes_wirings, a_goal_keeps_a_time_that_is_long_enough)
 {
-    (void)state;
     static const int pcts[] = {100, 50, 1};
     for (int i = 0; i < 3 * N; i++) {
         const int j = i / 3, pct = pcts[i % 3];
@@ -580,9 +557,8 @@ static void a_goal_keeps_a_time_that_is_long_enough(void **state)
 }
 
 /* A time off the wire's grid would be rounded down there, and one past its end cut. */
-static void a_time_that_the_wire_does_not_have_is_no_long_enough_one(void **state)
+TEST_WITH(axes_wirings, a_time_that_the_wire_does_not_have_is_no_long_enough_one)
 {
-    (void)state;
     grobo_target target = {0};
     start();
     robot.soft = false;
@@ -605,9 +581,8 @@ static void a_time_that_the_wire_does_not_have_is_no_long_enough_one(void **stat
 }
 
 /* Of an odd number of joints, too, and of none beyond them. */
-static void all_joints_of_a_move_get_its_time(void **state)
+TEST_WITH(axes_wirings, all_joints_of_a_move_get_its_time)
 {
-    (void)state;
     for (int n = N - 1; n <= N; n++) {
         grobo_target target = {0};
         make_robot(n, NULL);
@@ -622,9 +597,8 @@ static void all_joints_of_a_move_get_its_time(void **state)
 }
 
 /* From where the joint is on its way by now, whatever the target asks for. */
-static void a_goal_that_leaves_late_gets_the_time_from_there(void **state)
+TEST_WITH(axes_wirings, a_goal_that_leaves_late_gets_the_time_from_there)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int soft = 0; soft < 2; soft++) {
             start();
@@ -647,9 +621,8 @@ static void a_goal_that_leaves_late_gets_the_time_from_there(void **state)
 }
 
 /* The wire has no more than so many steps. */
-static void a_time_longer_than_the_wire_has_is_refused(void **state)
+TEST_WITH(axes_wirings, a_time_longer_than_the_wire_has_is_refused)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {.each = true, .soft = true};
         const double most_deg = 0.5 * (double)GROBO_PLAY_TIME_MAX_US / 1e6 + 0.1;
@@ -671,9 +644,8 @@ static void a_time_longer_than_the_wire_has_is_refused(void **state)
 }
 
 /* A slow first move takes no less than a halt where the joint still moves. */
-static void one_that_moves_is_not_caught_up_softly(void **state)
+TEST_WITH(axes_wirings, one_that_moves_is_not_caught_up_softly)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int soft = 0; soft < 2; soft++) {
             for (int moves = 0; moves < 2; moves++) {
@@ -694,9 +666,8 @@ static void one_that_moves_is_not_caught_up_softly(void **state)
     }
 }
 
-static void a_target_of_no_joint_takes_no_time(void **state)
+TEST_WITH(axes_wirings, a_target_of_no_joint_takes_no_time)
 {
-    (void)state;
     grobo_target target = {0};
     start();
     assert_int_equal(grobo_i_gate_time(&robot, &(grobo_robot_order){0}, &target), GROBO_OK);
@@ -708,9 +679,8 @@ static void a_target_of_no_joint_takes_no_time(void **state)
 
 /* The end of a motion: at most half of the way that the joint would go in its time, from where it
  * is, and no faster than it may. */
-static void a_motion_rests_near_where_joints_are(void **state)
+TEST_WITH(axes_wirings, a_motion_rests_near_where_joints_are)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int side = -1; side <= 1; side += 2) {
             for (int how = 0; how < 8; how++) {
@@ -739,9 +709,8 @@ static void a_motion_rests_near_where_joints_are(void **state)
 }
 
 /* A joint may have sagged outside its limits: it rests, or stops, at them. */
-static void nothing_rests_outside_the_limits(void **state)
+TEST_WITH(axes_wirings, nothing_rests_outside_the_limits)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int halts = 0; halts < 2; halts++) {
             start();
@@ -765,9 +734,8 @@ static void nothing_rests_outside_the_limits(void **state)
 }
 
 /* By a raw frame or a halt: the joint stops where it is 50 ms later, wherever the clip is. */
-static void a_motion_rests_where_others_have_joints_stand(void **state)
+TEST_WITH(axes_wirings, a_motion_rests_where_others_have_joints_stand)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         set_going(j);
@@ -786,9 +754,8 @@ static void a_motion_rests_where_others_have_joints_stand(void **state)
 
 /* ---- what may be asked ----------------------------------------------------------------------- */
 
-static void a_target_is_checked_for_numbers_and_limits(void **state)
+TEST_WITH(axes_wirings, a_target_is_checked_for_numbers_and_limits)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int clamp = 0; clamp < 2; clamp++) {
             grobo_posture target;
@@ -831,9 +798,8 @@ static void a_target_is_checked_for_numbers_and_limits(void **state)
     }
 }
 
-static void joints_are_ready_that_were_read_and_hold(void **state)
+TEST_WITH(axes_wirings, joints_are_ready_that_were_read_and_hold)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         assert_true(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
@@ -851,9 +817,8 @@ static void joints_are_ready_that_were_read_and_hold(void **state)
 }
 
 /* One that has no part in a frame now may have one by the time it leaves. */
-static void what_waits_has_room_for_all_its_joints(void **state)
+TEST_WITH(axes_wirings, what_waits_has_room_for_all_its_joints)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_exchange is, be;
         grobo_target target = {0};
@@ -884,42 +849,4 @@ static void what_waits_has_room_for_all_its_joints(void **state)
         assert_int_equal(is.frame_bytes, be.frame_bytes);
         assert_memory_equal(is.frame, be.frame, be.frame_bytes);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_goal_is_judged_as_it_leaves),
-        cmocka_unit_test(a_goal_that_would_wake_a_servo_is_refused_by_name),
-        cmocka_unit_test(torque_off_and_brake_take_back_torque_on_that_waits),
-        cmocka_unit_test(a_goal_goes_again_until_another_takes_its_place),
-        cmocka_unit_test(a_halt_is_refused_by_name),
-        cmocka_unit_test(a_halt_stops_ahead_of_where_joints_are),
-        cmocka_unit_test(a_hold_is_refused_by_name),
-        cmocka_unit_test(torque_is_refused_by_name),
-        cmocka_unit_test(torque_comes_on_for_those_that_are_held),
-        cmocka_unit_test(a_segment_is_refused_by_name),
-        cmocka_unit_test(a_setting_is_refused_by_name),
-        cmocka_unit_test(what_needs_silence_is_refused_while_something_moves),
-        cmocka_unit_test(a_second_attempt_is_passed_by_what_left_since),
-        cmocka_unit_test(a_frame_that_there_is_not_does_not_leave),
-        cmocka_unit_test(each_part_has_joints_of_its_own),
-        cmocka_unit_test(several_joints_go_in_one_frame),
-        cmocka_unit_test(what_waits_has_room_for_all_its_joints),
-        cmocka_unit_test(only_the_target_of_that_number_waits_no_more),
-        cmocka_unit_test(times_are_what_speeds_make_them),
-        cmocka_unit_test(a_goal_keeps_a_time_that_is_long_enough),
-        cmocka_unit_test(a_time_that_the_wire_does_not_have_is_no_long_enough_one),
-        cmocka_unit_test(all_joints_of_a_move_get_its_time),
-        cmocka_unit_test(a_goal_that_leaves_late_gets_the_time_from_there),
-        cmocka_unit_test(a_time_longer_than_the_wire_has_is_refused),
-        cmocka_unit_test(one_that_moves_is_not_caught_up_softly),
-        cmocka_unit_test(a_target_of_no_joint_takes_no_time),
-        cmocka_unit_test(a_motion_rests_near_where_joints_are),
-        cmocka_unit_test(nothing_rests_outside_the_limits),
-        cmocka_unit_test(a_motion_rests_where_others_have_joints_stand),
-        cmocka_unit_test(a_target_is_checked_for_numbers_and_limits),
-        cmocka_unit_test(joints_are_ready_that_were_read_and_hold),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

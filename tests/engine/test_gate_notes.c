@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* What is noted of which joint when a frame leaves. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/gate_kit.h"
+#include "tests/support/test.h"
 
 /* ---- what is noted --------------------------------------------------------------------------- */
 
-static void a_goal_is_noted_of_its_joints_alone(void **state)
+TEST_WITH(axes_wirings, a_goal_is_noted_of_its_joints_alone)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int played = 0; played < 2; played++) {
             start();
@@ -44,9 +39,8 @@ static void a_goal_is_noted_of_its_joints_alone(void **state)
 }
 
 /* The others that it was asked for are told nothing: what was asked of them before goes on. */
-static void a_halt_is_noted_of_what_moves(void **state)
+TEST_WITH(axes_wirings, a_halt_is_noted_of_what_moves)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         set_going(j);
@@ -83,9 +77,8 @@ static int catch_posture(const grobo_driver *self, void *ctx, const grobo_target
 }
 
 /* For servos that make a speed of it: one that is behind has further to go in the same time. */
-static void a_halt_counts_its_way_from_where_a_joint_was_read(void **state)
+TEST_WITH(axes_wirings, a_halt_counts_its_way_from_where_a_joint_was_read)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         set_going(j);
@@ -104,9 +97,8 @@ static void a_halt_counts_its_way_from_where_a_joint_was_read(void **state)
     }
 }
 
-static void a_hold_is_noted_of_its_joints_alone(void **state)
+TEST_WITH(axes_wirings, a_hold_is_noted_of_its_joints_alone)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         make_limp(j);
@@ -134,9 +126,8 @@ static void a_hold_is_noted_of_its_joints_alone(void **state)
     }
 }
 
-static void torque_is_noted_of_its_joints_alone(void **state)
+TEST_WITH(axes_wirings, torque_is_noted_of_its_joints_alone)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int mode = GROBO_TORQUE_OFF; mode <= GROBO_TORQUE_BRAKE; mode++) {
             for (int limp = 0; limp < 2; limp++) {
@@ -167,9 +158,8 @@ static void torque_is_noted_of_its_joints_alone(void **state)
 }
 
 /* What nobody can read, a setting, a restart: what is known of the joint is no longer true. */
-static void what_leaves_joints_unknown_is_noted_of_them_alone(void **state)
+TEST_WITH(axes_wirings, what_leaves_joints_unknown_is_noted_of_them_alone)
 {
-    (void)state;
     static const grobo_i_deed deeds[] = {GROBO_I_DEED_UNKNOWN, GROBO_I_DEED_SETTING,
                                          GROBO_I_DEED_COMMAND};
     for (int j = 0; j < N; j++) {
@@ -200,9 +190,8 @@ static void what_leaves_joints_unknown_is_noted_of_them_alone(void **state)
 }
 
 /* Nor does it make known what was not: wanted or not, known or not. */
-static void what_is_unknown_already_stays_so(void **state)
+TEST_WITH(axes_wirings, what_is_unknown_already_stays_so)
 {
-    (void)state;
     start();
     for (int j = 0; j < N; j++) {
         robot.axes[j].wants_torque = j % 2 != 0;
@@ -218,9 +207,8 @@ static void what_is_unknown_already_stays_so(void **state)
     drop();
 }
 
-static void what_does_nothing_to_a_joint_notes_nothing(void **state)
+TEST_WITH(axes_wirings, what_does_nothing_to_a_joint_notes_nothing)
 {
-    (void)state;
     start();
     assert_int_equal(leave((grobo_robot_order){.deed = GROBO_I_DEED_NONE}), GROBO_OK);
     expect_axes();
@@ -230,9 +218,8 @@ static void what_does_nothing_to_a_joint_notes_nothing(void **state)
 }
 
 /* Only how far along its way the joint was told. */
-static void a_segment_is_noted_of_its_joints_alone(void **state)
+TEST_WITH(axes_wirings, a_segment_is_noted_of_its_joints_alone)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         for (int k = 0; k < N; k++) {
@@ -252,9 +239,8 @@ static void a_segment_is_noted_of_its_joints_alone(void **state)
 }
 
 /* Of a longer way its frame asks for a part, and it is told more of it in time. */
-static void a_goal_in_segments_is_noted_of_its_joints_alone(void **state)
+TEST_WITH(axes_wirings, a_goal_in_segments_is_noted_of_its_joints_alone)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int whole = 0; whole < 2; whole++) {
             const int64_t time_us = whole ? GROBO_SEGMENT_US : GROBO_SEGMENT_US * 2;
@@ -286,9 +272,8 @@ static void a_goal_in_segments_is_noted_of_its_joints_alone(void **state)
 /* ---- the slow first move --------------------------------------------------------------------- */
 
 /* Of a caller's own stream the first is slow until it is there; of played frames the first. */
-static void the_slow_move_is_over_when_its_first_target_is_reached(void **state)
+TEST_WITH(axes_wirings, the_slow_move_is_over_when_its_first_target_is_reached)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int how = 0; how < 3; how++) { /* of a stream, of a job, played */
             start();
@@ -323,22 +308,4 @@ static void the_slow_move_is_over_when_its_first_target_is_reached(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_goal_is_noted_of_its_joints_alone),
-        cmocka_unit_test(a_halt_is_noted_of_what_moves),
-        cmocka_unit_test(a_halt_counts_its_way_from_where_a_joint_was_read),
-        cmocka_unit_test(a_hold_is_noted_of_its_joints_alone),
-        cmocka_unit_test(torque_is_noted_of_its_joints_alone),
-        cmocka_unit_test(what_leaves_joints_unknown_is_noted_of_them_alone),
-        cmocka_unit_test(what_is_unknown_already_stays_so),
-        cmocka_unit_test(what_does_nothing_to_a_joint_notes_nothing),
-        cmocka_unit_test(a_segment_is_noted_of_its_joints_alone),
-        cmocka_unit_test(a_goal_in_segments_is_noted_of_its_joints_alone),
-        cmocka_unit_test(the_slow_move_is_over_when_its_first_target_is_reached),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

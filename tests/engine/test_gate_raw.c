@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Raw frames at the gate: what each is refused for, and what is noted of it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/gate_kit.h"
+#include "tests/support/test.h"
 
 /* ---- raw frames ------------------------------------------------------------------------------ */
 
@@ -49,9 +45,8 @@ static int raw_torque_of(int joint, grobo_torque torque, grobo_robot_order *orde
                order);
 }
 
-static void a_raw_goal_is_noted_like_one_of_ours(void **state)
+TEST_WITH(axes_wirings, a_raw_goal_is_noted_like_one_of_ours)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
         start();
@@ -69,9 +64,8 @@ static void a_raw_goal_is_noted_like_one_of_ours(void **state)
     }
 }
 
-static void a_raw_torque_is_noted_like_one_of_ours(void **state)
+TEST_WITH(axes_wirings, a_raw_torque_is_noted_like_one_of_ours)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int mode = GROBO_TORQUE_OFF; mode <= GROBO_TORQUE_BRAKE; mode++) {
             grobo_robot_order order;
@@ -93,9 +87,8 @@ static void a_raw_torque_is_noted_like_one_of_ours(void **state)
     }
 }
 
-static void a_raw_frame_that_reads_is_about_no_joint(void **state)
+TEST_WITH(axes_wirings, a_raw_frame_that_reads_is_about_no_joint)
 {
-    (void)state;
     uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
     grobo_robot_order order;
     start();
@@ -108,9 +101,8 @@ static void a_raw_frame_that_reads_is_about_no_joint(void **state)
 }
 
 /* What was read to hold within two seconds, by then; what comes off is as old as it may be. */
-static void a_raw_torque_comes_on_where_it_was_read_just_now(void **state)
+TEST_WITH(axes_wirings, a_raw_torque_comes_on_where_it_was_read_just_now)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
         start();
@@ -134,9 +126,8 @@ static void a_raw_torque_comes_on_where_it_was_read_just_now(void **state)
 }
 
 /* 2 % less than the joint needs is taken for late, and no more. */
-static void a_raw_goal_has_the_time_of_its_joint(void **state)
+TEST_WITH(axes_wirings, a_raw_goal_has_the_time_of_its_joint)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
         for (int soft = 0; soft < 2; soft++) {
@@ -164,9 +155,8 @@ static void a_raw_goal_has_the_time_of_its_joint(void **state)
     }
 }
 
-static void a_raw_frame_is_refused_by_name(void **state)
+TEST_WITH(axes_wirings, a_raw_frame_is_refused_by_name)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
         start();
@@ -201,9 +191,8 @@ static void a_raw_frame_is_refused_by_name(void **state)
 }
 
 /* With no time at all: where it is is not too far, and the slow move is over at once. */
-static void a_raw_goal_to_where_its_joint_is_needs_no_time(void **state)
+TEST_WITH(axes_wirings, a_raw_goal_to_where_its_joint_is_needs_no_time)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
         start();
@@ -219,9 +208,8 @@ static void a_raw_goal_to_where_its_joint_is_needs_no_time(void **state)
 }
 
 /* It is no first move: the next one is as slow as it would have been. */
-static void a_raw_torque_ends_no_slow_move(void **state)
+TEST_WITH(axes_wirings, a_raw_torque_ends_no_slow_move)
 {
-    (void)state;
     grobo_robot_order order;
     start();
     grobo_i_gate_soften(&robot);
@@ -231,9 +219,8 @@ static void a_raw_torque_ends_no_slow_move(void **state)
     drop();
 }
 
-static void a_raw_frame_that_nobody_can_read_is_refused_unless_asked(void **state)
+TEST_WITH(axes_wirings, a_raw_frame_that_nobody_can_read_is_refused_unless_asked)
 {
-    (void)state;
     for (int accept = 0; accept < 2; accept++) {
         for (int can_read = 0; can_read < 2; can_read++) {
             uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
@@ -264,20 +251,4 @@ static void a_raw_frame_that_nobody_can_read_is_refused_unless_asked(void **stat
             drop();
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_raw_goal_is_noted_like_one_of_ours),
-        cmocka_unit_test(a_raw_torque_is_noted_like_one_of_ours),
-        cmocka_unit_test(a_raw_torque_comes_on_where_it_was_read_just_now),
-        cmocka_unit_test(a_raw_frame_that_reads_is_about_no_joint),
-        cmocka_unit_test(a_raw_goal_has_the_time_of_its_joint),
-        cmocka_unit_test(a_raw_frame_is_refused_by_name),
-        cmocka_unit_test(a_raw_goal_to_where_its_joint_is_needs_no_time),
-        cmocka_unit_test(a_raw_torque_ends_no_slow_move),
-        cmocka_unit_test(a_raw_frame_that_nobody_can_read_is_refused_unless_asked),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

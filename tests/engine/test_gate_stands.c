@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* A goal's frame that leaves as it was asked for, or is built anew: its bytes are the same. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "src/base/assert.h"
 #include "tests/support/axes_kit.h"
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 
 /* Each frame that stands is built once more, to be held against it. */
 static const bool held_against = GROBO_ASSERT_WALKS;
@@ -144,9 +140,8 @@ static const struct {
 
 /* ---- tests ---- */
 
-static void a_frame_that_stands_is_the_one_that_is_built_anew(void **state)
+TEST_WITH(axes_wirings, a_frame_that_stands_is_the_one_that_is_built_anew)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         uint8_t bytes[GROBO_FRAME_MAX_BYTES];
         ask(false, false);
@@ -168,9 +163,8 @@ static void a_frame_that_stands_is_the_one_that_is_built_anew(void **state)
 }
 
 /* What was built anew once does not stand, though nothing is different again. */
-static void an_attempt_after_one_that_was_built_anew_is_built_anew(void **state)
+TEST_WITH(axes_wirings, an_attempt_after_one_that_was_built_anew_is_built_anew)
 {
-    (void)state;
     ask(true, false);
     grobo_robot_slot *slot = frame_of(5);
     robot.config.speed_limit_pct = 1;
@@ -182,18 +176,16 @@ static void an_attempt_after_one_that_was_built_anew_is_built_anew(void **state)
 }
 
 /* It comes to rest where it is by then. */
-static void what_rests_is_built_anew(void **state)
+TEST_WITH(axes_wirings, what_rests_is_built_anew)
 {
-    (void)state;
     ask(true, true);
     assert_int_equal(grobo_i_gate_leave(frame_of(5)), GROBO_OK);
     assert_int_equal(built, 1);
 }
 
 /* As fast as that takes, by a division of doubles: what integers find sure is no other time. */
-static void the_time_is_the_one_that_doubles_find(void **state)
+TEST_WITH(axes_wirings, the_time_is_the_one_that_doubles_find)
 {
-    (void)state;
     uint32_t seed = 5;
     int stretched = 0;
     start();
@@ -222,15 +214,4 @@ static void the_time_is_the_one_that_doubles_find(void **state)
         stretched += target.joint_time_us[j] > asked_us;
     }
     assert_in_range(stretched, 2000, 18000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_frame_that_stands_is_the_one_that_is_built_anew),
-        cmocka_unit_test(an_attempt_after_one_that_was_built_anew_is_built_anew),
-        cmocka_unit_test(what_rests_is_built_anew),
-        cmocka_unit_test(the_time_is_the_one_that_doubles_find),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

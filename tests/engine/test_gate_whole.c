@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The gate at its bounds, and what it notes when a frame leaves. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "src/robot/robot.h"
 #include "tests/support/raw_frames.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip, other;
@@ -36,9 +31,8 @@ static int id_of(int joint)
 /* ---- speed ----------------------------------------------------------------------------------- */
 
 /* 375 deg/s, and 0.1 degree for rounding: a long way shows a limit that is off by a hundredth. */
-static void the_speed_of_a_joint_is_exact(void **state)
+TEST_WITH(rig_wirings, the_speed_of_a_joint_is_exact)
 {
-    (void)state;
     static const struct {
         double way_deg;
         int least_ms;
@@ -55,9 +49,8 @@ static void the_speed_of_a_joint_is_exact(void **state)
 }
 
 /* Where it is already, too: the wire has no time of nothing. */
-static void no_way_takes_the_least_time(void **state)
+TEST_WITH(rig_wirings, no_way_takes_the_least_time)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     grobo_target target = {.posture = rig_posture(&rig, NECK, 0, 0)};
     const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(NECK), .each = true};
@@ -67,9 +60,8 @@ static void no_way_takes_the_least_time(void **state)
 }
 
 /* Why it was stopped may be that somebody took hold of it. */
-static void the_first_target_after_a_reset_is_slow(void **state)
+TEST_WITH(rig_wirings, the_first_target_after_a_reset_is_slow)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     grobo_i_trip(&rig.robot, GROBO_TRIP_TEMPERATURE, CHEST, 75, true);
     assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
@@ -81,9 +73,8 @@ static void the_first_target_after_a_reset_is_slow(void **state)
 /* ---- who may be moved ------------------------------------------------------------------------ */
 
 /* The target waits for the line, and a hand takes the joint. */
-static void a_target_that_waits_does_not_reach_a_joint_that_is_free_by_then(void **state)
+TEST_WITH(rig_wirings, a_target_that_waits_does_not_reach_a_joint_that_is_free_by_then)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     assert_int_equal(send(NECK, 20, 500), GROBO_OK);
     assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true), 0);
@@ -93,9 +84,8 @@ static void a_target_that_waits_does_not_reach_a_joint_that_is_free_by_then(void
 }
 
 /* It was read, and does not hold: a second file would move it in frames only. */
-static void a_second_file_moves_no_joint_without_torque(void **state)
+TEST_WITH(rig_wirings, a_second_file_moves_no_joint_without_torque)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_clip_init(&clip, nod, 2);
     rig_clip_init(&other, nod, 2);
@@ -108,9 +98,8 @@ static void a_second_file_moves_no_joint_without_torque(void **state)
 
 /* ---- torque ---------------------------------------------------------------------------------- */
 
-static void a_goal_holds_within_two_degrees(void **state)
+TEST_WITH(rig_wirings, a_goal_holds_within_two_degrees)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     for (int sign = -1; sign <= 1; sign += 2) {
         double here_rad = rig.robot.axes[NECK].state.angle_rad;
@@ -122,9 +111,8 @@ static void a_goal_holds_within_two_degrees(void **state)
 }
 
 /* Whatever ran last: what free mode switches waits behind a stop. */
-static void free_mode_is_not_as_urgent_as_a_stop(void **state)
+TEST_WITH(rig_wirings, free_mode_is_not_as_urgent_as_a_stop)
 {
-    (void)state;
     bool seen = false;
     rig_start_at(&rig, 0, &quiet);
     rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_OK);
@@ -144,9 +132,8 @@ static void free_mode_is_not_as_urgent_as_a_stop(void **state)
 }
 
 /* A raw goal has sent it on a long way without torque. Now it holds where it is, and is on none. */
-static void what_begins_to_hold_is_on_no_way(void **state)
+TEST_WITH(rig_wirings, what_begins_to_hold_is_on_no_way)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     sense(rig_all(&rig), GROBO_SENSE_ALL);
     rig_expect(&rig, raw_goal(&rig, NECK, 10, 10000), GROBO_OK);
@@ -163,9 +150,8 @@ static void what_begins_to_hold_is_on_no_way(void **state)
 }
 
 /* It goes on meanwhile, and a stop finds it on its way. */
-static void what_begins_to_hold_leaves_its_neighbour_on_its_way(void **state)
+TEST_WITH(rig_wirings, what_begins_to_hold_leaves_its_neighbour_on_its_way)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     for (int j = NECK; j >= CHEST; j--) { /* each once */
         int moved = j == NECK ? CHEST : NECK;
@@ -186,9 +172,8 @@ static void what_begins_to_hold_leaves_its_neighbour_on_its_way(void **state)
 /* ---- stops ----------------------------------------------------------------------------------- */
 
 /* Its approach takes a while and is read back: until then the motion is a job. */
-static void a_cancel_stops_a_motion_that_begins(void **state)
+TEST_WITH(rig_wirings, a_cancel_stops_a_motion_that_begins)
 {
-    (void)state;
     rig_start_at(&rig, -45, &quiet);
     rig_clip_init(&clip, nod, 2);
     clip.only = GROBO_JOINT_BIT(NECK);
@@ -210,9 +195,8 @@ static void a_cancel_stops_a_motion_that_begins(void **state)
 /* ---- readings -------------------------------------------------------------------------------- */
 
 /* What a reading does not bring stays as it was. */
-static void a_short_reading_changes_nothing_else(void **state)
+TEST_WITH(rig_wirings, a_short_reading_changes_nothing_else)
 {
-    (void)state;
     static const grobo_sense_kind kinds[] = {GROBO_SENSE_POSITION, GROBO_SENSE_GOAL};
     rig_start_at(&rig, 10, &quiet);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, NECK, 40), 0);
@@ -235,9 +219,8 @@ static void a_short_reading_changes_nothing_else(void **state)
 }
 
 /* Its first attempt left at 0 on a clock that begins there; torque went before the second. */
-static void a_reading_of_the_first_moment_is_of_then(void **state)
+TEST_WITH(rig_wirings, a_reading_of_the_first_moment_is_of_then)
 {
-    (void)state;
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     grobo_joint_info info;
     rig_epoch_us = 0;
@@ -258,23 +241,4 @@ static void a_reading_of_the_first_moment_is_of_then(void **state)
     assert_int_equal(rig_last(&rig, GROBO_EVENT_JOINT)->u.joint.result, GROBO_OK);
     assert_int_equal(grobo_robot_joint(&rig.robot, HIP, &info), 0);
     assert_false(info.torque_known);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_speed_of_a_joint_is_exact),
-        cmocka_unit_test(no_way_takes_the_least_time),
-        cmocka_unit_test(the_first_target_after_a_reset_is_slow),
-        cmocka_unit_test(a_target_that_waits_does_not_reach_a_joint_that_is_free_by_then),
-        cmocka_unit_test(a_second_file_moves_no_joint_without_torque),
-        cmocka_unit_test(a_goal_holds_within_two_degrees),
-        cmocka_unit_test(free_mode_is_not_as_urgent_as_a_stop),
-        cmocka_unit_test(what_begins_to_hold_is_on_no_way),
-        cmocka_unit_test(what_begins_to_hold_leaves_its_neighbour_on_its_way),
-        cmocka_unit_test(a_cancel_stops_a_motion_that_begins),
-        cmocka_unit_test(a_short_reading_changes_nothing_else),
-        cmocka_unit_test(a_reading_of_the_first_moment_is_of_then),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* GR001 by motor number and in motor order, for people, and its record. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/gr001.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 
@@ -28,9 +24,8 @@ static void read_all(void)
 
 /* ---- one motor, a group of motors ------------------------------------------------------------ */
 
-static void a_motor_is_switched_by_its_number(void **state)
+TEST_WITH(rig_wirings, a_motor_is_switched_by_its_number)
 {
-    (void)state;
     static const grobo_torque modes[] = {GROBO_TORQUE_ON, GROBO_TORQUE_BRAKE, GROBO_TORQUE_OFF};
     start();
     for (int i = 0; i < 3; i++) {
@@ -42,9 +37,8 @@ static void a_motor_is_switched_by_its_number(void **state)
     assert_int_equal(grobo_gr001_torque(&rig.robot, 21, GROBO_TORQUE_ON), GROBO_ERR_NOTFOUND);
 }
 
-static void groups_are_switched_by_their_number(void **state)
+TEST_WITH(rig_wirings, groups_are_switched_by_their_number)
 {
-    (void)state;
     /* First and last motor of each group (protocol 5). */
     static const int motors[8][2] = {{1, 20}, {1, 2},  {3, 5},   {6, 8},
                                      {3, 8},  {9, 14}, {15, 20}, {9, 20}};
@@ -64,9 +58,8 @@ static void groups_are_switched_by_their_number(void **state)
                      GROBO_ERR_NOTFOUND);
 }
 
-static void a_motor_is_moved_by_a_short_packet(void **state)
+TEST_WITH(rig_wirings, a_motor_is_moved_by_a_short_packet)
 {
-    (void)state;
     start();
     rig_power(&rig);
     rig_expect(&rig, grobo_gr001_move(&rig.robot, NECK_ID, 0, 10), GROBO_OK);
@@ -90,9 +83,8 @@ static int angle(int motor, int64_t max_age_us, int *angle_ddeg)
     return grobo_gr001_angle(&rig.robot, motor, max_age_us, angle_ddeg);
 }
 
-static void a_motor_is_read_by_its_number(void **state)
+TEST_WITH(rig_wirings, a_motor_is_read_by_its_number)
 {
-    (void)state;
     int angle_ddeg = 7777;
     start();
     assert_int_equal(angle(R_ELBOW_ID, GROBO_NEVER_US, &angle_ddeg), GROBO_ERR_STALE);
@@ -111,9 +103,8 @@ static void a_motor_is_read_by_its_number(void **state)
     assert_int_equal(angle_ddeg, 7777);
 }
 
-static void goals_are_packed_as_in_a_packet(void **state)
+TEST_WITH(rig_wirings, goals_are_packed_as_in_a_packet)
 {
-    (void)state;
     uint8_t data[4];
     assert_int_equal(grobo_gr001_pack_goal(900, 10, data, sizeof data), 4);
     assert_memory_equal(data, "\x84\x03\x0A\x00", 4); /* as in the packet of protocol 5 */
@@ -131,9 +122,8 @@ static void goals_are_packed_as_in_a_packet(void **state)
 
 /* ---- all motors ------------------------------------------------------------------------------ */
 
-static void postures_are_made_in_motor_order(void **state)
+TEST_WITH(rig_wirings, postures_are_made_in_motor_order)
 {
-    (void)state;
     const grobo_model *model = &grobo_gr001_model;
     int16_t angle_ddeg[20];
     grobo_posture posture;
@@ -153,9 +143,8 @@ static void postures_are_made_in_motor_order(void **state)
     assert_int_equal(posture.n_joints, 20);
 }
 
-static void angles_are_set_and_got_in_motor_order(void **state)
+TEST_WITH(rig_wirings, angles_are_set_and_got_in_motor_order)
 {
-    (void)state;
     double angle_rad[21] = {0};
     start();
     for (int j = 0; j < 20; j++) {
@@ -182,9 +171,8 @@ static void angles_are_set_and_got_in_motor_order(void **state)
     assert_int_equal(grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 500000), GROBO_ERR_NAN);
 }
 
-static void angles_not_read_are_no_numbers(void **state)
+TEST_WITH(rig_wirings, angles_not_read_are_no_numbers)
 {
-    (void)state;
     double angle_rad[20];
     start();
     rig_expect(&rig, grobo_gr001_sense(&rig.robot, 11), GROBO_OK); /* R_HIP_R */
@@ -196,9 +184,8 @@ static void angles_not_read_are_no_numbers(void **state)
     assert_int_equal(grobo_gr001_get_angles(&rig.robot, 900000, angle_rad, 20), 0);
 }
 
-static void voltages_and_currents_are_got_in_motor_order(void **state)
+TEST_WITH(rig_wirings, voltages_and_currents_are_got_in_motor_order)
 {
-    (void)state;
     int32_t value[20];
     start();
     assert_int_equal(grobo_gr001_mean_voltage_mv(&rig.robot, GROBO_NEVER_US), GROBO_ERR_STALE);
@@ -266,9 +253,8 @@ static int print_body(FILE *stream)
     return grobo_gr001_print_posture(&posture, stream);
 }
 
-static void voltages_and_currents_are_printed(void **state)
+TEST_WITH(rig_wirings, voltages_and_currents_are_printed)
 {
-    (void)state;
     char line[64];
     int32_t current_ma[20];
     int32_t voltage_mv[20];
@@ -289,9 +275,8 @@ static void voltages_and_currents_are_printed(void **state)
     assert_string_equal(strstr(text, "\n20"), line);
 }
 
-static void a_posture_is_printed_as_the_body_stands(void **state)
+TEST_WITH(rig_wirings, a_posture_is_printed_as_the_body_stands)
 {
-    (void)state;
     assert_string_equal(printed(print_body), "                   right  middle    left\n"
                                              "neck yaw                       -\n"
                                              "shoulder pitch      20.0           -20.0\n"
@@ -312,9 +297,8 @@ static void a_posture_is_printed_as_the_body_stands(void **state)
     fclose(stream);
 }
 
-static void a_stream_that_takes_nothing_is_told(void **state)
+TEST_WITH(rig_wirings, a_stream_that_takes_nothing_is_told)
 {
-    (void)state;
     FILE *full = fopen("/dev/full", "w");
     if (full == NULL) {
         print_message("no /dev/full here\n");
@@ -343,9 +327,8 @@ static void turn(double neck_deg)
     read_all();
 }
 
-static void a_record_is_made_by_hand_and_played(void **state)
+TEST_WITH(rig_wirings, a_record_is_made_by_hand_and_played)
 {
-    (void)state;
     grobo_motion *motion = NULL;
     grobo_posture posture;
     grobo_clip clip;
@@ -378,9 +361,8 @@ static void a_record_is_made_by_hand_and_played(void **state)
 }
 
 /* The record is a motion that was something else: what is read is no increment to it. */
-static void a_record_is_what_was_read(void **state)
+TEST_WITH(rig_wirings, a_record_is_what_was_read)
 {
-    (void)state;
     grobo_posture step;
     grobo_clip clip;
     start();
@@ -416,9 +398,8 @@ static void a_record_is_what_was_read(void **state)
 }
 
 /* The driver says what answers its readings without looking at the frame again. */
-static void a_reading_is_answered_as_its_frame_says(void **state)
+TEST_WITH(rig_wirings, a_reading_is_answered_as_its_frame_says)
 {
-    (void)state;
     for (int wiring = 0; wiring < 2; wiring++) {
         const grobo_driver *driver = grobo_gr001_driver((grobo_wiring)wiring);
         for (int i = 0; i < 4 * driver->model->n_joints; i++) {
@@ -431,26 +412,4 @@ static void a_reading_is_answered_as_its_frame_says(void **state)
             assert_memory_equal(&exchange.reply, &reply, sizeof reply);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_reading_is_answered_as_its_frame_says),
-        cmocka_unit_test(a_motor_is_switched_by_its_number),
-        cmocka_unit_test(groups_are_switched_by_their_number),
-        cmocka_unit_test(a_motor_is_moved_by_a_short_packet),
-        cmocka_unit_test(a_motor_is_read_by_its_number),
-        cmocka_unit_test(goals_are_packed_as_in_a_packet),
-        cmocka_unit_test(postures_are_made_in_motor_order),
-        cmocka_unit_test(angles_are_set_and_got_in_motor_order),
-        cmocka_unit_test(angles_not_read_are_no_numbers),
-        cmocka_unit_test(voltages_and_currents_are_got_in_motor_order),
-        cmocka_unit_test(voltages_and_currents_are_printed),
-        cmocka_unit_test(a_posture_is_printed_as_the_body_stands),
-        cmocka_unit_test(a_stream_that_takes_nothing_is_told),
-        cmocka_unit_test(a_record_is_what_was_read),
-        cmocka_unit_test(a_record_is_made_by_hand_and_played),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/hrpsys.h>
 #include <grobo/static.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static grobo_hrpsys hrpsys;
@@ -23,9 +19,8 @@ static void start(void)
     grobo_hrpsys_init(&hrpsys, &rig.robot);
 }
 
-static void servo_switches_one_joint(void **state)
+TEST_WITH(rig_wirings, servo_switches_one_joint)
 {
-    (void)state;
     start();
     rig_expect(&rig, grobo_hrpsys_servo(&hrpsys, NECK, true), GROBO_OK);
     for (int j = 0; j < 20; j++) {
@@ -35,9 +30,8 @@ static void servo_switches_one_joint(void **state)
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
 }
 
-static void minus_one_is_not_all(void **state)
+TEST_WITH(rig_wirings, minus_one_is_not_all)
 {
-    (void)state;
     start();
     rig_power(&rig);
     assert_int_equal(grobo_hrpsys_servo(&hrpsys, -1, false), GROBO_ERR_ARG);
@@ -46,9 +40,8 @@ static void minus_one_is_not_all(void **state)
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
 }
 
-static void servo_knows_joints_and_groups_by_name(void **state)
+TEST_WITH(rig_wirings, servo_knows_joints_and_groups_by_name)
 {
-    (void)state;
     static const char *const knees[] = {"R_KNEE_P", "L_KNEE_P"};
     start();
     assert_int_equal(grobo_hrpsys_add_joint_group(&hrpsys, "knees", knees, 2), 2);
@@ -66,9 +59,8 @@ static void servo_knows_joints_and_groups_by_name(void **state)
     }
 }
 
-static void all_joints_are_called_all_by_any_model(void **state)
+TEST_WITH(rig_wirings, all_joints_are_called_all_by_any_model)
 {
-    (void)state;
     static grobo_robot robot;
     grobo_driver driver;
     grobo_joint_mask joints = 0;
@@ -82,9 +74,8 @@ static void all_joints_are_called_all_by_any_model(void **state)
     assert_int_equal(grobo_hrpsys_find(&hrpsys, "right_arm", &joints), GROBO_ERR_NOTFOUND);
 }
 
-static void groups_have_names_of_their_own(void **state)
+TEST_WITH(rig_wirings, groups_have_names_of_their_own)
 {
-    (void)state;
     static const char *const knees[] = {"R_KNEE_P", "L_KNEE_P"};
     static const char *const tail[] = {"R_KNEE_P", "TAIL"};
     char name[] = "knees";
@@ -121,9 +112,8 @@ static int read_angles(double *angles, size_t capacity, int64_t max_age_us)
     return grobo_hrpsys_read_joint_angles(&hrpsys, max_age_us, angles, capacity);
 }
 
-static void angles_not_read_are_no_numbers(void **state)
+TEST_WITH(rig_wirings, angles_not_read_are_no_numbers)
 {
-    (void)state;
     double angles[20];
     start();
     assert_int_equal(read_angles(angles, 19, GROBO_NEVER_US), GROBO_ERR_SPACE);
@@ -146,9 +136,8 @@ static int write_pose(double neck_deg)
     return grobo_hrpsys_write_joint_commands(&hrpsys, commands, 20);
 }
 
-static void commands_go_out_with_one_step(void **state)
+TEST_WITH(rig_wirings, commands_go_out_with_one_step)
 {
-    (void)state;
     const double commands[20] = {0};
     start();
     assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_ERR_EMPTY);
@@ -181,9 +170,8 @@ static void commands_go_out_with_one_step(void **state)
     }
 }
 
-static void a_loop_of_steps_is_followed(void **state)
+TEST_WITH(rig_wirings, a_loop_of_steps_is_followed)
 {
-    (void)state;
     double angles[20];
     start();
     rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "all", true), GROBO_OK);
@@ -202,9 +190,8 @@ static void a_loop_of_steps_is_followed(void **state)
     assert_true(fabs(grobo_deg_from_rad(angles[NECK]) - 30 * sin(149 * 0.04)) < 0.1);
 }
 
-static void joints_without_torque_are_left_out(void **state)
+TEST_WITH(rig_wirings, joints_without_torque_are_left_out)
 {
-    (void)state;
     start();
     assert_int_equal(write_pose(20), GROBO_OK);
     assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_ERR_STATE);
@@ -219,9 +206,8 @@ static void joints_without_torque_are_left_out(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
 }
 
-static void switching_forgets_what_was_written(void **state)
+TEST_WITH(rig_wirings, switching_forgets_what_was_written)
 {
-    (void)state;
     start();
     assert_int_equal(write_pose(20), GROBO_OK);
     rig_expect(&rig, grobo_hrpsys_servo(&hrpsys, NECK, true), GROBO_OK);
@@ -245,9 +231,8 @@ static const char *emergency(int *joint)
     return reason;
 }
 
-static void emergencies_are_told(void **state)
+TEST_WITH(rig_wirings, emergencies_are_told)
 {
-    (void)state;
     int joint = 0;
     char small[] = "................................";
     start();
@@ -281,9 +266,8 @@ static void emergencies_are_told(void **state)
     assert_int_equal(joint, -1);
 }
 
-static void lost_replies_in_motion_are_an_emergency(void **state)
+TEST_WITH(rig_wirings, lost_replies_in_motion_are_an_emergency)
 {
-    (void)state;
     int joint = 0;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
@@ -296,9 +280,8 @@ static void lost_replies_in_motion_are_an_emergency(void **state)
     assert_int_equal(joint, NECK);
 }
 
-static void names_become_ids(void **state)
+TEST_WITH(rig_wirings, names_become_ids)
 {
-    (void)state;
     static const char *const names[] = {"NECK_Y", "R_HIP_Y"};
     static const char *const wrong[] = {"NECK_Y", "TAIL"};
     int ids[2] = {-7, -7};
@@ -312,24 +295,4 @@ static void names_become_ids(void **state)
     assert_int_equal(grobo_hrpsys_names_to_motors(&hrpsys, names, 2, ids), 2);
     assert_int_equal(ids[0], 2);
     assert_int_equal(ids[1], 9);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(servo_switches_one_joint),
-        cmocka_unit_test(minus_one_is_not_all),
-        cmocka_unit_test(servo_knows_joints_and_groups_by_name),
-        cmocka_unit_test(all_joints_are_called_all_by_any_model),
-        cmocka_unit_test(groups_have_names_of_their_own),
-        cmocka_unit_test(angles_not_read_are_no_numbers),
-        cmocka_unit_test(commands_go_out_with_one_step),
-        cmocka_unit_test(a_loop_of_steps_is_followed),
-        cmocka_unit_test(joints_without_torque_are_left_out),
-        cmocka_unit_test(switching_forgets_what_was_written),
-        cmocka_unit_test(emergencies_are_told),
-        cmocka_unit_test(lost_replies_in_motion_are_an_emergency),
-        cmocka_unit_test(names_become_ids),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

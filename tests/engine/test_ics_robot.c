@@ -1,18 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* KRS servos: what the simulated ones answer, byte by byte, and what the engine refuses. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/ics.h>
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/family_kit.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
 enum { MS = 1000, S = 1000000 };
@@ -38,9 +35,8 @@ static int32_t value(int servo, grobo_register_role role)
 }
 
 /* The manual's own examples: 81 3A 4C, A1 01. */
-static void commands_are_answered(void **state)
+TEST(commands_are_answered)
 {
-    (void)state;
     start_chain("KRS-3301", 2);
     int64_t asked_us = chain.kit.now_us;
     simkit_ask(&chain.kit, "81 3A 4C", 50000);
@@ -63,9 +59,8 @@ static void commands_are_answered(void **state)
     assert_int_equal(value(1, GROBO_ROLE_POSITION), 7500);
 }
 
-static void versions_and_id_0_differ(void **state)
+TEST(versions_and_id_0_differ)
 {
-    (void)state;
     start_chain("KRS-2552RHV", 1);
     simkit_ask(&chain.kit, "A1 05", 20000);
     simkit_expect(&chain.kit, "");
@@ -78,9 +73,8 @@ static void versions_and_id_0_differ(void **state)
     simkit_expect(&chain.kit, "80 3A 4C");
 }
 
-static void the_eeprom_is_kept_and_items_are_not(void **state)
+TEST(the_eeprom_is_kept_and_items_are_not)
 {
-    (void)state;
     start_chain("KRS-3301", 1);
     simkit_ask(&chain.kit, "A1 00", 50000);
     assert_int_equal(chain.kit.n_got, 66);
@@ -111,9 +105,8 @@ static void the_eeprom_is_kept_and_items_are_not(void **state)
 
 /* ---- the engine ------------------------------------------------------------------------------ */
 
-static void a_servo_that_is_set_up_otherwise_never_moves(void **state)
+TEST(a_servo_that_is_set_up_otherwise_never_moves)
 {
-    (void)state;
     static const struct {
         grobo_register_role role;
         int32_t value;
@@ -134,9 +127,8 @@ static void a_servo_that_is_set_up_otherwise_never_moves(void **state)
     assert_int_equal(grobo_ics_driver_init(&kit.driver, &kit.model), GROBO_ERR_UNSUPPORTED);
 }
 
-static void what_moves_is_guarded(void **state)
+TEST(what_moves_is_guarded)
 {
-    (void)state;
     static const struct {
         const char *hex;
         int result;
@@ -180,9 +172,8 @@ static void what_moves_is_guarded(void **state)
 }
 
 /* Each goal leaves when the speed for it was answered: where that is lost nothing goes. */
-static void no_goal_goes_without_its_speed(void **state)
+TEST(no_goal_goes_without_its_speed)
 {
-    (void)state;
     start();
     assert_int_equal(family_move(&kit, 0, 1000), GROBO_OK);
     kit.most_dps = 0;
@@ -199,9 +190,8 @@ static void no_goal_goes_without_its_speed(void **state)
     assert_true(kit.most_dps > 5 && kit.most_dps < 1.3 * 60);
 }
 
-static void a_joint_that_lost_its_power_trips(void **state)
+TEST(a_joint_that_lost_its_power_trips)
 {
-    (void)state;
     start();
     assert_int_equal(family_move(&kit, 10, 1000), GROBO_OK);
     assert_int_equal(grobo_sim_set_cable(&kit.sim, 1, GROBO_SIM_CABLE_OUT), GROBO_OK);
@@ -209,18 +199,4 @@ static void a_joint_that_lost_its_power_trips(void **state)
     family_run(&kit, 2 * S);
     assert_true(kit.n_trips > 0);
     assert_int_equal(kit.trips[0], GROBO_TRIP_TORQUE_LOST);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(commands_are_answered),
-        cmocka_unit_test(versions_and_id_0_differ),
-        cmocka_unit_test(the_eeprom_is_kept_and_items_are_not),
-        cmocka_unit_test(a_servo_that_is_set_up_otherwise_never_moves),
-        cmocka_unit_test(what_moves_is_guarded),
-        cmocka_unit_test(no_goal_goes_without_its_speed),
-        cmocka_unit_test(a_joint_that_lost_its_power_trips),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Who leaves, and who stops: the steps of leaving by themselves, and how requests begin. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/axes_kit.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -39,9 +35,8 @@ static int take_step(void)
     return robot.job->script[robot.job->at - 1](&robot);
 }
 
-static void who_leaves_waits_until_all_is_quiet(void **state)
+TEST_WITH(axes_wirings, who_leaves_waits_until_all_is_quiet)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int what = 0; what < 5; what++) {
             start();
@@ -105,9 +100,8 @@ static void let_go_astray(int joint, const told *row)
 
 /* Its way is the one that its servo tells of; where it tells of none, it moves until the halt has
  * left, which is sent to it alone, and then all is looked at again. */
-static void who_leaves_stops_what_others_set_going(void **state)
+TEST_WITH(axes_wirings, who_leaves_stops_what_others_set_going)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (size_t i = 0; i < TELLINGS; i++) {
             const told *row = &tellings[i];
@@ -135,9 +129,8 @@ static void who_leaves_stops_what_others_set_going(void **state)
 
 /* Of servos that tell no more than how fast they turn: one that turns near the end of its way is
  * looked at once more, one that trembles there stands, any other is stopped anew. */
-static void who_leaves_waits_for_what_turns(void **state)
+TEST_WITH(axes_wirings, who_leaves_waits_for_what_turns)
 {
-    (void)state;
     static const struct {
         int dps;
         double left_deg;
@@ -175,9 +168,8 @@ static void who_leaves_waits_for_what_turns(void **state)
 }
 
 /* Nobody knows of it where it is; its neighbour is stopped all the same. */
-static void who_leaves_does_not_look_at_what_was_not_read(void **state)
+TEST_WITH(axes_wirings, who_leaves_does_not_look_at_what_was_not_read)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         begin_job(GROBO_JOB_EXIT, grobo_i_script_exit_hold, STRAYS);
@@ -196,9 +188,8 @@ static void who_leaves_does_not_look_at_what_was_not_read(void **state)
 
 /* Ten times, then it is told which joint does not stop; an emergency stop goes on for longer, and
  * who has just begun is patient with a servo that is deaf. */
-static void who_leaves_gives_up_on_a_joint_that_goes_on(void **state)
+TEST_WITH(axes_wirings, who_leaves_gives_up_on_a_joint_that_goes_on)
 {
-    (void)state;
     static const struct {
         grobo_job_kind kind;
         int rounds;
@@ -237,9 +228,8 @@ static void who_leaves_gives_up_on_a_joint_that_goes_on(void **state)
     }
 }
 
-static void who_sits_down_aims_at_the_rest_of_what_holds(void **state)
+TEST_WITH(axes_wirings, who_sits_down_aims_at_the_rest_of_what_holds)
 {
-    (void)state;
     double rest_rad[GROBO_JOINTS_MAX];
     for (int j = 0; j < N; j++) {
         for (int has = 0; has < 2; has++) {
@@ -267,9 +257,8 @@ static void who_sits_down_aims_at_the_rest_of_what_holds(void **state)
 
 /* ---- requests -------------------------------------------------------------------------------- */
 
-static void an_exit_is_carried_out_as_it_is_asked_for(void **state)
+TEST_WITH(axes_wirings, an_exit_is_carried_out_as_it_is_asked_for)
 {
-    (void)state;
     static const struct {
         grobo_exit_policy asked, config;
         bool latched;
@@ -317,9 +306,8 @@ static void an_exit_is_carried_out_as_it_is_asked_for(void **state)
     }
 }
 
-static void an_exit_stops_what_moves_whatever_the_job(void **state)
+TEST_WITH(axes_wirings, an_exit_stops_what_moves_whatever_the_job)
 {
-    (void)state;
     static const grobo_job_kind kinds[] = {GROBO_JOB_NONE, GROBO_JOB_SENSE, GROBO_JOB_MOVE};
     for (int i = 0; i < 3; i++) {
         start();
@@ -332,9 +320,8 @@ static void an_exit_stops_what_moves_whatever_the_job(void **state)
     }
 }
 
-static void an_exit_is_refused_by_name(void **state)
+TEST_WITH(axes_wirings, an_exit_is_refused_by_name)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_robot_exit(&rig.robot, (grobo_exit_policy)(GROBO_EXIT_SIT + 1)),
@@ -354,9 +341,8 @@ static void an_exit_is_refused_by_name(void **state)
 }
 
 /* What stops the robot is not cancelled, nor what the engine does by itself. */
-static void a_job_is_cancelled_that_somebody_asked_for(void **state)
+TEST_WITH(axes_wirings, a_job_is_cancelled_that_somebody_asked_for)
 {
-    (void)state;
     for (int i = 2 * GROBO_JOB_NONE; i <= 2 * GROBO_JOB_SETTLE + 1; i++) {
         int kind = i / 2;
         bool frame_moves = i % 2 != 0;
@@ -378,9 +364,8 @@ static void a_job_is_cancelled_that_somebody_asked_for(void **state)
 }
 
 /* Another job than the one that began it. */
-static void a_motion_goes_on_when_a_reading_is_cancelled(void **state)
+TEST_WITH(axes_wirings, a_motion_goes_on_when_a_reading_is_cancelled)
 {
-    (void)state;
     static const rig_key slow[] = {{0, {{NECK, 0}}}, {3000, {{NECK, 30}}}};
     rig_start_at(&rig, 0, &quiet);
     rig_clip_init(&clip, slow, 2);
@@ -397,9 +382,8 @@ static void a_motion_goes_on_when_a_reading_is_cancelled(void **state)
 }
 
 /* One that no line has carried is forgotten with the stop. */
-static void a_reset_owes_no_stop_to_the_next_line(void **state)
+TEST_WITH(axes_wirings, a_reset_owes_no_stop_to_the_next_line)
 {
-    (void)state;
     for (int resets = 0; resets < 2; resets++) {
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
@@ -411,9 +395,8 @@ static void a_reset_owes_no_stop_to_the_next_line(void **state)
     }
 }
 
-static void an_emergency_stop_is_for_all_joints_and_bounded(void **state)
+TEST_WITH(axes_wirings, an_emergency_stop_is_for_all_joints_and_bounded)
 {
-    (void)state;
     for (int off = 0; off < 2; off++) {
         start_with(&(grobo_robot_config){
             GROBO_ROBOT_CONFIG_INIT, .estop_torque = off ? GROBO_ESTOP_OFF : GROBO_ESTOP_BRAKE});
@@ -434,9 +417,8 @@ static void an_emergency_stop_is_for_all_joints_and_bounded(void **state)
 }
 
 /* All of the stop is forgotten, and what begins behind it begins slowly. */
-static void a_reset_makes_the_next_move_slow(void **state)
+TEST_WITH(axes_wirings, a_reset_makes_the_next_move_slow)
 {
-    (void)state;
     for (int resets = 0; resets < 2; resets++) {
         grobo_trip_info trip;
         rig_start_at(&rig, 0, &quiet);
@@ -484,9 +466,8 @@ static void stop_by(int way)
 
 /* Its job still reads back whether the first posture was taken: the sequencer stops as well, in the
  * 200 ms that it takes, and the joint rests after half of what it would do in them. */
-static void an_approach_is_stopped_whatever_stops_it(void **state)
+TEST_WITH(axes_wirings, an_approach_is_stopped_whatever_stops_it)
 {
-    (void)state;
     static const rig_key far[] = {{0, {{NECK, 45}}}, {1000, {{NECK, 0}}}};
     grobo_robot_config config = quiet;
     config.approach_dps = 20;
@@ -512,26 +493,4 @@ static void an_approach_is_stopped_whatever_stops_it(void **state)
         rig_run(&rig, 3 * S);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.15);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(who_leaves_waits_until_all_is_quiet),
-        cmocka_unit_test(who_leaves_stops_what_others_set_going),
-        cmocka_unit_test(who_leaves_waits_for_what_turns),
-        cmocka_unit_test(who_leaves_does_not_look_at_what_was_not_read),
-        cmocka_unit_test(who_leaves_gives_up_on_a_joint_that_goes_on),
-        cmocka_unit_test(who_sits_down_aims_at_the_rest_of_what_holds),
-        cmocka_unit_test(an_exit_is_carried_out_as_it_is_asked_for),
-        cmocka_unit_test(an_exit_stops_what_moves_whatever_the_job),
-        cmocka_unit_test(an_exit_is_refused_by_name),
-        cmocka_unit_test(a_job_is_cancelled_that_somebody_asked_for),
-        cmocka_unit_test(a_motion_goes_on_when_a_reading_is_cancelled),
-        cmocka_unit_test(a_reset_owes_no_stop_to_the_next_line),
-        cmocka_unit_test(an_emergency_stop_is_for_all_joints_and_bounded),
-        cmocka_unit_test(a_reset_makes_the_next_move_slow),
-        cmocka_unit_test(an_approach_is_stopped_whatever_stops_it),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

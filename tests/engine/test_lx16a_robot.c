@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* LX-16A servos: what the simulated ones answer, byte by byte, and what the engine refuses. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/lx16a.h>
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/family_kit.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
 enum { MS = 1000, S = 1000000 };
@@ -37,9 +34,8 @@ static int32_t value(int servo, grobo_register_role role)
 }
 
 /* Frames of pylx16a 1.1.1 and lewansoul-lx16a 0.1. */
-static void writes_are_silent_and_reads_are_answered(void **state)
+TEST(writes_are_silent_and_reads_are_answered)
 {
-    (void)state;
     start_chain(2);
     int64_t asked_us = chain.kit.now_us;
     simkit_ask(&chain.kit, "55 55 01 03 1C DF", 50000);
@@ -58,9 +54,8 @@ static void writes_are_silent_and_reads_are_answered(void **state)
     assert_int_equal(value(1, GROBO_ROLE_POSITION), 500);
 }
 
-static void to_all_only_ids_are_answered(void **state)
+TEST(to_all_only_ids_are_answered)
 {
-    (void)state;
     start_chain(1);
     simkit_ask(&chain.kit, "55 55 FE 03 0E F0", 50000);
     simkit_expect(&chain.kit, "55 55 01 04 0E 01 EB");
@@ -76,9 +71,8 @@ static void to_all_only_ids_are_answered(void **state)
     assert_int_equal(value(1, GROBO_ROLE_POSITION), 400);
 }
 
-static void what_a_servo_cannot_take_is_refused(void **state)
+TEST(what_a_servo_cannot_take_is_refused)
 {
-    (void)state;
     start_chain(1);
     simkit_ask(&chain.kit, "55 55 01 05 01 20 03 D5", 5000); /* lx16a 0.0.2: without a time */
     assert_int_equal(simkit_events(&chain.kit, GROBO_SIM_REFUSED, NULL), 1);
@@ -94,9 +88,8 @@ static void what_a_servo_cannot_take_is_refused(void **state)
 }
 
 /* The offset is kept by a command of its own; mode and torque never. */
-static void power_off_forgets_what_is_not_kept(void **state)
+TEST(power_off_forgets_what_is_not_kept)
 {
-    (void)state;
     start_chain(1);
     simkit_ask(&chain.kit, "55 55 01 04 11 0A DF", 5000);          /* offset 10 */
     simkit_ask(&chain.kit, "55 55 01 07 1D 01 00 F4 01 E4", 5000); /* a wheel */
@@ -116,9 +109,8 @@ static void power_off_forgets_what_is_not_kept(void **state)
 
 /* ---- the engine ------------------------------------------------------------------------------ */
 
-static void a_servo_that_is_set_up_otherwise_never_moves(void **state)
+TEST(a_servo_that_is_set_up_otherwise_never_moves)
 {
-    (void)state;
     static const struct {
         grobo_register_role role;
         int32_t value;
@@ -135,9 +127,8 @@ static void a_servo_that_is_set_up_otherwise_never_moves(void **state)
 }
 
 /* Whatever a frame or a value would move behind the gate. */
-static void what_moves_is_guarded(void **state)
+TEST(what_moves_is_guarded)
 {
-    (void)state;
     static const struct {
         uint16_t address, length;
         const char *data;
@@ -189,27 +180,12 @@ static void what_moves_is_guarded(void **state)
 }
 
 /* A servo that lets go by itself is seen to have lost its torque. */
-static void a_supply_outside_of_the_limits_trips(void **state)
+TEST(a_supply_outside_of_the_limits_trips)
 {
-    (void)state;
     start();
     assert_int_equal(family_move(&kit, 10, 1000), GROBO_OK);
     family_set_up(&kit, 1, GROBO_ROLE_MIN_VOLTAGE, 9000);
     family_run(&kit, 500 * MS);
     assert_int_equal(kit.n_trips, 1);
     assert_int_equal(kit.trips[0], GROBO_TRIP_TORQUE_LOST);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(writes_are_silent_and_reads_are_answered),
-        cmocka_unit_test(to_all_only_ids_are_answered),
-        cmocka_unit_test(what_a_servo_cannot_take_is_refused),
-        cmocka_unit_test(power_off_forgets_what_is_not_kept),
-        cmocka_unit_test(a_servo_that_is_set_up_otherwise_never_moves),
-        cmocka_unit_test(what_moves_is_guarded),
-        cmocka_unit_test(a_supply_outside_of_the_limits_trips),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

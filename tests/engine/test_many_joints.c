@@ -2,18 +2,14 @@
 /* A robot of as many joints as there may be: the last one is a joint like the others, and nothing
  * is looked for behind it. A checked build (make check-san) traps where something is. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/many_joints.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { LAST = GROBO_JOINTS_MAX - 1 };
 
@@ -54,9 +50,8 @@ static void expect_there(const grobo_posture *target)
     }
 }
 
-static void all_move_and_stop(void **state)
+TEST_WITH(rig_wirings, all_move_and_stop)
 {
-    (void)state;
     for (int arm = 0; arm < 2; arm++) {
         start(arm != 0, &quiet);
         grobo_posture target = all_at(5);
@@ -90,9 +85,8 @@ static int sway_sample(void *ctx, int64_t t_us, grobo_posture *posture)
     return 0;
 }
 
-static void all_are_played_and_watched(void **state)
+TEST_WITH(rig_wirings, all_are_played_and_watched)
 {
-    (void)state;
     const grobo_clip sway = {.key = sway_key,
                              .sample = sway_sample,
                              .n_joints = GROBO_JOINTS_MAX,
@@ -129,9 +123,8 @@ static int raw_goal(double deg, uint16_t time_cs)
 }
 
 /* Raw frames, settings and free mode. */
-static void the_last_is_one_of_them(void **state)
+TEST_WITH(rig_wirings, the_last_is_one_of_them)
 {
-    (void)state;
     static const uint8_t limit[2] = {0x08, 0x07}; /* 180 degrees */
     const grobo_register_io io = {LAST + 1, GROBO_RS30X_CW_LIMIT, 2, limit};
     start(false, &reading);
@@ -151,9 +144,8 @@ static void the_last_is_one_of_them(void **state)
 }
 
 /* In a move all take the time of the slowest, the odd one as well. */
-static void an_odd_number_moves_together(void **state)
+TEST_WITH(rig_wirings, an_odd_number_moves_together)
 {
-    (void)state;
     rig_start_driver(&rig, many_joints(rig_wiring, 3), &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, 0, 10, 10);
@@ -176,9 +168,8 @@ static void an_odd_number_moves_together(void **state)
     }
 }
 
-static void all_are_left_well(void **state)
+TEST_WITH(rig_wirings, all_are_left_well)
 {
-    (void)state;
     static const grobo_exit_policy policies[] = {GROBO_EXIT_HOLD, GROBO_EXIT_OFF, GROBO_EXIT_SIT};
     for (int i = 0; i < 4; i++) {
         start(false, &quiet);
@@ -193,14 +184,4 @@ static void all_are_left_well(void **state)
         rig_run(&rig, 2000000);
         assert_true(fabs(rig_angle_deg(&rig, LAST) - here_deg) < 0.01);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_move_and_stop),       cmocka_unit_test(all_are_played_and_watched),
-        cmocka_unit_test(the_last_is_one_of_them), cmocka_unit_test(an_odd_number_moves_together),
-        cmocka_unit_test(all_are_left_well),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

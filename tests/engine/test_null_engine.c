@@ -1,19 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Bus, sequencer, engine and simulator refuse NULL for each thing that must be there. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/hrpsys.h>
 #include <grobo/sim_static.h>
 #include <grobo/static.h>
 #include <grobo/team.h>
+
+#include "tests/support/test.h"
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
 
@@ -53,9 +50,8 @@ static void on_event(void *ctx, const grobo_event *event)
     (void)event;
 }
 
-static int set_up(void **state)
+static int set_up(void)
 {
-    (void)state;
     driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
     bus_config.protocol = driver->protocol;
     assert_int_equal(grobo_bus_init(&bus, &bus_config), GROBO_OK);
@@ -71,15 +67,13 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void)
 {
-    (void)state;
     return 0;
 }
 
-static void bus_refuses_null(void **state)
+TEST(bus_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_bus_init(NULL, &bus_config));
     REFUSES(grobo_bus_init(&bus, NULL));
     REFUSES(grobo_txn_init(NULL, &grobo_rs30x_protocol, bytes, 1));
@@ -109,9 +103,8 @@ static void bus_refuses_null(void **state)
     grobo_bus_cost_of(&bus, &txn, NULL);
 }
 
-static void hrpsys_refuses_null(void **state)
+TEST(hrpsys_refuses_null)
 {
-    (void)state;
     grobo_hrpsys_init(NULL, &robot);
     grobo_hrpsys_init(&hrpsys, NULL);
     REFUSES(grobo_hrpsys_find(NULL, text, &joints));
@@ -139,9 +132,8 @@ static void hrpsys_refuses_null(void **state)
     REFUSES(grobo_hrpsys_check_emergency(&hrpsys, NULL, sizeof bytes, ints));
 }
 
-static void robot_refuses_null_in_its_first_functions(void **state)
+TEST(robot_refuses_null_in_its_first_functions)
 {
-    (void)state;
     grobo_robot_set_host(NULL, NULL);
     REFUSES(grobo_robot_init_sized(&robot, sizeof robot - 1, driver, NULL, &robot_config, 1000));
     REFUSES(grobo_robot_init_sized(NULL, sizeof robot, driver, NULL, &robot_config, 1000));
@@ -172,9 +164,8 @@ static void robot_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_robot_raw(NULL, bytes, 1));
 }
 
-static void robot_refuses_null_in_its_second_functions(void **state)
+TEST(robot_refuses_null_in_its_second_functions)
 {
-    (void)state;
     REFUSES(grobo_robot_raw(&robot, NULL, 1));
     REFUSES(grobo_robot_raw_until(NULL, bytes, 1, 1000));
     REFUSES(grobo_robot_raw_until(&robot, NULL, 1, 1000));
@@ -200,9 +191,8 @@ static void robot_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_robot_joint(NULL, 1, &joint_info));
 }
 
-static void robot_refuses_null_in_its_third_functions(void **state)
+TEST(robot_refuses_null_in_its_third_functions)
 {
-    (void)state;
     REFUSES(grobo_robot_joint(&robot, 1, NULL));
     REFUSES(grobo_robot_posture(NULL, 0, &posture));
     REFUSES(grobo_robot_posture(&robot, 0, NULL));
@@ -231,16 +221,14 @@ static void robot_refuses_null_in_its_third_functions(void **state)
     assert_null(grobo_robot_driver(NULL));
 }
 
-static void robot_config_refuses_null(void **state)
+TEST(robot_config_refuses_null)
 {
-    (void)state;
     REFUSES(grobo_budget_init(NULL, driver, NULL, &bus_config));
     REFUSES(grobo_budget_init(&budget, NULL, NULL, &bus_config));
 }
 
-static void sequencer_refuses_null(void **state)
+TEST(sequencer_refuses_null)
 {
-    (void)state;
     grobo_sequencer_init(NULL, &grobo_gr001_model);
     REFUSES(grobo_sequencer_play(NULL, &clip, &play_options, &posture, 1000));
     REFUSES(grobo_sequencer_play(&seq, NULL, &play_options, &posture, 1000));
@@ -262,9 +250,8 @@ static void sequencer_refuses_null(void **state)
     assert_null(grobo_sequencer_stats(NULL));
 }
 
-static void sim_refuses_null_in_its_first_functions(void **state)
+TEST(sim_refuses_null_in_its_first_functions)
 {
-    (void)state;
     REFUSES(grobo_sim_fault_find(NULL, 4));
     REFUSES(grobo_sim_init_sized(&sim, sizeof sim - 1, NULL, 0));
     REFUSES(grobo_sim_init(NULL, &sim_config, 1000));
@@ -284,9 +271,8 @@ static void sim_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_sim_look(NULL, 0, &view));
 }
 
-static void sim_refuses_null_in_its_second_functions(void **state)
+TEST(sim_refuses_null_in_its_second_functions)
 {
-    (void)state;
     REFUSES(grobo_sim_look(&sim, 0, NULL));
     REFUSES(grobo_sim_get_register(NULL, 0, 0, wides));
     REFUSES(grobo_sim_get_register(&sim, 0, 0, NULL));
@@ -306,9 +292,8 @@ static void sim_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_sim_set_faults(&sim, NULL, 4));
 }
 
-static void a_team_refuses_null(void **state)
+TEST(a_team_refuses_null)
 {
-    (void)state;
     grobo_team *team = NULL;
     grobo_team_member member;
     const grobo_clip *one = &clip;
@@ -337,19 +322,4 @@ static void a_team_refuses_null(void **state)
     assert_false(grobo_sequencer_is_ready(NULL));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bus_refuses_null),
-        cmocka_unit_test(hrpsys_refuses_null),
-        cmocka_unit_test(robot_refuses_null_in_its_first_functions),
-        cmocka_unit_test(robot_refuses_null_in_its_second_functions),
-        cmocka_unit_test(robot_refuses_null_in_its_third_functions),
-        cmocka_unit_test(robot_config_refuses_null),
-        cmocka_unit_test(sequencer_refuses_null),
-        cmocka_unit_test(sim_refuses_null_in_its_first_functions),
-        cmocka_unit_test(sim_refuses_null_in_its_second_functions),
-        cmocka_unit_test(a_team_refuses_null),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_BETWEEN(set_up, tear_down)

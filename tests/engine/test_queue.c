@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Which jobs run side by side, and what waits for its turn: the rules by themselves. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/axes_kit.h"
+#include "tests/support/test.h"
 
 enum { LAST_NUMBER = 200, JOBS = GROBO_ROBOT_JOBS, QUEUE = GROBO_ROBOT_QUEUE };
 
@@ -86,9 +82,8 @@ static int be_admitted(grobo_job_kind running, grobo_job_kind kind, bool same)
     return same && !joins ? GROBO_I_LATER : GROBO_OK;
 }
 
-static void jobs_run_beside_others_by_their_kinds(void **state)
+TEST_WITH(axes_wirings, jobs_run_beside_others_by_their_kinds)
 {
-    (void)state;
     for (int running = GROBO_JOB_NONE; running <= GROBO_JOB_SETTLE; running++) {
         for (int kind = GROBO_JOB_NONE + 1; kind < GROBO_JOB_SETTLE; kind++) {
             for (int i = 0; i < 2 * N; i++) {
@@ -122,9 +117,8 @@ static void put_behind_the_jobs(void)
 }
 
 /* In the last place as in the first, and no further. */
-static void every_job_that_runs_is_looked_at(void **state)
+TEST_WITH(axes_wirings, every_job_that_runs_is_looked_at)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int at = 1; at < JOBS; at++) {
             start_idle();
@@ -139,9 +133,8 @@ static void every_job_that_runs_is_looked_at(void **state)
 }
 
 /* One place is kept for what takes torque away. */
-static void one_job_less_than_there_is_room_for(void **state)
+TEST_WITH(axes_wirings, one_job_less_than_there_is_room_for)
 {
-    (void)state;
     start_idle();
     for (int i = 0; i < JOBS; i++) {
         assert_int_equal(grobo_i_admit(&robot, GROBO_JOB_SENSE, 1, false),
@@ -154,9 +147,8 @@ static void one_job_less_than_there_is_room_for(void **state)
     assert_int_equal(robot.jobs[0].kind, GROBO_JOB_SENSE);
 }
 
-static void who_may_not_begin_at_all_is_told_so(void **state)
+TEST_WITH(axes_wirings, who_may_not_begin_at_all_is_told_so)
 {
-    (void)state;
     for (int moves = 0; moves < 2; moves++) {
         start_idle();
         run_job(0, GROBO_JOB_SETTLE, 1);
@@ -170,9 +162,8 @@ static void who_may_not_begin_at_all_is_told_so(void **state)
     }
 }
 
-static void moves_that_run_or_wait_have_their_joints(void **state)
+TEST_WITH(axes_wirings, moves_that_run_or_wait_have_their_joints)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int at = 0; at < JOBS + QUEUE; at++) {
             for (int kind = GROBO_JOB_NONE; kind <= GROBO_JOB_SETTLE; kind++) {
@@ -200,9 +191,8 @@ static void moves_that_run_or_wait_have_their_joints(void **state)
 
 /* ---- beginning ------------------------------------------------------------------------------- */
 
-static void what_nothing_is_in_the_way_of_begins_at_once(void **state)
+TEST_WITH(axes_wirings, what_nothing_is_in_the_way_of_begins_at_once)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
             const grobo_job_kind kind = moves ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
@@ -219,9 +209,8 @@ static void what_nothing_is_in_the_way_of_begins_at_once(void **state)
 }
 
 /* A reading takes it from nobody. Who began before goes on before. */
-static void a_move_takes_its_joints_from_moves_before(void **state)
+TEST_WITH(axes_wirings, a_move_takes_its_joints_from_moves_before)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
             const grobo_job_kind kind = moves ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
@@ -249,9 +238,8 @@ static void a_move_takes_its_joints_from_moves_before(void **state)
     }
 }
 
-static void a_move_of_what_plays_or_leaves_or_tripped_is_refused(void **state)
+TEST_WITH(axes_wirings, a_move_of_what_plays_or_leaves_or_tripped_is_refused)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
             const grobo_job_kind kind = moves ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
@@ -285,9 +273,8 @@ static void a_move_of_what_plays_or_leaves_or_tripped_is_refused(void **state)
 /* ---- waiting --------------------------------------------------------------------------------- */
 
 /* Behind what waits already, though nothing else is in the way. */
-static void what_cannot_begin_waits(void **state)
+TEST_WITH(axes_wirings, what_cannot_begin_waits)
 {
-    (void)state;
     for (int idle = 0; idle < 2; idle++) {
         for (int j = 0; j < N; j++) {
             start_idle();
@@ -316,9 +303,8 @@ static void what_cannot_begin_waits(void **state)
 }
 
 /* As many as may, the oldest first; who must wait lets nobody pass. */
-static void what_waits_begins_in_its_order(void **state)
+TEST_WITH(axes_wirings, what_waits_begins_in_its_order)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start_idle();
         run_job(0, GROBO_JOB_TORQUE, GROBO_JOINT_BIT(third_of(j)));
@@ -360,9 +346,8 @@ static void expect_ended(int at, int number, grobo_job_kind kind, int joint, int
 }
 
 /* Or, in its turn, with the reason why it may not begin; those behind it go on. */
-static void what_has_waited_too_long_ends(void **state)
+TEST_WITH(axes_wirings, what_has_waited_too_long_ends)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int late = 0; late < 2; late++) {
             start_idle();
@@ -380,9 +365,8 @@ static void what_has_waited_too_long_ends(void **state)
     }
 }
 
-static void a_trip_ends_all_that_waits(void **state)
+TEST_WITH(axes_wirings, a_trip_ends_all_that_waits)
 {
-    (void)state;
     for (int latched = 0; latched < 2; latched++) {
         start_idle();
         for (int i = 0; i < QUEUE; i++) {
@@ -398,9 +382,8 @@ static void a_trip_ends_all_that_waits(void **state)
     }
 }
 
-static void the_queue_is_looked_at_when_something_may_have_changed(void **state)
+TEST_WITH(axes_wirings, the_queue_is_looked_at_when_something_may_have_changed)
 {
-    (void)state;
     for (int may = 0; may < 2; may++) {
         start_idle();
         robot.queue_may_go = may;
@@ -411,24 +394,4 @@ static void the_queue_is_looked_at_when_something_may_have_changed(void **state)
         wait_in_queue(wish_of(GROBO_JOB_SENSE, 3), NOW + 4);
         assert_true(grobo_i_queue_deadline(&robot) == (may ? NOW : NOW + 5));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jobs_run_beside_others_by_their_kinds),
-        cmocka_unit_test(every_job_that_runs_is_looked_at),
-        cmocka_unit_test(one_job_less_than_there_is_room_for),
-        cmocka_unit_test(who_may_not_begin_at_all_is_told_so),
-        cmocka_unit_test(moves_that_run_or_wait_have_their_joints),
-        cmocka_unit_test(what_nothing_is_in_the_way_of_begins_at_once),
-        cmocka_unit_test(a_move_takes_its_joints_from_moves_before),
-        cmocka_unit_test(a_move_of_what_plays_or_leaves_or_tripped_is_refused),
-        cmocka_unit_test(what_cannot_begin_waits),
-        cmocka_unit_test(what_waits_begins_in_its_order),
-        cmocka_unit_test(what_has_waited_too_long_ends),
-        cmocka_unit_test(a_trip_ends_all_that_waits),
-        cmocka_unit_test(the_queue_is_looked_at_when_something_may_have_changed),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -2,20 +2,16 @@
 /* What a reading tells of where a joint is. */
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/rs30x.h>
 
 #include "src/robot/robot.h"
 #include "tests/support/many_joints.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 
@@ -62,9 +58,8 @@ static void on_the_way(void)
     neck()->has_target = true;
 }
 
-static void a_joint_that_stands_beside_its_way_is_off_it(void **state)
+TEST(a_joint_that_stands_beside_its_way_is_off_it)
 {
-    (void)state;
     on_the_way();
     read_state(20, 0);
     assert_false(neck()->off_way);
@@ -72,18 +67,16 @@ static void a_joint_that_stands_beside_its_way_is_off_it(void **state)
     assert_true(neck()->off_way);
 }
 
-static void a_joint_that_moves_beside_its_way_is_late_and_on_it(void **state)
+TEST(a_joint_that_moves_beside_its_way_is_late_and_on_it)
 {
-    (void)state;
     on_the_way();
     read_state(5, 30);
     assert_false(neck()->off_way);
 }
 
 /* Ahead of its way, or before its begin: 200 ms after the frame left it is on another one. */
-static void a_joint_that_moves_where_its_way_is_not_is_off_it(void **state)
+TEST(a_joint_that_moves_where_its_way_is_not_is_off_it)
 {
-    (void)state;
     static const struct {
         double deg;
         int64_t told_us; /* so long ago */
@@ -101,18 +94,16 @@ static void a_joint_that_moves_where_its_way_is_not_is_off_it(void **state)
     }
 }
 
-static void a_joint_that_was_sent_nowhere_is_off_no_way(void **state)
+TEST(a_joint_that_was_sent_nowhere_is_off_no_way)
 {
-    (void)state;
     on_the_way();
     neck()->has_target = false;
     read_state(5, 0);
     assert_false(neck()->off_way);
 }
 
-static void off_its_way_a_joint_is_on_its_own_or_where_it_was_read(void **state)
+TEST(off_its_way_a_joint_is_on_its_own_or_where_it_was_read)
 {
-    (void)state;
     on_the_way();
     read_state(5, 0);
     int64_t now_us = rig.robot.now_us;
@@ -125,9 +116,8 @@ static void off_its_way_a_joint_is_on_its_own_or_where_it_was_read(void **state)
     assert_float_equal(grobo_i_axis_commanded(neck(), now_us + 1500000), RAD(15), 1e-3);
 }
 
-static void an_angle_alone_tells_nothing_of_how_a_joint_moves(void **state)
+TEST(an_angle_alone_tells_nothing_of_how_a_joint_moves)
 {
-    (void)state;
     static const uint8_t angle[] = {50, 0};
     on_the_way();
     neck()->has_target = false;
@@ -151,9 +141,8 @@ static int parse_nonsense(const grobo_driver *self, void *ctx, int joint, const 
     return GROBO_OK;
 }
 
-static void a_driver_that_makes_no_number_of_a_reply_has_read_nothing(void **state)
+TEST(a_driver_that_makes_no_number_of_a_reply_has_read_nothing)
 {
-    (void)state;
     on_the_way();
     read_state(20, 0);
     grobo_driver odd = *rig.driver;
@@ -268,9 +257,8 @@ static void expect_near(const char *what, double is, double be)
     }
 }
 
-static void what_a_reading_lacks_stays_as_it_was(void **state)
+TEST(what_a_reading_lacks_stays_as_it_was)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (unsigned valid = 0; valid <= ALL_FIELDS; valid++) {
             start_with(NULL);
@@ -310,9 +298,8 @@ static void what_a_reading_lacks_stays_as_it_was(void **state)
 }
 
 /* Asked for before a frame left, it may be of before that frame: it restores nothing. */
-static void a_reading_from_before_a_frame_tells_nothing_of_after_it(void **state)
+TEST(a_reading_from_before_a_frame_tells_nothing_of_after_it)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int late = 0; late < 2; late++) {
             start_with(NULL);
@@ -334,9 +321,8 @@ static void a_reading_from_before_a_frame_tells_nothing_of_after_it(void **state
 
 /* What was read a while ago of how it turns goes for as long as it may go on, unless it was told to
  * go elsewhere since. */
-static void an_angle_alone_hides_no_turning(void **state)
+TEST(an_angle_alone_hides_no_turning)
 {
-    (void)state;
     static const struct {
         int64_t later_us;
         bool told, hides;
@@ -361,9 +347,8 @@ static void an_angle_alone_hides_no_turning(void **state)
 }
 
 /* Of servos that tell no speed: the angle before is of before the frame that sent it elsewhere. */
-static void two_ways_have_no_speed(void **state)
+TEST(two_ways_have_no_speed)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < 4; i++) {
             bool tells = i % 2 != 0, since = i / 2 != 0;
@@ -377,9 +362,8 @@ static void two_ways_have_no_speed(void **state)
 }
 
 /* Another host's way, which the servo tells: its time, or what it cannot do faster. */
-static void where_a_servo_goes_is_taken_from_what_it_tells(void **state)
+TEST(where_a_servo_goes_is_taken_from_what_it_tells)
 {
-    (void)state;
     static const struct {
         grobo_torque torque;
         int speed_dps;
@@ -423,9 +407,8 @@ static void where_a_servo_goes_is_taken_from_what_it_tells(void **state)
 }
 
 /* One that moves though it was sent nowhere, and does not tell where to. */
-static void a_joint_is_adrift_that_moves_nobody_knows_where(void **state)
+TEST(a_joint_is_adrift_that_moves_nobody_knows_where)
 {
-    (void)state;
     enum { PACE = GROBO_FIELD_SPEED | GROBO_FIELD_TORQUE, ANGLE = GROBO_FIELD_ANGLE };
     static const struct {
         unsigned valid;
@@ -467,9 +450,8 @@ static void a_joint_is_adrift_that_moves_nobody_knows_where(void **state)
 }
 
 /* Sent nowhere, a joint is where it was read, or on the way that its servo told of. */
-static void a_joint_sent_nowhere_is_where_it_was_read(void **state)
+TEST(a_joint_sent_nowhere_is_where_it_was_read)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
             start_with(NULL);
@@ -505,9 +487,8 @@ static grobo_robot_axis *on_a_way(int joint)
 }
 
 /* 12 degrees from where it was when it was asked, and from where it is by now. */
-static void a_joint_that_stands_is_off_its_way_by_twelve_degrees(void **state)
+TEST(a_joint_that_stands_is_off_its_way_by_twelve_degrees)
 {
-    (void)state;
     static const struct {
         double deg;
         int speed_dps;
@@ -532,9 +513,8 @@ static void a_joint_that_stands_is_off_its_way_by_twelve_degrees(void **state)
 }
 
 /* One that should turn by 40 deg/s, and stands, has not begun: two degrees tell it. */
-static void a_joint_that_stands_on_a_fast_way_has_not_begun_it(void **state)
+TEST(a_joint_that_stands_on_a_fast_way_has_not_begun_it)
 {
-    (void)state;
     static const struct {
         double deg, way_deg;
         int64_t told_ago_us;
@@ -562,9 +542,8 @@ static void a_joint_that_stands_on_a_fast_way_has_not_begun_it(void **state)
 }
 
 /* Without its speed a reading tells nothing of that. */
-static void without_its_speed_a_joint_stays_on_its_way_or_off_it(void **state)
+TEST(without_its_speed_a_joint_stays_on_its_way_or_off_it)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int off = 0; off < 2; off++) {
             grobo_robot_axis *axis = on_a_way(j);
@@ -578,9 +557,8 @@ static void without_its_speed_a_joint_stays_on_its_way_or_off_it(void **state)
 }
 
 /* Its goal is another one: it has told so since the frame, or before and did not move since. */
-static void a_joint_whose_goal_is_another_is_off_its_way(void **state)
+TEST(a_joint_whose_goal_is_another_is_off_its_way)
 {
-    (void)state;
     static const struct {
         double goal_deg;
         bool tells;
@@ -618,9 +596,8 @@ static void a_joint_whose_goal_is_another_is_off_its_way(void **state)
 }
 
 /* Exactly so far is not farther. */
-static void what_is_at_the_bound_is_on_the_way(void **state)
+TEST(what_is_at_the_bound_is_on_the_way)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_robot_axis *axis = on_a_way(j);
         axis->way = (grobo_robot_way){0, 0, NOW, NOW};
@@ -632,9 +609,8 @@ static void what_is_at_the_bound_is_on_the_way(void **state)
 }
 
 /* Its goal is where it is, and it moves all the same. */
-static void a_joint_that_leaves_its_goal_is_adrift(void **state)
+TEST(a_joint_that_leaves_its_goal_is_adrift)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start_with(NULL);
         given.speed_dps = 30;
@@ -647,9 +623,8 @@ static void a_joint_that_leaves_its_goal_is_adrift(void **state)
 }
 
 /* It moves, but on the way that its servo told of before the frame. */
-static void a_joint_on_the_way_told_of_before_is_off_the_new_one(void **state)
+TEST(a_joint_on_the_way_told_of_before_is_off_the_new_one)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int over = 0; over < 2; over++) {
             grobo_robot_axis *axis = on_a_way(j);
@@ -665,9 +640,8 @@ static void a_joint_on_the_way_told_of_before_is_off_the_new_one(void **state)
 }
 
 /* What a servo reads as its angle is not quite the angle of some joints. */
-static void a_reading_is_corrected_where_that_is_wanted(void **state)
+TEST(a_reading_is_corrected_where_that_is_wanted)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int wanted = 0; wanted < 2; wanted++) {
             const grobo_readback add[] = {{.joint = (uint8_t)j, .add_rad = RAD(2)},
@@ -689,9 +663,8 @@ static void a_reading_is_corrected_where_that_is_wanted(void **state)
     }
 }
 
-static void a_joint_is_held_at_its_limit_from_three_degrees_beyond(void **state)
+TEST(a_joint_is_held_at_its_limit_from_three_degrees_beyond)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int end = -1; end <= 1; end += 2) {
             start_with(NULL);
@@ -711,9 +684,8 @@ static void a_joint_is_held_at_its_limit_from_three_degrees_beyond(void **state)
 
 /* ---- no reading ------------------------------------------------------------------------------ */
 
-static void what_did_not_come_is_told_of_its_joint_alone(void **state)
+TEST(what_did_not_come_is_told_of_its_joint_alone)
 {
-    (void)state;
     static const struct {
         int result;
         bool lost;
@@ -747,9 +719,8 @@ static void what_did_not_come_is_told_of_its_joint_alone(void **state)
     assert_false(grobo_i_is_loss(GROBO_OK));
 }
 
-static void what_is_no_number_is_no_reading(void **state)
+TEST(what_is_no_number_is_no_reading)
 {
-    (void)state;
     static const double odd[] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) {
         start_with(NULL);
@@ -766,36 +737,4 @@ static void what_is_no_number_is_no_reading(void **state)
     start_with(NULL);
     given.angle_rad = given.goal_rad = DBL_MAX; /* which is one */
     assert_int_equal(take_asked(0, NOW), GROBO_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_joint_that_stands_beside_its_way_is_off_it),
-        cmocka_unit_test(a_joint_that_moves_beside_its_way_is_late_and_on_it),
-        cmocka_unit_test(a_joint_that_moves_where_its_way_is_not_is_off_it),
-        cmocka_unit_test(a_joint_that_was_sent_nowhere_is_off_no_way),
-        cmocka_unit_test(off_its_way_a_joint_is_on_its_own_or_where_it_was_read),
-        cmocka_unit_test(a_driver_that_makes_no_number_of_a_reply_has_read_nothing),
-        cmocka_unit_test(an_angle_alone_tells_nothing_of_how_a_joint_moves),
-        cmocka_unit_test(what_a_reading_lacks_stays_as_it_was),
-        cmocka_unit_test(a_reading_from_before_a_frame_tells_nothing_of_after_it),
-        cmocka_unit_test(an_angle_alone_hides_no_turning),
-        cmocka_unit_test(two_ways_have_no_speed),
-        cmocka_unit_test(where_a_servo_goes_is_taken_from_what_it_tells),
-        cmocka_unit_test(a_joint_is_adrift_that_moves_nobody_knows_where),
-        cmocka_unit_test(a_joint_sent_nowhere_is_where_it_was_read),
-        cmocka_unit_test(a_joint_that_stands_is_off_its_way_by_twelve_degrees),
-        cmocka_unit_test(a_joint_that_stands_on_a_fast_way_has_not_begun_it),
-        cmocka_unit_test(without_its_speed_a_joint_stays_on_its_way_or_off_it),
-        cmocka_unit_test(a_joint_whose_goal_is_another_is_off_its_way),
-        cmocka_unit_test(what_is_at_the_bound_is_on_the_way),
-        cmocka_unit_test(a_joint_that_leaves_its_goal_is_adrift),
-        cmocka_unit_test(a_joint_on_the_way_told_of_before_is_off_the_new_one),
-        cmocka_unit_test(a_reading_is_corrected_where_that_is_wanted),
-        cmocka_unit_test(a_joint_is_held_at_its_limit_from_three_degrees_beyond),
-        cmocka_unit_test(what_did_not_come_is_told_of_its_joint_alone),
-        cmocka_unit_test(what_is_no_number_is_no_reading),
-    };
-    return cmocka_run_group_tests_name("reading", tests, NULL, NULL);
 }

@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine's jobs on a robot without faults. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 
-static void check_is_answered(void **state)
+TEST_WITH(rig_wirings, check_is_answered)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_expect(&rig, grobo_robot_check(&rig.robot), GROBO_OK);
     assert_int_equal(rig.n_sent, 1);
@@ -24,9 +19,8 @@ static void check_is_answered(void **state)
     }
 }
 
-static void one_job_at_a_time(void **state)
+TEST_WITH(rig_wirings, one_job_at_a_time)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     int number = grobo_robot_check(&rig.robot);
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_CHECK);
@@ -35,9 +29,8 @@ static void one_job_at_a_time(void **state)
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_NONE);
 }
 
-static void all_joints_are_sensed(void **state)
+TEST_WITH(rig_wirings, all_joints_are_sensed)
 {
-    (void)state;
     grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 7};
     rig_start(&rig, &quiet, &limp);
     int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL);
@@ -57,9 +50,8 @@ static void all_joints_are_sensed(void **state)
     }
 }
 
-static void torque_comes_on_where_the_joints_are(void **state)
+TEST_WITH(rig_wirings, torque_comes_on_where_the_joints_are)
 {
-    (void)state;
     grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 3,
                              .jump_on_torque = true};
     double before_deg[20];
@@ -76,9 +68,8 @@ static void torque_comes_on_where_the_joints_are(void **state)
     assert_int_equal(rig.torque_on, 20);
 }
 
-static void torque_goes_off_and_brakes_by_group(void **state)
+TEST_WITH(rig_wirings, torque_goes_off_and_brakes_by_group)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     rig_expect(&rig, grobo_robot_torque(&rig.robot, 0x3, GROBO_TORQUE_OFF), 0);
@@ -90,9 +81,8 @@ static void torque_goes_off_and_brakes_by_group(void **state)
     assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
 }
 
-static void move_arrives_in_its_time(void **state)
+TEST_WITH(rig_wirings, move_arrives_in_its_time)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture first = rig_posture(&rig, 13, 0, 100);
@@ -109,9 +99,8 @@ static void move_arrives_in_its_time(void **state)
     assert_true(info.has_target && fabs(grobo_deg_from_rad(info.target_rad) - 30) < 1e-9);
 }
 
-static void move_switches_torque_on(void **state)
+TEST_WITH(rig_wirings, move_switches_torque_on)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     grobo_posture target;
     grobo_posture_init_pose(&target, rig.driver->model);
@@ -124,9 +113,8 @@ static void move_switches_torque_on(void **state)
     }
 }
 
-static void manual_torque_is_left_to_the_caller(void **state)
+TEST_WITH(rig_wirings, manual_torque_is_left_to_the_caller)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.manual_torque = true;
     rig_start(&rig, &config, NULL);
@@ -137,9 +125,8 @@ static void manual_torque_is_left_to_the_caller(void **state)
     rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
 }
 
-static void a_loop_of_ones_own_sends_targets(void **state)
+TEST_WITH(rig_wirings, a_loop_of_ones_own_sends_targets)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     grobo_posture target = rig_posture(&rig, 13, 30, 20);
     assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STALE);
@@ -166,9 +153,8 @@ static void a_loop_of_ones_own_sends_targets(void **state)
 }
 
 /* Nothing is sent again before it is known to have been lost. */
-static void a_move_that_could_not_be_read_back_is_read_again(void **state)
+TEST_WITH(rig_wirings, a_move_that_could_not_be_read_back_is_read_again)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, 0, -60, 500);
@@ -188,9 +174,8 @@ static void a_move_that_could_not_be_read_back_is_read_again(void **state)
 
 /* Whoever turns a joint round while a reading is on the wire: the frame leaves when that is over,
  * and the joint has gone on meanwhile. The rig looks at each frame as it leaves. */
-static void a_target_that_waits_for_the_line_is_no_faster(void **state)
+TEST_WITH(rig_wirings, a_target_that_waits_for_the_line_is_no_faster)
 {
-    (void)state;
     grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     rig_start(&rig, &busy, NULL);
     rig_power(&rig);
@@ -201,31 +186,11 @@ static void a_target_that_waits_for_the_line_is_no_faster(void **state)
     }
 }
 
-static void bus_wiring_does_the_same(void **state)
+TEST_WITH(rig_wirings, bus_wiring_does_the_same)
 {
-    (void)state;
     rig_start_driver(&rig, grobo_gr001_driver(GROBO_WIRING_BUS), &quiet, NULL);
     rig_expect(&rig, grobo_robot_check(&rig.robot), GROBO_OK);
     grobo_posture target = rig_posture(&rig, 19, 40, 300);
     rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     assert_true(fabs(rig_angle_deg(&rig, 19) - 40) < 0.1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(check_is_answered),
-        cmocka_unit_test(one_job_at_a_time),
-        cmocka_unit_test(all_joints_are_sensed),
-        cmocka_unit_test(torque_comes_on_where_the_joints_are),
-        cmocka_unit_test(torque_goes_off_and_brakes_by_group),
-        cmocka_unit_test(move_arrives_in_its_time),
-        cmocka_unit_test(move_switches_torque_on),
-        cmocka_unit_test(manual_torque_is_left_to_the_caller),
-        cmocka_unit_test(a_loop_of_ones_own_sends_targets),
-        cmocka_unit_test(a_move_that_could_not_be_read_back_is_read_again),
-        cmocka_unit_test(a_target_that_waits_for_the_line_is_no_faster),
-        cmocka_unit_test(bus_wiring_does_the_same),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

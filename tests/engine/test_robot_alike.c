@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The same requests on another clock: the same frames, the same events. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/next_random.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig, first;
 static rig_clip clip, other;
@@ -195,9 +191,8 @@ static void expect_alike(int64_t later_us)
                         grobo_robot_get_counters(&first.robot), sizeof(grobo_robot_counters));
 }
 
-static void the_engine_does_not_care_where_the_clock_begins(void **state)
+TEST_WITH(rig_wirings, the_engine_does_not_care_where_the_clock_begins)
 {
-    (void)state;
     static const int64_t epochs_us[] = {77777777, INT64_C(86400000000) * 365};
     for (uint32_t seed = 0; seed < 6; seed++) {
         live(seed, 1);
@@ -205,12 +200,4 @@ static void the_engine_does_not_care_where_the_clock_begins(void **state)
         live(seed, epochs_us[seed % 2]);
         expect_alike(epochs_us[seed % 2] - 1);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_engine_does_not_care_where_the_clock_begins),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

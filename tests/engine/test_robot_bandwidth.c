@@ -15,16 +15,12 @@
  *   beside f frames:       f * floor((1 / f - goals) / reading)   a second: none is cut in two
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "src/robot/robot.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { JOINTS = 20, LENGTH_S = 5, SECOND_US = 1000000 };
 
@@ -131,17 +127,15 @@ static void expect_rate(const use *u)
     check_frames(u);
 }
 
-static void readings_alone_fill_the_wire(void **state)
+TEST(readings_alone_fill_the_wire)
 {
-    (void)state;
     for (int i = 0; i < 4; i++) {
         expect_rate(&(use){i < 2 ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS, i % 2 == 1, 0});
     }
 }
 
-static void readings_fill_the_gaps_between_frames(void **state)
+TEST(readings_fill_the_gaps_between_frames)
 {
-    (void)state;
     static const int rates_hz[] = {20, 30, 40, 50};
     for (int i = 0; i < 16; i++) {
         expect_rate(
@@ -150,9 +144,8 @@ static void readings_fill_the_gaps_between_frames(void **state)
 }
 
 /* Servos that do not answer, and lost bytes, cost readings and no frame its time. */
-static void a_bad_line_delays_no_frame(void **state)
+TEST(a_bad_line_delays_no_frame)
 {
-    (void)state;
     static const int rates_hz[] = {20, 30, 40};
     for (int i = 0; i < 6; i++) {
         use u = {GROBO_WIRING_BOARD, i % 2 == 1, rates_hz[i / 2]};
@@ -198,9 +191,8 @@ static void expect_free_rate(grobo_wiring wiring, grobo_joint_mask joints, int n
     }
 }
 
-static void a_taught_arm_has_the_wire(void **state)
+TEST(a_taught_arm_has_the_wire)
 {
-    (void)state;
     static const struct {
         int n;
         grobo_joint_mask joints;
@@ -215,9 +207,8 @@ static void a_taught_arm_has_the_wire(void **state)
 }
 
 /* Nothing wakes the host for a reading that finds no room before a frame has left. */
-static void a_reading_without_room_does_not_spin(void **state)
+TEST(a_reading_without_room_does_not_spin)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_SILENT, 1), 0);
@@ -239,16 +230,4 @@ static void a_reading_without_room_does_not_spin(void **state)
     rig_forget(&rig);
     rig_run(&rig, 3000000);
     assert_true(rig_count(&rig, GROBO_EVENT_JOINT) > 10); /* then it is read */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(readings_alone_fill_the_wire),
-        cmocka_unit_test(readings_fill_the_gaps_between_frames),
-        cmocka_unit_test(a_bad_line_delays_no_frame),
-        cmocka_unit_test(a_taught_arm_has_the_wire),
-        cmocka_unit_test(a_reading_without_room_does_not_spin),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Each robot that comes with the library: in its simulator the engine finds, moves and stops it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/dxl2.h>
 #include <grobo/robot_file.h>
@@ -15,6 +10,7 @@
 #include <grobo/static.h>
 
 #include "src/robots/robots.h"
+#include "tests/support/test.h"
 
 enum { S = 1000000 };
 
@@ -119,9 +115,8 @@ static void shafts_are_at(const grobo_posture *to)
     }
 }
 
-static void each_moves_in_its_simulator(void **state)
+TEST(each_moves_in_its_simulator)
 {
-    (void)state;
     for (int i = 0; grobo_robot_defs[i] != NULL; i++) {
         start(grobo_robot_defs[i], grobo_robot_defs[i]->wiring);
         finish(grobo_robot_check(&robot));
@@ -141,9 +136,8 @@ static void each_moves_in_its_simulator(void **state)
 
 /* At power-up a joint stands in its initial posture, and its stops are its limits, whatever way its
  * servo is mounted. */
-static void servos_stand_as_they_are_mounted(void **state)
+TEST(servos_stand_as_they_are_mounted)
 {
-    (void)state;
     for (int i = 0; grobo_robot_defs[i] != NULL; i++) {
         start(grobo_robot_defs[i], grobo_robot_defs[i]->wiring);
         for (int j = 0; j < driver.model->n_joints; j++) {
@@ -165,9 +159,8 @@ static void servos_stand_as_they_are_mounted(void **state)
 }
 
 /* Six STS3215 are read as fast as their wire goes: at least 95 % of it. */
-static void an_arm_is_read_as_fast_as_its_wire(void **state)
+TEST(an_arm_is_read_as_fast_as_its_wire)
 {
-    (void)state;
     start(&grobo_i_robot_so101, GROBO_WIRING_BUS);
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .bus = {.baud_bps = 1000000},
                                  .sense_interval_us = 1};
@@ -183,24 +176,12 @@ static void an_arm_is_read_as_fast_as_its_wire(void **state)
     assert_true(read_us <= now_us - from_us);
 }
 
-static void gr001_is_on_a_bus_too(void **state)
+TEST(gr001_is_on_a_bus_too)
 {
-    (void)state;
     start(grobo_robot_defs[0], GROBO_WIRING_BUS);
     grobo_posture to = some_posture();
     finish(grobo_robot_move(&robot, &to));
     shafts_are_at(&to);
     assert_int_equal(grobo_robot_def_driver(grobo_robot_defs[1], GROBO_WIRING_BOARD, &driver),
                      GROBO_ERR_UNSUPPORTED);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_moves_in_its_simulator),
-        cmocka_unit_test(servos_stand_as_they_are_mounted),
-        cmocka_unit_test(an_arm_is_read_as_fast_as_its_wire),
-        cmocka_unit_test(gr001_is_on_a_bus_too),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

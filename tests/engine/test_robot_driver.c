@@ -2,17 +2,13 @@
 /* What the engine owes a driver: its context, every part of an order, and what it answers. */
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -181,9 +177,8 @@ static void expect_all_at(const grobo_posture *target)
 
 /* ---- tests ----------------------------------------------------------------------------------- */
 
-static void every_function_gets_the_context(void **state)
+TEST_WITH(rig_wirings, every_function_gets_the_context)
 {
-    (void)state;
     static const rig_key nod[] = {{0, {{NECK, 10}}}, {500, {{NECK, 0}}}};
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
@@ -209,9 +204,8 @@ static void every_function_gets_the_context(void **state)
 }
 
 /* A bus that has no frame for all joints: all parts of an order leave, of whatever kind it is. */
-static void an_order_of_several_frames_is_whole(void **state)
+TEST_WITH(rig_wirings, an_order_of_several_frames_is_whole)
 {
-    (void)state;
     start(&quiet);
     rig_power(&rig);
     for (int j = 0; j < 20; j++) {
@@ -230,9 +224,8 @@ static void an_order_of_several_frames_is_whole(void **state)
     }
 }
 
-static void a_halt_of_several_frames_stops_all(void **state)
+TEST_WITH(rig_wirings, a_halt_of_several_frames_stops_all)
 {
-    (void)state;
     start(&quiet);
     rig_power(&rig);
     grobo_posture target = all_at(5, 500);
@@ -255,9 +248,8 @@ static void a_halt_of_several_frames_stops_all(void **state)
 }
 
 /* Most of the frames would have no joint that moves. */
-static void a_halt_of_several_frames_stops_one(void **state)
+TEST_WITH(rig_wirings, a_halt_of_several_frames_stops_one)
 {
-    (void)state;
     for (int j = 0; j < 20; j++) {
         start(&quiet);
         rig_power(&rig);
@@ -276,9 +268,8 @@ static void a_halt_of_several_frames_stops_one(void **state)
 }
 
 /* A target for which the driver has no frame is no move. */
-static void an_order_without_a_frame_is_over(void **state)
+TEST_WITH(rig_wirings, an_order_without_a_frame_is_over)
 {
-    (void)state;
     start(&quiet);
     rig_power(&rig);
     grobo_posture target = all_at(5, 500);
@@ -301,9 +292,8 @@ static void an_order_without_a_frame_is_over(void **state)
 }
 
 /* Half of a target is no posture: where a later frame of it cannot be made, none leaves. */
-static void an_order_leaves_whole_or_not_at_all(void **state)
+TEST_WITH(rig_wirings, an_order_leaves_whole_or_not_at_all)
 {
-    (void)state;
     for (unsigned n = 1; n < 12; n++) {
         start(&quiet);
         rig_power(&rig);
@@ -324,9 +314,8 @@ static void an_order_leaves_whole_or_not_at_all(void **state)
 }
 
 /* A motion of which a frame cannot be made ends, and all that moves beside it comes to rest. */
-static void a_motion_that_cannot_go_on_stops_the_robot(void **state)
+TEST_WITH(rig_wirings, a_motion_that_cannot_go_on_stops_the_robot)
 {
-    (void)state;
     static const rig_key nod[] = {{0, {{NECK, 0}}}, {500, {{NECK, 20}}}, {1000, {{NECK, 0}}}};
     start(&quiet);
     rig_power(&rig);
@@ -348,9 +337,8 @@ static void a_motion_that_cannot_go_on_stops_the_robot(void **state)
 }
 
 /* What does not take is told again, in frames of few joints: they get through. */
-static void what_is_told_again_is_told_in_small_frames(void **state)
+TEST_WITH(rig_wirings, what_is_told_again_is_told_in_small_frames)
 {
-    (void)state;
     unsigned of_four = 0;
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_SILENT, 0.3), 0);
@@ -391,9 +379,8 @@ static void expect_neck_stands(void)
 }
 
 /* It is latched, and what moves is halted and holds; so it is where the line comes back. */
-static void an_emergency_stop_without_torque_halts(void **state)
+TEST_WITH(rig_wirings, an_emergency_stop_without_torque_halts)
 {
-    (void)state;
     for (int way = 0; way < 4; way++) {
         grobo_driver driver = *grobo_gr001_driver(rig_wiring);
         grobo_posture target;
@@ -426,9 +413,8 @@ static void an_emergency_stop_without_torque_halts(void **state)
 }
 
 /* It missed the halt, and its reading is lost: the stop is over when it was heard again. */
-static void an_emergency_stop_without_torque_reaches_who_was_deaf(void **state)
+TEST_WITH(rig_wirings, an_emergency_stop_without_torque_reaches_who_was_deaf)
 {
-    (void)state;
     grobo_driver driver = *grobo_gr001_driver(rig_wiring);
     rig_start_driver(&rig, &driver, &quiet, NULL);
     rig_power(&rig);
@@ -448,9 +434,8 @@ static void an_emergency_stop_without_torque_reaches_who_was_deaf(void **state)
 }
 
 /* It never answers: the stop ends, names it, and the others were read. */
-static void an_emergency_stop_without_torque_gives_up_who_is_silent(void **state)
+TEST_WITH(rig_wirings, an_emergency_stop_without_torque_gives_up_who_is_silent)
 {
-    (void)state;
     grobo_driver driver = *grobo_gr001_driver(rig_wiring);
     rig_start_driver(&rig, &driver, &quiet, NULL);
     rig_power(&rig);
@@ -477,9 +462,8 @@ static int no_more(const grobo_driver *self, void *ctx, int joint, grobo_sense_k
 }
 
 /* A reading is as good as what a driver has to ask for it. */
-static void a_reading_that_cannot_be_asked_on_fails(void **state)
+TEST_WITH(rig_wirings, a_reading_that_cannot_be_asked_on_fails)
 {
-    (void)state;
     grobo_driver driver = *grobo_gr001_driver(rig_wiring);
     driver.sense_more = no_more;
     rig_start_driver(&rig, &driver, &quiet, NULL);
@@ -489,23 +473,4 @@ static void a_reading_that_cannot_be_asked_on_fails(void **state)
     assert_int_equal(rig_last(&rig, GROBO_EVENT_JOINT)->u.joint.result, GROBO_ERR_SPACE);
     number = grobo_robot_sense(&rig.robot, rig_all(&rig) & ~neck, GROBO_SENSE_ALL);
     rig_expect(&rig, number, GROBO_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_function_gets_the_context),
-        cmocka_unit_test(an_order_of_several_frames_is_whole),
-        cmocka_unit_test(a_halt_of_several_frames_stops_all),
-        cmocka_unit_test(a_halt_of_several_frames_stops_one),
-        cmocka_unit_test(an_order_without_a_frame_is_over),
-        cmocka_unit_test(an_order_leaves_whole_or_not_at_all),
-        cmocka_unit_test(a_motion_that_cannot_go_on_stops_the_robot),
-        cmocka_unit_test(what_is_told_again_is_told_in_small_frames),
-        cmocka_unit_test(an_emergency_stop_without_torque_halts),
-        cmocka_unit_test(an_emergency_stop_without_torque_reaches_who_was_deaf),
-        cmocka_unit_test(an_emergency_stop_without_torque_gives_up_who_is_silent),
-        cmocka_unit_test(a_reading_that_cannot_be_asked_on_fails),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

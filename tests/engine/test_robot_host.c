@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What an engine asks of its host: the time, a wake-up, a lock, a word before a reset. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 
@@ -99,9 +95,8 @@ static void expect_request(int result)
     host.wakes = 0;
 }
 
-static void a_request_holds_the_lock_and_wakes_the_pump(void **state)
+TEST_WITH(rig_wirings, a_request_holds_the_lock_and_wakes_the_pump)
 {
-    (void)state;
     const grobo_register_io io = {.id = R_ELBOW_ID, .address = 42, .length = 2};
     begin();
     expect_request(grobo_robot_configure(&rig.robot, &rig.robot.config)); /* readings may be due */
@@ -119,9 +114,8 @@ static void a_request_holds_the_lock_and_wakes_the_pump(void **state)
     expect_request(grobo_robot_estop(&rig.robot));
 }
 
-static void a_question_holds_the_lock(void **state)
+TEST_WITH(rig_wirings, a_question_holds_the_lock)
 {
-    (void)state;
     grobo_joint_info info;
     grobo_posture posture;
     grobo_trip_info trip;
@@ -160,9 +154,8 @@ static void a_question_holds_the_lock(void **state)
     assert_int_equal(host.wakes, 0);
 }
 
-static void the_pump_holds_the_lock_but_not_while_it_tells(void **state)
+TEST_WITH(rig_wirings, the_pump_holds_the_lock_but_not_while_it_tells)
 {
-    (void)state;
     uint8_t bytes[GROBO_FRAME_MAX_BYTES];
     begin();
     assert_true(grobo_robot_sense(&rig.robot, 1, GROBO_SENSE_FULL) > 0);
@@ -183,9 +176,8 @@ static void the_pump_holds_the_lock_but_not_while_it_tells(void **state)
     assert_true(host.deepest >= 1);
 }
 
-static void a_reset_is_the_hosts_to_allow(void **state)
+TEST_WITH(rig_wirings, a_reset_is_the_hosts_to_allow)
 {
-    (void)state;
     begin();
     assert_int_equal(grobo_robot_latch(&rig.robot), GROBO_OK);
     grobo_trip_info trip;
@@ -201,9 +193,8 @@ static void a_reset_is_the_hosts_to_allow(void **state)
 }
 
 /* The clock may stand behind the pump's last call: time does not go back. */
-static void time_is_the_clocks_but_never_goes_back(void **state)
+TEST_WITH(rig_wirings, time_is_the_clocks_but_never_goes_back)
 {
-    (void)state;
     grobo_joint_info info;
     begin();
     assert_int_equal(grobo_robot_joint(&rig.robot, NECK, &info), GROBO_OK);
@@ -228,9 +219,8 @@ static void pause_then(void *ctx, const grobo_event *event)
 }
 
 /* What is asked for in a callback is told before the pump that called it returns. */
-static void what_a_callback_begins_is_told_at_once(void **state)
+TEST_WITH(rig_wirings, what_a_callback_begins_is_told_at_once)
 {
-    (void)state;
     static const rig_key nod[] = {{0, {{NECK, 0}}}, {500, {{NECK, 20}}}, {1500, {{NECK, 0}}}};
     rig_clip clip;
     begin();
@@ -261,9 +251,8 @@ static void count_end(void *ctx, const grobo_event *event)
 }
 
 /* The loop is held up, and another thread moves on: each move ends the one before. */
-static void each_end_is_told_however_late(void **state)
+TEST_WITH(rig_wirings, each_end_is_told_however_late)
 {
-    (void)state;
     begin();
     grobo_robot_on_event(&rig.robot, count_end, NULL);
     memset(ends, 0, sizeof ends);
@@ -283,18 +272,4 @@ static void each_end_is_told_however_late(void **state)
         assert_int_equal(ends[i], 1);
     }
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->lost_events, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_request_holds_the_lock_and_wakes_the_pump),
-        cmocka_unit_test(a_question_holds_the_lock),
-        cmocka_unit_test(the_pump_holds_the_lock_but_not_while_it_tells),
-        cmocka_unit_test(a_reset_is_the_hosts_to_allow),
-        cmocka_unit_test(time_is_the_clocks_but_never_goes_back),
-        cmocka_unit_test(what_a_callback_begins_is_told_at_once),
-        cmocka_unit_test(each_end_is_told_however_late),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The line goes and comes; silent and lying lines; requests from within the callback. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -27,9 +23,8 @@ static void plug(void)
     grobo_robot_link_up(&rig.robot, rig.now_us);
 }
 
-static void nothing_is_asked_of_a_line_that_is_down(void **state)
+TEST(nothing_is_asked_of_a_line_that_is_down)
 {
-    (void)state;
     grobo_posture target;
     rig_start(&rig, &quiet, NULL);
     unplug();
@@ -46,9 +41,8 @@ static void nothing_is_asked_of_a_line_that_is_down(void **state)
     assert_true(trip.latched && trip.trip == GROBO_TRIP_ESTOP); /* latched all the same */
 }
 
-static void a_job_ends_when_the_line_goes(void **state)
+TEST(a_job_ends_when_the_line_goes)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL);
     rig_run(&rig, 30000);
@@ -62,9 +56,8 @@ static void a_job_ends_when_the_line_goes(void **state)
     assert_false(info.torque_known);
 }
 
-static void a_motion_ends_when_the_line_goes_and_does_not_come_back(void **state)
+TEST(a_motion_ends_when_the_line_goes_and_does_not_come_back)
 {
-    (void)state;
     rig_start(&rig, NULL, NULL);
     rig_clip_init(&clip, sway, 3);
     rig_power(&rig);
@@ -124,9 +117,8 @@ static void replug_under_way(int time_ms)
 
 /* Nobody stopped the servos when the line went. A joint still on its way has gone on since it was
  * read, and is not to be thrown back to where it was. */
-static void a_move_after_a_replug_throws_no_joint_back(void **state)
+TEST(a_move_after_a_replug_throws_no_joint_back)
 {
-    (void)state;
     for (int to_deg = -140; to_deg <= 30; to_deg += 5) {
         replug_under_way(1500);
         grobo_posture target = rig_posture(&rig, HIP, to_deg, 10);
@@ -141,9 +133,8 @@ static void a_move_after_a_replug_throws_no_joint_back(void **state)
 
 /* A servo that is slower than what counts as moving has a long way behind it before it is read
  * again. */
-static void a_target_after_a_replug_throws_no_joint_that_creeps(void **state)
+TEST(a_target_after_a_replug_throws_no_joint_that_creeps)
 {
-    (void)state;
     for (int wait_ms = 300; wait_ms <= 1000; wait_ms += 100) {
         replug_under_way(24000);
         rig_run(&rig, wait_ms * 1000);
@@ -155,9 +146,8 @@ static void a_target_after_a_replug_throws_no_joint_that_creeps(void **state)
     }
 }
 
-static void a_play_after_a_replug_throws_no_joint_back(void **state)
+TEST(a_play_after_a_replug_throws_no_joint_back)
 {
-    (void)state;
     for (int to_deg = -140; to_deg <= 30; to_deg += 5) {
         replug_under_way(1500);
         const rig_key keys[] = {{0, {{HIP, to_deg}}}, {1000, {{HIP, to_deg}}}};
@@ -170,9 +160,8 @@ static void a_play_after_a_replug_throws_no_joint_back(void **state)
 }
 
 /* A joint that arrives while the others are read is not where it was read. */
-static void an_exit_after_a_replug_throws_no_joint_back(void **state)
+TEST(an_exit_after_a_replug_throws_no_joint_back)
 {
-    (void)state;
     for (int more_ms = 800; more_ms < 1000; more_ms += 5) {
         replug_under_way(1500);
         rig_run(&rig, more_ms * 1000);
@@ -184,9 +173,8 @@ static void an_exit_after_a_replug_throws_no_joint_back(void **state)
     }
 }
 
-static void a_stop_after_a_replug_ends_the_way_of_before(void **state)
+TEST(a_stop_after_a_replug_ends_the_way_of_before)
 {
-    (void)state;
     replug_under_way(12000);
     rig_run(&rig, 500000); /* all are read */
     double asked_deg = rig_angle_deg(&rig, HIP);
@@ -199,9 +187,8 @@ static void a_stop_after_a_replug_ends_the_way_of_before(void **state)
 }
 
 /* A single target has no reading before it that would tell where the joint is going. */
-static void nothing_is_sent_to_a_joint_that_moves_by_itself(void **state)
+TEST(nothing_is_sent_to_a_joint_that_moves_by_itself)
 {
-    (void)state;
     replug_under_way(1500);
     rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL), GROBO_OK);
     grobo_posture target = rig_posture(&rig, HIP, 0, 100);
@@ -247,9 +234,8 @@ static void measure_silence(int times, int64_t costs_us[2])
  * from those who answered and doubles with each attempt, and a millisecond of quiet: 4 ms more than
  * an answer where there is one attempt, not 35. Where there are three, the last is given 40 ms the
  * first time, for a stall at the other end looks the same. Looks are a millisecond apart. */
-static void nineteen_of_twenty_are_delivered_and_silence_costs_its_timeout(void **state)
+TEST(nineteen_of_twenty_are_delivered_and_silence_costs_its_timeout)
 {
-    (void)state;
     static const grobo_robot_config once = {GROBO_ROBOT_CONFIG_INIT,
                                             .sense_interval_us = GROBO_SENSE_NEVER, .retries = -1};
     int64_t costs_us[2];
@@ -266,9 +252,8 @@ static void nineteen_of_twenty_are_delivered_and_silence_costs_its_timeout(void 
 /* A line that has answered a thousand times within 1 ms stalls seldom: each attempt gets 4 ms. One
  * with an adapter that holds bytes back for longer does not become such a line, and a reply that
  * was late brings patience back. */
-static void a_silent_servo_is_given_up_soon_on_a_line_that_is_never_late(void **state)
+TEST(a_silent_servo_is_given_up_soon_on_a_line_that_is_never_late)
 {
-    (void)state;
     enum { LONG = 60, QUICK_MS = 4, HELD_US = 4000, LESS_US = 2000 };
     static const grobo_sim_config slow = {GROBO_SIM_CONFIG_INIT, .latency_us = HELD_US};
     int64_t costs_us[2];
@@ -290,9 +275,8 @@ static void a_silent_servo_is_given_up_soon_on_a_line_that_is_never_late(void **
     assert_true(costs_us[0] >= 2 * 6264 + 49000 - LESS_US); /* an answer takes longer, too */
 }
 
-static void a_stale_angle_is_not_in_a_fresh_posture(void **state)
+TEST(a_stale_angle_is_not_in_a_fresh_posture)
 {
-    (void)state;
     grobo_posture posture;
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(grobo_robot_posture(&rig.robot, GROBO_NEVER_US, &posture), 0);
@@ -304,9 +288,8 @@ static void a_stale_angle_is_not_in_a_fresh_posture(void **state)
     assert_true(posture.set == 0x3);
 }
 
-static void broken_replies_are_retried_and_never_believed(void **state)
+TEST(broken_replies_are_retried_and_never_believed)
 {
-    (void)state;
     static const double stands_deg[] = {10, -20, 30};
     rig_start(&rig, &quiet, NULL);
     for (int j = 0; j < 3; j++) {
@@ -334,9 +317,8 @@ static void broken_replies_are_retried_and_never_believed(void **state)
     assert_true(grobo_robot_get_bus_stats(&rig.robot)->retries > 10);
 }
 
-static void a_servo_that_stays_silent_is_asked_once_a_round(void **state)
+TEST(a_servo_that_stays_silent_is_asked_once_a_round)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
@@ -372,9 +354,8 @@ static void on_chain(grobo_test_rig *r, const grobo_event *event)
     assert_true(last_number > 0);
 }
 
-static void requests_may_come_from_the_callback(void **state)
+TEST(requests_may_come_from_the_callback)
 {
-    (void)state;
     rig_start(&rig, NULL, NULL);
     chain = 0;
     rig.on_event = on_chain;
@@ -391,9 +372,8 @@ static void on_joint_stop(grobo_test_rig *r, const grobo_event *event)
     }
 }
 
-static void a_job_may_be_displaced_from_its_own_events(void **state)
+TEST(a_job_may_be_displaced_from_its_own_events)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     chain = 0;
     rig.on_event = on_joint_stop;
@@ -404,9 +384,8 @@ static void a_job_may_be_displaced_from_its_own_events(void **state)
 }
 
 /* The line went while a person stopped the robot, or before. */
-static void an_emergency_stop_that_found_no_line_is_made_up_for(void **state)
+TEST(an_emergency_stop_that_found_no_line_is_made_up_for)
 {
-    (void)state;
     for (int under_way = 0; under_way < 2; under_way++) {
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
@@ -441,9 +420,8 @@ static void an_emergency_stop_that_found_no_line_is_made_up_for(void **state)
     }
 }
 
-static void an_emergency_stop_taken_back_is_not_made_up_for(void **state)
+TEST(an_emergency_stop_taken_back_is_not_made_up_for)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_robot_link_down(&rig.robot, rig.now_us);
@@ -452,29 +430,4 @@ static void an_emergency_stop_taken_back_is_not_made_up_for(void **state)
     grobo_robot_link_up(&rig.robot, rig.now_us);
     rig_run(&rig, 1000000);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_is_asked_of_a_line_that_is_down),
-        cmocka_unit_test(a_job_ends_when_the_line_goes),
-        cmocka_unit_test(a_motion_ends_when_the_line_goes_and_does_not_come_back),
-        cmocka_unit_test(a_move_after_a_replug_throws_no_joint_back),
-        cmocka_unit_test(a_target_after_a_replug_throws_no_joint_that_creeps),
-        cmocka_unit_test(a_play_after_a_replug_throws_no_joint_back),
-        cmocka_unit_test(an_exit_after_a_replug_throws_no_joint_back),
-        cmocka_unit_test(a_stop_after_a_replug_ends_the_way_of_before),
-        cmocka_unit_test(nothing_is_sent_to_a_joint_that_moves_by_itself),
-        cmocka_unit_test(an_emergency_stop_that_found_no_line_is_made_up_for),
-        cmocka_unit_test(an_emergency_stop_taken_back_is_not_made_up_for),
-        cmocka_unit_test(nineteen_of_twenty_are_delivered_and_silence_costs_its_timeout),
-        cmocka_unit_test(a_silent_servo_is_given_up_soon_on_a_line_that_is_never_late),
-        cmocka_unit_test(a_stale_angle_is_not_in_a_fresh_posture),
-        cmocka_unit_test(broken_replies_are_retried_and_never_believed),
-        cmocka_unit_test(a_servo_that_stays_silent_is_asked_once_a_round),
-        cmocka_unit_test(requests_may_come_from_the_callback),
-        cmocka_unit_test(a_job_may_be_displaced_from_its_own_events),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

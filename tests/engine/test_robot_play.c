@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Playing: the frames on the wire, their times, and what a motion may be told on its way. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -56,9 +52,8 @@ static void play(const grobo_play_options *options)
     rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, options), GROBO_OK);
 }
 
-static void keys_are_frames_with_their_times(void **state)
+TEST(keys_are_frames_with_their_times)
 {
-    (void)state;
     static rig_frame frames[64];
     start(&quiet);
     play(NULL);
@@ -81,9 +76,8 @@ static void keys_are_frames_with_their_times(void **state)
     assert_int_equal(end->u.play.to, GROBO_SEQUENCER_FINISHED);
 }
 
-static void frames_at_a_rate_leave_on_their_grid(void **state)
+TEST(frames_at_a_rate_leave_on_their_grid)
 {
-    (void)state;
     static rig_frame frames[256];
     grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 30};
     start(NULL);
@@ -119,9 +113,8 @@ static int64_t first_leaves_at(double neck_deg, int64_t start_us)
     return frames[1].at_us;
 }
 
-static void robots_begin_together_however_far_they_approach(void **state)
+TEST(robots_begin_together_however_far_they_approach)
 {
-    (void)state;
     int64_t start_us = rig_epoch_us + 8000000;
     int64_t near_us = first_leaves_at(1, start_us);
     int64_t far_us = first_leaves_at(-40, start_us);
@@ -129,9 +122,8 @@ static void robots_begin_together_however_far_they_approach(void **state)
     assert_in_range(far_us, start_us, start_us + 1000);
 }
 
-static void gaps_between_frames_are_read_in(void **state)
+TEST(gaps_between_frames_are_read_in)
 {
-    (void)state;
     grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 30,
                                   .repeat = 5};
     grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
@@ -148,9 +140,8 @@ static void gaps_between_frames_are_read_in(void **state)
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->late_frames, 0);
 }
 
-static void first_move_is_slow_and_from_where_the_robot_is(void **state)
+TEST(first_move_is_slow_and_from_where_the_robot_is)
 {
-    (void)state;
     static rig_frame frames[16];
     grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 5};
     rig_start(&rig, &quiet, &limp);
@@ -170,9 +161,8 @@ static void first_move_is_slow_and_from_where_the_robot_is(void **state)
     }
 }
 
-static void targets_outside_limits_end_the_motion(void **state)
+TEST(targets_outside_limits_end_the_motion)
 {
-    (void)state;
     static const rig_key wild[] = {
         {0, {{NECK, 0}}}, {500, {{NECK, 20}}}, {1000, {{NECK, 51}}}, {2000, {{NECK, 0}}}};
     start(&quiet);
@@ -188,9 +178,8 @@ static void targets_outside_limits_end_the_motion(void **state)
     assert_true(rig_angle_deg(&rig, NECK) < 20.1);
 }
 
-static void targets_outside_limits_are_clamped_if_told_so(void **state)
+TEST(targets_outside_limits_are_clamped_if_told_so)
 {
-    (void)state;
     static const rig_key wild[] = {{0, {{NECK, 0}}}, {1000, {{NECK, 70}}}};
     grobo_robot_config config = quiet;
     config.limit_policy = GROBO_LIMIT_CLAMP;
@@ -203,9 +192,8 @@ static void targets_outside_limits_are_clamped_if_told_so(void **state)
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->clamped, 1);
 }
 
-static void too_fast_a_target_gets_more_time(void **state)
+TEST(too_fast_a_target_gets_more_time)
 {
-    (void)state;
     static const rig_key jerk[] = {{0, {{NECK, -40}}}, {100, {{NECK, 40}, {SHOULDER, 25}}}};
     static rig_frame frames[16];
     start(&quiet);
@@ -219,9 +207,8 @@ static void too_fast_a_target_gets_more_time(void **state)
     assert_in_range(grobo_robot_get_counters(&rig.robot)->stretched, 1, 2);
 }
 
-static void speed_limit_is_kept(void **state)
+TEST(speed_limit_is_kept)
 {
-    (void)state;
     static rig_frame frames[16];
     grobo_robot_config slow = quiet;
     slow.speed_limit_pct = 20; /* 75 deg/s for the neck */
@@ -233,9 +220,8 @@ static void speed_limit_is_kept(void **state)
     assert_in_range(time_cs(&frames[2], 2), 79, 81); /* 60 degrees */
 }
 
-static void pause_resume_and_stop(void **state)
+TEST(pause_resume_and_stop)
 {
-    (void)state;
     start(&quiet);
     play(NULL);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
@@ -256,9 +242,8 @@ static void pause_resume_and_stop(void **state)
     assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_ERR_STATE);
 }
 
-static void only_one_motion_at_a_time(void **state)
+TEST(only_one_motion_at_a_time)
 {
-    (void)state;
     start(&quiet);
     play(NULL);
     grobo_posture target = rig_posture(&rig, NECK, 0, 100);
@@ -268,9 +253,8 @@ static void only_one_motion_at_a_time(void **state)
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
 }
 
-static void a_short_stall_skips_a_long_one_stops(void **state)
+TEST(a_short_stall_skips_a_long_one_stops)
 {
-    (void)state;
     static rig_frame frames[256];
     grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 50,
                                   .unwatched = true};
@@ -301,9 +285,8 @@ static void mute_all(grobo_sim_cable cable)
     }
 }
 
-static void a_lost_last_posture_is_repeated(void **state)
+TEST(a_lost_last_posture_is_repeated)
 {
-    (void)state;
     start(&quiet);
     play(NULL);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
@@ -321,9 +304,8 @@ static void a_lost_last_posture_is_repeated(void **state)
     assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
 }
 
-static void what_the_engine_does_afterwards_makes_way(void **state)
+TEST(what_the_engine_does_afterwards_makes_way)
 {
-    (void)state;
     start(&quiet);
     play(NULL);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
@@ -333,9 +315,8 @@ static void what_the_engine_does_afterwards_makes_way(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
 }
 
-static void a_single_target_is_not_taken_back_afterwards(void **state)
+TEST(a_single_target_is_not_taken_back_afterwards)
 {
-    (void)state;
     for (int ms = 0; ms < 200; ms += 5) {
         start(&quiet);
         play(NULL);
@@ -348,9 +329,8 @@ static void a_single_target_is_not_taken_back_afterwards(void **state)
     }
 }
 
-static void a_lost_approach_is_repeated(void **state)
+TEST(a_lost_approach_is_repeated)
 {
-    (void)state;
     static const rig_key far[] = {{0, {{NECK, 40}}}, {500, {{NECK, 30}}}};
     start(&quiet);
     rig_clip_init(&clip, far, 2);
@@ -370,9 +350,8 @@ static void a_lost_approach_is_repeated(void **state)
 
 /* So short an approach is over before it could be read back, and at 50 Hz nothing can be read after
  * it: the job ends in a later pass, and is not to judge that one's approach by what it read. */
-static void an_approach_is_judged_by_its_own_readings(void **state)
+TEST(an_approach_is_judged_by_its_own_readings)
 {
-    (void)state;
     static const rig_key reach[] = {{0, {{NECK, 0}}}, {1000, {{HIP, -90}}}};
     grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 50,
                                   .unwatched = true, .repeat = 3};
@@ -414,9 +393,8 @@ static int lean(const grobo_driver *self, void *ctx, const grobo_posture *sensed
     return 0;
 }
 
-static void the_stabilizer_corrects_and_is_checked(void **state)
+TEST(the_stabilizer_corrects_and_is_checked)
 {
-    (void)state;
     static rig_frame frames[16];
     static const rig_key low[] = {{0, {{R_KNEE, -100}}}, {1000, {{R_KNEE, -127}}}};
     grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
@@ -433,9 +411,8 @@ static void the_stabilizer_corrects_and_is_checked(void **state)
 }
 
 /* What went out was corrected already. */
-static void a_repeated_posture_is_not_corrected_twice(void **state)
+TEST(a_repeated_posture_is_not_corrected_twice)
 {
-    (void)state;
     static const rig_key low[] = {
         {0, {{R_KNEE, -40}}}, {500, {{R_KNEE, -50}}}, {1000, {{R_KNEE, -80}}}};
     grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
@@ -455,9 +432,8 @@ static void a_repeated_posture_is_not_corrected_twice(void **state)
 }
 
 /* One servo has missed the approach, which begins anew: the others are on their way already. */
-static void a_cancel_stops_an_approach_that_begins_anew(void **state)
+TEST(a_cancel_stops_an_approach_that_begins_anew)
 {
-    (void)state;
     static const rig_key far[] = {{0, {{NECK, 40}, {SHOULDER, 90}}}, {500, {{NECK, 40}}}};
     rig_start_at(&rig, 0, &quiet);
     rig_clip_init(&clip, far, 2);
@@ -474,31 +450,4 @@ static void a_cancel_stops_an_approach_that_begins_anew(void **state)
     double here_deg = rig_angle_deg(&rig, SHOULDER);
     rig_run(&rig, 1000000);
     assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - here_deg) < 0.01);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keys_are_frames_with_their_times),
-        cmocka_unit_test(frames_at_a_rate_leave_on_their_grid),
-        cmocka_unit_test(robots_begin_together_however_far_they_approach),
-        cmocka_unit_test(gaps_between_frames_are_read_in),
-        cmocka_unit_test(first_move_is_slow_and_from_where_the_robot_is),
-        cmocka_unit_test(targets_outside_limits_end_the_motion),
-        cmocka_unit_test(targets_outside_limits_are_clamped_if_told_so),
-        cmocka_unit_test(too_fast_a_target_gets_more_time),
-        cmocka_unit_test(speed_limit_is_kept),
-        cmocka_unit_test(pause_resume_and_stop),
-        cmocka_unit_test(only_one_motion_at_a_time),
-        cmocka_unit_test(a_short_stall_skips_a_long_one_stops),
-        cmocka_unit_test(a_lost_last_posture_is_repeated),
-        cmocka_unit_test(what_the_engine_does_afterwards_makes_way),
-        cmocka_unit_test(a_single_target_is_not_taken_back_afterwards),
-        cmocka_unit_test(a_lost_approach_is_repeated),
-        cmocka_unit_test(an_approach_is_judged_by_its_own_readings),
-        cmocka_unit_test(the_stabilizer_corrects_and_is_checked),
-        cmocka_unit_test(a_repeated_posture_is_not_corrected_twice),
-        cmocka_unit_test(a_cancel_stops_an_approach_that_begins_anew),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

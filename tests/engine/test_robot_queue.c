@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Requests that are made while others are carried out: side by side, in place of them, behind. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 
@@ -56,9 +52,8 @@ static void expect_at(int joint, double angle_deg)
     assert_in_range((int)(10 * (rig_angle_deg(&rig, joint) - angle_deg + 100)), 995, 1005);
 }
 
-static void moves_of_different_joints_run_side_by_side(void **state)
+TEST_WITH(rig_wirings, moves_of_different_joints_run_side_by_side)
 {
-    (void)state;
     begin();
     int64_t begun_us = rig.now_us;
     int first = move(NECK, 30, 2000);
@@ -74,9 +69,8 @@ static void moves_of_different_joints_run_side_by_side(void **state)
     expect_at(NECK, 30);
 }
 
-static void a_reading_runs_beside_a_move(void **state)
+TEST_WITH(rig_wirings, a_reading_runs_beside_a_move)
 {
-    (void)state;
     begin();
     int moving = move(NECK, 30, 2000);
     rig_run(&rig, 500000);
@@ -87,9 +81,8 @@ static void a_reading_runs_beside_a_move(void **state)
     rig_expect(&rig, moving, GROBO_OK);
 }
 
-static void a_move_takes_its_joint_from_the_one_before(void **state)
+TEST_WITH(rig_wirings, a_move_takes_its_joint_from_the_one_before)
 {
-    (void)state;
     for (int wait_ms = 0; wait_ms <= 900; wait_ms += 30) {
         begin();
         int both = move_both(30, 1000);
@@ -106,9 +99,8 @@ static void a_move_takes_its_joint_from_the_one_before(void **state)
 }
 
 /* The rig fails where a joint is told to be faster than it may, from where it is by then. */
-static void a_move_of_a_fast_joint_begins_where_it_is_when_the_frame_leaves(void **state)
+TEST_WITH(rig_wirings, a_move_of_a_fast_joint_begins_where_it_is_when_the_frame_leaves)
 {
-    (void)state;
     for (int step = 0; step < 40; step++) {
         begin();
         int away = move(NECK, 50, 10);
@@ -120,9 +112,8 @@ static void a_move_of_a_fast_joint_begins_where_it_is_when_the_frame_leaves(void
     }
 }
 
-static void a_move_that_has_no_joint_left_ends_at_once(void **state)
+TEST_WITH(rig_wirings, a_move_that_has_no_joint_left_ends_at_once)
 {
-    (void)state;
     for (int wait_ms = 0; wait_ms <= 900; wait_ms += 30) {
         begin();
         int first = move(NECK, 30, 1000);
@@ -137,9 +128,8 @@ static void a_move_that_has_no_joint_left_ends_at_once(void **state)
     }
 }
 
-static void moves_and_readings_wait_in_their_order(void **state)
+TEST_WITH(rig_wirings, moves_and_readings_wait_in_their_order)
 {
-    (void)state;
     begin();
     int holding = grobo_robot_check(&rig.robot);
     int number[GROBO_ROBOT_QUEUE];
@@ -161,9 +151,8 @@ static void moves_and_readings_wait_in_their_order(void **state)
     expect_at(R_ELBOW, 12);
 }
 
-static void nobody_waits_longer_than_two_seconds(void **state)
+TEST_WITH(rig_wirings, nobody_waits_longer_than_two_seconds)
 {
-    (void)state;
     begin();
     int64_t asked_us = rig.now_us;
     int holding = grobo_robot_command(&rig.robot, R_ELBOW_ID, GROBO_SERVO_REBOOT); /* for 2 s */
@@ -204,9 +193,8 @@ static int do_link_down(void)
     return GROBO_OK;
 }
 
-static void what_waits_ends_with_what_ends_the_rest(void **state)
+TEST_WITH(rig_wirings, what_waits_ends_with_what_ends_the_rest)
 {
-    (void)state;
     static const struct {
         int (*end)(void);
         int result;
@@ -231,9 +219,8 @@ static void what_waits_ends_with_what_ends_the_rest(void **state)
     }
 }
 
-static void a_trip_ends_what_waits(void **state)
+TEST_WITH(rig_wirings, a_trip_ends_what_waits)
 {
-    (void)state;
     begin();
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, NECK, 75), 0);
     int sensing = grobo_robot_torque(&rig.robot, neck, GROBO_TORQUE_ON);
@@ -243,9 +230,8 @@ static void a_trip_ends_what_waits(void **state)
     expect_at(NECK, 1);
 }
 
-static void torque_off_goes_before_a_move(void **state)
+TEST_WITH(rig_wirings, torque_off_goes_before_a_move)
 {
-    (void)state;
     for (int wait_ms = 0; wait_ms <= 900; wait_ms += 30) {
         begin();
         int both = move_both(30, 1000);
@@ -261,9 +247,8 @@ static void torque_off_goes_before_a_move(void **state)
     }
 }
 
-static void what_needs_a_joint_at_rest_is_refused_while_it_moves(void **state)
+TEST_WITH(rig_wirings, what_needs_a_joint_at_rest_is_refused_while_it_moves)
 {
-    (void)state;
     begin();
     const grobo_register_io of_neck = {.id = NECK_ID, .address = 42, .length = 2};
     const grobo_register_io of_elbow = {.id = R_ELBOW_ID, .address = 42, .length = 2};
@@ -281,9 +266,8 @@ static void what_needs_a_joint_at_rest_is_refused_while_it_moves(void **state)
 
 static const rig_key arm[] = {{0, {{R_ELBOW, 0}}}, {1500, {{R_ELBOW, 40}}}, {3000, {{R_ELBOW, 0}}}};
 
-static void the_head_turns_while_an_arm_plays(void **state)
+TEST_WITH(rig_wirings, the_head_turns_while_an_arm_plays)
 {
-    (void)state;
     for (grobo_play_mode mode = GROBO_PLAY_KEY; mode <= GROBO_PLAY_RATE; mode++) {
         rig_clip clip;
         const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = mode};
@@ -312,9 +296,8 @@ static void the_head_turns_while_an_arm_plays(void **state)
 }
 
 /* As many as there is room for; the last place is kept for taking torque away. */
-static void torque_off_finds_room(void **state)
+TEST_WITH(rig_wirings, torque_off_finds_room)
 {
-    (void)state;
     begin();
     static const int joints[GROBO_ROBOT_JOBS] = {CHEST, NECK, SHOULDER, R_ELBOW};
     int number[GROBO_ROBOT_JOBS];
@@ -346,9 +329,8 @@ static void ask_as_it_ends(grobo_test_rig *r, const grobo_event *event)
 }
 
 /* The callback is called before the place of what has ended is another's. */
-static void a_callback_stops_what_runs_beside_what_has_ended(void **state)
+TEST_WITH(rig_wirings, a_callback_stops_what_runs_beside_what_has_ended)
 {
-    (void)state;
     begin();
     awaited = move(NECK, 10, 300);
     int other = move(R_ELBOW, -60, 4000);
@@ -362,9 +344,8 @@ static void a_callback_stops_what_runs_beside_what_has_ended(void **state)
 }
 
 /* One ends where its frame would leave: nobody was told of it yet. */
-static void a_refused_frame_hides_no_job(void **state)
+TEST_WITH(rig_wirings, a_refused_frame_hides_no_job)
 {
-    (void)state;
     begin();
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     const grobo_rs30x_goal goal = {NECK_ID, 100, 100};
@@ -378,26 +359,4 @@ static void a_refused_frame_hides_no_job(void **state)
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_MOVE);
     assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
     rig_expect(&rig, moving, GROBO_ERR_CANCELED);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moves_of_different_joints_run_side_by_side),
-        cmocka_unit_test(a_reading_runs_beside_a_move),
-        cmocka_unit_test(a_move_takes_its_joint_from_the_one_before),
-        cmocka_unit_test(a_move_of_a_fast_joint_begins_where_it_is_when_the_frame_leaves),
-        cmocka_unit_test(a_move_that_has_no_joint_left_ends_at_once),
-        cmocka_unit_test(moves_and_readings_wait_in_their_order),
-        cmocka_unit_test(nobody_waits_longer_than_two_seconds),
-        cmocka_unit_test(what_waits_ends_with_what_ends_the_rest),
-        cmocka_unit_test(a_trip_ends_what_waits),
-        cmocka_unit_test(torque_off_goes_before_a_move),
-        cmocka_unit_test(what_needs_a_joint_at_rest_is_refused_while_it_moves),
-        cmocka_unit_test(the_head_turns_while_an_arm_plays),
-        cmocka_unit_test(torque_off_finds_room),
-        cmocka_unit_test(a_callback_stops_what_runs_beside_what_has_ended),
-        cmocka_unit_test(a_refused_frame_hides_no_job),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

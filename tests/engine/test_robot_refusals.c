@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Every request in every state of the robot: taken, or refused for the reason that is written. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -255,9 +251,8 @@ static char kind_of(int result)
     }
 }
 
-static void each_is_taken_or_refused_for_its_reason(void **state)
+TEST_WITH(rig_wirings, each_is_taken_or_refused_for_its_reason)
 {
-    (void)state;
     static const struct {
         void (*make)(void);
         const char *expected; /* a letter a request */
@@ -281,9 +276,8 @@ static void each_is_taken_or_refused_for_its_reason(void **state)
 }
 
 /* Of two reasons the caller's mistake comes first; what is asked for is not begun. */
-static void leaving_takes_a_policy_that_there_is(void **state)
+TEST_WITH(rig_wirings, leaving_takes_a_policy_that_there_is)
 {
-    (void)state;
     make_moving();
     assert_int_equal(grobo_robot_exit(&rig.robot, (grobo_exit_policy)(GROBO_EXIT_SIT + 1)),
                      GROBO_ERR_ARG);
@@ -299,9 +293,8 @@ static void leaving_takes_a_policy_that_there_is(void **state)
 }
 
 /* Nor does it crash: what a clip must have is asked for before it is looked through. */
-static void a_clip_without_keys_of_its_own_is_refused(void **state)
+TEST_WITH(rig_wirings, a_clip_without_keys_of_its_own_is_refused)
 {
-    (void)state;
     make_playing();
     grobo_clip none = clip.clip;
     none.key = NULL;
@@ -309,14 +302,4 @@ static void a_clip_without_keys_of_its_own_is_refused(void **state)
     make_ready();
     assert_int_equal(grobo_robot_play(&rig.robot, &none, NULL), GROBO_ERR_ARG);
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_NONE);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_is_taken_or_refused_for_its_reason),
-        cmocka_unit_test(leaving_takes_a_policy_that_there_is),
-        cmocka_unit_test(a_clip_without_keys_of_its_own_is_refused),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

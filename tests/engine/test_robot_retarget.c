@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Targets that come before the one before is reached. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { TARGETS = 40 };
 
@@ -47,9 +43,8 @@ static void begin(const grobo_robot_config *config)
     rig_forget(&rig);
 }
 
-static void each_target_of_a_stream_leaves(void **state)
+TEST_WITH(rig_wirings, each_target_of_a_stream_leaves)
 {
-    (void)state;
     for (int rate_hz = 10; rate_hz <= 20; rate_hz += 10) {
         begin(NULL);
         int number = move(0, 100);
@@ -67,9 +62,8 @@ static void each_target_of_a_stream_leaves(void **state)
 }
 
 /* The speed is the joint's, and the time is counted from where it is by then. */
-static void a_target_turns_a_joint_round_on_its_way(void **state)
+TEST_WITH(rig_wirings, a_target_turns_a_joint_round_on_its_way)
 {
-    (void)state;
     begin(&quiet);
     int number = move(30, 1000);
     rig_run(&rig, 500000);
@@ -82,9 +76,8 @@ static void a_target_turns_a_joint_round_on_its_way(void **state)
 }
 
 /* While the job waits, reads back, and sends: it goes on with the last target. */
-static void a_target_may_come_at_any_moment(void **state)
+TEST_WITH(rig_wirings, a_target_may_come_at_any_moment)
 {
-    (void)state;
     for (int after_us = 40000; after_us < 260000; after_us += 1700) {
         begin(NULL);
         int number = move(5, 100);
@@ -99,9 +92,8 @@ static void a_target_may_come_at_any_moment(void **state)
 }
 
 /* The last target is read back, and sent again where it was lost. */
-static void a_lost_target_is_sent_again(void **state)
+TEST_WITH(rig_wirings, a_lost_target_is_sent_again)
 {
-    (void)state;
     begin(&quiet);
     int number = move(5, 100);
     rig_run(&rig, 60000);
@@ -115,9 +107,8 @@ static void a_lost_target_is_sent_again(void **state)
 }
 
 /* Joints join, and none is forgotten. */
-static void the_joints_before_go_along(void **state)
+TEST_WITH(rig_wirings, the_joints_before_go_along)
 {
-    (void)state;
     begin(&quiet);
     int number = move(5, 500);
     rig_run(&rig, 60000);
@@ -130,9 +121,8 @@ static void the_joints_before_go_along(void **state)
     assert_true(fabs(rig_angle_deg(&rig, L_ELBOW) - 20) < 0.2);
 }
 
-static void what_must_not_be_redirected_is_not(void **state)
+TEST_WITH(rig_wirings, what_must_not_be_redirected_is_not)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(retarget(5, 100), GROBO_ERR_STATE);
     rig_power(&rig);
@@ -171,9 +161,8 @@ static void what_must_not_be_redirected_is_not(void **state)
 }
 
 /* As a move does; what is moved otherwise stays with who moves it. */
-static void joints_besides_are_taken_from_other_moves(void **state)
+TEST_WITH(rig_wirings, joints_besides_are_taken_from_other_moves)
 {
-    (void)state;
     begin(&quiet);
     grobo_posture chest = rig_posture(&rig, CHEST, -10, 1000);
     grobo_posture both = rig_posture(&rig, NECK, -5, 1000);
@@ -198,9 +187,8 @@ static void joints_besides_are_taken_from_other_moves(void **state)
 }
 
 /* Another move has taken the chest; the next target takes it back, and the job ends well. */
-static void a_joint_that_was_taken_comes_back(void **state)
+TEST_WITH(rig_wirings, a_joint_that_was_taken_comes_back)
 {
-    (void)state;
     begin(&quiet);
     grobo_posture both = rig_posture(&rig, NECK, -5, 1000);
     assert_int_equal(grobo_posture_set_deg(&both, CHEST, -5), 0);
@@ -217,9 +205,8 @@ static void a_joint_that_was_taken_comes_back(void **state)
 }
 
 /* Whatever began before it: the move is found among all jobs, by its joints. */
-static void a_move_is_found_behind_other_jobs(void **state)
+TEST_WITH(rig_wirings, a_move_is_found_behind_other_jobs)
 {
-    (void)state;
     begin(&quiet);
     for (int j = R_HIP_R; j < CHEST; j++) { /* a reading that takes long */
         assert_int_equal(grobo_sim_set_cable(&rig.sim, j, GROBO_SIM_CABLE_MUTE), 0);
@@ -239,21 +226,4 @@ static void a_move_is_found_behind_other_jobs(void **state)
     rig_expect(&rig, number, GROBO_OK);
     assert_true(fabs(rig_angle_deg(&rig, NECK) + 5) < 0.2);
     rig_expect(&rig, other, GROBO_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_target_of_a_stream_leaves),
-        cmocka_unit_test(a_target_turns_a_joint_round_on_its_way),
-        cmocka_unit_test(a_target_may_come_at_any_moment),
-        cmocka_unit_test(a_lost_target_is_sent_again),
-        cmocka_unit_test(the_joints_before_go_along),
-        cmocka_unit_test(what_must_not_be_redirected_is_not),
-        cmocka_unit_test(joints_besides_are_taken_from_other_moves),
-        cmocka_unit_test(a_joint_that_was_taken_comes_back),
-        cmocka_unit_test(a_move_is_found_behind_other_jobs),
-    };
-
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

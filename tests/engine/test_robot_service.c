@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Registers, flash and reboot, raw frames, stored motions, free mode, configuration. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 
@@ -33,9 +29,8 @@ static int io(uint8_t id, uint8_t address, uint8_t length, const uint8_t *data)
     return grobo_robot_registers(&rig.robot, &request);
 }
 
-static void registers_are_read_and_written(void **state)
+TEST_WITH(rig_wirings, registers_are_read_and_written)
 {
-    (void)state;
     static const grobo_wiring wirings[] = {GROBO_WIRING_BOARD, GROBO_WIRING_BUS};
     for (int w = 0; w < 2; w++) {
         rig_start_driver(&rig, grobo_gr001_driver(wirings[w]), &quiet, NULL);
@@ -51,9 +46,8 @@ static void registers_are_read_and_written(void **state)
     }
 }
 
-static void motor_registers_are_not_written_this_way(void **state)
+TEST_WITH(rig_wirings, motor_registers_are_not_written_this_way)
 {
-    (void)state;
     const uint8_t data[10] = {0};
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(io(NECK_ID, GROBO_RS30X_GOAL, 2, data), GROBO_ERR_UNSUPPORTED);
@@ -64,9 +58,8 @@ static void motor_registers_are_not_written_this_way(void **state)
     assert_int_equal(rig.n_sent, 0);
 }
 
-static void flash_and_reboot_wait(void **state)
+TEST_WITH(rig_wirings, flash_and_reboot_wait)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     uint8_t margin = 7;
     rig_expect(&rig, io(NECK_ID, GROBO_RS30X_CW_MARGIN, 1, &margin), GROBO_OK);
@@ -81,9 +74,8 @@ static void flash_and_reboot_wait(void **state)
     assert_int_equal(reply[0], 7);
 }
 
-static void a_reboot_that_was_asked_for_is_no_loss_of_torque(void **state)
+TEST_WITH(rig_wirings, a_reboot_that_was_asked_for_is_no_loss_of_torque)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
@@ -100,9 +92,8 @@ static int raw(const char *bytes, size_t size)
     return grobo_robot_raw(&rig.robot, (const uint8_t *)bytes, size);
 }
 
-static void raw_reads_bring_their_reply(void **state)
+TEST(raw_reads_bring_their_reply)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig.on_event = keep_reply;
     rig_expect(&rig, raw("\x54\x09\xFA\xAF\x01\x0F\x24\x12\x00\x38\x1A", 11), GROBO_OK);
@@ -110,9 +101,8 @@ static void raw_reads_bring_their_reply(void **state)
     rig_expect(&rig, raw("\x41\x00", 2), GROBO_OK);
 }
 
-static void raw_targets_pass_the_same_gate(void **state)
+TEST(raw_targets_pass_the_same_gate)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     /* Motor 2 to 10.0 degrees in 1 s, to 60.0, to 10.0 at full speed; torque of it on. */
     const char *soft = "\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x64\x00\x64\x00\x19";
@@ -133,9 +123,8 @@ static void raw_targets_pass_the_same_gate(void **state)
     assert_int_equal(raw(soft, 14), GROBO_ERR_LATCHED);
 }
 
-static void raw_bytes_without_meaning_are_refused_unless_told(void **state)
+TEST(raw_bytes_without_meaning_are_refused_unless_told)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(raw("\x50\x4D\x01", 3), GROBO_ERR_UNSUPPORTED);
@@ -152,9 +141,8 @@ static void raw_bytes_without_meaning_are_refused_unless_told(void **state)
     assert_int_equal(rig.sim.stats.last_slot, 1);
 }
 
-static void stored_motions_are_started(void **state)
+TEST(stored_motions_are_started)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_expect(&rig, grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3), GROBO_OK);
     rig_expect(&rig, grobo_robot_stored(&rig.robot, GROBO_STORED_SCENARIO, 4), 0);
@@ -169,9 +157,8 @@ static void stored_motions_are_started(void **state)
 
 /* ---- free mode -------------------------------------------------------------- */
 
-static void free_mode_gives_way_and_holds(void **state)
+TEST_WITH(rig_wirings, free_mode_gives_way_and_holds)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
@@ -195,9 +182,8 @@ static void free_mode_gives_way_and_holds(void **state)
 }
 
 /* However often it is read: a hand needs a moment to get a joint going, and to turn it back. */
-static void a_joint_that_gave_way_is_not_gripped_at_once(void **state)
+TEST_WITH(rig_wirings, a_joint_that_gave_way_is_not_gripped_at_once)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true), 0);
@@ -218,9 +204,8 @@ static void a_joint_that_gave_way_is_not_gripped_at_once(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK) + 20) < 0.1);
 }
 
-static void limp_joints_hold_in_free_mode_where_they_are(void **state)
+TEST_WITH(rig_wirings, limp_joints_hold_in_free_mode_where_they_are)
 {
-    (void)state;
     grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 9,
                              .jump_on_torque = true};
     rig_start(&rig, &quiet, &limp);
@@ -229,9 +214,8 @@ static void limp_joints_hold_in_free_mode_where_they_are(void **state)
     assert_int_equal(rig.torque_on, 20); /* and the rig saw that each was at its goal */
 }
 
-static void free_mode_believes_no_goal_read_before(void **state)
+TEST_WITH(rig_wirings, free_mode_believes_no_goal_read_before)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     grobo_sim_config jumpy = {GROBO_SIM_CONFIG_INIT, .jump_on_torque = true};
     for (int i = 0; i < 20; i++) { /* whatever reading is under way when it begins */
@@ -251,9 +235,8 @@ static void free_mode_believes_no_goal_read_before(void **state)
 
 /* ---- configuration ---------------------------------------------------------- */
 
-static void configurations_are_checked(void **state)
+TEST_WITH(rig_wirings, configurations_are_checked)
 {
-    (void)state;
     static const grobo_robot_config bad[] = {
         {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = 101},
         {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = -1},
@@ -279,9 +262,8 @@ static void configurations_are_checked(void **state)
     assert_int_equal(grobo_robot_configure(&rig.robot, NULL), 0);
 }
 
-static void limits_may_be_switched_off(void **state)
+TEST_WITH(rig_wirings, limits_may_be_switched_off)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000,
                                  .temperature_c = -1};
     rig_start(&rig, &config, NULL);
@@ -291,9 +273,8 @@ static void limits_may_be_switched_off(void **state)
     assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
 }
 
-static void read_back_correction_is_an_option(void **state)
+TEST_WITH(rig_wirings, read_back_correction_is_an_option)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     grobo_joint_info info;
     rig_start(&rig, &quiet, NULL);
@@ -308,9 +289,8 @@ static void read_back_correction_is_an_option(void **state)
 }
 
 /* The correction is of what is read, not of where a joint is to be held. */
-static void a_corrected_joint_is_held_where_its_servo_says(void **state)
+TEST_WITH(rig_wirings, a_corrected_joint_is_held_where_its_servo_says)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     grobo_sim_config jumpy = {GROBO_SIM_CONFIG_INIT, .jump_on_torque = true};
     config.readback_correction = true;
@@ -327,9 +307,8 @@ static void a_corrected_joint_is_held_where_its_servo_says(void **state)
     assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
 }
 
-static void cancel_stops_a_move_where_it_is(void **state)
+TEST_WITH(rig_wirings, cancel_stops_a_move_where_it_is)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_ERR_STATE);
@@ -345,31 +324,4 @@ static void cancel_stops_a_move_where_it_is(void **state)
     assert_true(here_deg > 5 && here_deg < 25);
     rig_run(&rig, 1000000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
-}
-
-int main(void)
-{
-    const struct CMUnitTest of_the_board[] = {
-        cmocka_unit_test(raw_reads_bring_their_reply),
-        cmocka_unit_test(raw_targets_pass_the_same_gate),
-        cmocka_unit_test(raw_bytes_without_meaning_are_refused_unless_told),
-        cmocka_unit_test(stored_motions_are_started),
-    };
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(registers_are_read_and_written),
-        cmocka_unit_test(motor_registers_are_not_written_this_way),
-        cmocka_unit_test(flash_and_reboot_wait),
-        cmocka_unit_test(a_reboot_that_was_asked_for_is_no_loss_of_torque),
-        cmocka_unit_test(free_mode_gives_way_and_holds),
-        cmocka_unit_test(a_joint_that_gave_way_is_not_gripped_at_once),
-        cmocka_unit_test(limp_joints_hold_in_free_mode_where_they_are),
-        cmocka_unit_test(free_mode_believes_no_goal_read_before),
-        cmocka_unit_test(configurations_are_checked),
-        cmocka_unit_test(limits_may_be_switched_off),
-        cmocka_unit_test(read_back_correction_is_an_option),
-        cmocka_unit_test(a_corrected_joint_is_held_where_its_servo_says),
-        cmocka_unit_test(cancel_stops_a_move_where_it_is),
-    };
-    return cmocka_run_group_tests(of_the_board, NULL, NULL) +
-           rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Each safety rule on its own, under the fault it is for. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -74,9 +70,8 @@ static void expect_reset_works(void)
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 10) < 0.1);
 }
 
-static void bad_targets_are_refused_at_once(void **state)
+TEST_WITH(rig_wirings, bad_targets_are_refused_at_once)
 {
-    (void)state;
     double value = 0;
     rig_start(&rig, &quiet, NULL);
     grobo_posture target = rig_posture(&rig, NECK, 50.1, 500);
@@ -93,9 +88,8 @@ static void bad_targets_are_refused_at_once(void **state)
     rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
 }
 
-static void a_joint_that_cannot_be_sensed_is_not_moved(void **state)
+TEST_WITH(rig_wirings, a_joint_that_cannot_be_sensed_is_not_moved)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
     rig_run(&rig, 10000);
@@ -109,9 +103,8 @@ static void a_joint_that_cannot_be_sensed_is_not_moved(void **state)
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
 }
 
-static void torque_of_the_others_comes_on(void **state)
+TEST_WITH(rig_wirings, torque_of_the_others_comes_on)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
     rig_run(&rig, 10000);
@@ -124,9 +117,8 @@ static void torque_of_the_others_comes_on(void **state)
 }
 
 /* A driver that allows the neck less than the simulated servo's stops do. */
-static void a_joint_outside_its_limits_is_not_switched_on(void **state)
+TEST_WITH(rig_wirings, a_joint_outside_its_limits_is_not_switched_on)
 {
-    (void)state;
     rig_start_narrow(&rig);
 
     assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 25000, 0), 0);
@@ -141,9 +133,8 @@ static void a_joint_outside_its_limits_is_not_switched_on(void **state)
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
 }
 
-static void over_temperature_stops(void **state)
+TEST_WITH(rig_wirings, over_temperature_stops)
 {
-    (void)state;
     start_playing(&watching);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
     const grobo_trip_info *trip = expect_trip(GROBO_TRIP_TEMPERATURE, 1000000);
@@ -154,9 +145,8 @@ static void over_temperature_stops(void **state)
     expect_reset_works();
 }
 
-static void a_servo_that_cut_its_torque_stops(void **state)
+TEST_WITH(rig_wirings, a_servo_that_cut_its_torque_stops)
 {
-    (void)state;
     grobo_robot_config config = watching;
     config.temperature_c = -1; /* not ours: the servo's own limit */
     start_playing(&config);
@@ -167,9 +157,8 @@ static void a_servo_that_cut_its_torque_stops(void **state)
     expect_latched(GROBO_TRIP_OVERHEATED);
 }
 
-static void the_first_reason_stays(void **state)
+TEST_WITH(rig_wirings, the_first_reason_stays)
 {
-    (void)state;
     start_playing(&watching);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
     expect_trip(GROBO_TRIP_TEMPERATURE, 1000000);
@@ -183,9 +172,8 @@ static void the_first_reason_stays(void **state)
     assert_int_equal(info.trip, GROBO_TRIP_ESTOP); /* but for what a person said */
 }
 
-static void a_trip_ends_a_move_where_it_is(void **state)
+TEST_WITH(rig_wirings, a_trip_ends_a_move_where_it_is)
 {
-    (void)state;
     rig_start(&rig, &watching, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 45, 5000);
@@ -198,9 +186,8 @@ static void a_trip_ends_a_move_where_it_is(void **state)
     expect_latched(GROBO_TRIP_TEMPERATURE);
 }
 
-static void a_tripped_robot_holds_instead_of_sitting_down(void **state)
+TEST_WITH(rig_wirings, a_tripped_robot_holds_instead_of_sitting_down)
 {
-    (void)state;
     start_playing(&watching);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
     expect_trip(GROBO_TRIP_TEMPERATURE, 1000000);
@@ -211,17 +198,15 @@ static void a_tripped_robot_holds_instead_of_sitting_down(void **state)
     assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_OFF);
 }
 
-static void torque_does_not_come_on_in_a_motion(void **state)
+TEST_WITH(rig_wirings, torque_does_not_come_on_in_a_motion)
 {
-    (void)state;
     start_playing(&quiet);
     rig_expect(&rig, grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_OFF), GROBO_OK);
     assert_int_equal(grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_ON), GROBO_ERR_STATE);
 }
 
-static void sustained_over_current_stops(void **state)
+TEST_WITH(rig_wirings, sustained_over_current_stops)
 {
-    (void)state;
     start_playing(&watching);
     assert_int_equal(grobo_sim_set_load(&rig.sim, R_KNEE, 800), 0);
     rig_run(&rig, 400000);
@@ -235,9 +220,8 @@ static void sustained_over_current_stops(void **state)
     expect_latched(GROBO_TRIP_CURRENT);
 }
 
-static void low_voltage_stops(void **state)
+TEST_WITH(rig_wirings, low_voltage_stops)
 {
-    (void)state;
     start_playing(&watching);
     grobo_sim_set_supply(&rig.sim, 5800);
     const grobo_trip_info *trip = expect_trip(GROBO_TRIP_VOLTAGE, 1000000);
@@ -245,9 +229,8 @@ static void low_voltage_stops(void **state)
     expect_latched(GROBO_TRIP_VOLTAGE);
 }
 
-static void lost_replies_stop(void **state)
+TEST_WITH(rig_wirings, lost_replies_stop)
 {
-    (void)state;
     start_playing(&watching);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
     const grobo_trip_info *trip = expect_trip(GROBO_TRIP_LOST_REPLIES, 5000000);
@@ -256,9 +239,8 @@ static void lost_replies_stop(void **state)
     expect_latched(GROBO_TRIP_LOST_REPLIES);
 }
 
-static void a_silent_servo_of_a_resting_robot_trips_nothing(void **state)
+TEST_WITH(rig_wirings, a_silent_servo_of_a_resting_robot_trips_nothing)
 {
-    (void)state;
     rig_start(&rig, &watching, NULL);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
     rig_run(&rig, 5000000);
@@ -268,9 +250,8 @@ static void a_silent_servo_of_a_resting_robot_trips_nothing(void **state)
     assert_int_equal(info.status, GROBO_ERR_TIMEOUT);
 }
 
-static void a_brown_out_stops(void **state)
+TEST_WITH(rig_wirings, a_brown_out_stops)
 {
-    (void)state;
     start_playing(&watching);
     grobo_sim_set_supply(&rig.sim, 3000);
     rig_run(&rig, 100000);
@@ -280,9 +261,8 @@ static void a_brown_out_stops(void **state)
     expect_reset_works();
 }
 
-static void emergency_stop_is_first_verified_and_latched(void **state)
+TEST_WITH(rig_wirings, emergency_stop_is_first_verified_and_latched)
 {
-    (void)state;
     start_playing(&watching);
     int64_t asked_us = rig.now_us;
     int number = grobo_robot_estop(&rig.robot);
@@ -300,9 +280,8 @@ static void emergency_stop_is_first_verified_and_latched(void **state)
     expect_reset_works();
 }
 
-static void emergency_stop_waits_for_no_silent_servo(void **state)
+TEST_WITH(rig_wirings, emergency_stop_waits_for_no_silent_servo)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, 0, GROBO_SIM_CABLE_MUTE), 0);
     (void)grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL);
@@ -316,9 +295,8 @@ static void emergency_stop_waits_for_no_silent_servo(void **state)
     assert_true(rig.sent[0].at_us - asked_us < 10000);
 }
 
-static void nothing_queued_follows_an_emergency_stop(void **state)
+TEST_WITH(rig_wirings, nothing_queued_follows_an_emergency_stop)
 {
-    (void)state;
     grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 60,
                                   .unwatched = true}; /* too much */
     rig_start(&rig, &watching, NULL);
@@ -353,9 +331,8 @@ static void mute_for_torque(grobo_test_rig *on, const uint8_t *bytes, size_t n)
         grobo_sim_set_cable(&on->sim, NECK, torque ? GROBO_SIM_CABLE_MUTE : GROBO_SIM_CABLE_IN), 0);
 }
 
-static void emergency_stop_does_not_give_up_who_answers(void **state)
+TEST_WITH(rig_wirings, emergency_stop_does_not_give_up_who_answers)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     rig.on_frame = mute_for_torque;
     int number = grobo_robot_estop(&rig.robot);
@@ -370,9 +347,8 @@ static void emergency_stop_does_not_give_up_who_answers(void **state)
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_BRAKE);
 }
 
-static void emergency_stop_gives_up_where_nobody_answers(void **state)
+TEST_WITH(rig_wirings, emergency_stop_gives_up_where_nobody_answers)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     for (int j = 0; j < 20; j++) {
@@ -386,9 +362,8 @@ static void emergency_stop_gives_up_where_nobody_answers(void **state)
     assert_true(info.latched);
 }
 
-static void emergency_stop_repeats_until_it_took(void **state)
+TEST_WITH(rig_wirings, emergency_stop_repeats_until_it_took)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.estop_torque = GROBO_ESTOP_OFF;
     start_playing(&config);
@@ -400,9 +375,8 @@ static void emergency_stop_repeats_until_it_took(void **state)
     }
 }
 
-static void emergency_stop_takes_the_place_of_a_job(void **state)
+TEST_WITH(rig_wirings, emergency_stop_takes_the_place_of_a_job)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
@@ -426,9 +400,8 @@ static void stop_at_each_trip(grobo_test_rig *r, const grobo_event *event)
 }
 
 /* A program that makes an emergency stop of each trip, and so of the emergency stop. */
-static void emergency_stop_may_be_the_answer_to_a_trip(void **state)
+TEST_WITH(rig_wirings, emergency_stop_may_be_the_answer_to_a_trip)
 {
-    (void)state;
     for (int has_line = 0; has_line < 2; has_line++) {
         start_playing(&watching);
         asked = 0;
@@ -460,9 +433,8 @@ static void stop_at_each_failure(grobo_test_rig *r, const grobo_event *event)
 }
 
 /* A program that stops, or leaves, where any job fails; and that ends all others. */
-static void a_stop_may_be_the_answer_to_a_job_that_fails(void **state)
+TEST_WITH(rig_wirings, a_stop_may_be_the_answer_to_a_job_that_fails)
 {
-    (void)state;
     for (int exits = 0; exits < 2; exits++) {
         rig_start_at(&rig, 0, &quiet);
         grobo_posture aim = rig_posture(&rig, NECK, 30, 5000);
@@ -486,9 +458,8 @@ static void a_stop_may_be_the_answer_to_a_job_that_fails(void **state)
 }
 
 /* No halt leaves behind it: who lets go then waits for nothing that moves yet, unheard. */
-static void who_was_not_stopped_is_let_go(void **state)
+TEST_WITH(rig_wirings, who_was_not_stopped_is_let_go)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 30, 60000);
     assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
@@ -500,9 +471,8 @@ static void who_was_not_stopped_is_let_go(void **state)
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
 }
 
-static void exit_holds_sits_or_lets_go(void **state)
+TEST_WITH(rig_wirings, exit_holds_sits_or_lets_go)
 {
-    (void)state;
     start_playing(&quiet);
     rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_DEFAULT), GROBO_OK);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
@@ -523,9 +493,8 @@ static void exit_holds_sits_or_lets_go(void **state)
     assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_OFF);
 }
 
-static void exit_takes_the_place_of_a_job_and_is_bounded(void **state)
+TEST_WITH(rig_wirings, exit_takes_the_place_of_a_job_and_is_bounded)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.exit_bound_us = 300000;
     rig_start(&rig, &config, NULL);
@@ -549,9 +518,8 @@ static void exit_takes_the_place_of_a_job_and_is_bounded(void **state)
     rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF), GROBO_OK);
 }
 
-static void a_limp_robot_is_not_made_to_sit(void **state)
+TEST_WITH(rig_wirings, a_limp_robot_is_not_made_to_sit)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT), GROBO_OK);
     assert_int_equal(rig.torque_on, 0);
@@ -560,9 +528,8 @@ static void a_limp_robot_is_not_made_to_sit(void **state)
 
 /* In free mode a joint that is let go is switched on again: not once the robot has stopped. Here
  * the stop comes out of a reading for which the frame that switches on has to wait. */
-static void nothing_is_switched_on_after_a_trip(void **state)
+TEST_WITH(rig_wirings, nothing_is_switched_on_after_a_trip)
 {
-    (void)state;
     for (int ms = 100; ms < 400; ms++) {
         grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP};
         rig_start(&rig, &quiet, &limp);
@@ -578,9 +545,8 @@ static void nothing_is_switched_on_after_a_trip(void **state)
 }
 
 /* The arm is taught, and a leg holds the robot: it may be hot, and has no less of a battery. */
-static void who_holds_is_watched_while_others_are_taught(void **state)
+TEST_WITH(rig_wirings, who_holds_is_watched_while_others_are_taught)
 {
-    (void)state;
     for (int low = 0; low < 2; low++) {
         grobo_trip_info trip;
         rig_start(&rig, &quiet, NULL);
@@ -597,41 +563,4 @@ static void who_holds_is_watched_while_others_are_taught(void **state)
         assert_true(trip.latched);
         assert_int_equal(trip.trip, low ? GROBO_TRIP_VOLTAGE : GROBO_TRIP_TEMPERATURE);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_targets_are_refused_at_once),
-        cmocka_unit_test(a_joint_that_cannot_be_sensed_is_not_moved),
-        cmocka_unit_test(torque_of_the_others_comes_on),
-        cmocka_unit_test(a_joint_outside_its_limits_is_not_switched_on),
-        cmocka_unit_test(over_temperature_stops),
-        cmocka_unit_test(a_servo_that_cut_its_torque_stops),
-        cmocka_unit_test(the_first_reason_stays),
-        cmocka_unit_test(a_trip_ends_a_move_where_it_is),
-        cmocka_unit_test(a_tripped_robot_holds_instead_of_sitting_down),
-        cmocka_unit_test(torque_does_not_come_on_in_a_motion),
-        cmocka_unit_test(who_holds_is_watched_while_others_are_taught),
-        cmocka_unit_test(sustained_over_current_stops),
-        cmocka_unit_test(low_voltage_stops),
-        cmocka_unit_test(lost_replies_stop),
-        cmocka_unit_test(a_silent_servo_of_a_resting_robot_trips_nothing),
-        cmocka_unit_test(a_brown_out_stops),
-        cmocka_unit_test(emergency_stop_is_first_verified_and_latched),
-        cmocka_unit_test(emergency_stop_waits_for_no_silent_servo),
-        cmocka_unit_test(nothing_queued_follows_an_emergency_stop),
-        cmocka_unit_test(emergency_stop_does_not_give_up_who_answers),
-        cmocka_unit_test(emergency_stop_gives_up_where_nobody_answers),
-        cmocka_unit_test(emergency_stop_repeats_until_it_took),
-        cmocka_unit_test(emergency_stop_takes_the_place_of_a_job),
-        cmocka_unit_test(emergency_stop_may_be_the_answer_to_a_trip),
-        cmocka_unit_test(who_was_not_stopped_is_let_go),
-        cmocka_unit_test(a_stop_may_be_the_answer_to_a_job_that_fails),
-        cmocka_unit_test(exit_holds_sits_or_lets_go),
-        cmocka_unit_test(exit_takes_the_place_of_a_job_and_is_bounded),
-        cmocka_unit_test(a_limp_robot_is_not_made_to_sit),
-        cmocka_unit_test(nothing_is_switched_on_after_a_trip),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Doors to a motor beside the targets, and what is known of joints that others may have moved. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip, other;
@@ -27,9 +23,8 @@ static void move_to(int joint, double deg)
 
 /* ---- soft first move ------------------------------------------------------------------------- */
 
-static void a_joint_that_a_hand_may_have_moved_begins_softly(void **state)
+TEST(a_joint_that_a_hand_may_have_moved_begins_softly)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     move_to(NECK, 10);
     rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), 0), 0);
@@ -42,9 +37,8 @@ static void a_joint_that_a_hand_may_have_moved_begins_softly(void **state)
     assert_in_range(rig_sent_ms(&rig, NECK_ID), 100, 300);
 }
 
-static void free_mode_is_left_softly(void **state)
+TEST(free_mode_is_left_softly)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     move_to(NECK, 10);
     assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
@@ -62,9 +56,8 @@ static void free_mode_is_left_softly(void **state)
 }
 
 /* A motion of the board's own, or a frame that nobody can read, may have moved anything. */
-static void after_targets_that_are_not_ours_joints_are_read_anew(void **state)
+TEST(after_targets_that_are_not_ours_joints_are_read_anew)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.accept_unknown_raw = true;
     for (int by_raw = 0; by_raw < 2; by_raw++) {
@@ -84,9 +77,8 @@ static void after_targets_that_are_not_ours_joints_are_read_anew(void **state)
 }
 
 /* Joints that nobody read or switched on would move in frames only. */
-static void a_second_file_moves_what_was_made_ready(void **state)
+TEST(a_second_file_moves_what_was_made_ready)
 {
-    (void)state;
     static const rig_key one[] = {{0, {{NECK, 0}}}, {500, {{NECK, 5}}}};
     rig_start(&rig, &quiet, NULL);
     rig_clip_init(&clip, one, 2);
@@ -105,9 +97,8 @@ static void a_second_file_moves_what_was_made_ready(void **state)
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
 }
 
-static void a_second_file_is_approached_as_slowly_as_the_first(void **state)
+TEST(a_second_file_is_approached_as_slowly_as_the_first)
 {
-    (void)state;
     static const rig_key near[] = {{0, {{NECK, 0}}}, {500, {{NECK, 5}}}};
     static const rig_key far[] = {{0, {{NECK, -45}}}, {500, {{NECK, -40}}}};
     grobo_robot_config config = quiet;
@@ -126,9 +117,8 @@ static void a_second_file_is_approached_as_slowly_as_the_first(void **state)
 /* ---- raw frames ------------------------------------------------------------------------------ */
 
 /* What moves, but is no joint of the model, has no limits to be held against. */
-static void raw_frames_reach_known_motors_only(void **state)
+TEST(raw_frames_reach_known_motors_only)
 {
-    (void)state;
     static const struct {
         const char *bytes;
         size_t size;
@@ -159,9 +149,8 @@ static void raw_frames_reach_known_motors_only(void **state)
 }
 
 /* The first from a sensed posture is soft; then it is the servo's speed. */
-static void raw_targets_behind_the_first_may_be_fast(void **state)
+TEST(raw_targets_behind_the_first_may_be_fast)
 {
-    (void)state;
     /* Motor 2 to 10.0 degrees in 200 ms, to 30.0 in 60 ms, in 50 ms. */
     const char *first = "\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x64\x00\x14\x00\x69";
     const char *fast = "\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x2C\x01\x06\x00\x32";
@@ -178,9 +167,8 @@ static void raw_targets_behind_the_first_may_be_fast(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 30) < 0.1);
 }
 
-static void an_unknown_frame_is_not_sent_while_latched(void **state)
+TEST(an_unknown_frame_is_not_sent_while_latched)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.accept_unknown_raw = true;
     rig_start(&rig, &config, NULL);
@@ -190,9 +178,8 @@ static void an_unknown_frame_is_not_sent_while_latched(void **state)
     rig_expect(&rig, raw("\x50\x4D\x01", 3), GROBO_OK);
 }
 
-static void a_raw_target_that_never_left_is_not_where_a_joint_is(void **state)
+TEST(a_raw_target_that_never_left_is_not_where_a_joint_is)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     move_to(NECK, -40);
     const char *goal = "\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x90\x01\xF4\x01\x7D"; /* 40, 5 s */
@@ -208,9 +195,8 @@ static void a_raw_target_that_never_left_is_not_where_a_joint_is(void **state)
     assert_in_range(rig_sent_ms(&rig, NECK_ID), 200, 400); /* 80 deg at 375 deg/s */
 }
 
-static void torque_switched_off_by_a_raw_frame_is_no_loss(void **state)
+TEST(torque_switched_off_by_a_raw_frame_is_no_loss)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
@@ -224,9 +210,8 @@ static void torque_switched_off_by_a_raw_frame_is_no_loss(void **state)
 
 /* ---- what the caller gets wrong ------------------------------------------------------------- */
 
-static void raw_reads_of_any_register_pass(void **state)
+TEST(raw_reads_of_any_register_pass)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     for (uint8_t at = 0; at < 54; at++) {
         uint8_t frame[16];
@@ -235,9 +220,8 @@ static void raw_reads_of_any_register_pass(void **state)
     }
 }
 
-static void joints_that_there_are_not_are_refused(void **state)
+TEST(joints_that_there_are_not_are_refused)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 10, 500);
@@ -249,9 +233,8 @@ static void joints_that_there_are_not_are_refused(void **state)
 /* ---- settings of servos ---------------------------------------------------------------------- */
 
 /* A servo that holds would jump to the new limit, or to the mirror of its goal. */
-static void settings_that_move_a_holding_servo_are_refused(void **state)
+TEST(settings_that_move_a_holding_servo_are_refused)
 {
-    (void)state;
     static const uint8_t data[2] = {1, 0};
     static const uint8_t addresses[] = {GROBO_RS30X_ID, GROBO_RS30X_REVERSE, GROBO_RS30X_CW_LIMIT,
                                         GROBO_RS30X_CCW_LIMIT};
@@ -269,9 +252,8 @@ static void settings_that_move_a_holding_servo_are_refused(void **state)
     assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STALE);
 }
 
-static void flash_has_the_silence_it_needs(void **state)
+TEST(flash_has_the_silence_it_needs)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     rig_start(&rig, &config, NULL);
     rig_run(&rig, 100000);
@@ -286,9 +268,8 @@ static void flash_has_the_silence_it_needs(void **state)
     assert_true(rig.n_sent > 0);
 }
 
-static void a_servo_is_not_restarted_under_a_motion(void **state)
+TEST(a_servo_is_not_restarted_under_a_motion)
 {
-    (void)state;
     static const rig_key sway[] = {{0, {{NECK, 0}}}, {1000, {{NECK, 30}}}, {3000, {{NECK, -30}}}};
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
@@ -304,9 +285,8 @@ static void a_servo_is_not_restarted_under_a_motion(void **state)
 /* ---- ends ------------------------------------------------------------------------------------ */
 
 /* A joint that sags beyond its limit is stopped like any other. */
-static void a_joint_outside_its_limits_can_be_stopped(void **state)
+TEST(a_joint_outside_its_limits_can_be_stopped)
 {
-    (void)state;
     rig_start_narrow(&rig);
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_register(&rig.sim, NECK, GROBO_RS30X_GOAL, 225), 0);
@@ -324,9 +304,8 @@ static void a_joint_outside_its_limits_can_be_stopped(void **state)
 }
 
 /* Whatever moves it: a target that was sent and let go, or a raw one. */
-static void leaving_stops_what_was_only_sent(void **state)
+TEST(leaving_stops_what_was_only_sent)
 {
-    (void)state;
     for (int by_raw = 0; by_raw < 2; by_raw++) {
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
@@ -351,9 +330,8 @@ static void leaving_stops_what_was_only_sent(void **state)
 }
 
 /* What a killed program left: a fresh engine knows of no move, but the servos do. */
-static void leaving_stops_what_another_program_set_going(void **state)
+TEST(leaving_stops_what_another_program_set_going)
 {
-    (void)state;
     for (int slow = 0; slow < 2; slow++) {
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
@@ -374,9 +352,8 @@ static void leaving_stops_what_another_program_set_going(void **state)
     }
 }
 
-static void leaving_stops_though_the_first_frame_is_lost(void **state)
+TEST(leaving_stops_though_the_first_frame_is_lost)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 45, 20000);
@@ -394,9 +371,8 @@ static void leaving_stops_though_the_first_frame_is_lost(void **state)
 }
 
 /* Heat, and whatever else latches, stops what was only sent too. */
-static void a_trip_stops_what_was_only_sent(void **state)
+TEST(a_trip_stops_what_was_only_sent)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
@@ -411,9 +387,8 @@ static void a_trip_stops_what_was_only_sent(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
 }
 
-static void lost_replies_stop_what_was_only_sent(void **state)
+TEST(lost_replies_stop_what_was_only_sent)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
@@ -426,32 +401,4 @@ static void lost_replies_stop_what_was_only_sent(void **state)
     const grobo_event *event = rig_last(&rig, GROBO_EVENT_TRIP);
     assert_non_null(event);
     assert_int_equal(event->u.trip.trip, GROBO_TRIP_LOST_REPLIES);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_joint_that_a_hand_may_have_moved_begins_softly),
-        cmocka_unit_test(free_mode_is_left_softly),
-        cmocka_unit_test(after_targets_that_are_not_ours_joints_are_read_anew),
-        cmocka_unit_test(a_second_file_moves_what_was_made_ready),
-        cmocka_unit_test(a_second_file_is_approached_as_slowly_as_the_first),
-        cmocka_unit_test(raw_frames_reach_known_motors_only),
-        cmocka_unit_test(raw_targets_behind_the_first_may_be_fast),
-        cmocka_unit_test(an_unknown_frame_is_not_sent_while_latched),
-        cmocka_unit_test(a_raw_target_that_never_left_is_not_where_a_joint_is),
-        cmocka_unit_test(torque_switched_off_by_a_raw_frame_is_no_loss),
-        cmocka_unit_test(raw_reads_of_any_register_pass),
-        cmocka_unit_test(joints_that_there_are_not_are_refused),
-        cmocka_unit_test(settings_that_move_a_holding_servo_are_refused),
-        cmocka_unit_test(flash_has_the_silence_it_needs),
-        cmocka_unit_test(a_servo_is_not_restarted_under_a_motion),
-        cmocka_unit_test(a_joint_outside_its_limits_can_be_stopped),
-        cmocka_unit_test(leaving_stops_what_was_only_sent),
-        cmocka_unit_test(leaving_stops_what_another_program_set_going),
-        cmocka_unit_test(leaving_stops_though_the_first_frame_is_lost),
-        cmocka_unit_test(a_trip_stops_what_was_only_sent),
-        cmocka_unit_test(lost_replies_stop_what_was_only_sent),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

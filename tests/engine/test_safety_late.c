@@ -1,24 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames that wait for the line, and frames that are tried again: what is right when they leave. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "src/robot/robot.h"
 #include "tests/support/raw_frames.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 
 /* ---- tried again ----------------------------------------------------------------------------- */
 
-static void a_raw_goal_is_tried_again(void **state)
+TEST_WITH(rig_wirings, a_raw_goal_is_tried_again)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     rig_forget(&rig);
@@ -29,9 +24,8 @@ static void a_raw_goal_is_tried_again(void **state)
 }
 
 /* A later target has left between two attempts: the old one must not undo it. */
-static void a_raw_goal_is_not_tried_again_over_a_later_target(void **state)
+TEST_WITH(rig_wirings, a_raw_goal_is_not_tried_again_over_a_later_target)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     rig_forget(&rig);
@@ -47,9 +41,8 @@ static void a_raw_goal_is_not_tried_again_over_a_later_target(void **state)
 }
 
 /* Its first attempt is why nothing is known of the joint: no reason to refuse the second. */
-static void a_setting_is_tried_again(void **state)
+TEST_WITH(rig_wirings, a_setting_is_tried_again)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0), GROBO_OK);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
@@ -77,9 +70,8 @@ static void babble(int64_t us)
 }
 
 /* The rig fails where it is sent faster than the joint can move. */
-static void a_target_that_waits_gets_its_time_when_it_leaves(void **state)
+TEST_WITH(rig_wirings, a_target_that_waits_gets_its_time_when_it_leaves)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, -45, 1000);
@@ -100,9 +92,8 @@ static void a_target_that_waits_gets_its_time_when_it_leaves(void **state)
 }
 
 /* The host is held up between the request and the line; the joint goes on meanwhile. */
-static void a_halt_that_leaves_late_throws_no_joint_back(void **state)
+TEST_WITH(rig_wirings, a_halt_that_leaves_late_throws_no_joint_back)
 {
-    (void)state;
     for (int64_t stall_us = 0; stall_us <= 150000; stall_us += 10000) {
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
@@ -125,9 +116,8 @@ static void a_halt_that_leaves_late_throws_no_joint_back(void **state)
 }
 
 /* However many frames wait for the line, there is room for the one that stops the robot. */
-static void a_halt_finds_room(void **state)
+TEST_WITH(rig_wirings, a_halt_finds_room)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 45, 2000);
@@ -173,9 +163,8 @@ static void fill_line(int64_t us)
 }
 
 /* Whenever it is: no torque comes on after the job that asked for it was cancelled. */
-static void torque_does_not_come_on_after_a_cancel(void **state)
+TEST_WITH(rig_wirings, torque_does_not_come_on_after_a_cancel)
 {
-    (void)state;
     for (int64_t after_us = 0; after_us < 40000; after_us += 250) {
         int number = switch_neck_on(&quiet, after_us);
         fill_line(20000);
@@ -191,9 +180,8 @@ static void torque_does_not_come_on_after_a_cancel(void **state)
 }
 
 /* A hand moves it, it is read, and then torque would come on where it was: the rig fails. */
-static void torque_comes_on_where_the_joint_was_read_last(void **state)
+TEST_WITH(rig_wirings, torque_comes_on_where_the_joint_was_read_last)
 {
-    (void)state;
     for (int64_t after_us = 0; after_us < 40000; after_us += 250) {
         const grobo_robot_config reads = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
         grobo_joint_info info;
@@ -216,9 +204,8 @@ static void torque_comes_on_where_the_joint_was_read_last(void **state)
 }
 
 /* Nobody reads it meanwhile: what waited for too long to switch it on knows nothing of it. */
-static void torque_that_waited_for_long_stays_off(void **state)
+TEST_WITH(rig_wirings, torque_that_waited_for_long_stays_off)
 {
-    (void)state;
     for (int64_t after_us = 0; after_us < 40000; after_us += 1000) {
         int number = switch_neck_on(&quiet, after_us);
         if (grobo_robot_job(&rig.robot) == GROBO_JOB_NONE) {
@@ -274,9 +261,8 @@ static void let_go_of_neck(void)
 }
 
 /* By less than what parts goal and angle. */
-static void a_joint_moved_again_is_not_switched_on(void **state)
+TEST_WITH(rig_wirings, a_joint_moved_again_is_not_switched_on)
 {
-    (void)state;
     let_go_of_neck();
     unsigned on = rig.torque_on;
     assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 1500, 150000), 0);
@@ -288,9 +274,8 @@ static void a_joint_moved_again_is_not_switched_on(void **state)
     assert_int_equal(rig.torque_on, on);
 }
 
-static void a_joint_to_be_limp_is_not_switched_on_first(void **state)
+TEST_WITH(rig_wirings, a_joint_to_be_limp_is_not_switched_on_first)
 {
-    (void)state;
     let_go_of_neck();
     unsigned on = rig.torque_on;
     rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF), GROBO_OK);
@@ -298,9 +283,8 @@ static void a_joint_to_be_limp_is_not_switched_on_first(void **state)
 }
 
 /* Leaving ends free mode, and what was about to hold stays as it is. */
-static void nothing_is_switched_on_by_leaving(void **state)
+TEST_WITH(rig_wirings, nothing_is_switched_on_by_leaving)
 {
-    (void)state;
     let_go_of_neck();
     unsigned on = rig.torque_on;
     rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD), GROBO_OK);
@@ -309,9 +293,8 @@ static void nothing_is_switched_on_by_leaving(void **state)
 }
 
 /* The neck's goal is set to where it is; the others, which hold, are sent on as fast as before. */
-static void a_joint_that_begins_to_hold_slows_no_other(void **state)
+TEST_WITH(rig_wirings, a_joint_that_begins_to_hold_slows_no_other)
 {
-    (void)state;
     let_go_of_neck_until(hold_waits);
     int id = rig.driver->model->joints[SHOULDER].motor;
     if (rig_wiring == GROBO_WIRING_BUS) {
@@ -327,9 +310,8 @@ static void a_joint_that_begins_to_hold_slows_no_other(void **state)
 }
 
 /* Another program has stopped the robot, or a reading has. */
-static void nothing_that_waits_comes_on_after_a_stop(void **state)
+TEST_WITH(rig_wirings, nothing_that_waits_comes_on_after_a_stop)
 {
-    (void)state;
     for (int way = 0; way < 4; way++) {
         let_go_of_neck_until(way % 2 == 0 ? torque_waits : hold_waits);
         unsigned on = rig.torque_on;
@@ -342,25 +324,4 @@ static void nothing_that_waits_comes_on_after_a_stop(void **state)
         assert_int_equal(rig.torque_on, on);
         assert_int_equal(rig_sent_ms(&rig, NECK_ID), -1);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_raw_goal_is_tried_again),
-        cmocka_unit_test(a_raw_goal_is_not_tried_again_over_a_later_target),
-        cmocka_unit_test(a_setting_is_tried_again),
-        cmocka_unit_test(a_target_that_waits_gets_its_time_when_it_leaves),
-        cmocka_unit_test(a_halt_that_leaves_late_throws_no_joint_back),
-        cmocka_unit_test(a_halt_finds_room),
-        cmocka_unit_test(torque_does_not_come_on_after_a_cancel),
-        cmocka_unit_test(torque_comes_on_where_the_joint_was_read_last),
-        cmocka_unit_test(torque_that_waited_for_long_stays_off),
-        cmocka_unit_test(a_joint_moved_again_is_not_switched_on),
-        cmocka_unit_test(a_joint_to_be_limp_is_not_switched_on_first),
-        cmocka_unit_test(nothing_is_switched_on_by_leaving),
-        cmocka_unit_test(a_joint_that_begins_to_hold_slows_no_other),
-        cmocka_unit_test(nothing_that_waits_comes_on_after_a_stop),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Limits by every way in, speed under every control, times out of the ordinary. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/gr001.h>
 #include <grobo/hrpsys.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip, other;
@@ -122,9 +118,8 @@ static int by_the_stabilizer(void)
 }
 
 /* All but the raw frame, which is as it is: refused or clamped as configured, and counted. */
-static void every_way_in_is_held_to_the_limits(void **state)
+TEST_WITH(rig_wirings, every_way_in_is_held_to_the_limits)
 {
-    (void)state;
     static int (*const ways[])(void) = {by_move,   by_send,       by_motor,         by_motors,
                                         by_hrpsys, by_keys,       at_a_rate,        backwards,
                                         mirrored,  as_the_second, by_the_stabilizer};
@@ -201,9 +196,8 @@ static void control(int which)
     }
 }
 
-static void no_control_of_a_motion_makes_it_too_fast(void **state)
+TEST_WITH(rig_wirings, no_control_of_a_motion_makes_it_too_fast)
 {
-    (void)state;
     static const rig_key wild[] = {{0, {{NECK, -50}}},
                                    {200, {{NECK, 50}, {R_KNEE, -120}}},
                                    {400, {{NECK, -50}}},
@@ -231,9 +225,8 @@ static void no_control_of_a_motion_makes_it_too_fast(void **state)
 }
 
 /* The wire has no time that long: what would be sent instead is faster than allowed. */
-static void a_move_that_cannot_be_slow_enough_is_refused(void **state)
+TEST_WITH(rig_wirings, a_move_that_cannot_be_slow_enough_is_refused)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.approach_dps = 0.1;
     rig_start(&rig, &config, NULL);
@@ -243,9 +236,8 @@ static void a_move_that_cannot_be_slow_enough_is_refused(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
 }
 
-static void a_time_out_of_all_reason_is_the_longest_there_is(void **state)
+TEST_WITH(rig_wirings, a_time_out_of_all_reason_is_the_longest_there_is)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 0);
@@ -262,9 +254,8 @@ static void a_time_out_of_all_reason_is_the_longest_there_is(void **state)
 
 /* Where the servo has said that its goal is another one, the joint is not on the way, however near
  * to it it was read then. */
-static void a_goal_that_was_not_taken_is_no_way(void **state)
+TEST_WITH(rig_wirings, a_goal_that_was_not_taken_is_no_way)
 {
-    (void)state;
     static const grobo_sense_kind kinds[] = {GROBO_SENSE_GOAL, GROBO_SENSE_FULL};
     rig_start_at(&rig, -45, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
@@ -281,16 +272,4 @@ static void a_goal_that_was_not_taken_is_no_way(void **state)
     assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 20000);
     assert_true(rig_sent_ms(&rig, NECK_ID) >= 45 * 1000 / 375);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_way_in_is_held_to_the_limits),
-        cmocka_unit_test(no_control_of_a_motion_makes_it_too_fast),
-        cmocka_unit_test(a_move_that_cannot_be_slow_enough_is_refused),
-        cmocka_unit_test(a_time_out_of_all_reason_is_the_longest_there_is),
-        cmocka_unit_test(a_goal_that_was_not_taken_is_no_way),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

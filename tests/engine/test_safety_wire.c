@@ -2,15 +2,11 @@
 /* A frame is judged and noted at the moment it leaves, whatever its origin: not when it was asked
  * for. The rig fails where a goal is too fast or torque comes on away from its goal. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/raw_frames.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -36,9 +32,8 @@ static void play_on_full_line(const grobo_robot_config *config)
     rig_forget(&rig);
 }
 
-static void a_raw_goal_that_waits_is_judged_when_it_leaves(void **state)
+TEST_WITH(rig_wirings, a_raw_goal_that_waits_is_judged_when_it_leaves)
 {
-    (void)state;
     play_on_full_line(&quiet);
     grobo_jitter jitter;
     int number = raw_goal(&rig, NECK, 40, 200); /* 200 deg/s from where it is now */
@@ -53,9 +48,8 @@ static void a_raw_goal_that_waits_is_judged_when_it_leaves(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK) + 50) < 0.2);
 }
 
-static void a_raw_goal_that_nobody_waits_for_does_not_leave(void **state)
+TEST_WITH(rig_wirings, a_raw_goal_that_nobody_waits_for_does_not_leave)
 {
-    (void)state;
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     const grobo_rs30x_goal goal = {NECK_ID, 0, 200};
     play_on_full_line(&quiet);
@@ -71,9 +65,8 @@ static void a_raw_goal_that_nobody_waits_for_does_not_leave(void **state)
     rig_expect(&rig, grobo_robot_raw_until(&rig.robot, frame, (size_t)n, rig.now_us + 1), GROBO_OK);
 }
 
-static void a_raw_goal_that_is_slow_enough_leaves_late(void **state)
+TEST_WITH(rig_wirings, a_raw_goal_that_is_slow_enough_leaves_late)
 {
-    (void)state;
     play_on_full_line(&quiet);
     rig_expect(&rig, raw_goal(&rig, NECK, 40, 400), GROBO_OK);
     assert_int_equal(raw_times_sent(&rig), 1);
@@ -121,9 +114,8 @@ static const struct {
              {ask_exit, GROBO_ERR_CANCELED},   {lose_line, GROBO_ERR_UNPLUGGED}};
 
 /* Whatever would move a joint and has not left by a stop never does; its job is told. */
-static void a_stop_cancels_a_raw_goal_that_waits(void **state)
+TEST_WITH(rig_wirings, a_stop_cancels_a_raw_goal_that_waits)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof stops / sizeof stops[0]; i++) {
         play_on_full_line(&quiet);
         int number = raw_goal(&rig, R_ELBOW, 10, 2000);
@@ -137,9 +129,8 @@ static void a_stop_cancels_a_raw_goal_that_waits(void **state)
 }
 
 /* It has left, and no motion that is being played drives this joint: the stop does. */
-static void a_stop_halts_what_a_raw_goal_moves_beside_a_motion(void **state)
+TEST_WITH(rig_wirings, a_stop_halts_what_a_raw_goal_moves_beside_a_motion)
 {
-    (void)state;
     const grobo_play_options slow = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
                                      .rate_hz = 10};
     rig_start(&rig, &quiet, NULL);
@@ -160,9 +151,8 @@ static void a_stop_halts_what_a_raw_goal_moves_beside_a_motion(void **state)
 }
 
 /* So it does with one that a target sent on its way before the motion began. */
-static void a_stop_halts_what_was_sent_before_a_motion(void **state)
+TEST_WITH(rig_wirings, a_stop_halts_what_was_sent_before_a_motion)
 {
-    (void)state;
     const grobo_play_options slow = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
                                      .rate_hz = 10};
     rig_start_at(&rig, 0, &quiet);
@@ -219,17 +209,15 @@ static void push_and_ask(int64_t after_us, void (*ask)(void))
     assert_true(fabs(rig_angle_deg(&rig, SHOULDER)) < 60);
 }
 
-static void a_joint_in_free_mode_takes_no_target(void **state)
+TEST_WITH(rig_wirings, a_joint_in_free_mode_takes_no_target)
 {
-    (void)state;
     for (int64_t after_us = 0; after_us < 200000; after_us += 4900) {
         push_and_ask(after_us, refuse_both);
     }
 }
 
-static void moving_a_joint_takes_it_out_of_free_mode(void **state)
+TEST_WITH(rig_wirings, moving_a_joint_takes_it_out_of_free_mode)
 {
-    (void)state;
     rig_start(&rig, NULL, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
@@ -303,9 +291,8 @@ static bool neck_is_being_read(void)
 
 /* A reading that was under way when somebody asked is taken before the frame leaves: what it tells
  * of the joint is of no use afterwards. */
-static void what_is_unknown_is_noted_when_the_frame_leaves(void **state)
+TEST_WITH(rig_wirings, what_is_unknown_is_noted_when_the_frame_leaves)
 {
-    (void)state;
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1,
                                        .accept_unknown_raw = true};
     for (size_t i = 0; i < sizeof unsettling / sizeof unsettling[0]; i++) {
@@ -333,9 +320,8 @@ static void what_is_unknown_is_noted_when_the_frame_leaves(void **state)
 
 /* Asked before the frame, answered after it, at the second attempt: it may be an answer to the
  * first, and of before. The reading after that one counts. */
-static void a_late_answer_restores_nothing(void **state)
+TEST_WITH(rig_wirings, a_late_answer_restores_nothing)
 {
-    (void)state;
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
@@ -364,9 +350,8 @@ static void a_late_answer_restores_nothing(void **state)
     assert_true(info.torque_known);
 }
 
-static void nothing_unknown_is_sent_under_a_motion(void **state)
+TEST_WITH(rig_wirings, nothing_unknown_is_sent_under_a_motion)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.accept_unknown_raw = true;
     if (rig_wiring != GROBO_WIRING_BOARD) {
@@ -399,9 +384,8 @@ static void read_neck_and_wait(int64_t us)
 }
 
 /* Somebody may have taken the joint's torque since it was read, and a hand may have turned it. */
-static void a_raw_frame_switches_on_what_was_read_just_now(void **state)
+TEST_WITH(rig_wirings, a_raw_frame_switches_on_what_was_read_just_now)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     read_neck_and_wait(2000000);
@@ -417,9 +401,8 @@ static void a_raw_frame_switches_on_what_was_read_just_now(void **state)
 }
 
 /* It is the first target of a stream: until it is reached, the next ones are slow, too. */
-static void a_raw_goal_begins_softly(void **state)
+TEST_WITH(rig_wirings, a_raw_goal_begins_softly)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     rig_expect(&rig, raw_goal(&rig, NECK, 10, 1000), GROBO_OK);
@@ -435,9 +418,8 @@ static void a_raw_goal_begins_softly(void **state)
 }
 
 /* It has not let go of the joints: one that is without torque afterwards has lost it. */
-static void after_what_is_unknown_torque_is_still_wanted(void **state)
+TEST_WITH(rig_wirings, after_what_is_unknown_torque_is_still_wanted)
 {
-    (void)state;
     if (rig_wiring != GROBO_WIRING_BOARD) {
         return;
     }
@@ -452,9 +434,8 @@ static void after_what_is_unknown_torque_is_still_wanted(void **state)
 
 /* Another program has stopped the robot, and has the wire: nothing is sent, not to stop it either.
  * The rig fails where a goal leaves. */
-static void a_latched_robot_is_not_halted(void **state)
+TEST_WITH(rig_wirings, a_latched_robot_is_not_halted)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 5000);
@@ -466,9 +447,8 @@ static void a_latched_robot_is_not_halted(void **state)
 }
 
 /* A motion that rests is still a motion: it goes on by itself. */
-static void nothing_unknown_is_sent_in_a_pause(void **state)
+TEST_WITH(rig_wirings, nothing_unknown_is_sent_in_a_pause)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.accept_unknown_raw = true;
     rig_start(&rig, &config, NULL);
@@ -521,34 +501,9 @@ static void write_limit(void)
     }
 }
 
-static void no_limit_is_written_to_a_joint_that_holds_again(void **state)
+TEST_WITH(rig_wirings, no_limit_is_written_to_a_joint_that_holds_again)
 {
-    (void)state;
     for (int64_t after_us = 0; after_us < 200000; after_us += 2500) {
         push_and_ask(after_us, write_limit);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_raw_goal_that_waits_is_judged_when_it_leaves),
-        cmocka_unit_test(a_raw_goal_that_nobody_waits_for_does_not_leave),
-        cmocka_unit_test(a_raw_goal_that_is_slow_enough_leaves_late),
-        cmocka_unit_test(a_stop_cancels_a_raw_goal_that_waits),
-        cmocka_unit_test(a_stop_halts_what_a_raw_goal_moves_beside_a_motion),
-        cmocka_unit_test(a_stop_halts_what_was_sent_before_a_motion),
-        cmocka_unit_test(a_joint_in_free_mode_takes_no_target),
-        cmocka_unit_test(moving_a_joint_takes_it_out_of_free_mode),
-        cmocka_unit_test(what_is_unknown_is_noted_when_the_frame_leaves),
-        cmocka_unit_test(a_late_answer_restores_nothing),
-        cmocka_unit_test(nothing_unknown_is_sent_under_a_motion),
-        cmocka_unit_test(a_raw_frame_switches_on_what_was_read_just_now),
-        cmocka_unit_test(a_raw_goal_begins_softly),
-        cmocka_unit_test(after_what_is_unknown_torque_is_still_wanted),
-        cmocka_unit_test(a_latched_robot_is_not_halted),
-        cmocka_unit_test(nothing_unknown_is_sent_in_a_pause),
-        cmocka_unit_test(no_limit_is_written_to_a_joint_that_holds_again),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

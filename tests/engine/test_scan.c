@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What silent servos cost a scan, in virtual time: the wire's own time, and 4 ms each. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 #include "tools/grctl/conn/wire.h"
 
 enum { BAUD_BPS = 115200, FIRST_ID = 21, SILENT = 20, IDENTITY_BYTES = 3, SILENCE_US = 4000 };
@@ -36,23 +32,12 @@ static void scan(grobo_wiring wiring, int baud_bps)
     rig_expect(&rig, grobo_robot_registers(&rig.robot, &io), GROBO_OK);
 }
 
-static void silent_servos_cost_4_ms_each_through_the_board(void **state)
+TEST(silent_servos_cost_4_ms_each_through_the_board)
 {
-    (void)state;
     scan(GROBO_WIRING_BOARD, BAUD_BPS);
 }
 
-static void silent_servos_cost_4_ms_each_on_the_bus(void **state)
+TEST(silent_servos_cost_4_ms_each_on_the_bus)
 {
-    (void)state;
     scan(GROBO_WIRING_BUS, BAUD_BPS);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(silent_servos_cost_4_ms_each_through_the_board),
-        cmocka_unit_test(silent_servos_cost_4_ms_each_on_the_bus),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,22 +2,17 @@
 /* Ways, and ways told in segments: where a joint is on them, what the next frame asks for, and what
  * is over. Of each joint all that is known is compared. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/axes_kit.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 /* ---- ways ------------------------------------------------------------------------------------ */
 
-static void a_way_is_straight_in_time(void **state)
+TEST_WITH(axes_wirings, a_way_is_straight_in_time)
 {
-    (void)state;
     static const grobo_robot_way way = {2, 6, NOW, NOW + 4 * S};
     static const grobo_robot_way none = {2, 6, NOW, NOW};
     static const struct {
@@ -32,9 +27,8 @@ static void a_way_is_straight_in_time(void **state)
 }
 
 /* On its way, as far as it was told; or off it, where it was read, or on the way its servo told. */
-static void a_joint_is_where_it_was_sent_or_read(void **state)
+TEST_WITH(axes_wirings, a_joint_is_where_it_was_sent_or_read)
 {
-    (void)state;
     grobo_robot_axis axis = {.state = {.angle_rad = 10, .goal_rad = 14}, .angle_us = NOW};
     axis.way = (grobo_robot_way){2, 6, NOW, NOW + 4 * S};
     axis.told_to_us = NOW + S;
@@ -61,9 +55,8 @@ static void a_joint_is_where_it_was_sent_or_read(void **state)
 /* It tells the time of its way, which is at 50 degrees and goes at 100 degrees a second: it is
  * there, but where it was read beside it since it was told, and goes on at the speed that it told;
  * or is further from there than it can have come since it was read. */
-static void a_joint_is_on_its_way_but_where_it_is_weak(void **state)
+TEST_WITH(axes_wirings, a_joint_is_on_its_way_but_where_it_is_weak)
 {
-    (void)state;
     static const struct {
         bool tells, off, told; /* since it was read */
         int32_t dps;
@@ -102,9 +95,8 @@ static void a_joint_is_on_its_way_but_where_it_is_weak(void **state)
 
 /* At 1000 deg/s^2: it speeds up to what its way takes unless it had twice the time for that, and
  * brakes before the end. */
-static void a_servo_with_ramps_is_where_these_bring_it(void **state)
+TEST_WITH(axes_wirings, a_servo_with_ramps_is_where_these_bring_it)
 {
-    (void)state;
     static const struct {
         int64_t seen_us, rest_us; /* since the begin of its way, which takes a second */
         double seen_deg;
@@ -136,9 +128,8 @@ static void a_servo_with_ramps_is_where_these_bring_it(void **state)
     driver.accel_rad_s2 = 0;
 }
 
-static void a_joint_that_is_not_limp_moves_to_the_end_of_its_way(void **state)
+TEST_WITH(axes_wirings, a_joint_that_is_not_limp_moves_to_the_end_of_its_way)
 {
-    (void)state;
     static const struct {
         int64_t way_us, own_us; /* ends, from now */
         bool off, known;
@@ -165,9 +156,8 @@ static void a_joint_that_is_not_limp_moves_to_the_end_of_its_way(void **state)
     }
 }
 
-static void a_joint_rests_where_it_was_read(void **state)
+TEST_WITH(axes_wirings, a_joint_rests_where_it_was_read)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int own = 0; own < 3; own++) {
             start();
@@ -191,9 +181,8 @@ static void a_joint_rests_where_it_was_read(void **state)
     }
 }
 
-static void joints_are_asked_for_by_their_bits(void **state)
+TEST_WITH(axes_wirings, joints_are_asked_for_by_their_bits)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         int joint = -1;
         start();
@@ -226,9 +215,8 @@ static void joints_are_asked_for_by_their_bits(void **state)
 
 /* ---- what is told in parts ------------------------------------------------------------------- */
 
-static void a_way_is_told_in_parts_where_that_is_wanted(void **state)
+TEST_WITH(axes_wirings, a_way_is_told_in_parts_where_that_is_wanted)
 {
-    (void)state;
     static const struct {
         grobo_goals goals;
         bool arm, stops;
@@ -262,9 +250,8 @@ static void a_way_is_told_in_parts_where_that_is_wanted(void **state)
 }
 
 /* The first part of those that go farther than a segment; the others go at once. */
-static void the_first_frame_asks_for_a_segment(void **state)
+TEST_WITH(axes_wirings, the_first_frame_asks_for_a_segment)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         grobo_target whole = {0};
         grobo_target part;
@@ -291,9 +278,8 @@ static void the_first_frame_asks_for_a_segment(void **state)
 
 /* It may begin outside its limits, and no part of it lies there; to the limit it is no faster than
  * on all of its way. */
-static void no_part_lies_outside_the_limits(void **state)
+TEST_WITH(axes_wirings, no_part_lies_outside_the_limits)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int end = -1; end <= 1; end += 2) {
             grobo_target target = {0};
@@ -352,9 +338,8 @@ static void expect_aim(grobo_joint_mask of, int joint, const told_way *row, int6
 }
 
 /* A segment ahead, or what is left, in whole steps. */
-static void the_next_frame_asks_for_more_of_each_way(void **state)
+TEST_WITH(axes_wirings, the_next_frame_asks_for_more_of_each_way)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < TOLD_WAYS; i++) {
             const told_way *row = &told_ways[i];
@@ -371,9 +356,8 @@ static void the_next_frame_asks_for_more_of_each_way(void **state)
 }
 
 /* To the end again while there is time for it. */
-static void ways_are_told_on_until_they_end(void **state)
+TEST_WITH(axes_wirings, ways_are_told_on_until_they_end)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < 3 * TOLD_WAYS; i++) {
             const told_way *row = &told_ways[i / 3];
@@ -393,9 +377,8 @@ static void ways_are_told_on_until_they_end(void **state)
 }
 
 /* The frames of all ways leave at once: the first of them sets the time. */
-static void the_first_way_sets_the_time_for_the_others(void **state)
+TEST_WITH(axes_wirings, the_first_way_sets_the_time_for_the_others)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         robot.renewed_us = 1;
@@ -438,9 +421,8 @@ static grobo_joint_mask asked_for(void)
 }
 
 /* Every 100 ms on one grid; who comes later than that begins another one. */
-static void more_is_asked_for_on_a_grid(void **state)
+TEST_WITH(axes_wirings, more_is_asked_for_on_a_grid)
 {
-    (void)state;
     static const struct {
         int64_t ago_us, renewed_us; /* the grid after it, from now */
         bool asks;
@@ -469,9 +451,8 @@ static void more_is_asked_for_on_a_grid(void **state)
 }
 
 /* Where no joint goes in segments any more, none is looked at. */
-static void where_none_is_told_its_way_nobody_looks(void **state)
+TEST_WITH(axes_wirings, where_none_is_told_its_way_nobody_looks)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         set_going_in_segments(j);
@@ -486,9 +467,8 @@ static void where_none_is_told_its_way_nobody_looks(void **state)
     }
 }
 
-static void a_way_that_was_not_told_on_is_looked_at_when_it_is_over(void **state)
+TEST_WITH(axes_wirings, a_way_that_was_not_told_on_is_looked_at_when_it_is_over)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         assert_true(grobo_i_segments_deadline(&robot) == GROBO_NEVER_US);
@@ -504,9 +484,8 @@ static void a_way_that_was_not_told_on_is_looked_at_when_it_is_over(void **state
 }
 
 /* A joint stands where it was told to go: the host was away, and its move is over. */
-static void a_way_that_was_not_told_on_is_given_up(void **state)
+TEST_WITH(axes_wirings, a_way_that_was_not_told_on_is_given_up)
 {
-    (void)state;
     static const struct {
         grobo_job_kind kind;
         bool ends;
@@ -560,28 +539,4 @@ static void a_way_that_was_not_told_on_is_given_up(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_way_is_straight_in_time),
-        cmocka_unit_test(a_joint_is_where_it_was_sent_or_read),
-        cmocka_unit_test(a_joint_is_on_its_way_but_where_it_is_weak),
-        cmocka_unit_test(a_servo_with_ramps_is_where_these_bring_it),
-        cmocka_unit_test(a_joint_that_is_not_limp_moves_to_the_end_of_its_way),
-        cmocka_unit_test(a_joint_rests_where_it_was_read),
-        cmocka_unit_test(joints_are_asked_for_by_their_bits),
-        cmocka_unit_test(a_way_is_told_in_parts_where_that_is_wanted),
-        cmocka_unit_test(the_first_frame_asks_for_a_segment),
-        cmocka_unit_test(no_part_lies_outside_the_limits),
-        cmocka_unit_test(the_next_frame_asks_for_more_of_each_way),
-        cmocka_unit_test(ways_are_told_on_until_they_end),
-        cmocka_unit_test(the_first_way_sets_the_time_for_the_others),
-        cmocka_unit_test(more_is_asked_for_on_a_grid),
-        cmocka_unit_test(where_none_is_told_its_way_nobody_looks),
-        cmocka_unit_test(a_way_that_was_not_told_on_is_looked_at_when_it_is_over),
-        cmocka_unit_test(a_way_that_was_not_told_on_is_given_up),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

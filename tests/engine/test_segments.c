@@ -4,16 +4,12 @@
  * would while the host is there.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { JOINTS = 20, SECOND_US = 1000000, MOVE_MS = 3000, LOOK_US = 5000 };
 
@@ -98,9 +94,8 @@ static int sent_goals(void)
 
 /* ---- a host that is gone --------------------------------------------------------------------- */
 
-static void a_dead_host_stops_a_move_at_any_moment(void **state)
+TEST_WITH(rig_wirings, a_dead_host_stops_a_move_at_any_moment)
 {
-    (void)state;
     double least_deg = 1000;
     double most_deg = 0;
     for (int64_t dead_us = 0; dead_us < 2800000; dead_us += 61000) {
@@ -118,9 +113,8 @@ static void a_dead_host_stops_a_move_at_any_moment(void **state)
     assert_true(least_deg > segment_deg(SPEED_DPS) / 2); /* it had enough to go on for a stall */
 }
 
-static void a_dead_host_stops_it_on_a_line_that_loses_bytes(void **state)
+TEST_WITH(rig_wirings, a_dead_host_stops_it_on_a_line_that_loses_bytes)
 {
-    (void)state;
     for (uint32_t seed = 1; seed <= 20; seed++) {
         grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = seed};
         start(&quiet, &sim);
@@ -134,9 +128,8 @@ static void a_dead_host_stops_it_on_a_line_that_loses_bytes(void **state)
 }
 
 /* From anywhere to the initial posture, all joints at a time. */
-static void a_dead_host_stops_all_joints(void **state)
+TEST_WITH(rig_wirings, a_dead_host_stops_all_joints)
 {
-    (void)state;
     for (uint32_t seed = 1; seed <= 8; seed++) {
         grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP,
                                  .seed = seed};
@@ -157,9 +150,8 @@ static void a_dead_host_stops_all_joints(void **state)
     }
 }
 
-static void a_dead_host_stops_an_approach(void **state)
+TEST_WITH(rig_wirings, a_dead_host_stops_an_approach)
 {
-    (void)state;
     static const rig_key far[] = {{0, {{NECK, 45}}}, {9000, {{NECK, -45}}}};
     for (int mode = GROBO_PLAY_KEY; mode <= GROBO_PLAY_RATE; mode++) {
         grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = (grobo_play_mode)mode};
@@ -174,9 +166,8 @@ static void a_dead_host_stops_an_approach(void **state)
 }
 
 /* A key posture of many seconds. */
-static void a_dead_host_stops_a_long_key(void **state)
+TEST_WITH(rig_wirings, a_dead_host_stops_a_long_key)
 {
-    (void)state;
     static const rig_key slow[] = {{0, {{NECK, FROM_DEG}}}, {9000, {{NECK, 45}}}};
     start(NULL, NULL);
     rig_clip_init(&clip, slow, 2);
@@ -187,9 +178,8 @@ static void a_dead_host_stops_a_long_key(void **state)
     assert_true(deg <= segment_deg(10));
 }
 
-static void a_humanoid_finishes_its_move_unless_asked(void **state)
+TEST_WITH(rig_wirings, a_humanoid_finishes_its_move_unless_asked)
 {
-    (void)state;
     static const grobo_goals asked[] = {GROBO_GOALS_DEFAULT, GROBO_GOALS_WHOLE,
                                         GROBO_GOALS_SEGMENTS};
     for (int i = 0; i < 6; i++) {
@@ -275,9 +265,8 @@ static void compare(const char *what)
 }
 
 /* Also beside readings, which take the line. */
-static void segments_lie_on_the_way_of_the_whole(void **state)
+TEST_WITH(rig_wirings, segments_lie_on_the_way_of_the_whole)
 {
-    (void)state;
     static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT};
     static const grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     run_move(&whole, &quiet, GROBO_GOALS_WHOLE, -1);
@@ -290,9 +279,8 @@ static void segments_lie_on_the_way_of_the_whole(void **state)
     compare("beside readings");
 }
 
-static void a_short_stall_is_no_pause(void **state)
+TEST_WITH(rig_wirings, a_short_stall_is_no_pause)
 {
-    (void)state;
     run_move(&whole, &quiet, GROBO_GOALS_WHOLE, -1);
     for (int64_t stall_us = 0; stall_us < 3000000; stall_us += 230000) {
         run_move(&parts, &quiet, GROBO_GOALS_DEFAULT, stall_us);
@@ -306,9 +294,8 @@ static void a_short_stall_is_no_pause(void **state)
     }
 }
 
-static void lost_frames_are_made_good(void **state)
+TEST_WITH(rig_wirings, lost_frames_are_made_good)
 {
-    (void)state;
     for (uint32_t seed = 1; seed <= 10; seed++) {
         grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = seed};
         start(NULL, &sim);
@@ -318,9 +305,8 @@ static void lost_frames_are_made_good(void **state)
     }
 }
 
-static void a_move_within_a_segment_is_one_frame(void **state)
+TEST_WITH(rig_wirings, a_move_within_a_segment_is_one_frame)
 {
-    (void)state;
     start(&quiet, NULL);
     grobo_posture target = rig_posture(&rig, NECK, FROM_DEG + 10, GROBO_SEGMENT_US / 1000);
     rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
@@ -331,9 +317,8 @@ static void a_move_within_a_segment_is_one_frame(void **state)
 
 /* Another program has left the neck 25 degrees outside of its limits: the first move is slow from
  * there on. */
-static void a_joint_from_outside_its_limits_is_slow(void **state)
+TEST_WITH(rig_wirings, a_joint_from_outside_its_limits_is_slow)
 {
-    (void)state;
     const grobo_robot_config slow = {GROBO_ROBOT_CONFIG_INIT, .approach_dps = 10,
                                      .sense_interval_us = GROBO_SENSE_NEVER,
                                      .goals = GROBO_GOALS_SEGMENTS};
@@ -364,9 +349,8 @@ static void expect_at_rest(void)
 }
 
 /* What is left of the move is not made when the host is back. */
-static void a_long_stall_ends_the_move(void **state)
+TEST_WITH(rig_wirings, a_long_stall_ends_the_move)
 {
-    (void)state;
     start(&quiet, NULL);
     int number = begin_move();
     wait_for_move();
@@ -394,9 +378,8 @@ static void a_long_stall_ends_the_move(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK) - TO_DEG) < 0.1);
 }
 
-static void a_long_stall_ends_an_approach(void **state)
+TEST_WITH(rig_wirings, a_long_stall_ends_an_approach)
 {
-    (void)state;
     static const rig_key far[] = {{0, {{NECK, 45}}}, {9000, {{NECK, -45}}}};
     start(NULL, NULL);
     rig_clip_init(&clip, far, 2);
@@ -440,9 +423,8 @@ static void leave_move(void)
     assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD) > 0);
 }
 
-static void what_stops_a_move_stops_its_segments(void **state)
+TEST_WITH(rig_wirings, what_stops_a_move_stops_its_segments)
 {
-    (void)state;
     void (*const ways[])(void) = {stop_move, cancel_move, trip_move, estop_move, leave_move};
     for (int i = 0; i < 5; i++) {
         for (int64_t at_us = 400000; at_us < 800000; at_us += 33000) {
@@ -461,9 +443,8 @@ static void what_stops_a_move_stops_its_segments(void **state)
 }
 
 /* A line that is back finds nothing to renew. */
-static void a_lost_line_ends_the_segments(void **state)
+TEST_WITH(rig_wirings, a_lost_line_ends_the_segments)
 {
-    (void)state;
     start(&quiet, NULL);
     int number = begin_move();
     wait_for_move();
@@ -478,9 +459,8 @@ static void a_lost_line_ends_the_segments(void **state)
 }
 
 /* What the motion sends is not spoilt by what was left of the way to its beginning. */
-static void a_motion_takes_the_place_of_its_approach(void **state)
+TEST_WITH(rig_wirings, a_motion_takes_the_place_of_its_approach)
 {
-    (void)state;
     static const rig_key far[] = {{0, {{NECK, 0}}}, {2000, {{NECK, 40}}}, {4000, {{NECK, -40}}}};
     static double deg[2][LOOKS];
     for (int i = 0; i < 2; i++) {
@@ -503,27 +483,4 @@ static void a_motion_takes_the_place_of_its_approach(void **state)
     }
     print_message("# an approach and its motion: apart by %.3f deg\n", most_deg);
     assert_true(most_deg < 0.5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_dead_host_stops_a_move_at_any_moment),
-        cmocka_unit_test(a_dead_host_stops_it_on_a_line_that_loses_bytes),
-        cmocka_unit_test(a_dead_host_stops_all_joints),
-        cmocka_unit_test(a_dead_host_stops_an_approach),
-        cmocka_unit_test(a_dead_host_stops_a_long_key),
-        cmocka_unit_test(a_humanoid_finishes_its_move_unless_asked),
-        cmocka_unit_test(segments_lie_on_the_way_of_the_whole),
-        cmocka_unit_test(a_short_stall_is_no_pause),
-        cmocka_unit_test(lost_frames_are_made_good),
-        cmocka_unit_test(a_move_within_a_segment_is_one_frame),
-        cmocka_unit_test(a_joint_from_outside_its_limits_is_slow),
-        cmocka_unit_test(a_long_stall_ends_the_move),
-        cmocka_unit_test(a_long_stall_ends_an_approach),
-        cmocka_unit_test(what_stops_a_move_stops_its_segments),
-        cmocka_unit_test(a_lost_line_ends_the_segments),
-        cmocka_unit_test(a_motion_takes_the_place_of_its_approach),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Plays that must give the same frames: on another clock, served more often, asked otherwise. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tests/support/there_and_back.h"
 
 static sample_pump first;
@@ -127,9 +123,8 @@ static void expect_alike(int64_t later_us)
                         sizeof(grobo_play_stats));
 }
 
-static void nothing_depends_on_where_the_clock_begins(void **state)
+TEST(nothing_depends_on_where_the_clock_begins)
 {
-    (void)state;
     static const int64_t origins_us[] = {1, 7777777, INT64_C(86400000000) * 365};
     for (uint32_t seed = 0; seed < 150; seed++) {
         live(seed, 0, 0);
@@ -141,22 +136,12 @@ static void nothing_depends_on_where_the_clock_begins(void **state)
     }
 }
 
-static void looking_more_often_changes_nothing(void **state)
+TEST(looking_more_often_changes_nothing)
 {
-    (void)state;
     for (uint32_t seed = 1000; seed < 1100; seed++) {
         live(seed, 5000000, 0);
         first = pump;
         live(seed, 5000000, 3);
         expect_alike(0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_depends_on_where_the_clock_begins),
-        cmocka_unit_test(looking_more_often_changes_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The last value that is taken and the first that is not; what is over leaves nothing behind. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tests/support/there_and_back.h"
 
 static grobo_play_progress progress(void)
@@ -27,9 +23,8 @@ static int play(grobo_play_options options)
 
 /* ---- options and clips ----------------------------------------------------------------------- */
 
-static void options_at_their_bounds_are_taken(void **state)
+TEST(options_at_their_bounds_are_taken)
 {
-    (void)state;
     static const grobo_play_options last[] = {
         {.speed_pct = GROBO_PLAY_SPEED_MAX_PCT},     {.speed_pct = 1},
         {.rate_hz = GROBO_PLAY_RATE_MAX_HZ},         {.from_us = 3000 * MS},
@@ -63,9 +58,8 @@ static int no_way(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
     return 0;
 }
 
-static void a_clip_may_have_as_many_joints_as_there_can_be(void **state)
+TEST(a_clip_may_have_as_many_joints_as_there_can_be)
 {
-    (void)state;
     grobo_clip many = {.key = no_way, .n_keys = 2};
     for (int past = 0; past < 2; past++) {
         many.ctx = &many;
@@ -105,9 +99,8 @@ static int play_late(int64_t key_us, double rad)
     return grobo_sequencer_play(&pump.seq, &late, NULL, NULL, 0);
 }
 
-static void keys_rise_in_time_up_to_the_longest(void **state)
+TEST(keys_rise_in_time_up_to_the_longest)
 {
-    (void)state;
     assert_int_equal(play_late(10 * MS + 1, 0), 0);
     assert_int_equal(play_late(10 * MS, 0), GROBO_ERR_ARG);
     assert_int_equal(play_late(5 * MS, 0), GROBO_ERR_ARG);
@@ -130,9 +123,8 @@ static void keys_rise_in_time_up_to_the_longest(void **state)
                      GROBO_ERR_CAP);
 }
 
-static void a_relative_clip_at_a_rate_needs_to_know_where_it_starts(void **state)
+TEST(a_relative_clip_at_a_rate_needs_to_know_where_it_starts)
 {
-    (void)state;
     grobo_posture from = sample_posture(0, 0, 0);
     sample_pump_init(&pump, &sample_model);
     sample_clip_init(&clip, there_and_back, 3);
@@ -145,9 +137,8 @@ static void a_relative_clip_at_a_rate_needs_to_know_where_it_starts(void **state
 }
 
 /* The ground of a joint is that joint's own. */
-static void increments_need_the_ground_of_their_own_joint(void **state)
+TEST(increments_need_the_ground_of_their_own_joint)
 {
-    (void)state;
     static const sample_key right[] = {{100 * MS, RIGHT, {0, 0.1, 0}},
                                        {100 * MS, RIGHT, {0, 0.1, 0}}};
     static const sample_key left[] = {{100 * MS, LEFT, {0.3, 0, 0}}};
@@ -171,9 +162,8 @@ static void increments_need_the_ground_of_their_own_joint(void **state)
 }
 
 /* Joints that are not set have no way to go, whatever stands in their place. */
-static void an_approach_looks_at_the_joints_that_are_set(void **state)
+TEST(an_approach_looks_at_the_joints_that_are_set)
 {
-    (void)state;
     static const sample_key left[] = {{10 * MS, LEFT, {0.1, 9, 9}}, {10 * MS, LEFT, {0.1, 9, 9}}};
     grobo_posture from = sample_posture(0.0, 0, 0);
     sample_pump_init(&pump, &sample_model);
@@ -197,9 +187,8 @@ static void an_approach_looks_at_the_joints_that_are_set(void **state)
 
 /* ---- commands -------------------------------------------------------------------------------- */
 
-static void commands_take_their_bounds(void **state)
+TEST(commands_take_their_bounds)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS);
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 1, pump.now_us), 0);
@@ -212,9 +201,8 @@ static void commands_take_their_bounds(void **state)
 }
 
 /* Approaches keep their speed; what comes behind has the new one. */
-static void speed_may_be_set_before_playing_begins(void **state)
+TEST(speed_may_be_set_before_playing_begins)
 {
-    (void)state;
     for (int paused = 0; paused < 2; paused++) {
         there_and_back_start(&by_key, 1.2); /* an approach of 1150 ms */
         sample_pump_run(&pump, 100 * MS);
@@ -232,9 +220,8 @@ static void speed_may_be_set_before_playing_begins(void **state)
     }
 }
 
-static void a_second_pass_begins_at_the_beginning(void **state)
+TEST(a_second_pass_begins_at_the_beginning)
 {
-    (void)state;
     const grobo_play_options options[] = {
         {.repeat = 2, .from_us = 1000 * MS, .default_time_us = 100 * MS},
         {.mode = GROBO_PLAY_RATE, .rate_hz = 10, .repeat = 2, .from_us = 1000 * MS}};
@@ -251,9 +238,8 @@ static void a_second_pass_begins_at_the_beginning(void **state)
 }
 
 /* The time of a hold is the one that was asked for, to the nearest unit, whenever it comes. */
-static void a_hold_takes_the_time_it_was_given(void **state)
+TEST(a_hold_takes_the_time_it_was_given)
 {
-    (void)state;
     static const int64_t stops_us[] = {123456, 126000, 4000, 10000, 99999};
     static const int64_t times_us[] = {120000, 130000, 10000, 10000, 100000};
     for (size_t i = 0; i < sizeof stops_us / sizeof stops_us[0]; i++) {
@@ -270,9 +256,8 @@ static void a_hold_takes_the_time_it_was_given(void **state)
 }
 
 /* A move of whole units has that time, though it begins late. */
-static void a_late_first_move_keeps_its_time(void **state)
+TEST(a_late_first_move_keeps_its_time)
 {
-    (void)state;
     static const sample_key odd[] = {{1000003, ALL, {0.1, 0, 0}}, {500001, ALL, {0.2, 0, 0}}};
     for (int64_t us = 5001; us < 20000; us += 1111) {
         grobo_posture from = sample_posture(0.1, 0, 0);
@@ -287,9 +272,8 @@ static void a_late_first_move_keeps_its_time(void **state)
     }
 }
 
-static void late_is_what_comes_behind_the_bound(void **state)
+TEST(late_is_what_comes_behind_the_bound)
 {
-    (void)state;
     for (int64_t us = 4999; us <= 5001; us++) {
         there_and_back_start(&by_key, 0.0);
         sample_pump_run(&pump, 50 * MS);
@@ -301,9 +285,8 @@ static void late_is_what_comes_behind_the_bound(void **state)
 
 /* ---- what is over is over -------------------------------------------------------------------- */
 
-static void before_anything_was_played_there_is_no_progress(void **state)
+TEST(before_anything_was_played_there_is_no_progress)
 {
-    (void)state;
     static const grobo_play_progress none;
     memset(&pump, 0xA5, sizeof pump);
     sample_pump_init(&pump, &sample_model);
@@ -315,9 +298,8 @@ static void before_anything_was_played_there_is_no_progress(void **state)
     assert_int_equal(grobo_sequencer_stats(&pump.seq)->frames, 0);
 }
 
-static void what_ends_a_play_empties_the_queue(void **state)
+TEST(what_ends_a_play_empties_the_queue)
 {
-    (void)state;
     for (int way = 0; way < 3; way++) {
         there_and_back_start(&by_key, 0.0);
         sample_pump_run(&pump, 500 * MS);
@@ -335,9 +317,8 @@ static void what_ends_a_play_empties_the_queue(void **state)
     }
 }
 
-static void a_reset_forgets_the_failure_and_what_waited(void **state)
+TEST(a_reset_forgets_the_failure_and_what_waited)
 {
-    (void)state;
     there_and_back_start(&at_rate, 0.0);
     sample_pump_run(&pump, 500 * MS);
     pump.now_us += 100 * MS;
@@ -363,9 +344,8 @@ static void a_reset_forgets_the_failure_and_what_waited(void **state)
 }
 
 /* Where the clip before ended says nothing when nobody knows where the robot is. */
-static void a_play_from_nowhere_does_not_begin_where_the_last_ended(void **state)
+TEST(a_play_from_nowhere_does_not_begin_where_the_last_ended)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 9000 * MS);
     assert_int_equal(pump.state, GROBO_SEQUENCER_FINISHED);
@@ -381,9 +361,8 @@ static void a_play_from_nowhere_does_not_begin_where_the_last_ended(void **state
 }
 
 /* A clip that breaks after it was looked through fails where the first key is read again. */
-static void a_clip_that_breaks_in_the_approach_fails_at_its_end(void **state)
+TEST(a_clip_that_breaks_in_the_approach_fails_at_its_end)
 {
-    (void)state;
     there_and_back_start(&by_key, 1.0);
     sample_pump_run(&pump, 900 * MS);
     clip.fail_at = 0;
@@ -394,9 +373,8 @@ static void a_clip_that_breaks_in_the_approach_fails_at_its_end(void **state)
 }
 
 /* The ring of clips goes round, each comes once and in turn. */
-static void queued_clips_come_in_turn(void **state)
+TEST(queued_clips_come_in_turn)
 {
-    (void)state;
     static sample_key ends[3 * GROBO_QUEUE_MAX][1];
     static sample_clip clips[3 * GROBO_QUEUE_MAX];
     there_and_back_start(&by_key, 0.0);
@@ -420,9 +398,8 @@ static void queued_clips_come_in_turn(void **state)
 }
 
 /* A clip that waits is checked and mirrored by the robot's table, as the first is. */
-static void a_queued_clip_knows_the_robot(void **state)
+TEST(a_queued_clip_knows_the_robot)
 {
-    (void)state;
     static const sample_key left[] = {{100 * MS, LEFT, {0.3, 0, 0}}};
     const grobo_play_options options = {.mirror = true};
     there_and_back_start(&by_key, 0.0);
@@ -439,9 +416,8 @@ static void a_queued_clip_knows_the_robot(void **state)
 }
 
 /* Frames handed out, at each moment, by keys and at a rate. */
-static void steps_count_what_was_handed_out(void **state)
+TEST(steps_count_what_was_handed_out)
 {
-    (void)state;
     const grobo_play_options all[] = {by_key,
                                       {.default_time_us = 100 * MS, .reverse = true},
                                       {.mode = GROBO_PLAY_RATE, .rate_hz = 10}};
@@ -455,31 +431,4 @@ static void steps_count_what_was_handed_out(void **state)
         assert_int_equal(progress().step, progress().steps);
         assert_int_equal(pump.n, progress().steps);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(options_at_their_bounds_are_taken),
-        cmocka_unit_test(a_clip_may_have_as_many_joints_as_there_can_be),
-        cmocka_unit_test(keys_rise_in_time_up_to_the_longest),
-        cmocka_unit_test(a_relative_clip_at_a_rate_needs_to_know_where_it_starts),
-        cmocka_unit_test(increments_need_the_ground_of_their_own_joint),
-        cmocka_unit_test(an_approach_looks_at_the_joints_that_are_set),
-        cmocka_unit_test(commands_take_their_bounds),
-        cmocka_unit_test(speed_may_be_set_before_playing_begins),
-        cmocka_unit_test(a_second_pass_begins_at_the_beginning),
-        cmocka_unit_test(a_hold_takes_the_time_it_was_given),
-        cmocka_unit_test(a_late_first_move_keeps_its_time),
-        cmocka_unit_test(late_is_what_comes_behind_the_bound),
-        cmocka_unit_test(before_anything_was_played_there_is_no_progress),
-        cmocka_unit_test(what_ends_a_play_empties_the_queue),
-        cmocka_unit_test(a_reset_forgets_the_failure_and_what_waited),
-        cmocka_unit_test(a_play_from_nowhere_does_not_begin_where_the_last_ended),
-        cmocka_unit_test(a_clip_that_breaks_in_the_approach_fails_at_its_end),
-        cmocka_unit_test(queued_clips_come_in_turn),
-        cmocka_unit_test(a_queued_clip_knows_the_robot),
-        cmocka_unit_test(steps_count_what_was_handed_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

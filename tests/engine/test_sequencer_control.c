@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Commands and refusals of the sequencer, in virtual time. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tests/support/there_and_back.h"
 
 static const grobo_play_frame *last_frame(void)
@@ -26,9 +22,8 @@ static void expect_last(int64_t due_ms, int64_t time_ms, double left_rad)
 
 /* ---- holding ---- */
 
-static void a_pause_by_keys_rests_a_little_ahead_and_goes_on(void **state)
+TEST(a_pause_by_keys_rests_a_little_ahead_and_goes_on)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS); /* 400 of 1000 ms on the way */
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
@@ -44,9 +39,8 @@ static void a_pause_by_keys_rests_a_little_ahead_and_goes_on(void **state)
     assert_int_equal(pump.state_us, 7500 * MS);
 }
 
-static void a_hold_never_passes_the_key(void **state)
+TEST(a_hold_never_passes_the_key)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 1050 * MS);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
@@ -57,9 +51,8 @@ static void a_hold_never_passes_the_key(void **state)
     expect_last(2000, 2000, 0.0);
 }
 
-static void a_pause_after_a_late_frame_counts_from_when_it_left(void **state)
+TEST(a_pause_after_a_late_frame_counts_from_when_it_left)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 90 * MS);
     sample_pump_stall(&pump, 510 * MS); /* due at 100, taken at 600: 500 ms are left */
@@ -70,9 +63,8 @@ static void a_pause_after_a_late_frame_counts_from_when_it_left(void **state)
     expect_last(850, 200, 0.7); /* 0.5 of the way are made, and 100 ms further */
 }
 
-static void a_pause_in_an_approach_approaches_again(void **state)
+TEST(a_pause_in_an_approach_approaches_again)
 {
-    (void)state;
     there_and_back_start(&by_key, 1.2); /* 1.146 s at 60 deg/s: 1150 ms */
     sample_pump_run(&pump, 475 * MS);
     expect_last(0, 1150, 0.0);
@@ -85,9 +77,8 @@ static void a_pause_in_an_approach_approaches_again(void **state)
     assert_int_equal(pump.state, GROBO_SEQUENCER_APPROACHING);
 }
 
-static void a_pause_before_anything_was_sent_moves_nothing(void **state)
+TEST(a_pause_before_anything_was_sent_moves_nothing)
 {
-    (void)state;
     there_and_back_start(&by_key, 1.2);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, 0), 0);
     sample_pump_run(&pump, 5000 * MS);
@@ -95,9 +86,8 @@ static void a_pause_before_anything_was_sent_moves_nothing(void **state)
     expect_last(0, 200, 1.2);
 }
 
-static void commands_that_meet_keep_posture_and_position_together(void **state)
+TEST(commands_that_meet_keep_posture_and_position_together)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS);
     /* The frame for the new speed is not out when the pause comes: it rests where it is. */
@@ -110,9 +100,8 @@ static void commands_that_meet_keep_posture_and_position_together(void **state)
     expect_last(1000, 1200, 1.0);
 }
 
-static void speed_after_a_stall_begins_at_the_key_that_is_reached(void **state)
+TEST(speed_after_a_stall_begins_at_the_key_that_is_reached)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS);
     pump.now_us = 1500 * MS; /* key 1 was reached at 1100 */
@@ -136,9 +125,8 @@ static int64_t stop_at_500(const grobo_play_options *options, bool at_once)
     return pump.state_us - 500 * MS;
 }
 
-static void stopping_keeps_its_bound_and_empties_the_queue(void **state)
+TEST(stopping_keeps_its_bound_and_empties_the_queue)
 {
-    (void)state;
     assert_int_equal(stop_at_500(&by_key, false), 200 * MS);
     expect_last(500, 200, 0.5);
     assert_int_equal(stop_at_500(&by_key, true), 10 * MS);
@@ -152,9 +140,8 @@ static void stopping_keeps_its_bound_and_empties_the_queue(void **state)
     expect_last(500, 600, 0.8);
 }
 
-static void a_smooth_stop_can_be_cut_short(void **state)
+TEST(a_smooth_stop_can_be_cut_short)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS);
     assert_int_equal(grobo_sequencer_stop(&pump.seq, false, pump.now_us), 0);
@@ -167,9 +154,8 @@ static void a_smooth_stop_can_be_cut_short(void **state)
     assert_int_equal(pump.state_us, 610 * MS);
 }
 
-static void stopping_while_paused_stays_there(void **state)
+TEST(stopping_while_paused_stays_there)
 {
-    (void)state;
     there_and_back_start(&at_rate, 0.0);
     sample_pump_run(&pump, 500 * MS);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
@@ -181,9 +167,8 @@ static void stopping_while_paused_stays_there(void **state)
 }
 
 /* A stalled caller stops where the robot can be, not where the motion would be by now. */
-static void stopping_after_a_stall_does_not_leap(void **state)
+TEST(stopping_after_a_stall_does_not_leap)
 {
-    (void)state;
     there_and_back_start(&at_rate, 0.0);
     sample_pump_run(&pump, 200 * MS);
     pump.now_us = 900 * MS;
@@ -194,9 +179,8 @@ static void stopping_after_a_stall_does_not_leap(void **state)
 
 /* ---- seeking ---- */
 
-static void seeking_goes_there_softly(void **state)
+TEST(seeking_goes_there_softly)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 200 * MS); /* at 0.1 rad */
     assert_int_equal(grobo_sequencer_seek(&pump.seq, 2000 * MS, pump.now_us), 0);
@@ -217,9 +201,8 @@ static void seeking_goes_there_softly(void **state)
     assert_int_equal(pump.n, 6 + 1 + 1); /* played, approach, the end */
 }
 
-static void seeking_while_paused_waits_for_resume(void **state)
+TEST(seeking_while_paused_waits_for_resume)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
@@ -239,9 +222,8 @@ static void seeking_while_paused_waits_for_resume(void **state)
 
 /* ---- queue ---- */
 
-static void queued_clips_follow_by_way_of_an_approach(void **state)
+TEST(queued_clips_follow_by_way_of_an_approach)
 {
-    (void)state;
     static const sample_key elsewhere[] = {{50 * MS, ALL, {0.5, 0, 0}},
                                            {500 * MS, ALL, {0.7, 0, 0}}};
     grobo_play_progress p;
@@ -263,9 +245,8 @@ static void queued_clips_follow_by_way_of_an_approach(void **state)
     assert_int_equal(pump.state_us, (4160 + 670 + 3000) * MS);
 }
 
-static void the_queue_has_a_cap(void **state)
+TEST(the_queue_has_a_cap)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     for (int i = 1; i <= GROBO_QUEUE_MAX; i++) {
         assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), i);
@@ -290,9 +271,8 @@ static void start_at(const grobo_play_options *how, int64_t start_us)
     there_and_back_start(&options, 0.5);
 }
 
-static void who_has_approached_waits_for_the_start(void **state)
+TEST(who_has_approached_waits_for_the_start)
 {
-    (void)state;
     start_at(&by_key, 3000 * MS);
     sample_pump_run(&pump, 2999 * MS);
     assert_int_equal(pump.n, 1); /* the approach at its own speed, at once */
@@ -307,9 +287,8 @@ static void who_has_approached_waits_for_the_start(void **state)
     assert_int_equal(pump.n, 7);
 }
 
-static void a_start_that_is_over_is_no_start(void **state)
+TEST(a_start_that_is_over_is_no_start)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.5);
     sample_pump_run(&pump, 2000 * MS);
     int64_t due_us = pump.frames[1].due_us;
@@ -318,9 +297,8 @@ static void a_start_that_is_over_is_no_start(void **state)
     assert_int_equal(pump.frames[1].due_us, due_us);
 }
 
-static void a_pause_before_the_start_stands_where_it_is(void **state)
+TEST(a_pause_before_the_start_stands_where_it_is)
 {
-    (void)state;
     start_at(&by_key, 3000 * MS);
     sample_pump_run(&pump, 2000 * MS);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
@@ -333,9 +311,8 @@ static void a_pause_before_the_start_stands_where_it_is(void **state)
 
 /* ---- refusals and failures ---- */
 
-static void options_out_of_range_are_refused(void **state)
+TEST(options_out_of_range_are_refused)
 {
-    (void)state;
     static const grobo_play_options bad[] = {{.mode = (grobo_play_mode)2},
                                              {.speed_pct = 1001},
                                              {.rate_hz = 1001},
@@ -368,9 +345,8 @@ static int play_keys(const sample_key *list, size_t n)
     return there_and_back_again((grobo_play_options){0});
 }
 
-static void bad_clips_never_start(void **state)
+TEST(bad_clips_never_start)
 {
-    (void)state;
     static const sample_key no_number[] = {{0, ALL, {0, 0, 0}}, {0, ALL, {0, (double)NAN, 0}}};
     static const sample_key backwards[] = {{0, ALL, {0, 0, 0}}, {-5 * MS, ALL, {0, 0, 0}}};
     static const sample_key too_early[] = {{-5 * MS, ALL, {0, 0, 0}}};
@@ -402,9 +378,8 @@ static void bad_clips_never_start(void **state)
     assert_int_equal(play_keys(hidden, 1), 0); /* what is not set means nothing */
 }
 
-static void a_start_that_is_no_posture_of_the_robot_is_refused(void **state)
+TEST(a_start_that_is_no_posture_of_the_robot_is_refused)
 {
-    (void)state;
     grobo_posture from = sample_posture(0, (double)NAN, 0);
     sample_pump_init(&pump, NULL);
     sample_clip_init(&clip, there_and_back, 3);
@@ -418,9 +393,8 @@ static void a_start_that_is_no_posture_of_the_robot_is_refused(void **state)
     assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, NULL, &from, 0), GROBO_ERR_ARG);
 }
 
-static void a_clip_that_fails_in_mid_motion_says_so_once(void **state)
+TEST(a_clip_that_fails_in_mid_motion_says_so_once)
 {
-    (void)state;
     grobo_play_progress p;
     there_and_back_start(&by_key, 0.0);
     clip.fail_at = 2;
@@ -451,9 +425,8 @@ static void a_clip_that_fails_in_mid_motion_says_so_once(void **state)
     assert_int_equal(pump.state, GROBO_SEQUENCER_FAILED);
 }
 
-static void a_queued_clip_without_ground_fails_when_its_turn_comes(void **state)
+TEST(a_queued_clip_without_ground_fails_when_its_turn_comes)
 {
-    (void)state;
     static const sample_key left[] = {{100 * MS, 1, {0.1, 0, 0}}};
     sample_pump_init(&pump, NULL);
     sample_clip_init(&clip, left, 1);
@@ -467,41 +440,9 @@ static void a_queued_clip_without_ground_fails_when_its_turn_comes(void **state)
     assert_int_equal(pump.state, GROBO_SEQUENCER_FAILED);
 }
 
-static void a_posture_out_of_all_reason_takes_the_longest_time(void **state)
+TEST(a_posture_out_of_all_reason_takes_the_longest_time)
 {
-    (void)state;
     there_and_back_start(&by_key, 1e9);
     sample_pump_run(&pump, 0);
     expect_last(0, 163830, 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_pause_by_keys_rests_a_little_ahead_and_goes_on),
-        cmocka_unit_test(a_hold_never_passes_the_key),
-        cmocka_unit_test(a_pause_after_a_late_frame_counts_from_when_it_left),
-        cmocka_unit_test(a_pause_in_an_approach_approaches_again),
-        cmocka_unit_test(a_pause_before_anything_was_sent_moves_nothing),
-        cmocka_unit_test(commands_that_meet_keep_posture_and_position_together),
-        cmocka_unit_test(speed_after_a_stall_begins_at_the_key_that_is_reached),
-        cmocka_unit_test(stopping_keeps_its_bound_and_empties_the_queue),
-        cmocka_unit_test(a_smooth_stop_can_be_cut_short),
-        cmocka_unit_test(stopping_while_paused_stays_there),
-        cmocka_unit_test(stopping_after_a_stall_does_not_leap),
-        cmocka_unit_test(seeking_goes_there_softly),
-        cmocka_unit_test(seeking_while_paused_waits_for_resume),
-        cmocka_unit_test(queued_clips_follow_by_way_of_an_approach),
-        cmocka_unit_test(the_queue_has_a_cap),
-        cmocka_unit_test(who_has_approached_waits_for_the_start),
-        cmocka_unit_test(a_start_that_is_over_is_no_start),
-        cmocka_unit_test(a_pause_before_the_start_stands_where_it_is),
-        cmocka_unit_test(options_out_of_range_are_refused),
-        cmocka_unit_test(bad_clips_never_start),
-        cmocka_unit_test(a_start_that_is_no_posture_of_the_robot_is_refused),
-        cmocka_unit_test(a_clip_that_fails_in_mid_motion_says_so_once),
-        cmocka_unit_test(a_queued_clip_without_ground_fails_when_its_turn_comes),
-        cmocka_unit_test(a_posture_out_of_all_reason_takes_the_longest_time),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

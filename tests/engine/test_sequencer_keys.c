@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Playing by keys, in virtual time. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/sample_clip.h"
+#include "tests/support/test.h"
 
 #define PI 3.14159265358979323846
 
@@ -84,9 +80,8 @@ static void expect_finished_at(int64_t ms)
     assert_int_equal(grobo_sequencer_deadline(&pump.seq), GROBO_NEVER_US);
 }
 
-static void a_key_posture_is_one_frame_with_its_time(void **state)
+TEST(a_key_posture_is_one_frame_with_its_time)
 {
-    (void)state;
     play_all(three, 3, (grobo_play_options){0});
     EXPECT({0, 1000, {0.1, 0.2, 0.3}}, {1000, 500, {0.2, 0.0, 0.3}}, {1500, 250, {0.3, 0.1, -0.3}});
     assert_int_equal(pump.frames[0].phase, GROBO_SEQUENCER_APPROACHING);
@@ -96,9 +91,8 @@ static void a_key_posture_is_one_frame_with_its_time(void **state)
     assert_int_equal(grobo_sequencer_stats(&pump.seq)->late_frames, 0);
 }
 
-static void the_first_move_is_soft(void **state)
+TEST(the_first_move_is_soft)
 {
-    (void)state;
     static const struct {
         double far_deg;
         uint16_t approach_deg_s;
@@ -119,9 +113,8 @@ static void the_first_move_is_soft(void **state)
     }
 }
 
-static void a_joint_nobody_sensed_is_taken_to_be_far(void **state)
+TEST(a_joint_nobody_sensed_is_taken_to_be_far)
 {
-    (void)state;
     grobo_posture from = sample_posture(0.1, 0.2, 0.3);
     from.set = LEFT | RIGHT;
     assert_int_equal(start(three, 3, NULL, &from), 0);
@@ -132,9 +125,8 @@ static void a_joint_nobody_sensed_is_taken_to_be_far(void **state)
     EXPECT({0, 1000, {0.1, 0.2, 0.3}}); /* nothing to start from: no approach */
 }
 
-static void an_approach_gets_its_full_time_however_late(void **state)
+TEST(an_approach_gets_its_full_time_however_late)
 {
-    (void)state;
     grobo_posture from = sample_posture(0.1 - PI / 2, 0.2, 0.3);
     assert_int_equal(start(three, 3, NULL, &from), 0);
     sample_pump_stall(&pump, 700 * MS);
@@ -144,18 +136,16 @@ static void an_approach_gets_its_full_time_however_late(void **state)
     assert_int_equal(grobo_sequencer_stats(&pump.seq)->max_late_us, 700 * MS);
 }
 
-static void partial_keys_add_up_and_empty_ones_send_nothing(void **state)
+TEST(partial_keys_add_up_and_empty_ones_send_nothing)
 {
-    (void)state;
     play_all(partial, 5, (grobo_play_options){.default_time_us = 150 * MS});
     EXPECT({0, 150, {0.1, (double)NAN, (double)NAN}}, {150, 200, {0.1, 0.2, (double)NAN}},
            {650, 150, {-0.1, 0.2, (double)NAN}}, {800, 400, {0.3, -0.2, (double)NAN}});
     expect_finished_at(1200);
 }
 
-static void reverse_takes_keys_away_again(void **state)
+TEST(reverse_takes_keys_away_again)
 {
-    (void)state;
     grobo_posture from = sample_posture(0.3, -0.2, 0.0);
     const grobo_play_options options = {.reverse = true};
     assert_int_equal(start(partial, 5, &options, &from), 0);
@@ -165,9 +155,8 @@ static void reverse_takes_keys_away_again(void **state)
     expect_finished_at(1100);
 }
 
-static void rounding_of_times_never_adds_up(void **state)
+TEST(rounding_of_times_never_adds_up)
 {
-    (void)state;
     static sample_key keys[SAMPLE_KEYS_MAX];
     for (int i = 0; i < SAMPLE_KEYS_MAX; i++) {
         keys[i] = (sample_key){i == 0 ? 100 * MS : 33333, ALL, {0.001 * i, 0, 0}};
@@ -185,9 +174,8 @@ static void rounding_of_times_never_adds_up(void **state)
     }
 }
 
-static void repeats_run_again_by_way_of_an_approach(void **state)
+TEST(repeats_run_again_by_way_of_an_approach)
 {
-    (void)state;
     /* Back to the first key: 0.6 rad at 60 deg/s take 573 ms, but the key has a second. */
     play_all(three, 3, (grobo_play_options){.repeat = 2});
     EXPECT({0, 1000, {0.1, 0.2, 0.3}}, {1000, 500, {0.2, 0.0, 0.3}}, {1500, 250, {0.3, 0.1, -0.3}},
@@ -207,9 +195,8 @@ static void repeats_run_again_by_way_of_an_approach(void **state)
     assert_int_equal(p.passes, INT32_MAX);
 }
 
-static void the_mirror_swaps_left_and_right(void **state)
+TEST(the_mirror_swaps_left_and_right)
 {
-    (void)state;
     grobo_posture from = sample_posture(-0.2, -0.1, 0.3);
     const grobo_play_options options = {.mirror = true};
     assert_int_equal(start(three, 3, &options, &from), 0);
@@ -218,9 +205,8 @@ static void the_mirror_swaps_left_and_right(void **state)
            {1500, 250, {-0.1, -0.3, -0.3}});
 }
 
-static void speed_scales_times_but_not_the_approach(void **state)
+TEST(speed_scales_times_but_not_the_approach)
 {
-    (void)state;
     play_all(three, 3, (grobo_play_options){.speed_pct = 200});
     EXPECT({0, 500, {0.1, 0.2, 0.3}}, {500, 250, {0.2, 0.0, 0.3}}, {750, 130, {0.3, 0.1, -0.3}});
     expect_finished_at(875);
@@ -236,9 +222,8 @@ static void speed_scales_times_but_not_the_approach(void **state)
     EXPECT({0, 1500, {0.1, 0.2, 0.3}}, {1500, 50, {0.2, 0.0, 0.3}}, {1550, 30, {0.3, 0.1, -0.3}});
 }
 
-static void speed_changes_in_the_middle_of_a_move(void **state)
+TEST(speed_changes_in_the_middle_of_a_move)
 {
-    (void)state;
     grobo_posture from = sample_posture(0.1, 0.2, 0.3);
     assert_int_equal(start(three, 3, NULL, &from), 0);
     sample_pump_run(&pump, 1200 * MS); /* 200 of 500 ms on the way to key 1 */
@@ -249,9 +234,8 @@ static void speed_changes_in_the_middle_of_a_move(void **state)
     expect_finished_at(2300);
 }
 
-static void playing_from_the_middle_begins_between_keys(void **state)
+TEST(playing_from_the_middle_begins_between_keys)
 {
-    (void)state;
     /* 300 ms past key 0: 3/5 of the way to key 1. */
     grobo_posture from = sample_posture(0.16, 0.08 + PI / 3, 0.3);
     const grobo_play_options options = {.from_us = 300 * MS};
@@ -273,9 +257,8 @@ static void playing_from_the_middle_begins_between_keys(void **state)
     assert_int_equal(grobo_sequencer_stats(&pump.seq)->skipped_frames, 0);
 }
 
-static void a_stall_skips_keys_and_keeps_their_joints(void **state)
+TEST(a_stall_skips_keys_and_keeps_their_joints)
 {
-    (void)state;
     grobo_posture from = sample_posture(0.1, 0.0, 0.0);
     assert_int_equal(start(partial, 5, NULL, &from), 0);
     sample_pump_run(&pump, 50 * MS);
@@ -296,9 +279,8 @@ static void a_stall_skips_keys_and_keeps_their_joints(void **state)
     expect_finished_at(1100);
 }
 
-static void a_stall_past_the_end_still_sends_the_last_key(void **state)
+TEST(a_stall_past_the_end_still_sends_the_last_key)
 {
-    (void)state;
     grobo_posture from = sample_posture(0.1, 0.2, 0.3);
     assert_int_equal(start(three, 3, NULL, &from), 0);
     sample_pump_run(&pump, 500 * MS);
@@ -318,9 +300,8 @@ static int64_t again(const grobo_play_options *options, const grobo_posture *fro
     return at_us / MS;
 }
 
-static void increments_go_onto_where_the_clip_starts(void **state)
+TEST(increments_go_onto_where_the_clip_starts)
 {
-    (void)state;
     static const sample_key steps[] = {{100 * MS, LEFT, {0.1, 0, 0}},
                                        {100 * MS, LEFT | RIGHT, {0.2, -0.1, 0}},
                                        {100 * MS, RIGHT, {0, -0.1, 0}}};
@@ -351,9 +332,8 @@ static void increments_go_onto_where_the_clip_starts(void **state)
            {at + 250, 100, {1.3, 1.8, (double)NAN}});
 }
 
-static void progress_counts_keys(void **state)
+TEST(progress_counts_keys)
 {
-    (void)state;
     grobo_play_progress p;
     grobo_posture from = sample_posture(0.1, 0.2, 0.3);
     const grobo_play_options options = {.repeat = 3};
@@ -380,27 +360,4 @@ static void progress_counts_keys(void **state)
     assert_int_equal(p.pass, 3);
     assert_int_equal(p.t_us, 750 * MS);
     assert_int_equal(p.step, 3);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_key_posture_is_one_frame_with_its_time),
-        cmocka_unit_test(the_first_move_is_soft),
-        cmocka_unit_test(a_joint_nobody_sensed_is_taken_to_be_far),
-        cmocka_unit_test(an_approach_gets_its_full_time_however_late),
-        cmocka_unit_test(partial_keys_add_up_and_empty_ones_send_nothing),
-        cmocka_unit_test(reverse_takes_keys_away_again),
-        cmocka_unit_test(rounding_of_times_never_adds_up),
-        cmocka_unit_test(repeats_run_again_by_way_of_an_approach),
-        cmocka_unit_test(the_mirror_swaps_left_and_right),
-        cmocka_unit_test(speed_scales_times_but_not_the_approach),
-        cmocka_unit_test(speed_changes_in_the_middle_of_a_move),
-        cmocka_unit_test(playing_from_the_middle_begins_between_keys),
-        cmocka_unit_test(a_stall_skips_keys_and_keeps_their_joints),
-        cmocka_unit_test(a_stall_past_the_end_still_sends_the_last_key),
-        cmocka_unit_test(increments_go_onto_where_the_clip_starts),
-        cmocka_unit_test(progress_counts_keys),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Playing at a rate, in virtual time. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "tests/support/sample_clip.h"
+#include "tests/support/test.h"
 
 #define PI 3.14159265358979323846
 
@@ -47,9 +43,8 @@ static const grobo_play_stats *stats(void)
     return grobo_sequencer_stats(&pump.seq);
 }
 
-static void frames_never_drift(void **state)
+TEST(frames_never_drift)
 {
-    (void)state;
     static const struct {
         uint16_t rate_hz;
         size_t frames;
@@ -74,9 +69,8 @@ static void frames_never_drift(void **state)
 }
 
 /* Served up to 3 ms late every time, in a fixed pattern: deadlines stay where they were. */
-static void lateness_of_one_frame_is_not_that_of_the_next(void **state)
+TEST(lateness_of_one_frame_is_not_that_of_the_next)
 {
-    (void)state;
     start(minute, (grobo_play_options){0}, 0.0);
     (void)sample_pump_take(&pump);
     for (int64_t i = 1; pump.state != GROBO_SEQUENCER_FINISHED; i++) {
@@ -92,9 +86,8 @@ static void lateness_of_one_frame_is_not_that_of_the_next(void **state)
     assert_int_equal(stats()->late_frames, 0);
 }
 
-static void a_clip_of_years_is_refused(void **state)
+TEST(a_clip_of_years_is_refused)
 {
-    (void)state;
     static const sample_key years[] = {{0, 7, {0, 0, 0}},
                                        {GROBO_PLAY_LENGTH_MAX_US, 7, {0.1, 0.1, 0.1}},
                                        {INT64_MAX / 4, 7, {0.2, 0.2, 0.2}}};
@@ -116,9 +109,8 @@ static void a_clip_of_years_is_refused(void **state)
     }
 }
 
-static void a_stall_skips_to_the_present_without_a_burst(void **state)
+TEST(a_stall_skips_to_the_present_without_a_burst)
 {
-    (void)state;
     start(minute, (grobo_play_options){0}, 0.0);
     sample_pump_run(&pump, 1000 * MS);
     assert_int_equal(pump.n, 51);
@@ -137,9 +129,8 @@ static void a_stall_skips_to_the_present_without_a_burst(void **state)
     assert_true(frame_at(pump.n - 1)->posture.angle_rad[0] == 0.6);
 }
 
-static void a_stall_past_the_end_still_sends_the_last_posture(void **state)
+TEST(a_stall_past_the_end_still_sends_the_last_posture)
 {
-    (void)state;
     start(brief, (grobo_play_options){.repeat = 2}, 0.0);
     sample_pump_run(&pump, 1000 * MS);
     sample_pump_stall(&pump, 60000 * MS);
@@ -158,9 +149,8 @@ static void a_stall_past_the_end_still_sends_the_last_posture(void **state)
     assert_int_equal(pump.state_us, 61020 * MS + 960 * MS + 2060 * MS + 20 * MS);
 }
 
-static void the_end_between_two_frames_is_sent_with_the_second(void **state)
+TEST(the_end_between_two_frames_is_sent_with_the_second)
 {
-    (void)state;
     start(brief, (grobo_play_options){0}, 0.0);
     sample_pump_run(&pump, 10000 * MS);
     assert_int_equal(pump.n, 104); /* 0..2040 ms, and 2060 */
@@ -171,9 +161,8 @@ static void the_end_between_two_frames_is_sent_with_the_second(void **state)
 }
 
 /* A third of a second is no whole microsecond: neither the frame's time nor the end's. */
-static void the_end_on_a_frame_is_sent_with_that_frame(void **state)
+TEST(the_end_on_a_frame_is_sent_with_that_frame)
 {
-    (void)state;
     static const sample_key second[] = {{0, ALL, {0.0, 0, 0}}, {1000 * MS, ALL, {0.1, 0, 0}}};
     start(second, (grobo_play_options){.rate_hz = 3, .speed_pct = 300}, 0.0);
     sample_pump_run(&pump, 10000 * MS);
@@ -185,9 +174,8 @@ static void the_end_on_a_frame_is_sent_with_that_frame(void **state)
     assert_int_equal(p.steps, 2);
 }
 
-static void the_first_move_is_soft(void **state)
+TEST(the_first_move_is_soft)
 {
-    (void)state;
     start(minute, (grobo_play_options){0}, PI / 2);
     sample_pump_run(&pump, 1540 * MS);
     assert_int_equal(frame_at(0)->phase, GROBO_SEQUENCER_APPROACHING);
@@ -199,9 +187,8 @@ static void the_first_move_is_soft(void **state)
     assert_true(fabs(position_of(2) - 20e3) < 1e-3);
 }
 
-static void a_pause_keeps_the_phase(void **state)
+TEST(a_pause_keeps_the_phase)
 {
-    (void)state;
     start(minute, (grobo_play_options){.stop_us = 100 * MS}, 0.0);
     sample_pump_run(&pump, 1010 * MS);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
@@ -226,9 +213,8 @@ static void a_pause_keeps_the_phase(void **state)
     assert_int_equal(stats()->late_frames, 0);
 }
 
-static void speed_changes_keep_grid_and_position(void **state)
+TEST(speed_changes_keep_grid_and_position)
 {
-    (void)state;
     start(minute, (grobo_play_options){.speed_pct = 200}, 0.0);
     sample_pump_run(&pump, 1010 * MS); /* position 2020 ms */
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 50, pump.now_us), 0);
@@ -244,9 +230,8 @@ static void speed_changes_keep_grid_and_position(void **state)
     assert_int_equal(pump.state, GROBO_SEQUENCER_FINISHED);
 }
 
-static void speed_may_change_behind_the_end(void **state)
+TEST(speed_may_change_behind_the_end)
 {
-    (void)state;
     start(brief, (grobo_play_options){0}, 0.0);
     sample_pump_run(&pump, 2055 * MS); /* the motion is over, its last frame is not out yet */
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 300, pump.now_us), 0);
@@ -257,9 +242,8 @@ static void speed_may_change_behind_the_end(void **state)
     assert_int_equal(stats()->skipped_frames, 0);
 }
 
-static void reverse_mirror_and_from_work_together(void **state)
+TEST(reverse_mirror_and_from_work_together)
 {
-    (void)state;
     /* Backwards LEFT falls from 0.205; mirrored it is RIGHT and negative. From 1 s: 0.105. */
     start(brief, (grobo_play_options){.reverse = true, .mirror = true, .from_us = 1000 * MS}, 0.0);
     sample_pump_run(&pump, 10000 * MS);
@@ -273,9 +257,8 @@ static void reverse_mirror_and_from_work_together(void **state)
     assert_int_equal(pump.n, 1 + 54); /* 0, 20 .. 1040, and 1060 ms for the end at 1050 */
 }
 
-static void progress_counts_frames(void **state)
+TEST(progress_counts_frames)
 {
-    (void)state;
     grobo_play_progress p;
     start(minute, (grobo_play_options){.rate_hz = 30}, 0.0);
     sample_pump_run(&pump, 10000 * MS);
@@ -291,9 +274,8 @@ static void progress_counts_frames(void **state)
     assert_int_equal(p.step, 1801);
 }
 
-static void a_clip_of_one_posture_is_one_frame(void **state)
+TEST(a_clip_of_one_posture_is_one_frame)
 {
-    (void)state;
     grobo_posture from = sample_posture(0, 0, 0);
     const grobo_play_options options = {.mode = GROBO_PLAY_RATE};
     sample_pump_init(&pump, NULL);
@@ -305,9 +287,8 @@ static void a_clip_of_one_posture_is_one_frame(void **state)
     assert_int_equal(pump.state_us, 20 * MS);
 }
 
-static void a_relative_clip_at_a_rate_adds_its_way(void **state)
+TEST(a_relative_clip_at_a_rate_adds_its_way)
 {
-    (void)state;
     grobo_posture from = sample_posture(1.0, 0.5, 0.25);
     const grobo_play_options options = {.mode = GROBO_PLAY_RATE};
     sample_pump_init(&pump, NULL);
@@ -320,34 +301,10 @@ static void a_relative_clip_at_a_rate_adds_its_way(void **state)
     assert_true(last->angle_rad[1] == 0.5 && last->angle_rad[2] == 0.25);
 }
 
-static void a_fast_rate_never_asks_for_full_speed(void **state)
+TEST(a_fast_rate_never_asks_for_full_speed)
 {
-    (void)state;
     start(brief, (grobo_play_options){.rate_hz = 1000}, 0.0);
     sample_pump_run(&pump, 10000 * MS);
     assert_int_equal(pump.n, 2051);
     assert_int_equal(frame_at(7)->posture.time_us, GROBO_PLAY_TIME_UNIT_US); /* 0 would be that */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_never_drift),
-        cmocka_unit_test(lateness_of_one_frame_is_not_that_of_the_next),
-        cmocka_unit_test(a_clip_of_years_is_refused),
-        cmocka_unit_test(a_stall_skips_to_the_present_without_a_burst),
-        cmocka_unit_test(a_stall_past_the_end_still_sends_the_last_posture),
-        cmocka_unit_test(the_end_between_two_frames_is_sent_with_the_second),
-        cmocka_unit_test(the_end_on_a_frame_is_sent_with_that_frame),
-        cmocka_unit_test(the_first_move_is_soft),
-        cmocka_unit_test(a_pause_keeps_the_phase),
-        cmocka_unit_test(speed_changes_keep_grid_and_position),
-        cmocka_unit_test(speed_may_change_behind_the_end),
-        cmocka_unit_test(reverse_mirror_and_from_work_together),
-        cmocka_unit_test(progress_counts_frames),
-        cmocka_unit_test(a_clip_of_one_posture_is_one_frame),
-        cmocka_unit_test(a_relative_clip_at_a_rate_adds_its_way),
-        cmocka_unit_test(a_fast_rate_never_asks_for_full_speed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,22 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* Every state of the sequencer under every command, and anything in any order. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 #include "tests/support/there_and_back.h"
 
 /* ---- transitions ---- */
 
-static void transitions_are_those_of_the_table(void **state)
+TEST(transitions_are_those_of_the_table)
 {
-    (void)state;
     /* Typed anew: from a row's state to a column's. */
     static const char *const table[GROBO_SEQUENCER_STATES] = {
         /*               I A P p S F X */
@@ -87,9 +82,8 @@ static void bring_to(grobo_sequencer_state goal, const grobo_play_options *optio
     assert_int_equal(pump.state, goal);
 }
 
-static void each_command_is_taken_in_its_states_only(void **state)
+TEST(each_command_is_taken_in_its_states_only)
 {
-    (void)state;
     /* Rows as the states; columns as the commands. */
     static const char *const taken[GROBO_SEQUENCER_STATES] = {
         /*               P E p R S s k v X */
@@ -121,9 +115,8 @@ static void each_command_is_taken_in_its_states_only(void **state)
     }
 }
 
-static void arguments_of_commands_are_checked(void **state)
+TEST(arguments_of_commands_are_checked)
 {
-    (void)state;
     there_and_back_start(&by_key, 0.0);
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 0, 0), GROBO_ERR_ARG);
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 1001, 0), GROBO_ERR_ARG);
@@ -137,9 +130,8 @@ static void arguments_of_commands_are_checked(void **state)
  * Commands, stalls and service in any order. The pump asserts what always holds; here: what is
  * sent lies between what the clip and the start have, as everything in between is a mixture.
  */
-static void whatever_happens_frames_stay_in_bounds(void **state)
+TEST(whatever_happens_frames_stay_in_bounds)
 {
-    (void)state;
     uint32_t seed = 20;
     for (int round = 0; round < 300; round++) {
         grobo_play_options options;
@@ -166,15 +158,4 @@ static void whatever_happens_frames_stay_in_bounds(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(transitions_are_those_of_the_table),
-        cmocka_unit_test(each_command_is_taken_in_its_states_only),
-        cmocka_unit_test(arguments_of_commands_are_checked),
-        cmocka_unit_test(whatever_happens_frames_stay_in_bounds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Simulated AX, MX, STS and SCS: answers, times, registers, modes, protection. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
 #include <grobo/sim_static.h>
 
 #include "tests/support/chain_kit.h"
+#include "tests/support/test.h"
 
 enum { BYTE_US = 10 };
 
@@ -42,9 +38,8 @@ static int put(int id, grobo_register_role role, int32_t to)
 }
 
 /* The bytes are those of clients' recordings (vectors of feetech-servo-sdk 1.0.0). */
-static void sts_answers_at_once(void **state)
+TEST(sts_answers_at_once)
 {
-    (void)state;
     start("STS3215", 6);
     int64_t asked_us = chain.kit.now_us;
     simkit_ask(&chain.kit, "FF FF 01 02 01 FB", 50000);
@@ -77,9 +72,8 @@ static void sts_answers_at_once(void **state)
     simkit_expect(&chain.kit, "FF FF 06 02 00 F7");
 }
 
-static void scs_has_the_high_byte_first_and_no_sync_read(void **state)
+TEST(scs_has_the_high_byte_first_and_no_sync_read)
 {
-    (void)state;
     start("SCS0009", 2);
     simkit_ask(&chain.kit, "FF FF 01 04 02 03 02 F3", 50000);
     simkit_expect(&chain.kit, "FF FF 01 04 00 05 04 F1"); /* 1284 */
@@ -99,9 +93,8 @@ static void scs_has_the_high_byte_first_and_no_sync_read(void **state)
     assert_int_equal(value(0, GROBO_ROLE_POSITION), 20);
 }
 
-static void sts_moves_by_speed_and_acceleration(void **state)
+TEST(sts_moves_by_speed_and_acceleration)
 {
-    (void)state;
     start("STS3215", 1);
     assert_int_equal(put(1, GROBO_ROLE_TORQUE, 1), 0);
     /* WritePosEx 3000 speed 1500 acc 50: v/a = 0.3 s, d/v + v/a = 0.935 s. */
@@ -127,9 +120,8 @@ static void sts_moves_by_speed_and_acceleration(void **state)
     assert_in_range(value(0, GROBO_ROLE_POSITION), 3500 - 5000 + 4096 - 5, 3500 - 5000 + 4096 + 5);
 }
 
-static void sts_is_calibrated(void **state)
+TEST(sts_is_calibrated)
 {
-    (void)state;
     start("STS3215", 1);
     assert_int_equal(grobo_sim_set_angle(&chain.kit.sim, 0, 45000, 0), 0);
     assert_int_equal(value(0, GROBO_ROLE_POSITION), 2560);
@@ -155,9 +147,8 @@ static void sts_is_calibrated(void **state)
     assert_int_equal(value(0, GROBO_ROLE_OFFSET), 512);
 }
 
-static void sts_protects_itself(void **state)
+TEST(sts_protects_itself)
 {
-    (void)state;
     start("STS3215", 1);
     assert_int_equal(put(1, GROBO_ROLE_TORQUE, 1), 0);
     assert_int_equal(grobo_sim_set_blocked(&chain.kit.sim, 0, true), 0);
@@ -184,9 +175,8 @@ static void sts_protects_itself(void **state)
 }
 
 /* The requests are printed in the manual of Protocol 1.0, or dynamixel-sdk's. */
-static void ax_judges_what_it_is_told(void **state)
+TEST(ax_judges_what_it_is_told)
 {
-    (void)state;
     start("AX-12A", 2);
     int64_t asked_us = chain.kit.now_us;
     simkit_ask(&chain.kit, "FF FF 01 04 02 2B 01 CC", 50000);
@@ -219,9 +209,8 @@ static void ax_judges_what_it_is_told(void **state)
     assert_int_equal(put(1, GROBO_ROLE_ID, 5), GROBO_DXL1_BAD_RANGE);
 }
 
-static void ax_loses_its_force(void **state)
+TEST(ax_loses_its_force)
 {
-    (void)state;
     start("AX-12A", 1);
     assert_int_equal(put(1, GROBO_ROLE_GOAL, 512), 0);
     assert_int_equal(grobo_sim_set_blocked(&chain.kit.sim, 0, true), 0);
@@ -243,9 +232,8 @@ static void ax_loses_its_force(void **state)
     assert_int_equal(chain.kit.got[4], GROBO_DXL1_OVERHEATED);
 }
 
-static void mx_is_read_in_bulk(void **state)
+TEST(mx_is_read_in_bulk)
 {
-    (void)state;
     start("MX-28", 6);
     simkit_ask(&chain.kit, "FF FF FE 0C 92 00 08 04 24 02 05 24 02 06 24 DC", 50000);
     assert_int_equal(chain.kit.n_got, 14 + 8 + 8);
@@ -273,9 +261,8 @@ static void mx_is_read_in_bulk(void **state)
 }
 
 /* New servos have one id: what is for it is for all of them, and their answers collide. */
-static void servos_with_one_id_act_together(void **state)
+TEST(servos_with_one_id_act_together)
 {
-    (void)state;
     static const uint8_t goal[] = {1, 0x00, 0x05}, both[] = {1, 3};
     start("STS3215", 3);
     assert_int_equal(put(1, GROBO_ROLE_TORQUE, 1), 0);
@@ -300,9 +287,8 @@ static void servos_with_one_id_act_together(void **state)
 
 /* A goal alone, without torque before: in its own write, in the maker's block, by a sync write.
  * What is written beside it wakes nobody. */
-static void a_goal_switches_torque_on(void **state)
+TEST(a_goal_switches_torque_on)
 {
-    (void)state;
     static const char *const servos[] = {"STS3215", "SCS0009", "AX-12A"};
     for (size_t i = 0; i < sizeof servos / sizeof *servos; i++) {
         start(servos[i], 1);
@@ -325,9 +311,8 @@ static void a_goal_switches_torque_on(void **state)
 }
 
 /* Two families on one line: each hears its own packets and no other. */
-static void families_share_a_line(void **state)
+TEST(families_share_a_line)
 {
-    (void)state;
     start("STS3215", 2);
     chain.servos[0] = grobo_servo_model_named(&grobo_dxl2_table, "XL330-M288");
     grobo_sim_config config = chain.kit.sim.config;
@@ -355,22 +340,4 @@ static void families_share_a_line(void **state)
     config = chain.kit.sim.config;
     config.wiring = GROBO_WIRING_BOARD;
     assert_int_equal(grobo_sim_init(sim, &config, 0), GROBO_ERR_ARG);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sts_answers_at_once),
-        cmocka_unit_test(scs_has_the_high_byte_first_and_no_sync_read),
-        cmocka_unit_test(sts_moves_by_speed_and_acceleration),
-        cmocka_unit_test(sts_is_calibrated),
-        cmocka_unit_test(sts_protects_itself),
-        cmocka_unit_test(ax_judges_what_it_is_told),
-        cmocka_unit_test(ax_loses_its_force),
-        cmocka_unit_test(mx_is_read_in_bulk),
-        cmocka_unit_test(servos_with_one_id_act_together),
-        cmocka_unit_test(a_goal_switches_torque_on),
-        cmocka_unit_test(families_share_a_line),
-    };
-    return cmocka_run_group_tests_name("sim_dxl1", tests, NULL, NULL);
 }

@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Simulated DYNAMIXEL of the X series: answers, times, registers, modes, shutdowns. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/dxl2.h>
 
 #include "tests/support/chain_kit.h"
+#include "tests/support/test.h"
 
 enum { BYTE_US = 10, DELAY_US = 500 };
 
@@ -38,9 +34,8 @@ static int32_t value_at(size_t at)
 }
 
 /* The bytes are those of clients' recordings (vectors of dynamixel-sdk 4.1.0). */
-static void answers_are_those_of_a_servo(void **state)
+TEST(answers_are_those_of_a_servo)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 3, NULL);
     int64_t asked_us = chain.kit.now_us;
     simkit_ask(&chain.kit, "FF FF FD 00 01 03 00 01 19 4E", 50000);
@@ -76,9 +71,8 @@ static void answers_are_those_of_a_servo(void **state)
 }
 
 /* Host budget of the reference: (14 + n) x 10 us + n x (d + (11 + len) x 10 us). */
-static void servos_of_a_list_answer_in_turn(void **state)
+TEST(servos_of_a_list_answer_in_turn)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 6, NULL);
     int64_t asked_us = chain.kit.now_us;
     chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_SYNC_READ, 132, 4, six, sizeof six);
@@ -97,9 +91,8 @@ static void servos_of_a_list_answer_in_turn(void **state)
     assert_int_equal(chain.kit.got_us[15] - chain.kit.got_us[14], DELAY_US + 16 * BYTE_US);
 }
 
-static void a_fast_read_is_one_status(void **state)
+TEST(a_fast_read_is_one_status)
 {
-    (void)state;
     chain_start(&chain, model("XL430-W250"), 6, NULL);
     int64_t asked_us = chain.kit.now_us;
     chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_FAST_SYNC_READ, 132, 4, six, sizeof six);
@@ -119,9 +112,8 @@ static void a_fast_read_is_one_status(void **state)
     assert_int_equal(chain.kit.n_got, 8 + 2 * 8);
 }
 
-static void all_are_found_by_one_ping(void **state)
+TEST(all_are_found_by_one_ping)
 {
-    (void)state;
     chain_start(&chain, model("XM430-W350"), 20, NULL);
     simkit_ask(&chain.kit, "FF FF FD 00 FE 03 00 01 31 42", 100000);
     assert_int_equal(chain.kit.n_got, 20 * 14);
@@ -131,9 +123,8 @@ static void all_are_found_by_one_ping(void **state)
 }
 
 /* New servos have one id: what is for it is for all of them, and their answers collide. */
-static void servos_with_one_id_act_together(void **state)
+TEST(servos_with_one_id_act_together)
 {
-    (void)state;
     static const uint8_t leds[] = {1, 1}, bulk[] = {1, 65, 0, 1, 0, 0}, both[] = {1, 3};
     static const uint8_t instructions[] = {GROBO_DXL2_SYNC_READ, GROBO_DXL2_FAST_SYNC_READ};
     chain_start(&chain, model("XL330-M288"), 3, NULL);
@@ -164,9 +155,8 @@ static void servos_with_one_id_act_together(void **state)
 }
 
 /* By its drive mode, where no error forbids it; the goal has its time. */
-static void a_goal_may_wake_a_servo(void **state)
+TEST(a_goal_may_wake_a_servo)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 1, NULL);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME), 0);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 1024), 0);
@@ -187,9 +177,8 @@ static void a_goal_may_wake_a_servo(void **state)
     assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 0);
 }
 
-static void moves_follow_their_profile(void **state)
+TEST(moves_follow_their_profile)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 1, NULL);
     /* By time: 500 ms for 1000 counts, 200 ms of it to get up to speed. */
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_DIRECTION, 4), 0);
@@ -219,9 +208,8 @@ static void moves_follow_their_profile(void **state)
 }
 
 /* A goal in the middle of a move goes on at the speed that there is. */
-static void a_stream_of_goals_flows(void **state)
+TEST(a_stream_of_goals_flows)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 1, NULL);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ACCELERATION, 40), 0);
@@ -235,9 +223,8 @@ static void a_stream_of_goals_flows(void **state)
     assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_POSITION), 3048);
 }
 
-static void modes_have_their_own_goals(void **state)
+TEST(modes_have_their_own_goals)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 1,
                 &(grobo_sim_config){GROBO_SIM_CONFIG_INIT, .no_stops = true});
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 1), 0);
@@ -262,9 +249,8 @@ static void modes_have_their_own_goals(void **state)
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 2), GROBO_DXL2_BAD_RANGE);
 }
 
-static void the_watchdog_stops_a_servo(void **state)
+TEST(the_watchdog_stops_a_servo)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 2, NULL);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_SPEED, 20), 0);
@@ -286,9 +272,8 @@ static void the_watchdog_stops_a_servo(void **state)
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 2048), 0);
 }
 
-static void a_shutdown_lasts_until_the_restart(void **state)
+TEST(a_shutdown_lasts_until_the_restart)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 1, NULL);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
     assert_int_equal(grobo_sim_set_blocked(&chain.kit.sim, 0, true), 0);
@@ -325,9 +310,8 @@ static void a_shutdown_lasts_until_the_restart(void **state)
                      GROBO_DXL2_VOLTAGE | GROBO_DXL2_OVERHEATED);
 }
 
-static void writes_wait_level_and_names_hold(void **state)
+TEST(writes_wait_level_and_names_hold)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 2, NULL);
     static const uint8_t goal[] = {0x00, 0x0A, 0x00, 0x00};
     chain_send(&chain, 1, GROBO_DXL2_ACTION, 0, 0, NULL, 0);
@@ -377,9 +361,8 @@ static void writes_wait_level_and_names_hold(void **state)
     assert_int_equal(chain.kit.n_got, 14);
 }
 
-static void it_is_as_from_the_factory(void **state)
+TEST(it_is_as_from_the_factory)
 {
-    (void)state;
     chain_start(&chain, model("XL330-M288"), 1, NULL);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ID, 9), 0);
     /* All but id and rate from the factory; no such reset is none. */
@@ -396,24 +379,4 @@ static void it_is_as_from_the_factory(void **state)
     chain_send(&chain, 9, GROBO_DXL2_FACTORY_RESET, 0, 0, &all, 1);
     simkit_run(&chain.kit, 600000);
     assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ID), 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(answers_are_those_of_a_servo),
-        cmocka_unit_test(servos_of_a_list_answer_in_turn),
-        cmocka_unit_test(a_fast_read_is_one_status),
-        cmocka_unit_test(all_are_found_by_one_ping),
-        cmocka_unit_test(servos_with_one_id_act_together),
-        cmocka_unit_test(a_goal_may_wake_a_servo),
-        cmocka_unit_test(moves_follow_their_profile),
-        cmocka_unit_test(a_stream_of_goals_flows),
-        cmocka_unit_test(modes_have_their_own_goals),
-        cmocka_unit_test(the_watchdog_stops_a_servo),
-        cmocka_unit_test(a_shutdown_lasts_until_the_restart),
-        cmocka_unit_test(writes_wait_level_and_names_hold),
-        cmocka_unit_test(it_is_as_from_the_factory),
-    };
-    return cmocka_run_group_tests_name("sim_dxl2", tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Faults: what each does, how often, the same again for the same seed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/simkit.h"
+#include "tests/support/test.h"
 
 static simkit kit, twin;
 
@@ -24,9 +20,8 @@ static void start(simkit *k, grobo_wiring wiring, int fault, double rate)
 
 /* ---- names and rates ----------------------------------------------------------------------- */
 
-static void names_are_found(void **state)
+TEST(names_are_found)
 {
-    (void)state;
     for (int i = 0; i < (int)GROBO_SIM_FAULTS; i++) {
         const char *name = grobo_sim_fault_name(i);
         assert_non_null(name);
@@ -43,9 +38,8 @@ static int set(const char *list)
     return grobo_sim_set_faults(&kit.sim, list, strlen(list));
 }
 
-static void lists_of_rates_are_read_whole_or_not_at_all(void **state)
+TEST(lists_of_rates_are_read_whole_or_not_at_all)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     assert_int_equal(set(""), 0);
     assert_int_equal(set("drop=0.5,flip=25%"), 2);
@@ -68,9 +62,8 @@ static void lists_of_rates_are_read_whole_or_not_at_all(void **state)
 
 /* ---- each kind ----------------------------------------------------------------------------- */
 
-static void dropped_bytes_are_gone(void **state)
+TEST(dropped_bytes_are_gone)
 {
-    (void)state;
     start(&kit, GROBO_WIRING_BOARD, GROBO_SIM_FAULT_DROP, 1);
     simkit_ask(&kit, read_1, 100000);
     simkit_expect(&kit, "");
@@ -78,9 +71,8 @@ static void dropped_bytes_are_gone(void **state)
     assert_int_equal(kit.sim.stats.injected[GROBO_SIM_FAULT_DROP], 11);
 }
 
-static void flipped_bytes_differ_in_one_bit(void **state)
+TEST(flipped_bytes_differ_in_one_bit)
 {
-    (void)state;
     uint8_t clean[26];
     start(&kit, GROBO_WIRING_BOARD, GROBO_SIM_FAULT_FLIP, 0);
     simkit_ask(&kit, read_1, 100000);
@@ -96,9 +88,8 @@ static void flipped_bytes_differ_in_one_bit(void **state)
     }
 }
 
-static void duplicated_replies_come_twice(void **state)
+TEST(duplicated_replies_come_twice)
 {
-    (void)state;
     start(&kit, GROBO_WIRING_BOARD, GROBO_SIM_FAULT_DUPLICATE, 1);
     simkit_ask(&kit, read_1, 100000);
     assert_int_equal(kit.n_got, 52);
@@ -109,9 +100,8 @@ static void duplicated_replies_come_twice(void **state)
     assert_memory_equal(kit.got, kit.got + 26, 26);
 }
 
-static void delayed_replies_come_later_and_whole(void **state)
+TEST(delayed_replies_come_later_and_whole)
 {
-    (void)state;
     int64_t longest_us = 0;
     start(&kit, GROBO_WIRING_BOARD, GROBO_SIM_FAULT_DELAY, 1);
     for (int i = 0; i < 50; i++) {
@@ -125,9 +115,8 @@ static void delayed_replies_come_later_and_whole(void **state)
     assert_true(longest_us > 6264 + GROBO_SIM_DELAY_MAX_US / 2);
 }
 
-static void split_replies_pause_once_inside(void **state)
+TEST(split_replies_pause_once_inside)
 {
-    (void)state;
     static const grobo_wiring wirings[] = {GROBO_WIRING_BOARD, GROBO_WIRING_BUS};
     for (int w = 0; w < 2; w++) {
         start(&kit, wirings[w], GROBO_SIM_FAULT_SPLIT, 1);
@@ -143,9 +132,8 @@ static void split_replies_pause_once_inside(void **state)
     }
 }
 
-static void rubbish_comes_in_front(void **state)
+TEST(rubbish_comes_in_front)
 {
-    (void)state;
     static const grobo_wiring wirings[] = {GROBO_WIRING_BOARD, GROBO_WIRING_BUS};
     for (int w = 0; w < 2; w++) {
         start(&kit, wirings[w], GROBO_SIM_FAULT_RUBBISH, 1);
@@ -156,9 +144,8 @@ static void rubbish_comes_in_front(void **state)
     }
 }
 
-static void silent_servos_hear_nothing(void **state)
+TEST(silent_servos_hear_nothing)
 {
-    (void)state;
     start(&kit, GROBO_WIRING_BOARD, GROBO_SIM_FAULT_SILENT, 1);
     simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
     assert_int_equal(kit.sim.stats.injected[GROBO_SIM_FAULT_SILENT], 20);
@@ -169,9 +156,8 @@ static void silent_servos_hear_nothing(void **state)
     simkit_expect(&kit, "07");
 }
 
-static void a_ghost_with_the_same_id_spoils_the_reply(void **state)
+TEST(a_ghost_with_the_same_id_spoils_the_reply)
 {
-    (void)state;
     start(&kit, GROBO_WIRING_BOARD, GROBO_SIM_FAULT_DUPLICATE_ID, 0);
     simkit_ask(&kit, read_1, 100000);
     uint8_t clean[26];
@@ -185,9 +171,8 @@ static void a_ghost_with_the_same_id_spoils_the_reply(void **state)
     }
 }
 
-static void a_hang_up_is_the_end_until_plugged_in(void **state)
+TEST(a_hang_up_is_the_end_until_plugged_in)
 {
-    (void)state;
     static const grobo_wiring wirings[] = {GROBO_WIRING_BOARD, GROBO_WIRING_BUS};
     for (int w = 0; w < 2; w++) {
         start(&kit, wirings[w], GROBO_SIM_FAULT_HANG_UP, 1);
@@ -203,9 +188,8 @@ static void a_hang_up_is_the_end_until_plugged_in(void **state)
     }
 }
 
-static void a_brown_out_reboots_all_and_takes_their_torque(void **state)
+TEST(a_brown_out_reboots_all_and_takes_their_torque)
 {
-    (void)state;
     start(&kit, GROBO_WIRING_BOARD, GROBO_SIM_FAULT_BROWN_OUT, 0);
     simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
     assert_int_equal(grobo_sim_set_cable(&kit.sim, 3, GROBO_SIM_CABLE_OUT), 0);
@@ -224,9 +208,8 @@ static void a_brown_out_reboots_all_and_takes_their_torque(void **state)
 
 /* ---- chance -------------------------------------------------------------------------------- */
 
-static void a_fault_strikes_as_often_as_its_rate_says(void **state)
+TEST(a_fault_strikes_as_often_as_its_rate_says)
 {
-    (void)state;
     start(&kit, GROBO_WIRING_BOARD, GROBO_SIM_FAULT_SILENT, 0.01);
     for (int i = 0; i < 1000; i++) {
         simkit_packet(&kit, "FA AF FF 00 20 02 01 00 00", 0);
@@ -260,9 +243,8 @@ static void drive(simkit *k, uint32_t seed, grobo_wiring wiring)
     }
 }
 
-static void the_same_seed_gives_the_same_again(void **state)
+TEST(the_same_seed_gives_the_same_again)
 {
-    (void)state;
     uint32_t struck = 0;
     for (uint32_t seed = 1; seed <= 20; seed++) {
         grobo_wiring wiring = seed % 2 ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS;
@@ -282,9 +264,8 @@ static void the_same_seed_gives_the_same_again(void **state)
 }
 
 /* However the host's and the pump's calls fall in time, the wire's times are the same. */
-static void the_pump_may_come_late_or_often(void **state)
+TEST(the_pump_may_come_late_or_often)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .seed = 5};
     static const char rates[] = "rubbish=1,split=1,flip=1%";
     static const int64_t steps_us[] = {1, 7, 333, 40000};
@@ -303,26 +284,4 @@ static void the_pump_may_come_late_or_often(void **state)
         }
         assert_memory_equal(first, kit.got, kit.n_got);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_are_found),
-        cmocka_unit_test(lists_of_rates_are_read_whole_or_not_at_all),
-        cmocka_unit_test(dropped_bytes_are_gone),
-        cmocka_unit_test(flipped_bytes_differ_in_one_bit),
-        cmocka_unit_test(duplicated_replies_come_twice),
-        cmocka_unit_test(delayed_replies_come_later_and_whole),
-        cmocka_unit_test(split_replies_pause_once_inside),
-        cmocka_unit_test(rubbish_comes_in_front),
-        cmocka_unit_test(silent_servos_hear_nothing),
-        cmocka_unit_test(a_ghost_with_the_same_id_spoils_the_reply),
-        cmocka_unit_test(a_hang_up_is_the_end_until_plugged_in),
-        cmocka_unit_test(a_brown_out_reboots_all_and_takes_their_torque),
-        cmocka_unit_test(a_fault_strikes_as_often_as_its_rate_says),
-        cmocka_unit_test(the_same_seed_gives_the_same_again),
-        cmocka_unit_test(the_pump_may_come_late_or_often),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Shafts: moves at servo speed and over the goal time, torque, currents, temperatures, hands. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/simkit.h"
+#include "tests/support/test.h"
 
 static simkit kit;
 
@@ -30,9 +26,8 @@ static int32_t angle(int servo)
 
 /* ---- moves --------------------------------------------------------------------------------- */
 
-static void a_goal_time_is_kept(void **state)
+TEST(a_goal_time_is_kept)
 {
-    (void)state;
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 03 00 1E 04 01 84 03 64 00", 0);
     int64_t t0 = kit.now_us;
@@ -56,9 +51,8 @@ static void a_goal_time_is_kept(void **state)
 }
 
 /* 60 degrees take 0.16 s (RS302CD), 0.11 s (RS301CR), less at a higher voltage. */
-static void full_speed_is_that_of_the_servo(void **state)
+TEST(full_speed_is_that_of_the_servo)
 {
-    (void)state;
     const grobo_sim_config fresh = {GROBO_SIM_CONFIG_INIT, .supply_mv = 8140};
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 00 00 1E 05 02 03 20 03 00 00 0A 20 03 00 00", 0);
@@ -77,18 +71,16 @@ static void full_speed_is_that_of_the_servo(void **state)
     assert_in_range(angle(SHOULDER), 49990, 50010);
 }
 
-static void too_short_a_time_is_full_speed(void **state)
+TEST(too_short_a_time_is_full_speed)
 {
-    (void)state;
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 03 00 1E 04 01 20 03 01 00", 0);
     simkit_run(&kit, 80000);
     assert_in_range(angle(SHOULDER), 49999, 50001);
 }
 
-static void a_new_goal_starts_where_the_shaft_is(void **state)
+TEST(a_new_goal_starts_where_the_shaft_is)
 {
-    (void)state;
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 03 00 1E 04 01 84 03 64 00", 0);
     simkit_run(&kit, 500000);
@@ -101,9 +93,8 @@ static void a_new_goal_starts_where_the_shaft_is(void **state)
     assert_int_equal(angle(SHOULDER), 0);
 }
 
-static void a_goal_without_a_time_takes_the_last_one(void **state)
+TEST(a_goal_without_a_time_takes_the_last_one)
 {
-    (void)state;
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 03 00 20 02 01 C8 00", 0);
     assert_false(simkit_look(&kit, SHOULDER).moving);
@@ -112,9 +103,8 @@ static void a_goal_without_a_time_takes_the_last_one(void **state)
     assert_int_equal(angle(SHOULDER), 30000);
 }
 
-static void time_may_jump_by_hours(void **state)
+TEST(time_may_jump_by_hours)
 {
-    (void)state;
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 03 00 1E 04 01 84 03 FF 3F", 0);
     kit.now_us += 81915000;
@@ -126,9 +116,8 @@ static void time_may_jump_by_hours(void **state)
 }
 
 /* Neither torque nor a hand is a move: the time of the last one stays. */
-static void the_present_time_is_that_of_moves_alone(void **state)
+TEST(the_present_time_is_that_of_moves_alone)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_run(&kit, 5000000);
     simkit_packet(&kit, "FA AF 03 00 24 01 01 01", 0);
@@ -146,9 +135,8 @@ static void the_present_time_is_that_of_moves_alone(void **state)
     assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_TIME), 100);
 }
 
-static void mechanical_stops_stall(void **state)
+TEST(mechanical_stops_stall)
 {
-    (void)state;
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 0A 00 1E 02 01 DC 05", 0);
     simkit_run(&kit, 1000000);
@@ -168,9 +156,8 @@ static void mechanical_stops_stall(void **state)
  * 2 s passes the stop at 120 after 100/130 of the time. From there the motor stalls, and the time
  * of the move runs on to its end.
  */
-static void a_stop_is_met_at_the_speed_of_the_way_to_the_goal(void **state)
+TEST(a_stop_is_met_at_the_speed_of_the_way_to_the_goal)
 {
-    (void)state;
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 0A 00 1E 04 01 DC 05 C8 00", 0);
     simkit_run(&kit, 1000000);
@@ -196,9 +183,8 @@ static void a_stop_is_met_at_the_speed_of_the_way_to_the_goal(void **state)
 }
 
 /* Where nothing can move, from the first moment on, the time of the move runs as well. */
-static void time_runs_at_a_stop_and_while_blocked(void **state)
+TEST(time_runs_at_a_stop_and_while_blocked)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     assert_int_equal(grobo_sim_set_angle(&kit.sim, R_HIP_P, 120000, 0), 0);
     assert_int_equal(grobo_sim_set_blocked(&kit.sim, SHOULDER, true), 0);
@@ -224,9 +210,8 @@ static void time_runs_at_a_stop_and_while_blocked(void **state)
 }
 
 /* Without stops a servo goes wherever its limit registers let it. */
-static void without_stops_a_servo_goes_to_its_limits(void **state)
+TEST(without_stops_a_servo_goes_to_its_limits)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .no_stops = true};
     start_with_torque(&config);
     assert_int_equal(angle(R_HIP_P), 20000);
@@ -241,9 +226,8 @@ static void without_stops_a_servo_goes_to_its_limits(void **state)
 
 /* ---- torque -------------------------------------------------------------------------------- */
 
-static void torque_on_holds_the_present_position(void **state)
+TEST(torque_on_holds_the_present_position)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 03 00 1E 04 01 84 03 64 00", 0);
     assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_GOAL), 900);
@@ -255,9 +239,8 @@ static void torque_on_holds_the_present_position(void **state)
     assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_GOAL), 200);
 }
 
-static void torque_on_may_jump_by_configuration(void **state)
+TEST(torque_on_may_jump_by_configuration)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .jump_on_torque = true};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 03 00 1E 04 01 84 03 64 00", 0);
@@ -266,9 +249,8 @@ static void torque_on_may_jump_by_configuration(void **state)
     assert_int_equal(angle(SHOULDER), 90000);
 }
 
-static void off_and_brake_stop_a_move(void **state)
+TEST(off_and_brake_stop_a_move)
 {
-    (void)state;
     static const char *const stops[] = {"FA AF 03 00 24 01 01 00", "FA AF 03 00 24 01 01 02"};
     for (int i = 0; i < 2; i++) {
         start_with_torque(NULL);
@@ -289,9 +271,8 @@ static void off_and_brake_stop_a_move(void **state)
 
 /* ---- current and voltage ------------------------------------------------------------------- */
 
-static void currents_tell_idle_hold_move_and_load(void **state)
+TEST(currents_tell_idle_hold_move_and_load)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_CURRENT), 6);
     simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
@@ -304,9 +285,8 @@ static void currents_tell_idle_hold_move_and_load(void **state)
     assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_CURRENT), 300);
 }
 
-static void the_supply_sags_under_current(void **state)
+TEST(the_supply_sags_under_current)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_VOLTAGE), 738);
     simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
@@ -315,9 +295,8 @@ static void the_supply_sags_under_current(void **state)
     assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_VOLTAGE), 592);
 }
 
-static void a_weaker_supply_slows_a_move_under_way(void **state)
+TEST(a_weaker_supply_slows_a_move_under_way)
 {
-    (void)state;
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 03 00 1E 04 01 20 03 00 00", 0);
     simkit_run(&kit, 80000);
@@ -328,9 +307,8 @@ static void a_weaker_supply_slows_a_move_under_way(void **state)
 
 /* ---- temperature --------------------------------------------------------------------------- */
 
-static void a_blocked_shaft_heats_until_its_torque_is_cut(void **state)
+TEST(a_blocked_shaft_heats_until_its_torque_is_cut)
 {
-    (void)state;
     start_with_torque(NULL);
     assert_int_equal(grobo_sim_set_blocked(&kit.sim, R_HIP_P, true), 0);
     simkit_packet(&kit, "FA AF 0A 00 1E 02 01 00 00", 0);
@@ -359,9 +337,8 @@ static void a_blocked_shaft_heats_until_its_torque_is_cut(void **state)
     assert_int_equal(angle(R_HIP_P), 20000);
 }
 
-static void an_overheated_servo_says_so_until_torque_is_written(void **state)
+TEST(an_overheated_servo_says_so_until_torque_is_written)
 {
-    (void)state;
     start_with_torque(NULL);
     assert_int_equal(grobo_sim_set_temperature(&kit.sim, R_HIP_P, 90), 0);
     assert_int_equal(grobo_sim_set_temperature(&kit.sim, R_HIP_P, NAN), GROBO_ERR_ARG);
@@ -377,9 +354,8 @@ static void an_overheated_servo_says_so_until_torque_is_written(void **state)
 
 /* ---- hands --------------------------------------------------------------------------------- */
 
-static void a_hand_moves_a_limp_shaft(void **state)
+TEST(a_hand_moves_a_limp_shaft)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     assert_int_equal(grobo_sim_set_angle(&kit.sim, SHOULDER, 60000, 1000000), 0);
     simkit_run(&kit, 500000);
@@ -393,9 +369,8 @@ static void a_hand_moves_a_limp_shaft(void **state)
     assert_int_equal(grobo_sim_set_angle(&kit.sim, SHOULDER, 0, GROBO_NEVER_US), GROBO_ERR_ARG);
 }
 
-static void a_servo_drives_back_when_the_hand_lets_go(void **state)
+TEST(a_servo_drives_back_when_the_hand_lets_go)
 {
-    (void)state;
     start_with_torque(NULL);
     assert_int_equal(grobo_sim_set_angle(&kit.sim, SHOULDER, 50000, 500000), 0);
     simkit_run(&kit, 500000);
@@ -406,9 +381,8 @@ static void a_servo_drives_back_when_the_hand_lets_go(void **state)
     assert_int_equal(angle(SHOULDER), 20000);
 }
 
-static void a_hand_goes_on_whatever_the_torque_becomes(void **state)
+TEST(a_hand_goes_on_whatever_the_torque_becomes)
 {
-    (void)state;
     start_with_torque(NULL);
     assert_int_equal(grobo_sim_set_angle(&kit.sim, SHOULDER, 80000, 600000), 0);
     simkit_run(&kit, 100000);
@@ -421,33 +395,4 @@ static void a_hand_goes_on_whatever_the_torque_becomes(void **state)
     simkit_packet(&kit, "FA AF 03 00 24 01 01 00", 0);
     simkit_run(&kit, 1000000);
     assert_int_equal(angle(SHOULDER), 80000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_goal_time_is_kept),
-        cmocka_unit_test(full_speed_is_that_of_the_servo),
-        cmocka_unit_test(too_short_a_time_is_full_speed),
-        cmocka_unit_test(a_new_goal_starts_where_the_shaft_is),
-        cmocka_unit_test(a_goal_without_a_time_takes_the_last_one),
-        cmocka_unit_test(time_may_jump_by_hours),
-        cmocka_unit_test(the_present_time_is_that_of_moves_alone),
-        cmocka_unit_test(mechanical_stops_stall),
-        cmocka_unit_test(a_stop_is_met_at_the_speed_of_the_way_to_the_goal),
-        cmocka_unit_test(time_runs_at_a_stop_and_while_blocked),
-        cmocka_unit_test(without_stops_a_servo_goes_to_its_limits),
-        cmocka_unit_test(torque_on_holds_the_present_position),
-        cmocka_unit_test(torque_on_may_jump_by_configuration),
-        cmocka_unit_test(off_and_brake_stop_a_move),
-        cmocka_unit_test(currents_tell_idle_hold_move_and_load),
-        cmocka_unit_test(the_supply_sags_under_current),
-        cmocka_unit_test(a_weaker_supply_slows_a_move_under_way),
-        cmocka_unit_test(a_blocked_shaft_heats_until_its_torque_is_cut),
-        cmocka_unit_test(an_overheated_servo_says_so_until_torque_is_written),
-        cmocka_unit_test(a_hand_moves_a_limp_shaft),
-        cmocka_unit_test(a_servo_drives_back_when_the_hand_lets_go),
-        cmocka_unit_test(a_hand_goes_on_whatever_the_torque_becomes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

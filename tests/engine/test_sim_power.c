@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What servos remember: flash, reboot, factory reset, baud, supply and cables. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/simkit.h"
+#include "tests/support/test.h"
 
 static simkit kit;
 
@@ -22,9 +18,8 @@ static bool answers(const char *ping)
 
 /* ---- power-up ------------------------------------------------------------------------------ */
 
-static void power_up_is_limp_with_goals_at_zero(void **state)
+TEST(power_up_is_limp_with_goals_at_zero)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     assert_int_equal(grobo_sim_servos(&kit.sim), 20);
     for (int i = 0; i < 20; i++) {
@@ -40,9 +35,8 @@ static void power_up_is_limp_with_goals_at_zero(void **state)
     assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_POSITION), 200);
 }
 
-static void limp_start_is_within_stops_and_of_the_seed(void **state)
+TEST(limp_start_is_within_stops_and_of_the_seed)
 {
-    (void)state;
     static simkit other;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP,
                                      .seed = 7};
@@ -64,9 +58,8 @@ static void limp_start_is_within_stops_and_of_the_seed(void **state)
     assert_true(differ > 10);
 }
 
-static void a_start_at_zero_keeps_the_stops(void **state)
+TEST(a_start_at_zero_keeps_the_stops)
 {
-    (void)state;
     static grobo_joint joints[3];
     static const grobo_model bent = {.name = "bent", .joints = joints, .n_joints = 3};
     static const char *const joint_names[] = {"below", "across", "above"};
@@ -89,9 +82,8 @@ static void a_start_at_zero_keeps_the_stops(void **state)
     assert_int_equal(simkit_look(&kit, 2).angle_mdeg, 28648);
 }
 
-static void there_is_no_servo_beyond_the_last(void **state)
+TEST(there_is_no_servo_beyond_the_last)
 {
-    (void)state;
     grobo_sim_view view;
     simkit_start(&kit, NULL);
     assert_int_equal(grobo_sim_look(&kit.sim, 20, &view), GROBO_ERR_ARG);
@@ -100,9 +92,8 @@ static void there_is_no_servo_beyond_the_last(void **state)
     assert_int_equal(grobo_sim_find(&kit.sim, 21), GROBO_ERR_NOTFOUND);
 }
 
-static void bad_configurations_are_refused(void **state)
+TEST(bad_configurations_are_refused)
 {
-    (void)state;
     static grobo_sim sim;
     const grobo_model none = {.name = "none"};
     const grobo_sim_config bad_model = {GROBO_SIM_CONFIG_INIT, .model = &none};
@@ -118,9 +109,8 @@ static void bad_configurations_are_refused(void **state)
 
 /* ---- flash and reboot ---------------------------------------------------------------------- */
 
-static void reboot_forgets_what_is_not_in_flash(void **state)
+TEST(reboot_forgets_what_is_not_in_flash)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 01 00 18 02 01 05 06", 0);
     simkit_packet(&kit, "FA AF 01 00 23 02 01 32 01", 0);
@@ -136,9 +126,8 @@ static void reboot_forgets_what_is_not_in_flash(void **state)
     assert_int_equal(simkit_events(&kit, GROBO_SIM_TORQUE, NULL), 2);
 }
 
-static void flash_takes_a_second_and_lasts(void **state)
+TEST(flash_takes_a_second_and_lasts)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 02 00 18 02 01 05 06", 0);
     simkit_packet(&kit, "FA AF 02 40 FF 00 00", 0);
@@ -155,9 +144,8 @@ static void flash_takes_a_second_and_lasts(void **state)
 }
 
 /* Who writes to a servo that is busy is told of, and with which packet. */
-static void a_busy_servo_misses_what_it_is_told(void **state)
+TEST(a_busy_servo_misses_what_it_is_told)
 {
-    (void)state;
     grobo_sim_event event;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 01 40 FF 00 00", 0);
@@ -175,9 +163,8 @@ static void a_busy_servo_misses_what_it_is_told(void **state)
     assert_int_equal(event.value, GROBO_SIM_BUSY_REBOOT);
 }
 
-static void flash_goes_from_one_simulator_to_the_next(void **state)
+TEST(flash_goes_from_one_simulator_to_the_next)
 {
-    (void)state;
     uint8_t flash[GROBO_SIM_FLASH_BYTES], before[GROBO_SIM_FLASH_BYTES];
     simkit_start(&kit, NULL);
     assert_int_equal(grobo_sim_get_flash(&kit.sim, CHEST, before), 0);
@@ -211,9 +198,8 @@ static void flash_goes_from_one_simulator_to_the_next(void **state)
     assert_int_equal(simkit_look(&kit, CHEST).id, 99);
 }
 
-static void flash_and_reboot_in_one_packet(void **state)
+TEST(flash_and_reboot_in_one_packet)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_ask(&kit, "53 09 FA AF 01 60 07 01 01 12 74", 10000);
     int64_t t0 = kit.now_us;
@@ -229,9 +215,8 @@ static void flash_and_reboot_in_one_packet(void **state)
     assert_int_equal(reboot.time_us, saved.time_us);
 }
 
-static void power_lost_while_saving_is_a_flash_error(void **state)
+TEST(power_lost_while_saving_is_a_flash_error)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 01 00 18 01 01 09", 0);
     simkit_packet(&kit, "FA AF 01 40 FF 00 00", 0);
@@ -249,9 +234,8 @@ static void power_lost_while_saving_is_a_flash_error(void **state)
     simkit_expect(&kit, "FD DF 01 00 18 01 01 02 1B");
 }
 
-static void factory_reset_in_both_spellings(void **state)
+TEST(factory_reset_in_both_spellings)
 {
-    (void)state;
     static const char *const spellings[] = {"FA AF 0A 10 FF FF 00", "FA AF 0A 10 FF FF 00 FF"};
     for (int i = 0; i < 2; i++) {
         simkit_start(&kit, NULL);
@@ -270,9 +254,8 @@ static void factory_reset_in_both_spellings(void **state)
 /* ---- baud ---------------------------------------------------------------------------------- */
 
 /* No.6, flash and reboot all at the old rate, as programs for these servos do it. */
-static void a_rate_takes_effect_at_the_restart(void **state)
+TEST(a_rate_takes_effect_at_the_restart)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 01 00 06 01 01 0A", 0);
@@ -299,9 +282,8 @@ static void a_rate_takes_effect_at_the_restart(void **state)
     assert_int_equal(simkit_look(&kit, CHEST).baud_bps, 115200);
 }
 
-static void a_restart_without_flash_loses_the_rate(void **state)
+TEST(a_restart_without_flash_loses_the_rate)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 01 00 06 01 01 0A", 0);
@@ -311,9 +293,8 @@ static void a_restart_without_flash_loses_the_rate(void **state)
     assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_BAUD), GROBO_RS30X_BAUD_CODE_DEFAULT);
 }
 
-static void another_rate_is_not_understood_until_the_line_has_it(void **state)
+TEST(another_rate_is_not_understood_until_the_line_has_it)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
                                      .baud_at_once = true};
     simkit_start(&kit, &config);
@@ -332,9 +313,8 @@ static void another_rate_is_not_understood_until_the_line_has_it(void **state)
     assert_int_equal(grobo_sim_set_line_bps(&kit.sim, 0), GROBO_ERR_ARG);
 }
 
-static void the_board_loses_a_servo_of_another_rate(void **state)
+TEST(the_board_loses_a_servo_of_another_rate)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .baud_at_once = true};
     simkit_start(&kit, &config);
     simkit_ask(&kit, "53 09 FA AF 01 00 06 01 01 0A 0D", 10000);
@@ -342,9 +322,8 @@ static void the_board_loses_a_servo_of_another_rate(void **state)
     assert_true(answers("FA AF 02 01 FF 00 00"));
 }
 
-static void the_board_hears_rubbish_at_another_rate(void **state)
+TEST(the_board_hears_rubbish_at_another_rate)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     assert_int_equal(grobo_sim_set_line_bps(&kit.sim, 9600), 0);
     simkit_ask(&kit, "41 00", 100000);
@@ -357,9 +336,8 @@ static void the_board_hears_rubbish_at_another_rate(void **state)
 
 /* ---- supply and cables --------------------------------------------------------------------- */
 
-static void a_brown_out_makes_servos_limp(void **state)
+TEST(a_brown_out_makes_servos_limp)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
     grobo_sim_set_supply(&kit.sim, 4000);
@@ -378,18 +356,16 @@ static void a_brown_out_makes_servos_limp(void **state)
     assert_int_equal(simkit_events(&kit, GROBO_SIM_TORQUE, NULL), 40);
 }
 
-static void an_empty_battery_powers_nothing_up(void **state)
+TEST(an_empty_battery_powers_nothing_up)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .supply_mv = 4000};
     simkit_start(&kit, &config);
     assert_true(simkit_look(&kit, CHEST).deaf);
     assert_false(answers("FA AF 01 01 FF 00 00"));
 }
 
-static void a_mute_servo_holds_and_one_without_cable_is_limp(void **state)
+TEST(a_mute_servo_holds_and_one_without_cable_is_limp)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
     assert_int_equal(grobo_sim_set_cable(&kit.sim, CHEST, GROBO_SIM_CABLE_MUTE), 0);
@@ -406,31 +382,4 @@ static void a_mute_servo_holds_and_one_without_cable_is_limp(void **state)
     assert_true(answers("FA AF 0A 01 FF 00 00"));
     assert_int_equal(simkit_look(&kit, CHEST).torque, GROBO_TORQUE_ON);
     assert_int_equal(simkit_look(&kit, R_HIP_P).torque, GROBO_TORQUE_OFF);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(power_up_is_limp_with_goals_at_zero),
-        cmocka_unit_test(limp_start_is_within_stops_and_of_the_seed),
-        cmocka_unit_test(a_start_at_zero_keeps_the_stops),
-        cmocka_unit_test(there_is_no_servo_beyond_the_last),
-        cmocka_unit_test(bad_configurations_are_refused),
-        cmocka_unit_test(reboot_forgets_what_is_not_in_flash),
-        cmocka_unit_test(flash_takes_a_second_and_lasts),
-        cmocka_unit_test(a_busy_servo_misses_what_it_is_told),
-        cmocka_unit_test(flash_goes_from_one_simulator_to_the_next),
-        cmocka_unit_test(flash_and_reboot_in_one_packet),
-        cmocka_unit_test(power_lost_while_saving_is_a_flash_error),
-        cmocka_unit_test(factory_reset_in_both_spellings),
-        cmocka_unit_test(a_rate_takes_effect_at_the_restart),
-        cmocka_unit_test(a_restart_without_flash_loses_the_rate),
-        cmocka_unit_test(another_rate_is_not_understood_until_the_line_has_it),
-        cmocka_unit_test(the_board_loses_a_servo_of_another_rate),
-        cmocka_unit_test(the_board_hears_rubbish_at_another_rate),
-        cmocka_unit_test(a_brown_out_makes_servos_limp),
-        cmocka_unit_test(an_empty_battery_powers_nothing_up),
-        cmocka_unit_test(a_mute_servo_holds_and_one_without_cable_is_limp),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

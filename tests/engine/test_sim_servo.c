@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Registers and packets: who may write what, what comes back, what a packet does. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/lx16a.h>
 
 #include "tests/support/simkit.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
 static simkit kit;
@@ -75,17 +71,15 @@ static bool send_vector(const vector *v)
     return true;
 }
 
-static void every_vector_is_understood(void **state)
+TEST(every_vector_is_understood)
 {
-    (void)state;
     vectors_check(send_vector, 40);
 }
 
 /* ---- reading ------------------------------------------------------------------------------- */
 
-static void blocks_come_as_their_nibble_says(void **state)
+TEST(blocks_come_as_their_nibble_says)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 0A 03 00 00 01", 38);
     assert_int_equal(kit.n_got, 38);
@@ -108,9 +102,8 @@ static void blocks_come_as_their_nibble_says(void **state)
     assert_int_equal(kit.n_got, 20);
 }
 
-static void every_reply_has_its_sum(void **state)
+TEST(every_reply_has_its_sum)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 02 0F 00 8C 00", 148);
     assert_int_equal(kit.n_got, 148);
@@ -124,9 +117,8 @@ static void every_reply_has_its_sum(void **state)
     assert_int_equal(kit.got[7 + 35], 77);
 }
 
-static void what_cannot_be_read_is_refused(void **state)
+TEST(what_cannot_be_read_is_refused)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 01 0D 00 00 01", 76);
     simkit_expect(&kit, "");
@@ -149,9 +141,8 @@ static const grobo_joint late_joint = {.name = "ONE",
                                        .mirror_sign = 1};
 static const grobo_model late_robot = {.name = "late", .joints = &late_joint, .n_joints = 1};
 
-static void later_models_have_more(void **state)
+TEST(later_models_have_more)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &late_robot};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 07 0D 00 00 01", 76);
@@ -162,9 +153,8 @@ static void later_models_have_more(void **state)
     assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_MODEL), 0x3030);
 }
 
-static void behind_the_robots_back_the_map_holds_too(void **state)
+TEST(behind_the_robots_back_the_map_holds_too)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     int32_t value = 77;
     assert_int_equal(grobo_sim_get_register(&kit.sim, 20, 4, &value), GROBO_ERR_ARG);
@@ -181,9 +171,8 @@ static void behind_the_robots_back_the_map_holds_too(void **state)
 
 /* ---- writing ------------------------------------------------------------------------------- */
 
-static void read_only_registers_stay(void **state)
+TEST(read_only_registers_stay)
 {
-    (void)state;
     static const char *const writes[] = {
         "FA AF 01 00 00 01 01 55", "FA AF 01 00 0E 01 01 55", "FA AF 01 00 2A 02 01 01 00",
         "FA AF 01 00 34 02 01 01 00",
@@ -199,9 +188,8 @@ static void read_only_registers_stay(void **state)
     }
 }
 
-static void values_out_of_range_are_refused(void **state)
+TEST(values_out_of_range_are_refused)
 {
-    (void)state;
     static const struct {
         const char *packet;
         int address;
@@ -225,9 +213,8 @@ static void values_out_of_range_are_refused(void **state)
     }
 }
 
-static void some_values_out_of_range_become_others(void **state)
+TEST(some_values_out_of_range_become_others)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
                                      .baud_bps = 9600, .baud_at_once = true};
     simkit_start(&kit, &config);
@@ -240,9 +227,8 @@ static void some_values_out_of_range_become_others(void **state)
     assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 0);
 }
 
-static void goals_are_clamped_to_the_limits(void **state)
+TEST(goals_are_clamped_to_the_limits)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 01 00 08 04 01 2C 01 38 FF", 0);
     assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_CW_LIMIT), 300);
@@ -253,9 +239,8 @@ static void goals_are_clamped_to_the_limits(void **state)
     assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_GOAL), -200);
 }
 
-static void reserved_registers_take_nothing(void **state)
+TEST(reserved_registers_take_nothing)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 01 00 3C 02 01 11 22", 0);
     simkit_packet(&kit, "FA AF 01 00 16 02 01 01 01", 0);
@@ -266,9 +251,8 @@ static void reserved_registers_take_nothing(void **state)
     assert_int_equal(simkit_i16(&kit, 7), 0);
 }
 
-static void acks_come_when_asked_for(void **state)
+TEST(acks_come_when_asked_for)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_ask(&kit, "54 0A FA AF 01 01 24 01 01 01 25 01", 100000);
     simkit_expect(&kit, "07");
@@ -287,9 +271,8 @@ static void acks_come_when_asked_for(void **state)
     simkit_expect(&kit, "08");
 }
 
-static void a_write_may_carry_a_request(void **state)
+TEST(a_write_may_carry_a_request)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 0A 0B 24 01 01 01", 20);
     assert_int_equal(kit.n_got, 20);
@@ -302,9 +285,8 @@ static void a_write_may_carry_a_request(void **state)
 
 /* ---- who is meant -------------------------------------------------------------------------- */
 
-static void all_are_meant_by_255_and_none_replies(void **state)
+TEST(all_are_meant_by_255_and_none_replies)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_ask(&kit, "53 09 FA AF FF 00 24 01 01 01 DA", 100000);
     for (int i = 0; i < 20; i++) {
@@ -314,9 +296,8 @@ static void all_are_meant_by_255_and_none_replies(void **state)
     simkit_expect(&kit, "");
 }
 
-static void a_later_model_answers_what_all_are_asked(void **state)
+TEST(a_later_model_answers_what_all_are_asked)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &late_robot,
                                      .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
@@ -328,9 +309,8 @@ static void a_later_model_answers_what_all_are_asked(void **state)
     simkit_expect(&kit, "");
 }
 
-static void long_packets_reach_those_named(void **state)
+TEST(long_packets_reach_those_named)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 00 00 1E 05 03 01 64 00 64 00 02 9C FF 64 00 05 F4 01 64 00", 0);
     assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 1), GROBO_RS30X_GOAL), 100);
@@ -342,9 +322,8 @@ static void long_packets_reach_those_named(void **state)
 }
 
 /* Another servo stands between the two parts; the later one is the one that counts. */
-static void one_is_spoken_to_twice(void **state)
+TEST(one_is_spoken_to_twice)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 00 00 1E 05 03 05 64 00 64 00 02 9C FF 64 00 05 F4 01 32 00", 0);
     assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 5), GROBO_RS30X_GOAL), 500);
@@ -358,9 +337,8 @@ static void one_is_spoken_to_twice(void **state)
 }
 
 /* Only later models keep "silence_torque": in one packet it is written and it is reserved. */
-static void one_packet_is_another_to_each_model(void **state)
+TEST(one_packet_is_another_to_each_model)
 {
-    (void)state;
     static const uint16_t models[] = {GROBO_RS30X_RS301CR, GROBO_RS30X_RS303MR, GROBO_RS30X_RS301CR,
                                       GROBO_RS30X_RS303MR};
     static const char *const names[] = {"A", "B", "C", "D"};
@@ -388,9 +366,8 @@ static void one_packet_is_another_to_each_model(void **state)
 }
 
 /* The high byte of a goal time alone: in range or not with the low one that is there. */
-static void a_part_of_a_register_is_judged_with_the_rest(void **state)
+TEST(a_part_of_a_register_is_judged_with_the_rest)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 01 00 20 02 01 FF 00", 0);
     simkit_packet(&kit, "FA AF 01 00 21 01 01 3F", 0);
@@ -401,9 +378,8 @@ static void a_part_of_a_register_is_judged_with_the_rest(void **state)
     assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 1);
 }
 
-static void an_id_changes_at_once(void **state)
+TEST(an_id_changes_at_once)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 01 00 04 01 01 1E", 0);
     assert_int_equal(grobo_sim_find(&kit.sim, 1), GROBO_ERR_NOTFOUND);
@@ -415,9 +391,8 @@ static void an_id_changes_at_once(void **state)
     assert_int_equal(kit.got[2], 30);
 }
 
-static void two_with_one_id_collide(void **state)
+TEST(two_with_one_id_collide)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     assert_int_equal(grobo_sim_set_register(&kit.sim, CHEST, GROBO_RS30X_ID, 10), 0);
     simkit_packet(&kit, "FA AF 0A 0F 2A 02 00", 10);
@@ -427,9 +402,8 @@ static void two_with_one_id_collide(void **state)
     assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, NULL) > 0);
 }
 
-static void wrong_sums_are_ignored(void **state)
+TEST(wrong_sums_are_ignored)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_ask(&kit, "53 09 FA AF 01 00 24 01 01 01 25", 100000);
     assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_TORQUE), GROBO_TORQUE_OFF);
@@ -439,9 +413,8 @@ static void wrong_sums_are_ignored(void **state)
 
 /* ---- reverse ------------------------------------------------------------------------------- */
 
-static void reverse_turns_signs_and_limits(void **state)
+TEST(reverse_turns_signs_and_limits)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 0A 00 05 01 01 01", 0);
     simkit_packet(&kit, "FA AF 0A 0F 2A 02 00", 10);
@@ -461,9 +434,8 @@ static void reverse_turns_signs_and_limits(void **state)
 /* ---- the table of types -------------------------------------------------------------------- */
 
 /* A chain of every type there is: each says which it is, and behaves as its row says. */
-static void every_type_is_what_its_row_says(void **state)
+TEST(every_type_is_what_its_row_says)
 {
-    (void)state;
     grobo_joint joints[GROBO_SIM_SERVOS_MAX];
     char names[GROBO_SIM_SERVOS_MAX][8];
     grobo_model model = {.name = "chain", .joints = joints};
@@ -505,9 +477,8 @@ static void every_type_is_what_its_row_says(void **state)
 }
 
 /* Behind a board too an RS30x may be named by its model; nothing else relays there. */
-static void a_board_has_servos_of_its_own_only(void **state)
+TEST(a_board_has_servos_of_its_own_only)
 {
-    (void)state;
     const grobo_servo_model *servos[GROBO_SIM_SERVOS_MAX];
     const grobo_sim_family *const families[] = {&grobo_sim_rs30x, &grobo_sim_lx16a, NULL};
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .servos = servos, .families = families};
@@ -518,36 +489,4 @@ static void a_board_has_servos_of_its_own_only(void **state)
     assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_MODEL), GROBO_RS30X_RS304MD);
     servos[1] = &grobo_lx16a_table.models[0];
     assert_int_equal(grobo_sim_init(&kit.sim, &config, 0), GROBO_ERR_ARG);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_type_is_what_its_row_says),
-        cmocka_unit_test(a_board_has_servos_of_its_own_only),
-        cmocka_unit_test(every_vector_is_understood),
-        cmocka_unit_test(blocks_come_as_their_nibble_says),
-        cmocka_unit_test(every_reply_has_its_sum),
-        cmocka_unit_test(what_cannot_be_read_is_refused),
-        cmocka_unit_test(later_models_have_more),
-        cmocka_unit_test(behind_the_robots_back_the_map_holds_too),
-        cmocka_unit_test(read_only_registers_stay),
-        cmocka_unit_test(values_out_of_range_are_refused),
-        cmocka_unit_test(some_values_out_of_range_become_others),
-        cmocka_unit_test(goals_are_clamped_to_the_limits),
-        cmocka_unit_test(reserved_registers_take_nothing),
-        cmocka_unit_test(acks_come_when_asked_for),
-        cmocka_unit_test(a_write_may_carry_a_request),
-        cmocka_unit_test(all_are_meant_by_255_and_none_replies),
-        cmocka_unit_test(a_later_model_answers_what_all_are_asked),
-        cmocka_unit_test(long_packets_reach_those_named),
-        cmocka_unit_test(one_is_spoken_to_twice),
-        cmocka_unit_test(one_packet_is_another_to_each_model),
-        cmocka_unit_test(a_part_of_a_register_is_judged_with_the_rest),
-        cmocka_unit_test(an_id_changes_at_once),
-        cmocka_unit_test(two_with_one_id_collide),
-        cmocka_unit_test(wrong_sums_are_ignored),
-        cmocka_unit_test(reverse_turns_signs_and_limits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

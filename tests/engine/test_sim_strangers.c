@@ -4,14 +4,9 @@
  * any registers, lengths and lists that lie, packets cut off and broken. What servos say is packets
  * of their family, unless two talk at once; and what can only be read stays.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/feetech.h>
 #include <grobo/ics.h>
@@ -20,6 +15,7 @@
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 
 enum { SERVOS = 3, ROUNDS = 1000, ROOM = 300, DATA_MOST = 24 };
 
@@ -156,21 +152,12 @@ static void a_client_that_sends_anything(const grobo_servo_model *model)
     }
 }
 
-static void no_client_breaks_a_servo(void **state)
+TEST(no_client_breaks_a_servo)
 {
-    (void)state;
     seed = 5;
     for (size_t t = 0; t < sizeof tables / sizeof tables[0]; t++) {
         for (size_t m = 0; m < tables[t]->model_count; m++) {
             a_client_that_sends_anything(&tables[t]->models[m]);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_client_breaks_a_servo),
-    };
-    return cmocka_run_group_tests_name("sim_strangers", tests, NULL, NULL);
 }

@@ -5,20 +5,16 @@
  * nobody sees a difference: the same things happen to the servos at the same times, and the same
  * bytes come at the same times, whatever the host writes and whenever it looks.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 #include <grobo/rs30x.h>
 
 #include "src/sim/talk.h"
 #include "tests/support/simkit.h"
+#include "tests/support/test.h"
 
 static simkit whole, bytewise;
 
@@ -148,9 +144,8 @@ static void drive(const grobo_protocol *protocol, uint32_t seed)
     assert_same();
 }
 
-static void nobody_sees_a_difference(void **state)
+TEST(nobody_sees_a_difference)
 {
-    (void)state;
     static const grobo_sim_config configs[] = {
         {GROBO_SIM_CONFIG_INIT},
         {GROBO_SIM_CONFIG_INIT, .latency_us = 16000},
@@ -178,9 +173,8 @@ static void nobody_sees_a_difference(void **state)
 }
 
 /* A fault that begins in the middle of a frame has its bytes one by one from there on. */
-static void a_fault_may_begin_within_a_frame(void **state)
+TEST(a_fault_may_begin_within_a_frame)
 {
-    (void)state;
     start_both(NULL);
     uint8_t buf[GROBO_REPLY_MAX_BYTES];
     int n = grobo_frame_read(&grobo_board_protocol, 3, 42, 2, buf, sizeof buf);
@@ -191,13 +185,4 @@ static void a_fault_may_begin_within_a_frame(void **state)
     assert_int_equal(whole.n_got, 10);
     assert_memory_equal(whole.got, bytewise.got, 10);
     assert_memory_equal(whole.got_us, bytewise.got_us, 10 * sizeof *whole.got_us);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nobody_sees_a_difference),
-        cmocka_unit_test(a_fault_may_begin_within_a_frame),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Time on the wires: the board's line, the servos' bus, both wirings, to the microsecond. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/simkit.h"
+#include "tests/support/test.h"
 
 static simkit kit;
 
@@ -18,9 +14,8 @@ static int64_t bytes_us(int64_t n, int64_t bps)
     return (n * 10000000 + bps - 1) / bps;
 }
 
-static void check_costs_three_bytes(void **state)
+TEST(check_costs_three_bytes)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     int64_t t0 = kit.now_us;
     simkit_ask(&kit, "41 00", 100000);
@@ -29,9 +24,8 @@ static void check_costs_three_bytes(void **state)
     assert_true(grobo_sim_deadline(&kit.sim) == GROBO_NEVER_US);
 }
 
-static void read_costs_71_bytes_and_the_delay(void **state)
+TEST(read_costs_71_bytes_and_the_delay)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     int64_t t0 = kit.now_us;
     simkit_ask(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A", 100000);
@@ -42,9 +36,8 @@ static void read_costs_71_bytes_and_the_delay(void **state)
     assert_int_equal(kit.got_us[25] - t0, 6264);
 }
 
-static void return_delay_is_waited(void **state)
+TEST(return_delay_is_waited)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_ask(&kit, "53 09 FA AF 01 00 07 01 01 12 14", 100000);
     int64_t t0 = kit.now_us;
@@ -53,9 +46,8 @@ static void return_delay_is_waited(void **state)
     assert_int_equal(kit.got_us[25] - t0, 1000 + bytes_us(71, 115200));
 }
 
-static void pose_frame_is_stored_and_forwarded(void **state)
+TEST(pose_frame_is_stored_and_forwarded)
 {
-    (void)state;
     static const char pose[] =
         "53 6C FA AF 00 00 1E 05 14 01 00 00 64 00 02 00 00 64 00 03 00 00 64 00 04 00 00 64 00 "
         "05 00 00 64 00 06 00 00 64 00 07 00 00 64 00 08 00 00 64 00 09 00 00 64 00 0A 00 00 64 "
@@ -100,9 +92,8 @@ static int turns(deadline_fn deadline, const char *hex)
 }
 
 /* By packets there is a turn for each packet on each wire, and the reply is there as early. */
-static void a_reading_takes_a_turn_for_each_packet(void **state)
+TEST(a_reading_takes_a_turn_for_each_packet)
 {
-    (void)state;
     static const grobo_sim_config bus = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     static const grobo_sim_config echo = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
                                           .echo = true};
@@ -148,9 +139,8 @@ static void a_reading_takes_a_turn_for_each_packet(void **state)
 
 /* ---- the board ----------------------------------------------------------------------------- */
 
-static void frames_that_come_while_it_relays_wait(void **state)
+TEST(frames_that_come_while_it_relays_wait)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     int64_t t0 = kit.now_us;
     simkit_ask(&kit,
@@ -168,9 +158,8 @@ static void frames_that_come_while_it_relays_wait(void **state)
     assert_int_equal(simkit_look(&kit, 14).torque, GROBO_TORQUE_ON);
 }
 
-static void a_flooded_board_loses_bytes_and_counts_them(void **state)
+TEST(a_flooded_board_loses_bytes_and_counts_them)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     uint8_t flood[GROBO_SIM_WIRE_BYTES + 100];
     memset(flood, 0x41, sizeof flood);
@@ -191,9 +180,8 @@ static void a_flooded_board_loses_bytes_and_counts_them(void **state)
     simkit_expect(&kit, "07");
 }
 
-static void a_silent_servo_makes_a_reply_short(void **state)
+TEST(a_silent_servo_makes_a_reply_short)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .board_silence_us = 3000};
     simkit_start(&kit, &config);
     assert_int_equal(grobo_sim_set_cable(&kit.sim, 12, GROBO_SIM_CABLE_MUTE), 0);
@@ -204,9 +192,8 @@ static void a_silent_servo_makes_a_reply_short(void **state)
     assert_int_equal(kit.got_us[0] - t0, 3000 + bytes_us(20, 115200));
 }
 
-static void asking_for_more_waits_and_for_less_cuts(void **state)
+TEST(asking_for_more_waits_and_for_less_cuts)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     int64_t t0 = kit.now_us;
     simkit_ask(&kit, "54 09 FA AF 01 0F 30 02 00 3C 1A", 100000);
@@ -220,9 +207,8 @@ static void asking_for_more_waits_and_for_less_cuts(void **state)
     assert_int_equal(kit.sim.stats.stray_bytes, 16);
 }
 
-static void a_reply_nobody_asked_for_goes_nowhere(void **state)
+TEST(a_reply_nobody_asked_for_goes_nowhere)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_ask(&kit, "53 08 FA AF 01 0F 24 12 00 38", 100000);
     simkit_expect(&kit, "");
@@ -230,9 +216,8 @@ static void a_reply_nobody_asked_for_goes_nowhere(void **state)
     assert_int_equal(kit.sim.stats.stray_bytes, 26);
 }
 
-static void slots_and_scenarios_are_noted(void **state)
+TEST(slots_and_scenarios_are_noted)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_ask(&kit, "50 4D 03", 100000);
     simkit_ask(&kit, "50 53 00", 100000);
@@ -247,9 +232,8 @@ static void slots_and_scenarios_are_noted(void **state)
     assert_int_equal(event.value, 3);
 }
 
-static void a_stalled_frame_is_forgotten(void **state)
+TEST(a_stalled_frame_is_forgotten)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .board_stall_us = 10000};
     simkit_start(&kit, &config);
     simkit_ask(&kit, "53 09 FA AF 01 00", 5000);
@@ -264,9 +248,8 @@ static void a_stalled_frame_is_forgotten(void **state)
 
 /* ---- servos straight on the line ----------------------------------------------------------- */
 
-static void bus_read_costs_34_bytes_and_the_delay(void **state)
+TEST(bus_read_costs_34_bytes_and_the_delay)
 {
-    (void)state;
     static const uint32_t rates[] = {9600, 38400, 115200, 460800};
     for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
         const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
@@ -280,9 +263,8 @@ static void bus_read_costs_34_bytes_and_the_delay(void **state)
     }
 }
 
-static void board_frames_mean_nothing_to_servos(void **state)
+TEST(board_frames_mean_nothing_to_servos)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_ask(&kit, "41 00", 100000);
@@ -291,9 +273,8 @@ static void board_frames_mean_nothing_to_servos(void **state)
     assert_int_equal(simkit_look(&kit, 12).torque, GROBO_TORQUE_ON);
 }
 
-static void a_stalled_packet_is_forgotten(void **state)
+TEST(a_stalled_packet_is_forgotten)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_ask(&kit, "FA AF 01 00 24", 5000);
@@ -310,9 +291,8 @@ static void a_stalled_packet_is_forgotten(void **state)
     assert_int_equal(event.n_bytes, 5);
 }
 
-static void talking_over_a_reply_spoils_both(void **state)
+TEST(talking_over_a_reply_spoils_both)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_send(&kit, "FA AF 01 0F 24 12 00 38");
@@ -329,9 +309,8 @@ static void talking_over_a_reply_spoils_both(void **state)
 }
 
 /* Byte by byte on the wire: overlapping replies of different delays become their AND. */
-static void replies_that_overlap_spoil_each_other(void **state)
+TEST(replies_that_overlap_spoil_each_other)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     assert_int_equal(grobo_sim_set_register(&kit.sim, 12, GROBO_RS30X_ID, 2), 0);
@@ -347,9 +326,8 @@ static void replies_that_overlap_spoil_each_other(void **state)
 }
 
 /* The second payload follows the first at once, right into the reply that S has nobody wait for. */
-static void the_board_too_may_talk_over_a_reply(void **state)
+TEST(the_board_too_may_talk_over_a_reply)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_ask(&kit, "53 08 FA AF 01 0F 24 12 00 38 53 09 FA AF 02 00 24 01 01 01 27", 100000);
     assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, NULL) >= 8);
@@ -358,9 +336,8 @@ static void the_board_too_may_talk_over_a_reply(void **state)
     assert_int_equal(simkit_look(&kit, simkit_servo(&kit, 2)).torque, GROBO_TORQUE_OFF);
 }
 
-static void a_crowd_of_one_id_is_only_heard_in_part(void **state)
+TEST(a_crowd_of_one_id_is_only_heard_in_part)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     for (int i = 0; i < 20; i++) {
@@ -377,9 +354,8 @@ static void a_crowd_of_one_id_is_only_heard_in_part(void **state)
     assert_int_equal(kit.sim.stats.overflows, (80 - GROBO_SIM_TALKS_MAX) * 26);
 }
 
-static void an_adapter_may_return_what_it_sends(void **state)
+TEST(an_adapter_may_return_what_it_sends)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
                                      .echo = true};
     simkit_start(&kit, &config);
@@ -394,9 +370,8 @@ static void an_adapter_may_return_what_it_sends(void **state)
     simkit_expect(&kit, "12 34");
 }
 
-static void an_echo_is_of_what_was_on_the_line(void **state)
+TEST(an_echo_is_of_what_was_on_the_line)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
                                      .echo = true};
     simkit_start(&kit, &config);
@@ -411,9 +386,8 @@ static void an_echo_is_of_what_was_on_the_line(void **state)
 
 /* ---- pacing and the cable ------------------------------------------------------------------ */
 
-static void an_adapter_hands_over_what_came_together(void **state)
+TEST(an_adapter_hands_over_what_came_together)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .latency_us = 16000};
     simkit_start(&kit, &config);
     int64_t t0 = kit.now_us;
@@ -428,9 +402,8 @@ static void an_adapter_hands_over_what_came_together(void **state)
     assert_int_equal(kit.got_us[1], kit.got_us[0]);
 }
 
-static void unpaced_takes_only_the_return_delay(void **state)
+TEST(unpaced_takes_only_the_return_delay)
 {
-    (void)state;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .unpaced = true};
     simkit_start(&kit, &config);
     int64_t t0 = kit.now_us;
@@ -439,9 +412,8 @@ static void unpaced_takes_only_the_return_delay(void **state)
     assert_in_range(kit.got_us[25] - t0, 100, 102);
 }
 
-static void a_host_that_never_reads_loses_bytes(void **state)
+TEST(a_host_that_never_reads_loses_bytes)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     const uint8_t check[] = {0x41, 0x00};
     for (int i = 0; i < GROBO_SIM_WIRE_BYTES + 5; i++) {
@@ -456,9 +428,8 @@ static void a_host_that_never_reads_loses_bytes(void **state)
     assert_int_equal(kit.sim.stats.tx_bytes, GROBO_SIM_WIRE_BYTES);
 }
 
-static void time_going_back_counts_as_standing_still(void **state)
+TEST(time_going_back_counts_as_standing_still)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_send(&kit, "41 00");
     uint8_t byte;
@@ -469,9 +440,8 @@ static void time_going_back_counts_as_standing_still(void **state)
     assert_int_equal(grobo_sim_deadline(&kit.sim), kit.now_us + 1000 + bytes_us(2, 115200));
 }
 
-static void an_unplugged_cable_loses_what_is_on_the_line(void **state)
+TEST(an_unplugged_cable_loses_what_is_on_the_line)
 {
-    (void)state;
     simkit_start(&kit, NULL);
     simkit_packet(&kit, "FA AF 03 00 24 01 01 01", 0);
     simkit_packet(&kit, "FA AF 03 00 1E 04 01 84 03 64 00", 0);
@@ -488,37 +458,4 @@ static void an_unplugged_cable_loses_what_is_on_the_line(void **state)
     simkit_expect(&kit, "07");
     simkit_run(&kit, 1000000);
     assert_int_equal(simkit_look(&kit, 14).angle_mdeg, 90000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(check_costs_three_bytes),
-        cmocka_unit_test(read_costs_71_bytes_and_the_delay),
-        cmocka_unit_test(return_delay_is_waited),
-        cmocka_unit_test(pose_frame_is_stored_and_forwarded),
-        cmocka_unit_test(a_reading_takes_a_turn_for_each_packet),
-        cmocka_unit_test(frames_that_come_while_it_relays_wait),
-        cmocka_unit_test(a_flooded_board_loses_bytes_and_counts_them),
-        cmocka_unit_test(a_silent_servo_makes_a_reply_short),
-        cmocka_unit_test(asking_for_more_waits_and_for_less_cuts),
-        cmocka_unit_test(a_reply_nobody_asked_for_goes_nowhere),
-        cmocka_unit_test(slots_and_scenarios_are_noted),
-        cmocka_unit_test(a_stalled_frame_is_forgotten),
-        cmocka_unit_test(bus_read_costs_34_bytes_and_the_delay),
-        cmocka_unit_test(board_frames_mean_nothing_to_servos),
-        cmocka_unit_test(a_stalled_packet_is_forgotten),
-        cmocka_unit_test(talking_over_a_reply_spoils_both),
-        cmocka_unit_test(replies_that_overlap_spoil_each_other),
-        cmocka_unit_test(the_board_too_may_talk_over_a_reply),
-        cmocka_unit_test(a_crowd_of_one_id_is_only_heard_in_part),
-        cmocka_unit_test(an_adapter_may_return_what_it_sends),
-        cmocka_unit_test(an_echo_is_of_what_was_on_the_line),
-        cmocka_unit_test(an_adapter_hands_over_what_came_together),
-        cmocka_unit_test(unpaced_takes_only_the_return_delay),
-        cmocka_unit_test(a_host_that_never_reads_loses_bytes),
-        cmocka_unit_test(time_going_back_counts_as_standing_still),
-        cmocka_unit_test(an_unplugged_cable_loses_what_is_on_the_line),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

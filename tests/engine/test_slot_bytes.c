@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The bytes of frames under way: each frame's are its own, and some are kept for halts. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/axes_kit.h"
+#include "tests/support/test.h"
 
 static void do_nothing(grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
@@ -37,9 +33,8 @@ static void expect_bytes(const grobo_robot_slot *slot, size_t bytes, uint8_t all
 }
 
 /* Whichever is over first: the others keep theirs, and the room is that of one again. */
-static void frames_keep_their_bytes_when_one_is_over(void **state)
+TEST_WITH(axes_wirings, frames_keep_their_bytes_when_one_is_over)
 {
-    (void)state;
     enum { FRAMES = 4 };
     static const size_t bytes[FRAMES] = {3, 40, 1, 17};
     for (int order = 0; order < FRAMES * FRAMES; order++) {
@@ -67,9 +62,8 @@ static void frames_keep_their_bytes_when_one_is_over(void **state)
 }
 
 /* One that is longer than at first never leaves, and touches no other's. */
-static void a_frame_does_not_outgrow_its_room(void **state)
+TEST_WITH(axes_wirings, a_frame_does_not_outgrow_its_room)
 {
-    (void)state;
     grobo_robot_slot *slot, *other;
     start();
     assert_int_equal(give(GROBO_I_USE_PLAIN, 10, 1, &slot), 0);
@@ -88,9 +82,8 @@ static void a_frame_does_not_outgrow_its_room(void **state)
 }
 
 /* However long the frames are that wait, three of the longest find room if they are halts. */
-static void bytes_are_kept_for_halts(void **state)
+TEST_WITH(axes_wirings, bytes_are_kept_for_halts)
 {
-    (void)state;
     const size_t longest = GROBO_FRAME_MAX_BYTES;
     const size_t others = sizeof robot.frames / longest - 3;
     for (int halts = 0; halts <= 3; halts++) {
@@ -109,14 +102,4 @@ static void bytes_are_kept_for_halts(void **state)
         }
         assert_int_equal(give(GROBO_I_USE_HALT, 1, 7, &slot), GROBO_ERR_FULL);
     }
-}
-
-int main(void)
-{
-    static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_keep_their_bytes_when_one_is_over),
-        cmocka_unit_test(a_frame_does_not_outgrow_its_room),
-        cmocka_unit_test(bytes_are_kept_for_halts),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

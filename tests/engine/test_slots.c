@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames under way: which slots are taken, what the bus is told, and what is taken back. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/axes_kit.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { SLOTS = GROBO_ROBOT_SLOTS };
 
@@ -48,9 +44,8 @@ static void expect_used(uint32_t be)
 
 /* ---- taking ---------------------------------------------------------------------------------- */
 
-static void three_slots_are_kept_for_halts(void **state)
+TEST_WITH(axes_wirings, three_slots_are_kept_for_halts)
 {
-    (void)state;
     start();
     robot.acting = 9;
     for (int i = 0; i < SLOTS; i++) {
@@ -79,9 +74,8 @@ static void three_slots_are_kept_for_halts(void **state)
 }
 
 /* Behind the last one that is taken nobody looks. */
-static void the_end_of_the_slots_is_known(void **state)
+TEST_WITH(axes_wirings, the_end_of_the_slots_is_known)
 {
-    (void)state;
     start();
     assert_int_equal(robot.slots_end, 0);
     for (int i = 0; i < 4; i++) {
@@ -100,9 +94,8 @@ static void the_end_of_the_slots_is_known(void **state)
     assert_int_equal(robot.slots_end, 0);
 }
 
-static void a_slot_is_taken_clean(void **state)
+TEST_WITH(axes_wirings, a_slot_is_taken_clean)
 {
-    (void)state;
     start();
     memset(&robot.slots[0], 0xA5, sizeof robot.slots[0]);
     memset(&robot.built, 0xA5, sizeof robot.built);
@@ -121,9 +114,8 @@ static void a_slot_is_taken_clean(void **state)
 /* ---- what the bus is told -------------------------------------------------------------------- */
 
 /* A joint that was lost is asked once by the background, and nobody waits long for it. */
-static void what_the_bus_is_told_of_a_frame(void **state)
+TEST_WITH(axes_wirings, what_the_bus_is_told_of_a_frame)
 {
-    (void)state;
     static const struct {
         grobo_i_use use;
         bool reads;
@@ -161,9 +153,8 @@ static void what_the_bus_is_told_of_a_frame(void **state)
     }
 }
 
-static void what_the_bus_does_not_take_is_free_again(void **state)
+TEST_WITH(axes_wirings, what_the_bus_does_not_take_is_free_again)
 {
-    (void)state;
     start();
     grobo_robot_slot *slot = grobo_i_slot_take(&robot, GROBO_I_USE_JOB);
     assert_int_equal(grobo_i_slot_send(slot, &robot.built, GROBO_PRIORITY_USER),
@@ -181,9 +172,8 @@ static int leave_as_told(grobo_robot_slot *slot)
 }
 
 /* Its question is as old as its first attempt, and the frame is the one built for this attempt. */
-static void a_frame_is_asked_for_when_its_first_attempt_leaves(void **state)
+TEST_WITH(axes_wirings, a_frame_is_asked_for_when_its_first_attempt_leaves)
 {
-    (void)state;
     static const int64_t sent_us[] = {-1, 0, 1, NOW - 1};
     for (size_t i = 0; i < sizeof sent_us / sizeof sent_us[0]; i++) {
         for (int refused = 0; refused < 2; refused++) {
@@ -211,9 +201,8 @@ static void do_nothing(grobo_robot_slot *slot, int result, const grobo_packet *r
 }
 
 /* Only a named reply to the first attempt of the last frame says that the frame has left. */
-static void an_answer_says_that_its_frame_has_left(void **state)
+TEST_WITH(axes_wirings, an_answer_says_that_its_frame_has_left)
 {
-    (void)state;
     enum { ONE_ATTEMPT = 1 };
     static const struct {
         int result;
@@ -254,9 +243,8 @@ static void ignore_reply(grobo_robot_slot *slot, const grobo_packet *reply)
 }
 
 /* And so does the first of several, unless it refuses. */
-static void one_of_several_answers_says_that_their_frame_has_left(void **state)
+TEST_WITH(axes_wirings, one_of_several_answers_says_that_their_frame_has_left)
 {
-    (void)state;
     for (int refused = 0; refused < 2; refused++) {
         const grobo_packet reply = {.kind = GROBO_PACKET_RETURN, .refused = refused};
         uint8_t frame[GROBO_FRAME_MAX_BYTES];
@@ -295,9 +283,8 @@ static void count_ended(grobo_robot_slot *slot, int result, const grobo_packet *
     ended++;
 }
 
-static void frames_of_one_use_are_taken_back(void **state)
+TEST_WITH(axes_wirings, frames_of_one_use_are_taken_back)
 {
-    (void)state;
     for (int i = 0; i < USES; i++) {
         for (int of_job = 0; of_job < 2; of_job++) {
             submit_all_uses();
@@ -320,9 +307,8 @@ static void frames_of_one_use_are_taken_back(void **state)
 }
 
 /* Wherever they are, up to the last slot. */
-static void every_slot_is_looked_at(void **state)
+TEST_WITH(axes_wirings, every_slot_is_looked_at)
 {
-    (void)state;
     for (int at = 0; at < SLOTS; at++) {
         start();
         robot.slots_end = SLOTS;
@@ -374,9 +360,8 @@ static void count_in_order(grobo_robot_slot *slot, int result, const grobo_packe
     ended++;
 }
 
-static void frames_are_taken_back_in_the_order_of_their_slots(void **state)
+TEST_WITH(axes_wirings, frames_are_taken_back_in_the_order_of_their_slots)
 {
-    (void)state;
     for (int how = 0; how < 4; how++) {
         start();
         for (int i = 0; i < 4; i++) {
@@ -403,9 +388,8 @@ static void frames_are_taken_back_in_the_order_of_their_slots(void **state)
 }
 
 /* Those that have left are on their way already, and what moves other joints goes on waiting. */
-static void goals_that_wait_are_taken_back(void **state)
+TEST_WITH(axes_wirings, goals_that_wait_are_taken_back)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_joint_mask of[] = {GROBO_JOINT_BIT(j), GROBO_JOINT_BIT(other_of(j)),
                                        GROBO_JOINT_BIT(third_of(j)), GROBO_JOINTS_ALL(N)};
@@ -429,9 +413,8 @@ static void goals_that_wait_are_taken_back(void **state)
 }
 
 /* Whatever joints a motion that is played moves. */
-static void played_goals_that_wait_are_taken_back_if_asked(void **state)
+TEST_WITH(axes_wirings, played_goals_that_wait_are_taken_back_if_asked)
 {
-    (void)state;
     for (int played = 0; played < 2; played++) {
         for (int sent = -1; sent <= 1; sent++) {
             submit_all_uses();
@@ -451,9 +434,8 @@ static void played_goals_that_wait_are_taken_back_if_asked(void **state)
 }
 
 /* Torque that waits to come on for one of these joints; nothing else, and no other's. */
-static void torque_that_waits_is_kept_off(void **state)
+TEST_WITH(axes_wirings, torque_that_waits_is_kept_off)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_robot_order on = {
             .joints = bits(j, other_of(j)), .deed = GROBO_I_DEED_TORQUE, .torque = GROBO_TORQUE_ON};
@@ -484,9 +466,8 @@ static void torque_that_waits_is_kept_off(void **state)
     }
 }
 
-static void a_frame_that_waits_is_known_by_what_it_does(void **state)
+TEST_WITH(axes_wirings, a_frame_that_waits_is_known_by_what_it_does)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         const grobo_joint_mask bit = GROBO_JOINT_BIT(j);
         start();
@@ -525,9 +506,8 @@ static grobo_posture target_of(int joint, double way_deg, int64_t time_us)
 static const grobo_i_motion plainly = {.priority = GROBO_PRIORITY_MOTION, .due_us = GROBO_NEVER_US};
 
 /* In whole steps of the wire, one at least. */
-static void a_target_gets_the_time_that_it_asks_for(void **state)
+TEST_WITH(axes_wirings, a_target_gets_the_time_that_it_asks_for)
 {
-    (void)state;
     static const struct {
         int64_t asked_us, gets_us;
     } rows[] = {{0, 1230000},          {1, 10000},     {10000, 10000},
@@ -555,9 +535,8 @@ static void a_target_gets_the_time_that_it_asks_for(void **state)
 }
 
 /* The others of a move get as much; the end of a motion takes no longer. */
-static void a_target_that_is_too_fast_gets_more_time(void **state)
+TEST_WITH(axes_wirings, a_target_that_is_too_fast_gets_more_time)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int how = 0; how < 4; how++) { /* all alike, each, the end of a motion, slowly */
             grobo_i_motion motion = plainly;
@@ -578,9 +557,8 @@ static void a_target_that_is_too_fast_gets_more_time(void **state)
     }
 }
 
-static void how_a_target_is_sent_is_in_its_order(void **state)
+TEST_WITH(axes_wirings, how_a_target_is_sent_is_in_its_order)
 {
-    (void)state;
     for (int bit = 0; bit < 64; bit++) {
         start();
         robot.acting = 9;
@@ -627,9 +605,8 @@ static int turn_by_a_degree(const grobo_driver *self, void *ctx, const grobo_pos
 }
 
 /* All of it waits, or nothing; what waited before goes on waiting. */
-static void a_target_that_is_refused_does_not_wait(void **state)
+TEST_WITH(axes_wirings, a_target_that_is_refused_does_not_wait)
 {
-    (void)state;
     static const struct {
         int result;
         bool unread, beyond, as_is, full;
@@ -687,9 +664,8 @@ static int posture_of_few(const grobo_driver *self, void *ctx, const grobo_targe
 }
 
 /* As few frames as the driver can do with, of joints of their own. */
-static void a_target_is_parted_as_the_driver_needs_it(void **state)
+TEST_WITH(axes_wirings, a_target_is_parted_as_the_driver_needs_it)
 {
-    (void)state;
     static const struct {
         int joints, fit, each, frames;
         grobo_joint_mask be[4];
@@ -732,9 +708,8 @@ static void a_target_is_parted_as_the_driver_needs_it(void **state)
     }
 }
 
-static void a_renewal_goes_with_the_motion_frames(void **state)
+TEST_WITH(axes_wirings, a_renewal_goes_with_the_motion_frames)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         set_going(j);
@@ -753,9 +728,8 @@ static void a_renewal_goes_with_the_motion_frames(void **state)
 }
 
 /* As urgent as the job that asks; what the engine asks for by itself is as urgent as a user. */
-static void torque_is_as_urgent_as_what_asks_for_it(void **state)
+TEST_WITH(axes_wirings, torque_is_as_urgent_as_what_asks_for_it)
 {
-    (void)state;
     for (int by_job = 0; by_job < 2; by_job++) {
         for (int j = 0; j < N; j++) {
             start();
@@ -777,9 +751,8 @@ static void torque_is_as_urgent_as_what_asks_for_it(void **state)
     }
 }
 
-static void torque_that_may_not_come_on_is_refused_by_name(void **state)
+TEST_WITH(axes_wirings, torque_that_may_not_come_on_is_refused_by_name)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         make_limp(j);
@@ -798,9 +771,8 @@ static void torque_that_may_not_come_on_is_refused_by_name(void **state)
 }
 
 /* Four at a time, the lowest first. */
-static void small_frames_have_four_joints(void **state)
+TEST_WITH(axes_wirings, small_frames_have_four_joints)
 {
-    (void)state;
     start();
     grobo_joint_mask left = GROBO_JOINTS_ALL(10) & all_but(1);
     assert_true(grobo_i_take_chunk(&left, GROBO_I_SMALL) == 0x1D); /* 0, 2, 3, 4 */
@@ -824,9 +796,8 @@ static void small_frames_have_four_joints(void **state)
 }
 
 /* Of those that move by the time it leaves, first of all; targets that wait are gone by then. */
-static void a_halt_goes_to_what_moves(void **state)
+TEST_WITH(axes_wirings, a_halt_goes_to_what_moves)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         submit(0, GROBO_I_USE_MOTION, (grobo_robot_order){.joints = GROBO_JOINT_BIT(j)});
@@ -859,9 +830,8 @@ static void a_halt_goes_to_what_moves(void **state)
     }
 }
 
-static void a_halt_of_what_stands_is_not_sent(void **state)
+TEST_WITH(axes_wirings, a_halt_of_what_stands_is_not_sent)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         start();
         set_going(j);
@@ -872,9 +842,8 @@ static void a_halt_of_what_stands_is_not_sent(void **state)
 }
 
 /* Frames that move joints count, readings and the like do not. */
-static void what_a_frame_was_for_decides_what_its_end_counts(void **state)
+TEST_WITH(axes_wirings, what_a_frame_was_for_decides_what_its_end_counts)
 {
-    (void)state;
     for (int i = 0; i < USES; i++) {
         for (int lost = 0; lost < 2; lost++) {
             start();
@@ -895,9 +864,8 @@ static void what_a_frame_was_for_decides_what_its_end_counts(void **state)
 
 /* While a motion is played, of what it does not move: that it brings to rest by itself, and once it
  * stops, that is what its last frame moves. */
-static void a_stop_takes_back_what_waits_and_halts_what_is_not_played(void **state)
+TEST_WITH(axes_wirings, a_stop_takes_back_what_waits_and_halts_what_is_not_played)
 {
-    (void)state;
     enum { IDLE, SOME, ALL, STOPPING, HOWS };
     for (int j = 0; j < N; j++) {
         for (int how = 0; how < HOWS; how++) {
@@ -928,39 +896,4 @@ static void a_stop_takes_back_what_waits_and_halts_what_is_not_played(void **sta
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(three_slots_are_kept_for_halts),
-        cmocka_unit_test(the_end_of_the_slots_is_known),
-        cmocka_unit_test(a_slot_is_taken_clean),
-        cmocka_unit_test(what_the_bus_is_told_of_a_frame),
-        cmocka_unit_test(what_the_bus_does_not_take_is_free_again),
-        cmocka_unit_test(a_frame_is_asked_for_when_its_first_attempt_leaves),
-        cmocka_unit_test(frames_of_one_use_are_taken_back),
-        cmocka_unit_test(every_slot_is_looked_at),
-        cmocka_unit_test(frames_are_taken_back_in_the_order_of_their_slots),
-        cmocka_unit_test(goals_that_wait_are_taken_back),
-        cmocka_unit_test(played_goals_that_wait_are_taken_back_if_asked),
-        cmocka_unit_test(torque_that_waits_is_kept_off),
-        cmocka_unit_test(a_frame_that_waits_is_known_by_what_it_does),
-        cmocka_unit_test(a_target_gets_the_time_that_it_asks_for),
-        cmocka_unit_test(a_target_that_is_too_fast_gets_more_time),
-        cmocka_unit_test(how_a_target_is_sent_is_in_its_order),
-        cmocka_unit_test(a_target_that_is_refused_does_not_wait),
-        cmocka_unit_test(a_target_is_parted_as_the_driver_needs_it),
-        cmocka_unit_test(a_renewal_goes_with_the_motion_frames),
-        cmocka_unit_test(torque_is_as_urgent_as_what_asks_for_it),
-        cmocka_unit_test(torque_that_may_not_come_on_is_refused_by_name),
-        cmocka_unit_test(small_frames_have_four_joints),
-        cmocka_unit_test(a_halt_goes_to_what_moves),
-        cmocka_unit_test(an_answer_says_that_its_frame_has_left),
-        cmocka_unit_test(one_of_several_answers_says_that_their_frame_has_left),
-        cmocka_unit_test(a_halt_of_what_stands_is_not_sent),
-        cmocka_unit_test(what_a_frame_was_for_decides_what_its_end_counts),
-        cmocka_unit_test(a_stop_takes_back_what_waits_and_halts_what_is_not_played),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -2,17 +2,13 @@
 /* What ends when the robot stops, what must not come on, and when the watch trips. */
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip, other;
@@ -85,9 +81,8 @@ static void expect_rest(void)
 
 /* ---- the watch ------------------------------------------------------------------------------- */
 
-static void three_low_readings_in_a_row_trip(void **state)
+TEST_WITH(rig_wirings, three_low_readings_in_a_row_trip)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     /* A stop reads those that were never read. */
     rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINTS_ALL(20), GROBO_SENSE_FULL),
@@ -127,9 +122,8 @@ static void read_for(int joint, int64_t us)
 }
 
 /* A second of it, without a break: what was before a break does not count. */
-static void current_trips_when_it_was_high_for_a_second(void **state)
+TEST_WITH(rig_wirings, current_trips_when_it_was_high_for_a_second)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     for (int i = 0; i < 3; i++) {
@@ -153,9 +147,8 @@ static void current_trips_when_it_was_high_for_a_second(void **state)
 /* ---- stopping -------------------------------------------------------------------------------- */
 
 /* The goal waits behind a frame for all joints; the stop comes before it leaves. */
-static void a_stop_cancels_what_waits_for_the_line(void **state)
+TEST_WITH(rig_wirings, a_stop_cancels_what_waits_for_the_line)
 {
-    (void)state;
     for (int way = 0; way < 3; way++) {
         start_at(0);
         grobo_posture all;
@@ -185,9 +178,8 @@ static void a_stop_cancels_what_waits_for_the_line(void **state)
 
 /* A stop is asked for, and latched at once: what was to stop does, and what is asked for behind the
  * latch does not leave. */
-static void a_latch_lets_a_stop_leave_that_waits(void **state)
+TEST_WITH(rig_wirings, a_latch_lets_a_stop_leave_that_waits)
 {
-    (void)state;
     start_at(-40);
     grobo_posture target = rig_posture(&rig, NECK, 40, 5000);
     assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
@@ -205,9 +197,8 @@ static void a_latch_lets_a_stop_leave_that_waits(void **state)
 }
 
 /* A servo that does not answer is waited for by whoever asked, not by the stop. */
-static void a_stop_does_not_wait_for_a_silent_servo(void **state)
+TEST_WITH(rig_wirings, a_stop_does_not_wait_for_a_silent_servo)
 {
-    (void)state;
     start_at(-40);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
     grobo_posture target = rig_posture(&rig, NECK, 40, 5000);
@@ -226,9 +217,8 @@ static void a_stop_does_not_wait_for_a_silent_servo(void **state)
 
 /* Nor is a joint thrown back: its goal lies ahead of where it is when the frame gets there, which
  * may be behind a frame for all the others. */
-static void a_stopped_joint_never_goes_back(void **state)
+TEST_WITH(rig_wirings, a_stopped_joint_never_goes_back)
 {
-    (void)state;
     for (int ms = 240, busy = 0; ms <= 2000; ms += busy * 220, busy = !busy) {
         start_at(-45);
         grobo_posture target = rig_posture(&rig, NECK, 45, ms);
@@ -257,9 +247,8 @@ static void a_stopped_joint_never_goes_back(void **state)
 }
 
 /* A weak supply: the joint falls back behind a way that it cannot go. It stops where it is. */
-static void a_weak_joint_stops_where_it_is(void **state)
+TEST_WITH(rig_wirings, a_weak_joint_stops_where_it_is)
 {
-    (void)state;
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
                                        .sense_interval_us = GROBO_SENSE_NEVER, .voltage_mv = -1};
     for (int ms = 300; ms <= 400; ms += 20) {
@@ -282,9 +271,8 @@ static void a_weak_joint_stops_where_it_is(void **state)
 }
 
 /* A reset makes what begins behind it slow; the end of a motion does not take longer by that. */
-static void a_smooth_stop_is_no_longer_after_a_reset(void **state)
+TEST_WITH(rig_wirings, a_smooth_stop_is_no_longer_after_a_reset)
 {
-    (void)state;
     static const rig_key leap[] = {
         {0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}, {4000, {{SHOULDER, -100}}}};
     const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
@@ -306,9 +294,8 @@ static void a_smooth_stop_is_no_longer_after_a_reset(void **state)
 }
 
 /* A joint holds, and is sent on its way, while the same job still verifies others. */
-static void a_joint_sent_while_torque_comes_on_is_stopped_where_it_is(void **state)
+TEST_WITH(rig_wirings, a_joint_sent_while_torque_comes_on_is_stopped_where_it_is)
 {
-    (void)state;
     const grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 7};
     rig_start(&rig, NULL, &limp);
     int number = grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON);
@@ -330,9 +317,8 @@ static void a_joint_sent_while_torque_comes_on_is_stopped_where_it_is(void **sta
 }
 
 /* A raw goal for a joint without torque moves nothing, and nothing is there to stop. */
-static void a_stop_sends_no_joint_that_has_no_torque(void **state)
+TEST_WITH(rig_wirings, a_stop_sends_no_joint_that_has_no_torque)
 {
-    (void)state;
     start_at(0);
     grobo_joint_mask neck = GROBO_JOINT_BIT(NECK);
     rig_expect(&rig, grobo_robot_torque(&rig.robot, neck, GROBO_TORQUE_BRAKE), GROBO_OK);
@@ -345,9 +331,8 @@ static void a_stop_sends_no_joint_that_has_no_torque(void **state)
 }
 
 /* The clip that waited in the queue is gone with the first stop, and stays so. */
-static void a_stop_empties_the_queue(void **state)
+TEST_WITH(rig_wirings, a_stop_empties_the_queue)
 {
-    (void)state;
     for (int twice = 0; twice < 3; twice++) {
         grobo_play_progress progress;
         rig_start(&rig, &quiet, NULL);
@@ -375,9 +360,8 @@ static void a_stop_empties_the_queue(void **state)
 /* ---- trips ----------------------------------------------------------------------------------- */
 
 /* The reading that trips comes while a raw frame waits for the line behind it. */
-static void a_trip_ends_a_raw_job(void **state)
+TEST_WITH(rig_wirings, a_trip_ends_a_raw_job)
 {
-    (void)state;
     int ended = 0;
     for (int us = 0; us < 60000; us += 1000) {
         grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
@@ -403,9 +387,8 @@ static void a_trip_ends_a_raw_job(void **state)
 }
 
 /* The job itself reads the heat: no torque comes on, the job says why, and the rig looks. */
-static void a_trip_ends_torque_that_comes_on(void **state)
+TEST_WITH(rig_wirings, a_trip_ends_torque_that_comes_on)
 {
-    (void)state;
     int without = 0;
     for (int ms = 0; ms < 400; ms += 7) {
         rig_start(&rig, &quiet, NULL);
@@ -428,9 +411,8 @@ static void a_trip_ends_torque_that_comes_on(void **state)
 }
 
 /* What only switches off goes on: it is on the safe side. */
-static void a_trip_does_not_end_torque_that_goes_off(void **state)
+TEST_WITH(rig_wirings, a_trip_does_not_end_torque_that_goes_off)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, NECK, 75), 0);
@@ -443,9 +425,8 @@ static void a_trip_does_not_end_torque_that_goes_off(void **state)
 /* ---- what others do, and what raw frames do -------------------------------------------------- */
 
 /* A joint on its way by another program's order, nobody knows where to, is left alone. */
-static void a_raw_goal_is_refused_for_a_joint_that_others_move(void **state)
+TEST_WITH(rig_wirings, a_raw_goal_is_refused_for_a_joint_that_others_move)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 20000,
                                  .lost_replies = -1};
     rig_start(&rig, &config, NULL);
@@ -467,9 +448,8 @@ static void a_raw_goal_is_refused_for_a_joint_that_others_move(void **state)
 }
 
 /* A joint that a raw frame let go does not hold: known at once, before it is read again. */
-static void torque_taken_by_a_raw_frame_is_gone(void **state)
+TEST_WITH(rig_wirings, torque_taken_by_a_raw_frame_is_gone)
 {
-    (void)state;
     static const grobo_torque modes[] = {GROBO_TORQUE_OFF, GROBO_TORQUE_BRAKE};
     for (int i = 0; i < 2; i++) {
         start_at(0);
@@ -490,9 +470,8 @@ static void torque_taken_by_a_raw_frame_is_gone(void **state)
 
 /* A frame for all joints takes a second on this line (0.1 s on a bus, whose servos know none as
  * slow), and what is behind it is as late. */
-static void a_move_begins_when_its_frame_leaves(void **state)
+TEST_WITH(rig_wirings, a_move_begins_when_its_frame_leaves)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     bool by_board = rig_wiring == GROBO_WIRING_BOARD;
     grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .baud_bps = by_board ? 1200 : 9600};
@@ -520,9 +499,8 @@ static void a_move_begins_when_its_frame_leaves(void **state)
 
 /* A servo whose own limits are narrower than the model's takes no goal beyond them: it is told
  * again, then the motion is given up, and what is on its way is stopped. */
-static void an_approach_that_never_takes_is_given_up(void **state)
+TEST_WITH(rig_wirings, an_approach_that_never_takes_is_given_up)
 {
-    (void)state;
     static const rig_key far[] = {{0, {{NECK, 40}, {R_KNEE, -100}}}, {1000, {{NECK, 0}}}};
     grobo_robot_config config = quiet;
     config.approach_dps = 10;
@@ -549,9 +527,8 @@ static int sample_that_breaks(void *ctx, int64_t t_us, grobo_posture *posture)
 
 /* What it asks for is more than a joint can do, so that one is still on its way when the clip
  * breaks: it is stopped there, as by a stop. */
-static void a_clip_that_breaks_stops_the_robot(void **state)
+TEST_WITH(rig_wirings, a_clip_that_breaks_stops_the_robot)
 {
-    (void)state;
     static const rig_key jump[] = {{0, {{NECK, -45}}}, {33, {{NECK, 45}}}, {1000, {{NECK, 45}}}};
     grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 30};
     start_at(-45);
@@ -569,9 +546,8 @@ static void a_clip_that_breaks_stops_the_robot(void **state)
 }
 
 /* A move beside it is not done where it was stopped, nor does a raw goal leave that waits. */
-static void a_clip_that_breaks_ends_what_moves_beside_it(void **state)
+TEST_WITH(rig_wirings, a_clip_that_breaks_ends_what_moves_beside_it)
 {
-    (void)state;
     static const rig_key stay[] = {{0, {{NECK, -45}}}, {2000, {{NECK, -45}}}};
     grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE, .rate_hz = 20};
     for (int commands = 0; commands < 2; commands++) {
@@ -614,9 +590,8 @@ static int posture_that_fails(const grobo_driver *self, void *ctx, const grobo_t
 }
 
 /* The job ends with the driver's reason, and nothing more moves. */
-static void a_target_that_makes_no_frame_ends_what_asked_for_it(void **state)
+TEST_WITH(rig_wirings, a_target_that_makes_no_frame_ends_what_asked_for_it)
 {
-    (void)state;
     for (int way = 0; way < 3; way++) {
         grobo_driver driver = *grobo_gr001_driver(rig_wiring);
         grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
@@ -653,32 +628,4 @@ static void a_target_that_makes_no_frame_ends_what_asked_for_it(void **state)
         rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - 10) < 0.1);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(three_low_readings_in_a_row_trip),
-        cmocka_unit_test(current_trips_when_it_was_high_for_a_second),
-        cmocka_unit_test(a_stop_cancels_what_waits_for_the_line),
-        cmocka_unit_test(a_latch_lets_a_stop_leave_that_waits),
-        cmocka_unit_test(a_stop_does_not_wait_for_a_silent_servo),
-        cmocka_unit_test(a_stopped_joint_never_goes_back),
-        cmocka_unit_test(a_weak_joint_stops_where_it_is),
-        cmocka_unit_test(a_smooth_stop_is_no_longer_after_a_reset),
-        cmocka_unit_test(a_joint_sent_while_torque_comes_on_is_stopped_where_it_is),
-        cmocka_unit_test(a_stop_sends_no_joint_that_has_no_torque),
-        cmocka_unit_test(a_stop_empties_the_queue),
-        cmocka_unit_test(a_trip_ends_a_raw_job),
-        cmocka_unit_test(a_trip_ends_torque_that_comes_on),
-        cmocka_unit_test(a_trip_does_not_end_torque_that_goes_off),
-        cmocka_unit_test(a_raw_goal_is_refused_for_a_joint_that_others_move),
-        cmocka_unit_test(torque_taken_by_a_raw_frame_is_gone),
-        cmocka_unit_test(a_move_begins_when_its_frame_leaves),
-        cmocka_unit_test(an_approach_that_never_takes_is_given_up),
-        cmocka_unit_test(a_clip_that_breaks_stops_the_robot),
-        cmocka_unit_test(a_clip_that_breaks_ends_what_moves_beside_it),
-        cmocka_unit_test(a_target_that_makes_no_frame_ends_what_asked_for_it),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

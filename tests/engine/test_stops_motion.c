@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Motions that are stopped, by whatever stops them: softly, ahead, and then it is quiet. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/raw_frames.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -51,9 +47,8 @@ static void stop_by(int way)
     }
 }
 
-static void whatever_stops_a_motion_throws_no_joint_back(void **state)
+TEST_WITH(rig_wirings, whatever_stops_a_motion_throws_no_joint_back)
 {
-    (void)state;
     static const grobo_play_mode modes[] = {GROBO_PLAY_KEY, GROBO_PLAY_RATE};
     for (int i = 0; i < 2 * WAYS; i++) {
         int way = i / 2;
@@ -81,9 +76,8 @@ static void whatever_stops_a_motion_throws_no_joint_back(void **state)
 }
 
 /* The frame that brings the motion to rest waits behind a reading, and something else comes. */
-static void a_stop_is_not_lost_by_what_comes_behind_it(void **state)
+TEST_WITH(rig_wirings, a_stop_is_not_lost_by_what_comes_behind_it)
 {
-    (void)state;
     enum { AGAIN, LEAVE, LET_GO, HEAT, SEND, SEND_BOTH, BEHINDS };
     for (int i = 0; i < 2 * BEHINDS; i++) {
         const grobo_joint_mask others = GROBO_JOINT_BIT(CHEST) | GROBO_JOINT_BIT(NECK);
@@ -134,9 +128,8 @@ static void a_stop_is_not_lost_by_what_comes_behind_it(void **state)
 }
 
 /* Nor is a pause, whose motion goes on to wait. */
-static void a_pause_is_not_lost_by_what_comes_behind_it(void **state)
+TEST_WITH(rig_wirings, a_pause_is_not_lost_by_what_comes_behind_it)
 {
-    (void)state;
     for (int cancels = 0; cancels < 2; cancels++) {
         rig_start_at(&rig, -45, &quiet);
         rig_clip_init(&clip, rise, 3);
@@ -167,9 +160,8 @@ static double stop_way_deg(int way)
 }
 
 /* The clip is through with a way that takes the joint half a second. */
-static void a_stop_begins_where_a_joint_is_that_is_behind(void **state)
+TEST_WITH(rig_wirings, a_stop_begins_where_a_joint_is_that_is_behind)
 {
-    (void)state;
     static const rig_key leap[] = {
         {0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}, {4000, {{SHOULDER, -100}}}};
     const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
@@ -189,9 +181,8 @@ static void a_stop_begins_where_a_joint_is_that_is_behind(void **state)
 }
 
 /* A weak supply: the shoulder falls 60 degrees behind, and is read. */
-static void a_stop_of_a_motion_begins_where_a_weak_joint_is(void **state)
+TEST_WITH(rig_wirings, a_stop_of_a_motion_begins_where_a_weak_joint_is)
 {
-    (void)state;
     static const rig_key leap[] = {
         {0, {{SHOULDER, -100}}}, {540, {{SHOULDER, 100}}}, {4000, {{SHOULDER, 100}}}};
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
@@ -220,9 +211,8 @@ static void a_stop_of_a_motion_begins_where_a_weak_joint_is(void **state)
 }
 
 /* The clip has the neck at 30 degrees by then. */
-static void a_stop_leaves_a_joint_where_a_raw_goal_sent_it(void **state)
+TEST_WITH(rig_wirings, a_stop_leaves_a_joint_where_a_raw_goal_sent_it)
 {
-    (void)state;
     for (int way = 0; way < WAYS; way++) {
         rig_start_at(&rig, -45, &quiet);
         begin_to_play(GROBO_PLAY_KEY);
@@ -237,9 +227,8 @@ static void a_stop_leaves_a_joint_where_a_raw_goal_sent_it(void **state)
 }
 
 /* The motion goes on, and its next frame is seconds away. */
-static void a_cancel_halts_what_a_raw_goal_moves_in_a_motion(void **state)
+TEST_WITH(rig_wirings, a_cancel_halts_what_a_raw_goal_moves_in_a_motion)
 {
-    (void)state;
     rig_start_at(&rig, -45, &quiet);
     begin_to_play(GROBO_PLAY_KEY);
     rig_run(&rig, 500000);
@@ -258,9 +247,8 @@ static void a_cancel_halts_what_a_raw_goal_moves_in_a_motion(void **state)
 }
 
 /* The shoulder needs longer than its clip, and the next one does not move it. */
-static void a_stop_reaches_a_joint_of_the_clip_before(void **state)
+TEST_WITH(rig_wirings, a_stop_reaches_a_joint_of_the_clip_before)
 {
-    (void)state;
     static const rig_key leap[] = {{0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}};
     static rig_clip next;
     for (int way = 0; way <= PAUSE; way++) {
@@ -293,9 +281,8 @@ static int goals_sent(void)
 }
 
 /* A raw goal moved the neck before the motion did: it is the motion's by now, and rests with it. */
-static void a_stop_is_smooth_where_a_raw_goal_was_before(void **state)
+TEST_WITH(rig_wirings, a_stop_is_smooth_where_a_raw_goal_was_before)
 {
-    (void)state;
     rig_start_at(&rig, -45, &quiet);
     rig_expect(&rig, raw_goal(&rig, NECK, -44, 200), GROBO_OK);
     begin_to_play(GROBO_PLAY_KEY);
@@ -307,9 +294,8 @@ static void a_stop_is_smooth_where_a_raw_goal_was_before(void **state)
 }
 
 /* While the end of a motion is read back, joint by joint, and repeated where it was lost. */
-static void a_stop_after_a_motion_is_not_undone_by_its_end(void **state)
+TEST_WITH(rig_wirings, a_stop_after_a_motion_is_not_undone_by_its_end)
 {
-    (void)state;
     bool settles = true;
     for (int ms = 1; settles; ms += 8) {
         rig_start_at(&rig, -45, &quiet);
@@ -328,9 +314,8 @@ static void a_stop_after_a_motion_is_not_undone_by_its_end(void **state)
 }
 
 /* The one frame of a target is lost, and the joint is read to stand still where it was. */
-static void a_stop_moves_no_joint_that_lost_its_frame(void **state)
+TEST_WITH(rig_wirings, a_stop_moves_no_joint_that_lost_its_frame)
 {
-    (void)state;
     const grobo_robot_config reading = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start_at(&rig, -45, &reading);
     grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
@@ -348,9 +333,8 @@ static void a_stop_moves_no_joint_that_lost_its_frame(void **state)
 }
 
 /* It creeps on, where an earlier target has sent it: the stop is for that way. */
-static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
+TEST_WITH(rig_wirings, a_stop_ends_the_way_of_a_joint_that_lost_its_frame)
 {
-    (void)state;
     for (int angle_too = 0; angle_too < 2; angle_too++) {
         rig_start_at(&rig, -45, &quiet);
         grobo_posture target = rig_posture(&rig, NECK, 45, 13000);
@@ -375,9 +359,8 @@ static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
 
 /* The frame that was to turn it round is lost, and it is read ahead of its way, without its goal:
  * at full speed, or slowly where the way is over. */
-static void a_stop_ends_a_way_that_was_to_be_over(void **state)
+TEST_WITH(rig_wirings, a_stop_ends_a_way_that_was_to_be_over)
 {
-    (void)state;
     static const struct {
         int there_ms, back_ms, read_ms;
         double most_deg; /* that it may be pulled back or go on */
@@ -407,9 +390,8 @@ static void a_stop_ends_a_way_that_was_to_be_over(void **state)
 }
 
 /* Who is not read again is not taken to move for ever. */
-static void what_turns_off_its_way_is_forgotten(void **state)
+TEST_WITH(rig_wirings, what_turns_off_its_way_is_forgotten)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     grobo_posture target = rig_posture(&rig, SHOULDER, 100, 10000);
     assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
@@ -429,9 +411,8 @@ static void what_turns_off_its_way_is_forgotten(void **state)
 }
 
 /* Another program moves it, where this one may not: to its limit it comes softly. */
-static void a_stop_outside_the_limits_is_slow(void **state)
+TEST_WITH(rig_wirings, a_stop_outside_the_limits_is_slow)
 {
-    (void)state;
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     const grobo_rs30x_goal goal = {NECK_ID, 490, 1000};
     rig_start_narrow(&rig);
@@ -456,9 +437,8 @@ static void a_stop_outside_the_limits_is_slow(void **state)
 }
 
 /* A reading that was on the line tells of one more joint that moves, sent there by nobody here. */
-static void a_halt_is_for_what_moves_when_it_leaves(void **state)
+TEST_WITH(rig_wirings, a_halt_is_for_what_moves_when_it_leaves)
 {
-    (void)state;
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     const grobo_rs30x_goal goal = {NECK_ID, -400, 500};
     rig_start_at(&rig, 0, &quiet);
@@ -482,9 +462,8 @@ static void a_halt_is_for_what_moves_when_it_leaves(void **state)
 }
 
 /* Asked before the halt left and answered after it: of a joint that it does not stop it tells. */
-static void a_halt_makes_no_reading_of_others_stale(void **state)
+TEST_WITH(rig_wirings, a_halt_makes_no_reading_of_others_stale)
 {
-    (void)state;
     rig_start(&rig, &quiet, NULL);
     grobo_posture target = rig_posture(&rig, NECK, 10, 500);
     rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
@@ -511,9 +490,8 @@ static void a_halt_makes_no_reading_of_others_stale(void **state)
 }
 
 /* It was told to let go, did not hear that, and is known to hold, or not known not to. */
-static void a_stop_reaches_a_joint_that_was_to_let_go(void **state)
+TEST_WITH(rig_wirings, a_stop_reaches_a_joint_that_was_to_let_go)
 {
-    (void)state;
     for (int reads = 0; reads < 2; reads++) {
         rig_start_at(&rig, -45, &quiet);
         grobo_joint_mask neck = GROBO_JOINT_BIT(NECK);
@@ -539,9 +517,8 @@ static void a_stop_reaches_a_joint_that_was_to_let_go(void **state)
 }
 
 /* A servo that writes its flash or restarts hears nothing for up to two seconds. */
-static void a_stop_reaches_a_servo_that_was_deaf(void **state)
+TEST_WITH(rig_wirings, a_stop_reaches_a_servo_that_was_deaf)
 {
-    (void)state;
     for (int exits = 0; exits < 2; exits++) {
         rig_start_at(&rig, 0, &quiet);
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
@@ -555,9 +532,8 @@ static void a_stop_reaches_a_servo_that_was_deaf(void **state)
 }
 
 /* One that is deaf when it is to halt and mute when it is read is read again, and halted. */
-static void leaving_looks_again_at_who_was_not_heard(void **state)
+TEST_WITH(rig_wirings, leaving_looks_again_at_who_was_not_heard)
 {
-    (void)state;
     rig_start_at(&rig, -45, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
     assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
@@ -581,9 +557,8 @@ static void leaving_looks_again_at_who_was_not_heard(void **state)
 }
 
 /* A robot that moves is let go when it stands: else its joints would fly on. */
-static void leaving_lets_go_when_the_joints_stand(void **state)
+TEST_WITH(rig_wirings, leaving_lets_go_when_the_joints_stand)
 {
-    (void)state;
     for (int by_play = 0; by_play < 2; by_play++) {
         for (int ms = 300; ms < 1500; ms += 170) {
             rig_start_at(&rig, -45, &quiet);
@@ -606,9 +581,8 @@ static void leaving_lets_go_when_the_joints_stand(void **state)
     }
 }
 
-static void what_is_stopped_says_that_it_was_canceled(void **state)
+TEST_WITH(rig_wirings, what_is_stopped_says_that_it_was_canceled)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
     for (int at_once = 0; at_once < 2; at_once++) {
@@ -629,9 +603,8 @@ static void what_is_stopped_says_that_it_was_canceled(void **state)
 }
 
 /* The stop itself counts as asked for when it was asked for, between the engine's own times. */
-static void a_stop_is_dated_by_its_call(void **state)
+TEST_WITH(rig_wirings, a_stop_is_dated_by_its_call)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     rig_run(&rig, 500000);
     rig.now_us += 3210;
@@ -645,9 +618,8 @@ static void a_stop_is_dated_by_its_call(void **state)
 }
 
 /* Whoever asks for it need not come back: the frame is there. */
-static void the_frame_that_stops_is_there_at_once(void **state)
+TEST_WITH(rig_wirings, the_frame_that_stops_is_there_at_once)
 {
-    (void)state;
     uint8_t buf[GROBO_RS30X_PACKET_MAX_BYTES];
     rig_start_at(&rig, 0, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
@@ -665,9 +637,8 @@ static void the_frame_that_stops_is_there_at_once(void **state)
 }
 
 /* A servo that could not go where it was sent is where it was read, not at its goal. */
-static void a_move_begins_where_the_joint_is(void **state)
+TEST_WITH(rig_wirings, a_move_begins_where_the_joint_is)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     assert_int_equal(grobo_sim_set_blocked(&rig.sim, NECK, true), 0);
     grobo_posture target = rig_posture(&rig, NECK, 40, 500);
@@ -684,9 +655,8 @@ static void a_move_begins_where_the_joint_is(void **state)
 }
 
 /* Leaving is bounded from when it was asked for, too. */
-static void leaving_is_bounded_by_its_call(void **state)
+TEST_WITH(rig_wirings, leaving_is_bounded_by_its_call)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.exit_bound_us = 100000;
     rig_start_at(&rig, 0, &config);
@@ -704,9 +674,8 @@ static void leaving_is_bounded_by_its_call(void **state)
 
 /* Another program has stopped the robot while this one had it sit down: it does not, whatever was
  * on the way to be sent. */
-static void nobody_sits_down_after_an_emergency_stop(void **state)
+TEST_WITH(rig_wirings, nobody_sits_down_after_an_emergency_stop)
 {
-    (void)state;
     bool sits = false;
     for (int ms = 0; !sits; ms += 2) {
         rig_start_at(&rig, -30, &quiet);
@@ -730,9 +699,8 @@ static int key_that_breaks(void *ctx, size_t i, grobo_posture *posture, int64_t 
 }
 
 /* The key that was sent last may be seconds away: nobody would stop it any more. */
-static void a_clip_that_breaks_under_a_command_stops_the_robot(void **state)
+TEST_WITH(rig_wirings, a_clip_that_breaks_under_a_command_stops_the_robot)
 {
-    (void)state;
     rig_start_at(&rig, -45, &quiet);
     rig_clip_init(&clip, rise, 3);
     clip.only = GROBO_JOINT_BIT(NECK);
@@ -770,9 +738,8 @@ static int sample_that_breaks(void *ctx, int64_t t_us, grobo_posture *posture)
 }
 
 /* More frames than the line carries: one of them waits whenever it is, and never leaves. */
-static void nothing_of_a_broken_clip_leaves_any_more(void **state)
+TEST_WITH(rig_wirings, nothing_of_a_broken_clip_leaves_any_more)
 {
-    (void)state;
     const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
                                         .rate_hz = 150, .unwatched = true};
     for (int ms = 0; ms < 40; ms++) {
@@ -800,9 +767,8 @@ static void nothing_of_a_broken_clip_leaves_any_more(void **state)
 
 /* A raw frame for all joints does not fit between those of the motion, readings do: it waits, and
  * ends with the reading that trips, not when its turn would come. */
-static void a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion(void **state)
+TEST_WITH(rig_wirings, a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion)
 {
-    (void)state;
     const bool by_board = rig_wiring == GROBO_WIRING_BOARD;
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 100000};
     const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
@@ -834,9 +800,8 @@ static void a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion(void **stat
 }
 
 /* Its first attempt was lost, and before the second the joint was sent elsewhere: that stands. */
-static void a_raw_goal_is_not_tried_again_behind_a_later_target(void **state)
+TEST_WITH(rig_wirings, a_raw_goal_is_not_tried_again_behind_a_later_target)
 {
-    (void)state;
     for (int later = 0; later < 2; later++) {
         uint8_t packet[32];
         uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
@@ -881,9 +846,8 @@ static void take_without_writing(int64_t us)
 
 /* A host stalls with the frame in its hands that switches torque on, and somebody turns the joint:
  * the frame is out of date. The rig fails where torque comes on away from the goal. */
-static void torque_that_waited_long_comes_on_for_nobody(void **state)
+TEST_WITH(rig_wirings, torque_that_waited_long_comes_on_for_nobody)
 {
-    (void)state;
     int overtaken = 0;
     for (int ms = 1; ms < 400; ms += 3) {
         const grobo_sim_config jumps = {GROBO_SIM_CONFIG_INIT, .jump_on_torque = true};
@@ -905,42 +869,3 @@ static void torque_that_waited_long_comes_on_for_nobody(void **state)
 }
 
 /* ---- targets --------------------------------------------------------------------------------- */
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whatever_stops_a_motion_throws_no_joint_back),
-        cmocka_unit_test(a_stop_begins_where_a_joint_is_that_is_behind),
-        cmocka_unit_test(a_stop_is_not_lost_by_what_comes_behind_it),
-        cmocka_unit_test(a_pause_is_not_lost_by_what_comes_behind_it),
-        cmocka_unit_test(a_stop_of_a_motion_begins_where_a_weak_joint_is),
-        cmocka_unit_test(a_stop_leaves_a_joint_where_a_raw_goal_sent_it),
-        cmocka_unit_test(a_cancel_halts_what_a_raw_goal_moves_in_a_motion),
-        cmocka_unit_test(a_stop_reaches_a_joint_of_the_clip_before),
-        cmocka_unit_test(a_stop_is_smooth_where_a_raw_goal_was_before),
-        cmocka_unit_test(a_stop_after_a_motion_is_not_undone_by_its_end),
-        cmocka_unit_test(a_stop_moves_no_joint_that_lost_its_frame),
-        cmocka_unit_test(a_stop_ends_the_way_of_a_joint_that_lost_its_frame),
-        cmocka_unit_test(a_stop_ends_a_way_that_was_to_be_over),
-        cmocka_unit_test(what_turns_off_its_way_is_forgotten),
-        cmocka_unit_test(a_stop_outside_the_limits_is_slow),
-        cmocka_unit_test(a_halt_is_for_what_moves_when_it_leaves),
-        cmocka_unit_test(a_halt_makes_no_reading_of_others_stale),
-        cmocka_unit_test(a_stop_reaches_a_joint_that_was_to_let_go),
-        cmocka_unit_test(a_stop_reaches_a_servo_that_was_deaf),
-        cmocka_unit_test(leaving_looks_again_at_who_was_not_heard),
-        cmocka_unit_test(leaving_lets_go_when_the_joints_stand),
-        cmocka_unit_test(what_is_stopped_says_that_it_was_canceled),
-        cmocka_unit_test(a_stop_is_dated_by_its_call),
-        cmocka_unit_test(the_frame_that_stops_is_there_at_once),
-        cmocka_unit_test(a_move_begins_where_the_joint_is),
-        cmocka_unit_test(leaving_is_bounded_by_its_call),
-        cmocka_unit_test(nobody_sits_down_after_an_emergency_stop),
-        cmocka_unit_test(a_clip_that_breaks_under_a_command_stops_the_robot),
-        cmocka_unit_test(nothing_of_a_broken_clip_leaves_any_more),
-        cmocka_unit_test(a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion),
-        cmocka_unit_test(a_raw_goal_is_not_tried_again_behind_a_later_target),
-        cmocka_unit_test(torque_that_waited_long_comes_on_for_nobody),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
-}

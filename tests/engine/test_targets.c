@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Times and angles of targets on their way to the wire: rounded, clamped and counted. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 static grobo_test_rig rig;
 
-static void times_are_rounded_to_the_unit(void **state)
+TEST(times_are_rounded_to_the_unit)
 {
-    (void)state;
     static const struct {
         int64_t asked_us;
         int sent_ms;
@@ -45,9 +40,8 @@ static void times_are_rounded_to_the_unit(void **state)
 }
 
 /* What was given is what the wire can say, and the robot stands when it is over. */
-static void a_time_beyond_the_wire_ends_with_the_longest(void **state)
+TEST(a_time_beyond_the_wire_ends_with_the_longest)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 5, 0);
     target.time_us = INT64_C(1000000000000);
@@ -59,9 +53,8 @@ static void a_time_beyond_the_wire_ends_with_the_longest(void **state)
 }
 
 /* One joint is clamped; another that has no number at all ends it. */
-static void clamping_counts_joints_and_takes_no_others(void **state)
+TEST(clamping_counts_joints_and_takes_no_others)
 {
-    (void)state;
     grobo_robot_config config = quiet;
     config.limit_policy = GROBO_LIMIT_CLAMP;
     rig_start_at(&rig, 0, &config);
@@ -79,9 +72,8 @@ static void clamping_counts_joints_and_takes_no_others(void **state)
 }
 
 /* A frame counts when it left, whatever became of those that were replaced. */
-static void motion_frames_are_those_that_left(void **state)
+TEST(motion_frames_are_those_that_left)
 {
-    (void)state;
     rig_start_at(&rig, 0, &quiet);
     uint64_t before = grobo_robot_get_counters(&rig.robot)->motion_frames;
     for (int i = 0; i < 4; i++) { /* the first leaves, the last takes the place of the others */
@@ -96,16 +88,4 @@ static void motion_frames_are_those_that_left(void **state)
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->motion_frames - before, 2);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 4) < 0.06);
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->late_frames, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(times_are_rounded_to_the_unit),
-        cmocka_unit_test(a_time_beyond_the_wire_ends_with_the_longest),
-        cmocka_unit_test(clamping_counts_joints_and_takes_no_others),
-        cmocka_unit_test(motion_frames_are_those_that_left),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Several robots in step: three engines, each against its simulator, on one virtual clock. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/team.h>
 
 #include "tests/support/counted_mem.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { N = 3, MOTION = 110 /* bytes of a frame that moves all joints */ };
 
@@ -78,13 +74,14 @@ static void start(grobo_team_policy policy)
     }
 }
 
-static int end(void **state)
+static int end(void)
 {
-    (void)state;
     grobo_team_free(team);
     team = NULL;
     return 0;
 }
+
+static const test_fixture fixture[] = {{NULL, NULL, end}};
 
 /* All go on by a millisecond at a time, so one clock is enough for the team. */
 static void run(int64_t us)
@@ -133,9 +130,8 @@ static int64_t began_us(const grobo_test_rig *rig)
     return 0;
 }
 
-static void they_begin_together_however_far_they_are(void **state)
+TEST_WITH(fixture, they_begin_together_however_far_they_are)
 {
-    (void)state;
     start(GROBO_TEAM_STOP_ALL);
     play(GROBO_OK);
     run_until(GROBO_TEAM_ENDED);
@@ -152,9 +148,8 @@ static void they_begin_together_however_far_they_are(void **state)
     run_until(GROBO_TEAM_ENDED);
 }
 
-static void a_time_to_begin_is_kept(void **state)
+TEST_WITH(fixture, a_time_to_begin_is_kept)
 {
-    (void)state;
     start(GROBO_TEAM_STOP_ALL);
     const grobo_clip *one = &clips[0].clip;
     const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT,
@@ -169,9 +164,8 @@ static void a_time_to_begin_is_kept(void **state)
     }
 }
 
-static void a_start_may_be_told_later(void **state)
+TEST_WITH(fixture, a_start_may_be_told_later)
 {
-    (void)state;
     start(GROBO_TEAM_STOP_ALL);
     const grobo_clip *one = &clips[0].clip;
     const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .start_us = GROBO_START_LATER};
@@ -201,9 +195,8 @@ static void lose(int i)
     look_us = 0;
 }
 
-static void all_stop_when_one_is_lost(void **state)
+TEST_WITH(fixture, all_stop_when_one_is_lost)
 {
-    (void)state;
     start(GROBO_TEAM_STOP_ALL);
     play(GROBO_OK);
     run_until(GROBO_TEAM_PLAYS);
@@ -223,9 +216,8 @@ static void all_stop_when_one_is_lost(void **state)
     }
 }
 
-static void others_pause_and_go_on_without_the_lost_one(void **state)
+TEST_WITH(fixture, others_pause_and_go_on_without_the_lost_one)
 {
-    (void)state;
     start(GROBO_TEAM_PAUSE_ALL);
     play(GROBO_OK);
     run_until(GROBO_TEAM_PLAYS);
@@ -247,9 +239,8 @@ static void others_pause_and_go_on_without_the_lost_one(void **state)
     assert_true(rig_angle_deg(&rigs[0], NECK) > 19);
 }
 
-static void others_go_on_where_that_is_asked(void **state)
+TEST_WITH(fixture, others_go_on_where_that_is_asked)
 {
-    (void)state;
     start(GROBO_TEAM_CONTINUE);
     play(GROBO_OK);
     run_until(GROBO_TEAM_PLAYS);
@@ -262,9 +253,8 @@ static void others_go_on_where_that_is_asked(void **state)
     assert_null(last(GROBO_TEAM_EVENT_PAUSED));
 }
 
-static void who_is_not_there_in_time_holds_nobody_up(void **state)
+TEST_WITH(fixture, who_is_not_there_in_time_holds_nobody_up)
 {
-    (void)state;
     start(GROBO_TEAM_CONTINUE);
     grobo_team_free(team);
     grobo_team_config config = {GROBO_TEAM_CONFIG_INIT, .policy = GROBO_TEAM_CONTINUE,
@@ -284,9 +274,8 @@ static void who_is_not_there_in_time_holds_nobody_up(void **state)
     assert_true(rig_angle_deg(&rigs[1], SHOULDER) > -70); /* stopped on its way */
 }
 
-static void a_refusal_stops_those_that_were_asked(void **state)
+TEST_WITH(fixture, a_refusal_stops_those_that_were_asked)
 {
-    (void)state;
     start(GROBO_TEAM_STOP_ALL);
     (void)grobo_robot_estop(&rigs[1].robot);
     run(1000000);
@@ -299,9 +288,8 @@ static void a_refusal_stops_those_that_were_asked(void **state)
     }
 }
 
-static void a_stop_is_the_next_frame_of_each(void **state)
+TEST_WITH(fixture, a_stop_is_the_next_frame_of_each)
 {
-    (void)state;
     for (int estop = 0; estop < 2; estop++) {
         start(GROBO_TEAM_CONTINUE);
         play(GROBO_OK);
@@ -332,9 +320,8 @@ static void a_stop_is_the_next_frame_of_each(void **state)
     }
 }
 
-static void requests_that_make_no_sense_are_refused(void **state)
+TEST_WITH(fixture, requests_that_make_no_sense_are_refused)
 {
-    (void)state;
     const grobo_clip *none[1] = {NULL};
     grobo_team_config config = {GROBO_TEAM_CONFIG_INIT, .policy = (grobo_team_policy)7};
     assert_int_equal(grobo_team_new(&config, &team), GROBO_ERR_ARG);
@@ -353,9 +340,8 @@ static void requests_that_make_no_sense_are_refused(void **state)
     assert_int_equal(grobo_team_get(team, N, NULL), GROBO_ERR_ARG);
 }
 
-static void a_start_in_the_past_is_refused(void **state)
+TEST_WITH(fixture, a_start_in_the_past_is_refused)
 {
-    (void)state;
     start(GROBO_TEAM_STOP_ALL);
     const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .start_us = GROBO_START_LATER};
     assert_true(grobo_robot_play(&rigs[0].robot, &clips[0].clip, &options) > 0);
@@ -374,9 +360,8 @@ static void a_start_in_the_past_is_refused(void **state)
     assert_int_equal(began_us(&rigs[0]), at_us);
 }
 
-static void no_memory_is_an_error(void **state)
+TEST_WITH(fixture, no_memory_is_an_error)
 {
-    (void)state;
     for (size_t fail_at = 1; fail_at <= 2; fail_at++) {
         counted_mem counter = {.fail_at = fail_at};
         const grobo_mem mem = counted_mem_of(&counter);
@@ -390,23 +375,4 @@ static void no_memory_is_an_error(void **state)
         assert_int_equal(counter.bytes, 0);
     }
     team = NULL;
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(they_begin_together_however_far_they_are, end),
-        cmocka_unit_test_teardown(a_time_to_begin_is_kept, end),
-        cmocka_unit_test_teardown(a_start_may_be_told_later, end),
-        cmocka_unit_test_teardown(all_stop_when_one_is_lost, end),
-        cmocka_unit_test_teardown(others_pause_and_go_on_without_the_lost_one, end),
-        cmocka_unit_test_teardown(others_go_on_where_that_is_asked, end),
-        cmocka_unit_test_teardown(who_is_not_there_in_time_holds_nobody_up, end),
-        cmocka_unit_test_teardown(a_refusal_stops_those_that_were_asked, end),
-        cmocka_unit_test_teardown(a_stop_is_the_next_frame_of_each, end),
-        cmocka_unit_test_teardown(requests_that_make_no_sense_are_refused, end),
-        cmocka_unit_test_teardown(a_start_in_the_past_is_refused, end),
-        cmocka_unit_test_teardown(no_memory_is_an_error, end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The watch, reading by reading: what trips it, of which joint, and at which bound. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/axes_kit.h"
+#include "tests/support/test.h"
 
 static const grobo_robot_config watching = {GROBO_ROBOT_CONFIG_INIT, .temperature_c = 60,
                                             .current_ma = 500, .voltage_mv = 6000,
@@ -33,9 +29,8 @@ static void read_as(int joint, grobo_joint_state got)
     grobo_i_watch_reading(&robot, joint, &got);
 }
 
-static void heat_above_the_bound_trips(void **state)
+TEST_WITH(axes_wirings, heat_above_the_bound_trips)
 {
-    (void)state;
     static const struct {
         int temperature_c, bound_c;
         bool known, overheated;
@@ -65,9 +60,8 @@ static void heat_above_the_bound_trips(void **state)
 }
 
 /* For a second without a break, of one joint; a reading without it tells nothing. */
-static void current_above_the_bound_for_a_second_trips(void **state)
+TEST_WITH(axes_wirings, current_above_the_bound_for_a_second_trips)
 {
-    (void)state;
     const grobo_joint_state high = {.current_ma = 501, .valid = GROBO_FIELD_CURRENT};
     const grobo_joint_state at = {.current_ma = 500, .valid = GROBO_FIELD_CURRENT};
     const grobo_joint_state nothing = {.valid = GROBO_FIELD_ANGLE};
@@ -100,9 +94,8 @@ static void current_above_the_bound_for_a_second_trips(void **state)
 }
 
 /* Three in a row of any joints, and then anew. */
-static void three_low_voltages_in_a_row_trip(void **state)
+TEST_WITH(axes_wirings, three_low_voltages_in_a_row_trip)
 {
-    (void)state;
     const grobo_joint_state low = {.voltage_mv = 5999, .valid = GROBO_FIELD_VOLTAGE};
     const grobo_joint_state at = {.voltage_mv = 6000, .valid = GROBO_FIELD_VOLTAGE};
     const grobo_joint_state nothing = {.valid = GROBO_FIELD_ANGLE};
@@ -127,9 +120,8 @@ static void three_low_voltages_in_a_row_trip(void **state)
 }
 
 /* Off, though it was switched on: to be braked is not to be lost. */
-static void torque_that_is_lost_trips(void **state)
+TEST_WITH(axes_wirings, torque_that_is_lost_trips)
 {
-    (void)state;
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < 12; i++) {
             start_with(&watching);
@@ -150,9 +142,8 @@ static void torque_that_is_lost_trips(void **state)
 }
 
 /* While something moves, this one or another. */
-static void lost_replies_trip_while_something_moves(void **state)
+TEST_WITH(axes_wirings, lost_replies_trip_while_something_moves)
 {
-    (void)state;
     static const struct {
         int lost, bound;
         bool moves, moved_by_job;
@@ -205,9 +196,8 @@ static bool moves_or_switches_on(grobo_job_kind kind, grobo_torque torque)
     return always[kind] || (kind == GROBO_JOB_TORQUE && torque == GROBO_TORQUE_ON);
 }
 
-static void a_trip_ends_what_moves_or_switches_on(void **state)
+TEST_WITH(axes_wirings, a_trip_ends_what_moves_or_switches_on)
 {
-    (void)state;
     for (int i = 0; i < (GROBO_JOB_SETTLE + 1) * 3 * HOWS; i++) {
         grobo_job_kind kind = (grobo_job_kind)(i / HOWS / 3);
         grobo_torque torque = (grobo_torque)(i / HOWS % 3);
@@ -225,9 +215,8 @@ static void a_trip_ends_what_moves_or_switches_on(void **state)
     }
 }
 
-static void a_trip_is_told_and_kept_where_it_latches(void **state)
+TEST_WITH(axes_wirings, a_trip_is_told_and_kept_where_it_latches)
 {
-    (void)state;
     static const grobo_trip kept[] = {GROBO_TRIP_LIMIT, GROBO_TRIP_NONE, GROBO_TRIP_ESTOP};
     for (int how = 0; how < HOWS; how++) {
         trip_in_a_job(GROBO_JOB_NONE, GROBO_TORQUE_OFF, how);
@@ -243,9 +232,8 @@ static void a_trip_is_told_and_kept_where_it_latches(void **state)
 }
 
 /* Whether it latches or not: a stalled host begins anew. */
-static void a_trip_takes_back_targets_that_wait(void **state)
+TEST_WITH(axes_wirings, a_trip_takes_back_targets_that_wait)
 {
-    (void)state;
     for (int i = 0; i < 2 * N; i++) {
         bool latched = i % 2 != 0;
         start();
@@ -258,9 +246,8 @@ static void a_trip_takes_back_targets_that_wait(void **state)
     }
 }
 
-static void each_reason_has_a_name_of_its_own(void **state)
+TEST_WITH(axes_wirings, each_reason_has_a_name_of_its_own)
 {
-    (void)state;
     static const char *const names[] = {"none",         "over-temperature", "servo overheated",
                                         "over-current", "low voltage",      "lost replies",
                                         "torque lost",  "outside limits",   "not a number",
@@ -270,9 +257,8 @@ static void each_reason_has_a_name_of_its_own(void **state)
     }
 }
 
-static void the_first_reason_stays_but_for_an_emergency_stop(void **state)
+TEST_WITH(axes_wirings, the_first_reason_stays_but_for_an_emergency_stop)
 {
-    (void)state;
     start();
     grobo_i_trip(&robot, GROBO_TRIP_VOLTAGE, 1, 5000, true);
     grobo_i_trip(&robot, GROBO_TRIP_TEMPERATURE, 2, 70, true);
@@ -282,21 +268,4 @@ static void the_first_reason_stays_but_for_an_emergency_stop(void **state)
     assert_int_equal(robot.trip.trip, GROBO_TRIP_ESTOP);
     assert_int_equal(robot.trip.joint, -1);
     assert_int_equal(robot.counters.trips, 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heat_above_the_bound_trips),
-        cmocka_unit_test(current_above_the_bound_for_a_second_trips),
-        cmocka_unit_test(three_low_voltages_in_a_row_trip),
-        cmocka_unit_test(torque_that_is_lost_trips),
-        cmocka_unit_test(lost_replies_trip_while_something_moves),
-        cmocka_unit_test(a_trip_ends_what_moves_or_switches_on),
-        cmocka_unit_test(a_trip_is_told_and_kept_where_it_latches),
-        cmocka_unit_test(a_trip_takes_back_targets_that_wait),
-        cmocka_unit_test(each_reason_has_a_name_of_its_own),
-        cmocka_unit_test(the_first_reason_stays_but_for_an_emergency_stop),
-    };
-    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

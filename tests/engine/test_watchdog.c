@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The servos' own dead-man: they stop when their host is gone, and go on when one is back. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/family_kit.h"
+#include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000 };
 
@@ -61,15 +58,13 @@ static void move_and_die(void)
     }
 }
 
-static void servos_stop_when_their_program_dies(void **state)
+TEST(servos_stop_when_their_program_dies)
 {
-    (void)state;
     move_and_die();
 }
 
-static void another_program_goes_on(void **state)
+TEST(another_program_goes_on)
 {
-    (void)state;
     move_and_die();
     grobo_robot_config config = whole;
     config.bus.baud_bps = 1000000;
@@ -84,9 +79,8 @@ static void another_program_goes_on(void **state)
 }
 
 /* A host that stalls for longer than that goes on with its next motion. */
-static void a_host_that_stalls_goes_on(void **state)
+TEST(a_host_that_stalls_goes_on)
 {
-    (void)state;
     move_and_die();
     family_run(&kit, S);
     assert_int_equal(family_move(&kit, 10, 1000), GROBO_OK);
@@ -94,9 +88,8 @@ static void a_host_that_stalls_goes_on(void **state)
     assert_int_equal(watchdog(0), 25);
 }
 
-static void who_leaves_takes_it_back(void **state)
+TEST(who_leaves_takes_it_back)
 {
-    (void)state;
     static const grobo_exit_policy policies[] = {GROBO_EXIT_HOLD, GROBO_EXIT_OFF, GROBO_EXIT_SIT};
     for (size_t i = 0; i < sizeof policies / sizeof policies[0]; i++) {
         start();
@@ -109,9 +102,8 @@ static void who_leaves_takes_it_back(void **state)
     }
 }
 
-static void it_does_not_go_off_by_itself(void **state)
+TEST(it_does_not_go_off_by_itself)
 {
-    (void)state;
     start();
     assert_int_equal(family_move(&kit, 10, 1000), GROBO_OK);
     family_run(&kit, 10 * S);
@@ -124,9 +116,8 @@ static void it_does_not_go_off_by_itself(void **state)
 
 /* A program that reads nothing is not stopped on a whole way, one that reads slowly has more time,
  * as far as the servo can count. */
-static void readings_are_what_renews_it(void **state)
+TEST(readings_are_what_renews_it)
 {
-    (void)state;
     static const struct {
         int64_t interval_us;
         int32_t count;
@@ -140,17 +131,4 @@ static void readings_are_what_renews_it(void **state)
         assert_int_equal(family_move(&kit, -30, 4000), GROBO_OK);
         family_at(&kit, -30);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(servos_stop_when_their_program_dies),
-        cmocka_unit_test(another_program_goes_on),
-        cmocka_unit_test(a_host_that_stalls_goes_on),
-        cmocka_unit_test(who_leaves_takes_it_back),
-        cmocka_unit_test(it_does_not_go_off_by_itself),
-        cmocka_unit_test(readings_are_what_renews_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

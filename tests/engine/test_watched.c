@@ -4,16 +4,12 @@
  * that the line allows, what is refused, and what makes room where frames fill the line.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/many_joints.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { JOINTS = 20, SECOND_US = 1000000 };
 
@@ -80,9 +76,8 @@ static grobo_budget budget_now(void)
     return budget;
 }
 
-static void the_default_rate_is_what_the_line_allows(void **state)
+TEST_WITH(rig_wirings, the_default_rate_is_what_the_line_allows)
 {
-    (void)state;
     static const struct {
         int motion_us, reading_us, watched_hz, default_hz;
     } want[] = {{18924, 6264, 39, 39}, {9375, 3052, 80, 50}};
@@ -99,9 +94,8 @@ static void the_default_rate_is_what_the_line_allows(void **state)
     assert_in_range(frames, 10 * want[w].default_hz - 1, 10 * want[w].default_hz + 1);
 }
 
-static void each_joint_is_read_at_the_default_rate(void **state)
+TEST_WITH(rig_wirings, each_joint_is_read_at_the_default_rate)
 {
-    (void)state;
     static const int64_t intervals_us[] = {0, 1, 2 * SECOND_US, 60LL * SECOND_US};
     for (int i = 0; i < 4; i++) {
         grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = intervals_us[i]};
@@ -180,9 +174,8 @@ static void play_at_watched_rate(uint32_t baud_bps, const grobo_budget *budget)
     assert_true(unread_us <= GROBO_WATCH_US);
 }
 
-static void the_rule_holds_on_other_lines(void **state)
+TEST_WITH(rig_wirings, the_rule_holds_on_other_lines)
 {
-    (void)state;
     static const uint32_t bauds_bps[] = {19200, 57600, 115200, 153600, 230400};
     static const int numbers[] = {1, 7, JOINTS};
     for (size_t i = 0; i < sizeof bauds_bps / sizeof *bauds_bps; i++) {
@@ -200,9 +193,8 @@ static void the_rule_holds_on_other_lines(void **state)
 }
 
 /* 20 joints are not read in 2 s at 2400 bps, whatever else is left out. */
-static void on_too_slow_a_line_no_rate_is_watched(void **state)
+TEST_WITH(rig_wirings, on_too_slow_a_line_no_rate_is_watched)
 {
-    (void)state;
     grobo_bus_config line = {.baud_bps = 2400};
     grobo_budget budget;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .bus = line};
@@ -223,9 +215,8 @@ static void on_too_slow_a_line_no_rate_is_watched(void **state)
 /* ---- where there is no room ------------------------------------------------------------------ */
 
 /* An adapter that holds bytes back for 16 ms: no reading fits between two frames. */
-static void a_slow_adapter_hides_no_joint(void **state)
+TEST_WITH(rig_wirings, a_slow_adapter_hides_no_joint)
 {
-    (void)state;
     static const uint32_t latencies_us[] = {500, 2000, 16000};
     for (int i = 0; i < 3; i++) {
         grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .latency_us = latencies_us[i]};
@@ -256,9 +247,8 @@ static int dense_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us
     return 0;
 }
 
-static void keys_that_fill_the_line_hide_no_joint(void **state)
+TEST_WITH(rig_wirings, keys_that_fill_the_line_hide_no_joint)
 {
-    (void)state;
     rig_start(&rig, NULL, NULL);
     dense_clip =
         (grobo_clip){.key = dense_key, .n_joints = JOINTS, .n_keys = 2000, .length_us = 19990000};
@@ -276,9 +266,8 @@ static void keys_that_fill_the_line_hide_no_joint(void **state)
 }
 
 /* A control loop of the caller's own, with more targets than the line can carry. */
-static void targets_that_fill_the_line_hide_no_joint(void **state)
+TEST_WITH(rig_wirings, targets_that_fill_the_line_hide_no_joint)
 {
-    (void)state;
     rig_start(&rig, NULL, NULL);
     rig_power(&rig);
     rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL), 0);
@@ -326,9 +315,8 @@ static int64_t attempt_us(void)
 
 /* No motion frame waits for more than one attempt at a servo that is silent, and where a reading
  * fits between two frames none waits at all. The others are read. */
-static void a_silent_servo_delays_little(void **state)
+TEST_WITH(rig_wirings, a_silent_servo_delays_little)
 {
-    (void)state;
     static const uint32_t latencies_us[] = {0, 2000};
     for (int i = 0; i < 2; i++) {
         grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .lost_replies = -1};
@@ -346,9 +334,8 @@ static void a_silent_servo_delays_little(void **state)
 }
 
 /* Somebody else's lost reply may yet come, so the reading may not leave; the frames may. */
-static void a_reading_that_may_not_leave_delays_no_frame(void **state)
+TEST_WITH(rig_wirings, a_reading_that_may_not_leave_delays_no_frame)
 {
-    (void)state;
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .lost_replies = -1};
     grobo_jitter jitter;
     start_playing(&config, NULL, &at_default);
@@ -382,34 +369,30 @@ static void expect_trip(grobo_trip reason, int joint, int64_t within_us)
     assert_false(grobo_robot_moving(&rig.robot));
 }
 
-static void heat_stops_at_the_default_rate(void **state)
+TEST_WITH(rig_wirings, heat_stops_at_the_default_rate)
 {
-    (void)state;
     start_playing(NULL, NULL, &at_default);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
     expect_trip(GROBO_TRIP_TEMPERATURE, L_ELBOW, GROBO_WATCH_US);
 }
 
 /* The current must last: two readings, the second at least a second after the first. */
-static void current_stops_at_the_default_rate(void **state)
+TEST_WITH(rig_wirings, current_stops_at_the_default_rate)
 {
-    (void)state;
     start_playing(NULL, NULL, &at_default);
     assert_int_equal(grobo_sim_set_load(&rig.sim, R_KNEE, 800), 0);
     expect_trip(GROBO_TRIP_CURRENT, R_KNEE, 2 * GROBO_WATCH_US);
 }
 
-static void lost_torque_stops_at_the_default_rate(void **state)
+TEST_WITH(rig_wirings, lost_torque_stops_at_the_default_rate)
 {
-    (void)state;
     start_playing(NULL, NULL, &at_default);
     assert_int_equal(grobo_sim_set_register(&rig.sim, SHOULDER, GROBO_RS30X_TORQUE, 0), 0);
     expect_trip(GROBO_TRIP_TORQUE_LOST, SHOULDER, GROBO_WATCH_US);
 }
 
-static void low_voltage_stops_at_the_default_rate(void **state)
+TEST_WITH(rig_wirings, low_voltage_stops_at_the_default_rate)
 {
-    (void)state;
     start_playing(NULL, NULL, &at_default);
     grobo_sim_set_supply(&rig.sim, 5800);
     expect_trip(GROBO_TRIP_VOLTAGE, -1, GROBO_WATCH_US);
@@ -417,9 +400,8 @@ static void low_voltage_stops_at_the_default_rate(void **state)
 
 /* ---- faster ---------------------------------------------------------------------------------- */
 
-static void a_rate_that_leaves_no_time_is_refused(void **state)
+TEST_WITH(rig_wirings, a_rate_that_leaves_no_time_is_refused)
 {
-    (void)state;
     start_playing(NULL, NULL, &at_default);
     grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
                                   .rate_hz = (uint16_t)(budget_now().watched_hz + 1)};
@@ -436,9 +418,8 @@ static void a_rate_that_leaves_no_time_is_refused(void **state)
     assert_int_equal(rig_count(&rig, GROBO_EVENT_UNWATCHED), 0);
 }
 
-static void an_unwatched_motion_says_so_and_waits_for_no_reading(void **state)
+TEST_WITH(rig_wirings, an_unwatched_motion_says_so_and_waits_for_no_reading)
 {
-    (void)state;
     rig_start(&rig, NULL, NULL);
     int fast_hz = (int)(1e6 / budget_now().motion_us); /* all that the line carries */
     grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
@@ -467,9 +448,8 @@ static void an_unwatched_motion_says_so_and_waits_for_no_reading(void **state)
 }
 
 /* What could be unwatched and need not be is watched. */
-static void permission_alone_changes_nothing(void **state)
+TEST_WITH(rig_wirings, permission_alone_changes_nothing)
 {
-    (void)state;
     grobo_play_options options = at_default;
     options.unwatched = true;
     start_playing(NULL, NULL, &options);
@@ -477,9 +457,8 @@ static void permission_alone_changes_nothing(void **state)
     assert_int_equal(rig_count(&rig, GROBO_EVENT_UNWATCHED), 0);
 }
 
-static void without_full_readings_a_motion_says_that_it_is_unwatched(void **state)
+TEST_WITH(rig_wirings, without_full_readings_a_motion_says_that_it_is_unwatched)
 {
-    (void)state;
     static const grobo_robot_config configs[] = {
         {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER},
         {GROBO_ROBOT_CONFIG_INIT, .sense_position_only = true}};
@@ -489,28 +468,4 @@ static void without_full_readings_a_motion_says_that_it_is_unwatched(void **stat
         const grobo_event_unwatched *told = &rig_last(&rig, GROBO_EVENT_UNWATCHED)->u.unwatched;
         assert_int_equal(told->rate_hz, i == 0 ? 0 : budget_now().default_hz);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_default_rate_is_what_the_line_allows),
-        cmocka_unit_test(each_joint_is_read_at_the_default_rate),
-        cmocka_unit_test(the_rule_holds_on_other_lines),
-        cmocka_unit_test(on_too_slow_a_line_no_rate_is_watched),
-        cmocka_unit_test(a_slow_adapter_hides_no_joint),
-        cmocka_unit_test(keys_that_fill_the_line_hide_no_joint),
-        cmocka_unit_test(targets_that_fill_the_line_hide_no_joint),
-        cmocka_unit_test(a_silent_servo_delays_little),
-        cmocka_unit_test(a_reading_that_may_not_leave_delays_no_frame),
-        cmocka_unit_test(heat_stops_at_the_default_rate),
-        cmocka_unit_test(current_stops_at_the_default_rate),
-        cmocka_unit_test(lost_torque_stops_at_the_default_rate),
-        cmocka_unit_test(low_voltage_stops_at_the_default_rate),
-        cmocka_unit_test(a_rate_that_leaves_no_time_is_refused),
-        cmocka_unit_test(an_unwatched_motion_says_so_and_waits_for_no_reading),
-        cmocka_unit_test(permission_alone_changes_nothing),
-        cmocka_unit_test(without_full_readings_a_motion_says_that_it_is_unwatched),
-    };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

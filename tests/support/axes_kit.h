@@ -8,6 +8,7 @@
 #define GROBO_TEST_AXES_KIT_H
 
 #include "src/robot/robot.h"
+#include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 
@@ -22,9 +23,8 @@ extern grobo_driver driver;
 extern grobo_robot_axis before[GROBO_JOINTS_MAX]; /* what robot.axes should be */
 extern int inspected; /* what reading a raw frame results in, where it is an error */
 
-struct CMUnitTest;
-/* Runs tests on both wirings, each with another number of joints; how many failed. */
-int axes_on_both_wirings(const struct CMUnitTest *tests, size_t n);
+/* Both wirings, each with another number of joints. */
+extern const test_fixture axes_wirings[2];
 
 /* Of so many joints, none of which was read; the link is up. */
 void make_robot(int n, const grobo_robot_config *config);

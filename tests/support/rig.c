@@ -595,13 +595,28 @@ void rig_clip_init(rig_clip *clip, const rig_key *keys, size_t n)
 
 /* ---- both wirings ---------------------------------- */
 
-int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n)
+static int on_the_board(void)
 {
     rig_wiring = GROBO_WIRING_BOARD;
-    int failed = _cmocka_run_group_tests("on the board", tests, n, NULL, NULL);
+    return 0;
+}
+
+static int on_a_bus(void)
+{
     rig_wiring = GROBO_WIRING_BUS;
+    return 0;
+}
+
+int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n)
+{
+    (void)on_the_board();
+    int failed = _cmocka_run_group_tests("on the board", tests, n, NULL, NULL);
+    (void)on_a_bus();
     return failed + _cmocka_run_group_tests("on a bus", tests, n, NULL, NULL);
 }
+
+const test_fixture rig_wirings[2] = {{"on the board", on_the_board, NULL},
+                                     {"on a bus", on_a_bus, on_the_board}};
 
 void rig_start_at(grobo_test_rig *rig, double deg, const grobo_robot_config *config)
 {

@@ -10,6 +10,7 @@
 #include <grobo/sim_static.h>
 #include <grobo/static.h>
 
+#include "tests/support/test.h"
 #include "tests/support/witness.h"
 
 enum { RIG_EVENTS = 4096, RIG_SENT = 4096 };
@@ -88,8 +89,8 @@ extern const grobo_robot_config quiet;
 extern grobo_wiring rig_wiring;
 /* When rig_start() begins, on its clock: 1 s, unless a test says otherwise. */
 extern int64_t rig_epoch_us;
-struct CMUnitTest;
-/* Runs tests that begin with rig_start() once on each wiring; how many failed. */
+/* For tests that begin with rig_start(): the board, and servos straight on a bus. */
+extern const test_fixture rig_wirings[2];
 int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n);
 /* GR001, all defaults, link up at once. config, sim NULL: defaults. */
 void rig_start(grobo_test_rig *rig, const grobo_robot_config *config, const grobo_sim_config *sim);
