@@ -2,15 +2,12 @@
 /* The far side that judges stops: it answers the frames that the manuals print, and its shafts go
  * where they are sent, in their time. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/far_side.h"
+#include "tests/support/test.h"
 
 enum { BEGIN_US = 1000000, SECOND_US = 1000000 };
 
@@ -48,9 +45,8 @@ static void begin(const far_family *family)
 }
 
 /* Frames of the manuals and of clients, and what comes back. */
-static void printed_frames_are_answered(void **state)
+TEST(printed_frames_are_answered)
 {
-    (void)state;
     begin(&far_board);
     send("41 00");
     expect("07");
@@ -90,9 +86,8 @@ static void printed_frames_are_answered(void **state)
     expect("55 55 01 05 1C F4 01 E8");
 }
 
-static void a_broken_frame_is_not_obeyed(void **state)
+TEST(a_broken_frame_is_not_obeyed)
 {
-    (void)state;
     begin(&far_bus);
     send("FA AF 01 01 24 01 01 01 2C");
     expect("");
@@ -118,9 +113,8 @@ static const struct {
     {&far_lx16a, "55 55 03 04 1F 01 D8", "55 55 03 07 01 6B 03 E8 03 9B"},
 };
 
-static void a_shaft_goes_straight_in_its_time(void **state)
+TEST(a_shaft_goes_straight_in_its_time)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
         begin(ways[i].family);
         send(ways[i].torque);
@@ -139,9 +133,8 @@ static void a_shaft_goes_straight_in_its_time(void **state)
 }
 
 /* Acceleration 1 is 8.79 deg/s2: after a second it turns at that speed and has gone half of it. */
-static void a_shaft_with_ramps_speeds_up_evenly(void **state)
+TEST(a_shaft_with_ramps_speeds_up_evenly)
 {
-    (void)state;
     begin(&far_sts);
     send("FF FF 03 0B 03 28 01 01 00 0C 00 00 00 04 B4");
     int64_t due_us = far.frame[0].due_us + far_sts.dead_us;
@@ -151,9 +144,8 @@ static void a_shaft_with_ramps_speeds_up_evenly(void **state)
     assert_int_equal(far.broken_frames, 0);
 }
 
-static void a_goal_wakes_who_it_wakes(void **state)
+TEST(a_goal_wakes_who_it_wakes)
 {
-    (void)state;
     begin(&far_sts);
     send("FF FF 03 09 03 2A 00 0C 00 00 00 04 B6");
     now_us += SECOND_US / 2;
@@ -169,9 +161,8 @@ static void a_goal_wakes_who_it_wakes(void **state)
 }
 
 /* The first motor frame is lost and nobody takes it; the second is obeyed. */
-static void the_frame_that_was_chosen_is_lost(void **state)
+TEST(the_frame_that_was_chosen_is_lost)
 {
-    (void)state;
     begin(&far_lx16a);
     far.lose_motor = 0;
     send("55 55 03 07 01 6B 03 E8 03 9B");
@@ -191,27 +182,12 @@ static void the_frame_that_was_chosen_is_lost(void **state)
 }
 
 /* 100 ms without a word: it stops, and takes no goal until its watchdog is cleared. */
-static void a_watchdog_stops_its_shaft(void **state)
+TEST(a_watchdog_stops_its_shaft)
 {
-    (void)state;
     begin(&far_dxl2);
     far_foreign(&far, 2, 90, 90, now_us);
     far.joint[2].reg[98] = 5;
     double at_deg = far_angle(&far, 2, now_us + SECOND_US);
     assert_true(fabs(at_deg - 9) < 0.1);
     assert_int_equal(far.joint[2].reg[98], 0xFF);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(printed_frames_are_answered),
-        cmocka_unit_test(a_broken_frame_is_not_obeyed),
-        cmocka_unit_test(a_shaft_goes_straight_in_its_time),
-        cmocka_unit_test(a_shaft_with_ramps_speeds_up_evenly),
-        cmocka_unit_test(a_goal_wakes_who_it_wakes),
-        cmocka_unit_test(the_frame_that_was_chosen_is_lost),
-        cmocka_unit_test(a_watchdog_stops_its_shaft),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

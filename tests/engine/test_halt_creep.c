@@ -8,15 +8,12 @@
  * seen every joint stand.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/halt_kit.h"
+#include "tests/support/test.h"
 
 #define FROM_DEG (-60.0)
 #define TO_DEG 80.0
@@ -100,11 +97,10 @@ static void creep_at(const halt_robot *robot, double dps)
     }
 }
 
-static void nobody_says_that_a_creeping_joint_stands(void **state)
+TEST(nobody_says_that_a_creeping_joint_stands)
 {
     static const double speeds[] = {1, 1.5, 2, 3, 4, 6, 8, 10, 15, 20};
     enum { SPEEDS = sizeof speeds / sizeof speeds[0] };
-    (void)state;
     for (int i = 0; halt_robot_of(i) != NULL; i++) {
         for (int k = 0; i < HALT_FAMILIES && k < SPEEDS; k++) {
             creep_at(halt_robot_of(i), speeds[k]);
@@ -118,12 +114,4 @@ static void nobody_says_that_a_creeping_joint_stands(void **state)
                   sum.verified, sum.failed);
     assert_true(sum.verified > 0);
     assert_int_equal(sum.failed, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nobody_says_that_a_creeping_joint_stands),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

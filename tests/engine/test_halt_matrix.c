@@ -23,16 +23,13 @@
  * hold clean" one cell, and what the far side saw of it; GROBO_HALT_FAMILY one family.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/halt_kit.h"
 #include "tests/support/next_random.h"
+#include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 #define FROM_DEG (-60.0)
@@ -558,9 +555,8 @@ static bool is_set(const char *text)
     return text != NULL && *text != '\0';
 }
 
-static void stops_throw_no_joint(void **state)
+TEST(stops_throw_no_joint)
 {
-    (void)state;
     const char *one = getenv("GROBO_HALT_CELL"), *family = getenv("GROBO_HALT_FAMILY");
     bool all = is_set(getenv("GROBO_HALT"));
     uint32_t seed = 29;
@@ -577,12 +573,4 @@ static void stops_throw_no_joint(void **state)
     print_message("%lu stops, %lu refused, %lu excused, %lu broke a rule\n", sum.cells, sum.refused,
                   sum.excused, sum.failed);
     assert_int_equal(sum.failed, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stops_throw_no_joint),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

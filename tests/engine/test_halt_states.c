@@ -8,15 +8,12 @@
  * A joint turns in each state, so that there is something to stop. A state that a family does not
  * have (a flash write of servos without flash) is printed.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/halt_kit.h"
+#include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 #define FROM_DEG (-60.0)
@@ -523,24 +520,13 @@ static void judge_all(double dps)
     assert_int_equal(sum.failed, 0);
 }
 
-static void an_emergency_stop_waits_for_nothing(void **unused)
+TEST(an_emergency_stop_waits_for_nothing)
 {
-    (void)unused;
     judge_all(40);
 }
 
 /* So fast that a reading is no place to halt it at after 30 ms. */
-static void nor_where_others_turn_a_joint_fast(void **unused)
+TEST(nor_where_others_turn_a_joint_fast)
 {
-    (void)unused;
     judge_all(150);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_emergency_stop_waits_for_nothing),
-        cmocka_unit_test(nor_where_others_turn_a_joint_fast),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

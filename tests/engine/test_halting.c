@@ -2,14 +2,10 @@
 /* One rule of halting for all families: whatever moves a joint and whatever stops it, the joint
  * comes to rest between where it is and where it can come to rest from there. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/family_kit.h"
+#include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 
@@ -178,9 +174,8 @@ static void one_stop(const family *f, way by, stop how, int after_ms)
     }
 }
 
-static void a_joint_that_stands_is_not_thrown(void **state)
+TEST(a_joint_that_stands_is_not_thrown)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         for (way by = 0; by < WAYS; by++) {
             for (stop how = 0; how < STOPS; how++) {
@@ -194,9 +189,8 @@ static void a_joint_that_stands_is_not_thrown(void **state)
     }
 }
 
-static void a_joint_that_moves_stops_where_it_can(void **state)
+TEST(a_joint_that_moves_stops_where_it_can)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         for (way by = 0; by < WAYS; by++) {
             for (stop how = 0; how < STOPS; how++) {
@@ -246,9 +240,8 @@ static void expect_rest(int within_ms, double most_deg)
 
 /* The line was away while a joint moved: whenever the stop comes, what was not read since is read
  * at once, and halted. */
-static void a_stop_after_a_replug_reads_and_halts(void **state)
+TEST(a_stop_after_a_replug_reads_and_halts)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         for (int i = 0; i < 12; i++) {
             family_start(&kit, f, &whole, NULL);
@@ -279,9 +272,8 @@ static void a_stop_after_a_replug_reads_and_halts(void **state)
 }
 
 /* A raw goal far away to a joint that is limp: its way never ends, and nobody waits for that. */
-static void a_limp_joint_holds_up_no_emergency_stop(void **state)
+TEST(a_limp_joint_holds_up_no_emergency_stop)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         grobo_exchange goal;
         family_start(&kit, f, &whole, NULL);
@@ -310,15 +302,4 @@ static void a_limp_joint_holds_up_no_emergency_stop(void **state)
         assert_true(kit.now_us - from_us < 3 * (int64_t)S);
         expect_rest(1, 0.5);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_stop_after_a_replug_reads_and_halts),
-        cmocka_unit_test(a_limp_joint_holds_up_no_emergency_stop),
-        cmocka_unit_test(a_joint_that_stands_is_not_thrown),
-        cmocka_unit_test(a_joint_that_moves_stops_where_it_can),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Who says that a joint stands has read it: two positions, or its goal read back and reached. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "src/robot/robot.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 enum { JOINTS = FAMILY_JOINTS, MILLI = 1000, SECOND = 1000000 };
 
@@ -66,9 +63,8 @@ static void stands_from_now_on(double dps, const char *how)
 
 static const double creeps_dps[] = {1, 2, 3, 5, 6, 7.5, 10, 14};
 
-static void who_leaves_says_so_of_joints_that_stand(void **state)
+TEST(who_leaves_says_so_of_joints_that_stand)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         for (size_t i = 0; i < sizeof creeps_dps / sizeof creeps_dps[0]; i++) {
             for (int emergency = 0; emergency < 2; emergency++) {
@@ -87,9 +83,8 @@ static void who_leaves_says_so_of_joints_that_stand(void **state)
 
 /* Who stands where it was sent is shown to by its goal, at once; where no servo tells that, by two
  * positions, of which none is from before the request: another program may have set it going. */
-static void who_stands_where_it_was_sent_is_believed_at_once(void **state)
+TEST(who_stands_where_it_was_sent_is_believed_at_once)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         bool tells_goal = strcmp(f->name, "ics") != 0;
         for (int watched = 0; watched < 2; watched++) {
@@ -111,9 +106,8 @@ static void who_stands_where_it_was_sent_is_believed_at_once(void **state)
 
 /* ---- a short bound --------------------------------------------------------------------------- */
 
-static void a_short_bound_switches_torque_off(void **state)
+TEST(a_short_bound_switches_torque_off)
 {
-    (void)state;
     static const int bounds_ms[] = {5, 20, 100, 300};
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         for (size_t i = 0; i < sizeof bounds_ms / sizeof bounds_ms[0]; i++) {
@@ -204,9 +198,8 @@ static void set_going(const family *f, stop_kind kind)
 
 /* One frame or two of a halt do not arrive: until what it stops was read back, the robot moves; the
  * halt is repeated, and nothing goes on. */
-static void a_halt_that_is_lost_is_repeated(void **state)
+TEST(a_halt_that_is_lost_is_repeated)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         for (int kind = 0; kind < KINDS; kind++) {
             for (int lost = 0; lost < 3; lost++) {
@@ -238,9 +231,8 @@ static void a_halt_that_is_lost_is_repeated(void **state)
 }
 
 /* The one of the board is not answered at all. */
-static void a_halt_of_gr001_that_is_lost_is_repeated(void **state)
+TEST_WITH(rig_wirings, a_halt_of_gr001_that_is_lost_is_repeated)
 {
-    (void)state;
     for (int kind = AT_ONCE; kind < PAUSE; kind++) {
         rig_start_at(&rig, 0, &quiet);
         grobo_posture p = rig_posture(&rig, R_ELBOW, -80, 4000);
@@ -268,9 +260,8 @@ static void a_halt_of_gr001_that_is_lost_is_repeated(void **state)
 }
 
 /* Who does not answer is named, in time. */
-static void who_cannot_be_read_back_is_named(void **state)
+TEST(who_cannot_be_read_back_is_named)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         set_going(f, AT_ONCE);
         halt(&kit.robot, AT_ONCE);
@@ -288,9 +279,8 @@ static void who_cannot_be_read_back_is_named(void **state)
 }
 
 /* Targets that follow a stop at once are sent at their rate: nothing is waited for. */
-static void a_stream_behind_a_stop_is_not_held_up(void **state)
+TEST(a_stream_behind_a_stop_is_not_held_up)
 {
-    (void)state;
     for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
         set_going(f, AT_ONCE);
         halt(&kit.robot, AT_ONCE);
@@ -308,21 +298,4 @@ static void a_stream_behind_a_stop_is_not_held_up(void **state)
             fail_msg("%s: %u stops were told of", f->name, kit.n_halted);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(who_leaves_says_so_of_joints_that_stand),
-        cmocka_unit_test(who_stands_where_it_was_sent_is_believed_at_once),
-        cmocka_unit_test(a_short_bound_switches_torque_off),
-        cmocka_unit_test(a_halt_that_is_lost_is_repeated),
-        cmocka_unit_test(who_cannot_be_read_back_is_named),
-        cmocka_unit_test(a_stream_behind_a_stop_is_not_held_up),
-    };
-    const struct CMUnitTest on_both[] = {
-        cmocka_unit_test(a_halt_of_gr001_that_is_lost_is_repeated),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) +
-           rig_on_both_wirings(on_both, sizeof on_both / sizeof on_both[0]);
 }

@@ -4,14 +4,10 @@
  * are made, opened, move and end, or say that memory lacks. Nothing hangs, nothing goes on moving.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/loop.h>
@@ -19,6 +15,8 @@
 #include <grobo/session.h>
 #include <grobo/sim_server.h>
 #include <grobo/thread.h>
+
+#include "tests/support/test.h"
 
 enum { ELBOW = 13, OTHERS = 7, BOUND_US = 5000000 };
 
@@ -246,21 +244,18 @@ static void each_fails(int (*run)(void))
     }
 }
 
-static void a_session_without_memory_of_the_loop(void **state)
+TEST(a_session_without_memory_of_the_loop)
 {
-    (void)state;
     each_fails(in_process);
 }
 
-static void nor_behind_a_port(void **state)
+TEST(nor_behind_a_port)
 {
-    (void)state;
     each_fails(behind_a_port);
 }
 
-static void nor_with_a_thread(void **state)
+TEST(nor_with_a_thread)
 {
-    (void)state;
     each_fails(threaded);
 }
 
@@ -270,14 +265,9 @@ static void quiet(int severity, const char *text)
     (void)text;
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_session_without_memory_of_the_loop),
-        cmocka_unit_test(nor_behind_a_port),
-        cmocka_unit_test(nor_with_a_thread),
-    };
     event_set_mem_functions(take, more, free);
     event_set_log_callback(quiet);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_main(argc, argv);
 }

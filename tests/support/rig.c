@@ -607,14 +607,6 @@ static int on_a_bus(void)
     return 0;
 }
 
-int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n)
-{
-    (void)on_the_board();
-    int failed = _cmocka_run_group_tests("on the board", tests, n, NULL, NULL);
-    (void)on_a_bus();
-    return failed + _cmocka_run_group_tests("on a bus", tests, n, NULL, NULL);
-}
-
 const test_fixture rig_wirings[2] = {{"on the board", on_the_board, NULL},
                                      {"on a bus", on_a_bus, on_the_board}};
 

@@ -91,7 +91,6 @@ extern grobo_wiring rig_wiring;
 extern int64_t rig_epoch_us;
 /* For tests that begin with rig_start(): the board, and servos straight on a bus. */
 extern const test_fixture rig_wirings[2];
-int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n);
 /* GR001, all defaults, link up at once. config, sim NULL: defaults. */
 void rig_start(grobo_test_rig *rig, const grobo_robot_config *config, const grobo_sim_config *sim);
 /* The clock of the rig for its engine, where a test made that anew. */
