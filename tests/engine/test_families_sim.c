@@ -18,169 +18,153 @@ static family_kit kit;
 
 static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS};
 
-TEST(postures_are_played)
+TEST_FOR(family, family_next, postures_are_played)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        family_start(&kit, f, &watched, NULL);
-        assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
-        family_at(&kit, 30);
-        kit.most_dps = 0;
-        assert_int_equal(family_move(&kit, -40, 1500), GROBO_OK);
-        family_at(&kit, -40);
-        assert_true(kit.most_dps < 1.3 * 70 / 1.5);            /* straight in time */
-        assert_int_equal(family_move(&kit, 60, 10), GROBO_OK); /* as fast as they can */
-        family_run(&kit, 200 * MS);                            /* STS has ramps */
-        family_at(&kit, 60);
-        assert_int_equal(kit.n_trips, 0);
-    }
+    family_start(&kit, row, &watched, NULL);
+    assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
+    family_at(&kit, 30);
+    kit.most_dps = 0;
+    assert_int_equal(family_move(&kit, -40, 1500), GROBO_OK);
+    family_at(&kit, -40);
+    assert_true(kit.most_dps < 1.3 * 70 / 1.5);            /* straight in time */
+    assert_int_equal(family_move(&kit, 60, 10), GROBO_OK); /* as fast as they can */
+    family_run(&kit, 200 * MS);                            /* STS has ramps */
+    family_at(&kit, 60);
+    assert_int_equal(kit.n_trips, 0);
 }
 
 /* A line that loses and breaks bytes, and servos that do not hear: what was sent arrives all the
  * same, nothing kit.trips, and no servo goes faster than it may. */
-TEST(a_faulty_line_moves_nothing_wrong)
+TEST_FOR(family, family_next, a_faulty_line_moves_nothing_wrong)
 {
     static const char faults[] = "drop=0.002,flip=0.002,silent=0.01,rubbish=0.02,split=0.05";
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        grobo_robot_config config = watched;
-        config.lost_replies = -1;
-        family_start(&kit, f, &config, NULL);
-        assert_int_equal(family_move(&kit, 0, 1000), GROBO_OK);
-        assert_int_equal(grobo_sim_set_faults(&kit.sim, faults, strlen(faults)), 5);
-        int arrived = 0;
-        for (int k = 0; k < 20; k++) {
-            int result = family_move(&kit, k % 2 == 0 ? 50 : -30, 800);
-            arrived += result == GROBO_OK;
-            family_run(
-                &kit,
-                500 * MS); /* one that has a speed instead of a time is late for a lost frame */
-            if (result == GROBO_OK) {
-                family_at(&kit, k % 2 == 0 ? 50 : -30);
-            }
+    grobo_robot_config config = watched;
+    config.lost_replies = -1;
+    family_start(&kit, row, &config, NULL);
+    assert_int_equal(family_move(&kit, 0, 1000), GROBO_OK);
+    assert_int_equal(grobo_sim_set_faults(&kit.sim, faults, strlen(faults)), 5);
+    int arrived = 0;
+    for (int k = 0; k < 20; k++) {
+        int result = family_move(&kit, k % 2 == 0 ? 50 : -30, 800);
+        arrived += result == GROBO_OK;
+        family_run(&kit,
+                   500 * MS); /* one that has a speed instead of a time is late for a lost frame */
+        if (result == GROBO_OK) {
+            family_at(&kit, k % 2 == 0 ? 50 : -30);
         }
-        assert_true(arrived >= 16);
-        assert_int_equal(kit.n_trips, 0);
-        assert_true(kit.robot.bus.stats.timeouts > 0 && kit.robot.bus.stats.retries > 0);
-        assert_true(kit.robot.bus.stats.resync_bytes + kit.robot.bus.stats.late_bytes > 0);
     }
+    assert_true(arrived >= 16);
+    assert_int_equal(kit.n_trips, 0);
+    assert_true(kit.robot.bus.stats.timeouts > 0 && kit.robot.bus.stats.retries > 0);
+    assert_true(kit.robot.bus.stats.resync_bytes + kit.robot.bus.stats.late_bytes > 0);
 }
 
-TEST(an_emergency_stop_stops)
+TEST_FOR(family, family_next, an_emergency_stop_stops)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        family_start(&kit, f, &watched, NULL);
-        assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
-        grobo_posture p = family_posture(&kit, -60, 3000);
-        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
-        family_run(&kit, 1000 * MS);
-        double before_deg = family_angle_deg(&kit, 0);
-        assert_true(before_deg < 20 && before_deg > -30);
-        assert_int_equal(family_wait(&kit, grobo_robot_estop(&kit.robot)), GROBO_OK);
-        family_run(&kit, S);
-        assert_true(fabs(family_angle_deg(&kit, 0) - before_deg) < 8);
-        for (int j = 0; j < JOINTS; j++) {
-            grobo_sim_view view;
-            assert_int_equal(grobo_sim_look(&kit.sim, j, &view), GROBO_OK);
-            assert_int_equal(view.torque, GROBO_TORQUE_ON);
-            assert_false(view.moving);
-        }
-        assert_int_equal(grobo_robot_move(&kit.robot, &p), GROBO_ERR_LATCHED);
+    family_start(&kit, row, &watched, NULL);
+    assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
+    grobo_posture p = family_posture(&kit, -60, 3000);
+    assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+    family_run(&kit, 1000 * MS);
+    double before_deg = family_angle_deg(&kit, 0);
+    assert_true(before_deg < 20 && before_deg > -30);
+    assert_int_equal(family_wait(&kit, grobo_robot_estop(&kit.robot)), GROBO_OK);
+    family_run(&kit, S);
+    assert_true(fabs(family_angle_deg(&kit, 0) - before_deg) < 8);
+    for (int j = 0; j < JOINTS; j++) {
+        grobo_sim_view view;
+        assert_int_equal(grobo_sim_look(&kit.sim, j, &view), GROBO_OK);
+        assert_int_equal(view.torque, GROBO_TORQUE_ON);
+        assert_false(view.moving);
     }
+    assert_int_equal(grobo_robot_move(&kit.robot, &p), GROBO_ERR_LATCHED);
 }
 
 /* The program dies: an arm ends within a segment of its way. */
-TEST(without_its_host_an_arm_stops)
+TEST_FOR(family, family_next, without_its_host_an_arm_stops)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        family_start(&kit, f, &watched, NULL);
-        assert_int_equal(family_move(&kit, 40, 1000), GROBO_OK);
-        grobo_posture p = family_posture(&kit, -50, 4000);
-        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
-        family_run(&kit, 1000 * MS);
-        double then_deg = family_angle_deg(&kit, 0);
-        kit.now_us += 3 * (int64_t)S;
-        grobo_sim_step(&kit.sim, kit.now_us);
-        assert_true(then_deg - family_angle_deg(&kit, 0) < 90.0 * 450 / 4000);
-    }
+    family_start(&kit, row, &watched, NULL);
+    assert_int_equal(family_move(&kit, 40, 1000), GROBO_OK);
+    grobo_posture p = family_posture(&kit, -50, 4000);
+    assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+    family_run(&kit, 1000 * MS);
+    double then_deg = family_angle_deg(&kit, 0);
+    kit.now_us += 3 * (int64_t)S;
+    grobo_sim_step(&kit.sim, kit.now_us);
+    assert_true(then_deg - family_angle_deg(&kit, 0) < 90.0 * 450 / 4000);
 }
 
-TEST(heat_stops_for_safety)
+TEST_FOR(family, family_next, heat_stops_for_safety)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        family_start(&kit, f, &watched, NULL);
-        assert_int_equal(family_move(&kit, 20, 1000), GROBO_OK);
-        assert_int_equal(grobo_sim_set_temperature(&kit.sim, 2, 68), GROBO_OK);
-        family_run(&kit, 300 * MS);
-        assert_true(kit.n_trips > 0);
-        assert_true(kit.trips[0] == GROBO_TRIP_TEMPERATURE ||
-                    kit.trips[0] == GROBO_TRIP_OVERHEATED);
-    }
+    family_start(&kit, row, &watched, NULL);
+    assert_int_equal(family_move(&kit, 20, 1000), GROBO_OK);
+    assert_int_equal(grobo_sim_set_temperature(&kit.sim, 2, 68), GROBO_OK);
+    family_run(&kit, 300 * MS);
+    assert_true(kit.n_trips > 0);
+    assert_true(kit.trips[0] == GROBO_TRIP_TEMPERATURE || kit.trips[0] == GROBO_TRIP_OVERHEATED);
 }
 
 /* Of some families a goal switches torque on: none leaves for a joint that was let go. */
-TEST(a_limp_joint_is_not_sent_anywhere)
+TEST_FOR(family, family_next, a_limp_joint_is_not_sent_anywhere)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        family_start(&kit, f, &watched, NULL);
-        assert_int_equal(family_move(&kit, 20, 1000), GROBO_OK);
-        int number = grobo_robot_torque(&kit.robot, GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_OFF);
-        assert_int_equal(family_wait(&kit, number), GROBO_OK);
-        grobo_posture p = family_posture(&kit, -40, 500);
-        (void)grobo_robot_send(&kit.robot, &p);
-        family_run(&kit, S);
-        family_at(&kit, 20);
-        grobo_target target = {.posture = family_posture(&kit, 10, 500)};
-        for (int j = 0; j < JOINTS; j++) {
-            target.joint_time_us[j] = S;
-            target.from_rad[j] = target.posture.angle_rad[j] + 0.17;
-        }
-        for (int part = 0; part < 2; part++) { /* the second of KRS is the goal */
-            grobo_exchange raw = {.frame_bytes = 0};
-            if (kit.driver.posture(&kit.driver, NULL, &target, part, &raw) > 0) {
-                (void)grobo_robot_raw(&kit.robot, raw.frame, raw.frame_bytes);
-            }
-            family_run(&kit, S);
-        }
-        family_at(&kit, 20);
+    family_start(&kit, row, &watched, NULL);
+    assert_int_equal(family_move(&kit, 20, 1000), GROBO_OK);
+    int number = grobo_robot_torque(&kit.robot, GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_OFF);
+    assert_int_equal(family_wait(&kit, number), GROBO_OK);
+    grobo_posture p = family_posture(&kit, -40, 500);
+    (void)grobo_robot_send(&kit.robot, &p);
+    family_run(&kit, S);
+    family_at(&kit, 20);
+    grobo_target target = {.posture = family_posture(&kit, 10, 500)};
+    for (int j = 0; j < JOINTS; j++) {
+        target.joint_time_us[j] = S;
+        target.from_rad[j] = target.posture.angle_rad[j] + 0.17;
     }
+    for (int part = 0; part < 2; part++) { /* the second of KRS is the goal */
+        grobo_exchange raw = {.frame_bytes = 0};
+        if (kit.driver.posture(&kit.driver, NULL, &target, part, &raw) > 0) {
+            (void)grobo_robot_raw(&kit.robot, raw.frame, raw.frame_bytes);
+        }
+        family_run(&kit, S);
+    }
+    family_at(&kit, 20);
 }
 
 /* Another program has sent a joint on its way, and its servo tells no speed: it is seen all the
  * same, and not sent elsewhere from a place where it is no more. */
-TEST(a_joint_that_another_moves_is_not_sent_anywhere)
+TEST_FOR(family, family_next, a_joint_that_another_moves_is_not_sent_anywhere)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        static const grobo_robot_config quiet = {GROBO_ROBOT_CONFIG_INIT,
-                                                 .sense_interval_us = GROBO_SENSE_NEVER};
-        family_start(&kit, f, &quiet, NULL);
-        for (int on = 1; on >= 0; on--) {
-            grobo_target target = {.posture = family_posture(&kit, 80, 3000)};
-            for (int j = 0; j < JOINTS; j++) {
-                target.joint_time_us[j] = 3 * (int64_t)S;
+    static const grobo_robot_config quiet = {GROBO_ROBOT_CONFIG_INIT,
+                                             .sense_interval_us = GROBO_SENSE_NEVER};
+    family_start(&kit, row, &quiet, NULL);
+    for (int on = 1; on >= 0; on--) {
+        grobo_target target = {.posture = family_posture(&kit, 80, 3000)};
+        for (int j = 0; j < JOINTS; j++) {
+            target.joint_time_us[j] = 3 * (int64_t)S;
+        }
+        grobo_exchange sent;
+        for (int part = 0;; part++) {
+            memset(&sent, 0, sizeof sent);
+            int more = on ? kit.driver.torque(&kit.driver, NULL, GROBO_JOINTS_ALL(JOINTS),
+                                              GROBO_TORQUE_ON, part, &sent)
+                          : kit.driver.posture(&kit.driver, NULL, &target, part, &sent);
+            if (more <= 0) {
+                break;
             }
-            grobo_exchange sent;
-            for (int part = 0;; part++) {
-                memset(&sent, 0, sizeof sent);
-                int more = on ? kit.driver.torque(&kit.driver, NULL, GROBO_JOINTS_ALL(JOINTS),
-                                                  GROBO_TORQUE_ON, part, &sent)
-                              : kit.driver.posture(&kit.driver, NULL, &target, part, &sent);
-                if (more <= 0) {
-                    break;
-                }
-                assert_int_equal(grobo_sim_rx(&kit.sim, sent.frame, sent.frame_bytes, kit.now_us),
-                                 sent.frame_bytes);
-                kit.now_us += 50 * MS;
-                uint8_t b[GROBO_FRAME_MAX_BYTES];
-                grobo_sim_step(&kit.sim, kit.now_us);
-                while (grobo_sim_tx(&kit.sim, b, sizeof b, kit.now_us) > 0) {
-                }
+            assert_int_equal(grobo_sim_rx(&kit.sim, sent.frame, sent.frame_bytes, kit.now_us),
+                             sent.frame_bytes);
+            kit.now_us += 50 * MS;
+            uint8_t b[GROBO_FRAME_MAX_BYTES];
+            grobo_sim_step(&kit.sim, kit.now_us);
+            while (grobo_sim_tx(&kit.sim, b, sizeof b, kit.now_us) > 0) {
             }
         }
-        grobo_posture p = family_posture(&kit, -60, 1000);
-        int number = grobo_robot_move(&kit.robot, &p);
-        int result = number < 0 ? number : family_wait(&kit, number);
-        if (result != GROBO_ERR_STATE) {
-            fail_msg("%s: %s", f->name, grobo_error_name(result));
-        }
+    }
+    grobo_posture p = family_posture(&kit, -60, 1000);
+    int number = grobo_robot_move(&kit.robot, &p);
+    int result = number < 0 ? number : family_wait(&kit, number);
+    if (result != GROBO_ERR_STATE) {
+        fail_msg("%s: %s", row->name, grobo_error_name(result));
     }
 }
 
@@ -218,28 +202,26 @@ TEST(a_servo_set_up_otherwise_is_made_limp)
 
 /* With a brake or without: a hand that overcomes a servo in free mode takes the joint along, and
  * the joint stays where it was left. KRS servos do not tell their goal: they hold on. */
-TEST(a_hand_moves_a_free_joint)
+TEST_FOR(family, family_next, a_hand_moves_a_free_joint)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        if (f->table == &grobo_ics_table) {
-            continue;
+    if (row->table == &grobo_ics_table) {
+        return;
+    }
+    family_start(&kit, row, &watched, NULL);
+    assert_int_equal(family_move(&kit, 0, 1000), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&kit.robot, 0xF, true), GROBO_OK);
+    family_run(&kit, 500 * MS);
+    for (int deg = 20; deg <= 60; deg += 20) {
+        assert_int_equal(grobo_sim_set_angle(&kit.sim, 0, 1000 * deg, 300 * MS), GROBO_OK);
+        family_run(&kit, S);
+        double off_deg = fabs(family_angle_deg(&kit, 0) - deg);
+        if (off_deg > 4) {
+            fail_msg("%s: left at %d, stands at %.1f deg", row->name, deg,
+                     family_angle_deg(&kit, 0));
         }
-        family_start(&kit, f, &watched, NULL);
-        assert_int_equal(family_move(&kit, 0, 1000), GROBO_OK);
-        assert_int_equal(grobo_robot_free(&kit.robot, 0xF, true), GROBO_OK);
-        family_run(&kit, 500 * MS);
-        for (int deg = 20; deg <= 60; deg += 20) {
-            assert_int_equal(grobo_sim_set_angle(&kit.sim, 0, 1000 * deg, 300 * MS), GROBO_OK);
-            family_run(&kit, S);
-            double off_deg = fabs(family_angle_deg(&kit, 0) - deg);
-            if (off_deg > 4) {
-                fail_msg("%s: left at %d, stands at %.1f deg", f->name, deg,
-                         family_angle_deg(&kit, 0));
-            }
-            grobo_sim_view view;
-            assert_int_equal(grobo_sim_look(&kit.sim, 0, &view), GROBO_OK);
-            assert_int_equal(view.torque, GROBO_TORQUE_ON);
-        }
+        grobo_sim_view view;
+        assert_int_equal(grobo_sim_look(&kit.sim, 0, &view), GROBO_OK);
+        assert_int_equal(view.torque, GROBO_TORQUE_ON);
     }
 }
 
@@ -266,52 +248,48 @@ static void dip(void)
 
 /* What sank stays where it is, in every family: also where the next goal would switch the torque
  * on, whoever sends it, and however seldom joints are read. */
-TEST(nothing_is_woken_after_a_dip)
+TEST_FOR(family, family_next, nothing_is_woken_after_a_dip)
 {
     enum { MOVE, STREAM, STOP, WAYS };
     static const int64_t intervals_us[] = {50 * MS, 500 * MS, GROBO_SENSE_NEVER};
     for (int run = 0; run < WAYS * 3 * 2; run++) {
-        for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-            int way = run % WAYS;
-            const grobo_robot_config config = {
-                GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = intervals_us[run / WAYS % 3],
-                .goals = run < WAYS * 3 ? GROBO_GOALS_SEGMENTS : GROBO_GOALS_WHOLE};
-            family_start(&kit, f, &config, NULL);
-            assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
-            grobo_posture p = family_posture(&kit, -60, 5000);
-            assert_true(grobo_robot_move(&kit.robot, &p) > 0);
-            family_run(&kit, S);
-            dip();
-            for (int i = 0; i < 150; i++) {
-                family_run(&kit, 20 * MS);
-                p = family_posture(&kit, 10 - 0.3 * i, 20);
-                (void)(way == STREAM ? grobo_robot_send(&kit.robot, &p)
-                       : way == STOP ? grobo_robot_stop(&kit.robot, true)
-                                     : 0);
-            }
-            if (woken > 0) {
-                fail_msg("%s: %d servos are woken, run %d", f->name, woken, run);
-            }
+        int way = run % WAYS;
+        const grobo_robot_config config = {
+            GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = intervals_us[run / WAYS % 3],
+            .goals = run < WAYS * 3 ? GROBO_GOALS_SEGMENTS : GROBO_GOALS_WHOLE};
+        family_start(&kit, row, &config, NULL);
+        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+        grobo_posture p = family_posture(&kit, -60, 5000);
+        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+        family_run(&kit, S);
+        dip();
+        for (int i = 0; i < 150; i++) {
+            family_run(&kit, 20 * MS);
+            p = family_posture(&kit, 10 - 0.3 * i, 20);
+            (void)(way == STREAM ? grobo_robot_send(&kit.robot, &p)
+                   : way == STOP ? grobo_robot_stop(&kit.robot, true)
+                                 : 0);
+        }
+        if (woken > 0) {
+            fail_msg("%s: %d servos are woken, run %d", row->name, woken, run);
         }
     }
 }
 
 /* A reply that is lost is no dip: the arm goes on. */
-TEST(a_lost_reply_ends_no_way)
+TEST_FOR(family, family_next, a_lost_reply_ends_no_way)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        family_start(&kit, f, &watched, NULL);
-        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
-        grobo_posture p = family_posture(&kit, -60, 2000);
-        int number = grobo_robot_move(&kit.robot, &p);
-        family_run(&kit, 500 * MS);
-        assert_int_equal(grobo_sim_set_cable(&kit.sim, 1, GROBO_SIM_CABLE_MUTE), GROBO_OK);
-        family_run(&kit, 70 * MS);
-        assert_int_equal(grobo_sim_set_cable(&kit.sim, 1, GROBO_SIM_CABLE_IN), GROBO_OK);
-        assert_int_equal(family_wait(&kit, number), GROBO_OK);
-        family_run(&kit, 200 * MS);
-        family_at(&kit, -60);
-    }
+    family_start(&kit, row, &watched, NULL);
+    assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+    grobo_posture p = family_posture(&kit, -60, 2000);
+    int number = grobo_robot_move(&kit.robot, &p);
+    family_run(&kit, 500 * MS);
+    assert_int_equal(grobo_sim_set_cable(&kit.sim, 1, GROBO_SIM_CABLE_MUTE), GROBO_OK);
+    family_run(&kit, 70 * MS);
+    assert_int_equal(grobo_sim_set_cable(&kit.sim, 1, GROBO_SIM_CABLE_IN), GROBO_OK);
+    assert_int_equal(family_wait(&kit, number), GROBO_OK);
+    family_run(&kit, 200 * MS);
+    family_at(&kit, -60);
 }
 
 /* How far the first joint goes on behind a stop so many milliseconds into a fast move, and how far
@@ -339,7 +317,7 @@ static void stop_at(const family *f, int ms, uint32_t supply_pct, double *on_deg
 
 /* A weak supply: joints fall back behind ways that they cannot go. They stop where they are, and
  * not where the way is by then; nor is one thrown back that keeps up, or begins softly. */
-TEST(a_weak_joint_stops_where_it_is)
+TEST_FOR(family, family_next, a_weak_joint_stops_where_it_is)
 {
     static const struct {
         const char *name;
@@ -354,68 +332,62 @@ TEST(a_weak_joint_stops_where_it_is)
             }
         }
     }
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        for (int ms = 50; ms <= 800; ms += 30) {
-            double on_deg, back_deg;
-            stop_at(f, ms, 100, &on_deg, &back_deg);
-            if (back_deg > 0.2) {
-                fail_msg("%s at %d ms: %.1f deg back", f->name, ms, back_deg);
-            }
+    for (int ms = 50; ms <= 800; ms += 30) {
+        double on_deg, back_deg;
+        stop_at(row, ms, 100, &on_deg, &back_deg);
+        if (back_deg > 0.2) {
+            fail_msg("%s at %d ms: %.1f deg back", row->name, ms, back_deg);
         }
     }
 }
 
 /* A stop is asked for, and latched at once: what was to stop does, also a servo that may just have
  * restarted, and whose halt has to wait for that. */
-TEST(a_latch_lets_a_stop_leave_that_waits)
+TEST_FOR(family, family_next, a_latch_lets_a_stop_leave_that_waits)
 {
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS,
                                        .goals = GROBO_GOALS_WHOLE, .lost_replies = -1};
     for (int silent = 0; silent < 2; silent++) {
-        for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-            family_start(&kit, f, &config, NULL);
-            assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
-            grobo_posture p = family_posture(&kit, -60, 8000);
-            assert_true(grobo_robot_move(&kit.robot, &p) > 0);
-            family_run(&kit, S);
-            for (int j = 0; silent && j < JOINTS; j++) {
-                assert_int_equal(grobo_sim_set_cable(&kit.sim, j, GROBO_SIM_CABLE_MUTE), GROBO_OK);
-            }
-            family_run(&kit, 500 * MS);
-            double then_deg = family_angle_deg(&kit, 0);
-            assert_int_equal(grobo_robot_stop(&kit.robot, true), GROBO_OK);
-            assert_int_equal(grobo_robot_latch(&kit.robot), GROBO_OK);
-            for (int j = 0; j < JOINTS; j++) {
-                assert_int_equal(grobo_sim_set_cable(&kit.sim, j, GROBO_SIM_CABLE_IN), GROBO_OK);
-            }
-            family_run(&kit, 5 * (int64_t)S);
-            if (fabs(family_angle_deg(&kit, 0) - then_deg) > (silent ? 12 : 4)) {
-                fail_msg("%s%s: stopped at %.1f deg, stands at %.1f", f->name,
-                         silent ? ", silent" : "", then_deg, family_angle_deg(&kit, 0));
-            }
+        family_start(&kit, row, &config, NULL);
+        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+        grobo_posture p = family_posture(&kit, -60, 8000);
+        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+        family_run(&kit, S);
+        for (int j = 0; silent && j < JOINTS; j++) {
+            assert_int_equal(grobo_sim_set_cable(&kit.sim, j, GROBO_SIM_CABLE_MUTE), GROBO_OK);
+        }
+        family_run(&kit, 500 * MS);
+        double then_deg = family_angle_deg(&kit, 0);
+        assert_int_equal(grobo_robot_stop(&kit.robot, true), GROBO_OK);
+        assert_int_equal(grobo_robot_latch(&kit.robot), GROBO_OK);
+        for (int j = 0; j < JOINTS; j++) {
+            assert_int_equal(grobo_sim_set_cable(&kit.sim, j, GROBO_SIM_CABLE_IN), GROBO_OK);
+        }
+        family_run(&kit, 5 * (int64_t)S);
+        if (fabs(family_angle_deg(&kit, 0) - then_deg) > (silent ? 12 : 4)) {
+            fail_msg("%s%s: stopped at %.1f deg, stands at %.1f", row->name,
+                     silent ? ", silent" : "", then_deg, family_angle_deg(&kit, 0));
         }
     }
 }
 
 /* A host that was away has heard no servo meanwhile: that is no servo's fault, and nothing is
  * latched. */
-TEST(a_stalled_host_blames_no_servo)
+TEST_FOR(family, family_next, a_stalled_host_blames_no_servo)
 {
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS,
                                        .goals = GROBO_GOALS_SEGMENTS};
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        for (int k = 0; k < 10; k++) {
-            family_start(&kit, f, &config, NULL);
-            assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
-            grobo_posture p = family_posture(&kit, -60, 8000);
-            assert_true(grobo_robot_move(&kit.robot, &p) > 0);
-            family_run(&kit, S + k * 7 * MS);
-            kit.now_us += S;
-            family_run(&kit, 100 * MS);
-            if (kit.n_trips != 1 || kit.trips[0] != GROBO_TRIP_HOST_STALL) {
-                fail_msg("%s, %d: %u trips, %s", f->name, k, kit.n_trips,
-                         grobo_trip_name(kit.trips[0]));
-            }
+    for (int k = 0; k < 10; k++) {
+        family_start(&kit, row, &config, NULL);
+        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+        grobo_posture p = family_posture(&kit, -60, 8000);
+        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+        family_run(&kit, S + k * 7 * MS);
+        kit.now_us += S;
+        family_run(&kit, 100 * MS);
+        if (kit.n_trips != 1 || kit.trips[0] != GROBO_TRIP_HOST_STALL) {
+            fail_msg("%s, %d: %u trips, %s", row->name, k, kit.n_trips,
+                     grobo_trip_name(kit.trips[0]));
         }
     }
 }
@@ -536,25 +508,23 @@ static void stop_turning(const family *f, turn_back *t)
  * way at first. It is not sent on to where its way is, nor pulled back, whatever stops it; and who
  * waits for the stop is told that it is done when it stands. Of what another program has sent, who
  * leaves has to find out first that it moves. */
-TEST(a_joint_that_turns_back_stops_where_it_is)
+TEST_FOR(family, family_next, a_joint_that_turns_back_stops_where_it_is)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        bool ramps = strcmp(f->name, "sts") == 0;
-        for (int i = 0; i < TURNS * (int)HOWS; i++) {
-            turn_back t = {.turned = i % 2 != 0,
-                           .how = (how_to_stop)(i / TURNS),
-                           .joint = i / 2 % 2,
-                           .ms = 16 + 143 * (i % TURNS / 2),
-                           .interval_us = i / 4 % 2 != 0 ? 50 * MS : 150 * MS};
-            stop_turning(f, &t);
-            bool others = t.how == LEAVE_AFTER_ANOTHER;
-            double time_s = !others ? 0.055 : kit.driver.no_speed ? 0.2 : 0.08;
-            double most_deg = ramps ? (others ? 8 : 4) : time_s * t.dps;
-            bool waits = t.how != STOP && t.how != HEAT;
-            if (t.on_deg > most_deg || t.back_deg > 0.5 || (waits && t.done_deg > 0.5)) {
-                fail_msg("%s, stop %d, at %d ms: %.0f deg/s, %.1f deg on, %.1f back, %.1f done",
-                         f->name, t.how, t.ms, t.dps, t.on_deg, t.back_deg, t.done_deg);
-            }
+    bool ramps = strcmp(row->name, "sts") == 0;
+    for (int i = 0; i < TURNS * (int)HOWS; i++) {
+        turn_back t = {.turned = i % 2 != 0,
+                       .how = (how_to_stop)(i / TURNS),
+                       .joint = i / 2 % 2,
+                       .ms = 16 + 143 * (i % TURNS / 2),
+                       .interval_us = i / 4 % 2 != 0 ? 50 * MS : 150 * MS};
+        stop_turning(row, &t);
+        bool others = t.how == LEAVE_AFTER_ANOTHER;
+        double time_s = !others ? 0.055 : kit.driver.no_speed ? 0.2 : 0.08;
+        double most_deg = ramps ? (others ? 8 : 4) : time_s * t.dps;
+        bool waits = t.how != STOP && t.how != HEAT;
+        if (t.on_deg > most_deg || t.back_deg > 0.5 || (waits && t.done_deg > 0.5)) {
+            fail_msg("%s, stop %d, at %d ms: %.0f deg/s, %.1f deg on, %.1f back, %.1f done",
+                     row->name, t.how, t.ms, t.dps, t.on_deg, t.back_deg, t.done_deg);
         }
     }
 }
@@ -596,16 +566,14 @@ TEST(a_stop_reaches_a_joint_read_for_its_angle_alone)
 /* Those of servos that are told their acceleration with each goal: MX have such a register too far
  * away from the goal, and DYNAMIXEL X one that is a time. */
 /* The longest interval that there is means hardly ever, and not as fast as the wire allows. */
-TEST(a_very_long_interval_reads_once)
+TEST_FOR(family, family_next, a_very_long_interval_reads_once)
 {
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
                                        .sense_interval_us = GROBO_NEVER_US};
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        family_start(&kit, f, &config, NULL);
-        family_run(&kit, 3 * (int64_t)S);
-        assert_in_range(kit.n_sent, 1, 16);
-        assert_int_equal(family_move(&kit, 10, 500), GROBO_OK);
-    }
+    family_start(&kit, row, &config, NULL);
+    family_run(&kit, 3 * (int64_t)S);
+    assert_in_range(kit.n_sent, 1, 16);
+    assert_int_equal(family_move(&kit, 10, 500), GROBO_OK);
 }
 
 TEST(a_driver_tells_the_ramps_of_its_servos)

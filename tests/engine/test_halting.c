@@ -174,32 +174,26 @@ static void one_stop(const family *f, way by, stop how, int after_ms)
     }
 }
 
-TEST(a_joint_that_stands_is_not_thrown)
+TEST_FOR(family, family_next, a_joint_that_stands_is_not_thrown)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        for (way by = 0; by < WAYS; by++) {
-            for (stop how = 0; how < STOPS; how++) {
-                for (int after_ms = 50; after_ms <= 350; after_ms += 150) {
-                    if (how != PAUSE || by <= AT_A_RATE) {
-                        one_stop(f, by, how, after_ms);
-                    }
+    for (way by = 0; by < WAYS; by++) {
+        for (stop how = 0; how < STOPS; how++) {
+            for (int after_ms = 50; after_ms <= 350; after_ms += 150) {
+                if (how != PAUSE || by <= AT_A_RATE) {
+                    one_stop(row, by, how, after_ms);
                 }
             }
         }
     }
 }
 
-TEST(a_joint_that_moves_stops_where_it_can)
+TEST_FOR(family, family_next, a_joint_that_moves_stops_where_it_can)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        for (way by = 0; by < WAYS; by++) {
-            for (stop how = 0; how < STOPS; how++) {
-                bool meant = how == CANCEL  ? by == BY_A_MOVE
-                             : how == PAUSE ? by <= AT_A_RATE
-                                            : true;
-                for (int after_ms = -500; meant && after_ms < 0; after_ms += 220) {
-                    one_stop(f, by, how, after_ms);
-                }
+    for (way by = 0; by < WAYS; by++) {
+        for (stop how = 0; how < STOPS; how++) {
+            bool meant = how == CANCEL ? by == BY_A_MOVE : how == PAUSE ? by <= AT_A_RATE : true;
+            for (int after_ms = -500; meant && after_ms < 0; after_ms += 220) {
+                one_stop(row, by, how, after_ms);
             }
         }
     }
@@ -240,66 +234,62 @@ static void expect_rest(int within_ms, double most_deg)
 
 /* The line was away while a joint moved: whenever the stop comes, what was not read since is read
  * at once, and halted. */
-TEST(a_stop_after_a_replug_reads_and_halts)
+TEST_FOR(family, family_next, a_stop_after_a_replug_reads_and_halts)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        for (int i = 0; i < 12; i++) {
-            family_start(&kit, f, &whole, NULL);
-            assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
-            grobo_posture p = family_posture(&kit, -60, 4000);
-            assert_true(grobo_robot_move(&kit.robot, &p) > 0);
-            family_run(&kit, S);
-            grobo_robot_link_down(&kit.robot, kit.now_us);
-            family_run(&kit, 50 * MS);
-            grobo_robot_link_up(&kit.robot, kit.now_us);
-            family_run(&kit, i / 3 * 3 * MS);
-            unsigned n_sent = kit.n_sent;
-            switch (i % 3) {
-            case 0:
-                assert_int_equal(grobo_robot_stop(&kit.robot, true), GROBO_OK);
-                break;
-            case 1:
-                assert_true(grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD) > 0);
-                break;
-            case 2:
-                assert_true(grobo_robot_estop(&kit.robot) > 0);
-                break;
-            }
-            expect_a_frame_at_once(n_sent);
-            expect_rest(400, 10);
+    for (int i = 0; i < 12; i++) {
+        family_start(&kit, row, &whole, NULL);
+        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+        grobo_posture p = family_posture(&kit, -60, 4000);
+        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+        family_run(&kit, S);
+        grobo_robot_link_down(&kit.robot, kit.now_us);
+        family_run(&kit, 50 * MS);
+        grobo_robot_link_up(&kit.robot, kit.now_us);
+        family_run(&kit, i / 3 * 3 * MS);
+        unsigned n_sent = kit.n_sent;
+        switch (i % 3) {
+        case 0:
+            assert_int_equal(grobo_robot_stop(&kit.robot, true), GROBO_OK);
+            break;
+        case 1:
+            assert_true(grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD) > 0);
+            break;
+        case 2:
+            assert_true(grobo_robot_estop(&kit.robot) > 0);
+            break;
         }
+        expect_a_frame_at_once(n_sent);
+        expect_rest(400, 10);
     }
 }
 
 /* A raw goal far away to a joint that is limp: its way never ends, and nobody waits for that. */
-TEST(a_limp_joint_holds_up_no_emergency_stop)
+TEST_FOR(family, family_next, a_limp_joint_holds_up_no_emergency_stop)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        grobo_exchange goal;
-        family_start(&kit, f, &whole, NULL);
-        assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
-        int off = grobo_robot_torque(&kit.robot, GROBO_JOINT_BIT(3), GROBO_TORQUE_OFF);
-        assert_int_equal(family_wait(&kit, off), GROBO_OK);
-        grobo_posture p = family_posture(&kit, -60, 6000);
-        p.set = GROBO_JOINT_BIT(0);
-        assert_int_equal(grobo_robot_send(&kit.robot, &p), GROBO_OK);
-        family_run(&kit, 100 * MS);
-        grobo_target target = {.posture = family_posture(&kit, 0, 0)};
-        target.posture.set = GROBO_JOINT_BIT(3);
-        target.posture.angle_rad[3] = RAD(-80);
-        target.joint_time_us[3] = 12 * S;
-        target.from_rad[3] = RAD(30);
-        memset(&goal, 0, sizeof goal);
-        assert_int_equal(kit.driver.posture(&kit.driver, NULL, &target, 0, &goal), 1);
-        int raw = grobo_robot_raw(&kit.robot, goal.frame, goal.frame_bytes);
-        assert_true(raw > 0 || kit.driver.goal_wakes);
-        family_run(&kit, 100 * MS);
-        unsigned n_sent = kit.n_sent;
-        int number = grobo_robot_estop(&kit.robot);
-        expect_a_frame_at_once(n_sent);
-        int64_t from_us = kit.now_us;
-        assert_int_equal(family_wait(&kit, number), GROBO_OK);
-        assert_true(kit.now_us - from_us < 3 * (int64_t)S);
-        expect_rest(1, 0.5);
-    }
+    grobo_exchange goal;
+    family_start(&kit, row, &whole, NULL);
+    assert_int_equal(family_move(&kit, 60, 1000), GROBO_OK);
+    int off = grobo_robot_torque(&kit.robot, GROBO_JOINT_BIT(3), GROBO_TORQUE_OFF);
+    assert_int_equal(family_wait(&kit, off), GROBO_OK);
+    grobo_posture p = family_posture(&kit, -60, 6000);
+    p.set = GROBO_JOINT_BIT(0);
+    assert_int_equal(grobo_robot_send(&kit.robot, &p), GROBO_OK);
+    family_run(&kit, 100 * MS);
+    grobo_target target = {.posture = family_posture(&kit, 0, 0)};
+    target.posture.set = GROBO_JOINT_BIT(3);
+    target.posture.angle_rad[3] = RAD(-80);
+    target.joint_time_us[3] = 12 * S;
+    target.from_rad[3] = RAD(30);
+    memset(&goal, 0, sizeof goal);
+    assert_int_equal(kit.driver.posture(&kit.driver, NULL, &target, 0, &goal), 1);
+    int raw = grobo_robot_raw(&kit.robot, goal.frame, goal.frame_bytes);
+    assert_true(raw > 0 || kit.driver.goal_wakes);
+    family_run(&kit, 100 * MS);
+    unsigned n_sent = kit.n_sent;
+    int number = grobo_robot_estop(&kit.robot);
+    expect_a_frame_at_once(n_sent);
+    int64_t from_us = kit.now_us;
+    assert_int_equal(family_wait(&kit, number), GROBO_OK);
+    assert_true(kit.now_us - from_us < 3 * (int64_t)S);
+    expect_rest(1, 0.5);
 }

@@ -63,71 +63,65 @@ static void stands_from_now_on(double dps, const char *how)
 
 static const double creeps_dps[] = {1, 2, 3, 5, 6, 7.5, 10, 14};
 
-TEST(who_leaves_says_so_of_joints_that_stand)
+TEST_FOR(family, family_next, who_leaves_says_so_of_joints_that_stand)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        for (size_t i = 0; i < sizeof creeps_dps / sizeof creeps_dps[0]; i++) {
-            for (int emergency = 0; emergency < 2; emergency++) {
-                set_creeping(f, creeps_dps[i]);
-                another_program(f);
-                int number = emergency ? grobo_robot_estop(&kit.robot)
-                                       : grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD);
-                int64_t begun_us = kit.now_us;
-                assert_int_equal(family_wait(&kit, number), GROBO_OK);
-                assert_true(kit.now_us - begun_us < 2 * (int64_t)SECOND);
-                stands_from_now_on(creeps_dps[i], emergency ? "an emergency stop" : "exit");
-            }
+    for (size_t i = 0; i < sizeof creeps_dps / sizeof creeps_dps[0]; i++) {
+        for (int emergency = 0; emergency < 2; emergency++) {
+            set_creeping(row, creeps_dps[i]);
+            another_program(row);
+            int number = emergency ? grobo_robot_estop(&kit.robot)
+                                   : grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD);
+            int64_t begun_us = kit.now_us;
+            assert_int_equal(family_wait(&kit, number), GROBO_OK);
+            assert_true(kit.now_us - begun_us < 2 * (int64_t)SECOND);
+            stands_from_now_on(creeps_dps[i], emergency ? "an emergency stop" : "exit");
         }
     }
 }
 
 /* Who stands where it was sent is shown to by its goal, at once; where no servo tells that, by two
  * positions, of which none is from before the request: another program may have set it going. */
-TEST(who_stands_where_it_was_sent_is_believed_at_once)
+TEST_FOR(family, family_next, who_stands_where_it_was_sent_is_believed_at_once)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        bool tells_goal = strcmp(f->name, "ics") != 0;
-        for (int watched = 0; watched < 2; watched++) {
-            grobo_robot_config config = unread;
-            config.sense_interval_us = watched ? 300 * MILLI : GROBO_SENSE_NEVER;
-            family_start(&kit, f, &config, NULL);
-            assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
-            family_run(&kit, 2 * (int64_t)SECOND);
-            int64_t begun_us = kit.now_us;
-            int number = grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD);
-            assert_int_equal(family_wait(&kit, number), GROBO_OK);
-            double took_ms = (double)(kit.now_us - begun_us) / 1000;
-            if (took_ms > (tells_goal ? 250 : 1000)) {
-                fail_msg("%s: %.0f ms", f->name, took_ms);
-            }
+    bool tells_goal = strcmp(row->name, "ics") != 0;
+    for (int watched = 0; watched < 2; watched++) {
+        grobo_robot_config config = unread;
+        config.sense_interval_us = watched ? 300 * MILLI : GROBO_SENSE_NEVER;
+        family_start(&kit, row, &config, NULL);
+        assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
+        family_run(&kit, 2 * (int64_t)SECOND);
+        int64_t begun_us = kit.now_us;
+        int number = grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD);
+        assert_int_equal(family_wait(&kit, number), GROBO_OK);
+        double took_ms = (double)(kit.now_us - begun_us) / 1000;
+        if (took_ms > (tells_goal ? 250 : 1000)) {
+            fail_msg("%s: %.0f ms", row->name, took_ms);
         }
     }
 }
 
 /* ---- a short bound --------------------------------------------------------------------------- */
 
-TEST(a_short_bound_switches_torque_off)
+TEST_FOR(family, family_next, a_short_bound_switches_torque_off)
 {
     static const int bounds_ms[] = {5, 20, 100, 300};
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        for (size_t i = 0; i < sizeof bounds_ms / sizeof bounds_ms[0]; i++) {
-            grobo_robot_config config = unread;
-            config.exit_bound_us = bounds_ms[i] * MILLI;
-            family_start(&kit, f, &config, NULL);
-            assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
-            grobo_posture p = family_posture(&kit, -30, 3000);
-            assert_true(grobo_robot_move(&kit.robot, &p) > 0);
-            family_run(&kit, SECOND);
-            int64_t begun_us = kit.now_us;
-            (void)family_wait(&kit, grobo_robot_exit(&kit.robot, GROBO_EXIT_OFF));
-            assert_true(kit.now_us - begun_us <= (bounds_ms[i] + 2) * MILLI);
-            family_run(&kit, 20 * MILLI);
-            for (int j = 0; j < JOINTS; j++) {
-                grobo_sim_view view;
-                assert_int_equal(grobo_sim_look(&kit.sim, j, &view), GROBO_OK);
-                if (view.torque != GROBO_TORQUE_OFF) {
-                    fail_msg("%s: joint %d has torque after %d ms", f->name, j, bounds_ms[i]);
-                }
+    for (size_t i = 0; i < sizeof bounds_ms / sizeof bounds_ms[0]; i++) {
+        grobo_robot_config config = unread;
+        config.exit_bound_us = bounds_ms[i] * MILLI;
+        family_start(&kit, row, &config, NULL);
+        assert_int_equal(family_move(&kit, 30, 1000), GROBO_OK);
+        grobo_posture p = family_posture(&kit, -30, 3000);
+        assert_true(grobo_robot_move(&kit.robot, &p) > 0);
+        family_run(&kit, SECOND);
+        int64_t begun_us = kit.now_us;
+        (void)family_wait(&kit, grobo_robot_exit(&kit.robot, GROBO_EXIT_OFF));
+        assert_true(kit.now_us - begun_us <= (bounds_ms[i] + 2) * MILLI);
+        family_run(&kit, 20 * MILLI);
+        for (int j = 0; j < JOINTS; j++) {
+            grobo_sim_view view;
+            assert_int_equal(grobo_sim_look(&kit.sim, j, &view), GROBO_OK);
+            if (view.torque != GROBO_TORQUE_OFF) {
+                fail_msg("%s: joint %d has torque after %d ms", row->name, j, bounds_ms[i]);
             }
         }
     }
@@ -198,34 +192,32 @@ static void set_going(const family *f, stop_kind kind)
 
 /* One frame or two of a halt do not arrive: until what it stops was read back, the robot moves; the
  * halt is repeated, and nothing goes on. */
-TEST(a_halt_that_is_lost_is_repeated)
+TEST_FOR(family, family_next, a_halt_that_is_lost_is_repeated)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        for (int kind = 0; kind < KINDS; kind++) {
-            for (int lost = 0; lost < 3; lost++) {
-                set_going(f, (stop_kind)kind);
-                double from_deg = at_now_deg(0);
-                int64_t begun_us = kit.now_us;
-                halt(&kit.robot, (stop_kind)kind);
-                kit.lose = lost;
-                do {
-                    assert_true(kit.now_us - begun_us < SECOND);
-                    family_run(&kit, MILLI);
-                } while (kit.n_halted == 0 || (grobo_robot_moving(&kit.robot) && kind != PAUSE));
-                if (kit.halted.joints != GROBO_JOINTS_ALL(JOINTS) || kit.halted.failed != 0) {
-                    fail_msg("%s: %s, %d lost: %#x were read back, %#x not", f->name,
-                             stop_names[kind], lost, (unsigned)kit.halted.joints,
-                             (unsigned)kit.halted.failed);
-                }
-                family_run(&kit, 200 * MILLI);
-                double on_deg = fabs(at_now_deg(0) - from_deg);
-                if (on_deg > 8) {
-                    fail_msg("%s: %s, %d lost: %.1f degrees on", f->name, stop_names[kind], lost,
-                             on_deg);
-                }
-                stands_from_now_on(20, stop_names[kind]);
-                assert_int_equal(kit.n_halted, 1);
+    for (int kind = 0; kind < KINDS; kind++) {
+        for (int lost = 0; lost < 3; lost++) {
+            set_going(row, (stop_kind)kind);
+            double from_deg = at_now_deg(0);
+            int64_t begun_us = kit.now_us;
+            halt(&kit.robot, (stop_kind)kind);
+            kit.lose = lost;
+            do {
+                assert_true(kit.now_us - begun_us < SECOND);
+                family_run(&kit, MILLI);
+            } while (kit.n_halted == 0 || (grobo_robot_moving(&kit.robot) && kind != PAUSE));
+            if (kit.halted.joints != GROBO_JOINTS_ALL(JOINTS) || kit.halted.failed != 0) {
+                fail_msg("%s: %s, %d lost: %#x were read back, %#x not", row->name,
+                         stop_names[kind], lost, (unsigned)kit.halted.joints,
+                         (unsigned)kit.halted.failed);
             }
+            family_run(&kit, 200 * MILLI);
+            double on_deg = fabs(at_now_deg(0) - from_deg);
+            if (on_deg > 8) {
+                fail_msg("%s: %s, %d lost: %.1f degrees on", row->name, stop_names[kind], lost,
+                         on_deg);
+            }
+            stands_from_now_on(20, stop_names[kind]);
+            assert_int_equal(kit.n_halted, 1);
         }
     }
 }
@@ -260,42 +252,38 @@ TEST_WITH(rig_wirings, a_halt_of_gr001_that_is_lost_is_repeated)
 }
 
 /* Who does not answer is named, in time. */
-TEST(who_cannot_be_read_back_is_named)
+TEST_FOR(family, family_next, who_cannot_be_read_back_is_named)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        set_going(f, AT_ONCE);
-        halt(&kit.robot, AT_ONCE);
-        kit.lose = INT32_MAX;
-        int64_t begun_us = kit.now_us;
-        while (grobo_robot_moving(&kit.robot)) {
-            assert_true(kit.now_us - begun_us < 4 * (int64_t)SECOND);
-            family_run(&kit, MILLI);
-        }
-        assert_true(kit.now_us - begun_us > 2 * (int64_t)SECOND);
-        assert_int_equal(kit.n_halted, 1);
-        assert_true(kit.halted.failed == GROBO_JOINTS_ALL(JOINTS));
-        assert_true(kit.halted.joints == 0);
+    set_going(row, AT_ONCE);
+    halt(&kit.robot, AT_ONCE);
+    kit.lose = INT32_MAX;
+    int64_t begun_us = kit.now_us;
+    while (grobo_robot_moving(&kit.robot)) {
+        assert_true(kit.now_us - begun_us < 4 * (int64_t)SECOND);
+        family_run(&kit, MILLI);
     }
+    assert_true(kit.now_us - begun_us > 2 * (int64_t)SECOND);
+    assert_int_equal(kit.n_halted, 1);
+    assert_true(kit.halted.failed == GROBO_JOINTS_ALL(JOINTS));
+    assert_true(kit.halted.joints == 0);
 }
 
 /* Targets that follow a stop at once are sent at their rate: nothing is waited for. */
-TEST(a_stream_behind_a_stop_is_not_held_up)
+TEST_FOR(family, family_next, a_stream_behind_a_stop_is_not_held_up)
 {
-    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
-        set_going(f, AT_ONCE);
-        halt(&kit.robot, AT_ONCE);
+    set_going(row, AT_ONCE);
+    halt(&kit.robot, AT_ONCE);
+    family_run(&kit, 10 * MILLI);
+    double at_deg = at_now_deg(0);
+    for (int i = 0; i < 100; i++) {
+        grobo_posture p = family_posture(&kit, at_deg - 0.1 * i, 20);
+        assert_int_equal(grobo_robot_send(&kit.robot, &p), GROBO_OK);
         family_run(&kit, 10 * MILLI);
-        double at_deg = at_now_deg(0);
-        for (int i = 0; i < 100; i++) {
-            grobo_posture p = family_posture(&kit, at_deg - 0.1 * i, 20);
-            assert_int_equal(grobo_robot_send(&kit.robot, &p), GROBO_OK);
-            family_run(&kit, 10 * MILLI);
-        }
-        family_run(&kit, 200 * MILLI);
-        assert_int_equal(kit.n_trips, 0);
-        assert_true(fabs(at_now_deg(0) - (at_deg - 9.9)) < 1.5);
-        if (kit.n_halted > 1) {
-            fail_msg("%s: %u stops were told of", f->name, kit.n_halted);
-        }
+    }
+    family_run(&kit, 200 * MILLI);
+    assert_int_equal(kit.n_trips, 0);
+    assert_true(fabs(at_now_deg(0) - (at_deg - 9.9)) < 1.5);
+    if (kit.n_halted > 1) {
+        fail_msg("%s: %u stops were told of", row->name, kit.n_halted);
     }
 }
