@@ -5,11 +5,8 @@
 . tests/support/cli.sh
 . tests/support/terminal.sh
 
-on_robot() {
-    "$GRCTL" -d "$robot" "$@"
-}
 braked() {
-    exits 0 on_robot --timeout 500 status && says '^ *12  R_KNEE_P .* brake '
+    exits 0 on_robot status && says '^ *12  R_KNEE_P .* brake '
 }
 
 # while_running PATTERN COMMAND...: an emergency stop once it has said that; its status in $ended.
@@ -50,7 +47,8 @@ check "while it is taught limp" stopped 'are limp' teach -o "$work/limp.m"
 # stopped_by COMMAND...: it stops a robot that another command plays on.
 stopped_by() {
     rm -f "$work/busy" # what the one before said does not count
-    "$GRCTL" -d "$robot" --json play --speed 20 motions/greet.pseq >"$work/busy" 2>&1 </dev/null &
+    "$GRCTL" -d "$robot" --timeout 500 --json play --speed 20 motions/greet.pseq >"$work/busy" \
+        2>&1 </dev/null &
     while_pid=$!
     written "$work/busy" '"t_ms":[1-9]' && exits 0 "$@"
     by_status=$?
@@ -65,20 +63,20 @@ stopped_by() {
     return 1
 }
 by_another_name() {
-    (cd "$work" && exec "$GRCTL" -d "$1" estop)
+    (cd "$work" && exec "$GRCTL" -d "$1" --timeout 500 estop)
 }
 if [ -z "${NATIVE_GRCTL:-}" ]; then # there a port has one name
     check "by the name that a link leads to" stopped_by by_another_name "$sim_pty"
     check "by a name that begins here" stopped_by by_another_name robot
     mkdir "$work/run"
     check "by one who is logged in, of a service" stopped_by \
-        env XDG_RUNTIME_DIR="$work/run" "$GRCTL" -d "$robot" estop
+        env XDG_RUNTIME_DIR="$work/run" "$GRCTL" -d "$robot" --timeout 500 estop
     check "where the folder of the session is missing" stopped_by \
-        env XDG_RUNTIME_DIR="$work/none" "$GRCTL" -d "$robot" estop
+        env XDG_RUNTIME_DIR="$work/none" "$GRCTL" -d "$robot" --timeout 500 estop
 fi
 
 watched() {
-    "$GRCTL" -d "$robot" status --watch --interval 100 >"$work/watch" 2>&1 &
+    "$GRCTL" -d "$robot" --timeout 500 status --watch --interval 100 >"$work/watch" 2>&1 &
     watch_pid=$!
     written "$work/watch" 'R_KNEE_P .* on ' || return 1
     exits 0 on_robot estop && complains "^stopped by process $(known_pid $watch_pid), .* verified"
@@ -96,7 +94,7 @@ exits 0 on_robot estop --reset
 
 if have_full_screen; then
     open_screen
-    type_line "'$GRCTL' -d '$robot' monitor"
+    type_line "'$GRCTL' -d '$robot' --timeout 500 monitor"
     until_screen '^12 KNEE_P'
     keys t
     until_screen '^torque on: done'
@@ -119,7 +117,7 @@ under_way() {
     [ "${1:-}" = guarded ] || export GRCTL_GUARD=''
     rm -f "$work/moving"
     exits 0 on_robot servo on && exits 0 on_robot move m5 0 500 || return 1
-    "$GRCTL" -d "$robot" -v move m5 -120 20000 >"$work/moving" 2>&1 </dev/null &
+    "$GRCTL" -d "$robot" --timeout 500 -v move m5 -120 20000 >"$work/moving" 2>&1 </dev/null &
     mover=$!
     written "$work/moving" 'robot found' && wait_for sim_shows 5 ' -[1-9][0-9]\.[0-9] deg'
 }
@@ -182,29 +180,29 @@ deaf() {
         >"$deaf_note"
     chmod 600 "$deaf_note"
     fails 1 "NOT stopped: process $deaf_pid has the port and has not answered in [0-9]* s; end it" \
-        env XDG_RUNTIME_DIR="$work/run" "$GRCTL" -d "$robot" estop
+        env XDG_RUNTIME_DIR="$work/run" "$GRCTL" -d "$robot" --timeout 500 estop
     deaf_status=$?
     kill -s KILL $deaf_pid
     wait $deaf_pid
     rm "$deaf_note"
     [ $deaf_status -eq 0 ] &&
-        exits 0 env XDG_RUNTIME_DIR="$work/run" "$GRCTL" -d "$robot" estop --reset
+        exits 0 env XDG_RUNTIME_DIR="$work/run" "$GRCTL" -d "$robot" --timeout 500 estop --reset
 }
 
 # The mark is set before the device is looked for, and is there when that is.
 missing() {
     fails 1 "no such file or device.*; NOT stopped, nothing was sent; programs refuse to move it" \
-        "$GRCTL" -d "$work/missing" estop || return 1
+        "$GRCTL" -d "$work/missing" --timeout 500 estop || return 1
     ln -s "$sim_pty" "$work/missing"
-    fails 4 "stopped by 'grctl estop'" "$GRCTL" -d "$work/missing" move m5 0 &&
-        exits 0 "$GRCTL" -d "$work/missing" estop --reset &&
-        exits 0 "$GRCTL" -d "$work/missing" status && exits 0 on_robot servo on m5
+    fails 4 "stopped by 'grctl estop'" "$GRCTL" -d "$work/missing" --timeout 500 move m5 0 &&
+        exits 0 "$GRCTL" -d "$work/missing" --timeout 500 estop --reset &&
+        exits 0 "$GRCTL" -d "$work/missing" --timeout 500 status && exits 0 on_robot servo on m5
 }
 
 # reset_of_busy: the mark goes, and who has the port is told of.
 reset_of_busy() {
     rm -f "$work/watch"
-    "$GRCTL" -d "$robot" status --watch --interval 100 >"$work/watch" 2>&1 &
+    "$GRCTL" -d "$robot" --timeout 500 status --watch --interval 100 >"$work/watch" 2>&1 &
     watch_pid=$!
     written "$work/watch" 'R_KNEE_P ' && exits 0 on_robot estop && exits 0 on_robot estop --reset &&
         grep -q "process $watch_pid, which has the port, stays stopped" "$work/err"
@@ -245,16 +243,19 @@ with_tmp() {
         shift && exec "$@"' sh "$@"
 }
 read_only='mount --bind /tmp /tmp && mount -o remount,ro,bind /tmp'
+# The command stays where it is, which may be below that: its folder as it was before.
+another_tmp='cd "${GRCTL%/*}" && mount -t tmpfs -o mode=1777 none /tmp && mkdir -p "${GRCTL%/*}" &&
+    mount -c --bind . "${GRCTL%/*}" && cd "$OLDPWD"'
 unwritable() {
     fails 1 'stopped and verified, .*; the mark could not be written (.*): other programs may' \
-        with_tmp "$read_only" "$GRCTL" -d "$robot" estop && exits 0 on_robot servo on
+        with_tmp "$read_only" "$GRCTL" -d "$robot" --timeout 500 estop && exits 0 on_robot servo on
 }
 # Who is stopped and cannot see a mark would go on.
 unwritable_and_frozen() {
     under_way || return 1
     kill -s STOP $mover
     fails 1 'NOT stopped: .* was not resumed, .*; the mark could not be written' \
-        with_tmp "$read_only" "$GRCTL" -d "$robot" estop
+        with_tmp "$read_only" "$GRCTL" -d "$robot" --timeout 500 estop
     unseen_status=$?
     grep -q '^State:.T' /proc/$mover/status
     unseen_still=$?
@@ -266,21 +267,21 @@ unwritable_and_frozen() {
 taken() {
     exits 0 on_robot servo on || return 1
     # shellcheck disable=SC2016
-    exits 0 with_tmp 'mount -t tmpfs -o mode=1777 none /tmp' sh -c '
+    exits 0 with_tmp "$another_tmp" sh -c '
         mkdir "/tmp/grobo-$(id -u)" && chown 65534 "/tmp/grobo-$(id -u)" || exit 9
-        GRCTL_GUARD="" "$1" -d "$2" --json play --speed 20 motions/greet.pseq \
+        GRCTL_GUARD="" "$1" -d "$2" --timeout 500 --json play --speed 20 motions/greet.pseq \
             >/tmp/busy 2>/tmp/err &
         for i in $(seq 1000); do grep -q "\"t_ms\":[1-9]" /tmp/busy && break; sleep 0.03; done
         kill -s STOP $!
-        "$1" -d "$2" estop || exit 8
+        "$1" -d "$2" --timeout 500 estop || exit 8
         wait $!
         [ $? -eq 4 ] || exit 7
-        "$1" -d "$2" move m5 0
+        "$1" -d "$2" --timeout 500 move m5 0
         [ $? -eq 4 ] || exit 6
         rmdir "/tmp/grobo-$(id -u)"
-        "$1" -d "$2" move m5 0
+        "$1" -d "$2" --timeout 500 move m5 0
         [ $? -eq 4 ] || exit 5
-        exec "$1" -d "$2" estop --reset' sh "$GRCTL" "$sim_pty"
+        exec "$1" -d "$2" --timeout 500 estop --reset' sh "$GRCTL" "$sim_pty"
 }
 
 if [ -z "${NATIVE_GRCTL:-}" ]; then # there nobody is stopped, and nobody else has a port
