@@ -8,7 +8,7 @@
 same() {
     same_count=$1
     shift
-    "$GRCTL" -q -d sim --trace "$work/trace" "$@" >"$work/out" 2>"$work/err" || return 1
+    "$GRCTL" -q -d sim --timeout 500 --trace "$work/trace" "$@" >"$work/out" 2>"$work/err" || return 1
     exits 0 "$GRCTL" replay "$work/trace" && says " $same_count equal, 0 differ, 0 missing, 0 extra"
 }
 test_case 'the simulator replies as it did'
@@ -112,7 +112,7 @@ check 'reads go to a robot without a question' both exits 0 on_robot replay "$wo
     says ' equal, 0 differ, 0 missing, 0 extra'
 check 'the replay of a replay' both exits 0 on_robot --trace "$work/again" replay "$work/reads" \
     --- both exits 0 "$GRCTL" replay "$work/again" --- says ' equal, 0 differ, 0 missing, 0 extra'
-"$GRCTL" -d sim -q --trace "$work/moves" move R_KNEE_P -45 500
+"$GRCTL" -d sim --timeout 500 -q --trace "$work/moves" move R_KNEE_P -45 500
 check 'moves are not sent unasked' fails 4 'frames move joints of a real robot; say --yes' \
     on_robot replay "$work/moves"
 check 'and nothing moved' is_untouched
@@ -122,7 +122,7 @@ check 'moves are sent with --yes' both exits 1 on_robot replay --yes "$work/move
 check 'and the joint has moved' both exits 0 on_robot status R_KNEE_P --- says '-45.0 .* on '
 
 # Only the first target is held to the approach speed.
-"$GRCTL" -d sim -q --trace "$work/greet" play --key motions/greet.pseq >"$work/out"
+"$GRCTL" -d sim --timeout 500 -q --trace "$work/greet" play --key motions/greet.pseq >"$work/out"
 # Frames are sent once: on a busy machine one reply in hundreds comes too late, rarely in each run.
 whole_motion() {
     for _ in 1 2 3; do
@@ -166,7 +166,7 @@ too_fast() {
         exits 0 on_robot status R_KNEE_P && says '-45.0'
 }
 check 'a goal too fast for the joint is refused by the engine' too_fast
-"$GRCTL" -d sim -q --trace "$work/looks" status m3 >"$work/out"
+"$GRCTL" -d sim --timeout 500 -q --trace "$work/looks" status m3 >"$work/out"
 behind_refused() {
     printf 'replay %s\nreplay %s\n' "$work/refused" "$work/looks" |
         on_robot --yes shell --keep-going >"$work/out" 2>"$work/err"

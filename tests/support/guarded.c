@@ -171,14 +171,15 @@ static void do_as_the_mode_says(void)
     }
 }
 
-/* So many ticks after the joint began to move; an emergency stop comes between. */
+/* So many ticks after a frame that moves the joint has left; an emergency stop comes between. */
 enum { TICK_US = 10000, MOVING_TICKS = 30, ESTOP_TICKS = 40, ESTOP_DIES_TICKS = 50 };
 
 static void on_tick(evutil_socket_t fd, short what, void *ctx)
 {
     static int ticks;
     grobo_robot *robot = grobo_session_robot(its_session);
-    bool moving = grobo_robot_moving(robot);
+    bool moving =
+        grobo_robot_moving(robot) && grobo_robot_get_counters(robot)->motion_frames > 0;
 
     (void)fd;
     (void)what;
