@@ -135,13 +135,14 @@ interrupted() {
 check "Ctrl-C stops all" interrupted
 
 state_is() { # PATTERN: of $program, as ps has it
-    case $(ps -o stat= -p "$program") in
+    # The shell may have buried it already; its status is kept.
+    case $(ps -o stat= -p "$program" || echo gone) in
     $1*) ;;
     *) return 1 ;;
     esac
 }
 ended_or_suspended() {
-    state_is Z || state_is T
+    state_is '[Zg]' || state_is T
 }
 # It is suspended once, when all stand: continued, it has nothing to be stopped for, and ends.
 suspended() {

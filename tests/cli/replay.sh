@@ -8,7 +8,8 @@
 same() {
     same_count=$1
     shift
-    "$GRCTL" -q -d sim --timeout 500 --trace "$work/trace" "$@" >"$work/out" 2>"$work/err" || return 1
+    "$GRCTL" -q -d sim --timeout 500 --trace "$work/trace" "$@" >"$work/out" 2>"$work/err" ||
+        return 1
     exits 0 "$GRCTL" replay "$work/trace" && says " $same_count equal, 0 differ, 0 missing, 0 extra"
 }
 test_case 'the simulator replies as it did'

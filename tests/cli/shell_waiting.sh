@@ -77,7 +77,7 @@ goes_on() {
     exits 0 on_robot estop && complains 'which has the port, and verified' || return 1
     told 'stopped for safety: emergency stop' && wait_for sim_shows 5 'torque brake' || return 1
     line m m5 0
-    told 'standard input:3: .*emergency stop'
+    told "standard input:3: .*stopped by 'grctl estop'" || return 1
     line estop --reset
     leaves 4
 }
@@ -229,7 +229,12 @@ typed_unseen() {
 }
 check "after Ctrl-S too, whatever is typed" typed_unseen
 keys C-u 'estop --reset' Enter
-until_screen 'released.*$'
+# The row of the release before is on the screen still.
+is_released_again() {
+    screen | awk 'NF { before = last; last = $0 }
+        END { exit !(before ~ /released/ && last == "grctl>") }'
+}
+check "and released once more" wait_for is_released_again
 tell plug out
 check "a lost line is told" until_screen ': device is gone$'
 tell plug in

@@ -178,8 +178,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
 {
     static int ticks;
     grobo_robot *robot = grobo_session_robot(its_session);
-    bool moving =
-        grobo_robot_moving(robot) && grobo_robot_get_counters(robot)->motion_frames > 0;
+    bool moving = grobo_robot_moving(robot) && grobo_robot_get_counters(robot)->motion_frames > 0;
 
     (void)fd;
     (void)what;
