@@ -154,17 +154,21 @@ static int64_t time_needed(const grobo_robot *robot, int joint, double from_rad,
     return on_time_grid(robot, time_of_way(robot, joint, from_rad, to_rad, soft));
 }
 
-/* A halt, and a stop at once, never ask for more than the joint's speed from where it was read,
- * either, where it was not read since its last frame: that may be lost. The end of a motion gives a
- * joint the time to brake. */
+/* What stops a joint never asks for more than its speed from where it was read, either, where no
+ * reading shows that it has begun its way: the frame may be lost. For a halt any reading since
+ * does. Of a stream the next frame makes good a lost one, so that a soft stop keeps its time. The
+ * end of a motion gives a joint the time to brake. */
 static int64_t time_of_order(const grobo_robot *robot, const grobo_robot_order *order, int joint,
                              double to_rad)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double from_rad = begin_of(robot, order, joint);
     int64_t needed_us = time_needed(robot, joint, from_rad, to_rad, robot->soft || order->soft);
-    bool at_once = order->rests && axis->next_time_us < HALT_TIME_US;
-    if (axis->seen_us < axis->told_us && (at_once || order->deed == GROBO_I_DEED_HALT)) {
+    bool halts = order->deed == GROBO_I_DEED_HALT && axis->seen_us < axis->told_us;
+    bool at_once = axis->next_time_us < HALT_TIME_US;
+    bool alone = axis->way.to_us - axis->way.from_us > HALT_TIME_US; /* no next one soon */
+    bool rests = order->rests && (at_once || alone);
+    if (halts || (rests && axis->seen_us < axis->told_us + GROBO_I_BEGUN_US)) {
         int64_t unsure_us = time_needed(robot, joint, axis->seen_rad, to_rad, false);
         needed_us = grobo_i_later(needed_us, unsure_us);
     }

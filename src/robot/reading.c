@@ -92,9 +92,8 @@ static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis
  * should be by then is not on it: a weak one is behind, one that turns back has done so. */
 #define TURNED_US 200000
 
-/* By then a joint that is sent somewhere so fast has begun to turn, and no frame is under way: one
- * that stands so far beside its way is not on it. */
-#define BEGUN_US 100000
+/* One that is sent somewhere so fast, has had the time to begin, and stands so far beside its way
+ * is not on it. */
 #define BEGUN_RAD_S (30 * 0.017453292519943295)
 #define BESIDE_RAD (2 * 0.017453292519943295)
 
@@ -126,7 +125,7 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
     bool elsewhere = !between && asked_us - axis->told_us > TURNED_US;
     bool stands = abs(got->speed_dps) < GROBO_I_SLOW_DPS;
     bool never_began = stands && is_fast(&axis->way, asked_us) && beside_rad > BESIDE_RAD &&
-                       asked_us - axis->told_us > BEGUN_US;
+                       asked_us - axis->told_us > GROBO_I_BEGUN_US;
     return axis->has_target && !axis->in_segments &&
            (never_began || (beside_rad > GROBO_I_OFF_WAY_RAD && (elsewhere || stands)));
 }

@@ -75,6 +75,8 @@ double grobo_i_axis_target(const grobo_robot_axis *axis);
 /* An angle this far from the way that a joint was sent on is not of a joint on that way: more than
  * what the fastest one does while a frame is on its way. */
 #define GROBO_I_OFF_WAY_RAD (12 * 0.017453292519943295)
+/* So long after it was told a joint turns that can, and no frame is under way. */
+#define GROBO_I_BEGUN_US 100000
 /* grobo_robot_axis.seen_dps of a reading without a speed. */
 #define GROBO_I_NO_SPEED INT16_MIN
 /* True of servos that tell how fast they turn and which way, and not how long: what was read last
