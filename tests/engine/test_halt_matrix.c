@@ -265,11 +265,13 @@ static int ask_stop(stop_kind stop)
     return GROBO_ERR_ARG;
 }
 
-/* A motion that pauses is still one: nothing says when its joints stand but the time it takes. */
+/* A motion that pauses is still one: nothing says when its joints stand but the time it takes, by
+ * what they were told where a lost frame takes them further. */
 static bool is_done(const cell *c, int job)
 {
     if (c->stop == PAUSE) {
-        return grobo_robot_play_state(&halt.robot) == GROBO_SEQUENCER_PAUSED &&
+        return halt.now_us >= halt.ends_us &&
+               grobo_robot_play_state(&halt.robot) == GROBO_SEQUENCER_PAUSED &&
                halt.now_us >= halt.asked_us + GROBO_PLAY_STOP_US + 2 * halt.of->frame_us + 10000;
     }
     return (job <= 0 || halt.over) && !grobo_robot_settling(&halt.robot) &&

@@ -323,7 +323,7 @@ void halt_blame(const char *rule, int joint, double is, double may)
     }
 }
 
-static double most_dps(int servo)
+static double top_dps(int servo)
 {
     return DEG(halt.of->driver.model->joints[halt_joint_of(servo)].max_speed_rad_s);
 }
@@ -375,17 +375,22 @@ static void may_go(const far_joint *joint, const far_news *news, const halt_base
     *to_deg = fmax(fmax(news->left_deg, joint->at_deg), on_deg);
 }
 
+/* No frame asks more than the joint's speed of the shaft, from where that is: 1 % and one count of
+ * the slowest wire more. A speed in a register counts whatever the way; a time counts with the way,
+ * less what the shaft went on while the frame was under way. */
 static void judge_speed(const far_joint *joint, const far_news *news)
 {
     double way_deg = fabs(news->goal_deg - joint->at_deg);
     double lag_deg = fabs(joint->at_deg - news->left_deg) + joint->family->step_deg + halt.lag_deg;
-    double most = most_dps(news->joint) + COUNT_DPS;
+    double most_dps = (top_dps(news->joint) + COUNT_DPS) * 1.01;
     double asked_dps = news->ask_dps > 0 ? news->ask_dps : INFINITY;
-    if (way_deg > lag_deg + SLACK_DEG / 2) {
-        asked_dps = isinf(asked_dps) ? asked_dps : asked_dps * (way_deg - lag_deg) / way_deg;
-        if (asked_dps > most * 1.01) {
-            halt_blame("faster than the joint may", news->joint, asked_dps, most);
-        }
+    bool timed = joint->family->count_dps == 0;
+    if (way_deg <= lag_deg + (timed ? SLACK_DEG / 2 : 0)) {
+        return; /* it stays where it is */
+    }
+    asked_dps *= timed && !isinf(asked_dps) ? (way_deg - lag_deg) / way_deg : 1;
+    if (asked_dps > most_dps) {
+        halt_blame("faster than the joint may", news->joint, asked_dps, most_dps);
     }
 }
 
@@ -404,6 +409,10 @@ static void judge_goal(const far_joint *joint, const far_news *news)
         to_deg = fmax(to_deg, base->to_deg);
     }
     halt.judged_goals++;
+    if (news->ask_dps > 0 && joint->family->count_dps == 0) { /* of a time */
+        double way_us = fabs(news->goal_deg - joint->at_deg) / news->ask_dps * HALT_S;
+        halt.ends_us = grobo_i_later(halt.ends_us, halt.now_us + (int64_t)way_us);
+    }
     double off_deg = outside(news->goal_deg, from_deg, to_deg);
     if (off_deg > slack_deg(joint)) {
         if (news->missed) {
@@ -413,9 +422,7 @@ static void judge_goal(const far_joint *joint, const far_news *news)
             halt_blame("a halt throws a joint", news->joint, news->goal_deg, joint->at_deg);
         }
     }
-    if (!news->missed) {
-        judge_speed(joint, news);
-    }
+    judge_speed(joint, news);
 }
 
 /* A frame that was on the line when the stop was asked for sets the joint going yet. */
@@ -470,7 +477,7 @@ void halt_judge(int64_t soft_us)
     halt.judged = true;
     halt.now_us++; /* behind what has left by now */
     halt.asked_us = halt.now_us;
-    halt.done_us = 0;
+    halt.done_us = halt.ends_us = 0;
     halt.soft_us = soft_us;
     halt.far.motor_left_us = halt.far.first_left_us = FAR_NEVER;
     memset(halt.base, 0, sizeof halt.base);

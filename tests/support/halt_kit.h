@@ -57,6 +57,7 @@ typedef struct halt_world {
     /* The stop. */
     bool judged;
     int64_t asked_us, done_us;
+    int64_t ends_us; /* by what it was told since, each joint is there */
     bool streamed;   /* ways end a little before the next begins */
     bool blind;      /* the engine that stops did not send them */
     double lag_deg;  /* a joint that missed a frame may be behind by so much */
