@@ -643,12 +643,25 @@ printf '%s\n%051d\n' "$licence" 0 | sed '2s/0/関/g' >a.c
 check 'text: 102 columns of them' refuses 'a.c:2: text: longer' \
     env LC_ALL=C awk -f "$gates/text.awk" a.c
 
+both_ways() {
+    "$@" && [ -s "$FORMATTED" ] && "$@"
+}
 printf 'BasedOnStyle: LLVM\n' >.clang-format
 printf 'int x ;\n' >a.c
 if command -v clang-format-14 >/dev/null; then
     check 'format: not formatted' refuses 'a.c:1: format' sh "$gates/format.sh" a.c
     printf 'int x;\n' >a.c
     check 'format: formatted' sh "$gates/format.sh" a.c
+    FORMATTED=$work/formatted
+    export FORMATTED
+    check 'format: it is remembered' both_ways sh "$gates/format.sh" a.c
+    printf 'int x ;\n' >a.c
+    check 'format: not when it has changed' refuses 'a.c:1: format' sh "$gates/format.sh" a.c
+    check 'format: nor is what is not formatted' refuses 'a.c:1: format' sh "$gates/format.sh" a.c
+    printf 'BasedOnStyle: LLVM\nSpaceBeforeParens: Always\n' >.clang-format
+    printf 'int x(void);\n' >a.c
+    check 'format: nor under another style' refuses 'a.c:1: format' sh "$gates/format.sh" a.c
+    unset FORMATTED
 else
     skip 'format' 'no clang-format 14; tools/setup.sh --check installs it'
 fi
