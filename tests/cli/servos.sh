@@ -19,9 +19,10 @@ scan() {
 finds() {
     [ "$(grep -c ' bps  ' "$work/out")" -eq "$1" ]
 }
-check "scan finds 20" both exits 0 scan --- finds 20
+check "scan finds 20" both exits 0 scan --last 30 --- finds 20
 check "a row of it" says '^ 12  RS301CR   firmware   1  115200 bps  R_KNEE_P$'
-check "how long it took" said '^20 servos; 107 silent; [0-9]* ms, of which the wire took [0-9]*$'
+check "how long it took" said '^20 servos; 10 silent; [0-9]* ms, of which the wire took [0-9]*$'
+check "all ids are asked without --last" both exits 0 "$GRCTL" -d sim scan --- said '; 107 silent; '
 check "nobody there" exits 1 scan --first 21 --last 40
 check_json "as JSON" '[s["id"] for s in lines[0]["servos"]] == [12, 13] and
     lines[0]["silent"] == 0 and lines[0]["wire_ms"] > 0' on_robot scan --json --first 12 --last 13
@@ -61,15 +62,19 @@ check "--all-baud without a line" fails 2 'needs a line' \
     "$GRCTL" -d sim --wiring bus scan --all-baud
 check "info" both exits 0 on_robot info --- says '^ 20  RS301CR   firmware   1 .* L_ANKLE_R$'
 check "how it is reached" says '^GR001 on .*, through its board, which answers$'
+# One that is silent costs the whole time, at each try.
+soon() {
+    "$GRCTL" -d "$robot" --timeout 150 "$@"
+}
 tell silent 12 on
 check "a silent servo is named" both exits 1 on_robot info --- \
     said '^motor 12 (R_KNEE_P): no reply in time$'
 check "who does not answer: what, where, what to do" fails 1 \
     "no reply from motor 12 (R_KNEE_P) in [0-9.]* ms after 2 retries; is its cable in? see" \
-    on_robot servo on m12
+    soon servo on m12
 check "as often as asked" fails 1 'R_KNEE_P) in [0-9.]* ms after 1 retry;' \
-    on_robot --retries 1 servo on m12
-check "-v: the bytes too" both exits 1 on_robot -v servo on m12 --- \
+    soon --retries 1 servo on m12
+check "-v: the bytes too" both exits 1 soon -v servo on m12 --- \
     said '^sent 54 09 FA AF 0C 0F 1E 18 00 05 20; received nothing$'
 tell silent 12 off
 check "-vv: every byte" both exits 0 on_robot -vv status m12 --- \
@@ -181,9 +186,17 @@ check "and no other" [ "$(grep -c R_SHOULDER_P "$work/out")" -eq 1 ]
 stop_sim
 
 # A servo changes its rate when it restarts, or at once: the command finds out where it answers.
-# Not as long as on_robot() would: all servos but one are silent where the line has another rate.
+# All servos but one are silent where the line has another rate, each for the whole time: two will
+# do.
+cat >"$work/two.yaml" <<EOF2
+name: two
+family: rs30x
+joints:
+  - {name: turn, id: 2, servo: RS302CD, limits_deg: [-90, 90]}
+  - {name: lift, id: 12, servo: RS302CD, limits_deg: [-90, 90]}
+EOF2
 on_bus() {
-    "$GRCTL" -d "$robot" --wiring bus --timeout 100 "$@"
+    "$GRCTL" -d "$robot" --robot "$work/two.yaml" --timeout 300 "$@"
 }
 # follows NAME: with --flash to the new rate, and back.
 follows() {
@@ -198,7 +211,7 @@ follows() {
         on_bus -b 460800 --json servo-set 2 baud 7 --flash
 }
 
-start_told_sim --wiring bus
+start_told_sim --robot "$work/two.yaml"
 check "a baud rate without --flash" both exits 0 on_bus servo-set 2 baud 57600 --- \
     said '(57600 bps); takes effect at a restart, and is lost there .*; it answers at 115200 bps$'
 check_json "in JSON" 'lines[0]["flash"] is False and lines[0]["baud_bps"] == 115200' \
@@ -214,7 +227,7 @@ check "a servo that holds is not restarted" fails 4 'servo 12 holds, and would r
 check "and keeps its rate" both exits 0 on_bus servo-get 12 baud --- says ' 115200 bps$'
 check "without --flash it goes on holding" exits 0 on_bus servo-set 12 baud 57600
 stop_sim
-start_sim --wiring bus --baud-at-once
+start_sim --robot "$work/two.yaml" --baud-at-once
 check "--baud-at-once, without --flash" both exits 0 on_bus servo-set 2 baud 57600 --- \
     said '(57600 bps); lost at power-off without --flash; it answers at 57600 bps$'
 check "and back" both exits 0 on_bus -b 57600 servo-set 2 baud 115200 --- said 'at 115200 bps$'
@@ -222,13 +235,13 @@ follows '--baud-at-once'
 stop_sim
 check_json "in process" 'lines[0]["flash"] and lines[0]["baud_bps"] == 9600' \
     "$GRCTL" -d sim --wiring bus --timeout 500 --json servo-set 2 baud 9600 --flash
-start_sim --wiring bus --tcp 0
+start_sim --robot "$work/two.yaml" --tcp 0
 written "$work/sim.log" '^also at '
 tcp=$(sed -n 's/^also at //p' "$work/sim.log")
 check "behind TCP" fails 4 'the rate of a line behind TCP is not set from here' \
-    "$GRCTL" -d "$tcp" --wiring bus --timeout 500 servo-set 2 baud 57600
+    "$GRCTL" -d "$tcp" --robot "$work/two.yaml" --timeout 500 servo-set 2 baud 57600
 check "nothing was written" both exits 0 on_bus servo-get 2 baud --- says ' 115200 bps$'
 check "--all-baud behind TCP" fails 2 'the rate of a line behind TCP' \
-    "$GRCTL" -d "$tcp" --wiring bus scan --all-baud
+    "$GRCTL" -d "$tcp" --robot "$work/two.yaml" scan --all-baud
 stop_sim
 done_testing
