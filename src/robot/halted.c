@@ -26,16 +26,10 @@ static bool is_read_by_a_job(const grobo_robot *robot)
     return (job->kind == GROBO_JOB_EXIT || job->kind == GROBO_JOB_ESTOP) && job->at > 0;
 }
 
-/* Its goal was read, or its servo has answered the halt itself. */
-static bool tells_goal(const grobo_robot_axis *axis)
-{
-    return axis->goal_us != GROBO_NEVER_US && axis->goal_us > axis->told_us;
-}
-
 static bool has_lost_it(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    if (tells_goal(axis)) {
+    if (grobo_i_goal_is_told(axis)) {
         return !grobo_i_goal_is_taken(robot, joint);
     }
     return GROBO_I_EXTRA(robot->driver, no_speed) && robot->now_us > axis->way.to_us + LATE_US &&
@@ -56,7 +50,7 @@ void grobo_i_halted_look(grobo_robot *robot, int joint)
     if (!grobo_i_has(robot->halted, joint) || axis->still_us == GROBO_NEVER_US) {
         return; /* this was asked for before */
     }
-    bool taken = tells_goal(axis) && grobo_i_goal_is_taken(robot, joint);
+    bool taken = grobo_i_goal_is_told(axis) && grobo_i_goal_is_taken(robot, joint);
     if (taken || grobo_i_axis_is_limp(axis) || grobo_i_stands(robot, joint)) {
         robot->halted &= ~GROBO_JOINT_BIT(joint);
     } else if (has_lost_it(robot, joint) && !is_read_by_a_job(robot)) {

@@ -83,7 +83,7 @@ static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis
                           const grobo_joint_state *got)
 {
     bool as_told = abs(got->speed_dps) < GROBO_I_SLOW_DPS || axis->own_until_us > robot->now_us;
-    bool before = axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us && as_told;
+    bool before = grobo_i_goal_is_told(axis) && as_told;
     bool told = (got->valid & GROBO_FIELD_GOAL) != 0 || before;
     return told && fabs(axis->state.goal_rad - axis->way.to_rad) > grobo_i_same_goal_rad(robot);
 }

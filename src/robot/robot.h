@@ -247,6 +247,9 @@ void grobo_i_stand_forget(grobo_robot_axis *axis);
 void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double angle_rad);
 /* True if it was read to stand since then. */
 bool grobo_i_stands(const grobo_robot *robot, int joint);
+/* True if its goal was read, or its servo answered with it, behind the frame that left last: one
+ * read at the very moment when that left is the goal before. */
+bool grobo_i_goal_is_told(const grobo_robot_axis *axis);
 /* True if the goal read is the one that it was sent to, or of a way told in segments lies ahead of
  * where it was by then. */
 bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint);

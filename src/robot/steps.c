@@ -341,8 +341,8 @@ static int step_hold_check(grobo_robot *robot)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(job->pending, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
-            bool is_new = axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us;
-            axis->held = !grobo_i_has(job->failed, j) && is_new && grobo_i_goal_holds(robot, j);
+            axis->held = !grobo_i_has(job->failed, j) && grobo_i_goal_is_told(axis) &&
+                         grobo_i_goal_holds(robot, j);
             bad |= axis->held ? 0 : GROBO_JOINT_BIT(j);
         }
     }

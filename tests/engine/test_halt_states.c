@@ -402,8 +402,6 @@ static struct known {
     {"sts-64", NULL, "the same: 48 ms, and given up before the last replies are there", 2, 0},
     {"sts-38400", NULL, "the same: 60 ms", 1, 0},
     {"scs-20", "nobody answers", "a time-out of 24 ms is waited for", 1, 0},
-    {"lx16a-20", NULL, "no speed: sent back by 2.4 deg as it sets out or was moved", 1, 0},
-    {"lx16a-64", "approach", "the same", 1, 0},
 };
 enum { KNOWN = sizeof known / sizeof known[0] };
 

@@ -568,8 +568,8 @@ TEST(a_joint_whose_goal_is_another_is_off_its_way)
     } rows[] = {
         {60.059, true, GROBO_NEVER_US, 30, false}, {60.061, true, GROBO_NEVER_US, 30, true},
         {59.941, true, GROBO_NEVER_US, 30, false}, {59.939, true, GROBO_NEVER_US, 30, true},
-        {59.939, false, GROBO_NEVER_US, 0, false}, {59.939, false, 3000000, 0, true},
-        {59.939, false, 3000001, 0, false}, /* before the frame left */
+        {59.939, false, GROBO_NEVER_US, 0, false}, {59.939, false, 2999999, 0, true},
+        {59.939, false, 3000000, 0, false}, /* when the frame left: of before it */
         {59.939, false, 1000000, 7, true},         {59.939, false, 1000000, -7, true},
         {59.939, false, 1000000, 8, false}, /* it may have taken the frame since */
         {59.941, false, 1000000, 0, false},
