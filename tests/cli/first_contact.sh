@@ -50,19 +50,39 @@ describe() {
 
 check "nobody to ask" fails 2 "asks a person at a terminal" "$GRCTL" -d sim first-contact
 
-for one in feetech:STS3215 feetech:SCS0009 dynamixel2:XL430-W250 dynamixel1:AX-12A rs30x:RS302CD \
-    lx16a:LX-16A ics:KRS-3301; do
-    describe "${one%:*}" "${one#*:}" >"$work/arm.yaml"
-    start_sim --robot "$work/arm.yaml" || { echo "Bail out! the simulator did not start"; exit 1; }
-    check "$one, to the end" calmly 'y\ny\nyes\ny\ny\n' "${one#*:}" --robot "$work/arm.yaml" \
-        -d "$robot" --timeout 500
-    check "takes another rate and comes back" rates_of "${one%:*}" "$work/${one#*:}.txt"
+families='feetech:STS3215 feetech:SCS0009 dynamixel2:XL430-W250 dynamixel1:AX-12A rs30x:RS302CD
+    lx16a:LX-16A ics:KRS-3301'
+here=$work
+# contact_of FAMILY:SERVO: what it found is in a folder of that servo's name. They wait most of the
+# time, and do so beside each other.
+contact_of() (
+    work=$here/${1#*:}
+    mkdir "$work"
+    sim_place="--link $work/robot"
+    sim_pid=
+    trap stop_sim EXIT
+    describe "${1%:*}" "${1#*:}" >"$work/arm.yaml"
+    start_sim --robot "$work/arm.yaml" && calmly 'y\ny\nyes\ny\ny\n' found \
+        --robot "$work/arm.yaml" -d "$robot" --timeout 500 && : >"$work/ended"
+    "$GRCTL" --robot "$work/arm.yaml" -d "$robot" --timeout 500 status >"$work/after"
+)
+to_the_end() {
+    [ -e "$1/ended" ] && return
+    cat "$1.log"
+    return 1
+}
+for one in $families; do
+    contact_of "$one" >"$here/${one#*:}.log" 2>&1 &
+done
+wait
+for one in $families; do
+    found=$here/${one#*:}
+    check "$one, to the end" to_the_end "$found"
+    check "takes another rate and comes back" rates_of "${one%:*}" "$found/found.txt"
     check "turns back where its limit is near" \
-        grep -q '^as assumed  *move .* by -2 deg to 5[67]\.' "$work/${one#*:}.txt"
-    check "and is as it was found" both exits 0 \
-        "$GRCTL" --robot "$work/arm.yaml" -d "$robot" --timeout 500 status --- \
-        says '^ *2  lift  *\(58.[89]\|59.[01]\) .* off '
-    stop_sim
+        grep -q '^as assumed  *move .* by -2 deg to 5[67]\.' "$found/found.txt"
+    check "and is as it was found" \
+        grep -q '^ *2  lift  *\(58.[89]\|59.[01]\) .* off ' "$found/after"
 done
 
 start_sim
