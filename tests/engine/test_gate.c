@@ -15,7 +15,7 @@ static int judge(grobo_robot_order order)
     return grobo_i_gate_judge(&robot, &order, NULL);
 }
 
-TEST_WITH(axes_wirings, a_goal_is_judged_as_it_leaves)
+TEST_WITH(rig_wirings, a_goal_is_judged_as_it_leaves)
 {
     for (int j = 0; j < N; j++) {
         grobo_robot_order order = {
@@ -55,7 +55,7 @@ TEST_WITH(axes_wirings, a_goal_is_judged_as_it_leaves)
 }
 
 /* Of servos that a goal switches on: those that are known to hold, and were heard lately. */
-TEST_WITH(axes_wirings, a_goal_that_would_wake_a_servo_is_refused_by_name)
+TEST_WITH(rig_wirings, a_goal_that_would_wake_a_servo_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order goal = {
@@ -78,7 +78,7 @@ TEST_WITH(axes_wirings, a_goal_that_would_wake_a_servo_is_refused_by_name)
 }
 
 /* Torque that comes on and waits is not for a joint that is to be without; else it is. */
-TEST_WITH(axes_wirings, torque_off_and_brake_take_back_torque_on_that_waits)
+TEST_WITH(rig_wirings, torque_off_and_brake_take_back_torque_on_that_waits)
 {
     static const grobo_torque modes[] = {GROBO_TORQUE_OFF, GROBO_TORQUE_ON, GROBO_TORQUE_BRAKE};
     for (int j = 0; j < N; j++) {
@@ -101,7 +101,7 @@ TEST_WITH(axes_wirings, torque_off_and_brake_take_back_torque_on_that_waits)
 }
 
 /* What has left goes again, or its next part, until another one waits or has left. */
-TEST_WITH(axes_wirings, a_goal_goes_again_until_another_takes_its_place)
+TEST_WITH(rig_wirings, a_goal_goes_again_until_another_takes_its_place)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
@@ -121,7 +121,7 @@ TEST_WITH(axes_wirings, a_goal_goes_again_until_another_takes_its_place)
     }
 }
 
-TEST_WITH(axes_wirings, a_halt_is_refused_by_name)
+TEST_WITH(rig_wirings, a_halt_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
@@ -148,7 +148,7 @@ TEST_WITH(axes_wirings, a_halt_is_refused_by_name)
 }
 
 /* 50 ms after it was asked for, or 25 ms from now; drawn to the limits; half the speed. */
-TEST_WITH(axes_wirings, a_halt_stops_ahead_of_where_joints_are)
+TEST_WITH(rig_wirings, a_halt_stops_ahead_of_where_joints_are)
 {
     static const struct {
         int ago_ms;
@@ -171,7 +171,7 @@ TEST_WITH(axes_wirings, a_halt_stops_ahead_of_where_joints_are)
     }
 }
 
-TEST_WITH(axes_wirings, a_hold_is_refused_by_name)
+TEST_WITH(rig_wirings, a_hold_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
@@ -199,7 +199,7 @@ TEST_WITH(axes_wirings, a_hold_is_refused_by_name)
     }
 }
 
-TEST_WITH(axes_wirings, torque_is_refused_by_name)
+TEST_WITH(rig_wirings, torque_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
@@ -240,7 +240,7 @@ TEST_WITH(axes_wirings, torque_is_refused_by_name)
 }
 
 /* A frame for two joints of which one is not held switches the other alone. */
-TEST_WITH(axes_wirings, torque_comes_on_for_those_that_are_held)
+TEST_WITH(rig_wirings, torque_comes_on_for_those_that_are_held)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -257,7 +257,7 @@ TEST_WITH(axes_wirings, torque_comes_on_for_those_that_are_held)
     }
 }
 
-TEST_WITH(axes_wirings, a_segment_is_refused_by_name)
+TEST_WITH(rig_wirings, a_segment_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
@@ -284,7 +284,7 @@ TEST_WITH(axes_wirings, a_segment_is_refused_by_name)
     }
 }
 
-TEST_WITH(axes_wirings, a_setting_is_refused_by_name)
+TEST_WITH(rig_wirings, a_setting_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
@@ -308,7 +308,7 @@ TEST_WITH(axes_wirings, a_setting_is_refused_by_name)
     }
 }
 
-TEST_WITH(axes_wirings, what_needs_silence_is_refused_while_something_moves)
+TEST_WITH(rig_wirings, what_needs_silence_is_refused_while_something_moves)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order command = {.joints = GROBO_JOINT_BIT(other_of(j)),
@@ -333,7 +333,7 @@ TEST_WITH(axes_wirings, what_needs_silence_is_refused_while_something_moves)
 }
 
 /* Another frame has told one of its joints something since the first attempt. */
-TEST_WITH(axes_wirings, a_second_attempt_is_passed_by_what_left_since)
+TEST_WITH(rig_wirings, a_second_attempt_is_passed_by_what_left_since)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -359,7 +359,7 @@ TEST_WITH(axes_wirings, a_second_attempt_is_passed_by_what_left_since)
 }
 
 /* The driver has no such part, and so nothing leaves. */
-TEST_WITH(axes_wirings, a_frame_that_there_is_not_does_not_leave)
+TEST_WITH(rig_wirings, a_frame_that_there_is_not_does_not_leave)
 {
     for (int deed = 0; deed < 2; deed++) {
         start();
@@ -376,7 +376,7 @@ TEST_WITH(axes_wirings, a_frame_that_there_is_not_does_not_leave)
 }
 
 /* What does not fit the first frame is in the second; in one frame is asked for or refused. */
-TEST_WITH(axes_wirings, each_part_has_joints_of_its_own)
+TEST_WITH(rig_wirings, each_part_has_joints_of_its_own)
 {
     grobo_robot_order order = {.joints = GROBO_JOINTS_ALL(N), .number = 1};
     for (int deed = 0; deed < 2; deed++) {
@@ -424,7 +424,7 @@ static int posture_in_parts(const grobo_driver *self, void *ctx, const grobo_tar
 }
 
 /* Several joints go into one frame, or are asked for in smaller frames; one may need more. */
-TEST_WITH(axes_wirings, several_joints_go_in_one_frame)
+TEST_WITH(rig_wirings, several_joints_go_in_one_frame)
 {
     static const struct {
         int joints, parts, part, result;
@@ -458,7 +458,7 @@ TEST_WITH(axes_wirings, several_joints_go_in_one_frame)
     }
 }
 
-TEST_WITH(axes_wirings, only_the_target_of_that_number_waits_no_more)
+TEST_WITH(rig_wirings, only_the_target_of_that_number_waits_no_more)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -486,7 +486,7 @@ static int64_t steps_up(double time_us)
     return (int64_t)ceil(time_us / 10000 - 1e-9) * 10000;
 }
 
-TEST_WITH(axes_wirings, times_are_what_speeds_make_them)
+TEST_WITH(rig_wirings, times_are_what_speeds_make_them)
 {
     static const struct {
         int pct;
@@ -530,7 +530,7 @@ TEST_WITH(axes_wirings, times_are_what_speeds_make_them)
 }
 
 /* What is long enough stays, each joint by itself; a unit less is stretched by it. */
-TEST_WITH(axes_wirings, a_goal_keeps_a_time_that_is_long_enough)
+TEST_WITH(rig_wirings, a_goal_keeps_a_time_that_is_long_enough)
 {
     static const int pcts[] = {100, 50, 1};
     for (int i = 0; i < 3 * N; i++) {
@@ -557,7 +557,7 @@ TEST_WITH(axes_wirings, a_goal_keeps_a_time_that_is_long_enough)
 }
 
 /* A time off the wire's grid would be rounded down there, and one past its end cut. */
-TEST_WITH(axes_wirings, a_time_that_the_wire_does_not_have_is_no_long_enough_one)
+TEST_WITH(rig_wirings, a_time_that_the_wire_does_not_have_is_no_long_enough_one)
 {
     grobo_target target = {0};
     start();
@@ -581,7 +581,7 @@ TEST_WITH(axes_wirings, a_time_that_the_wire_does_not_have_is_no_long_enough_one
 }
 
 /* Of an odd number of joints, too, and of none beyond them. */
-TEST_WITH(axes_wirings, all_joints_of_a_move_get_its_time)
+TEST_WITH(rig_wirings, all_joints_of_a_move_get_its_time)
 {
     for (int n = N - 1; n <= N; n++) {
         grobo_target target = {0};
@@ -597,7 +597,7 @@ TEST_WITH(axes_wirings, all_joints_of_a_move_get_its_time)
 }
 
 /* From where the joint is on its way by now, whatever the target asks for. */
-TEST_WITH(axes_wirings, a_goal_that_leaves_late_gets_the_time_from_there)
+TEST_WITH(rig_wirings, a_goal_that_leaves_late_gets_the_time_from_there)
 {
     for (int j = 0; j < N; j++) {
         for (int soft = 0; soft < 2; soft++) {
@@ -621,7 +621,7 @@ TEST_WITH(axes_wirings, a_goal_that_leaves_late_gets_the_time_from_there)
 }
 
 /* The wire has no more than so many steps. */
-TEST_WITH(axes_wirings, a_time_longer_than_the_wire_has_is_refused)
+TEST_WITH(rig_wirings, a_time_longer_than_the_wire_has_is_refused)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {.each = true, .soft = true};
@@ -644,7 +644,7 @@ TEST_WITH(axes_wirings, a_time_longer_than_the_wire_has_is_refused)
 }
 
 /* A slow first move takes no less than a halt where the joint still moves. */
-TEST_WITH(axes_wirings, one_that_moves_is_not_caught_up_softly)
+TEST_WITH(rig_wirings, one_that_moves_is_not_caught_up_softly)
 {
     for (int j = 0; j < N; j++) {
         for (int soft = 0; soft < 2; soft++) {
@@ -666,7 +666,7 @@ TEST_WITH(axes_wirings, one_that_moves_is_not_caught_up_softly)
     }
 }
 
-TEST_WITH(axes_wirings, a_target_of_no_joint_takes_no_time)
+TEST_WITH(rig_wirings, a_target_of_no_joint_takes_no_time)
 {
     grobo_target target = {0};
     start();
@@ -679,7 +679,7 @@ TEST_WITH(axes_wirings, a_target_of_no_joint_takes_no_time)
 
 /* The end of a motion: at most half of the way that the joint would go in its time, from where it
  * is, and no faster than it may. */
-TEST_WITH(axes_wirings, a_motion_rests_near_where_joints_are)
+TEST_WITH(rig_wirings, a_motion_rests_near_where_joints_are)
 {
     for (int j = 0; j < N; j++) {
         for (int side = -1; side <= 1; side += 2) {
@@ -709,7 +709,7 @@ TEST_WITH(axes_wirings, a_motion_rests_near_where_joints_are)
 }
 
 /* A joint may have sagged outside its limits: it rests, or stops, at them. */
-TEST_WITH(axes_wirings, nothing_rests_outside_the_limits)
+TEST_WITH(rig_wirings, nothing_rests_outside_the_limits)
 {
     for (int j = 0; j < N; j++) {
         for (int halts = 0; halts < 2; halts++) {
@@ -734,7 +734,7 @@ TEST_WITH(axes_wirings, nothing_rests_outside_the_limits)
 }
 
 /* By a raw frame or a halt: the joint stops where it is 50 ms later, wherever the clip is. */
-TEST_WITH(axes_wirings, a_motion_rests_where_others_have_joints_stand)
+TEST_WITH(rig_wirings, a_motion_rests_where_others_have_joints_stand)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -754,7 +754,7 @@ TEST_WITH(axes_wirings, a_motion_rests_where_others_have_joints_stand)
 
 /* ---- what may be asked ----------------------------------------------------------------------- */
 
-TEST_WITH(axes_wirings, a_target_is_checked_for_numbers_and_limits)
+TEST_WITH(rig_wirings, a_target_is_checked_for_numbers_and_limits)
 {
     for (int j = 0; j < N; j++) {
         for (int clamp = 0; clamp < 2; clamp++) {
@@ -798,7 +798,7 @@ TEST_WITH(axes_wirings, a_target_is_checked_for_numbers_and_limits)
     }
 }
 
-TEST_WITH(axes_wirings, joints_are_ready_that_were_read_and_hold)
+TEST_WITH(rig_wirings, joints_are_ready_that_were_read_and_hold)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -817,7 +817,7 @@ TEST_WITH(axes_wirings, joints_are_ready_that_were_read_and_hold)
 }
 
 /* One that has no part in a frame now may have one by the time it leaves. */
-TEST_WITH(axes_wirings, what_waits_has_room_for_all_its_joints)
+TEST_WITH(rig_wirings, what_waits_has_room_for_all_its_joints)
 {
     for (int j = 0; j < N; j++) {
         grobo_exchange is, be;

@@ -9,7 +9,7 @@
 
 /* ---- what is noted --------------------------------------------------------------------------- */
 
-TEST_WITH(axes_wirings, a_goal_is_noted_of_its_joints_alone)
+TEST_WITH(rig_wirings, a_goal_is_noted_of_its_joints_alone)
 {
     for (int j = 0; j < N; j++) {
         for (int played = 0; played < 2; played++) {
@@ -39,7 +39,7 @@ TEST_WITH(axes_wirings, a_goal_is_noted_of_its_joints_alone)
 }
 
 /* The others that it was asked for are told nothing: what was asked of them before goes on. */
-TEST_WITH(axes_wirings, a_halt_is_noted_of_what_moves)
+TEST_WITH(rig_wirings, a_halt_is_noted_of_what_moves)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -77,7 +77,7 @@ static int catch_posture(const grobo_driver *self, void *ctx, const grobo_target
 }
 
 /* For servos that make a speed of it: one that is behind has further to go in the same time. */
-TEST_WITH(axes_wirings, a_halt_counts_its_way_from_where_a_joint_was_read)
+TEST_WITH(rig_wirings, a_halt_counts_its_way_from_where_a_joint_was_read)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -97,7 +97,7 @@ TEST_WITH(axes_wirings, a_halt_counts_its_way_from_where_a_joint_was_read)
     }
 }
 
-TEST_WITH(axes_wirings, a_hold_is_noted_of_its_joints_alone)
+TEST_WITH(rig_wirings, a_hold_is_noted_of_its_joints_alone)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -126,7 +126,7 @@ TEST_WITH(axes_wirings, a_hold_is_noted_of_its_joints_alone)
     }
 }
 
-TEST_WITH(axes_wirings, torque_is_noted_of_its_joints_alone)
+TEST_WITH(rig_wirings, torque_is_noted_of_its_joints_alone)
 {
     for (int j = 0; j < N; j++) {
         for (int mode = GROBO_TORQUE_OFF; mode <= GROBO_TORQUE_BRAKE; mode++) {
@@ -158,7 +158,7 @@ TEST_WITH(axes_wirings, torque_is_noted_of_its_joints_alone)
 }
 
 /* What nobody can read, a setting, a restart: what is known of the joint is no longer true. */
-TEST_WITH(axes_wirings, what_leaves_joints_unknown_is_noted_of_them_alone)
+TEST_WITH(rig_wirings, what_leaves_joints_unknown_is_noted_of_them_alone)
 {
     static const grobo_i_deed deeds[] = {GROBO_I_DEED_UNKNOWN, GROBO_I_DEED_SETTING,
                                          GROBO_I_DEED_COMMAND};
@@ -190,7 +190,7 @@ TEST_WITH(axes_wirings, what_leaves_joints_unknown_is_noted_of_them_alone)
 }
 
 /* Nor does it make known what was not: wanted or not, known or not. */
-TEST_WITH(axes_wirings, what_is_unknown_already_stays_so)
+TEST_WITH(rig_wirings, what_is_unknown_already_stays_so)
 {
     start();
     for (int j = 0; j < N; j++) {
@@ -207,7 +207,7 @@ TEST_WITH(axes_wirings, what_is_unknown_already_stays_so)
     drop();
 }
 
-TEST_WITH(axes_wirings, what_does_nothing_to_a_joint_notes_nothing)
+TEST_WITH(rig_wirings, what_does_nothing_to_a_joint_notes_nothing)
 {
     start();
     assert_int_equal(leave((grobo_robot_order){.deed = GROBO_I_DEED_NONE}), GROBO_OK);
@@ -218,7 +218,7 @@ TEST_WITH(axes_wirings, what_does_nothing_to_a_joint_notes_nothing)
 }
 
 /* Only how far along its way the joint was told. */
-TEST_WITH(axes_wirings, a_segment_is_noted_of_its_joints_alone)
+TEST_WITH(rig_wirings, a_segment_is_noted_of_its_joints_alone)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -239,7 +239,7 @@ TEST_WITH(axes_wirings, a_segment_is_noted_of_its_joints_alone)
 }
 
 /* Of a longer way its frame asks for a part, and it is told more of it in time. */
-TEST_WITH(axes_wirings, a_goal_in_segments_is_noted_of_its_joints_alone)
+TEST_WITH(rig_wirings, a_goal_in_segments_is_noted_of_its_joints_alone)
 {
     for (int j = 0; j < N; j++) {
         for (int whole = 0; whole < 2; whole++) {
@@ -272,7 +272,7 @@ TEST_WITH(axes_wirings, a_goal_in_segments_is_noted_of_its_joints_alone)
 /* ---- the slow first move --------------------------------------------------------------------- */
 
 /* Of a caller's own stream the first is slow until it is there; of played frames the first. */
-TEST_WITH(axes_wirings, the_slow_move_is_over_when_its_first_target_is_reached)
+TEST_WITH(rig_wirings, the_slow_move_is_over_when_its_first_target_is_reached)
 {
     for (int j = 0; j < N; j++) {
         for (int how = 0; how < 3; how++) { /* of a stream, of a job, played */

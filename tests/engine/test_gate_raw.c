@@ -45,7 +45,7 @@ static int raw_torque_of(int joint, grobo_torque torque, grobo_robot_order *orde
                order);
 }
 
-TEST_WITH(axes_wirings, a_raw_goal_is_noted_like_one_of_ours)
+TEST_WITH(rig_wirings, a_raw_goal_is_noted_like_one_of_ours)
 {
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
@@ -64,7 +64,7 @@ TEST_WITH(axes_wirings, a_raw_goal_is_noted_like_one_of_ours)
     }
 }
 
-TEST_WITH(axes_wirings, a_raw_torque_is_noted_like_one_of_ours)
+TEST_WITH(rig_wirings, a_raw_torque_is_noted_like_one_of_ours)
 {
     for (int j = 0; j < N; j++) {
         for (int mode = GROBO_TORQUE_OFF; mode <= GROBO_TORQUE_BRAKE; mode++) {
@@ -87,7 +87,7 @@ TEST_WITH(axes_wirings, a_raw_torque_is_noted_like_one_of_ours)
     }
 }
 
-TEST_WITH(axes_wirings, a_raw_frame_that_reads_is_about_no_joint)
+TEST_WITH(rig_wirings, a_raw_frame_that_reads_is_about_no_joint)
 {
     uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
     grobo_robot_order order;
@@ -101,7 +101,7 @@ TEST_WITH(axes_wirings, a_raw_frame_that_reads_is_about_no_joint)
 }
 
 /* What was read to hold within two seconds, by then; what comes off is as old as it may be. */
-TEST_WITH(axes_wirings, a_raw_torque_comes_on_where_it_was_read_just_now)
+TEST_WITH(rig_wirings, a_raw_torque_comes_on_where_it_was_read_just_now)
 {
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
@@ -126,7 +126,7 @@ TEST_WITH(axes_wirings, a_raw_torque_comes_on_where_it_was_read_just_now)
 }
 
 /* 2 % less than the joint needs is taken for late, and no more. */
-TEST_WITH(axes_wirings, a_raw_goal_has_the_time_of_its_joint)
+TEST_WITH(rig_wirings, a_raw_goal_has_the_time_of_its_joint)
 {
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
@@ -155,7 +155,7 @@ TEST_WITH(axes_wirings, a_raw_goal_has_the_time_of_its_joint)
     }
 }
 
-TEST_WITH(axes_wirings, a_raw_frame_is_refused_by_name)
+TEST_WITH(rig_wirings, a_raw_frame_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
@@ -191,7 +191,7 @@ TEST_WITH(axes_wirings, a_raw_frame_is_refused_by_name)
 }
 
 /* With no time at all: where it is is not too far, and the slow move is over at once. */
-TEST_WITH(axes_wirings, a_raw_goal_to_where_its_joint_is_needs_no_time)
+TEST_WITH(rig_wirings, a_raw_goal_to_where_its_joint_is_needs_no_time)
 {
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
@@ -208,7 +208,7 @@ TEST_WITH(axes_wirings, a_raw_goal_to_where_its_joint_is_needs_no_time)
 }
 
 /* It is no first move: the next one is as slow as it would have been. */
-TEST_WITH(axes_wirings, a_raw_torque_ends_no_slow_move)
+TEST_WITH(rig_wirings, a_raw_torque_ends_no_slow_move)
 {
     grobo_robot_order order;
     start();
@@ -219,7 +219,7 @@ TEST_WITH(axes_wirings, a_raw_torque_ends_no_slow_move)
     drop();
 }
 
-TEST_WITH(axes_wirings, a_raw_frame_that_nobody_can_read_is_refused_unless_asked)
+TEST_WITH(rig_wirings, a_raw_frame_that_nobody_can_read_is_refused_unless_asked)
 {
     for (int accept = 0; accept < 2; accept++) {
         for (int can_read = 0; can_read < 2; can_read++) {

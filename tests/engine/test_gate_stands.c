@@ -140,7 +140,7 @@ static const struct {
 
 /* ---- tests ---- */
 
-TEST_WITH(axes_wirings, a_frame_that_stands_is_the_one_that_is_built_anew)
+TEST_WITH(rig_wirings, a_frame_that_stands_is_the_one_that_is_built_anew)
 {
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         uint8_t bytes[GROBO_FRAME_MAX_BYTES];
@@ -163,7 +163,7 @@ TEST_WITH(axes_wirings, a_frame_that_stands_is_the_one_that_is_built_anew)
 }
 
 /* What was built anew once does not stand, though nothing is different again. */
-TEST_WITH(axes_wirings, an_attempt_after_one_that_was_built_anew_is_built_anew)
+TEST_WITH(rig_wirings, an_attempt_after_one_that_was_built_anew_is_built_anew)
 {
     ask(true, false);
     grobo_robot_slot *slot = frame_of(5);
@@ -176,7 +176,7 @@ TEST_WITH(axes_wirings, an_attempt_after_one_that_was_built_anew_is_built_anew)
 }
 
 /* It comes to rest where it is by then. */
-TEST_WITH(axes_wirings, what_rests_is_built_anew)
+TEST_WITH(rig_wirings, what_rests_is_built_anew)
 {
     ask(true, true);
     assert_int_equal(grobo_i_gate_leave(frame_of(5)), GROBO_OK);
@@ -184,7 +184,7 @@ TEST_WITH(axes_wirings, what_rests_is_built_anew)
 }
 
 /* As fast as that takes, by a division of doubles: what integers find sure is no other time. */
-TEST_WITH(axes_wirings, the_time_is_the_one_that_doubles_find)
+TEST_WITH(rig_wirings, the_time_is_the_one_that_doubles_find)
 {
     uint32_t seed = 5;
     int stretched = 0;

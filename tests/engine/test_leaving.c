@@ -35,7 +35,7 @@ static int take_step(void)
     return robot.job->script[robot.job->at - 1](&robot);
 }
 
-TEST_WITH(axes_wirings, who_leaves_waits_until_all_is_quiet)
+TEST_WITH(rig_wirings, who_leaves_waits_until_all_is_quiet)
 {
     for (int j = 0; j < N; j++) {
         for (int what = 0; what < 5; what++) {
@@ -100,7 +100,7 @@ static void let_go_astray(int joint, const told *row)
 
 /* Its way is the one that its servo tells of; where it tells of none, it moves until the halt has
  * left, which is sent to it alone, and then all is looked at again. */
-TEST_WITH(axes_wirings, who_leaves_stops_what_others_set_going)
+TEST_WITH(rig_wirings, who_leaves_stops_what_others_set_going)
 {
     for (int j = 0; j < N; j++) {
         for (size_t i = 0; i < TELLINGS; i++) {
@@ -129,7 +129,7 @@ TEST_WITH(axes_wirings, who_leaves_stops_what_others_set_going)
 
 /* Of servos that tell no more than how fast they turn: one that turns near the end of its way is
  * looked at once more, one that trembles there stands, any other is stopped anew. */
-TEST_WITH(axes_wirings, who_leaves_waits_for_what_turns)
+TEST_WITH(rig_wirings, who_leaves_waits_for_what_turns)
 {
     static const struct {
         int dps;
@@ -168,7 +168,7 @@ TEST_WITH(axes_wirings, who_leaves_waits_for_what_turns)
 }
 
 /* Nobody knows of it where it is; its neighbour is stopped all the same. */
-TEST_WITH(axes_wirings, who_leaves_does_not_look_at_what_was_not_read)
+TEST_WITH(rig_wirings, who_leaves_does_not_look_at_what_was_not_read)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -188,7 +188,7 @@ TEST_WITH(axes_wirings, who_leaves_does_not_look_at_what_was_not_read)
 
 /* Ten times, then it is told which joint does not stop; an emergency stop goes on for longer, and
  * who has just begun is patient with a servo that is deaf. */
-TEST_WITH(axes_wirings, who_leaves_gives_up_on_a_joint_that_goes_on)
+TEST_WITH(rig_wirings, who_leaves_gives_up_on_a_joint_that_goes_on)
 {
     static const struct {
         grobo_job_kind kind;
@@ -228,7 +228,7 @@ TEST_WITH(axes_wirings, who_leaves_gives_up_on_a_joint_that_goes_on)
     }
 }
 
-TEST_WITH(axes_wirings, who_sits_down_aims_at_the_rest_of_what_holds)
+TEST_WITH(rig_wirings, who_sits_down_aims_at_the_rest_of_what_holds)
 {
     double rest_rad[GROBO_JOINTS_MAX];
     for (int j = 0; j < N; j++) {
@@ -257,7 +257,7 @@ TEST_WITH(axes_wirings, who_sits_down_aims_at_the_rest_of_what_holds)
 
 /* ---- requests -------------------------------------------------------------------------------- */
 
-TEST_WITH(axes_wirings, an_exit_is_carried_out_as_it_is_asked_for)
+TEST_WITH(rig_wirings, an_exit_is_carried_out_as_it_is_asked_for)
 {
     static const struct {
         grobo_exit_policy asked, config;
@@ -306,7 +306,7 @@ TEST_WITH(axes_wirings, an_exit_is_carried_out_as_it_is_asked_for)
     }
 }
 
-TEST_WITH(axes_wirings, an_exit_stops_what_moves_whatever_the_job)
+TEST_WITH(rig_wirings, an_exit_stops_what_moves_whatever_the_job)
 {
     static const grobo_job_kind kinds[] = {GROBO_JOB_NONE, GROBO_JOB_SENSE, GROBO_JOB_MOVE};
     for (int i = 0; i < 3; i++) {
@@ -320,7 +320,7 @@ TEST_WITH(axes_wirings, an_exit_stops_what_moves_whatever_the_job)
     }
 }
 
-TEST_WITH(axes_wirings, an_exit_is_refused_by_name)
+TEST_WITH(rig_wirings, an_exit_is_refused_by_name)
 {
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
@@ -341,7 +341,7 @@ TEST_WITH(axes_wirings, an_exit_is_refused_by_name)
 }
 
 /* What stops the robot is not cancelled, nor what the engine does by itself. */
-TEST_WITH(axes_wirings, a_job_is_cancelled_that_somebody_asked_for)
+TEST_WITH(rig_wirings, a_job_is_cancelled_that_somebody_asked_for)
 {
     for (int i = 2 * GROBO_JOB_NONE; i <= 2 * GROBO_JOB_SETTLE + 1; i++) {
         int kind = i / 2;
@@ -364,7 +364,7 @@ TEST_WITH(axes_wirings, a_job_is_cancelled_that_somebody_asked_for)
 }
 
 /* Another job than the one that began it. */
-TEST_WITH(axes_wirings, a_motion_goes_on_when_a_reading_is_cancelled)
+TEST_WITH(rig_wirings, a_motion_goes_on_when_a_reading_is_cancelled)
 {
     static const rig_key slow[] = {{0, {{NECK, 0}}}, {3000, {{NECK, 30}}}};
     rig_start_at(&rig, 0, &quiet);
@@ -382,7 +382,7 @@ TEST_WITH(axes_wirings, a_motion_goes_on_when_a_reading_is_cancelled)
 }
 
 /* One that no line has carried is forgotten with the stop. */
-TEST_WITH(axes_wirings, a_reset_owes_no_stop_to_the_next_line)
+TEST_WITH(rig_wirings, a_reset_owes_no_stop_to_the_next_line)
 {
     for (int resets = 0; resets < 2; resets++) {
         rig_start(&rig, &quiet, NULL);
@@ -395,7 +395,7 @@ TEST_WITH(axes_wirings, a_reset_owes_no_stop_to_the_next_line)
     }
 }
 
-TEST_WITH(axes_wirings, an_emergency_stop_is_for_all_joints_and_bounded)
+TEST_WITH(rig_wirings, an_emergency_stop_is_for_all_joints_and_bounded)
 {
     for (int off = 0; off < 2; off++) {
         start_with(&(grobo_robot_config){
@@ -417,7 +417,7 @@ TEST_WITH(axes_wirings, an_emergency_stop_is_for_all_joints_and_bounded)
 }
 
 /* All of the stop is forgotten, and what begins behind it begins slowly. */
-TEST_WITH(axes_wirings, a_reset_makes_the_next_move_slow)
+TEST_WITH(rig_wirings, a_reset_makes_the_next_move_slow)
 {
     for (int resets = 0; resets < 2; resets++) {
         grobo_trip_info trip;
@@ -466,7 +466,7 @@ static void stop_by(int way)
 
 /* Its job still reads back whether the first posture was taken: the sequencer stops as well, in the
  * 200 ms that it takes, and the joint rests after half of what it would do in them. */
-TEST_WITH(axes_wirings, an_approach_is_stopped_whatever_stops_it)
+TEST_WITH(rig_wirings, an_approach_is_stopped_whatever_stops_it)
 {
     static const rig_key far[] = {{0, {{NECK, 45}}}, {1000, {{NECK, 0}}}};
     grobo_robot_config config = quiet;

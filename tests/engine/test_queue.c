@@ -82,7 +82,7 @@ static int be_admitted(grobo_job_kind running, grobo_job_kind kind, bool same)
     return same && !joins ? GROBO_I_LATER : GROBO_OK;
 }
 
-TEST_WITH(axes_wirings, jobs_run_beside_others_by_their_kinds)
+TEST_WITH(rig_wirings, jobs_run_beside_others_by_their_kinds)
 {
     for (int running = GROBO_JOB_NONE; running <= GROBO_JOB_SETTLE; running++) {
         for (int kind = GROBO_JOB_NONE + 1; kind < GROBO_JOB_SETTLE; kind++) {
@@ -117,7 +117,7 @@ static void put_behind_the_jobs(void)
 }
 
 /* In the last place as in the first, and no further. */
-TEST_WITH(axes_wirings, every_job_that_runs_is_looked_at)
+TEST_WITH(rig_wirings, every_job_that_runs_is_looked_at)
 {
     for (int j = 0; j < N; j++) {
         for (int at = 1; at < JOBS; at++) {
@@ -133,7 +133,7 @@ TEST_WITH(axes_wirings, every_job_that_runs_is_looked_at)
 }
 
 /* One place is kept for what takes torque away. */
-TEST_WITH(axes_wirings, one_job_less_than_there_is_room_for)
+TEST_WITH(rig_wirings, one_job_less_than_there_is_room_for)
 {
     start_idle();
     for (int i = 0; i < JOBS; i++) {
@@ -147,7 +147,7 @@ TEST_WITH(axes_wirings, one_job_less_than_there_is_room_for)
     assert_int_equal(robot.jobs[0].kind, GROBO_JOB_SENSE);
 }
 
-TEST_WITH(axes_wirings, who_may_not_begin_at_all_is_told_so)
+TEST_WITH(rig_wirings, who_may_not_begin_at_all_is_told_so)
 {
     for (int moves = 0; moves < 2; moves++) {
         start_idle();
@@ -162,7 +162,7 @@ TEST_WITH(axes_wirings, who_may_not_begin_at_all_is_told_so)
     }
 }
 
-TEST_WITH(axes_wirings, moves_that_run_or_wait_have_their_joints)
+TEST_WITH(rig_wirings, moves_that_run_or_wait_have_their_joints)
 {
     for (int j = 0; j < N; j++) {
         for (int at = 0; at < JOBS + QUEUE; at++) {
@@ -191,7 +191,7 @@ TEST_WITH(axes_wirings, moves_that_run_or_wait_have_their_joints)
 
 /* ---- beginning ------------------------------------------------------------------------------- */
 
-TEST_WITH(axes_wirings, what_nothing_is_in_the_way_of_begins_at_once)
+TEST_WITH(rig_wirings, what_nothing_is_in_the_way_of_begins_at_once)
 {
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
@@ -209,7 +209,7 @@ TEST_WITH(axes_wirings, what_nothing_is_in_the_way_of_begins_at_once)
 }
 
 /* A reading takes it from nobody. Who began before goes on before. */
-TEST_WITH(axes_wirings, a_move_takes_its_joints_from_moves_before)
+TEST_WITH(rig_wirings, a_move_takes_its_joints_from_moves_before)
 {
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
@@ -238,7 +238,7 @@ TEST_WITH(axes_wirings, a_move_takes_its_joints_from_moves_before)
     }
 }
 
-TEST_WITH(axes_wirings, a_move_of_what_plays_or_leaves_or_tripped_is_refused)
+TEST_WITH(rig_wirings, a_move_of_what_plays_or_leaves_or_tripped_is_refused)
 {
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
@@ -273,7 +273,7 @@ TEST_WITH(axes_wirings, a_move_of_what_plays_or_leaves_or_tripped_is_refused)
 /* ---- waiting --------------------------------------------------------------------------------- */
 
 /* Behind what waits already, though nothing else is in the way. */
-TEST_WITH(axes_wirings, what_cannot_begin_waits)
+TEST_WITH(rig_wirings, what_cannot_begin_waits)
 {
     for (int idle = 0; idle < 2; idle++) {
         for (int j = 0; j < N; j++) {
@@ -303,7 +303,7 @@ TEST_WITH(axes_wirings, what_cannot_begin_waits)
 }
 
 /* As many as may, the oldest first; who must wait lets nobody pass. */
-TEST_WITH(axes_wirings, what_waits_begins_in_its_order)
+TEST_WITH(rig_wirings, what_waits_begins_in_its_order)
 {
     for (int j = 0; j < N; j++) {
         start_idle();
@@ -346,7 +346,7 @@ static void expect_ended(int at, int number, grobo_job_kind kind, int joint, int
 }
 
 /* Or, in its turn, with the reason why it may not begin; those behind it go on. */
-TEST_WITH(axes_wirings, what_has_waited_too_long_ends)
+TEST_WITH(rig_wirings, what_has_waited_too_long_ends)
 {
     for (int j = 0; j < N; j++) {
         for (int late = 0; late < 2; late++) {
@@ -365,7 +365,7 @@ TEST_WITH(axes_wirings, what_has_waited_too_long_ends)
     }
 }
 
-TEST_WITH(axes_wirings, a_trip_ends_all_that_waits)
+TEST_WITH(rig_wirings, a_trip_ends_all_that_waits)
 {
     for (int latched = 0; latched < 2; latched++) {
         start_idle();
@@ -382,7 +382,7 @@ TEST_WITH(axes_wirings, a_trip_ends_all_that_waits)
     }
 }
 
-TEST_WITH(axes_wirings, the_queue_is_looked_at_when_something_may_have_changed)
+TEST_WITH(rig_wirings, the_queue_is_looked_at_when_something_may_have_changed)
 {
     for (int may = 0; may < 2; may++) {
         start_idle();

@@ -11,7 +11,7 @@
 
 /* ---- ways ------------------------------------------------------------------------------------ */
 
-TEST_WITH(axes_wirings, a_way_is_straight_in_time)
+TEST_WITH(rig_wirings, a_way_is_straight_in_time)
 {
     static const grobo_robot_way way = {2, 6, NOW, NOW + 4 * S};
     static const grobo_robot_way none = {2, 6, NOW, NOW};
@@ -27,7 +27,7 @@ TEST_WITH(axes_wirings, a_way_is_straight_in_time)
 }
 
 /* On its way, as far as it was told; or off it, where it was read, or on the way its servo told. */
-TEST_WITH(axes_wirings, a_joint_is_where_it_was_sent_or_read)
+TEST_WITH(rig_wirings, a_joint_is_where_it_was_sent_or_read)
 {
     grobo_robot_axis axis = {.state = {.angle_rad = 10, .goal_rad = 14}, .angle_us = NOW};
     axis.way = (grobo_robot_way){2, 6, NOW, NOW + 4 * S};
@@ -55,7 +55,7 @@ TEST_WITH(axes_wirings, a_joint_is_where_it_was_sent_or_read)
 /* It tells the time of its way, which is at 50 degrees and goes at 100 degrees a second: it is
  * there, but where it was read beside it since it was told, and goes on at the speed that it told;
  * or is further from there than it can have come since it was read. */
-TEST_WITH(axes_wirings, a_joint_is_on_its_way_but_where_it_is_weak)
+TEST_WITH(rig_wirings, a_joint_is_on_its_way_but_where_it_is_weak)
 {
     static const struct {
         bool tells, off, told; /* since it was read */
@@ -95,7 +95,7 @@ TEST_WITH(axes_wirings, a_joint_is_on_its_way_but_where_it_is_weak)
 
 /* At 1000 deg/s^2: it speeds up to what its way takes unless it had twice the time for that, and
  * brakes before the end. */
-TEST_WITH(axes_wirings, a_servo_with_ramps_is_where_these_bring_it)
+TEST_WITH(rig_wirings, a_servo_with_ramps_is_where_these_bring_it)
 {
     static const struct {
         int64_t seen_us, rest_us; /* since the begin of its way, which takes a second */
@@ -128,7 +128,7 @@ TEST_WITH(axes_wirings, a_servo_with_ramps_is_where_these_bring_it)
     driver.accel_rad_s2 = 0;
 }
 
-TEST_WITH(axes_wirings, a_joint_that_is_not_limp_moves_to_the_end_of_its_way)
+TEST_WITH(rig_wirings, a_joint_that_is_not_limp_moves_to_the_end_of_its_way)
 {
     static const struct {
         int64_t way_us, own_us; /* ends, from now */
@@ -156,7 +156,7 @@ TEST_WITH(axes_wirings, a_joint_that_is_not_limp_moves_to_the_end_of_its_way)
     }
 }
 
-TEST_WITH(axes_wirings, a_joint_rests_where_it_was_read)
+TEST_WITH(rig_wirings, a_joint_rests_where_it_was_read)
 {
     for (int j = 0; j < N; j++) {
         for (int own = 0; own < 3; own++) {
@@ -181,7 +181,7 @@ TEST_WITH(axes_wirings, a_joint_rests_where_it_was_read)
     }
 }
 
-TEST_WITH(axes_wirings, joints_are_asked_for_by_their_bits)
+TEST_WITH(rig_wirings, joints_are_asked_for_by_their_bits)
 {
     for (int j = 0; j < N; j++) {
         int joint = -1;
@@ -215,7 +215,7 @@ TEST_WITH(axes_wirings, joints_are_asked_for_by_their_bits)
 
 /* ---- what is told in parts ------------------------------------------------------------------- */
 
-TEST_WITH(axes_wirings, a_way_is_told_in_parts_where_that_is_wanted)
+TEST_WITH(rig_wirings, a_way_is_told_in_parts_where_that_is_wanted)
 {
     static const struct {
         grobo_goals goals;
@@ -250,7 +250,7 @@ TEST_WITH(axes_wirings, a_way_is_told_in_parts_where_that_is_wanted)
 }
 
 /* The first part of those that go farther than a segment; the others go at once. */
-TEST_WITH(axes_wirings, the_first_frame_asks_for_a_segment)
+TEST_WITH(rig_wirings, the_first_frame_asks_for_a_segment)
 {
     for (int j = 0; j < N; j++) {
         grobo_target whole = {0};
@@ -278,7 +278,7 @@ TEST_WITH(axes_wirings, the_first_frame_asks_for_a_segment)
 
 /* It may begin outside its limits, and no part of it lies there; to the limit it is no faster than
  * on all of its way. */
-TEST_WITH(axes_wirings, no_part_lies_outside_the_limits)
+TEST_WITH(rig_wirings, no_part_lies_outside_the_limits)
 {
     for (int j = 0; j < N; j++) {
         for (int end = -1; end <= 1; end += 2) {
@@ -338,7 +338,7 @@ static void expect_aim(grobo_joint_mask of, int joint, const told_way *row, int6
 }
 
 /* A segment ahead, or what is left, in whole steps. */
-TEST_WITH(axes_wirings, the_next_frame_asks_for_more_of_each_way)
+TEST_WITH(rig_wirings, the_next_frame_asks_for_more_of_each_way)
 {
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < TOLD_WAYS; i++) {
@@ -356,7 +356,7 @@ TEST_WITH(axes_wirings, the_next_frame_asks_for_more_of_each_way)
 }
 
 /* To the end again while there is time for it. */
-TEST_WITH(axes_wirings, ways_are_told_on_until_they_end)
+TEST_WITH(rig_wirings, ways_are_told_on_until_they_end)
 {
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < 3 * TOLD_WAYS; i++) {
@@ -377,7 +377,7 @@ TEST_WITH(axes_wirings, ways_are_told_on_until_they_end)
 }
 
 /* The frames of all ways leave at once: the first of them sets the time. */
-TEST_WITH(axes_wirings, the_first_way_sets_the_time_for_the_others)
+TEST_WITH(rig_wirings, the_first_way_sets_the_time_for_the_others)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -421,7 +421,7 @@ static grobo_joint_mask asked_for(void)
 }
 
 /* Every 100 ms on one grid; who comes later than that begins another one. */
-TEST_WITH(axes_wirings, more_is_asked_for_on_a_grid)
+TEST_WITH(rig_wirings, more_is_asked_for_on_a_grid)
 {
     static const struct {
         int64_t ago_us, renewed_us; /* the grid after it, from now */
@@ -451,7 +451,7 @@ TEST_WITH(axes_wirings, more_is_asked_for_on_a_grid)
 }
 
 /* Where no joint goes in segments any more, none is looked at. */
-TEST_WITH(axes_wirings, where_none_is_told_its_way_nobody_looks)
+TEST_WITH(rig_wirings, where_none_is_told_its_way_nobody_looks)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -467,7 +467,7 @@ TEST_WITH(axes_wirings, where_none_is_told_its_way_nobody_looks)
     }
 }
 
-TEST_WITH(axes_wirings, a_way_that_was_not_told_on_is_looked_at_when_it_is_over)
+TEST_WITH(rig_wirings, a_way_that_was_not_told_on_is_looked_at_when_it_is_over)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -484,7 +484,7 @@ TEST_WITH(axes_wirings, a_way_that_was_not_told_on_is_looked_at_when_it_is_over)
 }
 
 /* A joint stands where it was told to go: the host was away, and its move is over. */
-TEST_WITH(axes_wirings, a_way_that_was_not_told_on_is_given_up)
+TEST_WITH(rig_wirings, a_way_that_was_not_told_on_is_given_up)
 {
     static const struct {
         grobo_job_kind kind;

@@ -33,7 +33,7 @@ static void expect_bytes(const grobo_robot_slot *slot, size_t bytes, uint8_t all
 }
 
 /* Whichever is over first: the others keep theirs, and the room is that of one again. */
-TEST_WITH(axes_wirings, frames_keep_their_bytes_when_one_is_over)
+TEST_WITH(rig_wirings, frames_keep_their_bytes_when_one_is_over)
 {
     enum { FRAMES = 4 };
     static const size_t bytes[FRAMES] = {3, 40, 1, 17};
@@ -62,7 +62,7 @@ TEST_WITH(axes_wirings, frames_keep_their_bytes_when_one_is_over)
 }
 
 /* One that is longer than at first never leaves, and touches no other's. */
-TEST_WITH(axes_wirings, a_frame_does_not_outgrow_its_room)
+TEST_WITH(rig_wirings, a_frame_does_not_outgrow_its_room)
 {
     grobo_robot_slot *slot, *other;
     start();
@@ -82,7 +82,7 @@ TEST_WITH(axes_wirings, a_frame_does_not_outgrow_its_room)
 }
 
 /* However long the frames are that wait, three of the longest find room if they are halts. */
-TEST_WITH(axes_wirings, bytes_are_kept_for_halts)
+TEST_WITH(rig_wirings, bytes_are_kept_for_halts)
 {
     const size_t longest = GROBO_FRAME_MAX_BYTES;
     const size_t others = sizeof robot.frames / longest - 3;

@@ -44,7 +44,7 @@ static void expect_used(uint32_t be)
 
 /* ---- taking ---------------------------------------------------------------------------------- */
 
-TEST_WITH(axes_wirings, three_slots_are_kept_for_halts)
+TEST_WITH(rig_wirings, three_slots_are_kept_for_halts)
 {
     start();
     robot.acting = 9;
@@ -74,7 +74,7 @@ TEST_WITH(axes_wirings, three_slots_are_kept_for_halts)
 }
 
 /* Behind the last one that is taken nobody looks. */
-TEST_WITH(axes_wirings, the_end_of_the_slots_is_known)
+TEST_WITH(rig_wirings, the_end_of_the_slots_is_known)
 {
     start();
     assert_int_equal(robot.slots_end, 0);
@@ -94,7 +94,7 @@ TEST_WITH(axes_wirings, the_end_of_the_slots_is_known)
     assert_int_equal(robot.slots_end, 0);
 }
 
-TEST_WITH(axes_wirings, a_slot_is_taken_clean)
+TEST_WITH(rig_wirings, a_slot_is_taken_clean)
 {
     start();
     memset(&robot.slots[0], 0xA5, sizeof robot.slots[0]);
@@ -114,7 +114,7 @@ TEST_WITH(axes_wirings, a_slot_is_taken_clean)
 /* ---- what the bus is told -------------------------------------------------------------------- */
 
 /* A joint that was lost is asked once by the background, and nobody waits long for it. */
-TEST_WITH(axes_wirings, what_the_bus_is_told_of_a_frame)
+TEST_WITH(rig_wirings, what_the_bus_is_told_of_a_frame)
 {
     static const struct {
         grobo_i_use use;
@@ -153,7 +153,7 @@ TEST_WITH(axes_wirings, what_the_bus_is_told_of_a_frame)
     }
 }
 
-TEST_WITH(axes_wirings, what_the_bus_does_not_take_is_free_again)
+TEST_WITH(rig_wirings, what_the_bus_does_not_take_is_free_again)
 {
     start();
     grobo_robot_slot *slot = grobo_i_slot_take(&robot, GROBO_I_USE_JOB);
@@ -172,7 +172,7 @@ static int leave_as_told(grobo_robot_slot *slot)
 }
 
 /* Its question is as old as its first attempt, and the frame is the one built for this attempt. */
-TEST_WITH(axes_wirings, a_frame_is_asked_for_when_its_first_attempt_leaves)
+TEST_WITH(rig_wirings, a_frame_is_asked_for_when_its_first_attempt_leaves)
 {
     static const int64_t sent_us[] = {-1, 0, 1, NOW - 1};
     for (size_t i = 0; i < sizeof sent_us / sizeof sent_us[0]; i++) {
@@ -201,7 +201,7 @@ static void do_nothing(grobo_robot_slot *slot, int result, const grobo_packet *r
 }
 
 /* Only a named reply to the first attempt of the last frame says that the frame has left. */
-TEST_WITH(axes_wirings, an_answer_says_that_its_frame_has_left)
+TEST_WITH(rig_wirings, an_answer_says_that_its_frame_has_left)
 {
     enum { ONE_ATTEMPT = 1 };
     static const struct {
@@ -243,7 +243,7 @@ static void ignore_reply(grobo_robot_slot *slot, const grobo_packet *reply)
 }
 
 /* And so does the first of several, unless it refuses. */
-TEST_WITH(axes_wirings, one_of_several_answers_says_that_their_frame_has_left)
+TEST_WITH(rig_wirings, one_of_several_answers_says_that_their_frame_has_left)
 {
     for (int refused = 0; refused < 2; refused++) {
         const grobo_packet reply = {.kind = GROBO_PACKET_RETURN, .refused = refused};
@@ -283,7 +283,7 @@ static void count_ended(grobo_robot_slot *slot, int result, const grobo_packet *
     ended++;
 }
 
-TEST_WITH(axes_wirings, frames_of_one_use_are_taken_back)
+TEST_WITH(rig_wirings, frames_of_one_use_are_taken_back)
 {
     for (int i = 0; i < USES; i++) {
         for (int of_job = 0; of_job < 2; of_job++) {
@@ -307,7 +307,7 @@ TEST_WITH(axes_wirings, frames_of_one_use_are_taken_back)
 }
 
 /* Wherever they are, up to the last slot. */
-TEST_WITH(axes_wirings, every_slot_is_looked_at)
+TEST_WITH(rig_wirings, every_slot_is_looked_at)
 {
     for (int at = 0; at < SLOTS; at++) {
         start();
@@ -332,7 +332,7 @@ TEST_WITH(axes_wirings, every_slot_is_looked_at)
         ended = 0;
         assert_true(grobo_i_slots_busy(&robot, GROBO_I_USE_MOTION));
         assert_true(grobo_i_slots_wait(&robot, 2, GROBO_I_DEED_TORQUE, GROBO_TORQUE_ON));
-        switch ((at + (n_joints & 1)) % 4) { /* on both wirings all of the last slots */
+        switch ((at + (N & 1)) % 4) { /* on both wirings all of the last slots */
         case 0:
             grobo_i_slots_cancel_goals(&robot, GROBO_JOINTS_ALL(64), true);
             break;
@@ -360,7 +360,7 @@ static void count_in_order(grobo_robot_slot *slot, int result, const grobo_packe
     ended++;
 }
 
-TEST_WITH(axes_wirings, frames_are_taken_back_in_the_order_of_their_slots)
+TEST_WITH(rig_wirings, frames_are_taken_back_in_the_order_of_their_slots)
 {
     for (int how = 0; how < 4; how++) {
         start();
@@ -388,7 +388,7 @@ TEST_WITH(axes_wirings, frames_are_taken_back_in_the_order_of_their_slots)
 }
 
 /* Those that have left are on their way already, and what moves other joints goes on waiting. */
-TEST_WITH(axes_wirings, goals_that_wait_are_taken_back)
+TEST_WITH(rig_wirings, goals_that_wait_are_taken_back)
 {
     for (int j = 0; j < N; j++) {
         const grobo_joint_mask of[] = {GROBO_JOINT_BIT(j), GROBO_JOINT_BIT(other_of(j)),
@@ -413,7 +413,7 @@ TEST_WITH(axes_wirings, goals_that_wait_are_taken_back)
 }
 
 /* Whatever joints a motion that is played moves. */
-TEST_WITH(axes_wirings, played_goals_that_wait_are_taken_back_if_asked)
+TEST_WITH(rig_wirings, played_goals_that_wait_are_taken_back_if_asked)
 {
     for (int played = 0; played < 2; played++) {
         for (int sent = -1; sent <= 1; sent++) {
@@ -434,7 +434,7 @@ TEST_WITH(axes_wirings, played_goals_that_wait_are_taken_back_if_asked)
 }
 
 /* Torque that waits to come on for one of these joints; nothing else, and no other's. */
-TEST_WITH(axes_wirings, torque_that_waits_is_kept_off)
+TEST_WITH(rig_wirings, torque_that_waits_is_kept_off)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order on = {
@@ -466,7 +466,7 @@ TEST_WITH(axes_wirings, torque_that_waits_is_kept_off)
     }
 }
 
-TEST_WITH(axes_wirings, a_frame_that_waits_is_known_by_what_it_does)
+TEST_WITH(rig_wirings, a_frame_that_waits_is_known_by_what_it_does)
 {
     for (int j = 0; j < N; j++) {
         const grobo_joint_mask bit = GROBO_JOINT_BIT(j);
@@ -506,7 +506,7 @@ static grobo_posture target_of(int joint, double way_deg, int64_t time_us)
 static const grobo_i_motion plainly = {.priority = GROBO_PRIORITY_MOTION, .due_us = GROBO_NEVER_US};
 
 /* In whole steps of the wire, one at least. */
-TEST_WITH(axes_wirings, a_target_gets_the_time_that_it_asks_for)
+TEST_WITH(rig_wirings, a_target_gets_the_time_that_it_asks_for)
 {
     static const struct {
         int64_t asked_us, gets_us;
@@ -535,7 +535,7 @@ TEST_WITH(axes_wirings, a_target_gets_the_time_that_it_asks_for)
 }
 
 /* The others of a move get as much; the end of a motion takes no longer. */
-TEST_WITH(axes_wirings, a_target_that_is_too_fast_gets_more_time)
+TEST_WITH(rig_wirings, a_target_that_is_too_fast_gets_more_time)
 {
     for (int j = 0; j < N; j++) {
         for (int how = 0; how < 4; how++) { /* all alike, each, the end of a motion, slowly */
@@ -557,7 +557,7 @@ TEST_WITH(axes_wirings, a_target_that_is_too_fast_gets_more_time)
     }
 }
 
-TEST_WITH(axes_wirings, how_a_target_is_sent_is_in_its_order)
+TEST_WITH(rig_wirings, how_a_target_is_sent_is_in_its_order)
 {
     for (int bit = 0; bit < 64; bit++) {
         start();
@@ -605,7 +605,7 @@ static int turn_by_a_degree(const grobo_driver *self, void *ctx, const grobo_pos
 }
 
 /* All of it waits, or nothing; what waited before goes on waiting. */
-TEST_WITH(axes_wirings, a_target_that_is_refused_does_not_wait)
+TEST_WITH(rig_wirings, a_target_that_is_refused_does_not_wait)
 {
     static const struct {
         int result;
@@ -664,7 +664,7 @@ static int posture_of_few(const grobo_driver *self, void *ctx, const grobo_targe
 }
 
 /* As few frames as the driver can do with, of joints of their own. */
-TEST_WITH(axes_wirings, a_target_is_parted_as_the_driver_needs_it)
+TEST_WITH(rig_wirings, a_target_is_parted_as_the_driver_needs_it)
 {
     static const struct {
         int joints, fit, each, frames;
@@ -708,7 +708,7 @@ TEST_WITH(axes_wirings, a_target_is_parted_as_the_driver_needs_it)
     }
 }
 
-TEST_WITH(axes_wirings, a_renewal_goes_with_the_motion_frames)
+TEST_WITH(rig_wirings, a_renewal_goes_with_the_motion_frames)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -728,7 +728,7 @@ TEST_WITH(axes_wirings, a_renewal_goes_with_the_motion_frames)
 }
 
 /* As urgent as the job that asks; what the engine asks for by itself is as urgent as a user. */
-TEST_WITH(axes_wirings, torque_is_as_urgent_as_what_asks_for_it)
+TEST_WITH(rig_wirings, torque_is_as_urgent_as_what_asks_for_it)
 {
     for (int by_job = 0; by_job < 2; by_job++) {
         for (int j = 0; j < N; j++) {
@@ -751,7 +751,7 @@ TEST_WITH(axes_wirings, torque_is_as_urgent_as_what_asks_for_it)
     }
 }
 
-TEST_WITH(axes_wirings, torque_that_may_not_come_on_is_refused_by_name)
+TEST_WITH(rig_wirings, torque_that_may_not_come_on_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -771,7 +771,7 @@ TEST_WITH(axes_wirings, torque_that_may_not_come_on_is_refused_by_name)
 }
 
 /* Four at a time, the lowest first. */
-TEST_WITH(axes_wirings, small_frames_have_four_joints)
+TEST_WITH(rig_wirings, small_frames_have_four_joints)
 {
     start();
     grobo_joint_mask left = GROBO_JOINTS_ALL(10) & all_but(1);
@@ -796,7 +796,7 @@ TEST_WITH(axes_wirings, small_frames_have_four_joints)
 }
 
 /* Of those that move by the time it leaves, first of all; targets that wait are gone by then. */
-TEST_WITH(axes_wirings, a_halt_goes_to_what_moves)
+TEST_WITH(rig_wirings, a_halt_goes_to_what_moves)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -830,7 +830,7 @@ TEST_WITH(axes_wirings, a_halt_goes_to_what_moves)
     }
 }
 
-TEST_WITH(axes_wirings, a_halt_of_what_stands_is_not_sent)
+TEST_WITH(rig_wirings, a_halt_of_what_stands_is_not_sent)
 {
     for (int j = 0; j < N; j++) {
         start();
@@ -842,7 +842,7 @@ TEST_WITH(axes_wirings, a_halt_of_what_stands_is_not_sent)
 }
 
 /* Frames that move joints count, readings and the like do not. */
-TEST_WITH(axes_wirings, what_a_frame_was_for_decides_what_its_end_counts)
+TEST_WITH(rig_wirings, what_a_frame_was_for_decides_what_its_end_counts)
 {
     for (int i = 0; i < USES; i++) {
         for (int lost = 0; lost < 2; lost++) {
@@ -864,7 +864,7 @@ TEST_WITH(axes_wirings, what_a_frame_was_for_decides_what_its_end_counts)
 
 /* While a motion is played, of what it does not move: that it brings to rest by itself, and once it
  * stops, that is what its last frame moves. */
-TEST_WITH(axes_wirings, a_stop_takes_back_what_waits_and_halts_what_is_not_played)
+TEST_WITH(rig_wirings, a_stop_takes_back_what_waits_and_halts_what_is_not_played)
 {
     enum { IDLE, SOME, ALL, STOPPING, HOWS };
     for (int j = 0; j < N; j++) {

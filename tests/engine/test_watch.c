@@ -29,7 +29,7 @@ static void read_as(int joint, grobo_joint_state got)
     grobo_i_watch_reading(&robot, joint, &got);
 }
 
-TEST_WITH(axes_wirings, heat_above_the_bound_trips)
+TEST_WITH(rig_wirings, heat_above_the_bound_trips)
 {
     static const struct {
         int temperature_c, bound_c;
@@ -60,7 +60,7 @@ TEST_WITH(axes_wirings, heat_above_the_bound_trips)
 }
 
 /* For a second without a break, of one joint; a reading without it tells nothing. */
-TEST_WITH(axes_wirings, current_above_the_bound_for_a_second_trips)
+TEST_WITH(rig_wirings, current_above_the_bound_for_a_second_trips)
 {
     const grobo_joint_state high = {.current_ma = 501, .valid = GROBO_FIELD_CURRENT};
     const grobo_joint_state at = {.current_ma = 500, .valid = GROBO_FIELD_CURRENT};
@@ -94,7 +94,7 @@ TEST_WITH(axes_wirings, current_above_the_bound_for_a_second_trips)
 }
 
 /* Three in a row of any joints, and then anew. */
-TEST_WITH(axes_wirings, three_low_voltages_in_a_row_trip)
+TEST_WITH(rig_wirings, three_low_voltages_in_a_row_trip)
 {
     const grobo_joint_state low = {.voltage_mv = 5999, .valid = GROBO_FIELD_VOLTAGE};
     const grobo_joint_state at = {.voltage_mv = 6000, .valid = GROBO_FIELD_VOLTAGE};
@@ -120,7 +120,7 @@ TEST_WITH(axes_wirings, three_low_voltages_in_a_row_trip)
 }
 
 /* Off, though it was switched on: to be braked is not to be lost. */
-TEST_WITH(axes_wirings, torque_that_is_lost_trips)
+TEST_WITH(rig_wirings, torque_that_is_lost_trips)
 {
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < 12; i++) {
@@ -142,7 +142,7 @@ TEST_WITH(axes_wirings, torque_that_is_lost_trips)
 }
 
 /* While something moves, this one or another. */
-TEST_WITH(axes_wirings, lost_replies_trip_while_something_moves)
+TEST_WITH(rig_wirings, lost_replies_trip_while_something_moves)
 {
     static const struct {
         int lost, bound;
@@ -196,7 +196,7 @@ static bool moves_or_switches_on(grobo_job_kind kind, grobo_torque torque)
     return always[kind] || (kind == GROBO_JOB_TORQUE && torque == GROBO_TORQUE_ON);
 }
 
-TEST_WITH(axes_wirings, a_trip_ends_what_moves_or_switches_on)
+TEST_WITH(rig_wirings, a_trip_ends_what_moves_or_switches_on)
 {
     for (int i = 0; i < (GROBO_JOB_SETTLE + 1) * 3 * HOWS; i++) {
         grobo_job_kind kind = (grobo_job_kind)(i / HOWS / 3);
@@ -215,7 +215,7 @@ TEST_WITH(axes_wirings, a_trip_ends_what_moves_or_switches_on)
     }
 }
 
-TEST_WITH(axes_wirings, a_trip_is_told_and_kept_where_it_latches)
+TEST_WITH(rig_wirings, a_trip_is_told_and_kept_where_it_latches)
 {
     static const grobo_trip kept[] = {GROBO_TRIP_LIMIT, GROBO_TRIP_NONE, GROBO_TRIP_ESTOP};
     for (int how = 0; how < HOWS; how++) {
@@ -232,7 +232,7 @@ TEST_WITH(axes_wirings, a_trip_is_told_and_kept_where_it_latches)
 }
 
 /* Whether it latches or not: a stalled host begins anew. */
-TEST_WITH(axes_wirings, a_trip_takes_back_targets_that_wait)
+TEST_WITH(rig_wirings, a_trip_takes_back_targets_that_wait)
 {
     for (int i = 0; i < 2 * N; i++) {
         bool latched = i % 2 != 0;
@@ -246,7 +246,7 @@ TEST_WITH(axes_wirings, a_trip_takes_back_targets_that_wait)
     }
 }
 
-TEST_WITH(axes_wirings, each_reason_has_a_name_of_its_own)
+TEST_WITH(rig_wirings, each_reason_has_a_name_of_its_own)
 {
     static const char *const names[] = {"none",         "over-temperature", "servo overheated",
                                         "over-current", "low voltage",      "lost replies",
@@ -257,7 +257,7 @@ TEST_WITH(axes_wirings, each_reason_has_a_name_of_its_own)
     }
 }
 
-TEST_WITH(axes_wirings, the_first_reason_stays_but_for_an_emergency_stop)
+TEST_WITH(rig_wirings, the_first_reason_stays_but_for_an_emergency_stop)
 {
     start();
     grobo_i_trip(&robot, GROBO_TRIP_VOLTAGE, 1, 5000, true);

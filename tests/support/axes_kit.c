@@ -1,20 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "tests/support/axes_kit.h"
 #include "tests/support/many_joints.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 grobo_robot robot;
 grobo_driver driver;
-int n_joints = GROBO_JOINTS_MAX;
 grobo_robot_axis before[GROBO_JOINTS_MAX];
 int inspected;
 
@@ -161,23 +156,6 @@ grobo_joint_mask halting(void)
     robot = as_it_is;
     return halted;
 }
-
-static int on_the_board(void)
-{
-    rig_wiring = GROBO_WIRING_BOARD;
-    n_joints = GROBO_JOINTS_MAX;
-    return 0;
-}
-
-static int on_a_bus(void)
-{
-    rig_wiring = GROBO_WIRING_BUS;
-    n_joints = GROBO_JOINTS_MAX - 1;
-    return 0;
-}
-
-const test_fixture axes_wirings[2] = {{"on the board", on_the_board, NULL},
-                                      {"on a bus", on_a_bus, on_the_board}};
 
 /* ---- comparing ------------------------------------------------------------------------------- */
 

@@ -8,23 +8,19 @@
 #define GROBO_TEST_AXES_KIT_H
 
 #include "src/robot/robot.h"
-#include "tests/support/test.h"
+#include "tests/support/rig.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 
 enum { MS = 1000, S = 1000000, NOW = 50 * S };
 
-/* How many joints there are: as many as there may be, or one less, which is odd. */
-extern int n_joints;
-#define N n_joints
+/* How many joints there are: as many as there may be, or one less on a bus, which is odd. */
+#define N (GROBO_JOINTS_MAX - (rig_wiring == GROBO_WIRING_BUS))
 
 extern grobo_robot robot;
 extern grobo_driver driver;
 extern grobo_robot_axis before[GROBO_JOINTS_MAX]; /* what robot.axes should be */
 extern int inspected; /* what reading a raw frame results in, where it is an error */
-
-/* Both wirings, each with another number of joints. */
-extern const test_fixture axes_wirings[2];
 
 /* Of so many joints, none of which was read; the link is up. */
 void make_robot(int n, const grobo_robot_config *config);

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "src/body/body.h"
 #include "tests/support/body_script.h"
+#include "tests/support/test.h"
 
 grobo_body_key *script_key(struct script *script, double time_s)
 {

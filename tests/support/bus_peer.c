@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/bus_peer.h"
+#include "tests/support/test.h"
 
 const grobo_bus_config board_line = {.protocol = &grobo_board_protocol};
 

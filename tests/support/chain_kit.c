@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
 #include <grobo/ics.h>
 
 #include "tests/support/chain_kit.h"
+#include "tests/support/test.h"
 
 static const grobo_sim_family *const families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
                                                    &grobo_sim_lx16a, &grobo_sim_ics, NULL};

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
 #include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/chronicle.h"
+#include "tests/support/test.h"
 
 static chronicle_line *next_line(chronicle *c, int64_t at_us)
 {

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include "tests/support/far_robot.h"
+#include "tests/support/test.h"
 
 #define TORQUE_REGISTER 36 /* No.36, torque enable (protocol 4) */
 

@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/gate_kit.h"
+#include "tests/support/test.h"
 
 grobo_robot_slot *slot;
 

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <grobo/dxl1.h>
 #include <grobo/dxl2.h>
@@ -16,6 +12,7 @@
 
 #include "src/base/instant.h"
 #include "tests/support/halt_kit.h"
+#include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 #define DEG(rad) ((rad)*57.29577951308232)

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* What was asked for, what leaves, and how jobs end. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/judge.h"
+#include "tests/support/test.h"
 
 /* The first frame of an emergency stop may wait for the longest frame on the wire. */
 #define ESTOP_FRAME_US 25000

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* What servos do with the frames that reach them, by where their shafts are. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/judge.h"
+#include "tests/support/test.h"
 
 /* A frame that its servo has not taken after this time is lost: the longest takes 19 ms through
  * the board, and may wait for another one. */

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <sys/types.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "tests/support/leash.h"
+#include "tests/support/test.h"
 
 /* Descriptors of the test: its robot's line would stay open. */
 enum { DESCRIPTORS = 1024 };

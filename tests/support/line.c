@@ -2,18 +2,13 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <termios.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "tests/support/line.h"
+#include "tests/support/test.h"
 
 /* Bytes of the test before may still be on their way. */
 static void await_silence(test_line *line)

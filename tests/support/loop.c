@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/loop.h>
 #include <grobo/port.h>
 
 #include "tests/support/loop.h"
+#include "tests/support/test.h"
 
 typedef struct bounded_wait {
     struct event_base *base;

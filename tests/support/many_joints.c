@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <grobo/board.h>
 
 #include "tests/support/many_joints.h"
+#include "tests/support/test.h"
 
 grobo_driver *many_joints(grobo_wiring wiring, int n)
 {

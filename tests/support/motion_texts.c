@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/motion_texts.h"
+#include "tests/support/test.h"
 
 const char full_pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR001\n"
                          "author: { who: me, 'two words': [ ] }\n"

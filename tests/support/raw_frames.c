@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/raw_frames.h"
+#include "tests/support/test.h"
 
 static struct {
     uint8_t bytes[GROBO_RS30X_PACKET_MAX_BYTES];

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/next_random.h"
 #include "tests/support/restless.h"
+#include "tests/support/test.h"
 
 /* The user's own loop, and how often bounds are looked at. */
 #define TICK_US 20000

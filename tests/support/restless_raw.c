@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Raw frames and registers. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "tests/support/restless.h"
+#include "tests/support/test.h"
 
 enum { GOALS_MAX = 4 };
 

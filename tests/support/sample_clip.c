@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "tests/support/next_random.h"
 #include "tests/support/sample_clip.h"
+#include "tests/support/test.h"
 
 static const grobo_joint joints[SAMPLE_JOINTS] = {
     {.name = "LEFT",

@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/loop.h>
 
 #include "tests/support/loop.h"
 #include "tests/support/session_kit.h"
+#include "tests/support/test.h"
 
 struct event_base *base;
 grobo_session *session;

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/simkit.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
 static void note(void *ctx, const grobo_sim_event *event)

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "src/link/thread/thread.h"
 #include "tests/support/stop_kit.h"
+#include "tests/support/test.h"
 
 struct saw saw, told;
 hold gate;

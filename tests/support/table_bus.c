@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "src/base/instant.h"
 #include "tests/support/table_bus.h"
+#include "tests/support/test.h"
 
 enum { BIT_NS = 1000, BITS = 10 };
 

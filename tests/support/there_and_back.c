@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tests/support/there_and_back.h"
 
 const sample_key there_and_back[3] = {

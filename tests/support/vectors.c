@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <ctype.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "tests/support/files.h"
+#include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
 enum { STRING_MAX_BYTES = 1024 };

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include <grobo/sim_static.h>
 
+#include "tests/support/test.h"
 #include "tests/support/witness.h"
 
 /* A reply later than this is nobody's any more. */

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <windows.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
-#include <cmocka.h>
-
 #include "tests/support/os.h"
+#include "tests/support/test.h"
 
 void test_folder_new(char *path, size_t path_bytes)
 {
