@@ -243,7 +243,7 @@ static void make_two(void)
                            .mirror_sign = -1};
     arm_groups[0] = (grobo_group){"both", 3};
     arm_groups[1] = (grobo_group){"one", 1};
-    two = (grobo_model){"TWO", arm, arm_groups, 2, 2, 0};
+    two = (grobo_model){"TWO", arm, arm_groups, 2, 2, 0, NULL};
 }
 
 #define assert_refused(fault)                                                                      \
