@@ -237,9 +237,10 @@ messages: ## write the texts of the sources into the catalogues of grctl, for tr
 format: ## write sources as clang-format 14 does; FILES="src/bus/bus.c" chooses
 	@tools/lint/format.sh --fix $(or $(FILES),$(shell find include src ports tools tests docs -name '*.[ch]'))
 
-# They take longest of those that mostly wait: `make test` tells the slowest.
-TEST_FIRST := first_contact servos serve_driving group fleet play registers json guard shell_waiting \
-    test_play_line test_thread_motion
+# They take longest, of those that mostly wait and of the others: `make test` tells the slowest.
+TEST_FIRST := fleet serve_driving registers servos first_contact guard play estop fleet_stops \
+    paused deaths replay json test_play_line test_thread_motion test_guard \
+    python packaging fetch_content meson build_systems
 # The programs and scripts of the chosen rings, as tests/run.sh wants them.
 in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
 # What tests of a build for another machine must know.

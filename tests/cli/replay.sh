@@ -5,12 +5,20 @@
 . tests/support/traces.sh
 
 # same COUNT COMMAND...: the command's trace is replayed to the same replies, COUNT of them.
+# A reply that comes too late while it is recorded, on a busy machine, is one more when replayed:
+# recorded once more then.
 same() {
     same_count=$1
     shift
-    "$GRCTL" -q -d sim --timeout 500 --trace "$work/trace" "$@" >"$work/out" 2>"$work/err" ||
-        return 1
-    exits 0 "$GRCTL" replay "$work/trace" && says " $same_count equal, 0 differ, 0 missing, 0 extra"
+    for _ in 1 2 3; do
+        "$GRCTL" -q -d sim --timeout 500 --trace "$work/trace" "$@" >"$work/out" 2>"$work/err" ||
+            return 1
+        exits 0 "$GRCTL" replay "$work/trace" &&
+            says " $same_count equal, 0 differ, 0 missing, 0 extra" && return
+        rm "$work/trace"
+        grep -q ' 0 differ, 0 missing, [1-9][0-9]* extra' "$work/out" || break
+    done
+    return 1
 }
 test_case 'the simulator replies as it did'
 check 'status' same 21 status
