@@ -10,6 +10,7 @@ options_of() {
 
 "$GRCTL" help >"$work/help"
 "$GRCTL" help --man >"$work/grctl.1"
+test_case "scripts are printed"
 for shell in bash zsh fish; do
     check "completion $shell" exits 0 "$GRCTL" completion $shell
     cp "$work/out" "$work/complete.$shell"
@@ -53,6 +54,7 @@ has_options() {
 
 offered '' >"$work/offered"
 offered -- >"$work/offered_options"
+test_case "commands and options are known everywhere"
 while read -r command; do
     check "$command: the parser knows it" exits 0 "$GRCTL" "$command" --help
     check "$command: a section of the man page" grep -q -e "^\.Ss $command\$" "$work/grctl.1"
@@ -72,6 +74,7 @@ quiet() {
     quiet_said=$("$@" 2>&1 >"$work/rendered")
     [ -z "$quiet_said" ] || { echo "$quiet_said"; return 1; }
 }
+test_case "the man page renders"
 if command -v mandoc >/dev/null 2>&1; then
     mandoc_lint() {
         mandoc -Tlint -Wwarning "$work/grctl.1"
@@ -117,6 +120,7 @@ completes() {
 mkdir "$work/files" "$work/files/sub"
 : >"$work/files/walk.pseq"
 : >"$work/files/two words.m"
+test_case "bash completes"
 if command -v bash >/dev/null 2>&1; then
     check "bash: it registers itself" bash -c '. "$0" && complete -p grctl' "$work/complete.bash"
     check "bash: a command" completes 'status' stat
@@ -142,6 +146,7 @@ if command -v bash >/dev/null 2>&1; then
 else
     skip "completion in bash" "no bash here"
 fi
+test_case "zsh completes"
 if command -v zsh >/dev/null 2>&1; then
     check "zsh: it registers itself" zsh -f -c '
         autoload -U compinit && compinit -D -u && . "$0" && [[ $_comps[grctl] == _grctl ]]' \
@@ -169,6 +174,7 @@ if command -v zsh >/dev/null 2>&1; then
 else
     skip "completion in zsh" "no zsh here"
 fi
+test_case "fish completes"
 if command -v fish >/dev/null 2>&1; then
     fish_completes() {
         fish_got=$(cd "$work/files" && HOME=$work fish -N -c "source $work/complete.fish

@@ -335,7 +335,7 @@ while [ $i -lt $n ]; do
     bus=$here/$((i + 1))
     for one in "$board" "$bus"; do
         name="$death of $command, $(cut -d '|' -f 3 "$here/name${one##*/}")"
-        check "$name" test -e "$one/ok"
+        test_that "$name" test -e "$one/ok"
         [ -e "$one/ok" ] || sed 's/^/# /' "$one.log"
     done
     if cmp -s "$board/row" "$bus/row"; then
@@ -363,5 +363,5 @@ is_true() {
 }
 [ "${TOUR_WRITE:-}" != yes ] || [ "$(ls "$here"/*/ok | wc -l)" -ne "$n" ] ||
     replace_block "$guide" deaths "$here/table"
-check "the guide shows them as they are" is_true
+test_that "the guide shows them as they are" is_true
 done_testing

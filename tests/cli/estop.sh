@@ -37,6 +37,7 @@ start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 mkfifo "$work/keys"
 exec 8<>"$work/keys" # open, and silent: teaching is refused where no key can come
 exits 0 on_robot servo on
+test_case "one reaches a robot that another grctl drives"
 check "while it plays" stopped '"t_ms":[1-9]' --json play --speed 20 motions/greet.pseq
 check "while it moves" stopped 'robot found' -v move m5 -100 20000
 exits 0 on_robot servo on
@@ -88,6 +89,7 @@ watched() {
     [ $watched_status -eq 0 ] && [ $watched_brake -eq 0 ]
 }
 exits 0 on_robot servo on
+test_case "who reads brakes too"
 check "who goes on reading brakes too, and says in whose hands it is" watched
 check "it stands" fails 4 "stopped by 'grctl estop'" on_robot init
 exits 0 on_robot estop --reset
@@ -109,7 +111,7 @@ else
     skip "monitor" "$no_screen"
 fi
 
-# ---- who is stopped, who does not obey -----------------------------------------------------------
+test_case "who is stopped, who does not obey"
 
 # under_way [guarded]: a slow move, as seen from the joint; its process in $mover. A guard would
 # stop the joint of one that is stopped, and release the port.

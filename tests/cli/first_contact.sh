@@ -48,6 +48,7 @@ describe() {
     printf '  - {name: lift, id: 2, servo: %s, limits_deg: [-20, 60], init_deg: 59}\n' "$2"
 }
 
+test_case "nobody to ask"
 check "nobody to ask" fails 2 "asks a person at a terminal" "$GRCTL" -d sim first-contact
 
 families='feetech:STS3215 feetech:SCS0009 dynamixel2:XL430-W250 dynamixel1:AX-12A rs30x:RS302CD
@@ -77,6 +78,7 @@ done
 wait
 for one in $families; do
     found=$here/${one#*:}
+    test_case "$one, to the end"
     check "$one, to the end" to_the_end "$found"
     check "takes another rate and comes back" rates_of "${one%:*}" "$found/found.txt"
     check "turns back where its limit is near" \
@@ -86,6 +88,7 @@ for one in $families; do
 done
 
 start_sim
+test_case "GR001's board is read without a yes"
 check "without a yes it reads only" calmly '\n' shy -d "$robot" --timeout 500
 check "a board that stores and forwards" said '^as assumed  *board .*stores a frame'
 check "all servos" said '^as assumed  *ping .*20 of 20 servos answer'
@@ -107,6 +110,7 @@ fi
 stop_sim
 
 start_sim --latency 20
+test_case "late replies and echoes are told"
 check "late replies are told" contact 1 '' late -d "$robot" --timeout 500
 check "as what they are" said '^NOT as assumed  *latency '
 stop_sim
@@ -120,6 +124,7 @@ check "is told, too" said '^NOT as assumed  *echo .*--echo'
 stop_sim
 start_told_sim --robot so101
 tell cable 3 out
+test_case "a servo that is silent, and an end while it moves"
 check "a servo that is silent" contact 1 '' silent --robot so101 -d "$robot"
 check "is told too" said '^NOT as assumed  *ping .*5 of 6'
 tell cable 3 in
@@ -163,11 +168,13 @@ ctrl_c_at_a_question() {
 gone() {
     ! kill -0 "$1" 2>/dev/null
 }
+test_case "Ctrl-C at a question ends it"
 check "Ctrl-C at a question ends it" ctrl_c_at_a_question
 check "with a report" grep -q '^not done  *move ' "$work/asked.txt"
 
 describe rs30x RS302CD >"$work/arm.yaml"
 start_sim --robot "$work/arm.yaml" --baud-at-once
+test_case "a rate that holds at once"
 check "a rate that holds at once" contact 1 'n\ny\nn\n' at_once --robot "$work/arm.yaml" \
     -d "$robot" --timeout 500
 check "is told" said '^NOT as assumed  *rate  .* 76800 bps, answers at 76800, and again at 115200'
@@ -194,6 +201,7 @@ ended_in_flash() {
     wait $restart_pid
     status_was 143 first-contact
 }
+test_case "ended while the rate is another one"
 check "ended while the rate is another one" ended_in_flash
 check "it is back first" both grep -q 'rate_restart .* again at 115200$' "$work/restart.txt" --- \
     both exits 0 "$GRCTL" --robot "$work/arm.yaml" -d "$robot" --timeout 500 servo-get 2 baud --- \
@@ -204,6 +212,7 @@ lost_in_flash() {
     wait $restart_pid
     status_was 1 first-contact
 }
+test_case "a robot that is lost at another rate"
 check "one that is lost meanwhile" lost_in_flash
 check "is told" said '^NOT as assumed  *rate_restart .* not back at 115200 bps'
 check "and how it is found again" \

@@ -7,7 +7,7 @@
 need_fleet
 begin_open_broker
 
-# ---- agents --------------------------------------------------------------------------------------
+test_case "agents"
 
 mkdir -p "$work/config/grctl" "$work/motions"
 cp motions/greet.pseq "$work/motions"
@@ -90,7 +90,7 @@ check "a page is a link" fails 2 "--cockpit 'javascript:x': http:// or https://"
 check "a label is a name" fails 2 "at most 8 names of letters" \
     "$GRCTL" -d one agent --broker "$broker" --label a,b/c
 
-# ---- orders --------------------------------------------------------------------------------------
+test_case "orders"
 
 # plays_through FILE [OPTIONS]: to the end, though permits come late on a busy machine.
 plays_through() {
@@ -214,7 +214,7 @@ goes_on() {
 }
 check "or goes on, where that was said" goes_on
 
-# ---- the broker ----------------------------------------------------------------------------------
+test_case "the broker"
 
 hangs() {
     : >"$work/one.err"
@@ -267,7 +267,7 @@ check "a stop that it forgot still stands" fails 1 'two: prepare: a stop of grou
 check "it can be taken back" exits 0 fleet reset --group two --host two
 check "and robots play again" exits 0 plays_through greet.pseq --group one
 
-# ---- strangers -----------------------------------------------------------------------------------
+test_case "strangers"
 
 id=00112233445566778899aabbccddeeff
 epoch=$(mosquitto_sub -h 127.0.0.1 -p "$port" -C 1 -t grobo/v1/one/connection |
@@ -381,7 +381,7 @@ fi
 check "and all of that moved nothing" rests
 check "the agent is the same" kill -0 "$agent_one"
 
-# ---- leaving -------------------------------------------------------------------------------------
+test_case "leaving"
 
 leaves() {
     kill -TERM "$agent_one" && wait_for is_listed one OFFLINE
@@ -430,7 +430,7 @@ twins() { # two of them, each of which takes the other's place: after pauses tha
 }
 check "two agents of one name are told so, and leave each other time" twins
 
-# ---- the schema ----------------------------------------------------------------------------------
+test_case "the schema"
 
 fit() {
     cat "$work/kept.1" "$work/kept.2" "$work/kept.3" >"$work/kept"

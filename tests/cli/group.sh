@@ -28,7 +28,7 @@ robots:
   c: {device: $work/c}
 EOF2
 
-# ---- each by itself ------------------------------------------------------------------------------
+test_case "each by itself"
 
 each_says() {
     grep -q "^a: .*$1" "$work/$2" && grep -q "^b: .*$1" "$work/$2" && grep -q "^c: .*$1" "$work/$2"
@@ -99,7 +99,7 @@ recorded() {
 }
 check "of a group the first leads, and is recorded" recorded
 
-# ---- together ------------------------------------------------------------------------------------
+test_case "together"
 
 check "a motion of all" both exits 0 \
     "$GRCTL" -d stage --timeout 500 play -s 400 motions/greet.pseq --- each_says 'frames, ' out
@@ -174,7 +174,7 @@ if [ "$(uname)" = Linux ]; then
     check "the guards stop all where it is killed" killed
 fi
 
-# ---- one is lost ---------------------------------------------------------------------------------
+test_case "one is lost"
 
 loses_c() {
     begins "$@" && kill "$pid_c" && { wait "$pid_c"; written "$work/said" 'c is out'; }
@@ -194,7 +194,7 @@ all_stop() {
 }
 check "else they stop" all_stop
 
-# ---- the configuration ---------------------------------------------------------------------------
+test_case "the configuration"
 
 bad_config() {
     printf '%s\n' "$1" >"$config"

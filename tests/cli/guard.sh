@@ -58,7 +58,7 @@ caught() {
         wait_for guard_is_gone
 }
 for signal in ALRM USR1 USR2 XCPU VTALRM PROF; do
-    check "SIG$signal is caught: the joint stands" caught $signal
+    test_that "SIG$signal is caught: the joint stands" caught $signal
 done
 
 # ---- what cannot be: the guard does --------------------------------------------------------------
@@ -70,7 +70,7 @@ killed() {
     written "$work/moving" 'its guard stopped the robot' && stands && wait_for guard_is_gone
 }
 for signal in KILL ABRT SEGV; do
-    check "SIG$signal: the guard stops the joint" killed $signal
+    test_that "SIG$signal: the guard stops the joint" killed $signal
 done
 
 next_opens() {
@@ -78,14 +78,14 @@ next_opens() {
     ends KILL
     exits 0 on_robot status m5 && says '-[2-9][0-9]\.[0-9] .* on  *0 ' && wait_for guard_is_gone
 }
-check "the next program can open the port" next_opens
+test_that "the next program can open the port" next_opens
 
 off() {
     moves --on-exit off || return 1
     ends KILL
     written "$work/moving" 'its guard stopped the robot' && wait_for sim_shows 5 'torque off'
 }
-check "torque goes off where the exit policy says so" off
+test_that "torque goes off where the exit policy says so" off
 
 # The guard has the driver of a configured robot too.
 trimmed() {
@@ -97,7 +97,7 @@ trimmed() {
     written "$work/moving" 'its guard stopped the robot' && ! grep -q 'guard has' "$work/moving" &&
         wait_for sim_shows 5 'torque off'
 }
-check "a configured robot: its own exit policy, and a guard that knows it" trimmed
+test_that "a configured robot: its own exit policy, and a guard that knows it" trimmed
 
 # Every process of the group, as kill -9 -GROUP or a closed container does it.
 group_killed() {
@@ -112,7 +112,7 @@ group_killed() {
     wait $mover 2>/dev/null
     written "$work/moving" 'its guard stopped the robot' && stands && wait_for guard_is_gone
 }
-check "the whole process group is killed" group_killed
+test_that "the whole process group is killed" group_killed
 
 # The guard is not in the way: nothing but stopped processes has the port.
 stopped() {
@@ -126,7 +126,7 @@ stopped() {
     [ $ended -eq 4 ] && grep -q 'stopped for safety: host stalled' "$work/moving" &&
         stands && wait_for guard_is_gone
 }
-check "SIGSTOP: the guard stops the joint, and the program says so when it continues" stopped
+test_that "SIGSTOP: the guard stops the joint, and the program says so when it continues" stopped
 
 # It is stopped and holds, as it may continue; when it is dead, its policy is.
 stopped_and_killed() {
@@ -137,7 +137,7 @@ stopped_and_killed() {
     written "$work/moving" 'its guard stopped the robot' && wait_for sim_shows 5 'torque off' &&
         wait_for guard_is_gone && exits 0 on_robot status m5
 }
-check "SIGSTOP, then SIGKILL: torque goes off where the exit policy says so" stopped_and_killed
+test_that "SIGSTOP, then SIGKILL: torque goes off where the exit policy says so" stopped_and_killed
 
 # by_debugger COMMAND...: of gdb, to the mover.
 by_debugger() {
@@ -195,10 +195,11 @@ is_held() {
     esac
 }
 if has_debugger; then
-    check "a debugger holds one that moves nothing: its guard obeys an emergency stop" held
-    check "a debugger holds it: the guard stops the joint" debugged
-    check "it closes all its descriptors: the guard stops the joint" closed
+    test_that "a debugger holds one that moves nothing: its guard obeys an emergency stop" held
+    test_that "a debugger holds it: the guard stops the joint" debugged
+    test_that "it closes all its descriptors: the guard stops the joint" closed
 else
+    test_case "a debugger holds it, or closes its descriptors"
     skip "a debugger holds it, or closes its descriptors" "needs gdb, and to be allowed"
 fi
 
@@ -218,7 +219,7 @@ is_stopped() {
     *) return 1 ;;
     esac
 }
-check "Ctrl-Z: grctl stops the joint, then itself" suspended
+test_that "Ctrl-Z: grctl stops the joint, then itself" suspended
 
 # While nothing moves, it is suspended and continues as ever.
 waits_suspended() {
@@ -235,7 +236,7 @@ waits_suspended() {
     ends INT
     return $suspended_status
 }
-check "Ctrl-Z of who moves nothing" waits_suspended
+test_that "Ctrl-Z of who moves nothing" waits_suspended
 
 # ---- the guard itself ----------------------------------------------------------------------------
 
@@ -248,14 +249,14 @@ unguarded() {
     wait $mover || return 1
     [ "$(grep -c 'the guard has ended' "$work/err")" -eq 1 ] && says 'largest error at the end'
 }
-check "it is killed: the motion goes on, and that is said once" unguarded
+test_that "it is killed: the motion goes on, and that is said once" unguarded
 
 clean_exit() {
     exits 0 on_robot -v init || return 1
     guard=$(sed -n 's/^guarded by process //p' "$work/err")
     guard_is_gone # grctl has waited for it
 }
-check "none is left behind a command that ends well" clean_exit
+test_that "none is left behind a command that ends well" clean_exit
 
 has_port() {
     ls -l "/proc/$guard/fd" | grep -q "$sim_pty\$"
@@ -282,6 +283,7 @@ unplugged() {
     wait $mover
     return $unplugged_status
 }
+test_case "a line that is lost is not kept from coming back"
 if [ -d /proc/self/fd ]; then
     check "a line that is lost is not kept from coming back" unplugged
 else
@@ -292,16 +294,16 @@ missing() {
     GRCTL_GUARD=/nowhere/grctl exits 0 on_robot init &&
         grep -q '^no guard: no such file' "$work/err"
 }
-check "where it cannot be started the command says so and goes on" missing
-check "nobody types it" fails 2 'guard: is started by grctl itself' "$GRCTL" guard
+test_that "where it cannot be started the command says so and goes on" missing
+test_that "nobody types it" fails 2 'guard: is started by grctl itself' "$GRCTL" guard
 reads_only() {
     exits 0 on_robot -v status m5 && ! grep -q guarded "$work/err"
 }
-check "a command that only reads has none" reads_only
+test_that "a command that only reads has none" reads_only
 in_process() {
     exits 0 "$GRCTL" -d sim -v move m5 0 && ! grep -q guarded "$work/err"
 }
-check "nor has a simulator in the same process" in_process
+test_that "nor has a simulator in the same process" in_process
 
 # ---- a trace that cannot be written --------------------------------------------------------------
 
@@ -316,7 +318,7 @@ trace_ends() {
     [ $trace_status -eq 3 ] || { echo "status $trace_status"; cat "$work/err"; return 1; }
     complains 'the trace cannot be written: File too large' && says 'largest error at the end'
 }
-check "ulimit -f: the trace ends, the motion does not" trace_ends
+test_that "ulimit -f: the trace ends, the motion does not" trace_ends
 
 stop_sim
 done_testing

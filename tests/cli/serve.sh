@@ -7,25 +7,26 @@ has_jsonschema() {
     python3 -c 'import jsonschema' 2>/dev/null
 }
 
-check "hosts, origins, tokens, methods that are refused" pages refusals
-check "what is too large or never whole is refused" pages sizes
-check "no path leads out of the folder" pages escapes
-check "beyond loopback everything needs the token" pages beyond_loopback
-check "the link leads to the page, wherever it listens" pages printed_links
-check "the page: compressed, known by its hash, under a policy" pages page_files
-check "states come 30 times a second, events are kept" pages stream
-check "a stream that sends something is dropped" pages greedy
-check "a stream that does not read is dropped, the others miss nothing" pages slow
-check "a stop comes through where all places are taken" pages crowd
-check "a stop comes through where connections stay half open" pages half_open
-check "a stop comes through where another page holds all places" pages foreign
-check "motions are listed, previewed, edited to the bit" pages motions
-check "key poses are mirrored, feet moved, motions saved elsewhere" pages making
-check "a motion that would fall says when" pages falls
-check "feet and waist are dragged" pages ik
-check "a motion of another robot says so, and is not played" pages other_motion
-check "a robot that is no humanoid" pages other_robot
-check "a joint that is not set up says why" pages not_set_up
+test_that "hosts, origins, tokens, methods that are refused" pages refusals
+test_that "what is too large or never whole is refused" pages sizes
+test_that "no path leads out of the folder" pages escapes
+test_that "beyond loopback everything needs the token" pages beyond_loopback
+test_that "the link leads to the page, wherever it listens" pages printed_links
+test_that "the page: compressed, known by its hash, under a policy" pages page_files
+test_that "states come 30 times a second, events are kept" pages stream
+test_that "a stream that sends something is dropped" pages greedy
+test_that "a stream that does not read is dropped, the others miss nothing" pages slow
+test_that "a stop comes through where all places are taken" pages crowd
+test_that "a stop comes through where connections stay half open" pages half_open
+test_that "a stop comes through where another page holds all places" pages foreign
+test_that "motions are listed, previewed, edited to the bit" pages motions
+test_that "key poses are mirrored, feet moved, motions saved elsewhere" pages making
+test_that "a motion that would fall says when" pages falls
+test_that "feet and waist are dragged" pages ik
+test_that "a motion of another robot says so, and is not played" pages other_motion
+test_that "a robot that is no humanoid" pages other_robot
+test_that "a joint that is not set up says why" pages not_set_up
+test_case "what is answered is what the OpenAPI file tells"
 if has_jsonschema; then
     check "what is answered is what the OpenAPI file tells" pages schema
 else
@@ -42,7 +43,7 @@ tells_at_once() {
     wait $serve_pid
     return $told
 }
-check "the link is told at once" tells_at_once
+test_that "the link is told at once" tells_at_once
 
 # A port that somebody has is an error, and no other is taken.
 taken() {
@@ -55,10 +56,11 @@ sys.exit(subprocess.run([sys.argv[1], "-d", "sim", "serve", "--port",
                          str(s.getsockname()[1])]).returncode)
 ' "$GRCTL"
 }
-check "an address of another machine is an error" fails 1 '--listen is no address of this machine' \
+test_that "an address of another machine is an error" \
+    fails 1 '--listen is no address of this machine' \
     "$GRCTL" serve -d sim --port 0 --listen 999.1.1.1
-check "a port in use is an error" fails 1 'port [0-9]*: the port is in use' taken
-check "a folder that is none is an error" fails 3 'nowhere: no such folder' \
+test_that "a port in use is an error" fails 1 'port [0-9]*: the port is in use' taken
+test_that "a folder that is none is an error" fails 3 'nowhere: no such folder' \
     "$GRCTL" -d sim serve --port 0 nowhere
 
 done_testing
