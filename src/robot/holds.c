@@ -19,13 +19,13 @@ static bool next_waits(const grobo_robot *robot, int joint)
     return false;
 }
 
-/* A target is never outside the limits; it may be a rounding beside them. */
+/* A target is never outside the limits by a unit of the wire, which is what the gate compares. */
 static bool is_inside(const grobo_robot *robot, int joint, double angle_rad)
 {
     const grobo_joint *limits = &robot->driver->model->joints[joint];
-    const double rounding_rad = 1e-9;
-    return angle_rad >= limits->min_rad - rounding_rad &&
-           angle_rad <= limits->max_rad + rounding_rad;
+    const int ddeg = grobo_ddeg_from_rad(angle_rad);
+    return ddeg >= grobo_ddeg_from_rad(limits->min_rad) &&
+           ddeg <= grobo_ddeg_from_rad(limits->max_rad);
 }
 
 static void assert_axis(const grobo_robot *robot, int joint)
