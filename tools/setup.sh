@@ -248,8 +248,12 @@ have_fuzzer() {
         clang -x c -fsanitize=fuzzer -o /dev/null - 2>/dev/null
 }
 
-have_cffi() {
-    python3 -c 'import cffi' 2>/dev/null
+# No package of the system reaches a Python that is not the system's.
+have_module() {
+    python3 -c "import $1" 2>/dev/null && return
+    case $(command -v python3) in
+    '' | /usr/bin/*) return 1 ;;
+    esac
 }
 
 have_mdoc() {
@@ -262,8 +266,26 @@ look_wanted() {
     reasons=
     need Python 'to check JSON' have_command python3 -- \
         python3 python3 python python3 python3
-    need cffi 'to check the Python package' have_cffi -- \
+    need cffi 'to check the Python package' have_module cffi -- \
         python3-cffi python3-cffi python-cffi py3-cffi python3-cffi
+    ! [ -e .git ] || need git 'to check tarballs' have_command git -- git git git git git
+    need ps 'to find what tests leave behind' have_command ps -- \
+        procps procps-ng procps-ng procps procps
+    need openssl 'to check fleets' have_command openssl -- openssl openssl openssl openssl openssl
+    need numpy 'to check the Python package' have_module numpy -- \
+        python3-numpy python3-numpy python-numpy py3-numpy python3-numpy
+    need mypy 'to check its types' have_module mypy -- \
+        'mypy python3-mypy' python3-mypy mypy py3-mypy python3-mypy
+    need jsonschema 'to check JSON' have_module jsonschema -- \
+        python3-jsonschema python3-jsonschema python-jsonschema py3-jsonschema python3-jsonschema
+    need cmake 'to check the build files for it' have_command cmake -- \
+        cmake cmake cmake cmake cmake
+    need meson 'to check the build files for it' have_command meson -- \
+        meson meson meson meson meson
+    need doxygen 'to check the reference site' have_command doxygen -- \
+        doxygen doxygen doxygen doxygen doxygen
+    need glib 'to check the guide of loops' have_library glib-2.0 -- \
+        libglib2.0-dev glib2-devel glib2 glib-dev glib2-devel
     need tmux 'to check the shell at a terminal' have_command tmux -- \
         tmux tmux tmux tmux tmux
     need zsh 'to check completion' have_command zsh -- zsh zsh zsh zsh zsh
@@ -285,14 +307,6 @@ look_wanted() {
     [ "$manager" != apt-get ] ||
         need clang-format 'to check the formatting' have_command clang-format-14 -- clang-format-14
     [ $level -ge 3 ] || return
-    need cmake 'to check the build files for it' have_command cmake -- \
-        cmake cmake cmake cmake cmake
-    need meson 'to check the build files for it' have_command meson -- \
-        meson meson meson meson meson
-    need doxygen 'to check the reference site' have_command doxygen -- \
-        doxygen doxygen doxygen doxygen doxygen
-    need glib 'to check the guide of loops' have_library glib-2.0 -- \
-        libglib2.0-dev glib2-devel glib2 glib-dev glib2-devel
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
     [ "$manager" != apt-get ] ||

@@ -73,7 +73,12 @@ prepare() {
     'full disk')
         how=small_disk trace="--trace $work/disk/cut.pcapng" move_ms=3000
         ;;
-    'no descriptor' | 'no memory') move_ms=3000 ;;
+    'no memory') move_ms=3000 ;;
+    'no descriptor')
+        move_ms=3000
+        # Who looks for leaks at the end needs one.
+        export ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0"
+        ;;
     'closed terminal') how=in_terminal ;;
     esac
 }
@@ -293,8 +298,12 @@ case_of() {
         [ "${TOUR_WRITE:-}" != yes ] && { [ ! -e "$work/ok" ] || ! as_told; } || break
     done
 }
+# What AddressSanitizer does itself without memory is no deed of ours.
+left=
+! grep -q __asan_init "$GRCTL" || left='no memory'
 n=0
 while IFS='|' read -r death command; do
+    [ "$death" != "$left" ] || continue
     for wiring in board bus; do
         n=$((n + 1))
         (case_of "$death" "$command" "$wiring") &
@@ -358,10 +367,14 @@ untimed() {
     sed 's/ *-\{0,1\}[0-9]* ms\(, -\{0,1\}[0-9]* ms\)\{0,1\}$//'
 }
 is_true() {
-    block "$guide" deaths | untimed >"$here/told"
+    block "$guide" deaths | untimed | grep -v "^${left:-none left out}" >"$here/told"
     untimed <"$here/table" | diff "$here/told" -
 }
 [ "${TOUR_WRITE:-}" != yes ] || [ "$(ls "$here"/*/ok | wc -l)" -ne "$n" ] ||
     replace_block "$guide" deaths "$here/table"
 test_that "the guide shows them as they are" is_true
+if [ -n "$left" ]; then
+    test_case "$left"
+    skip "$left" 'AddressSanitizer is in this build'
+fi
 done_testing

@@ -102,7 +102,7 @@ while read -r id language place mark; do
         test_case "$place runs"
         needs=$(echo "$mark" | sed -n 's/<!-- program \(.*\) -->/\1/p')
         if [ -n "$needs" ] && ! pkg-config --exists "$needs"; then
-            skip "$place runs" "no $needs (tools/setup.sh --ci installs it)"
+            skip "$place runs" "no $needs (tools/setup.sh --check installs it)"
         elif instrumented; then
             skip "$place runs" 'the library is instrumented'
         else

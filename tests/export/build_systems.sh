@@ -63,6 +63,6 @@ if command -v cmake >/dev/null; then
     test_that 'CMake: add_subdirectory' cmake_source
 else
     test_case 'CMake'
-    skip 'CMake' 'no cmake (tools/setup.sh --ci installs it)'
+    skip 'CMake' 'no cmake (tools/setup.sh --check installs it)'
 fi
 done_testing

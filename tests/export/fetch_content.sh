@@ -21,6 +21,6 @@ if command -v cmake >/dev/null; then
     test_that 'CMake: FetchContent, shared, exports what the map lists' cmake_fetched
 else
     test_case 'CMake: FetchContent'
-    skip 'CMake: FetchContent' 'no cmake (tools/setup.sh --ci installs it)'
+    skip 'CMake: FetchContent' 'no cmake (tools/setup.sh --check installs it)'
 fi
 done_testing

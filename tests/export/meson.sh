@@ -39,6 +39,6 @@ if command -v meson >/dev/null && command -v ninja >/dev/null; then
     test_that 'Meson: wrap' meson_wrapped
 else
     test_case 'Meson'
-    skip 'Meson' 'no meson (tools/setup.sh --ci installs it)'
+    skip 'Meson' 'no meson (tools/setup.sh --check installs it)'
 fi
 done_testing

@@ -17,7 +17,7 @@ leave() {
     exit 0
 }
 [ -z "${CROSS:-}${EMULATOR:-}" ] || leave 'the same for all machines'
-command -v doxygen >/dev/null || leave 'no doxygen (tools/setup.sh --ci installs it)'
+command -v doxygen >/dev/null || leave 'no doxygen (tools/setup.sh --check installs it)'
 leads() {
     (cd "$work/site/html" && awk -f "$links" -- *.html)
 }
