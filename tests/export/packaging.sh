@@ -167,19 +167,14 @@ if [ -n "${CROSS:-}${EMULATOR:-}" ]; then
 fi
 test_that 'a tarball, unpacked' tarball
 source=$(echo "$work"/libgrobo-*)
-<<<<<<< HEAD
-test_that 'the same commit, the same tarball' same_tarball
-test_that 'a tarball of a tarball: one line, and no file' dist_needs_git
-test_that 'no command of a user makes a warning an error' no_warning_ends_a_build
-=======
 if has_git; then
-    check 'the same commit, the same tarball' same_tarball
+    test_that 'the same commit, the same tarball' same_tarball
 else
+    test_case 'the same commit, the same tarball'
     skip 'the same commit, the same tarball' 'no git, or not a checkout'
 fi
-check 'a tarball of a tarball: one line, and no file' dist_needs_git
-check 'no command of a user makes a warning an error' no_warning_ends_a_build
->>>>>>> a8e97d20 (ci: run the command's tests with sanitizers, and gate coverage)
+test_that 'a tarball of a tarball: one line, and no file' dist_needs_git
+test_that 'no command of a user makes a warning an error' no_warning_ends_a_build
 if [ -e .ci/run ]; then
     test_that '.ci/run gives -Werror to each stage' ci_is_strict
     test_that 'and each build of them takes it along' strict_is_strict
