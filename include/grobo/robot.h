@@ -171,7 +171,9 @@ GROBO_API int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int
  * Standing). All is sent within exit_bound_us; where that is too short to read it back, the result
  * is GROBO_ERR_TIMEOUT. Takes the place of a job that runs (that one ends with
  * GROBO_ERR_CANCELED); where an exit of the same policy runs it returns the number of that one.
- * Works when tripped; then GROBO_EXIT_SIT is carried out as GROBO_EXIT_HOLD.
+ * Works when tripped; then GROBO_EXIT_SIT is carried out as GROBO_EXIT_HOLD. With GROBO_EXIT_SIT
+ * torque goes off only once the robot has sat down: who would need longer than exit_bound_us is not
+ * sent down, and who is held up on the way is halted; both hold, with GROBO_ERR_TIMEOUT.
  * @param policy GROBO_EXIT_DEFAULT: the configuration's.
  */
 GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy);

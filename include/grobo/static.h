@@ -185,6 +185,7 @@ typedef struct grobo_robot_task {
     int64_t until_us; /* end of waiting */
     int64_t bound_us; /* end of patience */
     bool lets_go;     /* by then its joints were told to be without torque */
+    bool sits;        /* is on the way down: halted where the bound is over */
 } grobo_robot_task;
 
 /** A move or a reading that waits for its turn. Private. */

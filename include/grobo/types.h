@@ -68,7 +68,7 @@ typedef enum grobo_exit_policy {
     GROBO_EXIT_DEFAULT = 0, /**< the driver's choice; GR001: hold */
     GROBO_EXIT_OFF = 1,     /**< torque off */
     GROBO_EXIT_HOLD = 2,    /**< stop smoothly, keep torque where it is */
-    GROBO_EXIT_SIT = 3      /**< go to the driver's resting posture, then torque off */
+    GROBO_EXIT_SIT = 3      /**< go to the resting posture, then torque off; not in time: hold */
 } grobo_exit_policy;
 
 /** A line's parity bit. */

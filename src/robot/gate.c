@@ -154,6 +154,19 @@ static int64_t time_needed(const grobo_robot *robot, int joint, double from_rad,
     return on_time_grid(robot, time_of_way(robot, joint, from_rad, to_rad, soft));
 }
 
+int64_t grobo_i_gate_soft_us(const grobo_robot *robot, const grobo_posture *target)
+{
+    int64_t longest_us = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (grobo_i_has(target->set, j)) {
+            double from_rad = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
+            int64_t us = time_needed(robot, j, from_rad, target->angle_rad[j], true);
+            longest_us = grobo_i_later(longest_us, us);
+        }
+    }
+    return longest_us;
+}
+
 /* What stops a joint never asks for more than its speed from where it was read, either, where no
  * reading shows that it has begun its way: the frame may be lost. For a halt any reading since
  * does. Of a stream the next frame makes good a lost one, so that a soft stop keeps its time. The

@@ -65,7 +65,7 @@ int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot
     job->reply_bytes = 0;
     job->begun_us = robot->now_us;
     job->until_us = job->bound_us = GROBO_NEVER_US;
-    job->lets_go = false;
+    job->lets_go = job->sits = false;
     return job->number;
 }
 
@@ -273,7 +273,7 @@ static int advance(grobo_robot *robot)
 }
 
 /* The bound is over. Who was to be limp is told so once more, in a frame that outlives the job: the
- * one of the job may not have left. */
+ * one of the job may not have left. Who sits down yet is halted where he is, and holds. */
 static void run_out(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
@@ -284,6 +284,10 @@ static void run_out(grobo_robot *robot)
         joints |= limp ? 0 : GROBO_JOINT_BIT(j);
     }
     job->failed |= job->pending;
+    if (job->sits) {
+        grobo_i_slots_cancel_goals(robot, job->joints, true);
+        grobo_i_gate_halt(robot, job->joints);
+    }
     if (joints != 0) {
         (void)grobo_i_gate_torque(robot, joints, GROBO_TORQUE_OFF, GROBO_I_WHOLE);
     }

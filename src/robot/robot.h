@@ -322,6 +322,9 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
 int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target);
 /* The next move is the first from a sensed posture: a slow one. */
 void grobo_i_gate_soften(grobo_robot *robot);
+/* How long a whole goal takes then, from where the joints are now; GROBO_NEVER_US where the wire
+ * has no time that is long enough. */
+int64_t grobo_i_gate_soft_us(const grobo_robot *robot, const grobo_posture *target);
 /* Before a target of a caller's own stream, from his loop or as a raw frame: the first of them is
  * the slow one. */
 void grobo_i_gate_single(grobo_robot *robot);

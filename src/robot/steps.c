@@ -735,7 +735,9 @@ static int step_moved(grobo_robot *robot)
     job->pending = 0;
     return stop_strays(robot, moved, lost);
 }
-/* Sits down with the joints that hold; a robot that is limp stays so. */
+
+/* Sits down with the joints that hold; a robot that is limp stays so. Who could not be down in time
+ * stands better than half way. */
 static int step_aim_rest(grobo_robot *robot)
 {
     const grobo_driver *driver = robot->driver;
@@ -745,8 +747,21 @@ static int step_aim_rest(grobo_robot *robot)
         job->target.angle_rad[j] = driver->rest_rad[j];
     }
     job->target.set = joints_with(robot, job->joints, GROBO_TORQUE_ON);
+    int64_t takes_us = grobo_i_gate_soft_us(robot, &job->target);
+    if (takes_us != GROBO_NEVER_US && takes_us > job->bound_us - robot->now_us) {
+        return GROBO_ERR_TIMEOUT;
+    }
+    job->sits = true;
     grobo_i_gate_soften(robot);
     return step_aim(robot);
+}
+
+/* It is down. */
+static int step_let_go(grobo_robot *robot)
+{
+    robot->job->sits = false;
+    robot->job->lets_go = true;
+    return GROBO_I_NEXT;
 }
 
 /* ---- scripts --------------------------------------------------------------------------------- */
@@ -778,9 +793,8 @@ const grobo_robot_step_fn grobo_i_script_exit_hold[] = {
     step_quiet, step_read,         TWICE,      step_hear_all,       step_strays,
     step_doubt, step_read_pending, step_moved, step_watchdog_clear, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
-    step_quiet,    step_read, step_read_again, step_require,        step_from_here,
-    step_aim_rest, MOVE,      step_require,    step_watchdog_clear, SWITCH,
-    NULL};
+    step_quiet, step_read,    step_read_again, step_require,        step_from_here, step_aim_rest,
+    MOVE,       step_require, step_let_go,     step_watchdog_clear, SWITCH,         NULL};
 
 /* ---- another target -------------------------------------------------------------------------- */
 

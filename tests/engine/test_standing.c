@@ -127,6 +127,92 @@ TEST_FOR(family, family_next, a_short_bound_switches_torque_off)
     }
 }
 
+/* What an exit that sits down came to. */
+static void sits_or_holds(int result, double from_deg, int bound_ms, const char *how)
+{
+    double at_deg[JOINTS];
+    family_run(&kit, 150 * MILLI); /* a halt */
+    for (int j = 0; j < JOINTS; j++) {
+        at_deg[j] = at_now_deg(j);
+    }
+    family_run(&kit, 2 * SECOND);
+    for (int j = 0; j < JOINTS; j++) {
+        grobo_sim_view view;
+        assert_int_equal(grobo_sim_look(&kit.sim, j, &view), GROBO_OK);
+        bool limp = view.torque == GROBO_TORQUE_OFF;
+        double is_deg = at_now_deg(j), near_deg = kit.family->near_deg + 0.5;
+        bool sits = fabs(is_deg) < near_deg;
+        bool went = fabs(is_deg - (from_deg - 10 * j)) > near_deg;
+        const char *wrong = fabs(is_deg - at_deg[j]) > 0.6        ? "goes on"
+                            : limp && !sits                       ? "falls"
+                            : result == GROBO_OK && !limp         ? "is left with torque"
+                            : result != GROBO_OK && went && !*how ? "was sent off"
+                            : result != GROBO_OK && limp          ? "is let go"
+                                                                  : NULL;
+        if (wrong != NULL) {
+            fail_msg("%s, %d ms%s: joint %d at %g %s after %s", kit.family->name, bound_ms, how, j,
+                     is_deg, wrong, grobo_error_name(result));
+        }
+    }
+}
+
+static const double stood_deg = 60;
+
+static void stand_up(const family *f, int bound_ms)
+{
+    grobo_robot_config config = unread;
+    config.exit_bound_us = bound_ms * MILLI;
+    family_start(&kit, f, &config, NULL);
+    assert_int_equal(family_move(&kit, stood_deg, 2000), GROBO_OK);
+}
+
+TEST_FOR(family, family_next, who_cannot_sit_in_time_stays_as_it_is)
+{
+    static const int bounds_ms[] = {5, 50, 200, 800, 8000};
+    for (size_t i = 0; i < sizeof bounds_ms / sizeof bounds_ms[0]; i++) {
+        stand_up(row, bounds_ms[i]);
+        int64_t begun_us = kit.now_us;
+        int result = family_wait(&kit, grobo_robot_exit(&kit.robot, GROBO_EXIT_SIT));
+        assert_true(kit.now_us - begun_us <= (bounds_ms[i] + 2) * MILLI);
+        assert_int_equal(result, bounds_ms[i] < 1000 ? GROBO_ERR_TIMEOUT : GROBO_OK);
+        sits_or_holds(result, stood_deg, bounds_ms[i], "");
+    }
+}
+
+/* Its way is longer then than it seemed. */
+static unsigned late_where_frames_are_lost(const family *f)
+{
+    unsigned late = 0;
+    stand_up(f, 0);
+    int64_t begun_us = kit.now_us;
+    assert_int_equal(family_wait(&kit, grobo_robot_exit(&kit.robot, GROBO_EXIT_SIT)), 0);
+    int bound_ms = (int)((kit.now_us - begun_us) / MILLI) * 3 / 2;
+    for (unsigned frame = 1; frame <= 16; frame++) {
+        stand_up(f, bound_ms);
+        begun_us = kit.now_us;
+        unsigned sent = kit.n_sent;
+        int number = grobo_robot_exit(&kit.robot, GROBO_EXIT_SIT);
+        while (kit.n_sent - sent < frame && kit.now_us - begun_us < bound_ms * MILLI) {
+            family_run(&kit, MILLI / 4);
+        }
+        kit.lose = 2;
+        int result = family_wait(&kit, number);
+        assert_true(kit.now_us - begun_us <= (bound_ms + 2) * MILLI);
+        late += result == GROBO_ERR_TIMEOUT;
+        sits_or_holds(result, stood_deg, bound_ms, " and a lost frame");
+    }
+    return late;
+}
+
+TEST(who_is_held_up_while_it_sits_down_is_halted)
+{
+    unsigned late = 0;
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        late += late_where_frames_are_lost(f);
+    }
+    assert_true(late > 0); /* LX-16A and KRS, whose goals are frames of their own, are in time */
+}
+
 /* ---- what was halted is read back ------------------------------------------------------------ */
 
 typedef enum stop_kind { AT_ONCE, SMOOTH, CANCEL, TRIP, LATCH, PAUSE, KINDS } stop_kind;
