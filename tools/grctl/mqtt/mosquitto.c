@@ -6,7 +6,6 @@
  * that is closed, and warn. Nothing is freed in its callbacks.
  */
 #include <mosquitto.h>
-#include <mqtt_protocol.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,6 +19,11 @@
 #include "tools/grctl/os/alarm.h"
 
 enum { MISC_MS = 500, CONNECT_MS = 5000, AT_ONCE = 10 };
+
+/* MQTT 5.0, 2.2.2.2 and 3.8.3.1. The library's own header of these is deprecated in newer ones,
+ * and old ones have no other. */
+enum { MESSAGE_EXPIRY_INTERVAL = 2, RESPONSE_TOPIC = 8, CORRELATION_DATA = 9 };
+enum { NO_LOCAL = 0x04, RETAIN_AS_PUBLISHED = 0x08, RETAIN_SEND = 0x00, RETAIN_DO_NOT_SEND = 0x20 };
 
 struct direct {
     mqtt_config config;
@@ -199,6 +203,9 @@ static void on_again(evutil_socket_t fd, short what, void *ctx)
     (void)fd;
     (void)what;
     alarm_clear(m->again);
+    if (m->up || m->connecting) {
+        return; /* rung by itself */
+    }
     bool looks_up = m->config.ca || !*m->address;
     if (looks_up && m->config.may_block && !m->config.may_block(m->config.ctx)) {
         alarm_set(m->again, INT64_C(1000) * MISC_MS);
@@ -272,8 +279,8 @@ static void on_message(struct mosquitto *client, void *ctx, const struct mosquit
     if (raw->payloadlen < 0 || raw->payloadlen > MQTT_PAYLOAD_MAX_BYTES) {
         return;
     }
-    (void)mosquitto_property_read_string(properties, MQTT_PROP_RESPONSE_TOPIC, &response, false);
-    (void)mosquitto_property_read_binary(properties, MQTT_PROP_CORRELATION_DATA, &correlation,
+    (void)mosquitto_property_read_string(properties, RESPONSE_TOPIC, &response, false);
+    (void)mosquitto_property_read_binary(properties, CORRELATION_DATA, &correlation,
                                          &correlation_bytes, false);
     const mqtt_message message = {.topic = raw->topic,
                                   .payload = raw->payloadlen ? raw->payload : "",
@@ -311,16 +318,14 @@ int direct_publish(direct *m, const mqtt_message *message, int qos, int expiry_s
     }
     int result = MOSQ_ERR_SUCCESS;
     if (expiry_s > 0) {
-        result = mosquitto_property_add_int32(&properties, MQTT_PROP_MESSAGE_EXPIRY_INTERVAL,
-                                              (uint32_t)expiry_s);
+        result =
+            mosquitto_property_add_int32(&properties, MESSAGE_EXPIRY_INTERVAL, (uint32_t)expiry_s);
     }
     if (!result && message->response) {
-        result =
-            mosquitto_property_add_string(&properties, MQTT_PROP_RESPONSE_TOPIC, message->response);
+        result = mosquitto_property_add_string(&properties, RESPONSE_TOPIC, message->response);
     }
     if (!result && message->correlation_bytes) {
-        result = mosquitto_property_add_binary(&properties, MQTT_PROP_CORRELATION_DATA,
-                                               message->correlation,
+        result = mosquitto_property_add_binary(&properties, CORRELATION_DATA, message->correlation,
                                                (uint16_t)message->correlation_bytes);
     }
     if (!result) {
@@ -335,9 +340,7 @@ int direct_publish(direct *m, const mqtt_message *message, int qos, int expiry_s
 
 bool direct_subscribe(direct *m, const char *filter, int qos, bool retained)
 {
-    int options = MQTT_SUB_OPT_NO_LOCAL |
-                  (retained ? MQTT_SUB_OPT_SEND_RETAIN_ALWAYS
-                            : MQTT_SUB_OPT_SEND_RETAIN_NEVER | MQTT_SUB_OPT_RETAIN_AS_PUBLISHED);
+    int options = NO_LOCAL | (retained ? RETAIN_SEND : RETAIN_DO_NOT_SEND | RETAIN_AS_PUBLISHED);
     bool done = direct_is_up(m) && mosquitto_subscribe_v5(m->client, NULL, filter, qos, options,
                                                           NULL) == MOSQ_ERR_SUCCESS;
     arm(m);

@@ -160,6 +160,9 @@ static void on_again(evutil_socket_t fd, short what, void *ctx)
     (void)fd;
     (void)what;
     alarm_clear(m->again);
+    if (os_is_socket(m->child.socket)) {
+        return; /* rung by itself */
+    }
     if (begin_child(m)) {
         say_start(m);
     } else {

@@ -2,6 +2,7 @@
 /*
  * A timer of a loop that can always be set: it is pending all its life, and to change the time of
  * one that is takes no memory. Its function, which is called again and again, clears it first.
+ * Where nobody has set it for ALARM_NEVER_S it is called too, and nobody has asked for that.
  */
 #ifndef GRCTL_OS_ALARM_H
 #define GRCTL_OS_ALARM_H
