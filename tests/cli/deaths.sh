@@ -25,6 +25,7 @@ begins() {
 }
 # Where a file may have 1 KiB (2 for some shells), and where the disk has room for 4 KiB.
 small_file() {
+    no_counters
     ulimit -f 2
     exec "$@"
 }

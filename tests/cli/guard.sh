@@ -308,6 +308,7 @@ test_that "nor has a simulator in the same process" in_process
 # ---- a trace that cannot be written --------------------------------------------------------------
 
 cut_trace() (
+    no_counters
     ulimit -f 8
     "$GRCTL" -d "$robot" --timeout 500 --trace "$work/cut.pcapng" play motions/greet.pseq \
         >"$work/out" 2>"$work/err"

@@ -146,6 +146,13 @@ written() {
     wait_for grep -qs -e "$2" "$1" || { echo "no '$2' in $1"; return 1; }
 }
 
+# Where files may not grow: counters of the lines that ran (make check-coverage) are not written, as
+# one that is cut off spoils those of all other processes.
+no_counters() {
+    GCOV_PREFIX=/dev/null
+    export GCOV_PREFIX
+}
+
 # exits STATUS COMMAND...: what it printed is in $work/out and $work/err. Where it says that the
 # machine held it up, as it must then, it is run again: one that always says so is wrong.
 exits() {
