@@ -239,7 +239,7 @@ format: ## write sources as clang-format 14 does; FILES="src/bus/bus.c" chooses
 
 # They take longest, of those that mostly wait and of the others: `make test` tells the slowest.
 TEST_FIRST := fleet serve_driving registers servos first_contact guard play estop fleet_stops \
-    paused deaths replay json test_play_line test_thread_motion test_guard \
+    paused deaths replay json test_play_line test_runner_motion test_guard \
     python packaging fetch_content meson build_systems
 # The programs and scripts of the chosen rings, as tests/run.sh wants them.
 in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
@@ -429,8 +429,8 @@ check-mutants: ## sabotage the core in COUNT=300 ways that SEED=1 chooses: a tes
 	    --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
 	    --scope tests/mutants/scope --survivors tests/mutants/survivors --named tests/mutants/named
 
-ASSERT_TESTS := $(MUTANT_TESTS) $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/link/test_thread% \
-    tests/link/test_session% tests/link/test_serial% tests/link/test_control%,$(TEST_SRCS)))
+ASSERT_TESTS := $(MUTANT_TESTS) $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/link/test_runner% \
+    tests/link/test_session% tests/link/test_serial%,$(TEST_SRCS)))
 check-asserts: ## sabotage what the assertions of bus, sequencer, engine and loop state: each must end a test
 	-@tools/setup.sh --mutants
 	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 WALKS=-DGROBO_WALKS $(ASSERT_TESTS) $(MUTANT_LIBS)

@@ -8,23 +8,23 @@ int main(int argc, char **argv)
 {
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
                                           .device = argc > 1 ? argv[1] : "sim"};
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
     const grobo_model *model = &grobo_gr001_model;
-    grobo_control *control;
+    grobo_runner *runner;
     grobo_posture target;
-    if (grobo_control_new(&config, &control) < 0) {
+    if (grobo_runner_new(&config, &runner) < 0) {
         return 1;
     }
     (void)grobo_posture_init(&target, model->n_joints);
     (void)grobo_posture_set_deg(&target, grobo_model_find_joint(model, "R_ELBOW_P", 9), -45);
     (void)grobo_posture_set_deg(&target, grobo_model_find_joint(model, "L_ELBOW_P", 9), -45);
     (void)grobo_posture_set_time_ms(&target, 600);
-    int result = grobo_control_connect(control, 0);
+    int result = grobo_runner_connect(runner, 0);
     if (result >= 0) {
-        int job = grobo_robot_move(grobo_control_robot(control), &target);
-        result = grobo_control_wait_job(control, job, GROBO_NEVER_US);
+        int job = grobo_robot_move(grobo_runner_robot(runner), &target);
+        result = grobo_runner_wait_job(runner, job, GROBO_NEVER_US);
     }
     printf("move: %s\n", grobo_error_text(result));
-    grobo_control_free(control);
+    grobo_runner_free(runner);
     return result < 0;
 }

@@ -17,23 +17,23 @@ int main(int argc, char **argv)
 {
     grobo_driver driver;
     grobo_posture target;
-    grobo_control *control;
+    grobo_runner *runner;
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
                                           .device = argc > 1 ? argv[1] : "sim", .driver = &driver};
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
     if (grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol) < 0 ||
-        grobo_control_new(&config, &control) < 0) {
+        grobo_runner_new(&config, &runner) < 0) {
         return 1;
     }
     (void)grobo_posture_init(&target, model.n_joints);
     (void)grobo_posture_set_deg(&target, 0, 30);
     (void)grobo_posture_set_deg(&target, 1, -20);
-    int result = grobo_control_connect(control, 0);
+    int result = grobo_runner_connect(runner, 0);
     if (result >= 0) {
-        int job = grobo_robot_move(grobo_control_robot(control), &target);
-        result = grobo_control_wait_job(control, job, 0);
+        int job = grobo_robot_move(grobo_runner_robot(runner), &target);
+        result = grobo_runner_wait_job(runner, job, 0);
     }
-    printf("%s: %s\n", grobo_control_name(control), grobo_error_text(result));
-    (void)grobo_control_free(control);
+    printf("%s: %s\n", grobo_runner_name(runner), grobo_error_text(result));
+    (void)grobo_runner_free(runner);
     return result < 0;
 }

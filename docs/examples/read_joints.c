@@ -8,18 +8,18 @@ int main(int argc, char **argv)
 {
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
                                           .device = argc > 1 ? argv[1] : "sim"};
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session,
-                                         .skip_exit = true};
-    grobo_control *control;
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session,
+                                        .skip_exit = true};
+    grobo_runner *runner;
     grobo_posture posture;
-    if (grobo_control_new(&config, &control) < 0) {
+    if (grobo_runner_new(&config, &runner) < 0) {
         return 1;
     }
-    int result = grobo_control_connect(control, 0);
+    int result = grobo_runner_connect(runner, 0);
     if (result >= 0) {
-        result = grobo_control_read_posture(control, &posture, 0);
+        result = grobo_runner_read_posture(runner, &posture, 0);
     }
-    const grobo_model *model = grobo_robot_driver(grobo_control_robot(control))->model;
+    const grobo_model *model = grobo_robot_driver(grobo_runner_robot(runner))->model;
     for (int j = 0; result >= 0 && j < model->n_joints; j++) {
         double angle_deg;
         if (grobo_posture_get_deg(&posture, j, &angle_deg) >= 0) {
@@ -29,6 +29,6 @@ int main(int argc, char **argv)
     if (result < 0) {
         fprintf(stderr, "read: %s\n", grobo_error_text(result));
     }
-    grobo_control_free(control);
+    grobo_runner_free(runner);
     return result < 0;
 }

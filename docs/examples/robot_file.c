@@ -18,7 +18,7 @@ int main(int argc, char **argv)
     grobo_robot_def *def;
     grobo_robot_sim sim;
     grobo_driver driver;
-    grobo_control *control = NULL;
+    grobo_runner *runner = NULL;
     if (!file || grobo_robot_def_read(&source, path, NULL, NULL, &def) < 0 ||
         grobo_robot_def_driver(def, def->wiring, &driver) < 0 ||
         grobo_robot_def_sim(def, def->wiring, &sim) < 0) {
@@ -27,13 +27,13 @@ int main(int argc, char **argv)
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
                                           .device = argc > 2 ? argv[2] : "sim", .driver = &driver,
                                           .baud_bps = (int)def->baud_bps, .sim = &sim.config};
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
-    int result = grobo_control_new(&config, &control);
-    result = result < 0 ? result : grobo_control_connect(control, 0);
-    result = result < 0 ? result : grobo_control_init_position(control);
-    result = result < 0 ? result : grobo_control_wait(control, GROBO_NEVER_US);
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
+    int result = grobo_runner_new(&config, &runner);
+    result = result < 0 ? result : grobo_runner_connect(runner, 0);
+    result = result < 0 ? result : grobo_runner_init_position(runner);
+    result = result < 0 ? result : grobo_runner_wait(runner, GROBO_NEVER_US);
     printf("%s: %s\n", def->title, grobo_error_text(result));
-    (void)grobo_control_free(control);
+    (void)grobo_runner_free(runner);
     grobo_robot_def_free(def);
     return fclose(file) != 0 || result < 0;
 }

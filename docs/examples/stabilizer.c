@@ -20,21 +20,21 @@ int main(void)
     const grobo_robot_def *const *def = grobo_robot_defs;
     grobo_driver driver;
     grobo_robot_sim sim;
-    grobo_control *arm = NULL;
+    grobo_runner *arm = NULL;
     grobo_posture at = {.n_joints = 6, .set = 0xE, .angle_rad = {0, 0.3, 0.2, 0}};
     for (; strcmp((*def)->name, "so101") != 0; def++) {
     }
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = "sim",
                                           .driver = &driver, .sim = &sim.config};
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
     int result = grobo_robot_def_driver(*def, (*def)->wiring, &driver);
     driver.stabilize = keep_level;
     result = result < 0 ? result : grobo_robot_def_sim(*def, (*def)->wiring, &sim);
-    result = result < 0 ? result : grobo_control_new(&config, &arm);
-    result = result < 0 ? result : grobo_control_connect(arm, 0);
-    result = result < 0 ? result : grobo_robot_move(grobo_control_robot(arm), &at);
-    result = result < 0 ? result : grobo_control_wait_job(arm, result, GROBO_NEVER_US);
-    result = result < 0 ? result : grobo_control_read_posture(arm, &at, 0);
+    result = result < 0 ? result : grobo_runner_new(&config, &arm);
+    result = result < 0 ? result : grobo_runner_connect(arm, 0);
+    result = result < 0 ? result : grobo_robot_move(grobo_runner_robot(arm), &at);
+    result = result < 0 ? result : grobo_runner_wait_job(arm, result, GROBO_NEVER_US);
+    result = result < 0 ? result : grobo_runner_read_posture(arm, &at, 0);
     printf("wrist_flex %.1f rad: %s\n", at.angle_rad[3], grobo_error_text(result));
-    return grobo_control_free(arm) < 0 || result < 0;
+    return grobo_runner_free(arm) < 0 || result < 0;
 }

@@ -6,35 +6,35 @@
 
 int main(int argc, char **argv)
 {
-    grobo_control *robots[2] = {NULL, NULL};
+    grobo_runner *robots[2] = {NULL, NULL};
     int result = GROBO_OK;
     for (int i = 0; result >= 0 && i < 2; i++) {
         const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
                                               .device = argc > i + 1 ? argv[i + 1] : "sim"};
-        const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session,
-                                             .motion_dir = "motions"};
-        result = grobo_control_new(&config, &robots[i]);
+        const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session,
+                                            .motion_dir = "motions"};
+        result = grobo_runner_new(&config, &robots[i]);
         if (result >= 0) {
-            result = grobo_control_start_thread(robots[i]);
+            result = grobo_runner_start(robots[i]);
         }
         if (result >= 0) {
-            result = grobo_control_connect(robots[i], 0);
+            result = grobo_runner_connect(robots[i], 0);
         }
         if (result >= 0) {
-            result = grobo_control_load_motion(robots[i], "greet", NULL);
+            result = grobo_runner_load_motion(robots[i], "greet", NULL);
         }
     }
     /* Each approaches its first posture by then, and waits. */
     const grobo_play_options how = {GROBO_PLAY_OPTIONS_INIT, .start_us = grobo_now_us() + 2000000};
     for (int i = 0; result >= 0 && i < 2; i++) {
-        result = grobo_control_play_motion(robots[i], &how);
+        result = grobo_runner_play_motion(robots[i], &how);
     }
     for (int i = 0; result >= 0 && i < 2; i++) {
-        result = grobo_control_wait(robots[i], GROBO_NEVER_US);
+        result = grobo_runner_wait(robots[i], GROBO_NEVER_US);
         printf("robot %d: %s\n", i + 1, grobo_error_text(result));
     }
     for (int i = 0; i < 2; i++) {
-        (void)grobo_control_free(robots[i]);
+        (void)grobo_runner_free(robots[i]);
     }
     return result < 0;
 }

@@ -25,15 +25,15 @@ int main(void)
 {
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = "sim",
                                           .on_robot = on_robot, .on_event = on_line};
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
-    grobo_control *control;
-    if (grobo_control_new(&config, &control) < 0) {
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
+    grobo_runner *runner;
+    if (grobo_runner_new(&config, &runner) < 0) {
         return 1;
     }
-    if (grobo_control_connect(control, 0) >= 0 && grobo_control_init_position(control) >= 0) {
-        (void)grobo_control_wait(control, 0);
-        (void)grobo_control_estop(control);
-        (void)grobo_control_wait(control, 0);
+    if (grobo_runner_connect(runner, 0) >= 0 && grobo_runner_init_position(runner) >= 0) {
+        (void)grobo_runner_wait(runner, 0);
+        (void)grobo_runner_estop(runner);
+        (void)grobo_runner_wait(runner, 0);
     }
-    return grobo_control_free(control) < 0;
+    return grobo_runner_free(runner) < 0;
 }

@@ -3,7 +3,7 @@
  * @file callback.h
  * @brief Callbacks that hold a loop for too long: what GROBO_EVENT_SLOW_CALLBACK reports.
  *
- * The engine of robot.h measures nothing; sessions and controls do.
+ * The engine of robot.h measures nothing; sessions and runners do.
  */
 #ifndef GROBO_CALLBACK_H
 #define GROBO_CALLBACK_H
@@ -15,13 +15,13 @@ GROBO_BEGIN_DECLS
 /** A callback that takes longer is reported. */
 #define GROBO_CALLBACK_SLOW_US 20000
 
-/** The callbacks of a session and of a control. */
+/** The callbacks of a session and of a runner. */
 typedef enum grobo_callback {
     GROBO_CALLBACK_EVENT, /**< grobo_session_config.on_event */
     GROBO_CALLBACK_ROBOT, /**< grobo_session_config.on_robot */
     GROBO_CALLBACK_TAP,   /**< grobo_session_config.on_tap */
-    GROBO_CALLBACK_SVC,   /**< grobo_control_config.on_svc */
-    GROBO_CALLBACK_CALL   /**< a function of grobo_control_call() or grobo_control_post() */
+    GROBO_CALLBACK_SVC,   /**< grobo_runner_config.on_svc */
+    GROBO_CALLBACK_CALL   /**< a function of grobo_runner_call() or grobo_runner_post() */
 } grobo_callback;
 
 /** GROBO_EVENT_SLOW_CALLBACK: callbacks above GROBO_CALLBACK_SLOW_US since the last such event. */

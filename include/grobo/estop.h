@@ -4,7 +4,7 @@
  * @brief Emergency stops across programs: a mark that every session of the user obeys.
  *
  * A mark stands for a device, under every name that the device has. While it stands, no session
- * (session.h, thread.h) of this user moves that robot or switches its torque on: requests return
+ * (session.h, runner.h) of this user moves that robot or switches its torque on: requests return
  * GROBO_ERR_LATCHED. A session that is open carries out an emergency stop within
  * GROBO_ESTOP_WATCH_US of the mark, or before the next frame leaves where its program was held up
  * for longer. A session that opens the device of a stop that has not reached the robot carries the

@@ -40,13 +40,13 @@
 #include <grobo/robot_event.h>
 #include <grobo/robot_file.h>
 #include <grobo/rs30x.h>
+#include <grobo/runner.h>
 #include <grobo/sequencer.h>
 #include <grobo/serial.h>
 #include <grobo/session.h>
 #include <grobo/sim.h>
 #include <grobo/sim_server.h>
 #include <grobo/team.h>
-#include <grobo/thread.h>
 #include <grobo/types.h>
 #include <grobo/version.h>
 

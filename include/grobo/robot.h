@@ -45,7 +45,7 @@
  * - grobo_robot_estop() is ahead of everything, read back joint by joint, latched.
  *
  * One thread at a time per robot, unless its host brings a lock: then requests and questions come
- * from any thread (thread.h). Requests may be made from the callback.
+ * from any thread (runner.h). Requests may be made from the callback.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_ROBOT_H

@@ -5,7 +5,7 @@
  * are not libevent's.
  *
  * What is in here is in the static libraries alone (libgrobo-core.a, libgrobo.a): the sizes below
- * change from version to version. With the shared library a robot comes from session.h or thread.h.
+ * change from version to version. With the shared library a robot comes from session.h or runner.h.
  *
  * The owner of the line pumps the engine, when bytes came, a request was made or the deadline is
  * reached, always in this order:

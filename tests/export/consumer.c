@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include <grobo/error.h>
-#include <grobo/thread.h>
+#include <grobo/runner.h>
 #include <grobo/version.h>
 
 int main(void)
@@ -14,16 +14,16 @@ int main(void)
         return 1;
     }
     grobo_session_config session;
-    grobo_control_config config;
+    grobo_runner_config config;
     memset(&session, 0, sizeof session);
     memset(&config, 0, sizeof config);
     session.size = sizeof session;
     session.device = "sim";
     config.size = sizeof config;
     config.session = &session;
-    grobo_control *control = NULL;
-    int result = grobo_control_new(&config, &control);
-    if (result < 0 || grobo_control_free(control) < 0) {
+    grobo_runner *runner = NULL;
+    int result = grobo_runner_new(&config, &runner);
+    if (result < 0 || grobo_runner_free(runner) < 0) {
         fprintf(stderr, "no robot: %s\n", grobo_error_text(result));
         return 1;
     }

@@ -70,7 +70,7 @@ static int with_motions(grobo_motion *motion)
     return result;
 }
 
-static int play(grobo_control *control, const grobo_posture *posture)
+static int play(grobo_runner *runner, const grobo_posture *posture)
 {
     FENCED(grobo_play_options, playing, GROBO_PLAY_OPTIONS_INIT);
     grobo_motion *motion = NULL;
@@ -83,13 +83,13 @@ static int play(grobo_control *control, const grobo_posture *posture)
         result = with_motions(motion);
     }
     if (result >= 0) {
-        result = grobo_control_set_motion(control, motion);
+        result = grobo_runner_set_motion(runner, motion);
     }
     if (result >= 0) {
-        result = grobo_control_play_motion(control, &playing.config);
+        result = grobo_runner_play_motion(runner, &playing.config);
     }
     if (result >= 0) {
-        result = grobo_control_wait(control, 0);
+        result = grobo_runner_wait(runner, 0);
     }
     grobo_motion_free(motion);
     printf("%d ", (int)sizeof playing.config);
@@ -101,10 +101,10 @@ int main(void)
     FENCED(grobo_robot_config, robot, GROBO_ROBOT_CONFIG_INIT);
     FENCED(grobo_sim_config, sim, GROBO_SIM_CONFIG_INIT);
     FENCED(grobo_session_config, session, GROBO_SESSION_CONFIG_INIT);
-    FENCED(grobo_control_config, control, GROBO_CONTROL_CONFIG_INIT);
+    FENCED(grobo_runner_config, runner, GROBO_RUNNER_CONFIG_INIT);
     FENCED(grobo_serial_config, serial, GROBO_SERIAL_CONFIG_INIT);
     grobo_serial *port = NULL;
-    grobo_control *robot_of = NULL;
+    grobo_runner *robot_of = NULL;
     grobo_posture target;
 
     robot.config.speed_limit_pct = 50;
@@ -112,31 +112,31 @@ int main(void)
     session.config.device = "sim";
     session.config.robot = &robot.config;
     session.config.sim = &sim.config;
-    control.config.session = &session.config;
-    control.config.name = "yesterday's";
+    runner.config.session = &session.config;
+    runner.config.name = "yesterday's";
     int result = grobo_serial_new(&serial.config, &port);
     if (result < 0) {
         return fail("serial", result);
     }
     grobo_serial_free(port);
-    result = grobo_control_new(&control.config, &robot_of);
+    result = grobo_runner_new(&runner.config, &robot_of);
     if (result < 0) {
-        return fail("control", result);
+        return fail("runner", result);
     }
-    result = grobo_control_connect(robot_of, 0);
+    result = grobo_runner_connect(robot_of, 0);
     if (result >= 0) {
         grobo_posture_init_pose(&target, &grobo_gr001_model);
-        result = grobo_control_wait_job(
-            robot_of, grobo_robot_move(grobo_control_robot(robot_of), &target), 0);
+        result = grobo_runner_wait_job(robot_of,
+                                       grobo_robot_move(grobo_runner_robot(robot_of), &target), 0);
     }
     if (result >= 0) {
         result = play(robot_of, &target);
     }
-    if (result < 0 || strcmp(grobo_control_name(robot_of), "yesterday's") != 0) {
+    if (result < 0 || strcmp(grobo_runner_name(robot_of), "yesterday's") != 0) {
         return fail("move", result);
     }
-    grobo_control_free(robot_of);
+    grobo_runner_free(robot_of);
     printf("%d %d %d %d %d\n", (int)sizeof robot.config, (int)sizeof sim.config,
-           (int)sizeof session.config, (int)sizeof control.config, (int)sizeof serial.config);
+           (int)sizeof session.config, (int)sizeof runner.config, (int)sizeof serial.config);
     return 0;
 }

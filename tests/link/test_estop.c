@@ -8,7 +8,7 @@
 
 #include <grobo/estop.h>
 #include <grobo/loop.h>
-#include <grobo/thread.h>
+#include <grobo/runner.h>
 
 #include "ports/common/notes.h"
 #include "tests/support/loop.h"
@@ -220,20 +220,20 @@ TEST_WITH(fixture, a_reset_obeys_a_mark_that_was_just_set)
     grobo_session_free(session);
 }
 
-TEST_WITH(fixture, a_control_obeys_it_too)
+TEST_WITH(fixture, a_runner_obeys_it_too)
 {
     /* The simulator runs on this thread's loop, not while this thread waits. */
-    const grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
+    const grobo_runner_config config = {
+        GROBO_RUNNER_CONFIG_INIT,
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = device},
         .skip_exit = true};
-    grobo_control *control;
+    grobo_runner *runner;
     grobo_estop stop;
 
-    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
-    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
-    assert_int_equal(grobo_control_open_port(control), GROBO_OK);
-    for (int i = 0; i < 1000 && !grobo_control_is_connected(control); i++) {
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_open(runner), GROBO_OK);
+    for (int i = 0; i < 1000 && !grobo_runner_is_connected(runner); i++) {
         (void)loop_run(base, 10000);
     }
     assert_int_equal(grobo_estop_set(device, &stop, NULL), GROBO_OK);
@@ -242,11 +242,11 @@ TEST_WITH(fixture, a_control_obeys_it_too)
     }
     assert_int_equal(ask(&stop).answer, GROBO_ESTOP_DONE);
     assert_int_equal(look().torque, GROBO_TORQUE_BRAKE);
-    for (int i = 0; i < 1000 && grobo_control_reset(control) != GROBO_OK; i++) {
+    for (int i = 0; i < 1000 && grobo_runner_reset(runner) != GROBO_OK; i++) {
         (void)loop_run(base, 10000);
     }
     assert_false(grobo_estop_stands(device));
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }
 
 /* ---- while a session is open -------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * libevent's own allocations fail, the n-th alone or all from there on: a session and a control
+ * libevent's own allocations fail, the n-th alone or all from there on: a session and a runner
  * are made, opened, move and end, or say that memory lacks. Nothing hangs, nothing goes on moving.
  */
 #include <math.h>
@@ -12,9 +12,9 @@
 
 #include <grobo/loop.h>
 #include <grobo/port.h>
+#include <grobo/runner.h>
 #include <grobo/session.h>
 #include <grobo/sim_server.h>
-#include <grobo/thread.h>
 
 #include "tests/support/test.h"
 
@@ -192,31 +192,31 @@ static int behind_a_port(void)
     return r;
 }
 
-/* ---- a control ------------------------------------------------------------------------------- */
+/* ---- a runner ------------------------------------------------------------------------------- */
 
 static int threaded(void)
 {
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
                                           .baud_bps = 1000000};
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
-    grobo_control *control;
-    int r = grobo_control_new(&config, &control);
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
+    grobo_runner *runner;
+    int r = grobo_runner_new(&config, &runner);
     if (r < 0) {
         return r;
     }
-    r = grobo_control_start_thread(control);
-    r = r < 0 ? r : grobo_control_connect(control, BOUND_US);
+    r = grobo_runner_start(runner);
+    r = r < 0 ? r : grobo_runner_connect(runner, BOUND_US);
     if (r >= 0) {
         grobo_posture target;
         assert_int_equal(grobo_posture_init(&target, 20), GROBO_OK);
         assert_int_equal(grobo_posture_set_deg(&target, ELBOW, 1), GROBO_OK);
         target.time_us = 20000;
-        r = grobo_control_set_target_posture(control, &target);
-        r = r < 0 ? r : grobo_control_start_motion(control);
-        r = r < 0 ? r : grobo_control_wait(control, BOUND_US);
-        assert_false(grobo_control_is_moving(control));
+        r = grobo_runner_set_target_posture(runner, &target);
+        r = r < 0 ? r : grobo_runner_start_motion(runner);
+        r = r < 0 ? r : grobo_runner_wait(runner, BOUND_US);
+        assert_false(grobo_runner_is_moving(runner));
     }
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     return r;
 }
 

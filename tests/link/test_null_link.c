@@ -11,10 +11,10 @@
 #include <grobo/gr001.h>
 #include <grobo/guard.h>
 #include <grobo/loop.h>
+#include <grobo/runner.h>
 #include <grobo/session.h>
 #include <grobo/sim_server.h>
 #include <grobo/static.h>
-#include <grobo/thread.h>
 
 #include "tests/support/test.h"
 
@@ -53,13 +53,13 @@ static grobo_session *session;
 static grobo_session *made_session;
 static grobo_sim_server_config server_config = {GROBO_SIM_SERVER_CONFIG_INIT};
 static grobo_sim_server *made_server;
-static grobo_control_config control_config = {GROBO_CONTROL_CONFIG_INIT};
-static const grobo_session_config control_session = {GROBO_SESSION_CONFIG_INIT,
-                                                     .device = GROBO_DEVICE_SIM};
-static grobo_control *control;
-static grobo_control_event control_event = {GROBO_CONTROL_EVENT_INIT};
+static grobo_runner_config runner_config = {GROBO_RUNNER_CONFIG_INIT};
+static const grobo_session_config runner_session = {GROBO_SESSION_CONFIG_INIT,
+                                                    .device = GROBO_DEVICE_SIM};
+static grobo_runner *runner;
+static grobo_runner_event runner_event = {GROBO_RUNNER_EVENT_INIT};
 static grobo_snapshot snapshot = {GROBO_SNAPSHOT_INIT};
-static grobo_control *made_control;
+static grobo_runner *made_runner;
 
 static void on_timer(void *ctx, grobo_timer *from, int64_t late_us)
 {
@@ -68,7 +68,7 @@ static void on_timer(void *ctx, grobo_timer *from, int64_t late_us)
     (void)ctx;
 }
 
-static int on_control(void *arg, grobo_control *from)
+static int on_runner(void *arg, grobo_runner *from)
 {
     (void)from;
     (void)arg;
@@ -84,8 +84,8 @@ static int set_up(void)
     session_config =
         (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .base = base, .device = GROBO_DEVICE_SIM};
     assert_int_equal(grobo_session_new(&session_config, &session), GROBO_OK);
-    control_config.session = &control_session;
-    assert_int_equal(grobo_control_new(&control_config, &control), GROBO_OK);
+    runner_config.session = &runner_session;
+    assert_int_equal(grobo_runner_new(&runner_config, &runner), GROBO_OK);
     assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), GROBO_OK);
     assert_int_equal(
         grobo_robot_init(&robot, grobo_gr001_driver(GROBO_WIRING_BOARD), NULL, NULL, 0), GROBO_OK);
@@ -99,7 +99,7 @@ static int tear_down(void)
 {
     (void)fclose(stream);
     grobo_motion_free(motion);
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     grobo_session_free(session);
     grobo_serial_free(serial);
     grobo_timer_free(timer);
@@ -282,127 +282,127 @@ TEST(sim_server_refuses_null)
 
 TEST(thread_refuses_null_in_its_first_functions)
 {
-    REFUSES(grobo_control_new(NULL, &made_control));
-    REFUSES(grobo_control_new(&control_config, NULL));
-    assert_int_equal(grobo_control_free(NULL), GROBO_OK);
-    REFUSES(grobo_control_start_thread(NULL));
-    REFUSES(grobo_control_stop_thread(NULL));
-    assert_false(grobo_control_is_active(NULL));
-    REFUSES(grobo_control_thread(NULL, &thread));
-    REFUSES(grobo_control_thread(control, NULL));
-    REFUSES(grobo_control_svc(NULL));
-    REFUSES(grobo_control_run(NULL));
-    REFUSES(grobo_control_next_event(NULL, &control_event));
-    REFUSES(grobo_control_next_event(control, NULL));
-    assert_true(grobo_control_event_socket(NULL) == GROBO_SOCKET_NULL);
-    REFUSES(grobo_control_snapshot(NULL, &snapshot));
-    REFUSES(grobo_control_snapshot(control, NULL));
-    REFUSES(grobo_control_call(NULL, on_control, NULL));
-    REFUSES(grobo_control_call(control, NULL, NULL));
-    REFUSES(grobo_control_post(NULL, on_control, NULL));
-    REFUSES(grobo_control_post(control, NULL, NULL));
-    assert_null(grobo_control_session(NULL));
-    assert_null(grobo_control_serial(NULL));
-    assert_null(grobo_control_name(NULL));
-    REFUSES(grobo_control_joints(NULL));
-    REFUSES(grobo_control_set_motion_dir(NULL, text));
-    REFUSES(grobo_control_set_motion_dir(control, NULL));
-    REFUSES(grobo_control_get_motion_dir(NULL, text, sizeof bytes));
-    REFUSES(grobo_control_get_motion_dir(control, NULL, sizeof bytes));
-    REFUSES(grobo_control_set_default_time_us(NULL, 1000));
-    assert_true(grobo_control_get_default_time_us(NULL) == 0);
-    REFUSES(grobo_control_set_sense_interval_us(NULL, 0));
-    assert_true(grobo_control_get_sense_interval_us(NULL) == 0);
-    REFUSES(grobo_control_set_period_us(NULL, 10000));
+    REFUSES(grobo_runner_new(NULL, &made_runner));
+    REFUSES(grobo_runner_new(&runner_config, NULL));
+    assert_int_equal(grobo_runner_free(NULL), GROBO_OK);
+    REFUSES(grobo_runner_start(NULL));
+    REFUSES(grobo_runner_stop(NULL));
+    assert_false(grobo_runner_is_active(NULL));
+    REFUSES(grobo_runner_thread(NULL, &thread));
+    REFUSES(grobo_runner_thread(runner, NULL));
+    REFUSES(grobo_runner_svc(NULL));
+    REFUSES(grobo_runner_run(NULL));
+    REFUSES(grobo_runner_next_event(NULL, &runner_event));
+    REFUSES(grobo_runner_next_event(runner, NULL));
+    assert_true(grobo_runner_event_socket(NULL) == GROBO_SOCKET_NULL);
+    REFUSES(grobo_runner_snapshot(NULL, &snapshot));
+    REFUSES(grobo_runner_snapshot(runner, NULL));
+    REFUSES(grobo_runner_call(NULL, on_runner, NULL));
+    REFUSES(grobo_runner_call(runner, NULL, NULL));
+    REFUSES(grobo_runner_post(NULL, on_runner, NULL));
+    REFUSES(grobo_runner_post(runner, NULL, NULL));
+    assert_null(grobo_runner_session(NULL));
+    assert_null(grobo_runner_serial(NULL));
+    assert_null(grobo_runner_name(NULL));
+    REFUSES(grobo_runner_joints(NULL));
+    REFUSES(grobo_runner_set_motion_dir(NULL, text));
+    REFUSES(grobo_runner_set_motion_dir(runner, NULL));
+    REFUSES(grobo_runner_get_motion_dir(NULL, text, sizeof bytes));
+    REFUSES(grobo_runner_get_motion_dir(runner, NULL, sizeof bytes));
+    REFUSES(grobo_runner_set_default_time_us(NULL, 1000));
+    assert_true(grobo_runner_get_default_time_us(NULL) == 0);
+    REFUSES(grobo_runner_set_sense_interval_us(NULL, 0));
+    assert_true(grobo_runner_get_sense_interval_us(NULL) == 0);
+    REFUSES(grobo_runner_set_period_us(NULL, 10000));
 }
 
 TEST(thread_refuses_null_in_its_second_functions)
 {
-    assert_true(grobo_control_get_period_us(NULL) == 0);
-    REFUSES(grobo_control_set_motion_count(NULL, 1));
-    grobo_control_set_reverse(NULL, true);
-    assert_false(grobo_control_is_reverse(NULL));
-    REFUSES(grobo_control_set_device(NULL, text));
-    REFUSES(grobo_control_set_device(control, NULL));
-    REFUSES(grobo_control_get_device(NULL, text, sizeof bytes));
-    REFUSES(grobo_control_get_device(control, NULL, sizeof bytes));
-    REFUSES(grobo_control_open_port(NULL));
-    REFUSES(grobo_control_close_port(NULL, 1000));
-    REFUSES(grobo_control_connect(NULL, 1000));
-    REFUSES(grobo_control_check_connection(NULL, 1000));
-    assert_false(grobo_control_is_connected(NULL));
-    REFUSES(grobo_control_get_cause(NULL, &cause));
-    REFUSES(grobo_control_get_cause(control, NULL));
-    REFUSES(grobo_control_get_servo_state(NULL, 1));
-    REFUSES(grobo_control_get_servo_states(NULL, ints, sizeof bytes));
-    REFUSES(grobo_control_get_servo_states(control, NULL, sizeof bytes));
-    REFUSES(grobo_control_set_servo_state(NULL, 1, 0, 1000));
-    REFUSES(grobo_control_set_servo_states(NULL, 1, 0, 1000));
-    REFUSES(grobo_control_get_current_posture(NULL, &posture));
-    REFUSES(grobo_control_get_current_posture(control, NULL));
-    REFUSES(grobo_control_read_posture(NULL, &posture, 1000));
-    REFUSES(grobo_control_read_posture(control, NULL, 1000));
-    REFUSES(grobo_control_read_angle(NULL, 1, reals, 1000));
-    REFUSES(grobo_control_read_angle(control, 1, NULL, 1000));
+    assert_true(grobo_runner_get_period_us(NULL) == 0);
+    REFUSES(grobo_runner_set_motion_count(NULL, 1));
+    grobo_runner_set_reverse(NULL, true);
+    assert_false(grobo_runner_is_reverse(NULL));
+    REFUSES(grobo_runner_set_device(NULL, text));
+    REFUSES(grobo_runner_set_device(runner, NULL));
+    REFUSES(grobo_runner_get_device(NULL, text, sizeof bytes));
+    REFUSES(grobo_runner_get_device(runner, NULL, sizeof bytes));
+    REFUSES(grobo_runner_open(NULL));
+    REFUSES(grobo_runner_close(NULL, 1000));
+    REFUSES(grobo_runner_connect(NULL, 1000));
+    REFUSES(grobo_runner_check_connection(NULL, 1000));
+    assert_false(grobo_runner_is_connected(NULL));
+    REFUSES(grobo_runner_get_cause(NULL, &cause));
+    REFUSES(grobo_runner_get_cause(runner, NULL));
+    REFUSES(grobo_runner_get_servo_state(NULL, 1));
+    REFUSES(grobo_runner_get_servo_states(NULL, ints, sizeof bytes));
+    REFUSES(grobo_runner_get_servo_states(runner, NULL, sizeof bytes));
+    REFUSES(grobo_runner_set_servo_state(NULL, 1, 0, 1000));
+    REFUSES(grobo_runner_set_servo_states(NULL, 1, 0, 1000));
+    REFUSES(grobo_runner_get_current_posture(NULL, &posture));
+    REFUSES(grobo_runner_get_current_posture(runner, NULL));
+    REFUSES(grobo_runner_read_posture(NULL, &posture, 1000));
+    REFUSES(grobo_runner_read_posture(runner, NULL, 1000));
+    REFUSES(grobo_runner_read_angle(NULL, 1, reals, 1000));
+    REFUSES(grobo_runner_read_angle(runner, 1, NULL, 1000));
 }
 
 TEST(thread_refuses_null_in_its_third_functions)
 {
-    REFUSES(grobo_control_set_init_posture(NULL, &posture));
-    REFUSES(grobo_control_set_init_posture(control, NULL));
-    grobo_control_get_init_posture(NULL, &posture);
-    grobo_control_get_init_posture(control, NULL);
-    REFUSES(grobo_control_set_target_posture(NULL, &posture));
-    REFUSES(grobo_control_set_target_posture(control, NULL));
-    grobo_control_get_target_posture(NULL, &posture);
-    grobo_control_get_target_posture(control, NULL);
-    REFUSES(grobo_control_set_joint(NULL, 1, 0));
-    REFUSES(grobo_control_set_motion_time_us(NULL, 1000));
-    REFUSES(grobo_control_start_motion(NULL));
-    REFUSES(grobo_control_init_position(NULL));
-    REFUSES(grobo_control_command_count(NULL));
-    REFUSES(grobo_control_is_moving(NULL));
-    REFUSES(grobo_control_wait_job(NULL, 1, 0));
-    assert_null(grobo_control_robot(NULL));
-    REFUSES(grobo_control_wait(NULL, 1000));
-    REFUSES(grobo_control_set_motion(NULL, motion));
-    REFUSES(grobo_control_set_motion(control, NULL));
-    REFUSES(grobo_control_get_motion(NULL, &made_motion));
-    REFUSES(grobo_control_get_motion(control, NULL));
-    grobo_control_clear_motion(NULL);
-    REFUSES(grobo_control_append_current_posture(NULL));
-    REFUSES(grobo_control_append_current_posture_us(NULL, 1000));
-    REFUSES(grobo_control_load_motion(NULL, text, list));
-    REFUSES(grobo_control_load_motion(control, NULL, list));
-    REFUSES(grobo_control_load_motion_format(NULL, 0, text, list));
-    REFUSES(grobo_control_load_motion_format(control, 0, NULL, list));
+    REFUSES(grobo_runner_set_init_posture(NULL, &posture));
+    REFUSES(grobo_runner_set_init_posture(runner, NULL));
+    grobo_runner_get_init_posture(NULL, &posture);
+    grobo_runner_get_init_posture(runner, NULL);
+    REFUSES(grobo_runner_set_target_posture(NULL, &posture));
+    REFUSES(grobo_runner_set_target_posture(runner, NULL));
+    grobo_runner_get_target_posture(NULL, &posture);
+    grobo_runner_get_target_posture(runner, NULL);
+    REFUSES(grobo_runner_set_joint(NULL, 1, 0));
+    REFUSES(grobo_runner_set_motion_time_us(NULL, 1000));
+    REFUSES(grobo_runner_start_motion(NULL));
+    REFUSES(grobo_runner_init_position(NULL));
+    REFUSES(grobo_runner_command_count(NULL));
+    REFUSES(grobo_runner_is_moving(NULL));
+    REFUSES(grobo_runner_wait_job(NULL, 1, 0));
+    assert_null(grobo_runner_robot(NULL));
+    REFUSES(grobo_runner_wait(NULL, 1000));
+    REFUSES(grobo_runner_set_motion(NULL, motion));
+    REFUSES(grobo_runner_set_motion(runner, NULL));
+    REFUSES(grobo_runner_get_motion(NULL, &made_motion));
+    REFUSES(grobo_runner_get_motion(runner, NULL));
+    grobo_runner_clear_motion(NULL);
+    REFUSES(grobo_runner_append_current_posture(NULL));
+    REFUSES(grobo_runner_append_current_posture_us(NULL, 1000));
+    REFUSES(grobo_runner_load_motion(NULL, text, list));
+    REFUSES(grobo_runner_load_motion(runner, NULL, list));
+    REFUSES(grobo_runner_load_motion_format(NULL, 0, text, list));
+    REFUSES(grobo_runner_load_motion_format(runner, 0, NULL, list));
 }
 
 TEST(thread_refuses_null_in_its_fourth_functions)
 {
-    REFUSES(grobo_control_save_motion(NULL, 0, text, text, sizeof bytes));
-    REFUSES(grobo_control_get_nth_posture(NULL, 1, &posture));
-    REFUSES(grobo_control_get_nth_posture(control, 1, NULL));
-    REFUSES(grobo_control_get_first_posture(NULL, &posture));
-    REFUSES(grobo_control_get_first_posture(control, NULL));
-    REFUSES(grobo_control_get_last_posture(NULL, &posture));
-    REFUSES(grobo_control_get_last_posture(control, NULL));
-    REFUSES(grobo_control_do_nth_motion(NULL, 1));
-    REFUSES(grobo_control_play_motion(NULL, &play_options));
-    assert_false(grobo_control_is_playing(NULL));
-    REFUSES(grobo_control_set_command(NULL, bytes, 1));
-    REFUSES(grobo_control_set_command(control, NULL, 1));
-    REFUSES(grobo_control_get_command(NULL, bytes, sizeof bytes));
-    REFUSES(grobo_control_get_command(control, NULL, sizeof bytes));
-    REFUSES(grobo_control_send_command(NULL, bytes, 1, 1000));
-    REFUSES(grobo_control_receive(NULL, bytes, 1));
-    REFUSES(grobo_control_receive(control, NULL, 1));
-    REFUSES(grobo_control_estop(NULL));
-    assert_false(grobo_control_is_latched(NULL));
-    REFUSES(grobo_control_reset(NULL));
-    REFUSES(grobo_control_exit(NULL, 0, 1000));
-    REFUSES(grobo_control_post_exit(NULL, 0));
-    REFUSES(grobo_control_post_stop(NULL, true));
+    REFUSES(grobo_runner_save_motion(NULL, 0, text, text, sizeof bytes));
+    REFUSES(grobo_runner_get_nth_posture(NULL, 1, &posture));
+    REFUSES(grobo_runner_get_nth_posture(runner, 1, NULL));
+    REFUSES(grobo_runner_get_first_posture(NULL, &posture));
+    REFUSES(grobo_runner_get_first_posture(runner, NULL));
+    REFUSES(grobo_runner_get_last_posture(NULL, &posture));
+    REFUSES(grobo_runner_get_last_posture(runner, NULL));
+    REFUSES(grobo_runner_do_nth_motion(NULL, 1));
+    REFUSES(grobo_runner_play_motion(NULL, &play_options));
+    assert_false(grobo_runner_is_playing(NULL));
+    REFUSES(grobo_runner_set_command(NULL, bytes, 1));
+    REFUSES(grobo_runner_set_command(runner, NULL, 1));
+    REFUSES(grobo_runner_get_command(NULL, bytes, sizeof bytes));
+    REFUSES(grobo_runner_get_command(runner, NULL, sizeof bytes));
+    REFUSES(grobo_runner_send_command(NULL, bytes, 1, 1000));
+    REFUSES(grobo_runner_receive(NULL, bytes, 1));
+    REFUSES(grobo_runner_receive(runner, NULL, 1));
+    REFUSES(grobo_runner_estop(NULL));
+    assert_false(grobo_runner_is_latched(NULL));
+    REFUSES(grobo_runner_reset(NULL));
+    REFUSES(grobo_runner_exit(NULL, 0, 1000));
+    REFUSES(grobo_runner_post_exit(NULL, 0));
+    REFUSES(grobo_runner_post_stop(NULL, true));
 }
 
 TESTS_BETWEEN(set_up, tear_down)

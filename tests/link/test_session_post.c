@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Stops that signal handlers post, to a control and to a session, with nothing to be had. */
+/* Stops that signal handlers post, to a runner and to a session, with nothing to be had. */
 #include <errno.h>
 #include <signal.h>
 #include <stdint.h>
@@ -9,11 +9,11 @@
 
 #include <event2/event.h>
 
+#include "src/link/runner/runner.h"
 #include "src/link/session/session.h"
-#include "src/link/thread/thread.h"
-#include "tests/support/control_kit.h"
 #include "tests/support/hold.h"
 #include "tests/support/loop.h"
+#include "tests/support/runner_kit.h"
 #include "tests/support/session_kit.h"
 #include "tests/support/test.h"
 
@@ -30,10 +30,10 @@ static void on_signal(int number)
 
     errno = ERRNO;
     if (number == SIGUSR1) {
-        failed = grobo_control_estop(control) < 0 || !grobo_control_is_latched(control);
+        failed = grobo_runner_estop(runner) < 0 || !grobo_runner_is_latched(runner);
     } else {
-        failed = grobo_control_post_stop(control, true) < 0 ||
-                 grobo_control_post_exit(control, GROBO_EXIT_OFF) < 0;
+        failed = grobo_runner_post_stop(runner, true) < 0 ||
+                 grobo_runner_post_exit(runner, GROBO_EXIT_OFF) < 0;
     }
     failed = failed || errno != ERRNO;
     handled++;
@@ -64,22 +64,21 @@ static void have_descriptors(bool any)
     }
 }
 
-/* What grobo_control_new() returns in a child that may have so many descriptors more. */
+/* What grobo_runner_new() returns in a child that may have so many descriptors more. */
 static int new_with_descriptors(rlim_t more)
 {
     grobo_session_config on_sim = {GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM};
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &on_sim,
-                                         .events = 1};
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &on_sim, .events = 1};
     int status = 0;
     pid_t child = fork();
 
     if (child == 0) {
-        grobo_control *made = NULL;
+        grobo_runner *made = NULL;
         int next = dup(0);
         const struct rlimit few = {(rlim_t)next + more, (rlim_t)next + more};
 
         (void)close(next);
-        int r = setrlimit(RLIMIT_NOFILE, &few) == 0 ? grobo_control_new(&config, &made) : -100;
+        int r = setrlimit(RLIMIT_NOFILE, &few) == 0 ? grobo_runner_new(&config, &made) : -100;
         _exit(-r);
     }
     assert_true(child > 0);
@@ -97,9 +96,9 @@ TEST(no_descriptor_for_a_loop_is_an_error)
     assert_int_equal(new_with_descriptors(16), GROBO_OK);
 }
 
-/* ---- a control ---------------------------------------------------------------------------- */
+/* ---- a runner ---------------------------------------------------------------------------- */
 
-static int on_svc(void *ctx, grobo_control *from)
+static int on_svc(void *ctx, grobo_runner *from)
 {
     (void)from;
     (void)ctx;
@@ -109,51 +108,51 @@ static int on_svc(void *ctx, grobo_control *from)
 
 static void start(bool threaded)
 {
-    const grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
+    const grobo_runner_config config = {
+        GROBO_RUNNER_CONFIG_INIT,
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
                                            .baud_bps = 1000000},
-        .control_period_us = 1000, .skip_exit = true, .on_svc = on_svc};
+        .period_us = 1000, .skip_exit = true, .on_svc = on_svc};
 
     hold_init(&gate);
-    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
     if (threaded) {
-        assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+        assert_int_equal(grobo_runner_start(runner), GROBO_OK);
     }
-    control_come_up();
-    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
+    runner_come_up();
+    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
     have_handlers();
 }
 
 static void end(void)
 {
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     hold_deinit(&gate);
 }
 
 static void assert_braked(void)
 {
-    (void)grobo_control_wait(control, 0);
+    (void)grobo_runner_wait(runner, 0);
     for (int j = 0; j < 20; j++) {
-        assert_int_equal(grobo_control_get_servo_state(control, j), GROBO_TORQUE_BRAKE);
+        assert_int_equal(grobo_runner_get_servo_state(runner, j), GROBO_TORQUE_BRAKE);
     }
 }
 
-/* The handler runs while the loop is held, and while its own thread has the control's lock. */
+/* The handler runs while the loop is held, and while its own thread has the runner's lock. */
 TEST(a_handler_needs_no_lock)
 {
     start(true);
     hold_begin(&gate);
-    grobo_i_control_lock(control);
+    grobo_i_runner_lock(runner);
     assert_int_equal(raise(SIGUSR1), 0);
     assert_int_equal(raise(SIGUSR2), 0);
-    grobo_i_control_unlock(control);
+    grobo_i_runner_unlock(runner);
     assert_int_equal(handled, 2);
     assert_int_equal(failed, 0);
     hold_end(&gate);
-    (void)grobo_control_wait(control, 0);
-    assert_true(grobo_control_is_latched(control));
-    assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_OFF);
+    (void)grobo_runner_wait(runner, 0);
+    assert_true(grobo_runner_is_latched(runner));
+    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
     end();
 }
 
@@ -172,7 +171,7 @@ TEST(a_handler_never_waits)
 }
 
 /* In a callback of the loop, or anywhere in it: a thread has signals sent to this one meanwhile. */
-static int raise_it(void *arg, grobo_control *from)
+static int raise_it(void *arg, grobo_runner *from)
 {
     (void)from;
     (void)arg;
@@ -182,7 +181,7 @@ static int raise_it(void *arg, grobo_control *from)
 TEST(a_handler_may_interrupt_the_loop)
 {
     start(false);
-    assert_int_equal(grobo_control_call(control, raise_it, NULL), 0);
+    assert_int_equal(grobo_runner_call(runner, raise_it, NULL), 0);
     assert_int_equal(failed, 0);
     assert_braked();
     end();
@@ -212,8 +211,8 @@ TEST(handlers_may_interrupt_anything)
     start(false);
     assert_int_equal(grobo_thread_start(&self.thread, send_signals, &self), GROBO_OK);
     for (int i = 0; i < 20; i++) {
-        (void)grobo_control_svc(control);
-        (void)grobo_control_read_angle(control, ELBOW, &angle_rad, 1000);
+        (void)grobo_runner_svc(runner);
+        (void)grobo_runner_read_angle(runner, ELBOW, &angle_rad, 1000);
     }
     self.stop = true;
     assert_int_equal(grobo_thread_join(self.thread), GROBO_OK);
@@ -225,7 +224,7 @@ TEST(handlers_may_interrupt_anything)
 
 static GROBO_THREAD_FUNC wait_for_rest(void *arg)
 {
-    *(int *)arg = grobo_control_wait(control, GROBO_NEVER_US);
+    *(int *)arg = grobo_runner_wait(runner, GROBO_NEVER_US);
     GROBO_THREAD_RETURN;
 }
 
@@ -235,23 +234,23 @@ TEST(nothing_takes_a_descriptor)
     int result = 1;
 
     start(true);
-    assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
-    assert_int_equal(grobo_control_set_motion_time_us(control, 60000000), GROBO_OK);
-    assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
+    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
+    assert_int_equal(grobo_runner_set_motion_time_us(runner, 60000000), GROBO_OK);
+    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
     have_descriptors(false);
     assert_int_equal(grobo_thread_start(&other, wait_for_rest, &result), GROBO_OK);
-    assert_int_equal(grobo_control_is_moving(control), 1);
-    assert_int_equal(grobo_robot_stop(grobo_control_robot(control), true), GROBO_OK);
+    assert_int_equal(grobo_runner_is_moving(runner), 1);
+    assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), true), GROBO_OK);
     assert_int_equal(grobo_thread_join(other), GROBO_OK);
     assert_int_equal(result, GROBO_ERR_CANCELED);
-    assert_int_equal(grobo_control_exit(control, GROBO_EXIT_HOLD, 0), GROBO_OK);
-    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    assert_int_equal(grobo_runner_exit(runner, GROBO_EXIT_HOLD, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_estop(runner), GROBO_OK);
     assert_braked();
-    assert_int_equal(grobo_control_reset(control), GROBO_OK);
-    assert_int_equal(grobo_control_exit(control, GROBO_EXIT_OFF, 0), GROBO_OK);
-    assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_OFF);
-    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
-    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_reset(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_exit(runner, GROBO_EXIT_OFF, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(grobo_runner_stop(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_close(runner, 0), GROBO_OK);
     have_descriptors(true);
     end();
 }
@@ -428,7 +427,7 @@ static void be_slow(grobo_callback callback)
     }
 }
 
-static int slow_svc(void *ctx, grobo_control *from)
+static int slow_svc(void *ctx, grobo_runner *from)
 {
     (void)from;
     (void)ctx;
@@ -469,7 +468,7 @@ static void slow_event(void *ctx, grobo_session *from, grobo_session_event event
     be_slow(GROBO_CALLBACK_EVENT);
 }
 
-static int slow_call(void *arg, grobo_control *from)
+static int slow_call(void *arg, grobo_runner *from)
 {
     (void)from;
     (void)arg;
@@ -477,7 +476,7 @@ static int slow_call(void *arg, grobo_control *from)
     return 0;
 }
 
-static int ask_reports(void *arg, grobo_control *from)
+static int ask_reports(void *arg, grobo_runner *from)
 {
     const int *callback = arg;
 
@@ -487,31 +486,31 @@ static int ask_reports(void *arg, grobo_control *from)
 
 TEST(a_slow_callback_is_reported)
 {
-    const grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
+    const grobo_runner_config config = {
+        GROBO_RUNNER_CONFIG_INIT,
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
                                            .baud_bps = 1000000, .on_event = slow_event,
                                            .on_robot = slow_robot, .on_tap = slow_tap},
-        .control_period_us = 1000, .skip_exit = true, .on_svc = slow_svc};
+        .period_us = 1000, .skip_exit = true, .on_svc = slow_svc};
 
     for (int c = GROBO_CALLBACK_EVENT; c <= GROBO_CALLBACK_CALL; c++) {
         int64_t end_us = grobo_now_us() + 20000000;
 
-        assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+        assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
         reports[c] = 0;
         slow_one = (grobo_callback)c;
         slow_wanted = true;
-        control_come_up();
-        assert_int_equal(grobo_control_call(control, slow_call, NULL), 0);
+        runner_come_up();
+        assert_int_equal(grobo_runner_call(runner, slow_call, NULL), 0);
         assert_true(c != GROBO_CALLBACK_CALL || reports[c] > 0); /* before the call is over */
         do { /* on a busy machine another callback may be reported too */
-            assert_int_equal(grobo_control_call(control, slow_call, NULL), 0);
+            assert_int_equal(grobo_runner_call(runner, slow_call, NULL), 0);
             assert_true(grobo_now_us() < end_us);
-        } while (grobo_control_call(control, ask_reports, &c) == 0);
+        } while (grobo_runner_call(runner, ask_reports, &c) == 0);
         for (int i = 0; i < 100; i++) { /* a slow report is not reported */
-            assert_int_equal(grobo_control_call(control, slow_call, NULL), 0);
+            assert_int_equal(grobo_runner_call(runner, slow_call, NULL), 0);
         }
-        assert_int_equal(grobo_control_free(control), GROBO_OK);
+        assert_int_equal(grobo_runner_free(runner), GROBO_OK);
         assert_true(last.held_us > GROBO_CALLBACK_SLOW_US);
         assert_true(reports[c] < 50);
     }

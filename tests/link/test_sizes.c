@@ -48,11 +48,11 @@ static int make_session(const void *config)
     return r;
 }
 
-static int make_control(const void *config)
+static int make_runner(const void *config)
 {
-    grobo_control *made = NULL;
-    int r = grobo_control_new(config, &made);
-    (void)grobo_control_free(made);
+    grobo_runner *made = NULL;
+    int r = grobo_runner_new(config, &made);
+    (void)grobo_runner_free(made);
     return r;
 }
 
@@ -96,7 +96,7 @@ static int taken(int result)
 
 static grobo_motion *keys;
 static grobo_body *body;
-static grobo_control *control_of;
+static grobo_runner *runner_of;
 
 static int clip_of(const void *options)
 {
@@ -126,7 +126,7 @@ static int enqueue(const void *options)
 
 static int play_motion(const void *options)
 {
-    return taken(grobo_control_play_motion(control_of, options));
+    return taken(grobo_runner_play_motion(runner_of, options));
 }
 
 static int play_team(const void *options)
@@ -212,7 +212,7 @@ static int for_each(void (*look)(int (*take)(const void *config), const void *go
     const grobo_serial_config serial = {GROBO_SERIAL_CONFIG_INIT};
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .base = base,
                                           .device = GROBO_DEVICE_SIM};
-    const grobo_control_config control = {GROBO_CONTROL_CONFIG_INIT, .session = &good_session};
+    const grobo_runner_config runner = {GROBO_RUNNER_CONFIG_INIT, .session = &good_session};
     const grobo_sim_server_config server = {GROBO_SIM_SERVER_CONFIG_INIT, .base = base,
                                             .no_pty = true, .tcp = "tcp:127.0.0.1:0"};
     const grobo_guard_config guard = {GROBO_GUARD_CONFIG_INIT, .program = "/nowhere/guard"};
@@ -232,7 +232,7 @@ static int for_each(void (*look)(int (*take)(const void *config), const void *go
     look(make_session, &session, sizeof session);
     look(with_robot, &robot, sizeof robot);
     look(with_sim, &of_sim, sizeof of_sim);
-    look(make_control, &control, sizeof control);
+    look(make_runner, &runner, sizeof runner);
     look(make_server, &server, sizeof server);
     look(start_guard, &guard, sizeof guard);
     look(clip_of, &clip, sizeof clip);
@@ -309,16 +309,16 @@ TEST(fields_that_an_older_program_lacks_are_zero)
     assert_int_equal(grobo_robot_configure(&engine, &robot), GROBO_OK);
     assert_int_equal(engine.config.speed_limit_pct, 100);
 
-    grobo_control_config control = {GROBO_CONTROL_CONFIG_INIT, .session = &good_session};
-    control.events = SIZE_MAX;
-    assert_int_equal(make_control(&control), GROBO_ERR_ARG);
-    control.size = offsetof(grobo_control_config, events);
-    assert_int_equal(make_control(&control), GROBO_OK);
+    grobo_runner_config runner = {GROBO_RUNNER_CONFIG_INIT, .session = &good_session};
+    runner.events = SIZE_MAX;
+    assert_int_equal(make_runner(&runner), GROBO_ERR_ARG);
+    runner.size = offsetof(grobo_runner_config, events);
+    assert_int_equal(make_runner(&runner), GROBO_OK);
 }
 
 static int set_up(void)
 {
-    const grobo_control_config control = {GROBO_CONTROL_CONFIG_INIT, .session = &good_session};
+    const grobo_runner_config runner = {GROBO_RUNNER_CONFIG_INIT, .session = &good_session};
     grobo_posture posture;
     base = grobo_loop_new();
     grobo_posture_init_pose(&posture, &grobo_gr001_model);
@@ -326,7 +326,7 @@ static int set_up(void)
     return base == NULL || grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &keys) < 0 ||
            grobo_motion_append(keys, &posture) < 0 ||
            grobo_body_new(&grobo_gr001_body, keys, NULL, NULL, &body) < 0 ||
-           grobo_control_new(&control, &control_of) < 0;
+           grobo_runner_new(&runner, &runner_of) < 0;
 }
 
 static int tear_down(void)
@@ -334,7 +334,7 @@ static int tear_down(void)
     grobo_body_free(body);
     grobo_motion_free(keys);
     event_base_free(base);
-    return grobo_control_free(control_of);
+    return grobo_runner_free(runner_of);
 }
 
 TESTS_BETWEEN(set_up, tear_down)

@@ -1,35 +1,34 @@
 /* SPDX-License-Identifier: MIT */
-/* The views of the engine, gr001.h and hrpsys.h, on a robot that runs: on its control thread. */
+/* The views of the engine, gr001.h and hrpsys.h, on a robot that runs: on its runner's thread. */
 #include <string.h>
 
 #include <grobo/gr001.h>
 #include <grobo/hrpsys.h>
-#include <grobo/thread.h>
+#include <grobo/runner.h>
 
 #include "tests/support/test.h"
 
 enum { NECK = 13, NECK_ID = 2 };
 
-static grobo_control *control;
+static grobo_runner *runner;
 static grobo_hrpsys hrpsys;
 
 static int set_up(void)
 {
     static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
                                              .sense_interval_us = GROBO_SENSE_NEVER};
-    const grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
-        .session =
-            &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim", .robot = &robot}};
-    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
-    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
-    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    const grobo_runner_config config = {
+        GROBO_RUNNER_CONFIG_INIT, .session = &(grobo_session_config){
+                                      GROBO_SESSION_CONFIG_INIT, .device = "sim", .robot = &robot}};
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
     return 0;
 }
 
 static int tear_down(void)
 {
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     return 0;
 }
 
@@ -38,9 +37,9 @@ static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
 /* Does something with the engine on the thread that runs it, and waits until it is done. */
 typedef int (*engine_fn)(grobo_robot *robot);
 
-static int on_engine(void *arg, grobo_control *from)
+static int on_engine(void *arg, grobo_runner *from)
 {
-    grobo_session *session = grobo_control_session(from);
+    grobo_session *session = grobo_runner_session(from);
     const engine_fn *fn = arg;
     int result = (*fn)(grobo_session_robot(session));
     return result;
@@ -48,8 +47,8 @@ static int on_engine(void *arg, grobo_control *from)
 
 static int engine(engine_fn fn)
 {
-    int result = grobo_control_call(control, on_engine, &fn);
-    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    int result = grobo_runner_call(runner, on_engine, &fn);
+    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     return result;
 }
 
@@ -58,7 +57,7 @@ static void assert_neck_comes_to(int angle_ddeg)
 {
     double angle_rad = -99;
     for (int i = 0; i < 200 && !(grobo_ddeg_from_rad(angle_rad) >= angle_ddeg - 5); i++) {
-        assert_int_equal(grobo_control_read_angle(control, NECK, &angle_rad, 0), GROBO_OK);
+        assert_int_equal(grobo_runner_read_angle(runner, NECK, &angle_rad, 0), GROBO_OK);
     }
     assert_in_range(grobo_ddeg_from_rad(angle_rad), angle_ddeg - 5, angle_ddeg + 5);
 }
@@ -77,9 +76,9 @@ TEST_WITH(fixture, a_motor_moves_by_its_number)
 {
     grobo_posture posture;
     assert_true(engine(arms_on) > 0);
-    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
-    assert_int_equal(grobo_control_get_servo_state(control, 14), GROBO_TORQUE_ON);
-    assert_int_equal(grobo_control_get_servo_state(control, NECK), GROBO_TORQUE_OFF);
+    assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
+    assert_int_equal(grobo_runner_get_servo_state(runner, 14), GROBO_TORQUE_ON);
+    assert_int_equal(grobo_runner_get_servo_state(runner, NECK), GROBO_TORQUE_OFF);
     assert_true(engine(neck_to_twelve) > 0);
     assert_neck_comes_to(120);
 }

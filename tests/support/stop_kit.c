@@ -2,19 +2,19 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "src/link/thread/thread.h"
+#include "src/link/runner/runner.h"
 #include "tests/support/stop_kit.h"
 #include "tests/support/test.h"
 
 struct saw saw, told;
 hold gate;
-int (*in_callback)(grobo_control *from);
+int (*in_callback)(grobo_runner *from);
 int callback_result;
 grobo_mutex users;
 
-static int on_svc(void *ctx, grobo_control *from)
+static int on_svc(void *ctx, grobo_runner *from)
 {
-    int (*asked)(grobo_control *);
+    int (*asked)(grobo_runner *);
 
     (void)ctx;
     hold_here(&gate);
@@ -66,7 +66,7 @@ static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const u
     }
 }
 
-void stop_kit_make(grobo_control_config config)
+void stop_kit_make(grobo_runner_config config)
 {
     grobo_session_config session = {GROBO_SESSION_CONFIG_INIT};
 
@@ -78,58 +78,58 @@ void stop_kit_make(grobo_control_config config)
     session.baud_bps = 1000000;
     session.on_robot = on_robot;
     session.on_tap = on_tap;
-    config.control_period_us = 1000;
+    config.period_us = 1000;
     config.on_svc = on_svc;
     memset(&saw, 0, sizeof saw);
     in_callback = NULL;
     callback_result = 0;
     hold_init(&gate);
     assert_int_equal(grobo_mutex_init(&users), GROBO_OK);
-    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
 }
 
 void stop_kit_end(void)
 {
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     hold_deinit(&gate);
     grobo_mutex_deinit(&users);
 }
 
-void stop_kit_start(grobo_control_config config)
+void stop_kit_start(grobo_runner_config config)
 {
     stop_kit_make(config);
-    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
-    assert_int_equal(grobo_control_connect(control, LONG_US), GROBO_OK);
-    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, LONG_US),
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_connect(runner, LONG_US), GROBO_OK);
+    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, LONG_US),
                      GROBO_OK);
 }
 
 void move_for_long(void)
 {
-    assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
-    assert_int_equal(grobo_control_set_motion_time_us(control, LONG_US), GROBO_OK);
-    assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
-    assert_int_equal(grobo_control_wait(control, 300000), GROBO_ERR_TIMEOUT);
-    assert_int_equal(grobo_control_is_moving(control), 1);
+    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
+    assert_int_equal(grobo_runner_set_motion_time_us(runner, LONG_US), GROBO_OK);
+    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_wait(runner, 300000), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_runner_is_moving(runner), 1);
 }
 
-int copy_seen(void *arg, grobo_control *from)
+int copy_seen(void *arg, grobo_runner *from)
 {
     (void)from;
     memcpy(arg, &saw, sizeof saw);
     return 0;
 }
 
-int tripped(void *arg, grobo_control *from)
+int tripped(void *arg, grobo_runner *from)
 {
     grobo_trip_info trip;
 
     (void)arg;
-    grobo_robot_tripped(grobo_session_robot(grobo_control_session(from)), &trip);
+    grobo_robot_tripped(grobo_session_robot(grobo_runner_session(from)), &trip);
     return trip.latched;
 }
 
-int begin_to_listen(void *arg, grobo_control *from)
+int begin_to_listen(void *arg, grobo_runner *from)
 {
     (void)from;
     (void)arg;
@@ -140,15 +140,15 @@ int begin_to_listen(void *arg, grobo_control *from)
 
 void assert_stopped(int estops)
 {
-    (void)grobo_control_wait(control, 0);
-    assert_int_equal(grobo_control_call(control, tripped, NULL), 1);
-    assert_true(grobo_control_is_latched(control));
-    assert_int_equal(grobo_control_is_moving(control), 0);
-    assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
+    (void)grobo_runner_wait(runner, 0);
+    assert_int_equal(grobo_runner_call(runner, tripped, NULL), 1);
+    assert_true(grobo_runner_is_latched(runner));
+    assert_int_equal(grobo_runner_is_moving(runner), 0);
+    assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
     assert_int_equal(told.estops, estops);
     assert_int_equal(told.estop_result, GROBO_OK);
     for (int j = 0; j < 20; j++) {
-        assert_int_equal(grobo_control_get_servo_state(control, j), GROBO_TORQUE_BRAKE);
+        assert_int_equal(grobo_runner_get_servo_state(runner, j), GROBO_TORQUE_BRAKE);
     }
 }
 
@@ -159,13 +159,13 @@ void play_for_long(void)
     int64_t end_us = grobo_now_us() + LONG_US / 2;
     int before;
 
-    assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
+    assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
     before = told.goals;
-    control_have_motion(4);
-    (void)grobo_control_set_motion_count(control, 1000000);
-    assert_int_equal(grobo_control_play_motion(control, &fast), GROBO_OK);
+    runner_have_motion(4);
+    (void)grobo_runner_set_motion_count(runner, 1000000);
+    assert_int_equal(grobo_runner_play_motion(runner, &fast), GROBO_OK);
     do {
-        assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
+        assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
         assert_true(grobo_now_us() < end_us);
     } while (told.goals < before + 20);
 }
@@ -174,11 +174,11 @@ static GROBO_THREAD_FUNC run_call(void *arg)
 {
     caller *self = arg;
 
-    self->result = self->call(control);
+    self->result = self->call(runner);
     GROBO_THREAD_RETURN;
 }
 
-void begin_call(caller *c, int (*call)(grobo_control *from), int slots)
+void begin_call(caller *c, int (*call)(grobo_runner *from), int slots)
 {
     int64_t end_us = grobo_now_us() + 10000000;
     int n;
@@ -187,11 +187,11 @@ void begin_call(caller *c, int (*call)(grobo_control *from), int slots)
     assert_int_equal(grobo_thread_start(&c->thread, run_call, c), GROBO_OK);
     do {
         n = 0;
-        grobo_i_control_lock(control);
-        for (int i = 0; i < CONTROL_SLOTS; i++) {
-            n += control->slot[i].state != CALL_FREE;
+        grobo_i_runner_lock(runner);
+        for (int i = 0; i < RUNNER_SLOTS; i++) {
+            n += runner->slot[i].state != CALL_FREE;
         }
-        grobo_i_control_unlock(control);
+        grobo_i_runner_unlock(runner);
         assert_true(grobo_now_us() < end_us);
     } while (n < slots);
 }

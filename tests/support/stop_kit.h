@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* A control over the simulator whose on_svc a test can hold, and what its callbacks saw. */
+/* A runner over the simulator whose on_svc a test can hold, and what its callbacks saw. */
 #ifndef GROBO_TESTS_STOP_KIT_H
 #define GROBO_TESTS_STOP_KIT_H
 
-#include "tests/support/control_kit.h"
 #include "tests/support/hold.h"
+#include "tests/support/runner_kit.h"
 
 /* A call gives up after SHORT_US; LONG_US is longer than a test; motions take STOP_US to stop. GOAL
  * and TORQUE are addresses of registers. */
@@ -28,18 +28,18 @@ extern hold gate;
 extern grobo_mutex users;
 
 /* What on_svc calls, once, when it is not held; and the result. Set while it is held. */
-extern int (*in_callback)(grobo_control *from);
+extern int (*in_callback)(grobo_runner *from);
 extern int callback_result;
 
-/* Makes the control; starts its thread too, connects, and switches torque on; frees it. */
-void stop_kit_make(grobo_control_config config);
-void stop_kit_start(grobo_control_config config);
+/* Makes the runner; starts its thread too, connects, and switches torque on; frees it. */
+void stop_kit_make(grobo_runner_config config);
+void stop_kit_start(grobo_runner_config config);
 void stop_kit_end(void);
 
-/* For grobo_control_call(): copies `saw`; whether a stop is latched; sets `listen`. */
-int copy_seen(void *arg, grobo_control *from);
-int tripped(void *arg, grobo_control *from);
-int begin_to_listen(void *arg, grobo_control *from);
+/* For grobo_runner_call(): copies `saw`; whether a stop is latched; sets `listen`. */
+int copy_seen(void *arg, grobo_runner *from);
+int tripped(void *arg, grobo_runner *from);
+int begin_to_listen(void *arg, grobo_runner *from);
 
 /* Return when a move, or a motion, is under way that lasts longer than any test. */
 void move_for_long(void);
@@ -51,12 +51,12 @@ void assert_stopped(int estops);
 /* A call on a thread of its own. */
 typedef struct caller {
     grobo_thread thread;
-    int (*call)(grobo_control *from);
+    int (*call)(grobo_runner *from);
     int result;
 } caller;
 
 /* Starts it, and returns when `slots` calls wait for the loop. */
-void begin_call(caller *c, int (*call)(grobo_control *from), int slots);
+void begin_call(caller *c, int (*call)(grobo_runner *from), int slots);
 
 /* Waits for it. @return its result. */
 int end_call(caller *c);

@@ -258,7 +258,7 @@ static void on_unlock(void *ctx)
     session->share.unlock(session->share.ctx);
 }
 
-/* Emergency stops that were not posted count as those do, see grobo_control_reset(). */
+/* Emergency stops that were not posted count as those do, see grobo_runner_reset(). */
 static void count_estops(grobo_session *session)
 {
     grobo_i_lock(&session->robot);

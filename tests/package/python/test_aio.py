@@ -14,7 +14,7 @@ from grobo import robot as robot_module
 GREET = "motions/greet.pseq"
 
 
-@unittest.skipUnless(_lib.has("grobo_control_next_event"), "the library keeps no events")
+@unittest.skipUnless(_lib.has("grobo_runner_next_event"), "the library keeps no events")
 class Aio(unittest.IsolatedAsyncioTestCase):
     async def asyncSetUp(self):
         self.robot = await grobo.aio.connect("sim")
@@ -131,7 +131,7 @@ class Aio(unittest.IsolatedAsyncioTestCase):
             self.fail(event)
 
 
-@unittest.skipUnless(_lib.has("grobo_control_next_event"), "the library keeps no events")
+@unittest.skipUnless(_lib.has("grobo_runner_next_event"), "the library keeps no events")
 class Aside(unittest.IsolatedAsyncioTestCase):
     """What goes wrong beside the robot."""
 
@@ -165,7 +165,7 @@ class Aside(unittest.IsolatedAsyncioTestCase):
         robot_module._close_all()
 
 
-@unittest.skipIf(_lib.has("grobo_control_next_event"), "the library keeps events")
+@unittest.skipIf(_lib.has("grobo_runner_next_event"), "the library keeps events")
 class NoEvents(unittest.IsolatedAsyncioTestCase):
     async def test_it_is_refused(self):
         with self.assertRaises(errors.Unsupported):

@@ -210,7 +210,7 @@ class Plugin(unittest.TestCase):
             inner = robot._robot
             self.assertTrue(robot.is_connected)
         self.assertFalse(robot.is_connected)
-        self.assertTrue(inner._control.closing)
+        self.assertTrue(inner._runner.closing)
         robot.disconnect()  # again: nothing happens
         with self.assertRaises(ValueError):
             Grobo(self.config(on_exit="fall"))

@@ -268,13 +268,13 @@ class Leaving(unittest.TestCase):
 
     def test_a_close_that_is_interrupted_is_made_up_for(self):
         robot = grobo.connect("sim")
-        control = robot._control
+        runner = robot._runner
 
         def interrupt():
-            until(lambda: control.closing)
+            until(lambda: runner.closing)
             _thread.interrupt_main()
 
-        with control.use():  # close() waits for it
+        with runner.use():  # close() waits for it
             thread = threading.Thread(target=interrupt)
             thread.start()
             with self.assertRaises(KeyboardInterrupt):
@@ -283,7 +283,7 @@ class Leaving(unittest.TestCase):
         with self.assertRaises(errors.Closed):
             robot.status()
         robot.close()
-        self.assertFalse(control.handle)
+        self.assertFalse(runner.handle)
         robot.close()
 
     def test_an_interrupt_anywhere_leaves_a_robot_that_closes(self):
@@ -312,17 +312,17 @@ class Leaving(unittest.TestCase):
             thread.start()
             thread.join(5)
             self.assertFalse(thread.is_alive(), f"locked behind call {at}")
-            self.assertFalse(robot._control.users, f"in use behind call {at}")
+            self.assertFalse(robot._runner.users, f"in use behind call {at}")
         self.assertGreater(at, 5)
         robot.close()
 
     def test_a_robot_that_is_not_closed_warns(self):
         robot = grobo.connect("sim")
-        control = robot._control
+        runner = robot._runner
         with self.assertWarns(ResourceWarning):
             del robot
             gc.collect()
-        control.close()
+        runner.close()
 
     def test_a_forked_child_is_refused(self):
         with grobo.connect("sim") as robot:
@@ -342,7 +342,7 @@ class Leaving(unittest.TestCase):
             locked, forked = threading.Event(), threading.Event()
 
             def hold():
-                with robot._control.lock:
+                with robot._runner.lock:
                     locked.set()
                     forked.wait()
 
@@ -422,7 +422,7 @@ class Exiting(unittest.TestCase):
                 with self.assertWarns(ResourceWarning):
                     del robot
                     gc.collect()
-                self.assertEqual(lib.grobo_control_post_exit.call_count, posted)
+                self.assertEqual(lib.grobo_runner_post_exit.call_count, posted)
             robot_module._close_all()
 
     def test_it_is_carried_out_where_an_exception_leaves(self):

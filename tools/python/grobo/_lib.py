@@ -61,7 +61,7 @@ def quick(name: str, *args: Any) -> int:
     """Calls a function that never waits, without giving up the interpreter's lock.
 
     Taking it back costs 5 ms beside a thread that computes. Never for a function that waits for
-    the control thread's turn.
+    the runner's thread's turn.
     """
     words = [
         ctypes.c_void_p(int(ffi.cast("uintptr_t", arg))) if isinstance(arg, ffi.CData) else arg

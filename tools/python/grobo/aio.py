@@ -52,10 +52,10 @@ class Robot:
         self._robot = robot
         self._jobs: Dict[int, "asyncio.Future[int]"] = {}
         self._readers: List["asyncio.Queue[Optional[Event]]"] = []
-        self._event = new("grobo_control_event")
+        self._event = new("grobo_runner_event")
         self._loop = asyncio.get_running_loop()
-        with robot._control.use() as control:
-            self._socket: int = quick("grobo_control_event_socket", control)
+        with robot._runner.use() as runner:
+            self._socket: int = quick("grobo_runner_event_socket", runner)
         self._loop.add_reader(self._socket, self._drain)
 
     @property
@@ -70,7 +70,7 @@ class Robot:
 
     async def events(self) -> AsyncIterator[Event]:
         """Everything that happens from its first turn on, until the robot is closed."""
-        if self._robot._control.closing:
+        if self._robot._runner.closing:
             return
         queue: "asyncio.Queue[Optional[Event]]" = asyncio.Queue()
         self._readers.append(queue)
@@ -86,8 +86,8 @@ class Robot:
 
     def _drain(self) -> None:
         lost = 0
-        with self._robot._control.use() as control:
-            while quick("grobo_control_next_event", control, self._event) == 1:
+        with self._robot._runner.use() as runner:
+            while quick("grobo_runner_next_event", runner, self._event) == 1:
                 event = self._read(self._event)
                 lost += event.lost
                 for queue in self._readers:
@@ -95,8 +95,8 @@ class Robot:
                 if event.job is not None:
                     self._end(event.job, event.error)
             for job in list(self._jobs) if lost else ():
-                if not lib.grobo_robot_is_pending(self._robot._control.robot, job):
-                    result = lib.grobo_control_wait_job(control, job, 0)  # known: it has ended
+                if not lib.grobo_robot_is_pending(self._robot._runner.robot, job):
+                    result = lib.grobo_runner_wait_job(runner, job, 0)  # known: it has ended
                     self._end(job, errors.error(result, "move") if result < 0 else None)
 
     def _end(self, job: int, error: Optional[errors.Error]) -> None:
@@ -182,7 +182,7 @@ class Robot:
             raise
 
     def _stop_unless_closing(self) -> None:
-        if not self._robot._control.closing:
+        if not self._robot._runner.closing:
             self._robot.stop()
 
     async def play(self, motion: Union[Motion, str], **options: Any) -> None:
@@ -217,7 +217,7 @@ class Robot:
 
     async def close(self) -> None:
         """Carries out the exit policy and closes."""
-        if self._robot._control.closing:
+        if self._robot._runner.closing:
             return
         self._loop.remove_reader(self._socket)
         try:
@@ -251,7 +251,7 @@ async def connect(
     device: str = "auto", *, exit: Optional[Exit] = Exit.DEFAULT, **options: Any
 ) -> Robot:
     """Opens a robot: the options of grobo.Robot."""
-    if not has("grobo_control_next_event"):
+    if not has("grobo_runner_next_event"):
         raise errors.error(lib.GROBO_ERR_UNSUPPORTED, "asyncio needs the library's events")
     options.setdefault("events", EVENTS)
     loop = asyncio.get_running_loop()

@@ -72,15 +72,15 @@ class Status:
     joints: Mapping[str, JointStatus]
 
 
-class _Control:
+class _Runner:
     """The C side, and what must live as long as it."""
 
     def __init__(self, config: Any, keep: List[Any]) -> None:
-        made = ffi.new("grobo_control **")
-        errors.check(lib.grobo_control_new(config, made), "robot")
+        made = ffi.new("grobo_runner **")
+        errors.check(lib.grobo_runner_new(config, made), "robot")
         self.leaves = not config.skip_exit
         self.handle = made[0]
-        self.robot = lib.grobo_control_robot(self.handle)
+        self.robot = lib.grobo_runner_robot(self.handle)
         self.keep = keep
         self.process = os.getpid()
         self.lock = threading.RLock()  # not of Python code, where Ctrl-C would leave it locked
@@ -119,21 +119,21 @@ class _Control:
                 self.idle.wait(SLICE)  # Ctrl-C may have ended the one that would notify
             if not self.handle:
                 return 0
-            result: int = lib.grobo_control_close_port(self.handle, 0)
+            result: int = lib.grobo_runner_close(self.handle, 0)
             handle, self.handle = self.handle, ffi.NULL
-            lib.grobo_control_free(handle)
+            lib.grobo_runner_free(handle)
             _open.discard(self)
             return result
 
 
-_open: Set[_Control] = set()
+_open: Set[_Runner] = set()
 
 
 @atexit.register
 def _close_all(dropped: bool = False) -> None:
-    for control in list(_open):
-        if control.dropped or not dropped:
-            control.close()
+    for runner in list(_open):
+        if runner.dropped or not dropped:
+            runner.close()
 
 
 @contextmanager
@@ -209,7 +209,7 @@ class Robot:
         if not isinstance(robot, Description):
             robot = Description(robot)
         self.description = robot
-        config = new("grobo_control_config")
+        config = new("grobo_runner_config")
         session = config.session
         if ffi.typeof(session).kind == "pointer":
             session = config.session = new("grobo_session_config")
@@ -226,19 +226,19 @@ class Robot:
         config.timeout_us = us(timeout)
         config.owner_timeout_us = us(owner_timeout)
         if events:
-            if not has("grobo_control_next_event"):
+            if not has("grobo_runner_next_event"):
                 raise errors.error(lib.GROBO_ERR_UNSUPPORTED, "events")
             config.events = events
         self.device = device
-        self._control = _Control(config, [name, robot_config, session, robot])
+        self._runner = _Runner(config, [name, robot_config, session, robot])
         try:
-            with self._control.use() as control:
+            with self._runner.use() as runner:
                 self.joints = robot.joints
                 self._model = robot.model
-                errors.check(lib.grobo_control_start_thread(control), "control thread")
-                errors.check(lib.grobo_control_connect(control, us(timeout)), device)
+                errors.check(lib.grobo_runner_start(runner), "runner's thread")
+                errors.check(lib.grobo_runner_connect(runner, us(timeout)), device)
         except BaseException:
-            self._control.close()
+            self._runner.close()
             raise
         log.info("%s: connected, %d joints", device, len(self.joints))
 
@@ -246,8 +246,8 @@ class Robot:
 
     def close(self) -> None:
         """Carries out the exit policy and closes. Any thread; a second time nothing happens."""
-        was_open = not self._control.closing
-        result = self._control.close()
+        was_open = not self._runner.closing
+        result = self._runner.close()
         if was_open:
             log.info("%s: closed", self.device)
         errors.check(result, f"{self.device}: exit policy")
@@ -269,13 +269,13 @@ class Robot:
             log.exception("%s: the exit policy failed", self.device)
 
     def __del__(self) -> None:
-        control = getattr(self, "_control", None)
-        if control is not None and not control.closing and control.process == os.getpid():
+        runner = getattr(self, "_runner", None)
+        if runner is not None and not runner.closing and runner.process == os.getpid():
             warnings.warn(f"robot {self.device} was not closed", ResourceWarning, source=self)
             # Closed by the next robot, or at exit: this may be any thread, which must not wait here.
-            control.dropped = True
-            if control.leaves:
-                lib.grobo_control_post_exit(control.handle, Exit.DEFAULT)
+            runner.dropped = True
+            if runner.leaves:
+                lib.grobo_runner_post_exit(runner.handle, Exit.DEFAULT)
 
     # ---- asking ----------------------------------------------------------------------------
 
@@ -284,17 +284,17 @@ class Robot:
         info = ffi.new("grobo_joint_info *")
         trip = ffi.new("grobo_trip_info *")
         joints: Dict[str, JointStatus] = {}
-        with self._control.use() as control:
-            robot = self._control.robot
+        with self._runner.use() as runner:
+            robot = self._runner.robot
             for j, name in enumerate(self.joints):
                 errors.check(quick("grobo_robot_joint", robot, j, info), name)
                 joints[name] = _joint_status(name, info)
             quick("grobo_robot_tripped", robot, trip)
             return Status(
-                connected=bool(quick("grobo_control_is_connected", control) & 1),
+                connected=bool(quick("grobo_runner_is_connected", runner) & 1),
                 moving=bool(quick("grobo_robot_moving", robot) & 1),
                 playing=bool(quick("grobo_robot_is_playing", robot) & 1),
-                latched=bool(quick("grobo_control_is_latched", control) & 1),
+                latched=bool(quick("grobo_runner_is_latched", runner) & 1),
                 trip=_trip_name(trip),
                 joints=joints,
             )
@@ -306,15 +306,15 @@ class Robot:
             angle = ffi.new("double *")
             read = {}
             for name in joints:
-                with self._control.use() as control:
+                with self._runner.use() as runner:
                     number = self._number(name)
-                    result = lib.grobo_control_read_angle(control, number, angle, 0)
+                    result = lib.grobo_runner_read_angle(runner, number, angle, 0)
                     self._check(result, "read", name)
                 read[name] = float(angle[0])
             return read
         made = ffi.new("grobo_posture *")
-        with self._control.use() as control:
-            self._check(lib.grobo_control_read_posture(control, made, 0), "read")
+        with self._runner.use() as runner:
+            self._check(lib.grobo_runner_read_posture(runner, made, 0), "read")
         return dict(Posture(made, self._model))
 
     def __getitem__(self, name: str) -> Joint:
@@ -338,8 +338,8 @@ class Robot:
         self._interruptible(lambda: self._wait_job(self._move(target), "move"))
 
     def _move(self, target: Any) -> int:
-        with self._control.use():
-            return self._check(lib.grobo_robot_move(self._control.robot, target), "move")
+        with self._runner.use():
+            return self._check(lib.grobo_robot_move(self._runner.robot, target), "move")
 
     def send(self, angles: Angles, *, time: float) -> None:
         """Sends a target and does not wait: for a control loop that calls this once a period.
@@ -349,8 +349,8 @@ class Robot:
         a period.
         """
         target = posture(angles, time, self._model)
-        with self._control.use():
-            self._check(quick("grobo_robot_send", self._control.robot, target), "send")
+        with self._runner.use():
+            self._check(quick("grobo_robot_send", self._runner.robot, target), "send")
 
     def play(
         self,
@@ -392,11 +392,11 @@ class Robot:
         if rate is not None:
             options.mode = lib.GROBO_PLAY_RATE
             options.rate_hz = _within(rate, lib.GROBO_PLAY_RATE_MAX_HZ, "rate")
-        with self._control.use() as control:
-            self._check(lib.grobo_control_set_motion(control, motion._c), "play")
-            lib.grobo_control_set_motion_count(control, repeat)
-            lib.grobo_control_set_reverse(control, reverse)
-            self._check(lib.grobo_control_play_motion(control, options), "play")
+        with self._runner.use() as runner:
+            self._check(lib.grobo_runner_set_motion(runner, motion._c), "play")
+            lib.grobo_runner_set_motion_count(runner, repeat)
+            lib.grobo_runner_set_reverse(runner, reverse)
+            self._check(lib.grobo_runner_play_motion(runner, options), "play")
 
     def _check_joints(self, motion: Motion) -> None:
         """The joints of a motion are those of the robot, and not the first of them by chance."""
@@ -412,12 +412,12 @@ class Robot:
 
     def _await_play(self) -> None:
         while True:
-            with self._control.use() as control:
-                result = lib.grobo_control_wait(control, us(SLICE))
-                if result == lib.GROBO_ERR_TIMEOUT and lib.grobo_control_is_moving(control) == 1:
+            with self._runner.use() as runner:
+                result = lib.grobo_runner_wait(runner, us(SLICE))
+                if result == lib.GROBO_ERR_TIMEOUT and lib.grobo_runner_is_moving(runner) == 1:
                     continue
                 if result == lib.GROBO_ERR_TIMEOUT:
-                    result = lib.grobo_control_wait(control, 0)
+                    result = lib.grobo_runner_wait(runner, 0)
                 self._check(result, "play")
                 return
 
@@ -428,28 +428,28 @@ class Robot:
         mask = (1 << len(self.joints)) - 1
         if joints is not None:
             mask = sum(1 << self._number(name) for name in set(joints))
-        with self._control.use() as control:
-            result = lib.grobo_control_set_servo_states(control, mask, int(state), 0)
+        with self._runner.use() as runner:
+            result = lib.grobo_runner_set_servo_states(runner, mask, int(state), 0)
             self._check(result, "torque")
 
     # ---- stopping --------------------------------------------------------------------------
 
     def stop(self, at_once: bool = False) -> None:
         """Ends what moves, smoothly; nothing happens where nothing moves. Any thread."""
-        with self._control.use() as control:
-            errors.check(lib.grobo_control_post_stop(control, at_once), "stop")
+        with self._runner.use() as runner:
+            errors.check(lib.grobo_runner_post_stop(runner, at_once), "stop")
 
     def estop(self) -> None:
         """Emergency stop; the robot stays stopped until reset(). Any thread; never waits."""
-        with self._control.use() as control:
-            errors.check(lib.grobo_control_estop(control), "estop")
+        with self._runner.use() as runner:
+            errors.check(lib.grobo_runner_estop(runner), "estop")
         log.warning("%s: emergency stop", self.device)
 
     def reset(self) -> None:
         """Releases a safety stop."""
-        with self._control.use() as control:
-            lib.grobo_control_wait(control, 0)  # until the stop has been carried out
-            errors.check(lib.grobo_control_reset(control), "reset")
+        with self._runner.use() as runner:
+            lib.grobo_runner_wait(runner, 0)  # until the stop has been carried out
+            errors.check(lib.grobo_runner_reset(runner), "reset")
 
     # ---- inside ----------------------------------------------------------------------------
 
@@ -468,12 +468,12 @@ class Robot:
 
     def _wait_job(self, job: int, what: str) -> None:
         while True:
-            with self._control.use() as control:
-                result = lib.grobo_control_wait_job(control, job, us(SLICE))
+            with self._runner.use() as runner:
+                result = lib.grobo_runner_wait_job(runner, job, us(SLICE))
                 if result == lib.GROBO_ERR_TIMEOUT:
-                    if lib.grobo_robot_is_pending(self._control.robot, job):
+                    if lib.grobo_robot_is_pending(self._runner.robot, job):
                         continue
-                    result = lib.grobo_control_wait_job(control, job, us(SLICE))
+                    result = lib.grobo_runner_wait_job(runner, job, us(SLICE))
                 self._check(result, what)
                 return
 
@@ -484,12 +484,12 @@ class Robot:
         value, reason, unit = None, None, None
         if result in (lib.GROBO_ERR_LIMIT, lib.GROBO_ERR_NAN):
             at = ffi.new("double *")
-            number = lib.grobo_robot_fault(self._control.robot, at)
+            number = lib.grobo_robot_fault(self._runner.robot, at)
             if number >= 0:
                 joint, value = self.joints[number], float(at[0])
         elif result in (lib.GROBO_ERR_LATCHED, lib.GROBO_ERR_CANCELED):
             trip = ffi.new("grobo_trip_info *")
-            lib.grobo_robot_tripped(self._control.robot, trip)
+            lib.grobo_robot_tripped(self._runner.robot, trip)
             reason = _trip_name(trip)
             if reason and trip.latched:
                 result = lib.GROBO_ERR_LATCHED  # what it has canceled is stopped as well
@@ -497,7 +497,7 @@ class Robot:
                 joint, value = self.joints[trip.joint], float(trip.value)
                 unit = _TRIP_UNITS.get(trip.trip)
             if result == lib.GROBO_ERR_LATCHED and not reason:
-                reason = "emergency stop"  # asked for, and not yet taken up by the control thread
+                reason = "emergency stop"  # asked for, and not yet taken up by the runner's thread
         raised = errors.error(result, what, joint, value, reason)
         raised.unit = unit
         self._tell_angle(raised)

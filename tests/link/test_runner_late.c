@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* A control that is held up does not take what waits on the line for silence. */
+/* A runner that is held up does not take what waits on the line for silence. */
 #include <poll.h>
 #include <stdint.h>
 
-#include <grobo/thread.h>
+#include <grobo/runner.h>
 
 #include "tests/support/line.h"
 #include "tests/support/test.h"
@@ -16,13 +16,12 @@ static const uint8_t ACK = 0x07; /* of the board, to a check */
 static test_line line;
 
 /*
- * Runs in the round in which grobo_control_receive() asks, before it: the answer comes, but the
+ * Runs in the round in which grobo_runner_receive() asks, before it: the answer comes, but the
  * loop does not get to read it before the silence has lasted too long.
  */
-static int hold_up(void *arg, grobo_control *control)
+static int hold_up(void *arg, grobo_runner *runner)
 {
-    struct pollfd near = {.fd = grobo_serial_handle(grobo_control_serial(control)),
-                          .events = POLLIN};
+    struct pollfd near = {.fd = grobo_serial_handle(grobo_runner_serial(runner)), .events = POLLIN};
     int64_t until_us = grobo_now_us() + HELD_UP_US;
 
     (void)arg;
@@ -33,50 +32,50 @@ static int hold_up(void *arg, grobo_control *control)
     return GROBO_OK;
 }
 
-/* A control that has sent a check, and takes what comes for its answer. */
-static grobo_control *ask(grobo_control_fn on_svc)
+/* A runner that has sent a check, and takes what comes for its answer. */
+static grobo_runner *ask(grobo_runner_fn on_svc)
 {
     /* Nobody but the test asks, and nobody stops waiting for the answer. */
     const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .bus.margin_us = 60000000,
                                       .retries = -1, .sense_interval_us = GROBO_SENSE_NEVER};
     grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .robot = &robot, .skip_check = true};
-    grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session, .on_svc = on_svc,
-                                   .skip_exit = true};
-    grobo_control *control;
+    grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session, .on_svc = on_svc,
+                                  .skip_exit = true};
+    grobo_runner *runner;
     uint8_t got[2] = {0, 0};
 
     test_line_open(&line);
     session.device = line.device;
-    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
-    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
-    assert_int_equal(grobo_control_send_command(control, CHECK, sizeof CHECK, PATIENCE_US),
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
+    assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_send_command(runner, CHECK, sizeof CHECK, PATIENCE_US),
                      GROBO_ERR_TIMEOUT);
     test_line_read(&line, got, sizeof got);
     assert_memory_equal(got, CHECK, sizeof CHECK);
-    return control;
+    return runner;
 }
 
 TEST(what_has_come_is_read_before_there_is_silence)
 {
-    grobo_control *control = ask(NULL);
+    grobo_runner *runner = ask(NULL);
     uint8_t got[2] = {0, 0};
 
-    assert_int_equal(grobo_control_post(control, hold_up, NULL), GROBO_OK);
-    assert_int_equal(grobo_control_receive(control, got, 1), 1);
+    assert_int_equal(grobo_runner_post(runner, hold_up, NULL), GROBO_OK);
+    assert_int_equal(grobo_runner_receive(runner, got, 1), 1);
     assert_int_equal(got[0], ACK);
-    assert_int_equal(grobo_control_receive(control, got, 1), GROBO_ERR_TIMEOUT);
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_receive(runner, got, 1), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     test_line_close(&line);
 }
 
 static bool trickles;
 
 /* The beginning of a reply, which is no answer yet: the command continues to wait. */
-static int send_a_byte(void *arg, grobo_control *control)
+static int send_a_byte(void *arg, grobo_runner *runner)
 {
     const uint8_t noise = 0xFD;
 
-    (void)control;
+    (void)runner;
     (void)arg;
     if (trickles) {
         test_line_write(&line, &noise, sizeof noise);
@@ -86,15 +85,15 @@ static int send_a_byte(void *arg, grobo_control *control)
 
 TEST(a_trickle_does_not_stretch_a_receive)
 {
-    grobo_control *control = ask(send_a_byte);
+    grobo_runner *runner = ask(send_a_byte);
     uint8_t got[400];
     int64_t start_us = grobo_now_us();
 
     trickles = true;
     /* A byte in each round of 10 ms: 400 would take 4 s. */
-    assert_int_equal(grobo_control_receive(control, got, sizeof got), GROBO_ERR_SHORT);
+    assert_int_equal(grobo_runner_receive(runner, got, sizeof got), GROBO_ERR_SHORT);
     assert_in_range(grobo_now_us() - start_us, 1000 * GROBO_SILENCE_DEFAULT_MS, 2000000);
     trickles = false;
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     test_line_close(&line);
 }

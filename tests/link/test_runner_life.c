@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT */
-/* The life of a control: its thread or the caller's, its rounds, its end; one caller at a time. */
+/* The life of a runner: its thread or the caller's, its rounds, its end; one caller at a time. */
 #include <stdint.h>
 
-#include <grobo/thread.h>
+#include <grobo/runner.h>
 
 #include "tests/support/test.h"
 
 enum { CALLS = 100 };
 
-static grobo_control *control;
+static grobo_runner *runner;
 
-/* Under `control`'s exclusion, or asked for when nothing runs. */
+/* Under `runner`'s exclusion, or asked for when nothing runs. */
 static int rounds; /* of on_svc */
 static int exits;  /* exit policies that were carried out */
 static int inside, together, calls;
 
-static int on_svc(void *arg, grobo_control *from)
+static int on_svc(void *arg, grobo_runner *from)
 {
-    assert_ptr_equal(from, control);
+    assert_ptr_equal(from, runner);
     assert_ptr_equal(arg, &rounds);
     rounds++;
     return 0;
@@ -35,17 +35,17 @@ static void on_robot(void *ctx, const grobo_event *event)
 static void make(void)
 {
     static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .on_exit = GROBO_EXIT_OFF};
-    const grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
+    const grobo_runner_config config = {
+        GROBO_RUNNER_CONFIG_INIT,
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
                                            .baud_bps = 1000000, .robot = &robot,
                                            .on_robot = on_robot, .ctx = &rounds},
-        .control_period_us = 2000, .on_svc = on_svc};
+        .period_us = 2000, .on_svc = on_svc};
     rounds = exits = inside = together = calls = 0;
-    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
 }
 
-static int rounds_so_far(void *arg, grobo_control *from)
+static int rounds_so_far(void *arg, grobo_runner *from)
 {
     (void)from;
     (void)arg;
@@ -56,18 +56,18 @@ static int rounds_so_far(void *arg, grobo_control *from)
 static void await_rounds(int n)
 {
     int64_t end_us = grobo_now_us() + 5000000;
-    while (grobo_control_call(control, rounds_so_far, NULL) < n) {
+    while (grobo_runner_call(runner, rounds_so_far, NULL) < n) {
         assert_true(grobo_now_us() < end_us);
     }
 }
 
 static int torque_on(void)
 {
-    return grobo_control_set_servo_states(control, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON, 0);
+    return grobo_runner_set_servo_states(runner, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON, 0);
 }
 
 /* On the loop: whether its thread is this one. */
-static int is_self(void *arg, grobo_control *from)
+static int is_self(void *arg, grobo_runner *from)
 {
     const grobo_thread *thread = arg;
 
@@ -80,26 +80,26 @@ TEST(the_thread_runs_until_it_is_told_to_stop)
     grobo_thread thread;
 
     make();
-    assert_false(grobo_control_is_active(control));
-    assert_int_equal(grobo_control_stop_thread(control), GROBO_ERR_STATE);
-    assert_int_equal(grobo_control_thread(control, &thread), GROBO_ERR_STATE);
-    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
-    assert_true(grobo_control_is_active(control));
-    assert_int_equal(grobo_control_start_thread(control), GROBO_ERR_STATE);
-    assert_int_equal(grobo_control_thread(control, &thread), GROBO_OK);
+    assert_false(grobo_runner_is_active(runner));
+    assert_int_equal(grobo_runner_stop(runner), GROBO_ERR_STATE);
+    assert_int_equal(grobo_runner_thread(runner, &thread), GROBO_ERR_STATE);
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+    assert_true(grobo_runner_is_active(runner));
+    assert_int_equal(grobo_runner_start(runner), GROBO_ERR_STATE);
+    assert_int_equal(grobo_runner_thread(runner, &thread), GROBO_OK);
     assert_false(grobo_thread_is_self(thread));
-    assert_int_equal(grobo_control_call(control, is_self, &thread), 1);
+    assert_int_equal(grobo_runner_call(runner, is_self, &thread), 1);
     await_rounds(5);
 
-    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
     assert_int_equal(torque_on(), GROBO_OK);
-    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
-    assert_false(grobo_control_is_active(control));
+    assert_int_equal(grobo_runner_stop(runner), GROBO_OK);
+    assert_false(grobo_runner_is_active(runner));
     assert_int_equal(exits, 1); /* and the port stayed open */
-    assert_int_equal(grobo_control_get_servo_state(control, 0), GROBO_TORQUE_OFF);
-    assert_true(grobo_control_is_connected(control));
-    assert_int_equal(grobo_control_start_thread(control), GROBO_OK); /* again */
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_get_servo_state(runner, 0), GROBO_TORQUE_OFF);
+    assert_true(grobo_runner_is_connected(runner));
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK); /* again */
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }
 
 TEST(freeing_lets_the_robot_go_first)
@@ -107,11 +107,11 @@ TEST(freeing_lets_the_robot_go_first)
     for (int threaded = 0; threaded < 2; threaded++) {
         make();
         if (threaded) {
-            assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+            assert_int_equal(grobo_runner_start(runner), GROBO_OK);
         }
-        assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+        assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
         assert_int_equal(torque_on(), GROBO_OK);
-        assert_int_equal(grobo_control_free(control), GROBO_OK);
+        assert_int_equal(grobo_runner_free(runner), GROBO_OK);
         assert_int_equal(exits, 1);
     }
 }
@@ -121,41 +121,41 @@ TEST(rounds_are_made_by_whoever_asks)
     make();
     int64_t end_us = grobo_now_us() + 5000000;
     while (rounds < 5) {
-        assert_int_equal(grobo_control_svc(control), 1);
+        assert_int_equal(grobo_runner_svc(runner), 1);
         assert_true(grobo_now_us() < end_us);
     }
-    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
-    assert_int_equal(grobo_control_svc(control), 0); /* the thread makes them */
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_svc(runner), 0); /* the thread makes them */
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }
 
 /* How long n more rounds take. */
 static int64_t time_of_rounds(int n)
 {
     int64_t begun_us = grobo_now_us();
-    await_rounds(grobo_control_call(control, rounds_so_far, NULL) + n);
+    await_rounds(grobo_runner_call(runner, rounds_so_far, NULL) + n);
     return grobo_now_us() - begun_us;
 }
 
 TEST(rounds_keep_the_period_that_is_set)
 {
     make();
-    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
-    assert_int_equal(grobo_control_set_period_us(control, 100000), GROBO_OK);
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_set_period_us(runner, 100000), GROBO_OK);
     assert_true(time_of_rounds(4) > 250000); /* the first is under way already */
-    assert_int_equal(grobo_control_set_period_us(control, 2000), GROBO_OK);
+    assert_int_equal(grobo_runner_set_period_us(runner, 2000), GROBO_OK);
     int64_t end_us = grobo_now_us() + 5000000;
     while (time_of_rounds(4) > 100000) { /* on a busy machine another time */
         assert_true(grobo_now_us() < end_us);
     }
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }
 
 static int run_result;
 
 static GROBO_THREAD_FUNC run_it(void *arg)
 {
-    run_result = grobo_control_run(arg);
+    run_result = grobo_runner_run(arg);
     GROBO_THREAD_RETURN;
 }
 
@@ -165,22 +165,22 @@ TEST(the_loop_runs_on_a_thread_of_ones_own)
     grobo_thread none;
 
     make();
-    assert_int_equal(grobo_thread_start(&mine, run_it, control), GROBO_OK);
+    assert_int_equal(grobo_thread_start(&mine, run_it, runner), GROBO_OK);
     int64_t end_us = grobo_now_us() + 5000000;
-    while (!grobo_control_is_active(control)) {
+    while (!grobo_runner_is_active(runner)) {
         assert_true(grobo_now_us() < end_us);
     }
     await_rounds(5);
-    assert_int_equal(grobo_control_run(control), GROBO_ERR_STATE);
-    assert_int_equal(grobo_control_thread(control, &none), GROBO_ERR_STATE);
-    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    assert_int_equal(grobo_runner_run(runner), GROBO_ERR_STATE);
+    assert_int_equal(grobo_runner_thread(runner, &none), GROBO_ERR_STATE);
+    assert_int_equal(grobo_runner_stop(runner), GROBO_OK);
     assert_int_equal(grobo_thread_join(mine), GROBO_OK);
     assert_int_equal(run_result, GROBO_OK);
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }
 
 /* Would be entered by two at a time if callers were not kept apart. */
-static int count_call(void *arg, grobo_control *from)
+static int count_call(void *arg, grobo_runner *from)
 {
     (void)from;
     (void)arg;
@@ -198,7 +198,7 @@ static GROBO_THREAD_FUNC call_often(void *arg)
 {
     int *failed = arg;
     for (int i = 0; i < CALLS; i++) {
-        *failed += grobo_control_call(control, count_call, NULL) < 1;
+        *failed += grobo_runner_call(runner, count_call, NULL) < 1;
     }
     GROBO_THREAD_RETURN;
 }
@@ -210,7 +210,7 @@ TEST(callers_are_kept_apart)
         int failed[3] = {0, 0, 0};
         make();
         if (threaded) {
-            assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+            assert_int_equal(grobo_runner_start(runner), GROBO_OK);
         }
         for (int i = 0; i < 3; i++) {
             assert_int_equal(grobo_thread_start(&thread[i], call_often, &failed[i]), GROBO_OK);
@@ -221,6 +221,6 @@ TEST(callers_are_kept_apart)
         }
         assert_int_equal(calls, 3 * CALLS);
         assert_int_equal(together, 0);
-        assert_int_equal(grobo_control_free(control), GROBO_OK);
+        assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     }
 }

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A control's motion and files over the simulator, from a thread that is not the loop's: once
- * while a control thread runs the loop, and once without, where the calls run it themselves.
+ * A runner's motion and files over the simulator, from a thread that is not the loop's: once
+ * while a runner's thread runs the loop, and once without, where the calls run it themselves.
  */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "tests/support/control_kit.h"
 #include "tests/support/files.h"
 #include "tests/support/folder.h"
+#include "tests/support/runner_kit.h"
 #include "tests/support/test.h"
 
 enum { POSTURES = 4, STEP_US = 100000 };
@@ -39,7 +39,7 @@ static void have_every_joint(void)
         }
         assert_int_equal(grobo_motion_append(motion, &posture), GROBO_OK);
     }
-    assert_int_equal(grobo_control_set_motion(control, motion), POSTURES);
+    assert_int_equal(grobo_runner_set_motion(runner, motion), POSTURES);
     grobo_motion_free(motion);
 }
 
@@ -52,7 +52,7 @@ static void expect_every_joint(int n, bool sampled)
     int found = 0;
 
     assert_true(sampled ? n > POSTURES : n == POSTURES);
-    assert_int_equal(grobo_control_get_motion(control, &motion), n);
+    assert_int_equal(grobo_runner_get_motion(runner, &motion), n);
     for (int i = 0; i < n; i++) {
         assert_int_equal(grobo_motion_get(motion, (size_t)i, &posture), 0);
         at_us += posture.time_us;
@@ -79,38 +79,36 @@ TEST_WITH(with_and_without_thread, motions_are_saved_and_loaded)
 
     for (size_t i = 0; i < 4; i++) {
         have_every_joint();
-        assert_int_equal(grobo_control_save_motion(control, formats[i], "a", NULL, 0), POSTURES);
-        grobo_control_clear_motion(control);
-        assert_int_equal(control_motion_size(control), 0);
-        int n = grobo_control_load_motion_format(control, formats[i], "a", NULL);
-        assert_int_equal(control_motion_size(control), n);
+        assert_int_equal(grobo_runner_save_motion(runner, formats[i], "a", NULL, 0), POSTURES);
+        grobo_runner_clear_motion(runner);
+        assert_int_equal(runner_motion_size(runner), 0);
+        int n = grobo_runner_load_motion_format(runner, formats[i], "a", NULL);
+        assert_int_equal(runner_motion_size(runner), n);
         expect_every_joint(n, formats[i] == GROBO_FORMAT_YAML);
     }
     have_every_joint();
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, NULL, path, sizeof path),
+    assert_int_equal(grobo_runner_save_motion(runner, GROBO_FORMAT_M, NULL, path, sizeof path),
                      POSTURES);
     assert_string_equal(strrchr(path, '/'), "/Motion1.m");
-    control_have_motion(1);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, NULL, path, sizeof path),
-                     1);
+    runner_have_motion(1);
+    assert_int_equal(grobo_runner_save_motion(runner, GROBO_FORMAT_M, NULL, path, sizeof path), 1);
     assert_string_equal(strrchr(path, '/'), "/Motion2.m");
-    expect_every_joint(grobo_control_load_motion(control, "Motion1", NULL), false);
+    expect_every_joint(grobo_runner_load_motion(runner, "Motion1", NULL), false);
 
     /* Another format is not replaced, whatever the name says. */
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "a.pseq", NULL, 0),
+    assert_int_equal(grobo_runner_save_motion(runner, GROBO_FORMAT_M, "a.pseq", NULL, 0),
                      GROBO_ERR_EXISTS);
-    assert_true(grobo_control_load_motion(control, "a.pseq", NULL) >= 3);
+    assert_true(grobo_runner_load_motion(runner, "a.pseq", NULL) >= 3);
 
     /* a.m comes before a.yaml, a.pseq and a.mseq; b is there as b.yaml only. */
-    control_have_motion(1);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "a.m", path, sizeof path),
-                     1);
+    runner_have_motion(1);
+    assert_int_equal(grobo_runner_save_motion(runner, GROBO_FORMAT_M, "a.m", path, sizeof path), 1);
     assert_string_equal(strrchr(path, '/'), "/a.m");
-    control_have_motion(3);
-    assert_true(grobo_control_save_motion(control, GROBO_FORMAT_YAML, "b", NULL, 0) >= 3);
-    assert_int_equal(grobo_control_load_motion(control, "a", NULL), 1);
-    assert_true(grobo_control_load_motion(control, "b", NULL) >= 3);
-    assert_true(grobo_control_load_motion(control, "a.pseq", NULL) >= 3);
+    runner_have_motion(3);
+    assert_true(grobo_runner_save_motion(runner, GROBO_FORMAT_YAML, "b", NULL, 0) >= 3);
+    assert_int_equal(grobo_runner_load_motion(runner, "a", NULL), 1);
+    assert_true(grobo_runner_load_motion(runner, "b", NULL) >= 3);
+    assert_true(grobo_runner_load_motion(runner, "a.pseq", NULL) >= 3);
 }
 
 TEST_WITH(with_and_without_thread, what_cannot_be_loaded_leaves_nothing)
@@ -119,33 +117,32 @@ TEST_WITH(with_and_without_thread, what_cannot_be_loaded_leaves_nothing)
     char path[8];
 
     assert_int_equal(grobo_diagnostics_new(NULL, &list), GROBO_OK);
-    control_have_motion(2);
-    assert_int_equal(grobo_control_load_motion(control, "none", list), GROBO_ERR_NOENT);
-    assert_int_equal(control_motion_size(control), 0);
-    control_have_motion(2);
-    assert_int_equal(grobo_control_load_motion(control, NULL, list), GROBO_ERR_ARG);
-    assert_int_equal(control_motion_size(control), 0);
-    control_have_motion(2);
-    assert_int_equal(grobo_control_load_motion(control, "../a", list), GROBO_ERR_PERM);
-    assert_int_equal(control_motion_size(control), 0);
+    runner_have_motion(2);
+    assert_int_equal(grobo_runner_load_motion(runner, "none", list), GROBO_ERR_NOENT);
+    assert_int_equal(runner_motion_size(runner), 0);
+    runner_have_motion(2);
+    assert_int_equal(grobo_runner_load_motion(runner, NULL, list), GROBO_ERR_ARG);
+    assert_int_equal(runner_motion_size(runner), 0);
+    runner_have_motion(2);
+    assert_int_equal(grobo_runner_load_motion(runner, "../a", list), GROBO_ERR_PERM);
+    assert_int_equal(runner_motion_size(runner), 0);
     put_file(in_folder("bad.m"), "this is no motion\n");
-    control_have_motion(2);
-    assert_true(grobo_control_load_motion_format(control, GROBO_FORMAT_M, "bad", list) < 0);
-    assert_int_equal(control_motion_size(control), 0);
+    runner_have_motion(2);
+    assert_true(grobo_runner_load_motion_format(runner, GROBO_FORMAT_M, "bad", list) < 0);
+    assert_int_equal(runner_motion_size(runner), 0);
     grobo_diagnostic said;
     assert_int_equal(grobo_diagnostics_get(list, 0, &said), 0);
     grobo_diagnostics_free(list);
 
-    control_have_motion(2);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "../a", NULL, 0),
+    runner_have_motion(2);
+    assert_int_equal(grobo_runner_save_motion(runner, GROBO_FORMAT_M, "../a", NULL, 0),
                      GROBO_ERR_PERM);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "", NULL, 0),
+    assert_int_equal(grobo_runner_save_motion(runner, GROBO_FORMAT_M, "", NULL, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_runner_save_motion(runner, GROBO_FORMAT_PSEQ, NULL, NULL, 0),
                      GROBO_ERR_ARG);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_PSEQ, NULL, NULL, 0),
-                     GROBO_ERR_ARG);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "a", path, sizeof path),
+    assert_int_equal(grobo_runner_save_motion(runner, GROBO_FORMAT_M, "a", path, sizeof path),
                      GROBO_ERR_SPACE);
-    assert_int_equal(grobo_control_load_motion(control, "a", NULL), GROBO_ERR_NOENT);
+    assert_int_equal(grobo_runner_load_motion(runner, "a", NULL), GROBO_ERR_NOENT);
 }
 
 /* Six angles would move the first six of twenty joints. */
@@ -156,13 +153,13 @@ TEST_WITH(with_and_without_thread, a_motion_of_another_robot_is_not_loaded)
     grobo_motion *motion;
 
     assert_int_equal(grobo_motion_read_memory(text, strlen(text), &options, NULL, &motion), 0);
-    assert_int_equal(grobo_control_set_motion(control, motion), GROBO_ERR_ARG);
+    assert_int_equal(grobo_runner_set_motion(runner, motion), GROBO_ERR_ARG);
     assert_int_equal(grobo_motion_set_target_body(motion, "so101"), 0);
-    assert_int_equal(grobo_control_set_motion(control, motion), GROBO_ERR_ARG);
+    assert_int_equal(grobo_runner_set_motion(runner, motion), GROBO_ERR_ARG);
     assert_int_equal(grobo_motion_set_target_body(motion, "GR001"), 0);
-    assert_int_equal(grobo_control_set_motion(control, motion), 1);
+    assert_int_equal(grobo_runner_set_motion(runner, motion), 1);
     grobo_motion_free(motion);
     put_file(in_folder("a.m"), text);
-    assert_int_equal(grobo_control_load_motion(control, "a", NULL), GROBO_ERR_ARG);
-    assert_int_equal(control_motion_size(control), 0);
+    assert_int_equal(grobo_runner_load_motion(runner, "a", NULL), GROBO_ERR_ARG);
+    assert_int_equal(runner_motion_size(runner), 0);
 }

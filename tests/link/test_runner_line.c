@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A control over a line that is lost, and how it leaves a robot: by a pty, served by a thread. */
+/* A runner over a line that is lost, and how it leaves a robot: by a pty, served by a thread. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,9 +8,9 @@
 
 #include <event2/event.h>
 
-#include "tests/support/control_kit.h"
 #include "tests/support/far_robot.h"
 #include "tests/support/folder.h"
+#include "tests/support/runner_kit.h"
 #include "tests/support/test.h"
 
 static const grobo_robot_config leave_off = {GROBO_ROBOT_CONFIG_INIT, .on_exit = GROBO_EXIT_OFF};
@@ -39,7 +39,7 @@ static int tear_down(void)
 
 static const test_fixture on_line[] = {{NULL, set_up, tear_down}};
 
-static void make(grobo_control_config config, bool threaded)
+static void make(grobo_runner_config config, bool threaded)
 {
     grobo_session_config session = {GROBO_SESSION_CONFIG_INIT};
 
@@ -52,16 +52,16 @@ static void make(grobo_control_config config, bool threaded)
     if (session.robot == NULL) {
         session.robot = &leave_off;
     }
-    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
     if (threaded) {
-        assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+        assert_int_equal(grobo_runner_start(runner), GROBO_OK);
     }
-    control_come_up();
+    runner_come_up();
 }
 
 static void have_torque(void)
 {
-    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0),
+    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0),
                      GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 20);
 }
@@ -70,22 +70,21 @@ static void have_torque(void)
 
 static void free_it(void)
 {
-    (void)grobo_control_free(control);
+    (void)grobo_runner_free(runner);
 }
 
 /* A program that ends without a word, but for its own atexit() handler. */
 static void be_a_program(int until)
 {
-    grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
+    grobo_runner_config config = {
+        GROBO_RUNNER_CONFIG_INIT,
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = device,
                                            .baud_bps = FAR_ROBOT_BPS, .robot = &leave_off}};
     char go;
     bool well = read(until, &go, 1) == 1 && atexit(free_it) == 0 &&
-                grobo_control_new(&config, &control) >= 0 &&
-                grobo_control_start_thread(control) >= 0 &&
-                grobo_control_connect(control, 0) >= 0 &&
-                grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0) >= 0;
+                grobo_runner_new(&config, &runner) >= 0 && grobo_runner_start(runner) >= 0 &&
+                grobo_runner_connect(runner, 0) >= 0 &&
+                grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0) >= 0;
 
     exit(well ? 0 : 1);
 }
@@ -130,13 +129,13 @@ static int wait_once(int number)
 
     switch (number) {
     case 0:
-        return grobo_control_wait(control, GROBO_NEVER_US);
+        return grobo_runner_wait(runner, GROBO_NEVER_US);
     case 1:
-        return grobo_control_read_posture(control, &posture, GROBO_NEVER_US);
+        return grobo_runner_read_posture(runner, &posture, GROBO_NEVER_US);
     case 2:
-        return grobo_control_read_angle(control, ELBOW, &angle_rad, GROBO_NEVER_US);
+        return grobo_runner_read_angle(runner, ELBOW, &angle_rad, GROBO_NEVER_US);
     default:
-        return grobo_control_check_connection(control, GROBO_NEVER_US);
+        return grobo_runner_check_connection(runner, GROBO_NEVER_US);
     }
 }
 
@@ -160,10 +159,10 @@ TEST_WITH(on_line, nobody_waits_for_a_robot_that_is_gone)
     for (int threaded = 0; threaded < 2; threaded++) {
         int64_t begin_us;
 
-        make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = false}, threaded != 0);
-        control_have_motion(4);
-        (void)grobo_control_set_motion_count(control, 1000000);
-        assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
+        make((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT, .skip_exit = false}, threaded != 0);
+        runner_have_motion(4);
+        (void)grobo_runner_set_motion_count(runner, 1000000);
+        assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
         for (int i = 0; i < 4; i++) {
             waiters[i].number = i;
             assert_int_equal(grobo_thread_start(&waiters[i].thread, wait_for_loss, &waiters[i]),
@@ -183,11 +182,11 @@ TEST_WITH(on_line, nobody_waits_for_a_robot_that_is_gone)
             unplugged += waiters[i].result == GROBO_ERR_UNPLUGGED;
         }
         assert_true(grobo_now_us() - begin_us < 2000000);
-        assert_false(grobo_control_is_connected(control));
-        assert_false(grobo_control_is_playing(control));
-        assert_int_equal(grobo_control_start_motion(control), GROBO_ERR_CLOSED);
-        assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_UNPLUGGED);
-        assert_int_equal(grobo_control_free(control), GROBO_OK);
+        assert_false(grobo_runner_is_connected(runner));
+        assert_false(grobo_runner_is_playing(runner));
+        assert_int_equal(grobo_runner_start_motion(runner), GROBO_ERR_CLOSED);
+        assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_UNPLUGGED);
+        assert_int_equal(grobo_runner_free(runner), GROBO_OK);
         far_robot_plug(&robot, true);
     }
     assert_true(unplugged >= 2);
@@ -197,7 +196,7 @@ static GROBO_THREAD_FUNC connect_again(void *arg)
 {
     waiter *self = arg;
 
-    self->result = grobo_control_connect(control, GROBO_NEVER_US);
+    self->result = grobo_runner_connect(runner, GROBO_NEVER_US);
     GROBO_THREAD_RETURN;
 }
 
@@ -205,52 +204,52 @@ TEST_WITH(on_line, who_waits_for_its_return_is_told)
 {
     waiter self = {0};
 
-    make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT,
-                                .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT,
-                                                                   .reconnect = true}},
+    make((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT,
+                               .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT,
+                                                                  .reconnect = true}},
          true);
     far_robot_plug(&robot, false);
-    while (grobo_control_is_connected(control)) {
-        (void)grobo_control_svc(control);
+    while (grobo_runner_is_connected(runner)) {
+        (void)grobo_runner_svc(runner);
     }
     assert_int_equal(grobo_thread_start(&self.thread, connect_again, &self), GROBO_OK);
     far_robot_plug(&robot, true);
     assert_int_equal(grobo_thread_join(self.thread), GROBO_OK);
     assert_int_equal(self.result, GROBO_OK);
-    assert_int_equal(grobo_control_check_connection(control, 0), GROBO_OK);
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_check_connection(runner, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }
 
 /* ---- leaving the robot -------------------------------------------------------------------- */
 
 TEST_WITH(on_line, every_way_out_leaves_the_robot_well)
 {
-    make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT}, true);
+    make((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT}, true);
     have_torque();
-    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    assert_int_equal(grobo_runner_stop(runner), GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 0);
-    assert_true(grobo_control_is_connected(control));
+    assert_true(grobo_runner_is_connected(runner));
     have_torque();
-    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_close(runner, 0), GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 0);
-    control_come_up();
+    runner_come_up();
     have_torque();
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 0);
 
-    make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT}, true);
+    make((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT}, true);
     have_torque();
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 0);
 }
 
 TEST_WITH(on_line, a_robot_is_left_as_it_is_if_so_configured)
 {
-    make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true}, true);
+    make((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT, .skip_exit = true}, true);
     have_torque();
-    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
-    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_stop(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_close(runner, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 20);
 }
 
@@ -271,8 +270,8 @@ TEST_WITH(on_line, a_robot_whose_owner_is_gone_is_left_well)
 
     assert_int_equal(evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, pair), 0);
     make(
-        (grobo_control_config){
-            GROBO_CONTROL_CONFIG_INIT,
+        (grobo_runner_config){
+            GROBO_RUNNER_CONFIG_INIT,
             .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .on_robot = on_robot,
                                                .ctx = &pair[1]},
             .owner_timeout_us = 200000,
@@ -280,20 +279,20 @@ TEST_WITH(on_line, a_robot_whose_owner_is_gone_is_left_well)
         true);
     have_torque();
     /* Whoever waits is there. */
-    control_have_motion(1);
-    (void)grobo_control_set_motion_count(control, 1000000);
-    assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
-    assert_int_equal(grobo_control_wait(control, 600000), GROBO_ERR_TIMEOUT);
+    runner_have_motion(1);
+    (void)grobo_runner_set_motion_count(runner, 1000000);
+    assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
+    assert_int_equal(grobo_runner_wait(runner, 600000), GROBO_ERR_TIMEOUT);
     assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 0), 0);
-    assert_true(grobo_control_is_playing(control));
+    assert_true(grobo_runner_is_playing(runner));
     /* And now nobody. */
     assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 5000000), GROBO_PORT_READABLE);
     assert_int_equal(read(pair[0], &told, 1), 1);
     assert_int_equal(far_robot_torqued(&robot), 0);
-    assert_false(grobo_control_is_playing(control));
+    assert_false(grobo_runner_is_playing(runner));
     /* It comes back. */
     have_torque();
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     assert_int_equal(close(pair[0]), 0);
     assert_int_equal(close(pair[1]), 0);
 }

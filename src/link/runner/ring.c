@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is kept of a control for who looks on: events, and the snapshot.
+ * What is kept of a runner for who looks on: events, and the snapshot.
  *
  * Readings have a ring of their own, so that however many of them come, the end of a job is not
  * displaced. Events are numbered as they come and taken in that order from whichever ring has the
@@ -12,42 +12,42 @@
 #include "src/base/assert.h"
 #include "src/base/memory.h"
 #include "src/base/sized.h"
+#include "src/link/runner/runner.h"
 #include "src/link/session/session.h"
-#include "src/link/thread/thread.h"
 #include "src/robot/robot.h"
 
-typedef struct control_kept {
+typedef struct runner_kept {
     uint64_t number;
-    grobo_control_event event;
-} control_kept;
+    grobo_runner_event event;
+} runner_kept;
 
-int grobo_i_control_ring_new(grobo_control *control, size_t capacity)
+int grobo_i_runner_ring_new(grobo_runner *runner, size_t capacity)
 {
     if (capacity == 0) {
         return GROBO_OK;
     }
-    size_t bytes = capacity * sizeof(control_kept);
-    control->capacity = capacity;
-    control->told.kept = grobo_i_new(control->mem, bytes);
-    control->readings.kept = grobo_i_new(control->mem, bytes);
-    if (control->told.kept == NULL || control->readings.kept == NULL) {
+    size_t bytes = capacity * sizeof(runner_kept);
+    runner->capacity = capacity;
+    runner->told.kept = grobo_i_new(runner->mem, bytes);
+    runner->readings.kept = grobo_i_new(runner->mem, bytes);
+    if (runner->told.kept == NULL || runner->readings.kept == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    return grobo_i_session_pair_new(control->event_socket);
+    return grobo_i_session_pair_new(runner->event_socket);
 }
 
-void grobo_i_control_ring_free(grobo_control *control)
+void grobo_i_runner_ring_free(grobo_runner *runner)
 {
-    size_t bytes = control->capacity * sizeof(control_kept);
-    grobo_i_session_pair_free(control->event_socket);
-    grobo_i_free(control->mem, control->told.kept, bytes);
-    grobo_i_free(control->mem, control->readings.kept, bytes);
+    size_t bytes = runner->capacity * sizeof(runner_kept);
+    grobo_i_session_pair_free(runner->event_socket);
+    grobo_i_free(runner->mem, runner->told.kept, bytes);
+    grobo_i_free(runner->mem, runner->readings.kept, bytes);
 }
 
 /* ---- keeping ------------------------------------------------------------------------------ */
 
 /* The place of the next event; the oldest makes way where the ring is full. */
-static control_kept *place_in(control_ring *ring, size_t capacity)
+static runner_kept *place_in(runner_ring *ring, size_t capacity)
 {
     GROBO_ASSERT(ring->head < capacity && ring->n <= capacity);
     if (ring->n == capacity) {
@@ -58,19 +58,19 @@ static control_kept *place_in(control_ring *ring, size_t capacity)
     return &ring->kept[(ring->head + ring->n - 1) % capacity];
 }
 
-static bool is_reading(const grobo_control_event *event)
+static bool is_reading(const grobo_runner_event *event)
 {
     return !event->of_line &&
            (event->event.kind == GROBO_EVENT_JOINT || event->event.kind == GROBO_EVENT_ROUND);
 }
 
-static bool is_job(const grobo_control_event *event)
+static bool is_job(const grobo_runner_event *event)
 {
     return !event->of_line && event->event.kind == GROBO_EVENT_JOB;
 }
 
 /* The data of a job is valid in the callback only. */
-static void keep_data(grobo_control_event *event)
+static void keep_data(grobo_runner_event *event)
 {
     grobo_event_job *job = &event->event.u.job;
     if (is_job(event) && job->size > 0) {
@@ -79,31 +79,31 @@ static void keep_data(grobo_control_event *event)
     }
 }
 
-void grobo_i_control_keep(grobo_control *control, const grobo_control_event *event)
+void grobo_i_runner_keep(grobo_runner *runner, const grobo_runner_event *event)
 {
-    if (control->capacity == 0) {
+    if (runner->capacity == 0) {
         return;
     }
-    grobo_i_control_lock(control);
-    control_ring *ring = is_reading(event) ? &control->readings : &control->told;
-    control_kept *kept = place_in(ring, control->capacity);
-    kept->number = ++control->event_number;
+    grobo_i_runner_lock(runner);
+    runner_ring *ring = is_reading(event) ? &runner->readings : &runner->told;
+    runner_kept *kept = place_in(ring, runner->capacity);
+    kept->number = ++runner->event_number;
     kept->event = *event;
     keep_data(&kept->event);
-    if (!control->readable) {
-        control->readable = true;
-        (void)send(control->event_socket[1], "", 1, 0); /* there is room: it is the only byte */
+    if (!runner->readable) {
+        runner->readable = true;
+        (void)send(runner->event_socket[1], "", 1, 0); /* there is room: it is the only byte */
     }
-    grobo_i_control_unlock(control);
+    grobo_i_runner_unlock(runner);
 }
 
 /* ---- taking ------------------------------------------------------------------------------- */
 
 /* With the lock: the ring that has the oldest event. */
-static control_ring *oldest(grobo_control *control)
+static runner_ring *oldest(grobo_runner *runner)
 {
-    control_ring *told = &control->told;
-    control_ring *readings = &control->readings;
+    runner_ring *told = &runner->told;
+    runner_ring *readings = &runner->readings;
     if (told->n == 0 || readings->n == 0) {
         return told->n > 0 ? told : readings;
     }
@@ -111,66 +111,66 @@ static control_ring *oldest(grobo_control *control)
 }
 
 /* With the lock. @return 1, 0: there is none, GROBO_ERR_ARG: the size is nonsense. */
-static int take(grobo_control *control, grobo_control_event *event)
+static int take(grobo_runner *runner, grobo_runner_event *event)
 {
-    control_ring *ring = oldest(control);
+    runner_ring *ring = oldest(runner);
     if (ring->n == 0) {
         return 0;
     }
-    control_kept *kept = &ring->kept[ring->head];
-    GROBO_ASSERT(kept->number > control->taken_number);
-    kept->event.lost = kept->number - control->taken_number - 1;
+    runner_kept *kept = &ring->kept[ring->head];
+    GROBO_ASSERT(kept->number > runner->taken_number);
+    kept->event.lost = kept->number - runner->taken_number - 1;
     if (!grobo_i_sized_give(event, &kept->event, sizeof kept->event)) {
         return GROBO_ERR_ARG;
     }
-    control->taken_number = kept->number;
-    ring->head = (ring->head + 1) % control->capacity;
+    runner->taken_number = kept->number;
+    ring->head = (ring->head + 1) % runner->capacity;
     ring->n--;
-    if (control->told.n + control->readings.n == 0) {
+    if (runner->told.n + runner->readings.n == 0) {
         char byte;
-        (void)recv(control->event_socket[0], &byte, 1, 0);
-        control->readable = false;
+        (void)recv(runner->event_socket[0], &byte, 1, 0);
+        runner->readable = false;
     }
     return 1;
 }
 
-int grobo_control_next_event(grobo_control *control, grobo_control_event *event)
+int grobo_runner_next_event(grobo_runner *runner, grobo_runner_event *event)
 {
-    if (control == NULL || event == NULL) {
+    if (runner == NULL || event == NULL) {
         return GROBO_ERR_ARG;
     }
-    if (control->capacity == 0) {
+    if (runner->capacity == 0) {
         return GROBO_ERR_STATE;
     }
-    grobo_i_control_lock(control);
-    int r = take(control, event);
-    grobo_i_control_unlock(control);
+    grobo_i_runner_lock(runner);
+    int r = take(runner, event);
+    grobo_i_runner_unlock(runner);
     if (r > 0 && is_job(event)) {
         event->event.u.job.data = event->event.u.job.size > 0 ? event->data : NULL;
     }
     return r;
 }
 
-grobo_socket grobo_control_event_socket(const grobo_control *control)
+grobo_socket grobo_runner_event_socket(const grobo_runner *runner)
 {
-    return control == NULL ? GROBO_SOCKET_NULL : control->event_socket[0];
+    return runner == NULL ? GROBO_SOCKET_NULL : runner->event_socket[0];
 }
 
 /* ---- the snapshot ------------------------------------------------------------------------- */
 
-int grobo_control_snapshot(grobo_control *control, grobo_snapshot *snapshot)
+int grobo_runner_snapshot(grobo_runner *runner, grobo_snapshot *snapshot)
 {
-    if (control == NULL || snapshot == NULL) {
+    if (runner == NULL || snapshot == NULL) {
         return GROBO_ERR_ARG;
     }
-    const grobo_robot *robot = control_robot(control);
+    const grobo_robot *robot = runner_robot(runner);
     grobo_snapshot seen = {
-        .latched = grobo_session_is_latched(control->session),
-        .n_joints = control->driver->model->n_joints,
+        .latched = grobo_session_is_latched(runner->session),
+        .n_joints = runner->driver->model->n_joints,
     };
-    grobo_i_control_lock(control);
-    seen.connected = control->up;
-    grobo_i_control_unlock(control);
+    grobo_i_runner_lock(runner);
+    seen.connected = runner->up;
+    grobo_i_runner_unlock(runner);
     grobo_i_lock(robot); /* all at one moment: each function takes it again */
     seen.now_us = grobo_now_us();
     seen.moving = grobo_robot_moving(robot);

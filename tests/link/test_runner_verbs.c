@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* One set of verbs: the engine of a control, used by any thread. */
+/* One set of verbs: the engine of a runner, used by any thread. */
 
 #include <grobo/gr001.h>
 
-#include "tests/support/control_kit.h"
+#include "tests/support/runner_kit.h"
 #include "tests/support/test.h"
 
 enum { THREADS = 4, ROUNDS = 25 };
@@ -21,27 +21,26 @@ static grobo_posture target_of(int joint, double angle_deg, int time_ms)
 
 TEST_WITH(with_and_without_thread, a_program_is_three_lines)
 {
-    control_come_up();
-    grobo_robot *robot = grobo_control_robot(control);
+    runner_come_up();
+    grobo_robot *robot = grobo_runner_robot(runner);
     grobo_posture target = target_of(13, 20, 200);
-    assert_int_equal(grobo_control_wait_job(control, grobo_robot_move(robot, &target), 0),
-                     GROBO_OK);
+    assert_int_equal(grobo_runner_wait_job(runner, grobo_robot_move(robot, &target), 0), GROBO_OK);
     double angle_rad = 0;
-    assert_int_equal(grobo_control_read_angle(control, 13, &angle_rad, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_read_angle(runner, 13, &angle_rad, 0), GROBO_OK);
     assert_in_range((unsigned)grobo_ddeg_from_rad(angle_rad), 195, 205);
 }
 
 TEST_WITH(with_and_without_thread, an_error_of_the_request_is_the_result)
 {
-    control_come_up();
-    grobo_robot *robot = grobo_control_robot(control);
+    runner_come_up();
+    grobo_robot *robot = grobo_runner_robot(runner);
     grobo_posture target = target_of(13, 400, 200);
-    assert_int_equal(grobo_control_wait_job(control, grobo_robot_move(robot, &target), 0),
+    assert_int_equal(grobo_runner_wait_job(runner, grobo_robot_move(robot, &target), 0),
                      GROBO_ERR_LIMIT);
-    assert_int_equal(grobo_control_wait_job(control, 0, 0), GROBO_ERR_ARG);
-    assert_int_equal(grobo_control_wait_job(control, 1000000, 0), GROBO_ERR_NOTFOUND);
-    assert_int_equal(grobo_control_wait_job(NULL, 1, 0), GROBO_ERR_ARG);
-    assert_null(grobo_control_robot(NULL));
+    assert_int_equal(grobo_runner_wait_job(runner, 0, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_runner_wait_job(runner, 1000000, 0), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_runner_wait_job(NULL, 1, 0), GROBO_ERR_ARG);
+    assert_null(grobo_runner_robot(NULL));
 }
 
 /* What a thread found, to be asserted by the test's own. */
@@ -54,14 +53,14 @@ typedef struct caller {
 static GROBO_THREAD_FUNC move_to_and_fro(void *arg)
 {
     caller *c = arg;
-    grobo_robot *robot = grobo_control_robot(control);
+    grobo_robot *robot = grobo_runner_robot(runner);
     for (int i = 0; i < ROUNDS && c->bad == GROBO_OK; i++) {
         grobo_posture target;
         grobo_joint_info info;
         (void)grobo_posture_init(&target, 20);
         (void)grobo_posture_set_deg(&target, c->joint, i % 2 == 0 ? -3 : -1);
         (void)grobo_posture_set_time_ms(&target, 20);
-        int result = grobo_control_wait_job(control, grobo_robot_move(robot, &target), 0);
+        int result = grobo_runner_wait_job(runner, grobo_robot_move(robot, &target), 0);
         if (result == GROBO_ERR_FULL) {
             continue; /* there are more threads than places */
         }
@@ -76,7 +75,7 @@ static GROBO_THREAD_FUNC move_to_and_fro(void *arg)
 TEST_WITH(with_and_without_thread, threads_move_joints_of_their_own)
 {
     caller callers[THREADS];
-    control_come_up();
+    runner_come_up();
     for (int i = 0; i < THREADS; i++) {
         callers[i] = (caller){.joint = joints[i]};
         assert_int_equal(grobo_thread_start(&callers[i].thread, move_to_and_fro, &callers[i]),
@@ -90,14 +89,14 @@ TEST_WITH(with_and_without_thread, threads_move_joints_of_their_own)
 
 TEST_WITH(with_and_without_thread, an_emergency_stop_ends_the_moves_of_all_threads)
 {
-    control_come_up();
-    grobo_robot *robot = grobo_control_robot(control);
+    runner_come_up();
+    grobo_robot *robot = grobo_runner_robot(runner);
     grobo_posture target = target_of(13, 30, 5000);
     int job = grobo_robot_move(robot, &target);
     assert_true(job > 0);
     assert_true(grobo_robot_is_pending(robot, job));
-    assert_int_equal(grobo_control_estop(control), GROBO_OK);
-    int result = grobo_control_wait_job(control, job, 0);
+    assert_int_equal(grobo_runner_estop(runner), GROBO_OK);
+    int result = grobo_runner_wait_job(runner, job, 0);
     assert_true(result == GROBO_ERR_CANCELED || result == GROBO_ERR_LATCHED);
     assert_int_equal(grobo_robot_move(robot, &target), GROBO_ERR_LATCHED);
     assert_int_equal(grobo_robot_reset(robot), GROBO_ERR_STATE); /* the loop's alone */

@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/thread.h>
+#include <grobo/runner.h>
 
 #include "tests/support/test.h"
 
@@ -41,7 +41,7 @@ static int times_sent(void)
 }
 
 /* 4 s in which the frames of a motion leave no room for anything else. */
-static void fill_line(grobo_control *control)
+static void fill_line(grobo_runner *runner)
 {
     const grobo_play_options full = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
                                      .rate_hz = 53, .unwatched = true};
@@ -55,32 +55,32 @@ static void fill_line(grobo_control *control)
         assert_int_equal(grobo_posture_set_deg(&posture, ELBOW, 5.0 * i), GROBO_OK);
         assert_int_equal(grobo_motion_append(motion, &posture), GROBO_OK);
     }
-    assert_int_equal(grobo_control_set_motion(control, motion), 2);
+    assert_int_equal(grobo_runner_set_motion(runner, motion), 2);
     grobo_motion_free(motion);
-    assert_int_equal(grobo_control_play_motion(control, &full), GROBO_OK);
+    assert_int_equal(grobo_runner_play_motion(runner, &full), GROBO_OK);
 }
 
 TEST(a_command_that_took_too_long_does_not_leave)
 {
-    grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT,
-                                   .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT,
-                                                                      .device = GROBO_DEVICE_SIM,
-                                                                      .on_tap = on_tap},
-                                   .skip_exit = true};
-    grobo_control *control;
+    grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT,
+                                  .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT,
+                                                                     .device = GROBO_DEVICE_SIM,
+                                                                     .on_tap = on_tap},
+                                  .skip_exit = true};
+    grobo_runner *runner;
 
-    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
-    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
-    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
     assert_int_equal(
-        grobo_control_set_servo_states(control, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON, 0), 0);
-    fill_line(control);
+        grobo_runner_set_servo_states(runner, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON, 0), 0);
+    fill_line(runner);
     /* It is begun when the robot is known to be where the motion begins, and finds no room. */
-    assert_int_equal(grobo_control_send_command(control, goal, sizeof goal, PATIENCE_US),
+    assert_int_equal(grobo_runner_send_command(runner, goal, sizeof goal, PATIENCE_US),
                      GROBO_ERR_TIMEOUT);
-    assert_int_equal(grobo_control_wait(control, 10000000), GROBO_OK);
+    assert_int_equal(grobo_runner_wait(runner, 10000000), GROBO_OK);
     /* The next one has the line to itself. */
-    assert_int_equal(grobo_control_send_command(control, goal, sizeof goal, 0), sizeof goal);
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_send_command(runner, goal, sizeof goal, 0), sizeof goal);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     assert_int_equal(times_sent(), 1);
 }

@@ -2,12 +2,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "tests/support/control_kit.h"
 #include "tests/support/folder.h"
+#include "tests/support/runner_kit.h"
 
-grobo_control *control;
+grobo_runner *runner;
 
-static void make(grobo_control_config config)
+static void make(grobo_runner_config config)
 {
     /* No test here is of a late host: a busy machine ends no motion. */
     const grobo_robot_config patient = {GROBO_ROBOT_CONFIG_INIT, .stall_us = 30000000};
@@ -15,47 +15,47 @@ static void make(grobo_control_config config)
                                           .baud_bps = 1000000, .robot = &patient};
 
     config.session = &session;
-    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
 }
 
-int control_set_up(void)
+int runner_set_up(void)
 {
-    grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .motion_dir = "/nowhere"};
+    grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .motion_dir = "/nowhere"};
 
     (void)folder_set_up();
     make(config);
-    assert_int_equal(grobo_control_set_motion_dir(control, folder), GROBO_OK);
+    assert_int_equal(grobo_runner_set_motion_dir(runner, folder), GROBO_OK);
     return 0;
 }
 
-int control_set_up_threaded(void)
+int runner_set_up_threaded(void)
 {
-    (void)control_set_up();
-    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    (void)runner_set_up();
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
     return 0;
 }
 
-int control_tear_down(void)
+int runner_tear_down(void)
 {
     static const char *const files[] = {"Motion1.m", "Motion2.m", "a.m",   "a.yaml",
                                         "a.pseq",    "a.mseq",    "bad.m", "b.yaml"};
 
-    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     folder_remove(files, sizeof files / sizeof files[0]);
     return 0;
 }
 
 const test_fixture with_and_without_thread[2] = {
-    {NULL, control_set_up, control_tear_down},
-    {"threaded", control_set_up_threaded, control_tear_down}};
+    {NULL, runner_set_up, runner_tear_down},
+    {"threaded", runner_set_up_threaded, runner_tear_down}};
 
-void control_come_up(void)
+void runner_come_up(void)
 {
-    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
-    assert_true(grobo_control_is_connected(control));
+    assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
+    assert_true(grobo_runner_is_connected(runner));
 }
 
-void control_have_motion(int n)
+void runner_have_motion(int n)
 {
     grobo_motion *motion;
     grobo_posture posture;
@@ -68,24 +68,24 @@ void control_have_motion(int n)
         assert_int_equal(grobo_posture_set_deg(&posture, ELBOW, 2.0 * i), GROBO_OK);
         assert_int_equal(grobo_motion_append(motion, &posture), GROBO_OK);
     }
-    assert_int_equal(grobo_control_set_motion(control, motion), n);
+    assert_int_equal(grobo_runner_set_motion(runner, motion), n);
     grobo_motion_free(motion);
 }
 
-int control_motion_size(grobo_control *of)
+int runner_motion_size(grobo_runner *of)
 {
     grobo_motion *motion = NULL;
-    int n = grobo_control_get_motion(of, &motion);
+    int n = grobo_runner_get_motion(of, &motion);
 
     grobo_motion_free(motion);
     return n;
 }
 
-void control_assert_elbow_at(double angle_deg)
+void runner_assert_elbow_at(double angle_deg)
 {
     double angle_rad = -99;
 
-    assert_int_equal(grobo_control_read_angle(control, ELBOW, &angle_rad, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_read_angle(runner, ELBOW, &angle_rad, 0), GROBO_OK);
     assert_true(grobo_deg_from_rad(angle_rad) > angle_deg - 0.6);
     assert_true(grobo_deg_from_rad(angle_rad) < angle_deg + 0.6);
 }

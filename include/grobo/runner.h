@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * @file thread.h
- * @brief A robot with a control thread: a session that any thread may call.
+ * @file runner.h
+ * @brief A runner: a robot with a session of its own that any thread may call.
  *
- * A grobo_control owns a session and the event_base it runs on, and beside them what a program
+ * A grobo_runner owns a session and the event_base it runs on, and beside them what a program
  * wants kept for it: the current motion, the target and initial postures, a command buffer, how
- * to play. grobo_control_start_thread() starts a thread that runs the loop; until then, and after
- * grobo_control_stop_thread(), a call that needs the loop runs it itself for as long as it waits.
+ * to play. grobo_runner_start() starts a thread that runs the loop; until then, and after
+ * grobo_runner_stop(), a call that needs the loop runs it itself for as long as it waits.
  * So everything works with and without the thread; only what happens between calls (background
  * reading, playing, coming back after a loss) needs it, or the caller's own rounds of
- * grobo_control_svc().
+ * grobo_runner_svc().
  *
- * Every function may be called from any thread at any time, grobo_control_free() being the
+ * Every function may be called from any thread at any time, grobo_runner_free() being the
  * exception. Each is of one of three kinds:
  * - **At once**: kept under a lock for a few instructions. Also in callbacks.
  * - **Handed over**: done by the thread that runs the loop, between two of its events; the caller
@@ -23,30 +23,30 @@
  *   robot's attention queue and are served in the order of their calls. In a callback waiting
  *   would be for ever: GROBO_ERR_STATE, and nothing is done.
  *
- * Stopping does not depend on a turn: grobo_control_estop(), grobo_control_post_stop() and
- * grobo_control_post_exit() are safe in signal handlers and leave a request that is kept until it
- * has been carried out; grobo_control_exit() leaves it where it cannot wait. What delays it is a
- * callback, or a function of grobo_control_call() or grobo_control_post(), that does not return:
+ * Stopping does not depend on a turn: grobo_runner_estop(), grobo_runner_post_stop() and
+ * grobo_runner_post_exit() are safe in signal handlers and leave a request that is kept until it
+ * has been carried out; grobo_runner_exit() leaves it where it cannot wait. What delays it is a
+ * callback, or a function of grobo_runner_call() or grobo_runner_post(), that does not return:
  * while it holds the loop, nothing is read, nothing is watched and nothing is sent, so joints
  * continue to the posture they were sent to last, and a motion that is late by stall_us ends. A
  * callback must not wait for a lock whose owner calls here and waits. One that takes longer than
  * GROBO_CALLBACK_SLOW_US is reported by the event GROBO_EVENT_SLOW_CALLBACK.
  *
  * Besides their own errors, handed-over and waiting calls may return GROBO_ERR_FULL
- * (GROBO_CONTROL_CALLS_MAX are under way; some more for a stop or an exit), GROBO_ERR_CLOSED
+ * (GROBO_RUNNER_CALLS_MAX are under way; some more for a stop or an exit), GROBO_ERR_CLOSED
  * (the robot is not connected) and GROBO_ERR_UNPLUGGED (the line was lost while the call waited:
  * no call waits for a robot that is gone). Callbacks run on the thread that runs the loop, without
  * any lock held. The functions of a driver and of a clip run with the robot's lock, on whatever
  * thread asks for it: they may call at-once functions of other robots, which do not call back.
  *
  * Joints count from 0 in joint order. The exit policy of the robot's configuration is carried out,
- * within its bound, before the loop is left alone: at the end of the control thread, by
- * grobo_control_close_port() and by grobo_control_free(), unless skip_exit. The library installs
- * no atexit() or signal handler: a program calls grobo_control_free() on its way out (it may be
+ * within its bound, before the loop is left alone: at the end of the runner's thread, by
+ * grobo_runner_close() and by grobo_runner_free(), unless skip_exit. The library installs
+ * no atexit() or signal handler: a program calls grobo_runner_free() on its way out (it may be
  * called by the program's own atexit() handler). Where the thread that owns the robot may die
  * without that, owner_timeout_us is the dead-man's handle; for the death of the whole process there
  * is session.guard (guard.h).
- * A process that the program forked calls nothing here, not even grobo_control_free(): port and
+ * A process that the program forked calls nothing here, not even grobo_runner_free(): port and
  * loop are its parent's.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
@@ -60,58 +60,58 @@
 GROBO_BEGIN_DECLS
 
 /** Calls that may wait for the loop at a time. */
-#define GROBO_CONTROL_CALLS_MAX 32
-/** Ends of jobs that a control remembers. */
-#define GROBO_CONTROL_ENDS 32
+#define GROBO_RUNNER_CALLS_MAX 32
+/** Ends of jobs that a runner remembers. */
+#define GROBO_RUNNER_ENDS 32
 /** Timeout where none is given or configured. */
-#define GROBO_CONTROL_TIMEOUT_US INT64_C(5000000)
-/** Control period where none is given. */
-#define GROBO_CONTROL_PERIOD_US 10000
-/** Events that a control keeps at most. */
-#define GROBO_CONTROL_EVENTS_MAX 4096
+#define GROBO_RUNNER_TIMEOUT_US INT64_C(5000000)
+/** Period where none is given. */
+#define GROBO_RUNNER_PERIOD_US 10000
+/** Events that a runner keeps at most. */
+#define GROBO_RUNNER_EVENTS_MAX 4096
 /** Bytes of the command buffer. */
-#define GROBO_CONTROL_COMMAND_BYTES GROBO_FRAME_MAX_BYTES
+#define GROBO_RUNNER_COMMAND_BYTES GROBO_FRAME_MAX_BYTES
 /** Bytes of the buffer of received bytes. */
-#define GROBO_CONTROL_RECEIVE_BYTES 512
+#define GROBO_RUNNER_RECEIVE_BYTES 512
 
 /** A robot that any thread may call. */
-typedef struct grobo_control grobo_control;
+typedef struct grobo_runner grobo_runner;
 
-/** Something to be done on the loop. @return what grobo_control_call() shall return. */
-typedef int (*grobo_control_fn)(void *arg, grobo_control *control);
+/** Something to be done on the loop. @return what grobo_runner_call() shall return. */
+typedef int (*grobo_runner_fn)(void *arg, grobo_runner *runner);
 
-/** What a control is made of. Zero means default. */
-typedef struct grobo_control_config {
-    size_t size; /**< GROBO_CONTROL_CONFIG_INIT */
+/** What a runner is made of. Zero means default. */
+typedef struct grobo_runner_config {
+    size_t size; /**< GROBO_RUNNER_CONFIG_INIT */
     /** The session, needed, copied; its `device` is needed, `base` must be NULL. Its callbacks are
      *  called on the thread that runs the loop; its allocator must be safe to call from every
      *  thread. */
     const grobo_session_config *session;
-    const char *name;          /**< copied; NULL: the driver's */
-    const char *motion_dir;    /**< copied; NULL: "." */
-    int64_t control_period_us; /**< 1000..1000000; 0: GROBO_CONTROL_PERIOD_US */
-    int64_t owner_timeout_us;  /**< > 0: when no thread but the loop's own has called for so long,
+    const char *name;         /**< copied; NULL: the driver's */
+    const char *motion_dir;   /**< copied; NULL: "." */
+    int64_t period_us;        /**< 1000..1000000; 0: GROBO_RUNNER_PERIOD_US */
+    int64_t owner_timeout_us; /**< > 0: when no thread but the loop's own has called for so long,
                                     the exit policy is carried out, once until the next call */
-    bool skip_exit;            /**< leave the robot as it is */
-    grobo_control_fn on_svc;   /**< called once each control period while the loop runs, arg being
+    bool skip_exit;           /**< leave the robot as it is */
+    grobo_runner_fn on_svc;   /**< called once each period while the loop runs, arg being
                                     session->ctx; its result is ignored; or NULL */
-    int64_t timeout_us;        /**< of calls that are given none, and of those handed over; 0:
-                                    GROBO_CONTROL_TIMEOUT_US */
-    size_t events;             /**< events kept for grobo_control_next_event(), at most
-                                    GROBO_CONTROL_EVENTS_MAX; each takes some 2.5 kB; 0: none */
-} grobo_control_config;
+    int64_t timeout_us;       /**< of calls that are given none, and of those handed over; 0:
+                                    GROBO_RUNNER_TIMEOUT_US */
+    size_t events;            /**< events kept for grobo_runner_next_event(), at most
+                                    GROBO_RUNNER_EVENTS_MAX; each takes some 2.5 kB; 0: none */
+} grobo_runner_config;
 /** Begins an initializer of one. */
-#define GROBO_CONTROL_CONFIG_INIT GROBO_SIZED(grobo_control_config)
+#define GROBO_RUNNER_CONFIG_INIT GROBO_SIZED(grobo_runner_config)
 
 /* ---- making and freeing ------------------------------------------------------------------- */
 
 /**
- * Makes a control, closed, without a thread, with an empty motion. Any thread.
- * @param[out] control freed with grobo_control_free().
+ * Makes a runner, closed, without a thread, with an empty motion. Any thread.
+ * @param[out] runner freed with grobo_runner_free().
  * @return GROBO_OK, GROBO_ERR_ARG (base given, a number out of range), GROBO_ERR_CAP (a name too
  *   long), GROBO_ERR_NOMEM, or as grobo_session_new().
  */
-GROBO_API int grobo_control_new(const grobo_control_config *config, grobo_control **control);
+GROBO_API int grobo_runner_new(const grobo_runner_config *config, grobo_runner **runner);
 
 /**
  * Stops the thread, carries out the exit policy, closes, frees; NULL is fine. Waits for the exit.
@@ -119,47 +119,47 @@ GROBO_API int grobo_control_new(const grobo_control_config *config, grobo_contro
  * later.
  * @return GROBO_OK; GROBO_ERR_STATE in a callback: then nothing was done.
  */
-GROBO_API int grobo_control_free(grobo_control *control);
+GROBO_API int grobo_runner_free(grobo_runner *runner);
 
-/* ---- the control thread ------------------------------------------------------------------- */
+/* ---- the runner's thread ------------------------------------------------------------------- */
 
 /**
- * Starts the control thread: grobo_control_run() on a thread of the port layer. At once.
+ * Starts the runner's thread: grobo_runner_run() on a thread of the port layer. At once.
  * @return GROBO_OK, GROBO_ERR_STATE (there is one), GROBO_ERR_NOMEM.
  */
-GROBO_API int grobo_control_start_thread(grobo_control *control);
+GROBO_API int grobo_runner_start(grobo_runner *runner);
 
 /**
- * Ends the control thread and waits for that: it carries out the exit policy first. The port
+ * Ends the runner's thread and waits for that: it carries out the exit policy first. The port
  * stays open. In a callback: the thread ends after it, without being waited for.
  * @return GROBO_OK, GROBO_ERR_STATE (none runs).
  */
-GROBO_API int grobo_control_stop_thread(grobo_control *control);
+GROBO_API int grobo_runner_stop(grobo_runner *runner);
 
 /** True from a start of the thread until it is asked to stop. At once. */
-GROBO_API bool grobo_control_is_active(grobo_control *control);
+GROBO_API bool grobo_runner_is_active(grobo_runner *runner);
 
 /**
- * The handle of the control thread, to compare or to set its priority; it must not be joined. At
+ * The handle of the runner's thread, to compare or to set its priority; it must not be joined. At
  * once. @return GROBO_OK, GROBO_ERR_STATE (no thread, or one of the caller's that runs
- * grobo_control_run()).
+ * grobo_runner_run()).
  */
-GROBO_API int grobo_control_thread(grobo_control *control, grobo_thread *thread);
+GROBO_API int grobo_runner_thread(grobo_runner *runner, grobo_thread *thread);
 
 /**
- * One round of the control loop: waits for the next event, at most until the control period is
- * over, and does what is due. What the control thread does all the time; for a program that has
+ * One round of the loop: waits for the next event, at most until the period is
+ * over, and does what is due. What the runner's thread does all the time; for a program that has
  * a loop of its own. Any thread; when another one runs the loop, waits for a period instead.
  * @return 1, or 0 when another thread ran the loop; GROBO_ERR_STATE in a callback.
  */
-GROBO_API int grobo_control_svc(grobo_control *control);
+GROBO_API int grobo_runner_svc(grobo_runner *runner);
 
 /**
- * Rounds until grobo_control_stop_thread() is called: the body of the control thread, for a
+ * Rounds until grobo_runner_stop() is called: the body of the runner's thread, for a
  * program that makes its threads itself. Carries out the exit policy at the end.
- * @return GROBO_OK, GROBO_ERR_STATE (a control thread runs; in a callback).
+ * @return GROBO_OK, GROBO_ERR_STATE (a runner's thread runs; in a callback).
  */
-GROBO_API int grobo_control_run(grobo_control *control);
+GROBO_API int grobo_runner_run(grobo_runner *runner);
 
 /* ---- exclusion ---------------------------------------------------------------------------- */
 
@@ -168,37 +168,37 @@ GROBO_API int grobo_control_run(grobo_control *control);
  * or the motion meanwhile. It must not wait. For several steps that belong together, and for all
  * that session.h and robot.h can do beyond this header. Handed over.
  */
-GROBO_API int grobo_control_call(grobo_control *control, grobo_control_fn fn, void *arg);
+GROBO_API int grobo_runner_call(grobo_runner *runner, grobo_runner_fn fn, void *arg);
 
 /**
  * Has fn called on the loop, and returns at once. It is called exactly once, at the latest by
- * grobo_control_free(). At once.
+ * grobo_runner_free(). At once.
  * @return GROBO_OK, GROBO_ERR_FULL, GROBO_ERR_ARG, GROBO_ERR_CLOSED (of a function that
- *   grobo_control_free() calls as its last: no thread would call another).
+ *   grobo_runner_free() calls as its last: no thread would call another).
  */
-GROBO_API int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg);
+GROBO_API int grobo_runner_post(grobo_runner *runner, grobo_runner_fn fn, void *arg);
 
 /**
  * The robot: any thread may make every request and ask every question of robot.h, which takes a
  * lock for as long as that takes, and never waits for the loop. What goes with it (pumping,
- * grobo_robot_on_event() and the like) is the control's. grobo_robot_reset() is for callbacks;
- * other threads have grobo_control_reset(). Valid as long as the control.
+ * grobo_robot_on_event() and the like) is the runner's. grobo_robot_reset() is for callbacks;
+ * other threads have grobo_runner_reset(). Valid as long as the runner.
  */
-GROBO_API grobo_robot *grobo_control_robot(grobo_control *control);
+GROBO_API grobo_robot *grobo_runner_robot(grobo_runner *runner);
 
 /**
- * Waits for the end of a job of grobo_control_robot(). Waits.
+ * Waits for the end of a job of grobo_runner_robot(). Waits.
  * @param job what the request returned; an error of it is returned at once.
  * @return the job's result; GROBO_ERR_NOTFOUND of a job that is forgotten: of those that
- *   have ended the last GROBO_CONTROL_ENDS are known.
+ *   have ended the last GROBO_RUNNER_ENDS are known.
  */
-GROBO_API int grobo_control_wait_job(grobo_control *control, int job, int64_t timeout_us);
+GROBO_API int grobo_runner_wait_job(grobo_runner *runner, int job, int64_t timeout_us);
 
-/** The session. It belongs to the loop: use it in callbacks and in grobo_control_call() only. */
-GROBO_API grobo_session *grobo_control_session(grobo_control *control);
+/** The session. It belongs to the loop: use it in callbacks and in grobo_runner_call() only. */
+GROBO_API grobo_session *grobo_runner_session(grobo_runner *runner);
 
-/** The serial port; as grobo_control_session(). */
-GROBO_API grobo_serial *grobo_control_serial(grobo_control *control);
+/** The serial port; as grobo_runner_session(). */
+GROBO_API grobo_serial *grobo_runner_serial(grobo_runner *runner);
 
 /* ---- looking on ------------------------------------------------------------------------------
  * For programs that want no code of theirs on the loop: other languages, event loops of their own.
@@ -206,42 +206,42 @@ GROBO_API grobo_serial *grobo_control_serial(grobo_control *control);
  * is known. */
 
 /** An event as it is kept. */
-typedef struct grobo_control_event {
-    size_t size;              /**< GROBO_CONTROL_EVENT_INIT */
+typedef struct grobo_runner_event {
+    size_t size;              /**< GROBO_RUNNER_EVENT_INIT */
     uint64_t lost;            /**< events lost between the one taken before and this one */
     bool of_line;             /**< true: `line` and `error`; false: `event` */
     grobo_session_event line; /**< of the line: as grobo_session_event_fn gets it */
     int error;                /**< of the line */
     grobo_event event;        /**< of the engine; job.data is in `data` below */
     uint8_t data[GROBO_FRAME_MAX_BYTES]; /**< job.size bytes of it are set */
-} grobo_control_event;
+} grobo_runner_event;
 /** Begins an initializer of one. */
-#define GROBO_CONTROL_EVENT_INIT GROBO_SIZED(grobo_control_event)
+#define GROBO_RUNNER_EVENT_INIT GROBO_SIZED(grobo_runner_event)
 
 /**
- * Takes the oldest event. `grobo_control_config.events` are kept of jobs, plays, trips and the
+ * Takes the oldest event. `grobo_runner_config.events` are kept of jobs, plays, trips and the
  * line, and as many readings and rounds besides; where either is full its oldest is dropped and
  * counted, so that a flood of readings displaces nothing else, and the newest are always there.
- * What happened before a close can be taken until grobo_control_free(). At once.
+ * What happened before a close can be taken until grobo_runner_free(). At once.
  * @param[in,out] event its `size` is set; job.data points into it.
  * @return 1; 0 where there is none; GROBO_ERR_ARG (NULL, size), GROBO_ERR_STATE (none are kept).
  */
-GROBO_API int grobo_control_next_event(grobo_control *control, grobo_control_event *event);
+GROBO_API int grobo_runner_next_event(grobo_runner *runner, grobo_runner_event *event);
 
 /**
  * A descriptor that is readable while there are events, for poll(), epoll or a loop; on Win32 a
- * SOCKET, for select() and WSAPoll(). Only waited on: it is read, and closed, by the control. A
+ * SOCKET, for select() and WSAPoll(). Only waited on: it is read, and closed, by the runner. A
  * forked child does not use it; a program that is executed does not get it. At once.
- * @return GROBO_SOCKET_NULL where no events are kept. Valid as long as the control.
+ * @return GROBO_SOCKET_NULL where no events are kept. Valid as long as the runner.
  */
-GROBO_API grobo_socket grobo_control_event_socket(const grobo_control *control);
+GROBO_API grobo_socket grobo_runner_event_socket(const grobo_runner *runner);
 
 /** What is known of the robot, all at one moment. */
 typedef struct grobo_snapshot {
     size_t size;                   /**< GROBO_SNAPSHOT_INIT */
     int64_t now_us;                /**< when, by grobo_now_us() */
-    bool connected;                /**< as grobo_control_is_connected() */
-    bool latched;                  /**< as grobo_control_is_latched() */
+    bool connected;                /**< as grobo_runner_is_connected() */
+    bool latched;                  /**< as grobo_runner_is_latched() */
     bool moving;                   /**< as grobo_robot_moving() */
     bool settling;                 /**< as grobo_robot_settling() */
     grobo_job_kind job;            /**< as grobo_robot_job() */
@@ -260,136 +260,135 @@ typedef struct grobo_snapshot {
  * @param[in,out] snapshot its `size` is set.
  * @return number of joints, GROBO_ERR_ARG (NULL, size).
  */
-GROBO_API int grobo_control_snapshot(grobo_control *control, grobo_snapshot *snapshot);
+GROBO_API int grobo_runner_snapshot(grobo_runner *runner, grobo_snapshot *snapshot);
 
 /* ---- facts and settings: at once unless stated otherwise  ---------------------------------- */
 
-/** The robot's name. Valid as long as the control. */
-GROBO_API const char *grobo_control_name(const grobo_control *control);
+/** The robot's name. Valid as long as the runner. */
+GROBO_API const char *grobo_runner_name(const grobo_runner *runner);
 /** Number of joints. */
-GROBO_API int grobo_control_joints(const grobo_control *control);
+GROBO_API int grobo_runner_joints(const grobo_runner *runner);
 /** Sets the folder of motion files (copied). @return GROBO_OK, _ARG, GROBO_ERR_CAP (too long). */
-GROBO_API int grobo_control_set_motion_dir(grobo_control *control, const char *dir);
+GROBO_API int grobo_runner_set_motion_dir(grobo_runner *runner, const char *dir);
 /** Copies the folder's name. @return its length, GROBO_ERR_SPACE. */
-GROBO_API int grobo_control_get_motion_dir(grobo_control *control, char *dir, size_t dir_bytes);
+GROBO_API int grobo_runner_get_motion_dir(grobo_runner *runner, char *dir, size_t dir_bytes);
 /**
  * Sets the time of postures whose own is 0: 10 ms..GROBO_PLAY_TIME_MAX_US. Handed over.
  * @return GROBO_OK, GROBO_ERR_ARG.
  */
-GROBO_API int grobo_control_set_default_time_us(grobo_control *control, int64_t time_us);
+GROBO_API int grobo_runner_set_default_time_us(grobo_runner *runner, int64_t time_us);
 /** Reads it; as long as none was set: the configuration's, else GROBO_POSTURE_TIME_US. */
-GROBO_API int64_t grobo_control_get_default_time_us(grobo_control *control);
+GROBO_API int64_t grobo_runner_get_default_time_us(grobo_runner *runner);
 /**
  * Sets how often the background reads each joint, > 0 or GROBO_SENSE_NEVER. Handed over.
  * @return GROBO_OK, GROBO_ERR_ARG.
  */
-GROBO_API int grobo_control_set_sense_interval_us(grobo_control *control, int64_t interval_us);
+GROBO_API int grobo_runner_set_sense_interval_us(grobo_runner *runner, int64_t interval_us);
 /** Reads it. */
-GROBO_API int64_t grobo_control_get_sense_interval_us(grobo_control *control);
-/** Sets the control period, 1000..1000000. At once. @return GROBO_OK, GROBO_ERR_ARG. */
-GROBO_API int grobo_control_set_period_us(grobo_control *control, int64_t period_us);
+GROBO_API int64_t grobo_runner_get_sense_interval_us(grobo_runner *runner);
+/** Sets the period, 1000..1000000. At once. @return GROBO_OK, GROBO_ERR_ARG. */
+GROBO_API int grobo_runner_set_period_us(grobo_runner *runner, int64_t period_us);
 /** Reads it. */
-GROBO_API int64_t grobo_control_get_period_us(grobo_control *control);
+GROBO_API int64_t grobo_runner_get_period_us(grobo_runner *runner);
 /** Sets how often it is played: 0 and 1 once, n times, -n times in reverse. @return GROBO_OK. */
-GROBO_API int grobo_control_set_motion_count(grobo_control *control, int count);
+GROBO_API int grobo_runner_set_motion_count(grobo_runner *runner, int count);
 /** Has the motion played from its end to its beginning. */
-GROBO_API void grobo_control_set_reverse(grobo_control *control, bool reverse);
+GROBO_API void grobo_runner_set_reverse(grobo_runner *runner, bool reverse);
 /** True when it is played in reverse: so set, or by a negative count. */
-GROBO_API bool grobo_control_is_reverse(grobo_control *control);
+GROBO_API bool grobo_runner_is_reverse(grobo_runner *runner);
 
 /* ---- the line ------------------------------------------------------------------------------- */
 
 /** Sets the device. Handed over. @return GROBO_OK, GROBO_ERR_STATE (open), _CAP, GROBO_ERR_ARG. */
-GROBO_API int grobo_control_set_device(grobo_control *control, const char *device);
+GROBO_API int grobo_runner_set_device(grobo_runner *runner, const char *device);
 /** Copies the name of the device in use. Handed over. @return its length, GROBO_ERR_SPACE. */
-GROBO_API int grobo_control_get_device(grobo_control *control, char *device, size_t device_bytes);
+GROBO_API int grobo_runner_get_device(grobo_runner *runner, char *device, size_t device_bytes);
 /** Opens the port; the loop then checks whether a robot answers. Handed over. @return as
  *  grobo_session_open(). */
-GROBO_API int grobo_control_open_port(grobo_control *control);
+GROBO_API int grobo_runner_open(grobo_runner *runner);
 /**
  * Carries out the exit policy where a robot is connected, then closes. Waits.
  * @return GROBO_OK (also when closed already), or how the exit failed: closed all the same. Where
  *   the loop had no turn in that time (GROBO_ERR_TIMEOUT, GROBO_ERR_FULL), the port is still open,
  *   and the exit policy is carried out once the loop turns.
  */
-GROBO_API int grobo_control_close_port(grobo_control *control, int64_t timeout_us);
+GROBO_API int grobo_runner_close(grobo_runner *runner, int64_t timeout_us);
 /** Opens the port unless it is open, and waits until the robot has answered. Waits. @return
  *  GROBO_OK, or as grobo_session_open() and GROBO_SESSION_EVENT_FAILED. */
-GROBO_API int grobo_control_connect(grobo_control *control, int64_t timeout_us);
+GROBO_API int grobo_runner_connect(grobo_runner *runner, int64_t timeout_us);
 /** Asks whether the robot is there, by the driver's check. Waits. @return GROBO_OK or why not. */
-GROBO_API int grobo_control_check_connection(grobo_control *control, int64_t timeout_us);
+GROBO_API int grobo_runner_check_connection(grobo_runner *runner, int64_t timeout_us);
 /** True while a robot is connected. At once. */
-GROBO_API bool grobo_control_is_connected(grobo_control *control);
+GROBO_API bool grobo_runner_is_connected(grobo_runner *runner);
 /** The operating system's reason of the line's last failure. Handed over. @return GROBO_OK. */
-GROBO_API int grobo_control_get_cause(grobo_control *control, grobo_os_cause *cause);
+GROBO_API int grobo_runner_get_cause(grobo_runner *runner, grobo_os_cause *cause);
 
 /* ---- servos --------------------------------------------------------------------------------- */
 
 /** Torque of a joint as last known. At once. @return a grobo_torque, GROBO_ERR_EMPTY (not
  *  known), GROBO_ERR_ARG. */
-GROBO_API int grobo_control_get_servo_state(grobo_control *control, int joint);
-/** Torque of all joints: as grobo_control_get_servo_state() for each. At once. @return
+GROBO_API int grobo_runner_get_servo_state(grobo_runner *runner, int joint);
+/** Torque of all joints: as grobo_runner_get_servo_state() for each. At once. @return
  *  number of joints, GROBO_ERR_SPACE. */
-GROBO_API int grobo_control_get_servo_states(grobo_control *control, int *states, size_t capacity);
+GROBO_API int grobo_runner_get_servo_states(grobo_runner *runner, int *states, size_t capacity);
 /** Switches the torque of a joint, and reads it back. Waits. @return the state, or as
  *  grobo_robot_torque(). */
-GROBO_API int grobo_control_set_servo_state(grobo_control *control, int joint, grobo_torque state,
-                                            int64_t timeout_us);
+GROBO_API int grobo_runner_set_servo_state(grobo_runner *runner, int joint, grobo_torque state,
+                                           int64_t timeout_us);
 /** Switches the torque of several joints, and reads it back. Waits. @return GROBO_OK, or as
  *  grobo_robot_torque(). */
-GROBO_API int grobo_control_set_servo_states(grobo_control *control, grobo_joint_mask joints,
-                                             grobo_torque state, int64_t timeout_us);
+GROBO_API int grobo_runner_set_servo_states(grobo_runner *runner, grobo_joint_mask joints,
+                                            grobo_torque state, int64_t timeout_us);
 
 /* ---- postures ------------------------------------------------------------------------------- */
 
 /** The posture sensed last; joints never sensed are not set. At once. @return joints set. */
-GROBO_API int grobo_control_get_current_posture(grobo_control *control, grobo_posture *posture);
+GROBO_API int grobo_runner_get_current_posture(grobo_runner *runner, grobo_posture *posture);
 /** Reads all joints. Those that stay silent are not set. Waits. @return joints read; when none
  *  was, why. */
-GROBO_API int grobo_control_read_posture(grobo_control *control, grobo_posture *posture,
-                                         int64_t timeout_us);
+GROBO_API int grobo_runner_read_posture(grobo_runner *runner, grobo_posture *posture,
+                                        int64_t timeout_us);
 /** Reads one joint. Waits. @return GROBO_OK, or an error and *angle_rad is as it was. */
-GROBO_API int grobo_control_read_angle(grobo_control *control, int joint, double *angle_rad,
-                                       int64_t timeout_us);
+GROBO_API int grobo_runner_read_angle(grobo_runner *runner, int joint, double *angle_rad,
+                                      int64_t timeout_us);
 /** Sets the initial posture (copied); before, each joint at 0 or at the limit nearest to it. At
  *  once. @return GROBO_OK, GROBO_ERR_LIMIT, GROBO_ERR_NAN, GROBO_ERR_ARG (other number of
  *  joints). */
-GROBO_API int grobo_control_set_init_posture(grobo_control *control, const grobo_posture *posture);
+GROBO_API int grobo_runner_set_init_posture(grobo_runner *runner, const grobo_posture *posture);
 /** The initial posture. At once. */
-GROBO_API void grobo_control_get_init_posture(grobo_control *control, grobo_posture *posture);
+GROBO_API void grobo_runner_get_init_posture(grobo_runner *runner, grobo_posture *posture);
 /** Sets the target posture (copied); no joint is set before. At once. Errors as
- *  grobo_control_set_init_posture(). */
-GROBO_API int grobo_control_set_target_posture(grobo_control *control,
-                                               const grobo_posture *posture);
+ *  grobo_runner_set_init_posture(). */
+GROBO_API int grobo_runner_set_target_posture(grobo_runner *runner, const grobo_posture *posture);
 /** The target posture. At once. */
-GROBO_API void grobo_control_get_target_posture(grobo_control *control, grobo_posture *posture);
-/** Sets one joint of the target posture. At once. Errors as grobo_control_set_init_posture(). */
-GROBO_API int grobo_control_set_joint(grobo_control *control, int joint, double angle_rad);
+GROBO_API void grobo_runner_get_target_posture(grobo_runner *runner, grobo_posture *posture);
+/** Sets one joint of the target posture. At once. Errors as grobo_runner_set_init_posture(). */
+GROBO_API int grobo_runner_set_joint(grobo_runner *runner, int joint, double angle_rad);
 /** Sets the time to reach the target posture; 0: the default time. At once. @return GROBO_OK,
  *  GROBO_ERR_ARG (negative, above GROBO_PLAY_TIME_MAX_US). */
-GROBO_API int grobo_control_set_motion_time_us(grobo_control *control, int64_t time_us);
+GROBO_API int grobo_runner_set_motion_time_us(grobo_runner *runner, int64_t time_us);
 
 /**
  * Has the robot move to the target posture: grobo_robot_retarget() of the move under way, so that a
  * program may set targets at its own rate, or where that has other joints grobo_robot_move(), which
- * waits behind what it cannot run beside. grobo_control_wait() returns how it ends, and so does the
+ * waits behind what it cannot run beside. grobo_runner_wait() returns how it ends, and so does the
  * job event. At once.
  * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no joint is set), or as grobo_robot_move():
  *   GROBO_ERR_STATE where a motion is played that sets these joints, GROBO_ERR_LATCHED.
  */
-GROBO_API int grobo_control_start_motion(grobo_control *control);
-/** Makes the initial posture the target, and grobo_control_start_motion(). At once. */
-GROBO_API int grobo_control_init_position(grobo_control *control);
+GROBO_API int grobo_runner_start_motion(grobo_runner *runner);
+/** Makes the initial posture the target, and grobo_runner_start_motion(). At once. */
+GROBO_API int grobo_runner_init_position(grobo_runner *runner);
 /** Postures still to be reached: 1 for a target, and those of the motion in this pass and the
  *  repetitions after it (at a rate: its frames). At once. @return the number, INT_MAX for more than
  *  that. */
-GROBO_API int grobo_control_command_count(grobo_control *control);
+GROBO_API int grobo_runner_command_count(grobo_runner *runner);
 /** Whether postures are still to be sent or under way. At once. @return 1 or 0. */
-GROBO_API int grobo_control_is_moving(grobo_control *control);
+GROBO_API int grobo_runner_is_moving(grobo_runner *runner);
 /** Waits until nothing moves, nothing is asked of the robot, and the last posture of a motion has
  *  been read back. @return how the last motion or target ended: GROBO_OK, GROBO_ERR_CANCELED
  *  (stopped), or why it failed. */
-GROBO_API int grobo_control_wait(grobo_control *control, int64_t timeout_us);
+GROBO_API int grobo_runner_wait(grobo_runner *runner, int64_t timeout_us);
 
 /* ---- the current motion --------------------------------------------------------------------- */
 
@@ -401,19 +400,19 @@ GROBO_API int grobo_control_wait(grobo_control *control, int64_t timeout_us);
 
 /** Replaces the motion by a copy. At once. @return postures, GROBO_ERR_ARG (a motion of another
  *  robot: grobo_motion_is_for()), GROBO_ERR_NOMEM. */
-GROBO_API int grobo_control_set_motion(grobo_control *control, const grobo_motion *motion);
+GROBO_API int grobo_runner_set_motion(grobo_runner *runner, const grobo_motion *motion);
 /** A copy of the motion. At once. @param[out] motion owned by the caller. @return postures,
  *  GROBO_ERR_NOMEM. */
-GROBO_API int grobo_control_get_motion(grobo_control *control, grobo_motion **motion);
+GROBO_API int grobo_runner_get_motion(grobo_runner *runner, grobo_motion **motion);
 /** Makes it an empty motion of postures. What is being played continues. At once. */
-GROBO_API void grobo_control_clear_motion(grobo_control *control);
+GROBO_API void grobo_runner_clear_motion(grobo_runner *runner);
 /** Appends the posture sensed last, with the default time. At once. @return postures,
  *  GROBO_ERR_STALE (nothing was sensed), GROBO_ERR_TYPE (frames at a rate have no place for its
  *  time), or as grobo_motion_append(). */
-GROBO_API int grobo_control_append_current_posture(grobo_control *control);
+GROBO_API int grobo_runner_append_current_posture(grobo_runner *runner);
 /** Appends the posture sensed last, with a time from 0 (the default time) to below
  *  GROBO_MOTION_STEP_MAX_US, which .m files cannot tell from the default. As above. */
-GROBO_API int grobo_control_append_current_posture_us(grobo_control *control, int64_t time_us);
+GROBO_API int grobo_runner_append_current_posture_us(grobo_runner *runner, int64_t time_us);
 /**
  * Loads a motion of the motion folder: NAME.m, .yaml, .pseq, .mseq, whichever is there first, or
  * NAME itself where it has an extension. At once but for the reading, which is the caller's time.
@@ -421,11 +420,11 @@ GROBO_API int grobo_control_append_current_posture_us(grobo_control *control, in
  * @return postures; or, and then the motion is empty, as grobo_motion_find() and
  *   grobo_motion_read_file(), GROBO_ERR_ARG (a motion of another robot: grobo_motion_is_for()).
  */
-GROBO_API int grobo_control_load_motion(grobo_control *control, const char *name,
-                                        grobo_diagnostics *list);
+GROBO_API int grobo_runner_load_motion(grobo_runner *runner, const char *name,
+                                       grobo_diagnostics *list);
 /** As above, but one format: NAME with its extension, or NAME as it is where it has one. */
-GROBO_API int grobo_control_load_motion_format(grobo_control *control, grobo_motion_format format,
-                                               const char *name, grobo_diagnostics *list);
+GROBO_API int grobo_runner_load_motion_format(grobo_runner *runner, grobo_motion_format format,
+                                              const char *name, grobo_diagnostics *list);
 /**
  * Saves the motion in the motion folder in a format, converted where it has to be. In the caller's
  * time.
@@ -436,58 +435,57 @@ GROBO_API int grobo_control_load_motion_format(grobo_control *control, grobo_mot
  *   GROBO_ERR_SPACE, or as grobo_motion_save(): GROBO_ERR_EXISTS where the file holds anything but
  *   a motion of this format, and nothing is written.
  */
-GROBO_API int grobo_control_save_motion(grobo_control *control, grobo_motion_format format,
-                                        const char *name, char *path, size_t path_bytes);
+GROBO_API int grobo_runner_save_motion(grobo_runner *runner, grobo_motion_format format,
+                                       const char *name, char *path, size_t path_bytes);
 
 /** Posture n of the motion in playing direction, counted from 0. At once. @return GROBO_OK;
  *  GROBO_ERR_EMPTY where there is none. */
-GROBO_API int grobo_control_get_nth_posture(grobo_control *control, size_t n,
-                                            grobo_posture *posture);
+GROBO_API int grobo_runner_get_nth_posture(grobo_runner *runner, size_t n, grobo_posture *posture);
 /** The posture that is played first; as above. */
-GROBO_API int grobo_control_get_first_posture(grobo_control *control, grobo_posture *posture);
+GROBO_API int grobo_runner_get_first_posture(grobo_runner *runner, grobo_posture *posture);
 /** The posture that is played last; as above. */
-GROBO_API int grobo_control_get_last_posture(grobo_control *control, grobo_posture *posture);
+GROBO_API int grobo_runner_get_last_posture(grobo_runner *runner, grobo_posture *posture);
 /** Makes posture n in playing direction the target, in the default time, and starts it. At once.
- *  @return as grobo_control_get_nth_posture(), grobo_control_set_target_posture() and
- *  grobo_control_start_motion(); GROBO_ERR_TYPE for a motion of increments. */
-GROBO_API int grobo_control_do_nth_motion(grobo_control *control, size_t n);
+ *  @return as grobo_runner_get_nth_posture(), grobo_runner_set_target_posture() and
+ *  grobo_runner_start_motion(); GROBO_ERR_TYPE for a motion of increments. */
+GROBO_API int grobo_runner_do_nth_motion(grobo_runner *runner, size_t n);
 
 /**
  * Has the motion as it is now played, with the count, direction and default time that are set. How
- * it ends is returned by grobo_control_wait() and reported by events. At once.
+ * it ends is returned by grobo_runner_wait() and reported by events. At once.
  * @param options the rest (mode, rate, speed, mirror, ...), copied; NULL: by keys, as it is.
  * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no posture), GROBO_ERR_NOMEM, or as
  *   grobo_motion_clip() and grobo_robot_play(): GROBO_ERR_STATE where a motion is played or a move
- *   under way (grobo_control_wait() before), GROBO_ERR_UNWATCHED.
+ *   under way (grobo_runner_wait() before), GROBO_ERR_UNWATCHED.
  */
-GROBO_API int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options);
+GROBO_API int grobo_runner_play_motion(grobo_runner *runner, const grobo_play_options *options);
 /** Whether a motion is played or about to be. At once. */
-GROBO_API bool grobo_control_is_playing(grobo_control *control);
+GROBO_API bool grobo_runner_is_playing(grobo_runner *runner);
 
 /* ---- raw commands --------------------------------------------------------------------------- */
 
 /** Copies a packet into the command buffer. At once. @return size, GROBO_ERR_CAP (more than
- *  GROBO_CONTROL_COMMAND_BYTES; the buffer is as it was). */
-GROBO_API int grobo_control_set_command(grobo_control *control, const void *packet, size_t size);
+ *  GROBO_RUNNER_COMMAND_BYTES; the buffer is as it was). */
+GROBO_API int grobo_runner_set_command(grobo_runner *runner, const void *packet, size_t size);
 /** Copies the command buffer. At once. @return its size, GROBO_ERR_SPACE. */
-GROBO_API int grobo_control_get_command(grobo_control *control, void *packet, size_t capacity);
+GROBO_API int grobo_runner_get_command(grobo_runner *runner, void *packet, size_t capacity);
 /**
  * Sends a packet as grobo_robot_raw() does, with all its checks, and waits for the reply it calls
- * for; what comes can be taken by grobo_control_receive(). Connects first where closed. Waits: a
+ * for; what comes can be taken by grobo_runner_receive(). Connects first where closed. Waits: a
  * packet that still waits for the line after timeout_us is cancelled.
  * @param packet NULL: what is in the command buffer.
- * @return size, GROBO_ERR_EMPTY (nothing to send), GROBO_ERR_CAP, as grobo_control_connect() and
+ * @return size, GROBO_ERR_EMPTY (nothing to send), GROBO_ERR_CAP, as grobo_runner_connect() and
  *   as grobo_robot_raw().
  */
-GROBO_API int grobo_control_send_command(grobo_control *control, const void *packet, size_t size,
-                                         int64_t timeout_us);
+GROBO_API int grobo_runner_send_command(grobo_runner *runner, const void *packet, size_t size,
+                                        int64_t timeout_us);
 /**
  * Takes exactly `size` of the bytes that came in reply to sent commands, as they were on the wire.
  * Waits for them GROBO_SILENCE_DEFAULT_MS in all; where fewer are there by then, they are dropped.
  * @return size, GROBO_ERR_TIMEOUT (nothing came), GROBO_ERR_SHORT (fewer came), GROBO_ERR_CAP
- *   (more than GROBO_CONTROL_RECEIVE_BYTES).
+ *   (more than GROBO_RUNNER_RECEIVE_BYTES).
  */
-GROBO_API int grobo_control_receive(grobo_control *control, void *bytes, size_t size);
+GROBO_API int grobo_runner_receive(grobo_runner *runner, void *bytes, size_t size);
 
 /* ---- safety --------------------------------------------------------------------------------- */
 
@@ -497,34 +495,33 @@ GROBO_API int grobo_control_receive(grobo_control *control, void *bytes, size_t 
  * The stop is latched from its return on, and the next frame on the wire once the loop turns, or
  * once the line is there. What was asked for before and has not begun is canceled. Where no thread
  * runs the loop, the next call that does carries the stop out before anything else, so
- * grobo_control_wait() belongs behind it there; with and without a thread that waits until the stop
+ * grobo_runner_wait() belongs behind it there; with and without a thread that waits until the stop
  * is verified.
  * @return GROBO_OK, GROBO_ERR_ARG (NULL).
  */
-GROBO_API int grobo_control_estop(grobo_control *control);
+GROBO_API int grobo_runner_estop(grobo_runner *runner);
 /**
  * Whether a stop is latched: see grobo_session_is_latched(). True from the return of
- * grobo_control_estop() on, before the loop has turned. Safe in a signal handler.
+ * grobo_runner_estop() on, before the loop has turned. Safe in a signal handler.
  */
-GROBO_API bool grobo_control_is_latched(const grobo_control *control);
+GROBO_API bool grobo_runner_is_latched(const grobo_runner *runner);
 /** Clears a latched stop, and the mark of an emergency stop (estop.h): see grobo_robot_reset() and
  *  session.h. Handed over. @return GROBO_OK, GROBO_ERR_STATE (the stop is still being carried out,
  *  or another one came after the call), GROBO_ERR_PERM, GROBO_ERR_IO. */
-GROBO_API int grobo_control_reset(grobo_control *control);
+GROBO_API int grobo_runner_reset(grobo_runner *runner);
 /**
  * Carries out an exit policy now. Waits. The request is never dropped: where its end cannot be
- * awaited, it is carried out as grobo_control_post_exit() says.
+ * awaited, it is carried out as grobo_runner_post_exit() says.
  * @return GROBO_OK, or as grobo_robot_exit(); GROBO_ERR_TIMEOUT, GROBO_ERR_FULL, and in a callback
  *   GROBO_ERR_STATE: its end was not awaited.
  */
-GROBO_API int grobo_control_exit(grobo_control *control, grobo_exit_policy policy,
-                                 int64_t timeout_us);
+GROBO_API int grobo_runner_exit(grobo_runner *runner, grobo_exit_policy policy, int64_t timeout_us);
 /** The exit alone, without waiting: see grobo_session_post_exit(). Safe in a signal handler.
  *  @return GROBO_OK, GROBO_ERR_ARG. */
-GROBO_API int grobo_control_post_exit(grobo_control *control, grobo_exit_policy policy);
+GROBO_API int grobo_runner_post_exit(grobo_runner *runner, grobo_exit_policy policy);
 /** Stops what moves, as grobo_robot_stop(), without waiting: see grobo_session_post_stop().
  *  Safe in a signal handler. @return GROBO_OK, GROBO_ERR_ARG. */
-GROBO_API int grobo_control_post_stop(grobo_control *control, bool at_once);
+GROBO_API int grobo_runner_post_stop(grobo_runner *runner, bool at_once);
 
 GROBO_END_DECLS
 

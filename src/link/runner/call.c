@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The rounds of the loop, and how threads hand calls to it. A call takes a slot, and the loop calls
+ * its function, again and again, until it is over. The caller sleeps at the condition meanwhile;
+ * or, where no thread runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
+ */
+#include "src/base/assert.h"
+#include "src/link/runner/runner.h"
+#include "src/link/session/session.h"
+
+/* ---- slots -------------------------------------------------------------------------------- */
+
+static runner_slot *take_slot(grobo_runner *runner, size_t most)
+{
+    for (size_t i = 0; i < most; i++) {
+        if (runner->slot[i].state == CALL_FREE) {
+            return &runner->slot[i];
+        }
+    }
+    return NULL;
+}
+
+static void hand_over(grobo_runner *runner, runner_slot *slot, grobo_runner_fn fn, void *arg)
+{
+    GROBO_ASSERT(slot->state == CALL_FREE && fn != NULL);
+    slot->fn = fn;
+    slot->arg = arg;
+    slot->users = false;
+    slot->impatient = false;
+    slot->ticket = ++runner->tickets;
+    slot->state = CALL_OPEN;
+    grobo_i_runner_wake(runner);
+}
+
+/* ---- on the loop -------------------------------------------------------------------------- */
+
+/* The oldest call after a ticket. */
+static runner_slot *next_call(grobo_runner *runner, uint64_t after)
+{
+    runner_slot *next = NULL;
+
+    for (size_t i = 0; i < RUNNER_SLOTS; i++) {
+        runner_slot *slot = &runner->slot[i];
+
+        if (slot->state == CALL_OPEN && slot->ticket > after &&
+            (next == NULL || slot->ticket < next->ticket)) {
+            next = slot;
+        }
+    }
+    return next;
+}
+
+static void settle(grobo_runner *runner, runner_slot *slot, int result)
+{
+    GROBO_ASSERT(slot->state == CALL_RUNNING);
+    if (result == CALL_PENDING) {
+        slot->state = CALL_OPEN;
+    } else if (slot->posted) {
+        slot->posted = false;
+        slot->state = CALL_FREE;
+    } else {
+        slot->result = result;
+        slot->state = CALL_DONE;
+    }
+    if (slot->state == CALL_DONE || slot->impatient) {
+        grobo_i_runner_wake_all(runner);
+    }
+}
+
+static int call_user(grobo_runner *runner, grobo_runner_fn fn, void *arg)
+{
+    int64_t since_us = grobo_i_session_enter_callback(runner->session);
+    int r = fn(arg, runner);
+
+    grobo_i_session_leave_callback(runner->session, GROBO_CALLBACK_CALL, since_us);
+    return r;
+}
+
+/* What was posted by grobo_session_post_estop() and its like goes before every call. */
+static void serve(grobo_runner *runner)
+{
+    runner_slot *slot;
+    uint64_t after = 0;
+
+    grobo_mutex_lock(&runner->lock);
+    runner->woken = false;
+    uint64_t last = runner->tickets; /* what a callback hands over has the next round */
+    while ((slot = next_call(runner, after)) != NULL && slot->ticket <= last) {
+        grobo_runner_fn fn = slot->fn;
+        void *arg = slot->arg;
+        bool users = slot->users;
+        int result;
+
+        after = slot->ticket;
+        slot->state = CALL_RUNNING;
+        grobo_mutex_unlock(&runner->lock);
+        grobo_i_session_attend(runner->session);
+        result = users ? call_user(runner, fn, arg) : fn(arg, runner);
+        grobo_mutex_lock(&runner->lock);
+        settle(runner, slot, result);
+    }
+    grobo_mutex_unlock(&runner->lock);
+    grobo_i_session_attend(runner->session);
+}
+
+/* ---- a round ------------------------------------------------------------------------------ */
+
+int64_t grobo_runner_get_period_us(grobo_runner *runner)
+{
+    RETURN_LOCKED(runner, int64_t, 0, runner->period_us);
+}
+
+void grobo_i_runner_round(grobo_runner *runner, int64_t end_us)
+{
+    round_frame frame;
+
+    grobo_i_runner_begin_round(&frame, runner);
+    if (runner->tick_us == GROBO_NEVER_US) {
+        runner->tick_us = grobo_now_us() + grobo_runner_get_period_us(runner);
+    }
+    if (grobo_timer_set(runner->timer, end_us < runner->tick_us ? end_us : runner->tick_us) < 0) {
+        grobo_i_session_wake(runner->session); /* a round that does not wait, and the next one */
+    }
+    (void)event_base_loop(runner->base, EVLOOP_ONCE);
+    grobo_i_runner_look_at_play(runner);
+    serve(runner);
+    grobo_i_runner_end_round(&frame);
+}
+
+void grobo_i_runner_take_turn(grobo_runner *runner, int64_t end_us)
+{
+    runner->looping = true;
+    grobo_mutex_unlock(&runner->lock);
+    grobo_i_runner_round(runner, end_us);
+    grobo_mutex_lock(&runner->lock);
+    runner->looping = false;
+    grobo_i_runner_wake_all(runner);
+}
+
+void grobo_i_runner_end_calls(grobo_runner *runner)
+{
+    round_frame frame;
+
+    grobo_i_runner_begin_round(&frame, runner);
+    grobo_i_runner_lock(runner);
+    runner->freeing = true;
+    grobo_i_runner_unlock(runner);
+    serve(runner);
+    grobo_i_runner_end_round(&frame);
+}
+
+/* ---- waiting ------------------------------------------------------------------------------ */
+
+/* With the lock: runs the loop, or sleeps while another thread does, until the call is over. */
+static int wait_for(grobo_runner *runner, runner_slot *slot, int64_t end_us)
+{
+    int result = GROBO_ERR_TIMEOUT;
+
+    while (slot->state != CALL_DONE && (slot->state == CALL_RUNNING || grobo_now_us() < end_us)) {
+        if (runner->looping || runner->running) {
+            /* A function that runs uses our storage: it has to be over before we may give up. */
+            slot->impatient = slot->state == CALL_RUNNING;
+            grobo_i_runner_sleep(runner, slot->impatient ? GROBO_NEVER_US : end_us);
+        } else {
+            grobo_i_runner_take_turn(runner, end_us);
+        }
+    }
+    if (slot->state == CALL_DONE) {
+        result = slot->result;
+    }
+    GROBO_ASSERT(slot->state == CALL_DONE || slot->state == CALL_OPEN);
+    slot->state = CALL_FREE;
+    return result;
+}
+
+static int64_t end_of(const grobo_runner *runner, int64_t timeout_us)
+{
+    int64_t now_us = grobo_now_us();
+
+    if (timeout_us <= 0) {
+        timeout_us = runner->timeout_us;
+    }
+    return timeout_us > GROBO_NEVER_US - now_us ? GROBO_NEVER_US : now_us + timeout_us;
+}
+
+/* A call as its caller has it. */
+typedef struct call_wish {
+    grobo_runner_fn fn;
+    void *arg;
+    runner_job *job; /* arg, where fn waits for a job */
+    int64_t timeout_us;
+    bool urgent;
+    bool users;
+} call_wish;
+
+static int call_and_wait(grobo_runner *runner, const call_wish *wish)
+{
+    int64_t end_us = end_of(runner, wish->timeout_us);
+    int result = GROBO_ERR_FULL;
+
+    grobo_i_runner_lock(runner);
+    runner_slot *slot = take_slot(runner, wish->urgent ? RUNNER_SLOTS : GROBO_RUNNER_CALLS_MAX);
+    if (slot != NULL) {
+        hand_over(runner, slot, wish->fn, wish->arg);
+        slot->users = wish->users;
+        if (wish->job != NULL) {
+            wish->job->seen_losses = runner->losses;
+            wish->job->end_us = end_us;
+        }
+        result = wait_for(runner, slot, end_us);
+    }
+    grobo_i_runner_unlock(runner);
+    return result;
+}
+
+/* These two are where a runner that is NULL is refused, for all public functions that come by. */
+static int wait_outside(grobo_runner *runner, const call_wish *wish)
+{
+    if (runner == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    return grobo_i_runner_inside(runner) ? GROBO_ERR_STATE : call_and_wait(runner, wish);
+}
+
+/* In a callback at once, else handed over. */
+static int call(grobo_runner *runner, const call_wish *wish)
+{
+    if (runner == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    if (!grobo_i_runner_inside(runner)) {
+        return call_and_wait(runner, wish);
+    }
+    grobo_i_session_attend(runner->session);
+    return wish->fn(wish->arg, runner);
+}
+
+int grobo_i_runner_call(grobo_runner *runner, grobo_runner_fn fn, void *arg)
+{
+    const call_wish wish = {.fn = fn, .arg = arg};
+
+    return call(runner, &wish);
+}
+
+int grobo_i_runner_wait(grobo_runner *runner, grobo_runner_fn fn, void *arg, int64_t timeout_us)
+{
+    const call_wish wish = {.fn = fn, .arg = arg, .timeout_us = timeout_us};
+
+    return wait_outside(runner, &wish);
+}
+
+/* ---- jobs ------------------------------------------------------------------------------------
+ * A job is the engine's: what is known of it here is its number, and how it has ended. */
+
+/* On the loop: how a job has ended. */
+static int result_of(grobo_runner *runner, int number)
+{
+    grobo_i_runner_lock(runner);
+    int r = grobo_i_runner_end_of_job(runner, number);
+    grobo_i_runner_unlock(runner);
+    return r != CALL_PENDING || grobo_robot_is_pending(runner_robot(runner), number)
+               ? r
+               : GROBO_ERR_NOTFOUND;
+}
+
+/* Makes the request, again in each round while the engine refuses it beside what runs; then looks
+ * how the job has ended. */
+static int poll_job(void *arg, grobo_runner *runner)
+{
+    runner_job *job = arg;
+
+    if (job->number == 0) {
+        job->begun_us = grobo_now_us();
+        int r = job->seen_losses != runner->losses ? GROBO_ERR_UNPLUGGED : job->start(runner, job);
+
+        if (r == GROBO_ERR_FULL ||
+            (r == GROBO_ERR_STATE && grobo_robot_job(runner_robot(runner)) != GROBO_JOB_NONE)) {
+            return CALL_PENDING; /* behind those that run */
+        }
+        if (r <= 0) {
+            return r;
+        }
+        job->number = r;
+    }
+    int result = result_of(runner, job->number);
+    job->ended = result != CALL_PENDING;
+    return result;
+}
+
+int grobo_i_runner_job(grobo_runner *runner, runner_job *job, int64_t timeout_us)
+{
+    const call_wish wish = {
+        .fn = poll_job, .arg = job, .job = job, .timeout_us = timeout_us, .urgent = job->urgent};
+
+    return wait_outside(runner, &wish);
+}
+
+int grobo_runner_wait_job(grobo_runner *runner, int job, int64_t timeout_us)
+{
+    runner_job known = {.number = job};
+
+    if (runner == NULL || job == 0) {
+        return GROBO_ERR_ARG;
+    }
+    return job < 0 ? job : grobo_i_runner_job(runner, &known, timeout_us);
+}
+
+/* ---- the public functions ----------------------------------------------------------------- */
+
+int grobo_runner_call(grobo_runner *runner, grobo_runner_fn fn, void *arg)
+{
+    const call_wish wish = {.fn = fn, .arg = arg, .users = true};
+
+    return fn != NULL ? call(runner, &wish) : GROBO_ERR_ARG;
+}
+
+/* With the lock: hands over without waiting. */
+static int post(grobo_runner *runner, grobo_runner_fn fn, void *arg)
+{
+    runner_slot *slot = take_slot(runner, GROBO_RUNNER_CALLS_MAX);
+
+    if (fn == NULL || runner->freeing || slot == NULL) {
+        return fn == NULL ? GROBO_ERR_ARG : runner->freeing ? GROBO_ERR_CLOSED : GROBO_ERR_FULL;
+    }
+    slot->posted = true;
+    hand_over(runner, slot, fn, arg);
+    slot->users = true;
+    return GROBO_OK;
+}
+
+int grobo_runner_post(grobo_runner *runner, grobo_runner_fn fn, void *arg)
+{
+    RETURN_LOCKED(runner, int, GROBO_ERR_ARG, post(runner, fn, arg));
+}

@@ -1,0 +1,454 @@
+/* SPDX-License-Identifier: MIT */
+/* A runner's line, servos, readings, raw commands and safety: the session's, for every thread. */
+#include <string.h>
+
+#include "src/link/runner/runner.h"
+#include "src/link/session/session.h"
+
+grobo_session *grobo_runner_session(grobo_runner *runner)
+{
+    return runner == NULL ? NULL : runner->session;
+}
+
+grobo_robot *grobo_runner_robot(grobo_runner *runner)
+{
+    return runner == NULL ? NULL : runner_robot(runner);
+}
+
+grobo_serial *grobo_runner_serial(grobo_runner *runner)
+{
+    return runner == NULL ? NULL : grobo_session_serial(runner->session);
+}
+
+/* ---- the line ----------------------------------------------------------------------------- */
+
+static int set_device(void *arg, grobo_runner *runner)
+{
+    const char *const *device = arg;
+
+    return grobo_session_set_device(runner->session, *device);
+}
+
+int grobo_runner_set_device(grobo_runner *runner, const char *device)
+{
+    return grobo_i_runner_call(runner, set_device, &device);
+}
+
+/* The caller's storage, which stays until the loop is done with it: see wait_for() in call.c. */
+typedef struct storage {
+    void *bytes;
+    size_t size;
+    int64_t end_us;
+} storage;
+
+static int get_device(void *arg, grobo_runner *runner)
+{
+    const storage *to = arg;
+    const char *device = grobo_session_device(runner->session);
+    size_t length = strlen(device);
+
+    if (length >= to->size) {
+        return GROBO_ERR_SPACE;
+    }
+    memcpy(to->bytes, device, length + 1);
+    return (int)length;
+}
+
+int grobo_runner_get_device(grobo_runner *runner, char *device, size_t device_bytes)
+{
+    storage to = {.bytes = device, .size = device_bytes};
+
+    return device == NULL ? GROBO_ERR_ARG : grobo_i_runner_call(runner, get_device, &to);
+}
+
+static int open_port(void *arg, grobo_runner *runner)
+{
+    (void)arg;
+    return grobo_session_open(runner->session);
+}
+
+int grobo_runner_open(grobo_runner *runner)
+{
+    return grobo_i_runner_call(runner, open_port, NULL);
+}
+
+int grobo_runner_post_exit(grobo_runner *runner, grobo_exit_policy policy)
+{
+    return runner != NULL ? grobo_session_post_exit(runner->session, policy) : GROBO_ERR_ARG;
+}
+
+static int leave_job(grobo_runner *runner, runner_job *job)
+{
+    bool up = grobo_session_get_state(runner->session) == GROBO_SESSION_UP;
+
+    job->looked = true;
+    if (up && grobo_robot_job(runner_robot(runner)) == GROBO_JOB_ESTOP) {
+        return GROBO_ERR_STATE; /* to be over first */
+    }
+    /* A robot that is gone, or has been left, needs nothing. */
+    if (!up || runner->skip_exit || grobo_i_runner_has_exited(runner)) {
+        return GROBO_OK;
+    }
+    return grobo_robot_exit(runner_robot(runner), GROBO_EXIT_DEFAULT);
+}
+
+int grobo_i_runner_leave(grobo_runner *runner, int64_t timeout_us, bool *looked)
+{
+    runner_job job = {.start = leave_job, .urgent = true};
+    int r = grobo_i_runner_job(runner, &job, timeout_us);
+
+    *looked = job.looked || (r != GROBO_ERR_TIMEOUT && r != GROBO_ERR_FULL);
+    if (!*looked && !runner->skip_exit) {
+        (void)grobo_runner_post_exit(runner, GROBO_EXIT_DEFAULT);
+    }
+    return r;
+}
+
+static int close_port(void *arg, grobo_runner *runner)
+{
+    (void)arg;
+    grobo_session_close(runner->session);
+    grobo_i_runner_down(runner, GROBO_ERR_CLOSED);
+    return GROBO_OK;
+}
+
+int grobo_runner_close(grobo_runner *runner, int64_t timeout_us)
+{
+    bool looked;
+
+    if (grobo_i_runner_inside(runner)) {
+        return GROBO_ERR_STATE;
+    }
+    int left = grobo_i_runner_leave(runner, timeout_us, &looked);
+    if (!looked) {
+        return left; /* held up: still open, and the exit stands */
+    }
+    int closed = grobo_i_runner_call(runner, close_port, NULL);
+    return closed < 0 ? closed : left;
+}
+
+static int connect_port(void *arg, grobo_runner *runner)
+{
+    bool *opened = arg;
+
+    switch (grobo_session_get_state(runner->session)) {
+    case GROBO_SESSION_UP:
+        return GROBO_OK;
+    case GROBO_SESSION_CLOSED:
+        if (*opened) {
+            return runner->line_error;
+        }
+        *opened = true;
+        int r = grobo_session_open(runner->session);
+        return r < 0 ? r : CALL_PENDING;
+    case GROBO_SESSION_OPENING:
+    case GROBO_SESSION_CHECKING:
+    case GROBO_SESSION_WAITING:
+        break;
+    }
+    *opened = true;
+    return CALL_PENDING;
+}
+
+int grobo_runner_connect(grobo_runner *runner, int64_t timeout_us)
+{
+    bool opened = false;
+
+    return grobo_i_runner_wait(runner, connect_port, &opened, timeout_us);
+}
+
+bool grobo_runner_is_connected(grobo_runner *runner)
+{
+    RETURN_LOCKED(runner, bool, false, runner->up);
+}
+
+static int get_cause(void *arg, grobo_runner *runner)
+{
+    grobo_os_cause *cause = arg;
+
+    *cause = *grobo_session_cause(runner->session);
+    return GROBO_OK;
+}
+
+int grobo_runner_get_cause(grobo_runner *runner, grobo_os_cause *cause)
+{
+    return cause == NULL ? GROBO_ERR_ARG : grobo_i_runner_call(runner, get_cause, cause);
+}
+
+static int check_job(grobo_runner *runner, runner_job *job)
+{
+    (void)job;
+    return grobo_robot_check(runner_robot(runner));
+}
+
+int grobo_runner_check_connection(grobo_runner *runner, int64_t timeout_us)
+{
+    runner_job job = {.start = check_job};
+
+    return grobo_i_runner_job(runner, &job, timeout_us);
+}
+
+/* ---- servos ------------------------------------------------------------------------------- */
+
+int grobo_runner_get_servo_state(grobo_runner *runner, int joint)
+{
+    grobo_joint_info info;
+    int r = grobo_robot_joint(grobo_runner_robot(runner), joint, &info);
+
+    return r < 0 ? r : info.torque_known ? (int)info.state.torque : GROBO_ERR_EMPTY;
+}
+
+int grobo_runner_get_servo_states(grobo_runner *runner, int *states, size_t capacity)
+{
+    if (runner == NULL || states == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    int n_joints = grobo_runner_joints(runner);
+
+    if (capacity < (size_t)n_joints) {
+        return GROBO_ERR_SPACE;
+    }
+    for (int j = 0; j < n_joints; j++) {
+        states[j] = grobo_runner_get_servo_state(runner, j);
+    }
+    return n_joints;
+}
+
+static int torque_job(grobo_runner *runner, runner_job *job)
+{
+    return grobo_robot_torque(runner_robot(runner), job->joints, job->torque);
+}
+
+int grobo_runner_set_servo_states(grobo_runner *runner, grobo_joint_mask joints, grobo_torque state,
+                                  int64_t timeout_us)
+{
+    runner_job job = {.start = torque_job, .joints = joints, .torque = state};
+
+    return grobo_i_runner_job(runner, &job, timeout_us);
+}
+
+int grobo_runner_set_servo_state(grobo_runner *runner, int joint, grobo_torque state,
+                                 int64_t timeout_us)
+{
+    if (runner == NULL || joint < 0 || joint >= grobo_runner_joints(runner)) {
+        return GROBO_ERR_ARG;
+    }
+    int r = grobo_runner_set_servo_states(runner, GROBO_JOINT_BIT(joint), state, timeout_us);
+    return r < 0 ? r : (int)state;
+}
+
+/* ---- readings ----------------------------------------------------------------------------- */
+
+int grobo_runner_get_current_posture(grobo_runner *runner, grobo_posture *posture)
+{
+    return grobo_robot_posture(grobo_runner_robot(runner), GROBO_NEVER_US, posture);
+}
+
+static int sense_job(grobo_runner *runner, runner_job *job)
+{
+    return grobo_robot_sense(runner_robot(runner), job->joints, job->sense);
+}
+
+/* Reads, and gives the joints that have been read since it began. @return their number, or why. */
+static int sense(grobo_runner *runner, grobo_joint_mask joints, grobo_sense_kind kind,
+                 grobo_posture *posture, int64_t timeout_us)
+{
+    runner_job job = {.start = sense_job, .joints = joints, .sense = kind};
+    int r = grobo_i_runner_job(runner, &job, timeout_us);
+    grobo_posture sensed;
+
+    if (!job.ended || r == GROBO_ERR_UNPLUGGED || r == GROBO_ERR_CANCELED) {
+        return r;
+    }
+    (void)grobo_robot_posture(runner_robot(runner), grobo_now_us() - job.begun_us, &sensed);
+    sensed.set &= joints;
+    if (sensed.set == 0 && r < 0) {
+        return r;
+    }
+    *posture = sensed;
+    return grobo_joints_count(sensed.set);
+}
+
+int grobo_runner_read_posture(grobo_runner *runner, grobo_posture *posture, int64_t timeout_us)
+{
+    if (runner == NULL || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    return sense(runner, GROBO_JOINTS_ALL(grobo_runner_joints(runner)), GROBO_SENSE_FULL, posture,
+                 timeout_us);
+}
+
+int grobo_runner_read_angle(grobo_runner *runner, int joint, double *angle_rad, int64_t timeout_us)
+{
+    grobo_posture sensed;
+
+    if (angle_rad == NULL || runner == NULL || joint < 0 || joint >= grobo_runner_joints(runner)) {
+        return GROBO_ERR_ARG;
+    }
+    int r = sense(runner, GROBO_JOINT_BIT(joint), GROBO_SENSE_POSITION, &sensed, timeout_us);
+    return r > 0 ? grobo_posture_get_rad(&sensed, joint, angle_rad) : r;
+}
+
+/* ---- raw commands ------------------------------------------------------------------------- */
+
+int grobo_runner_set_command(grobo_runner *runner, const void *packet, size_t size)
+{
+    if ((packet == NULL && size > 0) || runner == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    if (size > sizeof runner->command) {
+        return GROBO_ERR_CAP;
+    }
+    grobo_i_runner_lock(runner);
+    if (size > 0) {
+        memcpy(runner->command, packet, size);
+    }
+    runner->command_bytes = size;
+    grobo_i_runner_unlock(runner);
+    return (int)size;
+}
+
+int grobo_runner_get_command(grobo_runner *runner, void *packet, size_t capacity)
+{
+    if (runner == NULL || (packet == NULL && capacity > 0)) {
+        return GROBO_ERR_ARG;
+    }
+    int r = GROBO_ERR_SPACE;
+
+    grobo_i_runner_lock(runner);
+    if (runner->command_bytes <= capacity) {
+        r = (int)runner->command_bytes;
+    }
+    if (r > 0) {
+        memcpy(packet, runner->command, (size_t)r);
+    }
+    grobo_i_runner_unlock(runner);
+    return r;
+}
+
+static int raw_job(grobo_runner *runner, runner_job *job)
+{
+    if (grobo_robot_job(runner_robot(runner)) != GROBO_JOB_NONE) {
+        return GROBO_ERR_STATE;
+    }
+    /* It may leave, and even be answered, before the request returns. */
+    memcpy(runner->raw, job->frame, job->size);
+    runner->raw_bytes = job->size;
+    /* Who is told that it took too long is not to see it leave afterwards. */
+    int r = grobo_robot_raw_until(runner_robot(runner), job->frame, job->size, job->end_us - 1);
+    if (r < 0) {
+        runner->raw_bytes = 0;
+    }
+    return r;
+}
+
+int grobo_runner_send_command(grobo_runner *runner, const void *packet, size_t size,
+                              int64_t timeout_us)
+{
+    runner_job job = {.start = raw_job, .size = size};
+    int r;
+
+    if (packet == NULL) {
+        r = grobo_runner_get_command(runner, job.frame, sizeof job.frame);
+        job.size = (size_t)r;
+    } else if (size > sizeof job.frame) {
+        return GROBO_ERR_CAP;
+    } else {
+        memcpy(job.frame, packet, size);
+    }
+    if (job.size == 0) {
+        return GROBO_ERR_EMPTY;
+    }
+    r = grobo_runner_connect(runner, timeout_us);
+    if (r >= 0) {
+        r = grobo_i_runner_job(runner, &job, timeout_us);
+        r = r == GROBO_ERR_STALE && grobo_now_us() >= job.end_us - 1 ? GROBO_ERR_TIMEOUT : r;
+    }
+    return r < 0 ? r : (int)job.size;
+}
+
+static int receive(void *arg, grobo_runner *runner)
+{
+    const storage *to = arg;
+    bool over = grobo_now_us() >= to->end_us;
+
+    if (runner->received_bytes < to->size && over) {
+        grobo_i_session_look(runner->session); /* somebody held us up, maybe */
+    }
+    size_t had = runner->received_bytes;
+    if (had >= to->size) {
+        memcpy(to->bytes, runner->received, to->size);
+        runner->received_bytes -= to->size;
+        memmove(runner->received, runner->received + to->size, runner->received_bytes);
+        return (int)to->size;
+    }
+    if (!over) {
+        return CALL_PENDING;
+    }
+    runner->received_bytes = 0;
+    return had > 0 ? GROBO_ERR_SHORT : GROBO_ERR_TIMEOUT;
+}
+
+int grobo_runner_receive(grobo_runner *runner, void *bytes, size_t size)
+{
+    if (bytes == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    storage to = {bytes, size, grobo_now_us() + INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS};
+
+    return size <= GROBO_RUNNER_RECEIVE_BYTES ? grobo_i_runner_wait(runner, receive, &to, 0)
+                                              : GROBO_ERR_CAP;
+}
+
+/* ---- safety ------------------------------------------------------------------------------- */
+
+int grobo_runner_estop(grobo_runner *runner)
+{
+    return runner != NULL ? grobo_session_post_estop(runner->session) : GROBO_ERR_ARG;
+}
+
+bool grobo_runner_is_latched(const grobo_runner *runner)
+{
+    return runner != NULL && grobo_session_is_latched(runner->session);
+}
+
+/* Not where an emergency stop came after the call. */
+static int reset(void *arg, grobo_runner *runner)
+{
+    const unsigned *estops = arg;
+
+    return atomic_load(&runner->session->estops) != *estops
+               ? GROBO_ERR_STATE
+               : grobo_robot_reset(runner_robot(runner));
+}
+
+int grobo_runner_reset(grobo_runner *runner)
+{
+    if (runner == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    unsigned estops = atomic_load(&runner->session->estops);
+
+    return grobo_i_runner_call(runner, reset, &estops);
+}
+
+static int exit_job(grobo_runner *runner, runner_job *job)
+{
+    return grobo_robot_exit(runner_robot(runner), job->policy);
+}
+
+int grobo_runner_exit(grobo_runner *runner, grobo_exit_policy policy, int64_t timeout_us)
+{
+    runner_job job = {.start = exit_job, .policy = policy, .urgent = true};
+    int r;
+
+    if (grobo_i_runner_inside(runner)) {
+        r = grobo_runner_post_exit(runner, policy);
+        return r < 0 ? r : GROBO_ERR_STATE;
+    }
+    r = grobo_i_runner_job(runner, &job, timeout_us);
+    if (job.number == 0 && (r == GROBO_ERR_TIMEOUT || r == GROBO_ERR_FULL)) {
+        (void)grobo_runner_post_exit(runner, policy); /* nobody waits, the exit stands */
+    }
+    return r;
+}
