@@ -175,6 +175,7 @@ GRCTL_RUN := $(if $(EMULATOR),$(BUILD)/run/grctl,$(GRCTL))
 BARE := $(if $(TOOL_SRCS),$(BUILD)/bare/grctl$(EXE))
 SUPPORT_LIB := $(BUILD)/libsupport.a
 ROBOTS := $(BUILD)/tools/robots/robots
+SERVOS := $(BUILD)/tools/servos/servos
 PICTURE := $(BUILD)/tools/picture/picture$(EXE)
 
 VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
@@ -183,7 +184,7 @@ include tools/baremetal/baremetal.mk
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all lib demo cockpit check compile_commands robots messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
+.PHONY: help all lib demo cockpit check compile_commands robots servos messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
@@ -217,7 +218,7 @@ check: ## set up what is missing, build, lint, run every test
 	@$(MAKE) --no-print-directory bench-count; counted=$$?; \
 	    $(MAKE) --no-print-directory test && exit $$counted
 
-lint: all $(ROBOTS) ## check the rules of the house: sources, objects, headers, symbols
+lint: all $(ROBOTS) $(SERVOS) ## check the rules of the house: sources, objects, headers, symbols
 	@tools/lint/run.sh --all $(BUILD)
 
 lint-quick: ## the rules that sources alone can break; takes two seconds
@@ -225,8 +226,11 @@ lint-quick: ## the rules that sources alone can break; takes two seconds
 
 compile_commands: ## compile_commands.json, for language servers: how each file is compiled
 	@$(MAKE) --no-print-directory -nB V=1 all $(TEST_PROGRAMS) $(DRIVER_PROGRAMS) $(FUZZ_REPLAYS) \
-	    $(BENCHES) $(EXAMPLES) $(ROBOTS) $(PICTURE) | \
+	    $(BENCHES) $(EXAMPLES) $(ROBOTS) $(SERVOS) $(PICTURE) | \
 	    awk -v folder="$(CURDIR)" -f tools/compile_commands.awk >compile_commands.json
+
+servos: $(SERVOS) ## make the tables of servo models from src/servo/models
+	@tools/servos/make.sh $(SERVOS)
 
 robots: $(ROBOTS) ## make the tables of src/robots from its files
 	@tools/robots/make.sh $(ROBOTS)
@@ -619,6 +623,7 @@ $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/common,SRC_INCLUDE))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
 $(eval $(call compile,tools/robots,TOOL_INCLUDE))
+$(eval $(call compile,tools/servos,TOOL_INCLUDE YAML_CFLAGS))
 $(eval $(call compile,tools/picture,TOOL_INCLUDE))
 $(eval $(call compile,tools/grctl,TOOL_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS XML_CFLAGS))
 $(eval $(call compile,docs/examples,WHOLE OS_FLAGS EVENT_CFLAGS))
@@ -669,8 +674,9 @@ $(BUILD)/grctl$(EXE): $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
 
 # Of the reader alone: it makes the tables that the library has.
 $(ROBOTS): $(BUILD)/tools/robots/main.o $(STATIC_LIB)
+$(SERVOS): $(BUILD)/tools/servos/main.o $(STATIC_LIB)
 $(PICTURE): $(BUILD)/tools/picture/main.o $(STATIC_LIB)
-$(ROBOTS) $(PICTURE):
+$(ROBOTS) $(SERVOS) $(PICTURE):
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 

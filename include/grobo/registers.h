@@ -83,7 +83,7 @@ typedef struct grobo_servo_register {
     uint8_t sign;     /**< GROBO_SIGN_..., or the bit that is the sign of a magnitude */
     uint8_t flags;    /**< GROBO_REGISTER_... */
     uint8_t role;     /**< grobo_register_role */
-    uint8_t groups;   /**< groups of models that have it, or-ed */
+    uint8_t set;      /**< index of grobo_servo_table.sets: the models that have it */
 } grobo_servo_register;
 
 /** How what is written to registers of GROBO_REGISTER_KEPT survives power-off. */
@@ -96,11 +96,14 @@ typedef enum grobo_keeps {
 /** A rate of the line, and its code in register BAUD. */
 typedef struct grobo_servo_rate {
     uint8_t code;
-    uint8_t groups; /**< groups of models that have it, or-ed */
+    uint8_t set; /**< index of grobo_servo_table.sets: the models that have it */
     int32_t bps;
 } grobo_servo_rate;
 
 struct grobo_servo_table;
+
+/** It cannot be a joint: it does not tell its position (grobo_servo_model.flags). */
+#define GROBO_MODEL_NO_JOINT 0x1u
 
 /** One model of a series. */
 typedef struct grobo_servo_model {
@@ -113,8 +116,9 @@ typedef struct grobo_servo_model {
     uint16_t torque_mnm;                   /**< stall torque at voltage_mv, in 0.001 N m */
     uint16_t current_ma;                   /**< stall current at voltage_mv */
     uint16_t voltage_mv;                   /**< nominal supply */
-    uint8_t group;                         /**< one bit: the rows that it has */
-    uint8_t firmware;                      /**< a version that is sold */
+    uint8_t firmware;                      /**< a version that is sold; of KRS that of ICS, 35 or
+                                              36 */
+    uint8_t flags;                         /**< GROBO_MODEL_... */
     const struct grobo_servo_table *table; /**< of its series */
 } grobo_servo_model;
 
@@ -124,6 +128,7 @@ typedef struct grobo_servo_table {
     const grobo_servo_register *registers;
     const grobo_servo_model *models;
     const grobo_servo_rate *rates;
+    const uint64_t *sets; /**< sets of models, bit n for models[n]; at most 64 models a table */
     uint16_t register_count;
     uint8_t model_count;
     uint8_t rate_count;

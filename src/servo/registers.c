@@ -31,6 +31,12 @@ const grobo_servo_model *grobo_servo_model_numbered(const grobo_servo_table *tab
     return NULL;
 }
 
+/* Whether a model is in a set of its table. */
+static bool is_in(const grobo_servo_model *model, uint8_t set)
+{
+    return (model->table->sets[set] >> (model - model->table->models) & 1) != 0;
+}
+
 /* The next register of the model behind one (NULL: its first); NULL behind the last. */
 static const grobo_servo_register *next(const grobo_servo_model *model,
                                         const grobo_servo_register *reg)
@@ -40,7 +46,7 @@ static const grobo_servo_register *next(const grobo_servo_model *model,
     }
     const grobo_servo_register *end = model->table->registers + model->table->register_count;
     for (reg = reg == NULL ? model->table->registers : reg + 1; reg < end; reg++) {
-        if ((reg->groups & model->group) != 0) {
+        if (is_in(model, reg->set)) {
             return reg;
         }
     }
@@ -85,7 +91,7 @@ const grobo_servo_register *grobo_servo_register_at(const grobo_servo_model *mod
     }
     for (; low > 0 && address < rows[low - 1].address + BYTES_MAX; low--) {
         const grobo_servo_register *reg = &rows[low - 1];
-        if ((reg->groups & model->group) != 0 && address < reg->address + reg->bytes) {
+        if (is_in(model, reg->set) && address < reg->address + reg->bytes) {
             return reg;
         }
     }
@@ -164,7 +170,7 @@ int32_t grobo_servo_baud_bps(const grobo_servo_model *model, int32_t code)
 {
     for (int i = 0; model != NULL && i < model->table->rate_count; i++) {
         const grobo_servo_rate *rate = &model->table->rates[i];
-        if (rate->code == code && (rate->groups & model->group) != 0) {
+        if (rate->code == code && is_in(model, rate->set)) {
             return rate->bps;
         }
     }
@@ -178,7 +184,7 @@ int grobo_servo_baud_code(const grobo_servo_model *model, int32_t baud_bps)
     }
     for (int i = 0; i < model->table->rate_count; i++) {
         const grobo_servo_rate *rate = &model->table->rates[i];
-        if (rate->bps == baud_bps && (rate->groups & model->group) != 0) {
+        if (rate->bps == baud_bps && is_in(model, rate->set)) {
             return rate->code;
         }
     }

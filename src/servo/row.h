@@ -8,10 +8,10 @@
 /* Flags of a row: what is measured, what may be written, what is kept, both. */
 enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
 
-#define ROW(name, address, bytes, sign, flags, role, unit, min, max, factory, groups)              \
+#define ROW(name, address, bytes, sign, flags, role, unit, min, max, factory, set)                 \
     {                                                                                              \
         name, unit, (min), (max), (factory), (address), (bytes), (sign), (flags),                  \
-            GROBO_ROLE_##role, (groups)                                                            \
+            GROBO_ROLE_##role, (set)                                                               \
     }
 
 /* A list of a table, and how long it is. */

@@ -694,6 +694,18 @@ echo 'int y;' | sample src/robots/a_b.c
 check 'robots: not made of its file' refuses 'src/robots/a_b.c: robots: differs' \
     sh "$gates/../robots/make.sh" --check cat
 
+fresh
+# What stands for the program prints a file of the folder that it is given.
+printf '#!/bin/sh\ncat "$1/made"\n' >print
+chmod +x print
+echo 'file: src/servo/a/table.c' | sample src/servo/models/a/table.yaml
+echo 'int x;' | sample src/servo/models/a/made
+echo ' int  x;' | sample src/servo/a/table.c
+check 'servos: made of its folder' sh "$gates/../servos/make.sh" --check ./print
+echo 'int y;' | sample src/servo/a/table.c
+check 'servos: not made of its folder' refuses 'src/servo/a/table.c: servos: differs' \
+    sh "$gates/../servos/make.sh" --check ./print
+
 test_case "anchors"
 
 # sabotaged FILE LINES: a tree with a function, and with these sabotages in that file.

@@ -42,8 +42,9 @@ simulator='servo/gr001/parser sim/board sim/bus sim/fault sim/inspect sim/note s
 families='bus/several servo/dxl1/driver servo/dxl1/packet servo/dxl1/protocol servo/dxl1/table
     servo/dxl2/driver servo/dxl2/packet servo/dxl2/protocol servo/dxl2/table
     servo/feetech/driver servo/feetech/protocol servo/feetech/scs servo/feetech/sts
-     servo/ics/driver servo/ics/packet servo/ics/protocol servo/ics/table servo/lx16a/driver
-     servo/lx16a/packet servo/lx16a/protocol servo/lx16a/table servo/item servo/registers
+     servo/ics/driver servo/ics/items servo/ics/packet servo/ics/protocol servo/ics/table
+     servo/lx16a/driver servo/lx16a/items servo/lx16a/packet servo/lx16a/protocol
+     servo/lx16a/table servo/item servo/registers
      servo/table/driver servo/table/inspect servo/table/items servo/table/make servo/table/reading
      servo/table/setup servo/table/values robots/driver robots/family_dxl1 robots/family_dxl2
      robots/family_feetech robots/family_ics robots/family_lx16a robots/family_rs30x robots/koch

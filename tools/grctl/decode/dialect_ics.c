@@ -13,7 +13,7 @@ enum { AT_GOAL = 0, AT_POSITION = 2, AT_ITEMS = 4, AT_ID = 8 };
 #define FIELD(name_, address_, bytes_, role_, unit_, min_, max_)                                   \
     {                                                                                              \
         .name = (name_), .unit = (unit_), .min = (min_), .max = (max_), .address = (address_),     \
-        .bytes = (bytes_), .role = GROBO_ROLE_##role_, .flags = GROBO_REGISTER_W, .groups = 1      \
+        .bytes = (bytes_), .role = GROBO_ROLE_##role_, .flags = GROBO_REGISTER_W                   \
     }
 
 static const grobo_servo_register fields[] = {
@@ -33,12 +33,14 @@ static const grobo_servo_model models[] = {{.name = "KRS",
                                             .span_ticks = 8000,
                                             .span_deg = 270,
                                             .middle = GROBO_ICS_POSITION_MIDDLE,
-                                            .group = 1,
                                             .table = &table}};
+
+static const uint64_t one_model[] = {1};
 
 static const grobo_servo_table table = {.name = "Kondo KRS",
                                         .registers = fields,
                                         .models = models,
+                                        .sets = one_model,
                                         .register_count = sizeof fields / sizeof *fields,
                                         .model_count = 1};
 

@@ -39,7 +39,7 @@ static const order orders[] = {
     {                                                                                              \
         .name = (name_), .unit = (unit_), .min = (min_), .max = (max_),                            \
         .address = 8 * (order_) + (at), .bytes = (bytes_), .sign = (sign_),                        \
-        .role = GROBO_ROLE_##role_, .flags = GROBO_REGISTER_W, .groups = 1                         \
+        .role = GROBO_ROLE_##role_, .flags = GROBO_REGISTER_W                                      \
     }
 
 static const grobo_servo_register fields[] = {
@@ -66,16 +66,15 @@ static const grobo_servo_register fields[] = {
 
 static const grobo_servo_table table;
 
-static const grobo_servo_model models[] = {{.name = "LX-16A",
-                                            .span_ticks = 1000,
-                                            .span_deg = 240,
-                                            .middle = 500,
-                                            .group = 1,
-                                            .table = &table}};
+static const grobo_servo_model models[] = {
+    {.name = "LX-16A", .span_ticks = 1000, .span_deg = 240, .middle = 500, .table = &table}};
+
+static const uint64_t one_model[] = {1};
 
 static const grobo_servo_table table = {.name = "Hiwonder LX",
                                         .registers = fields,
                                         .models = models,
+                                        .sets = one_model,
                                         .register_count = sizeof fields / sizeof *fields,
                                         .model_count = 1};
 
