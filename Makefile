@@ -117,7 +117,7 @@ LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
 
 # The core needs no C library but memcpy() and its like, and mathematics.
-CORE_FOLDERS := base model play bus servo servo/* robot robots sim
+CORE_FOLDERS := base model play bus servo servo/* robot robots sim sim/*
 HEAP := src/base/memory.c
 CORE_SRCS := $(filter-out $(HEAP),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
 OTHER_SRCS := $(sort $(HEAP) $(wildcard src/team/*.c) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \

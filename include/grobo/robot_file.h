@@ -32,6 +32,10 @@ typedef struct grobo_robot_family {
 /** The families that a file may name, NULL behind the last. */
 GROBO_API extern const grobo_robot_family *const grobo_robot_families[];
 
+/** The simulated servos of these families, in the same order, NULL behind the last: what a
+ *  grobo_sim_config names as its families. */
+GROBO_API extern const grobo_sim_family *const grobo_sim_families[];
+
 /** A USB adapter by its numbers. */
 typedef struct grobo_usb_id {
     uint16_t vendor;

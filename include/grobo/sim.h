@@ -119,8 +119,10 @@ typedef struct grobo_sim_family grobo_sim_family;
 GROBO_API extern const grobo_sim_family grobo_sim_rs30x;
 /** Models of grobo_dxl2_table. */
 GROBO_API extern const grobo_sim_family grobo_sim_dxl2;
-/** Models of grobo_dxl1_table, grobo_sts_table and grobo_scs_table. */
+/** Models of grobo_dxl1_table. */
 GROBO_API extern const grobo_sim_family grobo_sim_dxl1;
+/** Models of grobo_sts_table and grobo_scs_table. */
+GROBO_API extern const grobo_sim_family grobo_sim_feetech;
 /** Models of grobo_lx16a_table. */
 GROBO_API extern const grobo_sim_family grobo_sim_lx16a;
 /** Models of grobo_ics_table. */

@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The families that a robot's file may name, and the tables that are made of the files here. */
+/* The tables that are made of the files here. */
 #ifndef GROBO_ROBOTS_H
 #define GROBO_ROBOTS_H
 
-#include <grobo/robot_file.h>
-
-extern const grobo_robot_family grobo_i_family_rs30x;
-extern const grobo_robot_family grobo_i_family_dynamixel2;
-extern const grobo_robot_family grobo_i_family_dynamixel1;
-extern const grobo_robot_family grobo_i_family_feetech;
-extern const grobo_robot_family grobo_i_family_lx16a;
-extern const grobo_robot_family grobo_i_family_ics;
+#include "src/servo/families.h"
 
 /* By wiring. */
 extern const grobo_driver grobo_i_gr001_drivers[];

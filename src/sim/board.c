@@ -5,8 +5,8 @@
 #include "src/base/assert.h"
 #include "src/sim/board.h"
 #include "src/sim/bus.h"
-#include "src/sim/fault.h"
-#include "src/sim/note.h"
+#include "src/sim/servo/fault.h"
+#include "src/sim/servo/note.h"
 #include "src/sim/wire.h"
 
 /* ---- replying ------------------------------------------------------------------------------ */

@@ -4,11 +4,11 @@
 
 #include "src/base/assert.h"
 #include "src/sim/bus.h"
-#include "src/sim/family.h"
-#include "src/sim/fault.h"
-#include "src/sim/note.h"
-#include "src/sim/power.h"
-#include "src/sim/talk.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/fault.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/power.h"
+#include "src/sim/servo/talk.h"
 #include "src/sim/wire.h"
 
 /* A servo forgets a packet that stands still for this long. */

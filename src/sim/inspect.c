@@ -2,11 +2,11 @@
 /* What a test, or a person at the simulator, sees and changes behind the robot's back. */
 #include <string.h>
 
-#include "src/sim/dxl.h"
-#include "src/sim/family.h"
-#include "src/sim/power.h"
-#include "src/sim/servo.h"
-#include "src/sim/shaft.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/power.h"
+#include "src/sim/servo/registers.h"
+#include "src/sim/servo/servo.h"
+#include "src/sim/servo/shaft.h"
 
 /* The servo, settled; NULL when there is none of this index. */
 static grobo_sim_servo *servo_at(grobo_sim *sim, int index)

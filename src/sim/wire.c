@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/base/assert.h"
-#include "src/sim/fault.h"
+#include "src/sim/servo/fault.h"
 #include "src/sim/wire.h"
 
 /* A byte that is over at at_ns; false when there is no room for it. */

@@ -8,7 +8,7 @@
 #include <grobo/feetech.h>
 #include <grobo/ics.h>
 
-#include "src/sim/shaft.h"
+#include "src/sim/servo/shaft.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/test.h"
 

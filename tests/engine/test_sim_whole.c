@@ -12,7 +12,7 @@
 #include <grobo/board.h>
 #include <grobo/rs30x.h>
 
-#include "src/sim/talk.h"
+#include "src/sim/servo/talk.h"
 #include "tests/support/simkit.h"
 #include "tests/support/test.h"
 

@@ -198,6 +198,26 @@ compile src/robot/c.c
 check 'layers: folders in a circle' \
     refuses 'src/bus:1: layers: in a circle of folders' sh "$gates/layers.sh" build
 
+# The files of a family's folder are judged by their names.
+fresh
+printf 'FAMILY(one, first)\nFAMILY(two, second)\n' | sample src/servo/families.list
+calls src/base/nothing.c grobo_nothing grobo_nothing
+calls src/servo/first/driver.c grobo_driver_of_first grobo_nothing
+calls src/servo/first/sim.c grobo_sim_of_first grobo_driver_of_first
+check 'layers: the simulated servo may use its family' sh "$gates/layers.sh" build
+calls src/servo/first/driver.c grobo_driver_of_first grobo_sim_of_second
+calls src/servo/second/sim.c grobo_sim_of_second grobo_nothing
+check 'layers: a driver may not use a simulated servo' \
+    refuses 'driver.c:1: layers: grobo_sim_of_second comes from src/servo/second/sim' \
+    sh "$gates/layers.sh" build
+calls src/servo/first/driver.c grobo_driver_of_first grobo_nothing
+calls src/servo/first/sim_more.c grobo_sim_of_first grobo_driver_of_second
+rm build/src/servo/first/sim.o
+calls src/servo/second/driver.c grobo_driver_of_second grobo_nothing
+check 'layers: a family may not use another one' \
+    refuses 'src/servo/first/sim_more.c:1: layers: grobo_driver_of_second comes from' \
+    sh "$gates/layers.sh" build
+
 fresh
 sample src/motion/text/a.c <<'C'
 #include <stdio.h>

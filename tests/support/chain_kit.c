@@ -5,12 +5,10 @@
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
 #include <grobo/ics.h>
+#include <grobo/robot_file.h>
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/test.h"
-
-static const grobo_sim_family *const families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
-                                                   &grobo_sim_lx16a, &grobo_sim_ics, NULL};
 
 void chain_start(chain_kit *chain, const grobo_servo_model *servo, int n,
                  const grobo_sim_config *config)
@@ -34,7 +32,7 @@ void chain_start(chain_kit *chain, const grobo_servo_model *servo, int n,
     with.model = &chain->model;
     with.wiring = GROBO_WIRING_BUS;
     with.servos = chain->servos;
-    with.families = families;
+    with.families = grobo_sim_families;
     simkit_start(&chain->kit, &with);
 }
 

@@ -6,6 +6,7 @@
 #include <grobo/feetech.h>
 #include <grobo/ics.h>
 #include <grobo/lx16a.h>
+#include <grobo/robot_file.h>
 
 #include "src/base/instant.h"
 #include "tests/support/family_kit.h"
@@ -112,8 +113,6 @@ static void make_joints(family_kit *kit)
 void family_start(family_kit *kit, const family *f, const grobo_robot_config *config,
                   const grobo_sim_config *sim)
 {
-    static const grobo_sim_family *const known[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
-                                                    &grobo_sim_lx16a, &grobo_sim_ics, NULL};
     grobo_robot_config used = *config;
     grobo_sim_config with =
         sim != NULL ? *sim : (grobo_sim_config){GROBO_SIM_CONFIG_INIT, .seed = 7};
@@ -126,7 +125,7 @@ void family_start(family_kit *kit, const family *f, const grobo_robot_config *co
     with.model = &kit->model;
     with.wiring = GROBO_WIRING_BUS;
     with.servos = kit->servos;
-    with.families = known;
+    with.families = grobo_sim_families;
     with.baud_bps = f->baud_bps;
     with.echo = f->echo;
     with.supply_mv = kit->servos[0]->voltage_mv;

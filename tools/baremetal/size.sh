@@ -37,20 +37,19 @@ engine='robot/robot robot/turn robot/job robot/play robot/control robot/query ro
     robot/event robot/reading robot/orders robot/watch robot/trip robot/stop robot/segments
     robot/sense robot/hrpsys robot/budget robot/holds robot/queue robot/halted robot/stand
     base/sized'
-simulator='servo/gr001/parser sim/board sim/bus sim/fault sim/inspect sim/note sim/power
-    sim/dxl sim/rs30x sim/servo sim/shaft sim/sim sim/talk sim/wire'
-families='bus/several servo/dxl1/driver servo/dxl1/packet servo/dxl1/protocol servo/dxl1/table
-    servo/dxl2/driver servo/dxl2/packet servo/dxl2/protocol servo/dxl2/table
-    servo/feetech/driver servo/feetech/protocol servo/feetech/scs servo/feetech/sts
-     servo/ics/driver servo/ics/items servo/ics/packet servo/ics/protocol servo/ics/table
-     servo/lx16a/driver servo/lx16a/items servo/lx16a/packet servo/lx16a/protocol
-     servo/lx16a/table servo/item servo/registers
-     servo/table/driver servo/table/inspect servo/table/items servo/table/make servo/table/reading
-     servo/table/setup servo/table/values robots/driver robots/family_dxl1 robots/family_dxl2
-     robots/family_feetech robots/family_ics robots/family_lx16a robots/family_rs30x robots/koch
-     robots/koch_leader robots/openmanipulator_x robots/pan_tilt robots/shipped robots/so101
-     robots/so101_leader
-     sim/dxl1 sim/dxl2 sim/ics sim/lx16a'
+simulator='servo/gr001/parser sim/board sim/bus sim/inspect sim/sim sim/wire servo/rs30x/sim
+    sim/servo/fault sim/servo/note sim/servo/power sim/servo/registers sim/servo/servo
+    sim/servo/shaft sim/servo/talk'
+# All else of servos and robots, whatever family there is.
+families=bus/several
+for source in src/servo/*.c src/servo/*/*.c src/robots/*.c; do
+    object=${source#src/}
+    object=${object%.c}
+    case " $(echo $codec $names $robot $simulator) " in
+    *" $object "*) ;;
+    *) families="$families $object" ;;
+    esac
+done
 
 # figure CPU NAME BYTES: notes it, and prints it beside the one that was kept.
 figure() {

@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: MIT
 # Gate: a file uses files below it, never in a circle. Looks at the symbols of the objects (nm):
 # no circle of files, none of folders, and a folder takes from others only what layers.txt allows
-# it. Also finds banned functions that a macro hid from the source scan.
+# it. In the folder of a family of servos (src/servo/families.list) some files are folders of their
+# own here, by their names: src/servo/rs30x/sim of sim.c and sim_*.c, .../words of words.c and
+# words_*.c, .../family of family.c. Also finds banned functions that a macro hid from the source
+# scan.
 #
 # usage: layers.sh BUILD     (BUILD holds the objects: BUILD/src/bus/*.o ...)
 set -u
@@ -52,12 +55,37 @@ circles() {
 }
 awk '{ print $1, $2 }' "$work/uses" | sort -u >"$work/files"
 circles files <"$work/files"
-sed 's,/[^/ ]*\.c,,g' "$work/files" | awk '$1 != $2' | sort -u >"$work/folders"
+families=$(sed -n 's/^FAMILY(.*, *\([a-z0-9_]*\))$/\1/p' src/servo/families.list 2>/dev/null |
+    tr '\n' ' ')
+# The folder of a file, and the row of layers.txt that is for it.
+folder='
+    function folder(file) {
+        if (file ~ /^src\/servo\/[^\/]*\/(sim|words|family)(_[a-z0-9_]*)?\.c$/) {
+            sub(/(_[a-z0-9_]*)?\.c$/, "", file)
+            return file
+        }
+        sub(/\/[^\/]*$/, "", file)
+        sub(/\/(posix|win32)$/, "/PORT", file)
+        return file
+    }
+    # The family that a folder belongs to, or nothing.
+    function family(name,   part) {
+        return split(name, part, "/") > 2 && part[2] == "servo" &&
+            index(" " families, " " part[3] " ") ? part[3] : ""
+    }
+    function any(name,   part) {
+        if (family(name) != "") {
+            sub("/" family(name), "/FAMILY", name)
+        }
+        return name
+    }'
+awk "$folder"'{ print folder($1), folder($2) }' "$work/files" | awk '$1 != $2' |
+    sort -u >"$work/folders"
 circles folders <"$work/folders"
 
 # ---- what a folder may use -----------------------------------------------------------------
 
-awk -v table="$table" '
+awk -v table="$table" -v families="$families" "$folder"'
     BEGIN {
         while ((getline line <table) > 0) {
             sub(/#.*/, "", line)
@@ -67,10 +95,13 @@ awk -v table="$table" '
             }
         }
     }
-    function folder(file) {
-        sub(/\/[^\/]*$/, "", file)
-        sub(/\/(posix|win32)$/, "/PORT", file)
-        return file
+    # A row for FAMILY is for each of them, and what it may use of FAMILY is its own.
+    function allowed(from, to) {
+        if (((from " " to) in may) || ((any(from) " " to) in may)) {
+            return 1
+        }
+        return family(to) != "" && (family(from) == "" || family(from) == family(to)) &&
+            ((any(from) " " any(to)) in may)
     }
     {
         from = folder($1)
@@ -79,7 +110,7 @@ awk -v table="$table" '
         if (from ~ /^tools\// && to !~ /^tools\//) {
             next
         }
-        if (from != to && !((from " " to) in may)) {
+        if (from != to && !allowed(from, to)) {
             print $1 ":1: layers: " $3 " comes from " to ", which " from " may not use"
         }
     }' "$work/uses" | sort >"$work/found"

@@ -11,7 +11,7 @@
 #include "src/base/instant.h"
 #include "src/base/sized.h"
 #include "src/link/serial/loop.h"
-#include "src/sim/servo.h"
+#include "src/sim/servo/servo.h"
 
 /* How often one end is read before others have their turn: a wire without pace never is full. */
 #define READS_MAX 8

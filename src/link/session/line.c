@@ -6,7 +6,7 @@
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
-#include "src/sim/servo.h"
+#include "src/sim/servo/servo.h"
 
 /* How often one call reads at most: a line that never pauses must not keep us. */
 #define READS_MAX 16

@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/robots/file/families.h"
 
-const grobo_robot_family *const grobo_robot_families[] = {&grobo_i_family_rs30x,
-                                                          &grobo_i_family_dynamixel2,
-                                                          &grobo_i_family_dynamixel1,
-                                                          &grobo_i_family_feetech,
-                                                          &grobo_i_family_lx16a,
-                                                          &grobo_i_family_ics,
-                                                          NULL};
+#define FAMILY(name, directory) &grobo_i_family_##name,
+const grobo_robot_family *const grobo_robot_families[] = {
+#include "src/servo/families.list"
+    NULL};
+#undef FAMILY
+
+#define FAMILY(name, directory) &grobo_sim_##directory,
+const grobo_sim_family *const grobo_sim_families[] = {
+#include "src/servo/families.list"
+    NULL};
+#undef FAMILY
 
 const grobo_servo_model *grobo_i_family_row(const grobo_robot_family *family, size_t index)
 {

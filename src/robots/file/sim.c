@@ -4,9 +4,6 @@
 
 #include "src/robots/file/families.h"
 
-static const grobo_sim_family *const sim_families[] = {
-    &grobo_sim_rs30x, &grobo_sim_dxl2, &grobo_sim_dxl1, &grobo_sim_lx16a, &grobo_sim_ics, NULL};
-
 int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring, grobo_robot_sim *sim)
 {
     if (def == NULL || sim == NULL) {
@@ -21,7 +18,7 @@ int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring, grobo_r
         sim->servos[j] = grobo_i_family_servo(def->family, def->model->joints[j].servo_model);
     }
     sim->config.servos = sim->servos;
-    sim->config.families = sim_families;
+    sim->config.families = grobo_sim_families;
     sim->config.supply_mv = sim->servos[0]->voltage_mv;
     sim->config.mounted = true;
     return GROBO_OK;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* A servo at its line, whatever its family: whether it hears, and how it speaks. */
-#include "src/sim/family.h"
-#include "src/sim/fault.h"
-#include "src/sim/note.h"
-#include "src/sim/power.h"
-#include "src/sim/servo.h"
-#include "src/sim/shaft.h"
-#include "src/sim/talk.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/fault.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/power.h"
+#include "src/sim/servo/servo.h"
+#include "src/sim/servo/shaft.h"
+#include "src/sim/servo/talk.h"
 
 /* Resistance of battery and wires: the supply sags by it. An assumption. */
 #define SUPPLY_MOHM 100

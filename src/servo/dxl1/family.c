@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/dxl1.h>
 
-#include "src/robots/robots.h"
+#include "src/servo/families.h"
 
 const grobo_robot_family grobo_i_family_dynamixel1 = {
     .name = "dynamixel1",

@@ -2,8 +2,8 @@
 /* Chance: one generator a fault, so that turning one on does not change when another strikes. */
 #include <string.h>
 
-#include "src/sim/fault.h"
-#include "src/sim/note.h"
+#include "src/sim/servo/fault.h"
+#include "src/sim/servo/note.h"
 
 static const char *const names[GROBO_SIM_FAULTS] = {
 #define NAME(name, text, hits, does) text,

@@ -4,12 +4,12 @@
 #include <string.h>
 
 #include "src/base/bytes.h"
-#include "src/sim/dxl.h"
-#include "src/sim/family.h"
-#include "src/sim/note.h"
-#include "src/sim/power.h"
-#include "src/sim/servo.h"
-#include "src/sim/shaft.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/power.h"
+#include "src/sim/servo/registers.h"
+#include "src/sim/servo/servo.h"
+#include "src/sim/servo/shaft.h"
 
 /* The alarm flag comes this much below the temperature limit. An assumption. */
 #define ALARM_BELOW_LIMIT_C 10

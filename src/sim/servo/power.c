@@ -2,10 +2,10 @@
 /* What befalls a servo: flash write, reboot, loss of power; and how its time goes by. */
 #include <string.h>
 
-#include "src/sim/family.h"
-#include "src/sim/note.h"
-#include "src/sim/power.h"
-#include "src/sim/shaft.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/power.h"
+#include "src/sim/servo/shaft.h"
 
 /* Assumptions; docs/simulator.md lists them. */
 #define BOOT_US 500000

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "src/base/assert.h"
-#include "src/sim/note.h"
-#include "src/sim/talk.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/talk.h"
 
 /* ---- two at once --------------------------------------------------------------------------- */
 

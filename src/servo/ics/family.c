@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/ics.h>
 
-#include "src/robots/robots.h"
+#include "src/servo/families.h"
 
 const grobo_robot_family grobo_i_family_ics = {
     .name = "ics",

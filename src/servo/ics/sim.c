@@ -6,12 +6,12 @@
 #include <grobo/ics.h>
 
 #include "src/servo/ics/items.h"
-#include "src/sim/dxl.h"
-#include "src/sim/family.h"
-#include "src/sim/note.h"
-#include "src/sim/power.h"
-#include "src/sim/servo.h"
-#include "src/sim/shaft.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/power.h"
+#include "src/sim/servo/registers.h"
+#include "src/sim/servo/servo.h"
+#include "src/sim/servo/shaft.h"
 
 enum { EEPROM = GROBO_I_ICS_EEPROM_BYTES, SPEED_FULL = 127, CURRENT_FULL = 63, MA_OF_COUNT = 100 };
 /* Before a reply. The maker prints none; an assumption. */

@@ -7,12 +7,12 @@
 
 #include "src/base/bytes.h"
 #include "src/servo/lx16a/items.h"
-#include "src/sim/dxl.h"
-#include "src/sim/family.h"
-#include "src/sim/note.h"
-#include "src/sim/power.h"
-#include "src/sim/servo.h"
-#include "src/sim/shaft.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/power.h"
+#include "src/sim/servo/registers.h"
+#include "src/sim/servo/servo.h"
+#include "src/sim/servo/shaft.h"
 
 enum { BPS = 115200, WHEEL_FULL = 1000 };
 /* Before a reply. The maker prints none; an assumption. */

@@ -6,11 +6,11 @@
 #include <grobo/posture.h>
 
 #include "src/base/assert.h"
-#include "src/sim/dxl.h"
-#include "src/sim/family.h"
-#include "src/sim/note.h"
-#include "src/sim/servo.h"
-#include "src/sim/shaft.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/registers.h"
+#include "src/sim/servo/servo.h"
+#include "src/sim/servo/shaft.h"
 
 /* A stalled motor of any size warms as much as that of RS301CR. An assumption. */
 #define STALL_HEAT_C 122.0

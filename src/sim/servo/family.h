@@ -47,6 +47,8 @@ struct grobo_sim_family {
      * (GROBO_ERR_ARG where none begins at the address); and for grobo_i_dxl_set(), its bytes. */
     int (*set)(grobo_sim *sim, int servo, int address, int32_t value);
     int (*store)(grobo_sim *sim, int servo, int address, const uint8_t *bytes, size_t n);
+    /* What the packets' code of several series knows them by (src/servo/dxl1/sim_packets.h). */
+    const struct grobo_i_dxl1_series *(*series)(const grobo_sim_servo *servo);
     /* Whether it may have these bytes as its flash; NULL: it has none. */
     bool (*flash_fits)(const uint8_t *flash);
 };

@@ -6,9 +6,9 @@
 #include <math.h>
 
 #include "src/base/assert.h"
-#include "src/sim/family.h"
-#include "src/sim/note.h"
-#include "src/sim/shaft.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/shaft.h"
 
 /* Assumptions (docs/simulator.md): mA of the circuit, of holding, of moving at full speed. */
 #define IDLE_MA 6

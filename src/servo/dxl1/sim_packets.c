@@ -1,130 +1,65 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * AX and MX of DYNAMIXEL, STS and SCS of Feetech: what packets of Protocol 1.0 do to their
- * registers. The frame is one, so one ear hears for all; series differ by what `series` says.
+ * What packets of Protocol 1.0 do to the registers of servos: of AX and MX (sim.c), and of those of
+ * Feetech (src/servo/feetech/sim.c), which differ by the table of their series.
  */
 #include <math.h>
 #include <string.h>
 
-#include <grobo/feetech.h>
 #include <grobo/protocol.h>
 
 #include "src/base/bytes.h"
-#include "src/sim/dxl.h"
-#include "src/sim/family.h"
-#include "src/sim/note.h"
-#include "src/sim/power.h"
-#include "src/sim/servo.h"
-#include "src/sim/shaft.h"
+#include "src/servo/dxl1/sim_packets.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/power.h"
+#include "src/sim/servo/registers.h"
+#include "src/sim/servo/servo.h"
+#include "src/sim/servo/shaft.h"
 
-/* How long AX and MX bear a stall. An assumption. */
-#define AX_OVERLOAD_US 1000000
-#define AX_OVERLOAD_EFFORT 0.8
-#define STS_COUNT_MA 6.5
-#define MX_COUNT_MA 4.5
 #define COUNT_MV 100
 #define LOCK_CLOSED 1
 
-typedef enum dxl1_series { AX, MX, STS, SCS } dxl1_series;
-
-static dxl1_series series_of(const grobo_sim_servo *servo)
+static const grobo_i_dxl1_series *series_of(const grobo_sim_servo *servo)
 {
-    if (servo->model->table == &grobo_sts_table) {
-        return STS;
-    }
-    if (servo->model->table == &grobo_scs_table) {
-        return SCS;
-    }
-    return servo->model->span_deg == 360 ? MX : AX;
+    return servo->family->series(servo);
 }
 
-static bool is_feetech(const grobo_sim_servo *servo)
+static bool judges(const grobo_sim_servo *servo)
 {
-    return servo->model->table != &grobo_dxl1_table;
+    return series_of(servo)->judges;
 }
 
-static int32_t named(const grobo_sim_servo *servo, const char *name)
+int32_t grobo_i_dxl1_sim_named(const grobo_sim_servo *servo, const char *name)
 {
     const grobo_servo_register *reg = grobo_i_dxl_row(servo, name);
     return grobo_servo_register_get(servo->model, reg, &servo->reg[reg->address]);
 }
 
-static bool both_limits_are(const grobo_sim_servo *servo, int32_t value)
+bool grobo_i_dxl1_sim_limits_are(const grobo_sim_servo *servo, int32_t value)
 {
     return grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION) == value &&
            grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION) == value;
 }
 
-/* ---- units --------------------------------------------------------------------------------- */
-
-/* What a count of speed is worth. */
-static double speed_mdeg_s(const grobo_sim_servo *servo)
-{
-    double tick_mdeg = grobo_i_dxl_tick_mdeg(servo);
-    switch (series_of(servo)) {
-    case AX:
-        return 0.111 * 6000;
-    case MX:
-        return 0.114 * 6000;
-    case STS:
-        return (named(servo, "phase") & (int)GROBO_STS_PHASE_FINE_SPEED) != 0 ? tick_mdeg
-                                                                              : 50 * tick_mdeg;
-    case SCS:
-        break;
-    }
-    return tick_mdeg;
-}
-
-static double accel_mdeg_s2(const grobo_sim_servo *servo)
-{
-    return series_of(servo) == STS ? 100 * grobo_i_dxl_tick_mdeg(servo) : 8583;
-}
-
-static double count_ma(const grobo_sim_servo *servo)
-{
-    return series_of(servo) == STS ? STS_COUNT_MA : 0;
-}
-
-static int32_t rate_of(const grobo_sim_servo *servo, int32_t code)
-{
-    int32_t listed_bps = grobo_servo_baud_bps(servo->model, code);
-    bool formula = listed_bps < 0 && !is_feetech(servo) && code < 250;
-    return formula ? 2000000 / (code + 1) : listed_bps;
-}
-
 /* ---- positions ----------------------------------------------------------------------------- */
 
-static bool reverses(const grobo_sim_servo *servo)
+bool grobo_i_dxl1_sim_reverses(const grobo_sim_servo *servo)
 {
     return (grobo_i_dxl_get(servo, GROBO_ROLE_DIRECTION) & 1) != 0;
 }
 
 static bool counts_turns(const grobo_sim_servo *servo)
 {
-    switch (series_of(servo)) {
-    case STS:
-        return (named(servo, "phase") & (int)GROBO_STS_PHASE_TURNS) != 0 ||
-               both_limits_are(servo, 0);
-    case MX:
-        return both_limits_are(servo, 4095);
-    case AX:
-    case SCS:
-        break;
-    }
-    return true; /* these do not turn around: positions end at the ends of their range */
+    return series_of(servo)->counts_turns(servo);
 }
 
 static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
 {
-    int32_t ticks = grobo_i_dxl_ticks(servo, reverses(servo), angle_mdeg);
+    int32_t ticks = grobo_i_dxl_ticks(servo, grobo_i_dxl1_sim_reverses(servo), angle_mdeg);
     int32_t turn = grobo_i_dxl_turn(servo);
-    int32_t offset = grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
-    if (is_feetech(servo)) {
-        ticks -= offset;
-    } else if (counts_turns(servo)) { /* of MX; else it means nothing */
-        ticks += offset;
-    }
-    if (turn == 0 && reverses(servo)) {
+    ticks += series_of(servo)->offset(servo);
+    if (turn == 0 && grobo_i_dxl1_sim_reverses(servo)) {
         ticks += 2 * servo->model->middle;
     }
     if (turn > 0 && !counts_turns(servo)) {
@@ -135,103 +70,63 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
 
 static int32_t within_limits(const grobo_sim_servo *servo, int32_t goal)
 {
-    bool bounds = is_feetech(servo) && grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION) <
-                                           grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
+    bool bounds = !series_of(servo)->judges && grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION) <
+                                                   grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
     return bounds ? grobo_i_dxl_within(servo, goal) : goal;
 }
 
-static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
+int32_t grobo_i_dxl1_sim_goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
 {
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     int32_t goal = within_limits(servo, grobo_i_dxl_get(servo, GROBO_ROLE_GOAL));
     int32_t way = goal - position_at(servo, here_mdeg);
-    if (series_of(servo) == STS && grobo_i_dxl_get(servo, GROBO_ROLE_MODE) == GROBO_STS_MODE_STEP) {
+    if (series_of(servo)->steps != NULL && series_of(servo)->steps(servo)) {
         way = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL);
     }
-    int32_t ticks = grobo_i_dxl_ticks(servo, false, here_mdeg) + (reverses(servo) ? -way : way);
+    int32_t ticks = grobo_i_dxl_ticks(servo, false, here_mdeg) +
+                    (grobo_i_dxl1_sim_reverses(servo) ? -way : way);
     return (int32_t)lround((ticks - servo->model->middle) * grobo_i_dxl_tick_mdeg(servo));
 }
 
 /* ---- the shaft's side ---------------------------------------------------------------------- */
 
 /* Sign and magnitude with the sign in bit 10. */
-static int32_t bit10(int32_t raw)
+int32_t grobo_i_dxl1_sim_bit10(int32_t raw)
 {
     return (raw & 0x400) != 0 ? -(raw & 0x3FF) : raw & 0x3FF;
 }
 
-/* Whether it turns on and on, and the part of its top speed at which it then does. */
 static bool is_wheel(const grobo_sim_servo *servo, double *speed)
 {
-    double top = servo->plant.speed_mdeg_s;
-    int32_t mode = grobo_i_dxl_get(servo, GROBO_ROLE_MODE);
-    switch (series_of(servo)) {
-    case AX:
-        *speed = top * bit10(grobo_i_dxl_get(servo, GROBO_ROLE_SPEED)) / 1023;
-        return both_limits_are(servo, 0);
-    case MX:
-        *speed = speed_mdeg_s(servo) * bit10(grobo_i_dxl_get(servo, GROBO_ROLE_SPEED));
-        return both_limits_are(servo, 0);
-    case STS:
-        *speed = mode == GROBO_STS_MODE_PWM
-                     ? top * grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_PWM) / 1000
-                     : speed_mdeg_s(servo) * grobo_i_dxl_get(servo, GROBO_ROLE_SPEED);
-        return mode == GROBO_STS_MODE_SPEED || mode == GROBO_STS_MODE_PWM;
-    case SCS:
-        *speed = top * bit10(grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_TIME)) / 1023;
-        return both_limits_are(servo, 0);
-    }
-    return false;
+    return series_of(servo)->is_wheel(servo, speed);
 }
 
-/* A move: by time (SCS without a speed), or by speed and acceleration. */
+/* A move, by speed and acceleration. */
 static void follow_move(grobo_sim_servo *servo)
 {
+    const grobo_i_dxl1_series *series = series_of(servo);
     grobo_sim_plant *plant = &servo->plant;
-    int32_t speed = grobo_i_dxl_get(servo, GROBO_ROLE_SPEED);
-    bool zero_stops =
-        series_of(servo) == STS && (named(servo, "phase") & (int)GROBO_STS_PHASE_ZERO_FULL) == 0;
-    speed = series_of(servo) == STS ? (speed < 0 ? -speed : speed) : speed & 0x3FFF;
-    if (series_of(servo) == SCS && speed == 0) {
-        plant->time_us = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_TIME) * 1000;
-    }
-    plant->cap_mdeg_s = (int32_t)lround(fmin(speed * speed_mdeg_s(servo), INT32_MAX));
-    if (speed == 0 && zero_stops) {
-        plant->speed_mdeg_s = 0;
-    }
+    int32_t speed = series->move_speed(servo);
+    plant->cap_mdeg_s = (int32_t)lround(fmin(speed * series->speed_mdeg_s(servo), INT32_MAX));
     int32_t acceleration = grobo_i_dxl_get(servo, GROBO_ROLE_ACCELERATION);
-    plant->accel_mdeg_s2 = (int32_t)lround(acceleration * accel_mdeg_s2(servo));
+    plant->accel_mdeg_s2 = (int32_t)lround(acceleration * series->accel_mdeg_s2(servo));
 }
 
-/* The force that is left by the torque limit, and after an overload. */
-static int32_t most_ma(const grobo_sim_servo *servo)
-{
-    int32_t limit = grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE_LIMIT);
-    int32_t full = is_feetech(servo) ? 1000 : 1023;
-    if (series_of(servo) == SCS) {
-        limit = grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE);
-    }
-    if (is_feetech(servo) && (servo->status & GROBO_FEETECH_OVERLOAD) != 0) {
-        int32_t left = named(servo, "protective_torque") * 10;
-        limit = left < limit ? left : limit;
-    }
-    return servo->plant.stall_ma * limit / full;
-}
-
-static void follow(grobo_sim *sim, int index)
+void grobo_i_dxl1_sim_follow(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_sim_plant *plant = &servo->plant;
     double speed = 0;
     grobo_i_dxl_follow(sim, index);
-    plant->most_ma = most_ma(servo);
+    plant->most_ma =
+        plant->stall_ma * series_of(servo)->torque_limit(servo) / series_of(servo)->torque_full;
     if (plant->most_ma == 0) {
         plant->torque = GROBO_TORQUE_OFF;
     }
     if (is_wheel(servo, &speed)) {
         speed = fmin(fmax(speed, -plant->speed_mdeg_s), plant->speed_mdeg_s);
         plant->wheel = true;
-        plant->wheel_mdeg_s = (int32_t)lround(reverses(servo) ? -speed : speed);
+        plant->wheel_mdeg_s = (int32_t)lround(grobo_i_dxl1_sim_reverses(servo) ? -speed : speed);
     } else {
         follow_move(servo);
     }
@@ -242,7 +137,7 @@ static void go(grobo_sim *sim, int index, bool new_goal)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_torque before = (grobo_torque)servo->plant.torque;
-    follow(sim, index);
+    grobo_i_dxl1_sim_follow(sim, index);
     if (servo->plant.torque != before) {
         grobo_i_sim_torque(sim, index, before);
     } else if (new_goal && servo->plant.torque == GROBO_TORQUE_ON) {
@@ -250,29 +145,24 @@ static void go(grobo_sim *sim, int index, bool new_goal)
     }
 }
 
-/* A status bit came up; AX and MX lose their force for those that shutdown names. */
+/* A status bit came up. */
 static void fail(grobo_sim *sim, int index, unsigned error)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     servo->status |= (uint8_t)error;
-    if ((grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN) & (int)error) == 0) {
-        return;
-    }
-    if (!is_feetech(servo)) {
-        grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE_LIMIT, 0);
-    } else if ((error & (GROBO_FEETECH_OVERHEATED | GROBO_FEETECH_OVERCURRENT)) != 0) {
-        grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 0);
+    if ((grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN) & (int)error) != 0) {
+        series_of(servo)->shut_down(servo, error);
     }
 }
 
-static void cut(grobo_sim *sim, int index, bool hot)
+void grobo_i_dxl1_sim_cut(grobo_sim *sim, int index, bool hot)
 {
     if (hot) {
         fail(sim, index, GROBO_DXL1_OVERHEATED);
     } else {
         grobo_i_dxl_put(&sim->servo[index], GROBO_ROLE_TORQUE, 0);
     }
-    follow(sim, index);
+    grobo_i_dxl1_sim_follow(sim, index);
     sim->servo[index].plant.torque = GROBO_TORQUE_OFF;
 }
 
@@ -288,15 +178,15 @@ static void see_states(const grobo_sim *sim, grobo_sim_servo *servo)
         (uint8_t)((servo->status & ~(GROBO_DXL1_VOLTAGE | GROBO_DXL1_OVERHEATED)) | states);
 }
 
-static void refresh(grobo_sim *sim, int index)
+void grobo_i_dxl1_sim_refresh(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    double sign = reverses(servo) ? -1 : 1;
+    const grobo_i_dxl1_series *series = series_of(servo);
+    double sign = grobo_i_dxl1_sim_reverses(servo) ? -1 : 1;
     see_states(sim, servo);
-    grobo_i_dxl_refresh(sim, index, sign * speed_mdeg_s(servo), count_ma(servo));
-    if (servo->model->table == &grobo_dxl1_table) { /* 2048 is none */
-        double ma = grobo_i_dxl_effort(sim, index) * servo->plant.stall_ma;
-        grobo_i_dxl_put(servo, GROBO_ROLE_CURRENT, 2048 + lround(ma / MX_COUNT_MA));
+    grobo_i_dxl_refresh(sim, index, sign * series->speed_mdeg_s(servo), series->count_ma);
+    if (series->refresh != NULL) {
+        series->refresh(sim, index);
     }
     grobo_i_dxl_put(servo, GROBO_ROLE_POSITION,
                     position_at(servo, grobo_i_sim_angle_mdeg(servo, sim->now_us)));
@@ -305,70 +195,48 @@ static void refresh(grobo_sim *sim, int index)
 
 /* ---- what a servo does by itself ----------------------------------------------------------- */
 
-/* What a stall leads to, and after how long. */
-typedef struct stall_limit {
-    unsigned error;
-    int64_t after_us;
-} stall_limit;
-
-static stall_limit limit_of(const grobo_sim_servo *servo)
-{
-    double effort = (double)servo->plant.most_ma / servo->plant.stall_ma;
-    if (!is_feetech(servo)) {
-        return effort >= AX_OVERLOAD_EFFORT ? (stall_limit){GROBO_DXL1_OVERLOAD, AX_OVERLOAD_US}
-                                            : (stall_limit){0, 0};
-    }
-    if (series_of(servo) == STS) {
-        double most = grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT) * STS_COUNT_MA;
-        if (most > 0 && servo->plant.most_ma > most) {
-            return (stall_limit){GROBO_FEETECH_OVERCURRENT,
-                                 named(servo, "overcurrent_time") * 10000LL};
-        }
-    }
-    int64_t unit_us = series_of(servo) == STS ? 10000 : 40000;
-    return effort * 100 >= named(servo, "overload_torque")
-               ? (stall_limit){GROBO_FEETECH_OVERLOAD, named(servo, "protection_time") * unit_us}
-               : (stall_limit){0, 0};
-}
-
-static int64_t next_us(const grobo_sim *sim, int index)
+int64_t grobo_i_dxl1_sim_next_us(const grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
     if (!servo->powered || !servo->stalled || servo->plant.torque != GROBO_TORQUE_ON) {
         return GROBO_NEVER_US;
     }
-    stall_limit limit = limit_of(servo);
+    grobo_i_dxl1_stall limit = series_of(servo)->stall(servo);
     bool named_it = (grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN) & (int)limit.error) != 0;
     return limit.error != 0 && named_it && (servo->status & limit.error) == 0
                ? servo->start_us + servo->move_us + limit.after_us
                : GROBO_NEVER_US;
 }
 
-static void act(grobo_sim *sim, int index)
+void grobo_i_dxl1_sim_act(grobo_sim *sim, int index)
 {
-    fail(sim, index, limit_of(&sim->servo[index]).error);
+    const grobo_sim_servo *servo = &sim->servo[index];
+    fail(sim, index, series_of(servo)->stall(servo).error);
     go(sim, index, false);
 }
 
 /* ---- restart ------------------------------------------------------------------------------- */
 
-static int32_t bps(const grobo_sim *sim, int index)
+int32_t grobo_i_dxl1_sim_bps(const grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
-    return rate_of(servo, grobo_i_dxl_get(servo, GROBO_ROLE_BAUD));
+    int32_t code = grobo_i_dxl_get(servo, GROBO_ROLE_BAUD);
+    int32_t listed_bps = grobo_servo_baud_bps(servo->model, code);
+    const grobo_i_dxl1_series *series = series_of(servo);
+    return listed_bps < 0 && series->bps != NULL ? series->bps(code) : listed_bps;
 }
 
-static void restart(grobo_sim *sim, int index)
+void grobo_i_dxl1_sim_restart(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_dxl_boot(sim, index);
-    grobo_i_dxl_one_turn(sim, servo, reverses(servo));
+    grobo_i_dxl_one_turn(sim, servo, grobo_i_dxl1_sim_reverses(servo));
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
-    follow(sim, index);
+    grobo_i_dxl1_sim_follow(sim, index);
 }
 
-static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
+bool grobo_i_dxl1_sim_factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
     int code = grobo_servo_baud_code(sim->servo[index].model, (int32_t)baud_bps);
     if (code < 0 || id > GROBO_DXL1_ID_MAX) {
@@ -380,7 +248,7 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 
 /* ---- writing ------------------------------------------------------------------------------- */
 
-/* AX and MX judge a value, Feetech's servos take any. */
+/* What a series that judges has against a value. */
 static uint8_t judge_value(const grobo_sim_servo *servo, const grobo_servo_register *reg,
                            int32_t value)
 {
@@ -392,7 +260,7 @@ static uint8_t judge_value(const grobo_sim_servo *servo, const grobo_servo_regis
     }
     double speed;
     if (reg->role == GROBO_ROLE_GOAL && !is_wheel(servo, &speed) &&
-        !(series_of(servo) == MX && counts_turns(servo)) &&
+        !(grobo_i_dxl_turn(servo) > 0 && counts_turns(servo)) &&
         (value < grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION) ||
          value > grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION))) {
         return GROBO_DXL1_ANGLE_LIMIT;
@@ -417,7 +285,7 @@ static uint8_t judge(const grobo_sim_servo *servo, int address, const uint8_t *b
         bool whole = reg->address >= address && reg->address + reg->bytes <= address + (int)n;
         bool writable = (reg->flags & GROBO_REGISTER_W) != 0;
         hit = hit || writable;
-        if (is_feetech(servo)) {
+        if (!judges(servo)) {
             continue;
         }
         uint8_t error = GROBO_DXL1_BAD_RANGE;
@@ -428,22 +296,7 @@ static uint8_t judge(const grobo_sim_servo *servo, int address, const uint8_t *b
             return error;
         }
     }
-    return hit || is_feetech(servo) ? 0 : GROBO_DXL1_BAD_RANGE;
-}
-
-/* Here becomes a position: by the offset, which may be as large as its range only. */
-static void calibrate(grobo_sim *sim, int index, int32_t position)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    int32_t turn = grobo_i_dxl_turn(servo);
-    int32_t ticks =
-        grobo_i_dxl_ticks(servo, reverses(servo), grobo_i_sim_angle_mdeg(servo, sim->now_us));
-    int32_t offset = turn > 0 ? grobo_i_dxl_wrap(ticks - position, turn) : 0;
-    const grobo_servo_register *reg = grobo_servo_register_of(servo->model, GROBO_ROLE_OFFSET);
-    if (turn > 0 && reg != NULL) {
-        grobo_i_dxl_put(servo, GROBO_ROLE_OFFSET, offset > turn / 2 ? offset - turn : offset);
-        memcpy(&servo->flash[reg->address], &servo->reg[reg->address], reg->bytes);
-    }
+    return hit || !judges(servo) ? 0 : GROBO_DXL1_BAD_RANGE;
 }
 
 static bool moves(const grobo_sim_servo *servo, const grobo_servo_register *reg)
@@ -459,16 +312,10 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
     grobo_sim_servo *servo = &sim->servo[index];
     int32_t value = grobo_servo_register_get(servo->model, reg, &servo->reg[reg->address]);
     bool goal = reg->role == GROBO_ROLE_GOAL;
-    if (reg->role == GROBO_ROLE_TORQUE) {
-        servo->status &= (uint8_t)~GROBO_FEETECH_OVERLOAD;
-        servo->status &= (uint8_t) ~(is_feetech(servo) ? GROBO_FEETECH_OVERCURRENT : 0);
-    }
-    if (reg->role == GROBO_ROLE_TORQUE_LIMIT && !is_feetech(servo)) {
-        servo->status &= (uint8_t)~GROBO_DXL1_OVERLOAD;
-    }
-    if (reg->role == GROBO_ROLE_TORQUE && value == GROBO_STS_TORQUE_CALIBRATE) {
-        calibrate(sim, index, servo->model->middle);
-        grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, servo->plant.torque == GROBO_TORQUE_ON);
+    const grobo_i_dxl1_series *series = series_of(servo);
+    servo->status &= (uint8_t)~series->clears(servo, reg);
+    if (series->wrote != NULL) {
+        series->wrote(sim, index, reg, value);
     }
     if (goal) { /* brings the torque by itself: of STS measured (feetech-cli 0.1.8, simulator.py) */
         grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 1);
@@ -477,11 +324,11 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
     grobo_i_dxl_tell(sim, index, reg, value);
 }
 
-static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+int grobo_i_dxl1_sim_store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_register *reg;
-    bool open = !is_feetech(servo) || grobo_i_dxl_get(servo, GROBO_ROLE_LOCK) != LOCK_CLOSED;
+    bool open = !series_of(servo)->locks || grobo_i_dxl_get(servo, GROBO_ROLE_LOCK) != LOCK_CLOSED;
     grobo_i_dxl_store(servo, address, bytes, n, open);
     for (size_t i = 0; (reg = grobo_servo_register_row(servo->model, i)) != NULL; i++) {
         if (is_hit(reg, address, n) && (reg->flags & GROBO_REGISTER_W) != 0) {
@@ -495,7 +342,7 @@ static uint8_t write(grobo_sim *sim, int index, int address, const uint8_t *byte
 {
     uint8_t error = judge(&sim->servo[index], address, bytes, n);
     if (error == 0 && address + (int)n <= GROBO_SIM_REGISTER_BYTES) {
-        (void)store(sim, index, address, bytes, n);
+        (void)grobo_i_dxl1_sim_store(sim, index, address, bytes, n);
     } else {
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, address);
     }
@@ -525,7 +372,7 @@ static void answer(grobo_sim *sim, int index, grobo_i_dxl_round *round, uint8_t 
 static bool answers(const grobo_sim_servo *servo, bool read)
 {
     int32_t level = grobo_i_dxl_get(servo, GROBO_ROLE_REPLY_LEVEL);
-    return is_feetech(servo) ? read || level > 0 : level > (read ? 0 : 1);
+    return !judges(servo) ? read || level > 0 : level > (read ? 0 : 1);
 }
 
 static void answer_read(grobo_sim *sim, int index, grobo_i_dxl_round *round, int address,
@@ -533,13 +380,13 @@ static void answer_read(grobo_sim *sim, int index, grobo_i_dxl_round *round, int
 {
     grobo_sim_servo *servo = &sim->servo[index];
     bool beyond = address + length > GROBO_SIM_REGISTER_BYTES ||
-                  (!is_feetech(servo) && address + length > grobo_i_dxl_end(servo));
+                  (judges(servo) && address + length > grobo_i_dxl_end(servo));
     if (!answers(servo, true)) {
         return;
     }
-    refresh(sim, index);
+    grobo_i_dxl1_sim_refresh(sim, index);
     if (beyond || length == 0) {
-        answer(sim, index, round, is_feetech(servo) ? 0 : GROBO_DXL1_BAD_RANGE, NULL, 0);
+        answer(sim, index, round, !judges(servo) ? 0 : GROBO_DXL1_BAD_RANGE, NULL, 0);
     } else {
         answer(sim, index, round, 0, &servo->reg[address], (size_t)length);
     }
@@ -559,7 +406,7 @@ static uint8_t keep(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
         servo->kept_bytes = (uint8_t)packet->data_bytes;
         servo->kept_address = packet->address;
     }
-    return is_feetech(servo) ? 0 : error;
+    return !judges(servo) ? 0 : error;
 }
 
 static uint8_t do_kept(grobo_sim *sim, int index)
@@ -568,38 +415,22 @@ static uint8_t do_kept(grobo_sim *sim, int index)
     size_t n = servo->kept_bytes;
     servo->kept_bytes = 0;
     if (n == 0) {
-        return is_feetech(servo) ? 0 : GROBO_DXL1_BAD_INSTRUCTION;
+        return !judges(servo) ? 0 : GROBO_DXL1_BAD_INSTRUCTION;
     }
     return write(sim, index, servo->kept_address, servo->kept, n);
 }
 
-/* All but the id with Feetech, all with AX and MX. */
+/* A series that judges loses its id too. */
 static void reset(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     int32_t id = servo->plant.id;
     grobo_i_dxl_factory(servo);
-    if (is_feetech(servo)) {
+    if (!judges(servo)) {
         grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
         memcpy(servo->flash, servo->reg, sizeof servo->flash);
     }
     grobo_i_sim_reboot(sim, index);
-}
-
-/* What Feetech has beside; false where the instruction is none of these. */
-static bool extra(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    if (packet->instruction == GROBO_DXL1_RESET_TURNS) {
-        grobo_i_dxl_one_turn(sim, servo, reverses(servo));
-    } else if (packet->instruction == GROBO_DXL1_CALIBRATE) {
-        bool given = packet->data_bytes == 2;
-        calibrate(sim, index, given ? grobo_i_get_u16(packet->data) : servo->model->middle);
-        follow(sim, index);
-    } else {
-        return packet->instruction == GROBO_DXL1_REBOOT; /* when the answer is made */
-    }
-    return true;
 }
 
 static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
@@ -614,16 +445,16 @@ static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl1_packet *pac
     if (code == GROBO_DXL1_ACTION) {
         return do_kept(sim, index);
     }
+    const grobo_i_dxl1_series *series = series_of(&sim->servo[index]);
     bool known = code == GROBO_DXL1_FACTORY_RESET || /* when the answer is made */
-                 (is_feetech(&sim->servo[index]) && extra(sim, index, packet));
+                 (series->extra != NULL && series->extra(sim, index, packet));
     return known ? 0 : GROBO_DXL1_BAD_INSTRUCTION;
 }
 
 static bool is_answered(const grobo_sim_servo *servo, const grobo_dxl1_packet *packet)
 {
     bool known = packet->instruction <= GROBO_DXL1_CALIBRATE;
-    return packet->id != GROBO_DXL1_ID_ALL && answers(servo, false) &&
-           (known || !is_feetech(servo));
+    return packet->id != GROBO_DXL1_ID_ALL && answers(servo, false) && (known || judges(servo));
 }
 
 static void for_one(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
@@ -638,16 +469,16 @@ static void for_one(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
     }
     uint8_t id = servo->plant.id;
     uint8_t error = carry_out(sim, index, packet);
-    error = is_feetech(servo) ? 0 : error;
+    error = !judges(servo) ? 0 : error;
     if (is_answered(servo, packet)) {
         uint8_t now = servo->plant.id;
-        servo->plant.id = is_feetech(servo) ? now : id; /* Feetech answers with a new one at once */
+        servo->plant.id = judges(servo) ? id : now; /* a new one counts at once, or after this */
         answer(sim, index, &round, error, NULL, 0);
         servo->plant.id = now;
     }
     if (packet->instruction == GROBO_DXL1_FACTORY_RESET) {
         reset(sim, index);
-    } else if (packet->instruction == GROBO_DXL1_REBOOT && is_feetech(servo)) {
+    } else if (packet->instruction == GROBO_DXL1_REBOOT && series_of(servo)->extra != NULL) {
         grobo_i_sim_reboot(sim, index);
     }
 }
@@ -655,14 +486,15 @@ static void for_one(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
 /* ---- packets for several ------------------------------------------------------------------- */
 
 /* One of a list answers, if its series has the instruction. */
-static void read_one(grobo_sim *sim, const grobo_sim_event *raw, grobo_i_dxl_round *round,
-                     dxl1_series series, const grobo_dxl1_packet *one)
+static void read_one(const grobo_sim_family *family, grobo_sim *sim, const grobo_sim_event *raw,
+                     grobo_i_dxl_round *round, bool sync, const grobo_dxl1_packet *one)
 {
     const grobo_i_dxl_round begin = *round;
     bool silent = true;
-    for (int i = -1; (i = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, one->id, i, raw)) >= 0;) {
+    for (int i = -1; (i = grobo_i_dxl_hearer(sim, family, one->id, i, raw)) >= 0;) {
         grobo_i_dxl_round own = begin;
-        if (series_of(&sim->servo[i]) == series) {
+        const grobo_i_dxl1_series *series = series_of(&sim->servo[i]);
+        if (sync ? series->sync_read : series->bulk_read) {
             answer_read(sim, i, &own, one->address, one->length);
             grobo_i_dxl_beside(round, &own);
             silent = false;
@@ -673,18 +505,20 @@ static void read_one(grobo_sim *sim, const grobo_sim_event *raw, grobo_i_dxl_rou
     }
 }
 
-static void sync_read(grobo_sim *sim, const grobo_dxl1_packet *packet, const grobo_sim_event *raw)
+static void sync_read(const grobo_sim_family *family, grobo_sim *sim,
+                      const grobo_dxl1_packet *packet, const grobo_sim_event *raw)
 {
     grobo_i_dxl_round round = {0};
     for (size_t i = 0; i < packet->data_bytes; i++) {
         grobo_dxl1_packet one = *packet;
         one.id = packet->data[i];
-        read_one(sim, raw, &round, STS, &one);
+        read_one(family, sim, raw, &round, true, &one);
     }
 }
 
 /* An id that comes again counts once (emanual, bulk read). */
-static void bulk_read(grobo_sim *sim, const grobo_dxl1_packet *packet, const grobo_sim_event *raw)
+static void bulk_read(const grobo_sim_family *family, grobo_sim *sim,
+                      const grobo_dxl1_packet *packet, const grobo_sim_event *raw)
 {
     grobo_i_dxl_round round = {0};
     bool seen[GROBO_DXL1_ID_ALL + 2] = {false};
@@ -692,32 +526,33 @@ static void bulk_read(grobo_sim *sim, const grobo_dxl1_packet *packet, const gro
         const uint8_t *item = packet->data + i;
         const grobo_dxl1_packet one = {.length = item[0], .id = item[1], .address = item[2]};
         if (!seen[one.id]) {
-            read_one(sim, raw, &round, MX, &one);
+            read_one(family, sim, raw, &round, false, &one);
         }
         seen[one.id] = true;
     }
 }
 
-static void sync_write(grobo_sim *sim, const grobo_dxl1_packet *packet, const grobo_sim_event *raw)
+static void sync_write(const grobo_sim_family *family, grobo_sim *sim,
+                       const grobo_dxl1_packet *packet, const grobo_sim_event *raw)
 {
     size_t each = 1 + (size_t)packet->length;
     for (size_t at = 0; packet->length > 0 && at + each <= packet->data_bytes; at += each) {
         const uint8_t *data = packet->data + at;
-        for (int i = -1; (i = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, *data, i, raw)) >= 0;) {
+        for (int i = -1; (i = grobo_i_dxl_hearer(sim, family, *data, i, raw)) >= 0;) {
             (void)write(sim, i, packet->address, data + 1, packet->length);
         }
     }
 }
 
-/* STS take turns, in the order of ids; the others talk all at once. */
-static void ping_all(grobo_sim *sim, const grobo_sim_event *raw)
+/* Some take turns, in the order of ids; the others talk all at once. */
+static void ping_all(const grobo_sim_family *family, grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_i_dxl_round turn = {0};
     for (int id = 0; id <= GROBO_DXL1_ID_MAX; id++) {
         const grobo_i_dxl_round begin = turn;
         const uint8_t its = (uint8_t)id;
-        for (int i = -1; (i = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, its, i, raw)) >= 0;) {
-            bool waits = series_of(&sim->servo[i]) == STS;
+        for (int i = -1; (i = grobo_i_dxl_hearer(sim, family, its, i, raw)) >= 0;) {
+            bool waits = series_of(&sim->servo[i])->ping_turns;
             grobo_i_dxl_round own = waits ? begin : (grobo_i_dxl_round){0};
             answer(sim, i, &own, 0, NULL, 0);
             if (waits) {
@@ -729,13 +564,13 @@ static void ping_all(grobo_sim *sim, const grobo_sim_event *raw)
 
 /* ---- packets ------------------------------------------------------------------------------- */
 
-static void spread(grobo_sim *sim, const grobo_dxl1_packet *packet, int result,
-                   const grobo_sim_event *raw)
+static void spread(const grobo_sim_family *family, grobo_sim *sim, const grobo_dxl1_packet *packet,
+                   int result, const grobo_sim_event *raw)
 {
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_sim_servo *servo = &sim->servo[i];
         grobo_i_dxl_round round = {0};
-        if (servo->family != &grobo_sim_dxl1 ||
+        if (servo->family != family ||
             (packet->id != GROBO_DXL1_ID_ALL && servo->plant.id != packet->id) ||
             !grobo_i_sim_hears(sim, i, raw)) {
             continue;
@@ -744,64 +579,50 @@ static void spread(grobo_sim *sim, const grobo_dxl1_packet *packet, int result,
             answer(sim, i, &round, 0, NULL, 0);
         } else if (result >= 0) {
             for_one(sim, i, packet);
-        } else if (!is_feetech(servo) && packet->id != GROBO_DXL1_ID_ALL) {
+        } else if (judges(servo) && packet->id != GROBO_DXL1_ID_ALL) {
             answer(sim, i, &round, GROBO_DXL1_BAD_RANGE, NULL, 0);
         }
     }
 }
 
-static void packet(grobo_sim *sim, const grobo_sim_event *raw)
+void grobo_i_dxl1_sim_packet(const grobo_sim_family *family, grobo_sim *sim,
+                             const grobo_sim_event *raw)
 {
     grobo_dxl1_packet parts = {.id = raw->bytes[2], .instruction = raw->bytes[4]};
     int result = grobo_dxl1_parse(raw->bytes, raw->n_bytes, false, &parts);
     bool all = parts.id == GROBO_DXL1_ID_ALL;
     if (all && parts.instruction == GROBO_DXL1_PING) {
-        ping_all(sim, raw);
+        ping_all(family, sim, raw);
     } else if (all && parts.instruction == GROBO_DXL1_SYNC_READ) {
-        sync_read(sim, &parts, raw);
+        sync_read(family, sim, &parts, raw);
     } else if (all && parts.instruction == GROBO_DXL1_BULK_READ) {
-        bulk_read(sim, &parts, raw);
+        bulk_read(family, sim, &parts, raw);
     } else if (all && parts.instruction == GROBO_DXL1_SYNC_WRITE) {
-        sync_write(sim, &parts, raw);
+        sync_write(family, sim, &parts, raw);
     } else {
-        spread(sim, &parts, result, raw);
+        spread(family, sim, &parts, result, raw);
     }
 }
 
-/* AX and MX tell of a wrong sum; Feetech's servos are silent. */
-static void broken(grobo_sim *sim, const uint8_t *bytes, size_t n)
+/* A series that judges tells of a wrong sum. */
+void grobo_i_dxl1_sim_broken(const grobo_sim_family *family, grobo_sim *sim, const uint8_t *bytes,
+                             size_t n)
 {
     const grobo_sim_event raw = {.kind = GROBO_SIM_PACKET,
                                  .time_us = sim->now_us,
                                  .servo = -1,
                                  .bytes = bytes,
                                  .n_bytes = n};
-    for (int i = -1; (i = grobo_i_dxl_hearer(sim, &grobo_sim_dxl1, bytes[2], i, &raw)) >= 0;) {
+    for (int i = -1; (i = grobo_i_dxl_hearer(sim, family, bytes[2], i, &raw)) >= 0;) {
         grobo_i_dxl_round round = {0};
-        if (!is_feetech(&sim->servo[i]) && answers(&sim->servo[i], false)) {
+        if (judges(&sim->servo[i]) && answers(&sim->servo[i], false)) {
             answer(sim, i, &round, GROBO_DXL1_BAD_SUM, NULL, 0);
         }
     }
 }
 
-static int measure(const uint8_t *bytes, size_t n, bool good)
+int grobo_i_dxl1_sim_measure(const uint8_t *bytes, size_t n, bool good)
 {
     int size = grobo_dxl1_measure(bytes, n, GROBO_ACCEPT_COMMANDS);
     return size == GROBO_ERR_CHECKSUM && !good ? 4 + bytes[3] : size;
 }
-
-const grobo_sim_family grobo_sim_dxl1 = {
-    .tables = {&grobo_dxl1_table, &grobo_sts_table, &grobo_scs_table},
-    .measure = measure,
-    .packet = packet,
-    .factory = factory,
-    .boot = restart,
-    .cut = cut,
-    .goal_mdeg = goal_mdeg,
-    .refresh = refresh,
-    .bps = bps,
-    .next_us = next_us,
-    .act = act,
-    .broken = broken,
-    .set = grobo_i_dxl_set,
-    .store = store};

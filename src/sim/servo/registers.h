@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What servos with a register table have in common, whatever their frame. */
-#ifndef GROBO_SIM_DXL_H
-#define GROBO_SIM_DXL_H
+#ifndef GROBO_SIM_SERVO_REGISTERS_H
+#define GROBO_SIM_SERVO_REGISTERS_H
 
 #include <grobo/sim_static.h>
 

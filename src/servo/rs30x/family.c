@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/board.h>
 
-#include "src/robots/robots.h"
+#include "src/servo/families.h"
 
 static int init_board(grobo_driver *driver, const grobo_model *model)
 {

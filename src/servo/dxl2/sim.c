@@ -8,12 +8,12 @@
 #include <grobo/protocol.h>
 
 #include "src/base/bytes.h"
-#include "src/sim/dxl.h"
-#include "src/sim/family.h"
-#include "src/sim/note.h"
-#include "src/sim/power.h"
-#include "src/sim/servo.h"
-#include "src/sim/shaft.h"
+#include "src/sim/servo/family.h"
+#include "src/sim/servo/note.h"
+#include "src/sim/servo/power.h"
+#include "src/sim/servo/registers.h"
+#include "src/sim/servo/servo.h"
+#include "src/sim/servo/shaft.h"
 
 /* Counts: 0.229 rpm, 214.577 rev/min2, of the watchdog 20 ms, of a voltage 0.1 V. */
 #define SPEED_MDEG_S 1374.0

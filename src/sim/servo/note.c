@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/sim/note.h"
+#include "src/sim/servo/note.h"
 
 void grobo_i_sim_note(grobo_sim *sim, grobo_sim_event_kind kind, int servo, int32_t value)
 {
