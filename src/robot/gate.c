@@ -645,6 +645,21 @@ static double begin_of_halt(const grobo_robot *robot, const grobo_target *target
                : to_rad + copysign(fmin(fabs(behind_rad), fmax(most_rad, way_rad)), behind_rad);
 }
 
+/* A servo that is told a speed comes to rest at this one at least: a joint a degree beside where it
+ * is taken to be would creep there. A way that leads nowhere is gone at the approach speed. */
+#define REST_RAD_S (20 * 0.017453292519943295)
+
+static double begin_of_rest(const grobo_robot *robot, const grobo_target *target, int joint)
+{
+    double to_rad = target->posture.angle_rad[joint];
+    double way_rad = target->from_rad[joint] - to_rad;
+    double rad_s = fmin(speed_limit(robot, joint, true), REST_RAD_S);
+    double least_rad = rad_s * (double)target->joint_time_us[joint] / 1e6;
+    return fabs(way_rad) < robot->driver->angle_step_rad
+               ? target->from_rad[joint]
+               : to_rad + copysign(fmax(fabs(way_rad), least_rad), way_rad);
+}
+
 /* True if the driver looks at angles and times alone. */
 static bool is_timed(const grobo_driver *driver)
 {
@@ -663,6 +678,9 @@ static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order
         target->from_rad[j] = begin_of(robot, order, j);
         if (order->deed == GROBO_I_DEED_HALT) {
             target->from_rad[j] = begin_of_halt(robot, target, j);
+        }
+        if (order->deed == GROBO_I_DEED_HALT || order->rests) {
+            target->from_rad[j] = begin_of_rest(robot, target, j);
         }
     }
     return target;
