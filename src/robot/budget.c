@@ -4,7 +4,7 @@
 
 #define SECOND_US 1000000u
 
-static uint32_t cost_of(const grobo_bus *bus, const grobo_exchange *exchange)
+uint32_t grobo_i_line_us(const grobo_bus *bus, const grobo_exchange *exchange)
 {
     const grobo_txn txn = {
         .frame = exchange->frame, .frame_bytes = exchange->frame_bytes, .reply = exchange->reply};
@@ -29,7 +29,7 @@ static int motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *c
         grobo_exchange exchange = {0};
         more = driver->posture(driver, ctx, &target, part, &exchange);
         *answered = part == 0 ? exchange.reply.kind != GROBO_REPLY_NONE : *answered;
-        *us += more > 0 ? cost_of(bus, &exchange) : 0;
+        *us += more > 0 ? grobo_i_line_us(bus, &exchange) : 0;
     }
     return more;
 }
@@ -43,20 +43,20 @@ static int reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *
         grobo_exchange exchange = {0};
         result = driver->sense_many(driver, ctx, GROBO_JOINTS_ALL(driver->model->n_joints),
                                     GROBO_SENSE_FULL, &exchange);
-        *us = result < 0 ? 0 : cost_of(bus, &exchange);
+        *us = result < 0 ? 0 : grobo_i_line_us(bus, &exchange);
         return result;
     }
     for (int j = 0; j < driver->model->n_joints && result >= 0; j++) {
         grobo_exchange exchange = {0};
         result = driver->sense(driver, ctx, j, GROBO_SENSE_FULL, &exchange);
-        uint32_t one_us = result < 0 ? 0 : cost_of(bus, &exchange);
+        uint32_t one_us = result < 0 ? 0 : grobo_i_line_us(bus, &exchange);
         for (int part = 1; result >= 0 && GROBO_I_EXTRA(driver, sense_more) != NULL; part++) {
             exchange = (grobo_exchange){0};
             result = driver->sense_more(driver, ctx, j, GROBO_SENSE_FULL, part, &exchange);
             if (result == 0) {
                 break;
             }
-            one_us += result < 0 ? 0 : cost_of(bus, &exchange);
+            one_us += result < 0 ? 0 : grobo_i_line_us(bus, &exchange);
         }
         *us = one_us > *us ? one_us : *us;
     }

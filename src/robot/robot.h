@@ -236,6 +236,11 @@ bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_
 /* True if a frame of this use is under way. */
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
 
+/* ---- budget.c -------------------------------------------------------------------------------- */
+
+/* How long an exchange has the line, in microseconds. */
+uint32_t grobo_i_line_us(const grobo_bus *bus, const grobo_exchange *exchange);
+
 /* ---- stand.c --------------------------------------------------------------------------------- */
 
 /* Two positions show that a joint stands where they are so far apart: 0.5 s and more. */
@@ -245,6 +250,8 @@ int64_t grobo_i_stand_us(const grobo_robot *robot);
 void grobo_i_stand_forget(grobo_robot_axis *axis);
 /* Where it is, by a reading that was asked for since then. */
 void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double angle_rad);
+/* True if the last reading found the joint elsewhere than the one before. */
+bool grobo_i_stand_left(const grobo_robot_axis *axis);
 /* True if it was read to stand since then. */
 bool grobo_i_stands(const grobo_robot *robot, int joint);
 /* True if its goal was read, or its servo answered with it, behind the frame that left last: one

@@ -292,28 +292,62 @@ static void note_fast(grobo_robot *robot, int result)
     }
 }
 
-/* All of them in one frame. Any that nothing is known of is asked where it is going, too. */
-static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
+/* A first reading, the longest of all, has the line for no longer than this where it can be parted:
+ * a stop may wait for it. */
+#define FIRST_US 10000
+
+/* The next joints of a round, as many as have the time. */
+static int ask_first(grobo_robot *robot, grobo_robot_slot *slot)
 {
     const grobo_driver *driver = robot->driver;
-    grobo_joint_mask all = grobo_i_all_joints(robot);
-    int unknown;
-    bool first = !grobo_i_all_sensed(robot, all, &unknown) || robot->fast_forgotten;
-    bool angles = robot->config.sense_position_only && !(first && GROBO_I_EXTRA(driver, all_first));
-    grobo_sense_kind kind = angles  ? GROBO_SENSE_POSITION
-                            : first ? GROBO_SENSE_ALL
-                                    : GROBO_SENSE_FULL;
-    robot->sense_us = grobo_i_later(robot->sense_us + interval_of(robot), robot->now_us);
+    grobo_joint_mask left = robot->round != 0 ? robot->round : grobo_i_all_joints(robot);
+    int result =
+        driver->sense_many(driver, robot->driver_ctx, left, GROBO_SENSE_ALL, &robot->built);
+    uint32_t us = result >= 0 ? grobo_i_line_us(&robot->bus, &robot->built) : 0;
+    int n = grobo_joints_count(left), most = us > FIRST_US ? (int)(FIRST_US * (uint32_t)n / us) : n;
+    slot->unread = 0;
+    do {
+        grobo_joint_mask next = GROBO_JOINT_BIT(grobo_i_lowest(left));
+        slot->unread |= next;
+        left &= ~next;
+    } while (left != 0 && --most > 0);
+    robot->round = left;
+    return left == 0 && slot->unread == grobo_i_all_joints(robot)
+               ? result
+               : driver->sense_many(driver, robot->driver_ctx, slot->unread, GROBO_SENSE_ALL,
+                                    &robot->built);
+}
+
+/* All of them in one frame. */
+static int ask_each(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind kind)
+{
+    const grobo_driver *driver = robot->driver;
     robot->round = 0;
-    slot->many = true;
-    slot->unread = all;
-    robot->fast_forgotten = false;
+    slot->unread = grobo_i_all_joints(robot);
     slot->fast =
         are_fast(robot) && driver->sense_fast(driver, robot->driver_ctx, kind, &robot->built) >= 0;
-    if (slot->fast) {
-        return GROBO_OK;
+    return slot->fast
+               ? GROBO_OK
+               : driver->sense_many(driver, robot->driver_ctx, slot->unread, kind, &robot->built);
+}
+
+/* Any that nothing is known of is asked where it is going, too. */
+static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
+{
+    int unknown;
+    bool first = !grobo_i_all_sensed(robot, grobo_i_all_joints(robot), &unknown);
+    first = first || robot->fast_forgotten;
+    bool angles =
+        robot->config.sense_position_only && !(first && GROBO_I_EXTRA(robot->driver, all_first));
+    slot->many = true;
+    int result = first && !angles
+                     ? ask_first(robot, slot)
+                     : ask_each(robot, slot, angles ? GROBO_SENSE_POSITION : GROBO_SENSE_FULL);
+    if (robot->round == 0) {
+        robot->fast_forgotten = false;
+        robot->sense_us = grobo_i_later(robot->sense_us + interval_of(robot), robot->now_us);
     }
-    return driver->sense_many(driver, robot->driver_ctx, all, kind, &robot->built);
+    return result;
 }
 
 static int ask_next(grobo_robot *robot, grobo_robot_slot *slot)

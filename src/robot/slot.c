@@ -181,6 +181,17 @@ static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *r
     slot.robot->over(&slot, result, reply);
 }
 
+/* Each of several servos that answer one after another may take so much of its own, whatever the
+ * line has learnt from fewer of them. */
+#define EACH_US 100
+
+static uint32_t time_of_several(const grobo_robot_slot *slot)
+{
+    grobo_bus_cost cost;
+    grobo_bus_cost_of(&slot->robot->bus, &slot->txn, &cost);
+    return cost.timeout_us + EACH_US * slot->txn.reply.count;
+}
+
 int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
                       grobo_priority priority)
 {
@@ -199,6 +210,9 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
     slot->txn.retries = once ? 0 : (uint8_t)config->retries;
     slot->txn.patient = slot->txn.retries > 0 && !had_its_chance;
     slot->txn.timeout_us = config->timeout_us;
+    if (!GROBO_DRIVERS_PLAIN && once && slot->many && config->timeout_us == 0) {
+        slot->txn.timeout_us = time_of_several(slot);
+    }
     slot->txn.sent_us = -1;
     slot->given_us = slot->robot->now_us;
     slot->txn.leave = on_leave;
