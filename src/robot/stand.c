@@ -53,6 +53,11 @@ void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double 
     axis->stood_us = asked_us;
 }
 
+bool grobo_i_stand_left(const grobo_robot_axis *axis)
+{
+    return axis->still_us > axis->stood_us;
+}
+
 bool grobo_i_stands(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
@@ -102,6 +107,8 @@ void grobo_i_halt_owe(grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(joints, j)) {
+            bool waits = grobo_i_has(robot->halts_owed, j);
+            robot->hear_us = waits ? robot->hear_us : robot->now_us; /* it is asked at once */
             robot->halts_owed |= GROBO_JOINT_BIT(j);
             robot->halt_us = robot->now_us;
             if (robot->axes[j].in_segments) {

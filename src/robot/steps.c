@@ -642,6 +642,20 @@ static bool arrives(grobo_robot *robot, int joint)
     return arrives;
 }
 
+/* A joint so far from the goal that its servo just told of, and turning there, however slowly, is
+ * on its way: one that sags under its load turns the other way, or not at all. */
+#define CREEPS_FAR_RAD (3 * 0.017453292519943295)
+#define CREEPS_DPS 2
+
+static bool creeps_to_its_goal(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double left_rad = axis->state.goal_rad - axis->seen_rad;
+    return grobo_i_axis_tells_turn(robot, joint) && axis->goal_us == axis->angle_us &&
+           abs(axis->seen_dps) >= CREEPS_DPS && axis->seen_dps * left_rad > 0 &&
+           fabs(left_rad) > CREEPS_FAR_RAD;
+}
+
 /* True if the servo, just read, says that it is on a way; notes that way. */
 static bool is_astray(grobo_robot *robot, int joint)
 {
@@ -650,7 +664,7 @@ static bool is_astray(grobo_robot *robot, int joint)
     int64_t left_us = state->goal_time_us - state->time_us;
     bool creeps = axis->goal_us == axis->angle_us && left_us > 0 &&
                   !near_rad(state->goal_rad, state->angle_rad, THERE_RAD);
-    bool turns = still_turns(robot, joint);
+    bool turns = still_turns(robot, joint) || creeps_to_its_goal(robot, joint);
     if (state->torque != GROBO_TORQUE_ON ||
         (axis->own_until_us <= robot->now_us && !axis->adrift && !creeps && !turns)) {
         return false;
@@ -706,7 +720,9 @@ static int step_strays(grobo_robot *robot)
     return stop_strays(robot, astray, arriving);
 }
 
-/* Who was not read to stand is looked at again when that shows it. */
+/* A joint that was not read to stand is read again until that shows it, and meanwhile so often. */
+#define DOUBT_US 100000
+
 static int step_doubt(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
@@ -719,18 +735,26 @@ static int step_doubt(grobo_robot *robot)
             job->until_us = grobo_i_later(job->until_us, since_us + grobo_i_stand_us(robot));
         }
     }
+    job->until_us = grobo_i_sooner(job->until_us, robot->now_us + DOUBT_US);
     return job->pending != 0 ? GROBO_I_WAIT : GROBO_I_NEXT;
 }
 
-/* Then it moves, however slowly, and whatever speed its servo tells. */
+/* A joint that has left the place where it was read moves, however slowly, and whatever speed its
+ * servo reports. */
 static int step_moved(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
-    grobo_joint_mask moved = job->pending & doubtful(robot), lost = job->pending & job->failed;
+    grobo_joint_mask doubt = job->pending & doubtful(robot), lost = job->pending & job->failed;
+    grobo_joint_mask moved = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(moved, j)) {
+        if (grobo_i_has(doubt, j) && grobo_i_stand_left(&robot->axes[j])) {
             grobo_i_astray(robot, j);
+            moved |= GROBO_JOINT_BIT(j);
         }
+    }
+    if (moved == 0 && lost == 0 && doubt != 0) {
+        grobo_i_job_goto(robot, step_doubt);
+        return GROBO_I_NEXT;
     }
     job->pending = 0;
     return stop_strays(robot, moved, lost);
