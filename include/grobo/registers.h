@@ -102,6 +102,14 @@ typedef struct grobo_servo_rate {
 
 struct grobo_servo_table;
 
+/** Registers that stand for others: address k of a run says which byte data k is. */
+typedef struct grobo_servo_indirect {
+    uint16_t address; /**< of the first address, of 2 bytes each; each holds that of its data at
+                           power-on */
+    uint16_t data;    /**< address of the first byte of data */
+    uint8_t count;    /**< of both */
+} grobo_servo_indirect;
+
 /** It cannot be a joint: it does not tell its position (grobo_servo_model.flags). */
 #define GROBO_MODEL_NO_JOINT 0x1u
 
@@ -120,6 +128,8 @@ typedef struct grobo_servo_model {
                                               36 */
     uint8_t flags;                         /**< GROBO_MODEL_... */
     const struct grobo_servo_table *table; /**< of its series */
+    const grobo_servo_indirect *indirect;  /**< indirect_count runs; NULL: none */
+    uint8_t indirect_count;
 } grobo_servo_model;
 
 /** A series: registers by rising address, models, rates as its manuals list them. */

@@ -20,6 +20,10 @@ GROBO_BEGIN_DECLS
 #define GROBO_SIM_KEPT_BYTES 64
 /** Longest write that a servo keeps until its action. Private. */
 #define GROBO_SIM_WRITE_BYTES 32
+/** Indirect registers of a servo. Private. */
+#ifndef GROBO_SIM_INDIRECTS
+#define GROBO_SIM_INDIRECTS 56
+#endif
 /** Families on one line. Private. */
 #define GROBO_SIM_FAMILIES_MAX 4
 
@@ -70,11 +74,13 @@ typedef struct grobo_sim_servo {
     uint8_t kept_bytes; /* 0: none */
     const grobo_sim_family *family;
     const grobo_servo_model *model;
-    grobo_sim_plant plant;                 /* follows the registers */
-    uint8_t reg[GROBO_SIM_REGISTER_BYTES]; /* present values are filled in when read */
-    uint8_t flash[GROBO_SIM_KEPT_BYTES];   /* registers that survive power-off */
-    uint8_t status;                        /* flags of the next return packet */
-    uint8_t cable;                         /* grobo_sim_cable */
+    grobo_sim_plant plant;                  /* follows the registers */
+    uint8_t reg[GROBO_SIM_REGISTER_BYTES];  /* present values are filled in when read */
+    uint8_t flash[GROBO_SIM_KEPT_BYTES];    /* registers that survive power-off */
+    uint16_t indirect[GROBO_SIM_INDIRECTS]; /* addresses that indirect data stand for */
+    uint8_t indirect_data[GROBO_SIM_INDIRECTS];
+    uint8_t status; /* flags of the next return packet */
+    uint8_t cable;  /* grobo_sim_cable */
     bool powered, blocked, stalled, by_hand, reboots_after_save, ramped;
 } grobo_sim_servo;
 

@@ -12,6 +12,9 @@ only_lx() {
         [ "$(grep -cv '^lx16a ' "$work/out")" -eq 0 ] && says HTS-35H
 }
 check "of one" only_lx
+check "those that cannot be joints" both exits 0 "$GRCTL" robot servos ics --- \
+    says '^ics  *KRS-2552RHV .* V  cannot be a joint: it does not tell its position$'
+check "and no other" both exits 0 "$GRCTL" robot servos ics --- says '^ics  *KRS-3301 .* V$'
 check "of none" fails 2 "no family 'sts'" "$GRCTL" robot servos sts
 
 test_case "Choreonoid"

@@ -150,7 +150,7 @@ for wrong in 1=RS999 0=RS301CR 128=RS301CR 1=RS301CR,1=RS302CD 1 1= =RS301CR 1=R
         --servo "$wrong"
 done
 check "an unknown type: the known ones are named" fails 2 \
-    "'1=RS204MD': unknown type; known: RS301CR .* AX-12A .* SCS0009 LX-16A .* KRS-3301 .*" \
+    "'1=RS204MD': unknown type; did you mean RS304MD? 'grctl robot servos' lists all" \
     timeout 5 "$GRCTL" sim --servo 1=RS204MD
 check "help names them too" both exits 0 "$GRCTL" help sim --- says 'RS301CR, XL330-M288'
 others() {

@@ -112,6 +112,97 @@ TEST(a_fast_read_is_one_status)
     assert_int_equal(chain.kit.n_got, 8 + 2 * 8);
 }
 
+static void write_block(uint8_t id, int address, const uint8_t *bytes, size_t n)
+{
+    chain_send(&chain, id, GROBO_DXL2_WRITE, (uint16_t)address, 0, bytes, n);
+    assert_int_equal(chain.kit.n_got, 11);
+}
+
+/* Reads a block and returns its first four bytes. */
+static int32_t read_block(uint8_t id, int address, int n)
+{
+    chain_send(&chain, id, GROBO_DXL2_READ, (uint16_t)address, (uint16_t)n, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 11 + n);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_DONE);
+    return value_at(0);
+}
+
+/* A run of indirect addresses; where its data are. */
+static const struct {
+    const char *model;
+    int address, data, last,
+        most; /* of the run: first address, first data, the last ones; RAM's end */
+} runs[] = {{"XL330-M288", 168, 208, 206, 227},
+            {"XC430-W150", 168, 224, 222, 661},
+            {"XM540-W270", 578, 634, 632, 661},
+            {"MX-64-2", 168, 224, 222, 661}};
+
+/* The e-manual of each model: what an indirect address holds at power-on, and that its data are the
+ * bytes that it names. */
+TEST(indirect_data_stand_for_other_registers)
+{
+    for (size_t r = 0; r < sizeof runs / sizeof runs[0]; r++) {
+        chain_start(&chain, model(runs[r].model), 2, NULL);
+        assert_int_equal(read_block(1, runs[r].address, 4) & 0xFFFF, runs[r].data);
+        /* Data of its own. */
+        write_block(1, runs[r].data, (const uint8_t[]){7, 8, 9}, 3);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_DONE);
+        assert_int_equal(read_block(1, runs[r].data, 4), 0x090807);
+        /* Goal position, whose bytes come together in one write; then the present one. */
+        const uint8_t goal[] = {116, 0, 117, 0, 118, 0, 119, 0};
+        write_block(1, runs[r].address, goal, sizeof goal);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_DONE);
+        assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), GROBO_DXL2_DONE);
+        write_block(1, runs[r].data, (const uint8_t[]){0xC4, 0x09, 0, 0}, 4);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_DONE);
+        assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_GOAL), 2500);
+        simkit_run(&chain.kit, 2000000);
+        const uint8_t present[] = {132, 0, 133, 0, 134, 0, 135, 0};
+        write_block(1, runs[r].address, present, sizeof present);
+        assert_int_equal(read_block(1, runs[r].data, 4), 2500);
+        /* What a goal may not be, it may not be here; the servo that was not asked is as it was. */
+        write_block(1, runs[r].address, goal, sizeof goal);
+        write_block(1, runs[r].data, (const uint8_t[]){0x88, 0x13, 0, 0}, 4);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_LIMIT);
+        assert_int_equal(read_block(2, runs[r].address, 4) & 0xFFFF, runs[r].data);
+        /* No register below RAM or behind it; half an address. */
+        write_block(1, runs[r].last, (const uint8_t[]){7, 0}, 2);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_RANGE);
+        const uint8_t beyond[] = {(uint8_t)((runs[r].most + 1) & 0xFF),
+                                  (uint8_t)((runs[r].most + 1) >> 8)};
+        write_block(1, runs[r].last, beyond, sizeof beyond);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_RANGE);
+        write_block(1, runs[r].last, (const uint8_t[]){116}, 1);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_RANGE);
+        /* A reboot forgets them. */
+        chain_send(&chain, 1, GROBO_DXL2_REBOOT, 0, 0, NULL, 0);
+        simkit_run(&chain.kit, 3000000);
+        assert_int_equal(read_block(1, runs[r].address, 4) & 0xFFFF, runs[r].data);
+    }
+}
+
+/* Position, speed and current in one reading of each, as the maker's ROS driver asks. */
+TEST(indirect_data_are_read_together)
+{
+    chain_start(&chain, model("XM430-W350"), 3, NULL);
+    const uint8_t places[] = {132, 0, 133, 0, 134, 0, 135, 0, 144, 0, 145, 0};
+    for (uint8_t id = 1; id <= 3; id++) {
+        write_block(id, 578, places, sizeof places);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_DONE);
+    }
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_SYNC_READ, 634, 6, six, 3);
+    assert_int_equal(chain.kit.n_got, 3 * 17);
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(id_at(17 * i), i + 1);
+        assert_int_equal(value_at(17 * i), 2048);
+        assert_int_equal(chain.kit.got[17 * i + 13], 120);
+    }
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_FAST_SYNC_READ, 634, 6, six, 3);
+    assert_int_equal(chain.kit.n_got, 8 + 3 * 10);
+    assert_int_equal(chain.kit.got[8 + 1 + 1], 2048 & 0xFF);
+    assert_int_equal(chain.kit.got[8 + 1 + 2], 2048 >> 8);
+}
+
 TEST(all_are_found_by_one_ping)
 {
     chain_start(&chain, model("XM430-W350"), 20, NULL);

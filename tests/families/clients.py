@@ -45,6 +45,53 @@ def dynamixel_sdk_2(port):
     assert (bulk.getData(1, 132, 4), bulk.getData(2, 144, 2)) == (2500, 120)
 
 
+# What ROS 2 drivers of the maker's do (dynamixel_hardware_interface): torque off, indirect addresses
+# of what is written at 168 and of what is read at 578, then one block each.
+def dynamixel_sdk_indirect(port):
+    import dynamixel_sdk as d
+
+    def places(i, first, registers):
+        n = 0
+        for address, size in registers:
+            for k in range(size):
+                assert packets.write2ByteTxRx(line, i, first + 2 * n, address + k) == (0, 0)
+                n += 1
+        return n
+
+    line, packets = patient(d.PortHandler(port)), d.PacketHandler(2.0)
+    assert line.openPort() and line.setBaudRate(1000000)
+    for i in (1, 2):
+        assert packets.read4ByteTxRx(line, i, 2)[1:] == (0, 0)
+        assert packets.read2ByteTxRx(line, i, 168)[0] == 224
+        assert packets.write1ByteTxRx(line, i, 64, 0) == (0, 0)
+        assert places(i, 168, [(108, 4), (112, 4), (116, 4)]) == 12
+        assert places(i, 578, [(132, 4), (128, 4), (126, 2), (144, 2)]) == 12
+        assert packets.write1ByteTxRx(line, i, 64, 1) == (0, 0)
+    goals = d.GroupSyncWrite(line, packets, 224, 12)
+    for i, goal in ((1, 2500), (2, 1800)):
+        block = (0).to_bytes(4, "little") + (0).to_bytes(4, "little") + goal.to_bytes(4, "little")
+        assert goals.addParam(i, list(block))
+    assert goals.txPacket() == 0
+    group = d.GroupSyncRead(line, packets, 634, 12)
+    for i in (1, 2):
+        assert group.addParam(i)
+
+    def positions():
+        assert group.txRxPacket() == 0
+        return [group.getData(i, 634, 4) for i in (1, 2)]
+
+    arrives(positions, [2500, 1800])
+    assert group.getData(1, 644, 2) == 120
+    assert packets.read4ByteTxRx(line, 1, 116)[0] == 2500
+    # Through the secondary id both move, and neither answers.
+    for i in (1, 2):
+        assert packets.write1ByteTxRx(line, i, 64, 0) == (0, 0)
+        assert packets.write1ByteTxRx(line, i, 12, 9) == (0, 0)
+        assert packets.write1ByteTxRx(line, i, 64, 1) == (0, 0)
+    packets.write4ByteTxOnly(line, 9, 116, 2048)
+    arrives(positions, [2048, 2048])
+
+
 def dynamixel_sdk_1(port):
     import dynamixel_sdk as d
 

@@ -24,6 +24,7 @@ against() {
 }
 
 against dynamixel_sdk 1=XL330-M288,2=XL430-W250,3=XM430-W350 dynamixel_sdk_2
+against dynamixel_sdk 1=XM430-W350,2=XM540-W270 dynamixel_sdk_indirect
 against dynamixel_sdk 1=AX-12A,2=MX-28 dynamixel_sdk_1
 against rustypot 1=XL330-M288,2=XL330-M288,3=XL330-M288 rustypot_x
 against rustypot 1=STS3215,2=STS3215,3=STS3215 rustypot_sts

@@ -87,6 +87,17 @@ TEST(models_have_their_own_rows)
         {"XM430-W350", "position_p", 84, 800},       {"XL430-W250", "position_d", 80, 4000},
         {"XL330-M288", "max_voltage", 32, 70},       {"XC330-T181", "min_voltage", 34, 55},
         {"XM430-W210", "temperature_limit", 31, 80}, {"2XL430-W250", "velocity_limit", 44, 265},
+        {"XC430-W150", "velocity_limit", 44, 460},   {"XC430-W150", "temperature_limit", 31, 80},
+        {"XC430-W150", "max_voltage", 32, 160},      {"XC430-W150", "velocity_i", 76, 1920},
+        {"XC430-W150", "position_d", 80, 0},         {"XC430-W150", "position_p", 84, 460},
+        {"XC430-W150", "moving_threshold", 24, 20},  {"XC430-W240", "velocity_limit", 44, 306},
+        {"XC430-W240", "position_p", 84, 700},       {"XC430-W240", "max_voltage", 32, 160},
+        {"XM430-W210", "velocity_limit", 44, 330},   {"XL330-M077", "velocity_limit", 44, 1620},
+        {"XL330-M077", "velocity_i", 76, 400},       {"XL330-M077", "velocity_p", 78, 40},
+        {"XL330-M077", "position_i", 82, 400},       {"XC330-M181", "velocity_limit", 44, 545},
+        {"XC330-M181", "velocity_i", 76, 1400},      {"XC330-M181", "position_p", 84, 1200},
+        {"XC330-T181", "velocity_limit", 44, 510},   {"XC330-T288", "velocity_limit", 44, 320},
+        {"XC330-T288", "model_information", 2, 0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const grobo_servo_model *model = grobo_servo_model_named(&grobo_dxl2_table, rows[i].model);
@@ -96,6 +107,27 @@ TEST(models_have_their_own_rows)
     }
     assert_null(grobo_servo_model_named(&grobo_dxl2_table, "XL330"));
     assert_null(grobo_servo_model_numbered(&grobo_dxl2_table, 9999));
+}
+
+/* What a model does at its voltage: of the same column of the data sheet. */
+TEST(models_have_figures_of_their_voltage)
+{
+    static const struct {
+        const char *model;
+        int dps, mnm, ma, mv;
+    } rows[] = {
+        {"XC330-T181", 678, 800, 880, 12000},    {"XC330-T288", 426, 1000, 880, 12000},
+        {"XC330-M288", 486, 930, 1800, 5000},    {"XL330-M077", 2298, 215, 1470, 5000},
+        {"XM540-W270", 180, 10600, 4400, 12000}, {"XH540-V150", 360, 6400, 2400, 24000},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_servo_model *model = grobo_servo_model_named(&grobo_dxl2_table, rows[i].model);
+        assert_non_null(model);
+        assert_int_equal(model->speed_dps, rows[i].dps);
+        assert_int_equal(model->torque_mnm, rows[i].mnm);
+        assert_int_equal(model->current_ma, rows[i].ma);
+        assert_int_equal(model->voltage_mv, rows[i].mv);
+    }
 }
 
 /* Bytes as clients send and read them (LeRobot 0.6.1, rustypot 1.13.1, feetech-servo-sdk). */

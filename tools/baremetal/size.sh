@@ -38,8 +38,8 @@ engine='robot/robot robot/turn robot/job robot/play robot/control robot/query ro
     robot/sense robot/hrpsys robot/budget robot/holds robot/queue robot/halted robot/stand
     base/sized'
 simulator='servo/gr001/parser sim/board sim/bus sim/inspect sim/sim sim/wire servo/rs30x/sim
-    sim/servo/fault sim/servo/note sim/servo/power sim/servo/registers sim/servo/servo
-    sim/servo/shaft sim/servo/talk'
+    sim/servo/fault sim/servo/indirect sim/servo/note sim/servo/power sim/servo/registers
+    sim/servo/servo sim/servo/shaft sim/servo/talk'
 # All else of servos and robots, whatever family there is.
 families=bus/several
 for source in src/servo/*.c src/servo/*/*.c src/robots/*.c; do

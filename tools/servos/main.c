@@ -301,15 +301,57 @@ static void print_row(table *t, const shared_row *row)
            number(reg->min), number(reg->max), number(reg->factory), set_of(t, row->models));
 }
 
+static bool same_indirect(const grobo_i_servo_draft *a, const grobo_i_servo_draft *b)
+{
+    bool same = a->n_indirect == b->n_indirect;
+    for (int i = 0; same && i < a->n_indirect; i++) {
+        const grobo_servo_indirect *x = &a->indirect[i], *y = &b->indirect[i];
+        same = x->address == y->address && x->data == y->data && x->count == y->count;
+    }
+    return same;
+}
+
+/* The first model with the same runs of indirect registers. */
+static int first_alike(const table *t, int model)
+{
+    int first = 0;
+    while (!same_indirect(&t->models[first], &t->models[model])) {
+        first++;
+    }
+    return first;
+}
+
+static void print_indirect(const table *t)
+{
+    for (int i = 0; i < t->n_models; i++) {
+        const grobo_i_servo_draft *m = &t->models[i];
+        if (m->n_indirect > 0 && first_alike(t, i) == i) {
+            printf("static const grobo_servo_indirect indirect_%d[] = {", i);
+            for (int k = 0; k < m->n_indirect; k++) {
+                printf("{%u, %u, %u},", m->indirect[k].address, m->indirect[k].data,
+                       m->indirect[k].count);
+            }
+            printf("};\n\n");
+        }
+    }
+}
+
 static void print_models(const table *t)
 {
+    print_indirect(t);
     printf("static const grobo_servo_model models[] = {\n");
     for (int i = 0; i < t->n_models; i++) {
         const grobo_servo_model *m = &t->models[i].model;
-        printf("    {\"%s\", %u, %u, %u, %u, %u, %u, %u, %u, %u, %s, &%s},\n", t->models[i].name,
+        printf("    {\"%s\", %u, %u, %u, %u, %u, %u, %u, %u, %u, %s, &%s", t->models[i].name,
                m->number, m->span_ticks, m->span_deg, m->middle, m->speed_dps, m->torque_mnm,
                m->current_ma, m->voltage_mv, m->firmware,
                t->models[i].no_joint ? "GROBO_MODEL_NO_JOINT" : "0", t->symbol);
+        if (t->models[i].n_indirect > 0) {
+            printf(", indirect_%d, %d", first_alike(t, i), t->models[i].n_indirect);
+        } else {
+            printf(", NULL, 0");
+        }
+        printf("},\n");
     }
     printf("};\n\n");
 }

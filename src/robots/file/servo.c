@@ -443,6 +443,36 @@ static int read_rates(grobo_i_events *events, void *target)
     return grobo_i_read_list(events, "rates", read_rate, target);
 }
 
+static int read_run(grobo_i_events *events, void *target)
+{
+    grobo_i_servo_draft *draft = target;
+    const grobo_i_event *event;
+    double found[3] = {0, 0, 0};
+    int result = grobo_i_peek(events, &event);
+    const grobo_i_place place = event->place;
+    result = result < 0 ? result : grobo_i_read_doubles(events, "indirect", found, 3);
+    if (result < 0) {
+        return result;
+    }
+    bool fits = found[0] >= 0 && found[0] <= ADDRESS_MAX && found[1] >= 0 &&
+                found[1] <= ADDRESS_MAX && found[2] >= 1 && found[2] <= UINT8_MAX;
+    if (!fits || draft->n_indirect == GROBO_I_SERVO_INDIRECTS) {
+        return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "range", place,
+                                "indirect: at most %d runs of an address, a place of data and a "
+                                "count",
+                                GROBO_I_SERVO_INDIRECTS);
+    }
+    draft->indirect[draft->n_indirect++] =
+        (grobo_servo_indirect){(uint16_t)found[0], (uint16_t)found[1], (uint8_t)found[2]};
+    return 0;
+}
+
+static int read_indirect(grobo_i_events *events, void *target)
+{
+    ((grobo_i_servo_draft *)target)->n_indirect = 0;
+    return grobo_i_read_list(events, "indirect", read_run, target);
+}
+
 /* ---- sources ------------------------------------------------------------------------------- */
 
 typedef struct source_list {
@@ -532,6 +562,7 @@ static const grobo_i_field model_fields[] = {{"name", NULL, read_name},
                                              {"keeps", NULL, read_keeps},
                                              {"big_endian", NULL, read_order},
                                              {"rates", NULL, read_rates},
+                                             {"indirect", NULL, read_indirect},
                                              {"without", NULL, read_without},
                                              {"registers", NULL, read_registers},
                                              {"physics", NULL, skip_value},
@@ -600,6 +631,9 @@ void grobo_i_servo_copy(grobo_i_servo_draft *draft, const grobo_servo_model *mod
             snprintf(row->name, sizeof row->name, "%s", reg->name);
             snprintf(row->unit, sizeof row->unit, "%s", reg->unit);
         }
+    }
+    for (int i = 0; i < model->indirect_count && i < GROBO_I_SERVO_INDIRECTS; i++) {
+        draft->indirect[draft->n_indirect++] = model->indirect[i];
     }
     for (int i = 0; i < model->table->rate_count && draft->n_rates < GROBO_I_SERVO_RATES; i++) {
         const grobo_servo_rate *rate = &model->table->rates[i];

@@ -14,7 +14,8 @@ enum {
     GROBO_I_SERVO_ROWS = 192,
     GROBO_I_SERVO_RATES = 16,
     GROBO_I_SERVO_SOURCES = 12,
-    GROBO_I_SERVO_LIKES = 4 /* files that are like one that is like ... */
+    GROBO_I_SERVO_INDIRECTS = 4, /* runs of them */
+    GROBO_I_SERVO_LIKES = 4      /* files that are like one that is like ... */
 };
 
 typedef char grobo_i_servo_text[48];
@@ -34,9 +35,10 @@ struct grobo_i_servo_draft {
     uint8_t keeps;
     bool big_endian;
     bool no_joint; /* it cannot tell its position, or not hold one */
-    int n_rows, n_rates, n_sources;
+    int n_rows, n_rates, n_sources, n_indirect;
     grobo_i_servo_row rows[GROBO_I_SERVO_ROWS];
     grobo_servo_rate rates[GROBO_I_SERVO_RATES];
+    grobo_servo_indirect indirect[GROBO_I_SERVO_INDIRECTS];
     grobo_i_servo_text source[GROBO_I_SERVO_SOURCES];
     uint32_t layout, values; /* sources of the file that is being read */
     int depth;

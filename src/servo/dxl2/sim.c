@@ -9,6 +9,7 @@
 
 #include "src/base/bytes.h"
 #include "src/sim/servo/family.h"
+#include "src/sim/servo/indirect.h"
 #include "src/sim/servo/note.h"
 #include "src/sim/servo/power.h"
 #include "src/sim/servo/registers.h"
@@ -225,6 +226,7 @@ static void restart(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_dxl_boot(sim, index);
+    grobo_i_indirect_reset(servo);
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
                     grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
@@ -315,14 +317,12 @@ static uint8_t judge_value(const grobo_sim_servo *servo, const grobo_servo_regis
     return outside_limits(servo, reg, value);
 }
 
-/* Whether all of a write can be done: GROBO_DXL2_DONE, or why not. */
-static uint8_t judge(const grobo_sim_servo *servo, int address, const uint8_t *bytes, size_t n)
+/* Whether registers may be written so: GROBO_DXL2_DONE, or why not. */
+static uint8_t judge_registers(const grobo_sim_servo *servo, int address, const uint8_t *bytes,
+                               size_t n)
 {
     const grobo_servo_register *reg;
     bool hit = false;
-    if (n == 0) {
-        return GROBO_DXL2_BAD_LENGTH;
-    }
     for (size_t i = 0; (reg = grobo_servo_register_row(servo->model, i)) != NULL; i++) {
         int end = address + (int)n;
         if (reg->address + reg->bytes <= address || reg->address >= end) {
@@ -343,6 +343,23 @@ static uint8_t judge(const grobo_sim_servo *servo, int address, const uint8_t *b
         hit = true;
     }
     return hit ? GROBO_DXL2_DONE : GROBO_DXL2_NO_ACCESS;
+}
+
+/* Whether all of a write can be done, its indirect part too. */
+static uint8_t judge(const grobo_sim_servo *servo, int address, const uint8_t *bytes, size_t n)
+{
+    uint8_t error = n == 0 ? GROBO_DXL2_BAD_LENGTH : GROBO_DXL2_DONE;
+    for (size_t at = 0; at < n && error == GROBO_DXL2_DONE;) {
+        grobo_i_indirect_piece piece = grobo_i_indirect_piece_at(servo, address + (int)at, n - at);
+        if (piece.kind == GROBO_I_INDIRECT_REGISTERS) {
+            error = judge_registers(servo, piece.address, bytes + at, piece.n);
+        } else if (piece.kind == GROBO_I_INDIRECT_ADDRESS &&
+                   !grobo_i_indirect_fits(servo, &piece, bytes + at)) {
+            error = GROBO_DXL2_BAD_RANGE;
+        }
+        at += piece.n;
+    }
+    return error;
 }
 
 /* By its drive mode, any goal switches torque on. */
@@ -406,11 +423,19 @@ static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, s
 
 static uint8_t write(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
-    uint8_t error = judge(&sim->servo[index], address, bytes, n);
-    if (error == GROBO_DXL2_DONE) {
-        (void)store(sim, index, address, bytes, n);
-    } else {
+    grobo_sim_servo *servo = &sim->servo[index];
+    uint8_t error = judge(servo, address, bytes, n);
+    if (error != GROBO_DXL2_DONE) {
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, address);
+    }
+    for (size_t at = 0; at < n && error == GROBO_DXL2_DONE;) {
+        grobo_i_indirect_piece piece = grobo_i_indirect_piece_at(servo, address + (int)at, n - at);
+        if (piece.kind == GROBO_I_INDIRECT_REGISTERS) {
+            (void)store(sim, index, piece.address, bytes + at, piece.n);
+        } else {
+            grobo_i_indirect_write(servo, &piece, bytes + at);
+        }
+        at += piece.n;
     }
     return error;
 }
@@ -442,20 +467,24 @@ static uint8_t judge_read(const grobo_sim_servo *servo, int address, int length)
     if (length == 0) {
         return GROBO_DXL2_BAD_LENGTH;
     }
-    return address + length > grobo_i_dxl_end(servo) ? GROBO_DXL2_NO_ACCESS : GROBO_DXL2_DONE;
+    return grobo_i_indirect_readable(servo, address, length) ? GROBO_DXL2_DONE
+                                                             : GROBO_DXL2_NO_ACCESS;
 }
 
 static void answer_read(grobo_sim *sim, int index, grobo_i_dxl_round *round, int address,
                         int length)
 {
     grobo_sim_servo *servo = &sim->servo[index];
+    uint8_t bytes[GROBO_SIM_TALK_BYTES];
     uint8_t error = judge_read(servo, address, length);
-    if (grobo_i_dxl_get(servo, GROBO_ROLE_REPLY_LEVEL) == 0) {
+    if (grobo_i_dxl_get(servo, GROBO_ROLE_REPLY_LEVEL) == 0 || length > (int)sizeof bytes) {
         return;
     }
     refresh(sim, index);
-    answer(sim, index, round, error, &servo->reg[error == 0 ? address : 0],
-           error == 0 ? (size_t)length : 0);
+    if (error == GROBO_DXL2_DONE) {
+        grobo_i_indirect_read(servo, address, length, bytes);
+    }
+    answer(sim, index, round, error, bytes, error == GROBO_DXL2_DONE ? (size_t)length : 0);
 }
 
 /* ---- packets for one ----------------------------------------------------------------------- */
@@ -662,7 +691,7 @@ static void fast_part(grobo_sim *sim, int index, const item *one, uint8_t *bytes
     refresh(sim, index);
     bytes[0] = with_alert(servo, GROBO_DXL2_DONE);
     bytes[1] = one->id;
-    memcpy(bytes + 2, &servo->reg[one->address], one->length);
+    grobo_i_indirect_read(servo, one->address, one->length, bytes + 2);
 }
 
 /* Older firmware of an XL330 is silent (issue pollen-robotics/rustypot#122). Of other models

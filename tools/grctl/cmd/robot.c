@@ -5,6 +5,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/lang/lang.h"
 #include "tools/grctl/setup/ask.h"
 #include "tools/grctl/setup/found.h"
 
@@ -191,14 +192,16 @@ static void list_servos(const app *a, const grobo_robot_family *family, json_t *
     for (size_t i = 0; (table = family->tables[i]) != NULL; i++) {
         for (int m = 0; m < table->model_count; m++) {
             const grobo_servo_model *servo = &table->models[m];
+            bool joint = (servo->flags & GROBO_MODEL_NO_JOINT) == 0;
             if (!a->json) {
-                app_print("%-12s %-13s %4d deg  %4d deg/s  %.1f V\n", family->name, servo->name,
-                          servo->span_deg, servo->speed_dps, servo->voltage_mv / 1e3);
+                app_print("%-12s %-13s %4d deg  %4d deg/s  %.1f V%s\n", family->name, servo->name,
+                          servo->span_deg, servo->speed_dps, servo->voltage_mv / 1e3,
+                          joint ? "" : _("  cannot be a joint: it does not tell its position"));
             }
-            json_array_append_new(list, json_pack("{s:s,s:s,s:i,s:i,s:i}", "family", family->name,
-                                                  "model", servo->name, "span_deg", servo->span_deg,
-                                                  "speed_dps", servo->speed_dps, "voltage_mv",
-                                                  servo->voltage_mv));
+            json_array_append_new(list, json_pack("{s:s,s:s,s:i,s:i,s:i,s:b}", "family",
+                                                  family->name, "model", servo->name, "span_deg",
+                                                  servo->span_deg, "speed_dps", servo->speed_dps,
+                                                  "voltage_mv", servo->voltage_mv, "joint", joint));
         }
     }
 }

@@ -38,10 +38,19 @@ static const grobo_servo_model *model_row(size_t index)
 
 static int refuse_type(app *a, const char *item, size_t length)
 {
-    char why[512];
-    size_t used = (size_t)snprintf(why, sizeof why, _("unknown type; known:"));
-    for (size_t i = 0; model_row(i) && used < sizeof why; i++) {
-        used += (size_t)snprintf(why + used, sizeof why - used, " %s", model_row(i)->name);
+    char why[160];
+    const grobo_servo_model *model;
+    const char *name = memchr(item, '=', length);
+    name = name ? name + 1 : item;
+    cli_guess guess = {.name = name, .length = length - (size_t)(name - item)};
+    for (size_t i = 0; (model = model_row(i)) != NULL; i++) {
+        cli_guess_try(&guess, model->name);
+    }
+    if (guess.best) {
+        snprintf(why, sizeof why,
+                 _("unknown type; did you mean %s? 'grctl robot servos' lists all"), guess.best);
+    } else {
+        snprintf(why, sizeof why, _("unknown type; 'grctl robot servos' lists all"));
     }
     return refuse(a, item, length, why);
 }
