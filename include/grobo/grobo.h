@@ -49,5 +49,6 @@
 #include <grobo/team.h>
 #include <grobo/types.h>
 #include <grobo/version.h>
+#include <grobo/words.h>
 
 #endif

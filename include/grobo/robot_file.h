@@ -15,6 +15,7 @@
 #include <grobo/motion_io.h>
 #include <grobo/registers.h>
 #include <grobo/sim.h>
+#include <grobo/words.h>
 
 GROBO_BEGIN_DECLS
 
@@ -31,6 +32,17 @@ typedef struct grobo_robot_family {
 
 /** The families that a file may name, NULL behind the last. */
 GROBO_API extern const grobo_robot_family *const grobo_robot_families[];
+
+/** All that the library knows of a family. A program that names the parts it uses is linked without
+ *  the others; this is for programs that take any family. */
+typedef struct grobo_family {
+    const grobo_robot_family *robot; /**< tables, line and driver: what a robot's file names */
+    const grobo_sim_family *sim;     /**< its simulated servos */
+    const grobo_words *const *words; /**< what its frames say, by series, NULL behind the last */
+} grobo_family;
+
+/** Every family, in the order of grobo_robot_families; `robot` is NULL behind the last. */
+GROBO_API extern const grobo_family grobo_families[];
 
 /** The simulated servos of these families, in the same order, NULL behind the last: what a
  *  grobo_sim_config names as its families. */

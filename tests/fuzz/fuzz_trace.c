@@ -52,7 +52,7 @@ static void on_settled(void *ctx, const ledger_entry *entry)
     MUST(entry->answer[0].state != LEDGER_WAITING && entry->size > 0);
 }
 
-static void run(const uint8_t *data, size_t size, const dialect *d)
+static void run(const uint8_t *data, size_t size, const grobo_words *d)
 {
     static talk who;
     static pcapng_reader reader;
@@ -64,11 +64,10 @@ static void run(const uint8_t *data, size_t size, const dialect *d)
     int64_t now_us = 0;
     int result;
     h.bytes = 0;
-    who = (talk){.dialect = d, .model = &grobo_gr001_model};
+    who = (talk){.words = d, .model = &grobo_gr001_model};
     ledger_init(&h.asked, 1, on_settled, &h);
     for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
-        frames_init(&sides[side], (frames_side)side, FRAMES_ANY_WIRING, on_frame, &h);
-        frames_set_talk(&sides[side], &who);
+        frames_init(&sides[side], &who, (frames_side)side, FRAMES_ANY_WIRING, on_frame, &h);
     }
     pcapng_reader_init(&reader, take, &in);
     while ((result = pcapng_read(&reader, &chunk)) > 0) {
@@ -89,10 +88,10 @@ static void run(const uint8_t *data, size_t size, const dialect *d)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const dialect *const all[] = {NULL,         &dialect_dxl2,  &dialect_dxl1, &dialect_sts,
-                                         &dialect_scs, &dialect_lx16a, &dialect_ics};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        run(data, size, all[i]);
+    for (const grobo_family *f = grobo_families; f->robot != NULL; f++) {
+        for (const grobo_words *const *words = f->words; *words != NULL; words++) {
+            run(data, size, *words);
+        }
     }
     return 0;
 }

@@ -39,30 +39,37 @@ static const struct {
     frames_side side;
     unsigned wiring;
 } rows[] = {
-    {"41 00", "board 2", FRAMES_HOST, FRAMES_BOARD},
-    {GOAL READ "50 4D 02", "board 14, board 11, board 3", FRAMES_HOST, FRAMES_BOARD},
-    {"FA AF 03 00 24 01 01 01 26", "rubbish 9", FRAMES_HOST, FRAMES_BOARD},
-    {"FA AF 03 00 24 01 01 01 26", "packet 9", FRAMES_HOST, FRAMES_BUS},
-    {"FA AF 03 00 24 01 01 01 27", "bad packet 9", FRAMES_HOST, FRAMES_BUS},
-    {"53 09 FA AF 03 00 24 01 01 01 27", "bad board 11", FRAMES_HOST, FRAMES_BOARD},
+    {"41 00", "board 2", FRAMES_HOST, GROBO_WORDS_BOARD},
+    {GOAL READ "50 4D 02", "board 14, board 11, board 3", FRAMES_HOST, GROBO_WORDS_BOARD},
+    {"FA AF 03 00 24 01 01 01 26", "rubbish 9", FRAMES_HOST, GROBO_WORDS_BOARD},
+    {"FA AF 03 00 24 01 01 01 26", "packet 9", FRAMES_HOST, GROBO_WORDS_BUS},
+    {"FA AF 03 00 24 01 01 01 27", "bad packet 9", FRAMES_HOST, GROBO_WORDS_BUS},
+    {"53 09 FA AF 03 00 24 01 01 01 27", "bad board 11", FRAMES_HOST, GROBO_WORDS_BOARD},
     {GOAL BACK "07", "board 14, packet 9, packet 1", FRAMES_EITHER, FRAMES_ANY_WIRING},
-    {BACK "07" BACK, "packet 9, packet 1, packet 9", FRAMES_ROBOT, FRAMES_BOARD},
-    {GOAL, "rubbish 14", FRAMES_ROBOT, FRAMES_BOARD},
-    {"FA AF 01 0F 24 01 00 2B" BACK, "echo 8, packet 9", FRAMES_ROBOT, FRAMES_BUS},
-    {"FA AF 07 01 24 01 01 01 23 07", "echo 9, packet 1", FRAMES_ROBOT, FRAMES_BUS},
-    {"FA AF 03 00 24 01 01 01 27", "bad echo 9", FRAMES_ROBOT, FRAMES_BUS},
-    {"FA AF 01 0F 24" BACK, "rubbish 5, packet 9", FRAMES_ROBOT, FRAMES_BUS},
-    {"12 34" BACK "99", "rubbish 2, packet 9, rubbish 1", FRAMES_ROBOT, FRAMES_BOARD},
-    {"FD DF 01 00 24 01 01 02 24", "bad packet 9", FRAMES_ROBOT, FRAMES_BOARD},
-    {"FD DF 01 00", "cut 4", FRAMES_ROBOT, FRAMES_BOARD},
+    {BACK "07" BACK, "packet 9, packet 1, packet 9", FRAMES_ROBOT, GROBO_WORDS_BOARD},
+    {GOAL, "rubbish 14", FRAMES_ROBOT, GROBO_WORDS_BOARD},
+    {"FA AF 01 0F 24 01 00 2B" BACK, "echo 8, packet 9", FRAMES_ROBOT, GROBO_WORDS_BUS},
+    {"FA AF 07 01 24 01 01 01 23 07", "echo 9, packet 1", FRAMES_ROBOT, GROBO_WORDS_BUS},
+    {"FA AF 03 00 24 01 01 01 27", "bad echo 9", FRAMES_ROBOT, GROBO_WORDS_BUS},
+    {"FA AF 01 0F 24" BACK, "rubbish 5, packet 9", FRAMES_ROBOT, GROBO_WORDS_BUS},
+    {"12 34" BACK "99", "rubbish 2, packet 9, rubbish 1", FRAMES_ROBOT, GROBO_WORDS_BOARD},
+    {"FD DF 01 00 24 01 01 02 24", "bad packet 9", FRAMES_ROBOT, GROBO_WORDS_BOARD},
+    {"FD DF 01 00", "cut 4", FRAMES_ROBOT, GROBO_WORDS_BOARD},
     /* a byte was lost: the packet with the wrong sum holds the start of a good one */
-    {"FD DF 01 00 24 01 01 24" BACK, "cut 8, packet 9", FRAMES_ROBOT, FRAMES_BOARD},
+    {"FD DF 01 00 24 01 01 24" BACK, "cut 8, packet 9", FRAMES_ROBOT, GROBO_WORDS_BOARD},
     /* a false start claims more than follows, a true frame is in it */
-    {"53 40 FA AF" GOAL, "cut 4, board 14", FRAMES_HOST, FRAMES_BOARD},
-    {"53 40 FA AF 53 0C FA", "cut 7", FRAMES_HOST, FRAMES_BOARD},
+    {"53 40 FA AF" GOAL, "cut 4, board 14", FRAMES_HOST, GROBO_WORDS_BOARD},
+    {"53 40 FA AF 53 0C FA", "cut 7", FRAMES_HOST, GROBO_WORDS_BOARD},
 };
 
 enum { ROWS = (int)(sizeof rows / sizeof rows[0]) };
+
+static talk *rs30x(void)
+{
+    static talk t;
+    t = (talk){.words = talk_named("rs30x")};
+    return &t;
+}
 
 TEST(bytes_come_out_as_what_they_are)
 {
@@ -81,7 +88,7 @@ TEST(bytes_come_out_as_what_they_are)
         for (int cut = 0; cut <= size; cut++) {
             static frames f;
             heard h = {.used = 0};
-            frames_init(&f, rows[i].side, rows[i].wiring, note, &h);
+            frames_init(&f, rs30x(), rows[i].side, rows[i].wiring, note, &h);
             frames_feed(&f, 100, bytes, (size_t)cut);
             frames_feed(&f, 200, bytes + cut, (size_t)(size - cut));
             frames_end(&f);
@@ -100,7 +107,7 @@ TEST(a_frame_that_stands_still_is_over)
     static const uint8_t check[] = {0x41, 0x00};
     static frames f;
     heard h = {.used = 0};
-    frames_init(&f, FRAMES_HOST, FRAMES_BOARD, note, &h);
+    frames_init(&f, rs30x(), FRAMES_HOST, GROBO_WORDS_BOARD, note, &h);
     frames_feed(&f, 1000, start, sizeof start);
     frames_pass(&f, 1000 + FRAMES_STALL_US - 1);
     assert_string_equal(h.text, "");
@@ -120,7 +127,7 @@ TEST(every_byte_comes_out_once)
         heard h = {.used = 0};
         uint8_t bytes[200];
         frames_side side = (frames_side)(round % 3);
-        frames_init(&f, side, FRAMES_ANY_WIRING, note, &h);
+        frames_init(&f, rs30x(), side, FRAMES_ANY_WIRING, note, &h);
         for (size_t i = 0; i < sizeof bytes; i++) {
             random = random * 1664525u + 1013904223u;
             bytes[i] = random >> 31 ? (uint8_t)(random >> 16) : likely[random >> 20 & 15];
@@ -154,7 +161,7 @@ static void ask(ledger *l, uint8_t id, int64_t now_us)
     uint8_t bytes[32];
     frame f;
     int n = grobo_frame_read(&grobo_board_protocol, id, 36, 1, bytes, sizeof bytes);
-    assert_int_equal(frame_peek(FRAMES_HOST, FRAMES_BOARD, bytes, (size_t)n, &f), n);
+    assert_int_equal(frame_peek(rs30x(), FRAMES_HOST, GROBO_WORDS_BOARD, bytes, (size_t)n, &f), n);
     f.time_us = now_us;
     ledger_ask(l, &f);
 }
@@ -163,7 +170,7 @@ static bool answer(ledger *l, int side, uint8_t id, int64_t *asked_us)
 {
     uint8_t bytes[] = {0xFD, 0xDF, id, 0, 36, 1, 1, 1, (uint8_t)(id ^ 36 ^ 1)};
     frame f;
-    assert_int_equal(frame_peek(FRAMES_ROBOT, 0, bytes, sizeof bytes, &f), sizeof bytes);
+    assert_int_equal(frame_peek(rs30x(), FRAMES_ROBOT, 0, bytes, sizeof bytes, &f), sizeof bytes);
     return ledger_take(l, side, &f, asked_us);
 }
 

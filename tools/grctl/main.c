@@ -12,6 +12,7 @@
 #include "tools/grctl/mqtt/host.h"
 #include "tools/grctl/mqtt/mqtt.h"
 #include "tools/grctl/os/os.h"
+#include "tools/grctl/servo/family.h"
 
 #define POINTER(name) &cmd_##name,
 static const cli_command *const commands[] = {GRCTL_COMMANDS(POINTER)};
@@ -41,6 +42,7 @@ int main(int argc, char **argv)
     static app a;
     os_start();
     event_set_log_callback(keep_silent);
+    family_list();
     cli_commands = commands;
     cli_n_commands = sizeof commands / sizeof commands[0];
     if (argc > 1 && strcmp(argv[1], "__complete") == 0) { /* by the script of a shell */

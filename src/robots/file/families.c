@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/robots/file/families.h"
 
+#define FAMILY(name, directory)                                                                    \
+    {&grobo_i_family_##name, &grobo_sim_##directory, grobo_i_words_##directory},
+const grobo_family grobo_families[] = {
+#include "src/servo/families.list"
+    {NULL, NULL, NULL}};
+#undef FAMILY
+
 #define FAMILY(name, directory) &grobo_i_family_##name,
 const grobo_robot_family *const grobo_robot_families[] = {
 #include "src/servo/families.list"

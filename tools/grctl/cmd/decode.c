@@ -11,11 +11,8 @@
 enum { HEX_BYTES = 65536 };
 enum { OPT_FAMILY };
 
-/* SCS are of the family feetech, with the bytes of a number the other way round. */
-#define FAMILIES "rs30x|dynamixel2|dynamixel1|feetech|scs|lx16a|ics"
-
 static const cli_option options[] = {
-    [OPT_FAMILY] = OPTION_CHOICE("family", 0, FAMILIES, "family of the servos (the robot's)"),
+    [OPT_FAMILY] = OPTION_CHOICE("family", 0, family_series, "family of the servos (the robot's)"),
 };
 
 static unsigned wiring_of(const app *a)
@@ -24,7 +21,7 @@ static unsigned wiring_of(const app *a)
     if (!wiring->given) {
         return FRAMES_ANY_WIRING;
     }
-    return (grobo_wiring)wiring->choice == GROBO_WIRING_BOARD ? FRAMES_BOARD : FRAMES_BUS;
+    return (grobo_wiring)wiring->choice == GROBO_WIRING_BOARD ? GROBO_WORDS_BOARD : GROBO_WORDS_BUS;
 }
 
 /* ---- a trace ------------------------------------------------------------------------------- */
@@ -173,7 +170,7 @@ static int run(app *a)
 {
     static decoder d;
     const cli_value *given = app_option(a, OPT_FAMILY);
-    const dialect *own = dialect_of_servo(family_servo(app_driver(a), first_id(a)));
+    const grobo_words *own = talk_of_servo(family_servo(app_driver(a), first_id(a)));
     decoder_init(&d, a, wiring_of(a), given->given ? given->text : own ? own->name : "rs30x");
     if (a->line.n_arguments == 0) {
         return decode_file(&d, "-");

@@ -6,13 +6,14 @@
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/lang/lang.h"
+#include "tools/grctl/servo/family.h"
 #include "tools/grctl/setup/ask.h"
 #include "tools/grctl/setup/found.h"
 
 enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_NAME, OPT_OUT };
 
 static const cli_option options[] = {
-    [OPT_FAMILY] = OPTION_CHOICE("family", 0, "rs30x|dynamixel2|dynamixel1|feetech|lx16a|ics",
+    [OPT_FAMILY] = OPTION_CHOICE("family", 0, family_names,
                                  "family of its servos (import: feetech; new: all)"),
     [OPT_SERVO] = OPTION_TEXT("servo", 0, "MODEL[,MODEL]...",
                               "import: its servos, one for all or for each joint"),

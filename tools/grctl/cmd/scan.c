@@ -14,7 +14,7 @@ enum { OPT_ALL_BAUD, OPT_FAMILY, OPT_FIRST, OPT_LAST };
 static const cli_option options[] = {
     [OPT_ALL_BAUD] =
         OPTION_FLAG("all-baud", 0, "at every baud rate that servos know (with --wiring bus)"),
-    [OPT_FAMILY] = OPTION_CHOICE("family", 0, "all|rs30x|dynamixel2|dynamixel1|feetech|lx16a|ics",
+    [OPT_FAMILY] = OPTION_CHOICE("family", 0, family_or_all,
                                  "look for these servos on a line, at their usual rates"),
     [OPT_FIRST] =
         OPTION_WHOLE("first", 0, "ID", 0, SCAN_IDS - 1, "begin with this id (the lowest)"),

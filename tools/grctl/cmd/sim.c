@@ -171,11 +171,11 @@ static const grobo_servo_table *table_of(const farm *f)
     return config.servos[0]->table;
 }
 
-/* How the servos talk, where all are of one family that is not RS30x; else NULL. */
-static const dialect *dialect_of(const farm *f)
+/* How the servos talk, where all are of one family; else NULL. */
+static const grobo_words *words_of(const farm *f)
 {
     const grobo_servo_table *table = table_of(f);
-    return table ? dialect_of_servo(&table->models[0]) : NULL;
+    return table ? talk_of_servo(&table->models[0]) : NULL;
 }
 
 static int open_trace(farm *f, int robot)
@@ -263,7 +263,7 @@ static int add_robot(farm *f, int robot)
     sim.hook = on_sim;
     sim.hook_ctx = &f->watched[robot];
     if (app_option(f->a, OPT_STRICT)->given) {
-        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, dialect_of(f));
+        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, words_of(f));
     }
     error = grobo_sim_server_new(&config, &f->server[robot], &cause);
     if (error == GROBO_ERR_NOENT) { /* of the link, whose folder is missing */
@@ -377,7 +377,7 @@ static int check_families(const farm *f)
     if (table_of(f) == &grobo_rs30x_table) {
         return 0;
     }
-    if (app_option(a, OPT_STRICT)->given && !dialect_of(f)) {
+    if (app_option(a, OPT_STRICT)->given && !words_of(f)) {
         return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",
                         "sim: --strict: knows one family on a line; use it with servos of one");
     }

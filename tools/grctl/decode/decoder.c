@@ -72,10 +72,10 @@ static void print_json(const decoder *d, const frame *f, bool answer, bool fits,
 /* Who said which servo it is, has its registers from here on. */
 static void learn(decoder *d, const frame *f)
 {
-    static telegram said;
-    if (d->talk.dialect && f->kind == FRAME_PACKET && f->as.reply && f->sum_ok) {
+    static grobo_telegram said;
+    if (f->kind == FRAME_PACKET && f->as.reply && f->sum_ok) {
         memset(&said, 0, sizeof said);
-        d->talk.dialect->explain(f->bytes, f->size, &f->as, &said);
+        d->talk.words->explain(f->bytes, f->size, &f->as, &said);
         talk_learn(&d->talk, &said);
     }
 }
@@ -123,15 +123,15 @@ static void on_settled(void *ctx, const ledger_entry *entry)
 static talk talk_of(const app *a, const char *name)
 {
     const grobo_driver *driver = app_driver(a);
-    talk t = {.dialect = dialect_named(name)};
-    if (!family_is(driver, t.dialect ? t.dialect->family : name)) {
+    talk t = {.words = talk_named(name)};
+    if (!family_is(driver, talk_family(t.words)->name)) {
         return t;
     }
     t.model = driver->model;
     for (int j = 0; j < t.model->n_joints; j++) {
         int id = t.model->joints[j].motor;
         const grobo_servo_model *servo = family_servo(driver, id);
-        bool told = !t.dialect || !servo || servo->table == t.dialect->table;
+        bool told = !servo || servo->table == t.words->table;
         t.servo[id] = told ? servo : NULL;
     }
     return t;
@@ -141,8 +141,7 @@ void decoder_init(decoder *d, app *a, unsigned wiring, const char *name)
 {
     *d = (decoder){.a = a, .talk = talk_of(a, name)};
     for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
-        frames_init(&d->lines[side], (frames_side)side, wiring, on_frame, d);
-        frames_set_talk(&d->lines[side], &d->talk);
+        frames_init(&d->lines[side], &d->talk, (frames_side)side, wiring, on_frame, d);
     }
     ledger_init(&d->asked, 1, on_settled, d);
 }

@@ -22,8 +22,8 @@ typedef struct decoder {
     } count;
 } decoder;
 
-/* wiring: FRAMES_BOARD, FRAMES_BUS or both, of what is believed of a host that talks to RS30x;
- * name: the family. */
+/* wiring: GROBO_WORDS_BOARD, GROBO_WORDS_BUS or both, of what is believed of a host; name: the
+ * series (grobo_words.name). */
 void decoder_init(decoder *d, app *a, unsigned wiring, const char *name);
 
 void decoder_feed(decoder *d, frames_side side, int64_t time_us, const uint8_t *bytes, size_t n);

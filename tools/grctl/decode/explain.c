@@ -7,7 +7,8 @@
 /* Fewer registers are named, more are told by their addresses. */
 enum { NAMES_MAX = 4 };
 
-explain_item explain_item_at(const grobo_servo_model *servo, const telegram_part *part, int at)
+explain_item explain_item_at(const grobo_servo_model *servo, const grobo_telegram_part *part,
+                             int at)
 {
     explain_item i = {.servo = servo, .address = part->address + at, .bytes = 1};
     i.reg = part->address < 0 ? NULL : grobo_servo_register_at(servo, (uint16_t)i.address);
@@ -21,18 +22,27 @@ explain_item explain_item_at(const grobo_servo_model *servo, const telegram_part
     return i;
 }
 
-static explain_item item_of(const talk *who, const telegram_part *part, int at)
+static explain_item item_of(const talk *who, const grobo_telegram_part *part, int at)
 {
     return explain_item_at(talk_servo(who, part->id), part, at);
 }
 
 /* ---- text ---------------------------------------------------------------------------------- */
 
+static bool is_numbered(const text *t)
+{
+    return t->talk->words->numbered;
+}
+
 static void say_value(text *t, const explain_item *i, bool write)
 {
     char value[REGISTERS_TEXT_BYTES], range[64];
     registers_text(i->servo, i->reg, i->value, value, sizeof value);
     say(t, "%s %s", i->reg->name, value);
+    const char *remark = t->talk->words->remark ? t->talk->words->remark(i->reg, i->value) : NULL;
+    if (remark) {
+        say(t, " (%s)", remark);
+    }
     if (write && (i->value < i->reg->min || i->value > i->reg->max)) {
         snprintf(range, sizeof range, "%d is outside %d..%d", (int)i->value, (int)i->reg->min,
                  (int)i->reg->max);
@@ -50,8 +60,9 @@ static void say_item(text *t, const explain_item *i, bool write)
     if (i->whole) {
         say_value(t, i, write);
     } else {
-        say(t, "%d = %02X%s%s%s", i->address, (unsigned)i->value, i->reg ? " (part of " : "",
-            i->reg ? i->reg->name : "", i->reg ? ")" : "");
+        const char *part = is_numbered(t) ? " (half of " : " (part of ";
+        say(t, "%s%d = %02X%s%s%s", is_numbered(t) ? "No." : "", i->address, (unsigned)i->value,
+            i->reg ? part : "", i->reg ? i->reg->name : "", i->reg ? ")" : "");
     }
 }
 
@@ -67,7 +78,7 @@ static void say_order(text *t, const explain_item *i, int32_t *lowest)
 }
 
 /* Registers of a servo; bytes between them are said where they are not 0. */
-static void say_values(text *t, const telegram_part *part, bool write)
+static void say_values(text *t, const grobo_telegram_part *part, bool write)
 {
     const char *comma = "";
     int32_t lowest = INT32_MIN;
@@ -88,8 +99,34 @@ static void say_values(text *t, const telegram_part *part, bool write)
             say_order(t, &i, &lowest);
         }
     }
-    if (!*comma && part->length > 0) {
+    if (!*comma && (part->length > 0 || is_numbered(t))) {
         say(t, "nothing but zeros");
+    }
+}
+
+/* Registers by their numbers, in families that call them so. */
+static void say_span(text *t, int address, int length)
+{
+    if (length > 1) {
+        say(t, "No.%d-%d", address, address + length - 1);
+    } else {
+        say(t, "No.%d", address);
+    }
+}
+
+/* Each of them, by its name or number. */
+static void say_each(text *t, const grobo_telegram_part *part)
+{
+    const char *comma = "";
+    for (int at = 0; at < part->length;) {
+        const explain_item i = item_of(t->talk, part, at);
+        at += i.bytes;
+        if (i.whole) {
+            say(t, "%s%s", comma, i.reg->name);
+        } else {
+            say(t, "%sNo.%d", comma, i.address);
+        }
+        comma = ", ";
     }
 }
 
@@ -105,15 +142,19 @@ static int end_of(const grobo_servo_model *servo)
 }
 
 /* "present_position", or "132-147" for many. */
-static void say_names(text *t, const telegram_part *part)
+static void say_names(text *t, const grobo_telegram_part *part)
 {
     const grobo_servo_model *servo = talk_servo(t->talk, part->id);
     const char *comma = "";
     char names[256] = "";
     size_t used = 0;
     int n = 0;
+    if (is_numbered(t)) {
+        say_each(t, part);
+        return;
+    }
     for (int at = 0; at < part->length; n++) {
-        const telegram_part asked = {part->id, part->address, part->length, NULL};
+        const grobo_telegram_part asked = {part->id, part->address, part->length, NULL};
         const explain_item i = item_of(t->talk, &asked, at);
         at += i.bytes;
         n = i.whole ? n : NAMES_MAX;
@@ -135,7 +176,7 @@ static void say_names(text *t, const telegram_part *part)
     }
 }
 
-static void say_who(text *t, const telegram *said)
+static void say_who(text *t, const grobo_telegram *said)
 {
     if (said->all) {
         say(t, "all servos");
@@ -144,7 +185,7 @@ static void say_who(text *t, const telegram *said)
     }
 }
 
-static bool alike(const telegram *said)
+static bool alike(const grobo_telegram *said)
 {
     for (size_t i = 1; i < said->n_parts; i++) {
         if (said->part[i].address != said->part[0].address ||
@@ -156,12 +197,12 @@ static bool alike(const telegram *said)
 }
 
 /* Whether each servo's share has a line of its own. */
-static bool has_lines(const telegram *said)
+static bool has_lines(const grobo_telegram *said)
 {
     return said->shares && said->n_parts > 0 && (said->part[0].data || !alike(said));
 }
 
-static void say_many(text *t, const telegram *said)
+static void say_many(text *t, const grobo_telegram *said)
 {
     bool reads = said->n_parts > 0 && !said->part[0].data;
     if (said->reply) {
@@ -182,10 +223,38 @@ static void say_many(text *t, const telegram *said)
     }
 }
 
-static void say_one(text *t, const telegram *said)
+/* One that has its registers in its head: what it reads, does or returns beside values. */
+static void say_headed(text *t, const grobo_telegram *said)
 {
-    const telegram_part *part = said->n_parts > 0 ? &said->part[0] : NULL;
     if (said->reply) {
+        say_who(t, said);
+        say(t, " returns");
+        if (said->n_parts > 0) {
+            say(t, " ");
+            say_span(t, said->address, said->length);
+            say(t, ": ");
+        }
+    } else if (strcmp(said->action, "read") == 0) {
+        say(t, "read ");
+        say_span(t, said->address, said->length);
+        say(t, " of ");
+        say_who(t, said);
+    } else if (said->bare || said->n_parts == 0) {
+        say(t, "%s ", strcmp(said->action, "nothing") == 0 ? "nothing for" : said->action);
+        say_who(t, said);
+    } else {
+        say(t, "write ");
+        say_who(t, said);
+        say(t, ": ");
+    }
+}
+
+static void say_one(text *t, const grobo_telegram *said)
+{
+    const grobo_telegram_part *part = said->n_parts > 0 ? &said->part[0] : NULL;
+    if (said->headed) {
+        say_headed(t, said);
+    } else if (said->reply) {
         say_who(t, said);
         say(t, "%s", part ? " returns " : " answers");
     } else if (part && !part->data) {
@@ -199,13 +268,13 @@ static void say_one(text *t, const telegram *said)
         say_who(t, said);
         say(t, "%s", part && part->length > 0 ? ": " : "");
     }
-    for (size_t i = 0; i < said->n_parts; i++) {
+    for (size_t i = 0; i < said->n_parts && !said->bare; i++) {
         say(t, "%s", i ? ", " : "");
-        say_values(t, &said->part[i], !said->reply);
+        say_values(t, &said->part[i], !said->reply && !is_numbered(t));
     }
 }
 
-static void say_sum(text *t, const frame *f, const telegram *said)
+static void say_sum(text *t, const frame *f, const grobo_telegram *said)
 {
     char bad[64];
     const char *name = said->sum_bytes == 2 ? "CRC" : "sum";
@@ -217,31 +286,73 @@ static void say_sum(text *t, const frame *f, const telegram *said)
         say(t, "; %s %0*X right", name, digits, said->sum);
         return;
     }
-    snprintf(bad, sizeof bad, "%s %0*X wrong, should be %0*X", name, digits, said->sum, digits,
-             said->right_sum);
+    if (said->right_sum >= 0) {
+        snprintf(bad, sizeof bad, "%s %0*X wrong, should be %0*X", name, digits, said->sum, digits,
+                 (unsigned)said->right_sum);
+    } else {
+        snprintf(bad, sizeof bad, "%s %0*X wrong", name, digits, said->sum);
+    }
     say(t, "; ");
     say_bad(t, bad);
 }
 
-static void say_reply(text *t, const frame *f, const telegram *said)
+int explain_expects(const frame *f, grobo_reply *reply)
+{
+    grobo_reply carried;
+    *reply = (grobo_reply){.kind = GROBO_REPLY_NONE};
+    if (f->kind > FRAME_ECHO || f->as.reply) {
+        return GROBO_ERR_TYPE;
+    }
+    int known = frame_reply(f, reply);
+    if (known == GROBO_ERR_FRAME && f->as.relay && f->talk->words->carried &&
+        f->talk->words->carried(f->bytes, f->size, &carried) >= 0) {
+        *reply = carried;
+        return GROBO_ERR_MISMATCH;
+    }
+    return known;
+}
+
+static void say_reply(text *t, const frame *f)
 {
     grobo_reply reply;
-    int bytes = frame_reply(f, &reply);
-    if (said->reply || f->kind == FRAME_ECHO || bytes < 0) {
+    char bad[80];
+    int known = explain_expects(f, &reply);
+    bool silent =
+        known == GROBO_ERR_TYPE || known == GROBO_ERR_CHECKSUM || known == GROBO_ERR_FRAME;
+    if (f->kind == FRAME_ECHO || silent ||
+        (known < 0 && known != GROBO_ERR_MISMATCH && !is_numbered(t))) {
         return;
     }
-    if (reply.kind == GROBO_REPLY_NONE) {
-        say(t, "; no reply");
+    say(t, "; ");
+    if (known == GROBO_ERR_MISMATCH) {
+        snprintf(bad, sizeof bad, "but the packet is answered by %u bytes", reply.bytes);
+        say_bad(t, bad);
+    } else if (known < 0) {
+        say_bad(t, "asks for registers that do not exist");
+    } else if (reply.kind == GROBO_REPLY_NONE) {
+        say(t, "no reply");
+    } else if (reply.kind == GROBO_REPLY_ACK) {
+        say(t, "reply: ACK");
     } else if (reply.kind == GROBO_REPLY_ANY) {
-        say(t, "; reply: of each that is there");
+        say(t, "reply: of each that is there");
     } else {
-        say(t, "; reply: %u bytes", reply.bytes);
+        say(t, "reply: %u bytes", reply.bytes);
     }
 }
 
-void explain_say(text *t, const frame *f, const telegram *said)
+/* One that says nothing but this. */
+static void say_plain(text *t, const grobo_telegram *said)
 {
-    const char *comma = "; ";
+    if (said->bad) {
+        say_bad(t, said->plain);
+    } else {
+        say(t, "%s", said->plain);
+    }
+    say_hex(t, said->rest, said->n_rest);
+}
+
+static void say_content(text *t, const grobo_telegram *said)
+{
     if (!said->action) {
         char bad[48];
         snprintf(bad, sizeof bad, "unknown instruction %02X", said->code);
@@ -253,9 +364,27 @@ void explain_say(text *t, const frame *f, const telegram *said)
     } else {
         say_one(t, said);
     }
+    if (said->then) {
+        say(t, ", then %s", said->then);
+    }
+    if (said->remark) {
+        say(t, ", %s", said->remark);
+    }
+}
+
+void explain_say(text *t, const frame *f, const grobo_telegram *said)
+{
+    const char *comma = "; ";
+    say(t, "%s", said->relay.lead);
+    if (said->plain) {
+        say_plain(t, said);
+        say_reply(t, f);
+        return;
+    }
+    say_content(t, said);
     for (size_t i = 0; i < said->n_status; i++) {
         say(t, "%s", comma);
-        say_bad(t, said->status[i]);
+        say_bad(t, said->status[i].text);
         comma = ", ";
     }
     if (*said->trouble) {
@@ -263,17 +392,17 @@ void explain_say(text *t, const frame *f, const telegram *said)
         say_bad(t, said->trouble);
     }
     say_sum(t, f, said);
-    say_reply(t, f, said);
+    say_reply(t, f);
 }
 
-void explain_shares(text *t, const telegram *said)
+void explain_shares(text *t, const grobo_telegram *said)
 {
     for (size_t i = 0; has_lines(said) && i < said->n_parts; i++) {
         say(t, "    ");
         say_servo(t, said->part[i].id);
         say(t, ": ");
         if (said->part[i].data && said->part[i].length > 0) {
-            say_values(t, &said->part[i], !said->reply);
+            say_values(t, &said->part[i], !said->reply && !is_numbered(t));
         } else {
             say_names(t, &said->part[i]);
         }
@@ -283,7 +412,7 @@ void explain_shares(text *t, const telegram *said)
 
 /* ---- what is wrong --------------------------------------------------------------------------- */
 
-bool explain_is_wrong(const explain_item *i, char *why, size_t capacity)
+static bool is_wrong(const explain_item *i, char *why, size_t capacity)
 {
     if (i->reg && (i->reg->flags & GROBO_REGISTER_W) == 0) {
         snprintf(why, capacity, "it writes %s, which is read-only", i->reg->name);
@@ -297,17 +426,22 @@ bool explain_is_wrong(const explain_item *i, char *why, size_t capacity)
     return false;
 }
 
-const char *explain_offence(const talk *who, const telegram *said, char *why, size_t capacity)
+const char *explain_offence(const talk *who, const uint8_t *bytes, size_t n,
+                            const grobo_telegram *said, char *why, size_t capacity)
 {
+    const char *code = who->words->offence ? who->words->offence(bytes, n, why, capacity) : NULL;
+    if (code || said->plain || said->bare) {
+        return code;
+    }
     if (!said->action || *said->trouble) {
         snprintf(why, capacity, "%s", said->action ? said->trouble : "no servo has this command");
         return "request";
     }
     for (size_t k = 0; k < said->n_parts; k++) {
-        const telegram_part *part = &said->part[k];
+        const grobo_telegram_part *part = &said->part[k];
         for (int at = 0; part->data && part->address >= 0 && at < part->length;) {
             const explain_item i = item_of(who, part, at);
-            if (i.whole && explain_is_wrong(&i, why, capacity)) {
+            if (i.whole && is_wrong(&i, why, capacity)) {
                 return "range";
             }
             at += i.bytes;
@@ -318,7 +452,8 @@ const char *explain_offence(const talk *who, const telegram *said, char *why, si
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
-json_t *explain_part(const talk *who, const grobo_servo_model *servo, const telegram_part *part)
+json_t *explain_part(const talk *who, const grobo_servo_model *servo,
+                     const grobo_telegram_part *part)
 {
     json_t *registers = json_object();
     json_t *other = json_object();
@@ -345,28 +480,45 @@ json_t *explain_part(const talk *who, const grobo_servo_model *servo, const tele
     return o;
 }
 
-json_t *explain_packet(const frame *f, const telegram *said)
+static json_t *status_json(const grobo_telegram *said)
+{
+    json_t *status = json_array();
+    for (size_t i = 0; i < said->n_status; i++) {
+        const grobo_telegram_status *is = &said->status[i];
+        json_array_append_new(status, json_string(is->key ? is->key : is->text));
+    }
+    return status;
+}
+
+json_t *explain_packet(const frame *f, const grobo_telegram *said)
 {
     char unknown[32];
+    if (said->plain) {
+        return NULL;
+    }
     json_t *servos = json_array();
-    json_t *status = json_array();
     snprintf(unknown, sizeof unknown, "instruction %02X", said->code);
     for (size_t i = 0; i < said->n_parts; i++) {
-        const telegram_part *part = &said->part[i];
+        const grobo_telegram_part *part = &said->part[i];
         json_array_append_new(servos, explain_part(f->talk, talk_servo(f->talk, part->id), part));
     }
-    for (size_t i = 0; i < said->n_status; i++) {
-        json_array_append_new(status, json_string(said->status[i]));
+    bool named = said->id >= 0 && (!said->all || said->headed);
+    const char *kind = said->reply ? "return" : "command";
+    json_t *o = json_pack("{s:s,s:s,s:o*,s:i}", "kind", said->kind ? said->kind : kind, "action",
+                          said->action ? said->action : unknown, "id",
+                          named ? json_integer(said->id) : NULL, "flags", (int)said->code);
+    if (said->headed) {
+        json_object_set_new(o, "address", json_integer(said->header[0]));
+        json_object_set_new(o, "length", json_integer(said->header[1]));
+        json_object_set_new(o, "count", json_integer(said->header[2]));
     }
-    if (!said->reply) {
-        json_decref(status);
-        status = NULL;
-    }
-    return json_pack(
-        "{s:s,s:s,s:o*,s:i,s:o*,s:b,s:o*,s:o*,s:o*,s:o}", "kind",
-        said->reply ? "return" : "command", "action", said->action ? said->action : unknown, "id",
-        said->id >= 0 && !said->all ? json_integer(said->id) : NULL, "flags", (int)said->code,
-        "sum", said->sum_bytes ? json_integer(said->sum) : NULL, "sum_ok", f->sum_ok, "right_sum",
-        f->sum_ok ? NULL : json_integer(said->right_sum), "status", status, "trouble",
+    json_t *rest = json_pack(
+        "{s:o*,s:b,s:o*,s:o*,s:o*,s:o}", "sum", said->sum_bytes ? json_integer(said->sum) : NULL,
+        "sum_ok", f->sum_ok, "right_sum",
+        f->sum_ok || said->right_sum < 0 ? NULL : json_integer(said->right_sum), "status",
+        said->reply ? status_json(said) : NULL, "trouble",
         *said->trouble ? json_string(said->trouble) : NULL, "servos", servos);
+    json_object_update(o, rest);
+    json_decref(rest);
+    return o;
 }

@@ -3,56 +3,18 @@
 
 #include "tools/grctl/decode/frames.h"
 
-/* What of packets is believed outside of relay frames. */
-static unsigned accepted(frames_side side, unsigned wiring)
+int frame_peek(const talk *t, frames_side side, unsigned wiring, const uint8_t *bytes, size_t n,
+               frame *out)
 {
-    unsigned commands = wiring & FRAMES_BUS ? GROBO_ACCEPT_COMMANDS : 0;
-    return side == FRAMES_HOST ? commands : commands | GROBO_ACCEPT_RETURNS | GROBO_ACCEPT_ACKS;
-}
-
-/* The packet that a relay frame carries, if it carries exactly one. */
-static void look_inside(frame *out)
-{
-    int size = grobo_rs30x_peek(out->board.packet, out->board.packet_bytes, GROBO_ACCEPT_COMMANDS,
-                                &out->packet, &out->sum_ok);
-    out->has_packet = size > 0 && (size_t)size == out->board.packet_bytes;
-    out->packet_size = out->has_packet ? (size_t)size : 0;
-}
-
-int frame_peek(frames_side side, unsigned wiring, const uint8_t *bytes, size_t n, frame *out)
-{
-    int size = GROBO_ERR_FRAME;
+    const grobo_words_look look = {.bytes = bytes,
+                                   .n = n,
+                                   .from_host = side != FRAMES_ROBOT,
+                                   .from_robot = side != FRAMES_HOST,
+                                   .wiring = wiring,
+                                   .sent = t->sent};
     memset(out, 0, sizeof *out);
-    out->side = side;
-    out->bytes = bytes;
-    if (side != FRAMES_ROBOT && (wiring & FRAMES_BOARD)) {
-        size = grobo_board_peek(bytes, n, &out->board);
-        out->kind = FRAME_BOARD;
-        out->sum_ok = true;
-        if (size > 0) {
-            look_inside(out);
-        }
-    }
-    if (size < 0) {
-        size = grobo_rs30x_peek(bytes, n, accepted(side, wiring), &out->packet, &out->sum_ok);
-        out->kind = side == FRAMES_ROBOT && bytes[0] == 0xFA ? FRAME_ECHO : FRAME_PACKET;
-        out->has_packet = true;
-        out->packet_size = size > 0 ? (size_t)size : 0;
-    }
-    out->size = size > 0 ? (size_t)size : 0;
-    return size;
-}
-
-static int peek_dialect(frames_side side, const talk *t, const uint8_t *bytes, size_t n, frame *out)
-{
-    const dialect_look look = {.bytes = bytes,
-                               .n = n,
-                               .from_host = side != FRAMES_ROBOT,
-                               .from_robot = side != FRAMES_HOST,
-                               .sent = t->sent};
-    memset(out, 0, sizeof *out);
-    int size = t->dialect->peek(&look, &out->as);
-    out->kind = out->as.echo ? FRAME_ECHO : FRAME_PACKET;
+    int size = t->words->peek(&look, &out->as);
+    out->kind = out->as.relay ? FRAME_BOARD : out->as.echo ? FRAME_ECHO : FRAME_PACKET;
     out->side = side;
     out->bytes = bytes;
     out->size = size > 0 ? (size_t)size : 0;
@@ -64,10 +26,7 @@ static int peek_dialect(frames_side side, const talk *t, const uint8_t *bytes, s
 /* What begins at offset `at`. */
 static int look(const frames *f, size_t at, frame *out)
 {
-    if (f->talk && f->talk->dialect) {
-        return peek_dialect(f->side, f->talk, f->bytes + at, f->used - at, out);
-    }
-    return frame_peek(f->side, f->wiring, f->bytes + at, f->used - at, out);
+    return frame_peek(f->talk, f->side, f->wiring, f->bytes + at, f->used - at, out);
 }
 
 static void drop(frames *f, size_t n)
@@ -86,11 +45,7 @@ static frames_side speaker(const frame *f)
     if (f->kind != FRAME_PACKET) {
         return FRAMES_EITHER;
     }
-    if (f->talk && f->talk->dialect) {
-        return f->as.reply ? FRAMES_ROBOT : FRAMES_HOST;
-    }
-    return f->packet.kind == GROBO_RS30X_SHORT || f->packet.kind == GROBO_RS30X_LONG ? FRAMES_HOST
-                                                                                     : FRAMES_ROBOT;
+    return f->as.reply ? FRAMES_ROBOT : FRAMES_HOST;
 }
 
 /* Hands out the first n bytes as what *out says. */
@@ -103,8 +58,7 @@ static void hand_out(frames *f, frame *out, size_t n)
     out->end_us = f->time_us[n - 1];
     out->talk = f->talk;
     f->use(f->ctx, out);
-    if (f->talk && f->talk->dialect && out->kind == FRAME_PACKET && out->side == FRAMES_HOST &&
-        out->sum_ok) {
+    if (out->kind <= FRAME_PACKET && out->side == FRAMES_HOST && out->sum_ok) {
         talk_ask(f->talk, out->bytes, out->size);
     }
     drop(f, n);
@@ -190,18 +144,14 @@ static void scan(frames *f)
     }
 }
 
-void frames_init(frames *f, frames_side side, unsigned wiring, frames_fn use, void *ctx)
+void frames_init(frames *f, talk *t, frames_side side, unsigned wiring, frames_fn use, void *ctx)
 {
     memset(f, 0, sizeof *f);
+    f->talk = t;
     f->side = side;
     f->wiring = wiring;
     f->use = use;
     f->ctx = ctx;
-}
-
-void frames_set_talk(frames *f, talk *t)
-{
-    f->talk = t;
 }
 
 void frames_pass(frames *f, int64_t now_us)
@@ -238,37 +188,24 @@ void frames_end(frames *f)
 
 int frame_reply(const frame *f, grobo_reply *reply)
 {
-    if (f->kind == FRAME_BOARD) {
-        return grobo_board_protocol.reply_to(f->bytes, f->size, reply);
-    }
-    if (f->kind != FRAME_PACKET && f->kind != FRAME_ECHO) {
+    const grobo_words *words = f->talk->words;
+    if (f->kind > FRAME_ECHO || f->as.reply) {
         return GROBO_ERR_FRAME;
     }
-    if (f->talk && f->talk->dialect) {
-        const dialect *d = f->talk->dialect;
-        return f->as.reply   ? GROBO_ERR_FRAME
-               : d->reply_to ? d->reply_to(f->bytes, f->size, reply)
-                             : d->protocol->reply_to(f->bytes, f->size, reply);
-    }
-    return grobo_rs30x_reply_to(f->bytes, f->size, reply);
+    return words->reply_to ? words->reply_to(f->bytes, f->size, reply)
+                           : words->protocol->reply_to(f->bytes, f->size, reply);
 }
 
-bool frame_is_reply(const frame *f, const grobo_reply *expected)
+bool frame_answers(const frame *f, const uint8_t *request, size_t n)
 {
-    const grobo_rs30x_packet *p = &f->packet;
-    if (f->kind != FRAME_PACKET || !f->sum_ok) {
+    static grobo_words_sent sent;
+    if (f->kind != FRAME_PACKET) {
         return false;
     }
-    switch (expected->kind) {
-    case GROBO_REPLY_NONE:
-        return false;
-    case GROBO_REPLY_ACK:
-        return p->kind == GROBO_RS30X_ACK_BYTE || p->kind == GROBO_RS30X_NACK_BYTE;
-    case GROBO_REPLY_RETURN:
-        return p->kind == GROBO_RS30X_RETURN && p->id == expected->id &&
-               p->address == expected->address && p->length == expected->length;
-    case GROBO_REPLY_ANY: /* RS30x knows no such question */
-        return false;
+    if (!f->talk->words->says_request) { /* it was found when the frame came */
+        return f->as.sent && f->as.sent->n == n && memcmp(f->as.sent->bytes, request, n) == 0;
     }
-    return false;
+    memcpy(sent.bytes, request, n);
+    sent.n = n;
+    return f->talk->words->answers(&sent, f->bytes, f->size);
 }

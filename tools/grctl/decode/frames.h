@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A line's bytes as frames, for those who read along: good ones, those with a wrong sum, frames
- * cut off, and rubbish. Frames are those of RS30x and GR001's board, or of the talk's dialect.
+ * cut off, and rubbish. What is a frame, the words of the talk's family say.
  * Every byte that goes in comes out in exactly one of them, in order. It believes what the
  * library's parsers believe, and finds its way back as they do.
  */
@@ -10,7 +10,7 @@
 
 #include <grobo/board.h>
 
-#include "tools/grctl/decode/dialect.h"
+#include "tools/grctl/decode/talk.h"
 
 /* Who speaks: decides what is believed. */
 typedef enum frames_side {
@@ -19,11 +19,11 @@ typedef enum frames_side {
     FRAMES_ROBOT   /* return packets, ACK, NACK; of an adapter with an echo commands too */
 } frames_side;
 
-/* What of a host's bytes is believed; or-ed. */
-enum { FRAMES_BOARD = 1, FRAMES_BUS = 2, FRAMES_ANY_WIRING = FRAMES_BOARD | FRAMES_BUS };
+/* What of a host's bytes is believed: GROBO_WORDS_BOARD, GROBO_WORDS_BUS, or both. */
+#define FRAMES_ANY_WIRING (GROBO_WORDS_BOARD | GROBO_WORDS_BUS)
 
 typedef enum frame_kind {
-    FRAME_BOARD,  /* a frame of the board; with a servo packet in it: has_packet */
+    FRAME_BOARD,  /* a frame of a board, with or without a servo packet in it */
     FRAME_PACKET, /* a servo packet, ACK or NACK */
     FRAME_ECHO,   /* a host's packet that comes back from a bus of one wire */
     FRAME_CUT,    /* begins like a frame whose rest never came */
@@ -36,26 +36,23 @@ typedef struct frame {
     int64_t time_us, end_us; /* of its first and last byte */
     const uint8_t *bytes;    /* valid during the callback */
     size_t size;
-    grobo_board_frame board;   /* FRAME_BOARD */
-    grobo_rs30x_packet packet; /* if has_packet; FRAME_PACKET and FRAME_ECHO have one */
-    size_t packet_size;        /* with its header and sum */
-    bool has_packet;
-    bool sum_ok;      /* of the packet */
-    const talk *talk; /* may be NULL */
-    dialect_frame as; /* where the talk has a dialect: then board and packet are empty */
+    bool sum_ok;          /* of the packet, where there is one */
+    const talk *talk;     /* whose words it is read by */
+    grobo_words_frame as; /* what they found */
 } frame;
 
 /*
  * The frame that n bytes begin with, whatever its sum; its times are 0. Returns its size, 0 when
  * more bytes are needed, GROBO_ERR_FRAME when none begins here.
  */
-int frame_peek(frames_side side, unsigned wiring, const uint8_t *bytes, size_t n, frame *out);
+int frame_peek(const talk *t, frames_side side, unsigned wiring, const uint8_t *bytes, size_t n,
+               frame *out);
 
 /* The reply that a host's frame calls for. Errors as grobo_frame_reply(). */
 int frame_reply(const frame *f, grobo_reply *reply);
 
-/* True if this frame is what was expected. */
-bool frame_is_reply(const frame *f, const grobo_reply *expected);
+/* True if this frame answers a request of these bytes. */
+bool frame_answers(const frame *f, const uint8_t *request, size_t n);
 
 typedef void (*frames_fn)(void *ctx, const frame *f);
 
@@ -65,7 +62,7 @@ typedef void (*frames_fn)(void *ctx, const frame *f);
 /*
  * To look behind a packet with a wrong sum takes two packets; rubbish is handed out in pieces.
  */
-enum { FRAMES_BUFFER_BYTES = 2 * DIALECT_FRAME_BYTES, FRAMES_RUBBISH_MAX_BYTES = 64 };
+enum { FRAMES_BUFFER_BYTES = 2 * GROBO_WORDS_FRAME_BYTES, FRAMES_RUBBISH_MAX_BYTES = 64 };
 
 typedef struct frames {
     /* private */
@@ -81,10 +78,8 @@ typedef struct frames {
     int64_t time_us[FRAMES_BUFFER_BYTES];
 } frames;
 
-void frames_init(frames *f, frames_side side, unsigned wiring, frames_fn use, void *ctx);
-
-/* Who is on the line; lines of one talk share it. Behind init, before the first byte. */
-void frames_set_talk(frames *f, talk *t);
+/* t: who is on the line; lines of one talk share it. */
+void frames_init(frames *f, talk *t, frames_side side, unsigned wiring, frames_fn use, void *ctx);
 
 /* Bytes that came at this time; frames are handed out as soon as they are known. */
 void frames_feed(frames *f, int64_t time_us, const uint8_t *bytes, size_t n);

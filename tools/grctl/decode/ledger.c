@@ -77,24 +77,14 @@ static bool is_repeat(const ledger_entry *a, const ledger_entry *b)
     return a->size == b->size && memcmp(a->bytes, b->bytes, a->size) == 0;
 }
 
-/* Where there is a dialect, it has found the request. */
-static bool is_answer(const ledger_entry *entry, const frame *f)
-{
-    if (f->talk && f->talk->dialect) {
-        return f->as.sent && f->as.sent->n == entry->size &&
-               memcmp(f->as.sent->bytes, entry->bytes, entry->size) == 0;
-    }
-    return frame_is_reply(f, &entry->reply);
-}
-
 /* The request that a frame answers: the first that fits, or its last repetition. */
 static ledger_entry *find(ledger *l, int side, const frame *f)
 {
     ledger_entry *found = NULL;
     for (unsigned i = 0; i < l->n; i++) {
         ledger_entry *entry = entry_at(l, i);
-        if (entry->answer[side].state == LEDGER_WAITING && is_answer(entry, f) &&
-            (!found || is_repeat(entry, found))) {
+        if (entry->answer[side].state == LEDGER_WAITING &&
+            frame_answers(f, entry->bytes, entry->size) && (!found || is_repeat(entry, found))) {
             found = entry;
         }
     }

@@ -25,14 +25,14 @@ typedef struct ledger_answer {
     int64_t time_us; /* of its last byte */
     unsigned frames; /* that came: a request may have several */
     size_t size;
-    uint8_t bytes[DIALECT_FRAME_BYTES];
+    uint8_t bytes[GROBO_WORDS_FRAME_BYTES];
 } ledger_answer;
 
 typedef struct ledger_entry {
     uint64_t number; /* of the request, from 1 */
     int64_t time_us; /* of its first byte */
     size_t size;
-    uint8_t bytes[DIALECT_FRAME_BYTES];
+    uint8_t bytes[GROBO_WORDS_FRAME_BYTES];
     grobo_reply reply;
     ledger_answer answer[LEDGER_SIDES];
 } ledger_entry;

@@ -77,10 +77,8 @@ static const char *verdict_of(replay *r, const ledger_entry *entry, unsigned lon
 
 static bool frame_of(const replay *r, frames_side side, const uint8_t *bytes, size_t n, frame *f)
 {
-    unsigned wiring = r->wiring == GROBO_WIRING_BOARD ? FRAMES_BOARD : FRAMES_BUS;
-    bool whole = frame_peek(side, wiring, bytes, n, f) == (int)n;
-    f->talk = &r->talk;
-    return whole;
+    unsigned wiring = r->wiring == GROBO_WIRING_BOARD ? GROBO_WORDS_BOARD : GROBO_WORDS_BUS;
+    return frame_peek(&r->talk, side, wiring, bytes, n, f) == (int)n;
 }
 
 static void print_one(const replay *r, const char *who, frames_side side, const uint8_t *bytes,
@@ -159,16 +157,12 @@ static void on_replayed(void *ctx, const frame *f)
 
 void replay_begin(replay *r, frames_fn on_host)
 {
-    unsigned wiring = r->wiring == GROBO_WIRING_BOARD ? FRAMES_BOARD : FRAMES_BUS;
-    frames_init(&r->host, FRAMES_HOST, wiring, on_host, r);
-    frames_init(&r->robot[REPLAY_RECORDED], FRAMES_ROBOT, wiring, on_recorded, r);
-    frames_init(&r->robot[REPLAY_REPLAYED], FRAMES_ROBOT, wiring, on_replayed, r);
+    unsigned wiring = r->wiring == GROBO_WIRING_BOARD ? GROBO_WORDS_BOARD : GROBO_WORDS_BUS;
+    r->talk = (talk){.words = talk_named("rs30x"), .model = app_model(r->a)};
+    frames_init(&r->host, &r->talk, FRAMES_HOST, wiring, on_host, r);
+    frames_init(&r->robot[REPLAY_RECORDED], &r->talk, FRAMES_ROBOT, wiring, on_recorded, r);
+    frames_init(&r->robot[REPLAY_REPLAYED], &r->talk, FRAMES_ROBOT, wiring, on_replayed, r);
     ledger_init(&r->asked, LEDGER_SIDES, on_settled, r);
-    r->talk = (talk){.model = app_model(r->a)};
-    frames_set_talk(&r->host, &r->talk);
-    for (int who = 0; who < LEDGER_SIDES; who++) {
-        frames_set_talk(&r->robot[who], &r->talk);
-    }
 }
 
 void replay_ask(replay *r, const frame *f)

@@ -40,22 +40,47 @@ static bool is_motion_register(unsigned address)
            address == GROBO_RS30X_TORQUE;
 }
 
+typedef enum carried { NO_PACKET, CHECK, PACKET } carried;
+
+/* The one good packet of a frame; a frame may ask the board itself instead. */
+static carried packet_of(const frame *f, grobo_rs30x_packet *p)
+{
+    grobo_board_frame board;
+    bool good = false;
+    const uint8_t *bytes = f->bytes;
+    size_t n = f->size;
+    if (f->kind == FRAME_BOARD && grobo_board_peek(f->bytes, f->size, &board) > 0) {
+        if (board.kind == GROBO_BOARD_CHECK) {
+            return CHECK;
+        }
+        bytes = board.packet;
+        n = board.packet_bytes;
+    }
+    int size = n > 0 ? grobo_rs30x_peek(bytes, n, GROBO_ACCEPT_COMMANDS, p, &good) : 0;
+    return size > 0 && (size_t)size == n && good ? PACKET : NO_PACKET;
+}
+
 static danger judge(const frame *f)
 {
-    const grobo_rs30x_packet *p = &f->packet;
     const unsigned acts = GROBO_RS30X_FLASH | GROBO_RS30X_REBOOT | GROBO_RS30X_FACTORY;
-    if (f->kind == FRAME_BOARD && f->board.kind == GROBO_BOARD_CHECK) {
+    grobo_rs30x_packet p;
+    switch (packet_of(f, &p)) {
+    case NO_PACKET:
+        return REFUSED;
+    case CHECK:
         return HARMLESS;
+    case PACKET:
+        break;
     }
-    if (!f->has_packet || !f->sum_ok || (p->flags & (acts | 0x80))) {
+    if (p.flags & (acts | 0x80)) {
         return REFUSED;
     }
-    if (p->data_bytes == 0) {
+    if (p.data_bytes == 0) {
         return HARMLESS;
     }
-    size_t n = p->kind == GROBO_RS30X_LONG ? (size_t)p->length - 1 : p->data_bytes;
+    size_t n = p.kind == GROBO_RS30X_LONG ? (size_t)p.length - 1 : p.data_bytes;
     for (size_t i = 0; i < n; i++) {
-        if (!is_motion_register(p->address + (unsigned)i)) {
+        if (!is_motion_register(p.address + (unsigned)i)) {
             return REFUSED;
         }
     }

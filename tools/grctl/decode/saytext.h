@@ -3,7 +3,7 @@
 #ifndef GRCTL_SAYTEXT_H
 #define GRCTL_SAYTEXT_H
 
-#include "tools/grctl/decode/dialect.h"
+#include "tools/grctl/decode/talk.h"
 
 typedef struct text {
     char *to;

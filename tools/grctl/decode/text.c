@@ -45,22 +45,9 @@ static int read_line(reader *r)
 /* True if bytes could be the beginning of a frame. */
 static bool begins_frame(const reader *r, const uint8_t *bytes, int n)
 {
-    const dialect *d = r->d->talk.dialect;
-    grobo_board_frame board;
-    grobo_rs30x_packet packet;
-    bool sum_ok;
-    if (n <= 0) {
-        return false;
-    }
-    if (d) {
-        const dialect_look look = {
-            .bytes = bytes, .n = (size_t)n, .from_host = true, .from_robot = true};
-        dialect_frame found = {0};
-        return d->peek(&look, &found) >= 0;
-    }
-    return grobo_board_peek(bytes, (size_t)n, &board) >= 0 ||
-           grobo_rs30x_peek(bytes, (size_t)n, GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS, &packet,
-                            &sum_ok) >= 0;
+    frame found;
+    return n > 0 &&
+           frame_peek(&r->d->talk, FRAMES_EITHER, FRAMES_ANY_WIRING, bytes, (size_t)n, &found) >= 0;
 }
 
 /*

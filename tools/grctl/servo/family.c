@@ -1,7 +1,30 @@
 /* SPDX-License-Identifier: MIT */
+#include <stdio.h>
 #include <string.h>
 
 #include "tools/grctl/servo/family.h"
+
+char family_names[FAMILY_NAMES_BYTES];
+char family_or_all[FAMILY_NAMES_BYTES] = "all";
+char family_series[FAMILY_NAMES_BYTES];
+
+/* Another word of a choice. */
+static void add_name(char *names, const char *name)
+{
+    size_t n = strlen(names);
+    (void)snprintf(names + n, FAMILY_NAMES_BYTES - n, "%s%s", n > 0 ? "|" : "", name);
+}
+
+void family_list(void)
+{
+    for (const grobo_family *f = grobo_families; f->robot; f++) {
+        add_name(family_names, f->robot->name);
+        add_name(family_or_all, f->robot->name);
+        for (const grobo_words *const *words = f->words; *words; words++) {
+            add_name(family_series, (*words)->name);
+        }
+    }
+}
 
 const grobo_robot_family *family_called(const char *name)
 {

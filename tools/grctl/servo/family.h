@@ -7,6 +7,14 @@
 #include <grobo/registers.h>
 #include <grobo/robot_file.h>
 
+/* Names for options, filled by family_list(): of the families, the same behind "all", and of all
+ * series that frames are read of. */
+enum { FAMILY_NAMES_BYTES = 512 };
+extern char family_names[FAMILY_NAMES_BYTES];
+extern char family_or_all[FAMILY_NAMES_BYTES];
+extern char family_series[FAMILY_NAMES_BYTES];
+void family_list(void);
+
 /* The family that a file names so, NULL: none. */
 const grobo_robot_family *family_called(const char *name);
 

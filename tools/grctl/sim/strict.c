@@ -42,102 +42,24 @@ static void report(sim_strict *s, const char *code, int64_t at_us, const uint8_t
 
 /* ---- what a packet says ---------------------------------------------------------------------- */
 
-/* What is wrong with the data that a packet writes from an address on; false: nothing. */
-static bool wrong_data(uint8_t address, const uint8_t *data, size_t n, char *why)
+/* What no servo can do with a whole command of a good sum; NULL: nothing. The code of it. */
+static const char *wrong_telegram(const sim_strict *s, const uint8_t *bytes, size_t n, bool relay,
+                                  const grobo_telegram **said, char *why)
 {
-    if (address + n > GROBO_REGISTERS) {
-        snprintf(why, WHY_BYTES, "it writes No.%d, behind the last register",
-                 (int)(address + n - 1));
-        return true;
-    }
-    const telegram_part part = {.address = address, .length = (int)n, .data = data};
-    for (int at = 0; at < part.length;) {
-        const explain_item item = explain_item_at(EXPLAIN_RS30X, &part, at);
-        if (explain_is_wrong(&item, why, WHY_BYTES)) {
-            return true;
-        }
-        at += item.bytes;
-    }
-    return false;
-}
-
-/* What no servo can do with a whole packet of a good sum; NULL: nothing. The code of it. */
-static const char *wrong_packet(const grobo_rs30x_packet *p, const uint8_t *bytes, size_t n,
-                                char *why)
-{
-    grobo_reply reply;
-    size_t step = p->kind == GROBO_RS30X_LONG ? p->length : p->data_bytes;
-    size_t skip = p->kind == GROBO_RS30X_LONG ? 1 : 0;
-    bool writes = p->address < GROBO_REGISTERS; /* No.255 stands in commands */
-    if (p->kind == GROBO_RS30X_SHORT && grobo_rs30x_reply_to(bytes, n, &reply) < 0) {
-        snprintf(why, WHY_BYTES, "it asks for what no servo returns (flags %02X)", p->flags);
-        return "request";
-    }
-    for (size_t at = 0; writes && step > 0 && at + step <= p->data_bytes; at += step) {
-        if (skip && (p->data[at] < 1 || p->data[at] > GROBO_RS30X_ID_MAX)) {
-            snprintf(why, WHY_BYTES, "id %d is outside 1..%d", p->data[at], GROBO_RS30X_ID_MAX);
-            return "range";
-        }
-        if (wrong_data(p->address, p->data + at + skip, step - skip, why)) {
-            return "range";
-        }
-    }
-    return NULL;
-}
-
-/* ---- what the client writes ------------------------------------------------------------------ */
-
-/* A frame of the board asks for as many bytes as its packet is answered by. */
-static bool wrong_relay(const frame *f, char *why)
-{
-    grobo_reply reply;
-    int bytes = grobo_rs30x_reply_to(f->board.packet, f->board.packet_bytes, &reply);
-    int asked = f->board.kind == GROBO_BOARD_ASK ? f->board.reply_bytes : 0;
-    if (f->board.kind > GROBO_BOARD_ASK || bytes < 0 || bytes == asked) {
-        return false;
-    }
-    snprintf(why, WHY_BYTES, "it asks the board for %d bytes, the servo returns %d", asked, bytes);
-    return true;
-}
-
-/* The same for servos that are no RS30x; NULL: nothing. */
-static const char *wrong_telegram(const sim_strict *s, const uint8_t *bytes, size_t n,
-                                  const telegram **said, char *why)
-{
-    static telegram told;
-    const dialect_frame as = {.sum_ok = true};
+    static grobo_telegram told;
+    const grobo_words_frame as = {.sum_ok = true, .relay = relay};
     memset(&told, 0, sizeof told);
-    s->talk.dialect->explain(bytes, n, &as, &told);
+    s->talk.words->explain(bytes, n, &as, &told);
     *said = &told;
-    return explain_offence(&s->talk, &told, why, WHY_BYTES);
-}
-
-static void on_telegram(sim_strict *s, const frame *f)
-{
-    char why[WHY_BYTES] = "the sum is wrong";
-    const telegram *said;
-    const char *code = f->sum_ok ? wrong_telegram(s, f->bytes, f->size, &said, why) : "sum";
-    if (code) {
-        report(s, code, f->end_us, f->bytes, f->size, why);
-    }
+    return explain_offence(&s->talk, bytes, n, &told, why, WHY_BYTES);
 }
 
 static void on_whole(sim_strict *s, const frame *f)
 {
-    if (s->talk.dialect) {
-        on_telegram(s, f);
-        return;
-    }
-    char why[WHY_BYTES] = "";
-    const uint8_t *bytes = f->kind == FRAME_BOARD ? f->board.packet : f->bytes;
-    if (f->has_packet && !f->sum_ok) {
-        report(s, "sum", f->end_us, f->bytes, f->size, "the sum is wrong");
-        return;
-    }
-    const char *code = f->has_packet ? wrong_packet(&f->packet, bytes, f->packet_size, why) : NULL;
-    if (!code && f->kind == FRAME_BOARD && f->has_packet && wrong_relay(f, why)) {
-        code = "relay";
-    }
+    char why[WHY_BYTES] = "the sum is wrong";
+    const grobo_telegram *said;
+    const char *code =
+        f->sum_ok ? wrong_telegram(s, f->bytes, f->size, f->as.relay, &said, why) : "sum";
     if (code) {
         report(s, code, f->end_us, f->bytes, f->size, why);
     }
@@ -175,34 +97,31 @@ static void on_packet(sim_strict *s, const grobo_sim_event *event)
 static void on_refused(sim_strict *s, const grobo_sim_event *event)
 {
     char why[WHY_BYTES];
-    grobo_rs30x_packet packet;
-    const telegram *said;
-    bool sum_ok;
-    if (s->talk.dialect) {
-        if (!s->told && !wrong_telegram(s, s->packet, s->n_packet, &said, why)) {
-            s->told = true;
-            report(s, "refused", event->time_us, s->packet, s->n_packet, "the servo cannot do it");
-        }
-        return;
-    }
-    int size = grobo_rs30x_peek(s->packet, s->n_packet, GROBO_ACCEPT_COMMANDS, &packet, &sum_ok);
-    if (s->told || size <= 0 || wrong_packet(&packet, s->packet, s->n_packet, why)) {
+    const grobo_telegram *said;
+    if (s->told || wrong_telegram(s, s->packet, s->n_packet, false, &said, why)) {
         return;
     }
     s->told = true;
-    snprintf(why, sizeof why, "the servo cannot do it (No.%d)", (int)event->value);
+    if (s->talk.words->numbered) {
+        snprintf(why, sizeof why, "the servo cannot do it (No.%d)", (int)event->value);
+    } else {
+        snprintf(why, sizeof why, "the servo cannot do it");
+    }
     report(s, "refused", event->time_us, s->packet, s->n_packet, why);
 }
 
 static bool is_order(const sim_strict *s, const grobo_sim_event *event)
 {
+    static const char *const questions[] = {"ping", "nothing"};
     char why[WHY_BYTES];
-    const telegram *said;
-    if (!s->talk.dialect) {
-        return event->bytes[2] == 0 || (event->bytes[3] & 0xF0) != 0 || event->n_bytes > 8;
+    const grobo_telegram *said;
+    (void)wrong_telegram(s, event->bytes, event->n_bytes, false, &said, why);
+    for (size_t i = 0; said->action && i < sizeof questions / sizeof *questions; i++) {
+        if (strcmp(said->action, questions[i]) == 0) {
+            return false;
+        }
     }
-    (void)wrong_telegram(s, event->bytes, event->n_bytes, &said, why);
-    return !said->action || (!strstr(said->action, "read") && strcmp(said->action, "ping") != 0);
+    return !said->action || !strstr(said->action, "read");
 }
 
 /* To ask whether a servo is back is no offence, to tell it something is: nobody hears it. */
@@ -251,17 +170,16 @@ void sim_strict_event(sim_strict *s, const grobo_sim_event *event)
 
 /* ---- from begin to end ----------------------------------------------------------------------- */
 
-void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring, const dialect *d)
+void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring,
+                      const grobo_words *words)
 {
     *s = (sim_strict){.a = a,
                       .robot = robot,
                       .wiring = wiring,
                       .start_us = grobo_now_us(),
-                      .talk = {.dialect = d}};
-    frames_init(&s->host, FRAMES_HOST,
-                wiring == GROBO_WIRING_BUS ? (unsigned)FRAMES_BUS : (unsigned)FRAMES_BOARD,
-                on_frame, s);
-    frames_set_talk(&s->host, &s->talk);
+                      .talk = {.words = words}};
+    frames_init(&s->host, &s->talk, FRAMES_HOST,
+                wiring == GROBO_WIRING_BUS ? GROBO_WORDS_BUS : GROBO_WORDS_BOARD, on_frame, s);
 }
 
 void sim_strict_bytes(sim_strict *s, int64_t now_us, const uint8_t *bytes, size_t n)

@@ -16,16 +16,17 @@ typedef struct sim_strict {
     grobo_wiring wiring;
     int64_t start_us, collision_us;
     frames host;
-    talk talk;                           /* of servos that are no RS30x */
-    uint8_t packet[DIALECT_FRAME_BYTES]; /* the last one on the servos' bus */
+    talk talk;
+    uint8_t packet[GROBO_WORDS_FRAME_BYTES]; /* the last one on the servos' bus */
     size_t n_packet;
-    bool told;                         /* of that packet */
-    uint8_t last[DIALECT_FRAME_BYTES]; /* what the client wrote last */
+    bool told;                             /* of that packet */
+    uint8_t last[GROBO_WORDS_FRAME_BYTES]; /* what the client wrote last */
     size_t n_last;
 } sim_strict;
 
-/* d: how the servos talk; NULL: they are RS30x. */
-void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring, const dialect *d);
+/* words: how the servos talk. */
+void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring,
+                      const grobo_words *words);
 /* What the client has written. */
 void sim_strict_bytes(sim_strict *s, int64_t now_us, const uint8_t *bytes, size_t n);
 /* What happened in the simulator. */

@@ -5,7 +5,8 @@
 
 #include <grobo/ics.h>
 
-#include "tools/grctl/decode/dialect.h"
+#include "src/servo/families.h"
+#include "src/servo/words/common.h"
 
 /* Values are told like registers: of two bytes, the low one first, of one, the EEPROM. */
 enum { AT_GOAL = 0, AT_POSITION = 2, AT_ITEMS = 4, AT_ID = 8 };
@@ -45,11 +46,11 @@ static const grobo_servo_table table = {.name = "Kondo KRS",
                                         .model_count = 1};
 
 /* The request that a reply without one must have had; its values do not count. */
-static const sent_frame *guess(const uint8_t *bytes, size_t n)
+static const grobo_words_sent *guess(const uint8_t *bytes, size_t n)
 {
-    static sent_frame made;
+    static grobo_words_sent made;
     uint8_t item = n > 1 ? bytes[1] : 0;
-    made = (sent_frame){.bytes = {(uint8_t)(bytes[0] | 0x80), item}, .n = 2};
+    made = (grobo_words_sent){.bytes = {(uint8_t)(bytes[0] | 0x80), item}, .n = 2};
     if ((made.bytes[0] & 0xE0) == GROBO_ICS_WRITE) {
         made.n = item == GROBO_ICS_EEPROM ? GROBO_ICS_FRAME_MAX_BYTES : 3;
     } else if ((made.bytes[0] & 0xE0) == GROBO_ICS_POSITION) {
@@ -61,16 +62,16 @@ static const sent_frame *guess(const uint8_t *bytes, size_t n)
     return &made;
 }
 
-static bool has_asked(const dialect_look *look)
+static bool has_asked(const grobo_words_look *look)
 {
     return look->sent && look->sent[0].n > 0;
 }
 
-static int find_answer(const dialect_look *look, dialect_frame *found)
+static int find_answer(const grobo_words_look *look, grobo_words_frame *found)
 {
     int best = GROBO_ERR_FRAME;
     bool asked = has_asked(look);
-    for (int i = 0; asked && i < DIALECT_SENT_MAX && look->sent[i].n > 0; i++) {
+    for (int i = 0; asked && i < GROBO_WORDS_SENT_MAX && look->sent[i].n > 0; i++) {
         int size = grobo_ics_answer(look->sent[i].bytes, look->sent[i].n, look->bytes, look->n);
         if (size > 0) {
             found->sent = &look->sent[i];
@@ -81,7 +82,7 @@ static int find_answer(const dialect_look *look, dialect_frame *found)
     if (asked || (look->bytes[0] & 0x80)) {
         return best;
     }
-    const sent_frame *made = guess(look->bytes, look->n);
+    const grobo_words_sent *made = guess(look->bytes, look->n);
     return grobo_ics_answer(made->bytes, made->n, look->bytes, look->n);
 }
 
@@ -91,9 +92,9 @@ static int no_frame(int size)
 }
 
 /* From a robot, marked as a command: an echo, or its id. */
-static int peek_marked(const dialect_look *look, dialect_frame *found)
+static int peek_marked(const grobo_words_look *look, grobo_words_frame *found)
 {
-    int echo = has_asked(look) ? dialect_echo(look) : grobo_ics_measure(look->bytes, look->n);
+    int echo = has_asked(look) ? grobo_i_words_echo(look) : grobo_ics_measure(look->bytes, look->n);
     if (!has_asked(look) && look->bytes[0] >= GROBO_ICS_ID) {
         found->reply = true;
         return 1;
@@ -107,7 +108,7 @@ static int peek_marked(const dialect_look *look, dialect_frame *found)
     return size < 0 && echo == 0 ? 0 : no_frame(size);
 }
 
-static int peek(const dialect_look *look, dialect_frame *found)
+static int peek(const grobo_words_look *look, grobo_words_frame *found)
 {
     bool marked = (look->bytes[0] & 0x80) != 0;
     bool tells_id = has_asked(look) && look->sent[0].bytes[0] >= GROBO_ICS_ID &&
@@ -146,20 +147,20 @@ static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
     return (int)bytes;
 }
 
-static bool answers(const sent_frame *sent, const uint8_t *bytes, size_t n)
+static bool answers(const grobo_words_sent *sent, const uint8_t *bytes, size_t n)
 {
     return grobo_ics_answer(sent->bytes, sent->n, bytes, n) == (int)n;
 }
 
-static void add(telegram *to, int address, int length, bool data, int value)
+static void add(grobo_telegram *to, int address, int length, bool data, int value)
 {
     to->data[0] = (uint8_t)(value & 0xFF);
     to->data[1] = (uint8_t)(value >> 8);
-    to->part[0] = (telegram_part){to->id, address, length, data ? to->data : NULL};
+    to->part[0] = (grobo_telegram_part){to->id, address, length, data ? to->data : NULL};
     to->n_parts = 1;
 }
 
-static void explain_item(const grobo_ics_packet *p, bool data, telegram *to)
+static void explain_item(const grobo_ics_packet *p, bool data, grobo_telegram *to)
 {
     bool position = p->item == GROBO_ICS_POSITION_ITEM;
     if (p->item > GROBO_ICS_POSITION_ITEM) {
@@ -170,7 +171,7 @@ static void explain_item(const grobo_ics_packet *p, bool data, telegram *to)
         to->action = to->reply ? to->action : data ? "write EEPROM" : "read EEPROM";
         if (p->data) {
             memcpy(to->data, p->data, GROBO_ICS_EEPROM_BYTES);
-            to->part[0] = (telegram_part){to->id, -1, GROBO_ICS_EEPROM_BYTES, to->data};
+            to->part[0] = (grobo_telegram_part){to->id, -1, GROBO_ICS_EEPROM_BYTES, to->data};
             to->n_parts = 1;
         }
     }
@@ -181,10 +182,10 @@ static bool asks(const grobo_ics_packet *p)
     return p->command == GROBO_ICS_READ || (p->command == GROBO_ICS_ID && p->item == 0);
 }
 
-static void explain(const uint8_t *bytes, size_t n, const dialect_frame *as, telegram *to)
+static void explain(const uint8_t *bytes, size_t n, const grobo_words_frame *as, grobo_telegram *to)
 {
     grobo_ics_packet p;
-    const sent_frame *sent = !as->reply ? NULL : as->sent ? as->sent : guess(bytes, n);
+    const grobo_words_sent *sent = !as->reply ? NULL : as->sent ? as->sent : guess(bytes, n);
     to->id = bytes[0] & 0x1F;
     to->reply = as->reply;
     to->code = bytes[0];
@@ -205,13 +206,14 @@ static void explain(const uint8_t *bytes, size_t n, const dialect_frame *as, tel
     }
 }
 
-const dialect dialect_ics = {.name = "ics",
-                             .family = "ics",
-                             .title = "Kondo ICS",
-                             .table = &table,
-                             .peek = peek,
-                             .why = why,
-                             .protocol = &grobo_ics_protocol,
-                             .reply_to = reply_to,
-                             .answers = answers,
-                             .explain = explain};
+static const grobo_words words = {.name = "ics",
+                                  .title = "Kondo ICS",
+                                  .table = &table,
+                                  .peek = peek,
+                                  .why = why,
+                                  .protocol = &grobo_ics_protocol,
+                                  .reply_to = reply_to,
+                                  .answers = answers,
+                                  .explain = explain};
+
+const grobo_words *const grobo_i_words_ics[] = {&words, NULL};

@@ -5,7 +5,8 @@
 
 #include <grobo/lx16a.h>
 
-#include "tools/grctl/decode/dialect.h"
+#include "src/servo/families.h"
+#include "src/servo/words/common.h"
 
 /* A command, the one that reads the same, and its fields in a row of what they carry. */
 typedef struct order {
@@ -88,7 +89,9 @@ static const order *order_of(uint8_t command)
     return NULL;
 }
 
-static int peek(const dialect_look *look, dialect_frame *found)
+static bool answers(const grobo_words_sent *sent, const uint8_t *bytes, size_t n);
+
+static int peek(const grobo_words_look *look, grobo_words_frame *found)
 {
     unsigned accept =
         look->from_robot ? GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS : GROBO_ACCEPT_COMMANDS;
@@ -100,7 +103,7 @@ static int peek(const dialect_look *look, dialect_frame *found)
         found->reply =
             look->from_robot && data > 0 && grobo_lx16a_reply_bytes(look->bytes[4]) == data;
         found->echo = !found->reply && !look->from_host;
-        found->sent = found->reply ? dialect_asked(&dialect_lx16a, look, (size_t)size) : NULL;
+        found->sent = found->reply ? grobo_i_words_asked(answers, look, (size_t)size) : NULL;
     }
     return size < 0 ? GROBO_ERR_FRAME : size;
 }
@@ -116,16 +119,16 @@ static const char *why(const uint8_t *bytes, size_t n)
     return n > 3 && (bytes[3] < 3 || bytes[3] > 7) ? "no frame has this length" : NULL;
 }
 
-static bool answers(const sent_frame *sent, const uint8_t *bytes, size_t n)
+static bool answers(const grobo_words_sent *sent, const uint8_t *bytes, size_t n)
 {
     return grobo_lx16a_answer(sent->bytes, sent->n, bytes, n) == (int)n;
 }
 
-static void explain(const uint8_t *bytes, size_t n, const dialect_frame *as, telegram *to)
+static void explain(const uint8_t *bytes, size_t n, const grobo_words_frame *as, grobo_telegram *to)
 {
     const order *o = order_of(bytes[4]);
     int length = (int)n - GROBO_LX16A_OVERHEAD_BYTES;
-    dialect_sum(bytes, n, to);
+    grobo_i_words_sum(bytes, n, to);
     to->id = bytes[2];
     to->all = bytes[2] == GROBO_LX16A_ID_ALL;
     to->reply = as->reply;
@@ -140,18 +143,19 @@ static void explain(const uint8_t *bytes, size_t n, const dialect_frame *as, tel
         snprintf(to->trouble, sizeof to->trouble, "its parameters are missing");
     }
     if (o->bytes > 0 && (reads || length > 0)) {
-        to->part[0] = (telegram_part){to->id, 8 * (int)(o - orders), reads ? o->bytes : length,
-                                      reads ? NULL : to->data};
+        to->part[0] = (grobo_telegram_part){to->id, 8 * (int)(o - orders),
+                                            reads ? o->bytes : length, reads ? NULL : to->data};
         to->n_parts = 1;
     }
 }
 
-const dialect dialect_lx16a = {.name = "lx16a",
-                               .family = "lx16a",
-                               .title = "Hiwonder LX",
-                               .table = &table,
-                               .peek = peek,
-                               .why = why,
-                               .protocol = &grobo_lx16a_protocol,
-                               .answers = answers,
-                               .explain = explain};
+static const grobo_words words = {.name = "lx16a",
+                                  .title = "Hiwonder LX",
+                                  .table = &table,
+                                  .peek = peek,
+                                  .why = why,
+                                  .protocol = &grobo_lx16a_protocol,
+                                  .answers = answers,
+                                  .explain = explain};
+
+const grobo_words *const grobo_i_words_lx16a[] = {&words, NULL};
