@@ -117,12 +117,12 @@ LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
 
 # The core needs no C library but memcpy() and its like, and mathematics.
-CORE_FOLDERS := base model play bus servo servo/* robot robots sim sim/*
+CORE_FOLDERS := base model play bus servo servo/* robot robots sim sim/servo
 HEAP := src/base/memory.c
 # What frames say, for those who read along: firmware has none of it.
 WORDS := src/servo/words/%.c $(wildcard src/servo/*/words.c src/servo/*/words_*.c)
 CORE_SRCS := $(filter-out $(HEAP) $(WORDS),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
-OTHER_SRCS := $(sort $(HEAP) $(filter-out src/servo/words/%,$(WORDS)) $(wildcard src/servo/words/*.c) $(wildcard src/team/*.c) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
+OTHER_SRCS := $(sort $(HEAP) $(filter-out src/servo/words/%,$(WORDS)) $(wildcard src/servo/words/*.c) $(wildcard src/team/*.c src/sim/physics/*.c) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))
 CHOSEN := tools/grctl/edit/% tools/grctl/screen/% tools/grctl/xml/% tools/grctl/web/% $(patsubst %,tools/grctl/mqtt/%.c,mosquitto none)
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out $(CHOSEN),\
