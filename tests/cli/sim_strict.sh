@@ -100,7 +100,7 @@ test_that 'two robots' [ "$strict_status" = 0 ]
 ours() {
     for _ in 1 2 3; do
         start_sim --strict --wiring "$1"
-        on_robot -q --wiring "$1" init --time 100
+        "$GRCTL" -q -d "$robot" --timeout 5000 --wiring "$1" init --time 100
         kill -s TERM "$sim_pid"
         wait "$sim_pid"
         strict_status=$?
