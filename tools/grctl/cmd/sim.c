@@ -264,7 +264,7 @@ static int add_robot(farm *f, int robot)
     sim.hook = on_sim;
     sim.hook_ctx = &f->watched[robot];
     if (app_option(f->a, OPT_STRICT)->given) {
-        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, words_of(f));
+        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, &sim, words_of(f));
     }
     error = robot_physics(f->a, &sim, &f->physics[robot]);
     if (error) {
