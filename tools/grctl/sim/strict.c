@@ -154,7 +154,7 @@ static void on_register(sim_strict *s, const grobo_sim_event *event)
 {
     const grobo_servo_model *servo = s->servos ? s->servos[event->servo] : NULL;
     const grobo_servo_register *id = grobo_servo_register_of(servo, GROBO_ROLE_ID);
-    if (id && event->value == id->address && event->value2 >= 0 && event->value2 < GROBO_WORDS_IDS) {
+    if (id && event->value == id->address && event->value2 >= 0 && event->value2 < TALK_IDS) {
         s->talk.servo[event->value2] = servo;
     }
 }
