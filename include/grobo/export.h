@@ -34,6 +34,13 @@
 #define GROBO_API
 #endif
 
+/** In the classic library (classic/classic.h), which is a static one on Windows. */
+#if defined(__GNUC__) && !defined(_WIN32)
+#define GROBO_CLASSIC_API __attribute__((visibility("default")))
+#else
+#define GROBO_CLASSIC_API
+#endif
+
 /** In the static libraries alone. */
 #define GROBO_CORE
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# grctl play: what it sends by its options, and when it warns of a fall.
+# grctl play: what it sends by its options, what it says, how it leaves.
 . tests/support/cli.sh
 
 greet=motions/greet.pseq
@@ -257,4 +257,113 @@ printf '%s\n' 'type: PoseSeq' 'name: sways' 'targetBody: GR001' 'refs:' \
 check "what stands when it is slow" silent "$GRCTL" play --dry-run "$work/sways.pseq"
 check "falls when it is fast" both exits 0 "$GRCTL" play --dry-run --speed 800 "$work/sways.pseq" \
     --- grep -q 'sways.pseq.*the robot would fall' "$work/err"
+
+test_case "what is said"
+
+start_sim
+check_json "JSON: a line a second, then the end" \
+    '[sorted(l) for l in lines[:-1]] == [["step", "steps", "t_ms", "total_ms"]] * (len(lines) - 1)
+     and 2 <= len(lines) - 1 <= 5 and lines[0]["total_ms"] == 5000 and
+     lines[-1]["done"] is True and
+     lines[-1]["frames"] > 0 and lines[-1]["frames"] + lines[-1]["late_frames"] > 100 and
+     sorted(lines[-1]["jitter_us"]) == ["max", "p50", "p99"] and
+     0 <= lines[-1]["max_error_deg"] <= 0.1' \
+    on_robot --json play --rate 50 --unwatched --speed 200 "$greet"
+says_unwatched() {
+    exits 0 on_robot play --rate 50 --unwatched --speed 500 "$greet" &&
+        grep -q '^play: unwatched at 50 Hz: .* up to 39 Hz)$' "$work/err"
+}
+check "unwatched, and it says so" says_unwatched
+quiet_where_no_terminal() {
+    exits 0 on_robot play --speed 500 "$greet" && [ ! -s "$work/err" ] || return 1
+    says '^[0-9]* frames, [0-9]* late; jitter p50 ' && says '^largest error at the end 0\.[01] deg'
+}
+check "no terminal: no progress bar, nothing on standard error" quiet_where_no_terminal
+check "a table at the end" both exits 0 on_robot play --speed 500 --table "$greet" --- \
+    says '^ *12  R_KNEE_P  *-40\.0  *-40\.0  *-*0\.0'
+check "how far off it was, and which joint" both exits 0 on_robot play "$greet" --- \
+    says '^largest error on the way [0-9.]* deg ([A-Z_]*)$'
+check "it ends where the motion ends" both exits 0 on_robot status m12 --- \
+    says 'R_KNEE_P  *-40\.0  *-40\.0  *on '
+
+# On a terminal, which script makes: a bar that fits into the line and is cleared away.
+# bar WORD PATTERN COMMAND...: lines with the word; one is like the pattern.
+bar() {
+    bar_word=$1
+    bar_like=$2
+    shift 2
+    LC_ALL=C TERM=xterm script -qec "stty cols 60; '$GRCTL' -d '$robot' --timeout 500 $*" \
+        /dev/null </dev/null >"$work/screen" || return 1
+    tr '\r' '\n' <"$work/screen" | grep "$bar_word" >"$work/bars"
+    grep -q "$bar_like" "$work/bars" || { echo "no '$bar_like'"; cat -v "$work/screen"; return 1; }
+    awk '{ sub(/\033\[K$/, ""); if (length > 57) exit 1 }' "$work/bars" && return
+    echo "longer than the line"
+    return 1
+}
+if command -v script >/dev/null 2>&1 && script -qec true /dev/null </dev/null >/dev/null 2>&1; then
+    check "a bar of plain letters" bar playing \
+        '^\[#[#-]*\] playing [0-9.]* of 5.0 s, .* s left' play --speed 400 "$greet"
+    check "a bar of a long move" bar 'move: ' '^\[##*--*\] move: [12]\.[0-9] of 2\.5 s' \
+        move R_KNEE_P -60 2500
+else
+    skip "a bar of plain letters" "no script(1) to make a terminal"
+    skip "a bar of a long move" "no script(1) to make a terminal"
+fi
+
+test_case "how it leaves"
+
+# interrupted STATUS POLICY SIGNAL...: in mid-motion; the status tells, the policy was carried out.
+interrupted() {
+    interrupted_want=$1
+    interrupted_policy=$2
+    shift 2
+    rm -f "$work/out" "$work/leaving"
+    "$GRCTL" -d "$robot" -v --json --retries 10 --on-exit "$interrupted_policy" \
+        play --speed 50 "$greet" >"$work/out" 2>"$work/leaving" &
+    interrupted_pid=$!
+    written "$work/out" '"t_ms":[1-9]' || { cat "$work/leaving"; return 1; }
+    for interrupted_signal in "$@"; do
+        kill -s "$interrupted_signal" $interrupted_pid
+    done
+    wait $interrupted_pid
+    interrupted_got=$?
+    [ $interrupted_got -eq "$interrupted_want" ] &&
+        grep -q '^interrupted: the servos ' "$work/leaving" && return
+    echo "status $interrupted_got, not $interrupted_want"
+    cat "$work/out" "$work/leaving"
+    return 1
+}
+check "SIGINT, to hold: 130" interrupted 130 hold INT
+check_json "all hold, at a standstill" \
+    'all(j["torque"] == "on" and j["speed_dps"] == 0 for j in lines[0]["joints"])' \
+    on_robot --json status
+check "SIGTERM, torque off: 143" interrupted 143 off TERM
+check_json "all are off" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
+    on_robot --json status
+check "SIGHUP, to hold: 129" interrupted 129 hold HUP
+check "SIGQUIT, torque off: 131" interrupted 131 off QUIT
+check "SIGINT again while it leaves changes nothing" interrupted 130 off INT INT INT
+check_json "all are off again" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
+    on_robot --json status
+check "SIGINT, to sit down: 130" interrupted 130 sit INT
+check_json "the knees are bent, the torque is off" \
+    '[abs(j["angle_deg"]) > 60 for j in lines[0]["joints"] if "KNEE" in j["name"]] == [True] * 2
+     and all(j["torque"] == "off" for j in lines[0]["joints"])' on_robot --json status
+
+# A robot that has fallen silent: nobody knows what its servos do, and the status says so.
+silent() {
+    rm -f "$work/out" "$work/leaving"
+    "$GRCTL" -d "$robot" -v --json --retries 10 play --speed 50 "$greet" \
+        >"$work/out" 2>"$work/leaving" &
+    silent_pid=$!
+    written "$work/out" '"t_ms":[1-9]' || { cat "$work/leaving"; return 1; }
+    kill -s STOP "$sim_pid"
+    kill -s INT $silent_pid
+    wait $silent_pid
+    silent_got=$?
+    kill -s CONT "$sim_pid"
+    [ $silent_got -eq 1 ] && grep -q 'could not be left as asked' "$work/leaving"
+}
+check "SIGINT, and nobody answers: 1" silent
+stop_sim
 done_testing

@@ -46,6 +46,19 @@ runs() {
     [ "$(LD_LIBRARY_PATH=$library $emulator "$work/program")" = 'no reply in time' ]
 }
 
+# A program of the classic shelf, which needs both libraries; with --static neither.
+# shellcheck disable=SC2046
+classic() {
+    printf '%s\n' '#include <grobo/classic/classic.h>' 'int main(void)' '{' \
+        '    GR001 *robot = GR001_new("/nowhere");' \
+        '    int size = RobotMotion_getSize(robot->motion);' \
+        '    GR001_delete(robot);' '    return size;' '}' >"$work/classic.c"
+    rm -f "$work/classic"
+    $1 "$work/classic.c" -x none -o "$work/classic" \
+        $(pkg-config --cflags --libs ${2:-} grobo-classic) &&
+        LD_LIBRARY_PATH=$library $emulator "$work/classic"
+}
+
 needs() {
     readelf -d "$work/program" | grep NEEDED | grep -q "libgrobo\.so\.0"
 }
@@ -60,6 +73,7 @@ every_header() {
     for header in "$tree"/opt/grobo/include/grobo/*.h; do
         echo "#include <grobo/${header##*/}>"
     done >"$work/all.c"
+    echo '#include <grobo/classic/classic.h>' >>"$work/all.c"
     echo 'int main(void) { return 0; }' >>"$work/all.c"
     [ "$(grep -c include "$work/all.c")" -ge "$(ls include/grobo/*.h | wc -l)" ] &&
         builds "$1" "$work/all.c"
@@ -168,6 +182,7 @@ by_each() {
         fi
         check "$name: builds" builds "$command" tests/export/consumer.c "$@"
         check "$name: runs" runs
+        check "$name: the classic shelf" classic "$command" "${1:-}"
         [ $# -gt 0 ] && continue
         check "$name: asks for libgrobo.so.0" needs
         check "$name: every installed header together" every_header "$command"
@@ -195,7 +210,7 @@ check 'a build for plain drivers refuses others' plain_drivers
 check 'headers with shorter structures' yesterdays_headers
 test_case "a program of yesterday runs with the library of today"
 check 'a program of yesterday runs with the library of today' yesterdays_program
-rm -f "$library"/libgrobo.so*
+rm -f "$library"/libgrobo*.so*
 by_each --static
 check 'another GROBO_JOINTS_MAX fails to link statically' other_cap --static
 test_case "it is uninstalled"

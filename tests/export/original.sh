@@ -25,7 +25,7 @@ same_symbols() {
         found = 0
         for (i = 1; i <= n; i++) {
             word = names[i]
-            sub(/^grobo_[a-z_0-9]*[.]/, "", word)
+            sub(/^(grobo_[a-z_0-9]*|[A-Z][A-Za-z0-9]*)[.]/, "", word)
             if (word != "" && index($3, word)) found = 1
         }
         if (!found) { print $1 ": " $3 " has none of " here[$1]; bad = 1 }

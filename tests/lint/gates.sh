@@ -473,6 +473,14 @@ done
 echo 'void f(void) { malloc(3); printf("x"); }' | sample tools/grctl/a.c
 check 'banned: what only the library may not' scan banned tools/grctl/a.c
 echo 'void f(void) { usleep(3); }' | sample tests/unit/a.c
+sample src/classic/a.c <<'C'
+void print(char *text)
+{
+    fprintf(stderr, "%s\n", text);
+    free(text);
+}
+C
+check 'banned: the classic shelf prints and allocates' scan banned src/classic/a.c
 check 'banned: a test that sleeps' refuses 'tests/unit/a.c:1: banned' scan banned tests/unit/a.c
 
 test_case "platform"

@@ -55,4 +55,4 @@ LEFT_OUT_WHY := Windows has no pseudo-terminals, signals, file modes or links as
 LEFT_OUT := $(filter-out $(PORTABLE),$(wildcard tests/link/test_*.c tests/cli/*.sh)) \
     $(addprefix tests/,unit/test_motion_links.c fault/test_serial_io.c export/examples.sh \
     export/install.sh support/line.c support/spy.c support/far_robot.c support/guarded.c \
-    support/nobody.c support/leash.c)
+    support/nobody.c support/leash.c support/classic_kit.c support/frame_words.c)

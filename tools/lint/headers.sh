@@ -28,7 +28,7 @@ try() {
 
 # The lists of flags are meant to be split.
 # shellcheck disable=SC2086
-for header in include/grobo/*.h ports/*/include/grobo/*.h; do
+for header in include/grobo/*.h include/grobo/classic/*.h ports/*/include/grobo/*.h; do
     [ -f "$header" ] || continue
     try "$header" C11 $cc -x c -std=c11 $warnings -Wstrict-prototypes $flags -I.
     if command -v "${cxx%% *}" >/dev/null 2>&1; then

@@ -107,7 +107,7 @@ awk -v table="$table" -v families="$families" "$folder"'
         from = folder($1)
         to = folder($2)
         # The command may use the whole library; that it is public is looked at below.
-        if (from ~ /^tools\// && to !~ /^tools\//) {
+        if (from ~ /^(tools|src\/classic)/ && to !~ /^(tools|src\/classic)/) {
             next
         }
         if (from != to && !allowed(from, to)) {
@@ -170,6 +170,19 @@ outside 'src/motion/.*' '' "$banned|$output|$system|$loop"
 outside 'ports/common/.*' '' "$banned|$output|$system|$loop|yaml_.*"
 outside 'ports/posix/.*' '' "$banned|$output|$loop|yaml_.*"
 outside 'src/link/.*' '' "$banned|$output|yaml_.*"
+
+# The classic shelf is linked with the shared library: what it takes is exported.
+sh "$(dirname "$0")/symbols.sh" --map 2>/dev/null | sed -n 's/^ *\(grobo_.*\);/\1/p' |
+    sort >"$work/exported"
+awk '$1 ~ /^src\/classic\// && $2 !~ /^src\/classic\// && $NF ~ /^grobo_/ { print $NF, $1 }' \
+    "$work/uses" "$work/outside" |
+    sort |
+    join -v 1 - "$work/exported" |
+    awk '{ print $2 ":1: layers: the shared library does not export " $1 }' >"$work/found"
+if [ -s "$work/found" ]; then
+    cat "$work/found"
+    bad=1
+fi
 
 # The command is a user like any other: what it takes from the library is public.
 sh "$(dirname "$0")/symbols.sh" --declared 2>/dev/null | sort >"$work/public"

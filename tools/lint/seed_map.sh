@@ -12,4 +12,5 @@ members=${GROBO_SHARED:-../shared}/seed/members.tsv
 # shellcheck disable=SC2046
 awk -v members="$members" -f "$gates/strip.awk" -f "$gates/named_tests.awk" \
     -f "$gates/seed_map.awk" \
-    include/grobo/*.h $(ls ports/posix/include/grobo/*.h 2>/dev/null) docs/seed-map.md
+    include/grobo/*.h \
+    $(ls include/grobo/classic/*.h ports/posix/include/grobo/*.h 2>/dev/null) docs/seed-map.md

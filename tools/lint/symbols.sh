@@ -6,6 +6,7 @@
 # usage: symbols.sh LIBRARY      compare
 #        symbols.sh --declared   print the declared names, one a line, of all libraries
 #        symbols.sh --pointers   of them only functions that take a pointer
+#        symbols.sh --classic    print the names that the classic library exports
 #        symbols.sh --map        print the version script, which is kept in src/libgrobo.map
 set -u
 
@@ -14,12 +15,13 @@ nm=${NM:-nm}
 # A declaration may go over several lines; its name stands before the first bracket that is not an
 # attribute's, or before [ or ; for data.
 declared() {
-    cat include/grobo/*.h ports/posix/include/grobo/*.h 2>/dev/null | awk -v pointers="${2:-}" '
+    cat include/grobo/*.h include/grobo/classic/*.h ports/posix/include/grobo/*.h 2>/dev/null |
+        awk -v pointers="${2:-}" '
     /^GROBO_'"$1"'/ { text = ""; open = 1 }
     open { text = text " " $0 }
     open && /;/ {
         open = 0
-        sub(/GROBO_(API|CORE)/, "", text)
+        sub(/GROBO_(API|CORE|CLASSIC_API)/, "", text)
         while (sub(/__attribute__ *\(\([^()]*(\([^()]*\))?[^()]*\)\)/, "", text)) {
         }
         if (pointers && text !~ /\(.*([*[]|_fn )/) {
@@ -43,6 +45,7 @@ map() {
 
 case ${1:-} in
 --map) map && exit ;;
+--classic) declared CLASSIC_API && exit ;;
 --declared) declared '(API|CORE)' && exit ;;
 --pointers) declared '(API|CORE)' yes && exit ;;
 esac
@@ -85,4 +88,16 @@ for name in $(grep -v '^grobo_' "$work/exported"); do
     echo "$1:1: symbols: $name does not begin with grobo_"
     bad=1
 done
+# The classic library beside it: what its headers declare.
+classic=$(dirname "$1")/$(basename "$1" | sed 's/libgrobo/libgrobo-classic/')
+if [ "${1##*/}" != "${classic##*/}" ] && [ -f "$classic" ]; then
+    declared CLASSIC_API >"$work/classic"
+    "$nm" -D --defined-only "$classic" |
+        awk 'NF == 3 && $2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort -u |
+        comm -3 - "$work/classic" >"$work/differ"
+    if [ -s "$work/differ" ]; then
+        sed "s,^[[:blank:]]*,$classic:1: symbols: declared or defined alone: ," "$work/differ"
+        bad=1
+    fi
+fi
 exit $bad

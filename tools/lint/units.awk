@@ -8,6 +8,9 @@ BEGIN {
         "velocity|voltage|volts|current|temperature|baud|bitrate|latency)"
 }
 
+# The names there are those of the reference document.
+FILENAME ~ /(^|\/)grobo\/classic\// { next }
+
 {
     text = " " code " "
     while (match(text, number "[ *]+([a-z0-9_]+_)?" words " *([][;,)=]|\\[)")) {

@@ -4,7 +4,6 @@
 
 #include "src/servo/dxl1/sim_packets.h"
 #include "src/sim/servo/registers.h"
-#include "src/sim/servo/shaft.h"
 
 /* How long AX and MX bear a stall. An assumption. */
 #define AX_OVERLOAD_US 1000000
@@ -92,7 +91,7 @@ static int32_t torque_limit(const grobo_sim_servo *servo)
 
 static grobo_i_dxl1_stall stall(const grobo_sim_servo *servo)
 {
-    double effort = grobo_i_sim_strain(servo);
+    double effort = (double)servo->plant.most_ma / servo->plant.stall_ma;
     return effort >= AX_OVERLOAD_EFFORT ? (grobo_i_dxl1_stall){GROBO_DXL1_OVERLOAD, AX_OVERLOAD_US}
                                         : (grobo_i_dxl1_stall){0, 0};
 }
@@ -115,7 +114,7 @@ static uint8_t clears(const grobo_sim_servo *servo, const grobo_servo_register *
 static void see_current(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    double ma = grobo_i_dxl_current_ma(sim, index);
+    double ma = grobo_i_dxl_effort(sim, index) * servo->plant.stall_ma;
     grobo_i_dxl_put(servo, GROBO_ROLE_CURRENT, 2048 + lround(ma / MX_COUNT_MA));
 }
 

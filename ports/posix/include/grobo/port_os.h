@@ -17,6 +17,9 @@ typedef int grobo_handle;
 /** No handle: the value before open and after close. */
 #define GROBO_HANDLE_NULL (-1)
 
+/** The name of the serial port with a number, for printf(). */
+#define GROBO_SERIAL_NAME_FORM "/dev/ttyS%d"
+
 /** What an event loop waits on; the same type as libevent's evutil_socket_t. */
 typedef int grobo_socket;
 /** No socket. */

@@ -18,6 +18,9 @@ typedef void *grobo_handle;
 /** No handle: the value before open and after close (INVALID_HANDLE_VALUE). */
 #define GROBO_HANDLE_NULL ((grobo_handle)(intptr_t)-1)
 
+/** The name of the serial port with a number, for printf(). */
+#define GROBO_SERIAL_NAME_FORM "COM%d"
+
 /** What an event loop waits on: a SOCKET, in the same type as libevent's evutil_socket_t. */
 typedef intptr_t grobo_socket;
 /** No socket (INVALID_SOCKET). */
