@@ -54,7 +54,7 @@ FUZZ_S ?= 60
 WERROR ?=
 SONAME ?= libgrobo.so.0
 LINK_NAME ?= libgrobo.so
-SHARED_FLAGS ?= -Wl,-soname,$(SONAME) -Wl,--version-script=src/libgrobo.map $(if $(SAN),,-Wl,-z,defs)
+SHARED_FLAGS ?= -Wl,-soname,$(SONAME) -Wl,--version-script=src/libgrobo.map -Wl,-Bsymbolic-functions $(if $(SAN),,-Wl,-z,defs)
 OS_FLAGS ?= -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -D_FILE_OFFSET_BITS=64 -pthread
 OS_LIBS ?= -lm -pthread
 ifeq ($(origin CC),default)
@@ -76,7 +76,9 @@ SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-f
 # All slots, joints and queues are walked through to assert (src/base/assert.h): WALKS=-DGROBO_WALKS.
 WALKS ?=
 ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(WALKS) $(CPPFLAGS)
-ALL_CFLAGS = -std=c11 $(WARNINGS) $(TARGET_CFLAGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
+# Calls within the library are its own, though all functions of the headers are exported.
+OWN_CALLS ?= -fno-semantic-interposition
+ALL_CFLAGS = -std=c11 $(WARNINGS) $(TARGET_CFLAGS) -fvisibility=hidden -fPIC $(OWN_CALLS) $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
 # Without a number of jobs gcc warns at each link.
 LTO_FLAGS = $(if $(filter -flto,$(CFLAGS)),-flto=auto)
 ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LTO_FLAGS) $(LDFLAGS)

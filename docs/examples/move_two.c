@@ -9,7 +9,7 @@ int main(int argc, char **argv)
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
                                           .device = argc > 1 ? argv[1] : "sim"};
     const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
-    const grobo_model *model = &grobo_gr001_model;
+    const grobo_model *model = grobo_gr001_model();
     grobo_runner *runner;
     grobo_posture target;
     if (grobo_runner_new(&config, &runner) < 0) {

@@ -21,7 +21,7 @@ int main(int argc, char **argv)
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
                                           .device = argc > 1 ? argv[1] : "sim", .driver = &driver};
     const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
-    if (grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol) < 0 ||
+    if (grobo_rs30x_driver_init(&driver, &model, grobo_rs30x_protocol()) < 0 ||
         grobo_runner_new(&config, &runner) < 0) {
         return 1;
     }

@@ -22,9 +22,9 @@ static int64_t pump(int64_t now_us)
 
 int main(void)
 {
-    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &grobo_gr001_model};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = grobo_gr001_model()};
     grobo_posture target;
-    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    grobo_posture_init_pose(&target, grobo_gr001_model());
     if (grobo_sim_init(&sim, &config, 0) < 0 ||
         grobo_robot_init(&robot, grobo_gr001_driver(GROBO_WIRING_BOARD), NULL, NULL, 0) < 0) {
         return 1;

@@ -17,19 +17,20 @@ static int keep_level(const grobo_driver *self, void *ctx, const grobo_posture *
 
 int main(void)
 {
-    const grobo_robot_def *const *def = grobo_robot_defs;
+    const grobo_robot_def *def = grobo_robot_def_at(0);
     grobo_driver driver;
     grobo_robot_sim sim;
     grobo_runner *arm = NULL;
     grobo_posture at = {.n_joints = 6, .set = 0xE, .angle_rad = {0, 0.3, 0.2, 0}};
-    for (; strcmp((*def)->name, "so101") != 0; def++) {
+    for (size_t i = 1; strcmp(def->name, "so101") != 0; i++) {
+        def = grobo_robot_def_at(i);
     }
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = "sim",
                                           .driver = &driver, .sim = &sim.config};
     const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
-    int result = grobo_robot_def_driver(*def, (*def)->wiring, &driver);
+    int result = grobo_robot_def_driver(def, def->wiring, &driver);
     driver.stabilize = keep_level;
-    result = result < 0 ? result : grobo_robot_def_sim(*def, (*def)->wiring, &sim);
+    result = result < 0 ? result : grobo_robot_def_sim(def, def->wiring, &sim);
     result = result < 0 ? result : grobo_runner_new(&config, &arm);
     result = result < 0 ? result : grobo_runner_connect(arm, 0);
     result = result < 0 ? result : grobo_robot_move(grobo_runner_robot(arm), &at);

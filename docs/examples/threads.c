@@ -7,7 +7,7 @@
 static GROBO_THREAD_FUNC move(void *arg)
 {
     grobo_posture target;
-    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    grobo_posture_init_pose(&target, grobo_gr001_model());
     target.time_us = 500000;
     int job = grobo_robot_move(grobo_runner_robot(arg), &target);
     printf("move: %s\n", grobo_error_text(grobo_runner_wait_job(arg, job, GROBO_NEVER_US)));

@@ -22,10 +22,10 @@ GROBO_BEGIN_DECLS
 #define GROBO_BOARD_HEADER_BYTES 2
 
 /** RS30x servos behind the board. */
-GROBO_API extern const grobo_protocol grobo_board_protocol;
+GROBO_API const grobo_protocol *grobo_board_protocol(void);
 
 /** The protocol of RS30x servos over this wiring; NULL for an unknown one. */
-GROBO_CORE const grobo_protocol *grobo_wiring_protocol(grobo_wiring wiring);
+GROBO_API const grobo_protocol *grobo_wiring_protocol(grobo_wiring wiring);
 
 /** What a board frame is. */
 typedef enum grobo_board_kind {
@@ -51,43 +51,42 @@ typedef struct grobo_board_frame {
 GROBO_API int grobo_board_check(uint8_t *buf, size_t cap);
 
 /** Plays motion slot k of the board's memory. */
-GROBO_CORE int grobo_board_slot(uint8_t k, uint8_t *buf, size_t cap);
+GROBO_API int grobo_board_slot(uint8_t k, uint8_t *buf, size_t cap);
 
 /** Plays scenario k of the board's memory. */
-GROBO_CORE int grobo_board_scenario(uint8_t k, uint8_t *buf, size_t cap);
+GROBO_API int grobo_board_scenario(uint8_t k, uint8_t *buf, size_t cap);
 
 /**
  * Relays n bytes, nothing comes back. packet may lie in buf, at any offset.
  * @return size; GROBO_ERR_ARG for n = 0, GROBO_ERR_CAP above GROBO_RELAY_MAX_BYTES
  */
-GROBO_CORE int grobo_board_send(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap);
+GROBO_API int grobo_board_send(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap);
 
 /**
  * Relays n bytes and has r bytes returned. packet may lie in buf, at any offset.
  * @return size; GROBO_ERR_ARG for n = 0 or r = 0, GROBO_ERR_CAP when n + 1 is above
  *         GROBO_RELAY_MAX_BYTES
  */
-GROBO_CORE int grobo_board_ask(const uint8_t *packet, size_t n, uint8_t r, uint8_t *buf,
-                               size_t cap);
+GROBO_API int grobo_board_ask(const uint8_t *packet, size_t n, uint8_t r, uint8_t *buf, size_t cap);
 
 /**
  * Relays a whole command packet by SEND or ASK, whichever its flags call for.
  * Errors of grobo_rs30x_reply_to and of the two above.
  */
-GROBO_CORE int grobo_board_relay(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap);
+GROBO_API int grobo_board_relay(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap);
 
 /**
  * Takes one whole frame apart (n bytes, no more and no less); frame->packet points into bytes.
  * @return GROBO_OK or GROBO_ERR_FRAME
  */
-GROBO_CORE int grobo_board_parse(const uint8_t *bytes, size_t n, grobo_board_frame *frame);
+GROBO_API int grobo_board_parse(const uint8_t *bytes, size_t n, grobo_board_frame *frame);
 
 /**
  * Looks at the frame that n bytes start with, without a parser; frame->packet points into bytes.
  * @return size of the frame; 0 when more bytes are needed, GROBO_ERR_FRAME when none starts here
  *         (then nothing is written)
  */
-GROBO_CORE int grobo_board_peek(const uint8_t *bytes, size_t n, grobo_board_frame *frame);
+GROBO_API int grobo_board_peek(const uint8_t *bytes, size_t n, grobo_board_frame *frame);
 
 /* ---- device side ----------------------------------------------------------------------------- */
 
@@ -111,28 +110,28 @@ typedef struct grobo_board_parser {
 } grobo_board_parser;
 
 /** Makes a parser ready; stall_us 0: GROBO_BOARD_STALL_US. */
-GROBO_CORE void grobo_board_parser_init(grobo_board_parser *parser, uint32_t stall_us);
+GROBO_API void grobo_board_parser_init(grobo_board_parser *parser, uint32_t stall_us);
 
 /**
  * Takes bytes that arrived at now_us. Use as grobo_rs30x_parser_feed.
  * @return bytes taken; 0 of n > 0 only while next has something left to do
  */
-GROBO_CORE size_t grobo_board_parser_feed(grobo_board_parser *parser, const uint8_t *bytes,
-                                          size_t n, int64_t now_us);
+GROBO_API size_t grobo_board_parser_feed(grobo_board_parser *parser, const uint8_t *bytes, size_t n,
+                                         int64_t now_us);
 
 /**
  * Returns the next frame. frame->packet points into the parser, valid until the next call of
  * next, feed or reset.
  * @return 1 with a frame, 0 when more bytes are needed (frame untouched)
  */
-GROBO_CORE int grobo_board_parser_next(grobo_board_parser *parser, int64_t now_us,
-                                       grobo_board_frame *frame);
+GROBO_API int grobo_board_parser_next(grobo_board_parser *parser, int64_t now_us,
+                                      grobo_board_frame *frame);
 
 /** When next should be called though no byte came: the stall's end, or GROBO_NEVER_US. */
-GROBO_CORE int64_t grobo_board_parser_deadline(const grobo_board_parser *parser);
+GROBO_API int64_t grobo_board_parser_deadline(const grobo_board_parser *parser);
 
 /** Forgets what is buffered (it counts as dropped); counters stay. */
-GROBO_CORE void grobo_board_parser_reset(grobo_board_parser *parser);
+GROBO_API void grobo_board_parser_reset(grobo_board_parser *parser);
 
 GROBO_END_DECLS
 

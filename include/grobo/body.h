@@ -66,14 +66,14 @@ typedef struct grobo_body_model {
 } grobo_body_model;
 
 /** HPI GR001: 21 links, 20 joints in joint order, 0.88475 kg. */
-GROBO_API extern const grobo_body_model grobo_gr001_body;
+GROBO_API const grobo_body_model *grobo_gr001_body(void);
 
 /**
  * Checks a table: counts, parents first, unit axes, every joint once, finite numbers, positive
  * total mass, and legs of the structure described at grobo_body_model.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
-GROBO_CORE int grobo_body_model_check(const grobo_body_model *model);
+GROBO_API int grobo_body_model_check(const grobo_body_model *model);
 
 /**
  * Forward kinematics: where every link is.
@@ -81,16 +81,16 @@ GROBO_CORE int grobo_body_model_check(const grobo_body_model *model);
  * @param q_rad n_joints angles
  * @param[out] links n_links transforms
  */
-GROBO_CORE void grobo_body_forward(const grobo_body_model *model, const grobo_transform *root,
-                                   const double *q_rad, grobo_transform *links);
+GROBO_API void grobo_body_forward(const grobo_body_model *model, const grobo_transform *root,
+                                  const double *q_rad, grobo_transform *links);
 
 /**
  * Centre of mass of a pose that grobo_body_forward() gave.
  * @param[out] com_m in the world
  * @return the total mass in kg
  */
-GROBO_CORE double grobo_body_com(const grobo_body_model *model, const grobo_transform *links,
-                                 double com_m[3]);
+GROBO_API double grobo_body_com(const grobo_body_model *model, const grobo_transform *links,
+                                double com_m[3]);
 
 /** How a body moves; the root's velocities are those of its origin, along the world's axes. */
 typedef struct grobo_body_velocity {
@@ -106,8 +106,8 @@ typedef struct grobo_momentum {
 } grobo_momentum;
 
 /** Momentum of a pose that grobo_body_forward() gave, moving so. */
-GROBO_CORE void grobo_body_momentum(const grobo_body_model *model, const grobo_transform *links,
-                                    const grobo_body_velocity *velocity, grobo_momentum *momentum);
+GROBO_API void grobo_body_momentum(const grobo_body_model *model, const grobo_transform *links,
+                                   const grobo_body_velocity *velocity, grobo_momentum *momentum);
 
 /**
  * Zero-moment point: where in the plane of height zmp_m[2] the ground's force acts. In free fall
@@ -116,8 +116,8 @@ GROBO_CORE void grobo_body_momentum(const grobo_body_model *model, const grobo_t
  * @param rate rate of change of momentum (N and Nm in the fields of grobo_momentum)
  * @param[in,out] zmp_m z is read, x and y are written
  */
-GROBO_CORE void grobo_body_zmp(const double com_m[3], double mass_kg, const grobo_momentum *rate,
-                               double zmp_m[3]);
+GROBO_API void grobo_body_zmp(const double com_m[3], double mass_kg, const grobo_momentum *rate,
+                              double zmp_m[3]);
 
 /**
  * Leg IK in closed form: exact, no seed, the same answer for the same target.
@@ -127,9 +127,9 @@ GROBO_CORE void grobo_body_zmp(const double com_m[3], double mass_kg, const grob
  * @return 0, or GROBO_ERR_UNREACHABLE (out of reach, or toes pointing along the leg). Joint limits
  * are not looked at. Thread safe.
  */
-GROBO_CORE int grobo_body_leg_exact(const grobo_body_model *model, int foot,
-                                    const grobo_transform *target,
-                                    double q_rad[GROBO_BODY_LEG_JOINTS]);
+GROBO_API int grobo_body_leg_exact(const grobo_body_model *model, int foot,
+                                   const grobo_transform *target,
+                                   double q_rad[GROBO_BODY_LEG_JOINTS]);
 
 /* ---- a pose on the ground ------------------------------------------------------------------ */
 
@@ -153,20 +153,20 @@ typedef struct grobo_body_stand {
  * @param[out] stand untouched on error
  * @return 0, GROBO_ERR_ARG or GROBO_ERR_NAN. Thread safe.
  */
-GROBO_CORE int grobo_body_stand_pose(const grobo_body_model *model, const double *q_rad,
-                                     const grobo_transform *root, grobo_body_stand *stand);
+GROBO_API int grobo_body_stand_pose(const grobo_body_model *model, const double *q_rad,
+                                    const grobo_transform *root, grobo_body_stand *stand);
 
 /** How far a point of the ground is inside the support polygon, in metres; negative: outside,
  *  -INFINITY where no foot stands. */
-GROBO_CORE double grobo_body_stand_margin(const grobo_body_stand *stand, const double *point_m);
+GROBO_API double grobo_body_stand_margin(const grobo_body_stand *stand, const double *point_m);
 
 /**
  * Zero-moment point at the second of three poses of a motion that are dt_s apart, on the ground.
  * @param root the waist in each @param q_rad n_joints angles of each @param[out] zmp_m z is 0
  * @return 0, or GROBO_ERR_ARG.
  */
-GROBO_CORE int grobo_body_zmp_of_poses(const grobo_body_model *model, const grobo_transform root[3],
-                                       const double *const q_rad[3], double dt_s, double zmp_m[3]);
+GROBO_API int grobo_body_zmp_of_poses(const grobo_body_model *model, const grobo_transform root[3],
+                                      const double *const q_rad[3], double dt_s, double zmp_m[3]);
 
 /* ---- a motion being solved --------------------------------------------------------------- */
 
@@ -265,7 +265,7 @@ typedef struct grobo_body_report {
  * @return 0, GROBO_ERR_ARG (model, options, a number beyond GROBO_BODY_NUMBER_MAX, balancer without
  * IK), GROBO_ERR_NAN or GROBO_ERR_CAP (more than GROBO_MOTION_FRAMES_MAX frames).
  */
-GROBO_CORE int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t *bytes);
+GROBO_API int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t *bytes);
 
 /**
  * Makes a body ready at its first frame. With the balancer this solves the whole motion several
@@ -274,14 +274,14 @@ GROBO_CORE int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t 
  * @param[out] body points into the workspace; untouched on error
  * @return 0, GROBO_ERR_SPACE, or as grobo_body_workspace_bytes().
  */
-GROBO_CORE int grobo_body_init(const grobo_body_setup *setup, void *workspace,
-                               size_t workspace_bytes, grobo_body **body);
+GROBO_API int grobo_body_init(const grobo_body_setup *setup, void *workspace,
+                              size_t workspace_bytes, grobo_body **body);
 
 /** Number of frames, at least 1. With the balancer they last one second beyond the last key. */
-GROBO_CORE int grobo_body_frame_count(const grobo_body *body);
+GROBO_API int grobo_body_frame_count(const grobo_body *body);
 
 /** Joints that the motion moves: those with keys, and of legs between waist and foot targets. */
-GROBO_CORE grobo_joint_mask grobo_body_joints(const grobo_body *body);
+GROBO_API grobo_joint_mask grobo_body_joints(const grobo_body *body);
 
 /**
  * Solves one frame. Frames may be asked for in any order; joints that the motion gives no key and
@@ -292,8 +292,8 @@ GROBO_CORE grobo_joint_mask grobo_body_joints(const grobo_body *body);
  * @param[out] report may be NULL
  * @return 0, or GROBO_ERR_ARG. An unreachable target is no error: see the report.
  */
-GROBO_CORE int grobo_body_frame(grobo_body *body, int frame, double *q_rad,
-                                grobo_body_report *report);
+GROBO_API int grobo_body_frame(grobo_body *body, int frame, double *q_rad,
+                               grobo_body_report *report);
 
 /**
  * As grobo_body_frame() at any time; before the first and after the last key the pose is constant.

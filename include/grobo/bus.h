@@ -230,30 +230,30 @@ typedef struct grobo_bus {
  * Makes a bus ready; nothing is sent. config is copied.
  * @return GROBO_OK or GROBO_ERR_ARG (no protocol, echo through a board, a baud rate below 1200)
  */
-GROBO_CORE int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config);
+GROBO_API int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config);
 
 /** Fills a transaction with a frame of this protocol and the reply that the frame calls for.
  *  Priority user, two retries, computed timeout, no callback.
  *  @return GROBO_OK or the errors of protocol->reply_to */
-GROBO_CORE int grobo_txn_init(grobo_txn *txn, const grobo_protocol *protocol, const uint8_t *frame,
-                              size_t n);
+GROBO_API int grobo_txn_init(grobo_txn *txn, const grobo_protocol *protocol, const uint8_t *frame,
+                             size_t n);
 
 /**
  * Puts a transaction at the end of its priority's queue.
  * @return GROBO_OK; GROBO_ERR_FULL when GROBO_BUS_QUEUE_MAX wait (a stop is always taken),
  *         GROBO_ERR_ARG (no frame, unknown priority), GROBO_ERR_BUSY (it is submitted already)
  */
-GROBO_CORE int grobo_bus_submit(grobo_bus *bus, grobo_txn *txn);
+GROBO_API int grobo_bus_submit(grobo_bus *bus, grobo_txn *txn);
 
 /** True while a transaction belongs to a bus: between submit and its callback. */
-GROBO_CORE bool grobo_txn_is_pending(const grobo_txn *txn);
+GROBO_API bool grobo_txn_is_pending(const grobo_txn *txn);
 
 /**
  * Cancels a transaction; its callback gets GROBO_ERR_CANCELED before this returns. If it is on
  * the wire the line stays occupied until it would have been over.
  * @return GROBO_OK, or GROBO_ERR_NOTFOUND when the bus does not have it
  */
-GROBO_CORE int grobo_bus_cancel(grobo_bus *bus, grobo_txn *txn);
+GROBO_API int grobo_bus_cancel(grobo_bus *bus, grobo_txn *txn);
 
 /**
  * Changes the priority of a transaction that waits: it goes to the end of the other queue and keeps
@@ -261,7 +261,7 @@ GROBO_CORE int grobo_bus_cancel(grobo_bus *bus, grobo_txn *txn);
  * @return GROBO_OK; GROBO_ERR_NOTFOUND when the bus does not have it or it is on the wire,
  *         GROBO_ERR_ARG (unknown priority)
  */
-GROBO_CORE int grobo_bus_raise(grobo_bus *bus, grobo_txn *txn, grobo_priority priority);
+GROBO_API int grobo_bus_raise(grobo_bus *bus, grobo_txn *txn, grobo_priority priority);
 
 /** Bit of a priority, for grobo_bus_cancel_all. */
 #define GROBO_PRIORITY_BIT(priority) (1u << (unsigned)(priority))
@@ -273,13 +273,13 @@ GROBO_CORE int grobo_bus_raise(grobo_bus *bus, grobo_txn *txn, grobo_priority pr
  * GROBO_ERR_UNPLUGGED...). Those submitted again by a callback stay.
  * @return how many were ended
  */
-GROBO_CORE int grobo_bus_cancel_all(grobo_bus *bus, unsigned priority_bits, int result);
+GROBO_API int grobo_bus_cancel_all(grobo_bus *bus, unsigned priority_bits, int result);
 
 /** Takes n bytes that arrived; callbacks may run. now_us must not run backwards. */
-GROBO_CORE void grobo_bus_rx(grobo_bus *bus, const uint8_t *bytes, size_t n, int64_t now_us);
+GROBO_API void grobo_bus_rx(grobo_bus *bus, const uint8_t *bytes, size_t n, int64_t now_us);
 
 /** Lets time pass: ends what is over or too late; callbacks may run. */
-GROBO_CORE void grobo_bus_step(grobo_bus *bus, int64_t now_us);
+GROBO_API void grobo_bus_step(grobo_bus *bus, int64_t now_us);
 
 /**
  * Gives the next frame to send, if one may start now. It counts as sent at now_us. Transactions
@@ -287,20 +287,20 @@ GROBO_CORE void grobo_bus_step(grobo_bus *bus, int64_t now_us);
  * @return bytes put into buf, all of one frame; 0 when nothing may start now; GROBO_ERR_SPACE when
  *         the frame is longer than cap (GROBO_FRAME_MAX_BYTES is always enough)
  */
-GROBO_CORE int grobo_bus_tx(grobo_bus *bus, uint8_t *buf, size_t cap, int64_t now_us);
+GROBO_API int grobo_bus_tx(grobo_bus *bus, uint8_t *buf, size_t cap, int64_t now_us);
 
 /** When to call step and tx next, though no byte comes; GROBO_NEVER_US: no need. */
-GROBO_CORE int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us);
+GROBO_API int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us);
 
 /**
  * Keeps [at_us, at_us + duration_us) free for a motion frame: no user's request and no sensing is
  * started that would not be over before at_us, nor inside the span. One span at a time; a new call
  * replaces it; GROBO_NEVER_US removes it.
  */
-GROBO_CORE void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t duration_us);
+GROBO_API void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t duration_us);
 
 /** True if this transaction, started at now_us, would be over before the reserved span. */
-GROBO_CORE bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn);
+GROBO_API bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn);
 
 /**
  * grobo_protocol.several: takes a packet that may be one of several replies to the frame on the
@@ -309,13 +309,13 @@ GROBO_CORE bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo
  * the bus only.
  * @return true when it was for such a frame
  */
-GROBO_CORE bool grobo_bus_several(grobo_bus *bus, const grobo_packet *packet);
+GROBO_API bool grobo_bus_several(grobo_bus *bus, const grobo_packet *packet);
 
 /** When the line will be free for the next frame, as far as is known: now_us if it is. */
-GROBO_CORE int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us);
+GROBO_API int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us);
 
 /** Transactions that wait or are on the wire. */
-GROBO_CORE int grobo_bus_pending(const grobo_bus *bus);
+GROBO_API int grobo_bus_pending(const grobo_bus *bus);
 
 /** Wire time of one transaction, computed. */
 typedef struct grobo_bus_cost {
@@ -328,7 +328,7 @@ typedef struct grobo_bus_cost {
 } grobo_bus_cost;
 
 /** What a transaction costs on this bus, whether submitted or not. */
-GROBO_CORE void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cost *cost);
+GROBO_API void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cost *cost);
 
 GROBO_END_DECLS
 

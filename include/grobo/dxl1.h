@@ -72,7 +72,7 @@ typedef struct grobo_dxl1_packet {
  * @param accept GROBO_ACCEPT_COMMANDS, GROBO_ACCEPT_RETURNS (protocol.h) or-ed: an id of 254 is
  *               good for a command only
  */
-GROBO_CORE int grobo_dxl1_measure(const uint8_t *bytes, size_t n, unsigned accept);
+GROBO_API int grobo_dxl1_measure(const uint8_t *bytes, size_t n, unsigned accept);
 
 /**
  * As grobo_dxl1_measure(), for statuses that answer an instruction: of the id asked, as long as it
@@ -80,8 +80,8 @@ GROBO_CORE int grobo_dxl1_measure(const uint8_t *bytes, size_t n, unsigned accep
  * @param sent the whole instruction; its answers are not counted: with SYNC_READ and BULK_READ
  *             each servo of the list has one
  */
-GROBO_CORE int grobo_dxl1_answer(const uint8_t *sent, size_t sent_bytes, const uint8_t *bytes,
-                                 size_t n);
+GROBO_API int grobo_dxl1_answer(const uint8_t *sent, size_t sent_bytes, const uint8_t *bytes,
+                                size_t n);
 
 /**
  * Takes the good frame of n bytes apart that grobo_dxl1_measure() found.
@@ -89,24 +89,24 @@ GROBO_CORE int grobo_dxl1_answer(const uint8_t *sent, size_t sent_bytes, const u
  * @return GROBO_OK; GROBO_ERR_FRAME: no frame of n bytes; GROBO_ERR_SHORT: a good frame without the
  *         parameters that its instruction needs
  */
-GROBO_CORE int grobo_dxl1_parse(const uint8_t *frame, size_t n, bool status,
-                                grobo_dxl1_packet *packet);
+GROBO_API int grobo_dxl1_parse(const uint8_t *frame, size_t n, bool status,
+                               grobo_dxl1_packet *packet);
 
 /**
  * Puts a frame together. packet->data may lie in buf where it goes.
  * @return size, or GROBO_ERR_ARG (an id that is none), GROBO_ERR_CAP (longer than the length can
  *         say), GROBO_ERR_SPACE
  */
-GROBO_CORE int grobo_dxl1_build(const grobo_dxl1_packet *packet, uint8_t *buf, size_t cap);
+GROBO_API int grobo_dxl1_build(const grobo_dxl1_packet *packet, uint8_t *buf, size_t cap);
 
 /** How long servos may take to answer a ping to all: LeRobot waits so for Feetech's. */
 #define GROBO_DXL1_CALL_US 772000
 
 /** The protocol, for the bus. Servos must have a reply level of 2, as they leave the factory. */
-GROBO_API extern const grobo_protocol grobo_dxl1_protocol;
+GROBO_API const grobo_protocol *grobo_dxl1_protocol(void);
 
 /** Registers of AX and MX with Protocol 1.0, and their models. */
-GROBO_API extern const grobo_servo_table grobo_dxl1_table;
+GROBO_API const grobo_servo_table *grobo_dxl1_table(void);
 
 GROBO_END_DECLS
 

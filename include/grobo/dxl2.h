@@ -114,7 +114,7 @@ typedef struct grobo_dxl2_packet {
  * hosts (dynamixel-sdk 4.1.0 for Python) do not stuff.
  * @param accept GROBO_ACCEPT_COMMANDS, GROBO_ACCEPT_RETURNS (protocol.h) or-ed
  */
-GROBO_CORE int grobo_dxl2_measure(const uint8_t *bytes, size_t n, unsigned accept);
+GROBO_API int grobo_dxl2_measure(const uint8_t *bytes, size_t n, unsigned accept);
 
 /**
  * Takes the good frame of n bytes apart that grobo_dxl2_measure() found.
@@ -124,8 +124,8 @@ GROBO_CORE int grobo_dxl2_measure(const uint8_t *bytes, size_t n, unsigned accep
  * @return GROBO_OK; GROBO_ERR_FRAME: no frame of n bytes; GROBO_ERR_SPACE: no room;
  *         GROBO_ERR_SHORT: a good frame without the parameters that its instruction needs
  */
-GROBO_CORE int grobo_dxl2_parse(const uint8_t *frame, size_t n, uint8_t *data, size_t cap,
-                                grobo_dxl2_packet *packet);
+GROBO_API int grobo_dxl2_parse(const uint8_t *frame, size_t n, uint8_t *data, size_t cap,
+                               grobo_dxl2_packet *packet);
 
 /**
  * Puts a frame together and stuffs it. packet->data may lie in buf at offset 8, or behind the
@@ -133,7 +133,7 @@ GROBO_CORE int grobo_dxl2_parse(const uint8_t *frame, size_t n, uint8_t *data, s
  * @return size, or GROBO_ERR_ARG (an id that is none), GROBO_ERR_CAP (longer than
  *         GROBO_DXL2_FRAME_MAX_BYTES), GROBO_ERR_SPACE
  */
-GROBO_CORE int grobo_dxl2_build(const grobo_dxl2_packet *packet, uint8_t *buf, size_t cap);
+GROBO_API int grobo_dxl2_build(const grobo_dxl2_packet *packet, uint8_t *buf, size_t cap);
 
 /**
  * One servo's block of a good fast status of n bytes, the answer of FAST_SYNC_READ and
@@ -144,17 +144,17 @@ GROBO_CORE int grobo_dxl2_build(const grobo_dxl2_packet *packet, uint8_t *buf, s
  * @return where the next block would start; GROBO_ERR_SHORT: there is no such block;
  *         GROBO_ERR_CHECKSUM: its CRC is wrong
  */
-GROBO_CORE int grobo_dxl2_block(const uint8_t *frame, size_t n, size_t at, uint16_t length,
-                                grobo_dxl2_packet *block);
+GROBO_API int grobo_dxl2_block(const uint8_t *frame, size_t n, size_t at, uint16_t length,
+                               grobo_dxl2_packet *block);
 
 /** The CRC of Protocol 2.0 over n more bytes; starts with 0. */
-GROBO_CORE uint16_t grobo_dxl2_crc(uint16_t crc, const uint8_t *bytes, size_t n);
+GROBO_API uint16_t grobo_dxl2_crc(uint16_t crc, const uint8_t *bytes, size_t n);
 
 /** The protocol, for the bus. Servos must have a reply level of 2, as they leave the factory. */
-GROBO_API extern const grobo_protocol grobo_dxl2_protocol;
+GROBO_API const grobo_protocol *grobo_dxl2_protocol(void);
 
 /** Registers of the X series, and its models. */
-GROBO_API extern const grobo_servo_table grobo_dxl2_table;
+GROBO_API const grobo_servo_table *grobo_dxl2_table(void);
 
 GROBO_END_DECLS
 

@@ -97,7 +97,7 @@ typedef enum grobo_estop_means {
  *   it is another user's; GROBO_ERR_STATE: it is stopped; GROBO_ERR_NOENT: it has just released the
  *   device; GROBO_ERR_UNSUPPORTED; GROBO_ERR_NOMEM.
  */
-GROBO_CORE int grobo_estop_force(const char *device, grobo_estop_means means);
+GROBO_API int grobo_estop_force(const char *device, grobo_estop_means means);
 
 /**
  * Asks what the program that has a device did about a mark. A program is known by its number and

@@ -3,10 +3,8 @@
  * @file export.h
  * @brief Visibility and linkage of public names.
  *
- * What carries GROBO_API is the whole of the shared library's binary interface; src/libgrobo.map
- * lists it. A function with GROBO_CORE is in the static libraries alone: it works in storage of
- * the caller, whose size changes from version to version (static.h), or so few programs need it
- * that it is not promised. On Windows define GROBO_STATIC when linking a static library.
+ * Whatever a header of this directory declares is in every library: shared, static, DLL.
+ * src/libgrobo.map lists it. On Windows define GROBO_STATIC when linking a static library.
  */
 #ifndef GROBO_EXPORT_H
 #define GROBO_EXPORT_H
@@ -40,8 +38,5 @@
 #else
 #define GROBO_CLASSIC_API
 #endif
-
-/** In the static libraries alone. */
-#define GROBO_CORE
 
 #endif

@@ -42,13 +42,13 @@ typedef enum grobo_sts_mode {
 #define GROBO_STS_PHASE_FEEDBACK 0x80u   /**< the position counts backwards, with REVERSE only */
 
 /** The protocol, for the bus. Servos must have a reply level of 1, as they leave the factory. */
-GROBO_API extern const grobo_protocol grobo_feetech_protocol;
+GROBO_API const grobo_protocol *grobo_feetech_protocol(void);
 
 /** Registers of STS and SMS, and their models. */
-GROBO_API extern const grobo_servo_table grobo_sts_table;
+GROBO_API const grobo_servo_table *grobo_sts_table(void);
 
 /** Registers of SCS, and their models. */
-GROBO_API extern const grobo_servo_table grobo_scs_table;
+GROBO_API const grobo_servo_table *grobo_scs_table(void);
 
 GROBO_END_DECLS
 

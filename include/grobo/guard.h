@@ -93,7 +93,7 @@ GROBO_API int grobo_guard_new(const grobo_guard_config *config, grobo_guard **gu
 GROBO_API void grobo_guard_free(grobo_guard *guard);
 
 /** The process id of the guard, 0 once it is known to have ended. */
-GROBO_CORE int grobo_guard_pid(const grobo_guard *guard);
+GROBO_API int grobo_guard_pid(const grobo_guard *guard);
 
 /* ---- in the guard's own program ----------------------------------------------------------- */
 

@@ -71,8 +71,8 @@ GROBO_API void grobo_hrpsys_init(grobo_hrpsys *hrpsys, grobo_robot *robot);
  * @param[out] joints untouched on error.
  * @return number of joints, or GROBO_ERR_NOTFOUND.
  */
-GROBO_CORE int grobo_hrpsys_find(const grobo_hrpsys *hrpsys, const char *name,
-                                 grobo_joint_mask *joints);
+GROBO_API int grobo_hrpsys_find(const grobo_hrpsys *hrpsys, const char *name,
+                                grobo_joint_mask *joints);
 
 /**
  * addJointGroup: gives a name to some joints. Names are copied.

@@ -63,27 +63,27 @@ typedef struct grobo_ics_packet {
  * Judges n > 0 bytes of a host: the size of the command that they start with; 0 when they may start
  * one and more are needed; GROBO_ERR_FRAME when they cannot.
  */
-GROBO_CORE int grobo_ics_measure(const uint8_t *bytes, size_t n);
+GROBO_API int grobo_ics_measure(const uint8_t *bytes, size_t n);
 
 /**
  * As grobo_ics_measure(), for the reply to the command sent, behind its echo. The servo with id 0
  * may answer a position with the command's own first byte, as ICS 2.0 did.
  * @return GROBO_ERR_ARG where sent is no command
  */
-GROBO_CORE int grobo_ics_answer(const uint8_t *sent, size_t sent_bytes, const uint8_t *bytes,
-                                size_t n);
+GROBO_API int grobo_ics_answer(const uint8_t *sent, size_t sent_bytes, const uint8_t *bytes,
+                               size_t n);
 
 /** Takes a command, or the reply to the command sent, of n bytes apart; packet->data points into
  *  it. sent NULL: a command. @return GROBO_OK, or GROBO_ERR_FRAME: no frame of n bytes. */
-GROBO_CORE int grobo_ics_parse(const uint8_t *sent, size_t sent_bytes, const uint8_t *frame,
-                               size_t n, grobo_ics_packet *packet);
+GROBO_API int grobo_ics_parse(const uint8_t *sent, size_t sent_bytes, const uint8_t *frame,
+                              size_t n, grobo_ics_packet *packet);
 
 /** Puts a frame together. @return size, or GROBO_ERR_ARG (an id, item or value that is none),
  *  GROBO_ERR_SPACE. */
-GROBO_CORE int grobo_ics_build(const grobo_ics_packet *packet, uint8_t *buf, size_t cap);
+GROBO_API int grobo_ics_build(const grobo_ics_packet *packet, uint8_t *buf, size_t cap);
 
 /** The protocol, for the bus. The maker prints no return delay: 500 us is assumed. */
-GROBO_API extern const grobo_protocol grobo_ics_protocol;
+GROBO_API const grobo_protocol *grobo_ics_protocol(void);
 
 /**
  * Their values, and models. The servos know no addresses and do not tell their model: both numbers
@@ -91,10 +91,10 @@ GROBO_API extern const grobo_protocol grobo_ics_protocol;
  * written as a whole, and reserved bytes go back as they were read. The others are read or written
  * one by one.
  */
-GROBO_API extern const grobo_servo_table grobo_ics_table;
+GROBO_API const grobo_servo_table *grobo_ics_table(void);
 
 /** True for servos with ICS 3.6, which tell their position without being moved. */
-GROBO_CORE bool grobo_ics_tells_position(const grobo_servo_model *servo);
+GROBO_API bool grobo_ics_tells_position(const grobo_servo_model *servo);
 
 GROBO_END_DECLS
 

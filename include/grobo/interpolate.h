@@ -58,7 +58,7 @@ typedef struct grobo_spline_track {
  * @param t_s   n times, none NaN.
  * @param order n indices into t_s come out here. O(n log n), no other memory.
  */
-GROBO_CORE void grobo_spline_order(const double *t_s, size_t n, size_t *order);
+GROBO_API void grobo_spline_order(const double *t_s, size_t n, size_t *order);
 
 /**
  * Appends a key, and before it a hold key where the move to it may not take the whole gap: with
@@ -70,27 +70,27 @@ GROBO_CORE void grobo_spline_order(const double *t_s, size_t n, size_t *order);
  * @return keys appended, 1 or 2; GROBO_ERR_ARG for a time that runs back, GROBO_ERR_NAN for
  *         numbers that are not finite, GROBO_ERR_SPACE with the track untouched.
  */
-GROBO_CORE int grobo_spline_append(grobo_spline_track *track, double t_s, double value,
-                                   double max_transition_s, bool stationary);
+GROBO_API int grobo_spline_append(grobo_spline_track *track, double t_s, double value,
+                                  double max_transition_s, bool stationary);
 
 /**
  * Computes the slopes of n keys in place. Slope 0 for the first, the last, stationary ones,
  * reversals, and where a neighbour differs by less than GROBO_SPLINE_FLAT; otherwise the mean of
  * the slopes of the two straight lines to the neighbours.
  */
-GROBO_CORE void grobo_spline_prepare(grobo_spline_key *keys, size_t n);
+GROBO_API void grobo_spline_prepare(grobo_spline_key *keys, size_t n);
 
 /**
  * Value at t_s: before the first key its value, after the last its value, 0 without keys.
  * @param cursor NULL: binary search. Else an index kept by the caller between calls (start with
  *        0): O(1) when times rise, and right for any time.
  */
-GROBO_CORE double grobo_spline_at(const grobo_spline_key *keys, size_t n, double t_s,
-                                  size_t *cursor);
+GROBO_API double grobo_spline_at(const grobo_spline_key *keys, size_t n, double t_s,
+                                 size_t *cursor);
 
 /** The cubic between two neighbouring prepared keys, a->t_s <= t_s <= b->t_s. */
-GROBO_CORE double grobo_spline_cubic(const grobo_spline_key *a, const grobo_spline_key *b,
-                                     double t_s);
+GROBO_API double grobo_spline_cubic(const grobo_spline_key *a, const grobo_spline_key *b,
+                                    double t_s);
 
 GROBO_END_DECLS
 

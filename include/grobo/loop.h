@@ -40,11 +40,11 @@ typedef void (*grobo_timer_fn)(void *ctx, grobo_timer *timer, int64_t late_us);
  * @param[out] timer freed with grobo_timer_free().
  * @return GROBO_OK, GROBO_ERR_ARG, GROBO_ERR_NOMEM.
  */
-GROBO_CORE int grobo_timer_new(struct event_base *base, grobo_timer_fn fn, void *ctx,
-                               const grobo_mem *mem, grobo_timer **timer);
+GROBO_API int grobo_timer_new(struct event_base *base, grobo_timer_fn fn, void *ctx,
+                              const grobo_mem *mem, grobo_timer **timer);
 
 /** Disarms and frees; NULL is fine; legal inside the timer's own callback. */
-GROBO_CORE void grobo_timer_free(grobo_timer *timer);
+GROBO_API void grobo_timer_free(grobo_timer *timer);
 
 /**
  * Arms the timer for a moment of grobo_now_us(), in place of the one before. A moment that has
@@ -52,10 +52,10 @@ GROBO_CORE void grobo_timer_free(grobo_timer *timer);
  * A periodic timer adds its period to the deadline, never to the present: it does not drift.
  * @return GROBO_OK; GROBO_ERR_NOMEM (it is not armed; one that is armed already is never refused).
  */
-GROBO_CORE int grobo_timer_set(grobo_timer *timer, int64_t deadline_us);
+GROBO_API int grobo_timer_set(grobo_timer *timer, int64_t deadline_us);
 
 /** The moment the timer is armed for; GROBO_NEVER_US when it is not. */
-GROBO_CORE int64_t grobo_timer_deadline(const grobo_timer *timer);
+GROBO_API int64_t grobo_timer_deadline(const grobo_timer *timer);
 
 GROBO_END_DECLS
 

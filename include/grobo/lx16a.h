@@ -73,22 +73,22 @@ typedef struct grobo_lx16a_packet {
  * @param accept GROBO_ACCEPT_COMMANDS, GROBO_ACCEPT_RETURNS (protocol.h) or-ed; a return is one of
  *               a command that reads, with all its data
  */
-GROBO_CORE int grobo_lx16a_measure(const uint8_t *bytes, size_t n, unsigned accept);
+GROBO_API int grobo_lx16a_measure(const uint8_t *bytes, size_t n, unsigned accept);
 
 /** As grobo_lx16a_measure(), for the reply to the request sent: of its id and command. */
-GROBO_CORE int grobo_lx16a_answer(const uint8_t *sent, size_t sent_bytes, const uint8_t *bytes,
-                                  size_t n);
+GROBO_API int grobo_lx16a_answer(const uint8_t *sent, size_t sent_bytes, const uint8_t *bytes,
+                                 size_t n);
 
 /** Takes the good frame of n bytes apart; packet->data points into it. @return GROBO_OK, or
  *  GROBO_ERR_FRAME, GROBO_ERR_CHECKSUM: no frame of n bytes. */
-GROBO_CORE int grobo_lx16a_parse(const uint8_t *frame, size_t n, grobo_lx16a_packet *packet);
+GROBO_API int grobo_lx16a_parse(const uint8_t *frame, size_t n, grobo_lx16a_packet *packet);
 
 /** Puts a frame together. packet->data may lie in buf at offset 5. @return size, or GROBO_ERR_ARG
  *  (an id that is none), GROBO_ERR_CAP (more data than a frame has), GROBO_ERR_SPACE. */
-GROBO_CORE int grobo_lx16a_build(const grobo_lx16a_packet *packet, uint8_t *buf, size_t cap);
+GROBO_API int grobo_lx16a_build(const grobo_lx16a_packet *packet, uint8_t *buf, size_t cap);
 
 /** The protocol, for the bus. The maker prints no return delay: 500 us is assumed. */
-GROBO_API extern const grobo_protocol grobo_lx16a_protocol;
+GROBO_API const grobo_protocol *grobo_lx16a_protocol(void);
 
 /**
  * Their values, and models. The servos know no addresses and do not tell their model: both numbers
@@ -97,10 +97,10 @@ GROBO_API extern const grobo_protocol grobo_lx16a_protocol;
  * mode_speed (from mode to the end of mode_speed), goal_position with goal_time, next_position
  * with next_time.
  */
-GROBO_API extern const grobo_servo_table grobo_lx16a_table;
+GROBO_API const grobo_servo_table *grobo_lx16a_table(void);
 
 /** Data bytes of the reply to a command; 0: it is never answered. */
-GROBO_CORE size_t grobo_lx16a_reply_bytes(uint8_t command);
+GROBO_API size_t grobo_lx16a_reply_bytes(uint8_t command);
 
 GROBO_END_DECLS
 

@@ -27,7 +27,7 @@ typedef struct grobo_mem {
 } grobo_mem;
 
 /** The C library's allocator, what NULL stands for. */
-GROBO_CORE const grobo_mem *grobo_mem_default(void);
+GROBO_API const grobo_mem *grobo_mem_default(void);
 
 GROBO_END_DECLS
 

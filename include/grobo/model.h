@@ -39,10 +39,10 @@ typedef struct grobo_joint {
 } grobo_joint;
 
 /** The angle of a joint's servo, from the middle of its range, where the joint is at an angle. */
-GROBO_CORE double grobo_joint_to_servo(const grobo_joint *joint, double angle_rad);
+GROBO_API double grobo_joint_to_servo(const grobo_joint *joint, double angle_rad);
 
 /** The angle of a joint where its servo is at an angle, from the middle of its range. */
-GROBO_CORE double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad);
+GROBO_API double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad);
 
 /** A named set of joints. */
 typedef struct grobo_group {
@@ -77,7 +77,7 @@ typedef struct grobo_model {
  * not negative, a torque limit of at most 100, a slack within its range.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
-GROBO_CORE int grobo_model_check(const grobo_model *model);
+GROBO_API int grobo_model_check(const grobo_model *model);
 
 /**
  * The angle at which a joint plays an angle of a motion file: the nearest limit where that is
@@ -114,7 +114,7 @@ GROBO_API int grobo_model_find_joints(const grobo_model *model, const char *name
 GROBO_API int grobo_joints_count(grobo_joint_mask joints);
 
 /** HPI GR001: 20 joints, groups all body right_arm left_arm arms right_leg left_leg legs. */
-GROBO_API extern const grobo_model grobo_gr001_model;
+GROBO_API const grobo_model *grobo_gr001_model(void);
 
 GROBO_END_DECLS
 

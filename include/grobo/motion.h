@@ -109,14 +109,14 @@ GROBO_API void grobo_motion_clear(grobo_motion *motion);
  * Makes it an empty motion of a kind, as grobo_motion_new() does: what it has goes, but for the
  * number of joints. A kind that is none changes nothing.
  */
-GROBO_CORE void grobo_motion_renew(grobo_motion *motion, grobo_motion_kind kind);
+GROBO_API void grobo_motion_renew(grobo_motion *motion, grobo_motion_kind kind);
 /**
  * Makes absolute postures of a motion of increments, which count from start: each with the joints
  * and the time it had. Names and kept keys of its postures go. A motion of another kind stays.
  * @param start sets every joint that the motion sets
  * @return 0, GROBO_ERR_ARG (start lacks a joint) or GROBO_ERR_NOMEM.
  */
-GROBO_CORE int grobo_motion_resolve(grobo_motion *motion, const grobo_posture *start);
+GROBO_API int grobo_motion_resolve(grobo_motion *motion, const grobo_posture *start);
 
 /* ---- the motion itself -------------------------------------------------------------------- */
 
@@ -135,19 +135,19 @@ GROBO_API int grobo_motion_set_joints(grobo_motion *motion, int n_joints);
 /** The motion's name, "" where it has none. Valid until it is changed or freed. */
 GROBO_API const char *grobo_motion_name(const grobo_motion *motion);
 /** Sets the name (copied). @return 0, GROBO_ERR_ARG (not UTF-8), GROBO_ERR_CAP, GROBO_ERR_NOMEM. */
-GROBO_CORE int grobo_motion_set_name(grobo_motion *motion, const char *name);
+GROBO_API int grobo_motion_set_name(grobo_motion *motion, const char *name);
 /** The body it was made for, "" where it names none. Valid until it is changed or freed. */
-GROBO_CORE const char *grobo_motion_target_body(const grobo_motion *motion);
+GROBO_API const char *grobo_motion_target_body(const grobo_motion *motion);
 /** Sets the target body; as grobo_motion_set_name(). */
-GROBO_CORE int grobo_motion_set_target_body(grobo_motion *motion, const char *name);
+GROBO_API int grobo_motion_set_target_body(grobo_motion *motion, const char *name);
 /** Frames a second of GROBO_MOTION_FRAMES, 0 where none was set and for the other kinds. */
-GROBO_CORE double grobo_motion_frame_rate(const grobo_motion *motion);
+GROBO_API double grobo_motion_frame_rate(const grobo_motion *motion);
 /** Sets the frame rate: finite, > 0. @return 0 or GROBO_ERR_ARG (also for the other kinds). */
-GROBO_CORE int grobo_motion_set_frame_rate(grobo_motion *motion, double rate_hz);
+GROBO_API int grobo_motion_set_frame_rate(grobo_motion *motion, double rate_hz);
 /** True if each frame has a time of its own; false: frame i stands at i / rate. */
-GROBO_CORE bool grobo_motion_has_frame_times(const grobo_motion *motion);
+GROBO_API bool grobo_motion_has_frame_times(const grobo_motion *motion);
 /** Gives each frame a time of its own, starting at i / rate, or takes it. @return 0 or ARG. */
-GROBO_CORE int grobo_motion_set_frame_times(grobo_motion *motion, bool own);
+GROBO_API int grobo_motion_set_frame_times(grobo_motion *motion, bool own);
 
 /* ---- postures ----------------------------------------------------------------------------- */
 
@@ -163,13 +163,13 @@ GROBO_API int grobo_motion_get(const grobo_motion *motion, size_t n, grobo_postu
  */
 GROBO_API int grobo_motion_rget(const grobo_motion *motion, size_t n, grobo_posture *posture);
 /** Time of posture n as the file gives it, in seconds. @return 0 or GROBO_ERR_ARG. */
-GROBO_CORE int grobo_motion_time_s(const grobo_motion *motion, size_t n, double *time_s);
+GROBO_API int grobo_motion_time_s(const grobo_motion *motion, size_t n, double *time_s);
 /**
  * Time from the posture before (the first: from 0) to posture n. For .m and .mseq 0 where the
  * times mean 'default' (a step <= 0 or >= 10 s); for the others 0 where times are equal or go back.
  * @return >= 0, or GROBO_ERR_ARG.
  */
-GROBO_CORE int64_t grobo_motion_step_us(const grobo_motion *motion, size_t n);
+GROBO_API int64_t grobo_motion_step_us(const grobo_motion *motion, size_t n);
 /**
  * When the last posture is reached, with default_us for each step that gives no time (negative:
  * GROBO_MOTION_DEFAULT_US). For key poses and frames the time of the last. 0 for an empty motion,
@@ -187,8 +187,8 @@ GROBO_API int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t def
  */
 GROBO_API int grobo_motion_append(grobo_motion *motion, const grobo_posture *posture);
 /** Appends a posture at an absolute time as files have it. Errors as grobo_motion_append(). */
-GROBO_CORE int grobo_motion_append_at(grobo_motion *motion, double time_s,
-                                      const grobo_posture *posture);
+GROBO_API int grobo_motion_append_at(grobo_motion *motion, double time_s,
+                                     const grobo_posture *posture);
 /**
  * Inserts a posture before posture n (n = size appends). Durations stay: what comes after is
  * reached posture->time_us later. Errors as grobo_motion_append().
@@ -199,55 +199,55 @@ GROBO_API int grobo_motion_insert(grobo_motion *motion, size_t n, const grobo_po
  * For key poses and frames with times. @return its number, or as grobo_motion_append();
  * GROBO_ERR_TYPE for the other kinds. (The number is at most GROBO_MOTION_FRAMES_MAX.)
  */
-GROBO_CORE int grobo_motion_insert_at(grobo_motion *motion, double time_s,
-                                      const grobo_posture *posture);
+GROBO_API int grobo_motion_insert_at(grobo_motion *motion, double time_s,
+                                     const grobo_posture *posture);
 /** Deletes posture n and its step: what comes after is reached earlier. @return 0 or ARG. */
 GROBO_API int grobo_motion_delete(grobo_motion *motion, size_t n);
 /** Deletes posture n; the times of all others stay. @return 0 or GROBO_ERR_ARG. */
-GROBO_CORE int grobo_motion_delete_keep_times(grobo_motion *motion, size_t n);
+GROBO_API int grobo_motion_delete_keep_times(grobo_motion *motion, size_t n);
 /** Replaces joints and angles of posture n; its time stays. Errors as grobo_motion_append(). */
 GROBO_API int grobo_motion_set(grobo_motion *motion, size_t n, const grobo_posture *posture);
 /** Sets the time of posture n: finite. @return 0, GROBO_ERR_ARG, GROBO_ERR_NAN. */
-GROBO_CORE int grobo_motion_set_time_s(grobo_motion *motion, size_t n, double time_s);
+GROBO_API int grobo_motion_set_time_s(grobo_motion *motion, size_t n, double time_s);
 
 /* ---- what key poses have besides ---------------------------------------------------------- */
 
 /** What key n has besides; all zero where nothing. @return 0 or GROBO_ERR_ARG. */
-GROBO_CORE int grobo_motion_get_key(const grobo_motion *motion, size_t n, grobo_key_info *info);
+GROBO_API int grobo_motion_get_key(const grobo_motion *motion, size_t n, grobo_key_info *info);
 /** Sets it. @return 0, GROBO_ERR_ARG (no such key, time negative), GROBO_ERR_NAN, NOMEM. */
-GROBO_CORE int grobo_motion_set_key(grobo_motion *motion, size_t n, const grobo_key_info *info);
+GROBO_API int grobo_motion_set_key(grobo_motion *motion, size_t n, const grobo_key_info *info);
 /** Name of key n, "" where it has none (or there is no key n). Valid until it is changed. */
-GROBO_CORE const char *grobo_motion_key_name(const grobo_motion *motion, size_t n);
+GROBO_API const char *grobo_motion_key_name(const grobo_motion *motion, size_t n);
 /** Names key n; errors as grobo_motion_set_name(). */
-GROBO_CORE int grobo_motion_set_key_name(grobo_motion *motion, size_t n, const char *name);
+GROBO_API int grobo_motion_set_key_name(grobo_motion *motion, size_t n, const char *name);
 /** Link targets of key n, *count of them. @return them, valid until a change, or NULL. */
-GROBO_CORE const grobo_ik_link *grobo_motion_ik_links(const grobo_motion *motion, size_t n,
-                                                      size_t *count);
+GROBO_API const grobo_ik_link *grobo_motion_ik_links(const grobo_motion *motion, size_t n,
+                                                     size_t *count);
 /**
  * Replaces the link targets of key n (copied); count 0 takes them away. Kept keys of links go.
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_NAN, GROBO_ERR_CAP (GROBO_IK_LINKS_MAX), GROBO_ERR_NOMEM.
  */
-GROBO_CORE int grobo_motion_set_ik_links(grobo_motion *motion, size_t n, const grobo_ik_link *links,
-                                         size_t count);
+GROBO_API int grobo_motion_set_ik_links(grobo_motion *motion, size_t n, const grobo_ik_link *links,
+                                        size_t count);
 /** Number of kept keys of key n, or of the motion itself (GROBO_MOTION_TOP). */
-GROBO_CORE size_t grobo_motion_kept_count(const grobo_motion *motion, size_t n);
+GROBO_API size_t grobo_motion_kept_count(const grobo_motion *motion, size_t n);
 /** Kept key i of key n. @return 0 or GROBO_ERR_ARG. The texts are valid until a change. */
-GROBO_CORE int grobo_motion_get_kept(const grobo_motion *motion, size_t n, size_t i,
-                                     grobo_kept *kept);
+GROBO_API int grobo_motion_get_kept(const grobo_motion *motion, size_t n, size_t i,
+                                    grobo_kept *kept);
 /**
  * Adds a kept key to key n or to the motion itself; its texts are copied. The value must be YAML
  * in flow style on one line: it is written as it is.
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_EXISTS, GROBO_ERR_CAP, GROBO_ERR_NOMEM.
  */
-GROBO_CORE int grobo_motion_keep(grobo_motion *motion, size_t n, const grobo_kept *kept);
+GROBO_API int grobo_motion_keep(grobo_motion *motion, size_t n, const grobo_kept *kept);
 /** Line of the file that key n was read from, counted from 1; 0 where it was not read. */
-GROBO_CORE uint32_t grobo_motion_line(const grobo_motion *motion, size_t n);
+GROBO_API uint32_t grobo_motion_line(const grobo_motion *motion, size_t n);
 /**
  * Where in its file the angle of a joint of key n stands, for a motion read with keep_positions.
  * @return true and line and column counted from 1, or false and both untouched.
  */
-GROBO_CORE bool grobo_motion_position(const grobo_motion *motion, size_t n, int joint,
-                                      uint32_t *line, uint32_t *column);
+GROBO_API bool grobo_motion_position(const grobo_motion *motion, size_t n, int joint,
+                                     uint32_t *line, uint32_t *column);
 
 /* ---- walking through ---------------------------------------------------------------------- */
 
@@ -266,10 +266,10 @@ GROBO_API int grobo_motion_next(grobo_motion *motion, grobo_posture *posture);
 /* ---- comparing and editing whole motions -------------------------------------------------- */
 
 /** True if kind, joints, times, postures, details and links are the same to the bit. */
-GROBO_CORE bool grobo_motion_equal(const grobo_motion *a, const grobo_motion *b);
+GROBO_API bool grobo_motion_equal(const grobo_motion *a, const grobo_motion *b);
 /** True if kind, size and set joints agree and every angle and time differs by less than these. */
-GROBO_CORE bool grobo_motion_near(const grobo_motion *a, const grobo_motion *b, double delta_rad,
-                                  double delta_s);
+GROBO_API bool grobo_motion_near(const grobo_motion *a, const grobo_motion *b, double delta_rad,
+                                 double delta_s);
 
 /**
  * Appends a deep copy of another motion, its steps as they are. One of another kind or frame rate
@@ -303,7 +303,7 @@ GROBO_API int grobo_motion_reverse(grobo_motion *motion);
  * Makes it take factor times as long (> 0). Steps that mean the default time stay so.
  * @return 0, GROBO_ERR_ARG, or GROBO_ERR_CAP if a step of a .m or .mseq would reach 10 s.
  */
-GROBO_CORE int grobo_motion_scale_time(grobo_motion *motion, double factor);
+GROBO_API int grobo_motion_scale_time(grobo_motion *motion, double factor);
 /**
  * Keeps what lies between two times of the motion, which then starts at 0. Where key poses or
  * .m postures are cut between two, the posture there becomes a key. Steps that give no time count
@@ -320,14 +320,14 @@ GROBO_API int grobo_motion_crop(grobo_motion *motion, int64_t from_us, int64_t t
  * is a motion of another robot, whose joints have no names here, and which must not move this one:
  * see grobo_motion_set_target_body(). False where the model is NULL.
  */
-GROBO_CORE bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model);
+GROBO_API bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model);
 /**
  * Where a motion starts when no robot was read: what .mseq counts from, and where joints are that
  * no posture sets. The model's initial posture for a motion that is for it, else 0 everywhere.
  * @param[out] start all joints set: the model's, or as many as the motion has.
  */
-GROBO_CORE void grobo_motion_start(const grobo_motion *motion, const grobo_model *model,
-                                   grobo_posture *start);
+GROBO_API void grobo_motion_start(const grobo_motion *motion, const grobo_model *model,
+                                  grobo_posture *start);
 
 /* ---- playing ------------------------------------------------------------------------------ */
 
@@ -374,8 +374,8 @@ GROBO_API void grobo_motion_clip_free(grobo_clip *clip);
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_UNSUPPORTED (no sample), GROBO_ERR_CAP, GROBO_ERR_NOMEM, or
  *   what the clip's sample() gave.
  */
-GROBO_CORE int grobo_motion_resample(const grobo_clip *clip, double rate_hz, const grobo_mem *mem,
-                                     grobo_motion **frames);
+GROBO_API int grobo_motion_resample(const grobo_clip *clip, double rate_hz, const grobo_mem *mem,
+                                    grobo_motion **frames);
 
 GROBO_END_DECLS
 

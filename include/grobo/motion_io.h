@@ -46,7 +46,7 @@ GROBO_API int grobo_diagnostics_new(const grobo_mem *mem, grobo_diagnostics **li
 /** Frees a list; NULL is nothing. */
 GROBO_API void grobo_diagnostics_free(grobo_diagnostics *list);
 /** Empties it. */
-GROBO_CORE void grobo_diagnostics_clear(grobo_diagnostics *list);
+GROBO_API void grobo_diagnostics_clear(grobo_diagnostics *list);
 /** Number of diagnostics of a severity that were added, kept or not. NULL has none. */
 GROBO_API size_t grobo_diagnostics_total(const grobo_diagnostics *list, grobo_severity severity);
 /** Diagnostic i of those that are kept, in the order they were found. @return 0, or GROBO_ERR_ARG:
@@ -55,7 +55,7 @@ GROBO_API int grobo_diagnostics_get(const grobo_diagnostics *list, size_t i,
                                     grobo_diagnostic *diagnostic);
 /** Adds one; its texts are copied (a message is cut at 255 bytes). NULL list, or a severity that is
  *  none: nothing happens. */
-GROBO_CORE void grobo_diagnostics_add(grobo_diagnostics *list, const grobo_diagnostic *diagnostic);
+GROBO_API void grobo_diagnostics_add(grobo_diagnostics *list, const grobo_diagnostic *diagnostic);
 /** "error", "warning" or "note"; "unknown" for a number that is none. Static. */
 GROBO_API const char *grobo_severity_name(grobo_severity severity);
 
@@ -78,9 +78,9 @@ GROBO_API const char *grobo_motion_format_name(grobo_motion_format format);
 GROBO_API grobo_motion_format grobo_motion_format_of_path(const char *path);
 /** The kind of motion a format holds. GROBO_FORMAT_AUTO, and what is none, give
  *  GROBO_MOTION_KEYS. */
-GROBO_CORE grobo_motion_kind grobo_motion_format_kind(grobo_motion_format format);
+GROBO_API grobo_motion_kind grobo_motion_format_kind(grobo_motion_format format);
 /** The format that holds a kind of motion; GROBO_FORMAT_AUTO for a number that is none. */
-GROBO_CORE grobo_motion_format grobo_motion_kind_format(grobo_motion_kind kind);
+GROBO_API grobo_motion_format grobo_motion_kind_format(grobo_motion_kind kind);
 
 /* ---- reading ------------------------------------------------------------------------------ */
 
@@ -209,8 +209,8 @@ GROBO_API int grobo_motion_convert(const grobo_motion *motion, grobo_motion_kind
  * @param list each joint that differs, where it differs first, and a time that does: errors.
  * @return how many differences were found, GROBO_ERR_NOMEM, or what grobo_motion_clip() gives.
  */
-GROBO_CORE int grobo_motion_verify(const grobo_motion *source, const grobo_motion *copy,
-                                   const grobo_write_options *options, grobo_diagnostics *list);
+GROBO_API int grobo_motion_verify(const grobo_motion *source, const grobo_motion *copy,
+                                  const grobo_write_options *options, grobo_diagnostics *list);
 
 /* ---- writing ------------------------------------------------------------------------------ */
 
@@ -239,8 +239,8 @@ GROBO_API int grobo_motion_write(const grobo_motion *motion, grobo_motion_format
  * @param format not GROBO_FORMAT_AUTO
  * @return 0, GROBO_ERR_EXISTS (a file that holds something else), GROBO_ERR_ARG, GROBO_ERR_NOMEM.
  */
-GROBO_CORE int grobo_motion_may_save(const grobo_files *files, const char *path,
-                                     grobo_motion_format format);
+GROBO_API int grobo_motion_may_save(const grobo_files *files, const char *path,
+                                    grobo_motion_format format);
 /**
  * Writes a motion to a file: to a temporary one beside it, which takes its place when all is
  * safely stored. An old file is replaced whole or stays as it was.

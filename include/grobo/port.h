@@ -68,42 +68,42 @@ GROBO_API int grobo_thread_start(grobo_thread *thread, grobo_thread_fn fn, void 
  * Waits until the thread's function has returned, and frees the thread.
  * @return GROBO_OK; GROBO_ERR_STATE when called by the thread itself.
  */
-GROBO_CORE int grobo_thread_join(grobo_thread thread);
+GROBO_API int grobo_thread_join(grobo_thread thread);
 
 /** True when the calling thread is `thread`. */
-GROBO_CORE bool grobo_thread_is_self(grobo_thread thread);
+GROBO_API bool grobo_thread_is_self(grobo_thread thread);
 
 /** Makes a lock in caller's storage, with priority inheritance where the system has it.
  *  @return GROBO_OK, GROBO_ERR_NOMEM. */
-GROBO_CORE int grobo_mutex_init(grobo_mutex *mutex);
+GROBO_API int grobo_mutex_init(grobo_mutex *mutex);
 
 /** Takes the lock, waits for it. Not recursive: taking it twice in one thread is a fault. */
-GROBO_CORE void grobo_mutex_lock(grobo_mutex *mutex);
+GROBO_API void grobo_mutex_lock(grobo_mutex *mutex);
 
 /** Gives the lock back; the thread that took it must call. */
-GROBO_CORE void grobo_mutex_unlock(grobo_mutex *mutex);
+GROBO_API void grobo_mutex_unlock(grobo_mutex *mutex);
 
 /** Ends a lock that no thread holds. */
-GROBO_CORE void grobo_mutex_deinit(grobo_mutex *mutex);
+GROBO_API void grobo_mutex_deinit(grobo_mutex *mutex);
 
 /**
  * Makes a condition in caller's storage: threads sleep at it until another one wakes them. It takes
  * no descriptor. @return GROBO_OK, GROBO_ERR_NOMEM.
  */
-GROBO_CORE int grobo_cond_init(grobo_cond *cond);
+GROBO_API int grobo_cond_init(grobo_cond *cond);
 
 /**
  * Releases the lock, which the caller holds, sleeps, and takes the lock again. No wake-up between
  * the release and the sleep is lost. It may return early for no reason: test the predicate again.
  * @param until_us the moment of grobo_now_us() to return at; GROBO_NEVER_US: when woken.
  */
-GROBO_CORE void grobo_cond_wait(grobo_cond *cond, grobo_mutex *mutex, int64_t until_us);
+GROBO_API void grobo_cond_wait(grobo_cond *cond, grobo_mutex *mutex, int64_t until_us);
 
 /** Wakes all threads that sleep at the condition; with or without the lock. */
-GROBO_CORE void grobo_cond_wake_all(grobo_cond *cond);
+GROBO_API void grobo_cond_wake_all(grobo_cond *cond);
 
 /** Ends a condition at which no thread sleeps. */
-GROBO_CORE void grobo_cond_deinit(grobo_cond *cond);
+GROBO_API void grobo_cond_deinit(grobo_cond *cond);
 
 /* ---- byte ports --------------------------------------------------------------------------- */
 
@@ -212,14 +212,14 @@ typedef struct grobo_port_ops {
  * Serial ports: a path (/dev/ttyUSB0, a link in /dev/serial/by-id, a pty's slave), or on Win32
  * COM1, COM10 and the like, with or without the prefix of devices. Static, thread safe.
  */
-GROBO_CORE const grobo_port_ops *grobo_port_serial_ops(void);
+GROBO_API const grobo_port_ops *grobo_port_serial_ops(void);
 
 /**
  * Raw TCP, as ser2net serves a serial port: the device is "tcp:HOST:PORT", HOST being a numeric
  * IPv4 address, a numeric IPv6 address in [], or localhost: nothing here may block, and a look-up
  * of names does (grobo_port_resolve() does it beforehand). Static, thread safe.
  */
-GROBO_CORE const grobo_port_ops *grobo_port_tcp_ops(void);
+GROBO_API const grobo_port_ops *grobo_port_tcp_ops(void);
 
 /**
  * Turns "tcp:HOST:PORT" with a name for HOST into the numeric form; any other device is copied as
@@ -228,8 +228,8 @@ GROBO_CORE const grobo_port_ops *grobo_port_tcp_ops(void);
  * @return GROBO_OK, GROBO_ERR_ARG (malformed), GROBO_ERR_NOENT (no such host),
  *   GROBO_ERR_SPACE (numeric_bytes too small; GROBO_DEVICE_MAX_BYTES is always enough).
  */
-GROBO_CORE int grobo_port_resolve(const char *device, char *numeric, size_t numeric_bytes,
-                                  grobo_os_cause *cause);
+GROBO_API int grobo_port_resolve(const char *device, char *numeric, size_t numeric_bytes,
+                                 grobo_os_cause *cause);
 
 /** Wait for bytes to read. */
 #define GROBO_PORT_READABLE 1u
@@ -243,7 +243,7 @@ GROBO_CORE int grobo_port_resolve(const char *device, char *numeric, size_t nume
  * @return the ready ones of `what` (an error or hang-up counts as ready: the next read or write
  *   tells), 0 when the time has passed or a signal came, GROBO_ERR_IO.
  */
-GROBO_CORE int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeout_us);
+GROBO_API int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeout_us);
 
 /* ---- far ends: what a simulator serves ---------------------------------------------------- */
 
@@ -255,23 +255,23 @@ GROBO_CORE int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeo
  * notice.
  * @return static table; NULL on systems without pseudo-terminals (Win32).
  */
-GROBO_CORE const grobo_port_ops *grobo_port_pty_ops(void);
+GROBO_API const grobo_port_ops *grobo_port_pty_ops(void);
 
 /**
  * The path under which programs open an open pseudo-terminal.
  * @param[out] path NUL-terminated on success.
  * @return GROBO_OK, GROBO_ERR_SPACE, GROBO_ERR_UNSUPPORTED.
  */
-GROBO_CORE int grobo_port_pty_path(const grobo_port *port, char *path, size_t path_bytes);
+GROBO_API int grobo_port_pty_path(const grobo_port *port, char *path, size_t path_bytes);
 
 /** The speed that a program has set on an open pseudo-terminal, 0 not known. */
-GROBO_CORE int grobo_port_pty_baud(const grobo_port *port);
+GROBO_API int grobo_port_pty_baud(const grobo_port *port);
 
 /**
  * Whether a program has the other end of an open pseudo-terminal open. What it wrote before it
  * closed is still to be read.
  */
-GROBO_CORE bool grobo_port_pty_in_use(grobo_port *port);
+GROBO_API bool grobo_port_pty_in_use(grobo_port *port);
 
 /**
  * Listens for connections.
@@ -281,17 +281,17 @@ GROBO_CORE bool grobo_port_pty_in_use(grobo_port *port);
  * @return GROBO_OK, GROBO_ERR_ARG, GROBO_ERR_NOENT (no such address), GROBO_ERR_BUSY (port in
  *   use), GROBO_ERR_PERM, GROBO_ERR_IO.
  */
-GROBO_CORE int grobo_port_listen(const char *device, grobo_socket *listener, int *tcp_port,
-                                 grobo_os_cause *cause);
+GROBO_API int grobo_port_listen(const char *device, grobo_socket *listener, int *tcp_port,
+                                grobo_os_cause *cause);
 
 /** Ends listening; connections stay. */
-GROBO_CORE void grobo_port_listen_close(grobo_socket listener);
+GROBO_API void grobo_port_listen_close(grobo_socket listener);
 
 /**
  * Takes a connection; it is a port of grobo_port_tcp_ops() then. Does not wait.
  * @return GROBO_OK, GROBO_ERR_EMPTY (none is there), GROBO_ERR_IO.
  */
-GROBO_CORE int grobo_port_accept(grobo_socket listener, grobo_port *port, grobo_os_cause *cause);
+GROBO_API int grobo_port_accept(grobo_socket listener, grobo_port *port, grobo_os_cause *cause);
 
 /* ---- list of ports ------------------------------------------------------------------------ */
 
@@ -328,7 +328,7 @@ GROBO_API int grobo_port_list(int (*visit)(void *ctx, const grobo_port_info *inf
  * @param[out] name NUL-terminated on success.
  * @return GROBO_OK, GROBO_ERR_ARG, GROBO_ERR_SPACE.
  */
-GROBO_CORE int grobo_port_identity(const char *device, char *name, size_t name_bytes);
+GROBO_API int grobo_port_identity(const char *device, char *name, size_t name_bytes);
 
 /** The name of a guard's process (guard.h) where the system tells names: 15 characters at most. */
 #define GROBO_GUARD_NAME "grobo-guard"
@@ -339,7 +339,7 @@ GROBO_CORE int grobo_port_identity(const char *device, char *name, size_t name_b
  * @param[out] name the process's name, NUL-terminated, cut to size; untouched where none.
  * @return its pid, 0 where there is none or it is not known.
  */
-GROBO_CORE int grobo_port_owner(const char *device, char *name, size_t name_bytes);
+GROBO_API int grobo_port_owner(const char *device, char *name, size_t name_bytes);
 
 GROBO_END_DECLS
 

@@ -36,7 +36,7 @@ GROBO_API double grobo_rad_from_deg(double angle_deg);
  */
 GROBO_API int16_t grobo_ddeg_from_rad(double angle_rad);
 /** Radians of an angle in 0.1 degree. */
-GROBO_CORE double grobo_rad_from_ddeg(int angle_ddeg);
+GROBO_API double grobo_rad_from_ddeg(int angle_ddeg);
 
 /**
  * Makes an empty posture: no joint set, angles 0, time GROBO_POSTURE_TIME_US.

@@ -147,46 +147,46 @@ typedef struct grobo_servo_table {
 } grobo_servo_table;
 
 /** The model of this name (exact), NULL when there is none. Static storage. */
-GROBO_CORE const grobo_servo_model *grobo_servo_model_named(const grobo_servo_table *table,
-                                                            const char *name);
+GROBO_API const grobo_servo_model *grobo_servo_model_named(const grobo_servo_table *table,
+                                                           const char *name);
 
 /** The first model of this number, NULL when there is none. Static storage. */
-GROBO_CORE const grobo_servo_model *grobo_servo_model_numbered(const grobo_servo_table *table,
-                                                               uint16_t number);
+GROBO_API const grobo_servo_model *grobo_servo_model_numbered(const grobo_servo_table *table,
+                                                              uint16_t number);
 
 /** Register number index of a model, by rising address; NULL behind the last. Static storage. */
-GROBO_CORE const grobo_servo_register *grobo_servo_register_row(const grobo_servo_model *model,
-                                                                size_t index);
+GROBO_API const grobo_servo_register *grobo_servo_register_row(const grobo_servo_model *model,
+                                                               size_t index);
 
 /** The register of this text name (exact), NULL when the model has none. Static storage. */
-GROBO_CORE const grobo_servo_register *grobo_servo_register_named(const grobo_servo_model *model,
-                                                                  const char *name);
+GROBO_API const grobo_servo_register *grobo_servo_register_named(const grobo_servo_model *model,
+                                                                 const char *name);
 
 /** The register that holds this address, its higher bytes too; NULL when the model has none. */
-GROBO_CORE const grobo_servo_register *grobo_servo_register_at(const grobo_servo_model *model,
-                                                               uint16_t address);
+GROBO_API const grobo_servo_register *grobo_servo_register_at(const grobo_servo_model *model,
+                                                              uint16_t address);
 
 /** The register of this role; NULL when the model has none. */
-GROBO_CORE const grobo_servo_register *grobo_servo_register_of(const grobo_servo_model *model,
-                                                               grobo_register_role role);
+GROBO_API const grobo_servo_register *grobo_servo_register_of(const grobo_servo_model *model,
+                                                              grobo_register_role role);
 
 /** Value of a register from its bytes (reg->bytes of them), in counts; 0 for NULL. */
-GROBO_CORE int32_t grobo_servo_register_get(const grobo_servo_model *model,
-                                            const grobo_servo_register *reg, const uint8_t *bytes);
+GROBO_API int32_t grobo_servo_register_get(const grobo_servo_model *model,
+                                           const grobo_servo_register *reg, const uint8_t *bytes);
 
 /**
  * Puts a value into reg->bytes bytes.
  * @return bytes written, or GROBO_ERR_LIMIT outside reg->min..max (nothing is written)
  */
-GROBO_CORE int grobo_servo_register_put(const grobo_servo_model *model,
-                                        const grobo_servo_register *reg, int32_t value,
-                                        uint8_t *bytes);
+GROBO_API int grobo_servo_register_put(const grobo_servo_model *model,
+                                       const grobo_servo_register *reg, int32_t value,
+                                       uint8_t *bytes);
 
 /** Line speed in bps of a code of register BAUD; GROBO_ERR_ARG for a code that is not listed. */
-GROBO_CORE int32_t grobo_servo_baud_bps(const grobo_servo_model *model, int32_t code);
+GROBO_API int32_t grobo_servo_baud_bps(const grobo_servo_model *model, int32_t code);
 
 /** Code of register BAUD for a line speed in bps; GROBO_ERR_UNSUPPORTED for other speeds. */
-GROBO_CORE int grobo_servo_baud_code(const grobo_servo_model *model, int32_t baud_bps);
+GROBO_API int grobo_servo_baud_code(const grobo_servo_model *model, int32_t baud_bps);
 
 GROBO_END_DECLS
 

@@ -145,8 +145,8 @@ GROBO_API int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t s
  * The same with a deadline, until_us: no attempt leaves after that; the job ends with
  * GROBO_ERR_STALE then.
  */
-GROBO_CORE int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
-                                     int64_t until_us);
+GROBO_API int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
+                                    int64_t until_us);
 
 /**
  * Reads (data NULL) or writes registers of a servo. Goal and torque registers are refused, and id,
@@ -194,7 +194,7 @@ GROBO_API int grobo_robot_estop(grobo_robot *robot);
  * behind grobo_robot_stop(): for a robot that another program has stopped.
  * @return 0, or GROBO_ERR_STATE while a move or a motion runs.
  */
-GROBO_CORE int grobo_robot_latch(grobo_robot *robot);
+GROBO_API int grobo_robot_latch(grobo_robot *robot);
 
 /**
  * Clears a latched stop. Nothing moves; the next move or play senses first.
@@ -323,7 +323,7 @@ GROBO_API grobo_sequencer_state grobo_robot_play_state(const grobo_robot *robot)
 GROBO_API bool grobo_robot_is_playing(const grobo_robot *robot);
 
 /** True when no frame waits for the line and no reply is awaited. */
-GROBO_CORE bool grobo_robot_is_quiet(const grobo_robot *robot);
+GROBO_API bool grobo_robot_is_quiet(const grobo_robot *robot);
 
 /** Where the motion is. */
 GROBO_API void grobo_robot_progress(const grobo_robot *robot, grobo_play_progress *progress);
@@ -332,7 +332,7 @@ GROBO_API void grobo_robot_progress(const grobo_robot *robot, grobo_play_progres
 GROBO_API int grobo_robot_budget(const grobo_robot *robot, grobo_budget *budget);
 
 /** Lateness of motion frames since the last play began. */
-GROBO_CORE void grobo_robot_jitter(const grobo_robot *robot, grobo_jitter *jitter);
+GROBO_API void grobo_robot_jitter(const grobo_robot *robot, grobo_jitter *jitter);
 
 /** The driver, and through it the model. */
 GROBO_API const grobo_driver *grobo_robot_driver(const grobo_robot *robot);

@@ -112,8 +112,8 @@ typedef struct grobo_budget {
  * @param line the line's physics, NULL for all defaults; `wiring` is taken from the driver.
  * @return 0, GROBO_ERR_ARG (driver or line), or an error of the driver. Thread safe.
  */
-GROBO_CORE int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ctx,
-                                 const grobo_bus_config *line);
+GROBO_API int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ctx,
+                                const grobo_bus_config *line);
 
 GROBO_END_DECLS
 

@@ -30,8 +30,8 @@ typedef struct grobo_robot_family {
     int (*init[2])(grobo_driver *driver, const grobo_model *model);
 } grobo_robot_family;
 
-/** The families that a file may name, NULL behind the last. */
-GROBO_API extern const grobo_robot_family *const grobo_robot_families[];
+/** Family i of those that a file may name, counted from 0. @return NULL behind the last. */
+GROBO_API const grobo_robot_family *grobo_robot_family_at(size_t i);
 
 /** All that the library knows of a family. A program that names the parts it uses is linked without
  *  the others; this is for programs that take any family. */
@@ -41,12 +41,12 @@ typedef struct grobo_family {
     const grobo_words *const *words; /**< what its frames say, by series, NULL behind the last */
 } grobo_family;
 
-/** Every family, in the order of grobo_robot_families; `robot` is NULL behind the last. */
-GROBO_API extern const grobo_family grobo_families[];
+/** Every family, in the order of grobo_robot_family_at(); `robot` is NULL behind the last. */
+GROBO_API const grobo_family *grobo_families(void);
 
 /** The simulated servos of these families, in the same order, NULL behind the last: what a
  *  grobo_sim_config names as its families. */
-GROBO_API extern const grobo_sim_family *const grobo_sim_families[];
+GROBO_API const grobo_sim_family *const *grobo_sim_families(void);
 
 /** A USB adapter by its numbers. */
 typedef struct grobo_usb_id {
@@ -84,8 +84,8 @@ typedef struct grobo_robot_def {
     bool arm; /**< it may stop anywhere: see grobo_driver */
 } grobo_robot_def;
 
-/** The robots that come with the library, NULL behind the last. */
-GROBO_API extern const grobo_robot_def *const grobo_robot_defs[];
+/** Robot i of those that come with the library, counted from 0. @return NULL behind the last. */
+GROBO_API const grobo_robot_def *grobo_robot_def_at(size_t i);
 
 /**
  * Reads the description of a robot. Every mistake is in the list, with its line and column.

@@ -33,7 +33,7 @@ GROBO_BEGIN_DECLS
 #define GROBO_RS30X_ID_ALL 255
 
 /** RS30x servos straight on their bus. */
-GROBO_API extern const grobo_protocol grobo_rs30x_protocol;
+GROBO_API const grobo_protocol *grobo_rs30x_protocol(void);
 
 /** The byte that says "done". */
 #define GROBO_RS30X_ACK 0x07
@@ -115,7 +115,7 @@ typedef enum grobo_rs30x_model {
 } grobo_rs30x_model;
 
 /** Registers of the series, and its models. SILENCE_TORQUE and WARM_UP_TIME came with RS303MR. */
-GROBO_API extern const grobo_servo_table grobo_rs30x_table;
+GROBO_API const grobo_servo_table *grobo_rs30x_table(void);
 
 /** The factory's code of register BAUD: 115200 bps. */
 #define GROBO_RS30X_BAUD_CODE_DEFAULT 7
@@ -151,22 +151,22 @@ typedef struct grobo_rs30x_packet {
  * @return size, or GROBO_ERR_ARG (field out of range, data_bytes not what length and count say),
  *         GROBO_ERR_CAP (longer than GROBO_RS30X_PACKET_MAX_BYTES), GROBO_ERR_SPACE
  */
-GROBO_CORE int grobo_rs30x_build(const grobo_rs30x_packet *packet, uint8_t *buf, size_t cap);
+GROBO_API int grobo_rs30x_build(const grobo_rs30x_packet *packet, uint8_t *buf, size_t cap);
 
 /** Read of length bytes from address: flags 0F. Errors as grobo_rs30x_build. */
-GROBO_CORE int grobo_rs30x_read(uint8_t id, uint8_t address, uint8_t length, uint8_t *buf,
-                                size_t cap);
+GROBO_API int grobo_rs30x_read(uint8_t id, uint8_t address, uint8_t length, uint8_t *buf,
+                               size_t cap);
 
 /** Request of one of the fixed blocks by its nibble (address 0, length 0, count 1). */
-GROBO_CORE int grobo_rs30x_read_block(uint8_t id, grobo_rs30x_want want, uint8_t *buf, size_t cap);
+GROBO_API int grobo_rs30x_read_block(uint8_t id, grobo_rs30x_want want, uint8_t *buf, size_t cap);
 
 /** Write of one byte; flags may ask for a reply or for flash and reboot. */
-GROBO_CORE int grobo_rs30x_write_u8(uint8_t id, uint8_t flags, uint8_t address, uint8_t value,
-                                    uint8_t *buf, size_t cap);
+GROBO_API int grobo_rs30x_write_u8(uint8_t id, uint8_t flags, uint8_t address, uint8_t value,
+                                   uint8_t *buf, size_t cap);
 
 /** Write of 16 bits; a negative value is given as its two's complement. */
-GROBO_CORE int grobo_rs30x_write_u16(uint8_t id, uint8_t flags, uint8_t address, uint16_t value,
-                                     uint8_t *buf, size_t cap);
+GROBO_API int grobo_rs30x_write_u16(uint8_t id, uint8_t flags, uint8_t address, uint16_t value,
+                                    uint8_t *buf, size_t cap);
 
 /** A goal of one servo. */
 typedef struct grobo_rs30x_goal {
@@ -176,11 +176,11 @@ typedef struct grobo_rs30x_goal {
 } grobo_rs30x_goal;
 
 /** Goal and time of one servo (short packet; id 255: all). GROBO_ERR_LIMIT outside the ranges. */
-GROBO_CORE int grobo_rs30x_write_goal(const grobo_rs30x_goal *goal, uint8_t *buf, size_t cap);
+GROBO_API int grobo_rs30x_write_goal(const grobo_rs30x_goal *goal, uint8_t *buf, size_t cap);
 
 /** Goals and times of n servos in one long packet. GROBO_ERR_LIMIT outside the ranges. */
-GROBO_CORE int grobo_rs30x_write_goals(const grobo_rs30x_goal *goals, size_t n, uint8_t *buf,
-                                       size_t cap);
+GROBO_API int grobo_rs30x_write_goals(const grobo_rs30x_goal *goals, size_t n, uint8_t *buf,
+                                      size_t cap);
 
 /** One byte for one servo, in a long packet. */
 typedef struct grobo_rs30x_byte {
@@ -189,11 +189,11 @@ typedef struct grobo_rs30x_byte {
 } grobo_rs30x_byte;
 
 /** The register at address of n servos in one long packet: torques, torque limits. */
-GROBO_CORE int grobo_rs30x_write_bytes(uint8_t address, const grobo_rs30x_byte *bytes, size_t n,
-                                       uint8_t *buf, size_t cap);
+GROBO_API int grobo_rs30x_write_bytes(uint8_t address, const grobo_rs30x_byte *bytes, size_t n,
+                                      uint8_t *buf, size_t cap);
 
 /** GROBO_RS30X_FLASH, GROBO_RS30X_REBOOT or both, with nothing else (address FF). */
-GROBO_CORE int grobo_rs30x_control(uint8_t id, uint8_t flags, uint8_t *buf, size_t cap);
+GROBO_API int grobo_rs30x_control(uint8_t id, uint8_t flags, uint8_t *buf, size_t cap);
 
 /** The two spellings of a factory reset that the manuals print. */
 typedef enum grobo_rs30x_reset_form {
@@ -202,8 +202,8 @@ typedef enum grobo_rs30x_reset_form {
 } grobo_rs30x_reset_form;
 
 /** Factory reset of No.4-29. */
-GROBO_CORE int grobo_rs30x_factory_reset(uint8_t id, grobo_rs30x_reset_form form, uint8_t *buf,
-                                         size_t cap);
+GROBO_API int grobo_rs30x_factory_reset(uint8_t id, grobo_rs30x_reset_form form, uint8_t *buf,
+                                        size_t cap);
 
 /** The spellings of an ACK request without data seen in drivers: address, length, count. */
 typedef enum grobo_rs30x_ping_form {
@@ -213,7 +213,7 @@ typedef enum grobo_rs30x_ping_form {
 } grobo_rs30x_ping_form;
 
 /** ACK request without data: is this servo there? */
-GROBO_CORE int grobo_rs30x_ping(uint8_t id, grobo_rs30x_ping_form form, uint8_t *buf, size_t cap);
+GROBO_API int grobo_rs30x_ping(uint8_t id, grobo_rs30x_ping_form form, uint8_t *buf, size_t cap);
 
 /* ---- replies -------------------------------------------------------------------------------- */
 
@@ -222,7 +222,7 @@ GROBO_CORE int grobo_rs30x_ping(uint8_t id, grobo_rs30x_ping_form form, uint8_t 
  * @return bytes of the reply (0: none); GROBO_ERR_FRAME or GROBO_ERR_CHECKSUM when the bytes are
  *         no whole command packet, GROBO_ERR_ARG when it asks for registers that do not exist
  */
-GROBO_CORE int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply);
+GROBO_API int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply);
 
 /* ---- frames ---------------------------------------------------------------------------------
  * A packet as it goes over the line: itself on a servo bus, in a frame of the board in between.
@@ -241,8 +241,8 @@ GROBO_API int grobo_frame_torque(const grobo_protocol *protocol, uint8_t id, gro
                                  uint8_t *buf, size_t cap);
 
 /** Torques (values of grobo_torque) of n servos in one frame (50 bytes for 20). */
-GROBO_CORE int grobo_frame_torques(const grobo_protocol *protocol, const grobo_rs30x_byte *torques,
-                                   size_t n, uint8_t *buf, size_t cap);
+GROBO_API int grobo_frame_torques(const grobo_protocol *protocol, const grobo_rs30x_byte *torques,
+                                  size_t n, uint8_t *buf, size_t cap);
 
 /** First register of the state block that GR001's programs read: No.36-53. */
 #define GROBO_STATE_ADDRESS 36
@@ -254,8 +254,8 @@ GROBO_API int grobo_frame_read(const grobo_protocol *protocol, uint8_t id, uint8
                                uint8_t length, uint8_t *buf, size_t cap);
 
 /** Any command packet that is already built, for this line. packet may lie in buf. */
-GROBO_CORE int grobo_frame_wrap(const grobo_protocol *protocol, const uint8_t *packet, size_t n,
-                                uint8_t *buf, size_t cap);
+GROBO_API int grobo_frame_wrap(const grobo_protocol *protocol, const uint8_t *packet, size_t n,
+                               uint8_t *buf, size_t cap);
 
 /* ---- parser --------------------------------------------------------------------------------- */
 
@@ -270,7 +270,7 @@ typedef struct grobo_rs30x_parser {
 } grobo_rs30x_parser;
 
 /** Makes a parser ready; accept: GROBO_ACCEPT_... or-ed. Counters start at zero. */
-GROBO_CORE void grobo_rs30x_parser_init(grobo_rs30x_parser *parser, unsigned accept);
+GROBO_API void grobo_rs30x_parser_init(grobo_rs30x_parser *parser, unsigned accept);
 
 /**
  * Takes bytes. After a call of feed, call next until it gives 0, then feed the rest:
@@ -283,28 +283,28 @@ GROBO_CORE void grobo_rs30x_parser_init(grobo_rs30x_parser *parser, unsigned acc
  * @endcode
  * @return bytes taken; at least 1 of n > 0 when next gave 0 before
  */
-GROBO_CORE size_t grobo_rs30x_parser_feed(grobo_rs30x_parser *parser, const uint8_t *bytes,
-                                          size_t n);
+GROBO_API size_t grobo_rs30x_parser_feed(grobo_rs30x_parser *parser, const uint8_t *bytes,
+                                         size_t n);
 
 /**
  * Returns the next packet. packet->data points into the parser and is valid until the next call
  * of next, feed or reset.
  * @return 1 with a packet, 0 when more bytes are needed (packet untouched)
  */
-GROBO_CORE int grobo_rs30x_parser_next(grobo_rs30x_parser *parser, grobo_rs30x_packet *packet);
+GROBO_API int grobo_rs30x_parser_next(grobo_rs30x_parser *parser, grobo_rs30x_packet *packet);
 
 /**
  * Says that the line fell silent (or the file ended): what is incomplete now stays so. The calls
  * of next that follow return what is whole behind a false start and drop the rest. The mark
  * goes with the first 0 from next.
  */
-GROBO_CORE void grobo_rs30x_parser_end(grobo_rs30x_parser *parser);
+GROBO_API void grobo_rs30x_parser_end(grobo_rs30x_parser *parser);
 
 /** Forgets what is buffered (it counts as dropped); counters stay. */
-GROBO_CORE void grobo_rs30x_parser_reset(grobo_rs30x_parser *parser);
+GROBO_API void grobo_rs30x_parser_reset(grobo_rs30x_parser *parser);
 
 /** Bytes taken and neither returned nor dropped yet. */
-GROBO_CORE size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser);
+GROBO_API size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser);
 
 /**
  * Looks at the packet that n bytes start with, without a parser: for what shows the packets of
@@ -314,8 +314,8 @@ GROBO_CORE size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser);
  * @return size of the packet; 0 when more bytes are needed, GROBO_ERR_FRAME when none starts here
  *         (then nothing is written)
  */
-GROBO_CORE int grobo_rs30x_peek(const uint8_t *bytes, size_t n, unsigned accept,
-                                grobo_rs30x_packet *packet, bool *sum_ok);
+GROBO_API int grobo_rs30x_peek(const uint8_t *bytes, size_t n, unsigned accept,
+                               grobo_rs30x_packet *packet, bool *sum_ok);
 
 /* ---- state of a servo ----------------------------------------------------------------------- */
 
@@ -344,8 +344,8 @@ typedef struct grobo_rs30x_state {
  * Takes apart a block of n registers from address: No.36-53, No.42-59, a few of them.
  * @return number of fields found, 0 when the block holds none of them whole
  */
-GROBO_CORE int grobo_rs30x_state_decode(uint8_t address, const uint8_t *data, size_t n,
-                                        grobo_rs30x_state *state);
+GROBO_API int grobo_rs30x_state_decode(uint8_t address, const uint8_t *data, size_t n,
+                                       grobo_rs30x_state *state);
 
 GROBO_END_DECLS
 

@@ -104,7 +104,7 @@ typedef struct grobo_play_options {
 #define GROBO_PLAY_OPTIONS_INIT GROBO_SIZED(grobo_play_options)
 
 /** How often grobo_play_options.repeat plays a clip: at least once. Thread safe. */
-GROBO_CORE int32_t grobo_play_passes(int32_t repeat);
+GROBO_API int32_t grobo_play_passes(int32_t repeat);
 
 /** What is to be sent now. */
 typedef struct grobo_play_frame {
@@ -191,7 +191,7 @@ typedef struct grobo_sequencer {
  * Makes an idle sequencer.
  * @param model table of the robot, borrowed; NULL: any number of joints, but no mirror.
  */
-GROBO_CORE void grobo_sequencer_init(grobo_sequencer *seq, const grobo_model *model);
+GROBO_API void grobo_sequencer_init(grobo_sequencer *seq, const grobo_model *model);
 
 /**
  * Starts a clip; from IDLE and FINISHED. By keys it goes through all of them once, so that a clip
@@ -208,27 +208,27 @@ GROBO_CORE void grobo_sequencer_init(grobo_sequencer *seq, const grobo_model *mo
  *         GROBO_ERR_NAN, GROBO_ERR_CAP (longer than GROBO_PLAY_LENGTH_MAX_US), or what the clip
  *         said. On error nothing has changed.
  */
-GROBO_CORE int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
-                                    const grobo_play_options *options, const grobo_posture *start,
-                                    int64_t now_us);
+GROBO_API int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
+                                   const grobo_play_options *options, const grobo_posture *start,
+                                   int64_t now_us);
 
 /**
  * Puts a clip behind what is being played, with an approach between; while APPROACHING, PLAYING
  * or PAUSED. A relative clip starts where the one before ended.
  * @return clips that now wait, GROBO_ERR_STATE, GROBO_ERR_FULL, or as grobo_sequencer_play().
  */
-GROBO_CORE int grobo_sequencer_enqueue(grobo_sequencer *seq, const grobo_clip *clip,
-                                       const grobo_play_options *options);
+GROBO_API int grobo_sequencer_enqueue(grobo_sequencer *seq, const grobo_clip *clip,
+                                      const grobo_play_options *options);
 
 /**
  * Holds: one frame brings the robot to rest a little further on its way within stop_us; playing
  * continues from there. While APPROACHING or PLAYING.
  * @return 0, GROBO_ERR_STATE, or the error of the clip (then FAILED).
  */
-GROBO_CORE int grobo_sequencer_pause(grobo_sequencer *seq, int64_t now_us);
+GROBO_API int grobo_sequencer_pause(grobo_sequencer *seq, int64_t now_us);
 
 /** Continues after a pause. @return 0, GROBO_ERR_STATE, or the error of the clip (then FAILED). */
-GROBO_CORE int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us);
+GROBO_API int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us);
 
 /**
  * Ends playing and empties the queue; while APPROACHING, PLAYING, PAUSED or STOPPING.
@@ -236,59 +236,59 @@ GROBO_CORE int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us);
  *        posture within one time unit.
  * @return 0, GROBO_ERR_STATE, or the error of the clip (then FAILED).
  */
-GROBO_CORE int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us);
+GROBO_API int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us);
 
 /**
  * Moves to a position of the present pass, softly; PAUSED stays PAUSED until resumed.
  * @param pos_us 0..total. While APPROACHING, PLAYING or PAUSED.
  * @return 0, GROBO_ERR_STATE, GROBO_ERR_ARG, or the error of the clip (then FAILED).
  */
-GROBO_CORE int grobo_sequencer_seek(grobo_sequencer *seq, int64_t pos_us, int64_t now_us);
+GROBO_API int grobo_sequencer_seek(grobo_sequencer *seq, int64_t pos_us, int64_t now_us);
 
 /**
  * Sets the speed of the present clip from now on; while APPROACHING, PLAYING or PAUSED.
  * Approaches keep their speed.
  * @return 0, GROBO_ERR_STATE, GROBO_ERR_ARG, or the error of the clip (then FAILED).
  */
-GROBO_CORE int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_us);
+GROBO_API int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_us);
 
 /** True while a motion with GROBO_START_LATER has approached, and waits for its start. */
-GROBO_CORE bool grobo_sequencer_is_ready(const grobo_sequencer *seq);
+GROBO_API bool grobo_sequencer_is_ready(const grobo_sequencer *seq);
 
 /**
  * Tells such a motion when to begin.
  * @return 0, GROBO_ERR_ARG, GROBO_ERR_STATE (it is not ready), or GROBO_ERR_STALE: that time is
  *         over, and it keeps waiting.
  */
-GROBO_CORE int grobo_sequencer_start_at(grobo_sequencer *seq, int64_t start_us, int64_t now_us);
+GROBO_API int grobo_sequencer_start_at(grobo_sequencer *seq, int64_t start_us, int64_t now_us);
 
 /** Gives up with a reason < 0: a frame was refused, the link is gone. Not from IDLE. */
-GROBO_CORE int grobo_sequencer_fail(grobo_sequencer *seq, int error);
+GROBO_API int grobo_sequencer_fail(grobo_sequencer *seq, int error);
 
 /** Forgets everything but the counters; IDLE from any state. No frame is given. */
-GROBO_CORE void grobo_sequencer_reset(grobo_sequencer *seq);
+GROBO_API void grobo_sequencer_reset(grobo_sequencer *seq);
 
 /**
  * Gives what is due at now_us. Call again until it returns 0.
  * @param[out] frame untouched unless 1 is returned
  * @return 1 a frame, 0 nothing due, or the error of the clip, once, on the way to FAILED.
  */
-GROBO_CORE int grobo_sequencer_next(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame);
+GROBO_API int grobo_sequencer_next(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame);
 
 /** When grobo_sequencer_next() has something to do; GROBO_NEVER_US when it waits for a command. */
-GROBO_CORE int64_t grobo_sequencer_deadline(const grobo_sequencer *seq);
+GROBO_API int64_t grobo_sequencer_deadline(const grobo_sequencer *seq);
 
 /** State. */
-GROBO_CORE grobo_sequencer_state grobo_sequencer_get_state(const grobo_sequencer *seq);
+GROBO_API grobo_sequencer_state grobo_sequencer_get_state(const grobo_sequencer *seq);
 /** Name of a state, lower case: "playing". Static. */
 GROBO_API const char *grobo_sequencer_state_name(grobo_sequencer_state state);
 /** True if a sequencer may go from one state to another (staying is no transition). */
-GROBO_CORE bool grobo_sequencer_may_go(grobo_sequencer_state from, grobo_sequencer_state to);
+GROBO_API bool grobo_sequencer_may_go(grobo_sequencer_state from, grobo_sequencer_state to);
 /** Where it is at now_us. */
-GROBO_CORE void grobo_sequencer_progress(const grobo_sequencer *seq, int64_t now_us,
-                                         grobo_play_progress *progress);
+GROBO_API void grobo_sequencer_progress(const grobo_sequencer *seq, int64_t now_us,
+                                        grobo_play_progress *progress);
 /** Counters since grobo_sequencer_init(). Borrowed, lives with the sequencer. */
-GROBO_CORE const grobo_play_stats *grobo_sequencer_stats(const grobo_sequencer *seq);
+GROBO_API const grobo_play_stats *grobo_sequencer_stats(const grobo_sequencer *seq);
 
 GROBO_END_DECLS
 

@@ -163,7 +163,7 @@ GROBO_API int grobo_serial_baud(const grobo_serial *serial);
  * @return GROBO_OK, GROBO_ERR_UNSUPPORTED, GROBO_ERR_PERM, GROBO_ERR_CLOSED, GROBO_ERR_UNPLUGGED,
  *   GROBO_ERR_IO.
  */
-GROBO_CORE int grobo_serial_set_low_latency(grobo_serial *serial);
+GROBO_API int grobo_serial_set_low_latency(grobo_serial *serial);
 
 /** What the driver of an open port answered to that last, or GROBO_ERR_CLOSED. */
 GROBO_API int grobo_serial_low_latency(const grobo_serial *serial);
@@ -198,8 +198,8 @@ GROBO_API grobo_handle grobo_serial_handle(const grobo_serial *serial);
 GROBO_API const grobo_os_cause *grobo_serial_cause(const grobo_serial *serial);
 
 /** Copies the counters. */
-GROBO_CORE void grobo_serial_get_counters(const grobo_serial *serial,
-                                          grobo_serial_counters *counters);
+GROBO_API void grobo_serial_get_counters(const grobo_serial *serial,
+                                         grobo_serial_counters *counters);
 
 /* ---- bytes -------------------------------------------------------------------------------- */
 
@@ -238,13 +238,13 @@ GROBO_API int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
 GROBO_API int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t size);
 
 /** Bytes queued to be sent that the system has not taken yet. */
-GROBO_CORE size_t grobo_serial_pending(const grobo_serial *serial);
+GROBO_API size_t grobo_serial_pending(const grobo_serial *serial);
 
 /**
  * These, and those that the system has taken and not put on the line yet, as far as it is known
  * (Linux knows it of serial ports and connections; 0 of a pseudo-terminal, and on Windows).
  */
-GROBO_CORE size_t grobo_serial_unsent(const grobo_serial *serial);
+GROBO_API size_t grobo_serial_unsent(const grobo_serial *serial);
 
 /**
  * Bytes received and not read yet; the system may cap the number (Linux: 4095).
@@ -259,7 +259,7 @@ GROBO_API int grobo_serial_waiting(grobo_serial *serial);
 GROBO_API int grobo_serial_discard(grobo_serial *serial);
 
 /** Drops the bytes not sent yet, in the queue and, where it can be done, in the system. */
-GROBO_CORE void grobo_serial_discard_output(grobo_serial *serial);
+GROBO_API void grobo_serial_discard_output(grobo_serial *serial);
 
 /* ---- hex ---------------------------------------------------------------------------------- */
 

@@ -142,7 +142,7 @@ GROBO_API void grobo_session_close(grobo_session *session);
  * @return GROBO_OK, GROBO_ERR_ARG (NULL), GROBO_ERR_STATE (not closed), GROBO_ERR_CAP (name too
  *   long).
  */
-GROBO_CORE int grobo_session_set_device(grobo_session *session, const char *device);
+GROBO_API int grobo_session_set_device(grobo_session *session, const char *device);
 
 /**
  * Changes the engine's configuration (copied; NULL: all defaults), from now on and for every time

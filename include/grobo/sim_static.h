@@ -184,8 +184,8 @@ struct grobo_sim {
 #define grobo_sim_init(sim, config, now_us)                                                        \
     grobo_sim_init_sized(sim, sizeof(grobo_sim), config, now_us)
 /** Of grobo_sim_init(). */
-GROBO_CORE int grobo_sim_init_sized(grobo_sim *sim, size_t sim_bytes,
-                                    const grobo_sim_config *config, int64_t now_us);
+GROBO_API int grobo_sim_init_sized(grobo_sim *sim, size_t sim_bytes, const grobo_sim_config *config,
+                                   int64_t now_us);
 
 GROBO_END_DECLS
 

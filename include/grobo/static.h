@@ -293,16 +293,16 @@ struct grobo_robot {
 #define grobo_robot_init(robot, driver, driver_ctx, config, now_us)                                \
     grobo_robot_init_sized(robot, sizeof(grobo_robot), driver, driver_ctx, config, now_us)
 /** Of grobo_robot_init(). */
-GROBO_CORE int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes,
-                                      const grobo_driver *driver, void *driver_ctx,
-                                      const grobo_robot_config *config, int64_t now_us);
+GROBO_API int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes,
+                                     const grobo_driver *driver, void *driver_ctx,
+                                     const grobo_robot_config *config, int64_t now_us);
 
 /** Sets the pump; copied, NULL: none. Before any request or question. */
-GROBO_CORE void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host);
+GROBO_API void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host);
 
 /** Bytes came from the line. */
-GROBO_CORE void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size,
-                               int64_t now_us);
+GROBO_API void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size,
+                              int64_t now_us);
 
 /**
  * Takes the next frame for the line, whole; it counts as sent at now_us, so take it only when the
@@ -312,36 +312,36 @@ GROBO_CORE void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t 
  * @param capacity GROBO_FRAME_MAX_BYTES is always enough.
  * @return number of bytes, 0 for nothing now, GROBO_ERR_SPACE.
  */
-GROBO_CORE int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us);
+GROBO_API int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us);
 
 /** Lets time pass: timeouts, frames that are due, sensing. Call at grobo_robot_deadline(). */
-GROBO_CORE void grobo_robot_step(grobo_robot *robot, int64_t now_us);
+GROBO_API void grobo_robot_step(grobo_robot *robot, int64_t now_us);
 
 /**
  * grobo_robot_rx() and grobo_robot_step() at once, for bytes that are all that had come by now_us.
  * Events are reported behind both, so that no callback keeps time from passing at now_us.
  */
-GROBO_CORE void grobo_robot_rx_step(grobo_robot *robot, const uint8_t *bytes, size_t size,
-                                    int64_t now_us);
+GROBO_API void grobo_robot_rx_step(grobo_robot *robot, const uint8_t *bytes, size_t size,
+                                   int64_t now_us);
 
 /**
  * True if a frame that stops the robot (a halt, an emergency stop) could leave now, as far as the
  * wire is concerned. Where the line still holds bytes of an earlier frame back they are late, and
  * the owner of the line should drop them if it can.
  */
-GROBO_CORE bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us);
+GROBO_API bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us);
 
 /**
  * When grobo_robot_step() and then grobo_robot_tx() are next wanted; GROBO_NEVER_US for not before
  * something else happens. After every call that may change anything, ask again.
  */
-GROBO_CORE int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us);
+GROBO_API int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us);
 
 /** The line is open: nothing moves; after a link_down the posture is sensed again. */
-GROBO_CORE void grobo_robot_link_up(grobo_robot *robot, int64_t now_us);
+GROBO_API void grobo_robot_link_up(grobo_robot *robot, int64_t now_us);
 
 /** The line is gone: the job ends with GROBO_ERR_UNPLUGGED, a motion fails with it too. */
-GROBO_CORE void grobo_robot_link_down(grobo_robot *robot, int64_t now_us);
+GROBO_API void grobo_robot_link_down(grobo_robot *robot, int64_t now_us);
 
 GROBO_END_DECLS
 

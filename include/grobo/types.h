@@ -31,11 +31,31 @@
  * @code
  *   grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = 50};
  * @endcode
+ * C++ before C++20 has no `.speed_limit_pct`: there, and for a program that is C and C++,
+ * @code
+ *   grobo_robot_config config = GROBO_INIT(grobo_robot_config);
+ *   config.speed_limit_pct = 50;
+ * @endcode
  */
-#ifdef __cplusplus
-#define GROBO_SIZED(type) sizeof(type)
-#else
+#if !defined(__cplusplus) || __cplusplus >= 202002L
 #define GROBO_SIZED(type) .size = sizeof(type)
+#else
+#define GROBO_SIZED(type) sizeof(type)
+#endif
+
+/** An initializer of such a structure with its size, all else zero. */
+#ifdef __cplusplus
+#define GROBO_INIT(type)                                                                           \
+    ([] {                                                                                          \
+        type made_ = type();                                                                       \
+        made_.size = sizeof(type);                                                                 \
+        return made_;                                                                              \
+    }())
+#else
+#define GROBO_INIT(type)                                                                           \
+    {                                                                                              \
+        .size = sizeof(type)                                                                       \
+    }
 #endif
 
 /** No deadline: later than any time. */

@@ -6,7 +6,7 @@
  * A protocol (protocol.h) knows what the bus asks. This knows the rest: frames that the bus never
  * sends, what stands in a frame, and what is wrong with one that servos would not take. A family is
  * a const table of functions without state. What a frame says goes into one form, of which
- * `grctl decode` makes text and JSON. Firmware is linked without it: only grobo_families
+ * `grctl decode` makes text and JSON. Firmware is linked without it: only grobo_families()
  * (robot_file.h) names these tables.
  *
  * No function of a table is given NULL. n is the number of bytes of a buffer.

@@ -8,6 +8,8 @@
 
 #include "src/body/track.h"
 
+extern const grobo_body_model grobo_i_gr001_body;
+
 /* ---- legs ---- */
 
 /* A leg of a model: its links hip to foot and whether each axis points along +Z +X +Y +Y +Y +X. */

@@ -3,6 +3,8 @@
  * jointAxis, mass, centerOfMass, inertia; metres, kilograms), links in the order of that file. */
 #include <grobo/body.h>
 
+#include "src/body/body.h"
+
 /* Six numbers of a symmetric inertia matrix: diagonal, then xy, xz, yz. */
 #define SYMMETRIC(xx, yy, zz, xy, xz, yz)                                                          \
     {                                                                                              \
@@ -100,7 +102,7 @@ static const grobo_body_link links[] = {
 
 /* sole_center of the model file's foot_links. It gives no outline of the sole: the half lengths are
  * those of a uniform plate with the foot's inertia (0.087 m x 0.055 m), less a tenth for safety. */
-const grobo_body_model grobo_gr001_body = {
+const grobo_body_model grobo_i_gr001_body = {
     .name = "GR001",
     .links = links,
     .n_links = (int)(sizeof links / sizeof links[0]),
@@ -108,3 +110,8 @@ const grobo_body_model grobo_gr001_body = {
     .feet = {{6, {-0.005, -0.01, -0.022}, {0.039, 0.025}},
              {12, {-0.005, 0.01, -0.022}, {0.039, 0.025}}},
 };
+
+const grobo_body_model *grobo_gr001_body(void)
+{
+    return &grobo_i_gr001_body;
+}

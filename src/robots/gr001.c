@@ -4,6 +4,7 @@
 
 #include "src/robots/robots.h"
 #include "src/servo/rs30x/driver.h"
+#include "src/servo/tables.h"
 
 #define PI 3.14159265358979323846
 #define RAD(angle_deg) ((angle_deg)*PI / 180.0)
@@ -216,12 +217,12 @@ static const grobo_group groups[] = {
     {"arms", 0xFC000}, {"right_leg", 0x3F}, {"left_leg", 0xFC0},    {"legs", 0xFFF},
 };
 
-const grobo_model grobo_gr001_model = {.name = "GR001",
-                                       .joints = joints,
-                                       .groups = groups,
-                                       .n_groups = 8,
-                                       .n_joints = 20,
-                                       .limit_slack_deg = 1};
+const grobo_model grobo_i_gr001_model = {.name = "GR001",
+                                         .joints = joints,
+                                         .groups = groups,
+                                         .n_groups = 8,
+                                         .n_joints = 20,
+                                         .limit_slack_deg = 1};
 
 static const double rest_rad[] = {0,       0,        RAD(60),  RAD(-120), RAD(-60), 0,      0,
                                   0,       RAD(-60), RAD(120), RAD(60),   0,        0,      0,
@@ -237,8 +238,8 @@ static const grobo_usb_id usb[] = {
 };
 
 const grobo_driver grobo_i_gr001_drivers[] = {
-    [GROBO_WIRING_BOARD] = {GROBO_I_RS30X_FUNCTIONS, .name = "GR001", .model = &grobo_gr001_model,
-                            .protocol = &grobo_board_protocol, .stored = grobo_i_rs30x_stored,
+    [GROBO_WIRING_BOARD] = {GROBO_I_RS30X_FUNCTIONS, .name = "GR001", .model = &grobo_i_gr001_model,
+                            .protocol = &grobo_i_board_protocol, .stored = grobo_i_rs30x_stored,
                             .limits = {.temperature_c = 65,
                                        .lost_replies = 5,
                                        .current_ma = 600,
@@ -247,8 +248,8 @@ const grobo_driver grobo_i_gr001_drivers[] = {
                                        .approach_rad_s = RAD(60)},
                             .on_exit = GROBO_EXIT_HOLD, .arm = false, .rest_rad = rest_rad,
                             .readback = readback, .n_readback = 2},
-    [GROBO_WIRING_BUS] = {GROBO_I_RS30X_FUNCTIONS, .name = "GR001", .model = &grobo_gr001_model,
-                          .protocol = &grobo_rs30x_protocol,
+    [GROBO_WIRING_BUS] = {GROBO_I_RS30X_FUNCTIONS, .name = "GR001", .model = &grobo_i_gr001_model,
+                          .protocol = &grobo_i_rs30x_protocol,
                           .limits = {.temperature_c = 65,
                                      .lost_replies = 5,
                                      .current_ma = 600,
@@ -262,7 +263,7 @@ const grobo_driver grobo_i_gr001_drivers[] = {
 const grobo_robot_def grobo_i_robot_gr001 = {.name = "gr001",
                                              .title = "HPI GR001",
                                              .family = &grobo_i_family_rs30x,
-                                             .model = &grobo_gr001_model,
+                                             .model = &grobo_i_gr001_model,
                                              .wiring = GROBO_WIRING_BOARD,
                                              .baud_bps = 115200,
                                              .usb = usb,
@@ -278,3 +279,8 @@ const grobo_robot_def grobo_i_robot_gr001 = {.name = "gr001",
                                              .rest_rad = rest_rad,
                                              .readback = readback,
                                              .n_readback = 2};
+
+const grobo_model *grobo_gr001_model(void)
+{
+    return &grobo_i_gr001_model;
+}

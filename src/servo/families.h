@@ -12,7 +12,7 @@
 
 #define FAMILY(name, directory)                                                                    \
     extern const grobo_robot_family grobo_i_family_##name;                                         \
-    extern const grobo_sim_family grobo_sim_##directory;                                           \
+    extern const grobo_sim_family grobo_i_sim_##directory;                                         \
     extern const grobo_words *const grobo_i_words_##directory[];
 #include "src/servo/families.list"
 #undef FAMILY

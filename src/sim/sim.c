@@ -9,6 +9,7 @@
 
 #include "src/base/instant.h"
 #include "src/base/sized.h"
+#include "src/robots/robots.h"
 #include "src/sim/board.h"
 #include "src/sim/bus.h"
 #include "src/sim/servo/family.h"
@@ -390,7 +391,7 @@ static const grobo_sim_family *family_of(const grobo_sim_config *config, int ind
 {
     const grobo_servo_model *model = config->servos != NULL ? config->servos[index] : NULL;
     if (model == NULL) {
-        return &grobo_sim_rs30x;
+        return &grobo_i_sim_rs30x;
     }
     const grobo_sim_family *const *family = config->families;
     while (family != NULL && *family != NULL && !knows(*family, model)) {
@@ -423,7 +424,7 @@ static int init_servo(grobo_sim *sim, int index)
     if (servo->model == NULL) {
         servo->model = grobo_i_sim_rs30x_model(joint->servo_model);
     }
-    if (sim->config.wiring == GROBO_WIRING_BOARD && servo->family != &grobo_sim_rs30x) {
+    if (sim->config.wiring == GROBO_WIRING_BOARD && servo->family != &grobo_i_sim_rs30x) {
         return GROBO_ERR_ARG;
     }
     if (servo->family == NULL || ear_of(sim, servo->family) == NULL) {
@@ -451,7 +452,7 @@ static int init_servo(grobo_sim *sim, int index)
 
 static void use_defaults(grobo_sim_config *config)
 {
-    config->model = config->model == NULL ? &grobo_gr001_model : config->model;
+    config->model = config->model == NULL ? &grobo_i_gr001_model : config->model;
     if (config->baud_bps == 0) {
         const grobo_sim_family *first = family_of(config, 0);
         config->baud_bps = first == NULL || first->usual_bps == 0 ? OTHERS_BPS : first->usual_bps;
@@ -465,7 +466,7 @@ static void use_defaults(grobo_sim_config *config)
 
 size_t grobo_i_sim_bytes(const grobo_model *model)
 {
-    size_t n = model != NULL ? model->n_joints : grobo_gr001_model.n_joints;
+    size_t n = model != NULL ? model->n_joints : grobo_i_gr001_model.n_joints;
     return offsetof(grobo_sim, servo) + n * sizeof(grobo_sim_servo);
 }
 

@@ -8,6 +8,7 @@
 #include <grobo/motion_io.h>
 
 #include "tests/bench/bench.h"
+#include "tests/support/tables.h"
 
 #define MOTION "motions/step.pseq"
 #define LENGTH_S 10.0
@@ -60,7 +61,7 @@ static double body_ms(const grobo_motion *motion, const grobo_body_options *opti
         grobo_body *body = NULL;
         double q_rad[GROBO_JOINTS_MAX];
 
-        if (grobo_body_new(&grobo_gr001_body, motion, options, NULL, &body) < 0) {
+        if (grobo_body_new(&grobo_i_gr001_body, motion, options, NULL, &body) < 0) {
             return -1;
         }
         for (int i = 0; i < grobo_body_frame_count(body); i++) {

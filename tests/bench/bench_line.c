@@ -33,6 +33,7 @@
 
 #include "tests/bench/bench.h"
 #include "tests/bench/one_servo.h"
+#include "tests/support/tables.h"
 
 enum { LINES_MAX = 512, FRAME_MAX = 256, PROBE_US = 10000, PROBES = 4096, TIMEOUT_US = 50000 };
 
@@ -433,7 +434,7 @@ static int run_sessions(int lines, char **path)
                                       .sense_position_only = true};
     grobo_driver driver;
 
-    if (grobo_rs30x_driver_init(&driver, &one_servo_model, &grobo_rs30x_protocol) < 0) {
+    if (grobo_rs30x_driver_init(&driver, &one_servo_model, &grobo_i_rs30x_protocol) < 0) {
         return 1;
     }
     begin_run();
@@ -529,7 +530,7 @@ static int run_cycle(long seconds, const char *path)
 
     begin_run();
     cycle.end_us = seconds * 1000000;
-    (void)grobo_posture_init_pose(&cycle.pose, &grobo_gr001_model);
+    (void)grobo_posture_init_pose(&cycle.pose, &grobo_i_gr001_model);
     cycle.pose.time_us = 200000;
     const grobo_session_config config = {
         GROBO_SESSION_CONFIG_INIT, .base = run.base,          .device = path,

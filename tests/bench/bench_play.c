@@ -20,6 +20,7 @@
 #include <grobo/sim_server.h>
 
 #include "tests/bench/bench.h"
+#include "tests/support/tables.h"
 
 enum { SPAN_S = 5, LATE_MAX = 4096, POSE_BYTES = 108, BAUD_BPS = 460800 };
 
@@ -139,7 +140,7 @@ static int wave_sample(void *ctx, int64_t t_us, grobo_posture *posture)
     double by_deg = (double)llabs(t_us % 4000000 - 2000000) / 200000.0;
 
     for (int j = 0; j < 20; j++) {
-        double init_deg = grobo_deg_from_rad(grobo_gr001_model.joints[j].init_rad);
+        double init_deg = grobo_deg_from_rad(grobo_i_gr001_model.joints[j].init_rad);
 
         (void)grobo_posture_set_deg(posture, j, j == 12 ? init_deg - by_deg : init_deg + by_deg);
     }

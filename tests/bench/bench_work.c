@@ -19,6 +19,7 @@
 
 #include "tests/bench/bench.h"
 #include "tests/bench/one_servo.h"
+#include "tests/support/tables.h"
 
 #define SECOND_US 1000000
 
@@ -47,8 +48,8 @@ static void goals(long n)
         goal[j] = (grobo_rs30x_goal){.id = (uint8_t)(j + 1), .pos_ddeg = (int16_t)j, .time_cs = 2};
     }
     for (; n > 0; n--) {
-        pose.frame_bytes = (uint16_t)grobo_frame_goals(&grobo_board_protocol, goal, 20, pose.frame,
-                                                       sizeof pose.frame);
+        pose.frame_bytes = (uint16_t)grobo_frame_goals(&grobo_i_board_protocol, goal, 20,
+                                                       pose.frame, sizeof pose.frame);
     }
 }
 
@@ -243,7 +244,7 @@ static void prepare_reading(void)
     const grobo_robot_host host = {.clock = rig_clock};
 
     rig.now_us = SECOND_US;
-    (void)grobo_rs30x_driver_init(&one_servo, &one_servo_model, &grobo_rs30x_protocol);
+    (void)grobo_rs30x_driver_init(&one_servo, &one_servo_model, &grobo_i_rs30x_protocol);
     (void)grobo_robot_init(&rig.robot, &one_servo, NULL, &config, rig.now_us);
     grobo_robot_set_host(&rig.robot, &host);
     grobo_robot_on_event(&rig.robot, on_reading, NULL);
@@ -279,7 +280,7 @@ static int wave_sample(void *ctx, int64_t t_us, grobo_posture *posture)
     int r = grobo_posture_init(posture, 20);
 
     for (int j = 0; j < 20; j++) {
-        double init_deg = grobo_deg_from_rad(grobo_gr001_model.joints[j].init_rad);
+        double init_deg = grobo_deg_from_rad(grobo_i_gr001_model.joints[j].init_rad);
         double by_deg = (double)llabs(t_us % 4000000 - 2000000) / 200000.0;
 
         (void)grobo_posture_set_deg(posture, j, j == 12 ? init_deg - by_deg : init_deg + by_deg);
@@ -360,7 +361,7 @@ static void joints_rows(void)
         char measure[64];
 
         chain.n_joints = counts[i];
-        (void)grobo_rs30x_driver_init(&chain_driver, &chain, &grobo_rs30x_protocol);
+        (void)grobo_rs30x_driver_init(&chain_driver, &chain, &grobo_i_rs30x_protocol);
         start_with(&chain_driver, GROBO_WIRING_BUS, SECOND_US);
         play(&(grobo_clip){.key = chain_key, .sample = chain_sample, .n_joints = chain.n_joints},
              RATE_HZ);
@@ -476,7 +477,7 @@ static void walk(long n)
         grobo_body *body = NULL;
         double q_rad[GROBO_JOINTS_MAX];
 
-        if (grobo_body_new(&grobo_gr001_body, step, &options, NULL, &body) >= 0) {
+        if (grobo_body_new(&grobo_i_gr001_body, step, &options, NULL, &body) >= 0) {
             for (int i = 0; i < grobo_body_frame_count(body); i++) {
                 (void)grobo_body_frame(body, i, q_rad, NULL);
             }

@@ -12,6 +12,7 @@
 #include <grobo/static.h>
 
 #include "docs/examples/firmware/mcu.h"
+#include "tests/support/tables.h"
 
 #define SECOND_US 1000000
 
@@ -35,7 +36,7 @@ static void make_wave(void)
         (void)grobo_posture_init(&wave[i], JOINTS);
         for (int j = 0; j < JOINTS; j++) {
             double by_deg = i < POSTURES / 2 ? i : POSTURES - i;
-            double init_rad = grobo_gr001_model.joints[j].init_rad;
+            double init_rad = grobo_i_gr001_model.joints[j].init_rad;
             double to_rad = grobo_rad_from_deg(j == 12 ? -by_deg : by_deg);
             (void)grobo_posture_set_rad(&wave[i], j, init_rad + to_rad);
         }

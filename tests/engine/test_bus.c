@@ -8,6 +8,7 @@
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES };
@@ -150,7 +151,7 @@ static void submit_torque(peer *p, request *r, uint8_t retries)
 {
     uint8_t b[FRAME];
     int n = grobo_rs30x_write_u8(3, GROBO_RS30X_WANT_ACK, GROBO_RS30X_TORQUE, 1, b, FRAME);
-    n = grobo_frame_wrap(&grobo_board_protocol, b, (size_t)n, r->frame, FRAME);
+    n = grobo_frame_wrap(&grobo_i_board_protocol, b, (size_t)n, r->frame, FRAME);
     peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_USER);
     r->txn.retries = retries;
     assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
@@ -279,10 +280,10 @@ TEST(nonsense_is_not_submitted)
     assert_int_equal(grobo_bus_submit(&p.bus, &bad), GROBO_ERR_ARG);
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_ERR_BUSY);
-    assert_int_equal(grobo_txn_init(&bad, &grobo_board_protocol, r.frame, 10), GROBO_ERR_FRAME);
+    assert_int_equal(grobo_txn_init(&bad, &grobo_i_board_protocol, r.frame, 10), GROBO_ERR_FRAME);
     grobo_bus bus;
-    const grobo_bus_config slow = {.protocol = &grobo_board_protocol, .baud_bps = 300};
-    const grobo_bus_config echo = {.protocol = &grobo_board_protocol, .echo = true};
+    const grobo_bus_config slow = {.protocol = &grobo_i_board_protocol, .baud_bps = 300};
+    const grobo_bus_config echo = {.protocol = &grobo_i_board_protocol, .echo = true};
     const grobo_bus_config silent = {.baud_bps = 115200};
     assert_int_equal(grobo_bus_init(&bus, &silent), GROBO_ERR_ARG);
     assert_int_equal(grobo_bus_init(&bus, &slow), GROBO_ERR_ARG);

@@ -8,6 +8,7 @@
 
 #include "tests/support/bus_peer.h"
 #include "tests/support/next_random.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES };
@@ -18,8 +19,8 @@ static const uint8_t ack = GROBO_RS30X_ACK;
 static void live(peer *p, uint32_t seed, int64_t origin_us)
 {
     static request r[200];
-    const grobo_bus_config config = {.protocol =
-                                         seed % 2 ? &grobo_rs30x_protocol : &grobo_board_protocol,
+    const grobo_bus_config config = {.protocol = seed % 2 ? &grobo_i_rs30x_protocol
+                                                          : &grobo_i_board_protocol,
                                      .overlap = seed % 3 == 0,
                                      .hold_us = 20 * MS};
     peer_init(p, &config);

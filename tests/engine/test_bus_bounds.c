@@ -8,6 +8,7 @@
 
 #include "src/bus/time.h"
 #include "tests/support/bus_peer.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, READ_US = 3488 };
@@ -28,7 +29,7 @@ TEST(what_stood_in_the_memory_before_means_nothing)
     static grobo_bus a, b;
     uint8_t frame[FRAME];
     grobo_txn x, y;
-    int n = grobo_frame_read(&grobo_board_protocol, 1, 42, 2, frame, FRAME);
+    int n = grobo_frame_read(&grobo_i_board_protocol, 1, 42, 2, frame, FRAME);
     memset(&a, 0, sizeof a);
     memset(&b, 0xA5, sizeof b);
     assert_int_equal(grobo_bus_init(&a, &board_line), GROBO_OK);
@@ -38,8 +39,8 @@ TEST(what_stood_in_the_memory_before_means_nothing)
     assert_int_equal(a.config.servo_baud_bps, 115200);
     memset(&x, 0, sizeof x);
     memset(&y, 0xA5, sizeof y);
-    assert_int_equal(grobo_txn_init(&x, &grobo_board_protocol, frame, (size_t)n), GROBO_OK);
-    assert_int_equal(grobo_txn_init(&y, &grobo_board_protocol, frame, (size_t)n), GROBO_OK);
+    assert_int_equal(grobo_txn_init(&x, &grobo_i_board_protocol, frame, (size_t)n), GROBO_OK);
+    assert_int_equal(grobo_txn_init(&y, &grobo_i_board_protocol, frame, (size_t)n), GROBO_OK);
     assert_int_equal(x.reply.kind, y.reply.kind);
     assert_int_equal(x.reply.bytes, y.reply.bytes);
     memset(&x.reply, 0, sizeof x.reply); /* what lies between its fields is nobody's */
@@ -54,8 +55,9 @@ TEST(a_line_may_be_as_slow_as_1200_bps)
 {
     grobo_bus bus;
     for (uint32_t bps = 1199; bps <= 1200; bps++) {
-        const grobo_bus_config line = {.protocol = &grobo_board_protocol, .baud_bps = bps};
-        const grobo_bus_config servos = {.protocol = &grobo_board_protocol, .servo_baud_bps = bps};
+        const grobo_bus_config line = {.protocol = &grobo_i_board_protocol, .baud_bps = bps};
+        const grobo_bus_config servos = {.protocol = &grobo_i_board_protocol,
+                                         .servo_baud_bps = bps};
         int result = bps < 1200 ? GROBO_ERR_ARG : GROBO_OK;
         assert_int_equal(grobo_bus_init(&bus, &line), result);
         assert_int_equal(grobo_bus_init(&bus, &servos), result);
@@ -363,8 +365,8 @@ TEST(nothing_is_remembered_behind_the_last)
     static uint8_t frame[FRAME];
     grobo_txn txn;
     assert_int_equal(grobo_bus_init(&memory.bus, &board_line), GROBO_OK);
-    int n = grobo_frame_read(&grobo_board_protocol, 1, 42, 2, frame, FRAME);
-    assert_int_equal(grobo_txn_init(&txn, &grobo_board_protocol, frame, (size_t)n), GROBO_OK);
+    int n = grobo_frame_read(&grobo_i_board_protocol, 1, 42, 2, frame, FRAME);
+    assert_int_equal(grobo_txn_init(&txn, &grobo_i_board_protocol, frame, (size_t)n), GROBO_OK);
     txn.retries = 0;
     const grobo_bus_hold stranger = {
         .until_us = 60LL * S, .key = grobo_i_bus_key(&txn.reply), .owed = 1};
@@ -501,7 +503,7 @@ TEST(a_stump_of_the_echo_is_short)
     for (int some = 0; some < 2; some++) {
         peer p;
         request r;
-        const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol, .echo = true};
+        const grobo_bus_config config = {.protocol = &grobo_i_rs30x_protocol, .echo = true};
         peer_init(&p, &config);
         submit_read(&p, &r, 3, 0, GROBO_PRIORITY_USER);
         if (some) {
@@ -520,7 +522,7 @@ TEST(rubbish_and_then_silence_is_told_from_silence)
         for (int echo = 0; echo < 2; echo++) {
             peer p;
             request r;
-            const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol, .echo = echo};
+            const grobo_bus_config config = {.protocol = &grobo_i_rs30x_protocol, .echo = echo};
             peer_init(&p, &config);
             submit_read(&p, &r, 3, 0, GROBO_PRIORITY_USER);
             if (some) {

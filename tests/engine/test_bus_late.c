@@ -7,6 +7,7 @@
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, MARGIN = 2 * MS };
@@ -102,7 +103,7 @@ TEST(another_reply_proves_that_the_lost_one_is_lost)
 /* On a bus it proves that for the adapter only: a servo may answer after another one did. */
 TEST(on_a_bus_a_servo_may_answer_after_another_one)
 {
-    const grobo_bus_config config = {.margin_us = MARGIN, .protocol = &grobo_rs30x_protocol};
+    const grobo_bus_config config = {.margin_us = MARGIN, .protocol = &grobo_i_rs30x_protocol};
     for (int comes = 0; comes <= 1; comes++) {
         peer p;
         request a, b, c;
@@ -198,7 +199,7 @@ TEST(reads_go_on_while_an_ack_is_outstanding_and_clear_it)
     start(&p);
     peer_submit_ping(&p, &a, 1, 0);
     peer_submit_ping(&p, &b, 2, 0);
-    int n = grobo_frame_read(&grobo_board_protocol, 3, 42, 2, c.frame, FRAME);
+    int n = grobo_frame_read(&grobo_i_board_protocol, 3, 42, 2, c.frame, FRAME);
     peer_txn(&p, &c.txn, c.frame, n, GROBO_PRIORITY_SENSE);
     assert_int_equal(grobo_bus_submit(&p.bus, &c.txn), GROBO_OK);
     int64_t read_us = PING_FAILED + GROBO_BUS_QUIET_US;
@@ -346,7 +347,7 @@ TEST(motion_does_not_wait_for_quiet)
     const grobo_rs30x_goal goal = {2, 0, 0};
     start(&p);
     peer_submit_read(&p, &a, 1, 0);
-    int n = grobo_frame_goal(&grobo_board_protocol, &goal, b.frame, FRAME);
+    int n = grobo_frame_goal(&grobo_i_board_protocol, &goal, b.frame, FRAME);
     peer_run(&p, 4 * MS);
     peer_txn(&p, &b.txn, b.frame, n, GROBO_PRIORITY_MOTION);
     assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
@@ -359,7 +360,7 @@ TEST(motion_does_not_wait_for_quiet)
 static void start_echo(peer *p)
 {
     const grobo_bus_config config = {
-        .protocol = &grobo_rs30x_protocol, .margin_us = MARGIN, .echo = true};
+        .protocol = &grobo_i_rs30x_protocol, .margin_us = MARGIN, .echo = true};
     peer_init(p, &config);
 }
 
@@ -394,7 +395,7 @@ TEST(a_write_is_over_when_its_echo_is_there)
     request r;
     const grobo_rs30x_goal goal = {2, 0, 0};
     start_echo(&p);
-    int n = grobo_frame_goal(&grobo_rs30x_protocol, &goal, r.frame, FRAME);
+    int n = grobo_frame_goal(&grobo_i_rs30x_protocol, &goal, r.frame, FRAME);
     peer_txn(&p, &r.txn, r.frame, n, GROBO_PRIORITY_MOTION);
     r.txn.retries = 1;
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);

@@ -7,6 +7,7 @@
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, MARGIN = 2 * MS, READ_US = 3488, READ_FAILED = READ_US + MARGIN };
@@ -15,7 +16,7 @@ enum { BUS_READ_US = 695 + 100 + 869 }; /* 8 bytes, the return delay, 10 bytes *
 static void start(peer *p, bool echo)
 {
     const grobo_bus_config config = {.protocol =
-                                         echo ? &grobo_rs30x_protocol : &grobo_board_protocol,
+                                         echo ? &grobo_i_rs30x_protocol : &grobo_i_board_protocol,
                                      .margin_us = MARGIN,
                                      .echo = echo};
     peer_init(p, &config);
@@ -215,7 +216,7 @@ TEST(a_reply_is_owed_to_the_last_microsecond)
 /* No servo answers a goal: one that was canceled is owed nothing, and the next need not wait. */
 TEST(a_canceled_goal_keeps_no_other_waiting)
 {
-    const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol};
+    const grobo_bus_config config = {.protocol = &grobo_i_rs30x_protocol};
     peer p;
     request a, b;
     peer_init(&p, &config);
@@ -244,7 +245,7 @@ static void ask_again_after_a_cancel(peer *p, request *a, request *b, grobo_prio
 TEST(a_reply_that_comes_soon_is_owed_no_more)
 {
     enum { DELAY_US = 500, OVER_US = BUS_READ_US - 100 + DELAY_US };
-    const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol,
+    const grobo_bus_config config = {.protocol = &grobo_i_rs30x_protocol,
                                      .return_delay_us = DELAY_US};
     peer p;
     request a, b;
@@ -261,7 +262,7 @@ TEST(a_reply_that_comes_soon_is_owed_no_more)
 /* Anything else would wait for what may come yet, 100 ms here. */
 TEST(a_stop_waits_for_no_reply_that_is_late)
 {
-    const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol};
+    const grobo_bus_config config = {.protocol = &grobo_i_rs30x_protocol};
     for (int stop = 0; stop < 2; stop++) {
         peer p;
         request a, b;
@@ -510,9 +511,9 @@ static double poll(const grobo_bus_config *config, uint32_t late_us, bool lose)
 TEST(polling_keeps_up_with_a_bare_loop_where_replies_are_late)
 {
     static const grobo_bus_config lines[] = {
-        {.protocol = &grobo_board_protocol},
-        {.protocol = &grobo_rs30x_protocol},
-        {.protocol = &grobo_rs30x_protocol, .baud_bps = 460800},
+        {.protocol = &grobo_i_board_protocol},
+        {.protocol = &grobo_i_rs30x_protocol},
+        {.protocol = &grobo_i_rs30x_protocol, .baud_bps = 460800},
     };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         static const uint32_t late_us[] = {3 * MS, 3200, 5 * MS, 10 * MS, 20 * MS};
@@ -528,7 +529,7 @@ TEST(polling_keeps_up_with_a_bare_loop_where_replies_are_late)
 /* Nothing comes that would end the hold: it is as long as the line has shown that it must be. */
 TEST(a_lost_reply_costs_what_the_line_has_taught)
 {
-    const grobo_bus_config line = {.protocol = &grobo_rs30x_protocol, .baud_bps = 460800};
+    const grobo_bus_config line = {.protocol = &grobo_i_rs30x_protocol, .baud_bps = 460800};
     double part = poll(&line, 0, true);
     print_message("# 1 reply of %d lost: %.3f of a bare loop\n", LATE_EVERY, part);
     assert_true(part > 0.6);

@@ -8,12 +8,13 @@
 #include <grobo/feetech.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, POSITION = 132, BYTES = 4, BAUD = 1000000 };
 
 static const grobo_bus_config line = {
-    .protocol = &grobo_dxl2_protocol, .baud_bps = BAUD, .margin_us = 5 * MS};
+    .protocol = &grobo_i_dxl2_protocol, .baud_bps = BAUD, .margin_us = 5 * MS};
 static const uint8_t ids[] = {3, 1, 7};
 
 /* What `each` was given. */
@@ -308,11 +309,11 @@ static void submit_old(const grobo_protocol *protocol, bool echo, const grobo_dx
 TEST(an_echo_that_looks_like_a_status_is_an_echo)
 {
     const uint8_t ping[] = {0xFF, 0xFF, 1, 2, 1, 0xFB};
-    submit_old(&grobo_feetech_protocol, true, &(grobo_dxl1_packet){.id = 1, .instruction = 1});
+    submit_old(&grobo_i_feetech_protocol, true, &(grobo_dxl1_packet){.id = 1, .instruction = 1});
     peer_bytes_at(&p, 100, ping, sizeof ping);
     peer_run(&p, S);
     ended(6 * 10 + 6 * 10 + 5 * MS, GROBO_ERR_TIMEOUT);
-    submit_old(&grobo_feetech_protocol, true, &(grobo_dxl1_packet){.id = 1, .instruction = 1});
+    submit_old(&grobo_i_feetech_protocol, true, &(grobo_dxl1_packet){.id = 1, .instruction = 1});
     peer_bytes_at(&p, 100, ping, sizeof ping);
     peer_bytes_at(&p, 200, ping, sizeof ping);
     peer_run(&p, S);
@@ -329,13 +330,15 @@ TEST(what_a_host_sends_is_no_answer)
         grobo_dxl1_packet asked;
         size_t answer_bytes;
     } rows[] = {
-        {&grobo_feetech_protocol, {.instruction = GROBO_DXL1_READ, .address = 56, .length = 2}, 2},
-        {&grobo_dxl1_protocol, {.instruction = GROBO_DXL1_READ, .address = 36, .length = 2}, 2},
-        {&grobo_dxl1_protocol, {.instruction = GROBO_DXL1_READ, .address = 36, .length = 8}, 8},
-        {&grobo_dxl1_protocol,
+        {&grobo_i_feetech_protocol,
+         {.instruction = GROBO_DXL1_READ, .address = 56, .length = 2},
+         2},
+        {&grobo_i_dxl1_protocol, {.instruction = GROBO_DXL1_READ, .address = 36, .length = 2}, 2},
+        {&grobo_i_dxl1_protocol, {.instruction = GROBO_DXL1_READ, .address = 36, .length = 8}, 8},
+        {&grobo_i_dxl1_protocol,
          {.instruction = GROBO_DXL1_WRITE, .address = 30, .data = goal, .data_bytes = 4},
          0},
-        {&grobo_dxl1_protocol,
+        {&grobo_i_dxl1_protocol,
          {.instruction = GROBO_DXL1_WRITE, .address = 25, .data = goal, .data_bytes = 1},
          0},
     };
@@ -360,7 +363,7 @@ TEST(what_a_host_sends_is_no_answer)
 
 TEST(feetech_answers_a_sync_read_one_by_one)
 {
-    submit_old(&grobo_feetech_protocol, false,
+    submit_old(&grobo_i_feetech_protocol, false,
                &(grobo_dxl1_packet){.id = GROBO_DXL1_ID_ALL,
                                     .instruction = GROBO_DXL1_SYNC_READ,
                                     .address = 56,
@@ -397,7 +400,7 @@ TEST(errors_of_old_dynamixels_are_told_apart)
                 {GROBO_DXL1_BAD_SUM, GROBO_ERR_TIMEOUT}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         uint8_t b[16];
-        submit_old(&grobo_dxl1_protocol, false,
+        submit_old(&grobo_i_dxl1_protocol, false,
                    &(grobo_dxl1_packet){.id = 9,
                                         .instruction = GROBO_DXL1_WRITE,
                                         .address = 30,
@@ -419,7 +422,7 @@ TEST(parity_and_length_count)
     static grobo_protocol odd;
     grobo_bus bus;
     grobo_bus_cost cost;
-    odd = grobo_dxl2_protocol;
+    odd = grobo_i_dxl2_protocol;
     odd.parity = GROBO_PARITY_EVEN;
     const grobo_bus_config config = {.protocol = &odd, .baud_bps = 115200};
     assert_int_equal(grobo_bus_init(&bus, &config), GROBO_OK);

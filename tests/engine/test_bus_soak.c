@@ -13,6 +13,7 @@
 #include <grobo/bus.h>
 
 #include "src/bus/framer.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum {
@@ -161,8 +162,9 @@ static void make_request(soak *s, request *r)
     int n = draw(s, 4) == 0
                 ? grobo_rs30x_ping(id, GROBO_RS30X_PING_0_0_0, packet, sizeof packet)
                 : grobo_rs30x_read(id, 42, draw(s, 2) == 0 ? 2 : 18, packet, sizeof packet);
-    n = grobo_frame_wrap(&grobo_board_protocol, packet, (size_t)n, r->frame, FRAME);
-    assert_int_equal(grobo_txn_init(&r->txn, &grobo_board_protocol, r->frame, (size_t)n), GROBO_OK);
+    n = grobo_frame_wrap(&grobo_i_board_protocol, packet, (size_t)n, r->frame, FRAME);
+    assert_int_equal(grobo_txn_init(&r->txn, &grobo_i_board_protocol, r->frame, (size_t)n),
+                     GROBO_OK);
     r->txn.retries = (uint8_t)draw(s, 3);
     r->txn.priority = draw(s, 2) == 0 ? GROBO_PRIORITY_USER : GROBO_PRIORITY_SENSE;
     r->txn.done = ended;
@@ -172,9 +174,9 @@ static void make_request(soak *s, request *r)
 static void make_pose(soak *s)
 {
     const grobo_rs30x_goal goals[] = {{1, 0, 2}, {2, 0, 2}, {3, 0, 2}, {4, 0, 2}};
-    int n = grobo_frame_goals(&grobo_board_protocol, goals, 4, s->pose.frame, FRAME);
+    int n = grobo_frame_goals(&grobo_i_board_protocol, goals, 4, s->pose.frame, FRAME);
     grobo_txn *txn = &s->pose.txn;
-    assert_int_equal(grobo_txn_init(txn, &grobo_board_protocol, s->pose.frame, (size_t)n),
+    assert_int_equal(grobo_txn_init(txn, &grobo_i_board_protocol, s->pose.frame, (size_t)n),
                      GROBO_OK);
     txn->priority = GROBO_PRIORITY_MOTION;
     txn->done = ended;
@@ -266,7 +268,7 @@ TEST(no_fault_breaks_the_bus)
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         memset(&s, 0, sizeof s);
         s.random = seed * 0x9E3779B97F4A7C15u;
-        const grobo_bus_config line = {.protocol = &grobo_board_protocol};
+        const grobo_bus_config line = {.protocol = &grobo_i_board_protocol};
         assert_int_equal(grobo_bus_init(&s.bus, &line), GROBO_OK);
         make_pose(&s);
         for (int i = 0; i < REQUESTS; i++) {

@@ -17,6 +17,7 @@
 #include <grobo/rs30x.h>
 
 #include "tests/support/next_random.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { MS = 1000, ROOM = 200, OWN_ID = 7, OTHER_ID = 9, VALUE = 0x0BB8, OTHER_VALUE = 0x0664 };
@@ -46,7 +47,7 @@ static int ask_rs30x(uint8_t id, uint8_t *frame)
 
 static int ask_board(uint8_t id, uint8_t *frame)
 {
-    return grobo_frame_read(&grobo_board_protocol, id, 42, 2, frame, ROOM);
+    return grobo_frame_read(&grobo_i_board_protocol, id, 42, 2, frame, ROOM);
 }
 
 static int tell_rs30x(const saying *what, uint8_t *bytes)
@@ -122,13 +123,13 @@ static int tell_ics(const saying *what, uint8_t *bytes)
 }
 
 static const family families[] = {
-    {"RS30x", &grobo_rs30x_protocol, ask_rs30x, tell_rs30x, 5, true, true},
-    {"board", &grobo_board_protocol, ask_board, tell_rs30x, 5, true, false},
-    {"DYNAMIXEL 2.0", &grobo_dxl2_protocol, ask_dxl2, tell_dxl2, 5, true, true},
-    {"DYNAMIXEL 1.0", &grobo_dxl1_protocol, ask_dxl1, tell_dxl1, 3, true, true},
-    {"Feetech", &grobo_feetech_protocol, ask_dxl1, tell_dxl1, 3, true, true},
-    {"Hiwonder", &grobo_lx16a_protocol, ask_lx16a, tell_lx16a, 3, true, true},
-    {"Kondo", &grobo_ics_protocol, ask_ics, tell_ics, 0, false, true},
+    {"RS30x", &grobo_i_rs30x_protocol, ask_rs30x, tell_rs30x, 5, true, true},
+    {"board", &grobo_i_board_protocol, ask_board, tell_rs30x, 5, true, false},
+    {"DYNAMIXEL 2.0", &grobo_i_dxl2_protocol, ask_dxl2, tell_dxl2, 5, true, true},
+    {"DYNAMIXEL 1.0", &grobo_i_dxl1_protocol, ask_dxl1, tell_dxl1, 3, true, true},
+    {"Feetech", &grobo_i_feetech_protocol, ask_dxl1, tell_dxl1, 3, true, true},
+    {"Hiwonder", &grobo_i_lx16a_protocol, ask_lx16a, tell_lx16a, 3, true, true},
+    {"Kondo", &grobo_i_ics_protocol, ask_ics, tell_ics, 0, false, true},
 };
 
 enum { FAMILIES = sizeof families / sizeof families[0] };
@@ -148,7 +149,7 @@ static void done(void *ctx, grobo_txn *txn, int result, const grobo_packet *repl
 {
     (void)ctx;
     (void)txn;
-    bool high_first = line.family->protocol == &grobo_ics_protocol;
+    bool high_first = line.family->protocol == &grobo_i_ics_protocol;
     line.ended = true;
     line.result = result;
     line.value = -1;

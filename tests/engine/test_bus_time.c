@@ -8,6 +8,7 @@
 
 #include "src/bus/time.h"
 #include "tests/support/bus_peer.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, JOINTS = 20 };
@@ -62,7 +63,7 @@ TEST(other_costs_follow_the_same_rule)
     assert_int_equal(cost.total_us, 261);
 
     const grobo_bus_config fast = {
-        .protocol = &grobo_rs30x_protocol, .baud_bps = 460800, .return_delay_us = 1000};
+        .protocol = &grobo_i_rs30x_protocol, .baud_bps = 460800, .return_delay_us = 1000};
     peer_init(&p, &fast);
     peer_read(&p, &r, 1, 18, GROBO_PRIORITY_SENSE);
     grobo_bus_cost_of(&p.bus, &r.txn, &cost);
@@ -263,8 +264,8 @@ static size_t forward_some(const uint8_t *frame, size_t n)
 /* On the servos' bus is what the board forwards, be it a single byte. */
 TEST(what_a_board_forwards_takes_its_time)
 {
-    grobo_relay relay = *grobo_board_protocol.relay;
-    grobo_protocol protocol = grobo_board_protocol;
+    grobo_relay relay = *grobo_i_board_protocol.relay;
+    grobo_protocol protocol = grobo_i_board_protocol;
     static const uint32_t bytes_us[] = {0, 87, 174, 261}; /* rounded up */
     protocol.relay = &relay;
     relay.forwarded = forward_some;
@@ -367,7 +368,7 @@ TEST(patience_has_its_limits)
  * where after a failure everything keeps quiet. */
 TEST(a_patient_read_delays_no_motion_frame)
 {
-    static const grobo_bus_config on_bus = {.protocol = &grobo_rs30x_protocol};
+    static const grobo_bus_config on_bus = {.protocol = &grobo_i_rs30x_protocol};
     for (int i = 0; i < 108; i++) {
         bool bus = i % 3 == 0;
         bool announced = i % 3 != 1;

@@ -8,6 +8,7 @@
 #include <grobo/rs30x.h>
 
 #include "tests/support/table_bus.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
@@ -473,7 +474,8 @@ TEST(a_limit_that_is_kept_is_a_setup)
     assert_int_equal(grobo_lx16a_driver_init(&driver, &one), GROBO_ERR_ARG);
     joint.servo_model = 3301;
     assert_int_equal(grobo_ics_driver_init(&driver, &one), GROBO_ERR_ARG);
-    assert_int_equal(grobo_rs30x_driver_init(&driver, &one, &grobo_rs30x_protocol), GROBO_ERR_ARG);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &one, &grobo_i_rs30x_protocol),
+                     GROBO_ERR_ARG);
 }
 
 /* Which register, what it holds, what it should. */
@@ -618,7 +620,7 @@ static int raw(uint8_t id, uint8_t code, uint16_t address, const uint8_t *data, 
 {
     uint8_t b[64];
     int size;
-    if (bus.driver.protocol == &grobo_dxl2_protocol) {
+    if (bus.driver.protocol == &grobo_i_dxl2_protocol) {
         const grobo_dxl2_packet p = {
             .id = id, .instruction = code, .address = address, .data = data, .data_bytes = n};
         size = grobo_dxl2_build(&p, b, sizeof b);

@@ -10,6 +10,7 @@
 
 #include "src/sim/servo/shaft.h"
 #include "tests/support/family_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { JOINTS = FAMILY_JOINTS, MS = 1000, S = 1000000 };
@@ -204,7 +205,7 @@ TEST(a_servo_set_up_otherwise_is_made_limp)
  * the joint stays where it was left. KRS servos do not tell their goal: they hold on. */
 TEST_FOR(family, family_next, a_hand_moves_a_free_joint)
 {
-    if (row->table == &grobo_ics_table) {
+    if (row->table == &grobo_i_ics_table) {
         return;
     }
     family_start(&kit, row, &watched, NULL);
@@ -586,7 +587,7 @@ TEST(a_driver_tells_the_ramps_of_its_servos)
     family_start(&kit, family_named("dxl1"), &watched, NULL);
     grobo_driver mx;
     for (int j = 0; j < JOINTS; j++) {
-        kit.joints[j].servo_model = grobo_servo_model_named(&grobo_dxl1_table, "MX-28")->number;
+        kit.joints[j].servo_model = grobo_servo_model_named(&grobo_i_dxl1_table, "MX-28")->number;
     }
     assert_int_equal(grobo_dxl1_driver_init(&mx, &kit.model), GROBO_OK);
     assert_true(mx.accel_rad_s2 == 0);
@@ -596,7 +597,7 @@ TEST(a_driver_tells_the_ramps_of_its_servos)
     }
     assert_int_equal(grobo_feetech_driver_init(&kit.driver, &kit.model), GROBO_OK);
     assert_true(fabs(kit.driver.accel_rad_s2 / grobo_rad_from_deg(1) - 508 * 8.79) < 0.01);
-    kit.joints[2].servo_model = grobo_servo_model_named(&grobo_scs_table, "SCS0009")->number;
+    kit.joints[2].servo_model = grobo_servo_model_named(&grobo_i_scs_table, "SCS0009")->number;
     assert_int_equal(grobo_feetech_driver_init(&kit.driver, &kit.model), GROBO_OK);
     assert_true(kit.driver.accel_rad_s2 == 0);
 }

@@ -6,14 +6,15 @@
 #include <grobo/dxl2.h>
 
 #include "tests/support/family_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { MS = 1000, S = 1000000, OLD = 45, ENOUGH = 46 };
 
-static const family xl330 = {"dxl2", &grobo_dxl2_table, "XL330-M288", grobo_dxl2_driver_init,
-                             0.5,    1000000,           false};
-static const family xm430 = {"dxl2", &grobo_dxl2_table, "XM430-W350", grobo_dxl2_driver_init,
-                             0.5,    1000000,           false};
+static const family xl330 = {
+    "dxl2", &grobo_i_dxl2_table, "XL330-M288", grobo_dxl2_driver_init, 0.5, 1000000, false};
+static const family xm430 = {
+    "dxl2", &grobo_i_dxl2_table, "XM430-W350", grobo_dxl2_driver_init, 0.5, 1000000, false};
 static const grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 10 * MS};
 
 static family_kit kit;

@@ -6,6 +6,7 @@
 #include <grobo/gr001.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define STEP_US 1000
@@ -92,7 +93,7 @@ static void expect_ways(int joint, grobo_joint_mask taught, double dps)
     print_message("# %s, %s of %d joints taught, %.0f deg/s: %.1f of 60 deg by a hand that waits, "
                   "%.1f by one that forces\n",
                   rig_wiring == GROBO_WIRING_BUS ? "bus" : "board",
-                  grobo_gr001_model.joints[joint].name, grobo_joints_count(taught), fabs(dps),
+                  grobo_i_gr001_model.joints[joint].name, grobo_joints_count(taught), fabs(dps),
                   waits_deg, forces_deg);
 }
 

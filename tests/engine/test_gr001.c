@@ -8,6 +8,7 @@
 #include <grobo/gr001.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static grobo_test_rig rig;
@@ -124,7 +125,7 @@ TEST_WITH(rig_wirings, goals_are_packed_as_in_a_packet)
 
 TEST_WITH(rig_wirings, postures_are_made_in_motor_order)
 {
-    const grobo_model *model = &grobo_gr001_model;
+    const grobo_model *model = &grobo_i_gr001_model;
     int16_t angle_ddeg[20];
     grobo_posture posture;
     for (int m = 1; m <= 20; m++) {
@@ -248,7 +249,7 @@ static int print_currents(FILE *stream)
 static int print_body(FILE *stream)
 {
     grobo_posture posture;
-    grobo_posture_init_pose(&posture, &grobo_gr001_model);
+    grobo_posture_init_pose(&posture, &grobo_i_gr001_model);
     posture.set &= ~GROBO_JOINT_BIT(NECK);
     return grobo_gr001_print_posture(&posture, stream);
 }

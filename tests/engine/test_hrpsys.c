@@ -8,6 +8,7 @@
 #include <grobo/static.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static grobo_test_rig rig;
@@ -64,9 +65,9 @@ TEST_WITH(rig_wirings, all_joints_are_called_all_by_any_model)
     static grobo_robot robot;
     grobo_driver driver;
     grobo_joint_mask joints = 0;
-    grobo_model model = grobo_gr001_model;
+    grobo_model model = grobo_i_gr001_model;
     model.n_groups = 0;
-    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol), 0);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, &grobo_i_rs30x_protocol), 0);
     assert_int_equal(grobo_robot_init(&robot, &driver, NULL, NULL, 0), 0);
     grobo_hrpsys_init(&hrpsys, &robot);
     assert_int_equal(grobo_hrpsys_find(&hrpsys, "All", &joints), 20);

@@ -9,6 +9,7 @@
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/family_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
@@ -20,7 +21,7 @@ static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT, .sense_inter
 
 static void start_chain(const char *name, int n)
 {
-    chain_start(&chain, grobo_servo_model_named(&grobo_ics_table, name), n,
+    chain_start(&chain, grobo_servo_model_named(&grobo_i_ics_table, name), n,
                 &(grobo_sim_config){GROBO_SIM_CONFIG_INIT, .no_stops = true});
 }
 

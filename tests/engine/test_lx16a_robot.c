@@ -8,6 +8,7 @@
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/family_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
@@ -19,7 +20,7 @@ static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT, .sense_inter
 
 static void start_chain(int n)
 {
-    const grobo_servo_model *lx16a = grobo_servo_model_named(&grobo_lx16a_table, "LX-16A");
+    const grobo_servo_model *lx16a = grobo_servo_model_named(&grobo_i_lx16a_table, "LX-16A");
     chain_start(&chain, lx16a, n, &(grobo_sim_config){GROBO_SIM_CONFIG_INIT, .no_stops = true});
 }
 

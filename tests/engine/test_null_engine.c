@@ -10,6 +10,7 @@
 #include <grobo/static.h>
 #include <grobo/team.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
@@ -76,9 +77,9 @@ TEST(bus_refuses_null)
 {
     REFUSES(grobo_bus_init(NULL, &bus_config));
     REFUSES(grobo_bus_init(&bus, NULL));
-    REFUSES(grobo_txn_init(NULL, &grobo_rs30x_protocol, bytes, 1));
+    REFUSES(grobo_txn_init(NULL, &grobo_i_rs30x_protocol, bytes, 1));
     REFUSES(grobo_txn_init(&txn, NULL, bytes, 1));
-    REFUSES(grobo_txn_init(&txn, &grobo_rs30x_protocol, NULL, 1));
+    REFUSES(grobo_txn_init(&txn, &grobo_i_rs30x_protocol, NULL, 1));
     REFUSES(grobo_bus_submit(NULL, &txn));
     REFUSES(grobo_bus_submit(&bus, NULL));
     assert_false(grobo_txn_is_pending(NULL));
@@ -229,7 +230,7 @@ TEST(robot_config_refuses_null)
 
 TEST(sequencer_refuses_null)
 {
-    grobo_sequencer_init(NULL, &grobo_gr001_model);
+    grobo_sequencer_init(NULL, &grobo_i_gr001_model);
     REFUSES(grobo_sequencer_play(NULL, &clip, &play_options, &posture, 1000));
     REFUSES(grobo_sequencer_play(&seq, NULL, &play_options, &posture, 1000));
     REFUSES(grobo_sequencer_enqueue(NULL, &clip, &play_options));

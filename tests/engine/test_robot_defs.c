@@ -10,6 +10,7 @@
 #include <grobo/static.h>
 
 #include "src/robots/robots.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { S = 1000000 };
@@ -117,8 +118,8 @@ static void shafts_are_at(const grobo_posture *to)
 
 TEST(each_moves_in_its_simulator)
 {
-    for (int i = 0; grobo_robot_defs[i] != NULL; i++) {
-        start(grobo_robot_defs[i], grobo_robot_defs[i]->wiring);
+    for (int i = 0; grobo_i_robot_defs[i] != NULL; i++) {
+        start(grobo_i_robot_defs[i], grobo_i_robot_defs[i]->wiring);
         finish(grobo_robot_check(&robot));
         grobo_posture to = some_posture();
         finish(grobo_robot_move(&robot, &to));
@@ -138,8 +139,8 @@ TEST(each_moves_in_its_simulator)
  * servo is mounted. */
 TEST(servos_stand_as_they_are_mounted)
 {
-    for (int i = 0; grobo_robot_defs[i] != NULL; i++) {
-        start(grobo_robot_defs[i], grobo_robot_defs[i]->wiring);
+    for (int i = 0; grobo_i_robot_defs[i] != NULL; i++) {
+        start(grobo_i_robot_defs[i], grobo_i_robot_defs[i]->wiring);
         for (int j = 0; j < driver.model->n_joints; j++) {
             const grobo_joint *joint = &driver.model->joints[j];
             grobo_sim_view view;
@@ -178,10 +179,10 @@ TEST(an_arm_is_read_as_fast_as_its_wire)
 
 TEST(gr001_is_on_a_bus_too)
 {
-    start(grobo_robot_defs[0], GROBO_WIRING_BUS);
+    start(grobo_i_robot_defs[0], GROBO_WIRING_BUS);
     grobo_posture to = some_posture();
     finish(grobo_robot_move(&robot, &to));
     shafts_are_at(&to);
-    assert_int_equal(grobo_robot_def_driver(grobo_robot_defs[1], GROBO_WIRING_BOARD, &driver),
+    assert_int_equal(grobo_robot_def_driver(grobo_i_robot_defs[1], GROBO_WIRING_BOARD, &driver),
                      GROBO_ERR_UNSUPPORTED);
 }

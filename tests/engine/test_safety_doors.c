@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static grobo_test_rig rig;
@@ -215,7 +216,7 @@ TEST(raw_reads_of_any_register_pass)
     rig_start(&rig, &quiet, NULL);
     for (uint8_t at = 0; at < 54; at++) {
         uint8_t frame[16];
-        int n = grobo_frame_read(&grobo_board_protocol, NECK_ID, at, 1, frame, sizeof frame);
+        int n = grobo_frame_read(&grobo_i_board_protocol, NECK_ID, at, 1, frame, sizeof frame);
         rig_expect(&rig, grobo_robot_raw(&rig.robot, frame, (size_t)n), GROBO_OK);
     }
 }

@@ -8,6 +8,7 @@
 #include <grobo/hrpsys.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static grobo_test_rig rig;
@@ -44,9 +45,9 @@ static int by_motors(void)
 {
     double angle_rad[20];
     grobo_posture target;
-    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    grobo_posture_init_pose(&target, &grobo_i_gr001_model);
     for (int j = 0; j < 20; j++) {
-        angle_rad[grobo_gr001_model.joints[j].motor - 1] = target.angle_rad[j];
+        angle_rad[grobo_i_gr001_model.joints[j].motor - 1] = target.angle_rad[j];
     }
     angle_rad[NECK_ID - 1] = grobo_rad_from_deg(TOO_FAR_DEG);
     return grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 3000000);
@@ -55,7 +56,7 @@ static int by_motors(void)
 static int by_hrpsys(void)
 {
     grobo_posture target;
-    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    grobo_posture_init_pose(&target, &grobo_i_gr001_model);
     target.angle_rad[NECK] = grobo_rad_from_deg(TOO_FAR_DEG);
     grobo_hrpsys_init(&hrpsys, &rig.robot);
     assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, target.angle_rad, 20), 0);

@@ -9,6 +9,7 @@
 #include <grobo/sim_static.h>
 
 #include "tests/support/chain_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { BYTE_US = 10 };
@@ -18,8 +19,8 @@ static const uint8_t six[] = {1, 2, 3, 4, 5, 6};
 
 static void start(const char *name, int n)
 {
-    const grobo_servo_table *const tables[] = {&grobo_dxl1_table, &grobo_sts_table,
-                                               &grobo_scs_table};
+    const grobo_servo_table *const tables[] = {&grobo_i_dxl1_table, &grobo_i_sts_table,
+                                               &grobo_i_scs_table};
     const grobo_servo_model *model = NULL;
     for (int i = 0; i < 3 && model == NULL; i++) {
         model = grobo_servo_model_named(tables[i], name);
@@ -314,7 +315,7 @@ TEST(a_goal_switches_torque_on)
 TEST(families_share_a_line)
 {
     start("STS3215", 2);
-    chain.servos[0] = grobo_servo_model_named(&grobo_dxl2_table, "XL330-M288");
+    chain.servos[0] = grobo_servo_model_named(&grobo_i_dxl2_table, "XL330-M288");
     grobo_sim_config config = chain.kit.sim.config;
     config.baud_bps = 1000000;
     simkit_start(&chain.kit, &config);
@@ -331,7 +332,7 @@ TEST(families_share_a_line)
     assert_int_equal(grobo_sim_get_flash(&chain.kit.sim, 0, flash), GROBO_ERR_UNSUPPORTED);
     assert_int_equal(grobo_sim_set_flash(&chain.kit.sim, 0, flash), GROBO_ERR_UNSUPPORTED);
     /* What cannot be simulated. */
-    static const grobo_sim_family *const none[] = {&grobo_sim_dxl2, NULL};
+    static const grobo_sim_family *const none[] = {&grobo_i_sim_dxl2, NULL};
     grobo_sim *sim = &chain.kit.sim;
     config.families = none;
     assert_int_equal(grobo_sim_init(sim, &config, 0), GROBO_ERR_UNSUPPORTED);

@@ -7,6 +7,7 @@
 #include <grobo/dxl2.h>
 
 #include "tests/support/chain_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { BYTE_US = 10, DELAY_US = 500 };
@@ -15,7 +16,7 @@ static chain_kit chain;
 
 static const grobo_servo_model *model(const char *name)
 {
-    return grobo_servo_model_named(&grobo_dxl2_table, name);
+    return grobo_servo_model_named(&grobo_i_dxl2_table, name);
 }
 
 static const uint8_t six[] = {1, 2, 3, 4, 5, 6};

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tests/support/simkit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static simkit kit, twin;
@@ -236,7 +237,7 @@ static void drive(simkit *k, uint32_t seed, grobo_wiring wiring)
         }
         for (int s = 0; s < 20; s++) {
             grobo_sim_view view = simkit_look(k, s);
-            const grobo_joint *joint = &grobo_gr001_model.joints[s];
+            const grobo_joint *joint = &grobo_i_gr001_model.joints[s];
             assert_true(view.angle_mdeg >= joint->min_rad * 57295.8 - 1);
             assert_true(view.angle_mdeg <= joint->max_rad * 57295.8 + 1);
         }

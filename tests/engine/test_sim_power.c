@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tests/support/simkit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static simkit kit;
@@ -27,9 +28,9 @@ TEST(power_up_is_limp_with_goals_at_zero)
         assert_int_equal(view.torque, GROBO_TORQUE_OFF);
         assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_GOAL), 0);
         assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_ID),
-                         grobo_gr001_model.joints[i].motor);
+                         grobo_i_gr001_model.joints[i].motor);
         assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_MODEL),
-                         grobo_gr001_model.joints[i].servo_model);
+                         grobo_i_gr001_model.joints[i].servo_model);
         assert_false(view.moving || view.stalled || view.deaf);
     }
     assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_POSITION), 200);
@@ -46,7 +47,7 @@ TEST(limp_start_is_within_stops_and_of_the_seed)
     simkit_start(&other, &config);
     int differ = 0;
     for (int i = 0; i < 20; i++) {
-        const grobo_joint *joint = &grobo_gr001_model.joints[i];
+        const grobo_joint *joint = &grobo_i_gr001_model.joints[i];
         int32_t mdeg = simkit_look(&kit, i).angle_mdeg;
         assert_int_equal(mdeg, simkit_look(&other, i).angle_mdeg);
         assert_true(mdeg >= joint->min_rad * 57295.8 - 1 && mdeg <= joint->max_rad * 57295.8 + 1);

@@ -7,6 +7,7 @@
 #include <grobo/lx16a.h>
 
 #include "tests/support/simkit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
@@ -441,7 +442,7 @@ TEST(every_type_is_what_its_row_says)
     grobo_model model = {.name = "chain", .joints = joints};
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &model,
                                      .wiring = GROBO_WIRING_BUS, .no_stops = true};
-    for (; model.n_joints < grobo_rs30x_table.model_count; model.n_joints++) {
+    for (; model.n_joints < grobo_i_rs30x_table.model_count; model.n_joints++) {
         int i = model.n_joints;
         assert_true(i < GROBO_SIM_SERVOS_MAX);
         snprintf(names[i], sizeof names[i], "S%d", i);
@@ -449,7 +450,7 @@ TEST(every_type_is_what_its_row_says)
                                   .min_rad = -2.6,
                                   .max_rad = 2.6,
                                   .max_speed_rad_s = 1,
-                                  .servo_model = grobo_rs30x_table.models[i].number,
+                                  .servo_model = grobo_i_rs30x_table.models[i].number,
                                   .motor = (uint8_t)(i + 1),
                                   .mirror = (uint8_t)i,
                                   .mirror_sign = 1};
@@ -461,7 +462,7 @@ TEST(every_type_is_what_its_row_says)
         assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_MODEL), joints[i].servo_model);
         const grobo_servo_register *reg;
         for (size_t k = 0;
-             (reg = grobo_servo_register_row(&grobo_rs30x_table.models[i], k)) != NULL; k++) {
+             (reg = grobo_servo_register_row(&grobo_i_rs30x_table.models[i], k)) != NULL; k++) {
             bool as_made = reg->factory != 0 && reg->role != GROBO_ROLE_ID;
             assert_true(!as_made || simkit_register(&kit, i, reg->address) == reg->factory);
         }
@@ -480,13 +481,13 @@ TEST(every_type_is_what_its_row_says)
 TEST(a_board_has_servos_of_its_own_only)
 {
     const grobo_servo_model *servos[GROBO_SIM_SERVOS_MAX];
-    const grobo_sim_family *const families[] = {&grobo_sim_rs30x, &grobo_sim_lx16a, NULL};
+    const grobo_sim_family *const families[] = {&grobo_i_sim_rs30x, &grobo_i_sim_lx16a, NULL};
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .servos = servos, .families = families};
-    for (int j = 0; j < grobo_gr001_model.n_joints; j++) {
-        servos[j] = grobo_servo_model_named(&grobo_rs30x_table, "RS304MD");
+    for (int j = 0; j < grobo_i_gr001_model.n_joints; j++) {
+        servos[j] = grobo_servo_model_named(&grobo_i_rs30x_table, "RS304MD");
     }
     simkit_start(&kit, &config);
     assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_MODEL), GROBO_RS30X_RS304MD);
-    servos[1] = &grobo_lx16a_table.models[0];
+    servos[1] = &grobo_i_lx16a_table.models[0];
     assert_int_equal(grobo_sim_init(&kit.sim, &config, 0), GROBO_ERR_ARG);
 }

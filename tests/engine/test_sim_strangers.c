@@ -15,6 +15,7 @@
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/next_random.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { SERVOS = 3, ROUNDS = 1000, ROOM = 300, DATA_MOST = 24 };
@@ -22,9 +23,9 @@ enum { SERVOS = 3, ROUNDS = 1000, ROOM = 300, DATA_MOST = 24 };
 /* Each servo of a list that is not there has the time of what it is asked for. */
 enum { LONGEST_US = 100000000 };
 
-static const grobo_servo_table *const tables[] = {&grobo_dxl2_table,  &grobo_dxl1_table,
-                                                  &grobo_sts_table,   &grobo_scs_table,
-                                                  &grobo_lx16a_table, &grobo_ics_table};
+static const grobo_servo_table *const tables[] = {&grobo_i_dxl2_table,  &grobo_i_dxl1_table,
+                                                  &grobo_i_sts_table,   &grobo_i_scs_table,
+                                                  &grobo_i_lx16a_table, &grobo_i_ics_table};
 
 static chain_kit chain;
 static uint32_t seed;
@@ -83,19 +84,19 @@ static int any_instruction(uint8_t *frame)
                                    .value = (uint16_t)any(any(2) > 0 ? 0x4000 : 0x80),
                                    .data = nibbles};
     const grobo_servo_table *table = chain.servos[0]->table;
-    return table == &grobo_dxl2_table    ? grobo_dxl2_build(&packet, frame, ROOM)
-           : table == &grobo_lx16a_table ? grobo_lx16a_build(&small, frame, ROOM)
-           : table == &grobo_ics_table   ? grobo_ics_build(&bare, frame, ROOM)
-                                         : grobo_dxl1_build(&other, frame, ROOM);
+    return table == &grobo_i_dxl2_table    ? grobo_dxl2_build(&packet, frame, ROOM)
+           : table == &grobo_i_lx16a_table ? grobo_lx16a_build(&small, frame, ROOM)
+           : table == &grobo_i_ics_table   ? grobo_ics_build(&bare, frame, ROOM)
+                                           : grobo_dxl1_build(&other, frame, ROOM);
 }
 
 static int size_of_reply(const uint8_t *sent, size_t sent_bytes, const uint8_t *bytes, size_t n)
 {
     const grobo_servo_table *table = chain.servos[0]->table;
-    return table == &grobo_dxl2_table    ? grobo_dxl2_measure(bytes, n, GROBO_ACCEPT_RETURNS)
-           : table == &grobo_lx16a_table ? grobo_lx16a_measure(bytes, n, GROBO_ACCEPT_RETURNS)
-           : table == &grobo_ics_table   ? grobo_ics_answer(sent, sent_bytes, bytes, n)
-                                         : grobo_dxl1_measure(bytes, n, GROBO_ACCEPT_RETURNS);
+    return table == &grobo_i_dxl2_table    ? grobo_dxl2_measure(bytes, n, GROBO_ACCEPT_RETURNS)
+           : table == &grobo_i_lx16a_table ? grobo_lx16a_measure(bytes, n, GROBO_ACCEPT_RETURNS)
+           : table == &grobo_i_ics_table   ? grobo_ics_answer(sent, sent_bytes, bytes, n)
+                                           : grobo_dxl1_measure(bytes, n, GROBO_ACCEPT_RETURNS);
 }
 
 static void ask(const uint8_t *frame, size_t n)
@@ -122,7 +123,7 @@ static void what_is_said_is_whole(const uint8_t *sent, size_t n)
 static void a_client_that_sends_anything(const grobo_servo_model *model)
 {
     static const grobo_register_role fixed[] = {GROBO_ROLE_MODEL, GROBO_ROLE_FIRMWARE};
-    const bool slow = model->table == &grobo_lx16a_table || model->table == &grobo_ics_table;
+    const bool slow = model->table == &grobo_i_lx16a_table || model->table == &grobo_i_ics_table;
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .baud_bps = slow ? 115200 : 1000000,
                                      .no_stops = any(2) > 0};
     int32_t before[2] = {0}, parts = 0;

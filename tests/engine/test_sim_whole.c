@@ -14,6 +14,7 @@
 
 #include "src/sim/servo/talk.h"
 #include "tests/support/simkit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static simkit whole, bytewise;
@@ -157,8 +158,9 @@ TEST(nobody_sees_a_difference)
     };
     uint32_t replies = 0;
     for (size_t i = 0; i < sizeof configs / sizeof *configs; i++) {
-        const grobo_protocol *protocol =
-            configs[i].wiring == GROBO_WIRING_BUS ? &grobo_rs30x_protocol : &grobo_board_protocol;
+        const grobo_protocol *protocol = configs[i].wiring == GROBO_WIRING_BUS
+                                             ? &grobo_i_rs30x_protocol
+                                             : &grobo_i_board_protocol;
         for (uint32_t seed = 0; seed < 60; seed++) {
             start_both(&configs[i]);
             if (seed % 8 == 0) { /* not the rate of the board: each byte arrives as another one */
@@ -177,7 +179,7 @@ TEST(a_fault_may_begin_within_a_frame)
 {
     start_both(NULL);
     uint8_t buf[GROBO_REPLY_MAX_BYTES];
-    int n = grobo_frame_read(&grobo_board_protocol, 3, 42, 2, buf, sizeof buf);
+    int n = grobo_frame_read(&grobo_i_board_protocol, 3, 42, 2, buf, sizeof buf);
     write_both(buf, (size_t)n);
     run_both(500);
     assert_int_equal(grobo_sim_set_fault(&whole.sim, GROBO_SIM_FAULT_FLIP, 3e-10), 0);

@@ -7,6 +7,7 @@
 #include <grobo/board.h>
 
 #include "tests/support/raw_frames.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static grobo_test_rig rig;
@@ -206,7 +207,7 @@ TEST_WITH(rig_wirings, a_stop_of_a_motion_begins_where_a_weak_joint_is)
         rig_run(&rig, 1500000);
         assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < stop_way_deg(way));
         assert_true(way != STOP_AT_ONCE ||
-                    rig_sent_ms(&rig, grobo_gr001_model.joints[SHOULDER].motor) <= 20);
+                    rig_sent_ms(&rig, grobo_i_gr001_model.joints[SHOULDER].motor) <= 20);
     }
 }
 

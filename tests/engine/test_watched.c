@@ -9,6 +9,7 @@
 
 #include "tests/support/many_joints.h"
 #include "tests/support/rig.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { JOINTS = 20, SECOND_US = 1000000 };
@@ -239,7 +240,7 @@ static grobo_clip dense_clip;
 static int dense_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
 {
     (void)ctx;
-    grobo_posture_init_pose(posture, &grobo_gr001_model);
+    grobo_posture_init_pose(posture, &grobo_i_gr001_model);
     posture->angle_rad[NECK] =
         grobo_rad_from_deg(i % 400 < 200 ? 0.1 * (double)(i % 400) : 0.1 * (double)(400 - i % 400));
     posture->time_us = 10000;

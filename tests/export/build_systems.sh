@@ -14,7 +14,7 @@ by_pkg_config() {
 int main(void)
 {
     grobo_driver driver;
-    return grobo_rs30x_driver_init(&driver, &grobo_gr001_model, &grobo_rs30x_protocol) < 0;
+    return grobo_rs30x_driver_init(&driver, grobo_gr001_model(), grobo_rs30x_protocol()) < 0;
 }
 C
     # shellcheck disable=SC2046

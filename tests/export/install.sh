@@ -69,6 +69,45 @@ same_version() {
     grep -Fq "GROBO_VERSION_STRING \"$told\"" include/grobo/version.h
 }
 
+# quietly COMMAND...: it succeeds, and has nothing to say.
+quietly() {
+    "$@" >"$work/said" 2>&1 && [ ! -s "$work/said" ] || { head -n 20 "$work/said"; return 1; }
+}
+
+# All functions of all installed headers, in one program of their addresses.
+every_function() {
+    (cd "$tree/opt/grobo" && sh "$here/tools/lint/symbols.sh" --declared) >"$work/functions"
+    {
+        (cd "$tree/opt/grobo/include" && find grobo -name '*.h' ! -path '*/classic/*' |
+            sed 's/.*/#include <&>/')
+        echo '#include <stdio.h>'
+        echo 'typedef void (*function)(void);'
+        echo 'static const volatile function all[] = {'
+        sed 's/.*/    (function)&,/' "$work/functions"
+        echo '};'
+        cat <<'C'
+int main(void)
+{
+    unsigned n = 0;
+    for (unsigned i = 0; i < sizeof all / sizeof *all; i++) {
+        n += all[i] != NULL;
+    }
+    return printf("%u\n", n) < 0;
+}
+C
+    } >"$work/all.c"
+    [ "$(grep -c . "$work/functions")" -gt 400 ] && quietly builds "$@" &&
+        LD_LIBRARY_PATH=$library $emulator "$work/program" |
+        grep -qx "$(grep -c . "$work/functions")"
+}
+
+# The shortest program of README.md, which is C and C++.
+readme_program() {
+    awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' README.md >"$work/readme.c"
+    grep -q 'int main' "$work/readme.c" && quietly builds "$@" &&
+        LD_LIBRARY_PATH=$library $emulator "$work/program"
+}
+
 every_header() {
     for header in "$tree"/opt/grobo/include/grobo/*.h; do
         echo "#include <grobo/${header##*/}>"
@@ -85,6 +124,9 @@ compilers() {
     cxx=${CXX:-g++}
     echo "C, ${cc%% *}: $cc $c11"
     echo "C++, ${cxx%% *}: $cxx $cxx11"
+    for year in 17 20; do
+        echo "C++$year, ${cxx%% *}: $cxx -std=c++$year ${cxx11#* }"
+    done
     [ -n "$emulator" ] || [ "${cc%% *}" = clang ] || printf '%s\n' \
         "C, clang: clang $c11" "C++, clang: clang++ $cxx11"
 }
@@ -183,6 +225,8 @@ by_each() {
         check "$name: builds" builds "$command" tests/export/consumer.c "$@"
         check "$name: runs" runs
         check "$name: the classic shelf" classic "$command" "${1:-}"
+        check "$name: the program of README.md" readme_program "$command" "$work/readme.c" "$@"
+        check "$name: every function links" every_function "$command" "$work/all.c" "$@"
         [ $# -gt 0 ] && continue
         check "$name: asks for libgrobo.so.0" needs
         check "$name: every installed header together" every_header "$command"

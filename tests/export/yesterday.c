@@ -47,7 +47,7 @@ static int with_motions(grobo_motion *motion)
     int result = grobo_motion_clip(motion, &clips.config, &clip);
     if (result >= 0) {
         grobo_motion_clip_free(&clip);
-        result = grobo_motion_check(motion, &grobo_gr001_model, &checking.config, NULL);
+        result = grobo_motion_check(motion, grobo_gr001_model(), &checking.config, NULL);
     }
     if (result >= 0) {
         result = grobo_motion_write(motion, GROBO_FORMAT_M, &writing.config, &sink, NULL);
@@ -56,7 +56,7 @@ static int with_motions(grobo_motion *motion)
         result = grobo_motion_read_memory(text, sizeof text - 1, &reading.config, NULL, &keys);
     }
     if (result >= 0) {
-        result = grobo_body_new(&grobo_gr001_body, keys, &solving.config, NULL, &body);
+        result = grobo_body_new(grobo_gr001_body(), keys, &solving.config, NULL, &body);
     }
     if (result >= 0) {
         result = grobo_body_check(body, &balance.config);
@@ -125,7 +125,7 @@ int main(void)
     }
     result = grobo_runner_connect(robot_of, 0);
     if (result >= 0) {
-        grobo_posture_init_pose(&target, &grobo_gr001_model);
+        grobo_posture_init_pose(&target, grobo_gr001_model());
         result = grobo_runner_wait_job(robot_of,
                                        grobo_robot_move(grobo_runner_robot(robot_of), &target), 0);
     }

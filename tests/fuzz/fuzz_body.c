@@ -10,6 +10,7 @@
 #include <grobo/body.h>
 
 #include "tests/fuzz/target.h"
+#include "tests/support/tables.h"
 
 enum { KEYS_MAX = 16, TARGETS = 3, JOINTS = 20, FRAMES_MAX = 300 };
 
@@ -109,7 +110,7 @@ static void play(grobo_body *body)
 {
     int frames = grobo_body_frame_count(body);
     const grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
-                                             .robot = &grobo_gr001_model, .finding = see_finding,
+                                             .robot = &grobo_i_gr001_model, .finding = see_finding,
                                              .ctx = &frames};
 
     for (int i = 0; i < frames; i++) {
@@ -129,7 +130,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static struct keys keys;
     struct bytes bytes = {data, size};
-    grobo_body_setup setup = {.model = &grobo_gr001_body, .keys = keys.key};
+    grobo_body_setup setup = {.model = &grobo_i_gr001_body, .keys = keys.key};
     grobo_body *body = NULL;
     size_t needed = 0;
 

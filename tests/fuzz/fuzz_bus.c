@@ -12,6 +12,7 @@
 
 #include "src/bus/framer.h"
 #include "tests/fuzz/target.h"
+#include "tests/support/tables.h"
 
 enum { REQUESTS = 8, FRAME = GROBO_RS30X_PACKET_MAX_BYTES, PUMP_MAX = 1000 };
 
@@ -173,7 +174,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         return 0;
     }
     memset(&r, 0, sizeof r);
-    r.protocol = (data[0] & 1) != 0 ? &grobo_rs30x_protocol : &grobo_board_protocol;
+    r.protocol = (data[0] & 1) != 0 ? &grobo_i_rs30x_protocol : &grobo_i_board_protocol;
     const grobo_bus_config config = {
         .protocol = r.protocol, .echo = (data[0] & 3) == 3, .overlap = (data[0] & 4) != 0};
     MUST(grobo_bus_init(&r.bus, &config) == GROBO_OK);

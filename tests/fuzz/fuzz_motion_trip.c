@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tests/fuzz/motion_target.h"
+#include "tests/support/tables.h"
 
 typedef struct bytes {
     uint8_t *data;
@@ -24,7 +25,7 @@ static int take(void *ctx, const void *data, size_t size)
 
 static void trip(const grobo_motion *motion, grobo_motion_format format)
 {
-    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model,
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_i_gr001_model,
                                    .exact = true};
     bytes file = {NULL, 0};
     int result = grobo_motion_write(motion, format, &options, &(grobo_sink){take, &file}, NULL);

@@ -9,6 +9,7 @@
 #include <grobo/posture.h>
 
 #include "tests/fuzz/target.h"
+#include "tests/support/tables.h"
 
 static void check_accepted(const grobo_posture *posture, const grobo_model *model, int n)
 {
@@ -20,7 +21,7 @@ static void check_accepted(const grobo_posture *posture, const grobo_model *mode
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const grobo_model *model = &grobo_gr001_model;
+    const grobo_model *model = &grobo_i_gr001_model;
     grobo_posture posture;
     grobo_posture before;
     memset(&posture, 0, sizeof posture);

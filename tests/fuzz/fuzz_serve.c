@@ -16,6 +16,7 @@
 #include <grobo/port.h>
 
 #include "tests/fuzz/target.h"
+#include "tests/support/tables.h"
 #include "tools/grctl/web/edit.h"
 #include "tools/grctl/web/http.h"
 #include "tools/grctl/web/library.h"
@@ -45,11 +46,12 @@ static grobo_motion *edited(const json_t *body, const grobo_motion *from)
     edit_result made = {.motion = NULL};
     char *bytes = NULL;
     size_t size;
-    if (edit_apply(body, &grobo_gr001_model, from, GROBO_FORMAT_PSEQ, &made) < 0) {
+    if (edit_apply(body, &grobo_i_gr001_model, from, GROBO_FORMAT_PSEQ, &made) < 0) {
         return NULL;
     }
     MUST(grobo_motion_size(made.motion) == json_array_size(json_object_get(body, "keys")));
-    if (edit_write(made.motion, GROBO_FORMAT_PSEQ, &grobo_gr001_model, NULL, &bytes, &size) == 0) {
+    if (edit_write(made.motion, GROBO_FORMAT_PSEQ, &grobo_i_gr001_model, NULL, &bytes, &size) ==
+        0) {
         free(bytes);
     }
     return made.motion;

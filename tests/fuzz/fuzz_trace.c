@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tests/fuzz/target.h"
+#include "tests/support/tables.h"
 #include "tools/grctl/conn/pcapng.h"
 #include "tools/grctl/decode/ledger.h"
 #include "tools/grctl/decode/words.h"
@@ -64,7 +65,7 @@ static void run(const uint8_t *data, size_t size, const grobo_words *d)
     int64_t now_us = 0;
     int result;
     h.bytes = 0;
-    who = (talk){.words = d, .model = &grobo_gr001_model};
+    who = (talk){.words = d, .model = &grobo_i_gr001_model};
     ledger_init(&h.asked, 1, on_settled, &h);
     for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
         frames_init(&sides[side], &who, (frames_side)side, FRAMES_ANY_WIRING, on_frame, &h);
@@ -88,7 +89,7 @@ static void run(const uint8_t *data, size_t size, const grobo_words *d)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    for (const grobo_family *f = grobo_families; f->robot != NULL; f++) {
+    for (const grobo_family *f = grobo_families(); f->robot != NULL; f++) {
         for (const grobo_words *const *words = f->words; *words != NULL; words++) {
             run(data, size, *words);
         }

@@ -8,6 +8,7 @@
 #include <grobo/motion_io.h>
 
 #include "tests/fuzz/target.h"
+#include "tests/support/tables.h"
 
 /* Angles and times are numbers, links too, and of no more joints than the motion has. */
 static inline void check_numbers(const grobo_motion *motion)
@@ -38,7 +39,7 @@ static inline void check_play(const grobo_motion *motion)
     grobo_clip clip;
 
     MUST(grobo_diagnostics_new(NULL, &list) == 0);
-    MUST(grobo_motion_check(motion, &grobo_gr001_model, NULL, list) >= 0);
+    MUST(grobo_motion_check(motion, &grobo_i_gr001_model, NULL, list) >= 0);
     grobo_diagnostics_free(list);
     MUST(grobo_motion_clip(motion, NULL, &clip) == 0);
     for (int i = 0; i <= 8 && clip.sample != NULL; i++) {
@@ -56,7 +57,7 @@ static inline grobo_motion *read_bytes(const uint8_t *data, size_t size, grobo_m
                                        bool keep_going)
 {
     grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = format,
-                                  .model = &grobo_gr001_model, .keep_going = keep_going,
+                                  .model = &grobo_i_gr001_model, .keep_going = keep_going,
                                   .keep_positions = keep_going};
     grobo_motion *motion = NULL;
     grobo_diagnostics *list = NULL;

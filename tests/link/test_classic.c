@@ -8,6 +8,7 @@
 #include <grobo/classic/classic.h>
 
 #include "tests/support/folder.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static GR001 *g;
@@ -427,10 +428,10 @@ TEST(a_robot_of_ones_own)
     grobo_driver driver;
 
     for (int j = 0; j < 3; j++) { /* motors 9, 11, 10: ids 1, 3, 2 */
-        joints[j] = grobo_gr001_model.joints[j];
+        joints[j] = grobo_i_gr001_model.joints[j];
         joints[j].mirror = (uint8_t)j;
     }
-    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol), GROBO_OK);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, &grobo_i_rs30x_protocol), GROBO_OK);
     SerialRobot *leg = SerialRobot_new("sim", 3, &driver);
     assert_non_null(leg);
     assert_null(SerialRobot_new("sim", 4, &driver));

@@ -16,6 +16,7 @@
 #include <grobo/sim_server.h>
 #include <grobo/static.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
@@ -89,7 +90,7 @@ static int set_up(void)
     assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), GROBO_OK);
     assert_int_equal(
         grobo_robot_init(&robot, grobo_gr001_driver(GROBO_WIRING_BOARD), NULL, NULL, 0), GROBO_OK);
-    grobo_posture_init_pose(&posture, &grobo_gr001_model);
+    grobo_posture_init_pose(&posture, &grobo_i_gr001_model);
     stream = tmpfile();
     assert_non_null(stream);
     return 0;
@@ -127,8 +128,8 @@ TEST(gr001_refuses_null)
     REFUSES(grobo_gr001_angle(&robot, 1, 0, NULL));
     REFUSES(grobo_gr001_pack_goal(0, 0, NULL, sizeof bytes));
     REFUSES(grobo_gr001_posture(NULL, shorts, 1, 0, &posture));
-    REFUSES(grobo_gr001_posture(&grobo_gr001_model, NULL, 1, 0, &posture));
-    REFUSES(grobo_gr001_posture(&grobo_gr001_model, shorts, 1, 0, NULL));
+    REFUSES(grobo_gr001_posture(&grobo_i_gr001_model, NULL, 1, 0, &posture));
+    REFUSES(grobo_gr001_posture(&grobo_i_gr001_model, shorts, 1, 0, NULL));
     REFUSES(grobo_gr001_set_angles(NULL, reals, 1, 1000));
     REFUSES(grobo_gr001_set_angles(&robot, NULL, 1, 1000));
     REFUSES(grobo_gr001_get_angles(NULL, 0, reals, sizeof bytes));

@@ -13,6 +13,7 @@
 #include "tests/support/counted_mem.h"
 #include "tests/support/folder.h"
 #include "tests/support/runner_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 /* ---- facts and settings ------------------------------------------------------------------- */
@@ -28,10 +29,10 @@ TEST_WITH(with_and_without_thread, name_and_joints)
     grobo_driver driver;
     grobo_runner *leg = NULL;
     for (int j = 0; j < 3; j++) {
-        joints[j] = grobo_gr001_model.joints[j];
+        joints[j] = grobo_i_gr001_model.joints[j];
         joints[j].mirror = (uint8_t)j;
     }
-    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol), GROBO_OK);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, &grobo_i_rs30x_protocol), GROBO_OK);
     const grobo_runner_config config = {
         GROBO_RUNNER_CONFIG_INIT, .name = "Robin",
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
@@ -146,10 +147,10 @@ TEST_WITH(with_and_without_thread, postures_are_kept)
     for (int j = 0; j < 20; j++) {
         assert_true(got.angle_rad[j] == 0);
     }
-    grobo_posture_init_pose(&got, &grobo_gr001_model);
+    grobo_posture_init_pose(&got, &grobo_i_gr001_model);
     assert_true(got.set == EVERY_JOINT);
     for (int j = 0; j < 20; j++) {
-        assert_true(got.angle_rad[j] == grobo_gr001_model.joints[j].init_rad);
+        assert_true(got.angle_rad[j] == grobo_i_gr001_model.joints[j].init_rad);
     }
     assert_int_equal(grobo_runner_set_init_posture(runner, &got), GROBO_OK);
     grobo_runner_get_init_posture(runner, &posture);

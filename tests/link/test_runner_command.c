@@ -5,6 +5,7 @@
 
 #include <grobo/runner.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { ELBOW = 13, PATIENCE_US = 1500000 };
@@ -49,7 +50,7 @@ static void fill_line(grobo_runner *runner)
     grobo_posture posture;
 
     assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), GROBO_OK);
-    grobo_posture_init_pose(&posture, &grobo_gr001_model);
+    grobo_posture_init_pose(&posture, &grobo_i_gr001_model);
     for (int i = 0; i < 2; i++) {
         posture.time_us = 4000000 * i;
         assert_int_equal(grobo_posture_set_deg(&posture, ELBOW, 5.0 * i), GROBO_OK);

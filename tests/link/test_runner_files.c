@@ -11,6 +11,7 @@
 #include "tests/support/files.h"
 #include "tests/support/folder.h"
 #include "tests/support/runner_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { POSTURES = 4, STEP_US = 100000 };
@@ -18,7 +19,7 @@ enum { POSTURES = 4, STEP_US = 100000 };
 /* Whole degrees that differ from joint to joint and from posture to posture, within limits. */
 static double angle_deg(int n, int joint)
 {
-    const grobo_joint *limits = &grobo_gr001_model.joints[joint];
+    const grobo_joint *limits = &grobo_i_gr001_model.joints[joint];
     double deg = (3 * joint + 5 * n) % 23 - 11;
 
     deg = fmin(deg, floor(grobo_deg_from_rad(limits->max_rad)));
@@ -148,7 +149,7 @@ TEST_WITH(with_and_without_thread, what_cannot_be_loaded_leaves_nothing)
 /* Six angles would move the first six of twenty joints. */
 TEST_WITH(with_and_without_thread, a_motion_of_another_robot_is_not_loaded)
 {
-    const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model};
+    const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_i_gr001_model};
     const char *text = "500 0 0 0 0 0 0\n";
     grobo_motion *motion;
 

@@ -16,6 +16,7 @@
 #include "tests/support/line.h"
 #include "tests/support/loop.h"
 #include "tests/support/session_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static void free_it(grobo_session *from)
@@ -390,7 +391,7 @@ TEST_WITH(on_loop, who_is_checked_is_not_read)
 {
     static const grobo_robot_config eager = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     static const grobo_robot_config bad = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = -2};
-    const grobo_robot_def *const *arm = grobo_robot_defs;
+    const grobo_robot_def *const *arm = grobo_i_robot_defs;
     grobo_driver driver;
     grobo_robot_sim sim;
 

@@ -14,6 +14,7 @@
 #include "tests/support/folder.h"
 #include "tests/support/loop.h"
 #include "tests/support/session_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { NECK = 13, GOALS = 110, TORQUES = 50, UNLIMITED = 1 << 30 };
@@ -103,7 +104,7 @@ static void send_goals(int taken_bytes)
 {
     grobo_posture target;
 
-    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    grobo_posture_init_pose(&target, &grobo_i_gr001_model);
     target.time_us = 2000000;
     target.angle_rad[NECK] = grobo_rad_from_deg(40);
     budget_bytes = taken_bytes;
@@ -207,7 +208,7 @@ TEST_WITH(fixture, no_frame_is_taken_behind_one_that_has_not_left)
     unsent_bytes = 1;
     assert_true(loop_run(base, 60000));
     grobo_posture target;
-    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    grobo_posture_init_pose(&target, &grobo_i_gr001_model);
     assert_int_equal(grobo_robot_send(robot(), &target), GROBO_OK);
     assert_true(loop_run(base, 20000));
     assert_int_equal(n_written, GOALS);
@@ -277,7 +278,7 @@ TEST_WITH(on_sim, what_the_simulator_has_not_taken_by_a_stop_moves_nothing)
     while (session->backlog_bytes == 0 && n < FRAMES_MAX) {
         grobo_posture target;
 
-        grobo_posture_init_pose(&target, &grobo_gr001_model);
+        grobo_posture_init_pose(&target, &grobo_i_gr001_model);
         target.time_us = 2000000;
         target.angle_rad[NECK] = grobo_rad_from_deg(++n);
         assert_int_equal(grobo_robot_send(robot(), &target), GROBO_OK);
@@ -289,7 +290,7 @@ TEST_WITH(on_sim, what_the_simulator_has_not_taken_by_a_stop_moves_nothing)
     while (session->backlog_bytes > 0 || grobo_sim_rx_room(sim) < GROBO_SIM_WIRE_BYTES) {
         (void)loop_run(base, 20000);
     }
-    int servo = grobo_sim_find(sim, grobo_gr001_model.joints[NECK].motor);
+    int servo = grobo_sim_find(sim, grobo_i_gr001_model.joints[NECK].motor);
     assert_int_equal(grobo_sim_get_register(sim, servo, GOAL, &goal_ddeg), GROBO_OK);
     assert_in_range(goal_ddeg, 10, 10 * (n - 1));
 }

@@ -10,6 +10,7 @@
 #include <grobo/sim_static.h>
 #include <grobo/static.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 /* What takes a structure; each returns GROBO_OK and frees what it made. */
@@ -156,7 +157,7 @@ static int read_file(const void *options)
 
 static int look_through(const void *options)
 {
-    return taken(grobo_motion_check(keys, &grobo_gr001_model, options, NULL));
+    return taken(grobo_motion_check(keys, &grobo_i_gr001_model, options, NULL));
 }
 
 static int convert(const void *options)
@@ -192,7 +193,7 @@ static int verify(const void *options)
 static int make_body(const void *options)
 {
     grobo_body *made = NULL;
-    int r = grobo_body_new(&grobo_gr001_body, keys, options, NULL, &made);
+    int r = grobo_body_new(&grobo_i_gr001_body, keys, options, NULL, &made);
     grobo_body_free(made);
     return r;
 }
@@ -321,11 +322,11 @@ static int set_up(void)
     const grobo_runner_config runner = {GROBO_RUNNER_CONFIG_INIT, .session = &good_session};
     grobo_posture posture;
     base = grobo_loop_new();
-    grobo_posture_init_pose(&posture, &grobo_gr001_model);
+    grobo_posture_init_pose(&posture, &grobo_i_gr001_model);
     posture.time_us = 100000;
     return base == NULL || grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &keys) < 0 ||
            grobo_motion_append(keys, &posture) < 0 ||
-           grobo_body_new(&grobo_gr001_body, keys, NULL, NULL, &body) < 0 ||
+           grobo_body_new(&grobo_i_gr001_body, keys, NULL, NULL, &body) < 0 ||
            grobo_runner_new(&runner, &runner_of) < 0;
 }
 

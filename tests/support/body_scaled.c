@@ -2,13 +2,14 @@
 #include <string.h>
 
 #include "tests/support/body_scaled.h"
+#include "tests/support/tables.h"
 
 void body_scaled_init(struct body_scaled *scaled, double length, double mass)
 {
-    scaled->model = grobo_gr001_body;
+    scaled->model = grobo_i_gr001_body;
     scaled->model.name = "scaled";
     scaled->model.links = scaled->links;
-    memcpy(scaled->links, grobo_gr001_body.links, sizeof scaled->links);
+    memcpy(scaled->links, grobo_i_gr001_body.links, sizeof scaled->links);
     for (int i = 0; i < 21; i++) {
         grobo_body_link *link = &scaled->links[i];
 

@@ -4,6 +4,7 @@
 
 #include "src/body/body.h"
 #include "tests/support/body_script.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 grobo_body_key *script_key(struct script *script, double time_s)
@@ -59,7 +60,7 @@ void script_step(struct script *script)
     memset(script, 0, sizeof *script);
     script_key(script, 0);
     for (int j = 0; j < JOINTS; j++) {
-        script_joint(script, j, grobo_gr001_model.joints[j].init_rad);
+        script_joint(script, j, grobo_i_gr001_model.joints[j].init_rad);
     }
     script_stand(script, 0, 0, 0.145);
     script_key(script, 0.6);

@@ -2,9 +2,10 @@
 #include <string.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
-const grobo_bus_config board_line = {.protocol = &grobo_board_protocol};
+const grobo_bus_config board_line = {.protocol = &grobo_i_board_protocol};
 
 void peer_init(peer *p, const grobo_bus_config *config)
 {
@@ -110,7 +111,7 @@ static void send_next(peer *p)
         return;
     }
     assert_true(p->sent_count < PEER_LOG_MAX);
-    bool board = p->bus.config.protocol == &grobo_board_protocol;
+    bool board = p->bus.config.protocol == &grobo_i_board_protocol;
     uint8_t id = board ? (n > 4 ? b[4] : 0) : b[2];
     p->sent[p->sent_count++] = (peer_sent){p->now_us, id, b[0]};
     answer(p, id);

@@ -8,6 +8,7 @@
 #include <grobo/robot_file.h>
 
 #include "tests/support/chain_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 void chain_start(chain_kit *chain, const grobo_servo_model *servo, int n,
@@ -32,7 +33,7 @@ void chain_start(chain_kit *chain, const grobo_servo_model *servo, int n,
     with.model = &chain->model;
     with.wiring = GROBO_WIRING_BUS;
     with.servos = chain->servos;
-    with.families = grobo_sim_families;
+    with.families = grobo_i_sim_families;
     simkit_start(&chain->kit, &with);
 }
 
@@ -63,7 +64,7 @@ void chain_send_packet(chain_kit *chain, const grobo_dxl2_packet *packet)
                                      .data = packet->data,
                                      .data_bytes = packet->data_bytes};
     send(chain, bytes,
-         chain->servos[0]->table == &grobo_dxl2_table
+         chain->servos[0]->table == &grobo_i_dxl2_table
              ? grobo_dxl2_build(packet, bytes, sizeof bytes)
              : grobo_dxl1_build(&other, bytes, sizeof bytes));
 }
@@ -79,5 +80,5 @@ int chain_write(chain_kit *chain, int id, grobo_register_role role, int32_t valu
     if (chain->kit.n_got == 0) {
         return -1;
     }
-    return chain->kit.got[chain->servos[0]->table == &grobo_dxl2_table ? 8 : 4];
+    return chain->kit.got[chain->servos[0]->table == &grobo_i_dxl2_table ? 8 : 4];
 }

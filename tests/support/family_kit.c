@@ -10,6 +10,7 @@
 
 #include "src/base/instant.h"
 #include "tests/support/family_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
@@ -17,12 +18,12 @@
 enum { MS = 1000, S = 1000000 };
 
 static const family families[] = {
-    {"dxl2", &grobo_dxl2_table, "XM430-W350", grobo_dxl2_driver_init, 0.5, 1000000, false},
-    {"sts", &grobo_sts_table, "STS3215", grobo_feetech_driver_init, 0.5, 1000000, false},
-    {"scs", &grobo_scs_table, "SCS0009", grobo_feetech_driver_init, 1, 1000000, false},
-    {"dxl1", &grobo_dxl1_table, "AX-12A", grobo_dxl1_driver_init, 1, 1000000, false},
-    {"lx16a", &grobo_lx16a_table, "LX-16A", grobo_lx16a_driver_init, 0.5, 115200, true},
-    {"ics", &grobo_ics_table, "KRS-3301", grobo_ics_driver_init, 0.5, 115200, true},
+    {"dxl2", &grobo_i_dxl2_table, "XM430-W350", grobo_dxl2_driver_init, 0.5, 1000000, false},
+    {"sts", &grobo_i_sts_table, "STS3215", grobo_feetech_driver_init, 0.5, 1000000, false},
+    {"scs", &grobo_i_scs_table, "SCS0009", grobo_feetech_driver_init, 1, 1000000, false},
+    {"dxl1", &grobo_i_dxl1_table, "AX-12A", grobo_dxl1_driver_init, 1, 1000000, false},
+    {"lx16a", &grobo_i_lx16a_table, "LX-16A", grobo_lx16a_driver_init, 0.5, 115200, true},
+    {"ics", &grobo_i_ics_table, "KRS-3301", grobo_ics_driver_init, 0.5, 115200, true},
 };
 
 const family *family_next(const family *before)
@@ -125,14 +126,14 @@ void family_start(family_kit *kit, const family *f, const grobo_robot_config *co
     with.model = &kit->model;
     with.wiring = GROBO_WIRING_BUS;
     with.servos = kit->servos;
-    with.families = grobo_sim_families;
+    with.families = grobo_i_sim_families;
     with.baud_bps = f->baud_bps;
     with.echo = f->echo;
     with.supply_mv = kit->servos[0]->voltage_mv;
     with.hook = on_sim;
     with.hook_ctx = kit;
     assert_int_equal(grobo_sim_init(&kit->sim, &with, kit->now_us), GROBO_OK);
-    for (int j = 0; j < FAMILY_JOINTS && f->table == &grobo_dxl2_table; j++) {
+    for (int j = 0; j < FAMILY_JOINTS && f->table == &grobo_i_dxl2_table; j++) {
         family_set_up(kit, j, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
     }
     assert_int_equal(f->init(&kit->driver, &kit->model), GROBO_OK);

@@ -10,6 +10,7 @@
 #include <grobo/session.h>
 
 #include "tests/support/guarded.h"
+#include "tests/support/tables.h"
 
 const char guarded_again[] = "exec ${EMULATOR:-} \"$0\" \"$@\"";
 
@@ -75,9 +76,10 @@ static void on_line(void *ctx, grobo_session *session, grobo_session_event event
     (void)ctx;
     switch (event) {
     case GROBO_SESSION_EVENT_UP:
-        grobo_posture_init(&target, grobo_gr001_model.n_joints);
-        grobo_posture_set_deg(
-            &target, grobo_model_joint_of_motor(&grobo_gr001_model, GUARDED_MOTOR), GUARDED_TO_DEG);
+        grobo_posture_init(&target, grobo_i_gr001_model.n_joints);
+        grobo_posture_set_deg(&target,
+                              grobo_model_joint_of_motor(&grobo_i_gr001_model, GUARDED_MOTOR),
+                              GUARDED_TO_DEG);
         target.time_us = is_mode("rest") || is_mode("ask") ? 300000 : 20000000;
         if (grobo_robot_move(grobo_session_robot(session), &target) < 0) {
             end_program("moves-not");

@@ -12,6 +12,7 @@
 
 #include "src/base/instant.h"
 #include "tests/support/halt_kit.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
@@ -97,13 +98,13 @@ static const struct kind {
     const char *servo;
     int (*init)(grobo_driver *driver, const grobo_model *model);
 } kinds[] = {
-    {&far_dxl2, &grobo_dxl2_table, "XL430-W250", grobo_dxl2_driver_init},
-    {&far_dxl1, &grobo_dxl1_table, "AX-12A", grobo_dxl1_driver_init},
-    {&far_mx, &grobo_dxl1_table, "MX-28", grobo_dxl1_driver_init},
-    {&far_sts, &grobo_sts_table, "STS3215", grobo_feetech_driver_init},
-    {&far_scs, &grobo_scs_table, "SCS0009", grobo_feetech_driver_init},
-    {&far_ics, &grobo_ics_table, "KRS-3301", grobo_ics_driver_init},
-    {&far_lx16a, &grobo_lx16a_table, "LX-16A", grobo_lx16a_driver_init},
+    {&far_dxl2, &grobo_i_dxl2_table, "XL430-W250", grobo_dxl2_driver_init},
+    {&far_dxl1, &grobo_i_dxl1_table, "AX-12A", grobo_dxl1_driver_init},
+    {&far_mx, &grobo_i_dxl1_table, "MX-28", grobo_dxl1_driver_init},
+    {&far_sts, &grobo_i_sts_table, "STS3215", grobo_feetech_driver_init},
+    {&far_scs, &grobo_i_scs_table, "SCS0009", grobo_feetech_driver_init},
+    {&far_ics, &grobo_i_ics_table, "KRS-3301", grobo_ics_driver_init},
+    {&far_lx16a, &grobo_i_lx16a_table, "LX-16A", grobo_lx16a_driver_init},
 };
 
 static halt_robot robots[ROBOTS];

@@ -4,6 +4,7 @@
 #include <grobo/board.h>
 
 #include "tests/support/many_joints.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 grobo_driver *many_joints(grobo_wiring wiring, int n)
@@ -12,9 +13,9 @@ grobo_driver *many_joints(grobo_wiring wiring, int n)
     static grobo_joint joints[GROBO_JOINTS_MAX];
     static grobo_model model;
     static grobo_driver driver;
-    model = grobo_gr001_model;
+    model = grobo_i_gr001_model;
     for (int j = 0; j < n; j++) {
-        joints[j] = grobo_gr001_model.joints[j % grobo_gr001_model.n_joints];
+        joints[j] = grobo_i_gr001_model.joints[j % grobo_i_gr001_model.n_joints];
         names[j][0] = 'J';
         names[j][1] = (char)('0' + j / 10);
         names[j][2] = (char)('0' + j % 10);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tests/support/motion_texts.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 const char full_pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR001\n"
@@ -36,7 +37,7 @@ const char full_pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR00
 grobo_motion *motion_of(const char *text, grobo_motion_format format)
 {
     grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = format,
-                                  .model = &grobo_gr001_model, .name = "text"};
+                                  .model = &grobo_i_gr001_model, .name = "text"};
     grobo_motion *motion = NULL;
     grobo_diagnostics *list = NULL;
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "tests/support/restless.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { GOALS_MAX = 4 };
@@ -67,8 +68,8 @@ static int later_joint(const void *a, const void *b)
 {
     const grobo_rs30x_goal *x = a;
     const grobo_rs30x_goal *y = b;
-    return grobo_model_joint_of_motor(&grobo_gr001_model, y->id) -
-           grobo_model_joint_of_motor(&grobo_gr001_model, x->id);
+    return grobo_model_joint_of_motor(&grobo_i_gr001_model, y->id) -
+           grobo_model_joint_of_motor(&grobo_i_gr001_model, x->id);
 }
 
 /* The engine asks for no ACK, puts one goal in a short packet, and goals in the order of joints: by

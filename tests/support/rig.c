@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tests/support/rig.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 const grobo_robot_config quiet = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER};
@@ -532,8 +533,8 @@ void rig_start_narrow(grobo_test_rig *rig)
     static grobo_joint joints[GROBO_JOINTS_MAX];
     static grobo_model model;
     static grobo_driver driver;
-    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .model = &grobo_gr001_model};
-    model = grobo_gr001_model;
+    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .model = &grobo_i_gr001_model};
+    model = grobo_i_gr001_model;
     memcpy(joints, model.joints, (size_t)model.n_joints * sizeof *joints);
     joints[NECK].max_rad = grobo_rad_from_deg(20);
     model.joints = joints;
@@ -548,7 +549,7 @@ static int clip_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
 {
     const rig_clip *clip = ctx;
     const rig_key *key = &clip->keys[i];
-    grobo_posture_init_pose(posture, &grobo_gr001_model);
+    grobo_posture_init_pose(posture, &grobo_i_gr001_model);
     for (int k = 0; k < 3 && (k == 0 || key->to[k].joint != 0 || key->to[k].angle_deg != 0); k++) {
         posture->angle_rad[key->to[k].joint] = grobo_rad_from_deg(key->to[k].angle_deg);
     }
@@ -585,7 +586,7 @@ void rig_clip_init(rig_clip *clip, const rig_key *keys, size_t n)
     clip->clip.sample = clip_sample;
     clip->clip.ctx = clip;
     clip->clip.n_keys = n;
-    clip->clip.n_joints = grobo_gr001_model.n_joints;
+    clip->clip.n_joints = grobo_i_gr001_model.n_joints;
     clip->clip.length_us = keys[n - 1].at_ms * 1000;
 }
 

@@ -4,19 +4,20 @@
 
 #include "src/base/instant.h"
 #include "tests/support/table_bus.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { BIT_NS = 1000, BITS = 10 };
 
 static bool is_new(const table_bus *bus)
 {
-    return bus->driver.protocol == &grobo_dxl2_protocol;
+    return bus->driver.protocol == &grobo_i_dxl2_protocol;
 }
 
 static const grobo_servo_model *model_of(uint16_t number)
 {
-    static const grobo_servo_table *const tables[] = {&grobo_dxl2_table, &grobo_dxl1_table,
-                                                      &grobo_sts_table, &grobo_scs_table};
+    static const grobo_servo_table *const tables[] = {&grobo_i_dxl2_table, &grobo_i_dxl1_table,
+                                                      &grobo_i_sts_table, &grobo_i_scs_table};
     const grobo_servo_model *found = NULL;
     for (size_t i = 0; found == NULL && i < sizeof tables / sizeof tables[0]; i++) {
         found = grobo_servo_model_numbered(tables[i], number);
@@ -66,14 +67,14 @@ static void refresh(table_servo *s, uint8_t error, int64_t now_us)
     bool moves = now_us < s->to_us && fabs(s->to_ticks - s->from_ticks) > 3;
     put(s, GROBO_ROLE_POSITION, (int32_t)lround(place(s, now_us)));
     put(s, GROBO_ROLE_PRESENT_SPEED, moves ? 200 : 0);
-    if (s->servo->table != &grobo_dxl2_table) {
+    if (s->servo->table != &grobo_i_dxl2_table) {
         put(s, GROBO_ROLE_ERROR, error); /* there it is a number of its own */
     }
 }
 
 static double ticks_per_s(const table_servo *s, int32_t speed)
 {
-    bool sts = s->servo->table == &grobo_sts_table || s->servo->table == &grobo_scs_table;
+    bool sts = s->servo->table == &grobo_i_sts_table || s->servo->table == &grobo_i_scs_table;
     double deg_s = speed * (sts ? (double)s->servo->span_deg / s->servo->span_ticks
                             : s->servo->span_ticks == 1024 ? 0.666
                                                            : 0.684);

@@ -7,6 +7,7 @@
 
 #include <grobo/board.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
@@ -28,13 +29,13 @@ TEST(single_joint_frames)
     const grobo_rs30x_goal down = {3, -10, 0};
     const grobo_rs30x_goal right_angle = {3, 900, 10};
     const grobo_rs30x_goal slow = {1, 900, 500};
-    vector_expect(grobo_frame_goal(&grobo_board_protocol, &down, b, MAX), b,
+    vector_expect(grobo_frame_goal(&grobo_i_board_protocol, &down, b, MAX), b,
                   "53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11");
-    vector_expect(grobo_frame_goal(&grobo_board_protocol, &right_angle, b, MAX), b,
+    vector_expect(grobo_frame_goal(&grobo_i_board_protocol, &right_angle, b, MAX), b,
                   "53 0C FA AF 03 00 1E 04 01 84 03 0A 00 95");
-    vector_expect(grobo_frame_goal(&grobo_board_protocol, &slow, b, MAX), b,
+    vector_expect(grobo_frame_goal(&grobo_i_board_protocol, &slow, b, MAX), b,
                   "53 0C FA AF 01 00 1E 04 01 84 03 F4 01 68");
-    vector_expect(grobo_frame_goal(&grobo_rs30x_protocol, &down, b, MAX), b,
+    vector_expect(grobo_frame_goal(&grobo_i_rs30x_protocol, &down, b, MAX), b,
                   "FA AF 03 00 1E 04 01 F6 FF 00 00 11");
 }
 
@@ -47,14 +48,14 @@ TEST(all_joints_in_one_frame)
     for (int i = 0; i < JOINTS; i++) {
         goals[i] = (grobo_rs30x_goal){(uint8_t)(i + 1), 0, 100};
     }
-    assert_int_equal(grobo_frame_goals(&grobo_board_protocol, goals, JOINTS, b, MAX), 110);
+    assert_int_equal(grobo_frame_goals(&grobo_i_board_protocol, goals, JOINTS, b, MAX), 110);
     static const uint8_t head[] = {0x53, 0x6C, 0xFA, 0xAF, 0, 0, 0x1E, 5, 0x14, 1, 0, 0, 0x64, 0};
     assert_memory_equal(b, head, sizeof head);
     assert_int_equal(b[109], 0x1B);
     for (int i = 0; i < JOINTS; i++) {
         goals[i] = (grobo_rs30x_goal){(uint8_t)(i + 1), init_ddeg[i], 25};
     }
-    assert_int_equal(grobo_frame_goals(&grobo_board_protocol, goals, JOINTS, b, MAX), 110);
+    assert_int_equal(grobo_frame_goals(&grobo_i_board_protocol, goals, JOINTS, b, MAX), 110);
     for (int i = 0; i < JOINTS; i++) {
         assert_int_equal(b[5 * i + 9], i + 1);
         assert_int_equal(b[5 * i + 10], init_ddeg[i] & 0xFF);
@@ -107,7 +108,7 @@ TEST(read_frames)
     vector_expect(
         grobo_frame_read(grobo_wiring_protocol(board), 1, GROBO_RS30X_POSITION, 2, b, MAX), b,
         "54 09 FA AF 01 0F 2A 02 00 26 0A");
-    vector_expect(grobo_frame_read(&grobo_rs30x_protocol, 1, GROBO_RS30X_POSITION, 2, b, MAX), b,
+    vector_expect(grobo_frame_read(&grobo_i_rs30x_protocol, 1, GROBO_RS30X_POSITION, 2, b, MAX), b,
                   "FA AF 01 0F 2A 02 00 26");
 }
 
@@ -115,16 +116,16 @@ TEST(any_packet_is_wrapped_by_what_it_asks_for)
 {
     uint8_t b[MAX];
     int n = grobo_rs30x_write_u8(1, GROBO_RS30X_WANT_ACK, GROBO_RS30X_TORQUE, 1, b, MAX);
-    vector_expect(grobo_frame_wrap(&grobo_board_protocol, b, (size_t)n, b, MAX), b,
+    vector_expect(grobo_frame_wrap(&grobo_i_board_protocol, b, (size_t)n, b, MAX), b,
                   "54 0A FA AF 01 01 24 01 01 01 25 01");
     n = grobo_rs30x_control(1, GROBO_RS30X_REBOOT, b, MAX);
-    vector_expect(grobo_frame_wrap(&grobo_board_protocol, b, (size_t)n, b, MAX), b,
+    vector_expect(grobo_frame_wrap(&grobo_i_board_protocol, b, (size_t)n, b, MAX), b,
                   "53 08 FA AF 01 20 FF 00 00 DE");
     n = grobo_rs30x_read_block(5, GROBO_RS30X_WANT_42_59, b, MAX);
-    vector_expect(grobo_frame_wrap(&grobo_board_protocol, b, (size_t)n, b, MAX), b,
+    vector_expect(grobo_frame_wrap(&grobo_i_board_protocol, b, (size_t)n, b, MAX), b,
                   "54 09 FA AF 05 09 00 00 01 0D 1A");
     b[3] ^= 1;
-    assert_int_equal(grobo_frame_wrap(&grobo_rs30x_protocol, b, (size_t)n, b, MAX),
+    assert_int_equal(grobo_frame_wrap(&grobo_i_rs30x_protocol, b, (size_t)n, b, MAX),
                      GROBO_ERR_FRAME);
 }
 
@@ -154,7 +155,7 @@ TEST(relays_know_their_bounds)
     assert_int_equal(grobo_frame_goals(grobo_wiring_protocol(board), goals, 20, roomy, 109),
                      GROBO_ERR_SPACE);
     for (size_t cap = 0; cap < 11; cap++) {
-        int n = grobo_frame_read(&grobo_board_protocol, 1, 42, 2, b, cap);
+        int n = grobo_frame_read(&grobo_i_board_protocol, 1, 42, 2, b, cap);
         assert_int_equal(n, GROBO_ERR_SPACE);
     }
 }
@@ -183,7 +184,7 @@ TEST(hosts_know_what_a_frame_is_answered_by)
         uint8_t b[MAX];
         grobo_reply reply = {.kind = GROBO_REPLY_NONE, .id = 99};
         int n = vector_from_hex(rows[i].frame, b, MAX);
-        int bytes = grobo_board_protocol.reply_to(b, (size_t)n, &reply);
+        int bytes = grobo_i_board_protocol.reply_to(b, (size_t)n, &reply);
         assert_int_equal(bytes, rows[i].bytes);
         assert_int_equal(reply.kind, rows[i].kind);
         if (bytes < 0 || reply.kind == GROBO_REPLY_RETURN) {
@@ -353,10 +354,10 @@ static bool check_vector(const vector *v)
     uint8_t b[MAX];
     assert_int_equal(grobo_board_parse(v->bytes, v->n, &frame), GROBO_OK);
     if (!v->valid) {
-        assert_true(grobo_board_protocol.reply_to(v->bytes, v->n, &reply) < 0);
+        assert_true(grobo_i_board_protocol.reply_to(v->bytes, v->n, &reply) < 0);
         return true;
     }
-    assert_true(grobo_board_protocol.reply_to(v->bytes, v->n, &reply) >= 0);
+    assert_true(grobo_i_board_protocol.reply_to(v->bytes, v->n, &reply) >= 0);
     assert_int_equal(rebuild(&frame, b), v->n);
     assert_memory_equal(b, v->bytes, v->n);
     if (frame.packet_bytes > 0) {

@@ -6,6 +6,7 @@
 
 #include "src/body/polygon.h"
 #include "tests/support/body_script.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 struct watch {
@@ -42,14 +43,14 @@ static int check(const struct script *script, const grobo_body_options *options,
                  struct watch *watch)
 {
     struct run run;
-    grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT, .robot = &grobo_gr001_model,
+    grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT, .robot = &grobo_i_gr001_model,
                                        .frame = see_frame, .finding = see_finding, .ctx = watch};
     int found;
 
     memset(watch, 0, sizeof *watch);
     watch->end_s = script->keys[script->n_keys - 1].time_s;
     watch->least_margin_m = 1;
-    run_start(&run, &grobo_gr001_body, script, options);
+    run_start(&run, &grobo_i_gr001_body, script, options);
     found = grobo_body_check(run.body, &checks);
     assert_int_equal(watch->frames, grobo_body_frame_count(run.body));
     run_finish(&run);
@@ -93,13 +94,13 @@ TEST(the_balancer_works_from_any_base)
     struct run waist, foot;
 
     script_slow_step(&script);
-    run_start(&waist, &grobo_gr001_body, &script, &options);
+    run_start(&waist, &grobo_i_gr001_body, &script, &options);
     for (int change = 0; change < 2; change++) {
         for (size_t i = 0; i < script.n_keys; i++) {
             script.targets[i][0].base = change && i == 2;
         }
         script.targets[0][2].base = true;
-        run_start(&foot, &grobo_gr001_body, &script, &options);
+        run_start(&foot, &grobo_i_gr001_body, &script, &options);
         for (int i = 0; i < grobo_body_frame_count(waist.body); i++) {
             grobo_body_report one, other;
             double q[JOINTS];
@@ -161,11 +162,11 @@ TEST(the_lint_knows_the_speed)
         struct watch watch;
         struct run run;
         grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
-                                           .robot = &grobo_gr001_model, .finding = see_finding,
+                                           .robot = &grobo_i_gr001_model, .finding = see_finding,
                                            .ctx = &watch, .speed_pct = speeds_pct[i]};
 
         memset(&watch, 0, sizeof watch);
-        run_start(&run, &grobo_gr001_body, &script, &options);
+        run_start(&run, &grobo_i_gr001_body, &script, &options);
         (void)grobo_body_check(run.body, &checks);
         run_finish(&run);
         findings[i][0] = watch.findings[GROBO_BODY_ZMP_MARGIN];
@@ -193,7 +194,7 @@ TEST(the_lint_takes_slack)
     for (int i = 0; i < 4; i++) {
         grobo_body_balance_frame frame;
         grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
-                                           .robot = &grobo_gr001_model, .frame = last_frame,
+                                           .robot = &grobo_i_gr001_model, .frame = last_frame,
                                            .takes_slack = takes[i], .ctx = &frame};
         struct script script;
         struct run run;
@@ -202,7 +203,7 @@ TEST(the_lint_takes_slack)
         script_key(&script, 0);
         script_joint(&script, 12, chest_rad[i]);
         script_stand(&script, 0.01, 0, 0.145);
-        run_start(&run, &grobo_gr001_body, &script, &options);
+        run_start(&run, &grobo_i_gr001_body, &script, &options);
         assert_int_equal(grobo_body_check(run.body, &checks), i > 0);
         run_finish(&run);
         com_m[i] = frame.com_m[0];

@@ -10,6 +10,7 @@
 
 #include "tests/support/body_script.h"
 #include "tests/support/counted_mem.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 /* Feet on the ground, the waist goes down and up; the head turns. The left foot has a name that
@@ -88,10 +89,10 @@ TEST(a_file_and_a_script_give_the_same)
     script_key(&script, 2);
     script_target(&script, WAIST, 0, 0, 0.15);
 
-    assert_true(grobo_body_wanted(&grobo_gr001_body, motion));
-    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, &options, NULL, &body), 0);
+    assert_true(grobo_body_wanted(&grobo_i_gr001_body, motion));
+    assert_int_equal(grobo_body_new(&grobo_i_gr001_body, motion, &options, NULL, &body), 0);
     grobo_motion_free(motion);
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame_count(body), 101);
     for (int i = 0; i <= 100; i++) {
         double q[JOINTS], want[JOINTS];
@@ -115,7 +116,7 @@ TEST(a_clip_plays_the_body)
     int64_t at_us = 0;
     double q[JOINTS];
 
-    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), 0);
+    assert_int_equal(grobo_body_new(&grobo_i_gr001_body, motion, NULL, NULL, &body), 0);
     grobo_motion_free(motion);
     grobo_body_clip(body, true, &clip);
     assert_int_equal(clip.length_us, 2000000);
@@ -143,7 +144,7 @@ TEST(a_clip_stops_where_a_leg_does_not_reach)
     grobo_posture posture;
     int unreached;
 
-    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), 0);
+    assert_int_equal(grobo_body_new(&grobo_i_gr001_body, motion, NULL, NULL, &body), 0);
     grobo_motion_free(motion);
     grobo_body_clip(body, true, &clip);
     assert_int_equal(clip.sample(clip.ctx, 100000, &posture), 0);
@@ -165,7 +166,7 @@ TEST(frames_are_the_body_s)
     grobo_motion *frames = NULL;
     grobo_body *body = NULL;
 
-    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, &options, NULL, &body), 0);
+    assert_int_equal(grobo_body_new(&grobo_i_gr001_body, motion, &options, NULL, &body), 0);
     grobo_motion_free(motion);
     assert_int_equal(grobo_body_frames(body, NULL, &frames), 0);
     assert_int_equal(grobo_motion_get_kind(frames), GROBO_MOTION_FRAMES);
@@ -193,11 +194,13 @@ TEST(other_motions_are_refused)
     grobo_body *body = NULL;
 
     assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &motion), 0);
-    assert_false(grobo_body_wanted(&grobo_gr001_body, motion));
-    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), GROBO_ERR_EMPTY);
+    assert_false(grobo_body_wanted(&grobo_i_gr001_body, motion));
+    assert_int_equal(grobo_body_new(&grobo_i_gr001_body, motion, NULL, NULL, &body),
+                     GROBO_ERR_EMPTY);
     grobo_motion_free(motion);
     assert_int_equal(grobo_motion_new(GROBO_MOTION_FRAMES, 20, NULL, &motion), 0);
-    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), GROBO_ERR_TYPE);
+    assert_int_equal(grobo_body_new(&grobo_i_gr001_body, motion, NULL, NULL, &body),
+                     GROBO_ERR_TYPE);
     grobo_motion_free(motion);
     grobo_body_free(NULL);
 }
@@ -213,7 +216,7 @@ TEST(each_allocation_may_fail)
         const grobo_mem mem = counted_mem_of(&counter);
         grobo_motion *frames = NULL;
         grobo_body *body = NULL;
-        int result = grobo_body_new(&grobo_gr001_body, motion, NULL, &mem, &body);
+        int result = grobo_body_new(&grobo_i_gr001_body, motion, NULL, &mem, &body);
 
         if (result == 0) {
             result = grobo_body_frames(body, &mem, &frames);

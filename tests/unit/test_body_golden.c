@@ -12,6 +12,7 @@
 #include <grobo/motion_io.h>
 
 #include "tests/support/files.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define GOLDEN "data/golden/"
@@ -55,7 +56,7 @@ static double compare(grobo_body *body, FILE *golden)
         char *at = line;
 
         assert_int_equal(grobo_body_frame(body, frame++, q, NULL), 0);
-        for (int j = 0; j < grobo_gr001_body.n_joints; j++) {
+        for (int j = 0; j < grobo_i_gr001_body.n_joints; j++) {
             const double difference = fabs(strtod(at, &at) - q[j]);
 
             assert_true(isfinite(difference));
@@ -82,7 +83,7 @@ static bool agrees(const char *csv, const char *motion, double rate_hz, const st
     assert_non_null(golden);
     options.rate_hz = rate_hz;
     assert_int_equal(grobo_motion_read_file(shared_file(motion), NULL, NULL, &keys), 0);
-    assert_int_equal(grobo_body_new(&grobo_gr001_body, keys, &options, NULL, &body), 0);
+    assert_int_equal(grobo_body_new(&grobo_i_gr001_body, keys, &options, NULL, &body), 0);
     grobo_motion_free(keys);
     worst = compare(body, golden);
     grobo_body_free(body);

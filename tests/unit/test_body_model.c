@@ -9,6 +9,7 @@
 #include "src/body/vec.h"
 #include "tests/support/body_scaled.h"
 #include "tests/support/next_random.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/transforms.h"
 
@@ -25,7 +26,7 @@ static void random_pose(double *q_rad, grobo_transform *root)
     const double rpy[3] = {random_in(-1, 1), random_in(-1, 1), random_in(-3, 3)};
 
     for (int j = 0; j < 20; j++) {
-        const grobo_joint *joint = &grobo_gr001_model.joints[j];
+        const grobo_joint *joint = &grobo_i_gr001_model.joints[j];
 
         q_rad[j] = random_in(joint->min_rad, joint->max_rad);
     }
@@ -47,12 +48,12 @@ static void in_frame_of(const grobo_transform *frame, const grobo_transform *at,
 
 TEST(gr001_is_a_model)
 {
-    assert_int_equal(grobo_body_model_check(&grobo_gr001_body), 0);
-    assert_int_equal(grobo_gr001_body.n_joints, grobo_gr001_model.n_joints);
-    for (int i = 1; i < grobo_gr001_body.n_links; i++) {
-        const grobo_body_link *link = &grobo_gr001_body.links[i];
+    assert_int_equal(grobo_body_model_check(&grobo_i_gr001_body), 0);
+    assert_int_equal(grobo_i_gr001_body.n_joints, grobo_i_gr001_model.n_joints);
+    for (int i = 1; i < grobo_i_gr001_body.n_links; i++) {
+        const grobo_body_link *link = &grobo_i_gr001_body.links[i];
 
-        assert_string_equal(link->name, grobo_gr001_model.joints[link->joint].name);
+        assert_string_equal(link->name, grobo_i_gr001_model.joints[link->joint].name);
     }
 }
 
@@ -92,25 +93,25 @@ TEST(straight_pose_is_a_sum_of_offsets)
     grobo_transform links[21];
     double sum[3] = {0}, com[3], mass = 0;
 
-    grobo_body_forward(&grobo_gr001_body, NULL, q, links);
+    grobo_body_forward(&grobo_i_gr001_body, NULL, q, links);
     for (int i = 0; i < 21; i++) {
         double at[3] = {0};
 
-        for (int k = i; k >= 0; k = grobo_gr001_body.links[k].parent) {
-            vec_add_scaled(at, at, 1, grobo_gr001_body.links[k].offset_m);
+        for (int k = i; k >= 0; k = grobo_i_gr001_body.links[k].parent) {
+            vec_add_scaled(at, at, 1, grobo_i_gr001_body.links[k].offset_m);
         }
         for (int k = 0; k < 3; k++) {
             assert_true(fabs(links[i].p_m[k] - at[k]) < 1e-15);
-            sum[k] +=
-                grobo_gr001_body.links[i].mass_kg * (at[k] + grobo_gr001_body.links[i].com_m[k]);
+            sum[k] += grobo_i_gr001_body.links[i].mass_kg *
+                      (at[k] + grobo_i_gr001_body.links[i].com_m[k]);
         }
-        mass += grobo_gr001_body.links[i].mass_kg;
+        mass += grobo_i_gr001_body.links[i].mass_kg;
     }
     /* by hand: 0.1605 - 0.028 - 0.005 - 0.048 - 0.059 + 0.0005; -0.0221 + 0.0025 */
     assert_true(fabs(links[6].p_m[0] - 0.029) < 1e-15);
     assert_true(fabs(links[6].p_m[1] + 0.0196) < 1e-15);
     assert_true(fabs(links[6].p_m[2] - 0.021) < 1e-15);
-    assert_true(fabs(grobo_body_com(&grobo_gr001_body, links, com) - 0.88475) < 1e-12);
+    assert_true(fabs(grobo_body_com(&grobo_i_gr001_body, links, com) - 0.88475) < 1e-12);
     for (int k = 0; k < 3; k++) {
         assert_true(fabs(com[k] - sum[k] / mass) < 1e-15);
     }
@@ -123,7 +124,7 @@ TEST(one_joint_turns_what_hangs_on_it)
     grobo_transform links[21];
 
     q[12] = -BODY_PI / 2;
-    grobo_body_forward(&grobo_gr001_body, NULL, q, links);
+    grobo_body_forward(&grobo_i_gr001_body, NULL, q, links);
     /* the neck, (-0.012, 0, 0.056) above the chest, comes to (0.056, 0, 0.012) */
     assert_true(fabs(links[14].p_m[0] - (0.044 + 0.056)) < 1e-15);
     assert_true(fabs(links[14].p_m[1]) < 1e-15);
@@ -155,10 +156,10 @@ TEST(momentum_is_what_moves)
         mat_axis_angle(turn, axis, size * dt);
         mat_mul(root_late.r, turn, root.r);
         vec_add_scaled(root_late.p_m, root.p_m, dt, linear);
-        grobo_body_forward(&grobo_gr001_body, &root, q, links);
-        grobo_body_forward(&grobo_gr001_body, &root_late, late, links_late);
+        grobo_body_forward(&grobo_i_gr001_body, &root, q, links);
+        grobo_body_forward(&grobo_i_gr001_body, &root_late, late, links_late);
         for (int i = 0; i < 21; i++) {
-            const grobo_body_link *link = &grobo_gr001_body.links[i];
+            const grobo_body_link *link = &grobo_i_gr001_body.links[i];
             double c[3], c_late[3], v[3], cross[3], w[3], local[3], spin[3], world[3];
 
             mat_vec(c, links[i].r, link->com_m);
@@ -181,7 +182,7 @@ TEST(momentum_is_what_moves)
         const grobo_body_velocity velocity = {
             {linear[0], linear[1], linear[2]}, {angular[0], angular[1], angular[2]}, speed};
 
-        grobo_body_momentum(&grobo_gr001_body, links, &velocity, &got);
+        grobo_body_momentum(&grobo_i_gr001_body, links, &velocity, &got);
         for (int k = 0; k < 3; k++) {
             assert_true(fabs(got.p_kgm_s[k] - want_p[k]) < 1e-5);
             assert_true(fabs(got.l_kgm2_s[k] - want_l[k]) < 1e-5);
@@ -241,7 +242,7 @@ static void hit_targets(const grobo_body_model *model, double tolerance_m)
 
 TEST(exact_ik_hits_the_target)
 {
-    hit_targets(&grobo_gr001_body, 1e-9);
+    hit_targets(&grobo_i_gr001_body, 1e-9);
 }
 
 TEST(exact_ik_hits_the_target_of_a_larger_robot)
@@ -271,9 +272,9 @@ TEST(exact_ik_finds_the_pose_again)
             leg[3] = side * random_in(-2, -0.05);
             leg[4] = leg[2] + leg[3] + side * random_in(-0.8, 0.8);
             leg[5] = random_in(-0.6, 0.6);
-            grobo_body_forward(&grobo_gr001_body, NULL, q, links);
+            grobo_body_forward(&grobo_i_gr001_body, NULL, q, links);
             in_frame_of(&links[0], &links[foot == 0 ? 6 : 12], &target);
-            assert_int_equal(grobo_body_leg_exact(&grobo_gr001_body, foot, &target, answer), 0);
+            assert_int_equal(grobo_body_leg_exact(&grobo_i_gr001_body, foot, &target, answer), 0);
             for (int i = 0; i < 6; i++) {
                 assert_true(fabs(answer[i] - leg[i]) < 1e-7);
             }
@@ -296,12 +297,12 @@ TEST(exact_ik_is_exact_beside_a_straight_knee)
             leg[2] = side * 0.3;
             leg[3] = -side * knee;
             leg[4] = side * 0.25;
-            grobo_body_forward(&grobo_gr001_body, NULL, q, links);
+            grobo_body_forward(&grobo_i_gr001_body, NULL, q, links);
             in_frame_of(&links[0], &links[foot == 0 ? 6 : 12], &target);
-            assert_int_equal(grobo_body_leg_exact(&grobo_gr001_body, foot, &target, answer), 0);
+            assert_int_equal(grobo_body_leg_exact(&grobo_i_gr001_body, foot, &target, answer), 0);
             assert_true(fabs(answer[3] - leg[3]) * knee < 1e-13); /* the rounding of a cosine */
             memcpy(leg, answer, sizeof answer);
-            grobo_body_forward(&grobo_gr001_body, NULL, q, hit);
+            grobo_body_forward(&grobo_i_gr001_body, NULL, q, hit);
             assert_true(transforms_apart(&hit[foot == 0 ? 6 : 12], &links[foot == 0 ? 6 : 12]) <
                         1e-9);
         }
@@ -314,18 +315,18 @@ TEST(far_targets_are_unreachable)
     double answer[6] = {9, 9, 9, 9, 9, 9};
     grobo_transform links[21], target;
 
-    grobo_body_forward(&grobo_gr001_body, NULL, q, links);
+    grobo_body_forward(&grobo_i_gr001_body, NULL, q, links);
     in_frame_of(&links[0], &links[6], &target);
-    assert_int_equal(grobo_body_leg_exact(&grobo_gr001_body, 0, &target, answer), 0);
+    assert_int_equal(grobo_body_leg_exact(&grobo_i_gr001_body, 0, &target, answer), 0);
     for (int i = 0; i < 6; i++) {
         assert_true(fabs(answer[i]) < 1e-6); /* stretched: the last pose in reach */
         answer[i] = 9;
     }
     target.p_m[2] -= 1e-4;
-    assert_int_equal(grobo_body_leg_exact(&grobo_gr001_body, 0, &target, answer),
+    assert_int_equal(grobo_body_leg_exact(&grobo_i_gr001_body, 0, &target, answer),
                      GROBO_ERR_UNREACHABLE);
     assert_true(answer[0] > 8 && answer[5] > 8);
-    assert_int_equal(grobo_body_leg_exact(&grobo_gr001_body, 2, &target, answer), GROBO_ERR_ARG);
+    assert_int_equal(grobo_body_leg_exact(&grobo_i_gr001_body, 2, &target, answer), GROBO_ERR_ARG);
 }
 
 /* The numeric loop comes to the exact answer but for its tolerance: 1.4e-3 rad of attitude. */
@@ -338,16 +339,16 @@ TEST(numeric_ik_comes_near_the_exact_answer)
         struct grobo_i_leg leg;
         const bool compat11 = round % 2 == 1;
 
-        assert_int_equal(grobo_i_leg_find(&grobo_gr001_body, 0, &leg), 0);
+        assert_int_equal(grobo_i_leg_find(&grobo_i_gr001_body, 0, &leg), 0);
         want[0] = random_in(-0.5, 0.2);
         want[1] = random_in(-0.3, 0.3);
         want[2] = random_in(0, 1);
         want[3] = random_in(-1.5, -0.3);
         want[4] = random_in(-0.6, 0.3);
         want[5] = random_in(-0.3, 0.3);
-        grobo_body_forward(&grobo_gr001_body, NULL, want, links);
+        grobo_body_forward(&grobo_i_gr001_body, NULL, want, links);
         for (int up = 0; up < 2; up++) {
-            const struct grobo_i_numeric problem = {&grobo_gr001_body, &leg, up == 1, compat11};
+            const struct grobo_i_numeric problem = {&grobo_i_gr001_body, &leg, up == 1, compat11};
 
             for (int i = 0; i < 6; i++) {
                 q[i] = want[i] + random_in(-0.1, 0.1);
@@ -372,10 +373,10 @@ TEST(jacobian_is_the_derivative)
         struct grobo_i_leg leg;
 
         random_pose(q, &root);
-        assert_int_equal(grobo_i_leg_find(&grobo_gr001_body, 1, &leg), 0);
-        grobo_body_forward(&grobo_gr001_body, &root, q, links);
+        assert_int_equal(grobo_i_leg_find(&grobo_i_gr001_body, 1, &leg), 0);
+        grobo_body_forward(&grobo_i_gr001_body, &root, q, links);
         for (int up = 0; up < 2; up++) {
-            const struct grobo_i_numeric problem = {&grobo_gr001_body, &leg, up == 1, false};
+            const struct grobo_i_numeric problem = {&grobo_i_gr001_body, &leg, up == 1, false};
             const grobo_transform *start = &links[up ? 12 : 0];
             double jacobian[6][6], unused[6][6], turn[9], w[3], world[3];
 

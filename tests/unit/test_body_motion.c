@@ -10,6 +10,7 @@
 #include "src/body/vec.h"
 #include "tests/support/body_scaled.h"
 #include "tests/support/body_script.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/transforms.h"
 
@@ -30,7 +31,7 @@ TEST(a_foot_without_new_keys_does_not_move)
     struct run run;
 
     script_step(&script);
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame_count(run.body), 201);
     for (int i = 0; i < 201; i++) {
         double q[JOINTS];
@@ -41,9 +42,9 @@ TEST(a_foot_without_new_keys_does_not_move)
         assert_int_equal(report.unreachable, 0);
         assert_true(report.touching[1]);
         assert_int_equal(report.touching[0], i < 60 || i >= 140);
-        foot_of(&grobo_gr001_body, q, &report, LEFT, &foot);
+        foot_of(&grobo_i_gr001_body, q, &report, LEFT, &foot);
         assert_true(transforms_apart(&foot, &script.targets[0][2].at) < 1e-9);
-        foot_of(&grobo_gr001_body, q, &report, RIGHT, &foot);
+        foot_of(&grobo_i_gr001_body, q, &report, RIGHT, &foot);
         if (i <= 60) {
             assert_true(transforms_apart(&foot, &script.targets[0][1].at) < 1e-9);
         }
@@ -68,7 +69,7 @@ static void mirror_script(const struct script *from, struct script *to)
         to->keys[i].zmp_m[1] = -from->keys[i].zmp_m[1];
         to->keys[i].joints = 0;
         for (int j = 0; j < JOINTS; j++) {
-            const grobo_joint *joint = &grobo_gr001_model.joints[j];
+            const grobo_joint *joint = &grobo_i_gr001_model.joints[j];
 
             to->q_rad[i][joint->mirror] = joint->mirror_sign * from->q_rad[i][j];
             if ((from->keys[i].joints & GROBO_JOINT_BIT(j)) != 0) {
@@ -95,15 +96,15 @@ static void mirrored(const grobo_body_options *options)
 
     script_step(&script);
     mirror_script(&script, &other);
-    run_start(&run, &grobo_gr001_body, &script, options);
-    run_start(&opposite, &grobo_gr001_body, &other, options);
+    run_start(&run, &grobo_i_gr001_body, &script, options);
+    run_start(&opposite, &grobo_i_gr001_body, &other, options);
     for (int i = 0; i < grobo_body_frame_count(run.body); i++) {
         double q[JOINTS], m[JOINTS];
 
         assert_int_equal(grobo_body_frame(run.body, i, q, NULL), 0);
         assert_int_equal(grobo_body_frame(opposite.body, i, m, NULL), 0);
         for (int j = 0; j < JOINTS; j++) {
-            const grobo_joint *joint = &grobo_gr001_model.joints[j];
+            const grobo_joint *joint = &grobo_i_gr001_model.joints[j];
 
             assert_true(fabs(m[joint->mirror] - joint->mirror_sign * q[j]) < 1e-9);
         }
@@ -143,7 +144,7 @@ TEST(a_larger_robot_does_the_same)
             }
         }
     }
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     run_start(&other, &scaled.model, &large, &options);
     for (int i = 0; i < 5; i++) {
         double q[JOINTS], p[JOINTS];
@@ -175,7 +176,7 @@ TEST(unreachable_targets_are_told)
     script_key(&script, 1);
     script_target(&script, WAIST, 0, 0, 0.18);
     script_target(&script, LEFT, FOOT_X, FOOT_Y, FOOT_Z + 0.035)->touching = true;
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     for (int i = 0; i <= 20; i++) {
         double q[JOINTS];
         grobo_body_report report;
@@ -207,8 +208,8 @@ TEST(a_foot_can_be_the_base)
             from_foot.targets[i][0].base = false;
         }
         from_foot.targets[0][2].base = true;
-        run_start(&run, &grobo_gr001_body, &script, &options);
-        run_start(&other, &grobo_gr001_body, &from_foot, &options);
+        run_start(&run, &grobo_i_gr001_body, &script, &options);
+        run_start(&other, &grobo_i_gr001_body, &from_foot, &options);
         for (int i = 0; i <= 100; i++) {
             double q[JOINTS], p[JOINTS];
             grobo_body_report report;
@@ -241,9 +242,9 @@ TEST(the_waist_is_told_without_a_target)
     script_joint(&script, 4, -0.5);
     script_target(&script, RIGHT, 0.1, 0.2, FOOT_Z)->base = true;
     script_turn(&script.targets[0][0], 0, 0, 0.7);
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame(run.body, 0, q, &report), 0);
-    foot_of(&grobo_gr001_body, q, &report, RIGHT, &foot);
+    foot_of(&grobo_i_gr001_body, q, &report, RIGHT, &foot);
     assert_true(transforms_apart(&foot, &script.targets[0][0].at) < 1e-12);
     run_finish(&run);
 }
@@ -261,7 +262,7 @@ TEST(a_foot_stands_before_its_first_key)
     script_key(&script, 0.5);
     script_stand(&script, 0, 0, 0.145);
     script.targets[0][1].touching = false;
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     for (int i = 0; i <= 5; i++) {
         assert_int_equal(grobo_body_frame(run.body, i, q, &report), 0);
         assert_false(report.touching[0]);
@@ -290,7 +291,7 @@ TEST(a_slave_foot_follows_its_joints)
             script_joint(&script, j, 0.1 * i);
         }
     }
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame(run.body, 10, q, &report), 0);
     for (int j = 1; j < 6; j++) {
         assert_true(fabs(q[j] - q[0]) < 1e-15 && q[0] > 0.01 && q[0] < 0.1);
@@ -300,7 +301,7 @@ TEST(a_slave_foot_follows_its_joints)
     assert_int_equal(grobo_body_frame(run.body, 37, q, &report), 0);
     assert_true(fabs(q[3] - q[0]) > 1e-3); /* between: a mixture */
     assert_int_equal(grobo_body_frame(run.body, 50, q, &report), 0);
-    foot_of(&grobo_gr001_body, q, &report, RIGHT, &foot);
+    foot_of(&grobo_i_gr001_body, q, &report, RIGHT, &foot);
     assert_true(transforms_apart(&foot, &script.targets[2][1].at) < 1e-9);
     run_finish(&run);
 }
@@ -316,14 +317,14 @@ TEST(a_stealthy_step_does_not_slide)
     double top_m = 0, before_m = 0, fastest_m_s = 0;
 
     script_step(&script);
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     for (int i = 0; i <= 2000; i++) {
         double q[JOINTS];
         grobo_body_report report;
         grobo_transform foot;
 
         assert_int_equal(grobo_body_frame(run.body, i, q, &report), 0);
-        foot_of(&grobo_gr001_body, q, &report, RIGHT, &foot);
+        foot_of(&grobo_i_gr001_body, q, &report, RIGHT, &foot);
         const double height_m = foot.p_m[2] - FOOT_Z;
 
         top_m = fmax(top_m, height_m);
@@ -354,7 +355,7 @@ TEST(automatic_zmp_is_under_the_standing_foot)
     grobo_body_report report;
 
     script_step(&script);
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame(run.body, 0, q, &report), 0);
     assert_true(report.has_zmp);
     assert_true(fabs(report.zmp_m[0] - (FOOT_X - 0.005)) < 1e-12);
@@ -389,7 +390,7 @@ TEST(joints_keep_their_own_keys)
     script_joint(&script, 13, 0.4);
     script_key(&script, 2); /* the same time: goes before the one above, which then holds */
     script_joint(&script, 13, 0.9);
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     assert_int_equal(grobo_body_sample(run.body, -1, q, NULL), 0);
     assert_true(fabs(q[13] - 0.1) < 1e-15 && q[12] == 0);
     assert_int_equal(grobo_body_frame(run.body, 129, q, NULL), 0);
@@ -417,7 +418,7 @@ TEST(frames_come_in_any_order)
     double forward[151][JOINTS], q[JOINTS];
 
     script_step(&script);
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame_count(run.body), 151);
     for (int i = 0; i <= 150; i++) {
         assert_int_equal(grobo_body_frame(run.body, i, forward[i], NULL), 0);
@@ -443,10 +444,10 @@ TEST(ik_can_be_off)
     grobo_body_report report;
 
     script_step(&script);
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame(run.body, 50, q, &report), 0);
     for (int j = 0; j < 12; j++) {
-        assert_true(fabs(q[j] - grobo_gr001_model.joints[j].init_rad) < 1e-15);
+        assert_true(fabs(q[j] - grobo_i_gr001_model.joints[j].init_rad) < 1e-15);
     }
     assert_true(fabs(report.root.p_m[2] - 0.1605) < 1e-15);
     assert_int_equal(report.unreachable, 0);
@@ -456,7 +457,7 @@ TEST(ik_can_be_off)
 TEST(bad_setups_are_refused)
 {
     struct script script;
-    grobo_body_setup setup = {&grobo_gr001_body, script.keys, 0, {.rate_hz = 50}};
+    grobo_body_setup setup = {&grobo_i_gr001_body, script.keys, 0, {.rate_hz = 50}};
     grobo_body *body = NULL;
     size_t bytes = 77;
     char *workspace;
@@ -489,7 +490,7 @@ TEST(bad_setups_are_refused)
     script.targets[3][1].at.r[4] = 1;
     setup.model = NULL;
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), GROBO_ERR_ARG);
-    setup.model = &grobo_gr001_body;
+    setup.model = &grobo_i_gr001_body;
     assert_int_equal(bytes, 77);
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), 0);
     workspace = malloc(bytes);
@@ -521,7 +522,7 @@ TEST(what_was_on_the_stack_does_not_matter)
     size_t bytes = 0;
 
     script_step(&script);
-    grobo_body_setup setup = {&grobo_gr001_body, script.keys, script.n_keys, {.rate_hz = 50}};
+    grobo_body_setup setup = {&grobo_i_gr001_body, script.keys, script.n_keys, {.rate_hz = 50}};
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), 0);
     void *workspace = malloc(bytes);
     assert_true(dirty_the_stack() > 0);

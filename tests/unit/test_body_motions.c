@@ -5,6 +5,7 @@
 #include <grobo/body_motion.h>
 #include <grobo/motion_io.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define MARGIN_M 0.015
@@ -25,7 +26,7 @@ static void stands(const char *path)
         {GROBO_BODY_OPTIONS_INIT, .balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100},
     };
     const grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
-                                             .robot = &grobo_gr001_model, .margin_m = MARGIN_M,
+                                             .robot = &grobo_i_gr001_model, .margin_m = MARGIN_M,
                                              .finding = say};
     grobo_motion *motion = NULL;
 
@@ -33,7 +34,7 @@ static void stands(const char *path)
     for (size_t i = 0; i < sizeof options / sizeof options[0]; i++) {
         grobo_body *body = NULL;
 
-        assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, &options[i], NULL, &body), 0);
+        assert_int_equal(grobo_body_new(&grobo_i_gr001_body, motion, &options[i], NULL, &body), 0);
         assert_int_equal(grobo_body_check(body, &checks), 0);
         grobo_body_free(body);
     }

@@ -5,23 +5,24 @@
 
 #include <grobo/body.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
-static const grobo_body_model *const gr001 = &grobo_gr001_body;
+static const grobo_body_model *const gr001 = &grobo_i_gr001_body;
 
 static double initial_rad[GROBO_JOINTS_MAX];
 
 static int set_up(void)
 {
     for (int j = 0; j < gr001->n_joints; j++) {
-        initial_rad[j] = grobo_gr001_model.joints[j].init_rad;
+        initial_rad[j] = grobo_i_gr001_model.joints[j].init_rad;
     }
     return 0;
 }
 
 static int joint(const char *name)
 {
-    return grobo_model_find_joint(&grobo_gr001_model, name, strlen(name));
+    return grobo_model_find_joint(&grobo_i_gr001_model, name, strlen(name));
 }
 
 TEST(stands_on_both_feet)

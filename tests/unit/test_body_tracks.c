@@ -7,6 +7,7 @@
 #include "src/body/body.h"
 #include "src/body/vec.h"
 #include "tests/support/body_script.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/transforms.h"
 
@@ -166,7 +167,7 @@ TEST(the_base_is_the_latest_that_says_so)
     script_key(&script, 4); /* of two at the same time the last link wins */
     script_target(&script, RIGHT, 0, -0.02, 0.02)->base = true;
     script_target(&script, LEFT, 0, 0.02, 0.03)->base = true;
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame(run.body, 0, q, &first), 0);
     assert_int_equal(grobo_body_frame(run.body, 15, q, &later), 0);
     assert_memory_equal(&later.root, &first.root, sizeof first.root);
@@ -206,7 +207,7 @@ static double own_weight(unsigned how, double time_s)
             foot->slave = free == 0 && (how & (i == 0 ? P_SLAVE : N_SLAVE)) != 0;
             foot->touching = (how & (i == 0 ? P_TOUCH : N_TOUCH)) != 0;
         }
-        run_start(&run, &grobo_gr001_body, &script, &options);
+        run_start(&run, &grobo_i_gr001_body, &script, &options);
         assert_int_equal(grobo_body_sample(run.body, time_s, q[free], NULL), 0);
         run_finish(&run);
     }
@@ -293,7 +294,7 @@ TEST(feet_wait_for_the_zmp)
     script_target(&script, RIGHT, FOOT_X, -FOOT_Y, FOOT_Z)->touching = true;
     script_key(&script, 1.83);
     zmp_key(&script, SOLE_X, 0);
-    run_start(&run, &grobo_gr001_body, &script, &automatic);
+    run_start(&run, &grobo_i_gr001_body, &script, &automatic);
     /* 0.97 + 0.1, before the middle of 1 and 1.4 */
     zmp_is(&run, 1.07, SOLE_X, SOLE_Y);
     assert_int_equal(keys_at(&run.body->target[GROBO_I_RIGHT], 1.07, &flags), 1);
@@ -324,7 +325,7 @@ TEST(a_first_zmp_key_behind_the_lift)
     zmp_key(&script, SOLE_X, 0);
     script_key(&script, 1.5);
     script_target(&script, RIGHT, FOOT_X, -FOOT_Y, FOOT_Z + 0.02);
-    run_start(&run, &grobo_gr001_body, &script, &automatic);
+    run_start(&run, &grobo_i_gr001_body, &script, &automatic);
     assert_int_equal(keys_at(&run.body->target[GROBO_I_RIGHT], 0.6, &flags), 1);
     assert_int_equal(flags, TRACK_TOUCH | TRACK_END | TRACK_AUX);
     zmp_is(&run, 0, SOLE_X, 0);
@@ -356,7 +357,7 @@ static void same_foot_twice(double stand_s, const grobo_body_options *options, s
     script_target(&script, RIGHT, FOOT_X, -FOOT_Y, FOOT_Z + 0.02);
     script_key(&script, 2.5);
     script_target(&script, RIGHT, FOOT_X, -FOOT_Y, FOOT_Z)->touching = true;
-    run_start(run, &grobo_gr001_body, &script, options);
+    run_start(run, &grobo_i_gr001_body, &script, options);
 }
 
 TEST(the_zmp_visits_the_middle)
@@ -394,7 +395,7 @@ TEST(an_author_s_zmp_keys_are_held)
     script.n_keys--;
     script_key(&script, 3)->max_transition_s = 0.25;
     zmp_key(&script, SOLE_X, 0.007);
-    run_start(&run, &grobo_gr001_body, &script, &automatic);
+    run_start(&run, &grobo_i_gr001_body, &script, &automatic);
     assert_int_equal(keys_at(&run.body->zmp, 2.75, &flags), 1);
     assert_true((flags & TRACK_END) != 0);
     zmp_is(&run, 3, SOLE_X, 0.007);
@@ -416,11 +417,11 @@ TEST(a_leg_gives_up_the_least_of_a_shift)
     memset(&script, 0, sizeof script);
     script_key(&script, 0);
     script_stand(&script, 0, 0, 0.148);
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     grobo_i_solve(run.body, 0, shift, &report);
     assert_int_equal(report.unreachable, UINT64_C(1) << RIGHT | UINT64_C(1) << LEFT);
     assert_true(fabs(report.root.p_m[0] - 0.06) < NEAR && fabs(report.root.p_m[1] - 0.08) < NEAR);
-    grobo_body_forward(&grobo_gr001_body, &report.root, run.body->q_rad, links);
+    grobo_body_forward(&grobo_i_gr001_body, &report.root, run.body->q_rad, links);
     /* the right foot went along with the waist, in the direction of the shift only */
     given_up[0] = links[RIGHT].p_m[0] - FOOT_X;
     given_up[1] = links[RIGHT].p_m[1] + FOOT_Y;
@@ -433,7 +434,8 @@ TEST(a_leg_gives_up_the_least_of_a_shift)
     nearer.p_m[0] -= 1.01e-4 * 0.6 + 0.06;
     nearer.p_m[1] -= 1.01e-4 * 0.8 + 0.08;
     nearer.p_m[2] -= 0.148;
-    assert_int_equal(grobo_body_leg_exact(&grobo_gr001_body, 0, &nearer, q), GROBO_ERR_UNREACHABLE);
+    assert_int_equal(grobo_body_leg_exact(&grobo_i_gr001_body, 0, &nearer, q),
+                     GROBO_ERR_UNREACHABLE);
     run_finish(&run);
 }
 
@@ -454,13 +456,13 @@ TEST(a_slave_foot_follows_the_shifted_waist)
         script.targets[i][1].touching = false;
         script.targets[i][1].slave = i == 1;
     }
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     for (int i = 0; i < 10; i++) {
         const double part = smooth(0.1 * i);
 
         grobo_i_solve(run.body, 0.1 * i, shift, &report);
         assert_int_equal(report.unreachable, 0);
-        grobo_body_forward(&grobo_gr001_body, &report.root, run.body->q_rad, links);
+        grobo_body_forward(&grobo_i_gr001_body, &report.root, run.body->q_rad, links);
         assert_true(fabs(links[RIGHT].p_m[0] - FOOT_X - part * shift[0]) < 1e-9);
         assert_true(fabs(links[RIGHT].p_m[1] + FOOT_Y - part * shift[1]) < 1e-9);
         assert_true(fabs(links[RIGHT].p_m[2] - FOOT_Z) < 1e-9);
@@ -488,13 +490,13 @@ TEST(a_waist_shifted_beyond_its_base_foot)
     script_stand(&script, 0, 0, 0.148);
     script.targets[0][0].base = false;
     script.targets[0][2].base = true;
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
     grobo_i_solve(run.body, 0, shift, &report);
     assert_true((report.unreachable & UINT64_C(1) << LEFT) != 0);
     for (int j = 6; j < 12; j++) {
         assert_true(fabs(run.body->q_rad[j] - 0.01 * j) < NEAR);
     }
-    grobo_body_forward(&grobo_gr001_body, &report.root, run.body->q_rad, links);
+    grobo_body_forward(&grobo_i_gr001_body, &report.root, run.body->q_rad, links);
     assert_true(transforms_apart(&links[LEFT], &script.targets[0][2].at) < NEAR);
     run_finish(&run);
 }

@@ -10,6 +10,7 @@
 #include <grobo/feetech.h>
 #include <grobo/sequencer.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static grobo_exchange exchange;
@@ -140,7 +141,8 @@ TEST(more_joints_than_a_frame_holds_make_more_frames)
     assert_int_equal(
         grobo_rs30x_driver_init(&driver, &model, grobo_wiring_protocol((grobo_wiring)2)),
         GROBO_ERR_ARG);
-    assert_int_equal(grobo_rs30x_driver_init(&driver, NULL, &grobo_rs30x_protocol), GROBO_ERR_ARG);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, NULL, &grobo_i_rs30x_protocol),
+                     GROBO_ERR_ARG);
     assert_null(grobo_gr001_driver((grobo_wiring)2));
 }
 
@@ -230,9 +232,10 @@ static int read_as(const table_row *row, int32_t value)
     uint8_t bytes[256] = {0};
     assert_int_equal(row->init(&driver, &model), GROBO_OK);
     assert_true(driver.sense(&driver, NULL, 0, GROBO_SENSE_FULL, &exchange) >= 0);
-    const grobo_servo_model *servo = row->init == grobo_dxl2_driver_init
-                                         ? grobo_servo_model_numbered(&grobo_dxl2_table, row->servo)
-                                         : grobo_servo_model_numbered(&grobo_sts_table, row->servo);
+    const grobo_servo_model *servo =
+        row->init == grobo_dxl2_driver_init
+            ? grobo_servo_model_numbered(&grobo_i_dxl2_table, row->servo)
+            : grobo_servo_model_numbered(&grobo_i_sts_table, row->servo);
     const grobo_servo_register *reg = grobo_servo_register_of(servo, row->role);
     const grobo_servo_register *position = grobo_servo_register_of(servo, GROBO_ROLE_POSITION);
     const grobo_reply *asked = &exchange.reply;
@@ -289,7 +292,7 @@ TEST(bad_tables_are_refused)
     bad[6].rest_rad = rest_outside;
     bad[7].protocol = NULL;
     bad[8].model = NULL;
-    others = grobo_rs30x_protocol; /* whose ids end at 19: one is outside */
+    others = grobo_i_rs30x_protocol; /* whose ids end at 19: one is outside */
     others.id_max = 19;
     bad[9].protocol = &others;
     bad[10].time_max_us = GROBO_PLAY_TIME_MAX_US + 1;

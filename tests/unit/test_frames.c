@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/vectors.h"
 #include "tools/grctl/decode/ledger.h"
@@ -160,7 +161,7 @@ static void ask(ledger *l, uint8_t id, int64_t now_us)
 {
     uint8_t bytes[32];
     frame f;
-    int n = grobo_frame_read(&grobo_board_protocol, id, 36, 1, bytes, sizeof bytes);
+    int n = grobo_frame_read(&grobo_i_board_protocol, id, 36, 1, bytes, sizeof bytes);
     assert_int_equal(frame_peek(rs30x(), FRAMES_HOST, GROBO_WORDS_BOARD, bytes, (size_t)n, &f), n);
     f.time_us = now_us;
     ledger_ask(l, &f);

@@ -4,9 +4,10 @@
 
 #include <grobo/posture.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
-static const grobo_model *const gr001 = &grobo_gr001_model;
+static const grobo_model *const gr001 = &grobo_i_gr001_model;
 
 /* GR001 as its sheet gives it, in joint order; typed anew, so that one table checks the other. */
 static const struct {

@@ -7,6 +7,7 @@
 
 #include "tests/support/files.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 typedef struct checked {
@@ -19,7 +20,7 @@ typedef struct checked {
 static checked check_with(const char *text, bool positions, grobo_slack_taken *slack)
 {
     const grobo_check_options how = {GROBO_CHECK_OPTIONS_INIT, .slack = slack};
-    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model,
+    grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_i_gr001_model,
                                   .keep_positions = positions};
     checked found;
     grobo_motion *motion = NULL;
@@ -27,7 +28,7 @@ static checked check_with(const char *text, bool positions, grobo_slack_taken *s
     assert_int_equal(grobo_diagnostics_new(NULL, &found.list), 0);
     assert_int_equal(grobo_motion_read_memory(text, strlen(text), &options, found.list, &motion),
                      0);
-    found.errors = grobo_motion_check(motion, &grobo_gr001_model, &how, found.list);
+    found.errors = grobo_motion_check(motion, &grobo_i_gr001_model, &how, found.list);
     assert_true((size_t)found.errors == grobo_diagnostics_total(found.list, GROBO_SEVERITY_ERROR));
     found.warnings = grobo_diagnostics_total(found.list, GROBO_SEVERITY_WARNING);
     found.notes = grobo_diagnostics_total(found.list, GROBO_SEVERITY_NOTE);
@@ -236,7 +237,7 @@ TEST(test_speed_it_is_played_at)
         grobo_check_options how = {GROBO_CHECK_OPTIONS_INIT, .speed_pct = speeds[i].speed_pct};
         grobo_diagnostics *list = NULL;
         assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
-        assert_int_equal(grobo_motion_check(motion, &grobo_gr001_model, &how, list),
+        assert_int_equal(grobo_motion_check(motion, &grobo_i_gr001_model, &how, list),
                          speeds[i].errors);
         grobo_diagnostics_free(list);
     }
@@ -344,24 +345,24 @@ TEST(test_robot_it_is_for)
     };
 
     const char *const alike[] = {"cousin", "brother", NULL};
-    grobo_model like_brother = grobo_gr001_model;
+    grobo_model like_brother = grobo_i_gr001_model;
     like_brother.alike = alike;
 
     for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) {
-        const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model};
+        const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = &grobo_i_gr001_model};
         grobo_motion *motion, *copy;
         assert_int_equal(grobo_motion_read_memory(motions[i].text, strlen(motions[i].text),
                                                   &options, NULL, &motion),
                          0);
-        assert_int_equal(grobo_motion_is_for(motion, &grobo_gr001_model), motions[i].fits);
-        assert_int_equal(grobo_motion_check(motion, &grobo_gr001_model, NULL, NULL) > 0,
+        assert_int_equal(grobo_motion_is_for(motion, &grobo_i_gr001_model), motions[i].fits);
+        assert_int_equal(grobo_motion_check(motion, &grobo_i_gr001_model, NULL, NULL) > 0,
                          !motions[i].fits);
         assert_int_equal(grobo_motion_dup(motion, &copy), 0);
-        assert_int_equal(grobo_motion_is_for(copy, &grobo_gr001_model), motions[i].fits);
+        assert_int_equal(grobo_motion_is_for(copy, &grobo_i_gr001_model), motions[i].fits);
         assert_int_equal(grobo_motion_set_target_body(copy, "GR001"), 0);
-        assert_true(grobo_motion_is_for(copy, &grobo_gr001_model));
+        assert_true(grobo_motion_is_for(copy, &grobo_i_gr001_model));
         assert_int_equal(grobo_motion_set_target_body(copy, "brother"), 0);
-        assert_false(grobo_motion_is_for(copy, &grobo_gr001_model));
+        assert_false(grobo_motion_is_for(copy, &grobo_i_gr001_model));
         assert_true(grobo_motion_is_for(copy, &like_brother));
         assert_int_equal(grobo_motion_set_target_body(copy, "sister"), 0);
         assert_false(grobo_motion_is_for(copy, &like_brother));

@@ -9,6 +9,7 @@
 #include "tests/support/counted_mem.h"
 #include "tests/support/files.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static void assert_near(double value, double expected, double delta)
@@ -147,7 +148,7 @@ TEST(test_postures)
     assert_int_equal(clip.key(clip.ctx, 2, &posture, &at_us), 0);
     assert_int_equal(at_us, 1300000);
     assert_int_equal(posture.time_us, 300000);
-    int joint = grobo_model_joint_of_motor(&grobo_gr001_model, 1);
+    int joint = grobo_model_joint_of_motor(&grobo_i_gr001_model, 1);
     assert_near(sample(&clip, 0.2, joint), 0, 0);
     assert_near(sample(&clip, 0.75, joint), 5 * ddeg, 1e-12);
     assert_near(sample(&clip, 1.15, joint), 15 * ddeg, 1e-9);

@@ -7,6 +7,7 @@
 #include "tests/support/counted_mem.h"
 #include "tests/support/files.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 /* ---- caps and quadratic inputs ------------------------------------------------------------ */
@@ -113,7 +114,7 @@ TEST(test_allocations_fail)
             grobo_mem mem = counted_mem_of(&counter);
             grobo_diagnostics *list = NULL;
             grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem,
-                                          .keep_positions = true, .model = &grobo_gr001_model};
+                                          .keep_positions = true, .model = &grobo_i_gr001_model};
             result = grobo_diagnostics_new(&mem, &list);
             if (result == 0) {
                 result = read_result(samples[i], &options, list);
@@ -291,7 +292,7 @@ TEST(test_edge_files)
         bool refuse = strncmp(expected, "refuse", 6) == 0;
         bool warn = strstr(expected, "warn") != NULL;
         if (result == 0 && warn) {
-            (void)grobo_motion_check(motion, &grobo_gr001_model, NULL, list);
+            (void)grobo_motion_check(motion, &grobo_i_gr001_model, NULL, list);
         }
         grobo_diagnostic first;
         bool placed =

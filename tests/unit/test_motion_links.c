@@ -8,6 +8,7 @@
 #include "tests/support/files.h"
 #include "tests/support/folder.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static int remove_folder(void)
@@ -42,7 +43,7 @@ TEST(test_save_through_a_link)
     assert_int_equal(symlink(in_folder("b.m"), in_folder("link.m")), 0);
     assert_int_equal(grobo_motion_save(motion, grobo_files_os(), in_folder("link.m"),
                                        &(grobo_write_options){GROBO_WRITE_OPTIONS_INIT,
-                                                              .model = &grobo_gr001_model},
+                                                              .model = &grobo_i_gr001_model},
                                        NULL),
                      0);
     assert_int_equal(lstat(in_folder("link.m"), &status), 0);
@@ -55,7 +56,7 @@ TEST(test_save_through_a_link)
 TEST(test_save_through_a_link_to_no_file)
 {
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
-    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_i_gr001_model};
     struct stat status;
     char open_end[32], text[16] = "";
     int ends[2];

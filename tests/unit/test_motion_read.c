@@ -8,6 +8,7 @@
 
 #include "tests/support/counted_mem.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 /* ---- .m ----------------------------------------------------------------------------------- */
@@ -16,7 +17,7 @@ TEST(test_m)
 {
     grobo_motion *motion =
         motion_of("# recorded\n500  10 -20 30\r\n1000.5\t0 1.5 0\n\n\n", GROBO_FORMAT_AUTO);
-    const grobo_model *model = &grobo_gr001_model;
+    const grobo_model *model = &grobo_i_gr001_model;
     double time_s;
 
     assert_int_equal(grobo_motion_get_kind(motion), GROBO_MOTION_POSTURES);
@@ -464,7 +465,7 @@ TEST(test_memory_of_a_long_file)
     counted_mem counter = {0};
     grobo_mem mem = counted_mem_of(&counter);
     grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .mem = &mem, .keep_positions = true,
-                                  .model = &grobo_gr001_model, .format = GROBO_FORMAT_M};
+                                  .model = &grobo_i_gr001_model, .format = GROBO_FORMAT_M};
     grobo_motion *motion = NULL;
     uint32_t at_line, at_column;
 

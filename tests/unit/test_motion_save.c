@@ -8,11 +8,12 @@
 #include "tests/support/folder.h"
 #include "tests/support/motion_texts.h"
 #include "tests/support/os.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static const char saved[] = "500  10 -20\n1000  1 2\n";
 static const grobo_write_options in_motor_order = {GROBO_WRITE_OPTIONS_INIT,
-                                                   .model = &grobo_gr001_model};
+                                                   .model = &grobo_i_gr001_model};
 
 static int remove_folder(void)
 {
@@ -42,7 +43,7 @@ TEST(test_save)
 {
     grobo_motion *motion = motion_of(saved, GROBO_FORMAT_M);
     const char *path = in_folder("a.m");
-    grobo_model short_model = grobo_gr001_model;
+    grobo_model short_model = grobo_i_gr001_model;
 
     short_model.n_joints = 15; /* to motor 3 */
     for (int i = 0; i < 2; i++) {
@@ -51,7 +52,7 @@ TEST(test_save)
                          0);
         assert_file(path, saved);
     }
-    grobo_motion_free(again_as(path, &grobo_gr001_model, motion));
+    grobo_motion_free(again_as(path, &grobo_i_gr001_model, motion));
     grobo_motion *two = again_as(path, &short_model, NULL);
     assert_int_equal(grobo_motion_joints(two), short_model.n_joints);
     grobo_motion_free(two);
@@ -148,7 +149,7 @@ TEST(test_save_keeps_other_formats)
     assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
     for (int h = 0; h < 3; h++) {
         for (int f = 0; f < 4; f++) {
-            grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model,
+            grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_i_gr001_model,
                                            .format = formats[f]};
             int wanted = h == f && h < 2 ? 0 : GROBO_ERR_EXISTS;
             put_file(path, held[h]);
@@ -176,7 +177,7 @@ TEST(test_save_keeps_other_formats)
 TEST(test_save_next)
 {
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
-    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_i_gr001_model};
     char path[512] = "";
 
     put_file(in_folder("Motion2.m"), "mine");

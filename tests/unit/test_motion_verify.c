@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "tests/support/motion_texts.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 enum { KEYS = 6, TRIALS = 25 };
@@ -35,7 +36,7 @@ static grobo_motion *random_motion(grobo_motion_kind kind, grobo_joint_mask join
                 continue;
             }
             double value = random_rad(seed);
-            double before = k > 0 ? wanted[k - 1][j] : grobo_gr001_model.joints[j].init_rad;
+            double before = k > 0 ? wanted[k - 1][j] : grobo_i_gr001_model.joints[j].init_rad;
             wanted[k][j] = kind == GROBO_MOTION_STEPS ? before + value : value;
             (void)grobo_posture_set_rad(&posture, j, value);
         }
@@ -59,7 +60,7 @@ static double difference(grobo_motion *motion, grobo_joint_mask joints,
     grobo_clip clip;
     double most_rad = 0;
 
-    grobo_motion_start(motion, &grobo_gr001_model, &start);
+    grobo_motion_start(motion, &grobo_i_gr001_model, &start);
     assert_int_equal(
         grobo_motion_clip(motion, &(grobo_clip_options){GROBO_CLIP_OPTIONS_INIT, .start = &start},
                           &clip),
@@ -80,7 +81,7 @@ static double difference(grobo_motion *motion, grobo_joint_mask joints,
 
 static grobo_motion *through(grobo_motion *motion, grobo_motion_format format, bool exact)
 {
-    const grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model,
+    const grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_i_gr001_model,
                                          .exact = exact};
     char *text = written_as(motion, format, &options, NULL);
     grobo_motion *copy = motion_of(text, format);

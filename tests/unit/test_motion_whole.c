@@ -7,6 +7,7 @@
 
 #include "tests/support/counted_mem.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 static const char keys[] =
@@ -226,9 +227,9 @@ TEST(test_mirror)
                                .translation_m = {0.1, -0.2, 0.3},
                                .rotation = {1, 2, 3, 4, 5, 6, 7, 8, 9}},
                               {.index = 0, .name = "WAIST", .is_base = true}};
-    int right = grobo_model_find_joint(&grobo_gr001_model, "R_KNEE_P", 8);
-    int left = grobo_model_find_joint(&grobo_gr001_model, "L_KNEE_P", 8);
-    int neck = grobo_model_find_joint(&grobo_gr001_model, "NECK_Y", 6);
+    int right = grobo_model_find_joint(&grobo_i_gr001_model, "R_KNEE_P", 8);
+    int left = grobo_model_find_joint(&grobo_i_gr001_model, "L_KNEE_P", 8);
+    int neck = grobo_model_find_joint(&grobo_i_gr001_model, "NECK_Y", 6);
     size_t count;
 
     assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &motion), 0);
@@ -241,7 +242,7 @@ TEST(test_mirror)
         grobo_motion_set_key(motion, 0, &(grobo_key_info){.stationary = GROBO_JOINT_BIT(right)}),
         0);
     assert_int_equal(grobo_motion_dup(motion, &back), 0);
-    assert_int_equal(grobo_motion_mirror(motion, &grobo_gr001_model), 0);
+    assert_int_equal(grobo_motion_mirror(motion, &grobo_i_gr001_model), 0);
     assert_true(angle_of(motion, 0, left) == 0.5);
     assert_true(isnan(angle_of(motion, 0, right)));
     assert_true(angle_of(motion, 0, neck) == -0.25);
@@ -256,12 +257,12 @@ TEST(test_mirror)
     grobo_key_info info;
     assert_int_equal(grobo_motion_get_key(motion, 0, &info), 0);
     assert_true(info.stationary == GROBO_JOINT_BIT(left));
-    assert_int_equal(grobo_motion_mirror(motion, &grobo_gr001_model), 0);
+    assert_int_equal(grobo_motion_mirror(motion, &grobo_i_gr001_model), 0);
     assert_true(grobo_motion_equal(motion, back));
     /* A side that no table knows. */
     memcpy(links[0].name, "R_TOE", 6);
     assert_int_equal(grobo_motion_set_ik_links(motion, 0, links, 2), 0);
-    assert_int_equal(grobo_motion_mirror(motion, &grobo_gr001_model), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_motion_mirror(motion, &grobo_i_gr001_model), GROBO_ERR_NOTFOUND);
     assert_true(angle_of(motion, 0, right) == -0.5); /* untouched */
     grobo_motion_free(motion);
     grobo_motion_free(back);
@@ -313,7 +314,7 @@ TEST(test_reverse_postures_and_steps)
 {
     grobo_motion *motion = motion_of("500 0\n900 1\n900 2\n1500 3\n", GROBO_FORMAT_M);
     static const int64_t steps_us[] = {500000, 600000, 0, 400000};
-    int joint = grobo_model_joint_of_motor(&grobo_gr001_model, 1);
+    int joint = grobo_model_joint_of_motor(&grobo_i_gr001_model, 1);
 
     assert_int_equal(grobo_motion_reverse(motion), 0);
     for (size_t n = 0; n < 4; n++) {
@@ -425,7 +426,7 @@ static int edit(grobo_motion *motion, int what)
     case 3:
         return grobo_motion_append_motion(motion, motion);
     default:
-        return grobo_motion_mirror(motion, &grobo_gr001_model);
+        return grobo_motion_mirror(motion, &grobo_i_gr001_model);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "tests/support/counted_mem.h"
 #include "tests/support/files.h"
 #include "tests/support/motion_texts.h"
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 /* ---- layout ------------------------------------------------------------------------------- */
@@ -194,7 +195,7 @@ TEST(test_yaml_layout)
 TEST(test_m_layout)
 {
     static const char file[] = "500  10 -20.5 0\n1000  1 2 3\n";
-    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_i_gr001_model};
     grobo_motion *motion = motion_of(file, GROBO_FORMAT_M);
     char *text = written_as(motion, GROBO_FORMAT_M, &options, NULL);
 
@@ -216,7 +217,7 @@ TEST(test_print)
     grobo_posture posture;
 
     assert_non_null(stream);
-    assert_int_equal(grobo_motion_print(motion, &grobo_gr001_model, stream), 0);
+    assert_int_equal(grobo_motion_print(motion, &grobo_i_gr001_model, stream), 0);
     (void)grobo_posture_init(&posture, 3);
     (void)grobo_posture_set_deg(&posture, 0, -0.04);
     (void)grobo_posture_set_deg(&posture, 2, -12.34);
@@ -413,7 +414,7 @@ TEST(test_frames_are_resampled)
 /* An empty motion has a file in every format, and comes back from it. */
 TEST(test_empty_motions_are_written)
 {
-    const grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
+    const grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_i_gr001_model};
 
     for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
         for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
@@ -477,7 +478,7 @@ TEST(test_real_key_poses_byte_for_byte)
 /* Read, written to each format and read, and back: the same sizes, times and angles. */
 TEST(test_real_files_there_and_back)
 {
-    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model,
+    grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_i_gr001_model,
                                    .exact = true};
 
     for (size_t i = 0; i < sizeof real_names / sizeof real_names[0]; i++) {

@@ -17,6 +17,7 @@
 #include <grobo/robot_file.h>
 #include <grobo/rs30x.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
@@ -36,7 +37,7 @@ static const double *const poses[3] = {reals, reals, reals};
 static grobo_body_velocity velocity;
 static grobo_momentum momentum;
 static const grobo_body_key one_key;
-static const grobo_body_setup setup = {.model = &grobo_gr001_body, .keys = &one_key, .n_keys = 1};
+static const grobo_body_setup setup = {.model = &grobo_i_gr001_body, .keys = &one_key, .n_keys = 1};
 static grobo_body *made_body;
 static grobo_body *body;
 static grobo_body_report report;
@@ -90,14 +91,14 @@ static int set_up(void)
     grobo_board_parser_init(&board_parser, 0);
     grobo_rs30x_parser_init(&parser, GROBO_ACCEPT_RETURNS);
     assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &motion), GROBO_OK);
-    grobo_posture_init_pose(&posture, &grobo_gr001_model);
+    grobo_posture_init_pose(&posture, &grobo_i_gr001_model);
     posture.time_us = 1000000;
     assert_int_equal(grobo_motion_append(motion, &posture), GROBO_OK);
     assert_int_equal(grobo_motion_append(motion, &posture), GROBO_OK);
     links[0] =
         (grobo_ik_link){.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .name = "WAIST", .is_base = true};
     assert_int_equal(grobo_motion_set_ik_links(motion, 0, links, 1), GROBO_OK);
-    assert_int_equal(grobo_body_new(&grobo_gr001_body, motion, NULL, NULL, &body), GROBO_OK);
+    assert_int_equal(grobo_body_new(&grobo_i_gr001_body, motion, NULL, NULL, &body), GROBO_OK);
     assert_int_equal(grobo_motion_clip(motion, NULL, &clip), GROBO_OK);
     assert_int_equal(grobo_diagnostics_new(NULL, &list), GROBO_OK);
     stream = tmpfile();
@@ -149,30 +150,30 @@ TEST(body_refuses_null)
 {
     REFUSES(grobo_body_model_check(NULL));
     grobo_body_forward(NULL, transforms, reals, transforms);
-    grobo_body_forward(&grobo_gr001_body, transforms, NULL, transforms);
-    grobo_body_forward(&grobo_gr001_body, transforms, reals, NULL);
+    grobo_body_forward(&grobo_i_gr001_body, transforms, NULL, transforms);
+    grobo_body_forward(&grobo_i_gr001_body, transforms, reals, NULL);
     assert_true(grobo_body_com(NULL, transforms, reals) == 0);
-    assert_true(grobo_body_com(&grobo_gr001_body, NULL, reals) == 0);
-    assert_true(grobo_body_com(&grobo_gr001_body, transforms, NULL) == 0);
+    assert_true(grobo_body_com(&grobo_i_gr001_body, NULL, reals) == 0);
+    assert_true(grobo_body_com(&grobo_i_gr001_body, transforms, NULL) == 0);
     REFUSES(grobo_body_stand_pose(NULL, reals, NULL, &stand));
-    REFUSES(grobo_body_stand_pose(&grobo_gr001_body, NULL, NULL, &stand));
-    REFUSES(grobo_body_stand_pose(&grobo_gr001_body, reals, NULL, NULL));
+    REFUSES(grobo_body_stand_pose(&grobo_i_gr001_body, NULL, NULL, &stand));
+    REFUSES(grobo_body_stand_pose(&grobo_i_gr001_body, reals, NULL, NULL));
     assert_true(grobo_body_stand_margin(NULL, reals) == -INFINITY);
     assert_true(grobo_body_stand_margin(&stand, NULL) == -INFINITY);
     REFUSES(grobo_body_zmp_of_poses(NULL, transforms, poses, 1, reals));
-    REFUSES(grobo_body_zmp_of_poses(&grobo_gr001_body, NULL, poses, 1, reals));
-    REFUSES(grobo_body_zmp_of_poses(&grobo_gr001_body, transforms, NULL, 1, reals));
-    REFUSES(grobo_body_zmp_of_poses(&grobo_gr001_body, transforms, poses, 1, NULL));
+    REFUSES(grobo_body_zmp_of_poses(&grobo_i_gr001_body, NULL, poses, 1, reals));
+    REFUSES(grobo_body_zmp_of_poses(&grobo_i_gr001_body, transforms, NULL, 1, reals));
+    REFUSES(grobo_body_zmp_of_poses(&grobo_i_gr001_body, transforms, poses, 1, NULL));
     grobo_body_momentum(NULL, transforms, &velocity, &momentum);
-    grobo_body_momentum(&grobo_gr001_body, NULL, &velocity, &momentum);
-    grobo_body_momentum(&grobo_gr001_body, transforms, NULL, &momentum);
-    grobo_body_momentum(&grobo_gr001_body, transforms, &velocity, NULL);
+    grobo_body_momentum(&grobo_i_gr001_body, NULL, &velocity, &momentum);
+    grobo_body_momentum(&grobo_i_gr001_body, transforms, NULL, &momentum);
+    grobo_body_momentum(&grobo_i_gr001_body, transforms, &velocity, NULL);
     grobo_body_zmp(NULL, 0, &momentum, reals);
     grobo_body_zmp(reals, 0, NULL, reals);
     grobo_body_zmp(reals, 0, &momentum, NULL);
     REFUSES(grobo_body_leg_exact(NULL, 0, transforms, reals));
-    REFUSES(grobo_body_leg_exact(&grobo_gr001_body, 0, NULL, reals));
-    REFUSES(grobo_body_leg_exact(&grobo_gr001_body, 0, transforms, NULL));
+    REFUSES(grobo_body_leg_exact(&grobo_i_gr001_body, 0, NULL, reals));
+    REFUSES(grobo_body_leg_exact(&grobo_i_gr001_body, 0, transforms, NULL));
     REFUSES(grobo_body_workspace_bytes(NULL, sizes));
     REFUSES(grobo_body_workspace_bytes(&setup, NULL));
     REFUSES(grobo_body_init(&setup, bytes, sizeof bytes, NULL));
@@ -190,11 +191,11 @@ TEST(body_refuses_null)
 
 TEST(body_motion_refuses_null)
 {
-    assert_false(grobo_body_wanted(&grobo_gr001_body, NULL));
-    REFUSES(grobo_body_new(&grobo_gr001_body, motion, &body_options, grobo_mem_default(), NULL));
+    assert_false(grobo_body_wanted(&grobo_i_gr001_body, NULL));
+    REFUSES(grobo_body_new(&grobo_i_gr001_body, motion, &body_options, grobo_mem_default(), NULL));
     REFUSES(grobo_body_new(NULL, motion, &body_options, grobo_mem_default(), &made_body));
     REFUSES(
-        grobo_body_new(&grobo_gr001_body, NULL, &body_options, grobo_mem_default(), &made_body));
+        grobo_body_new(&grobo_i_gr001_body, NULL, &body_options, grobo_mem_default(), &made_body));
     grobo_body_free(NULL);
     grobo_body_clip(NULL, true, &clip);
     grobo_body_clip(body, true, NULL);
@@ -206,7 +207,7 @@ TEST(dxl_refuses_null)
 {
     static grobo_dxl2_packet packet2;
     static grobo_dxl1_packet packet1;
-    const grobo_servo_model *model = &grobo_sts_table.models[0];
+    const grobo_servo_model *model = &grobo_i_sts_table.models[0];
     const grobo_servo_register *reg = grobo_servo_register_of(model, GROBO_ROLE_GOAL);
     REFUSES(grobo_dxl2_measure(NULL, 1, GROBO_ACCEPT_RETURNS));
     REFUSES(grobo_dxl2_parse(NULL, 1, bytes, sizeof bytes, &packet2));
@@ -229,7 +230,7 @@ TEST(dxl_refuses_null)
     packet1.data_bytes = 1;
     REFUSES(grobo_dxl1_build(&packet1, bytes, sizeof bytes));
     assert_null(grobo_servo_model_named(NULL, "STS3215"));
-    assert_null(grobo_servo_model_named(&grobo_sts_table, NULL));
+    assert_null(grobo_servo_model_named(&grobo_i_sts_table, NULL));
     assert_null(grobo_servo_model_numbered(NULL, 777));
     assert_null(grobo_servo_register_row(NULL, 0));
     assert_null(grobo_servo_register_named(NULL, "id"));
@@ -272,21 +273,21 @@ TEST(driver_refuses_null)
 {
     REFUSES(grobo_driver_check(NULL));
     assert_int_equal(grobo_driver_wiring(NULL), GROBO_WIRING_BOARD);
-    REFUSES(grobo_dxl2_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_dxl2_driver_init(NULL, &grobo_i_gr001_model));
     REFUSES(grobo_dxl2_driver_init(&made_driver, NULL));
     assert_false(grobo_ics_tells_position(NULL));
-    REFUSES(grobo_ics_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_ics_driver_init(NULL, &grobo_i_gr001_model));
     REFUSES(grobo_ics_driver_init(&made_driver, NULL));
-    REFUSES(grobo_lx16a_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_lx16a_driver_init(NULL, &grobo_i_gr001_model));
     REFUSES(grobo_lx16a_driver_init(&made_driver, NULL));
-    REFUSES(grobo_dxl1_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_dxl1_driver_init(NULL, &grobo_i_gr001_model));
     REFUSES(grobo_dxl1_driver_init(&made_driver, NULL));
-    REFUSES(grobo_feetech_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_feetech_driver_init(NULL, &grobo_i_gr001_model));
     REFUSES(grobo_feetech_driver_init(&made_driver, NULL));
     assert_true(grobo_joint_to_servo(NULL, 1) >= 0 && grobo_joint_from_servo(NULL, 1) >= 0);
-    REFUSES(grobo_rs30x_driver_init(NULL, &grobo_gr001_model, &grobo_rs30x_protocol));
-    REFUSES(grobo_rs30x_driver_init(&made_driver, NULL, &grobo_rs30x_protocol));
-    REFUSES(grobo_rs30x_driver_init(&made_driver, &grobo_gr001_model, NULL));
+    REFUSES(grobo_rs30x_driver_init(NULL, &grobo_i_gr001_model, &grobo_i_rs30x_protocol));
+    REFUSES(grobo_rs30x_driver_init(&made_driver, NULL, &grobo_i_rs30x_protocol));
+    REFUSES(grobo_rs30x_driver_init(&made_driver, &grobo_i_gr001_model, NULL));
 }
 
 TEST(interpolate_refuses_null)
@@ -307,10 +308,10 @@ TEST(model_refuses_null)
     REFUSES(grobo_model_joint_of_motor(NULL, 1));
     REFUSES(grobo_model_motor_of_joint(NULL, 1));
     REFUSES(grobo_model_find_joint(NULL, text, 4));
-    REFUSES(grobo_model_find_joint(&grobo_gr001_model, NULL, 4));
+    REFUSES(grobo_model_find_joint(&grobo_i_gr001_model, NULL, 4));
     REFUSES(grobo_model_find_joints(NULL, text, 4, &joints));
-    REFUSES(grobo_model_find_joints(&grobo_gr001_model, NULL, 4, &joints));
-    REFUSES(grobo_model_find_joints(&grobo_gr001_model, text, 4, NULL));
+    REFUSES(grobo_model_find_joints(&grobo_i_gr001_model, NULL, 4, &joints));
+    REFUSES(grobo_model_find_joints(&grobo_i_gr001_model, text, 4, NULL));
 }
 
 TEST(motion_refuses_null_in_its_first_functions)
@@ -401,14 +402,14 @@ TEST(motion_refuses_null_in_its_third_functions)
     REFUSES(grobo_motion_append_motion(motion, NULL));
     REFUSES(grobo_motion_concat(NULL, motion, 0));
     REFUSES(grobo_motion_concat(motion, NULL, 0));
-    REFUSES(grobo_motion_mirror(NULL, &grobo_gr001_model));
+    REFUSES(grobo_motion_mirror(NULL, &grobo_i_gr001_model));
     REFUSES(grobo_motion_mirror(motion, NULL));
     REFUSES(grobo_motion_reverse(NULL));
     REFUSES(grobo_motion_scale_time(NULL, 50.0));
     REFUSES(grobo_motion_crop(NULL, 0, 0));
-    assert_false(grobo_motion_is_for(NULL, &grobo_gr001_model));
-    grobo_motion_start(NULL, &grobo_gr001_model, &posture);
-    grobo_motion_start(motion, &grobo_gr001_model, NULL);
+    assert_false(grobo_motion_is_for(NULL, &grobo_i_gr001_model));
+    grobo_motion_start(NULL, &grobo_i_gr001_model, &posture);
+    grobo_motion_start(motion, &grobo_i_gr001_model, NULL);
     REFUSES(grobo_motion_clip(NULL, &clip_options, &clip));
     REFUSES(grobo_motion_clip(motion, &clip_options, NULL));
     grobo_motion_clip_free(NULL);
@@ -433,7 +434,7 @@ TEST(motion_io_refuses_null_in_its_first_functions)
     REFUSES(grobo_motion_read_memory(bytes, 1, &read_options, list, NULL));
     REFUSES(grobo_motion_read(NULL, &read_options, list, &made_motion));
     REFUSES(grobo_motion_read(&source, &read_options, list, NULL));
-    REFUSES(grobo_motion_check(NULL, &grobo_gr001_model, &check_options, list));
+    REFUSES(grobo_motion_check(NULL, &grobo_i_gr001_model, &check_options, list));
     REFUSES(grobo_motion_check(motion, NULL, &check_options, list));
     REFUSES(grobo_motion_convert(NULL, 0, &write_options, list, &made_motion));
     REFUSES(grobo_motion_convert(motion, 0, &write_options, list, NULL));
@@ -463,14 +464,14 @@ TEST(motion_io_refuses_null_in_its_second_functions)
     REFUSES(grobo_motion_find(grobo_files_os(), text, text, NULL, sizeof bytes));
     REFUSES(grobo_posture_print(NULL, stream));
     REFUSES(grobo_posture_print(&posture, NULL));
-    REFUSES(grobo_motion_print(NULL, &grobo_gr001_model, stream));
-    REFUSES(grobo_motion_print(motion, &grobo_gr001_model, NULL));
+    REFUSES(grobo_motion_print(NULL, &grobo_i_gr001_model, stream));
+    REFUSES(grobo_motion_print(motion, &grobo_i_gr001_model, NULL));
 }
 
 TEST(posture_refuses_null_in_its_first_functions)
 {
     REFUSES(grobo_posture_init(NULL, 20));
-    grobo_posture_init_pose(NULL, &grobo_gr001_model);
+    grobo_posture_init_pose(NULL, &grobo_i_gr001_model);
     grobo_posture_init_pose(&posture, NULL);
     REFUSES(grobo_posture_set_rad(NULL, 1, 0));
     REFUSES(grobo_posture_set_deg(NULL, 1, 0));
@@ -495,15 +496,15 @@ TEST(posture_refuses_null_in_its_second_functions)
     assert_false(grobo_posture_equal(&posture, NULL));
     assert_false(grobo_posture_near(NULL, &posture, 0));
     assert_false(grobo_posture_near(&posture, NULL, 0));
-    REFUSES(grobo_posture_mirror(NULL, &grobo_gr001_model));
+    REFUSES(grobo_posture_mirror(NULL, &grobo_i_gr001_model));
     REFUSES(grobo_posture_mirror(&posture, NULL));
-    REFUSES(grobo_posture_check(NULL, &grobo_gr001_model, ints));
+    REFUSES(grobo_posture_check(NULL, &grobo_i_gr001_model, ints));
     REFUSES(grobo_posture_check(&posture, NULL, ints));
-    REFUSES(grobo_posture_clamp(NULL, &grobo_gr001_model));
+    REFUSES(grobo_posture_clamp(NULL, &grobo_i_gr001_model));
     REFUSES(grobo_posture_clamp(&posture, NULL));
-    REFUSES(grobo_posture_parse(NULL, &grobo_gr001_model, text, 4));
+    REFUSES(grobo_posture_parse(NULL, &grobo_i_gr001_model, text, 4));
     REFUSES(grobo_posture_parse(&posture, NULL, text, 4));
-    REFUSES(grobo_posture_parse(&posture, &grobo_gr001_model, NULL, 4));
+    REFUSES(grobo_posture_parse(&posture, &grobo_i_gr001_model, NULL, 4));
 }
 
 TEST(rs30x_refuses_null_in_its_first_functions)
@@ -526,25 +527,25 @@ TEST(rs30x_refuses_null_in_its_first_functions)
     REFUSES(grobo_rs30x_reply_to(NULL, 1, &reply));
     REFUSES(grobo_rs30x_reply_to(bytes, 1, NULL));
     REFUSES(grobo_frame_goal(NULL, goals, bytes, sizeof bytes));
-    REFUSES(grobo_frame_goal(&grobo_rs30x_protocol, NULL, bytes, sizeof bytes));
-    REFUSES(grobo_frame_goal(&grobo_rs30x_protocol, goals, NULL, sizeof bytes));
+    REFUSES(grobo_frame_goal(&grobo_i_rs30x_protocol, NULL, bytes, sizeof bytes));
+    REFUSES(grobo_frame_goal(&grobo_i_rs30x_protocol, goals, NULL, sizeof bytes));
 }
 
 TEST(rs30x_refuses_null_in_its_second_functions)
 {
     REFUSES(grobo_frame_goals(NULL, goals, 1, bytes, sizeof bytes));
-    REFUSES(grobo_frame_goals(&grobo_rs30x_protocol, NULL, 1, bytes, sizeof bytes));
-    REFUSES(grobo_frame_goals(&grobo_rs30x_protocol, goals, 1, NULL, sizeof bytes));
+    REFUSES(grobo_frame_goals(&grobo_i_rs30x_protocol, NULL, 1, bytes, sizeof bytes));
+    REFUSES(grobo_frame_goals(&grobo_i_rs30x_protocol, goals, 1, NULL, sizeof bytes));
     REFUSES(grobo_frame_torque(NULL, 1, 0, bytes, sizeof bytes));
-    REFUSES(grobo_frame_torque(&grobo_rs30x_protocol, 1, 0, NULL, sizeof bytes));
+    REFUSES(grobo_frame_torque(&grobo_i_rs30x_protocol, 1, 0, NULL, sizeof bytes));
     REFUSES(grobo_frame_torques(NULL, pairs, 1, bytes, sizeof bytes));
-    REFUSES(grobo_frame_torques(&grobo_rs30x_protocol, NULL, 1, bytes, sizeof bytes));
-    REFUSES(grobo_frame_torques(&grobo_rs30x_protocol, pairs, 1, NULL, sizeof bytes));
+    REFUSES(grobo_frame_torques(&grobo_i_rs30x_protocol, NULL, 1, bytes, sizeof bytes));
+    REFUSES(grobo_frame_torques(&grobo_i_rs30x_protocol, pairs, 1, NULL, sizeof bytes));
     REFUSES(grobo_frame_read(NULL, 1, 0, 4, bytes, sizeof bytes));
-    REFUSES(grobo_frame_read(&grobo_rs30x_protocol, 1, 0, 4, NULL, sizeof bytes));
+    REFUSES(grobo_frame_read(&grobo_i_rs30x_protocol, 1, 0, 4, NULL, sizeof bytes));
     REFUSES(grobo_frame_wrap(NULL, bytes, 1, bytes, sizeof bytes));
-    REFUSES(grobo_frame_wrap(&grobo_rs30x_protocol, NULL, 1, bytes, sizeof bytes));
-    REFUSES(grobo_frame_wrap(&grobo_rs30x_protocol, bytes, 1, NULL, sizeof bytes));
+    REFUSES(grobo_frame_wrap(&grobo_i_rs30x_protocol, NULL, 1, bytes, sizeof bytes));
+    REFUSES(grobo_frame_wrap(&grobo_i_rs30x_protocol, bytes, 1, NULL, sizeof bytes));
     grobo_rs30x_parser_init(NULL, 0);
     assert_int_equal(grobo_rs30x_parser_feed(NULL, bytes, 1), 0);
     assert_int_equal(grobo_rs30x_parser_feed(&parser, NULL, 1), 0);
@@ -571,9 +572,9 @@ TEST(robot_file_refuses_null)
     REFUSES(grobo_robot_def_read(&bytes_of, "", NULL, NULL, NULL));
     grobo_robot_def_free(NULL);
     REFUSES(grobo_robot_def_driver(NULL, GROBO_WIRING_BUS, &driver));
-    REFUSES(grobo_robot_def_driver(grobo_robot_defs[0], GROBO_WIRING_BUS, NULL));
+    REFUSES(grobo_robot_def_driver(grobo_i_robot_defs[0], GROBO_WIRING_BUS, NULL));
     REFUSES(grobo_robot_def_sim(NULL, GROBO_WIRING_BUS, &sim));
-    REFUSES(grobo_robot_def_sim(grobo_robot_defs[0], GROBO_WIRING_BUS, NULL));
+    REFUSES(grobo_robot_def_sim(grobo_i_robot_defs[0], GROBO_WIRING_BUS, NULL));
 }
 
 TESTS_BETWEEN(set_up, tear_down)

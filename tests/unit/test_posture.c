@@ -5,6 +5,7 @@
 
 #include <grobo/posture.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 
 #define PI 3.14159265358979323846
@@ -249,17 +250,17 @@ TEST(the_mirror_swaps_sides_and_comes_back)
     grobo_posture_set_deg(&p, 12, -10.0); /* CHEST_P */
     grobo_posture_set_deg(&p, 13, 25.0);  /* NECK_Y */
     grobo_posture before = p;
-    assert_int_equal(grobo_posture_mirror(&p, &grobo_gr001_model), 0);
+    assert_int_equal(grobo_posture_mirror(&p, &grobo_i_gr001_model), 0);
     assert_true(p.set == (GROBO_JOINT_BIT(17) | GROBO_JOINT_BIT(9) | GROBO_JOINT_BIT(12) |
                           GROBO_JOINT_BIT(13)));
     assert_near(p.angle_rad[17], -30.0 * PI / 180, 1e-15);
     assert_near(p.angle_rad[9], 70.0 * PI / 180, 1e-15);
     assert_near(p.angle_rad[12], -10.0 * PI / 180, 1e-15);
     assert_near(p.angle_rad[13], -25.0 * PI / 180, 1e-15);
-    assert_int_equal(grobo_posture_mirror(&p, &grobo_gr001_model), 0);
+    assert_int_equal(grobo_posture_mirror(&p, &grobo_i_gr001_model), 0);
     assert_true(grobo_posture_equal(&p, &before));
     p = make(19);
-    assert_int_equal(grobo_posture_mirror(&p, &grobo_gr001_model), GROBO_ERR_ARG);
+    assert_int_equal(grobo_posture_mirror(&p, &grobo_i_gr001_model), GROBO_ERR_ARG);
 }
 
 TEST(limits_are_kept_on_the_grid_of_the_wire)
@@ -283,10 +284,10 @@ TEST(limits_are_kept_on_the_grid_of_the_wire)
         grobo_posture p = make(20);
         int joint = -5;
         grobo_posture_set_deg(&p, 3, rows[i].deg);
-        assert_int_equal(grobo_posture_check(&p, &grobo_gr001_model, &joint), rows[i].result);
+        assert_int_equal(grobo_posture_check(&p, &grobo_i_gr001_model, &joint), rows[i].result);
         assert_int_equal(joint, rows[i].result == 0 ? -5 : 3);
-        assert_int_equal(grobo_posture_check(&p, &grobo_gr001_model, NULL), rows[i].result);
-        assert_int_equal(grobo_posture_clamp(&p, &grobo_gr001_model), rows[i].result != 0);
+        assert_int_equal(grobo_posture_check(&p, &grobo_i_gr001_model, NULL), rows[i].result);
+        assert_int_equal(grobo_posture_clamp(&p, &grobo_i_gr001_model), rows[i].result != 0);
         assert_near(grobo_deg_from_rad(p.angle_rad[3]), rows[i].clamped_deg, 1e-12);
     }
 }
@@ -297,22 +298,22 @@ TEST(what_is_no_number_is_found_and_never_clamped)
     int joint = -5;
     p.angle_rad[2] = (double)NAN; /* not set: means nothing */
     grobo_posture_set_deg(&p, 3, 50.0);
-    assert_int_equal(grobo_posture_check(&p, &grobo_gr001_model, &joint), GROBO_ERR_LIMIT);
+    assert_int_equal(grobo_posture_check(&p, &grobo_i_gr001_model, &joint), GROBO_ERR_LIMIT);
     p.angle_rad[7] = (double)INFINITY;
     p.set |= GROBO_JOINT_BIT(7);
-    assert_int_equal(grobo_posture_clamp(&p, &grobo_gr001_model), GROBO_ERR_NAN);
+    assert_int_equal(grobo_posture_clamp(&p, &grobo_i_gr001_model), GROBO_ERR_NAN);
     assert_near(grobo_deg_from_rad(p.angle_rad[3]), 50.0, 1e-12);
     grobo_posture_set_deg(&p, 3, -50.0);
-    assert_int_equal(grobo_posture_check(&p, &grobo_gr001_model, &joint), GROBO_ERR_NAN);
+    assert_int_equal(grobo_posture_check(&p, &grobo_i_gr001_model, &joint), GROBO_ERR_NAN);
     assert_int_equal(joint, 7);
     p.n_joints = 5;
-    assert_int_equal(grobo_posture_check(&p, &grobo_gr001_model, &joint), GROBO_ERR_ARG);
-    assert_int_equal(grobo_posture_clamp(&p, &grobo_gr001_model), GROBO_ERR_ARG);
+    assert_int_equal(grobo_posture_check(&p, &grobo_i_gr001_model, &joint), GROBO_ERR_ARG);
+    assert_int_equal(grobo_posture_clamp(&p, &grobo_i_gr001_model), GROBO_ERR_ARG);
 }
 
 static int parse(grobo_posture *p, const char *text)
 {
-    return grobo_posture_parse(p, &grobo_gr001_model, text, strlen(text));
+    return grobo_posture_parse(p, &grobo_i_gr001_model, text, strlen(text));
 }
 
 TEST(a_line_is_a_time_and_angles_in_motor_order)
@@ -323,7 +324,7 @@ TEST(a_line_is_a_time_and_angles_in_motor_order)
                                "200 0\r\n"),
                      20);
     assert_int_equal(p.time_us, 250000);
-    grobo_posture_init_pose(&pose, &grobo_gr001_model);
+    grobo_posture_init_pose(&pose, &grobo_i_gr001_model);
     assert_true(grobo_posture_near(&p, &pose, 1e-12));
 
     assert_int_equal(parse(&p, "\t0 -100 +5"), 2);
@@ -363,5 +364,5 @@ TEST(a_bad_line_leaves_the_posture_alone)
     }
     /* The length rules, not a NUL. */
     grobo_posture p;
-    assert_int_equal(grobo_posture_parse(&p, &grobo_gr001_model, "100 12xyz", 6), 1);
+    assert_int_equal(grobo_posture_parse(&p, &grobo_i_gr001_model, "100 12xyz", 6), 1);
 }

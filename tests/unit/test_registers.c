@@ -8,11 +8,13 @@
 #include <grobo/feetech.h>
 #include <grobo/rs30x.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
-static const grobo_servo_table *const tables[] = {
-    &grobo_rs30x_table, &grobo_dxl2_table, &grobo_dxl1_table, &grobo_sts_table, &grobo_scs_table};
+static const grobo_servo_table *const tables[] = {&grobo_i_rs30x_table, &grobo_i_dxl2_table,
+                                                  &grobo_i_dxl1_table, &grobo_i_sts_table,
+                                                  &grobo_i_scs_table};
 enum { TABLES = (int)(sizeof tables / sizeof tables[0]) };
 
 static void row_is_whole(const grobo_servo_model *model, const grobo_servo_register *reg)
@@ -100,13 +102,14 @@ TEST(models_have_their_own_rows)
         {"XC330-T288", "model_information", 2, 0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        const grobo_servo_model *model = grobo_servo_model_named(&grobo_dxl2_table, rows[i].model);
+        const grobo_servo_model *model =
+            grobo_servo_model_named(&grobo_i_dxl2_table, rows[i].model);
         const grobo_servo_register *reg = grobo_servo_register_named(model, rows[i].name);
         assert_int_equal(reg != NULL ? reg->address : -1, rows[i].address);
         assert_int_equal(reg != NULL ? reg->factory : 0, rows[i].factory);
     }
-    assert_null(grobo_servo_model_named(&grobo_dxl2_table, "XL330"));
-    assert_null(grobo_servo_model_numbered(&grobo_dxl2_table, 9999));
+    assert_null(grobo_servo_model_named(&grobo_i_dxl2_table, "XL330"));
+    assert_null(grobo_servo_model_numbered(&grobo_i_dxl2_table, 9999));
 }
 
 /* What a model does at its voltage: of the same column of the data sheet. */
@@ -121,7 +124,8 @@ TEST(models_have_figures_of_their_voltage)
         {"XM540-W270", 180, 10600, 4400, 12000}, {"XH540-V150", 360, 6400, 2400, 24000},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        const grobo_servo_model *model = grobo_servo_model_named(&grobo_dxl2_table, rows[i].model);
+        const grobo_servo_model *model =
+            grobo_servo_model_named(&grobo_i_dxl2_table, rows[i].model);
         assert_non_null(model);
         assert_int_equal(model->speed_dps, rows[i].dps);
         assert_int_equal(model->torque_mnm, rows[i].mnm);
@@ -139,20 +143,20 @@ TEST(values_are_written_as_each_series_does)
         int32_t value;
         const char *hex;
     } rows[] = {
-        {&grobo_sts_table, "STS3215", "goal_position", 2048, "00 08"},
-        {&grobo_scs_table, "SCS0009", "goal_position", 1000, "03 E8"},
-        {&grobo_sts_table, "STS3215", "offset", -195, "C3 08"},
-        {&grobo_sts_table, "STS3215", "offset", 100, "64 00"},
-        {&grobo_sts_table, "STS3215", "goal_speed", -600, "58 82"},
-        {&grobo_sts_table, "STS3215", "present_load", -300, "2C 05"},
-        {&grobo_dxl2_table, "XL330-M288", "goal_velocity", -100, "9C FF FF FF"},
-        {&grobo_dxl2_table, "XL330-M288", "homing_offset", -50, "CE FF FF FF"},
-        {&grobo_dxl2_table, "XL330-M288", "watchdog", -1, "FF"},
-        {&grobo_dxl1_table, "MX-64", "goal_position", -2048, "00 F8"},
-        {&grobo_dxl1_table, "AX-12A", "present_speed", -300, "2C 05"},
-        {&grobo_rs30x_table, "RS302CD", "goal", -1500, "24 FA"},
-        {&grobo_rs30x_table, "RS302CD", "speed", -1, "FF FF"},
-        {&grobo_rs30x_table, "RS302CD", "current", 65535, "FF FF"},
+        {&grobo_i_sts_table, "STS3215", "goal_position", 2048, "00 08"},
+        {&grobo_i_scs_table, "SCS0009", "goal_position", 1000, "03 E8"},
+        {&grobo_i_sts_table, "STS3215", "offset", -195, "C3 08"},
+        {&grobo_i_sts_table, "STS3215", "offset", 100, "64 00"},
+        {&grobo_i_sts_table, "STS3215", "goal_speed", -600, "58 82"},
+        {&grobo_i_sts_table, "STS3215", "present_load", -300, "2C 05"},
+        {&grobo_i_dxl2_table, "XL330-M288", "goal_velocity", -100, "9C FF FF FF"},
+        {&grobo_i_dxl2_table, "XL330-M288", "homing_offset", -50, "CE FF FF FF"},
+        {&grobo_i_dxl2_table, "XL330-M288", "watchdog", -1, "FF"},
+        {&grobo_i_dxl1_table, "MX-64", "goal_position", -2048, "00 F8"},
+        {&grobo_i_dxl1_table, "AX-12A", "present_speed", -300, "2C 05"},
+        {&grobo_i_rs30x_table, "RS302CD", "goal", -1500, "24 FA"},
+        {&grobo_i_rs30x_table, "RS302CD", "speed", -1, "FF FF"},
+        {&grobo_i_rs30x_table, "RS302CD", "current", 65535, "FF FF"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const grobo_servo_model *model = grobo_servo_model_named(rows[i].table, rows[i].model);
@@ -172,9 +176,12 @@ TEST(codes_of_rates_go_both_ways)
         int code;
         int32_t bps;
     } rows[] = {
-        {&grobo_rs30x_table, "RS301CR", 10, 460800}, {&grobo_dxl2_table, "XL430-W250", 7, 4500000},
-        {&grobo_dxl1_table, "AX-12A", 1, 1000000},   {&grobo_dxl1_table, "MX-28", 252, 3000000},
-        {&grobo_sts_table, "STS3215", 4, 115200},    {&grobo_scs_table, "SCS0009", 0, 1000000},
+        {&grobo_i_rs30x_table, "RS301CR", 10, 460800},
+        {&grobo_i_dxl2_table, "XL430-W250", 7, 4500000},
+        {&grobo_i_dxl1_table, "AX-12A", 1, 1000000},
+        {&grobo_i_dxl1_table, "MX-28", 252, 3000000},
+        {&grobo_i_sts_table, "STS3215", 4, 115200},
+        {&grobo_i_scs_table, "SCS0009", 0, 1000000},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const grobo_servo_model *model = grobo_servo_model_named(rows[i].table, rows[i].model);
@@ -188,15 +195,15 @@ TEST(codes_of_rates_go_both_ways)
         assert_int_equal(grobo_servo_baud_bps(model, 255), GROBO_ERR_ARG);
         assert_int_equal(grobo_servo_baud_code(model, 115201), GROBO_ERR_UNSUPPORTED);
     }
-    const grobo_servo_model *small = grobo_servo_model_named(&grobo_dxl2_table, "XL330-M288");
+    const grobo_servo_model *small = grobo_servo_model_named(&grobo_i_dxl2_table, "XL330-M288");
     assert_int_equal(grobo_servo_baud_bps(small, 7), GROBO_ERR_ARG);
-    const grobo_servo_model *ax = grobo_servo_model_named(&grobo_dxl1_table, "AX-12A");
+    const grobo_servo_model *ax = grobo_servo_model_named(&grobo_i_dxl1_table, "AX-12A");
     assert_int_equal(grobo_servo_baud_bps(ax, 252), GROBO_ERR_ARG);
 }
 
 TEST(what_is_not_there_is_null)
 {
-    const grobo_servo_model *model = &grobo_sts_table.models[0];
+    const grobo_servo_model *model = &grobo_i_sts_table.models[0];
     assert_null(grobo_servo_register_at(model, 4000));
     assert_null(grobo_servo_register_at(model, 50));
     assert_null(grobo_servo_register_named(model, "goal"));

@@ -6,6 +6,7 @@
 
 #include <grobo/rs30x.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tests/support/vectors.h"
 
@@ -218,8 +219,8 @@ TEST(registers_stand_where_the_codec_has_them)
                 {"torque", GROBO_RS30X_TORQUE},
                 {"position", GROBO_RS30X_POSITION},
                 {"voltage", GROBO_RS30X_VOLTAGE}};
-    const grobo_servo_model *early = grobo_servo_model_named(&grobo_rs30x_table, "RS301CR");
-    const grobo_servo_model *late = grobo_servo_model_numbered(&grobo_rs30x_table, 0x3040);
+    const grobo_servo_model *early = grobo_servo_model_named(&grobo_i_rs30x_table, "RS301CR");
+    const grobo_servo_model *late = grobo_servo_model_numbered(&grobo_i_rs30x_table, 0x3040);
     assert_string_equal(late->name, "RS304MD");
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         assert_int_equal(grobo_servo_register_named(late, rows[i].name)->address, rows[i].address);
@@ -227,7 +228,7 @@ TEST(registers_stand_where_the_codec_has_them)
     assert_null(grobo_servo_register_named(early, "warm_up_time"));
     assert_null(grobo_servo_register_at(late, 3));
     assert_null(grobo_servo_register_at(late, 139));
-    assert_null(grobo_servo_model_numbered(&grobo_rs30x_table, 0x3011));
+    assert_null(grobo_servo_model_numbered(&grobo_i_rs30x_table, 0x3011));
     assert_int_equal(grobo_servo_register_named(early, "punch")->factory, 180);
     assert_int_equal(grobo_servo_register_named(late, "punch")->factory, 200);
     assert_int_equal(grobo_servo_baud_bps(late, GROBO_RS30X_BAUD_CODE_DEFAULT), 115200);

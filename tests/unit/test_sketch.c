@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tools/grctl/servo/family.h"
 #include "tools/grctl/sketch/sketch.h"
@@ -84,9 +85,9 @@ static void near(double a, double b, double by)
 
 static const grobo_robot_def *shipped(const char *name)
 {
-    for (int i = 0; grobo_robot_defs[i]; i++) {
-        if (strcmp(grobo_robot_defs[i]->name, name) == 0) {
-            return grobo_robot_defs[i];
+    for (int i = 0; grobo_i_robot_defs[i]; i++) {
+        if (strcmp(grobo_i_robot_defs[i]->name, name) == 0) {
+            return grobo_i_robot_defs[i];
         }
     }
     fail_msg("no %s", name);

@@ -157,7 +157,7 @@ TEST(ics_is_explained)
 static const grobo_words *series(int k)
 {
     for (;;) {
-        for (const grobo_family *f = grobo_families; f->robot != NULL; f++) {
+        for (const grobo_family *f = grobo_families(); f->robot != NULL; f++) {
             for (const grobo_words *const *words = f->words; *words != NULL; words++) {
                 if (k-- == 0) {
                     return *words;

@@ -4,4 +4,5 @@
 SONAME := libgrobo.0.dylib
 LINK_NAME := libgrobo.dylib
 SHARED_FLAGS := -install_name @rpath/$(SONAME)
+OWN_CALLS :=
 include tools/cross/zig.mk

@@ -1,10 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Gate: the shared library exports exactly what headers declare with GROBO_API, and of functions
-# that docs/seed-map.md does not name 150 at most.
+# Gate: the shared library exports exactly what headers declare, and all of it are functions.
 #
 # usage: symbols.sh LIBRARY      compare
-#        symbols.sh --declared   print the declared names, one a line, of all libraries
+#        symbols.sh --declared   print the declared names, one a line, but for the classic library's
 #        symbols.sh --pointers   of them only functions that take a pointer
 #        symbols.sh --classic    print the names that the classic library exports
 #        symbols.sh --map        print the version script, which is kept in src/libgrobo.map
@@ -15,13 +14,13 @@ nm=${NM:-nm}
 # A declaration may go over several lines; its name stands before the first bracket that is not an
 # attribute's, or before [ or ; for data.
 declared() {
-    cat include/grobo/*.h include/grobo/classic/*.h ports/posix/include/grobo/*.h 2>/dev/null |
-        awk -v pointers="${2:-}" '
+    cat include/grobo/*.h include/grobo/core/*.h include/grobo/classic/*.h \
+        ports/posix/include/grobo/*.h 2>/dev/null | awk -v pointers="${2:-}" '
     /^GROBO_'"$1"'/ { text = ""; open = 1 }
     open { text = text " " $0 }
     open && /;/ {
         open = 0
-        sub(/GROBO_(API|CORE|CLASSIC_API)/, "", text)
+        sub(/GROBO_(API|CLASSIC_API)/, "", text)
         while (sub(/__attribute__ *\(\([^()]*(\([^()]*\))?[^()]*\)\)/, "", text)) {
         }
         if (pointers && text !~ /\(.*([*[]|_fn )/) {
@@ -46,8 +45,8 @@ map() {
 case ${1:-} in
 --map) map && exit ;;
 --classic) declared CLASSIC_API && exit ;;
---declared) declared '(API|CORE)' && exit ;;
---pointers) declared '(API|CORE)' yes && exit ;;
+--declared) declared API && exit ;;
+--pointers) declared API yes && exit ;;
 esac
 
 work=$(mktemp -d) || exit 1
@@ -57,19 +56,11 @@ declared API >"$work/declared"
 "$nm" -D --defined-only "$1" | awk 'NF == 3 && $2 != "A" { sub(/@.*/, "", $3); print $3 }' |
     sort -u >"$work/exported"
 bad=0
-# What a reader has to learn beside the members of the reference document.
-most=${SYMBOLS_MOST:-150}
-if [ -f docs/seed-map.md ]; then
-    "$nm" -D --defined-only "$1" | awk 'NF == 3 && $2 == "T" { sub(/@.*/, "", $3); print $3 }' |
-        sort -u >"$work/functions"
-    grep -ow 'grobo_[a-z0-9_]*' docs/seed-map.md | sort -u >"$work/seed"
-    beside=$(comm -23 "$work/functions" "$work/seed" | wc -l)
-    if [ "$beside" -gt "$most" ]; then
-        echo "$1:1: symbols: exports $beside functions that docs/seed-map.md does not name;" \
-            "at most $most: mark with GROBO_CORE what few programs need"
-        bad=1
-    fi
-fi
+for name in $("$nm" -D --defined-only "$1" |
+    awk 'NF == 3 && $2 !~ /[ATW]/ && $3 ~ /^grobo_/ { sub(/@.*/, "", $3); print $3 }'); do
+    echo "$1:1: symbols: exports data, $name: a function reaches it"
+    bad=1
+done
 map >"$work/map"
 if [ -f src/libgrobo.map ] && ! cmp -s "$work/map" src/libgrobo.map; then
     echo "src/libgrobo.map:1: symbols: not what the headers declare (tools/lint/symbols.sh --map)"

@@ -84,7 +84,7 @@ static void look(int64_t now_us)
     grobo_sim_step(&sim, now_us);
     for (int j = 0; j < JOINTS && n_frames < MAX_FRAMES; j++) {
         grobo_sim_view view;
-        int servo = grobo_sim_find(&sim, grobo_model_motor_of_joint(&grobo_gr001_model, j));
+        int servo = grobo_sim_find(&sim, grobo_model_motor_of_joint(grobo_gr001_model(), j));
         if (grobo_sim_look(&sim, servo, &view) == 0) {
             frames[n_frames][j] = view.angle_mdeg / 1000.0;
         }
@@ -94,7 +94,7 @@ static void look(int64_t now_us)
 
 static int play(const char *path, int64_t *now_us)
 {
-    const grobo_read_options how = {GROBO_READ_OPTIONS_INIT, .model = &grobo_gr001_model};
+    const grobo_read_options how = {GROBO_READ_OPTIONS_INIT, .model = grobo_gr001_model()};
     const grobo_play_options options = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE};
     grobo_motion *motion;
     grobo_clip clip;
@@ -141,7 +141,7 @@ static void place(int frame)
         q_rad[j] = frames[frame][j] * DEG;
     }
     grobo_transform root = {{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    grobo_body_forward(&grobo_gr001_body, &root, q_rad, places[frame]);
+    grobo_body_forward(grobo_gr001_body(), &root, q_rad, places[frame]);
     const grobo_transform foot = places[frame][R_FOOT];
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) {
@@ -149,7 +149,7 @@ static void place(int frame)
             root.p_m[i] -= foot.r[3 * k + i] * foot.p_m[k];
         }
     }
-    grobo_body_forward(&grobo_gr001_body, &root, q_rad, places[frame]);
+    grobo_body_forward(grobo_gr001_body(), &root, q_rad, places[frame]);
 }
 
 /* ---- drawing ------------------------------------------------------------------------------ */
@@ -290,7 +290,7 @@ static void print_curve(int joint, int middle_px)
     }
     double scale = 44 / fmax(high - low, 1);
     printf("<text x=\"%d\" y=\"%d\">%s</text>\n", CURVE_X, middle_px - 30,
-           grobo_gr001_model.joints[joint].name);
+           grobo_gr001_model()->joints[joint].name);
     printf("<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%.0f to %.0f°</text>\n", CURVE_X + CURVE_W,
            middle_px - 30, low, high);
     printf("<path class=\"c\" d=\"");
@@ -336,7 +336,7 @@ static void print_svg(int n_motions, char **motions)
 
 int main(int argc, char **argv)
 {
-    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &grobo_gr001_model};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = grobo_gr001_model()};
     int64_t now_us = 0;
     int result = grobo_sim_init(&sim, &config, 0);
     if (result >= 0) {

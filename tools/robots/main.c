@@ -201,7 +201,7 @@ static void print_drivers(const grobo_robot_def *def)
     for (int w = 0; w < 2; w++) {
         printf("[GROBO_WIRING_%s] = {GROBO_I_RS30X_FUNCTIONS, .name = \"%s\", ", wirings[w],
                def->model->name);
-        printf(".model = &grobo_gr001_model, .protocol = &grobo_%s_protocol, ", protocols[w]);
+        printf(".model = &grobo_i_gr001_model, .protocol = &grobo_i_%s_protocol, ", protocols[w]);
         if (w == GROBO_WIRING_BOARD) {
             printf(".stored = grobo_i_rs30x_stored, ");
         }
@@ -231,13 +231,13 @@ static void print_def(const grobo_robot_def *def, const char *model)
 static void print(const grobo_robot_def *def)
 {
     bool is_gr001 = strcmp(def->name, "gr001") == 0;
-    const char *model = is_gr001 ? "grobo_gr001_model" : "model";
+    const char *model = is_gr001 ? "grobo_i_gr001_model" : "model";
     printf("/* SPDX-License-Identifier: MIT */\n/* Made from src/robots/%s.yaml by `make robots`. "
            "*/\n",
            def->name);
     if (is_gr001) {
         printf("#include <grobo/board.h>\n\n#include \"src/robots/robots.h\"\n"
-               "#include \"src/servo/rs30x/driver.h\"\n\n");
+               "#include \"src/servo/rs30x/driver.h\"\n#include \"src/servo/tables.h\"\n\n");
     } else {
         printf("#include \"src/robots/robots.h\"\n\n");
     }
@@ -251,6 +251,10 @@ static void print(const grobo_robot_def *def)
         print_drivers(def);
     }
     print_def(def, model);
+    if (is_gr001) {
+        printf("\nconst grobo_model *grobo_gr001_model(void)\n{\n");
+        printf("    return &grobo_i_gr001_model;\n}\n");
+    }
 }
 
 static int read_stream(void *ctx, void *buffer, size_t size)

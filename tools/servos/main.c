@@ -287,6 +287,13 @@ static const char *number(int32_t value)
     return to;
 }
 
+/* The name of the function that returns the table, without grobo_. */
+static const char *own_part(const table *t)
+{
+    static const char prefix[] = "grobo_";
+    return t->symbol + (strncmp(t->symbol, prefix, sizeof prefix - 1) == 0 ? sizeof prefix - 1 : 0);
+}
+
 static void print_row(table *t, const shared_row *row)
 {
     static const char *const flags[] = {"R", "W", "E", "EW"};
@@ -342,10 +349,10 @@ static void print_models(const table *t)
     printf("static const grobo_servo_model models[] = {\n");
     for (int i = 0; i < t->n_models; i++) {
         const grobo_servo_model *m = &t->models[i].model;
-        printf("    {\"%s\", %u, %u, %u, %u, %u, %u, %u, %u, %u, %s, &%s", t->models[i].name,
-               m->number, m->span_ticks, m->span_deg, m->middle, m->speed_dps, m->torque_mnm,
-               m->current_ma, m->voltage_mv, m->firmware,
-               t->models[i].no_joint ? "GROBO_MODEL_NO_JOINT" : "0", t->symbol);
+        printf("    {\"%s\", %u, %u, %u, %u, %u, %u, %u, %u, %u, %s, &grobo_i_%s",
+               t->models[i].name, m->number, m->span_ticks, m->span_deg, m->middle, m->speed_dps,
+               m->torque_mnm, m->current_ma, m->voltage_mv, m->firmware,
+               t->models[i].no_joint ? "GROBO_MODEL_NO_JOINT" : "0", own_part(t));
         if (t->models[i].n_indirect > 0) {
             printf(", indirect_%d, %d", first_alike(t, i), t->models[i].n_indirect);
         } else {
@@ -361,7 +368,8 @@ static void print_table(table *t)
     static const char *const keeps[] = {"LIMP", "LOCK", "COMMAND"};
     printf("/* SPDX-License-Identifier: MIT */\n"
            "/* Made from %s by `make servos`: registers and models. */\n"
-           "#include <grobo/%s>\n\n#include \"src/servo/row.h\"\n\n",
+           "#include <grobo/%s>\n\n#include \"src/servo/row.h\"\n"
+           "#include \"src/servo/tables.h\"\n\n",
            t->dir, t->header);
     printf("static const grobo_servo_register rows[] = {\n");
     for (int i = 0; i < t->n_rows; i++) {
@@ -381,7 +389,8 @@ static void print_table(table *t)
     for (int i = 0; i < t->n_sets; i++) {
         printf("0x%" PRIX64 ",", t->sets[i]);
     }
-    printf("};\n\nconst grobo_servo_table %s = {\n    .name = \"%s\",\n", t->symbol, t->name);
+    printf("};\n\nconst grobo_servo_table grobo_i_%s = {\n    .name = \"%s\",\n", own_part(t),
+           t->name);
     printf("    LIST(registers, register_count, rows),\n    LIST(models, model_count, models),\n");
     if (t->n_rates > 0) {
         printf("    LIST(rates, rate_count, rates),\n");
@@ -390,7 +399,8 @@ static void print_table(table *t)
     if (t->models[0].big_endian) {
         printf("    .big_endian = true,\n");
     }
-    printf("};\n");
+    printf("};\n\nconst grobo_servo_table *%s(void)\n{\n", t->symbol);
+    printf("    return &grobo_i_%s;\n}\n", own_part(t));
 }
 
 static bool read_dir(table *t, const char *dir)

@@ -18,7 +18,7 @@ static const double elbow_rad[KEYS] = {RAD(-30), RAD(-70), RAD(-30), RAD(-50)};
 static int wave_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
 {
     (void)ctx;
-    (void)grobo_posture_init(posture, grobo_gr001_model.n_joints);
+    (void)grobo_posture_init(posture, grobo_gr001_model()->n_joints);
     (void)grobo_posture_set_rad(posture, R_SHOULDER_R, RAD(-60));
     (void)grobo_posture_set_rad(posture, R_ELBOW_P, elbow_rad[i]);
     posture->time_us = KEY_US;

@@ -5,6 +5,7 @@
 #include <grobo/gr001.h>
 
 #include "src/motion/store/container.h"
+#include "src/robots/robots.h"
 
 static const grobo_model *model_of(const grobo_robot *robot)
 {
@@ -344,7 +345,7 @@ static const char *cell(const grobo_posture *posture, int joint, char text[16])
 
 int grobo_gr001_print_posture(const grobo_posture *posture, FILE *stream)
 {
-    if (stream == NULL || posture == NULL || posture->n_joints != grobo_gr001_model.n_joints) {
+    if (stream == NULL || posture == NULL || posture->n_joints != grobo_i_gr001_model.n_joints) {
         return GROBO_ERR_ARG;
     }
     int written = fprintf(stream, "                   right  middle    left\n");

@@ -2,23 +2,39 @@
 #include "src/robots/file/families.h"
 
 #define FAMILY(name, directory)                                                                    \
-    {&grobo_i_family_##name, &grobo_sim_##directory, grobo_i_words_##directory},
-const grobo_family grobo_families[] = {
+    {&grobo_i_family_##name, &grobo_i_sim_##directory, grobo_i_words_##directory},
+static const grobo_family families[] = {
 #include "src/servo/families.list"
     {NULL, NULL, NULL}};
 #undef FAMILY
 
 #define FAMILY(name, directory) &grobo_i_family_##name,
-const grobo_robot_family *const grobo_robot_families[] = {
+const grobo_robot_family *const grobo_i_robot_families[] = {
 #include "src/servo/families.list"
     NULL};
 #undef FAMILY
 
-#define FAMILY(name, directory) &grobo_sim_##directory,
-const grobo_sim_family *const grobo_sim_families[] = {
+#define FAMILY(name, directory) &grobo_i_sim_##directory,
+const grobo_sim_family *const grobo_i_sim_families[] = {
 #include "src/servo/families.list"
     NULL};
 #undef FAMILY
+
+const grobo_family *grobo_families(void)
+{
+    return families;
+}
+
+const grobo_robot_family *grobo_robot_family_at(size_t i)
+{
+    size_t n = sizeof grobo_i_robot_families / sizeof *grobo_i_robot_families;
+    return i < n ? grobo_i_robot_families[i] : NULL;
+}
+
+const grobo_sim_family *const *grobo_sim_families(void)
+{
+    return grobo_i_sim_families;
+}
 
 const grobo_servo_model *grobo_i_family_row(const grobo_robot_family *family, size_t index)
 {

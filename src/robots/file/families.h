@@ -5,6 +5,12 @@
 
 #include "src/robots/robots.h"
 
+/* The families that a file may name, NULL behind the last. */
+extern const grobo_robot_family *const grobo_i_robot_families[];
+
+/* Their simulated servos. */
+extern const grobo_sim_family *const grobo_i_sim_families[];
+
 /* Servo number index of a family, NULL behind the last. */
 const grobo_servo_model *grobo_i_family_row(const grobo_robot_family *family, size_t index);
 

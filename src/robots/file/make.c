@@ -9,6 +9,7 @@
 #include "src/motion/text/nearest.h"
 #include "src/robots/file/draft.h"
 #include "src/robots/file/families.h"
+#include "src/robots/robots.h"
 
 typedef struct maker {
     const grobo_i_draft *draft;
@@ -66,15 +67,15 @@ static void make_family(maker *m)
 {
     static const char *const wirings[] = {"board", "bus", NULL};
     const char *names[8] = {NULL};
-    for (int i = 0; grobo_robot_families[i] != NULL; i++) {
-        names[i] = grobo_robot_families[i]->name;
+    for (int i = 0; grobo_i_robot_families[i] != NULL; i++) {
+        names[i] = grobo_i_robot_families[i]->name;
     }
     int family = word_of(m, "family", m->draft->family, names);
     if (family < 0) {
         return;
     }
     grobo_robot_def *def = &m->file->def;
-    def->family = grobo_robot_families[family];
+    def->family = grobo_i_robot_families[family];
     def->wiring = def->family->wiring;
     def->baud_bps = def->family->baud_bps;
     if (*m->draft->wiring != '\0') {
@@ -421,8 +422,8 @@ static void find_alike(const maker *m)
 {
     grobo_i_robot_file *file = m->file;
     int n = 0;
-    for (int i = 0; grobo_robot_defs[i] != NULL && n < GROBO_I_ALIKE_MAX; i++) {
-        const grobo_model *known = grobo_robot_defs[i]->model;
+    for (int i = 0; grobo_i_robot_defs[i] != NULL && n < GROBO_I_ALIKE_MAX; i++) {
+        const grobo_model *known = grobo_i_robot_defs[i]->model;
         if (has_same_joints(&file->model, known)) {
             file->alike[n++] = known->name;
         }

@@ -18,7 +18,7 @@ int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring, grobo_r
         sim->servos[j] = grobo_i_family_servo(def->family, def->model->joints[j].servo_model);
     }
     sim->config.servos = sim->servos;
-    sim->config.families = grobo_sim_families;
+    sim->config.families = grobo_i_sim_families;
     sim->config.supply_mv = sim->servos[0]->voltage_mv;
     sim->config.mounted = true;
     return GROBO_OK;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "src/servo/dxl1/driver.h"
+#include "src/servo/tables.h"
 
 /* MX count turns with both limits there; both 0 make a wheel (emanual mx_angle_limit). */
 #define TURNS_LIMITS 4095
@@ -62,7 +63,7 @@ static bool sync_read(const grobo_servo_model *servo)
 /* An error of the register shutdown sets the torque limit to 0, until it is written again
  * (emanual torque_limit): torque_limit 0 is no torque. */
 static const grobo_i_family family = {
-    .tables = {&grobo_dxl1_table},
+    .tables = {&grobo_i_dxl1_table},
     .build = grobo_i_dxl1_build_as,
     .parse = grobo_i_dxl1_parse_as,
     .wants = wants,
@@ -77,7 +78,7 @@ static const grobo_i_family family = {
 
 int grobo_dxl1_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    int result = grobo_i_table_driver(driver, model, &grobo_dxl1_protocol, &family);
+    int result = grobo_i_table_driver(driver, model, &grobo_i_dxl1_protocol, &family);
     if (result >= 0) {
         driver->goal_wakes = true; /* common in forums; the maker does not say */
     }

@@ -7,6 +7,7 @@
 #include <grobo/bus.h>
 
 #include "src/servo/dxl1/protocol.h"
+#include "src/servo/tables.h"
 
 enum {
     BULK_ITEM_BYTES = 3,  /* length, id, address */
@@ -134,7 +135,7 @@ int grobo_i_dxl1_measure(const uint8_t *bytes, size_t n, unsigned accept)
     return size > GROBO_FRAME_MAX_BYTES ? GROBO_ERR_FRAME : size;
 }
 
-const grobo_protocol grobo_dxl1_protocol = {
+const grobo_protocol grobo_i_dxl1_protocol = {
     .name = "DYNAMIXEL 1.0",
     .measure = grobo_i_dxl1_measure,
     .unpack = unpack,
@@ -146,3 +147,8 @@ const grobo_protocol grobo_dxl1_protocol = {
     .id_min = 0,
     .id_max = GROBO_DXL1_ID_MAX,
 };
+
+const grobo_protocol *grobo_dxl1_protocol(void)
+{
+    return &grobo_i_dxl1_protocol;
+}

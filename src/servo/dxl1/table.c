@@ -3,6 +3,7 @@
 #include <grobo/dxl1.h>
 
 #include "src/servo/row.h"
+#include "src/servo/tables.h"
 
 static const grobo_servo_register rows[] = {
     ROW("model", 0, 2, 0, E, MODEL, "", 0, 65535, 0, 0),
@@ -64,11 +65,11 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"AX-12A", 12, 1023, 300, 512, 354, 1500, 1500, 12000, 24, 0, &grobo_dxl1_table, NULL, 0},
-    {"AX-18A", 18, 1023, 300, 512, 582, 1800, 2200, 12000, 24, 0, &grobo_dxl1_table, NULL, 0},
-    {"MX-28", 29, 4096, 360, 2048, 330, 2500, 1400, 12000, 24, 0, &grobo_dxl1_table, NULL, 0},
-    {"MX-64", 310, 4096, 360, 2048, 378, 6000, 4100, 12000, 24, 0, &grobo_dxl1_table, NULL, 0},
-    {"MX-106", 320, 4096, 360, 2048, 270, 8400, 5200, 12000, 24, 0, &grobo_dxl1_table, NULL, 0},
+    {"AX-12A", 12, 1023, 300, 512, 354, 1500, 1500, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
+    {"AX-18A", 18, 1023, 300, 512, 582, 1800, 2200, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
+    {"MX-28", 29, 4096, 360, 2048, 330, 2500, 1400, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
+    {"MX-64", 310, 4096, 360, 2048, 378, 6000, 4100, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
+    {"MX-106", 320, 4096, 360, 2048, 270, 8400, 5200, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
 };
 
 static const grobo_servo_rate rates[] = {
@@ -81,7 +82,7 @@ static const uint64_t sets[] = {
     0x1F, 0x3, 0x1C, 0x10, 0x1, 0x2, 0x14, 0x8, 0x1D, 0x18,
 };
 
-const grobo_servo_table grobo_dxl1_table = {
+const grobo_servo_table grobo_i_dxl1_table = {
     .name = "DYNAMIXEL AX, MX",
     LIST(registers, register_count, rows),
     LIST(models, model_count, models),
@@ -89,3 +90,8 @@ const grobo_servo_table grobo_dxl1_table = {
     .sets = sets,
     .keeps = GROBO_KEEPS_LIMP,
 };
+
+const grobo_servo_table *grobo_dxl1_table(void)
+{
+    return &grobo_i_dxl1_table;
+}

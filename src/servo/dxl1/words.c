@@ -4,6 +4,7 @@
 
 #include "src/servo/dxl1/words_frames.h"
 #include "src/servo/families.h"
+#include "src/servo/tables.h"
 #include "src/servo/words/instructions.h"
 
 static void explain(const uint8_t *bytes, size_t n, const grobo_words_frame *as, grobo_telegram *to)
@@ -22,8 +23,8 @@ static void explain(const uint8_t *bytes, size_t n, const grobo_words_frame *as,
 static const grobo_words words = {
     .name = "dynamixel1",
     .title = "DYNAMIXEL 1.0",
-    .table = &grobo_dxl1_table,
-    .protocol = &grobo_dxl1_protocol,
+    .table = &grobo_i_dxl1_table,
+    .protocol = &grobo_i_dxl1_protocol,
     .peek = grobo_i_dxl1_words_peek,
     .why = grobo_i_dxl1_words_why,
     .answers = grobo_i_dxl1_words_answers,

@@ -6,6 +6,7 @@
 #include <grobo/dxl1.h>
 
 #include "src/servo/dxl1/words_frames.h"
+#include "src/servo/tables.h"
 #include "src/servo/words/common.h"
 #include "src/servo/words/instructions.h"
 
@@ -107,7 +108,7 @@ void grobo_i_dxl1_words_explain(const uint8_t *bytes, size_t n, const grobo_word
         grobo_i_words_instruction(to, &p, series);
         return;
     }
-    grobo_i_words_ask_of(&grobo_dxl1_protocol, as->sent, p.id, &asked);
+    grobo_i_words_ask_of(&grobo_i_dxl1_protocol, as->sent, p.id, &asked);
     grobo_i_words_reply(to, &p, &asked);
     for (int bit = 0; bit < 8; bit++) {
         if (p.error & 1u << bit) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Robots of DYNAMIXEL X servos. */
 #include "src/servo/table/family.h"
+#include "src/servo/tables.h"
 
 /* Bits of the drive mode that say what a goal means: its sense, that it comes with a time, and that
  * it switches torque on, which would wake limp joints. */
@@ -63,7 +64,7 @@ static bool fast_part(const grobo_packet *reply, int n, int k, grobo_packet *par
  * shutdown that occurs cuts the torque until a reboot (emanual shutdown).
  */
 static const grobo_i_family family = {
-    .tables = {&grobo_dxl2_table},
+    .tables = {&grobo_i_dxl2_table},
     .build = grobo_dxl2_build,
     .parse = grobo_dxl2_parse,
     .wants = wants,
@@ -85,7 +86,7 @@ static const grobo_i_family family = {
 
 int grobo_dxl2_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    int result = grobo_i_table_driver(driver, model, &grobo_dxl2_protocol, &family);
+    int result = grobo_i_table_driver(driver, model, &grobo_i_dxl2_protocol, &family);
     if (result >= 0) {
         driver->watchdog_us = WATCHDOG_US;
     }

@@ -6,6 +6,7 @@
 #include <grobo/dxl2.h>
 
 #include "src/base/bytes.h"
+#include "src/servo/tables.h"
 
 enum {
     PING_BYTES = 3,       /* model, firmware */
@@ -153,7 +154,7 @@ static int measure(const uint8_t *bytes, size_t n, unsigned accept)
     return size > GROBO_FRAME_MAX_BYTES ? GROBO_ERR_FRAME : size;
 }
 
-const grobo_protocol grobo_dxl2_protocol = {
+const grobo_protocol grobo_i_dxl2_protocol = {
     .name = "DYNAMIXEL 2.0",
     .measure = measure,
     .unpack = unpack,
@@ -165,3 +166,8 @@ const grobo_protocol grobo_dxl2_protocol = {
     .id_min = 0,
     .id_max = GROBO_DXL2_ID_MAX,
 };
+
+const grobo_protocol *grobo_dxl2_protocol(void)
+{
+    return &grobo_i_dxl2_protocol;
+}

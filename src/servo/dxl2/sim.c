@@ -8,6 +8,8 @@
 #include <grobo/protocol.h>
 
 #include "src/base/bytes.h"
+#include "src/servo/families.h"
+#include "src/servo/tables.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/indirect.h"
 #include "src/sim/servo/note.h"
@@ -659,7 +661,7 @@ static bool next_item(const grobo_dxl2_packet *packet, size_t *at, item *found)
 
 static int hearer(grobo_sim *sim, uint8_t id, int before, const grobo_sim_event *raw)
 {
-    int index = grobo_i_dxl_hearer(sim, &grobo_sim_dxl2, id, before, raw);
+    int index = grobo_i_dxl_hearer(sim, &grobo_i_sim_dxl2, id, before, raw);
     if (index >= 0) {
         sim->servo[index].heard_us = sim->now_us;
     }
@@ -778,7 +780,7 @@ static void spread(grobo_sim *sim, const grobo_dxl2_packet *packet, int result,
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_sim_servo *servo = &sim->servo[i];
         grobo_i_dxl_round round = {0};
-        if (servo->family != &grobo_sim_dxl2 || !is_for(servo, packet->id) ||
+        if (servo->family != &grobo_i_sim_dxl2 || !is_for(servo, packet->id) ||
             !grobo_i_sim_hears(sim, i, raw)) {
             continue;
         }
@@ -819,16 +821,21 @@ static int measure(const uint8_t *bytes, size_t n, bool good)
     return size == GROBO_ERR_CHECKSUM && !good ? 7 + grobo_i_get_u16(bytes + 5) : size;
 }
 
-const grobo_sim_family grobo_sim_dxl2 = {.tables = {&grobo_dxl2_table},
-                                         .measure = measure,
-                                         .packet = packet,
-                                         .factory = factory,
-                                         .boot = restart,
-                                         .cut = cut,
-                                         .goal_mdeg = goal_mdeg,
-                                         .refresh = refresh,
-                                         .bps = bps,
-                                         .next_us = next_us,
-                                         .act = act,
-                                         .set = grobo_i_dxl_set,
-                                         .store = store};
+const grobo_sim_family grobo_i_sim_dxl2 = {.tables = {&grobo_i_dxl2_table},
+                                           .measure = measure,
+                                           .packet = packet,
+                                           .factory = factory,
+                                           .boot = restart,
+                                           .cut = cut,
+                                           .goal_mdeg = goal_mdeg,
+                                           .refresh = refresh,
+                                           .bps = bps,
+                                           .next_us = next_us,
+                                           .act = act,
+                                           .set = grobo_i_dxl_set,
+                                           .store = store};
+
+const grobo_sim_family *grobo_sim_dxl2(void)
+{
+    return &grobo_i_sim_dxl2;
+}

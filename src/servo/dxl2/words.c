@@ -6,6 +6,7 @@
 #include <grobo/dxl2.h>
 
 #include "src/servo/families.h"
+#include "src/servo/tables.h"
 #include "src/servo/words/common.h"
 #include "src/servo/words/instructions.h"
 
@@ -57,7 +58,7 @@ static bool answers(const grobo_words_sent *sent, const uint8_t *bytes, size_t n
         p.instruction != GROBO_DXL2_STATUS) {
         return false;
     }
-    grobo_i_words_ask_of(&grobo_dxl2_protocol, sent, p.id, &asked);
+    grobo_i_words_ask_of(&grobo_i_dxl2_protocol, sent, p.id, &asked);
     return asked.kind == GROBO_REPLY_ANY || (asked.kind == GROBO_REPLY_RETURN && asked.id == p.id &&
                                              (p.data_bytes == asked.length || p.error != 0));
 }
@@ -138,7 +139,7 @@ static void explain(const uint8_t *bytes, size_t n, const grobo_words_frame *as,
     } else if (to->all) {
         explain_blocks(to, bytes, n, as->sent);
     } else {
-        grobo_i_words_ask_of(&grobo_dxl2_protocol, as->sent, p.id, &asked);
+        grobo_i_words_ask_of(&grobo_i_dxl2_protocol, as->sent, p.id, &asked);
         bool ping = asked.kind == GROBO_REPLY_ANY || (as->sent && as->sent->bytes[7] == 1);
         asked.kind = ping ? GROBO_REPLY_NONE : asked.kind;
         grobo_i_words_reply(to, &p, &asked);
@@ -153,8 +154,8 @@ static void explain(const uint8_t *bytes, size_t n, const grobo_words_frame *as,
 static const grobo_words words = {
     .name = "dynamixel2",
     .title = "DYNAMIXEL 2.0",
-    .table = &grobo_dxl2_table,
-    .protocol = &grobo_dxl2_protocol,
+    .table = &grobo_i_dxl2_table,
+    .protocol = &grobo_i_dxl2_protocol,
     .peek = peek,
     .why = why,
     .answers = answers,

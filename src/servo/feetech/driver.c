@@ -3,6 +3,7 @@
 #include <grobo/feetech.h>
 
 #include "src/servo/dxl1/driver.h"
+#include "src/servo/tables.h"
 
 /* The phase says what a count of speed is, and whether positions count turns; only STS and SMS have
  * these bits (FTServo's tables). A servo is turned round by the senses of motor and sensor together
@@ -17,7 +18,7 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
     if (role == GROBO_ROLE_MODE) {
         return GROBO_STS_MODE_POSITION;
     }
-    if (servo->table != &grobo_sts_table) {
+    if (servo->table != &grobo_i_sts_table) {
         return found & ~(int32_t)GROBO_STS_PHASE_REVERSE;
     }
     unsigned bits = GROBO_STS_PHASE_FINE_SPEED | (joint->turns ? GROBO_STS_PHASE_TURNS : 0);
@@ -27,7 +28,7 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
 /* SCS stay silent (LeRobot). */
 static bool sync_read(const grobo_servo_model *servo)
 {
-    return servo->table == &grobo_sts_table;
+    return servo->table == &grobo_i_sts_table;
 }
 
 /*
@@ -36,7 +37,7 @@ static bool sync_read(const grobo_servo_model *servo)
  * is no loss of torque here. Torque 0 of SCS is damped, and 2 is free; of STS 0 is free.
  */
 static const grobo_i_family family = {
-    .tables = {&grobo_sts_table, &grobo_scs_table},
+    .tables = {&grobo_i_sts_table, &grobo_i_scs_table},
     .build = grobo_i_dxl1_build_as,
     .parse = grobo_i_dxl1_parse_as,
     .wants = wants,
@@ -50,7 +51,7 @@ static const grobo_i_family family = {
 
 int grobo_feetech_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    int result = grobo_i_table_driver(driver, model, &grobo_feetech_protocol, &family);
+    int result = grobo_i_table_driver(driver, model, &grobo_i_feetech_protocol, &family);
     if (result >= 0) {
         driver->goal_wakes = true; /* measured on an STS3215 (feetech-cli 0.1.8, simulator.py) */
     }

@@ -4,6 +4,7 @@
 #include <grobo/feetech.h>
 
 #include "src/servo/dxl1/protocol.h"
+#include "src/servo/tables.h"
 
 /* All of its errors say how the servo is; the data are good, and the request was done. What a host
  * sends to read two bytes is a status with two, the address and a 2: it is no value of theirs, even
@@ -16,7 +17,7 @@ static void unpack(uint8_t *bytes, size_t n, grobo_packet *packet)
     }
 }
 
-const grobo_protocol grobo_feetech_protocol = {
+const grobo_protocol grobo_i_feetech_protocol = {
     .name = "Feetech",
     .measure = grobo_i_dxl1_measure,
     .unpack = unpack,
@@ -28,3 +29,8 @@ const grobo_protocol grobo_feetech_protocol = {
     .id_min = 0,
     .id_max = GROBO_DXL1_ID_MAX,
 };
+
+const grobo_protocol *grobo_feetech_protocol(void)
+{
+    return &grobo_i_feetech_protocol;
+}

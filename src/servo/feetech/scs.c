@@ -3,6 +3,7 @@
 #include <grobo/feetech.h>
 
 #include "src/servo/row.h"
+#include "src/servo/tables.h"
 
 static const grobo_servo_register rows[] = {
     ROW("firmware", 0, 1, 0, E, FIRMWARE, "", 0, 255, 0, 0),
@@ -48,7 +49,7 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"SCS0009", 1284, 1024, 300, 512, 600, 230, 1000, 6000, 3, 0, &grobo_scs_table, NULL, 0},
+    {"SCS0009", 1284, 1024, 300, 512, 600, 230, 1000, 6000, 3, 0, &grobo_i_scs_table, NULL, 0},
 };
 
 static const grobo_servo_rate rates[] = {
@@ -60,7 +61,7 @@ static const uint64_t sets[] = {
     0x1,
 };
 
-const grobo_servo_table grobo_scs_table = {
+const grobo_servo_table grobo_i_scs_table = {
     .name = "Feetech SCS",
     LIST(registers, register_count, rows),
     LIST(models, model_count, models),
@@ -69,3 +70,8 @@ const grobo_servo_table grobo_scs_table = {
     .keeps = GROBO_KEEPS_LOCK,
     .big_endian = true,
 };
+
+const grobo_servo_table *grobo_scs_table(void)
+{
+    return &grobo_i_scs_table;
+}

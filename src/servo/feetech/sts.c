@@ -3,6 +3,7 @@
 #include <grobo/feetech.h>
 
 #include "src/servo/row.h"
+#include "src/servo/tables.h"
 
 static const grobo_servo_register rows[] = {
     ROW("firmware", 0, 1, 0, E, FIRMWARE, "", 0, 255, 0, 0),
@@ -62,10 +63,11 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"STS3215", 777, 4096, 360, 2048, 300, 1910, 2400, 7400, 3, 0, &grobo_sts_table, NULL, 0},
-    {"STS3215-12V", 777, 4096, 360, 2048, 272, 2940, 2700, 12000, 3, 0, &grobo_sts_table, NULL, 0},
-    {"STS3250", 2825, 4096, 360, 2048, 450, 4900, 4500, 12000, 3, 0, &grobo_sts_table, NULL, 0},
-    {"SM8512BL", 11272, 4096, 360, 2048, 270, 8300, 3900, 12000, 3, 0, &grobo_sts_table, NULL, 0},
+    {"STS3215", 777, 4096, 360, 2048, 300, 1910, 2400, 7400, 3, 0, &grobo_i_sts_table, NULL, 0},
+    {"STS3215-12V", 777, 4096, 360, 2048, 272, 2940, 2700, 12000, 3, 0, &grobo_i_sts_table, NULL,
+     0},
+    {"STS3250", 2825, 4096, 360, 2048, 450, 4900, 4500, 12000, 3, 0, &grobo_i_sts_table, NULL, 0},
+    {"SM8512BL", 11272, 4096, 360, 2048, 270, 8300, 3900, 12000, 3, 0, &grobo_i_sts_table, NULL, 0},
 };
 
 static const grobo_servo_rate rates[] = {
@@ -79,7 +81,7 @@ static const uint64_t sets[] = {
     0xE,
 };
 
-const grobo_servo_table grobo_sts_table = {
+const grobo_servo_table grobo_i_sts_table = {
     .name = "Feetech STS",
     LIST(registers, register_count, rows),
     LIST(models, model_count, models),
@@ -87,3 +89,8 @@ const grobo_servo_table grobo_sts_table = {
     .sets = sets,
     .keeps = GROBO_KEEPS_LOCK,
 };
+
+const grobo_servo_table *grobo_sts_table(void)
+{
+    return &grobo_i_sts_table;
+}

@@ -4,6 +4,7 @@
 
 #include "src/servo/dxl1/words_frames.h"
 #include "src/servo/families.h"
+#include "src/servo/tables.h"
 #include "src/servo/words/instructions.h"
 
 static void explain(const uint8_t *bytes, size_t n, const grobo_words_frame *as, unsigned series,
@@ -35,8 +36,8 @@ static void explain_scs(const uint8_t *bytes, size_t n, const grobo_words_frame 
 static const grobo_words sts = {
     .name = "feetech",
     .title = "Feetech STS",
-    .table = &grobo_sts_table,
-    .protocol = &grobo_dxl1_protocol,
+    .table = &grobo_i_sts_table,
+    .protocol = &grobo_i_dxl1_protocol,
     .peek = grobo_i_dxl1_words_peek,
     .why = grobo_i_dxl1_words_why,
     .answers = grobo_i_dxl1_words_answers,
@@ -46,8 +47,8 @@ static const grobo_words sts = {
 static const grobo_words scs = {
     .name = "scs",
     .title = "Feetech SCS",
-    .table = &grobo_scs_table,
-    .protocol = &grobo_dxl1_protocol,
+    .table = &grobo_i_scs_table,
+    .protocol = &grobo_i_dxl1_protocol,
     .peek = grobo_i_dxl1_words_peek,
     .why = grobo_i_dxl1_words_why,
     .answers = grobo_i_dxl1_words_answers,

@@ -5,6 +5,7 @@
 #include <grobo/board.h>
 
 #include "src/servo/rs30x/packet.h"
+#include "src/servo/tables.h"
 
 enum {
     CHECK = 0x41,
@@ -241,7 +242,7 @@ static const grobo_relay relay = {
     .stored = build_stored,
 };
 
-const grobo_protocol grobo_board_protocol = {
+const grobo_protocol grobo_i_board_protocol = {
     .name = "GR001",
     .measure = grobo_i_rs30x_measure,
     .unpack = grobo_i_rs30x_unpack,
@@ -252,11 +253,16 @@ const grobo_protocol grobo_board_protocol = {
     .relay = &relay,
 };
 
+const grobo_protocol *grobo_board_protocol(void)
+{
+    return &grobo_i_board_protocol;
+}
+
 const grobo_protocol *grobo_wiring_protocol(grobo_wiring wiring)
 {
     static const grobo_protocol *const tables[] = {
-        [GROBO_WIRING_BOARD] = &grobo_board_protocol,
-        [GROBO_WIRING_BUS] = &grobo_rs30x_protocol,
+        [GROBO_WIRING_BOARD] = &grobo_i_board_protocol,
+        [GROBO_WIRING_BUS] = &grobo_i_rs30x_protocol,
     };
     return wiring == GROBO_WIRING_BOARD || wiring == GROBO_WIRING_BUS ? tables[wiring] : NULL;
 }

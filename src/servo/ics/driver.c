@@ -12,6 +12,7 @@
 #include "src/base/bytes.h"
 #include "src/servo/ics/items.h"
 #include "src/servo/table/items.h"
+#include "src/servo/tables.h"
 
 /* Speeds are 1 to 127, the last of them the servo's own: so they are taken for parts of it. The
  * manual does not say. */
@@ -242,7 +243,7 @@ static const uint16_t all[] = {GROBO_I_ICS_READ(EEPROM), GROBO_I_ICS_READ(POSITI
 static const uint16_t position[] = {GROBO_I_ICS_READ(POSITION_ITEM), 0};
 static const uint16_t goal[] = {GROBO_I_ICS_READ(EEPROM), GROBO_I_ICS_READ(POSITION_ITEM), 0};
 
-static const grobo_i_items items = {.family = {.tables = {&grobo_ics_table},
+static const grobo_i_items items = {.family = {.tables = {&grobo_i_ics_table},
                                                .wants = wants,
                                                .offset_trims = true,
                                                .time_max_ms = 65535},
@@ -264,7 +265,7 @@ int grobo_ics_driver_init(grobo_driver *driver, const grobo_model *model)
                          .posture = posture,
                          .parse = parse,
                          .inspect = inspect};
-    int result = grobo_i_items_make(&made, model, &grobo_ics_protocol, &items);
+    int result = grobo_i_items_make(&made, model, &grobo_i_ics_protocol, &items);
     for (int j = 0; result >= 0 && j < model->n_joints; j++) {
         bool tells = grobo_ics_tells_position(grobo_i_table_servo(&made, j));
         result = tells ? result : GROBO_ERR_UNSUPPORTED;

@@ -2,10 +2,11 @@
 #include <grobo/ics.h>
 
 #include "src/servo/families.h"
+#include "src/servo/tables.h"
 
 const grobo_robot_family grobo_i_family_ics = {
     .name = "ics",
-    .tables = {&grobo_ics_table},
+    .tables = {&grobo_i_ics_table},
     .baud_bps = 115200,
     .wiring = GROBO_WIRING_BUS,
     .init = {[GROBO_WIRING_BUS] = grobo_ics_driver_init}};

@@ -2,12 +2,13 @@
 /* Values of Kondo KRS servos, by addresses of this library: what carries them on the wire, and the
  * scale of temperatures. Registers and models are in table.c. */
 #include "src/servo/ics/items.h"
+#include "src/servo/tables.h"
 
 enum { ICS36 = 36 };
 
 bool grobo_ics_tells_position(const grobo_servo_model *servo)
 {
-    return servo != NULL && servo->table == &grobo_ics_table && servo->firmware == ICS36;
+    return servo != NULL && servo->table == &grobo_i_ics_table && servo->firmware == ICS36;
 }
 
 const grobo_i_item grobo_i_ics_items[] = {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "src/servo/ics/items.h"
+#include "src/servo/tables.h"
 
 enum {
     TOP_BIT = 0x80,
@@ -119,7 +120,7 @@ static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
     return (int)found.bytes;
 }
 
-const grobo_protocol grobo_ics_protocol = {
+const grobo_protocol grobo_i_ics_protocol = {
     .name = "Kondo ICS",
     .measure = measure,
     .unpack = unpack,
@@ -130,3 +131,8 @@ const grobo_protocol grobo_ics_protocol = {
     .id_min = 0,
     .id_max = GROBO_ICS_ID_MAX,
 };
+
+const grobo_protocol *grobo_ics_protocol(void)
+{
+    return &grobo_i_ics_protocol;
+}

@@ -5,7 +5,9 @@
 
 #include <grobo/ics.h>
 
+#include "src/servo/families.h"
 #include "src/servo/ics/items.h"
+#include "src/servo/tables.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/note.h"
 #include "src/sim/servo/power.h"
@@ -284,7 +286,7 @@ static void packet(grobo_sim *sim, const grobo_sim_event *raw)
     for (int i = 0; i < sim->n_servos; i++) {
         const grobo_sim_servo *servo = &sim->servo[i];
         bool meant = found.command == GROBO_ICS_ID || servo->plant.id == found.id;
-        if (servo->family == &grobo_sim_ics && meant && grobo_i_sim_hears(sim, i, raw)) {
+        if (servo->family == &grobo_i_sim_ics && meant && grobo_i_sim_hears(sim, i, raw)) {
             carry_out(sim, i, &found);
         }
     }
@@ -309,16 +311,21 @@ static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, s
     return GROBO_OK;
 }
 
-const grobo_sim_family grobo_sim_ics = {.usual_bps = 115200,
-                                        .parity = true,
-                                        .tables = {&grobo_ics_table},
-                                        .measure = measure,
-                                        .packet = packet,
-                                        .factory = factory,
-                                        .boot = restart,
-                                        .cut = cut,
-                                        .goal_mdeg = goal_mdeg,
-                                        .refresh = refresh,
-                                        .bps = bps,
-                                        .set = grobo_i_dxl_set,
-                                        .store = store};
+const grobo_sim_family grobo_i_sim_ics = {.usual_bps = 115200,
+                                          .parity = true,
+                                          .tables = {&grobo_i_ics_table},
+                                          .measure = measure,
+                                          .packet = packet,
+                                          .factory = factory,
+                                          .boot = restart,
+                                          .cut = cut,
+                                          .goal_mdeg = goal_mdeg,
+                                          .refresh = refresh,
+                                          .bps = bps,
+                                          .set = grobo_i_dxl_set,
+                                          .store = store};
+
+const grobo_sim_family *grobo_sim_ics(void)
+{
+    return &grobo_i_sim_ics;
+}

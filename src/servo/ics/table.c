@@ -3,6 +3,7 @@
 #include <grobo/ics.h>
 
 #include "src/servo/row.h"
+#include "src/servo/tables.h"
 
 static const grobo_servo_register rows[] = {
     ROW("fixed", 0, 1, 0, E, NONE, "", 0, 255, 90, 0),
@@ -36,17 +37,17 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"KRS-3301", 3301, 8000, 270, 7500, 500, 600, 1200, 7400, 36, 0, &grobo_ics_table, NULL, 0},
-    {"KRS-6003R2HV", 6003, 8000, 270, 7500, 273, 6500, 5000, 11100, 36, 0, &grobo_ics_table, NULL,
+    {"KRS-3301", 3301, 8000, 270, 7500, 500, 600, 1200, 7400, 36, 0, &grobo_i_ics_table, NULL, 0},
+    {"KRS-6003R2HV", 6003, 8000, 270, 7500, 273, 6500, 5000, 11100, 36, 0, &grobo_i_ics_table, NULL,
      0},
     {"KRS-2552RHV", 2552, 8000, 270, 7500, 429, 1370, 2000, 11100, 35, GROBO_MODEL_NO_JOINT,
-     &grobo_ics_table, NULL, 0},
+     &grobo_i_ics_table, NULL, 0},
     {"KRS-2572HV", 2572, 8000, 270, 7500, 462, 2450, 2500, 11100, 35, GROBO_MODEL_NO_JOINT,
-     &grobo_ics_table, NULL, 0},
+     &grobo_i_ics_table, NULL, 0},
     {"KRS-3304", 3304, 8000, 270, 7500, 462, 1370, 1800, 7400, 35, GROBO_MODEL_NO_JOINT,
-     &grobo_ics_table, NULL, 0},
+     &grobo_i_ics_table, NULL, 0},
     {"KRS-4034HV", 4034, 8000, 270, 7500, 353, 4090, 4000, 11100, 35, GROBO_MODEL_NO_JOINT,
-     &grobo_ics_table, NULL, 0},
+     &grobo_i_ics_table, NULL, 0},
 };
 
 static const grobo_servo_rate rates[] = {
@@ -59,7 +60,7 @@ static const uint64_t sets[] = {
     0x3F,
 };
 
-const grobo_servo_table grobo_ics_table = {
+const grobo_servo_table grobo_i_ics_table = {
     .name = "Kondo KRS",
     LIST(registers, register_count, rows),
     LIST(models, model_count, models),
@@ -68,3 +69,8 @@ const grobo_servo_table grobo_ics_table = {
     .keeps = GROBO_KEEPS_LIMP,
     .big_endian = true,
 };
+
+const grobo_servo_table *grobo_ics_table(void)
+{
+    return &grobo_i_ics_table;
+}

@@ -6,6 +6,7 @@
 #include <grobo/ics.h>
 
 #include "src/servo/families.h"
+#include "src/servo/tables.h"
 #include "src/servo/words/common.h"
 
 /* Values are told like registers: of two bytes, the low one first, of one, the EEPROM. */
@@ -211,7 +212,7 @@ static const grobo_words words = {.name = "ics",
                                   .table = &table,
                                   .peek = peek,
                                   .why = why,
-                                  .protocol = &grobo_ics_protocol,
+                                  .protocol = &grobo_i_ics_protocol,
                                   .reply_to = reply_to,
                                   .answers = answers,
                                   .explain = explain};

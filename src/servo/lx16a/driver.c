@@ -7,6 +7,7 @@
 #include "src/base/bytes.h"
 #include "src/servo/lx16a/items.h"
 #include "src/servo/table/items.h"
+#include "src/servo/tables.h"
 
 #define MS_US 1000
 #define TIME_MAX_MS 30000
@@ -227,7 +228,7 @@ static const uint16_t all[] = {GROBO_LX16A_LOAD_READ,    GROBO_LX16A_MODE_READ,
                                GROBO_LX16A_VOLTAGE_READ, GROBO_LX16A_TEMPERATURE_READ,
                                GROBO_LX16A_MOVE_READ,    0};
 
-static const grobo_i_items items = {.family = {.tables = {&grobo_lx16a_table},
+static const grobo_i_items items = {.family = {.tables = {&grobo_i_lx16a_table},
                                                .wants = wants,
                                                .offset_trims = true,
                                                .time_max_ms = TIME_MAX_MS},
@@ -250,6 +251,6 @@ int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model)
                          .parse = parse,
                          .command = command,
                          .inspect = inspect};
-    int result = grobo_i_items_make(&made, model, &grobo_lx16a_protocol, &items);
+    int result = grobo_i_items_make(&made, model, &grobo_i_lx16a_protocol, &items);
     return grobo_i_table_give(driver, &made, result);
 }

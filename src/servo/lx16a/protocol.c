@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "src/servo/lx16a/items.h"
+#include "src/servo/tables.h"
 
 enum {
     RETURN_DELAY_US = 500, /* an assumption: the maker prints none */
@@ -49,7 +50,7 @@ static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
     return (int)reply->bytes;
 }
 
-const grobo_protocol grobo_lx16a_protocol = {
+const grobo_protocol grobo_i_lx16a_protocol = {
     .name = "Hiwonder LX",
     .measure = grobo_lx16a_measure,
     .unpack = unpack,
@@ -59,3 +60,8 @@ const grobo_protocol grobo_lx16a_protocol = {
     .id_min = 0,
     .id_max = GROBO_LX16A_ID_MAX,
 };
+
+const grobo_protocol *grobo_lx16a_protocol(void)
+{
+    return &grobo_i_lx16a_protocol;
+}

@@ -6,7 +6,9 @@
 #include <grobo/lx16a.h>
 
 #include "src/base/bytes.h"
+#include "src/servo/families.h"
 #include "src/servo/lx16a/items.h"
+#include "src/servo/tables.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/note.h"
 #include "src/sim/servo/power.h"
@@ -267,7 +269,7 @@ static void packet(grobo_sim *sim, const grobo_sim_event *raw)
     bool reads = found.data_bytes == 0 && grobo_lx16a_reply_bytes(found.command) > 0;
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_sim_servo *servo = &sim->servo[i];
-        if (servo->family != &grobo_sim_lx16a || (!all && servo->plant.id != found.id) ||
+        if (servo->family != &grobo_i_sim_lx16a || (!all && servo->plant.id != found.id) ||
             !grobo_i_sim_hears(sim, i, raw)) {
             continue;
         }
@@ -305,17 +307,22 @@ static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, s
     return GROBO_OK;
 }
 
-const grobo_sim_family grobo_sim_lx16a = {.usual_bps = BPS,
-                                          .tables = {&grobo_lx16a_table},
-                                          .measure = measure,
-                                          .packet = packet,
-                                          .factory = factory,
-                                          .boot = restart,
-                                          .cut = cut,
-                                          .goal_mdeg = goal_mdeg,
-                                          .refresh = refresh,
-                                          .bps = bps,
-                                          .next_us = next_us,
-                                          .act = act,
-                                          .set = grobo_i_dxl_set,
-                                          .store = store};
+const grobo_sim_family grobo_i_sim_lx16a = {.usual_bps = BPS,
+                                            .tables = {&grobo_i_lx16a_table},
+                                            .measure = measure,
+                                            .packet = packet,
+                                            .factory = factory,
+                                            .boot = restart,
+                                            .cut = cut,
+                                            .goal_mdeg = goal_mdeg,
+                                            .refresh = refresh,
+                                            .bps = bps,
+                                            .next_us = next_us,
+                                            .act = act,
+                                            .set = grobo_i_dxl_set,
+                                            .store = store};
+
+const grobo_sim_family *grobo_sim_lx16a(void)
+{
+    return &grobo_i_sim_lx16a;
+}

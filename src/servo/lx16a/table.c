@@ -3,6 +3,7 @@
 #include <grobo/lx16a.h>
 
 #include "src/servo/row.h"
+#include "src/servo/tables.h"
 
 static const grobo_servo_register rows[] = {
     ROW("id", 0, 1, 0, EW, ID, "", 0, 253, 1, 0),
@@ -27,20 +28,25 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"LX-16A", 16, 1000, 240, 500, 375, 1670, 1000, 7400, 0, 0, &grobo_lx16a_table, NULL, 0},
-    {"LX-15D", 15, 1000, 240, 500, 375, 1670, 1000, 7400, 0, 0, &grobo_lx16a_table, NULL, 0},
-    {"LX-224", 224, 1000, 240, 500, 300, 1960, 1000, 7400, 0, 0, &grobo_lx16a_table, NULL, 0},
-    {"HTS-35H", 35, 1000, 240, 500, 333, 3430, 3000, 11100, 0, 0, &grobo_lx16a_table, NULL, 0},
+    {"LX-16A", 16, 1000, 240, 500, 375, 1670, 1000, 7400, 0, 0, &grobo_i_lx16a_table, NULL, 0},
+    {"LX-15D", 15, 1000, 240, 500, 375, 1670, 1000, 7400, 0, 0, &grobo_i_lx16a_table, NULL, 0},
+    {"LX-224", 224, 1000, 240, 500, 300, 1960, 1000, 7400, 0, 0, &grobo_i_lx16a_table, NULL, 0},
+    {"HTS-35H", 35, 1000, 240, 500, 333, 3430, 3000, 11100, 0, 0, &grobo_i_lx16a_table, NULL, 0},
 };
 
 static const uint64_t sets[] = {
     0xF,
 };
 
-const grobo_servo_table grobo_lx16a_table = {
+const grobo_servo_table grobo_i_lx16a_table = {
     .name = "Hiwonder LX",
     LIST(registers, register_count, rows),
     LIST(models, model_count, models),
     .sets = sets,
     .keeps = GROBO_KEEPS_LIMP,
 };
+
+const grobo_servo_table *grobo_lx16a_table(void)
+{
+    return &grobo_i_lx16a_table;
+}

@@ -6,6 +6,7 @@
 #include <grobo/lx16a.h>
 
 #include "src/servo/families.h"
+#include "src/servo/tables.h"
 #include "src/servo/words/common.h"
 
 /* A command, the one that reads the same, and its fields in a row of what they carry. */
@@ -154,7 +155,7 @@ static const grobo_words words = {.name = "lx16a",
                                   .table = &table,
                                   .peek = peek,
                                   .why = why,
-                                  .protocol = &grobo_lx16a_protocol,
+                                  .protocol = &grobo_i_lx16a_protocol,
                                   .answers = answers,
                                   .explain = explain};
 

@@ -6,6 +6,7 @@
 #include "src/base/bytes.h"
 #include "src/bus/framer.h"
 #include "src/servo/rs30x/packet.h"
+#include "src/servo/tables.h"
 
 enum { RESET_DATA = 0xFF };
 
@@ -291,7 +292,7 @@ void grobo_i_rs30x_unpack(uint8_t *bytes, size_t n, grobo_packet *packet)
     }
 }
 
-const grobo_protocol grobo_rs30x_protocol = {
+const grobo_protocol grobo_i_rs30x_protocol = {
     .name = "RS30x",
     .measure = grobo_i_rs30x_measure,
     .unpack = grobo_i_rs30x_unpack,
@@ -300,3 +301,8 @@ const grobo_protocol grobo_rs30x_protocol = {
     .id_min = 1,
     .id_max = GROBO_RS30X_ID_MAX,
 };
+
+const grobo_protocol *grobo_rs30x_protocol(void)
+{
+    return &grobo_i_rs30x_protocol;
+}

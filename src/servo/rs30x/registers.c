@@ -3,6 +3,7 @@
 #include <grobo/rs30x.h>
 
 #include "src/servo/row.h"
+#include "src/servo/tables.h"
 
 static const grobo_servo_register rows[] = {
     ROW("model", 0, 2, 0, E, MODEL, "", 0, 65535, 0, 0),
@@ -38,10 +39,10 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"RS301CR", 12304, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_rs30x_table, NULL, 0},
-    {"RS302CD", 12320, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_rs30x_table, NULL, 0},
-    {"RS303MR", 12336, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_rs30x_table, NULL, 0},
-    {"RS304MD", 12352, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_rs30x_table, NULL, 0},
+    {"RS301CR", 12304, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0},
+    {"RS302CD", 12320, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0},
+    {"RS303MR", 12336, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0},
+    {"RS304MD", 12352, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0},
 };
 
 static const grobo_servo_rate rates[] = {
@@ -56,7 +57,7 @@ static const uint64_t sets[] = {
     0xA,
 };
 
-const grobo_servo_table grobo_rs30x_table = {
+const grobo_servo_table grobo_i_rs30x_table = {
     .name = "Futaba RS30x",
     LIST(registers, register_count, rows),
     LIST(models, model_count, models),
@@ -64,3 +65,8 @@ const grobo_servo_table grobo_rs30x_table = {
     .sets = sets,
     .keeps = GROBO_KEEPS_COMMAND,
 };
+
+const grobo_servo_table *grobo_rs30x_table(void)
+{
+    return &grobo_i_rs30x_table;
+}

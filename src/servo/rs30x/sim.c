@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "src/base/bytes.h"
+#include "src/servo/families.h"
+#include "src/servo/tables.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/note.h"
 #include "src/sim/servo/power.h"
@@ -21,8 +23,8 @@
 
 const grobo_servo_model *grobo_i_sim_rs30x_model(uint16_t number)
 {
-    const grobo_servo_model *model = grobo_servo_model_numbered(&grobo_rs30x_table, number);
-    return model != NULL ? model : &grobo_rs30x_table.models[0];
+    const grobo_servo_model *model = grobo_servo_model_numbered(&grobo_i_rs30x_table, number);
+    return model != NULL ? model : &grobo_i_rs30x_table.models[0];
 }
 
 /* Lacks what came with RS303MR: No.22, 23, 60-127, answers to all (manual of RS301CR/RS302CD). */
@@ -201,7 +203,7 @@ static void saved(grobo_sim *sim, int index, bool whole)
 static bool flash_fits(const uint8_t *flash)
 {
     /* The last model has all registers. */
-    const grobo_servo_model *any = &grobo_rs30x_table.models[grobo_rs30x_table.model_count - 1];
+    const grobo_servo_model *any = &grobo_i_rs30x_table.models[grobo_i_rs30x_table.model_count - 1];
     uint8_t registers[GROBO_REGISTERS] = {0};
     memcpy(&registers[GROBO_RS30X_ID], flash, GROBO_SIM_FLASH_BYTES);
     for (int a = GROBO_RS30X_ID; a < GROBO_RS30X_ID + GROBO_SIM_FLASH_BYTES; a++) {
@@ -522,7 +524,7 @@ static void packet(grobo_sim *sim, const grobo_sim_event *raw)
     note_ids(&parts, &ids);
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_sim_servo *servo = &sim->servo[i];
-        if (servo->family != &grobo_sim_rs30x || ids.first[servo->reg[GROBO_RS30X_ID]] == 0 ||
+        if (servo->family != &grobo_i_sim_rs30x || ids.first[servo->reg[GROBO_RS30X_ID]] == 0 ||
             !grobo_i_sim_hears(sim, i, raw)) {
             continue;
         }
@@ -570,17 +572,22 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
     return 0;
 }
 
-const grobo_sim_family grobo_sim_rs30x = {.usual_bps = 115200,
-                                          .tables = {&grobo_rs30x_table},
-                                          .turns_mdeg = TURNS_MDEG,
-                                          .measure = measure,
-                                          .packet = packet,
-                                          .factory = factory,
-                                          .boot = boot,
-                                          .saved = saved,
-                                          .cut = cut,
-                                          .starts = starts,
-                                          .refresh = refresh,
-                                          .bps = bps,
-                                          .set = set,
-                                          .flash_fits = flash_fits};
+const grobo_sim_family grobo_i_sim_rs30x = {.usual_bps = 115200,
+                                            .tables = {&grobo_i_rs30x_table},
+                                            .turns_mdeg = TURNS_MDEG,
+                                            .measure = measure,
+                                            .packet = packet,
+                                            .factory = factory,
+                                            .boot = boot,
+                                            .saved = saved,
+                                            .cut = cut,
+                                            .starts = starts,
+                                            .refresh = refresh,
+                                            .bps = bps,
+                                            .set = set,
+                                            .flash_fits = flash_fits};
+
+const grobo_sim_family *grobo_sim_rs30x(void)
+{
+    return &grobo_i_sim_rs30x;
+}

@@ -10,6 +10,7 @@
 #include <grobo/rs30x.h>
 
 #include "src/servo/families.h"
+#include "src/servo/tables.h"
 #include "src/servo/words/common.h"
 
 /* A frame taken apart. */
@@ -63,7 +64,7 @@ static bool is_command(const grobo_rs30x_packet *p)
 static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
 {
     grobo_board_frame board;
-    return grobo_board_peek(frame, n, &board) > 0 ? grobo_board_protocol.reply_to(frame, n, reply)
+    return grobo_board_peek(frame, n, &board) > 0 ? grobo_i_board_protocol.reply_to(frame, n, reply)
                                                   : grobo_rs30x_reply_to(frame, n, reply);
 }
 
@@ -348,8 +349,8 @@ static const char *offence(const uint8_t *bytes, size_t n, char *why, size_t cap
 
 static const grobo_words words = {.name = "rs30x",
                                   .title = "Futaba RS30x",
-                                  .table = &grobo_rs30x_table,
-                                  .protocol = &grobo_rs30x_protocol,
+                                  .table = &grobo_i_rs30x_table,
+                                  .protocol = &grobo_i_rs30x_protocol,
                                   .last_model = true,
                                   .numbered = true,
                                   .says_request = true,

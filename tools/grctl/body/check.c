@@ -35,13 +35,13 @@ static uint32_t line_at(const grobo_motion *motion, double at_s)
 
 static const char *link_name(int link)
 {
-    return grobo_gr001_body.links[link].name;
+    return grobo_gr001_body()->links[link].name;
 }
 
 /* What it is and how bad, without its time. */
 static void describe(const grobo_body_finding *f, char *text, size_t capacity)
 {
-    const grobo_joint *joint = &grobo_gr001_model.joints[f->index];
+    const grobo_joint *joint = &grobo_gr001_model()->joints[f->index];
     switch (f->problem) {
     case GROBO_BODY_UNREACHABLE:
         snprintf(text, capacity, "%s: the leg does not reach its target", link_name(f->index));
@@ -175,8 +175,8 @@ static void skip(const char *path, const char *why, grobo_diagnostics *list)
 
 bool check_takes_slack(const grobo_body_finding *limit)
 {
-    double max_rad = grobo_gr001_model.joints[limit->index].max_rad;
-    return grobo_model_take_slack(&grobo_gr001_model, limit->index, max_rad + limit->worst) ==
+    double max_rad = grobo_gr001_model()->joints[limit->index].max_rad;
+    return grobo_model_take_slack(grobo_gr001_model(), limit->index, max_rad + limit->worst) ==
            max_rad;
 }
 
@@ -204,7 +204,7 @@ void check_report_slack(const char *path, const grobo_slack_taken *slack, grobo_
     snprintf(message, sizeof message,
              "%zu angle%s up to %.1f degrees outside %s limits (%s): clamped", slack->n,
              slack->n == 1 ? "" : "s", grobo_deg_from_rad(slack->worst_rad),
-             slack->n == 1 ? "its" : "their", grobo_gr001_model.joints[slack->joint].name);
+             slack->n == 1 ? "its" : "their", grobo_gr001_model()->joints[slack->joint].name);
     grobo_diagnostics_add(list, &d);
 }
 
@@ -223,7 +223,7 @@ static int look_at(finder *f, grobo_body *body)
 {
     grobo_body_check_options look = {
         GROBO_BODY_CHECK_OPTIONS_INIT,
-        .robot = &grobo_gr001_model,
+        .robot = grobo_gr001_model(),
         .margin_m = f->how->what & CHECK_BALANCE ? margin_least_m : 0,
         .speed_pct = f->how->speed_pct,
         .takes_slack = f->how->slack != NULL,

@@ -76,7 +76,7 @@ int body_make(app *a, int base, const char *path, const grobo_motion *motion, do
         }
         return 0;
     }
-    error = grobo_body_new(&grobo_gr001_body, motion, &options, NULL, body);
+    error = grobo_body_new(grobo_gr001_body(), motion, &options, NULL, body);
     return error ? fail(a, path, error) : 0;
 }
 
@@ -109,7 +109,7 @@ static void note_finding(void *ctx, const grobo_body_finding *finding)
 int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *slack)
 {
     refusal r = {.clamps = a->clamps, .slack = slack};
-    grobo_body_check_options how = {GROBO_BODY_CHECK_OPTIONS_INIT, .robot = &grobo_gr001_model,
+    grobo_body_check_options how = {GROBO_BODY_CHECK_OPTIONS_INIT, .robot = grobo_gr001_model(),
                                     .finding = note_finding, .ctx = &r};
     int error = grobo_body_check(body, &how);
     if (error < 0) {
@@ -121,12 +121,12 @@ int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *s
     if (r.first.problem == GROBO_BODY_UNREACHABLE) {
         return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_UNREACHABLE),
                         "%s: at %.2f s a leg does not reach its target (%s); see --ik off", path,
-                        r.first.begin_s, grobo_gr001_body.links[r.first.index].name);
+                        r.first.begin_s, grobo_gr001_body()->links[r.first.index].name);
     }
     return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LIMIT),
                     "%s: at %.2f s %s is %.1f deg outside its limits once the legs are solved; "
                     "--clamp plays it at the limit",
-                    path, r.first.begin_s, grobo_gr001_model.joints[r.first.index].name,
+                    path, r.first.begin_s, grobo_gr001_model()->joints[r.first.index].name,
                     grobo_deg_from_rad(r.first.worst));
 }
 

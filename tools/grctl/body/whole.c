@@ -7,8 +7,8 @@
 bool whole_applies(const app *a, const grobo_motion *motion, const grobo_body_options *options)
 {
     return options->ik != GROBO_BODY_IK_OFF && grobo_motion_get_kind(motion) == GROBO_MOTION_KEYS &&
-           file_model(a, motion) == &grobo_gr001_model &&
-           grobo_body_wanted(&grobo_gr001_body, motion);
+           file_model(a, motion) == grobo_gr001_model() &&
+           grobo_body_wanted(grobo_gr001_body(), motion);
 }
 
 int whole_open(const app *a, whole *w, const grobo_motion *motion, const grobo_clip_options *plain,
@@ -18,7 +18,7 @@ int whole_open(const app *a, whole *w, const grobo_motion *motion, const grobo_c
     if (!whole_applies(a, motion, options)) {
         return grobo_motion_clip(motion, plain, &w->clip);
     }
-    int error = grobo_body_new(&grobo_gr001_body, motion, options, NULL, &w->body);
+    int error = grobo_body_new(grobo_gr001_body(), motion, options, NULL, &w->body);
     if (!error) {
         grobo_body_clip(w->body, false, &w->clip);
     }
@@ -36,7 +36,7 @@ void whole_close(whole *w)
 
 grobo_joint_mask whole_joints(void)
 {
-    const grobo_body_model *model = &grobo_gr001_body;
+    const grobo_body_model *model = grobo_gr001_body();
     grobo_joint_mask joints = 0;
     for (int foot = 0; foot < 2; foot++) {
         for (int link = model->feet[foot].link; link > 0; link = model->links[link].parent) {
@@ -50,9 +50,9 @@ grobo_joint_mask whole_joints(void)
 
 static void stand(grobo_ik_link *link, int foot)
 {
-    const grobo_body_foot *at = &grobo_gr001_body.feet[foot];
+    const grobo_body_foot *at = &grobo_gr001_body()->feet[foot];
     memset(link, 0, sizeof *link);
-    snprintf(link->name, sizeof link->name, "%s", grobo_gr001_body.links[at->link].name);
+    snprintf(link->name, sizeof link->name, "%s", grobo_gr001_body()->links[at->link].name);
     link->index = at->link;
     link->is_base = foot == 0;
     link->is_touching = true;
@@ -73,7 +73,7 @@ static int stand_on_feet(grobo_motion *keys)
  * no acceleration but in their corners. */
 static int to_keys(const grobo_motion *motion, grobo_motion **keys)
 {
-    grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT, .model = &grobo_gr001_model};
+    grobo_write_options how = {GROBO_WRITE_OPTIONS_INIT, .model = grobo_gr001_model()};
     return grobo_motion_convert(motion, GROBO_MOTION_KEYS, &how, NULL, keys);
 }
 
@@ -84,9 +84,9 @@ int whole_body(const app *a, grobo_body **body, const grobo_motion *motion,
     grobo_motion *keys = NULL;
     *standing = !whole_applies(a, motion, options);
     if (!*standing) {
-        return grobo_body_new(&grobo_gr001_body, motion, options, NULL, body);
+        return grobo_body_new(grobo_gr001_body(), motion, options, NULL, body);
     }
-    if (file_model(a, motion) != &grobo_gr001_model) {
+    if (file_model(a, motion) != grobo_gr001_model()) {
         return GROBO_ERR_TYPE;
     }
     int error = to_keys(motion, &keys);
@@ -100,7 +100,7 @@ int whole_body(const app *a, grobo_body **body, const grobo_motion *motion,
         error = stand_on_feet(keys);
     }
     if (!error) {
-        error = grobo_body_new(&grobo_gr001_body, keys, &as_they_are, NULL, body);
+        error = grobo_body_new(grobo_gr001_body(), keys, &as_they_are, NULL, body);
     }
     grobo_motion_free(keys);
     return error;

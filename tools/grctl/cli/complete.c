@@ -56,8 +56,8 @@ void cli_offer_kind(const cli_offer *to, cli_argument kind)
         }
         break;
     case CLI_ARG_ROBOT:
-        for (int i = 0; grobo_robot_defs[i]; i++) {
-            cli_offer_word(to, grobo_robot_defs[i]->name, grobo_robot_defs[i]->title);
+        for (size_t i = 0; grobo_robot_def_at(i); i++) {
+            cli_offer_word(to, grobo_robot_def_at(i)->name, grobo_robot_def_at(i)->title);
         }
         break;
     case CLI_ARG_DEVICE:

@@ -34,9 +34,9 @@ const grobo_model *file_model(const app *a, const grobo_motion *motion)
     if (grobo_motion_is_for(motion, app_model(a))) {
         return app_model(a);
     }
-    for (int i = 0; grobo_robot_defs[i] && !app_global(a, GLOBAL_ROBOT)->given; i++) {
-        if (grobo_motion_is_for(motion, grobo_robot_defs[i]->model)) {
-            return grobo_robot_defs[i]->model;
+    for (size_t i = 0; grobo_robot_def_at(i) && !app_global(a, GLOBAL_ROBOT)->given; i++) {
+        if (grobo_motion_is_for(motion, grobo_robot_def_at(i)->model)) {
+            return grobo_robot_def_at(i)->model;
         }
     }
     return NULL;

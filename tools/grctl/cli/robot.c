@@ -82,11 +82,11 @@ const grobo_robot_def *robot_find(const char *name, char *complaint, size_t capa
     if (is_path(name)) {
         return find_file(name, complaint, capacity);
     }
-    for (int i = 0; grobo_robot_defs[i]; i++) {
-        if (strcmp(grobo_robot_defs[i]->name, name) == 0) {
-            return grobo_robot_defs[i];
+    for (size_t i = 0; grobo_robot_def_at(i); i++) {
+        if (strcmp(grobo_robot_def_at(i)->name, name) == 0) {
+            return grobo_robot_def_at(i);
         }
-        cli_guess_try(&guess, grobo_robot_defs[i]->name);
+        cli_guess_try(&guess, grobo_robot_def_at(i)->name);
     }
     if (guess.best) {
         snprintf(complaint, capacity, _("no robot called '%s'; did you mean %s?"), name,
@@ -103,7 +103,7 @@ const grobo_robot_def *robot_find(const char *name, char *complaint, size_t capa
 
 const grobo_robot_def *robot_of(const app *a)
 {
-    return a->def ? a->def : grobo_robot_defs[0];
+    return a->def ? a->def : grobo_robot_def_at(0);
 }
 
 /* GR001's driver is there for either wiring; any other is made. */
@@ -114,7 +114,7 @@ static int make_driver(app *a, const char *name)
     if (!wiring->given) {
         wiring->choice = (int)a->def->wiring;
     }
-    if (a->def == grobo_robot_defs[0]) {
+    if (a->def == grobo_robot_def_at(0)) {
         return 0;
     }
     int error = grobo_robot_def_driver(a->def, (grobo_wiring)wiring->choice, &a->made);
@@ -139,7 +139,7 @@ static const char *name_of(const app *a, const char **whose)
         return a->robot->def;
     }
     if (!fallback || !*fallback) {
-        return grobo_robot_defs[0]->name;
+        return grobo_robot_def_at(0)->name;
     }
     *whose = "$GRCTL_ROBOT: ";
     return fallback;
@@ -149,7 +149,8 @@ int robot_choose(app *a)
 {
     char complaint[APP_LINE_BYTES - 32];
     const char *whose, *name = name_of(a, &whose);
-    const char *configured = a->robot && *a->robot->def ? a->robot->def : grobo_robot_defs[0]->name;
+    const char *configured =
+        a->robot && *a->robot->def ? a->robot->def : grobo_robot_def_at(0)->name;
     a->def = robot_find(name, complaint, sizeof complaint);
     if (!a->def) {
         return app_fail(a, is_path(name) ? EXIT_FILE : EXIT_USAGE,
@@ -186,7 +187,7 @@ void robot_of_words(app *a, int n, char *const *words)
 const char *robot_path(const app *a)
 {
     static char path[ROBOT_PATH_BYTES];
-    if (robot_of(a) == grobo_robot_defs[0]) {
+    if (robot_of(a) == grobo_robot_def_at(0)) {
         return "";
     }
     if (!is_path(a->def_name) || !node_true_path(a->def_name, path, sizeof path)) {

@@ -26,8 +26,8 @@ static const cli_option options[] = {
 static int run_list(const app *a)
 {
     json_t *list = json_array();
-    for (int i = 0; grobo_robot_defs[i]; i++) {
-        const grobo_robot_def *def = grobo_robot_defs[i];
+    for (size_t i = 0; grobo_robot_def_at(i); i++) {
+        const grobo_robot_def *def = grobo_robot_def_at(i);
         if (!a->json) {
             app_print("%-18s %-12s %2d joints  %s\n", def->name, def->family->name,
                       def->model->n_joints, def->title);
@@ -211,9 +211,9 @@ static int run_servos(app *a, const char *name)
 {
     json_t *list = json_array();
     int known = 0;
-    for (size_t i = 0; grobo_robot_families[i]; i++) {
-        if (!name || strcmp(grobo_robot_families[i]->name, name) == 0) {
-            list_servos(a, grobo_robot_families[i], list);
+    for (size_t i = 0; grobo_robot_family_at(i); i++) {
+        if (!name || strcmp(grobo_robot_family_at(i)->name, name) == 0) {
+            list_servos(a, grobo_robot_family_at(i), list);
             known++;
         }
     }

@@ -374,7 +374,7 @@ static int serve(farm *f)
 static int check_families(const farm *f)
 {
     const app *a = f->a;
-    if (table_of(f) == &grobo_rs30x_table) {
+    if (table_of(f) == grobo_rs30x_table()) {
         return 0;
     }
     if (app_option(a, OPT_STRICT)->given && !words_of(f)) {

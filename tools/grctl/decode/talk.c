@@ -5,7 +5,7 @@
 
 const grobo_words *talk_named(const char *name)
 {
-    for (const grobo_family *f = grobo_families; f->robot; f++) {
+    for (const grobo_family *f = grobo_families(); f->robot; f++) {
         for (const grobo_words *const *words = f->words; *words; words++) {
             if (strcmp((*words)->name, name) == 0) {
                 return *words;
@@ -26,7 +26,7 @@ static bool has(const grobo_robot_family *family, const grobo_servo_table *table
 
 const grobo_words *talk_of_servo(const grobo_servo_model *servo)
 {
-    const grobo_family *f = grobo_families;
+    const grobo_family *f = grobo_families();
     while (f->robot && !(servo && has(f->robot, servo->table))) {
         f++;
     }
@@ -40,7 +40,7 @@ const grobo_words *talk_of_servo(const grobo_servo_model *servo)
 
 const grobo_robot_family *talk_family(const grobo_words *words)
 {
-    for (const grobo_family *f = grobo_families; f->robot; f++) {
+    for (const grobo_family *f = grobo_families(); f->robot; f++) {
         for (const grobo_words *const *its = f->words; *its; its++) {
             if (*its == words) {
                 return f->robot;

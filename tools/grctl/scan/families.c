@@ -69,8 +69,8 @@ int scan_families(app *a, scan_search *s)
     const struct config_robot *robot = a->robot;
     int status = 0;
     a->robot = NULL; /* its trims are of other joints */
-    for (size_t i = 0; grobo_robot_families[i] && !status; i++) {
-        const grobo_robot_family *family = grobo_robot_families[i];
+    for (size_t i = 0; grobo_robot_family_at(i) && !status; i++) {
+        const grobo_robot_family *family = grobo_robot_family_at(i);
         a->driver = family_driver(family);
         if (a->driver && (strcmp(s->family, "all") == 0 || strcmp(family->name, s->family) == 0)) {
             status = look_at_rates(a, s, family);

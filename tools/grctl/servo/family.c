@@ -17,7 +17,7 @@ static void add_name(char *names, const char *name)
 
 void family_list(void)
 {
-    for (const grobo_family *f = grobo_families; f->robot; f++) {
+    for (const grobo_family *f = grobo_families(); f->robot; f++) {
         add_name(family_names, f->robot->name);
         add_name(family_or_all, f->robot->name);
         for (const grobo_words *const *words = f->words; *words; words++) {
@@ -28,9 +28,9 @@ void family_list(void)
 
 const grobo_robot_family *family_called(const char *name)
 {
-    for (size_t i = 0; grobo_robot_families[i]; i++) {
-        if (strcmp(grobo_robot_families[i]->name, name) == 0) {
-            return grobo_robot_families[i];
+    for (size_t i = 0; grobo_robot_family_at(i); i++) {
+        if (strcmp(grobo_robot_family_at(i)->name, name) == 0) {
+            return grobo_robot_family_at(i);
         }
     }
     return NULL;
@@ -87,12 +87,12 @@ static const grobo_robot_family *family_of_driver(const grobo_driver *driver)
 {
     static const grobo_protocol *known[16]; /* of the families */
     const grobo_protocol *wanted =
-        driver->protocol->relay ? &grobo_rs30x_protocol : driver->protocol;
-    for (size_t i = 0; grobo_robot_families[i] && i < sizeof known / sizeof *known; i++) {
-        const grobo_driver *any = known[i] ? NULL : family_driver(grobo_robot_families[i]);
+        driver->protocol->relay ? grobo_rs30x_protocol() : driver->protocol;
+    for (size_t i = 0; grobo_robot_family_at(i) && i < sizeof known / sizeof *known; i++) {
+        const grobo_driver *any = known[i] ? NULL : family_driver(grobo_robot_family_at(i));
         known[i] = any ? any->protocol : known[i];
         if (known[i] == wanted) {
-            return grobo_robot_families[i];
+            return grobo_robot_family_at(i);
         }
     }
     return NULL;
@@ -101,10 +101,10 @@ static const grobo_robot_family *family_of_driver(const grobo_driver *driver)
 const grobo_robot_family *family_of_servo(const grobo_servo_model *servo)
 {
     const grobo_servo_table *table;
-    for (size_t f = 0; grobo_robot_families[f]; f++) {
-        for (size_t i = 0; (table = grobo_robot_families[f]->tables[i]) != NULL; i++) {
+    for (size_t f = 0; grobo_robot_family_at(f); f++) {
+        for (size_t i = 0; (table = grobo_robot_family_at(f)->tables[i]) != NULL; i++) {
             if (table == servo->table) {
-                return grobo_robot_families[f];
+                return grobo_robot_family_at(f);
             }
         }
     }

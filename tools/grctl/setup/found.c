@@ -36,7 +36,7 @@ static void read_limits(conn *c, found_servo *one)
     const grobo_servo_register *mode = grobo_servo_register_of(one->servo, GROBO_ROLE_MODE);
     double low, high;
     int32_t is = 0;
-    one->turns = one->servo->table == &grobo_dxl2_table && mode &&
+    one->turns = one->servo->table == grobo_dxl2_table() && mode &&
                  servos_get(c, one->id, one->servo, mode, &is) == GROBO_OK && is == MODE_EXTENDED;
     const grobo_servo_register *offset = grobo_servo_register_of(one->servo, GROBO_ROLE_OFFSET);
     one->calibrated =
@@ -257,12 +257,12 @@ void found_sketch(app *a, const found_servos *all, const char *name, sketch *s)
 static json_t *name_fitting(app *a, const found_servos *all)
 {
     json_t *list = json_array();
-    for (int i = 0; grobo_robot_defs[i]; i++) {
-        if (found_fits(all, grobo_robot_defs[i])) {
+    for (size_t i = 0; grobo_robot_def_at(i); i++) {
+        if (found_fits(all, grobo_robot_def_at(i))) {
             app_note(a, "these are the ids and servos of %s (%s), which needs no file: --robot %s",
-                     grobo_robot_defs[i]->name, grobo_robot_defs[i]->title,
-                     grobo_robot_defs[i]->name);
-            json_array_append_new(list, json_string(grobo_robot_defs[i]->name));
+                     grobo_robot_def_at(i)->name, grobo_robot_def_at(i)->title,
+                     grobo_robot_def_at(i)->name);
+            json_array_append_new(list, json_string(grobo_robot_def_at(i)->name));
         }
     }
     return list;

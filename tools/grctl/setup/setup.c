@@ -198,11 +198,11 @@ static int choose_robot(guide *g, const found_servos *all)
     char question[APP_LINE_BYTES], answer[ASK_BYTES], complaint[APP_LINE_BYTES];
     const char *first = NULL;
     size_t n = (size_t)snprintf(question, sizeof question, "%s", _("these may be"));
-    for (int i = 0; grobo_robot_defs[i]; i++) {
-        if (found_fits(all, grobo_robot_defs[i])) {
-            first = first ? first : grobo_robot_defs[i]->name;
+    for (size_t i = 0; grobo_robot_def_at(i); i++) {
+        if (found_fits(all, grobo_robot_def_at(i))) {
+            first = first ? first : grobo_robot_def_at(i)->name;
             n += (size_t)snprintf(question + n, sizeof question - n, " %s,",
-                                  grobo_robot_defs[i]->name);
+                                  grobo_robot_def_at(i)->name);
         }
     }
     if (!first) {

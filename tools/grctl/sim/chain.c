@@ -24,9 +24,9 @@ static int refuse(app *a, const char *item, size_t length, const char *why)
 /* Model number index of all families, NULL behind the last. */
 static const grobo_servo_model *model_row(size_t index)
 {
-    for (size_t f = 0; grobo_robot_families[f]; f++) {
+    for (size_t f = 0; grobo_robot_family_at(f); f++) {
         const grobo_servo_table *table;
-        for (size_t t = 0; (table = grobo_robot_families[f]->tables[t]) != NULL; t++) {
+        for (size_t t = 0; (table = grobo_robot_family_at(f)->tables[t]) != NULL; t++) {
             if (index < table->model_count) {
                 return &table->models[index];
             }

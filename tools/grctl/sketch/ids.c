@@ -102,14 +102,14 @@ static int find_joint(const grobo_model *model, const char *name)
 
 const grobo_robot_def *sketch_namesake(const grobo_model *model)
 {
-    for (int i = 0; grobo_robot_defs[i]; i++) {
-        const grobo_model *known = grobo_robot_defs[i]->model;
+    for (size_t i = 0; grobo_robot_def_at(i); i++) {
+        const grobo_model *known = grobo_robot_def_at(i)->model;
         int n = 0;
         while (n < model->n_joints && find_joint(known, model->joints[n].name) >= 0) {
             n++;
         }
         if (n == model->n_joints && n == known->n_joints) {
-            return grobo_robot_defs[i];
+            return grobo_robot_def_at(i);
         }
     }
     return NULL;
@@ -138,8 +138,8 @@ static int read_robot(app *a, sketch *s, const char *text)
 /* The robot of the library, of this family, with joints of these names. */
 static const grobo_robot_def *known_robot(sketch *s)
 {
-    for (int i = 0; grobo_robot_defs[i]; i++) {
-        const grobo_robot_def *def = grobo_robot_defs[i];
+    for (size_t i = 0; grobo_robot_def_at(i); i++) {
+        const grobo_robot_def *def = grobo_robot_def_at(i);
         int n = 0;
         while (n < sketch_joints(s) && find_joint(def->model, sketch_joint(s, n)->called) >= 0) {
             n++;

@@ -13,7 +13,7 @@ static const char *const sides[] = {"right", "left"};
 
 const grobo_body_model *pose_body(const app *a)
 {
-    return app_model(a) == &grobo_gr001_model ? &grobo_gr001_body : NULL;
+    return app_model(a) == grobo_gr001_model() ? grobo_gr001_body() : NULL;
 }
 
 /* ---- numbers --------------------------------------------------------------------------------- */

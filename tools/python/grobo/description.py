@@ -52,10 +52,10 @@ class Description:
 
 def _shipped(name: str) -> Any:
     names, n = [], 0
-    while lib.grobo_robot_defs[n] != ffi.NULL:
-        names.append(ffi.string(lib.grobo_robot_defs[n].name).decode())
+    while (known := lib.grobo_robot_def_at(n)) != ffi.NULL:
+        names.append(ffi.string(known.name).decode())
         if names[-1] == name:
-            return lib.grobo_robot_defs[n]
+            return known
         n += 1
     raise error(lib.GROBO_ERR_NOTFOUND, f"robot {name!r}", reason=", ".join(names))
 

@@ -27,7 +27,7 @@ def joint_names(model: Any) -> List[str]:
     return [ffi.string(model.joints[j].name).decode() for j in range(model.n_joints)]
 
 
-GR001 = lib.grobo_gr001_model
+GR001 = lib.grobo_gr001_model()
 
 
 class Posture(Mapping[str, float]):
@@ -129,7 +129,7 @@ class Motion:
         self, kind: str = "postures", joints: Optional[int] = None, _owned: Any = None,
         _model: Any = None
     ) -> None:
-        self._model = _model or ffi.addressof(GR001)
+        self._model = _model or GR001
         if _owned is None:
             if kind not in KINDS[:-1]:
                 raise ValueError(f"kind {kind!r}: {', '.join(KINDS[:-1])}; frames are read of files")
@@ -153,7 +153,7 @@ class Motion:
         check(lib.grobo_diagnostics_new(ffi.NULL, problems), "motion")
         found = ffi.gc(problems[0], lib.grobo_diagnostics_free)
         options = new("grobo_read_options")
-        model = options.model = robot.model if robot else ffi.addressof(GR001)
+        model = options.model = robot.model if robot else GR001
         name = os.fspath(path)
         result = lib.grobo_motion_read_file(os.fsencode(name), options, found, made)
         if result < 0:
