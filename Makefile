@@ -147,7 +147,7 @@ TEST_SCRIPTS := $(sort $(filter-out $(LEFT_OUT),\
     $(foreach ring,cli lint export wine,$(wildcard tests/$(ring)/*.sh))))
 FUZZ_SRCS := $(sort $(filter-out $(if $(filter none,$(WEB)),$(WEB_TESTS)),$(wildcard tests/fuzz/fuzz_*.c)))
 BENCH_SRCS := $(sort $(wildcard tests/bench/bench_*.c))
-EXAMPLE_SRCS := $(sort $(wildcard docs/examples/*.c))
+EXAMPLE_SRCS := $(sort $(wildcard docs/examples/*.c docs/examples/classic/*.c))
 
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 CORE_OBJS := $(call objects,$(CORE_SRCS))
@@ -728,7 +728,7 @@ $(FUZZERS): %.fuzzer: %.o $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(TOOL_LIBS) $(LIBS)
 
-$(EXAMPLES): $(BUILD)/%$(EXE): $(BUILD)/%.o $(STATIC_LIB)
+$(EXAMPLES): $(BUILD)/%$(EXE): $(BUILD)/%.o $(CLASSIC_LIB) $(STATIC_LIB)
 $(BENCHES): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(STATIC_LIB)
 $(EXAMPLES) $(BENCHES):
 	$(say) LD $@
