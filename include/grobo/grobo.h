@@ -45,6 +45,7 @@
 #include <grobo/serial.h>
 #include <grobo/session.h>
 #include <grobo/sim.h>
+#include <grobo/sim_physics.h>
 #include <grobo/sim_server.h>
 #include <grobo/team.h>
 #include <grobo/types.h>

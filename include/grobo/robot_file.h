@@ -14,7 +14,7 @@
 #include <grobo/driver.h>
 #include <grobo/motion_io.h>
 #include <grobo/registers.h>
-#include <grobo/sim.h>
+#include <grobo/sim_physics.h>
 #include <grobo/words.h>
 
 GROBO_BEGIN_DECLS
@@ -63,6 +63,8 @@ typedef struct grobo_robot_link {
     double origin_rad[3]; /**< roll, pitch, yaw of it */
     double axis[3];       /**< of the joint, in its own frame, of length 1 */
     double mass_kg;       /**< 0: unknown */
+    double com_m[3];      /**< centre of mass, in its frame */
+    double inertia_kgm2[6]; /**< about that, along its axes: xx, yy, zz, xy, xz, yz */
 } grobo_robot_link;
 
 /** A robot. Plain data; all that it points to lives as long as it. */
@@ -81,7 +83,9 @@ typedef struct grobo_robot_def {
     const grobo_readback *readback; /**< n_readback corrections of what is read */
     const grobo_robot_link *links;  /**< n_links parts; none: its geometry is not known */
     uint8_t n_usb, n_readback, n_links;
-    bool arm; /**< it may stop anywhere: see grobo_driver */
+    bool arm;            /**< it may stop anywhere: see grobo_driver */
+    int8_t payload_link; /**< the part that holds what the robot carries; -1: not told */
+    double payload_kg;   /**< the heaviest that its maker names; 0: not told */
 } grobo_robot_def;
 
 /** Robot i of those that come with the library, counted from 0. @return NULL behind the last. */
@@ -126,6 +130,21 @@ typedef struct grobo_robot_sim {
  */
 GROBO_API int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring,
                                   grobo_robot_sim *sim);
+
+/** Whether a world of it has weight: links with masses, some of which a joint moves. */
+GROBO_API bool grobo_robot_def_has_weight(const grobo_robot_def *def);
+
+/**
+ * Makes a world in which the robot has weight, for grobo_robot_sim.config.physics. The base is
+ * fixed: a robot with legs hangs by its first link.
+ * @param real_time see grobo_sim_physics_config
+ * @param mem NULL: the C library's
+ * @param[out] physics freed with grobo_sim_physics_free() after the simulator's last use. def must
+ *   live as long
+ * @return as grobo_sim_physics_new()
+ */
+GROBO_API int grobo_robot_def_physics(const grobo_robot_def *def, bool real_time,
+                                      const grobo_mem *mem, grobo_sim_physics **physics);
 
 GROBO_END_DECLS
 

@@ -128,6 +128,9 @@ GROBO_API const grobo_sim_family *grobo_sim_lx16a(void);
 /** Models of grobo_ics_table(). */
 GROBO_API const grobo_sim_family *grobo_sim_ics(void);
 
+/** A world in which servos carry weight: sim_physics.h. Private. */
+typedef struct grobo_sim_physics grobo_sim_physics;
+
 /* ---- configuration -------------------------------------------------------------------------- */
 
 /** Where the limp joints are at power-up. */
@@ -150,22 +153,24 @@ typedef struct grobo_sim_config {
                             the first one's family have as a rule */
     bool unpaced;      /**< bytes take no time on any wire */
     uint32_t seed;     /**< of every random choice */
-    grobo_sim_start start;     /**< posture at power-up */
-    uint32_t board_silence_us; /**< board gives up a reply after this much silence. 2000 */
-    uint32_t board_stall_us;   /**< board forgets a frame that stalls. GROBO_BOARD_STALL_US */
-    uint32_t supply_mv;        /**< battery. 7400 */
-    int32_t ambient_c;         /**< -40..60; 25 */
-    uint32_t latency_us;       /**< a byte for the host waits so long at its adapter for others */
-    bool echo;                 /**< bus: the host's adapter returns what is sent on one wire */
-    bool nack;                 /**< a servo that cannot process an ACK request answers 08 */
-    bool mounted;              /**< servos of other families are set up as the model's joints need
+    grobo_sim_start start;      /**< posture at power-up */
+    uint32_t board_silence_us;  /**< board gives up a reply after this much silence. 2000 */
+    uint32_t board_stall_us;    /**< board forgets a frame that stalls. GROBO_BOARD_STALL_US */
+    uint32_t supply_mv;         /**< battery. 7400 */
+    int32_t ambient_c;          /**< -40..60; 25 */
+    uint32_t latency_us;        /**< a byte for the host waits so long at its adapter for others */
+    bool echo;                  /**< bus: the host's adapter returns what is sent on one wire */
+    bool nack;                  /**< a servo that cannot process an ACK request answers 08 */
+    bool mounted;               /**< servos of other families are set up as the model's joints need
                                     them: mode, sense of goals, and the range of a calibrated joint;
                                     else as from the factory */
-    bool no_stops;             /**< nothing but its limit registers keeps a servo from turning */
-    bool baud_at_once;         /**< register BAUD takes effect when written, not at a restart */
-    bool jump_on_torque;       /**< torque on runs to the goal register instead of holding */
-    grobo_sim_hook hook;       /**< or NULL */
-    void *hook_ctx;            /**< given to the hook */
+    bool no_stops;              /**< nothing but its limit registers keeps a servo from turning */
+    bool baud_at_once;          /**< register BAUD takes effect when written, not at a restart */
+    bool jump_on_torque;        /**< torque on runs to the goal register instead of holding */
+    grobo_sim_hook hook;        /**< or NULL */
+    void *hook_ctx;             /**< given to the hook */
+    grobo_sim_physics *physics; /**< weight, friction, motors: of this simulator alone, outlives it.
+                                     Borrowed; NULL: a shaft is where its servo wants it */
 } grobo_sim_config;
 /** Begins an initializer of one. */
 #define GROBO_SIM_CONFIG_INIT GROBO_SIZED(grobo_sim_config)

@@ -28,7 +28,7 @@ GROBO_BEGIN_DECLS
 #define GROBO_SIM_FAMILIES_MAX 4
 
 /** What a servo wants and can do, by its registers. Private. */
-typedef struct grobo_sim_plant {
+typedef struct grobo_sim_wants {
     /* private */
     double heat_c_per_ma2;     /* above ambient, of a current that lasts */
     int32_t goal_mdeg;         /* where it wants its shaft */
@@ -42,7 +42,7 @@ typedef struct grobo_sim_plant {
     bool wheel;
     uint8_t torque; /* grobo_torque */
     uint8_t id;
-} grobo_sim_plant;
+} grobo_sim_wants;
 
 /** A move with ramps: signed speeds in 0.001 degree a second, times in seconds. Private. */
 typedef struct grobo_sim_ramps {
@@ -74,7 +74,7 @@ typedef struct grobo_sim_servo {
     uint8_t kept_bytes; /* 0: none */
     const grobo_sim_family *family;
     const grobo_servo_model *model;
-    grobo_sim_plant plant;                  /* follows the registers */
+    grobo_sim_wants plant;                  /* follows the registers */
     uint8_t reg[GROBO_SIM_REGISTER_BYTES];  /* present values are filled in when read */
     uint8_t flash[GROBO_SIM_KEPT_BYTES];    /* registers that survive power-off */
     uint16_t indirect[GROBO_SIM_INDIRECTS]; /* addresses that indirect data stand for */
@@ -82,6 +82,7 @@ typedef struct grobo_sim_servo {
     uint8_t status; /* flags of the next return packet */
     uint8_t cable;  /* grobo_sim_cable */
     bool powered, blocked, stalled, by_hand, reboots_after_save, ramped;
+    struct grobo_i_body *body; /* where its shaft is in a world with weight; NULL: in none */
 } grobo_sim_servo;
 
 /** Bytes on a wire, each with the time at which it is over. Private. */

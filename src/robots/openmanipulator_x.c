@@ -114,6 +114,7 @@ const grobo_robot_def grobo_i_robot_openmanipulator_x = {.name = "openmanipulato
                                                          .n_usb = 1,
                                                          .links = links,
                                                          .n_links = 6,
+                                                         .payload_link = -1,
                                                          .limits = {.temperature_c = 65,
                                                                     .lost_replies = 5,
                                                                     .current_ma = 0,

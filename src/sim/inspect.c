@@ -7,6 +7,7 @@
 #include "src/sim/servo/registers.h"
 #include "src/sim/servo/servo.h"
 #include "src/sim/servo/shaft.h"
+#include "src/sim/servo/world.h"
 
 /* The servo, settled; NULL when there is none of this index. */
 static grobo_sim_servo *servo_at(grobo_sim *sim, int index)
@@ -15,6 +16,7 @@ static grobo_sim_servo *servo_at(grobo_sim *sim, int index)
         return NULL;
     }
     grobo_i_sim_settle(sim, index);
+    grobo_i_world_touch(&sim->servo[index]);
     return &sim->servo[index];
 }
 
@@ -46,6 +48,12 @@ int grobo_sim_find(const grobo_sim *sim, int id)
     return GROBO_ERR_NOTFOUND;
 }
 
+static bool is_stalled(const grobo_sim *sim, const grobo_sim_servo *servo)
+{
+    const grobo_i_body *body = servo->body;
+    return body != NULL ? body->stalled : servo->stalled && !grobo_i_sim_moving(servo, sim->now_us);
+}
+
 int grobo_sim_look(grobo_sim *sim, int index, grobo_sim_view *view)
 {
     if (view == NULL) {
@@ -65,7 +73,7 @@ int grobo_sim_look(grobo_sim *sim, int index, grobo_sim_view *view)
         .torque = (grobo_torque)servo->plant.torque,
         .cable = (grobo_sim_cable)servo->cable,
         .moving = grobo_i_sim_moving(servo, sim->now_us),
-        .stalled = servo->stalled && !grobo_i_sim_moving(servo, sim->now_us),
+        .stalled = is_stalled(sim, servo),
         .deaf = grobo_i_sim_deaf(sim, index),
         .id = servo->plant.id,
         .baud_bps = bps < 0 ? 0 : (uint32_t)bps,
@@ -131,7 +139,7 @@ int grobo_sim_set_angle(grobo_sim *sim, int index, int32_t angle_mdeg, int64_t t
     if (servo == NULL || time_us < 0 || time_us > INT32_MAX) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_sim_halt(sim, index);
+    grobo_i_sim_rest(sim, index);
     servo->to_mdeg = angle_mdeg < servo->stop_min_mdeg   ? servo->stop_min_mdeg
                      : angle_mdeg > servo->stop_max_mdeg ? servo->stop_max_mdeg
                                                          : angle_mdeg;

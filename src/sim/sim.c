@@ -19,6 +19,7 @@
 #include "src/sim/servo/servo.h"
 #include "src/sim/servo/shaft.h"
 #include "src/sim/servo/talk.h"
+#include "src/sim/servo/world.h"
 #include "src/sim/wire.h"
 
 #define LOWEST_BPS 300
@@ -136,6 +137,7 @@ static bool step_once(grobo_sim *sim, int64_t limit_ns)
     if (t_ns > limit_ns) {
         return false;
     }
+    grobo_i_world_advance(sim, grobo_i_sim_us(t_ns));
     sim->now_ns = t_ns;
     sim->now_us = grobo_i_sim_us(t_ns);
     if (talk_ns == t_ns) {
@@ -160,6 +162,7 @@ void grobo_sim_step(grobo_sim *sim, int64_t now_us)
     now_us = now_us > sim->now_us ? now_us : sim->now_us;
     while (step_once(sim, now_us * 1000)) {
     }
+    grobo_i_world_advance(sim, now_us);
     sim->now_us = now_us;
     sim->now_ns = now_us * 1000;
 }
@@ -263,9 +266,15 @@ static int64_t burst_end_ns(const grobo_sim *sim)
     return end_ns;
 }
 
-static int64_t deadline_us(int64_t at_ns)
+/* How often a world in real time is to be looked after: its steps wait for nobody. */
+#define TEND_US 10000
+
+static int64_t deadline_us(const grobo_sim *sim, int64_t at_ns)
 {
-    return at_ns == GROBO_NEVER_US ? GROBO_NEVER_US : grobo_i_sim_us(at_ns);
+    const grobo_sim_physics *physics = sim->config.physics;
+    int64_t tend_us =
+        physics != NULL && physics->real_time ? physics->at_us + TEND_US : GROBO_NEVER_US;
+    return at_ns == GROBO_NEVER_US ? tend_us : grobo_i_sooner(tend_us, grobo_i_sim_us(at_ns));
 }
 
 int64_t grobo_sim_deadline(const grobo_sim *sim)
@@ -278,13 +287,14 @@ int64_t grobo_sim_deadline(const grobo_sim *sim)
         at_ns = grobo_i_sooner(at_ns, grobo_i_sim_talk_next(sim));
         at_ns = sim->config.echo ? grobo_i_sooner(at_ns, grobo_i_sim_wire_next(&sim->in)) : at_ns;
     }
-    return deadline_us(at_ns);
+    return deadline_us(sim, at_ns);
 }
 
 int64_t grobo_sim_packet_deadline(const grobo_sim *sim)
 {
-    return sim == NULL ? GROBO_NEVER_US
-                       : deadline_us(grobo_i_sooner(burst_end_ns(sim), inner_deadline_ns(sim)));
+    return sim == NULL
+               ? GROBO_NEVER_US
+               : deadline_us(sim, grobo_i_sooner(burst_end_ns(sim), inner_deadline_ns(sim)));
 }
 
 /* ---- the host's end ------------------------------------------------------------------------ */
@@ -508,5 +518,5 @@ int grobo_sim_init_sized(grobo_sim *sim, size_t sim_bytes, const grobo_sim_confi
         }
     }
     sim->config.hook = with.hook;
-    return 0;
+    return grobo_i_world_begin(sim);
 }

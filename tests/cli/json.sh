@@ -152,11 +152,28 @@ if sys.argv[1] == "table":
     for name, rule in schema["$defs"].items():
         print("| %s | %s |" % (name, keys(rule)))
     sys.exit()
-for text in open(sys.argv[2]):
-    line = json.loads(text)
-    names = ["error"] if "error" in line else sys.argv[1].split(",")
-    if not any(fits(line, schema["$defs"][name]) for name in names):
-        sys.exit("not as $defs/%s: %.1000s" % (" ".join(names), text))
+def misfits(path, command):
+    for text in open(path):
+        line = json.loads(text)
+        names = ["error"] if "error" in line else command.split(",")
+        if not any(fits(line, schema["$defs"][name]) for name in names):
+            return "not as $defs/%s: %.1000s" % (" ".join(names), text)
+
+def holds(lines, expression):
+    return eval("(" + expression + ")")
+
+if sys.argv[1] == "rows":
+    wrong = 0
+    for row in open(sys.argv[2]):
+        path, command, expression = row.rstrip("\n").split("|", 2)
+        why = misfits(path, command)
+        if not why and not holds([json.loads(text) for text in open(path)], expression):
+            why = "does not hold: %s of %.1000s" % (expression, open(path).read())
+        if why:
+            wrong += 1
+            print("%s: %s" % (command, why))
+    sys.exit(wrong > 0)
+sys.exit(misfits(sys.argv[2], sys.argv[1]))
 END
 fits() {
     python3 "$work/schema.py" "$1" "$work/out"
@@ -176,15 +193,19 @@ rows() {
             line=$(printf '%s\n' "$line" | sed "s|WORK|$work|")
             # $line is a command line, to be split.
             # shellcheck disable=SC2086
-            check "--json ${line%%"$work"*}" both exits "$status" timeout 30 "$GRCTL" --json $line \
-                --- json "$expression"
-            check "as the schema says" fits "$(command_of "$line")"
+            check "--json ${line%%"$work"*}" exits "$status" timeout 30 "$GRCTL" --json $line
+            n_rows=$((n_rows + 1))
+            cp "$work/out" "$work/row.$n_rows"
+            printf '%s|%s|%s\n' "$work/row.$n_rows" "$(command_of "$line")" "$expression" \
+                >>"$work/printed"
             ;;
         names) for word in $line; do echo "$word"; done ;;
         esac
     done <"$work/rows"
 }
+n_rows=0
 rows run
+check "each as its row and the schema say" python3 "$work/schema.py" rows "$work/printed"
 test_case "options in JSON"
 check "--json of an option" both exits 0 "$GRCTL" move --help --json \
     --- json 'lines[0]["commands"][0]["name"] == "move"'

@@ -1,16 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Nobody takes what a command prints while it has the robot: a pipe is full, a terminal stopped by
+# Nobody takes what a command prints while it has the robot: a pipe is full. The robot does not wait
+# for that.
 # Ctrl-S. The robot does not wait for that.
 . tests/support/cli.sh
-. tests/support/terminal.sh
 
 # A reader that is paused: a pipe that this shell holds open, with so many bytes in it already. The
 # pipe of Linux takes 64 KiB.
 reader=
 end_paused() {
     [ -z "$reader" ] || kill "$reader" 2>/dev/null
-    on_screen kill-server 2>/dev/null
     end_cli_test
 }
 trap end_paused EXIT
@@ -101,49 +100,5 @@ traces_whole() {
 }
 test_that "a trace into a full pipe: the motion goes on, and the trace is whole" traces_whole
 
-# ---- a terminal ----------------------------------------------------------------------------------
-
-plays_on_screen() {
-    type_line "'$GRCTL' -d '$robot' --timeout 500 play motions/greet.pseq; echo ended with \$?"
-    until_screen 's left at 100' || return 1
-    keys C-s
-    wait_for exits 0 on_robot status m5 || return 1
-    on_screen_is '^ended' && { echo 'it was not stopped'; return 1; }
-    keys C-q
-    until_screen '^ended with 0'
-}
-monitors_on() {
-    exits 0 on_robot servo on || return 1
-    type_line "'$GRCTL' -d '$robot' --timeout 500 monitor"
-    until_screen '^12 KNEE_P' || return 1
-    keys C-s
-    exits 0 on_robot estop && complains 'which has the port, and verified' || return 1
-    keys C-q
-    until_screen 'EMERGENCY STOP: R releases it' || return 1
-    keys R
-    until_screen 'stop released' && keys q && until_screen '^>'
-}
-unread_screen() {
-    exits 0 on_robot servo on || return 1
-    "${PYTHON:-python3}" tests/support/unread.py "$GRCTL" "$robot" >"$work/out" 2>"$work/err" ||
-        { cat "$work/out" "$work/err"; return 1; }
-    grep -q 'which has the port, and verified' "$work/out" && exits 0 on_robot estop --reset
-}
-test_case "one reaches a monitor whose terminal nobody reads"
-if have_full_screen && have_json; then
-    check "one reaches a monitor whose terminal nobody reads" unread_screen
-else
-    skip "one reaches a monitor whose terminal nobody reads" "no full screen or no python3 here"
-fi
-test_case "Ctrl-S: the motion goes on to its end"
-if have_full_screen; then
-    open_screen
-    trap end_paused EXIT
-    check "Ctrl-S: the motion goes on to its end" plays_on_screen
-    check "an emergency stop reaches a monitor after Ctrl-S" monitors_on
-else
-    skip "Ctrl-S: the motion goes on to its end" "$no_screen"
-    skip "an emergency stop reaches a monitor after Ctrl-S" "$no_screen"
-fi
 stop_sim
 done_testing

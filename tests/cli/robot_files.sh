@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Robots other than GR001: --robot, files, the key robot of the configuration.
+# Robots other than GR001: --robot, files, their motions.
 . tests/support/cli.sh
 unset GRCTL_ROBOT
 
@@ -80,92 +80,6 @@ check "a humanoid's is refused" fails 3 'greet.pseq: has 20 joints, so101 has 6'
 check "motions of the board too" fails 2 'slot: so101 has no board here' arm slot 1
 check "torque by group" fails 0 'torque of 5 joints is on' arm servo on arm
 
-test_case "its simulator, its configuration"
-
-own_sim
-start_told_sim --robot so101 || { echo "Bail out! the simulator did not start"; exit 1; }
-check "served to another program" both exits 0 on_robot --robot so101 status --- \
-    says '^ *6  gripper '
-check "it plays there" plays on_robot --robot so101 play --speed 200 \
-    motions/so101-wave.yaml
-# Its gripper may use half of its torque, and comes late at twice the speed.
-check "all stand where it ended" wait_for sim_shows 6 ' -*0\.[0-9] deg'
-shell_moves() {
-    echo 'move gripper 40' | "$GRCTL" -d "$robot" --robot so101 shell >"$work/out" 2>"$work/err"
-    grep -q 'done; largest error' "$work/err"
-}
-check "in a shell" shell_moves
-tell block gripper on
-check "a gripper that is blocked is not there" fails 0 \
-    '^not reached: largest error 1[0-9]\.[0-9] deg (gripper); is it blocked?$' \
-    on_robot --robot so101 move gripper 55
-tell block gripper off
-check "it is free" wait_for sim_shows 6 ' 5[45]\.[0-9] deg .* mA .* C$'
-check "and gets back" fails 0 'done; largest error 0\.[0-4]' on_robot --robot so101 move gripper 40
-tell block shoulder_pan on
-check "a joint that is blocked ends its move" \
-    fails 4 'stopped for safety: over-current ([0-9]* mA) at motor 1 (shoulder_pan)' \
-    on_robot --robot so101 move shoulder_pan 60 4000
-check "and pushes no more" wait_for sim_shows 1 ' [0-9][0-9] mA .* C$'
-tell block shoulder_pan off
-check "it stands where it was held" wait_for sim_shows 1 ' -*[01]\.[0-9] deg .* [0-9][0-9] mA '
-mkdir -p "$work/config/grctl"
-cat >"$work/config/grctl/config.yaml" <<END
-robots:
-  desk: {device: "$robot", robot: so101, trim: {wrist_flex: 2}}
-  other: {device: sim, robot: ../../arm.yaml}
-  wrong: {device: sim, trim: {R_KNEE_P: 2}, robot: so101}
-END
-check "trim before robot" fails 3 'robot stands before trim and offset' "$GRCTL" -d desk status
-sed -i.old /wrong:/d "$work/config/grctl/config.yaml"
-check "a configured robot says which it is" fails 0 'done; ' "$GRCTL" -d desk move wrist_flex 20
-check "its trims are its own" both exits 0 on_robot --robot so101 status m4 --- \
-    says 'wrist_flex  *2[12]\.'
-check "a file beside the configuration" fails 0 'done; ' "$GRCTL" -d other move lift 30
-check "not two robots at once" fails 2 'is another robot' "$GRCTL" -d desk --robot koch status
-trims_of_another() {
-    printf '  trimmed: {device: sim, trim: {R_HIP_Y: 5}}\n' >>"$work/config/grctl/config.yaml"
-    fails 2 '^grctl: $GRCTL_ROBOT: so101: trimmed of .* is another robot: gr001' \
-        env GRCTL_ROBOT=so101 "$GRCTL" -d trimmed status
-}
-check "nor the trims of one for another" trims_of_another
-records() {
-    : >"$work/recording"
-    "$GRCTL" --robot so101 -d "$robot" record -o "$work/taught.yaml" >"$work/out" \
-        2>"$work/recording" &
-    recorder=$!
-    written "$work/recording" . || return 1
-    for deg in 10 20 30; do
-        tell turn 1 "$deg" 300 || return 1
-        wait_for sim_shows 1 " $deg\.[0-9] deg" || return 1
-    done
-    kill -s INT $recorder
-    wait $recorder
-    [ -s "$work/taught.yaml" ]
-}
-check "a hand is recorded" records
-check "the record is the arm's" both exits 0 "$GRCTL" --robot so101 show -j shoulder_pan \
-    "$work/taught.yaml" --- says shoulder_pan
-check "and plays back" plays on_robot --robot so101 play "$work/taught.yaml"
-
-# ---- its guard ------------------------------------------------------------------------------
-
-# A killed program leaves nothing moving: the guard makes the same driver, from the file too.
-guarded() {
-    exits 0 on_robot --robot "$1" init || return 1
-    : >"$work/moving"
-    "$GRCTL" -d "$robot" --robot "$1" -v move shoulder_pan 100 20000 >"$work/moved" \
-        2>"$work/moving" &
-    mover=$!
-    written "$work/moving" 'robot found' && wait_for sim_shows 1 ' [2-9][0-9]\.[0-9] .*, moving' ||
-        return 1
-    kill -s KILL $mover
-    wait $mover 2>/dev/null
-    written "$work/moving" 'its guard stopped the robot' && wait_for stands
-}
-stands() {
-    sim_shows 1 'torque on .* C$'
-}
 test_case "servos without registers"
 
 for family in lx16a:LX-16A ics:KRS-3301; do
@@ -181,10 +95,4 @@ END
     check "$family is found" both exits 0 "$GRCTL" --robot "$work/pair.yaml" -d sim scan --last 3 \
         --- says '^  2  .* tilt$'
 done
-
-if [ -z "${NATIVE_GRCTL:-}" ]; then
-    check "killed: its guard stops it" guarded so101
-    check "of a file too" guarded ./src/robots/so101.yaml
-fi
-stop_sim
 done_testing

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The cockpit's server: who may ask what, streams, motions, poses.
+# The cockpit's server: who may ask what, how it begins, what is answered.
 . tests/support/pages.sh
 
 has_jsonschema() {
@@ -13,19 +13,6 @@ test_that "no path leads out of the folder" pages escapes
 test_that "beyond loopback everything needs the token" pages beyond_loopback
 test_that "the link leads to the page, wherever it listens" pages printed_links
 test_that "the page: compressed, known by its hash, under a policy" pages page_files
-test_that "states come 30 times a second, events are kept" pages stream
-test_that "a stream that sends something is dropped" pages greedy
-test_that "a stream that does not read is dropped, the others miss nothing" pages slow
-test_that "a stop comes through where all places are taken" pages crowd
-test_that "a stop comes through where connections stay half open" pages half_open
-test_that "a stop comes through where another page holds all places" pages foreign
-test_that "motions are listed, previewed, edited to the bit" pages motions
-test_that "key poses are mirrored, feet moved, motions saved elsewhere" pages making
-test_that "a motion that would fall says when" pages falls
-test_that "feet and waist are dragged" pages ik
-test_that "a motion of another robot says so, and is not played" pages other_motion
-test_that "a robot that is no humanoid" pages other_robot
-test_that "a joint that is not set up says why" pages not_set_up
 test_case "what is answered is what the OpenAPI file tells"
 if has_jsonschema; then
     check "what is answered is what the OpenAPI file tells" pages schema

@@ -9,7 +9,7 @@ chain() {
     start_sim --servo 1=RS304MD,2=RS302CD --state "$state" "$@"
 }
 servo() {
-    "$GRCTL" -q -d "$robot" --wiring bus --timeout 60 "$@"
+    "$GRCTL" -q -d "$robot" --wiring bus --timeout 500 "$@"
 }
 delay_is() {
     servo servo-get "$1" delay >"$work/out" && says " $2 "

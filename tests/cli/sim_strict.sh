@@ -100,7 +100,7 @@ test_that 'two robots' [ "$strict_status" = 0 ]
 ours() {
     for _ in 1 2 3; do
         start_sim --strict --wiring "$1"
-        on_robot -q --wiring "$1" init --time 100
+        "$GRCTL" -q -d "$robot" --timeout 5000 --wiring "$1" init --time 100
         kill -s TERM "$sim_pid"
         wait "$sim_pid"
         strict_status=$?
@@ -134,6 +134,18 @@ t 'DYNAMIXEL: a value out of range' range 'FF FF FD 00 01 06 00 03 40 00 09 .*$'
     'FF FF FD 00 01 06 00 03 40 00 09 E8 E6'
 t "DYNAMIXEL: an instruction of Feetech's" request 'FF FF FD 00 01 03 00 0B 25 4E$' \
     'FF FF FD 00 01 03 00 0B 25 4E'
+chain='--servo 1=MX-28,2=AX-12A'
+# shellcheck disable=SC2086 # options are words
+strict $chain --- 'FF FF 01 05 03 1E C4 09 0B'
+test_that "each servo by its own model: a goal of MX-28 that AX-12A has not" faultless
+t 'the same to the AX-12A' range 'FF FF 02 05 03 1E C4 09 0A$' 'FF FF 02 05 03 1E C4 09 0A'
+test_that 'and its range' says '2500 .*outside 0\.\.1023'
+t 'what no MX-28 has' range 'FF FF 01 05 03 1E 30 75 33$' 'FF FF 01 05 03 1E 30 75 33'
+test_that 'and its own range' says '30000 .*outside -28672\.\.28672'
+# An id that was given while it ran goes with the model.
+# shellcheck disable=SC2086
+strict $chain --- 'FF FF 01 04 03 03 07 ED' 'wait 30' 'FF FF 07 05 03 1E C4 09 05'
+test_that "by the id that it was given" faultless
 test_that "two families on a line" fails 2 'knows one family on a line' \
     "$GRCTL" sim --strict --servo 1=XL330-M288,2=STS3215
 done_testing

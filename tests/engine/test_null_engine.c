@@ -6,6 +6,7 @@
 
 #include <grobo/board.h>
 #include <grobo/hrpsys.h>
+#include <grobo/sim_physics.h>
 #include <grobo/sim_static.h>
 #include <grobo/static.h>
 #include <grobo/team.h>
@@ -291,6 +292,29 @@ TEST(sim_refuses_null_in_its_second_functions)
     REFUSES(grobo_sim_set_fault(NULL, 0, 0));
     REFUSES(grobo_sim_set_faults(NULL, text, 4));
     REFUSES(grobo_sim_set_faults(&sim, NULL, 4));
+}
+
+TEST(a_world_refuses_null)
+{
+    grobo_sim_physics *physics = NULL;
+    grobo_sim_physics_view view;
+    grobo_sim_motor motor;
+    const grobo_sim_physics_config config = {GROBO_SIM_PHYSICS_CONFIG_INIT,
+                                             .model = &grobo_i_gr001_model};
+    REFUSES(grobo_sim_motor_of(NULL, &motor));
+    REFUSES(grobo_sim_motor_of(&grobo_i_rs30x_table.models[0], NULL));
+    REFUSES(grobo_sim_physics_new(NULL, NULL, &physics));
+    REFUSES(grobo_sim_physics_new(&config, NULL, NULL));
+    REFUSES(grobo_sim_physics_look(NULL, 0, &view));
+    assert_int_equal(grobo_sim_physics_new(&config, NULL, &physics), GROBO_OK);
+    REFUSES(grobo_sim_physics_look(physics, 0, NULL));
+    grobo_sim_physics_free(physics);
+    grobo_sim_physics_free(NULL);
+    assert_int_equal(grobo_sim_physics_skipped(NULL), 0);
+    REFUSES(grobo_sim_push(NULL, 0, 0));
+    REFUSES(grobo_sim_set_payload(NULL, NULL, 0));
+    REFUSES(grobo_sim_set_wall(NULL, 0, 0, 0));
+    REFUSES(grobo_sim_set_supply_mohm(NULL, 0));
 }
 
 TEST(a_team_refuses_null)

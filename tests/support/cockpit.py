@@ -21,7 +21,12 @@ import time
 
 GRCTL = os.environ["GRCTL"]
 MOTIONS = "motions"
+STOPS = int(os.environ.get("STOPS", "4"))  # how many stops are tried, in each of some ways
 PATIENCE_S = 30  # where something is waited for; a busy machine is no failure
+
+
+class HeldUp(Exception):
+    """The machine held the server up for so long that it stopped the robot, as it must then."""
 
 
 class Refused(Exception):
@@ -149,6 +154,7 @@ class Page:
             if holds(state):
                 return state
             if time.monotonic() > until:
+                self.held_up(self.events())
                 raise AssertionError(f"{what}: not so: {json.dumps(state)[:3000]}")
             time.sleep(0.02)
 
@@ -167,6 +173,11 @@ class Page:
             if kind == "event":
                 found.append(data)
 
+    @staticmethod
+    def held_up(events):
+        if any(e.get("trip") == "host_stalled" for e in events):
+            raise HeldUp
+
     def wait_event(self, pattern):
         until = time.monotonic() + PATIENCE_S
         while True:
@@ -174,6 +185,7 @@ class Page:
             found = [e for e in events if re.search(pattern, e["message"])]
             if found:
                 return found[-1]
+            self.held_up(events)
             if time.monotonic() > until:
                 raise AssertionError(f"no event like {pattern}: {events}")
             time.sleep(0.05)
@@ -887,7 +899,7 @@ def order():
         rests()
         # At the same moment, each from a connection of its own.
         came = {"done": 0, "refused": 0}
-        for n in range(24):
+        for n in range(3 * STOPS):
             verb = ("move", "reset", "resume")[n % 3]
             if verb == "reset":
                 other.post("stop", name="Carla")
@@ -916,7 +928,7 @@ def order():
             thread.join()
             assert page.state()["stop"]["latched"], verb
             rests()
-        same(came["done"] + came["refused"], 24)
+        same(came["done"] + came["refused"], 3 * STOPS)
         page.fall_silent()
 
 
@@ -1138,7 +1150,7 @@ def on_the_way():
         page.keep_beating()
         page.target("move", pose="init", time_ms=300)
         page.wait_event("move: done")
-        for n in range(12):
+        for n in range(3 * STOPS // 2):
             way = ways[n % 3]
             page.take()
             page.target("move", angle_deg={"R_SHOULDER_P": -20}, time_ms=300)
@@ -1175,8 +1187,7 @@ def lines_of(trace):
 
 def latency():
     """From a stop to the last servo, beside streams that do not read: the write that tells all servos
-    to stand is the last one of a goal until something else is asked for. STOPS: how many."""
-    count = int(os.environ.get("STOPS", "20"))
+    to stand is the last one of a goal until something else is asked for."""
     trace = tempfile.mktemp()
     server = Server()
     server.words[1:1] = ["--trace", trace]
@@ -1184,7 +1195,7 @@ def latency():
     with server:
         page = Page(server).take().keep_beating()
         deaf = [Stream(server, buffer_bytes=4096) for _ in range(8)]
-        for n in range(count):
+        for n in range(2 * STOPS):
             page.take()
             page.target("play", motion="greet.pseq", loop=True)
             page.wait("it moves", lambda s: s["play"]["state"] == "playing" and s["play"]["t_ms"] > 20)
@@ -1216,7 +1227,7 @@ def latency():
         values = sorted(values)
         return f"median {values[len(values) // 2]:.1f}, p99 {values[len(values) * 99 // 100]:.1f} ms"
 
-    print(f"# {count} stops, request to the last servo's last byte: {words(times)}; "
+    print(f"# {len(stops)} stops, request to the last servo's last byte: {words(times)}; "
           f"to the answer: {words(answers)}; floor, a state: {words(floor)}")
 
 
@@ -1885,4 +1896,11 @@ def not_set_up():
 
 
 if __name__ == "__main__":
-    globals()[sys.argv[1]]()
+    for _ in range(3):
+        try:
+            globals()[sys.argv[1]]()
+            break
+        except HeldUp:
+            print("# the machine held it up: once more")
+    else:
+        sys.exit("the machine held it up each time")

@@ -320,7 +320,7 @@ def kind_of(topic):
     return "cmd_" + part[2] if part[1:2] == ["cmd"] else "ack" if part[0] == "ack" else part[-1]
 
 
-def fits(path):
+def fits(path, kinds):
     import jsonschema
     schema = json.load(open("docs/fleet.schema.json"))
     checks = {name: jsonschema.Draft202012Validator(dict(schema, **{"$ref": "#/$defs/" + name}))
@@ -340,13 +340,13 @@ def fits(path):
     print(json.dumps(seen))
     if wrong:
         sys.exit("\n".join(wrong[:5]))
-    if not all(seen.values()):
-        sys.exit("not all kinds were seen")
+    if not all(seen[kind] for kind in kinds.split()):
+        sys.exit("not all of these were seen: " + kinds)
 
 
 def main(words):
     if words[1] == "fits":
-        fits(words[2])
+        fits(words[2], words[3])
         return
     if words[1] == "goodbye":
         goodbye(int(words[0]))

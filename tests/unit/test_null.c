@@ -575,6 +575,10 @@ TEST(robot_file_refuses_null)
     REFUSES(grobo_robot_def_driver(grobo_i_robot_defs[0], GROBO_WIRING_BUS, NULL));
     REFUSES(grobo_robot_def_sim(NULL, GROBO_WIRING_BUS, &sim));
     REFUSES(grobo_robot_def_sim(grobo_i_robot_defs[0], GROBO_WIRING_BUS, NULL));
+    grobo_sim_physics *physics = NULL;
+    assert_false(grobo_robot_def_has_weight(NULL));
+    REFUSES(grobo_robot_def_physics(NULL, false, NULL, &physics));
+    REFUSES(grobo_robot_def_physics(grobo_i_robot_defs[0], false, NULL, NULL));
 }
 
 TESTS_BETWEEN(set_up, tear_down)

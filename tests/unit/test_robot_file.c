@@ -357,7 +357,7 @@ TEST(the_schema_has_the_same_keys)
     static const char *const names[] = {
         [GROBO_I_BLOCK_LINE] = "line",   [GROBO_I_BLOCK_SAFETY] = "safety",
         [GROBO_I_BLOCK_JOINT] = "joint", [GROBO_I_BLOCK_GROUP] = "group",
-        [GROBO_I_BLOCK_LINK] = "link",
+        [GROBO_I_BLOCK_LINK] = "link",   [GROBO_I_BLOCK_PAYLOAD] = "payload",
     };
     json_error_t error;
     json_t *schema = json_load_file("docs/robot.schema.json", 0, &error);

@@ -157,6 +157,16 @@ static void print_links(const grobo_robot_def *def)
         if (l->mass_kg > 0) {
             printf(", .mass_kg = %.15g", l->mass_kg);
         }
+        if (!is_zero(l->com_m)) {
+            print_vector("com_m", l->com_m, false);
+        }
+        if (!is_zero(l->inertia_kgm2)) {
+            printf(", .inertia_kgm2 = {");
+            for (int k = 0; k < 6; k++) {
+                printf("%s%.15g", k ? ", " : "", l->inertia_kgm2[k]);
+            }
+            printf("}");
+        }
         printf("},\n");
     }
     printf("};\n\n");
@@ -223,6 +233,10 @@ static void print_def(const grobo_robot_def *def, const char *model)
     }
     if (def->n_links > 0) {
         printf(".links = links, .n_links = %u, ", def->n_links);
+    }
+    printf(".payload_link = %d, ", def->payload_link);
+    if (def->payload_kg > 0) {
+        printf(".payload_kg = %.15g, ", def->payload_kg);
     }
     print_safety(def);
     printf("};\n");

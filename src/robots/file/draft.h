@@ -18,6 +18,7 @@ typedef enum grobo_i_block {
     GROBO_I_BLOCK_JOINT,
     GROBO_I_BLOCK_GROUP,
     GROBO_I_BLOCK_LINK,
+    GROBO_I_BLOCK_PAYLOAD,
     GROBO_I_BLOCKS
 } grobo_i_block;
 
@@ -37,7 +38,7 @@ typedef struct grobo_i_joint_draft {
 typedef struct grobo_i_link_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
     grobo_i_name name, parent, joint;
-    double origin_m[3], origin_deg[3], axis[3], mass_kg;
+    double origin_m[3], origin_deg[3], axis[3], mass_kg, com_m[3], inertia_kgm2[6];
 } grobo_i_link_draft;
 
 typedef struct grobo_i_group_draft {
@@ -52,6 +53,12 @@ typedef struct grobo_i_safety_draft {
     double temperature_c, lost_replies, current_ma, current_ms, voltage_mv, approach_deg_s;
 } grobo_i_safety_draft;
 
+typedef struct grobo_i_payload_draft {
+    grobo_i_place place, at[GROBO_I_KEYS_MAX];
+    grobo_i_name link;
+    double max_kg;
+} grobo_i_payload_draft;
+
 typedef struct grobo_i_line_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
     double baud_bps;
@@ -65,6 +72,7 @@ typedef struct grobo_i_draft {
     bool arm, calibrated;
     grobo_i_line_draft line;
     grobo_i_safety_draft safety;
+    grobo_i_payload_draft payload;
     int n_joints, n_groups, n_links, n_usb;
     grobo_i_joint_draft joint[GROBO_JOINTS_MAX];
     grobo_i_group_draft group[GROBO_ROBOT_GROUPS_MAX];

@@ -346,6 +346,39 @@ static int find_parent(const maker *m, int index, grobo_i_place place)
     return -1;
 }
 
+/* No body has less inertia about one axis than the other two leave it: their sum is no smaller. */
+static void check_inertia(const maker *m, const grobo_i_link_draft *draft)
+{
+    const double *i = draft->inertia_kgm2;
+    double most = fmax(i[0], fmax(i[1], i[2])), all = i[0] + i[1] + i[2];
+    if (fmin(i[0], fmin(i[1], i[2])) < 0 || 2 * most > all * (1 + 1e-6)) {
+        (void)complain(m, draft->place, "inertia",
+                       "link %s: no body has such an inertia: xx, yy, zz, xy, xz, yz are wanted",
+                       draft->name);
+    }
+}
+
+static void make_payload(const maker *m)
+{
+    const grobo_i_payload_draft *payload = &m->draft->payload;
+    grobo_robot_def *def = &m->file->def;
+    grobo_i_nearest nearest = {NULL, 0};
+    def->payload_link = -1;
+    if (*payload->link == '\0') {
+        return;
+    }
+    for (int i = 0; i < def->n_links; i++) {
+        if (strcmp(def->links[i].name, payload->link) == 0) {
+            def->payload_link = (int8_t)i;
+            def->payload_kg = payload->max_kg;
+            return;
+        }
+        grobo_i_nearest_try(&nearest, payload->link, def->links[i].name);
+    }
+    (void)grobo_i_complain_word(m->reader, payload->place, "link called", payload->link,
+                                nearest_of(&nearest));
+}
+
 static void make_link(const maker *m, int index)
 {
     const grobo_i_link_draft *draft = &m->draft->link[index];
@@ -374,7 +407,10 @@ static void make_link(const maker *m, int index)
         link->origin_m[i] = draft->origin_m[i];
         link->origin_rad[i] = grobo_rad_from_deg(draft->origin_deg[i]);
         link->axis[i] = draft->axis[i];
+        link->com_m[i] = draft->com_m[i];
     }
+    memcpy(link->inertia_kgm2, draft->inertia_kgm2, sizeof link->inertia_kgm2);
+    check_inertia(m, draft);
     for (int i = 0; i < index; i++) {
         if (strcmp(m->draft->link[i].name, draft->name) == 0) {
             (void)complain(m, draft->place, "twice", "two links are called '%s'", draft->name);
@@ -454,6 +490,7 @@ int grobo_i_robot_make(const grobo_i_draft *draft, grobo_i_robot_file *file)
     for (int i = 0; i < draft->n_links; i++) {
         make_link(&m, i);
     }
+    make_payload(&m);
     if (m.reader->result < 0) {
         return m.reader->result;
     }

@@ -69,6 +69,7 @@ static int read_joints(grobo_i_events *events, void *draft);
 static int read_groups(grobo_i_events *events, void *draft);
 static int read_links(grobo_i_events *events, void *draft);
 static int read_members(grobo_i_events *events, void *draft);
+static int read_payload(grobo_i_events *events, void *draft);
 
 #define ROBOT grobo_i_draft
 #define JOINT grobo_i_joint_draft
@@ -91,6 +92,7 @@ static const key_row robot_keys[] = {
     {.name = "joints", .kind = KEY_CALL, .needed = true, .read = read_joints},
     CALL("groups", read_groups),
     CALL("links", read_links),
+    CALL("payload", read_payload),
 };
 
 static const key_row line_keys[] = {WHOLE("baud", grobo_i_line_draft, baud_bps, 300, 4000000)};
@@ -147,6 +149,13 @@ static const key_row link_keys[] = {
     NUMBERS("origin_deg", LINK, origin_deg, 3, -360, 360),
     NUMBERS("axis", LINK, axis, 3, -1, 1),
     NUMBER("mass_kg", LINK, mass_kg, 0, 10000),
+    NUMBERS("com_m", LINK, com_m, 3, -100, 100),
+    NUMBERS("inertia_kgm2", LINK, inertia_kgm2, 6, -1000, 1000),
+};
+
+static const key_row payload_keys[] = {
+    NEEDED("link", grobo_i_payload_draft, link),
+    NUMBER("max_kg", grobo_i_payload_draft, max_kg, 0, 100),
 };
 
 #define KEYS(what, rows)                                                                           \
@@ -160,6 +169,7 @@ static const keys blocks[GROBO_I_BLOCKS] = {
     [GROBO_I_BLOCK_JOINT] = KEYS("a joint", joint_keys),
     [GROBO_I_BLOCK_GROUP] = KEYS("a group", group_keys),
     [GROBO_I_BLOCK_LINK] = KEYS("a link", link_keys),
+    [GROBO_I_BLOCK_PAYLOAD] = KEYS("'payload'", payload_keys),
 };
 
 const char *grobo_i_robot_key(grobo_i_block block, size_t index)
@@ -244,7 +254,7 @@ static int read_text(grobo_i_events *events, const key_row *k, grobo_i_place pla
 
 static int read_numbers(grobo_i_events *events, const key_row *k, grobo_i_place place, double *to)
 {
-    double found[3] = {NAN, NAN, NAN};
+    double found[6] = {NAN, NAN, NAN, NAN, NAN, NAN};
     int result = k->count == 1 ? grobo_i_read_double(events, k->name, found)
                                : grobo_i_read_doubles(events, k->name, found, k->count);
     for (int i = 0; i < k->count && result == 0; i++) {
@@ -346,6 +356,12 @@ static int read_safety(grobo_i_events *events, void *draft)
 {
     grobo_i_safety_draft *safety = &((grobo_i_draft *)draft)->safety;
     return read_block(events, GROBO_I_BLOCK_SAFETY, safety, safety->at, &safety->place);
+}
+
+static int read_payload(grobo_i_events *events, void *draft)
+{
+    grobo_i_payload_draft *payload = &((grobo_i_draft *)draft)->payload;
+    return read_block(events, GROBO_I_BLOCK_PAYLOAD, payload, payload->at, &payload->place);
 }
 
 /* ---- lists --------------------------------------------------------------------------------- */

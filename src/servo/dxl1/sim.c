@@ -6,6 +6,7 @@
 #include "src/servo/families.h"
 #include "src/servo/tables.h"
 #include "src/sim/servo/registers.h"
+#include "src/sim/servo/shaft.h"
 
 /* How long AX and MX bear a stall. An assumption. */
 #define AX_OVERLOAD_US 1000000
@@ -93,7 +94,7 @@ static int32_t torque_limit(const grobo_sim_servo *servo)
 
 static grobo_i_dxl1_stall stall(const grobo_sim_servo *servo)
 {
-    double effort = (double)servo->plant.most_ma / servo->plant.stall_ma;
+    double effort = grobo_i_sim_strain(servo);
     return effort >= AX_OVERLOAD_EFFORT ? (grobo_i_dxl1_stall){GROBO_DXL1_OVERLOAD, AX_OVERLOAD_US}
                                         : (grobo_i_dxl1_stall){0, 0};
 }
@@ -116,7 +117,7 @@ static uint8_t clears(const grobo_sim_servo *servo, const grobo_servo_register *
 static void see_current(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    double ma = grobo_i_dxl_effort(sim, index) * servo->plant.stall_ma;
+    double ma = grobo_i_dxl_current_ma(sim, index);
     grobo_i_dxl_put(servo, GROBO_ROLE_CURRENT, 2048 + lround(ma / MX_COUNT_MA));
 }
 

@@ -105,7 +105,7 @@ static bool is_wheel(const grobo_sim_servo *servo, double *speed)
 static void follow_move(grobo_sim_servo *servo)
 {
     const grobo_i_dxl1_series *series = series_of(servo);
-    grobo_sim_plant *plant = &servo->plant;
+    grobo_sim_wants *plant = &servo->plant;
     int32_t speed = series->move_speed(servo);
     plant->cap_mdeg_s = (int32_t)lround(fmin(speed * series->speed_mdeg_s(servo), INT32_MAX));
     int32_t acceleration = grobo_i_dxl_get(servo, GROBO_ROLE_ACCELERATION);
@@ -115,7 +115,7 @@ static void follow_move(grobo_sim_servo *servo)
 void grobo_i_dxl1_sim_follow(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    grobo_sim_plant *plant = &servo->plant;
+    grobo_sim_wants *plant = &servo->plant;
     double speed = 0;
     grobo_i_dxl_follow(sim, index);
     plant->most_ma =
@@ -198,13 +198,14 @@ void grobo_i_dxl1_sim_refresh(grobo_sim *sim, int index)
 int64_t grobo_i_dxl1_sim_next_us(const grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
-    if (!servo->powered || !servo->stalled || servo->plant.torque != GROBO_TORQUE_ON) {
+    int64_t since_us = grobo_i_sim_strained_us(servo);
+    if (!servo->powered || since_us == GROBO_NEVER_US) {
         return GROBO_NEVER_US;
     }
     grobo_i_dxl1_stall limit = series_of(servo)->stall(servo);
     bool named_it = (grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN) & (int)limit.error) != 0;
     return limit.error != 0 && named_it && (servo->status & limit.error) == 0
-               ? servo->start_us + servo->move_us + limit.after_us
+               ? since_us + limit.after_us
                : GROBO_NEVER_US;
 }
 

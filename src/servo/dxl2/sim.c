@@ -78,7 +78,7 @@ static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
 
 static void follow_wheel(grobo_sim_servo *servo, int mode)
 {
-    grobo_sim_plant *plant = &servo->plant;
+    grobo_sim_wants *plant = &servo->plant;
     double speed = 0;
     if (mode == GROBO_DXL2_MODE_VELOCITY) {
         speed = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_SPEED) * SPEED_MDEG_S;
@@ -100,7 +100,7 @@ static void follow_wheel(grobo_sim_servo *servo, int mode)
 static void follow(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    grobo_sim_plant *plant = &servo->plant;
+    grobo_sim_wants *plant = &servo->plant;
     int mode = mode_of(servo);
     int32_t velocity = grobo_i_dxl_get(servo, GROBO_ROLE_SPEED);
     int32_t acceleration = grobo_i_dxl_get(servo, GROBO_ROLE_ACCELERATION);
@@ -159,10 +159,10 @@ static void refresh(grobo_sim *sim, int index)
 
 static int64_t overload_us(const grobo_sim_servo *servo)
 {
-    bool works = servo->stalled && servo->plant.torque == GROBO_TORQUE_ON &&
-                 servo->plant.most_ma >= OVERLOAD_EFFORT * servo->plant.stall_ma &&
+    int64_t since_us = grobo_i_sim_strained_us(servo);
+    bool works = since_us != GROBO_NEVER_US && grobo_i_sim_strain(servo) >= OVERLOAD_EFFORT &&
                  (servo->status & GROBO_DXL2_OVERLOAD) == 0;
-    return works ? servo->start_us + servo->move_us + OVERLOAD_US : GROBO_NEVER_US;
+    return works ? since_us + OVERLOAD_US : GROBO_NEVER_US;
 }
 
 static int64_t watchdog_us(const grobo_sim_servo *servo)

@@ -129,7 +129,7 @@ static int32_t scs_torque_limit(const grobo_sim_servo *servo)
 
 static grobo_i_dxl1_stall overload(const grobo_sim_servo *servo, int64_t unit_us)
 {
-    double effort = (double)servo->plant.most_ma / servo->plant.stall_ma;
+    double effort = grobo_i_sim_strain(servo);
     int64_t after_us = grobo_i_dxl1_sim_named(servo, "protection_time") * unit_us;
     return effort * 100 >= grobo_i_dxl1_sim_named(servo, "overload_torque")
                ? (grobo_i_dxl1_stall){GROBO_FEETECH_OVERLOAD, after_us}
@@ -139,7 +139,7 @@ static grobo_i_dxl1_stall overload(const grobo_sim_servo *servo, int64_t unit_us
 static grobo_i_dxl1_stall sts_stall(const grobo_sim_servo *servo)
 {
     double most_ma = grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT) * STS_COUNT_MA;
-    if (most_ma > 0 && servo->plant.most_ma > most_ma) {
+    if (most_ma > 0 && grobo_i_sim_strain(servo) * servo->plant.stall_ma > most_ma) {
         return (grobo_i_dxl1_stall){GROBO_FEETECH_OVERCURRENT,
                                     grobo_i_dxl1_sim_named(servo, "overcurrent_time") * 10000LL};
     }

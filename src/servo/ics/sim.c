@@ -61,7 +61,7 @@ static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
 static void follow(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    grobo_sim_plant *plant = &servo->plant;
+    grobo_sim_wants *plant = &servo->plant;
     grobo_i_dxl_follow(sim, index);
     plant->cap_mdeg_s = (int32_t)((int64_t)plant->speed_mdeg_s *
                                   grobo_i_dxl_get(servo, GROBO_ROLE_SPEED) / SPEED_FULL);
@@ -94,7 +94,7 @@ static void refresh(grobo_sim *sim, int index)
     servo->reg[GROBO_I_ICS_AT_FLAGS] = (uint8_t)(flags | (limp ? GROBO_I_ICS_FREE : 0));
     grobo_i_dxl_put(servo, GROBO_ROLE_TEMPERATURE, grobo_i_ics_raw_heat(servo->temperature_c));
     grobo_i_dxl_put(servo, GROBO_ROLE_CURRENT,
-                    lround(grobo_i_dxl_effort(sim, index) * servo->plant.stall_ma / MA_OF_COUNT));
+                    lround(grobo_i_dxl_current_ma(sim, index) / MA_OF_COUNT));
     grobo_i_dxl_put(servo, GROBO_ROLE_POSITION,
                     position_at(servo, grobo_i_sim_angle_mdeg(servo, sim->now_us)));
 }

@@ -52,7 +52,7 @@ static void goal_is_here(const grobo_sim *sim, grobo_sim_servo *servo)
 static void follow(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    grobo_sim_plant *plant = &servo->plant;
+    grobo_sim_wants *plant = &servo->plant;
     grobo_i_dxl_follow(sim, index);
     plant->time_us = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_TIME) * 1000;
     plant->wheel = grobo_i_dxl_get(servo, GROBO_ROLE_MODE) != 0;

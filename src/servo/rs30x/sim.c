@@ -82,7 +82,7 @@ static void follow(grobo_sim_servo *servo)
 {
     const grobo_servo_model *model = servo->model;
     int32_t goal_ddeg = wide(servo, GROBO_RS30X_GOAL);
-    servo->plant = (grobo_sim_plant){
+    servo->plant = (grobo_sim_wants){
         .heat_c_per_ma2 = HEAT_C_PER_MA2,
         .goal_mdeg = (servo->reg[GROBO_RS30X_REVERSE] ? -goal_ddeg : goal_ddeg) * 100,
         .speed_mdeg_s = speed_mdeg_s(model),

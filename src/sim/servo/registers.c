@@ -11,6 +11,7 @@
 #include "src/sim/servo/registers.h"
 #include "src/sim/servo/servo.h"
 #include "src/sim/servo/shaft.h"
+#include "src/sim/servo/world.h"
 
 /* A stalled motor of any size warms as much as that of RS301CR. An assumption. */
 #define STALL_HEAT_C 122.0
@@ -181,7 +182,7 @@ void grobo_i_dxl_follow(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_model *model = servo->model;
-    grobo_sim_plant *plant = &servo->plant;
+    grobo_sim_wants *plant = &servo->plant;
     double stall_ma = model->current_ma;
     plant->heat_c_per_ma2 = STALL_HEAT_C / (stall_ma * stall_ma);
     plant->speed_mdeg_s = model->speed_dps * 1000;
@@ -199,14 +200,25 @@ void grobo_i_dxl_follow(grobo_sim *sim, int index)
 double grobo_i_dxl_effort(const grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_sim_plant *plant = &servo->plant;
+    const grobo_sim_wants *plant = &servo->plant;
     if (plant->torque != GROBO_TORQUE_ON || !servo->powered) {
         return 0;
+    }
+    const grobo_i_body *body = servo->body;
+    if (body != NULL) {
+        return body->duty;
     }
     double speed = grobo_i_sim_speed_mdeg_s(servo, sim->now_us);
     double ma = grobo_i_sim_current_ma(servo, sim->now_us);
     double towards = plant->wheel ? plant->wheel_mdeg_s : plant->goal_mdeg - servo->to_mdeg;
     return ma / plant->stall_ma * (speed < 0 || (speed == 0 && towards < 0) ? -1 : 1);
+}
+
+double grobo_i_dxl_current_ma(const grobo_sim *sim, int index)
+{
+    const grobo_sim_servo *servo = &sim->servo[index];
+    const grobo_i_body *body = servo->body;
+    return body != NULL ? body->winding_ma : grobo_i_dxl_effort(sim, index) * servo->plant.stall_ma;
 }
 
 void grobo_i_dxl_refresh(grobo_sim *sim, int index, double speed_mdeg_s, double count_ma)
@@ -220,7 +232,7 @@ void grobo_i_dxl_refresh(grobo_sim *sim, int index, double speed_mdeg_s, double 
     grobo_i_dxl_put(servo, GROBO_ROLE_LOAD, lround(effort * 1000));
     if (count_ma > 0) {
         grobo_i_dxl_put(servo, GROBO_ROLE_CURRENT,
-                        lround(effort * servo->plant.stall_ma / count_ma));
+                        lround(grobo_i_dxl_current_ma(sim, index) / count_ma));
     }
     grobo_i_dxl_put(servo, GROBO_ROLE_VOLTAGE, (own_mv + 50) / 100);
     grobo_i_dxl_put(servo, GROBO_ROLE_TEMPERATURE, lround(servo->temperature_c));

@@ -45,6 +45,8 @@ int32_t grobo_i_dxl_wrap(int32_t x, int32_t turn);
 
 /* How hard the motor works, signed: 1 is its most. */
 double grobo_i_dxl_effort(const grobo_sim *sim, int servo);
+/* The motor's current, with the sign of its torque. */
+double grobo_i_dxl_current_ma(const grobo_sim *sim, int servo);
 
 /* For inspection. */
 int grobo_i_dxl_look(const grobo_sim_servo *servo, int address, int32_t *value);

@@ -7,6 +7,7 @@
 #include "src/sim/servo/servo.h"
 #include "src/sim/servo/shaft.h"
 #include "src/sim/servo/talk.h"
+#include "src/sim/servo/world.h"
 
 /* Resistance of battery and wires: the supply sags by it. An assumption. */
 #define SUPPLY_MOHM 100
@@ -41,6 +42,7 @@ static void note_missed(grobo_sim *sim, int index, const grobo_sim_event *raw)
 bool grobo_i_sim_hears(grobo_sim *sim, int index, const grobo_sim_event *raw)
 {
     grobo_i_sim_settle(sim, index);
+    grobo_i_world_touch(&sim->servo[index]);
     note_missed(sim, index, raw);
     int32_t bps = grobo_i_sim_bps(sim, index);
     return !grobo_i_sim_deaf(sim, index) && bps > 0 && (uint32_t)bps == sim->bus_bps &&
@@ -50,6 +52,9 @@ bool grobo_i_sim_hears(grobo_sim *sim, int index, const grobo_sim_event *raw)
 int32_t grobo_i_sim_supply_mv(const grobo_sim *sim)
 {
     int64_t total_ma = 0;
+    if (sim->config.physics != NULL) {
+        return (int32_t)sim->config.physics->bus_mv;
+    }
     for (int i = 0; i < sim->n_servos; i++) {
         total_ma += grobo_i_sim_current_ma(&sim->servo[i], sim->now_us);
     }

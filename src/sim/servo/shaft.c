@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Where a shaft is, what it draws, how warm it is: functions of the time since the last goal.
- * Nothing is integrated in steps, so virtual time may jump by hours.
+ * Nothing is integrated in steps, so virtual time may jump by hours. In a world with weight
+ * (world.h) that is only the plan, which the position loop follows.
  */
 #include <math.h>
 
@@ -9,6 +10,7 @@
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/note.h"
 #include "src/sim/servo/shaft.h"
+#include "src/sim/servo/world.h"
 
 /* Assumptions (docs/simulator.md): mA of the circuit, of holding, of moving at full speed. */
 #define IDLE_MA 6
@@ -34,9 +36,19 @@ int32_t grobo_i_sim_mdeg_of_rad(double angle_rad)
     return (int32_t)lround(angle_rad * MDEG_PER_RAD);
 }
 
+/* Slower than this a shaft stands. */
+#define STANDS_MDEG_S 1000
+
+/* A world's steps may be a little behind the last goal. */
+static bool under_way(const grobo_sim_servo *servo, int64_t t_us)
+{
+    return servo->move_us > 0 && t_us < servo->start_us + servo->move_us;
+}
+
 bool grobo_i_sim_moving(const grobo_sim_servo *servo, int64_t t_us)
 {
-    return t_us < servo->start_us + servo->move_us;
+    const grobo_i_body *body = servo->body;
+    return under_way(servo, t_us) || (body != NULL && fabs(body->speed_mdeg_s) > STANDS_MDEG_S);
 }
 
 /* Signed way since the begin of a move with ramps, and the speed then. */
@@ -56,35 +68,56 @@ static double ramped_way(const grobo_sim_ramps *r, double t_s, double *speed)
     return way;
 }
 
-int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us)
+static int64_t done_us_at(const grobo_sim_servo *servo, int64_t t_us)
 {
-    if (!grobo_i_sim_moving(servo, t_us)) {
+    return t_us > servo->start_us ? t_us - servo->start_us : 0;
+}
+
+double grobo_i_sim_planned_mdeg(const grobo_sim_servo *servo, int64_t t_us)
+{
+    if (!under_way(servo, t_us)) {
         return servo->to_mdeg;
     }
     GROBO_ASSERT(servo->move_us > 0);
-    int64_t done_us = t_us > servo->start_us ? t_us - servo->start_us : 0;
+    int64_t done_us = done_us_at(servo, t_us);
     if (servo->ramped) {
         double speed;
         double way = ramped_way(&servo->ramps, (double)done_us / 1e6, &speed);
         double at = servo->from_mdeg + way;
+        if (servo->body != NULL) {
+            return at;
+        }
         at = at < servo->stop_min_mdeg ? servo->stop_min_mdeg : at;
-        return (int32_t)lround(at > servo->stop_max_mdeg ? servo->stop_max_mdeg : at);
+        return at > servo->stop_max_mdeg ? servo->stop_max_mdeg : at;
     }
     double way = (double)servo->to_mdeg - servo->from_mdeg; /* a wheel's is beyond the integers */
-    return servo->from_mdeg + (int32_t)lround(way * (double)done_us / (double)servo->move_us);
+    return servo->from_mdeg + way * (double)done_us / (double)servo->move_us;
 }
 
-double grobo_i_sim_speed_mdeg_s(const grobo_sim_servo *servo, int64_t t_us)
+int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us)
 {
-    if (!grobo_i_sim_moving(servo, t_us)) {
+    const grobo_i_body *body = servo->body;
+    double at = body != NULL ? body->angle_mdeg : grobo_i_sim_planned_mdeg(servo, t_us);
+    return (int32_t)lround(at);
+}
+
+double grobo_i_sim_planned_mdeg_s(const grobo_sim_servo *servo, int64_t t_us)
+{
+    if (!under_way(servo, t_us)) {
         return 0;
     }
     if (servo->ramped) {
         double speed;
-        (void)ramped_way(&servo->ramps, (double)(t_us - servo->start_us) / 1e6, &speed);
+        (void)ramped_way(&servo->ramps, (double)done_us_at(servo, t_us) / 1e6, &speed);
         return speed;
     }
     return ((double)servo->to_mdeg - servo->from_mdeg) * 1e6 / (double)servo->move_us;
+}
+
+double grobo_i_sim_speed_mdeg_s(const grobo_sim_servo *servo, int64_t t_us)
+{
+    const grobo_i_body *body = servo->body;
+    return body != NULL ? body->speed_mdeg_s : grobo_i_sim_planned_mdeg_s(servo, t_us);
 }
 
 int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us)
@@ -92,7 +125,7 @@ int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us)
     if (!grobo_i_sim_moving(servo, t_us)) {
         return 0;
     }
-    if (servo->ramped) {
+    if (servo->ramped || servo->body != NULL) {
         return (int32_t)lround(fabs(grobo_i_sim_speed_mdeg_s(servo, t_us)) / 1000);
     }
     int64_t way = (int64_t)servo->to_mdeg - servo->from_mdeg;
@@ -126,17 +159,50 @@ void grobo_i_sim_halt(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     int64_t rested_us = sim->now_us - own_end_us(servo);
-    servo->to_mdeg = servo->from_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+    servo->to_mdeg = servo->from_mdeg =
+        (int32_t)lround(grobo_i_sim_planned_mdeg(servo, sim->now_us));
     servo->begun_us += rested_us > 0 ? rested_us : 0; /* to rest is not to move */
     servo->start_us = sim->now_us;
     servo->move_us = servo->plan_us = 0;
     servo->stalled = servo->by_hand = servo->ramped = false;
 }
 
+void grobo_i_sim_rest(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_i_sim_halt(sim, index);
+    servo->to_mdeg = servo->from_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+}
+
+double grobo_i_sim_strain(const grobo_sim_servo *servo)
+{
+    const grobo_i_body *body = servo->body;
+    if (servo->plant.torque != GROBO_TORQUE_ON) {
+        return 0;
+    }
+    return body != NULL     ? body->strain
+           : servo->stalled ? (double)servo->plant.most_ma / servo->plant.stall_ma
+                            : 0;
+}
+
+int64_t grobo_i_sim_strained_us(const grobo_sim_servo *servo)
+{
+    const grobo_i_body *body = servo->body;
+    if (servo->plant.torque != GROBO_TORQUE_ON) {
+        return GROBO_NEVER_US;
+    }
+    return body != NULL     ? body->strained_us
+           : servo->stalled ? servo->start_us + servo->move_us
+                            : GROBO_NEVER_US;
+}
+
 /* Turns on and on, until it is told otherwise: its end is too far away to come. */
 static void spin(grobo_sim_servo *servo)
 {
     int64_t speed = servo->plant.wheel_mdeg_s;
+    if (servo->body != NULL) {
+        return; /* its loop is one of speed: there is nothing to plan */
+    }
     if (servo->blocked || speed == 0) {
         servo->stalled = speed != 0;
         return;
@@ -188,7 +254,7 @@ static void ramp_to_stop(grobo_sim_servo *servo)
 /* The servo's own choice of ramps for a way; false where it has none. */
 static bool plan_ramps(grobo_sim_servo *servo, double way, double begin, double top)
 {
-    const grobo_sim_plant *plant = &servo->plant;
+    const grobo_sim_wants *plant = &servo->plant;
     double accel = plant->accel_mdeg_s2;
     if (plant->ramp_us > 0) {
         double cap = fabs(way) * 1e6 / (plant->time_us - plant->ramp_us);
@@ -202,6 +268,25 @@ static bool plan_ramps(grobo_sim_servo *servo, double way, double begin, double 
     return true;
 }
 
+/* Of a move; 0: at once, or not at all where the motor has none. */
+static int64_t speed_of(const grobo_sim *sim, const grobo_sim_servo *servo)
+{
+    const grobo_sim_wants *plant = &servo->plant;
+    const grobo_i_body *body = servo->body;
+    int64_t speed = (int64_t)plant->speed_mdeg_s * sim->supply_mv / plant->nominal_mv;
+    if (body != NULL) {
+        speed = plant->speed_mdeg_s == 0 ? 0 : body->profile_mdeg_s;
+    }
+    int64_t cap = plant->cap_mdeg_s;
+    return cap > 0 && (cap < speed || body != NULL) ? cap : speed;
+}
+
+/* Of a profile with ramps; where the loop has none, what the maker says of the servo. */
+static double top_of(const grobo_sim_servo *servo, int64_t speed)
+{
+    return speed > 0 || servo->body == NULL ? (double)speed : servo->plant.speed_mdeg_s;
+}
+
 /*
  * The servo plans the way to its goal and knows nothing of stops: speed and time are those of the
  * whole way. The shaft goes along until it meets a stop, and the motor stalls there.
@@ -209,25 +294,26 @@ static bool plan_ramps(grobo_sim_servo *servo, double way, double begin, double 
 void grobo_i_sim_drive(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    double begin = servo->by_hand ? 0 : grobo_i_sim_speed_mdeg_s(servo, sim->now_us);
+    const grobo_i_body *body = servo->body;
+    double begin = servo->by_hand ? 0 : grobo_i_sim_planned_mdeg_s(servo, sim->now_us);
     grobo_i_sim_halt(sim, index);
     if (servo->plant.wheel) {
         spin(servo);
         return;
     }
     int32_t goal_mdeg = servo->plant.goal_mdeg;
-    if (!servo->blocked) {
+    if (body != NULL) {
+        servo->to_mdeg = goal_mdeg; /* what stops the shaft does not stop the plan */
+    } else if (!servo->blocked) {
         servo->to_mdeg = clamp(goal_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
     }
     GROBO_ASSERT(servo->stop_min_mdeg <= servo->stop_max_mdeg);
     servo->stalled = servo->to_mdeg != goal_mdeg;
     int64_t wanted = distance(servo->from_mdeg, goal_mdeg);
     int64_t way = distance(servo->from_mdeg, servo->to_mdeg);
-    int64_t speed = (int64_t)servo->plant.speed_mdeg_s * sim->supply_mv / servo->plant.nominal_mv;
-    int64_t cap = servo->plant.cap_mdeg_s;
-    speed = cap > 0 && cap < speed ? cap : speed;
-    if (!servo->blocked &&
-        plan_ramps(servo, (double)goal_mdeg - servo->from_mdeg, begin, (double)speed)) {
+    int64_t speed = speed_of(sim, servo);
+    if (!(servo->blocked && body == NULL) &&
+        plan_ramps(servo, (double)goal_mdeg - servo->from_mdeg, begin, top_of(servo, speed))) {
         if (servo->stalled) {
             ramp_to_stop(servo);
         }
@@ -273,7 +359,7 @@ void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
     }
     bool on = torque == GROBO_TORQUE_ON;
     if (!servo->by_hand) {
-        grobo_i_sim_halt(sim, index);
+        grobo_i_sim_rest(sim, index);
     }
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     const grobo_sim_family *family = servo->family;
@@ -295,6 +381,11 @@ int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us)
 {
     if (!servo->powered) {
         return 0;
+    }
+    const grobo_i_body *body = servo->body;
+    if (body != NULL) {
+        bool on = servo->plant.torque == GROBO_TORQUE_ON;
+        return IDLE_MA + (int32_t)lround(fabs(body->winding_ma)) + (on ? servo->load_ma : 0);
     }
     if (servo->plant.torque != GROBO_TORQUE_ON) {
         return IDLE_MA;
@@ -344,8 +435,24 @@ static void warm_once(grobo_sim *sim, int index, int64_t until_us)
     }
 }
 
+void grobo_i_sim_warm_by(grobo_sim *sim, int index, double ma)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    double last_c = sim->config.ambient_c + servo->plant.heat_c_per_ma2 * ma * ma;
+    double passed_us = (double)(sim->now_us - servo->settled_us);
+    servo->temperature_c += (last_c - servo->temperature_c) * passed_us / (HEAT_TAU_US + passed_us);
+    servo->settled_us = sim->now_us;
+    if (servo->powered && servo->plant.torque != GROBO_TORQUE_OFF &&
+        servo->temperature_c >= servo->plant.limit_c) {
+        overheat(sim, index);
+    }
+}
+
 void grobo_i_sim_warm(grobo_sim *sim, int index, int64_t until_us)
 {
+    if (sim->servo[index].body != NULL) {
+        return; /* its world warms it */
+    }
     while (sim->servo[index].settled_us < until_us) {
         warm_once(sim, index, until_us);
     }

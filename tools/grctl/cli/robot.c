@@ -204,3 +204,28 @@ void robot_sim(const app *a, grobo_robot_sim *sim)
         sim->config.baud_bps = (uint32_t)baud->number;
     }
 }
+
+int robot_physics(const app *a, grobo_sim_config *config, grobo_sim_physics **physics)
+{
+    const grobo_robot_def *def = robot_of(a);
+    *physics = NULL;
+    if (app_global(a, GLOBAL_PHYSICS)->choice == 0) {
+        return GROBO_OK;
+    }
+    int result;
+    if (config->model == def->model) {
+        result = grobo_robot_def_physics(def, true, NULL, physics);
+    } else { /* servos alone */
+        const grobo_sim_physics_config alone = {GROBO_SIM_PHYSICS_CONFIG_INIT,
+                                                .model = config->model, .real_time = true};
+        result = grobo_sim_physics_new(&alone, NULL, physics);
+    }
+    config->physics = *physics;
+    return result;
+}
+
+const char *robot_payload_link(const app *a)
+{
+    const grobo_robot_def *def = robot_of(a);
+    return def->n_links > 0 && def->payload_link >= 0 ? def->links[def->payload_link].name : NULL;
+}

@@ -29,6 +29,11 @@ const grobo_robot_def *robot_of(const app *a);
 
 /* Its simulator, with the line of the options. */
 void robot_sim(const app *a, grobo_robot_sim *sim);
+/* The link that holds what it carries; NULL: its file does not tell. */
+const char *robot_payload_link(const app *a);
+/* Gives it weight, if that is asked for: a world, freed with grobo_sim_physics_free() after the
+ * simulator, else NULL. 0 or an error. */
+int robot_physics(const app *a, grobo_sim_config *config, grobo_sim_physics **physics);
 
 /* What robot_find() found it by, in a form that holds in another folder; "" for GR001. */
 const char *robot_path(const app *a);

@@ -6,19 +6,18 @@
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/change.h"
+#include "tools/grctl/conn/eeprom.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
 #include "tools/grctl/servo/registers.h"
 
-enum { OPT_FLASH };
+enum { OPT_FLASH, OPT_RESTORE };
 
 static const cli_option set_options[] = {
     [OPT_FLASH] = OPTION_FLAG("flash", 0, "keep it over power-off too; takes a second"),
+    [OPT_RESTORE] = OPTION_TEXT("restore", 0, "FILE", "write back what a file says the servo kept"),
 };
-
-/* Nothing longer is read at once: RS30x return at most this much, and lines are shared. */
-enum { BLOCK_BYTES = 30 };
 
 /* A servo of the command line, as far as it is known before it is asked. */
 static int find_servo(app *a, const grobo_servo_model **servo)
@@ -96,57 +95,72 @@ static void show(conn *c, const grobo_servo_model *servo, const grobo_servo_regi
     }
 }
 
-/* Registers from number `first` on that are read at once. Returns how many, or the error. */
-static int show_block(conn *c, int id, const grobo_servo_model *servo, size_t first, json_t *list)
+/* What servo-get asks for: names of the command line, none for all. */
+typedef struct wanted {
+    conn *c;
+    const grobo_servo_model *servo;
+    json_t *list;
+} wanted;
+
+/* The command line of the visit: wants() knows no more than the register. */
+static const cli_line *asked;
+
+static bool is_asked(const grobo_servo_register *reg)
 {
-    const grobo_servo_register *begin = grobo_servo_register_row(servo, first), *reg;
-    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
-    int n = family_block(grobo_robot_driver(c->robot), servo, first, BLOCK_BYTES);
-    if (n == 0) { /* it can be written only */
-        return 1;
+    bool found = asked->n_arguments == 1;
+    for (int i = 1; i < asked->n_arguments && !found; i++) {
+        found = strcmp(asked->argument[i], reg->name) == 0;
     }
-    reg = grobo_servo_register_row(servo, first + (size_t)n - 1);
-    int error =
-        servos_read(c, id, begin->address, reg->address + reg->bytes - begin->address, bytes);
-    for (int i = 0; i < n && !error; i++) {
-        reg = grobo_servo_register_row(servo, first + (size_t)i);
-        show(c, servo, reg,
-             grobo_servo_register_get(servo, reg, bytes + (reg->address - begin->address)), list);
-    }
-    return error ? error : n;
+    return found;
 }
 
-static int show_all(conn *c, int id, const grobo_servo_model *servo, json_t *list)
+static void take(void *ctx, const grobo_servo_register *reg, int32_t value)
 {
-    int n = 1;
-    for (size_t first = 0; n > 0 && grobo_servo_register_row(servo, first); first += (size_t)n) {
-        n = show_block(c, id, servo, first, list);
-        if (n < 0) {
-            return n;
-        }
-    }
-    return GROBO_OK;
+    const wanted *w = ctx;
+    show(w->c, w->servo, reg, value, w->list);
 }
 
-static int get(conn *c, int id, const char *only)
+/* Whether all that is asked for are registers of the servo. */
+static int check_names(app *a, const grobo_servo_model *servo)
+{
+    int status = 0;
+    for (int i = 1; i < a->line.n_arguments && !status; i++) {
+        (void)find_register(a, servo, a->line.argument[i], &status);
+    }
+    return status;
+}
+
+/* One register is read by itself: a servo without blocks may tell it otherwise. */
+static int read_asked(conn *c, int id, const grobo_servo_model *servo, json_t *list)
+{
+    wanted w = {c, servo, list};
+    const servos_visit visit = {is_asked, take, &w};
+    int32_t value;
+    asked = &c->a->line;
+    if (asked->n_arguments != 2) {
+        return servos_each(c, id, servo, &visit);
+    }
+    const grobo_servo_register *reg = grobo_servo_register_named(servo, asked->argument[1]);
+    int error = servos_get(c, id, servo, reg, &value);
+    if (!error) {
+        show(c, servo, reg, value, list);
+    }
+    return error;
+}
+
+static int get(conn *c, int id)
 {
     const grobo_servo_model *servo;
-    const grobo_servo_register *reg = NULL;
-    int32_t value;
-    int status = 0;
     int error = servos_model(c, id, &servo);
     if (error) {
         return conn_fail_servo(c, error, id);
     }
-    if (only && !(reg = find_register(c->a, servo, only, &status))) {
+    int status = check_names(c->a, servo);
+    if (status) {
         return status;
     }
     json_t *list = json_array();
-    if (!reg) {
-        error = show_all(c, id, servo, list);
-    } else if (!(error = servos_get(c, id, servo, reg, &value))) {
-        show(c, servo, reg, value, list);
-    }
+    error = read_asked(c, id, servo, list);
     if (!error && c->a->json) {
         app_print_json(
             json_pack("{s:i,s:s,s:O}", "id", id, "model", servo->name, "registers", list));
@@ -160,19 +174,20 @@ static int run_get(app *a)
     conn c;
     int status = 0;
     const grobo_servo_model *servo;
-    const char *only = a->line.n_arguments > 1 ? a->line.argument[1] : NULL;
     int id = find_servo(a, &servo);
     if (id < 0) {
         return -id;
     }
     /* Before anybody is asked; another servo may have other registers. */
-    if (only && grobo_model_joint_of_motor(app_model(a), id) >= 0 &&
-        !find_register(a, servo, only, &status)) {
+    if (grobo_model_joint_of_motor(app_model(a), id) >= 0) {
+        status = check_names(a, servo);
+    }
+    if (status) {
         return status;
     }
     status = conn_open(&c, a);
     if (!status) {
-        status = get(&c, id, only);
+        status = get(&c, id);
     }
     return conn_close(&c, status);
 }
@@ -396,6 +411,17 @@ static int write_and_verify(conn *c, const servo_change *what, int32_t before)
     return EXIT_DONE;
 }
 
+/* What the servo keeps now goes to a file first. */
+static int save_first(conn *c, int id, const grobo_servo_model *servo)
+{
+    char path[EEPROM_PATH_BYTES];
+    int status = eeprom_save(c, id, servo, path, sizeof path);
+    if (!status) {
+        app_note(c->a, "servo %d: what it keeps is saved: %s", id, path);
+    }
+    return status;
+}
+
 static int set(conn *c, const servo_change *what)
 {
     int32_t before = 0;
@@ -413,7 +439,146 @@ static int set(conn *c, const servo_change *what)
     if (!confirmed(c, what, before)) {
         return app_fail(c->a, EXIT_USAGE, "CANCELED", "servo-set: nothing was written");
     }
-    return changes_rate(c, what) ? set_rate(c, what, before) : write_and_verify(c, what, before);
+    error = change_is_kept(what) ? save_first(c, what->id, what->servo) : EXIT_DONE;
+    return error                   ? error
+           : changes_rate(c, what) ? set_rate(c, what, before)
+                                   : write_and_verify(c, what, before);
+}
+
+/* DYNAMIXEL that answer nothing but pings, or in another protocol, could not be asked again. */
+static bool would_hide(const servo_change *what)
+{
+    bool pings_alone =
+        what->reg->role == GROBO_ROLE_REPLY_LEVEL && what->value == 0 && what->reg->max > 1;
+    return pings_alone || (strcmp(what->reg->name, "protocol_type") == 0 && what->value != 2);
+}
+
+/* ---- --restore ------------------------------------------------------------------------------- */
+
+/* The registers that differ from a file, in the order in which they are written: the id last, as
+ * the servo has another one then. */
+typedef struct restore {
+    servo_change change[FAMILY_PIECE_BYTES];
+    int n;
+} restore;
+
+static int compare(conn *c, int id, const grobo_servo_model *servo, const json_t *registers,
+                   restore *r)
+{
+    const grobo_servo_register *reg;
+    int error = GROBO_OK;
+    for (int ids = 0; ids < 2; ids++) {
+        for (size_t i = 0; !error && (reg = grobo_servo_register_row(servo, i)) != NULL; i++) {
+            const json_t *value = json_object_get(registers, reg->name);
+            int32_t is;
+            if (!value || (reg->role == GROBO_ROLE_ID) != (ids == 1) ||
+                r->n == FAMILY_PIECE_BYTES) {
+                continue;
+            }
+            error = servos_get(c, id, servo, reg, &is);
+            if (!error && is != json_integer_value(value)) {
+                r->change[r->n++] =
+                    (servo_change){.id = id,
+                                   .servo = servo,
+                                   .reg = reg,
+                                   .value = (int32_t)json_integer_value(value),
+                                   .flash = servo->table->keeps != GROBO_KEEPS_COMMAND};
+            }
+        }
+    }
+    return error ? conn_fail_servo(c, error, id) : EXIT_DONE;
+}
+
+/* What can be written while the servo is there: its rate is set by a command of its own. */
+static int expect_restorable(conn *c, const restore *r)
+{
+    int status = EXIT_DONE;
+    for (int i = 0; i < r->n && !status; i++) {
+        const servo_change *what = &r->change[i];
+        status = expect_loose(c, what);
+        status = status ? status : expect_free_id(c, what);
+        if (!status && what->reg->role == GROBO_ROLE_BAUD) {
+            status = app_fail(c->a, EXIT_SAFETY, "UNSUPPORTED",
+                              "servo-set: the file has another rate; first: grctl servo-set %d "
+                              "baud %d --flash",
+                              what->id, what->value);
+        }
+        if (!status && would_hide(what)) {
+            status = app_fail(c->a, EXIT_SAFETY, "UNSUPPORTED",
+                              "servo-set: with %s %d a servo answers nothing that is asked from "
+                              "here, and could not be set back",
+                              what->reg->name, what->value);
+        }
+    }
+    return status;
+}
+
+/* One register, read back. The engine knows a joint's torque before each write. */
+static int write_one(conn *c, const servo_change *what)
+{
+    int joint = grobo_model_joint_of_motor(conn_model(c), what->id);
+    int32_t after = 0;
+    int error = joint < 0 ? GROBO_OK : conn_sense(c, GROBO_JOINT_BIT(joint), GROBO_SENSE_GOAL);
+    if (!error || error == GROBO_ERR_SETUP) {
+        error = change_write(c, what);
+    }
+    if (!error && what->flash) {
+        error = change_keep(c, what);
+    }
+    if (!error) {
+        error = servos_get(c, change_id(what), what->servo, what->reg, &after);
+    }
+    return error ? error : after == what->value ? GROBO_OK : GROBO_ERR_MISMATCH;
+}
+
+static int write_back(conn *c, const restore *r)
+{
+    int error = GROBO_OK, id = r->n > 0 ? r->change[0].id : 0;
+    for (int i = 0; i < r->n && !error; i++) {
+        error = write_one(c, &r->change[i]);
+        id = change_id(&r->change[i]);
+    }
+    if (!error && r->n > 0 && !r->change[0].flash) { /* RS30x write their flash once */
+        servo_change last = r->change[r->n - 1];
+        last.flash = true;
+        error = change_keep(c, &last);
+    }
+    return error ? conn_fail_servo(c, error, id) : EXIT_DONE;
+}
+
+static int restore_file(conn *c, int id, const grobo_servo_model *servo, const char *path)
+{
+    static restore r;
+    json_t *registers = NULL;
+    r.n = 0;
+    int status = eeprom_load(c->a, path, servo, &registers);
+    status = status ? status : compare(c, id, servo, registers, &r);
+    json_decref(registers);
+    status = status ? status : expect_restorable(c, &r);
+    if (!status && r.n > 0) {
+        status = save_first(c, id, servo);
+        status = status ? status : write_back(c, &r);
+    }
+    if (!status && c->a->json) {
+        app_print_json(json_pack("{s:i,s:s,s:i}", "id", id, "file", path, "written", r.n));
+    } else if (!status) {
+        app_note(c->a, "servo %d: as in %s again; registers written: %d", id, path, r.n);
+    }
+    return status;
+}
+
+static int run_restore(app *a, const char *path)
+{
+    conn c;
+    const grobo_servo_model *servo;
+    int id = find_servo(a, &servo);
+    int status = id < 0 ? -id : conn_open(&c, a);
+    if (status) {
+        return id < 0 ? status : conn_close(&c, status);
+    }
+    int error = servos_model(&c, id, &servo);
+    status = error ? conn_fail_servo(&c, error, id) : restore_file(&c, id, servo, path);
+    return conn_close(&c, status);
 }
 
 /* In counts of the register; a baud rate may be given as it is, too. */
@@ -431,14 +596,6 @@ static bool read_value(const servo_change *what, const char *text, int32_t *coun
     }
     *counts = (int32_t)value;
     return true;
-}
-
-/* DYNAMIXEL that answer nothing but pings, or in another protocol, could not be asked again. */
-static bool would_hide(const servo_change *what)
-{
-    bool pings_alone =
-        what->reg->role == GROBO_ROLE_REPLY_LEVEL && what->value == 0 && what->reg->max > 1;
-    return pings_alone || (strcmp(what->reg->name, "protocol_type") == 0 && what->value != 2);
 }
 
 /* What the command line asks for, of the servo that what->servo is. */
@@ -489,6 +646,15 @@ static int run_set(app *a)
 {
     conn c;
     servo_change what = {0};
+    const char *file = app_option(a, OPT_RESTORE)->text;
+    bool restores = app_option(a, OPT_RESTORE)->given > 0;
+    if (a->line.n_arguments != (restores ? 1 : 3)) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "servo-set: takes ID KEY VALUE, or ID --restore FILE");
+    }
+    if (restores) {
+        return run_restore(a, file);
+    }
     what.id = find_servo(a, &what.servo);
     int status = what.id < 0 ? -what.id : parse_change(a, &what);
     if (status) {
@@ -510,18 +676,19 @@ static int run_set(app *a)
 
 const cli_command cmd_servo_get = {
     .name = "servo-get",
-    COMMAND_ARGUMENTS("ID [KEY]", 1, 2, CLI_ARG_JOINT),
+    COMMAND_ARGUMENTS("ID [KEY]...", 1, CLI_ARGUMENTS_MAX, CLI_ARG_JOINT),
     .summary = "read a servo's registers by name",
     .details =
-        "Prints every register of a servo, or one: address, name, value as it is stored and\n"
-        "what that means. ID is the servo's id or the name of a joint.\n",
-    .example = "  grctl servo-get 12\n  grctl servo-get R_KNEE_P delay\n",
+        "Prints every register of a servo, or those named: address, name, value as it is stored\n"
+        "and what that means. ID is the servo's id or the name of a joint. Several registers are\n"
+        "read in one frame where the servo can.\n",
+    .example = "  grctl servo-get 12\n  grctl servo-get R_KNEE_P delay id\n",
     .run = run_get,
 };
 
 const cli_command cmd_servo_set = {
     .name = "servo-set",
-    COMMAND_ARGUMENTS("ID KEY VALUE", 3, 3, CLI_ARG_JOINT),
+    COMMAND_ARGUMENTS("ID [KEY VALUE]", 1, 3, CLI_ARG_JOINT),
     .summary = "write a servo's register by name",
     .details =
         "Writes one register and reads it back. The value is what the register stores (see\n"
@@ -537,8 +704,12 @@ const cli_command cmd_servo_set = {
         "On a bus a new baud rate is written at the old one. With --flash an RS30x keeps it and\n"
         "restarts, the command follows it to the new rate and verifies that it answers there; -b\n"
         "then reaches it. Without --flash the servo stays at the old rate and forgets the new one\n"
-        "when it restarts.\n",
-    .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
+        "when it restarts.\n"
+        "\n"
+        "Before anything is written that survives power-off, all that the servo keeps is saved\n"
+        "to a file; its name is printed. --restore FILE writes what differs from it back.\n",
+    .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n"
+               "  grctl servo-set 1 --restore FILE\n",
     COMMAND_OPTIONS(set_options),
     .run = run_set,
 };

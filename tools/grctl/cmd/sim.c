@@ -79,6 +79,7 @@ typedef struct farm {
     struct event_base *base;
     struct event *signals[OS_ENDINGS_MAX];
     grobo_sim_server *server[ROBOTS_MAX];
+    grobo_sim_physics *physics[ROBOTS_MAX];
     watched watched[ROBOTS_MAX];
     sim_console console;
     sim_chain chain;       /* of --servo */
@@ -263,7 +264,11 @@ static int add_robot(farm *f, int robot)
     sim.hook = on_sim;
     sim.hook_ctx = &f->watched[robot];
     if (app_option(f->a, OPT_STRICT)->given) {
-        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, words_of(f));
+        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, &sim, words_of(f));
+    }
+    error = robot_physics(f->a, &sim, &f->physics[robot]);
+    if (error) {
+        return app_fail_error(f->a, EXIT_ROBOT, error, "sim");
     }
     error = grobo_sim_server_new(&config, &f->server[robot], &cause);
     if (error == GROBO_ERR_NOENT) { /* of the link, whose folder is missing */
@@ -327,6 +332,9 @@ static int close_farm(farm *f, int status)
         grobo_sim_server_free(f->server[i]);
         status = trace_close(&f->watched[i].trace, f->a, status);
     }
+    for (int i = 0; i < ROBOTS_MAX; i++) {
+        grobo_sim_physics_free(f->physics[i]);
+    }
     for (int i = 0; i < os_n_endings; i++) {
         if (f->signals[i]) {
             event_free(f->signals[i]);
@@ -356,6 +364,7 @@ static int serve(farm *f)
 {
     f->console = (sim_console){
         .a = f->a, .base = f->base, .model = f->model, .server = f->server, .n = f->n};
+    f->console.payload_link = robot_payload_link(f->a);
     int error = sim_console_start(&f->console) ? GROBO_OK : GROBO_ERR_NOMEM;
     if (!error && event_base_dispatch(f->base) < 0) {
         error = GROBO_ERR_IO;

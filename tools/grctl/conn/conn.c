@@ -443,6 +443,11 @@ static int make_session(conn *c, const char *device, bool check)
         return error;
     }
     robot_sim(a, &c->link->sim);
+    grobo_sim_physics_free(c->link->physics); /* of a session that is gone */
+    error = robot_physics(a, &c->link->sim.config, &c->link->physics);
+    if (error) {
+        return error;
+    }
     grobo_robot_config robot = conn_robot_config(a);
     robot.bus.echo = app_global(a, GLOBAL_ECHO)->given > 0;
     const grobo_driver *driver = app_driver(a);
@@ -912,6 +917,7 @@ void conn_link_deinit(conn_link *link)
         event_base_free(link->base);
     }
     grobo_guard_free(link->guard);
+    grobo_sim_physics_free(link->physics);
     memset(link, 0, sizeof *link);
 }
 

@@ -35,13 +35,14 @@ typedef struct conn_link {
     struct event *signals[OS_ENDINGS_MAX + 1]; /* the last is Ctrl-Z */
     int n_signals;
     grobo_session *session;
-    trims trims;         /* its driver, for a configured robot */
-    grobo_robot_sim sim; /* of GROBO_DEVICE_SIM */
-    conn *user;          /* the command that has it now, NULL between two */
-    int signal;          /* the first signal that came between two commands, 0 none */
-    int link_error;      /* why the link is lost, 0 while it stands */
-    bool up;             /* the line is open */
-    bool answered;       /* the robot has answered */
+    trims trims;                /* its driver, for a configured robot */
+    grobo_robot_sim sim;        /* of GROBO_DEVICE_SIM */
+    grobo_sim_physics *physics; /* its world; NULL: none */
+    conn *user;                 /* the command that has it now, NULL between two */
+    int signal;                 /* the first signal that came between two commands, 0 none */
+    int link_error;             /* why the link is lost, 0 while it stands */
+    bool up;                    /* the line is open */
+    bool answered;              /* the robot has answered */
     bool news; /* between two commands the line was lost, or the engine stopped for this: */
     grobo_trip_info trip;
     trace trace; /* of the shell's --trace */

@@ -33,6 +33,56 @@ int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_serv
     return error;
 }
 
+/* RS30x return at most so much, and the board's line is shared. */
+enum { RS30X_BLOCK_BYTES = 30 };
+
+/* Rows from `first` on that one frame reads, of which the last is wanted; 0: it can be written
+ * only. */
+static int rows_of_block(const conn *c, const grobo_servo_model *servo, size_t first,
+                         const servos_visit *visit)
+{
+    const grobo_driver *driver = grobo_robot_driver(c->robot);
+    int most = family_is(driver, "rs30x") ? RS30X_BLOCK_BYTES : FAMILY_PIECE_BYTES;
+    int n = family_block(driver, servo, first, most);
+    while (n > 1 && !visit->wants(grobo_servo_register_row(servo, first + (size_t)n - 1))) {
+        n--;
+    }
+    return n;
+}
+
+static int read_rows(conn *c, int id, const grobo_servo_model *servo, size_t first, int n,
+                     const servos_visit *visit)
+{
+    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
+    const grobo_servo_register *begin = grobo_servo_register_row(servo, first);
+    const grobo_servo_register *reg = grobo_servo_register_row(servo, first + (size_t)n - 1);
+    int error =
+        servos_read(c, id, begin->address, reg->address + reg->bytes - begin->address, bytes);
+    for (int i = 0; i < n && !error; i++) {
+        reg = grobo_servo_register_row(servo, first + (size_t)i);
+        if (visit->wants(reg)) {
+            visit->take(
+                visit->ctx, reg,
+                grobo_servo_register_get(servo, reg, bytes + (reg->address - begin->address)));
+        }
+    }
+    return error;
+}
+
+int servos_each(conn *c, int id, const grobo_servo_model *servo, const servos_visit *visit)
+{
+    const grobo_servo_register *reg;
+    int error = GROBO_OK;
+    for (size_t first = 0; !error && (reg = grobo_servo_register_row(servo, first)) != NULL;) {
+        int n = visit->wants(reg) ? rows_of_block(c, servo, first, visit) : 0;
+        if (n > 0) {
+            error = read_rows(c, id, servo, first, n, visit);
+        }
+        first += n > 0 ? (size_t)n : 1;
+    }
+    return error;
+}
+
 /* A servo may be set up to answer nothing but what is read: what it has tells. */
 static int look_after(conn *c, const grobo_register_io *io)
 {

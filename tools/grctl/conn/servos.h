@@ -21,6 +21,17 @@ int servos_model(conn *c, int id, const grobo_servo_model **servo);
 int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
                int32_t *value);
 
+/* Registers of a servo, each taken when it was read. */
+typedef struct servos_visit {
+    bool (*wants)(const grobo_servo_register *reg);
+    void (*take)(void *ctx, const grobo_servo_register *reg, int32_t value);
+    void *ctx;
+} servos_visit;
+
+/* Reads those that are wanted, by rising address, in as few frames as the family can; those that
+ * can be written only are left out. Returns GROBO_OK or the error. */
+int servos_each(conn *c, int id, const grobo_servo_model *servo, const servos_visit *visit);
+
 /*
  * Writes it, where several are written in one piece with the others as they are. As above; a value
  * that the register does not take is GROBO_ERR_LIMIT. Of a servo that is silent it is read back.

@@ -11,7 +11,8 @@ explain_item explain_item_at(const grobo_servo_model *servo, const grobo_telegra
                              int at)
 {
     explain_item i = {.servo = servo, .address = part->address + at, .bytes = 1};
-    i.reg = part->address < 0 ? NULL : grobo_servo_register_at(servo, (uint16_t)i.address);
+    bool there = part->address >= 0 && i.address <= UINT16_MAX;
+    i.reg = there ? grobo_servo_register_at(servo, (uint16_t)i.address) : NULL;
     i.whole = i.reg && i.reg->address == i.address && at + i.reg->bytes <= part->length;
     if (i.whole) {
         i.bytes = i.reg->bytes;

@@ -7,6 +7,7 @@
 
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/eeprom.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/homing/file.h"
 #include "tools/grctl/homing/homing.h"
@@ -424,6 +425,21 @@ static int let_limp(calibration *k)
     return conn_wait(&k->c, grobo_robot_torque(k->c.robot, all, GROBO_TORQUE_OFF));
 }
 
+/* All that the servos keep, a file each. */
+static int save_all(calibration *k)
+{
+    char path[EEPROM_PATH_BYTES];
+    int status = 0;
+    for (int j = 0; j < app_model(k->a)->n_joints && !status; j++) {
+        int id = joint_of(k->a, j)->motor;
+        status = eeprom_save(&k->c, id, servo_of(k->a, j), path, sizeof path);
+        if (!status) {
+            app_detail(k->a, "servo %d: what it keeps is saved: %s", id, path);
+        }
+    }
+    return status;
+}
+
 /* The robot is limp, and what its servos hold is in a file. */
 static int prepare(calibration *k, bool by_file)
 {
@@ -443,7 +459,7 @@ static int prepare(calibration *k, bool by_file)
         app_note(k->a, "what the servos hold is in %s; 'grctl calibrate --restore %s' undoes this",
                  k->kept, k->kept);
     }
-    return status;
+    return status ? status : save_all(k);
 }
 
 static int calibrate(calibration *k)

@@ -50,7 +50,7 @@ const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t nu
  * The registers that are read together with one: some families read several in one piece only.
  * From *address on; returns their bytes, at most FAMILY_PIECE_BYTES; 0: it cannot be read.
  */
-enum { FAMILY_PIECE_BYTES = 64 };
+enum { FAMILY_PIECE_BYTES = 160 };
 int family_piece(const grobo_driver *driver, const grobo_servo_model *servo,
                  const grobo_servo_register *reg, uint16_t *address);
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "tools/grctl/conn/change.h"
+#include "tools/grctl/conn/eeprom.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
@@ -135,6 +136,11 @@ static int try_rate(contact *k, const char *name, const servo_change *there, int
         contact_note(k, name, NOT_DONE, "the line at %d bps: %s", change_bps(there),
                      app_error_text(error ? error : back));
         return EXIT_DONE;
+    }
+    char path[EEPROM_PATH_BYTES];
+    int status = eeprom_save(&k->c, there->id, there->servo, path, sizeof path);
+    if (status) {
+        return status;
     }
     k->c.leaving = true; /* signals wait */
     error = change_and_back(k, there, old_bps, &is);

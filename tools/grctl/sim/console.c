@@ -94,6 +94,24 @@ static bool set_load(const sim_console *console, int servo)
            grobo_sim_set_load(sim_of(console), servo, (int32_t)ma) == 0;
 }
 
+static bool push(const sim_console *console, int servo)
+{
+    double nm;
+    return read_number(console, 2, -100, 100, &nm) &&
+           grobo_sim_push(sim_of(console), servo, nm) == 0;
+}
+
+static bool set_wall(const sim_console *console, int servo)
+{
+    double min, max;
+    if (is_word(console, 2, "off")) {
+        return grobo_sim_set_wall(sim_of(console), servo, INT32_MIN, INT32_MAX) == 0;
+    }
+    return read_number(console, 2, -180, 180, &min) && read_number(console, 3, -180, 180, &max) &&
+           grobo_sim_set_wall(sim_of(console), servo, (int32_t)lround(min * 1000),
+                              (int32_t)lround(max * 1000)) == 0;
+}
+
 static bool set_temperature(const sim_console *console, int servo)
 {
     double c;
@@ -118,6 +136,8 @@ static const struct {
     {"block", set_blocked, "block SERVO on|off"},
     {"turn", turn, "turn SERVO DEG [MS]"},
     {"load", set_load, "load SERVO MA (0 to 5000)"},
+    {"push", push, "push SERVO NM (-100 to 100)"},
+    {"wall", set_wall, "wall SERVO MIN MAX|off"},
     {"temperature", set_temperature, "temperature SERVO C (-40 to 150)"},
     {"id", set_id, "id SERVO ID (1 to 127)"},
 };
@@ -150,7 +170,7 @@ static void say_servo(const sim_console *console, int servo)
              v.moving ? _(", moving") : "", v.stalled ? _(", stalled") : "");
 }
 
-static const char *look(const sim_console *console)
+static const char *look(sim_console *console)
 {
     grobo_joint_mask joints = GROBO_JOINTS_ALL(console->model->n_joints);
     if (console->n_words > 1 && !read_servos(console, &joints)) {
@@ -175,7 +195,7 @@ static const char *choose_robot(sim_console *console)
     return NULL;
 }
 
-static const char *set_voltage(const sim_console *console)
+static const char *set_voltage(sim_console *console)
 {
     double v;
     if (!read_number(console, 1, 0, 20, &v)) {
@@ -185,7 +205,28 @@ static const char *set_voltage(const sim_console *console)
     return NULL;
 }
 
-static const char *set_faults(const sim_console *console)
+static const char *set_payload(sim_console *console)
+{
+    double kg;
+    const char *link = console->n_words > 2 ? console->word[2] : console->payload_link;
+    if (!read_number(console, 1, 0, 100, &kg) ||
+        grobo_sim_set_payload(sim_of(console), link, kg) < 0) {
+        return "payload KG [LINK] (0 to 100)";
+    }
+    return NULL;
+}
+
+static const char *set_resistance(sim_console *console)
+{
+    double mohm;
+    if (!read_number(console, 1, 0, 100000, &mohm) ||
+        grobo_sim_set_supply_mohm(sim_of(console), (uint32_t)mohm) < 0) {
+        return "supply MOHM (0 to 100000)";
+    }
+    return NULL;
+}
+
+static const char *set_faults(sim_console *console)
 {
     if (console->n_words < 2 ||
         grobo_sim_set_faults(sim_of(console), console->word[1], strlen(console->word[1])) < 0) {
@@ -195,7 +236,7 @@ static const char *set_faults(const sim_console *console)
     return NULL;
 }
 
-static const char *plug(const sim_console *console)
+static const char *plug(sim_console *console)
 {
     bool in = is_word(console, 1, "in");
     if (!in && !is_word(console, 1, "out")) {
@@ -205,34 +246,49 @@ static const char *plug(const sim_console *console)
     return error < 0 ? app_error_text(error) : NULL;
 }
 
+static const struct {
+    const char *name;
+    const char *(*act)(sim_console *console);
+} commands[] = {
+    {"look", look},        {"robot", choose_robot},  {"voltage", set_voltage},
+    {"fault", set_faults}, {"payload", set_payload}, {"supply", set_resistance},
+    {"plug", plug},
+};
+
+/* Whether a command needs a world with weight, and there is none. */
+static bool lacks_weight(const sim_console *console)
+{
+    static const char *const heavy[] = {"push", "wall", "payload", "supply"};
+    for (size_t i = 0; i < sizeof heavy / sizeof heavy[0]; i++) {
+        if (is_word(console, 0, heavy[i])) {
+            return grobo_sim_push(sim_of(console), 0, 0) == GROBO_ERR_UNSUPPORTED;
+        }
+    }
+    return false;
+}
+
 /* NULL: done. Else how the command is to be said. */
 static const char *carry_out(sim_console *console)
 {
+    if (lacks_weight(console)) {
+        return _("this robot has no weight: start it with --physics on");
+    }
     for (size_t i = 0; i < sizeof servo_commands / sizeof servo_commands[0]; i++) {
         if (is_word(console, 0, servo_commands[i].name)) {
             return act_on_servos(console, i);
         }
     }
-    if (is_word(console, 0, "look")) {
-        return look(console);
-    }
-    if (is_word(console, 0, "robot")) {
-        return choose_robot(console);
-    }
-    if (is_word(console, 0, "voltage")) {
-        return set_voltage(console);
-    }
-    if (is_word(console, 0, "fault")) {
-        return set_faults(console);
-    }
-    if (is_word(console, 0, "plug")) {
-        return plug(console);
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        if (is_word(console, 0, commands[i].name)) {
+            return commands[i].act(console);
+        }
     }
     if (is_word(console, 0, "quit")) {
         event_base_loopbreak(console->base);
         return NULL;
     }
-    return _("robot fault silent cable block turn load temperature id voltage plug look quit; see "
+    return _("robot fault silent cable block turn load push wall payload temperature id voltage "
+             "supply plug look quit; see "
              "'grctl help sim'");
 }
 

@@ -5,6 +5,7 @@
 
 #include <event2/event.h>
 
+#include <grobo/sim_physics.h>
 #include <grobo/sim_server.h>
 
 #include "tools/grctl/cli/app.h"
@@ -18,7 +19,8 @@ typedef struct sim_console {
     const grobo_model *model;        /* of all robots, borrowed */
     grobo_sim_server *const *server; /* n of them, borrowed */
     int n;
-    int robot; /* the one that commands are for, from 0 */
+    const char *payload_link; /* of the robot; NULL: the last one */
+    int robot;                /* the one that commands are for, from 0 */
     /* private */
     os_input input;
     char line[SIM_CONSOLE_BYTES];
@@ -37,6 +39,10 @@ typedef struct sim_console {
     "  block SERVO on|off          its shaft is held fast\n"                                       \
     "  turn SERVO DEG [MS]         a hand turns its shaft\n"                                       \
     "  load SERVO MA               extra current, as of a weight\n"                                \
+    "  push SERVO NM               a hand pushes the joint (--physics on)\n"                       \
+    "  wall SERVO MIN MAX|off      walls on its shaft's way (--physics on)\n"                      \
+    "  payload KG [LINK]           a mass in the hand; 0: none (--physics on)\n"                   \
+    "  supply MOHM                 resistance of battery and wires (--physics on)\n"               \
     "  temperature SERVO C         of its case\n"                                                  \
     "  id SERVO ID                 another id, also one in use\n"                                  \
     "  voltage V                   of the battery\n"                                               \

@@ -149,9 +149,23 @@ static void on_collision(sim_strict *s, const grobo_sim_event *event)
     }
 }
 
+/* A servo that got another id is known by that. */
+static void on_register(sim_strict *s, const grobo_sim_event *event)
+{
+    const grobo_servo_model *servo = s->servos ? s->servos[event->servo] : NULL;
+    const grobo_servo_register *id = grobo_servo_register_of(servo, GROBO_ROLE_ID);
+    if (id && event->value == id->address && event->value2 >= 0 && event->value2 < TALK_IDS) {
+        s->talk.servo[event->value2] = servo;
+    }
+}
+
 void sim_strict_event(sim_strict *s, const grobo_sim_event *event)
 {
     if (!s->a) {
+        return;
+    }
+    if (event->kind == GROBO_SIM_REGISTER) {
+        on_register(s, event);
         return;
     }
     if (event->kind == GROBO_SIM_PACKET) {
@@ -170,14 +184,19 @@ void sim_strict_event(sim_strict *s, const grobo_sim_event *event)
 
 /* ---- from begin to end ----------------------------------------------------------------------- */
 
-void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring,
+void sim_strict_start(sim_strict *s, app *a, int robot, const grobo_sim_config *sim,
                       const grobo_words *words)
 {
+    grobo_wiring wiring = sim->wiring;
     *s = (sim_strict){.a = a,
                       .robot = robot,
                       .wiring = wiring,
                       .start_us = grobo_now_us(),
+                      .servos = sim->servos,
                       .talk = {.words = words}};
+    for (int i = 0; sim->servos && i < sim->model->n_joints; i++) {
+        s->talk.servo[sim->model->joints[i].motor] = sim->servos[i];
+    }
     frames_init(&s->host, &s->talk, FRAMES_HOST,
                 wiring == GROBO_WIRING_BUS ? GROBO_WORDS_BUS : GROBO_WORDS_BOARD, on_frame, s);
 }

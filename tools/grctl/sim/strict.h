@@ -17,6 +17,7 @@ typedef struct sim_strict {
     int64_t start_us, collision_us;
     frames host;
     talk talk;
+    const grobo_servo_model *const *servos;  /* of the simulator, NULL: RS30x of the model */
     uint8_t packet[GROBO_WORDS_FRAME_BYTES]; /* the last one on the servos' bus */
     size_t n_packet;
     bool told;                             /* of that packet */
@@ -24,8 +25,8 @@ typedef struct sim_strict {
     size_t n_last;
 } sim_strict;
 
-/* words: how the servos talk. */
-void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring,
+/* sim: of the simulator, whose servos are judged each by its own model. words: how they talk. */
+void sim_strict_start(sim_strict *s, app *a, int robot, const grobo_sim_config *sim,
                       const grobo_words *words);
 /* What the client has written. */
 void sim_strict_bytes(sim_strict *s, int64_t now_us, const uint8_t *bytes, size_t n);
