@@ -297,7 +297,7 @@ TEST(sim_refuses_null_in_its_second_functions)
 TEST(a_world_refuses_null)
 {
     grobo_sim_physics *physics = NULL;
-    grobo_sim_physics_view view;
+    grobo_sim_physics_view seen;
     grobo_sim_motor motor;
     const grobo_sim_physics_config config = {GROBO_SIM_PHYSICS_CONFIG_INIT,
                                              .model = &grobo_i_gr001_model};
@@ -305,7 +305,7 @@ TEST(a_world_refuses_null)
     REFUSES(grobo_sim_motor_of(&grobo_i_rs30x_table.models[0], NULL));
     REFUSES(grobo_sim_physics_new(NULL, NULL, &physics));
     REFUSES(grobo_sim_physics_new(&config, NULL, NULL));
-    REFUSES(grobo_sim_physics_look(NULL, 0, &view));
+    REFUSES(grobo_sim_physics_look(NULL, 0, &seen));
     assert_int_equal(grobo_sim_physics_new(&config, NULL, &physics), GROBO_OK);
     REFUSES(grobo_sim_physics_look(physics, 0, NULL));
     grobo_sim_physics_free(physics);

@@ -63,7 +63,7 @@ static const char *in_folder(const char *name)
     snprintf(to, sizeof path[0], "%s%s%s", folder.c_str(), *name ? "/" : "", name);
     return to;
 }
-static void say(double value) { words_say(value); }
+static void say(double value) { frame_words_say(value); }
 static void say_posture(RobotPosture *x)
 {
     for (int id = 1; x && id <= 20; id++) say(x->getDegree(id));
@@ -80,7 +80,7 @@ static void say_file(const char *name)
     std::ifstream file(name);
     std::stringstream text;
     text << file.rdbuf();
-    words_say_text(file.fail() ? "no file" : text.str().c_str());
+    frame_words_say_text(file.fail() ? "no file" : text.str().c_str());
 }
 /* Its thread sleeps between two frames. */
 static void go()
@@ -115,7 +115,7 @@ static void run(const char *name, void (*statement)())
     try {
         statement();
     } catch (...) {
-        words_say_text("throws");
+        frame_words_say_text("throws");
     }
     if (held) pthread_mutex_unlock(&g->mutex_motion);
     held = false;

@@ -48,7 +48,7 @@ void classic_remove_files(void)
 
 void say(double value)
 {
-    words_say(value);
+    frame_words_say(value);
 }
 
 void say_file(const char *path)
@@ -58,7 +58,7 @@ void say_file(const char *path)
     size_t length = file != NULL ? fread(text, 1, sizeof text - 1, file) : 0;
 
     text[length] = '\0';
-    words_say_text(file != NULL ? text : "no file");
+    frame_words_say_text(file != NULL ? text : "no file");
     if (file != NULL) {
         fclose(file);
     }

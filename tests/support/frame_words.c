@@ -150,15 +150,15 @@ void words_bytes(const uint8_t *bytes, size_t size)
     pthread_mutex_unlock(&lock);
 }
 
-void words_say(double value)
+void frame_words_say(double value)
 {
     char one[64];
 
     snprintf(one, sizeof one, "%.6g", value);
-    words_say_text(one);
+    frame_words_say_text(one);
 }
 
-void words_say_text(const char *text)
+void frame_words_say_text(const char *text)
 {
     pthread_mutex_lock(&lock);
     add(said, " ");

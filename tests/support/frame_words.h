@@ -20,8 +20,8 @@ void words_begin(void);
 void words_bytes(const uint8_t *bytes, size_t size);
 
 /* A value that a statement gave, and a text. */
-void words_say(double value);
-void words_say_text(const char *text);
+void frame_words_say(double value);
+void frame_words_say_text(const char *text);
 
 /*
  * What came since words_begin(): "goals 20 in 25: 2=200 | torque 9=1 | said 1 2". Goals are in the
