@@ -37,7 +37,7 @@ static void on_frame(void *ctx, const frame *f)
     int64_t asked_us;
     h->bytes += f->size;
     MUST(f->size > 0 && f->end_us >= f->time_us);
-    frame_words_say(f, true, "", text, sizeof text);
+    words_say(f, true, "", text, sizeof text);
     json_decref(words_json(f));
     MUST(strlen(text) >= 4 && text[strlen(text) - 1] == '\n');
     if (f->side == FRAMES_HOST && f->sum_ok) {

@@ -24,7 +24,7 @@ static void note(void *ctx, const frame *f)
 {
     static char text[WORDS_BYTES];
     heard *h = ctx;
-    frame_words_say(f, true, "", text, sizeof text);
+    words_say(f, true, "", text, sizeof text);
     json_decref(words_json(f));
     h->used += (size_t)snprintf(h->text + h->used, sizeof h->text - h->used, "%s", text);
     h->bytes += f->size;
@@ -43,7 +43,7 @@ static void count(void *ctx, const frame *f)
 {
     static char text[WORDS_BYTES];
     heard *to = ctx;
-    frame_words_say(f, true, "", text, sizeof text);
+    words_say(f, true, "", text, sizeof text);
     json_decref(words_json(f));
     assert_true(strlen(text) > 3);
     to->bytes += f->size;
