@@ -149,6 +149,11 @@ typedef struct grobo_driver grobo_driver;
  * engine refuse what needs it with GROBO_ERR_UNSUPPORTED; `posture`, `sense` and `parse` must be
  * there.
  *
+ * What the servos do, where families differ, is in `keeps_setup`, `goal_energises`,
+ * `tells_no_speed`, `accel_rad_s2`, `watchdog_us` and `timed_posture`; `arm` is about the robot.
+ * The engine knows nothing else about a family. tests/engine/test_capabilities.c compares them with
+ * what a simulated servo of each family does.
+ *
  * Functions with a `part` may give several frames: they are called with part 0, 1, 2... They
  * return 1 with *exchange filled, 0 when part is past the last frame, or an error. *exchange
  * comes zeroed, but for the bytes of its frame.
@@ -171,14 +176,15 @@ struct grobo_driver {
     const grobo_readback *readback; /**< n_readback corrections, used if the engine is told to */
     uint8_t n_readback;
     const void *family;  /**< for the table's own functions */
-    bool all_first;      /**< a joint's first reading is always a GROBO_SENSE_ALL, in which parse()
-                             looks at how its servo is set up */
+    bool keeps_setup;    /**< its servos keep settings (limits, directions, modes) that a joint may
+                              need otherwise: a joint's first reading is always of GROBO_SENSE_ALL,
+                              in which parse() looks at them */
     int64_t watchdog_us; /**< what watchdog() is told whenever joints are to move, until the engine
                               leaves, or twice the interval of readings where that is longer; not
                               where there are none. 0: nothing */
-    bool goal_wakes;     /**< a goal switches torque on: joints without it get none but to hold, and
+    bool goal_energises; /**< a goal switches torque on: joints without it get none but to hold, and
                               none that may have restarted before they were read again */
-    bool no_speed; /**< its servos report no speed: the engine takes that between two angles */
+    bool tells_no_speed; /**< a reading has no speed: the engine takes that between two angles */
 
     /** Is the robot there? Parts are tried one after the other until one is answered. */
     int (*check)(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);

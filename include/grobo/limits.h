@@ -58,8 +58,8 @@
 /**
  * 1 in a firmware whose drivers are like that of RS30x servos, which tell the time of their way:
  * what the engine does for others is left out. A driver is refused that has `accel_rad_s2`,
- * `goal_wakes`, `no_speed`, `all_first`, sense_many(), sense_fast(), sense_more(), watchdog() or
- * torque_limit().
+ * `goal_energises`, `tells_no_speed`, `keeps_setup`, sense_many(), sense_fast(), sense_more(),
+ * watchdog() or torque_limit().
  */
 #ifndef GROBO_DRIVERS_PLAIN
 #define GROBO_DRIVERS_PLAIN 0

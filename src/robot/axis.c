@@ -368,7 +368,7 @@ bool grobo_i_axis_is_limp(const grobo_robot_axis *axis)
 
 bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
 {
-    return GROBO_I_EXTRA(robot->driver, goal_wakes) &&
+    return GROBO_I_EXTRA(robot->driver, goal_energises) &&
            robot->now_us - robot->axes[joint].heard_us > GROBO_I_RESTART_US;
 }
 

@@ -94,7 +94,7 @@ static int budget_of(const grobo_bus *bus, const grobo_driver *driver, void *ctx
     }
     uint32_t readings = GROBO_I_EXTRA(driver, sense_many) != NULL ? 1 : driver->model->n_joints;
     uint32_t watch_us =
-        GROBO_I_EXTRA(driver, goal_wakes) && !answered ? GROBO_I_RESTART_US : GROBO_WATCH_US;
+        GROBO_I_EXTRA(driver, goal_energises) && !answered ? GROBO_I_RESTART_US : GROBO_WATCH_US;
     found.watched_hz = watched_rate(&found, readings, watch_us);
     found.default_hz =
         found.watched_hz < GROBO_PLAY_RATE_HZ ? found.watched_hz : GROBO_PLAY_RATE_HZ;

@@ -257,7 +257,7 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
     if (!grobo_i_all_sensed(robot, joints, &robot->fault_joint)) {
         return GROBO_ERR_STALE;
     }
-    if (GROBO_I_EXTRA(robot->driver, goal_wakes) && !grobo_i_all_on(robot, joints)) {
+    if (GROBO_I_EXTRA(robot->driver, goal_energises) && !grobo_i_all_on(robot, joints)) {
         return GROBO_ERR_STATE;
     }
     /* A joint in free mode is moved by a person; one adrift by somebody else. */
@@ -286,7 +286,7 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
 static bool aim_goal(const grobo_robot *robot, const grobo_robot_order *order, bool soft,
                      grobo_target *target)
 {
-    bool wakes = GROBO_I_EXTRA(robot->driver, goal_wakes), sleeps = false;
+    bool wakes = GROBO_I_EXTRA(robot->driver, goal_energises), sleeps = false;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool last = axis->next == 0 && axis->last == order->number; /* again, or its next part */
@@ -370,7 +370,7 @@ static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad
 /* Of one that was read once, and tells no speed, nobody knows whether it moves. */
 static bool is_mute(const grobo_robot *robot, int joint)
 {
-    return GROBO_I_EXTRA(robot->driver, no_speed) && !robot->axes[joint].has_target;
+    return GROBO_I_EXTRA(robot->driver, tells_no_speed) && !robot->axes[joint].has_target;
 }
 
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
@@ -385,7 +385,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
         bool goes_on = grobo_i_axis_moves(axis, robot->now_us) || grobo_i_axis_lags(robot, j) ||
                        axis->adrift || (order->owed && is_mute(robot, j));
         bool moves = axis->sensed && goes_on &&
-                     (!GROBO_I_EXTRA(robot->driver, goal_wakes) || axis->wants_torque ||
+                     (!GROBO_I_EXTRA(robot->driver, goal_energises) || axis->wants_torque ||
                       grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
             const grobo_i_limits limits = grobo_i_joint_limits(robot, j);
@@ -414,7 +414,7 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
         const grobo_robot_axis *axis = &robot->axes[j];
         double hold_rad = grobo_i_hold_rad(robot, j);
         bool limited =
-            !GROBO_I_EXTRA(robot->driver, goal_wakes) || grobo_i_torque_is_limited(robot, j);
+            !GROBO_I_EXTRA(robot->driver, goal_energises) || grobo_i_torque_is_limited(robot, j);
         if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) && limited &&
             !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
@@ -526,8 +526,8 @@ static int judge_segment(grobo_robot *robot, const grobo_robot_order *order, gro
         return GROBO_ERR_LATCHED;
     }
     grobo_i_segments_aim(robot, order->joints, target);
-    for (int j = 0; GROBO_I_EXTRA(robot->driver, goal_wakes) && j < robot->driver->model->n_joints;
-         j++) {
+    for (int j = 0;
+         GROBO_I_EXTRA(robot->driver, goal_energises) && j < robot->driver->model->n_joints; j++) {
         target->posture.set &= ~(grobo_i_may_sleep(robot, j) ? GROBO_JOINT_BIT(j) : 0);
     }
     return target->posture.set == 0 ? GROBO_ERR_EMPTY : judge_joints(robot, target->posture.set);

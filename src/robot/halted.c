@@ -32,7 +32,8 @@ static bool has_lost_it(const grobo_robot *robot, int joint)
     if (grobo_i_goal_is_told(axis)) {
         return !grobo_i_goal_is_taken(robot, joint);
     }
-    return GROBO_I_EXTRA(robot->driver, no_speed) && robot->now_us > axis->way.to_us + LATE_US &&
+    return GROBO_I_EXTRA(robot->driver, tells_no_speed) &&
+           robot->now_us > axis->way.to_us + LATE_US &&
            fabs(axis->state.angle_rad - axis->way.to_rad) > BESIDE_RAD;
 }
 

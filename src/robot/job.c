@@ -217,7 +217,7 @@ static int keep_reading(grobo_robot *robot)
     }
     slot->joint = (uint8_t)grobo_i_lowest(job->todo);
     slot->reads = true;
-    bool first = GROBO_I_EXTRA(driver, all_first) && !robot->axes[slot->joint].sensed;
+    bool first = GROBO_I_EXTRA(driver, keeps_setup) && !robot->axes[slot->joint].sensed;
     grobo_sense_kind kind = first ? GROBO_SENSE_ALL : job->sense;
     slot->kind = (uint8_t)kind;
     int result = driver->sense(driver, robot->driver_ctx, slot->joint, kind, &robot->built);

@@ -182,7 +182,7 @@ static void take_speed(const grobo_robot *robot, int joint, grobo_joint_state *g
     const grobo_robot_axis *axis = &robot->axes[joint];
     int64_t us = axis->angle_us == GROBO_NEVER_US ? 0 : robot->now_us - axis->angle_us;
     const unsigned both = GROBO_FIELD_ANGLE | GROBO_FIELD_SPEED;
-    if (GROBO_I_EXTRA(robot->driver, no_speed) && (got->valid & both) == GROBO_FIELD_ANGLE &&
+    if (GROBO_I_EXTRA(robot->driver, tells_no_speed) && (got->valid & both) == GROBO_FIELD_ANGLE &&
         us >= SPEED_LEAST_US && us <= SPEED_MOST_US) {
         double way_deg = grobo_deg_from_rad(got->angle_rad - axis->state.angle_rad);
         got->speed_dps = (int32_t)(way_deg * 1e6 / (double)us);
@@ -195,7 +195,7 @@ static void take_speed(const grobo_robot *robot, int joint, grobo_joint_state *g
  * program may have set going meanwhile. */
 static bool is_of_one_way(const grobo_robot *robot, const grobo_robot_axis *axis)
 {
-    return !GROBO_I_EXTRA(robot->driver, no_speed) ||
+    return !GROBO_I_EXTRA(robot->driver, tells_no_speed) ||
            axis->angle_us >= grobo_i_later(axis->told_us, robot->stop_us);
 }
 
@@ -296,7 +296,7 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
             axis->seen_us = grobo_i_later(axis->seen_us, slot->txn.sent_us);
         }
         note_goal(slot, got);
-        if (GROBO_I_EXTRA(robot->driver, goal_wakes)) {
+        if (GROBO_I_EXTRA(robot->driver, goal_energises)) {
             note_heard(slot, got);
         }
     } else {

@@ -97,7 +97,7 @@ static grobo_joint_mask unheard(const grobo_robot *robot)
     if (robot->now_us < robot->hear_us) {
         return 0;
     }
-    bool wakes = GROBO_I_EXTRA(robot->driver, goal_wakes);
+    bool wakes = GROBO_I_EXTRA(robot->driver, goal_energises);
     return robot->halts_owed != 0 ? robot->halts_owed
            : wakes                ? grobo_i_joints_that(robot, is_unheard)
                                   : 0;
@@ -107,8 +107,8 @@ static grobo_joint_mask unheard(const grobo_robot *robot)
 static int64_t unheard_at(const grobo_robot *robot)
 {
     int64_t at_us = robot->halts_owed != 0 ? robot->now_us : GROBO_NEVER_US;
-    for (int j = 0; GROBO_I_EXTRA(robot->driver, goal_wakes) && j < robot->driver->model->n_joints;
-         j++) {
+    for (int j = 0;
+         GROBO_I_EXTRA(robot->driver, goal_energises) && j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         at_us = grobo_i_axis_is_on(axis) ? grobo_i_sooner(at_us, axis->heard_us + HEAR_US) : at_us;
     }
@@ -240,7 +240,7 @@ static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
     if (grobo_i_has(robot->free_joints, joint)) {
         return GROBO_SENSE_ALL;
     }
-    bool first = GROBO_I_EXTRA(robot->driver, all_first) && !robot->axes[joint].sensed;
+    bool first = GROBO_I_EXTRA(robot->driver, keeps_setup) && !robot->axes[joint].sensed;
     if (robot->free_joints == 0 && robot->config.sense_position_only && !first) {
         return GROBO_SENSE_POSITION;
     }
@@ -338,7 +338,7 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
     bool first = !grobo_i_all_sensed(robot, grobo_i_all_joints(robot), &unknown);
     first = first || robot->fast_forgotten;
     bool angles =
-        robot->config.sense_position_only && !(first && GROBO_I_EXTRA(robot->driver, all_first));
+        robot->config.sense_position_only && !(first && GROBO_I_EXTRA(robot->driver, keeps_setup));
     slot->many = true;
     int result = first && !angles
                      ? ask_first(robot, slot)

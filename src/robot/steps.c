@@ -167,8 +167,8 @@ static grobo_joint_mask of_unknown_speed(const grobo_robot *robot)
 {
     grobo_joint_mask found = 0;
     bool stand = robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
-    for (int j = 0; GROBO_I_EXTRA(robot->driver, no_speed) && j < robot->driver->model->n_joints;
-         j++) {
+    for (int j = 0;
+         GROBO_I_EXTRA(robot->driver, tells_no_speed) && j < robot->driver->model->n_joints; j++) {
         bool is = grobo_i_has(robot->job->joints & ~robot->job->failed, j);
         bool known = stand ? robot->axes[j].seen_dps != GROBO_I_NO_SPEED
                            : (robot->axes[j].state.valid & GROBO_FIELD_SPEED) != 0;

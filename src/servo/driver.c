@@ -70,8 +70,8 @@ static bool joints_sound(const grobo_driver *driver)
 /* What a build for plain drivers leaves out (limits.h). */
 static int check_plain(const grobo_driver *driver)
 {
-    bool plain = driver->accel_rad_s2 == 0 && !driver->goal_wakes && !driver->no_speed &&
-                 !driver->all_first && driver->sense_many == NULL && driver->sense_fast == NULL &&
+    bool plain = driver->accel_rad_s2 == 0 && !driver->goal_energises && !driver->tells_no_speed &&
+                 !driver->keeps_setup && driver->sense_many == NULL && driver->sense_fast == NULL &&
                  driver->sense_more == NULL && driver->watchdog == NULL &&
                  driver->torque_limit == NULL;
     return GROBO_DRIVERS_PLAIN && !plain ? GROBO_ERR_UNSUPPORTED : GROBO_OK;

@@ -520,7 +520,7 @@ TEST_FOR(family, family_next, a_joint_that_turns_back_stops_where_it_is)
                        .interval_us = i / 4 % 2 != 0 ? 50 * MS : 150 * MS};
         stop_turning(row, &t);
         bool others = t.how == LEAVE_AFTER_ANOTHER;
-        double time_s = !others ? 0.055 : kit.driver.no_speed ? 0.2 : 0.08;
+        double time_s = !others ? 0.055 : kit.driver.tells_no_speed ? 0.2 : 0.08;
         double most_deg = ramps ? (others ? 8 : 4) : time_s * t.dps;
         bool waits = t.how != STOP && t.how != HEAT;
         if (t.on_deg > most_deg || t.back_deg > 0.5 || (waits && t.done_deg > 0.5)) {

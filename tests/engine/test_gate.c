@@ -62,7 +62,7 @@ TEST_WITH(rig_wirings, a_goal_that_would_wake_a_servo_is_refused_by_name)
             .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
         for (int wakes = 0; wakes < 2; wakes++) {
             start();
-            driver.goal_wakes = wakes;
+            driver.goal_energises = wakes;
             robot.axes[j].heard_us = NOW - GROBO_I_RESTART_US;
             await(j, 1, S);
             assert_int_equal(judge(goal), GROBO_OK);
@@ -74,7 +74,7 @@ TEST_WITH(rig_wirings, a_goal_that_would_wake_a_servo_is_refused_by_name)
             assert_int_equal(judge(goal), wakes ? GROBO_ERR_EMPTY : GROBO_OK);
         }
     }
-    driver.goal_wakes = false;
+    driver.goal_energises = false;
 }
 
 /* Torque that comes on and waits is not for a joint that is to be without; else it is. */

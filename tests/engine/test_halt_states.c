@@ -406,7 +406,7 @@ static void judge_first(const state *s)
                    (double)bound_us / HALT_MS);
     }
     bound_us += s->turner == OURS ? 0 : halt.of->reading_us + 2 * halt.of->frame_us;
-    if (s->turner != OURS && halt.of->driver.no_speed) {
+    if (s->turner != OURS && halt.of->driver.tells_no_speed) {
         bound_us += TWICE_US + (int64_t)(SHOWN_DEG / others_dps * HALT_S);
     }
     int64_t halt_us = base->halt_left_us - halt.asked_us;

@@ -283,7 +283,7 @@ TEST_FOR(family, family_next, a_limp_joint_holds_up_no_emergency_stop)
     memset(&goal, 0, sizeof goal);
     assert_int_equal(kit.driver.posture(&kit.driver, NULL, &target, 0, &goal), 1);
     int raw = grobo_robot_raw(&kit.robot, goal.frame, goal.frame_bytes);
-    assert_true(raw > 0 || kit.driver.goal_wakes);
+    assert_true(raw > 0 || kit.driver.goal_energises);
     family_run(&kit, 100 * MS);
     unsigned n_sent = kit.n_sent;
     int number = grobo_robot_estop(&kit.robot);

@@ -353,7 +353,7 @@ TEST(two_ways_have_no_speed)
         for (int i = 0; i < 4; i++) {
             bool tells = i % 2 != 0, since = i / 2 != 0;
             start_with(NULL);
-            made.no_speed = !tells;
+            made.tells_no_speed = !tells;
             given.speed_dps = 25;
             robot.axes[j].told_us = since ? NOW - 4 : NOW - 5; /* the angle is of NOW - 5 */
             assert_int_equal(take(j)->seen_dps, tells || !since ? 25 : GROBO_I_NO_SPEED);

@@ -164,8 +164,9 @@ static int is_refused(void)
 int main(void)
 {
     return is_refused() || grobo_driver_check(&driver) < 0 ||
-        !(REFUSED(accel_rad_s2 = 1) && REFUSED(goal_wakes = true) && REFUSED(no_speed = true) &&
-        REFUSED(all_first = true) && HAVING(sense_many) && HAVING(sense_fast) &&
+        !(REFUSED(accel_rad_s2 = 1) && REFUSED(goal_energises = true) &&
+        REFUSED(tells_no_speed = true) &&
+        REFUSED(keeps_setup = true) && HAVING(sense_many) && HAVING(sense_fast) &&
         HAVING(sense_more) && HAVING(watchdog) && HAVING(torque_limit));
 }
 C

@@ -80,7 +80,7 @@ int grobo_dxl1_driver_init(grobo_driver *driver, const grobo_model *model)
 {
     int result = grobo_i_table_driver(driver, model, &grobo_i_dxl1_protocol, &family);
     if (result >= 0) {
-        driver->goal_wakes = true; /* common in forums; the maker does not say */
+        driver->goal_energises = true; /* common in forums; the maker does not say */
     }
     return result;
 }

@@ -53,7 +53,8 @@ int grobo_feetech_driver_init(grobo_driver *driver, const grobo_model *model)
 {
     int result = grobo_i_table_driver(driver, model, &grobo_i_feetech_protocol, &family);
     if (result >= 0) {
-        driver->goal_wakes = true; /* measured on an STS3215 (feetech-cli 0.1.8, simulator.py) */
+        driver->goal_energises =
+            true; /* measured on an STS3215 (feetech-cli 0.1.8, simulator.py) */
     }
     return result;
 }

@@ -260,8 +260,8 @@ static const grobo_i_items items = {.family = {.tables = {&grobo_i_ics_table},
 
 int grobo_ics_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    grobo_driver made = {.goal_wakes = true,
-                         .no_speed = true,
+    grobo_driver made = {.goal_energises = true,
+                         .tells_no_speed = true,
                          .posture = posture,
                          .parse = parse,
                          .inspect = inspect};

@@ -245,8 +245,8 @@ static const grobo_i_items items = {.family = {.tables = {&grobo_i_lx16a_table},
 
 int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    grobo_driver made = {.goal_wakes = true,
-                         .no_speed = true,
+    grobo_driver made = {.goal_energises = true,
+                         .tells_no_speed = true,
                          .posture = posture,
                          .parse = parse,
                          .command = command,

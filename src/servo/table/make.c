@@ -34,7 +34,7 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
                               .lost_replies = 5,
                               .approach_rad_s = grobo_rad_from_deg(GROBO_PLAY_APPROACH_DEG_S)};
     made->on_exit = GROBO_EXIT_HOLD;
-    made->arm = made->all_first = true;
+    made->arm = made->keeps_setup = true;
     for (int j = 0; j < model->n_joints; j++) {
         const grobo_joint *joint = &model->joints[j];
         const grobo_servo_model *servo = grobo_i_table_servo(made, j);
