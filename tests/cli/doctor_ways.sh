@@ -5,12 +5,12 @@
 . tests/support/doctor.sh
 
 start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
-exits 0 "$GRCTL" -d "$robot" estop
+exits 0 on_robot estop
 test_case "what holds the robot or its port is found"
 check "an emergency stop that stands" finds 'an emergency stop stands' 'estop --reset'
-exits 0 "$GRCTL" -d "$robot" estop --reset
+exits 0 on_robot estop --reset
 
-"$GRCTL" -d "$robot" status --watch --interval 3600000 >"$work/watch" &
+"$GRCTL" -d "$robot" --timeout 500 status --watch --interval 3600000 >"$work/watch" &
 watcher=$!
 wait_for test -s "$work/watch"
 check "somebody else has the port" finds "$known_as (pid $(known_pid $watcher)) holds it" \

@@ -33,7 +33,7 @@ chmod 666 "$sim_pty"
 
 # under_way COMMAND...: the other user's joint is on its way, moved by that; its process in $mover.
 under_way() {
-    exits 0 "$GRCTL" -d "$robot" servo on && exits 0 "$GRCTL" -d "$robot" move m5 0 500 || return 1
+    exits 0 on_robot servo on && exits 0 on_robot move m5 0 500 || return 1
     : >"$work/moving"
     instead=exec
     "$@" >"$work/moving" 2>&1 </dev/null &
@@ -42,7 +42,7 @@ under_way() {
     wait_for sim_shows 5 ' -[1-9][0-9]\.[0-9] deg'
 }
 moves_there() {
-    as_user "$@" "$GRCTL" -d "$sim_pty" move m5 -120 20000
+    as_user "$@" "$GRCTL" -d "$sim_pty" --timeout 500 move m5 -120 20000
 }
 # Where another directory has the name of that with the marks.
 moves_apart() {
@@ -52,10 +52,10 @@ moves_apart() {
         exec "$@"' sh $user \
         setpriv --reuid=$user --regid=$user --clear-groups \
         env -u XDG_RUNTIME_DIR -u XDG_CONFIG_HOME -u XDG_STATE_HOME HOME=/nowhere "$@" \
-        "$GRCTL" -d "$sim_pty" move m5 -120 20000
+        "$GRCTL" -d "$sim_pty" --timeout 500 move m5 -120 20000
 }
 estop() {
-    exits 0 "$GRCTL" -d "$robot" estop && grep -q 'and verified' "$work/err"
+    exits 0 on_robot estop && grep -q 'and verified' "$work/err"
 }
 ended_with() {
     wait $mover
@@ -69,16 +69,16 @@ ended_with() {
 # braked: on its way, and nobody moves it before the stop is taken back.
 braked() {
     sim_shows 5 ' -[1-9][0-9]*\.[0-9] deg.* torque brake' && ! sim_shows 5 moving &&
-        fails 4 "stopped by 'grctl estop'" "$GRCTL" -d "$robot" move m5 0
+        fails 4 "stopped by 'grctl estop'" on_robot move m5 0
 }
 reset() {
-    exits 0 "$GRCTL" -d "$robot" estop --reset
+    exits 0 on_robot estop --reset
 }
 
 by_mark() {
     under_way moves_there && estop && ended_with 4 && grep -q 'emergency stop' "$work/moving" &&
         braked && fails 4 "stopped by 'grctl estop'" moves_there && reset &&
-        exits 0 as_user "$GRCTL" -d "$sim_pty" move m5 0 500
+        exits 0 as_user "$GRCTL" -d "$sim_pty" --timeout 500 move m5 0 500
 }
 test_that "a mark beside it: it stops the robot, its user is stopped, and both are released" by_mark
 
@@ -107,9 +107,9 @@ stubborn() {
     as_user sh -c 'trap "" TERM; exec flock -F "$1" sleep 100' sh "$sim_pty" &
     mover=$!
     instead=
-    wait_for fails 1 'in use by' "$GRCTL" -d "$robot" status || return 1
+    wait_for fails 1 'in use by' on_robot status || return 1
     fails 1 'NOT stopped, nothing was sent: that program has not ended on SIGTERM; switch' \
-        "$GRCTL" -d "$robot" estop || return 1
+        "$GRCTL" -d "$robot" --timeout 500 estop || return 1
     kill -s KILL $mover
     wait $mover 2>/dev/null
     mover=
@@ -123,7 +123,7 @@ liar() {
     as_user sh -c 'exec flock -F "$1" sleep 100' sh "$sim_pty" &
     mover=$!
     instead=
-    wait_for fails 1 'in use by' "$GRCTL" -d "$robot" status || return 1
+    wait_for fails 1 'in use by' on_robot status || return 1
     sleep 100 &
     victim=$!
     as_user sh -c 'umask 077; mkdir -p "$1" && echo "$2 0" >"$1/holder-$3"' sh "/tmp/grobo-$user" \
@@ -144,20 +144,20 @@ test_that "its directory is a link: nothing is written there" linked
 
 # A user's stop does not end who is another user.
 of_another() {
-    under_way "$GRCTL" -d "$robot" move m5 -120 20000 || return 1
-    fails 1 'NOT stopped' as_user "$GRCTL" -d "$sim_pty" estop && kill -s 0 $mover &&
+    under_way "$GRCTL" -d "$robot" --timeout 500 move m5 -120 20000 || return 1
+    fails 1 'NOT stopped' as_user "$GRCTL" -d "$sim_pty" --timeout 500 estop && kill -s 0 $mover &&
         sim_shows 5 moving && estop && ended_with 4 && reset &&
-        exits 0 as_user "$GRCTL" -d "$sim_pty" estop --reset
+        exits 0 as_user "$GRCTL" -d "$sim_pty" --timeout 500 estop --reset
 }
 test_that "a user's stop ends no program of root's" of_another
 
 read_only='mount --bind /tmp /tmp && mount -o remount,ro,bind /tmp'
 unwritable() {
-    under_way "$GRCTL" -d "$robot" move m5 -120 20000 || return 1
+    under_way "$GRCTL" -d "$robot" --timeout 500 move m5 -120 20000 || return 1
     fails 1 'by the guard of .* and verified, but not kept so; the mark could not be written' \
         env -u XDG_RUNTIME_DIR unshare -m sh -c "$read_only"' && exec "$@"' sh \
-        "$GRCTL" -d "$sim_pty" estop || return 1
-    ended_with 4 && exits 0 "$GRCTL" -d "$robot" servo on
+        "$GRCTL" -d "$sim_pty" --timeout 500 estop || return 1
+    ended_with 4 && exits 0 on_robot servo on
 }
 test_that "no mark can be written: the guard stops the robot" unwritable
 stop_sim

@@ -164,7 +164,7 @@ fi
 
 start_sim
 in_use() {
-    "$GRCTL" -v -d "$robot" --on-exit hold play "$greet" >/dev/null 2>"$work/holder" &
+    "$GRCTL" -v -d "$robot" --timeout 500 --on-exit hold play "$greet" >/dev/null 2>"$work/holder" &
     holder=$!
     written "$work/holder" 'robot found' || return 1
     fails 1 "$robot: in use by another program (held by .*$(known_pid $holder)" \

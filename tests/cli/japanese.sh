@@ -130,7 +130,7 @@ well() {
 check "doctor" well
 # What another wiring is told by is a message.
 elsewhere() {
-    ja exits 1 "$GRCTL" -d "$robot" doctor &&
+    ja exits 1 "$GRCTL" -d "$robot" --timeout 500 doctor &&
         says '^BAD   reply  .*では応答があります (通信路に直結)' &&
         says "^ *-> grctl -d $robot --wiring bus "
 }

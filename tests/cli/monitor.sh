@@ -36,7 +36,7 @@ else
 fi
 
 check "a file that is not there, without a screen too" fails 3 'none.m: no such file$' \
-    "$GRCTL" -d "$robot" monitor "$work/none.m"
+    "$GRCTL" -d "$robot" --timeout 500 monitor "$work/none.m"
 if ! have_full_screen; then
     skip "the full screen" "$no_screen"
     done_testing

@@ -50,8 +50,8 @@ test_case "e is the emergency stop"
 check "e is the emergency stop" until_screen 'play: emergency stop; .*estop --reset'
 check "that is its status" until_screen '^status 4'
 check "it is braked" both exits 0 on_robot status m5 --- says ' brake '
-check "other commands know" fails 4 "stopped by 'grctl estop'" "$GRCTL" -d "$robot" init
-check "until it is taken back" exits 0 "$GRCTL" -d "$robot" estop --reset
+check "other commands know" fails 4 "stopped by 'grctl estop'" on_robot init
+check "until it is taken back" exits 0 on_robot estop --reset
 on_screen kill-server
 stop_sim
 done_testing

@@ -39,8 +39,8 @@ runs() {
 # On a robot behind a port it obeys the emergency stop of another program.
 obeys() {
     sed -i "s|\.device = \"sim\"|.device = \"$robot\"|" "$work/example.c" && builds &&
-        exits 0 "$GRCTL" -d "$robot" estop || return 1
-    exits 1 timeout 30 "$work/example" && exits 0 "$GRCTL" -d "$robot" estop --reset && runs
+        exits 0 on_robot estop || return 1
+    exits 1 timeout 30 "$work/example" && exits 0 on_robot estop --reset && runs
 }
 check "the program is there" grep -q '^int main' "$work/example.c"
 ten_lines() {

@@ -44,7 +44,7 @@ trims_of_another() {
 check "nor the trims of one for another" trims_of_another
 records() {
     : >"$work/recording"
-    "$GRCTL" --robot so101 -d "$robot" record -o "$work/taught.yaml" >"$work/out" \
+    "$GRCTL" --robot so101 -d "$robot" --timeout 500 record -o "$work/taught.yaml" >"$work/out" \
         2>"$work/recording" &
     recorder=$!
     written "$work/recording" . || return 1

@@ -6,7 +6,8 @@
 
 start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 # Between two rounds nothing is asked that could fail.
-"$GRCTL" -d "$robot" status --watch --interval 3600000 m5 >"$work/watched" 2>"$work/err" &
+"$GRCTL" -d "$robot" --timeout 500 status --watch --interval 3600000 m5 \
+    >"$work/watched" 2>"$work/err" &
 watch_pid=$!
 written "$work/watched" R_ELBOW_P
 stop_sim

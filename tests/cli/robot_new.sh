@@ -21,7 +21,7 @@ check "with its servos" \
 check "that count turns where they do" \
     grep -q 'id: 3, servo: XL330-M288, .*, turns: true}' "$work/arm.yaml"
 check "its rate" grep -q '^line: {baud: 1000000}$' "$work/arm.yaml"
-check "and finds the robot" both exits 0 "$GRCTL" --robot "$work/arm.yaml" -d "$robot" status --- \
+check "and finds the robot" both exits 0 on_robot --robot "$work/arm.yaml" status --- \
     says '^ *6  joint6 '
 check_json "JSON" 'lines[0]["fits"] == ["koch"] and lines[0]["n_joints"] == 6' \
     new --json --family dynamixel2 -b 1000000

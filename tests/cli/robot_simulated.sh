@@ -20,7 +20,7 @@ check "it plays there" plays on_robot --robot so101 play --speed 200 \
 # Its gripper may use half of its torque, and comes late at twice the speed.
 check "all stand where it ended" wait_for sim_shows 6 ' -*0\.[0-9] deg'
 shell_moves() {
-    echo 'move gripper 40' | "$GRCTL" -d "$robot" --robot so101 shell >"$work/out" 2>"$work/err"
+    echo 'move gripper 40' | on_robot --robot so101 shell >"$work/out" 2>"$work/err"
     grep -q 'done; largest error' "$work/err"
 }
 check "in a shell" shell_moves
@@ -44,7 +44,7 @@ check "it stands where it was held" wait_for sim_shows 1 ' -*[01]\.[0-9] deg .* 
 guarded() {
     exits 0 on_robot --robot "$1" init || return 1
     : >"$work/moving"
-    "$GRCTL" -d "$robot" --robot "$1" -v move shoulder_pan 100 20000 >"$work/moved" \
+    "$GRCTL" -d "$robot" --timeout 500 --robot "$1" -v move shoulder_pan 100 20000 >"$work/moved" \
         2>"$work/moving" &
     mover=$!
     written "$work/moving" 'robot found' && wait_for sim_shows 1 ' [2-9][0-9]\.[0-9] .*, moving' ||

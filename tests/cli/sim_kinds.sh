@@ -29,7 +29,7 @@ check "a bus at another rate" both \
     exits 0 "$GRCTL" -d "$robot" --timeout 60 --wiring bus -b 460800 status m3 --- says R_SHOULDER_P
 stop_sim
 start_sim --fault drop=0.002,flip=0.002,delay=0.01 --seed 3
-check "a poor line is made up for" exits 0 "$GRCTL" -d "$robot" --retries 10 \
+check "a poor line is made up for" exits 0 "$GRCTL" -d "$robot" --timeout 500 --retries 10 \
     play --speed 500 motions/greet.pseq
 stop_sim
 

@@ -20,7 +20,8 @@
 enum { NECK = 13, GOALS = 110, TORQUES = 50, UNLIMITED = 1 << 30 };
 
 static const grobo_robot_config quiet = {GROBO_ROBOT_CONFIG_INIT,
-                                         .sense_interval_us = GROBO_SENSE_NEVER};
+                                         .sense_interval_us = GROBO_SENSE_NEVER,
+                                         .bus.margin_us = 1000000}; /* of a busy machine */
 static far_robot far;
 static const grobo_port_ops *true_ops;
 static grobo_port_ops slow_ops;
