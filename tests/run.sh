@@ -9,7 +9,7 @@
 # environment:
 #   TEST_JOBS=N         how many at a time. Without it as many as processors; beside them, first
 #                       among equals, eight for each of those in real time, which wait
-#   TEST_TIMEOUT_S=300  how long one may take
+#   TEST_TIMEOUT_S=900  how long one may take
 #   TEST_ONLY=WORD      only tests in whose names this stands, a blank as good as an underscore: all
 #                       of a program or script that is called so; of other programs those alone, of
 #                       other scripts all, as their tests build on each other
@@ -24,7 +24,7 @@
 set -u
 
 processors=$(getconf _NPROCESSORS_ONLN 2>/dev/null) || processors=2
-limit_s=${TEST_TIMEOUT_S:-300}
+limit_s=${TEST_TIMEOUT_S:-900}
 wrapper=${TEST_WRAPPER:-}
 
 alike() {

@@ -86,7 +86,13 @@ t 'writing during a flash write' busy 'FA AF 01 00 24 01 01 01 24' 'FA AF 01 40 
 check 'why' says 'the servo writes its flash'
 t 'writing during a restart' busy 'FA AF 01 00 24 01 01 01 24' 'FA AF 01 20 FF 00 00 DE' \
     'wait 50' 'FA AF 01 00 24 01 01 01 24'
-t 'a pause inside a packet' stall 'FA AF 01' 'FA AF 01' 'wait 30' '00 24 01 01 01 24'
+# A machine that holds the client up makes its pause too long: what was begun never ends then.
+for _ in 1 2 3 4 5; do
+    # shellcheck disable=SC2086 # options are words
+    strict $chain --- 'FA AF 01' 'wait 30' '00 24 01 01 01 24'
+    grep -q ' cut: ' "$work/out" || break
+done
+test_that 'a pause inside a packet' offends stall 'FA AF 01'
 
 strict --- '54 09 FA AF 01 0F 24 12 00 38 1A'
 test_that 'through the board: nothing' [ "$strict_status" = 0 ]
@@ -98,7 +104,7 @@ strict --robots 2 --- '41 00'
 test_that 'two robots' [ "$strict_status" = 0 ]
 # A simulator that the machine holds up answers late, when grctl asks again: that alone is repeated.
 ours() {
-    for _ in 1 2 3; do
+    for _ in 1 2 3 4 5 6 7 8 9 10; do
         start_sim --strict --wiring "$1"
         "$GRCTL" -q -d "$robot" --timeout 5000 --wiring "$1" init --time 100
         kill -s TERM "$sim_pid"
