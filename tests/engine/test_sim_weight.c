@@ -298,7 +298,7 @@ TEST_FOR(grobo_robot_def, next_robot, each_robot_holds_itself)
         const grobo_sim_physics_view view = look(i);
         assert_true(isfinite(view.angle_rad));
         assert_true(fabs(view.speed_rad_s) < 0.02);
-        assert_near(angle_deg(i), at_deg[i], 6);
+        assert_near(angle_deg(i), at_deg[i], 8); /* XL330 with a soft loop */
     }
     (void)end();
 }

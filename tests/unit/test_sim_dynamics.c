@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/body.h>
 #include <grobo/robot_file.h>
 
 #include "src/base/memory.h"
@@ -81,6 +82,113 @@ TEST(so101_has_the_torques_of_sixty_poses)
     print_message("largest difference of %d poses: %.2g Nm\n", poses, worst);
     assert_int_equal(poses, 60);
     assert_true(worst < 1e-5);
+}
+
+/* ---- the other kinematics -------------------------------------------------------------------- */
+
+/* The links of gr001.yaml and those of whole-body playback are one robot: the torque that holds a
+ * pose is the slope of its height, which other code computes. */
+TEST(gr001_weighs_as_much_by_its_heights)
+{
+    enum { N = 20, POSES = 20 };
+    const double slope_rad = 1e-5, g = 9.80665;
+    uint32_t random = 7;
+    grobo_i_world *world = world_of(grobo_robot_def_at(0));
+    set_gravity(world, g);
+    for (int pose = 0; pose < POSES; pose++) {
+        double q[N], torque[N], still[N] = {0};
+        grobo_transform links[GROBO_BODY_LINKS_MAX];
+        for (int i = 0; i < N; i++) {
+            random = random * 1664525u + 1013904223u;
+            q[i] = (random >> 8) / (double)(1 << 24) * 2 - 1;
+        }
+        grobo_i_tree_place(&world->tree, q);
+        grobo_i_tree_torques(&world->tree, still, NULL, torque);
+        for (int i = 0; i < N; i++) {
+            double at = q[i], height_m[2], com_m[3], mass_kg = 0;
+            for (int side = 0; side < 2; side++) {
+                q[i] = at + (side == 0 ? -slope_rad : slope_rad);
+                grobo_body_forward(grobo_gr001_body(), NULL, q, links);
+                mass_kg = grobo_body_com(grobo_gr001_body(), links, com_m);
+                height_m[side] = com_m[2];
+            }
+            q[i] = at;
+            double by_height = mass_kg * g * (height_m[1] - height_m[0]) / (2 * slope_rad);
+            assert_true(fabs(torque[i] - by_height) < 1e-7);
+        }
+    }
+    grobo_sim_physics_free(&world->base);
+}
+
+/* A mass matrix is what inverse dynamics gives for one acceleration at a time; and it is what
+ * kinetic energy needs: positive. */
+TEST(mass_matrices_are_those_of_inverse_dynamics)
+{
+    for (size_t d = 0; grobo_robot_def_at(d) != NULL; d++) {
+        grobo_i_world *world = world_of(grobo_robot_def_at(d));
+        grobo_i_tree *tree = &world->tree;
+        const int n = tree->n_joints;
+        double q[GROBO_JOINTS_MAX], still[GROBO_JOINTS_MAX] = {0}, bias[GROBO_JOINTS_MAX];
+        for (int i = 0; i < n; i++) {
+            q[i] = 0.3 * sin(3 * i + 1);
+        }
+        grobo_i_tree_place(tree, q);
+        grobo_i_tree_masses(tree);
+        grobo_i_tree_torques(tree, still, NULL, bias);
+        for (int i = 0; i < n; i++) {
+            double accel[GROBO_JOINTS_MAX] = {0}, torque[GROBO_JOINTS_MAX];
+            accel[i] = 1;
+            grobo_i_tree_torques(tree, still, accel, torque);
+            for (int k = 0; k < n; k++) {
+                assert_true(fabs(torque[k] - bias[k] - tree->mass[k * n + i]) < 1e-12);
+                assert_true(tree->mass[k * n + i] == tree->mass[i * n + k]);
+            }
+            assert_true(tree->mass[i * n + i] >= 0);
+        }
+        grobo_sim_physics_free(&world->base);
+    }
+}
+
+/* Without friction and damping a swinging arm keeps its energy, but for what steps cost. */
+TEST(a_free_swing_keeps_its_energy)
+{
+    enum { N = 6, STEPS = 2000 };
+    grobo_i_world *world = world_of(&grobo_i_robot_so101);
+    grobo_sim_drive drive[N];
+    grobo_sim_state state[N];
+    double first = 0, least = INFINITY, most = -INFINITY;
+    memset(state, 0, sizeof state);
+    for (int i = 0; i < N; i++) {
+        drive[i] = (grobo_sim_drive){
+            .armature_kgm2 = 0.0284, .low_rad_s = -INFINITY, .high_rad_s = INFINITY};
+        state[i].angle_rad = 0.5;
+    }
+    for (int k = 0; k < STEPS; k++) {
+        double q[N], v[N], still[N] = {0}, torque[N], height = 0, moving = 0;
+        for (int i = 0; i < N; i++) {
+            q[i] = state[i].angle_rad;
+            v[i] = state[i].speed_rad_s;
+        }
+        grobo_i_tree_place(&world->tree, q);
+        grobo_i_tree_masses(&world->tree);
+        grobo_i_tree_torques(&world->tree, still, NULL, torque);
+        for (int i = 0; i < N; i++) {
+            moving += v[i] * v[i] * drive[i].armature_kgm2 / 2;
+            for (int j = 0; j < N; j++) {
+                moving += v[i] * v[j] * world->tree.mass[i * N + j] / 2;
+            }
+        }
+        for (int b = 0; b < world->tree.n; b++) {
+            height += world->tree.body[b].now.first[2] * 9.80665;
+        }
+        first = k == 0 ? height + moving : first;
+        least = fmin(least, height + moving - first);
+        most = fmax(most, height + moving - first);
+        assert_int_equal(grobo_i_tree_step(&world->tree, drive, STEP_S, state), 0);
+    }
+    grobo_sim_physics_free(&world->base);
+    print_message("energy: from %.4f to %.4f J beside its first\n", least, most);
+    assert_true(most - least < 0.03);
 }
 
 /* ---- 40 runs ------------------------------------------------------------------------------- */

@@ -96,6 +96,16 @@ static const grobo_robot_def *shipped(const char *name)
 
 /* ---- what is read --------------------------------------------------------------------------- */
 
+static void weighs_alike(const grobo_robot_link *a, const grobo_robot_link *b)
+{
+    for (int k = 0; k < 3; k++) {
+        near(a->com_m[k], b->com_m[k], 1e-8);
+    }
+    for (int k = 0; k < 6; k++) {
+        near(a->inertia_kgm2[k], b->inertia_kgm2[k], 1e-10);
+    }
+}
+
 TEST(so101_is_as_it_is_shipped)
 {
     need_xml();
@@ -123,6 +133,7 @@ TEST(so101_is_as_it_is_shipped)
         assert_int_equal(a->parent, b->parent);
         assert_int_equal(a->joint, b->joint);
         near(a->mass_kg, b->mass_kg, 1e-9);
+        weighs_alike(a, b);
         for (int k = 0; k < 3; k++) {
             near(a->origin_m[k], b->origin_m[k], 1e-9);
             near(remainder(a->origin_rad[k] - b->origin_rad[k], 2 * acos(-1)), 0, 1e-6);
@@ -154,6 +165,12 @@ TEST(gr001_has_the_limits_of_its_body)
         near(a->max_rad, b->max_rad, 1e-9);
     }
     assert_int_equal(def->n_links, 21);
+    for (int l = 0; l < own->n_links; l++) {
+        const grobo_robot_link *a = &def->links[l], *b = &own->links[l];
+        assert_string_equal(a->name, b->name);
+        near(a->mass_kg, b->mass_kg, 1e-6);
+        weighs_alike(a, b);
+    }
     grobo_robot_def_free(def);
 }
 

@@ -260,6 +260,25 @@ static bool take_joint(reader *r, const yaml_node_t *link, sketch_part *part)
     return take_axis(r, link, part) && take_range(r, link, part) && take_speed(r, link, part);
 }
 
+/* Nine numbers, row by row. */
+static bool take_inertia(reader *r, const yaml_node_t *node, double inertia_kgm2[6])
+{
+    double full[9] = {0};
+    if (!take_numbers(r, node, 9, full)) {
+        return false;
+    }
+    const double made[6] = {full[0], full[4], full[8], full[1], full[2], full[5]};
+    memcpy(inertia_kgm2, made, sizeof made);
+    return true;
+}
+
+static bool take_weight(reader *r, const yaml_node_t *link, sketch_part *part)
+{
+    return take_numbers(r, find(r, link, "mass"), 1, &part->mass_kg) &&
+           take_numbers(r, find(r, link, "centerOfMass"), 3, part->com_m) &&
+           take_inertia(r, find(r, link, "inertia"), part->inertia_kgm2);
+}
+
 static bool take_link(reader *r, const yaml_node_t *link)
 {
     const char *type = text_of(find(r, link, "type"));
@@ -280,8 +299,8 @@ static bool take_link(reader *r, const yaml_node_t *link)
     return take_text(r, link, "name", part->name) && take_text(r, link, "parent", part->parent) &&
            (*part->name || complain(r, link, "a link has no name")) &&
            take_numbers(r, find(r, link, "translation"), 3, part->origin_m) &&
-           take_numbers(r, find(r, link, "mass"), 1, &part->mass_kg) &&
-           take_rotation(r, link, part->origin_rad) && take_joint(r, link, part);
+           take_weight(r, link, part) && take_rotation(r, link, part->origin_rad) &&
+           take_joint(r, link, part);
 }
 
 static bool take_robot(reader *r)

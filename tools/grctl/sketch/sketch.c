@@ -328,3 +328,28 @@ bool sketch_fit(sketch *s, char *complaint, size_t capacity)
     }
     return true;
 }
+
+void sketch_turn_inertia(double inertia_kgm2[6], const double rpy_rad[3])
+{
+    const double *i = inertia_kgm2;
+    double cr = cos(rpy_rad[0]), sr = sin(rpy_rad[0]), cp = cos(rpy_rad[1]), sp = sin(rpy_rad[1]);
+    double cy = cos(rpy_rad[2]), sy = sin(rpy_rad[2]);
+    const double r[3][3] = {{cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr},
+                            {sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr},
+                            {-sp, cp * sr, cp * cr}};
+    const double full[3][3] = {{i[0], i[3], i[4]}, {i[3], i[1], i[5]}, {i[4], i[5], i[2]}};
+    double turned[3][3];
+    for (int a = 0; a < 3; a++) {
+        for (int b = 0; b < 3; b++) {
+            turned[a][b] = 0;
+            for (int k = 0; k < 3; k++) {
+                for (int l = 0; l < 3; l++) {
+                    turned[a][b] += r[a][k] * full[k][l] * r[b][l];
+                }
+            }
+        }
+    }
+    const double made[6] = {turned[0][0], turned[1][1], turned[2][2],
+                            turned[0][1], turned[0][2], turned[1][2]};
+    memcpy(inertia_kgm2, made, sizeof made);
+}

@@ -36,6 +36,9 @@ typedef struct sketch_part {
     double speed_rad_s; /* at most; 0: not told */
     double gear;        /* turns of the servo for one of the joint, below 0: the other way; 0: 1 */
     double origin_m[3], origin_rad[3], axis[3], mass_kg;
+    double com_m[3]; /* its centre of mass, in its frame */
+    double
+        inertia_kgm2[6]; /* about that, along its axes: xx, yy, zz, xy, xz, yz; all 0: not told */
     /* of a joint, set by who knows */
     int id;
     bool turns; /* its servo counts several turns */
@@ -81,6 +84,9 @@ bool sketch_fit(sketch *s, char *complaint, size_t capacity);
 char *sketch_text(sketch *s);
 /* That text as a robot: as of grobo_robot_def_read(). */
 int sketch_read_back(const char *text, grobo_diagnostics *list, grobo_robot_def **def);
+
+/* Turns an inertia from axes that are turned by roll, pitch and yaw. */
+void sketch_turn_inertia(double inertia_kgm2[6], const double rpy_rad[3]);
 
 /* Reads a URDF, or Choreonoid's body. False with one line of complaint: "FILE:LINE: ...". */
 bool sketch_read_urdf(sketch *s, const char *path, const char *bytes, size_t size, char *complaint,

@@ -74,6 +74,22 @@ static void put_vector(heap *to, const char *key, const double *v)
     heap_print(to, ", %s: [%.7g, %.7g, %.7g]", key, v[0], v[1], v[2]);
 }
 
+/* Centre of mass and inertia; not one that no body has, as many descriptions have for a
+ * placeholder. */
+static void put_weight(heap *to, const sketch_part *part)
+{
+    const double *i = part->inertia_kgm2;
+    double all = i[0] + i[1] + i[2], most = fmax(i[0], fmax(i[1], i[2]));
+    if (part->mass_kg <= 0) {
+        return;
+    }
+    put_vector(to, "com_m", part->com_m);
+    if (fmin(i[0], fmin(i[1], i[2])) > 0 && 2 * most <= all) {
+        heap_print(to, ", inertia_kgm2: [%.7g, %.7g, %.7g, %.7g, %.7g, %.7g]", i[0], i[1], i[2],
+                   i[3], i[4], i[5]);
+    }
+}
+
 static void put_link(heap *to, const sketch *s, const sketch_part *part)
 {
     double origin_m[3], origin_deg[3], axis[3];
@@ -97,6 +113,7 @@ static void put_link(heap *to, const sketch *s, const sketch_part *part)
     if (part->mass_kg > 0) {
         heap_print(to, ", mass_kg: %.6g", part->mass_kg);
     }
+    put_weight(to, part);
     heap_print(to, "}");
     if (part->motion == SKETCH_WITHOUT) {
         heap_print(to, " # taken as fixed: %s", plain(part->note));

@@ -44,6 +44,7 @@ typedef struct reader {
     const char *path;
     double soft_rad[2];
     bool soft;
+    double turned_rad[3]; /* of the inertia that is being read */
     transmission *now, *transmissions;
     int n_transmissions;
     char text[64]; /* of the number that is being read */
@@ -204,6 +205,34 @@ static void begin_link(reader *r, const char *const *all)
     take_text(r, all, "name", r->part->name);
 }
 
+static void take_inertial(reader *r, const char *name, const char *const *all)
+{
+    static const char *const entries[] = {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"};
+    sketch_part *part = r->part;
+    if (!part) {
+        return;
+    }
+    if (strcmp(name, "mass") == 0) {
+        take_numbers(r, all, "value", 1, &part->mass_kg);
+    } else if (strcmp(name, "origin") == 0) {
+        take_numbers(r, all, "xyz", 3, part->com_m);
+        take_numbers(r, all, "rpy", 3, r->turned_rad);
+    } else if (strcmp(name, "inertia") == 0) {
+        for (int i = 0; i < 6; i++) {
+            take_numbers(r, all, entries[i], 1, &part->inertia_kgm2[i]);
+        }
+    }
+}
+
+/* An inertia stands along the axes of its own origin, which may be told before or after it. */
+static void end_inertial(reader *r)
+{
+    if (r->part) {
+        sketch_turn_inertia(r->part->inertia_kgm2, r->turned_rad);
+    }
+    memset(r->turned_rad, 0, sizeof r->turned_rad);
+}
+
 /* ---- transmissions --------------------------------------------------------------------------- */
 
 static void begin_transmission(reader *r, const char *const *all)
@@ -348,9 +377,7 @@ static void on_begin(void *ctx, int depth, const char *name, const char *const *
         r->at[depth] = strcmp(name, "inertial") == 0 ? INERTIAL : ELSEWHERE;
         break;
     case INERTIAL:
-        if (strcmp(name, "mass") == 0 && r->part) {
-            take_numbers(r, all, "value", 1, &r->part->mass_kg);
-        }
+        take_inertial(r, name, all);
         break;
     case JOINT:
         take_joint(r, name, all);
@@ -377,6 +404,8 @@ static void on_end(void *ctx, int depth)
     reader *r = ctx;
     if (r->at[depth] == JOINT) {
         end_joint(r);
+    } else if (r->at[depth] == INERTIAL) {
+        end_inertial(r);
     } else if (r->at[depth] == TRANSMISSION) {
         end_transmission(r);
     } else if (r->now && (r->at[depth] == REDUCTION || r->at[depth] == OFFSET)) {
@@ -400,9 +429,11 @@ static bool join(sketch *s, const sketch *joints, char *complaint, size_t capaci
                      joint->joint, joint->name);
             return false;
         }
-        double mass_kg = link->mass_kg;
+        const sketch_part told = *link;
         *link = *joint;
-        link->mass_kg = mass_kg;
+        link->mass_kg = told.mass_kg;
+        memcpy(link->com_m, told.com_m, sizeof link->com_m);
+        memcpy(link->inertia_kgm2, told.inertia_kgm2, sizeof link->inertia_kgm2);
     }
     return true;
 }
