@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Automatic ZMP: choreonoid-whole-body.md, section of that name. Keys are added so that the
  * desired ZMP lies under the support foot while the other swings, and under both between. */
+#include <math.h>
+#include <string.h>
+
 #include "src/body/body.h"
 #include "src/body/vec.h"
 
@@ -14,50 +17,31 @@
 #define AT_SOLE_M 0.02
 #define AT_SOLE_COMPAT11_M 0.005
 
-enum { RIGHT = 0, LEFT = 1, BOTH = 2, NEITHER = 3 };
+enum { RIGHT = 0, LEFT = 1, BOTH = 2, NEITHER = 3, NONE = 4 };
 
+/* A foot's keys on the way: the one that has come last, the one that had before the event, and the
+ * one that comes next. A key that has not come is the first. */
+struct foot {
+    struct grobo_i_track *track;
+    int cur, before, next;
+    bool stands;
+};
+
+/* The events are the keys of both feet, in their order. The place in the list of ZMP keys goes on
+ * with them, and never back: what is inserted stands behind it, whatever its time. */
 struct stepping {
     grobo_body *body;
     bool compat11;
-    double t0_s;      /* the foot event before */
-    double double_s;  /* b0: begin of the double support */
+    struct foot foot[2];
+    int place;        /* in the list of ZMP keys */
+    double t0_s;      /* the event before */
     int phase;        /* which foot stands since t0 */
-    int phase_single; /* which stood before the double support, NEITHER: none */
+    double double_s;  /* begin of the double support after the last landing */
+    int phase_single; /* which stood before that, NONE: no foot has landed */
+    bool given;       /* a ZMP key stands in that double support */
 };
 
-static struct grobo_i_track *foot_track(const struct stepping *now, int foot)
-{
-    return &now->body->target[GROBO_I_RIGHT + foot];
-}
-
-/* Last authored key of a foot at or before a time, -1: none. */
-static int foot_key(const struct stepping *now, int foot, double t_s)
-{
-    const struct grobo_i_track *track = foot_track(now, foot);
-    int i = grobo_i_track_find(track, t_s);
-
-    while (i >= 0 && (track->flags[i] & TRACK_AUX) != 0) {
-        i--;
-    }
-    return i;
-}
-
-static int phase_at(const struct stepping *now, double t_s)
-{
-    bool stands[2];
-
-    for (int foot = 0; foot < 2; foot++) {
-        const int i = foot_key(now, foot, t_s);
-
-        stands[foot] = i < 0 || (foot_track(now, foot)->flags[i] & TRACK_TOUCH) != 0;
-    }
-    if (stands[RIGHT] && stands[LEFT]) {
-        return BOTH;
-    }
-    return stands[RIGHT] ? RIGHT : stands[LEFT] ? LEFT : NEITHER;
-}
-
-/* Centre of a sole at a place of its foot, on the ground: x, y, 0. */
+/* Centre of the sole of a foot, at a place of a foot, on the ground: x, y, 0. */
 static void place_sole(const grobo_body_model *model, int foot, const double target[6],
                        double sole_m[3])
 {
@@ -69,87 +53,90 @@ static void place_sole(const grobo_body_model *model, int foot, const double tar
     sole_m[2] = 0;
 }
 
-/* Sole of a foot at a time, by its last key. False if it has no key. */
-static bool sole_at(const struct stepping *now, int foot, double t_s, double sole_m[3])
+static const double *key_of(const struct stepping *now, int foot)
 {
-    const struct grobo_i_track *track = foot_track(now, foot);
-    const int i = foot_key(now, foot, t_s);
-
-    if (track->n == 0) {
-        return false;
-    }
-    place_sole(now->body->model, foot, grobo_i_track_row(track, i < 0 ? 0 : i), sole_m);
-    return true;
+    return grobo_i_track_row(now->foot[foot].track, now->foot[foot].cur);
 }
 
-/* Between the soles, left_part of the way from the right one; one sole where only one stands. */
-static bool between_soles(const struct stepping *now, double t_s, double left_part, double at_m[3])
+static void sole_of(const struct stepping *now, int foot, double sole_m[3])
 {
-    const int phase = phase_at(now, t_s);
-    double right[3], left[3];
-    const bool has_right = phase != LEFT && sole_at(now, RIGHT, t_s, right);
-    const bool has_left = phase != RIGHT && sole_at(now, LEFT, t_s, left);
-
-    if (!has_right && !has_left) {
-        return false;
-    }
-    for (int k = 0; k < 3; k++) {
-        at_m[k] = !has_right  ? left[k]
-                  : !has_left ? right[k]
-                              : (1 - left_part) * right[k] + left_part * left[k];
-    }
-    return true;
+    place_sole(now->body->model, foot, key_of(now, foot), sole_m);
 }
 
-/* Inserts a ZMP key before key `at`, whatever its time. */
-static void add_zmp(const struct stepping *now, int at, double t_s, const double at_m[3])
+/* The mean of the soles of the feet whose key that came last stands; without one, the origin. */
+static void mean_of_soles(const struct stepping *now, double at_m[3])
+{
+    int n = 0;
+
+    memset(at_m, 0, 3 * sizeof *at_m);
+    for (int foot = 0; foot < 2; foot++) {
+        const struct foot *f = &now->foot[foot];
+        double sole_m[3];
+
+        if ((f->track->flags[f->cur] & TRACK_TOUCH) != 0) {
+            sole_of(now, foot, sole_m);
+            vec_add_scaled(at_m, at_m, 1, sole_m);
+            n++;
+        }
+    }
+    for (int k = 0; k < 3 && n > 0; k++) {
+        at_m[k] /= n;
+    }
+}
+
+/* Inserts a ZMP key before key `at`, whatever its time; the place stays at its key. */
+static void add_zmp(struct stepping *now, int at, double t_s, const double at_m[3])
 {
     grobo_i_track_insert(&now->body->zmp, at, t_s, at_m, TRACK_END | TRACK_ADDED);
+    now->place += at <= now->place;
 }
 
-/* The foot rests: key i of its track is repeated at another time, auxiliary. */
-static void add_rest(const struct stepping *now, int foot, int i, double t_s)
+/* The foot rests: one of its keys is repeated, at another time, before the one that came last. */
+static void add_rest(struct stepping *now, int foot, int key, double t_s)
 {
-    struct grobo_i_track *track = foot_track(now, foot);
+    struct foot *f = &now->foot[foot];
     struct grobo_i_track *height = &now->body->height[foot];
-    const unsigned flags = track->flags[i] | TRACK_AUX;
-    const double z = grobo_i_track_row(track, i)[2];
+    const unsigned flags = f->track->flags[key] | TRACK_AUX;
+    const double z = grobo_i_track_row(f->track, key)[2];
 
-    grobo_i_track_add(track, t_s, grobo_i_track_row(track, i), flags);
+    grobo_i_track_insert(f->track, f->cur, t_s, grobo_i_track_row(f->track, key), flags);
     if (height->n > 0) {
-        grobo_i_track_add(height, t_s, &z, flags);
+        grobo_i_track_insert(height, f->cur, t_s, &z, flags);
     }
-}
-
-static double distance_m(const double a[3], const double b[3])
-{
-    return hypot(a[0] - b[0], a[1] - b[1]);
+    f->before += f->before >= f->cur;
+    f->cur++;
+    f->next++;
 }
 
 static bool away_from_sole(const struct stepping *now, const double zmp_m[3],
                            const double sole_m[3])
 {
-    const double d = distance_m(zmp_m, sole_m);
+    double d[3];
 
-    return now->compat11 ? d >= AT_SOLE_COMPAT11_M : d > AT_SOLE_M;
+    vec_add_scaled(d, zmp_m, -1, sole_m);
+    const double d_m = sqrt(vec_dot(d, d));
+    return now->compat11 ? d_m >= AT_SOLE_COMPAT11_M : d_m > AT_SOLE_M;
 }
 
-/* Whether the author gave a ZMP after the double support began, up to key z0. */
-static bool author_gave_zmp(const struct stepping *now, int z0)
+/* Between the soles at the keys before the event; Choreonoid has the centre of each sole at the
+ * other foot there. */
+static void between_soles(const struct stepping *now, double right_part, double at_m[3])
 {
-    const struct grobo_i_track *zmp = &now->body->zmp;
+    double soles_m[2][3];
 
-    for (int i = z0; i >= 0 && zmp->t_s[i] > now->double_s; i--) {
-        if ((zmp->flags[i] & TRACK_ADDED) == 0) {
-            return true;
-        }
+    for (int foot = 0; foot < 2; foot++) {
+        const struct foot *f = &now->foot[foot];
+        place_sole(now->body->model, foot == RIGHT ? LEFT : RIGHT,
+                   grobo_i_track_row(f->track, f->before), soles_m[foot]);
     }
-    return false;
+    for (int k = 0; k < 3; k++) {
+        at_m[k] = right_part * soles_m[RIGHT][k] + (1 - right_part) * soles_m[LEFT][k];
+    }
 }
 
-/* The ZMP goes to the middle during a double support before `support` alone stands. Keys are
- * inserted behind z0, which becomes the last of them. */
-static bool centre_zmp(const struct stepping *now, int support, int *z0)
+/* The ZMP goes to the middle during a double support before `support` alone stands. The place is at
+ * the last key inserted then. */
+static bool centre_zmp(struct stepping *now, int support)
 {
     const double length_s = now->t0_s - now->double_s;
     const bool same = support == now->phase_single;
@@ -158,169 +145,168 @@ static bool centre_zmp(const struct stepping *now, int support, int *z0)
                                             : CENTRED_TWO_KEYS_STEP_S;
     double at_m[3];
 
-    if (length_s < CENTRED_MIN_S || author_gave_zmp(now, *z0)) {
+    if (length_s < CENTRED_MIN_S) {
         return false;
     }
     if (length_s > two_keys_s) {
-        if (between_soles(now, now->double_s, 0.5, at_m)) {
-            add_zmp(now, ++*z0, now->double_s + TRANSFER_S, at_m);
-            add_zmp(now, ++*z0, now->t0_s - TRANSFER_S, at_m);
-        }
+        between_soles(now, 0.5, at_m);
+        add_zmp(now, now->place + 1, now->double_s + TRANSFER_S, at_m);
+        add_zmp(now, now->place + 2, now->t0_s - TRANSFER_S, at_m);
+        now->place += 2;
     } else if (same) {
         const double part = length_s < CENTRED_FULL_S ? 0.5 * length_s / CENTRED_FULL_S : 0.5;
 
-        if (between_soles(now, now->double_s, support == RIGHT ? 1 - part : part, at_m)) {
-            add_zmp(now, ++*z0, now->double_s + 0.5 * length_s, at_m);
-        }
+        between_soles(now, support == RIGHT ? 1 - part : part, at_m);
+        add_zmp(now, now->place + 1, now->double_s + 0.5 * length_s, at_m);
+        now->place++;
     }
     return true;
 }
 
-/* Both -> single: the other foot swings from its key before t1. Choreonoid keeps its place in the
- * list of ZMP keys and inserts behind it. Where every key comes after the last event that place is
- * the first key, and what is inserted has an earlier time than the key before it. */
-static void lift(const struct stepping *now, int support, double t1_s)
+/* Both -> single: the other foot swings from its key before this event. Where the ZMP key at the
+ * place is later than that, the next one is half way back to it. */
+static void lift(struct stepping *now, int support)
 {
     const int swing = support == RIGHT ? LEFT : RIGHT;
-    const struct grobo_i_track *track = foot_track(now, swing);
+    const struct foot *f = &now->foot[swing];
     const struct grobo_i_track *zmp = &now->body->zmp;
-    const int k1 = foot_key(now, swing, t1_s);
-    const int found = grobo_i_track_find(zmp, now->t0_s);
-    int z0 = found < 0 ? 0 : found;
+    const bool centred = !now->given && centre_zmp(now, support);
+    const double s0_s = f->track->t_s[f->before], s1_s = f->track->t_s[f->cur];
+    const double z0_s = zmp->t_s[now->place];
     double sole_m[3];
 
-    if (zmp->n == 0) {
+    sole_of(now, support, sole_m);
+    if (!away_from_sole(now, grobo_i_track_row(zmp, now->place), sole_m)) {
         return;
     }
-    const bool centred = centre_zmp(now, support, &z0);
+    if (!centred && s0_s - z0_s < TRANSFER_S) {
+        const double a_s = fmin(z0_s + TRANSFER_S, (s0_s + s1_s) / 2);
 
-    if (k1 < 1 || !sole_at(now, support, now->t0_s, sole_m) ||
-        !away_from_sole(now, grobo_i_track_row(zmp, z0), sole_m)) {
-        return;
-    }
-    const int k0 = k1 - 1;
-    const double s0_s = track->t_s[k0];
-
-    if (!centred && s0_s - zmp->t_s[z0] < TRANSFER_S) {
-        const double a_s = fmin(zmp->t_s[z0] + TRANSFER_S, 0.5 * (s0_s + track->t_s[k1]));
-
-        add_zmp(now, z0 + 1, a_s, sole_m);
-        add_rest(now, swing, k0, a_s);
+        add_zmp(now, now->place + 1, fmax(a_s, (z0_s + a_s) / 2), sole_m);
+        add_rest(now, swing, f->before, a_s);
     } else {
-        add_zmp(now, z0 + 1, s0_s, sole_m);
+        add_zmp(now, now->place + 1, fmax(s0_s, (z0_s + s0_s) / 2), sole_m);
     }
 }
 
-/* Single -> both: the other foot lands with its key at t1. */
-static void land(const struct stepping *now, int support, double t1_s)
+/* Single -> both: the other foot lands with its key of this event. Only a ZMP key at that very time
+ * can be at the sole already. */
+static void land(struct stepping *now, int support, double t_s)
 {
     const int swing = support == RIGHT ? LEFT : RIGHT;
-    const struct grobo_i_track *track = foot_track(now, swing);
+    const struct foot *f = &now->foot[swing];
     const struct grobo_i_track *zmp = &now->body->zmp;
-    const int k1 = foot_key(now, swing, t1_s);
-    int z1 = grobo_i_track_find(zmp, t1_s) + 1;
+    int z1 = now->place;
     double sole_m[3];
 
-    if (k1 < 1 || !sole_at(now, support, t1_s, sole_m)) {
+    while (z1 < zmp->n && zmp->t_s[z1] < t_s) {
+        z1++;
+    }
+    sole_of(now, support, sole_m);
+    if (z1 < zmp->n && zmp->t_s[z1] == t_s &&
+        !away_from_sole(now, grobo_i_track_row(zmp, z1), sole_m)) {
         return;
     }
-    while (z1 > 0 && zmp->from_s[z1 - 1] >= t1_s) {
-        z1--;
-    }
-    if (z1 >= zmp->n) {
-        add_zmp(now, z1, t1_s, sole_m);
-        return;
-    }
-    if (!away_from_sole(now, grobo_i_track_row(zmp, z1), sole_m)) {
-        return;
-    }
-    if (zmp->t_s[z1] - t1_s < TRANSFER_S) {
-        const double a_s = fmax(zmp->t_s[z1] - TRANSFER_S, 0.5 * (track->t_s[k1 - 1] + t1_s));
+    const double s0_s = f->track->t_s[f->before], s1_s = f->track->t_s[f->cur];
+
+    if (z1 < zmp->n && zmp->t_s[z1] - s1_s < TRANSFER_S) {
+        const double a_s = fmax(zmp->t_s[z1] - TRANSFER_S, (s0_s + s1_s) / 2);
 
         add_zmp(now, z1, a_s, sole_m);
-        add_rest(now, swing, k1, a_s);
+        add_rest(now, swing, f->cur, a_s);
     } else {
-        add_zmp(now, z1, t1_s, sole_m);
+        add_zmp(now, z1, s1_s, sole_m);
     }
 }
 
-/* The next time, from key `from` of each foot on, at which its author gave a foot a key. */
-static bool next_event(const struct stepping *now, const int from[2], double *t_s)
+/* The key of a foot that comes next, of both where they come at a time. @return false: none. */
+static bool next_event(struct stepping *now, double *t_s)
 {
-    bool found = false;
+    bool comes[2];
+    double at_s[2];
 
     for (int foot = 0; foot < 2; foot++) {
-        const struct grobo_i_track *track = foot_track(now, foot);
-        int i = from[foot];
-
-        while (i < track->n && (track->flags[i] & TRACK_AUX) != 0) {
-            i++;
-        }
-        if (i < track->n && (!found || track->t_s[i] < *t_s)) {
-            *t_s = track->t_s[i];
-            found = true;
+        const struct foot *f = &now->foot[foot];
+        comes[foot] = f->next < f->track->n;
+        at_s[foot] = comes[foot] ? f->track->t_s[f->next] : INFINITY;
+    }
+    for (int foot = 0; foot < 2; foot++) {
+        struct foot *f = &now->foot[foot];
+        if (comes[foot] && at_s[foot] <= at_s[1 - foot]) {
+            f->cur = f->next++;
+            f->stands = (f->track->flags[f->cur] & TRACK_TOUCH) != 0;
+            *t_s = at_s[foot];
         }
     }
-    return found;
+    return comes[RIGHT] || comes[LEFT];
 }
 
-static bool event_after(const struct stepping *now, double *t_s)
+static int phase_of(const struct stepping *now)
 {
-    const int from[2] = {grobo_i_track_find(foot_track(now, RIGHT), *t_s) + 1,
-                         grobo_i_track_find(foot_track(now, LEFT), *t_s) + 1};
+    const bool right = now->foot[RIGHT].stands, left = now->foot[LEFT].stands;
 
-    return next_event(now, from, t_s);
+    return right && left ? BOTH : right ? RIGHT : left ? LEFT : NEITHER;
 }
 
-static void begin(struct stepping *now)
-{
-    double at_m[3];
-
-    now->phase = phase_at(now, now->t0_s);
-    now->phase_single = now->phase == BOTH ? NEITHER : now->phase;
-    now->double_s = now->t0_s;
-    if (now->body->zmp.n == 0 && between_soles(now, 0, 0.5, at_m)) {
-        add_zmp(now, 0, 0, at_m);
-    }
-}
-
-static void end(const struct stepping *now)
+/* The last ZMP key, from the place on, before the first that is later than the event before. */
+static void move_place(struct stepping *now)
 {
     const struct grobo_i_track *zmp = &now->body->zmp;
-    double at_m[3];
 
-    if (grobo_i_track_find(zmp, now->t0_s) == zmp->n - 1 &&
-        between_soles(now, now->t0_s, 0.5, at_m)) {
-        add_zmp(now, zmp->n, now->t0_s + TRANSFER_S, at_m);
+    while (now->place + 1 < zmp->n && zmp->t_s[now->place + 1] <= now->t0_s) {
+        now->place++;
+    }
+}
+
+static void take_event(struct stepping *now, int phase, double t_s)
+{
+    const bool single = phase == RIGHT || phase == LEFT;
+    const bool was_single = now->phase == RIGHT || now->phase == LEFT;
+
+    if (now->phase == BOTH) {
+        now->given = now->given || now->body->zmp.t_s[now->place] > now->double_s;
+        if (single) {
+            lift(now, phase);
+        }
+    } else if (phase == BOTH && was_single) {
+        land(now, now->phase, t_s);
+        now->phase_single = now->phase;
+        now->double_s = t_s;
+        now->given = false;
     }
 }
 
 void grobo_i_zmp_auto(grobo_body *body)
 {
-    static const int start[2] = {0, 0};
-    struct stepping now = {.body = body};
-    double t_s = 0;
+    struct stepping now = {.body = body, .phase = NONE, .phase_single = NONE};
+    double t_s = 0, at_m[3];
 
     now.compat11 = body->options.balance == GROBO_BODY_BALANCE_COMPAT11;
-    if (!next_event(&now, start, &t_s)) {
-        return;
-    }
-    now.t0_s = t_s;
-    begin(&now);
-    while (event_after(&now, &t_s)) {
-        const int phase = phase_at(&now, t_s);
-
-        if (now.phase == BOTH && (phase == RIGHT || phase == LEFT)) {
-            lift(&now, phase, t_s);
-            now.phase_single = phase;
-        } else if (now.phase != BOTH && phase == BOTH) {
-            if (now.phase != NEITHER) {
-                land(&now, now.phase, t_s);
-            }
-            now.double_s = t_s;
+    for (int foot = 0; foot < 2; foot++) {
+        now.foot[foot] =
+            (struct foot){.track = &body->target[GROBO_I_RIGHT + foot], .stands = true};
+        if (now.foot[foot].track->n == 0) {
+            return;
         }
+    }
+    if (body->zmp.n == 0) {
+        mean_of_soles(&now, at_m);
+        add_zmp(&now, 0, 0, at_m);
+        now.place = 0;
+    }
+    while (next_event(&now, &t_s)) {
+        const int phase = phase_of(&now);
+
+        move_place(&now);
+        take_event(&now, phase, t_s);
         now.phase = phase;
         now.t0_s = t_s;
+        now.foot[RIGHT].before = now.foot[RIGHT].cur;
+        now.foot[LEFT].before = now.foot[LEFT].cur;
     }
-    end(&now);
+    move_place(&now);
+    if (now.place + 1 == body->zmp.n) {
+        mean_of_soles(&now, at_m);
+        add_zmp(&now, body->zmp.n, now.t0_s + TRANSFER_S, at_m);
+    }
 }
