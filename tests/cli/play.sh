@@ -217,12 +217,12 @@ check "--rate and --key" fails 2 'cannot be used together' "$GRCTL" play --key -
 for format in m mseq yaml; do
     check "convert to .$format" exits 0 "$GRCTL" convert --rate 50 "$greet" "$work/greet.$format"
 done
-check "play .m" plays 10 4450 "$work/greet.m"
+check "play .m" plays 10 4300 "$work/greet.m"
 check "its last posture is the initial one" angle 10 12 -400
 check "play .mseq" plays 10 4450 "$work/greet.mseq"
 check "increments lead to the initial posture" angle 10 12 -400
 check "play .yaml" plays 151 5000 --rate 30 "$work/greet.yaml"
-check "one after the other" plays 40 19900 --key "$greet" "$work/greet.m" "$greet" "$work/greet.m"
+check "one after the other" plays 40 19600 --key "$greet" "$work/greet.m" "$greet" "$work/greet.m"
 check_json "a dry run as JSON" \
     'len(lines) == 10 and all(len(l["hex"].split()) == 110 for l in lines)' \
     "$GRCTL" --json play --dry-run --key "$greet"

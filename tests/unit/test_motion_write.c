@@ -317,7 +317,8 @@ TEST(test_conversion_says_what_is_dropped)
     grobo_diagnostics_clear(list);
     grobo_motion_free(converted(motion, GROBO_MOTION_STEPS, NULL, list));
     grobo_diagnostic said;
-    assert_int_equal(grobo_diagnostics_get(list, 0, &said), GROBO_ERR_ARG);
+    assert_true(has_diagnostic(list, "first-step", grobo_motion_line(motion, 0), 0));
+    assert_int_equal(grobo_diagnostics_get(list, 1, &said), GROBO_ERR_ARG);
     grobo_diagnostics_free(list);
     grobo_motion_free(motion);
 }
@@ -361,13 +362,13 @@ TEST(test_conversion_at_a_rate)
     grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .rate_hz = 10};
     grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES, &options, NULL);
 
-    /* The first posture takes the default time; the end is not on a frame. */
-    assert_int_equal(grobo_motion_size(frames), 14);
+    /* It begins with its first posture. */
+    assert_int_equal(grobo_motion_size(frames), 11);
     assert_true(grobo_motion_frame_rate(frames) == 10.0);
     grobo_motion *finer =
         converted(frames, GROBO_MOTION_FRAMES,
                   &(grobo_write_options){GROBO_WRITE_OPTIONS_INIT, .rate_hz = 20}, NULL);
-    assert_int_equal(grobo_motion_size(finer), 27);
+    assert_int_equal(grobo_motion_size(finer), 21);
     grobo_motion *bad = NULL;
     assert_int_equal(
         grobo_motion_convert(motion, GROBO_MOTION_FRAMES,
@@ -522,4 +523,63 @@ TEST(test_versions_agree)
     assert_true(grobo_motion_equal(a, b));
     grobo_motion_free(a);
     grobo_motion_free(b);
+}
+
+/* ---- a first posture at 0 -------------------------------------------------------------------- */
+
+static int64_t played_us(const grobo_motion *motion)
+{
+    grobo_clip clip;
+    grobo_posture start;
+    (void)grobo_posture_init(&start, grobo_motion_joints(motion));
+    start.set = GROBO_JOINTS_ALL(start.n_joints);
+    assert_int_equal(
+        grobo_motion_clip(motion, &(grobo_clip_options){GROBO_CLIP_OPTIONS_INIT, .start = &start},
+                          &clip),
+        0);
+    int64_t length_us = clip.length_us;
+    grobo_motion_clip_free(&clip);
+    return length_us;
+}
+
+/* An .m that begins at 0 begins with its first posture, as frames and key poses do: its length,
+ * what is played of it, and each copy. An increment takes the default time, which is noted. */
+TEST(test_a_motion_that_begins_at_0)
+{
+    static const struct {
+        const char *text;
+        grobo_motion_format format;
+        int64_t length_us;
+    } rows[] = {
+        {"0 0 0\n500 10 0\n1000 0 0\n", GROBO_FORMAT_M, 1000000},
+        {"0 0 0\n0 10 0\n1000 0 0\n", GROBO_FORMAT_M, 1250000}, /* the second takes the default */
+        {"250 0 0\n500 10 0\n1000 0 0\n", GROBO_FORMAT_M, 1000000},
+        {"type: PoseSeq\nname: t\nrefs:\n"
+         "- { time: 0, refer: { type: Pose, joints: [ 0, 1 ], q: [ 1, 0 ] } }\n"
+         "- { time: 1, refer: { type: Pose, joints: [ 0, 1 ], q: [ 2, 1 ] } }\n",
+         GROBO_FORMAT_PSEQ, 1000000},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        grobo_motion *motion = motion_of(rows[i].text, rows[i].format);
+        assert_int_equal(grobo_motion_length_us(motion, -1), rows[i].length_us);
+        assert_int_equal(played_us(motion), rows[i].length_us);
+        for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
+            grobo_diagnostics *list = NULL;
+            grobo_posture start;
+            (void)grobo_posture_init(&start, 2);
+            start.set = GROBO_JOINTS_ALL(2);
+            assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
+            grobo_motion *copy = converted(
+                motion, (grobo_motion_kind)kind,
+                &(grobo_write_options){GROBO_WRITE_OPTIONS_INIT, .start = &start, .exact = true},
+                list);
+            bool told = has_diagnostic(list, "first-step", grobo_motion_line(motion, 0), 0);
+            bool steps = kind == GROBO_MOTION_STEPS && rows[i].text[0] != '2';
+            assert_int_equal(told, steps);
+            assert_int_equal(played_us(copy), rows[i].length_us + (steps ? 250000 : 0));
+            grobo_motion_free(copy);
+            grobo_diagnostics_free(list);
+        }
+        grobo_motion_free(motion);
+    }
 }

@@ -84,7 +84,7 @@ static void time_postures(grobo_i_clip *clip)
 
     for (size_t n = 0; n < clip->size; n++) {
         double time_s = grobo_i_time_s(clip->motion, n);
-        if (grobo_motion_step_us(clip->motion, n) == 0) {
+        if (grobo_i_takes_default(clip->motion, n)) {
             offset_s = before_s + (double)clip->default_us / 1e6 - time_s;
         }
         before_s = clip->at_s[n] = time_s + offset_s;

@@ -400,7 +400,7 @@ int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t default_us)
     for (size_t n = 0; n < motion->size; n++) {
         int64_t step_us = grobo_motion_step_us(motion, n);
 
-        step_us = step_us > 0 ? step_us : default_us;
+        step_us = grobo_i_takes_default(motion, n) ? default_us : step_us;
         length_us = step_us > INT64_MAX - length_us ? INT64_MAX : length_us + step_us;
     }
     return length_us;

@@ -330,6 +330,16 @@ int64_t grobo_i_step_us(grobo_motion_kind kind, double from_s, double to_s)
     return step_us <= 0 || (defaults && step_us >= GROBO_MOTION_STEP_MAX_US) ? 0 : step_us;
 }
 
+bool grobo_i_takes_default(const grobo_motion *motion, size_t n)
+{
+    if (motion->kind == GROBO_MOTION_KEYS || motion->kind == GROBO_MOTION_FRAMES) {
+        return false;
+    }
+    double from_s = n > 0 ? grobo_i_time_s(motion, n - 1) : 0, to_s = grobo_i_time_s(motion, n);
+    bool begins = n == 0 && to_s == 0 && motion->kind == GROBO_MOTION_POSTURES;
+    return !begins && grobo_i_step_us(motion->kind, from_s, to_s) == 0;
+}
+
 void grobo_i_shift_times(grobo_motion *motion, size_t first, double shift_s)
 {
     grobo_i_row row;

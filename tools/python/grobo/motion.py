@@ -17,6 +17,7 @@ except ImportError:
     pass
 
 KINDS = ("postures", "keys", "steps", "frames")
+MOST_STEP = 10.0  # GROBO_MOTION_STEP_MAX_US
 
 
 def _array(rows: List[Any]) -> Any:
@@ -122,6 +123,18 @@ def _time_us(time: Optional[float]) -> int:
     return us(time) if time is not None else 0
 
 
+def _check_steps(times: Sequence[float], kind: str) -> None:
+    """Any other step would be taken for the default time."""
+    before = 0.0
+    for n, time in enumerate(map(float, times)):
+        if (n > 0 or kind == "steps" or time != 0) and not 0 < time - before < MOST_STEP:
+            raise ValueError(
+                f"times[{n}] is {time:g} after {before:g}; {kind} rise by more than 0 and less "
+                f"than {MOST_STEP:g} s (kind='keys' takes any)"
+            )
+        before = time
+
+
 class Motion:
     """A motion in memory: postures, each reached some time after the one before."""
 
@@ -170,10 +183,15 @@ class Motion:
         """A motion of arrays: `times` in seconds from the beginning, not falling, and for each a
         row of angles in radians by joint order (NaN: this posture does not set the joint).
 
+        Postures and steps rise from time to time by less than 10 s, as their files have no other
+        steps; the first of `steps` is above 0.
+
         All rows have as many angles as `robot` has joints, or without one as each other.
         """
         if len(times) != len(angles):
             raise ValueError(f"{len(times)} times for {len(angles)} postures")
+        if kind in ("postures", "steps"):
+            _check_steps(times, kind)
         if robot:
             motion = cls(kind, _model=robot.model)
             motion._robot = robot
