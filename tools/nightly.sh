@@ -33,12 +33,13 @@ stage_of() {
     families) echo check-families ;;
     fleet) echo check-fleet ;;
     scan) echo check-scan ;;
+    stops) echo "test ONLY=serve_stop STOPS=16" ;;
     *) return 1 ;;
     esac
 }
 
 [ $# -gt 0 ] || set -- memcheck fuzz map mutants asserts soak abi ports deb wheel roots cockpit \
-    families fleet scan
+    families fleet scan stops
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done
