@@ -13,6 +13,7 @@
 #include <grobo/board.h>
 #include <grobo/body_motion.h>
 #include <grobo/motion_io.h>
+#include <grobo/robot_file.h>
 #include <grobo/rs30x.h>
 #include <grobo/sim_static.h>
 #include <grobo/static.h>
@@ -164,6 +165,42 @@ static void prepare_wire(void)
 static void seconds(long n)
 {
     run_us(n * SECOND_US);
+}
+
+/* ---- weight ---------------------------------------------------------------------------------- */
+
+/* GR001 hangs by its waist, and all of its joints are sent to and fro. */
+static void prepare_weight(void)
+{
+    static grobo_robot_sim setting;
+    grobo_sim_physics *physics = NULL;
+    const grobo_robot_def *def = grobo_robot_def_at(0);
+    rig.now_us = 0;
+    if (grobo_robot_def_sim(def, def->wiring, &setting) < 0 ||
+        grobo_robot_def_physics(def, false, NULL, &physics) < 0) {
+        fputs("bench_work: no weight\n", stderr);
+        exit(1);
+    }
+    setting.config.physics = physics; /* until the program ends */
+    if (grobo_sim_init(&rig.sim, &setting.config, rig.now_us) < 0) {
+        fputs("bench_work: no robot\n", stderr);
+        exit(1);
+    }
+    for (int i = 0; i < grobo_sim_servos(&rig.sim); i++) {
+        (void)grobo_sim_set_register(&rig.sim, i, GROBO_RS30X_TORQUE, 1);
+    }
+}
+
+static void steps(long n)
+{
+    for (long k = 0; k < n; k++) {
+        for (int i = 0; k % 500 == 0 && i < grobo_sim_servos(&rig.sim); i++) {
+            int32_t goal_ddeg = k % 1000 == 0 ? 100 : -100;
+            (void)grobo_sim_set_register(&rig.sim, i, GROBO_RS30X_GOAL, goal_ddeg);
+        }
+        rig.now_us += 1000;
+        grobo_sim_step(&rig.sim, rig.now_us);
+    }
 }
 
 /* ---- a servo that falls silent, in virtual time ---------------------------------------------- */
@@ -504,6 +541,8 @@ static const struct piece {
     {"play", "S11", "50 Hz play, s simulated a s", prepare_play, seconds, 200, 1},
     {"wire", "S11", "wire-rate sensing, s simulated a s", prepare_wire, seconds, 200, 1},
     {"poses", "S12", "simulated robots a core at 30 Hz", prepare_poses, poses, 100, 1},
+    {"weight", "S16", "a step of 1 ms of 20 joints with weight, ns", prepare_weight, steps, 20000,
+     0},
     {"yaml", "S9", "read 1000 frames of yaml, ns", prepare_yaml, read_file, 20, 0},
     {"pseq", "S9", "read 1000 keys of pseq, ns", prepare_pseq, read_file, 20, 0},
     {"m", "S9", "read 1000 postures of m, ns", prepare_m, read_file, 50, 0},
