@@ -406,13 +406,6 @@ GROBO_API int grobo_runner_set_motion(grobo_runner *runner, const grobo_motion *
 GROBO_API int grobo_runner_get_motion(grobo_runner *runner, grobo_motion **motion);
 /** Makes it an empty motion of postures. What is being played continues. At once. */
 GROBO_API void grobo_runner_clear_motion(grobo_runner *runner);
-/** Appends the posture sensed last, with the default time. At once. @return postures,
- *  GROBO_ERR_STALE (nothing was sensed), GROBO_ERR_TYPE (frames at a rate have no place for its
- *  time), or as grobo_motion_append(). */
-GROBO_API int grobo_runner_append_current_posture(grobo_runner *runner);
-/** Appends the posture sensed last, with a time from 0 (the default time) to below
- *  GROBO_MOTION_STEP_MAX_US, which .m files cannot tell from the default. As above. */
-GROBO_API int grobo_runner_append_current_posture_us(grobo_runner *runner, int64_t time_us);
 /**
  * Loads a motion of the motion folder: NAME.m, .yaml, .pseq, .mseq, whichever is there first, or
  * NAME itself where it has an extension. At once but for the reading, which is the caller's time.
@@ -422,34 +415,6 @@ GROBO_API int grobo_runner_append_current_posture_us(grobo_runner *runner, int64
  */
 GROBO_API int grobo_runner_load_motion(grobo_runner *runner, const char *name,
                                        grobo_diagnostics *list);
-/** As above, but one format: NAME with its extension, or NAME as it is where it has one. */
-GROBO_API int grobo_runner_load_motion_format(grobo_runner *runner, grobo_motion_format format,
-                                              const char *name, grobo_diagnostics *list);
-/**
- * Saves the motion in the motion folder in a format, converted where it has to be. In the caller's
- * time.
- * @param name a plain file name; the extension is added where it has none. NULL, for
- *   GROBO_FORMAT_M: the first MotionN.m that is not there.
- * @param[out] path of the file, or NULL.
- * @return postures, GROBO_ERR_PERM (a name that leaves the folder), GROBO_ERR_ARG,
- *   GROBO_ERR_SPACE, or as grobo_motion_save(): GROBO_ERR_EXISTS where the file holds anything but
- *   a motion of this format, and nothing is written.
- */
-GROBO_API int grobo_runner_save_motion(grobo_runner *runner, grobo_motion_format format,
-                                       const char *name, char *path, size_t path_bytes);
-
-/** Posture n of the motion in playing direction, counted from 0. At once. @return GROBO_OK;
- *  GROBO_ERR_EMPTY where there is none. */
-GROBO_API int grobo_runner_get_nth_posture(grobo_runner *runner, size_t n, grobo_posture *posture);
-/** The posture that is played first; as above. */
-GROBO_API int grobo_runner_get_first_posture(grobo_runner *runner, grobo_posture *posture);
-/** The posture that is played last; as above. */
-GROBO_API int grobo_runner_get_last_posture(grobo_runner *runner, grobo_posture *posture);
-/** Makes posture n in playing direction the target, in the default time, and starts it. At once.
- *  @return as grobo_runner_get_nth_posture(), grobo_runner_set_target_posture() and
- *  grobo_runner_start_motion(); GROBO_ERR_TYPE for a motion of increments. */
-GROBO_API int grobo_runner_do_nth_motion(grobo_runner *runner, size_t n);
-
 /**
  * Has the motion as it is now played, with the count, direction and default time that are set. How
  * it ends is returned by grobo_runner_wait() and reported by events. At once.

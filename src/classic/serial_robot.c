@@ -360,12 +360,14 @@ static int keep_sending(void *arg)
     return GROBO_OK;
 }
 
-/* On the loop: has the engine send what is in `sending`. @return a job, or an error */
+/* On the loop: has the engine send what is in `sending`, unless it is late by then: nobody
+ * waits for it any more. @return a job, or an error */
 static int send_raw(void *arg)
 {
     SerialRobot *robot = arg;
     struct serial_robot_inside *inside = robot->inside;
-    int job = grobo_robot_raw(grobo_classic_engine(robot), inside->sending, inside->n_sending);
+    int job = grobo_robot_raw_until(grobo_classic_engine(robot), inside->sending, inside->n_sending,
+                                    grobo_now_us() + GROBO_RUNNER_TIMEOUT_US);
 
     inside->n_sending = job > 0 ? inside->n_sending : 0;
     return job;

@@ -448,6 +448,36 @@ TEST(a_robot_of_ones_own)
     SerialRobot_delete(leg);
 }
 
+TEST(motions_are_saved_and_loaded)
+{
+    static const char *const files[] = {"a.m", "a.pseq", "a.yaml"};
+    RobotPosture posture;
+
+    (void)folder_set_up();
+    g = GR001_new("sim");
+    assert_int_equal(SerialRobot_setMotionDir(g, folder), 0);
+    assert_int_equal(RobotPosture_init(&posture, 20), 0);
+    RobotPosture_setMotionTime(&posture, 500);
+    for (int i = 1; i <= 2; i++) {
+        RobotPosture_setDegree(&posture, 2, 100 * i);
+        assert_true(RobotMotion_appendPosture(g->motion, &posture));
+    }
+    assert_int_equal(SerialRobot_saveMotionToPseq(g, "a"), 2);
+    assert_int_equal(SerialRobot_loadMotionFromPseq(g, "a"), 2);
+    assert_int_equal(SerialRobot_saveMotionToM(g, "a"), 2);
+    assert_int_equal(SerialRobot_loadMotionFromM(g, "a.m"), 2);
+    assert_int_equal(RobotPosture_getDegree(SerialRobot_getLastPosture(g), 2), 200);
+    assert_true(SerialRobot_saveMotionToYaml(g, "a") > 0);
+    int frames = SerialRobot_loadMotionFromYaml(g, "a");
+    assert_true(frames > 2);
+    assert_int_equal(RobotPosture_getDegree(SerialRobot_getLastPosture(g), 2), 200);
+    assert_int_equal(SerialRobot_loadMotionFromMseq(g, "a"), -1); /* there is none */
+    assert_int_equal(RobotMotion_getSize(g->motion), 0);
+    assert_int_equal(SerialRobot_saveMotionToM(g, "a.pseq"), -1); /* another format stays */
+    (void)tear_down();
+    folder_remove(files, 3);
+}
+
 TEST(files_stay_in_the_directory)
 {
     static const char *const files[] = {"a.m"};

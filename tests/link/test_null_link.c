@@ -371,24 +371,12 @@ TEST(thread_refuses_null_in_its_third_functions)
     REFUSES(grobo_runner_get_motion(NULL, &made_motion));
     REFUSES(grobo_runner_get_motion(runner, NULL));
     grobo_runner_clear_motion(NULL);
-    REFUSES(grobo_runner_append_current_posture(NULL));
-    REFUSES(grobo_runner_append_current_posture_us(NULL, 1000));
     REFUSES(grobo_runner_load_motion(NULL, text, list));
     REFUSES(grobo_runner_load_motion(runner, NULL, list));
-    REFUSES(grobo_runner_load_motion_format(NULL, 0, text, list));
-    REFUSES(grobo_runner_load_motion_format(runner, 0, NULL, list));
 }
 
 TEST(thread_refuses_null_in_its_fourth_functions)
 {
-    REFUSES(grobo_runner_save_motion(NULL, 0, text, text, sizeof bytes));
-    REFUSES(grobo_runner_get_nth_posture(NULL, 1, &posture));
-    REFUSES(grobo_runner_get_nth_posture(runner, 1, NULL));
-    REFUSES(grobo_runner_get_first_posture(NULL, &posture));
-    REFUSES(grobo_runner_get_first_posture(runner, NULL));
-    REFUSES(grobo_runner_get_last_posture(NULL, &posture));
-    REFUSES(grobo_runner_get_last_posture(runner, NULL));
-    REFUSES(grobo_runner_do_nth_motion(NULL, 1));
     REFUSES(grobo_runner_play_motion(NULL, &play_options));
     assert_false(grobo_runner_is_playing(NULL));
     REFUSES(grobo_runner_set_command(NULL, bytes, 1));

@@ -127,10 +127,12 @@ TEST_WITH(with_and_without_thread, settings_take_effect)
     assert_int_equal(grobo_runner_set_sense_interval_us(runner, 20000), GROBO_OK);
     assert_true(bytes_in(100000) >= 26);
 
-    runner_have_motion(2);
     assert_int_equal(grobo_runner_set_default_time_us(runner, 340000), GROBO_OK);
-    for (int i = 0; i < 2; i++) { /* the way to the first is longer */
-        assert_int_equal(grobo_runner_do_nth_motion(runner, (size_t)i), GROBO_OK);
+    assert_int_equal(grobo_runner_set_motion_time_us(runner, 0), GROBO_OK);
+    for (int i = 1; i <= 2; i++) { /* the way to the first is longer */
+        assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(2 * i)),
+                         GROBO_OK);
+        assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
         assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     }
     assert_int_equal(grobo_runner_call(runner, goal_time_cs, NULL), 34);

@@ -125,103 +125,42 @@ TEST_WITH(with_and_without_thread, a_target_that_waits_is_counted)
 
 /* ---- the motion --------------------------------------------------------------------------- */
 
+static grobo_posture nth(size_t n)
+{
+    grobo_motion *motion = NULL;
+    grobo_posture posture;
+
+    assert_true(grobo_runner_get_motion(runner, &motion) > (int)n);
+    assert_int_equal(grobo_motion_get(motion, n, &posture), GROBO_OK);
+    grobo_motion_free(motion);
+    return posture;
+}
+
 TEST_WITH(with_and_without_thread, the_motion_is_kept)
 {
     grobo_motion *copy = NULL;
-    grobo_posture posture;
 
     assert_int_equal(runner_motion_size(runner), 0);
-    assert_int_equal(grobo_runner_get_last_posture(runner, &posture), GROBO_ERR_EMPTY);
-    assert_int_equal(grobo_runner_get_first_posture(runner, &posture), GROBO_ERR_EMPTY);
-    assert_int_equal(grobo_runner_append_current_posture(runner), GROBO_ERR_STALE);
-    runner_come_up();
-    assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
-    assert_int_equal(grobo_runner_append_current_posture(runner), 1);
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
-    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    runner_assert_elbow_at(10);
-    assert_int_equal(grobo_runner_append_current_posture_us(runner, 700000), 2);
-    assert_int_equal(grobo_runner_set_default_time_us(runner, 150000), GROBO_OK);
-    assert_int_equal(grobo_runner_append_current_posture(runner), 3);
-    assert_int_equal(grobo_runner_append_current_posture_us(runner, -1), GROBO_ERR_ARG);
-    static const int64_t times_us[] = {100000, 700000, 150000};
-    assert_int_equal(runner_motion_size(runner), 3);
+    runner_have_motion(3);
     assert_int_equal(grobo_runner_get_motion(runner, &copy), 3);
     for (size_t n = 0; n < 3; n++) {
         grobo_posture same;
-        assert_int_equal(grobo_runner_get_nth_posture(runner, n, &posture), GROBO_OK);
+        grobo_posture posture = nth(n);
         assert_true(posture.set == EVERY_JOINT);
-        assert_int_equal(posture.time_us, times_us[n]);
-        assert_true(fabs(grobo_deg_from_rad(posture.angle_rad[ELBOW]) - (n > 0 ? 10 : 0)) < 0.6);
+        assert_int_equal(lround(grobo_deg_from_rad(posture.angle_rad[ELBOW])), 2 * (n + 1));
         assert_int_equal(grobo_motion_get(copy, n, &same), 0);
         assert_true(grobo_posture_equal(&posture, &same));
-        assert_int_equal(same.time_us, times_us[n]);
+        assert_int_equal(same.time_us, posture.time_us);
     }
-    assert_int_equal(grobo_runner_get_last_posture(runner, &posture), GROBO_OK);
-    assert_int_equal(posture.time_us, 150000);
     grobo_runner_clear_motion(runner);
     assert_int_equal(runner_motion_size(runner), 0);
     assert_int_equal(grobo_motion_size(copy), 3);
     assert_int_equal(grobo_runner_set_motion(runner, copy), 3);
     assert_int_equal(grobo_motion_delete(copy, 0), 0); /* the runner's own stays whole */
-    assert_int_equal(grobo_runner_get_first_posture(runner, &posture), GROBO_OK);
-    assert_int_equal(posture.time_us, 100000);
+    assert_int_equal(nth(2).time_us, 40000);
     assert_int_equal(grobo_motion_set_joints(copy, 21), 21);
     assert_int_equal(grobo_runner_set_motion(runner, copy), GROBO_ERR_ARG);
     grobo_motion_free(copy);
-}
-
-static double nth_deg(size_t n)
-{
-    grobo_posture posture;
-    double angle_deg = -99;
-
-    assert_int_equal(grobo_runner_get_nth_posture(runner, n, &posture), GROBO_OK);
-    assert_int_equal(grobo_posture_get_deg(&posture, ELBOW, &angle_deg), GROBO_OK);
-    return angle_deg;
-}
-
-TEST_WITH(with_and_without_thread, postures_count_in_playing_direction)
-{
-    grobo_posture posture = {.n_joints = 7};
-
-    runner_have_motion(3);
-    assert_int_equal((int)(nth_deg(0) + 0.5), 2);
-    assert_int_equal((int)(nth_deg(2) + 0.5), 6);
-    assert_int_equal(grobo_runner_get_nth_posture(runner, 3, &posture), GROBO_ERR_EMPTY);
-    grobo_runner_set_reverse(runner, true);
-    assert_int_equal((int)(nth_deg(0) + 0.5), 6);
-    assert_int_equal((int)(nth_deg(2) + 0.5), 2);
-    assert_int_equal(grobo_runner_get_nth_posture(runner, 3, &posture), GROBO_ERR_EMPTY);
-    assert_int_equal(grobo_runner_get_nth_posture(runner, SIZE_MAX, &posture), GROBO_ERR_EMPTY);
-    assert_int_equal(posture.n_joints, 7);
-    assert_int_equal(grobo_runner_get_first_posture(runner, &posture), GROBO_OK);
-    assert_true(grobo_deg_from_rad(posture.angle_rad[ELBOW]) > 5.9);
-    assert_int_equal(grobo_runner_get_last_posture(runner, &posture), GROBO_OK);
-    assert_true(grobo_deg_from_rad(posture.angle_rad[ELBOW]) < 2.1);
-    grobo_runner_set_reverse(runner, false);
-    (void)grobo_runner_set_motion_count(runner, -1);
-    assert_int_equal((int)(nth_deg(0) + 0.5), 6);
-}
-
-TEST_WITH(with_and_without_thread, the_nth_posture_is_gone_to)
-{
-    grobo_posture target;
-
-    runner_have_motion(3);
-    assert_int_equal(grobo_runner_do_nth_motion(runner, 1), GROBO_ERR_CLOSED);
-    runner_come_up();
-    assert_int_equal(grobo_runner_do_nth_motion(runner, 3), GROBO_ERR_EMPTY);
-    assert_int_equal(grobo_runner_do_nth_motion(runner, 1), GROBO_OK);
-    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    runner_assert_elbow_at(4);
-    grobo_runner_get_target_posture(runner, &target);
-    assert_int_equal(target.time_us, 0);
-    grobo_runner_set_reverse(runner, true);
-    assert_int_equal(grobo_runner_do_nth_motion(runner, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    runner_assert_elbow_at(6);
 }
 
 /* A motion of increments: the elbow by 3 degrees, and by 3 more, from where it is. */
@@ -251,57 +190,30 @@ TEST_WITH(with_and_without_thread, increments_become_postures)
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
     have_increments();
-    assert_float_equal(nth_deg(0), 13, 0.11);
-    assert_float_equal(nth_deg(1), 16, 0.11);
-    assert_int_equal(grobo_runner_get_nth_posture(runner, 1, &posture), GROBO_OK);
-    assert_int_equal(posture.set, GROBO_JOINT_BIT(ELBOW));
-    assert_int_equal(grobo_runner_do_nth_motion(runner, 1), GROBO_OK);
+    assert_float_equal(grobo_deg_from_rad(nth(0).angle_rad[ELBOW]), 13, 0.11);
+    assert_float_equal(grobo_deg_from_rad(nth(1).angle_rad[ELBOW]), 16, 0.11);
+    assert_int_equal(nth(1).set, GROBO_JOINT_BIT(ELBOW));
+    assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     runner_assert_elbow_at(16);
 }
 
-/* An emptied motion takes absolute postures, whatever it was. */
+/* An emptied motion holds absolute postures, whatever it was. */
 TEST_WITH(with_and_without_thread, an_emptied_motion_takes_postures)
 {
-    grobo_posture posture;
-
     runner_come_up();
     for (int i = 0; i < 2; i++) {
+        grobo_motion *motion = NULL;
         have_increments();
         if (i == 0) {
             grobo_runner_clear_motion(runner);
         } else {
             assert_true(grobo_runner_load_motion(runner, "nowhere", NULL) < 0);
         }
-        assert_int_equal(runner_motion_size(runner), 0);
-        assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(-20)), 0);
-        assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
-        assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-        assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
-        assert_int_equal(grobo_runner_append_current_posture_us(runner, 200000), 1);
-        assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
-        assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-        runner_assert_elbow_at(-20);
+        assert_int_equal(grobo_runner_get_motion(runner, &motion), 0);
+        assert_int_equal(grobo_motion_get_kind(motion), GROBO_MOTION_POSTURES);
+        grobo_motion_free(motion);
     }
-}
-
-/* Frames at a rate have no place for a posture's time: it would be reached in one frame's. */
-TEST_WITH(with_and_without_thread, frames_take_no_postures)
-{
-    grobo_motion *frames = NULL;
-    grobo_posture posture;
-
-    runner_come_up();
-    assert_int_equal(grobo_motion_new(GROBO_MOTION_FRAMES, 20, NULL, &frames), 0);
-    assert_int_equal(grobo_motion_set_frame_rate(frames, 50), 0);
-    (void)grobo_posture_init(&posture, 20);
-    (void)grobo_posture_set_deg(&posture, ELBOW, 3);
-    assert_int_equal(grobo_motion_append(frames, &posture), 0);
-    assert_int_equal(grobo_runner_set_motion(runner, frames), 1);
-    grobo_motion_free(frames);
-    assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
-    assert_int_equal(grobo_runner_append_current_posture_us(runner, 700000), GROBO_ERR_TYPE);
-    assert_int_equal(runner_motion_size(runner), 1);
 }
 
 static int total_ms(void *arg, grobo_runner *from)
@@ -335,11 +247,6 @@ TEST_WITH(with_and_without_thread, the_default_time_is_what_is_played)
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     /* The way to the first is the approach. */
     assert_int_equal(grobo_runner_call(runner, total_ms, NULL), 2 * default_us / 1000);
-    /* One that no .m file can hold as a step is appended as "the default time". */
-    assert_int_equal(grobo_runner_set_default_time_us(runner, 12000000), GROBO_OK);
-    assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
-    grobo_runner_clear_motion(runner);
-    assert_int_equal(grobo_runner_append_current_posture(runner), 1);
 }
 
 /* ---- playing ------------------------------------------------------------------------------ */

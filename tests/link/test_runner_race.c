@@ -62,16 +62,15 @@ static void ask(worker *self)
 
 static void change(worker *self, int i)
 {
-    grobo_posture posture;
     int r = grobo_runner_set_joint(self->runner, ELBOW, grobo_rad_from_deg(i % 5));
 
     expect(self, r == GROBO_OK, r);
     r = grobo_runner_set_default_time_us(self->runner, 20000 + 10000 * (i % 3));
     expect(self, r == GROBO_OK, r);
-    r = grobo_runner_append_current_posture(self->runner);
-    expect(self, r > 0 || r == GROBO_ERR_STALE, r);
-    r = grobo_runner_get_last_posture(self->runner, &posture);
-    expect(self, r == GROBO_OK || r == GROBO_ERR_EMPTY, r);
+    grobo_motion *motion = NULL;
+    r = grobo_runner_get_motion(self->runner, &motion);
+    expect(self, r >= 0, r);
+    grobo_motion_free(motion);
     if (i % 4 == 3) {
         grobo_runner_clear_motion(self->runner);
     }

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* A runner's target and current motion: sent and played, its postures, its files. */
-#include <stdio.h>
-#include <string.h>
-
 #include "src/base/sized.h"
 #include "src/link/runner/runner.h"
 #include "src/link/session/session.h"
@@ -220,94 +217,7 @@ int grobo_runner_wait(grobo_runner *runner, int64_t timeout_us)
     return grobo_i_runner_wait(runner, await_rest, NULL, timeout_us);
 }
 
-/* ---- its postures ------------------------------------------------------------------------- */
-
-static int append(grobo_runner *runner, grobo_posture *sensed, int64_t time_us)
-{
-    int r = grobo_runner_get_current_posture(runner, sensed);
-
-    if (r <= 0) {
-        return r < 0 ? r : GROBO_ERR_STALE;
-    }
-    sensed->time_us = time_us;
-    grobo_i_runner_lock(runner);
-    r = grobo_i_record(runner->motion, sensed);
-    if (r >= 0) {
-        r = (int)grobo_motion_size(runner->motion);
-    }
-    grobo_i_runner_unlock(runner);
-    return r;
-}
-
-int grobo_runner_append_current_posture(grobo_runner *runner)
-{
-    grobo_posture sensed;
-    int64_t time_us = grobo_runner_get_default_time_us(runner);
-
-    /* A step that long cannot be told from "the default time", which 0 means as well. */
-    return append(runner, &sensed, time_us < GROBO_MOTION_STEP_MAX_US ? time_us : 0);
-}
-
-int grobo_runner_append_current_posture_us(grobo_runner *runner, int64_t time_us)
-{
-    grobo_posture sensed;
-
-    return time_us < 0 ? GROBO_ERR_ARG : append(runner, &sensed, time_us);
-}
-
-/* With the lock: posture n in playing direction. */
-static int get_nth(const grobo_runner *runner, size_t n, grobo_posture *posture)
-{
-    size_t size = grobo_motion_size(runner->motion);
-    bool reverse = runner->reverse || runner->motion_count < 0;
-
-    if (posture == NULL || n >= size) {
-        return posture == NULL ? GROBO_ERR_ARG : GROBO_ERR_EMPTY;
-    }
-    return grobo_motion_get(runner->motion, reverse ? size - 1 - n : n, posture);
-}
-
-int grobo_runner_get_nth_posture(grobo_runner *runner, size_t n, grobo_posture *posture)
-{
-    RETURN_LOCKED(runner, int, GROBO_ERR_ARG, get_nth(runner, n, posture));
-}
-
-int grobo_runner_get_first_posture(grobo_runner *runner, grobo_posture *posture)
-{
-    return grobo_runner_get_nth_posture(runner, 0, posture);
-}
-
-int grobo_runner_get_last_posture(grobo_runner *runner, grobo_posture *posture)
-{
-    /* Of an empty motion the number wraps around, to one that is not there. */
-    RETURN_LOCKED(runner, int, GROBO_ERR_ARG,
-                  get_nth(runner, grobo_motion_size(runner->motion) - 1, posture));
-}
-
-int grobo_runner_do_nth_motion(grobo_runner *runner, size_t n)
-{
-    grobo_posture posture;
-    int r = grobo_runner_get_nth_posture(runner, n, &posture);
-
-    if (r >= 0) {
-        posture.time_us = 0; /* the default */
-        r = grobo_runner_set_target_posture(runner, &posture);
-    }
-    return r < 0 ? r : send_target(runner, &posture);
-}
-
 /* ---- reading files ------------------------------------------------------------------------ */
-
-/* NAME, or NAME and the extension of a format where it has none. */
-static int with_extension(grobo_motion_format format, const char *name, char *to, size_t bytes)
-{
-    bool has =
-        format == GROBO_FORMAT_AUTO || grobo_motion_format_of_path(name) != GROBO_FORMAT_AUTO;
-    int length = snprintf(to, bytes, "%s%s%s", name, has ? "" : ".",
-                          has ? "" : grobo_motion_format_name(format));
-
-    return length < 0 || (size_t)length >= bytes ? GROBO_ERR_SPACE : GROBO_OK;
-}
 
 static int find(grobo_runner *runner, const char *name, char *path, size_t path_bytes)
 {
@@ -317,25 +227,17 @@ static int find(grobo_runner *runner, const char *name, char *path, size_t path_
     return r < 0 ? r : grobo_motion_find(grobo_files_os(), dir, name, path, path_bytes);
 }
 
-int grobo_runner_load_motion_format(grobo_runner *runner, grobo_motion_format format,
-                                    const char *name, grobo_diagnostics *list)
+int grobo_runner_load_motion(grobo_runner *runner, const char *name, grobo_diagnostics *list)
 {
     if (runner == NULL) {
         return GROBO_ERR_ARG;
     }
     char path[GROBO_PATH_MAX_BYTES];
-    char file[GROBO_PATH_MAX_BYTES];
-    const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .format = format,
-                                        .model = runner->driver->model, .mem = runner->mem};
+    const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = runner->driver->model,
+                                        .mem = runner->mem};
     grobo_motion *motion = NULL;
-    int r = GROBO_ERR_ARG;
+    int r = name != NULL ? find(runner, name, path, sizeof path) : GROBO_ERR_ARG;
 
-    if (name != NULL) {
-        r = with_extension(format, name, file, sizeof file);
-    }
-    if (r >= 0) {
-        r = find(runner, file, path, sizeof path);
-    }
     if (r >= 0) {
         r = grobo_motion_read_file(path, &options, list, &motion);
     }
@@ -345,86 +247,5 @@ int grobo_runner_load_motion_format(grobo_runner *runner, grobo_motion_format fo
     if (r < 0) {
         grobo_runner_clear_motion(runner);
     }
-    return r;
-}
-
-int grobo_runner_load_motion(grobo_runner *runner, const char *name, grobo_diagnostics *list)
-{
-    return grobo_runner_load_motion_format(runner, GROBO_FORMAT_AUTO, name, list);
-}
-
-/* ---- writing files ------------------------------------------------------------------------ */
-
-/* Where a motion is saved: a plain name, so that it stays in the folder. */
-static int path_of(grobo_runner *runner, grobo_motion_format format, const char *name, char *path,
-                   size_t path_bytes)
-{
-    char file[GROBO_PATH_MAX_BYTES];
-    char dir[GROBO_PATH_MAX_BYTES];
-    int length;
-    int r = with_extension(format, name, file, sizeof file);
-
-    if (name[0] == '\0' || strpbrk(name, "/\\:") != NULL || strcmp(name, "..") == 0 ||
-        strcmp(name, ".") == 0) {
-        return name[0] == '\0' ? GROBO_ERR_ARG : GROBO_ERR_PERM;
-    }
-    if (r >= 0) {
-        r = grobo_runner_get_motion_dir(runner, dir, sizeof dir);
-    }
-    if (r < 0) {
-        return r;
-    }
-    length = snprintf(path, path_bytes, "%s/%s", dir, file);
-    return length < 0 || (size_t)length >= path_bytes ? GROBO_ERR_SPACE : GROBO_OK;
-}
-
-static int save_next(grobo_runner *runner, const grobo_motion *motion,
-                     const grobo_write_options *options, char *path, size_t path_bytes)
-{
-    char dir[GROBO_PATH_MAX_BYTES];
-    int r = grobo_runner_get_motion_dir(runner, dir, sizeof dir);
-
-    return r < 0 ? r
-                 : grobo_motion_save_next(motion, grobo_files_os(), dir, options, path, path_bytes);
-}
-
-int grobo_runner_save_motion(grobo_runner *runner, grobo_motion_format format, const char *name,
-                             char *path, size_t path_bytes)
-{
-    if (runner == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    char used[GROBO_PATH_MAX_BYTES];
-    const grobo_write_options options = {
-        GROBO_WRITE_OPTIONS_INIT,
-        .format = format,
-        .model = runner->driver->model,
-        .default_us = grobo_runner_get_default_time_us(runner),
-    };
-    size_t room = path != NULL && path_bytes < sizeof used ? path_bytes : sizeof used;
-    grobo_motion *motion = NULL;
-    int r = GROBO_ERR_ARG;
-
-    if (name != NULL) {
-        r = path_of(runner, format, name, used, sizeof used);
-    } else if (format == GROBO_FORMAT_M) {
-        r = GROBO_OK;
-    }
-    if (r >= 0) {
-        r = grobo_runner_get_motion(runner, &motion);
-    }
-    if (r >= 0 && name != NULL) {
-        r = strlen(used) < room ? grobo_motion_save(motion, grobo_files_os(), used, &options, NULL)
-                                : GROBO_ERR_SPACE;
-    } else if (r >= 0) {
-        r = save_next(runner, motion, &options, used, room);
-    }
-    if (r >= 0 && path != NULL) {
-        memcpy(path, used, strlen(used) + 1);
-    }
-    if (r >= 0) {
-        r = (int)grobo_motion_size(motion);
-    }
-    grobo_motion_free(motion);
     return r;
 }
