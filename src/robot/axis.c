@@ -412,6 +412,9 @@ bool grobo_i_axis_is_late(const grobo_robot_axis *axis)
     return !tells_speed(axis) && fabs(axis->state.angle_rad - axis->way.to_rad) > LAGS_RAD;
 }
 
+/* A ramp that was not read may end so much later. */
+#define RAMP_LATE_US 20000
+
 /* Of a servo with ramps: what it takes to come to rest at the end of its way, which it passes, and
  * comes back to, where it is too fast for what is left. */
 static bool is_on_ramp(const grobo_robot *robot, int joint)
@@ -428,7 +431,8 @@ static bool is_on_ramp(const grobo_robot *robot, int joint)
         copysign(axis->way.to_rad - c.at_rad, (axis->way.to_rad - c.at_rad) * c.rad_s);
     double over_rad = c.rad_s * c.rad_s / (2 * accel_rad_s2) - left_rad;
     double back_s = fabs(c.rad_s) / accel_rad_s2 + 2 * sqrt(fmax(over_rad, 0) / accel_rad_s2);
-    return grobo_i_axis_speed(robot, joint) >= grobo_rad_from_deg(GROBO_I_SLOW_DPS) ||
+    double rad_s = fabs(turning(robot, joint, robot->now_us - RAMP_LATE_US).rad_s);
+    return rad_s >= grobo_rad_from_deg(GROBO_I_SLOW_DPS) ||
            (over_rad > 0 && seconds(axis->seen_us, robot->now_us) < back_s);
 }
 

@@ -62,8 +62,6 @@ static void give_up(grobo_robot *robot)
         grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_way_is_short(axis)) {
             grobo_i_axis_cut(axis);
-            axis->way.from_rad = axis->way.to_rad;
-            axis->way.from_us = axis->way.to_us = robot->now_us;
         }
     }
     grobo_i_gate_soften(robot);

@@ -519,7 +519,8 @@ TEST_WITH(rig_wirings, a_way_that_was_not_told_on_is_given_up)
                     double stands_rad = here_rad(j) + RAD(10);
                     expect_equal(robot.axes[j].way.to_rad, stands_rad, "where it stands");
                     stands_rad = robot.axes[j].way.to_rad;
-                    before[j].way = (grobo_robot_way){stands_rad, stands_rad, NOW, NOW};
+                    before[j].way.to_rad = stands_rad; /* its servo may be on the ramp there */
+                    before[j].way.to_us = NOW;
                     before[j].in_segments = false;
                     const grobo_event *event = &robot.events[robot.events_head];
                     assert_int_equal(event->kind, GROBO_EVENT_TRIP);
