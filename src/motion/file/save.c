@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/base/sized.h"
+#include "src/motion/format/format.h"
 #include "src/motion/store/container.h"
 #include "src/motion/store/diagnostics.h"
 
@@ -25,7 +26,7 @@ int grobo_motion_may_save(const grobo_files *files, const char *path, grobo_moti
 {
     grobo_motion *there = NULL;
 
-    if (format <= GROBO_FORMAT_AUTO || format > GROBO_FORMAT_YAML) {
+    if (grobo_i_format_row(format) == NULL) {
         return GROBO_ERR_ARG;
     }
     if (!files->holds(path)) {

@@ -5,40 +5,27 @@
 
 #include "src/base/memory.h"
 #include "src/base/sized.h"
-#include "src/motion/format/read.h"
+#include "src/motion/format/format.h"
 
 enum { BUFFER_BYTES = 64 * 1024 };
 
-/* ---- what it looks like ------------------------------------------------------------------- */
-
-static size_t span(const unsigned char *text, size_t size, size_t first, const char *accepted)
-{
-    while (first < size && text[first] != '\0' && strchr(accepted, text[first]) != NULL) {
-        first++;
-    }
-    return first;
-}
-
-static bool starts_a_number(const unsigned char *text, size_t size, size_t at)
-{
-    return span(text, size, at, "0123456789+-.") > at;
-}
-
-/* Of a .m file the first word that is no comment is a number with another one behind it. */
-static bool looks_like_m(const unsigned char *text, size_t size)
-{
-    bool marked = size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0;
-    size_t i = span(text, size, marked ? 3 : 0, " \t\r\n");
-
-    while (i < size && text[i] == '#') {
-        const unsigned char *newline = memchr(text + i, '\n', size - i);
-        i = newline != NULL ? span(text, size, (size_t)(newline - text), " \t\r\n") : size;
-    }
-    size_t behind = span(text, size, span(text, size, i, "0123456789+-.eE"), " \t");
-    return starts_a_number(text, size, i) && starts_a_number(text, size, behind);
-}
-
 /* ---- reading ------------------------------------------------------------------------------ */
+
+/* The format that was asked for must be the one found; an extension may only be doubted. */
+static int check_format(grobo_i_reader *reader, grobo_motion_format format, bool forced)
+{
+    grobo_motion_format found = grobo_motion_kind_format(reader->motion->kind);
+    if (format == GROBO_FORMAT_AUTO || format == found) {
+        return 0;
+    }
+    if (forced) {
+        return grobo_i_refuse(reader, GROBO_ERR_TYPE, "format", reader->top, "a %s file, not %s",
+                              grobo_motion_format_name(found), grobo_motion_format_name(format));
+    }
+    grobo_i_warn(reader, "format", reader->top, "by its name a %s file, by its contents %s",
+                 grobo_motion_format_name(format), grobo_motion_format_name(found));
+    return 0;
+}
 
 static int read_as(grobo_i_reader *reader)
 {
@@ -53,11 +40,11 @@ static int read_as(grobo_i_reader *reader)
     if (!forced) {
         format = grobo_motion_format_of_path(reader->file);
     }
-    if (format == GROBO_FORMAT_M ||
-        (format == GROBO_FORMAT_AUTO && looks_like_m(reader->input.buffer, (size_t)got))) {
-        return grobo_i_read_m(reader);
-    }
-    return grobo_i_read_yaml(reader, format, forced);
+    const grobo_i_format *row = format != GROBO_FORMAT_AUTO
+                                    ? grobo_i_format_row(format)
+                                    : grobo_i_format_sniff(reader->input.buffer, (size_t)got);
+    int result = row->read(reader);
+    return result < 0 ? result : check_format(reader, format, forced);
 }
 
 int grobo_motion_read(const grobo_source *source, const grobo_read_options *options,
@@ -69,7 +56,8 @@ int grobo_motion_read(const grobo_source *source, const grobo_read_options *opti
     grobo_i_reader reader = {.list = list, .input = {.source = source, .size = BUFFER_BYTES}};
 
     if (grobo_i_sized_take(&reader.options, sizeof reader.options, options) < 0 ||
-        reader.options.format < GROBO_FORMAT_AUTO || reader.options.format > GROBO_FORMAT_YAML) {
+        (reader.options.format != GROBO_FORMAT_AUTO &&
+         grobo_i_format_row(reader.options.format) == NULL)) {
         return GROBO_ERR_ARG;
     }
     reader.file = reader.options.name != NULL ? reader.options.name : "";

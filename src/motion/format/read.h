@@ -6,7 +6,11 @@
 #include "src/motion/format/reader.h"
 
 int grobo_i_read_m(grobo_i_reader *reader);
-/* If forced, another format than the one given is refused; else it is doubted only. */
-int grobo_i_read_yaml(grobo_i_reader *reader, grobo_motion_format format, bool forced);
+/* Of the formats that are YAML, whichever it is: its kind becomes the motion's, and the place where
+ * that stands is kept in reader->top. */
+int grobo_i_read_yaml(grobo_i_reader *reader);
+
+/* Of a .m file the first word that is no comment is a number with another one behind it. */
+bool grobo_i_sniff_m(const unsigned char *text, size_t size);
 
 #endif

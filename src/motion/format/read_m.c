@@ -207,3 +207,31 @@ int grobo_i_read_m(grobo_i_reader *reader)
     }
     return result;
 }
+
+/* ---- what it looks like ------------------------------------------------------------------- */
+
+static size_t span_of(const unsigned char *text, size_t size, size_t first, const char *accepted)
+{
+    while (first < size && text[first] != '\0' && strchr(accepted, text[first]) != NULL) {
+        first++;
+    }
+    return first;
+}
+
+static bool starts_a_number(const unsigned char *text, size_t size, size_t at)
+{
+    return span_of(text, size, at, "0123456789+-.") > at;
+}
+
+bool grobo_i_sniff_m(const unsigned char *text, size_t size)
+{
+    bool marked = size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0;
+    size_t i = span_of(text, size, marked ? 3 : 0, " \t\r\n");
+
+    while (i < size && text[i] == '#') {
+        const unsigned char *newline = memchr(text + i, '\n', size - i);
+        i = newline != NULL ? span_of(text, size, (size_t)(newline - text), " \t\r\n") : size;
+    }
+    size_t behind = span_of(text, size, span_of(text, size, i, "0123456789+-.eE"), " \t");
+    return starts_a_number(text, size, i) && starts_a_number(text, size, behind);
+}

@@ -175,27 +175,7 @@ static int check_contents(grobo_i_document *document, grobo_motion_kind kind)
     return 0;
 }
 
-/* The format that was asked for must be the one found; an extension may only be doubted. */
-static int check_format(grobo_i_document *document, grobo_motion_kind kind,
-                        grobo_motion_format format, bool forced)
-{
-    grobo_motion_format found = grobo_motion_kind_format(kind);
-
-    if (format == GROBO_FORMAT_AUTO || format == found) {
-        return 0;
-    }
-    if (forced) {
-        return grobo_i_refuse(document->reader, GROBO_ERR_TYPE, "format", top_place(document),
-                              "a %s file, not %s", grobo_motion_format_name(found),
-                              grobo_motion_format_name(format));
-    }
-    grobo_i_warn(document->reader, "format", top_place(document),
-                 "by its name a %s file, by its contents %s", grobo_motion_format_name(format),
-                 grobo_motion_format_name(found));
-    return 0;
-}
-
-static int finish(grobo_i_document *document, grobo_motion_format format, bool forced)
+static int finish(grobo_i_document *document)
 {
     grobo_i_reader *reader = document->reader;
     grobo_motion_kind kind = GROBO_MOTION_KEYS;
@@ -204,13 +184,11 @@ static int finish(grobo_i_document *document, grobo_motion_format format, bool f
     if (result == 0) {
         result = check_contents(document, kind);
     }
-    if (result == 0) {
-        result = check_format(document, kind, format, forced);
-    }
     if (result < 0) {
         return result;
     }
     reader->motion->kind = kind;
+    reader->top = top_place(document);
     return kind == GROBO_MOTION_FRAMES ? grobo_i_finish_frames(document) : 0;
 }
 
@@ -258,7 +236,7 @@ static int read_document(grobo_i_document *document)
     return result < 0 ? result : 0;
 }
 
-int grobo_i_read_yaml(grobo_i_reader *reader, grobo_motion_format format, bool forced)
+int grobo_i_read_yaml(grobo_i_reader *reader)
 {
     grobo_i_document document;
 
@@ -271,7 +249,7 @@ int grobo_i_read_yaml(grobo_i_reader *reader, grobo_motion_format format, bool f
     }
     result = read_document(&document);
     if (result == 0) {
-        result = finish(&document, format, forced);
+        result = finish(&document);
     }
     grobo_i_free_text(reader->mem, document.type);
     grobo_i_free_text(reader->mem, document.content);

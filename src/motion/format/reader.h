@@ -27,7 +27,8 @@ typedef struct grobo_i_reader {
     grobo_diagnostics *list;
     grobo_i_input input;
     grobo_motion *motion;
-    int result; /* the first complaint, with keep_going */
+    grobo_i_place top; /* where the file says what it is; 0: unknown */
+    int result;        /* the first complaint, with keep_going */
 } grobo_i_reader;
 
 /*

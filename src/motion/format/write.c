@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/base/sized.h"
 #include "src/motion/change/convert.h"
-#include "src/motion/format/write.h"
+#include "src/motion/format/format.h"
 
 /* Postures without joints are no lines. */
 static int check_writable(const grobo_motion *motion, const grobo_i_writing *writing)
@@ -30,14 +30,15 @@ int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
     grobo_i_writing writing = {&how, list, &out};
     grobo_motion *converted = NULL;
 
-    if (grobo_i_sized_take(&how, sizeof how, options) < 0 || format < GROBO_FORMAT_AUTO ||
-        format > GROBO_FORMAT_YAML) {
+    if (grobo_i_sized_take(&how, sizeof how, options) < 0 ||
+        (format != GROBO_FORMAT_AUTO && grobo_i_format_row(format) == NULL)) {
         return GROBO_ERR_ARG;
     }
     if (format == GROBO_FORMAT_AUTO) {
         format = grobo_motion_kind_format(motion->kind);
     }
-    grobo_motion_kind kind = grobo_motion_format_kind(format);
+    const grobo_i_format *row = grobo_i_format_row(format);
+    grobo_motion_kind kind = row->kind;
     if (!grobo_i_is_as_written(motion, kind, writing.options)) {
         int result = grobo_motion_convert(motion, kind, writing.options, list, &converted);
         if (result < 0) {
@@ -57,13 +58,7 @@ int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
             "each frame has a time of its own: read by this library, and by Choreonoid from "
             "2.1 on, which holds it until the next");
     }
-    if (kind == GROBO_MOTION_POSTURES) {
-        grobo_i_write_m(&writing, motion);
-    } else if (kind == GROBO_MOTION_FRAMES) {
-        grobo_i_write_yaml(&writing, motion);
-    } else {
-        grobo_i_write_pseq(&writing, motion);
-    }
+    row->write(&writing, motion);
     grobo_motion_free(converted);
     return grobo_i_out_end(&out);
 }
