@@ -31,7 +31,7 @@ check "somebody else on the port: servos without a board" \
 check "with the right wiring they answer" both exits 0 on_robot --wiring bus status m3 --- \
     says R_SHOULDER_P
 check "and there is no echo" fails 1 '' \
-    "$GRCTL" -d "$robot" --timeout 50 --wiring bus --echo status m3
+    "$GRCTL" -d "$robot" --timeout 200 --wiring bus --echo status m3
 
 # Torque on and R_KNEE_P to -100 degrees in 3 s: frames of another program.
 moved_by_another() {

@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+import sysconfig
 import tempfile
 import unittest
 from pathlib import Path
@@ -147,6 +148,8 @@ class Binding(unittest.TestCase):
             import setuptools  # noqa: F401
         except ImportError:
             self.skipTest("needs python3-setuptools")
+        if not os.path.exists(sysconfig.get_config_h_filename()):
+            self.skipTest("needs python3-dev")
         import cffi
 
         text = subprocess.run(

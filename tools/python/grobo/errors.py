@@ -42,7 +42,8 @@ class Error(Exception):
         if self.value is not None:
             value = f"{self.value:.6g}" + (f" {self.unit}" if self.unit else "")
             if self.limits is not None:
-                value += " is not within {:.4g} to {:.4g} {}".format(*self.limits, self.unit)
+                low, high = self.limits
+                value += f" is not within {low:.4g} to {high:.4g} {self.unit}"
             about.append(value)
         return f"{self.what}: {text}" + (f" ({', '.join(about)})" if about else "")
 
