@@ -93,6 +93,32 @@ check "estop --reset" both exits 0 on_robot estop --reset --- said '^emergency s
 check "it moves again" exits 0 on_robot move m5 -20 300
 
 check "budget" both exits 0 "$GRCTL" budget --- says '^motion, 20 joints  *110 B  *0 B  *18.92 ms$'
+printf '%s\n' 'name: lx' 'family: lx16a' 'joints:' \
+    '  - {name: a, id: 1, servo: LX-16A, limits_deg: [-90, 90]}' >"$work/lx.yaml"
+# A full reading has the angle in it: on no robot it is the faster one.
+full_is_not_faster() {
+    for one in gr001 so101 so101-leader koch koch-leader openmanipulator-x pan-tilt \
+        "$work/lx.yaml"; do
+        "$GRCTL" --robot "$one" budget --json >"$work/budget" || return 1
+        python3 -c "
+import json, sys
+o = json.load(open(sys.argv[1]))
+assert o['costs'][1]['wire_us'] >= o['costs'][2]['wire_us'], o['costs']
+assert o['full_rounds_per_s'] <= o['angle_rounds_per_s'], o" "$work/budget" || return 1
+    done
+}
+check "full readings are no faster than angles alone" full_is_not_faster
+check "all that a reading asks is counted" both \
+    exits 0 "$GRCTL" --robot "$work/lx.yaml" budget --- \
+    says '^one joint, full  *24 B  *30 B '
+check "what a reply waits for, and what saves it" both exits 0 "$GRCTL" --robot koch budget --- \
+    says '0\.50 ms is a delay .*: grctl servo-set ID return_delay 0 --flash$'
+no_delay() {
+    exits 0 "$GRCTL" --robot so101 budget && ! grep -q 'delay of' "$work/out"
+}
+check "not where there is none" no_delay
+check "doctor names it" both exits 0 "$GRCTL" --robot koch -d sim doctor --- \
+    says '^ok    delay .* 500 us (servo 1).*: grctl servo-set 1 return_delay 0 --flash$'
 check "what does not fit" both exits 0 "$GRCTL" budget --rate 60 --- \
     says '^motion at 60 Hz does not fit'
 check "how many frames leave time for readings" both exits 0 "$GRCTL" budget --- \

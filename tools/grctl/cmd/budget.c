@@ -6,6 +6,7 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/wire.h"
+#include "tools/grctl/servo/family.h"
 
 enum { OPT_RATE };
 
@@ -22,6 +23,28 @@ static double reads_per_s(const wire_cost *motion, const wire_cost *read, double
         return 0;
     }
     return (double)(long)(left_us / read->total_us) * (rate_hz > 0 ? rate_hz : 1);
+}
+
+/* The register that sets how long servos wait before they reply, where a reply costs that; NULL. */
+static const grobo_servo_register *delay_of(const grobo_driver *driver)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(
+        family_servo(driver, driver->model->joints[0].motor), GROBO_ROLE_RETURN_DELAY);
+    return driver->protocol->return_delay_us > 0 && reg && reg->min == 0 ? reg : NULL;
+}
+
+/* What every reply costs beside its bytes, and how to save it. */
+static void print_delay(const grobo_driver *driver)
+{
+    const grobo_servo_register *reg = delay_of(driver);
+    double delay_ms = driver->protocol->return_delay_us / 1e3;
+    if (reg) {
+        app_print("of each reply %.2f ms is a delay of the servo's, as it leaves the factory: "
+                  "grctl servo-set ID %s 0 --flash\n",
+                  delay_ms, reg->name);
+    } else if (delay_ms > 0) {
+        app_print("of each reply %.2f ms is a delay of the servo's\n", delay_ms);
+    }
 }
 
 static void print_text(const wire_cost *costs, const grobo_budget *line, int baud_bps,
@@ -86,9 +109,13 @@ static int run(app *a)
     }
     double rate_hz = app_number(a, OPT_RATE, line.default_hz);
     if (a->json) {
-        app_print_json(to_json(costs, &line, baud_bps, rate_hz, driver->model->n_joints));
+        json_t *o = to_json(costs, &line, baud_bps, rate_hz, driver->model->n_joints);
+        json_object_set_new(o, "return_delay_us",
+                            json_integer((json_int_t)driver->protocol->return_delay_us));
+        app_print_json(o);
     } else {
         print_text(costs, &line, baud_bps, rate_hz, driver->model->n_joints);
+        print_delay(driver);
     }
     return EXIT_DONE;
 }

@@ -18,6 +18,9 @@ enum { READ_BYTES = 30 /* the longest */, NAME_BYTES = 16, FIX_BYTES = 512 };
 /* How often a servo is asked again whose reply came broken, and how many of those show two. */
 enum { ASKED_AGAIN = 8, BROKEN_AGAIN = 2 };
 
+/* A delay before replies that is worth a line. */
+enum { DELAY_WORTH_US = 100 };
+
 typedef struct patient {
     checkup k;
     conn c;
@@ -25,6 +28,8 @@ typedef struct patient {
     int answered; /* servos */
     int32_t low_mv, high_mv;
     int hottest_c;
+    int delay_us, delayed;             /* the longest delay before a reply; its servo */
+    const grobo_servo_register *delay; /* which says so */
 } patient;
 
 static bool is_path(const char *device)
@@ -297,6 +302,22 @@ static void check_model(patient *p, const char *name, int joint, const grobo_ser
     }
 }
 
+/* Where the servo keeps a delay before its replies: each reading costs that. */
+static void look_at_delay(patient *p, int id, const grobo_servo_model *servo)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_RETURN_DELAY);
+    int32_t counts = 0;
+    if (!reg || reg->min > 0 || servos_get(&p->c, id, servo, reg, &counts)) {
+        return;
+    }
+    int delay_us = (int)(counts * strtod(reg->unit, NULL));
+    if (delay_us > p->delay_us) {
+        p->delay_us = delay_us;
+        p->delayed = id;
+        p->delay = reg;
+    }
+}
+
 static void check_servo(patient *p, int joint)
 {
     const grobo_joint *j = &p->model->joints[joint];
@@ -333,6 +354,7 @@ static void check_servo(patient *p, int joint)
         return;
     }
     check_model(p, name, joint, reg ? family_identify(driver, bytes) : servo, &i.state);
+    look_at_delay(p, j->motor, servo);
 }
 
 static void check_servos(patient *p)
@@ -356,6 +378,12 @@ static void check_servos(patient *p)
     } else {
         checkup_found(&p->k, "voltage", NULL, "%.2f to %.2f V at the servos", p->low_mv / 1e3,
                       p->high_mv / 1e3);
+    }
+    if (p->delay_us >= DELAY_WORTH_US) {
+        checkup_found(&p->k, "delay", NULL,
+                      "each reply waits up to %d us (servo %d); it need not: grctl servo-set %d %s "
+                      "0 --flash",
+                      p->delay_us, p->delayed, p->delayed, p->delay->name);
     }
     if (p->answered == p->model->n_joints) {
         checkup_found(&p->k, "servos", NULL, "all %d answer; the warmest has %d C", p->answered,

@@ -31,11 +31,21 @@ static void measure_motion(const grobo_bus *bus, const grobo_driver *driver, wir
     }
 }
 
+/* All that one reading of a joint asks for. */
 static void measure_read(const grobo_bus *bus, const grobo_driver *driver, grobo_sense_kind kind,
                          wire_cost *to)
 {
     grobo_exchange exchange = {0};
-    if (driver->sense(driver, NULL, 0, kind, &exchange) >= 0) {
+    int more = driver->sense(driver, NULL, 0, kind, &exchange);
+    if (more < 0) {
+        return;
+    }
+    measure(bus, &exchange, to);
+    for (int part = 1; driver->sense_more; part++) {
+        exchange = (grobo_exchange){0};
+        if (driver->sense_more(driver, NULL, 0, kind, part, &exchange) <= 0) {
+            return;
+        }
         measure(bus, &exchange, to);
     }
 }
