@@ -304,6 +304,12 @@ static int replace(RobotMotion *motion, const SerialRobot *robot, const grobo_mo
     return motion->size;
 }
 
+static bool is_for(const grobo_motion *file, grobo_motion_format format, const SerialRobot *robot)
+{
+    return format == GROBO_FORMAT_M ? grobo_motion_joints(file) == robot->joints
+                                    : grobo_motion_is_for(file, grobo_classic_model(robot));
+}
+
 int grobo_classic_load(RobotMotion *motion, const char *path, grobo_motion_format format,
                        SerialRobot *robot)
 {
@@ -319,6 +325,11 @@ int grobo_classic_load(RobotMotion *motion, const char *path, grobo_motion_forma
     /* Columns of .m are motors, as postures are. */
     options.model = format != GROBO_FORMAT_M ? grobo_classic_model(robot) : NULL;
     int r = grobo_motion_read_file(path, &options, NULL, &file);
+    /* Six angles would move the first six motors, and the others to 0. */
+    if (r >= 0 && robot != NULL && !is_for(file, format, robot)) {
+        grobo_motion_free(file);
+        return GROBO_ERR_ARG;
+    }
     if (r >= 0) {
         r = replace(motion, format != GROBO_FORMAT_M ? robot : NULL, file);
         grobo_motion_free(file);

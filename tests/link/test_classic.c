@@ -491,6 +491,9 @@ TEST(files_stay_in_the_directory)
     assert_int_equal(SerialRobot_saveMotionToM(g, "a"), 1);
     assert_int_equal(SerialRobot_loadMotion(g, "a"), 1);
     assert_int_equal(SerialRobot_loadMotion(g, "../a"), -1);
+    FILE *file = fopen(in_folder("a.m"), "w");
+    assert_true(file != NULL && fputs("500 0 0 0 0 0 0\n", file) >= 0 && fclose(file) == 0);
+    assert_int_equal(SerialRobot_loadMotion(g, "a"), -1); /* six angles */
     assert_int_equal(RobotMotion_getSize(g->motion), 0);
     (void)tear_down();
     folder_remove(files, 1);

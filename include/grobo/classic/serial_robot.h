@@ -130,8 +130,9 @@ GROBO_CLASSIC_API int SerialRobot_appendCurrentPosture(SerialRobot *robot);
 /** appendCurrentPosture(mtime): the same with a time in ms. */
 GROBO_CLASSIC_API int SerialRobot_appendCurrentPosture_time(SerialRobot *robot, double mtime);
 /** Loads name.m, .yaml, .pseq or .mseq of motionDir, whichever is there first, or name itself where
- *  it has an extension. A name cannot lead out of the directory. @return number of postures; -1,
- *  and the motion is empty */
+ *  it has an extension. A name cannot lead out of the directory, and a motion of another robot is
+ *  refused (the original moves the joints that a .m file lacks to 0). @return number of postures;
+ *  -1, and the motion is empty */
 GROBO_CLASSIC_API int SerialRobot_loadMotion(SerialRobot *robot, const char *name);
 /** The same of one format; fname with or without its extension. */
 GROBO_CLASSIC_API int SerialRobot_loadMotionFromM(SerialRobot *robot, const char *fname);
