@@ -170,6 +170,7 @@ DRIVER_PROGRAMS := $(patsubst %.c,$(BUILD)/%$(EXE),$(DRIVER_SRCS)) $(filter \
 FUZZ_REPLAYS := $(patsubst %.c,$(BUILD)/%$(EXE),$(FUZZ_SRCS))
 FUZZERS := $(patsubst %.c,$(BUILD)/%.fuzzer,$(FUZZ_SRCS))
 BENCHES := $(patsubst %.c,$(BUILD)/%$(EXE),$(BENCH_SRCS))
+PLANT_PIPE := $(BUILD)/tests/physics/plant_pipe$(EXE)
 EXAMPLES := $(patsubst %.c,$(BUILD)/%$(EXE),$(EXAMPLE_SRCS))
 
 STATIC_LIB := $(BUILD)/libgrobo.a
@@ -201,7 +202,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
+.PHONY: check-physics check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -297,6 +298,13 @@ FAMILY_CLIENTS := dynamixel-sdk==4.1.0 rustypot==1.13.1 feetech-servo-sdk==1.0.0
     deepdiff draccus tqdm numpy huggingface-hub cffi
 # Its motors and robots alone: the rest of it wants torch.
 FAMILY_LEROBOT := lerobot==0.4.4
+check-physics: $(PLANT_PIPE) ## a simulated SO-101 whose links are in MuJoCo (from PyPI)
+	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
+	    --disable-pip-version-check mujoco numpy || true
+	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy' 2>/dev/null; then \
+	    $(BUILD)/physics/bin/python tests/physics/mujoco_plant.py $(PLANT_PIPE); \
+	else echo 'check-physics: skipped: MuJoCo cannot be had for this python3'; fi
+
 check-families: all ## clients of other servos (from PyPI) against the simulator
 	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q --disable-pip-version-check $(FAMILY_CLIENTS)
 	@$(BUILD)/families/bin/pip install -q --disable-pip-version-check --no-deps $(FAMILY_LEROBOT) || true
@@ -748,7 +756,8 @@ $(FUZZERS): %.fuzzer: %.o $(TOOL_LIB) $(STATIC_LIB)
 
 $(EXAMPLES): $(BUILD)/%$(EXE): $(BUILD)/%.o $(CLASSIC_LIB) $(STATIC_LIB)
 $(BENCHES): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(STATIC_LIB)
-$(EXAMPLES) $(BENCHES):
+$(PLANT_PIPE): $(BUILD)/%$(EXE): $(BUILD)/%.o $(STATIC_LIB)
+$(EXAMPLES) $(BENCHES) $(PLANT_PIPE):
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
