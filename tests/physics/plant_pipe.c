@@ -3,8 +3,8 @@
  * A simulated robot whose links are in another process: mujoco_plant.py fills grobo_sim_plant.
  *
  * usage: plant_pipe --mjcf    prints the links of an SO-101 as MuJoCo wants them
- *        plant_pipe           for each step, torque, damping, friction, armature, angle and speed of
- *                             each joint go to standard output; angle, speed and load come from
+ *        plant_pipe           for each step, torque, damping, friction, armature, angle, speed
+ *                             of each joint go to standard output; angle, speed and load come from
  *                             standard input, as doubles of this machine. The arm holds, moves,
  *                             stops on the way, and holds; what it did is judged, and told on
  *                             standard error.

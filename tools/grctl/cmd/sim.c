@@ -325,6 +325,26 @@ static bool announce(const farm *f)
     return true;
 }
 
+/* What is not known of its weight. */
+static void tell_weight(const farm *f)
+{
+    const grobo_sim_physics *physics = f->physics[0];
+    grobo_sim_physics_view view;
+    if (!physics) {
+        return;
+    }
+    if (app_option(f->a, OPT_SERVO)->given || !grobo_robot_def_has_weight(robot_of(f->a))) {
+        app_note(f->a, "no masses of its links are known: only motors and friction are simulated");
+    }
+    for (int i = 0; grobo_sim_physics_look(physics, i, &view) == 0; i++) {
+        if (view.motor->from == GROBO_SIM_MOTOR_DATA_SHEET) {
+            app_note(f->a, "motors of %s are not identified: friction and inertia are chosen",
+                     view.motor->model);
+            return;
+        }
+    }
+}
+
 static int close_farm(farm *f, int status)
 {
     for (int i = 0; i < f->n; i++) {
@@ -333,6 +353,11 @@ static int close_farm(farm *f, int status)
         status = trace_close(&f->watched[i].trace, f->a, status);
     }
     for (int i = 0; i < ROBOTS_MAX; i++) {
+        uint64_t skipped = grobo_sim_physics_skipped(f->physics[i]);
+        if (skipped > 0) {
+            app_note(f->a, "%llu steps of 1 ms were skipped: this machine was too slow or slept",
+                     (unsigned long long)skipped);
+        }
         grobo_sim_physics_free(f->physics[i]);
     }
     for (int i = 0; i < os_n_endings; i++) {
@@ -427,6 +452,7 @@ static int run(app *a)
         status = add_robot(&f, i);
     }
     if (!status && announce(&f)) {
+        tell_weight(&f);
         status = serve(&f);
     }
     return close_farm(&f, status);
