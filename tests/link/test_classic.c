@@ -467,6 +467,11 @@ TEST(motions_are_saved_and_loaded)
     assert_int_equal(SerialRobot_saveMotionToM(g, "a"), 2);
     assert_int_equal(SerialRobot_loadMotionFromM(g, "a.m"), 2);
     assert_int_equal(RobotPosture_getDegree(SerialRobot_getLastPosture(g), 2), 200);
+    assert_int_equal(RobotPosture_getDegree(SerialRobot_getFirstPosture(g), 2), 100);
+    assert_int_equal(SerialRobot_doNthMotion(g, 1), -1); /* it is not connected */
+    assert_int_equal(SerialRobot_error(g), GROBO_ERR_CLOSED);
+    assert_int_equal(RobotPosture_getDegree(g->targetPosture, 2), 200);
+    assert_true(g->targetPosture->motionTime < 1); /* the default time */
     assert_true(SerialRobot_saveMotionToYaml(g, "a") > 0);
     int frames = SerialRobot_loadMotionFromYaml(g, "a");
     assert_true(frames > 2);
