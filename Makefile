@@ -200,7 +200,7 @@ include tools/baremetal/baremetal.mk
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all lib demo cockpit check compile_commands robots servos messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
+.PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-physics check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
@@ -247,6 +247,12 @@ compile_commands: ## compile_commands.json, for language servers: how each file 
 
 servos: $(SERVOS) ## make the tables of servo models from src/servo/models
 	@tools/servos/make.sh $(SERVOS)
+
+servo-models: $(SERVOS) ## the table of docs/servo-models.md: models, and their sources
+	@sed '/^|---|---|---|---|---|---|---|---|---|$$/q' docs/servo-models.md >$(BUILD)/servo-models.md
+	@for f in src/servo/models/*/table.yaml; do $(SERVOS) --document "$${f%/table.yaml}" || exit 1; done \
+	    >>$(BUILD)/servo-models.md
+	@mv $(BUILD)/servo-models.md docs/servo-models.md
 
 robots: $(ROBOTS) ## make the tables of src/robots from its files
 	@tools/robots/make.sh $(ROBOTS)

@@ -2,7 +2,7 @@
 /*
  * Makes const tables of servo models: `servos DIR` writes C to standard output, of DIR/table.yaml
  * and the files of the models that it lists. `make servos` runs it for src/servo/models; what it
- * writes is committed, so that firmware needs no such tool. `servos --document DIR...` writes
+ * writes is committed, so that firmware needs no such tool. `servos --document DIR` writes lines of
  * docs/servo-models.md instead.
  */
 #include <ctype.h>
@@ -92,16 +92,13 @@ static int read_model(grobo_i_reader *reader, void *ctx)
 static int read_like(grobo_i_servo_draft *draft, grobo_i_reader *reader, const char *name,
                      grobo_i_place place)
 {
-    uint32_t layout = draft->layout, values = draft->values;
     grobo_i_servo_text own;
     memcpy(own, draft->name, sizeof own);
     if (++draft->depth > GROBO_I_SERVO_LIKES) {
         return grobo_i_refuse(reader, GROBO_ERR_CAP, "depth", place, "like: too deep");
     }
     int result = read_file(draft->ctx, name, read_block, draft);
-    draft->depth--;
-    draft->layout = layout;
-    draft->values = values;
+    draft->depth--; /* its sources are those of the file too, until that has its own */
     memcpy(draft->name, own, sizeof own);
     return result;
 }
@@ -403,6 +400,49 @@ static void print_table(table *t)
     printf("    return &grobo_i_%s;\n}\n", own_part(t));
 }
 
+/* ---- docs/servo-models.md ------------------------------------------------------------------ */
+
+static int bits(uint32_t mask)
+{
+    int n = 0;
+    for (; mask != 0; mask &= mask - 1) {
+        n++;
+    }
+    return n;
+}
+
+static void print_sources(const grobo_i_servo_draft *m)
+{
+    uint32_t used = 0;
+    bool first = true;
+    for (int i = 0; i < m->n_rows; i++) {
+        used |= m->rows[i].layout | m->rows[i].values;
+    }
+    for (int i = 0; i < m->n_sources; i++) {
+        if ((used >> i & 1) != 0) {
+            printf("%s%s", first ? "" : ", ", m->source[i]);
+            first = false;
+        }
+    }
+}
+
+/* A line a model: of how many of its registers two sources say the place, and the values. */
+static void print_document(const table *t)
+{
+    for (int k = 0; k < t->n_models; k++) {
+        const grobo_i_servo_draft *m = &t->models[k];
+        int layout = 0, values = 0;
+        for (int i = 0; i < m->n_rows; i++) {
+            layout += bits(m->rows[i].layout) >= 2;
+            values += bits(m->rows[i].values) >= 2;
+        }
+        printf("| %s | %s | %u | %d | %d | %d | %d | %d | ", m->name, t->name, m->model.number,
+               m->n_rows, layout, m->n_rows - layout, values, m->n_rows - values);
+        print_sources(m);
+        printf(" |\n");
+    }
+}
+
 static bool read_dir(table *t, const char *dir)
 {
     grobo_diagnostic d;
@@ -425,12 +465,15 @@ static bool read_dir(table *t, const char *dir)
 int main(int argc, char **argv)
 {
     table *t = malloc(sizeof *t);
-    if (!t || argc != 2 || grobo_diagnostics_new(NULL, &list) < 0) {
-        fprintf(stderr, "usage: servos DIR\n");
+    bool document = argc == 3 && strcmp(argv[1], "--document") == 0;
+    if (!t || (argc != 2 && !document) || grobo_diagnostics_new(NULL, &list) < 0) {
+        fprintf(stderr, "usage: servos [--document] DIR\n");
         free(t);
         return 2;
     }
-    if (read_dir(t, argv[1])) {
+    if (read_dir(t, argv[argc - 1]) && document) {
+        print_document(t);
+    } else if (!failed) {
         merge(t);
         print_table(t);
     }

@@ -33,13 +33,17 @@ static const grobo_servo_register rows[] = {
     ROW("resolution_divider", 22, 1, 0, EW, NONE, "", 1, 4, 1, 2),
     ROW("torque", 24, 1, 0, W, TORQUE, "", 0, 1, 0, 0),
     ROW("led", 25, 1, 0, W, NONE, "", 0, 1, 0, 0),
-    ROW("cw_margin", 26, 1, 0, W, NONE, "0.29 deg", 0, 255, 1, 1),
+    ROW("cw_margin", 26, 1, 0, W, NONE, "0.29 deg", 0, 255, 1, 9),
     ROW("position_d", 26, 1, 0, W, NONE, "", 0, 254, 0, 2),
-    ROW("ccw_margin", 27, 1, 0, W, NONE, "0.29 deg", 0, 255, 1, 1),
+    ROW("cw_margin", 26, 1, 0, W, NONE, "0.29 deg", 0, 255, 4, 10),
+    ROW("ccw_margin", 27, 1, 0, W, NONE, "0.29 deg", 0, 255, 1, 9),
     ROW("position_i", 27, 1, 0, W, NONE, "", 0, 254, 0, 2),
-    ROW("cw_slope", 28, 1, 0, W, NONE, "", 0, 254, 32, 1),
+    ROW("ccw_margin", 27, 1, 0, W, NONE, "0.29 deg", 0, 255, 4, 10),
+    ROW("cw_slope", 28, 1, 0, W, NONE, "", 0, 254, 32, 9),
     ROW("position_p", 28, 1, 0, W, NONE, "", 0, 254, 32, 2),
-    ROW("ccw_slope", 29, 1, 0, W, NONE, "", 0, 254, 32, 1),
+    ROW("cw_slope", 28, 1, 0, W, NONE, "", 0, 254, 64, 10),
+    ROW("ccw_slope", 29, 1, 0, W, NONE, "", 0, 254, 32, 9),
+    ROW("ccw_slope", 29, 1, 0, W, NONE, "", 0, 254, 64, 10),
     ROW("goal_position", 30, 2, 0, W, GOAL, "0.29 deg", 0, 1023, 0, 1),
     ROW("goal_position", 30, 2, 1, W, GOAL, "0.088 deg", -28672, 28672, 0, 2),
     ROW("moving_speed", 32, 2, 0, W, SPEED, "0.111 rpm", 0, 2047, 0, 1),
@@ -58,9 +62,9 @@ static const grobo_servo_register rows[] = {
     ROW("punch", 48, 2, 0, W, NONE, "0.1 %", 0, 1023, 32, 1),
     ROW("punch", 48, 2, 0, W, NONE, "0.1 %", 0, 1023, 0, 2),
     ROW("tick", 50, 2, 0, R, NONE, "1 ms", 0, 32767, 0, 2),
-    ROW("current", 68, 2, 0, R, CURRENT, "4.5 mA", 0, 4095, 2048, 9),
-    ROW("torque_control", 70, 1, 0, W, MODE, "", 0, 1, 0, 9),
-    ROW("goal_torque", 71, 2, 10, W, GOAL_CURRENT, "4.5 mA", -1023, 1023, 0, 9),
+    ROW("current", 68, 2, 0, R, CURRENT, "4.5 mA", 0, 4095, 2048, 11),
+    ROW("torque_control", 70, 1, 0, W, MODE, "", 0, 1, 0, 11),
+    ROW("goal_torque", 71, 2, 10, W, GOAL_CURRENT, "4.5 mA", -1023, 1023, 0, 11),
     ROW("goal_acceleration", 73, 1, 0, W, ACCELERATION, "8.583 deg/s2", 0, 254, 0, 2),
 };
 
@@ -70,6 +74,7 @@ static const grobo_servo_model models[] = {
     {"MX-28", 29, 4096, 360, 2048, 330, 2500, 1400, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
     {"MX-64", 310, 4096, 360, 2048, 378, 6000, 4100, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
     {"MX-106", 320, 4096, 360, 2048, 270, 8400, 5200, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
+    {"AX-12W", 300, 1023, 300, 512, 324, 200, 1400, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
 };
 
 static const grobo_servo_rate rates[] = {
@@ -79,7 +84,7 @@ static const grobo_servo_rate rates[] = {
 };
 
 static const uint64_t sets[] = {
-    0x1F, 0x3, 0x1C, 0x10, 0x1, 0x2, 0x14, 0x8, 0x1D, 0x18,
+    0x3F, 0x23, 0x1C, 0x10, 0x21, 0x2, 0x14, 0x8, 0x3D, 0x3, 0x20, 0x18,
 };
 
 const grobo_servo_table grobo_i_dxl1_table = {
