@@ -67,6 +67,18 @@ typedef struct grobo_robot_link {
     double inertia_kgm2[6]; /**< about that, along its axes: xx, yy, zz, xy, xz, yz */
 } grobo_robot_link;
 
+/** What a file says of a joint's motor, for a simulator with weight; 0: as the servo's model has it
+ *  (grobo_sim_motor_of()). With any of it the motor counts as given (GROBO_SIM_MOTOR_GIVEN). */
+typedef struct grobo_robot_motor {
+    double kt_nm_a;
+    double resistance_ohm;
+    double armature_kgm2;
+    double torque_max_nm;
+    double friction_nm; /**< with viscous_nms all of its friction */
+    double viscous_nms;
+    double backlash_rad;
+} grobo_robot_motor;
+
 /** A robot. Plain data; all that it points to lives as long as it. */
 typedef struct grobo_robot_def {
     const char *name;                 /**< "so101": what it is called on a command line */
@@ -86,6 +98,7 @@ typedef struct grobo_robot_def {
     bool arm;            /**< it may stop anywhere: see grobo_driver */
     int8_t payload_link; /**< the part that holds what the robot carries; -1: not told */
     double payload_kg;   /**< the heaviest that its maker names; 0: not told */
+    const grobo_robot_motor *motors; /**< by joint; NULL: as the servos' models have them */
 } grobo_robot_def;
 
 /** Robot i of those that come with the library, counted from 0. @return NULL behind the last. */

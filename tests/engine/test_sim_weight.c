@@ -272,6 +272,40 @@ TEST(current_and_heat_are_those_of_the_winding)
     (void)end();
 }
 
+/* ---- a file of one's own ------------------------------------------------------------------- */
+
+static int take_text(void *ctx, void *buffer, size_t size)
+{
+    const char **text = ctx;
+    size_t n = strlen(*text);
+    n = n < size ? n : size;
+    memcpy(buffer, *text, n);
+    *text += n;
+    return (int)n;
+}
+
+TEST(a_file_overrides_motors)
+{
+    const char *text = "name: one\nfamily: feetech\njoints:\n"
+                       "  - {name: a, id: 1, servo: STS3215, limits_deg: [-90, 90],\n"
+                       "     motor: {friction_nm: 0.5, armature_kgm2: 0.01}}\n"
+                       "  - {name: b, id: 2, servo: STS3215, limits_deg: [-90, 90]}\n";
+    grobo_robot_def *def = NULL;
+    assert_int_equal(
+        grobo_robot_def_read(&(grobo_source){take_text, &text}, "one", NULL, NULL, &def), 0);
+    begin(def);
+    const grobo_sim_motor *a = look(0).motor, *b = look(1).motor;
+    assert_int_equal(a->from, GROBO_SIM_MOTOR_GIVEN);
+    assert_near(a->friction.base_nm, 0.5, 0);
+    assert_near(a->friction.viscous_nms, 0, 0);
+    assert_near(a->armature_kgm2, 0.01, 0);
+    assert_near(a->kt_nm_a, b->kt_nm_a, 0);
+    assert_int_equal(b->from, GROBO_SIM_MOTOR_IDENTIFIED);
+    assert_near(b->friction.base_nm, 0.0523930, 0);
+    (void)end();
+    grobo_robot_def_free(def);
+}
+
 /* ---- every robot, every model ---------------------------------------------------------------- */
 
 static const grobo_robot_def *next_robot(const grobo_robot_def *before)

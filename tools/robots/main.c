@@ -172,6 +172,21 @@ static void print_links(const grobo_robot_def *def)
     printf("};\n\n");
 }
 
+static void print_motors(const grobo_robot_def *def)
+{
+    if (!def->motors) {
+        return;
+    }
+    printf("static const grobo_robot_motor motors[] = {");
+    for (int j = 0; j < def->model->n_joints; j++) {
+        const grobo_robot_motor *m = &def->motors[j];
+        printf("{%.15g, %.15g, %.15g, %.15g, %.15g, %.15g, %s},", m->kt_nm_a, m->resistance_ohm,
+               m->armature_kgm2, m->torque_max_nm, m->friction_nm, m->viscous_nms,
+               rad(m->backlash_rad));
+    }
+    printf("};\n\n");
+}
+
 static void print_usb(const grobo_robot_def *def)
 {
     if (def->n_usb == 0) {
@@ -235,6 +250,9 @@ static void print_def(const grobo_robot_def *def, const char *model)
         printf(".links = links, .n_links = %u, ", def->n_links);
     }
     printf(".payload_link = %d, ", def->payload_link);
+    if (def->motors) {
+        printf(".motors = motors, ");
+    }
     if (def->payload_kg > 0) {
         printf(".payload_kg = %.15g, ", def->payload_kg);
     }
@@ -261,6 +279,7 @@ static void print(const grobo_robot_def *def)
     print_rest(def);
     print_usb(def);
     print_links(def);
+    print_motors(def);
     if (is_gr001) {
         print_drivers(def);
     }

@@ -19,6 +19,7 @@ typedef enum grobo_i_block {
     GROBO_I_BLOCK_GROUP,
     GROBO_I_BLOCK_LINK,
     GROBO_I_BLOCK_PAYLOAD,
+    GROBO_I_BLOCK_MOTOR,
     GROBO_I_BLOCKS
 } grobo_i_block;
 
@@ -27,12 +28,19 @@ const char *grobo_i_robot_key(grobo_i_block block, size_t index);
 bool grobo_i_robot_key_needed(grobo_i_block block, size_t index);
 
 /* Keys that were there have a place of their value. Numbers are as in the file. */
+typedef struct grobo_i_motor_draft {
+    grobo_i_place place, at[GROBO_I_KEYS_MAX];
+    double kt_nm_a, resistance_ohm, armature_kgm2, torque_max_nm, friction_nm, viscous_nms,
+        backlash_deg;
+} grobo_i_motor_draft;
+
 typedef struct grobo_i_joint_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
     grobo_i_name name, servo, mirror;
     double id, limits_deg[2], init_deg, rest_deg, speed_deg_s, torque_limit_pct, free_ma, sign,
         zero_deg, gear, mirror_sign, readback_deg;
     bool turns;
+    grobo_i_motor_draft motor;
 } grobo_i_joint_draft;
 
 typedef struct grobo_i_link_draft {
@@ -98,6 +106,7 @@ typedef struct grobo_i_robot_file {
     double rest_rad[GROBO_JOINTS_MAX];
     grobo_readback readback[GROBO_JOINTS_MAX];
     grobo_robot_link links[GROBO_ROBOT_LINKS_MAX];
+    grobo_robot_motor motors[GROBO_JOINTS_MAX];
     grobo_usb_id usb[GROBO_ROBOT_USB_MAX];
     const char *alike[GROBO_I_ALIKE_MAX + 1];
     grobo_i_name name, title, model_name, joint_names[GROBO_JOINTS_MAX],

@@ -210,6 +210,24 @@ static void check_unique(const maker *m, int j)
     }
 }
 
+/* What the file says of a joint's motor; a key that is missing is 0, the servo's own. */
+static void make_motor(const maker *m, int j)
+{
+    const grobo_i_motor_draft *motor = &m->draft->joint[j].motor;
+    if (!joint_has(m, j, "motor")) {
+        return;
+    }
+    m->file->motors[j] =
+        (grobo_robot_motor){.kt_nm_a = motor->kt_nm_a,
+                            .resistance_ohm = motor->resistance_ohm,
+                            .armature_kgm2 = motor->armature_kgm2,
+                            .torque_max_nm = motor->torque_max_nm,
+                            .friction_nm = motor->friction_nm,
+                            .viscous_nms = motor->viscous_nms,
+                            .backlash_rad = grobo_rad_from_deg(motor->backlash_deg)};
+    m->file->def.motors = m->file->motors;
+}
+
 static void make_joint(const maker *m, int j)
 {
     const grobo_i_joint_draft *draft = &m->draft->joint[j];
@@ -246,6 +264,7 @@ static void make_joint(const maker *m, int j)
     if (joint_has(m, j, "rest_deg")) {
         file->def.rest_rad = file->rest_rad;
     }
+    make_motor(m, j);
 }
 
 static void check_mirrors(const maker *m)

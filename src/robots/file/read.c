@@ -70,11 +70,13 @@ static int read_groups(grobo_i_events *events, void *draft);
 static int read_links(grobo_i_events *events, void *draft);
 static int read_members(grobo_i_events *events, void *draft);
 static int read_payload(grobo_i_events *events, void *draft);
+static int read_motor(grobo_i_events *events, void *draft);
 
 #define ROBOT grobo_i_draft
 #define JOINT grobo_i_joint_draft
 #define LINK grobo_i_link_draft
 #define SAFETY grobo_i_safety_draft
+#define MOTOR grobo_i_motor_draft
 
 static const key_row robot_keys[] = {
     NEEDED("name", ROBOT, name),
@@ -134,6 +136,17 @@ static const key_row joint_keys[] = {
     NAME("mirror", JOINT, mirror),
     WHOLE("mirror_sign", JOINT, mirror_sign, -1, 1),
     NUMBER("readback_deg", JOINT, readback_deg, -20, 20),
+    CALL("motor", read_motor),
+};
+
+static const key_row motor_keys[] = {
+    NUMBER("kt_nm_a", MOTOR, kt_nm_a, 1e-6, 1000),
+    NUMBER("resistance_ohm", MOTOR, resistance_ohm, 1e-6, 1e6),
+    NUMBER("armature_kgm2", MOTOR, armature_kgm2, 0, 1000),
+    NUMBER("torque_max_nm", MOTOR, torque_max_nm, 0, 1000),
+    NUMBER("friction_nm", MOTOR, friction_nm, 0, 1000),
+    NUMBER("viscous_nms", MOTOR, viscous_nms, 0, 1000),
+    NUMBER("backlash_deg", MOTOR, backlash_deg, 0, 20),
 };
 
 static const key_row group_keys[] = {
@@ -169,6 +182,7 @@ static const keys blocks[GROBO_I_BLOCKS] = {
     [GROBO_I_BLOCK_JOINT] = KEYS("a joint", joint_keys),
     [GROBO_I_BLOCK_GROUP] = KEYS("a group", group_keys),
     [GROBO_I_BLOCK_LINK] = KEYS("a link", link_keys),
+    [GROBO_I_BLOCK_MOTOR] = KEYS("'motor'", motor_keys),
     [GROBO_I_BLOCK_PAYLOAD] = KEYS("'payload'", payload_keys),
 };
 
@@ -356,6 +370,12 @@ static int read_safety(grobo_i_events *events, void *draft)
 {
     grobo_i_safety_draft *safety = &((grobo_i_draft *)draft)->safety;
     return read_block(events, GROBO_I_BLOCK_SAFETY, safety, safety->at, &safety->place);
+}
+
+static int read_motor(grobo_i_events *events, void *draft)
+{
+    grobo_i_motor_draft *motor = &((grobo_i_joint_draft *)draft)->motor;
+    return read_block(events, GROBO_I_BLOCK_MOTOR, motor, motor->at, &motor->place);
 }
 
 static int read_payload(grobo_i_events *events, void *draft)

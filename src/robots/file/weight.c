@@ -5,6 +5,8 @@
 
 #include <grobo/robot_file.h>
 
+#include "src/robots/file/families.h"
+
 bool grobo_robot_def_has_weight(const grobo_robot_def *def)
 {
     for (int i = 0; def != NULL && i < def->n_links; i++) {
@@ -32,6 +34,30 @@ static void rotation(double r[9], const double rpy[3])
     memcpy(r, made, sizeof made);
 }
 
+/* The servo's own, with what the file says instead. False: the file says nothing. */
+static bool given(const grobo_robot_def *def, int j, grobo_sim_motor *motor)
+{
+    static const grobo_robot_motor nothing;
+    const grobo_robot_motor *said = def->motors != NULL ? &def->motors[j] : &nothing;
+    const grobo_servo_model *servo =
+        grobo_i_family_servo(def->family, def->model->joints[j].servo_model);
+    if (memcmp(said, &nothing, sizeof nothing) == 0 || grobo_sim_motor_of(servo, motor) < 0) {
+        return false;
+    }
+    motor->from = GROBO_SIM_MOTOR_GIVEN;
+    motor->source = "the robot's file";
+    motor->kt_nm_a = said->kt_nm_a > 0 ? said->kt_nm_a : motor->kt_nm_a;
+    motor->resistance_ohm = said->resistance_ohm > 0 ? said->resistance_ohm : motor->resistance_ohm;
+    motor->armature_kgm2 = said->armature_kgm2 > 0 ? said->armature_kgm2 : motor->armature_kgm2;
+    motor->torque_max_nm = said->torque_max_nm > 0 ? said->torque_max_nm : motor->torque_max_nm;
+    motor->backlash_rad = said->backlash_rad > 0 ? said->backlash_rad : motor->backlash_rad;
+    if (said->friction_nm > 0 || said->viscous_nms > 0) {
+        motor->friction =
+            (grobo_sim_friction){.base_nm = said->friction_nm, .viscous_nms = said->viscous_nms};
+    }
+    return true;
+}
+
 int grobo_robot_def_physics(const grobo_robot_def *def, bool real_time, const grobo_mem *mem,
                             grobo_sim_physics **physics)
 {
@@ -52,8 +78,13 @@ int grobo_robot_def_physics(const grobo_robot_def *def, bool real_time, const gr
         memcpy(to->inertia_kgm2, from->inertia_kgm2, sizeof to->inertia_kgm2);
         rotation(to->r, from->origin_rad);
     }
-    const grobo_sim_physics_config config = {GROBO_SIM_PHYSICS_CONFIG_INIT, .model = def->model,
-                                             .links = links, .n_links = def->n_links,
-                                             .real_time = real_time};
+    grobo_sim_motor motor[GROBO_JOINTS_MAX];
+    const grobo_sim_motor *motors[GROBO_JOINTS_MAX] = {NULL};
+    for (int j = 0; j < def->model->n_joints; j++) {
+        motors[j] = given(def, j, &motor[j]) ? &motor[j] : NULL;
+    }
+    const grobo_sim_physics_config config = {
+        GROBO_SIM_PHYSICS_CONFIG_INIT, .model = def->model, .links = links,
+        .n_links = def->n_links,       .motors = motors,    .real_time = real_time};
     return grobo_sim_physics_new(&config, mem, physics);
 }
