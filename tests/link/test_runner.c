@@ -71,6 +71,8 @@ TEST_WITH(with_and_without_thread, settings_are_kept)
     assert_int_equal(grobo_runner_get_period_us(runner), GROBO_RUNNER_PERIOD_US);
     assert_int_equal(grobo_runner_set_period_us(runner, 20000), GROBO_OK);
     assert_int_equal(grobo_runner_get_period_us(runner), 20000);
+    assert_int_equal(grobo_runner_set_period_us(runner, 500000), GROBO_OK);
+    assert_int_equal(grobo_runner_get_period_us(runner), 500000);
     assert_int_equal(grobo_runner_set_period_us(runner, 999), GROBO_ERR_ARG);
 
     assert_int_equal(grobo_runner_set_motion_count(runner, 3), GROBO_OK);
@@ -329,6 +331,13 @@ TEST_WITH(with_and_without_thread, raw_commands)
     assert_int_equal(grobo_runner_get_command(runner, got, 1), GROBO_ERR_SPACE);
     assert_int_equal(grobo_runner_get_command(runner, got, sizeof got), 2);
     assert_memory_equal(got, check, 2);
+    for (size_t i = 0; i < sizeof longer; i++) {
+        longer[i] = (uint8_t)(i + 1);
+    }
+    assert_int_equal(grobo_runner_set_command(runner, longer, 256), 256);
+    assert_int_equal(grobo_runner_get_command(runner, got, sizeof got), 256);
+    assert_memory_equal(got, longer, 256);
+    assert_int_equal(grobo_runner_set_command(runner, check, sizeof check), 2);
 
     /* The port is opened where it is not; the answer of the board is 07. */
     assert_int_equal(grobo_runner_send_command(runner, NULL, 0, 0), 2);

@@ -285,6 +285,9 @@ TEST_WITH(fixture, low_level_read_and_write_take_what_there_is)
     assert_int_equal(grobo_serial_write(serial, "xyz", 3), 3);
     test_line_read(&line, buf, 3);
     assert_memory_equal(buf, "xyz", 3);
+    assert_int_equal(grobo_serial_write(serial, "0123456789abcdef", 16), 16); /* the line is free */
+    test_line_read(&line, buf, 16);
+    assert_memory_equal(buf, "0123456789abcdef", 16);
 }
 
 TEST_WITH(fixture, waiting_bytes_are_counted_and_dropped)
@@ -295,6 +298,10 @@ TEST_WITH(fixture, waiting_bytes_are_counted_and_dropped)
     await_bytes(5);
     assert_int_equal(grobo_serial_discard(serial), 5);
     assert_int_equal(grobo_serial_waiting(serial), 0);
+    uint8_t many[200] = {0};
+    test_line_write(&line, many, sizeof many);
+    await_bytes(sizeof many);
+    assert_int_equal(grobo_serial_discard(serial), sizeof many);
 }
 
 TEST_WITH(fixture, bytes_from_before_open_are_gone)

@@ -80,7 +80,10 @@ TEST(a_fresh_posture_sets_nothing)
     assert_int_equal(grobo_posture_get_deg(&p, 19, &value), GROBO_ERR_EMPTY);
     assert_near(value, 7.0, 0.0);
     assert_int_equal(grobo_posture_init(&p, 0), 0);
-    assert_int_equal(grobo_posture_init(&p, GROBO_JOINTS_MAX), 0);
+    for (int n = 0; n <= GROBO_JOINTS_MAX; n++) {
+        assert_int_equal(grobo_posture_init(&p, n), 0);
+        assert_int_equal(p.n_joints, n);
+    }
     assert_int_equal(grobo_posture_init(&p, GROBO_JOINTS_MAX + 1), GROBO_ERR_CAP);
     assert_int_equal(grobo_posture_init(&p, -1), GROBO_ERR_CAP);
 }
