@@ -284,7 +284,7 @@ def rates(port):
     from grobo._lib import lib
 
     with grobo.connect(port, robot="so101", sense_interval=1e-6) as robot:
-        stats = lib.grobo_robot_get_bus_stats(robot._control.robot)
+        stats = lib.grobo_robot_get_bus_stats(robot._runner.robot)
 
         def measure():
             began, frames, line = time.monotonic(), stats.tx_frames, stats.tx_bytes + stats.rx_bytes
