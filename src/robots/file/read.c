@@ -116,7 +116,7 @@ static const key_row joint_keys[] = {
      .needed = true,
      .offset = offsetof(JOINT, id),
      .high = GROBO_SERVO_ID_MAX},
-    NEEDED("servo", JOINT, servo),
+    {.name = "servo", .kind = KEY_TEXT, .needed = true, .offset = offsetof(JOINT, servo)},
     {.name = "limits_deg",
      .kind = KEY_NUMBER,
      .count = 2,
