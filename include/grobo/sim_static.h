@@ -3,9 +3,9 @@
  * @file sim_static.h
  * @brief A simulated robot in storage of one's own: for firmware and for tests in virtual time.
  *
- * What is in here is in the static libraries alone (libgrobo-core.a, libgrobo.a): the sizes below
- * change from version to version. With the shared library a simulator comes from session.h or
- * sim_server.h. NULL where something must be is GROBO_ERR_ARG (error.h).
+ * The sizes below change from version to version: link such a program statically (libgrobo-core.a,
+ * libgrobo.a). With the shared library a simulator comes from session.h or sim_server.h.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_SIM_STATIC_H
 #define GROBO_SIM_STATIC_H

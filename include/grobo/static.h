@@ -4,8 +4,8 @@
  * @brief The engine in storage of one's own, pumped by oneself: for firmware and for loops that
  * are not libevent's.
  *
- * What is in here is in the static libraries alone (libgrobo-core.a, libgrobo.a): the sizes below
- * change from version to version. With the shared library a robot comes from session.h or runner.h.
+ * The sizes below change from version to version: link such a program statically (libgrobo-core.a,
+ * libgrobo.a). A shared library of another version makes grobo_robot_init() refuse the engine.
  *
  * The owner of the line pumps the engine, when bytes came, a request was made or the deadline is
  * reached, always in this order:
