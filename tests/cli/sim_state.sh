@@ -3,7 +3,7 @@
 # grctl sim --state FILE: flash survives the simulator, whatever ends it, and whatever is in FILE.
 . tests/support/cli.sh
 own_sim
-state=$work/state
+state=$work/flash
 
 chain() {
     start_sim --servo 1=RS304MD,2=RS302CD --state "$state" "$@"
@@ -44,9 +44,9 @@ sim_pid=
 chain
 test_case "one file, one simulator, whole after SIGKILL"
 check "after SIGKILL it is there too" delay_is 2 11
-check "one file, one simulator" fails 3 'state: another simulator has it' timeout 5 "$GRCTL" sim \
+check "one file, one simulator" fails 3 'flash: another simulator has it' timeout 5 "$GRCTL" sim \
     --servo 1=RS304MD,2=RS302CD --state "$state"
-ln -s state "$work/other-name"
+ln -s flash "$work/other-name"
 check "by another name too" fails 3 'another simulator has it' \
     timeout 5 "$GRCTL" sim --servo 1=RS304MD,2=RS302CD --state "$work/other-name"
 check "the first one goes on" delay_is 2 11
