@@ -417,7 +417,7 @@ TEST_EACH(zmp_case, zmp_cases, the_zmp_is_choreonoid_s)
     for (int i = 0; i < row->n_keys; i++) {
         add_case_key(&script, &row->keys[i]);
     }
-    run_start(&run, &grobo_gr001_body, &script, &options);
+    run_start(&run, grobo_gr001_body(), &script, &options);
     const struct grobo_i_track *zmp = &run.body->zmp;
     assert_int_equal(zmp->n, row->n_zmp);
     for (int i = 0; i < zmp->n; i++) {
