@@ -44,6 +44,46 @@ WANTED_PCT = 95
 MEMORY_BYTES = 2 << 30
 QUIET = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
+# What a file of tests has in common with others, and the program of all of them: it runs the tests
+# of the file that its argument names (tests/support/test.h).
+REGISTERS = ("main", "test_i_add", "test_i_around")
+MAIN_BEGINS = """
+#include <string.h>
+#include "tests/support/test.h"
+#define REGISTER(name) \\
+    int main_of_##name(int argc, char **argv) __attribute__((weak)); \\
+    test_fixture test_i_around_of_##name; \\
+    static test_i_entry *tests_of_##name; \\
+    void test_i_add_of_##name(test_i_entry *test) \\
+    { \\
+        test->next = tests_of_##name; \\
+        tests_of_##name = test; \\
+    }
+"""
+MAIN_ENDS = """
+static const struct {
+    const char *name;
+    test_i_entry **tests;
+    const test_fixture *around;
+    int (*own_main)(int argc, char **argv);
+} files[] = {
+%s};
+int main(int argc, char **argv)
+{
+    for (unsigned i = 0; argc == 2 && i < sizeof files / sizeof files[0]; i++) {
+        if (strcmp(argv[1], files[i].name) == 0) {
+            for (test_i_entry *test = *files[i].tests, *next; test != NULL; test = next) {
+                next = test->next;
+                test_i_add(test);
+            }
+            test_i_around = *files[i].around;
+            return (files[i].own_main != NULL ? files[i].own_main : test_main)(1, argv) != 0;
+        }
+    }
+    return 0;
+}
+"""
+
 
 class Problem(Exception):
     """What ends the run: said in one line."""
@@ -221,23 +261,21 @@ class Bench(Builder):
             json.dump(self.killers, file, indent=0)
 
     def _tests_of(self, objects):
-        """Copies of the tests whose mains have names of their own, and a main that calls one."""
+        """Copies of the tests whose registers and mains have names of their own, and a main that
+        runs the tests of one."""
         names, copies = [], []
         for path in objects:
             name = os.path.splitext(os.path.basename(path))[0]
             if not re.fullmatch(self.options.choose, name):
                 continue
             copy = os.path.join(self.work, name + ".test.o")
-            self.call(["objcopy", "--redefine-sym", f"main=main_of_{name}", path, copy])
+            own = [f"--redefine-sym={symbol}={symbol}_of_{name}" for symbol in REGISTERS]
+            self.call(["objcopy", *own, path, copy])
             names.append(name)
             copies.append(copy)
-        rows = "".join(f'    {{"{n}", main_of_{n}}},\n' for n in names)
-        source = ("#include <string.h>\n" + "".join(f"int main_of_{n}(void);\n" for n in names) +
-                  "static const struct { const char *name; int (*run)(void); } tests[] = {\n" +
-                  rows + "};\nint main(int argc, char **argv)\n{\n"
-                  "    for (unsigned i = 0; i < sizeof tests / sizeof tests[0]; i++) {\n"
-                  "        if (argc == 2 && strcmp(argv[1], tests[i].name) == 0) {\n"
-                  "            return tests[i].run() != 0;\n        }\n    }\n    return 0;\n}\n")
+        rows = "".join(f'    {{"{n}", &tests_of_{n}, &test_i_around_of_{n}, main_of_{n}}},\n'
+                       for n in names)
+        source = MAIN_BEGINS + "".join(f"REGISTER({n})\n" for n in names) + MAIN_ENDS % rows
         self.call(shlex.split(self.options.compile) + ["-w", "-x", "c", "-", "-c", "-o", self.main],
                    source)
         self.tests = names

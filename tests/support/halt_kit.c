@@ -108,7 +108,7 @@ static const struct kind {
 };
 
 static halt_robot robots[ROBOTS];
-static char joint_names[GROBO_JOINTS_MAX][4];
+static char joint_names[GROBO_JOINTS_MAX][16];
 
 static void make_gr001(halt_robot *robot)
 {
