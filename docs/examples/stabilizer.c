@@ -17,13 +17,12 @@ static int keep_level(const grobo_driver *self, void *ctx, const grobo_posture *
 
 int main(void)
 {
-    const grobo_robot_def *def = grobo_robot_def_at(0);
+    const grobo_robot_def *def = NULL;
     grobo_driver driver;
     grobo_robot_sim sim;
     grobo_runner *arm = NULL;
     grobo_posture at = {.n_joints = 6, .set = 0xE, .angle_rad = {0, 0.3, 0.2, 0}};
-    for (size_t i = 1; strcmp(def->name, "so101") != 0; i++) {
-        def = grobo_robot_def_at(i);
+    for (size_t i = 0; (def = grobo_robot_def_at(i)) != NULL && strcmp(def->name, "so101"); i++) {
     }
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = "sim",
                                           .driver = &driver, .sim = &sim.config};
