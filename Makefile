@@ -295,7 +295,7 @@ test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; ONLY=joints o
 	    $(test_programs) $(test_scripts) $(corpora) $(if $(ONLY),,$(left_out)) $(TEST_END)
 
 check-san: ## the tests of our own code under AddressSanitizer and UBSan
-	@TEST_WAITERS=4 LSAN_OPTIONS="suppressions=$(CURDIR)/tests/support/leaks:print_suppressions=0" \
+	@TEST_WAITERS=2 LSAN_OPTIONS="suppressions=$(CURDIR)/tests/support/leaks:print_suppressions=0" \
 	    $(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
 	    WALKS=-DGROBO_WALKS \
 	    RING='$(filter-out lint export,$(RING))'
@@ -499,7 +499,7 @@ FILES ?=
 check-coverage: ## that the tests reach 97 % of the lines of src, 85 % of ports, 93 % of tools
 	@mkdir -p $(BUILD)/cov
 	@find $(BUILD)/cov -name '*.gcda' -delete
-	@TEST_WAITERS=4 $(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COVERAGE=yes CFLAGS='-O1 -g' \
+	@TEST_WAITERS=2 $(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COVERAGE=yes CFLAGS='-O1 -g' \
 	    WITHOUT='tests/cli/memcheck.sh tests/engine/test_family_soak.c tests/engine/test_robot_soak.c' \
 	    RING='$(filter-out lint export,$(RING))' >$(BUILD)/cov/log || \
 	    grep -q '^[0-9]* passed, ' $(BUILD)/cov/log

@@ -345,7 +345,9 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
                      : ask_each(robot, slot, angles ? GROBO_SENSE_POSITION : GROBO_SENSE_FULL);
     if (robot->round == 0) {
         robot->fast_forgotten = false;
-        robot->sense_us = grobo_i_later(robot->sense_us + interval_of(robot), robot->now_us);
+        int64_t interval_us = interval_of(robot); /* which may be never */
+        int64_t last_us = grobo_i_sooner(robot->sense_us, INT64_MAX - interval_us);
+        robot->sense_us = grobo_i_later(last_us + interval_us, robot->now_us);
     }
     return result;
 }
