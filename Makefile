@@ -338,8 +338,10 @@ check-cockpit: all ## the cockpit's page in Chromium (Playwright from PyPI, axe-
 cockpit-soak: all ## grctl serve with good and bad clients for MINUTES=60: its memory stays flat
 	@GRCTL="$(abspath $(GRCTL))" python3 tests/cockpit/soak.py $(or $(MINUTES),60)
 
+# But for those that judge when frames leave, by the clock of a machine that is not slowed down.
 check-tsan: ## the tests of what threads share under ThreadSanitizer
 	@TEST_JOBS=2 $(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' \
+	    WITHOUT='tests/link/test_classic_frames.c tests/link/test_play_line.c' \
 	    RING='link port'
 
 check-memcheck: ## those of check-san but the command's, under valgrind

@@ -9,7 +9,7 @@
 # environment:
 #   TEST_JOBS=N         how many at a time. Without it as many as processors; beside them, first
 #                       among equals, TEST_WAITERS for each of those in real time, which wait
-#   TEST_WAITERS=6      fewer where all of it is slower, by sanitizers
+#   TEST_WAITERS=4      fewer where all of it is slower, by sanitizers
 #   TEST_TIMEOUT_S=900  how long one may take
 #   TEST_ONLY=WORD      only tests in whose names this stands, a blank as good as an underscore: all
 #                       of a program or script that is called so; of other programs those alone, of
@@ -164,7 +164,7 @@ awk -v logs="$logs" -v first=" ${TEST_FIRST:-} " -v one_pool="${TEST_JOBS:-}$wra
         (one_pool == "" && /\/(cli|link|port)\// ? "waiting" : "working"))
 }' "$logs/programs"
 {
-    [ ! -s "$logs/waiting" ] || echo "$((${TEST_WAITERS:-6} * processors)) waiting"
+    [ ! -s "$logs/waiting" ] || echo "$((${TEST_WAITERS:-4} * processors)) waiting"
     [ ! -s "$logs/working" ] || echo "${TEST_JOBS:-$processors} working nice -n 5"
 } | xargs -P 2 -L 1 sh "$0" --pool "$logs"
 

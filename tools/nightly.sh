@@ -19,6 +19,7 @@ mkdir -p "$logs" || exit 1
 stage_of() {
     case $1 in
     memcheck) echo check-memcheck ;;
+    san) echo check-san ;;
     fuzz) echo "fuzz FUZZ_S=60 FUZZ_SEED=$seed" ;;
     map) echo "check-map COUNT=0 SEED=$seed" ;;
     mutants) echo "check-mutants COUNT=300 SEED=$seed" ;;
@@ -38,7 +39,7 @@ stage_of() {
     esac
 }
 
-[ $# -gt 0 ] || set -- memcheck fuzz map mutants asserts soak abi ports deb wheel roots cockpit \
+[ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts soak abi ports deb wheel roots cockpit \
     families fleet scan stops
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
