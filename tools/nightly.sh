@@ -39,8 +39,8 @@ stage_of() {
     esac
 }
 
-[ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts soak abi ports deb wheel roots cockpit \
-    families fleet scan stops
+[ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts soak abi ports deb wheel roots \
+    cockpit families fleet scan stops
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done
