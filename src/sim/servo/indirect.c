@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Indirect addresses of simulated DYNAMIXEL: each lends its register to another address. */
 #include "src/base/bytes.h"
 #include "src/sim/servo/indirect.h"
 #include "src/sim/servo/registers.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What servos keep over power-off, saved to a file before it changes and put back from it. */
 #include <errno.h>
 #include <string.h>
 #include <time.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The families whose frames can be decoded, by the names that users give them. */
 #include <string.h>
 
 #include "tools/grctl/decode/talk.h"
