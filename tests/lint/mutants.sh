@@ -38,24 +38,27 @@ int core_sum(int n)
 }
 C
 cat >test_core.c <<'C'
+#include "tests/support/test.h"
 int core_limit(int value);
 int core_sum(int n);
-int main(void)
+TEST(it_trips)
 {
-    return core_limit(10) != 0 || core_limit(11) != 1 || core_limit(9) != 0 || SUM;
+    assert_false(core_limit(10) != 0 || core_limit(11) != 1 || core_limit(9) != 0 || SUM);
 }
 C
 $cc -c -o core.o core.c && ar rcs libcore.a core.o || exit 1
-$cc -c -DSUM=0 -o test_core.o test_core.c || exit 1
-$cc -c -DSUM='core_sum(4)!=10' -o test_sum.o test_core.c || exit 1
+$cc -iquote "$top" -c -DSUM=0 -o test_core.o test_core.c &&
+    $cc -iquote "$top" -c -DSUM='core_sum(4)!=10' -o test_sum.o test_core.c &&
+    $cc -iquote "$top" -c "$top/tests/support/test.c" "$top/tests/support/test_main.c" || exit 1
 
 # mutants OPTION...: of core.c, with the scope, survivors and named sabotages in these files.
 : >survivors
 : >named
 echo 'function core_limit' >scope
 mutants() {
-    python3 "$run" --sources core.c --tests "${TESTS:-test_core.o}" --libs libcore.a \
-        --compile "$cc -O1" --link "$cc" --scope scope --survivors survivors --named named \
+    python3 "$run" --sources core.c --tests "${TESTS:-test_core.o}" \
+        --libs "test.o libcore.a -lcmocka" --compile "$cc -O1" --link "$cc" \
+        --scope scope --survivors survivors --named named \
         --work "$work/build" --jobs 2 "$@" >said 2>&1
 }
 
@@ -135,8 +138,7 @@ TEST(it_adds)
     }
 }
 C
-$cc -I "$top" -c -o objects/unit/test_rows.o tests/test_rows.c &&
-    $cc -I "$top" -c "$top/tests/support/test.c" "$top/tests/support/test_main.c" || exit 1
+$cc -I "$top" -c -o objects/unit/test_rows.o tests/test_rows.c || exit 1
 rows() {
     python3 "${run%/*}/rows.py" --map map.md --rows rows --sources core.c \
         --objects objects \

@@ -46,6 +46,7 @@ QUIET = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": su
 
 # What a file of tests has in common with others, and the program of all of them: it runs the tests
 # of the file that its argument names (tests/support/test.h).
+TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 REGISTERS = ("main", "test_i_add", "test_i_around")
 MAIN_BEGINS = """
 #include <string.h>
@@ -276,8 +277,8 @@ class Bench(Builder):
         rows = "".join(f'    {{"{n}", &tests_of_{n}, &test_i_around_of_{n}, main_of_{n}}},\n'
                        for n in names)
         source = MAIN_BEGINS + "".join(f"REGISTER({n})\n" for n in names) + MAIN_ENDS % rows
-        self.call(shlex.split(self.options.compile) + ["-w", "-x", "c", "-", "-c", "-o", self.main],
-                   source)
+        self.call(shlex.split(self.options.compile) + ["-w", "-iquote", TOP, "-x", "c", "-", "-c",
+                                                       "-o", self.main], source)
         self.tests = names
         return copies
 
