@@ -225,7 +225,7 @@ class Plugin(unittest.TestCase):
         with self.assertRaises(grobo.errors.Syntax) as caught:
             Grobo(self.config(robot=str(arm)))
         self.assertIn("line 1", str(caught.exception))
-        with self.assertRaises(grobo.errors.Notfound):
+        with self.assertRaises(grobo.errors.NoSuchName):
             Grobo(self.config(robot="so999"))
 
     def test_a_humanoid(self):

@@ -3,6 +3,7 @@
 
 import _thread
 import gc
+import glob
 import math
 import os
 import signal
@@ -152,7 +153,7 @@ class Moving(unittest.TestCase):
         self.assertAlmostEqual(caught.exception.value, 3.0, places=6)
         self.assertEqual(caught.exception.unit, "rad")
         self.assertIsInstance(caught.exception, ValueError)
-        with self.assertRaises(errors.Nan):
+        with self.assertRaises(errors.NotFinite):
             self.robot.move({"R_ELBOW_P": float("inf")})
         with self.assertRaises(LookupError) as caught:
             self.robot.move({"NOSE": 0.0})
@@ -162,6 +163,13 @@ class Moving(unittest.TestCase):
         with self.assertRaises(LookupError) as caught:
             self.robot.move({0: 0.0})  # a number is no name
         self.assertIn("(0)", str(caught.exception))
+
+    def test_torque_is_one_of_what_there_is(self):
+        for wrong in ("up", "on", 7, None):
+            with self.assertRaises(ValueError) as caught:
+                self.robot.torque(wrong)
+            self.assertEqual(str(caught.exception), f"torque {wrong!r}: True, False, Torque.ON, "
+                             "Torque.OFF or Torque.BRAKE")
 
     def test_a_limit_is_told_in_the_unit_of_the_caller(self):
         low, high = self.robot.description.limits["R_ELBOW_P"]
@@ -194,6 +202,30 @@ class Moving(unittest.TestCase):
         self.assertFalse(self.robot.status().moving)
 
 
+class Nothing(unittest.TestCase):
+    """What is asked for where there is nothing."""
+
+    @unittest.skipIf(glob.glob("/dev/ttyUSB*") + glob.glob("/dev/ttyACM*"), "there is an adapter")
+    def test_auto_says_what_to_do(self):
+        with self.assertRaises(errors.NoSuchName) as caught:
+            grobo.connect()
+        self.assertIn("plug its adapter in, or name the port; 'sim'", str(caught.exception))
+
+    def test_a_motion_is_saved_in_a_format_that_its_name_says(self):
+        motion = grobo.Motion.of([0, 1], [[0.0] * 20] * 2)
+        for wrong in ("x.doc", "x", "m"):
+            with self.assertRaises(ValueError) as caught:
+                motion.save(wrong)
+            self.assertEqual(str(caught.exception), f"{wrong}: a motion file ends in .m, .pseq, "
+                             ".mseq, .yaml, .yml, .seq")
+            self.assertFalse(os.path.exists(wrong))
+
+    def test_names_of_errors_are_words(self):
+        self.assertTrue(issubclass(errors.NoSuchFile, FileNotFoundError))
+        with self.assertRaises(errors.NoSuchFile):
+            grobo.Motion.load("no such.m")
+
+
 class Others(unittest.TestCase):
     """Robots beside GR001."""
 
@@ -205,7 +237,7 @@ class Others(unittest.TestCase):
             self.assertTrue(low < 0 < high)
             robot.move({"elbow_flex": 0.2}, time=0.2)
             self.assertAlmostEqual(robot["elbow_flex"].angle, 0.2, delta=0.01)
-            with self.assertRaises(errors.Notfound):
+            with self.assertRaises(errors.NoSuchName):
                 robot["R_ELBOW_P"]
 
     def test_a_motion_has_the_joints_of_its_robot(self):

@@ -65,18 +65,29 @@ _ALSO: typing.Dict[str, typing.Tuple[type, ...]] = {
     "ISDIR": (IsADirectoryError,),
 }
 
+# What would read as one word of no language.
+_NAMES: typing.Dict[str, str] = {
+    "NOMEM": "OutOfMemory",
+    "NAN": "NotFinite",
+    "NOENT": "NoSuchFile",
+    "NOTFOUND": "NoSuchName",
+    "PERM": "PermissionDenied",
+    "ISDIR": "IsDirectory",
+}
+
 BY_CODE: typing.Dict[int, typing.Type[Error]] = {}
 for _code, _symbol in ffi.typeof("grobo_error").elements.items():
     if _code < 0:
         _name = _symbol[len("GROBO_ERR_") :]
+        _called = _NAMES.get(_name, _name.capitalize())
         _class = type(
-            _name.capitalize(),
+            _called,
             (Error, *_ALSO.get(_name, ())),
             {"code": _code, "__module__": __name__, "__doc__": ffi.string(
                 lib.grobo_error_text(_code)).decode()},
         )
         BY_CODE[_code] = _class
-        globals()[_name.capitalize()] = _class
+        globals()[_called] = _class
 
 
 def error(

@@ -17,6 +17,7 @@ except ImportError:
     pass
 
 KINDS = ("postures", "keys", "steps", "frames")
+EXTENSIONS = (".m", ".pseq", ".mseq", ".yaml", ".yml", ".seq")
 MOST_STEP = 10.0  # GROBO_MOTION_STEP_MAX_US
 
 
@@ -209,10 +210,13 @@ class Motion:
         check(lib.grobo_motion_append(self._c, made), "append")
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes the file whose format its extension names."""
+        """Writes the file whose format its extension names: .m, .pseq, .mseq, .yaml (.yml) or
+        .seq."""
         options = new("grobo_write_options")
         options.model = self._model
         name = os.fspath(path)
+        if not os.fsdecode(name).lower().endswith(EXTENSIONS):
+            raise ValueError(f"{name}: a motion file ends in {', '.join(EXTENSIONS)}")
         result = lib.grobo_motion_save(
             self._c, lib.grobo_files_os(), os.fsencode(name), options, ffi.NULL
         )

@@ -188,9 +188,10 @@ class Robot:
     """A robot that is connected; close it, or use it in a `with` statement.
 
     `device`: a serial port, "tcp:HOST:PORT", "sim" (a simulator in this process), or "auto", the
-    first port on which a robot answers. `robot`: what it is, see grobo.Description. `exit` says what the servos do when it is closed; None
-    leaves them as they are. `owner_timeout`: after so many seconds without a call of this program
-    the exit policy is carried out; 0: never. `events`: how many events are kept, see grobo.aio.
+    first port on which a robot answers. `robot`: what it is, see grobo.Description. `exit` says
+    what the servos do when it is closed; None leaves them as they are. `owner_timeout`: after so
+    many seconds without a call of this program the exit policy is carried out; 0: never. `events`:
+    how many events are kept, see grobo.aio.
     """
 
     def __init__(
@@ -236,7 +237,10 @@ class Robot:
                 self.joints = robot.joints
                 self._model = robot.model
                 errors.check(lib.grobo_runner_start(runner), "runner's thread")
-                errors.check(lib.grobo_runner_connect(runner, us(timeout)), device)
+                result = lib.grobo_runner_connect(runner, us(timeout))
+                if device == "auto" and result == lib.GROBO_ERR_NOTFOUND:
+                    raise errors.error(result, "connect", reason=_NO_ADAPTER)
+                errors.check(result, device)
         except BaseException:
             self._runner.close()
             raise
@@ -428,6 +432,10 @@ class Robot:
         mask = (1 << len(self.joints)) - 1
         if joints is not None:
             mask = sum(1 << self._number(name) for name in set(joints))
+        if state not in tuple(Torque):
+            raise ValueError(
+                f"torque {state!r}: True, False, Torque.ON, Torque.OFF or Torque.BRAKE"
+            )
         with self._runner.use() as runner:
             result = lib.grobo_runner_set_servo_states(runner, mask, int(state), 0)
             self._check(result, "torque")
@@ -511,6 +519,10 @@ class Robot:
             if error.code == lib.GROBO_ERR_LIMIT and error.joint in self.joints:
                 error.limits = self.description.limits[error.joint]
 
+
+_NO_ADAPTER = (
+    "no robot answers on a serial port: plug its adapter in, or name the port; 'sim' is a simulator"
+)
 
 _TRIP_UNITS = {
     lib.GROBO_TRIP_TEMPERATURE: "°C",
