@@ -49,6 +49,10 @@ keys e
 test_case "e is the emergency stop"
 check "e is the emergency stop" until_screen 'play: emergency stop; .*estop --reset'
 check "that is its status" until_screen '^status 4'
+no_idle() {
+    ! on_screen_is ' 0\.0 of .* s, '
+}
+check "how far it had come stays there" no_idle
 check "it is braked" both exits 0 on_robot status m5 --- says ' brake '
 check "other commands know" fails 4 "stopped by 'grctl estop'" on_robot init
 check "until it is taken back" exits 0 on_robot estop --reset

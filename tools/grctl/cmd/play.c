@@ -84,6 +84,9 @@ static void report_progress(conn *c, show *s)
     grobo_play_progress p;
     char text[128];
     grobo_robot_progress(c->robot, &p);
+    if (s->started && p.state == GROBO_SEQUENCER_IDLE) {
+        return; /* stopped: how far it had come stays */
+    }
     if (c->a->json) {
         if (s->ticks % REPORT_EVERY == 0) {
             app_print_json(json_pack("{s:I,s:I,s:I,s:I}", "t_ms", (json_int_t)(p.t_us / 1000),
