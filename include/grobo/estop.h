@@ -30,7 +30,8 @@
 
 GROBO_BEGIN_DECLS
 
-/** How soon a session whose loop turns notices a mark. */
+/** How soon a session whose loop turns notices a mark: at once where the system tells of it (Linux,
+ * directories on a local file system), else it looks as often as this. */
 #define GROBO_ESTOP_WATCH_US 50000
 
 /** A mark that was set, to ask for its confirmation. Plain data. */

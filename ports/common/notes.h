@@ -47,6 +47,25 @@ uint64_t grobo_i_note_stamp(const grobo_i_note_folders *in, int folder, const ch
 /* Removes a note everywhere. GROBO_OK, also where there was none, or why one is left. */
 int grobo_i_note_remove(const char *name, grobo_os_cause *cause);
 
+/* ---- changes of notes: watch_linux.c ------------------------------------------------------- */
+
+/*
+ * Opens what becomes readable when a note comes, changes or goes in the directories as they are
+ * now; they are made where they are missing. A child does not get it. The caller closes it.
+ * Returns GROBO_SOCKET_NULL where the system does not tell of each of them (another system, no
+ * descriptor free, a file system of the network): then the notes have to be looked at by the clock.
+ */
+grobo_socket grobo_i_note_watch_open(void);
+void grobo_i_note_watch_close(grobo_socket watch);
+
+/* What has come since it was read last. */
+typedef enum grobo_i_note_news {
+    NOTE_NEWS_NONE,
+    NOTE_NEWS_NOTE, /* of a note with the prefix */
+    NOTE_NEWS_GONE  /* a directory is another one, or none: open a new watch */
+} grobo_i_note_news;
+grobo_i_note_news grobo_i_note_watch_read(grobo_socket watch, const char *prefix);
+
 /* ---- processes: process.c, process_linux.c -------------------------------------------------- */
 
 /* A process, and not another one that has its number later. */

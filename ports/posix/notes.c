@@ -190,6 +190,25 @@ void grobo_i_note_folders_find(grobo_i_note_folders *folders)
     }
 }
 
+int grobo_i_posix_note_folders(grobo_i_note_folders *folders)
+{
+    const char *run = getenv("XDG_RUNTIME_DIR");
+    int n = 0;
+
+    for (int i = 0; i < NOTE_FOLDERS; i++) {
+        bool has = find_folder(i, true, folders->path[i]);
+
+        if (!has && (i != 0 || (run != NULL && run[0] != '\0'))) {
+            return GROBO_ERR_NOENT; /* there may be one later */
+        }
+        if (!has) {
+            folders->path[i][0] = '\0';
+        }
+        n += has;
+    }
+    return n;
+}
+
 /* The path of a name in a directory. */
 static bool join(const char *in, const char *name, char *path)
 {

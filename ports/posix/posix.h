@@ -28,6 +28,12 @@ int grobo_i_posix_file_error(int code);
 /* Fills cause from an errno, with `what` saying what was tried; returns the GROBO_ERR_* for it. */
 int grobo_i_posix_fail(grobo_os_cause *cause, int code, const char *what);
 
+struct grobo_i_note_folders;
+
+/* The directories of notes, made where they are missing. How many there are for this process (an
+ * empty path: none), GROBO_ERR_NOENT where there may be another one later. */
+int grobo_i_posix_note_folders(struct grobo_i_note_folders *folders);
+
 struct pollfd;
 
 /* poll(), which refuses all where the process may have fewer descriptors than are asked about. */

@@ -171,6 +171,23 @@ int grobo_i_holder_end(const char *device, const grobo_i_holder *holder)
     return GROBO_ERR_UNSUPPORTED;
 }
 
+grobo_socket grobo_i_note_watch_open(void)
+{
+    return GROBO_SOCKET_NULL; /* what tells of a directory here is no socket */
+}
+
+void grobo_i_note_watch_close(grobo_socket watch)
+{
+    (void)watch;
+}
+
+grobo_i_note_news grobo_i_note_watch_read(grobo_socket watch, const char *prefix)
+{
+    (void)watch;
+    (void)prefix;
+    return NOTE_NEWS_NONE;
+}
+
 bool grobo_i_is_root(void)
 {
     return false;

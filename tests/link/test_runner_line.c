@@ -8,6 +8,7 @@
 
 #include <event2/event.h>
 
+#include "src/link/runner/runner.h"
 #include "tests/support/far_robot.h"
 #include "tests/support/folder.h"
 #include "tests/support/runner_kit.h"
@@ -61,7 +62,7 @@ static void make(grobo_runner_config config, bool threaded)
 
 static void have_torque(void)
 {
-    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0),
+    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 20000000),
                      GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 20);
 }
@@ -286,13 +287,42 @@ TEST_WITH(on_line, a_robot_whose_owner_is_gone_is_left_well)
     assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 0), 0);
     assert_true(grobo_runner_is_playing(runner));
     /* And now nobody. */
-    assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 5000000), GROBO_PORT_READABLE);
+    assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 20000000), GROBO_PORT_READABLE);
     assert_int_equal(read(pair[0], &told, 1), 1);
     assert_int_equal(far_robot_torqued(&robot), 0);
     assert_false(grobo_runner_is_playing(runner));
-    /* It comes back. */
+    /* It comes back, and is gone again. */
     have_torque();
+    assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 20000000), GROBO_PORT_READABLE);
+    assert_int_equal(far_robot_torqued(&robot), 0);
     assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     assert_int_equal(close(pair[0]), 0);
     assert_int_equal(close(pair[1]), 0);
+}
+
+static int look_at_tick(void *arg, grobo_runner *its)
+{
+    *(int64_t *)arg = its->tick_us;
+    return GROBO_OK;
+}
+
+static int on_svc(void *ctx, grobo_runner *its)
+{
+    (void)ctx;
+    (void)its;
+    return GROBO_OK;
+}
+
+TEST_WITH(on_line, a_runner_looks_each_period_for_its_service_alone)
+{
+    int64_t tick_us = 0;
+
+    make((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT}, true);
+    assert_int_equal(grobo_runner_call(runner, look_at_tick, &tick_us), GROBO_OK);
+    assert_int_equal(tick_us, GROBO_NEVER_US);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
+    make((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT, .on_svc = on_svc}, true);
+    assert_int_equal(grobo_runner_call(runner, look_at_tick, &tick_us), GROBO_OK);
+    assert_int_not_equal(tick_us, GROBO_NEVER_US);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }

@@ -283,3 +283,59 @@ TEST_WITH(fixture, another_process_with_its_number_is_not_touched)
     assert_int_equal(kill(child.pid, SIGKILL), 0);
     assert_int_equal(waitpid(child.pid, &status, 0), child.pid);
 }
+
+/* ---- changes ------------------------------------------------------------------------------ */
+
+TEST_WITH(fixture, a_watch_tells_of_marks_and_of_nothing_else)
+{
+    grobo_os_cause cause;
+    grobo_socket watch = grobo_i_note_watch_open();
+    grobo_estop stop;
+
+    if (watch == GROBO_SOCKET_NULL) {
+        skip(); /* another system than Linux, or a directory of the network */
+    }
+    assert_int_equal(grobo_i_note_watch_read(watch, "estop-/"), NOTE_NEWS_NONE);
+    assert_true(grobo_i_note_write("holder-x", "1 1\n", &cause) > 0);
+    assert_int_equal(grobo_i_note_watch_read(watch, "estop-"), NOTE_NEWS_NONE);
+    assert_int_equal(grobo_i_note_remove("holder-x", &cause), GROBO_OK);
+    assert_int_equal(grobo_estop_set(device, &stop, NULL), GROBO_OK);
+    assert_int_equal(grobo_port_wait(watch, GROBO_PORT_READABLE, 0), GROBO_PORT_READABLE);
+    assert_int_equal(grobo_i_note_watch_read(watch, "estop-!nowhere"), NOTE_NEWS_NOTE);
+    assert_int_equal(grobo_i_note_watch_read(watch, "estop-!nowhere"), NOTE_NEWS_NONE);
+    assert_int_equal(chmod(mark_path(), 0644), 0);
+    assert_int_equal(grobo_i_note_watch_read(watch, "estop-!nowhere"), NOTE_NEWS_NOTE);
+    assert_int_equal(grobo_estop_clear(device, NULL), GROBO_OK);
+    assert_int_equal(grobo_i_note_watch_read(watch, "estop-!nowhere"), NOTE_NEWS_NOTE);
+    grobo_i_note_watch_close(watch);
+}
+
+TEST_WITH(fixture, a_watch_tells_that_a_directory_is_another_one)
+{
+    static const char *const become[] = {"rm -rf '%s'", "mv '%s' '%s.old'", "chmod 755 '%s'"};
+    char command[1300];
+
+    for (size_t i = 0; i < sizeof become / sizeof become[0]; i++) {
+        char path[600];
+        grobo_socket watch = grobo_i_note_watch_open();
+
+        if (watch == GROBO_SOCKET_NULL) {
+            skip();
+        }
+        snprintf(path, sizeof path, "%s", in_folder("grobo"));
+        snprintf(command, sizeof command, become[i], path, path);
+        assert_int_equal(system(command), 0);
+        assert_int_equal(grobo_i_note_watch_read(watch, "estop-"), NOTE_NEWS_GONE);
+        grobo_i_note_watch_close(watch);
+    }
+    /* The last one left a directory that others may look into: nothing is watched by halves. */
+    assert_int_equal(grobo_i_note_watch_open(), GROBO_SOCKET_NULL);
+}
+
+TEST_WITH(fixture, no_watch_by_halves)
+{
+    assert_int_equal(setenv("XDG_RUNTIME_DIR", in_folder("not there"), 1), 0);
+    assert_int_equal(grobo_i_note_watch_open(), GROBO_SOCKET_NULL);
+    assert_int_equal(unsetenv("XDG_RUNTIME_DIR"), 0); /* there is none, and there will be none */
+    grobo_i_note_watch_close(grobo_i_note_watch_open());
+}

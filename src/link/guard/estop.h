@@ -7,6 +7,9 @@
 
 #include "ports/common/notes.h"
 
+/* What the names of marks begin with, among those of notes. */
+#define GROBO_I_ESTOP_MARK "estop-"
+
 /* Marks that may stand at a time, each with an id of its own. */
 enum { ESTOP_HEARD = DEVICE_NAMES * NOTE_FOLDERS };
 

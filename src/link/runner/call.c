@@ -5,6 +5,7 @@
  * or, where no thread runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
  */
 #include "src/base/assert.h"
+#include "src/base/instant.h"
 #include "src/link/runner/runner.h"
 #include "src/link/session/session.h"
 
@@ -99,6 +100,7 @@ static void serve(grobo_runner *runner)
         grobo_mutex_lock(&runner->lock);
         settle(runner, slot, result);
     }
+    runner->asked = next_call(runner, 0) != NULL;
     grobo_mutex_unlock(&runner->lock);
     grobo_i_session_attend(runner->session);
 }
@@ -110,15 +112,38 @@ int64_t grobo_runner_get_period_us(grobo_runner *runner)
     RETURN_LOCKED(runner, int64_t, 0, runner->period_us);
 }
 
+/* When to look though nothing has come: each period for the service and for calls that are not
+ * over, else when the owner may be lost. */
+static int64_t next_look(grobo_runner *runner)
+{
+    int64_t next_us = GROBO_NEVER_US;
+
+    if (runner->on_svc != NULL || runner->asked) {
+        if (runner->tick_us == GROBO_NEVER_US) {
+            runner->tick_us = grobo_now_us() + grobo_runner_get_period_us(runner);
+        }
+        next_us = runner->tick_us;
+    } else {
+        runner->tick_us = GROBO_NEVER_US;
+    }
+    if (runner->owner_timeout_us > 0) {
+        grobo_mutex_lock(&runner->lock);
+        /* One that was lost may come back, and be lost again. */
+        int64_t since_us = runner->owner_lost ? grobo_now_us() : runner->called_us;
+        grobo_mutex_unlock(&runner->lock);
+        if (runner->owner_timeout_us < GROBO_NEVER_US - since_us) {
+            next_us = grobo_i_sooner(next_us, since_us + runner->owner_timeout_us);
+        }
+    }
+    return next_us;
+}
+
 void grobo_i_runner_round(grobo_runner *runner, int64_t end_us)
 {
     round_frame frame;
 
     grobo_i_runner_begin_round(&frame, runner);
-    if (runner->tick_us == GROBO_NEVER_US) {
-        runner->tick_us = grobo_now_us() + grobo_runner_get_period_us(runner);
-    }
-    if (grobo_timer_set(runner->timer, end_us < runner->tick_us ? end_us : runner->tick_us) < 0) {
+    if (grobo_timer_set(runner->timer, grobo_i_sooner(end_us, next_look(runner))) < 0) {
         grobo_i_session_wake(runner->session); /* a round that does not wait, and the next one */
     }
     (void)event_base_loop(runner->base, EVLOOP_ONCE);

@@ -46,6 +46,7 @@ static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
 
     (void)timer;
     (void)late_us;
+    look_for_owner(runner, now_us);
     if (now_us < runner->tick_us) {
         return; /* the end of somebody's patience */
     }
@@ -54,7 +55,6 @@ static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
         /* Late: skipped, not made up for. */
         runner->tick_us = now_us + grobo_runner_get_period_us(runner);
     }
-    look_for_owner(runner, now_us);
     if (runner->on_svc != NULL) {
         int64_t since_us = grobo_i_session_enter_callback(runner->session);
 

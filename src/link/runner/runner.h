@@ -137,7 +137,8 @@ struct grobo_runner {
     /* loop */
     struct event_base *base;
     grobo_timer *timer;
-    int64_t tick_us;                         /* end of the period */
+    int64_t tick_us; /* end of the period; GROBO_NEVER_US while nobody needs it */
+    bool asked;      /* a call was not over when they were looked at */
     grobo_session *session;                  /* set by grobo_runner_new() for good */
     int line_error;                          /* of the last event of the line */
     bool exited;                             /* the exit policy is carried out */

@@ -83,7 +83,7 @@ static bool make_room(grobo_session *session, bool stops)
 static bool has_frame(const grobo_session *session, int64_t now_us)
 {
     return grobo_i_has_frame(&session->robot, now_us) && !grobo_i_session_has_asked(session) &&
-           now_us < grobo_i_session_estop_deadline(session);
+           !grobo_i_session_estop_old(session, now_us);
 }
 
 /* Gives what the engine wants to send now; when to look again. The line is asked only where there
@@ -128,7 +128,7 @@ void grobo_i_session_send(grobo_session *session)
         deadline_us = session->line->deadline(session);
         break;
     case GROBO_SESSION_CLOSED:
-        grobo_i_estop_watch_end(&session->estop);
+        grobo_i_session_estop_end(session);
         grobo_i_session_rest(session);
         break;
     }

@@ -36,7 +36,7 @@ static void close_now(grobo_session *session)
 {
     drop_line(session);
     grobo_i_session_scan_end(session);
-    grobo_i_estop_watch_end(&session->estop);
+    grobo_i_session_estop_end(session);
     session->state = GROBO_SESSION_CLOSED;
     session->closing = false;
 }
@@ -49,7 +49,7 @@ static void destroy(grobo_session *session)
     grobo_i_session_wake_free(session);
     grobo_timer_free(session->timer);
     grobo_serial_free(session->serial);
-    grobo_i_estop_watch_end(&session->estop);
+    grobo_i_session_estop_end(session);
     grobo_i_session_scan_end(session);
     grobo_i_session_sim_free(session);
     grobo_i_free(mem, session, session->bytes);
@@ -487,6 +487,7 @@ static int fill(grobo_session *session, const grobo_session_config *config)
     int r = set_device(session, config->device);
 
     session->wake_socket[0] = session->wake_socket[1] = GROBO_SOCKET_NULL;
+    session->mark_socket = GROBO_SOCKET_NULL;
     if (r < 0) {
         return r;
     }

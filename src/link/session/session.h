@@ -75,6 +75,8 @@ struct grobo_session {
     uint64_t sim_tx_bytes, sim_rx_bytes;
 
     grobo_i_estop_watch estop; /* the marks of the device */
+    grobo_socket mark_socket;  /* tells of marks; GROBO_SOCKET_NULL: they are looked at by the clock */
+    struct event *mark_event;
 
     session_scan *scan; /* while one goes on */
     int check_job;      /* number of the check that runs, 0 none */
@@ -165,10 +167,14 @@ void grobo_i_session_rest(grobo_session *session);
 /*
  * Emergency stops that other programs ask for (grobo/estop.h). Nothing leaves when the last look at
  * the marks is older than GROBO_ESTOP_WATCH_US: a program that was stopped looks before it sends.
+ * Between frames the system tells of new marks, or the clock where it does not.
  */
 
 /* A port is open: the marks that stand are those of its device. */
 void grobo_i_session_estop_begin(grobo_session *session, const char *device);
+
+/* The session has the device no more. */
+void grobo_i_session_estop_end(grobo_session *session);
 
 /* Before the robot is asked for anything: obeys the marks that stand. */
 void grobo_i_session_estop_arm(grobo_session *session);
@@ -176,7 +182,11 @@ void grobo_i_session_estop_arm(grobo_session *session);
 /* Looks for new marks, where that is due, and obeys them. Calls back. */
 void grobo_i_session_estop_look(grobo_session *session);
 
-/* When that is due next; GROBO_NEVER_US without a device. */
+/* Whether the last look is too old for a frame to leave. */
+bool grobo_i_session_estop_old(const grobo_session *session, int64_t now_us);
+
+/* When the loop looks though no frame leaves; GROBO_NEVER_US without a device, and where the system
+ * tells of marks. */
 int64_t grobo_i_session_estop_deadline(const grobo_session *session);
 
 /* An emergency stop has ended so. */

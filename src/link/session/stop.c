@@ -186,12 +186,62 @@ static void on_wake(evutil_socket_t socket, short what, void *ctx)
 
 /* ---- of other programs -------------------------------------------------------------------- */
 
+static void watch_no_more(grobo_session *session)
+{
+    if (session->mark_event != NULL) {
+        event_free(session->mark_event);
+    }
+    session->mark_event = NULL;
+    grobo_i_note_watch_close(session->mark_socket);
+    session->mark_socket = GROBO_SOCKET_NULL;
+}
+
+static void watch(grobo_session *session);
+
+static void on_marks(evutil_socket_t socket, short what, void *ctx)
+{
+    grobo_session *session = ctx;
+    grobo_i_note_news news = grobo_i_note_watch_read(socket, GROBO_I_ESTOP_MARK);
+
+    (void)what;
+    if (news == NOTE_NEWS_NONE) {
+        return;
+    }
+    if (news == NOTE_NEWS_GONE) {
+        watch(session);
+    }
+    session->estop.looked_us = 0;
+    grobo_i_session_enter(session);
+    grobo_i_session_leave(session); /* looks, and sets the timer */
+}
+
+/* Has the system tell of marks, as far as it can. */
+static void watch(grobo_session *session)
+{
+    watch_no_more(session);
+    session->mark_socket = grobo_i_note_watch_open();
+    if (session->mark_socket != GROBO_SOCKET_NULL) {
+        session->mark_event = event_new(session->config.base, session->mark_socket,
+                                        EV_READ | EV_PERSIST, on_marks, session);
+        if (session->mark_event == NULL || event_add(session->mark_event, NULL) != 0) {
+            watch_no_more(session);
+        }
+    }
+}
+
 void grobo_i_session_estop_begin(grobo_session *session, const char *device)
 {
     if (session->estop.on && !session->was_up) { /* the port before it, of a scan */
         grobo_i_estop_watch_end(&session->estop);
     }
     grobo_i_estop_watch_begin(&session->estop, device);
+    watch(session); /* behind the first note, for which the directories are made */
+}
+
+void grobo_i_session_estop_end(grobo_session *session)
+{
+    watch_no_more(session);
+    grobo_i_estop_watch_end(&session->estop);
 }
 
 static void obey_mark(grobo_session *session)
@@ -223,16 +273,23 @@ void grobo_i_session_estop_arm(grobo_session *session)
     }
 }
 
+bool grobo_i_session_estop_old(const grobo_session *session, int64_t now_us)
+{
+    return session->estop.armed && now_us >= session->estop.looked_us + GROBO_ESTOP_WATCH_US;
+}
+
 int64_t grobo_i_session_estop_deadline(const grobo_session *session)
 {
-    return session->estop.armed ? session->estop.looked_us + GROBO_ESTOP_WATCH_US : GROBO_NEVER_US;
+    return session->estop.armed && session->mark_event == NULL
+               ? session->estop.looked_us + GROBO_ESTOP_WATCH_US
+               : GROBO_NEVER_US;
 }
 
 void grobo_i_session_estop_look(grobo_session *session)
 {
     bool pending = false;
 
-    if (grobo_now_us() >= grobo_i_session_estop_deadline(session) &&
+    if (grobo_i_session_estop_old(session, grobo_now_us()) &&
         grobo_i_estop_watch_look(&session->estop, &pending)) {
         obey_mark(session);
     }
