@@ -56,9 +56,9 @@ grobo_socket grobo_i_note_watch_open(void)
     for (int i = 0; i < NOTE_FOLDERS && whole; i++) {
         const char *path = folders.path[i];
 
-        whole = path[0] == '\0' ||
-                (is_local(path) &&
-                 inotify_add_watch(fd, path, OF_NOTES | OF_FOLDER | IN_ONLYDIR) >= 0);
+        whole =
+            path[0] == '\0' ||
+            (is_local(path) && inotify_add_watch(fd, path, OF_NOTES | OF_FOLDER | IN_ONLYDIR) >= 0);
     }
     if (!whole) {
         (void)close(fd);

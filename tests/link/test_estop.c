@@ -300,9 +300,10 @@ TEST_WITH(fixture, a_second_mark_is_answered_too)
 
 TEST_WITH(fixture, a_session_that_reads_nothing_sleeps)
 {
-    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER};
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
+                                      .sense_interval_us = GROBO_SENSE_NEVER};
     const grobo_session_config config = {
-        GROBO_SESSION_CONFIG_INIT, .base = base,       .device = device, .on_event = on_event,
+        GROBO_SESSION_CONFIG_INIT, .base = base,    .device = device, .on_event = on_event,
         .on_robot = on_robot,      .robot = &robot, .ctx = &at};
     grobo_socket watch = grobo_i_note_watch_open();
     grobo_session *session = NULL;

@@ -137,12 +137,12 @@ struct grobo_runner {
     /* loop */
     struct event_base *base;
     grobo_timer *timer;
-    int64_t tick_us; /* end of the period; GROBO_NEVER_US while nobody needs it */
-    bool asked;      /* a call was not over when they were looked at */
-    grobo_session *session;                  /* set by grobo_runner_new() for good */
-    int line_error;                          /* of the last event of the line */
-    bool exited;                             /* the exit policy is carried out */
-    uint64_t exit_frames;                    /* and nothing was sent since these */
+    int64_t tick_us;        /* end of the period; GROBO_NEVER_US while nobody needs it */
+    bool asked;             /* a call was not over when they were looked at */
+    grobo_session *session; /* set by grobo_runner_new() for good */
+    int line_error;         /* of the last event of the line */
+    bool exited;            /* the exit policy is carried out */
+    uint64_t exit_frames;   /* and nothing was sent since these */
     uint8_t raw[GROBO_RUNNER_COMMAND_BYTES]; /* the command that is under way */
     size_t raw_bytes;                        /* 0: none */
     bool recording;                          /* it is on the wire: what comes is its reply */

@@ -75,7 +75,8 @@ struct grobo_session {
     uint64_t sim_tx_bytes, sim_rx_bytes;
 
     grobo_i_estop_watch estop; /* the marks of the device */
-    grobo_socket mark_socket;  /* tells of marks; GROBO_SOCKET_NULL: they are looked at by the clock */
+    grobo_socket
+        mark_socket; /* tells of marks; GROBO_SOCKET_NULL: they are looked at by the clock */
     struct event *mark_event;
 
     session_scan *scan; /* while one goes on */
