@@ -29,6 +29,32 @@ check 'another baud rate' same 21 -b 57600 status
 check 'everything again, in less time than it took' \
     timeout 2 "$GRCTL" -q replay "$work/trace"
 
+test_case 'robots of other families'
+
+# same_of SERVO FAMILY [ID]: a robot of two such servos moves, and its trace is replayed.
+same_of() {
+    printf '%s\n' "name: two" "family: $2" joints: \
+        "  - {name: a, id: ${3:-1}, servo: $1, limits_deg: [-50, 50]}" \
+        "  - {name: b, id: $((${3:-1} + 1)), servo: $1, limits_deg: [-50, 50]}" >"$work/two.yaml"
+    (
+        export GRCTL_ROBOT="$work/two.yaml"
+        same '[1-9][0-9]*' move b 3 200
+    )
+}
+check 'Feetech' same_of STS3215 feetech
+check 'Feetech SCS' same_of SCS0009 feetech
+check 'AX-12' same_of AX-12A dynamixel1
+check 'LX-16A' same_of LX-16A lx16a
+check 'KRS' same_of KRS-3301 ics 0
+check 'RS30x on a bus: not those of GR001' same_of RS301CR rs30x
+of_servos() {
+    GRCTL_ROBOT="$work/two.yaml" exits 2 "$GRCTL" -d tcp:127.0.0.1:1 replay "$work/trace"
+}
+printf '%s\n' 'name: two' 'family: feetech' joints: \
+    '  - {name: a, id: 1, servo: STS3215, limits_deg: [-50, 50]}' >"$work/two.yaml"
+check 'not to a real robot: its frames are not judged' both of_servos --- \
+    complains 'cannot judge the frames of two before they move a real robot; without -d'
+
 test_case 'what differs'
 
 READ1='54 09 FA AF 01 0F 2A 02 00 26 0A' # position of servo 1, which is 0.0 deg

@@ -43,10 +43,10 @@ static int run(app *a)
     if (strcmp(r.path, "-") == 0) {
         return app_fail(a, EXIT_USAGE, "ARG", "replay: a trace is read twice: name a file");
     }
-    if (!family_is(app_driver(a), "rs30x")) {
+    if (!to_sim && !family_is(app_driver(a), "rs30x")) {
         return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
-                        "replay: knows the frames of RS30x only, not those of %s; 'grctl decode' "
-                        "shows them",
+                        "replay: cannot judge the frames of %s before they move a real robot; "
+                        "without -d they go to a simulator",
                         app_model(a)->name);
     }
     int status = replay_read(&r, take_first, &r);
@@ -69,10 +69,11 @@ const cli_command cmd_replay = {
         "replies with those in the trace: which are equal, differ, are missing, or came though\n"
         "there were none. The first differences are shown in words, with -v all. Exit status 0\n"
         "if nothing differs, 1 otherwise.\n"
-        "Without -d it goes to a fresh simulator in virtual time, which takes no time. With -d it\n"
-        "goes to a real robot: reads only as they are; goals and torque through the same checks\n"
-        "as everything else, after a question (or with --yes); a trace that does anything else\n"
-        "(settings, flash, stored motions) is refused before anything is sent.\n",
+        "Without -d it goes to a fresh simulator of --robot in virtual time, which takes no\n"
+        "time. With -d it goes to a real robot, of RS30x servos only: reads only as they are;\n"
+        "goals and torque through the same checks as everything else, after a question (or with\n"
+        "--yes); a trace that does anything else (settings, flash, stored motions) is refused\n"
+        "before anything is sent.\n",
     .example = "  grctl -d sim --trace walk.pcapng play motions/greet.pseq\n"
                "  grctl replay walk.pcapng\n",
     .run = run,

@@ -3,6 +3,7 @@
 
 #include "tools/grctl/decode/replay.h"
 #include "tools/grctl/decode/words.h"
+#include "tools/grctl/servo/family.h"
 
 /* Differences shown as text, unless -v asks for all. */
 enum { SHOWN = 5 };
@@ -158,7 +159,9 @@ static void on_replayed(void *ctx, const frame *f)
 void replay_begin(replay *r, frames_fn on_host)
 {
     unsigned wiring = r->wiring == GROBO_WIRING_BOARD ? GROBO_WORDS_BOARD : GROBO_WORDS_BUS;
-    r->talk = (talk){.words = talk_named("rs30x"), .model = app_model(r->a)};
+    const grobo_model *model = app_model(r->a);
+    const grobo_words *own = talk_of_servo(family_servo(app_driver(r->a), model->joints[0].motor));
+    r->talk = (talk){.words = own ? own : talk_named("rs30x"), .model = model};
     frames_init(&r->host, &r->talk, FRAMES_HOST, wiring, on_host, r);
     frames_init(&r->robot[REPLAY_RECORDED], &r->talk, FRAMES_ROBOT, wiring, on_recorded, r);
     frames_init(&r->robot[REPLAY_REPLAYED], &r->talk, FRAMES_ROBOT, wiring, on_replayed, r);

@@ -4,6 +4,7 @@
 
 #include <grobo/sim_static.h>
 
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/decode/replay.h"
 
 /* After the last chunk a reply may take this long. */
@@ -11,6 +12,7 @@ enum { TAIL_US = 1000000 };
 
 typedef struct stage {
     replay *r;
+    grobo_robot_sim robot; /* what the simulator is of */
     grobo_sim sim;
     int64_t now_us; /* from the trace's beginning */
 } stage;
@@ -84,10 +86,16 @@ static int on_chunk(void *ctx, const pcapng_chunk *chunk)
 int replay_to_sim(replay *r)
 {
     static stage s;
-    grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = r->wiring,
-                               .baud_bps = (uint32_t)r->baud_bps};
     memset(&s, 0, sizeof s);
-    int error = grobo_sim_init(&s.sim, &config, 0);
+    int error = grobo_robot_def_sim(robot_of(r->a), r->wiring, &s.robot);
+    if (error) {
+        return app_fail(r->a, EXIT_FILE, grobo_error_name(error),
+                        "%s: recorded through GR001's board, where the servos of %s cannot be; see "
+                        "--robot and --wiring",
+                        r->path, app_model(r->a)->name);
+    }
+    s.robot.config.baud_bps = (uint32_t)r->baud_bps;
+    error = grobo_sim_init(&s.sim, &s.robot.config, 0);
     if (error) {
         return app_fail(r->a, EXIT_FILE, grobo_error_name(error),
                         "%s: the simulator does not run at %d bps; see -b and --wiring", r->path,
