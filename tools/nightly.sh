@@ -35,12 +35,13 @@ stage_of() {
     fleet) echo check-fleet ;;
     scan) echo check-scan ;;
     stops) echo "test ONLY=serve_stop STOPS=16" ;;
+    matrix) echo "test ONLY=matrix RING=cli MATRIX=all" ;;
     *) return 1 ;;
     esac
 }
 
 [ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts soak abi ports deb wheel roots \
-    cockpit families fleet scan stops
+    cockpit families fleet scan stops matrix
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done
