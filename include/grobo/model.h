@@ -36,6 +36,9 @@ typedef struct grobo_joint {
                                    must reach the limits */
     uint8_t
         torque_limit_pct; /**< of what its servo can, 1..100: set before it gets torque; 0: all */
+    /** Its servo: of a table of its family, or of a user's file. NULL: the first of the family
+     *  whose number is servo_model. grobo_robot_def_read() sets it, as two may have one number. */
+    const struct grobo_servo_model *servo;
 } grobo_joint;
 
 /** The angle of a joint's servo, from the middle of its range, where the joint is at an angle. */

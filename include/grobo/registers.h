@@ -142,9 +142,16 @@ typedef struct grobo_servo_table {
     uint16_t register_count;
     uint8_t model_count;
     uint8_t rate_count;
-    uint8_t keeps;   /**< grobo_keeps */
-    bool big_endian; /**< the high byte of a value comes first */
+    uint8_t keeps;                          /**< grobo_keeps */
+    bool big_endian;                        /**< the high byte of a value comes first */
+    const struct grobo_servo_table *series; /**< of a model that a user's file describes: the table
+                                                 of the model that it is like; NULL: this table is
+                                                 one of the library */
 } grobo_servo_table;
+
+/** The series of a model: the table of the library whose servos talk as it does. Its own, but for a
+ *  model of a user's file. NULL for NULL. Static storage. */
+GROBO_API const grobo_servo_table *grobo_servo_series(const grobo_servo_model *model);
 
 /** The model of this name (exact), NULL when there is none. Static storage. */
 GROBO_API const grobo_servo_model *grobo_servo_model_named(const grobo_servo_table *table,

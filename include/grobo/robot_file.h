@@ -28,6 +28,8 @@ typedef struct grobo_robot_family {
     /** Fills a driver, as grobo_feetech_driver_init() does, by grobo_wiring; NULL: it cannot be
      *  wired so. */
     int (*init[2])(grobo_driver *driver, const grobo_model *model);
+    bool fixed; /**< its servos have no registers but those of its tables: a user's model can add
+                     none */
 } grobo_robot_family;
 
 /** Family i of those that a file may name, counted from 0. @return NULL behind the last. */
@@ -118,7 +120,17 @@ GROBO_API int grobo_robot_def_read(const grobo_source *source, const char *name,
                                    grobo_diagnostics *list, const grobo_mem *mem,
                                    grobo_robot_def **def);
 
-/** Frees what grobo_robot_def_read() gave; NULL is fine. */
+/**
+ * Reads the description of a robot from a file. A joint's servo may be a file of its own beside it
+ * ("./my-servo.yaml", docs/guide/own-servo.md), whose mistakes are in the list with its name.
+ * grobo_robot_def_read() refuses such a servo.
+ * @return as grobo_robot_def_read(); GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR or
+ *   GROBO_ERR_IO for a file itself
+ */
+GROBO_API int grobo_robot_def_read_file(const char *path, grobo_diagnostics *list,
+                                        const grobo_mem *mem, grobo_robot_def **def);
+
+/** Frees what grobo_robot_def_read() or grobo_robot_def_read_file() gave; NULL is fine. */
 GROBO_API void grobo_robot_def_free(grobo_robot_def *def);
 
 /**

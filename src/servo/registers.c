@@ -11,6 +11,13 @@ static bool same_text(const char *a, const char *b)
     return *a == *b;
 }
 
+const grobo_servo_table *grobo_servo_series(const grobo_servo_model *model)
+{
+    return model == NULL                  ? NULL
+           : model->table->series != NULL ? model->table->series
+                                          : model->table;
+}
+
 const grobo_servo_model *grobo_servo_model_named(const grobo_servo_table *table, const char *name)
 {
     for (int i = 0; table != NULL && name != NULL && i < table->model_count; i++) {

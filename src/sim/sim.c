@@ -390,7 +390,7 @@ static int32_t start_mdeg(grobo_sim *sim, const grobo_sim_servo *servo, const gr
 static bool knows(const grobo_sim_family *family, const grobo_servo_model *model)
 {
     const grobo_servo_table *const *table = family->tables;
-    while (*table != NULL && *table != model->table) {
+    while (*table != NULL && *table != grobo_servo_series(model)) {
         table++;
     }
     return *table != NULL;

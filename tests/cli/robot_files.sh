@@ -56,6 +56,47 @@ check "a mistake has line and column" fails 3 "wrong.yaml:5:44: no key .* called
     "$GRCTL" --robot "$work/wrong.yaml" joints
 check "and is found" both exits 3 "$GRCTL" robot check "$work/wrong.yaml" --- \
     says "5:5: a joint has no 'limits_deg'"
+
+cat >"$work/clone.yaml" <<'END'
+# A clone of the STS3215 with a shorter range and a gain of its own.
+name: Clone-15
+like: STS3215
+number: 4711
+registers:
+  goal_position: {range: [0, 3100]}
+  my_gain: {at: 50, bytes: 2, access: kept rw, range: [0, 500], default: 7}
+END
+cat >"$work/cloned.yaml" <<'END'
+name: cloned
+family: feetech
+joints:
+  - {name: turn, id: 3, servo: ./clone.yaml, limits_deg: [-90, 90]}
+  - {name: lift, id: 4, servo: STS3215, limits_deg: [-20, 60]}
+END
+cloned() {
+    "$GRCTL" --robot "$work/cloned.yaml" -d sim "$@"
+}
+check "a servo model beside it" fails 0 '2 joints, nothing wrong' \
+    "$GRCTL" robot check "$work/cloned.yaml"
+check "its registers" both exits 0 cloned servo-get 3 --- says '^ 50  my_gain  *7$'
+check "are those of its joint alone" fails 2 "no register 'my_gain'" cloned servo-get 4 my_gain
+check "are set within their range" fails 2 'my_gain takes 0 to 500' \
+    cloned servo-set 3 my_gain 501
+check "and can be set" fails 0 'my_gain 7 -> 100' cloned servo-set 3 my_gain 100
+check "doctor knows it" exits 0 cloned doctor
+check "so does info" both exits 0 cloned info --- says '^  3  Clone-15 .* turn$'
+check "it moves" fails 0 'done; largest error 0\.[0-4]' cloned move turn 50
+sed 's/3100/300/' "$work/clone.yaml" >"$work/short.yaml"
+sed 's/clone.yaml/short.yaml/' "$work/cloned.yaml" >"$work/shortened.yaml"
+check "its range is judged" fails 3 'shortened.yaml:4:58: turn: its servo does not reach' \
+    "$GRCTL" --robot "$work/shortened.yaml" joints
+sed 's/number/numbr/' "$work/clone.yaml" >"$work/short.yaml"
+check "a mistake in it has its file and line" fails 3 \
+    "short.yaml:4:1: no key in the file called 'numbr'; did you mean 'number'?" \
+    "$GRCTL" --robot "$work/shortened.yaml" joints
+rm "$work/short.yaml"
+check "it is not there" fails 3 'shortened.yaml:4:32: .*short.yaml: no such file' \
+    "$GRCTL" --robot "$work/shortened.yaml" joints
 check "no file" fails 3 'none.yaml: no such file' "$GRCTL" --robot "$work/none.yaml" joints
 check "a folder" fails 3 'is a folder' "$GRCTL" --robot "$work/" joints
 

@@ -230,6 +230,7 @@ TEST(dxl_refuses_null)
     packet1.data_bytes = 1;
     REFUSES(grobo_dxl1_build(&packet1, bytes, sizeof bytes));
     assert_null(grobo_servo_model_named(NULL, "STS3215"));
+    assert_null(grobo_servo_series(NULL));
     assert_null(grobo_servo_model_named(&grobo_i_sts_table, NULL));
     assert_null(grobo_servo_model_numbered(NULL, 777));
     assert_null(grobo_servo_register_row(NULL, 0));
@@ -570,6 +571,8 @@ TEST(robot_file_refuses_null)
     REFUSES(grobo_robot_def_read(NULL, "", NULL, NULL, &def));
     REFUSES(grobo_robot_def_read(&bytes_of, NULL, NULL, NULL, &def));
     REFUSES(grobo_robot_def_read(&bytes_of, "", NULL, NULL, NULL));
+    REFUSES(grobo_robot_def_read_file(NULL, NULL, NULL, &def));
+    REFUSES(grobo_robot_def_read_file("", NULL, NULL, NULL));
     grobo_robot_def_free(NULL);
     REFUSES(grobo_robot_def_driver(NULL, GROBO_WIRING_BUS, &driver));
     REFUSES(grobo_robot_def_driver(grobo_i_robot_defs[0], GROBO_WIRING_BUS, NULL));

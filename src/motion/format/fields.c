@@ -566,3 +566,45 @@ int grobo_i_keep_value(grobo_i_events *events, grobo_i_kept **list, const grobo_
     }
     return result;
 }
+
+/* ---- a whole file -------------------------------------------------------------------------- */
+
+static int read_whole(grobo_i_events *events, const char *what,
+                      int (*read)(grobo_i_events *events, void *target), void *target)
+{
+    const grobo_i_event *event;
+    int result = grobo_i_peek(events, &event);
+    if (result == 0 && event->kind != GROBO_I_MAP) {
+        return grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "type", event->place,
+                              "not %s: no mapping at the top", what);
+    }
+    result = result < 0 ? result : read(events, target);
+    result = result < 0 ? result : grobo_i_next(events, &event); /* the document's end */
+    if (result < 0) {
+        return result;
+    }
+    const grobo_i_place end = event->place;
+    result = grobo_i_another_document(events);
+    return result > 0 ? grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "documents", end,
+                                       "another document behind the first")
+                      : result;
+}
+
+int grobo_i_read_document(grobo_i_reader *reader, const char *what,
+                          int (*read)(grobo_i_events *events, void *target), void *target)
+{
+    grobo_i_events events;
+    int result = grobo_i_input_fill(&reader->input);
+    if (result < 0) {
+        return grobo_i_refuse(reader, result, "read", (grobo_i_place){0, 0}, "%s",
+                              grobo_error_text(result));
+    }
+    result = grobo_i_events_begin(&events, reader);
+    if (result < 0) {
+        return result;
+    }
+    events.refuses_aliases = true;
+    result = read_whole(&events, what, read, target);
+    grobo_i_events_end(&events);
+    return result;
+}

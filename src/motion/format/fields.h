@@ -49,6 +49,13 @@ int grobo_i_read_numbers(grobo_i_events *events, const char *what, grobo_i_numbe
 int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *values, int count);
 /* A copy of a scalar, null being ""; freed by grobo_i_free_text(). An old *value is freed. */
 int grobo_i_read_string(grobo_i_events *events, const char *what, char **value);
+/*
+ * Reads the one document of a file, a mapping, by a function that reads it. Aliases are refused.
+ * @param what the file, in complaints: "a robot's file"
+ * @return 0, or an error that is said
+ */
+int grobo_i_read_document(grobo_i_reader *reader, const char *what,
+                          int (*read)(grobo_i_events *events, void *target), void *target);
 uint64_t grobo_i_hash(const char *text);
 /* True for a plain scalar that means nothing: empty, ~, null. */
 bool grobo_i_is_null(const grobo_i_event *event);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* From a path, memory or a source to a motion: opens, guesses the format, picks the reader. */
-#include <errno.h>
 #include <string.h>
 
 #include "src/base/memory.h"
 #include "src/base/sized.h"
 #include "src/motion/format/format.h"
+#include "src/motion/format/stream.h"
 
 enum { BUFFER_BYTES = 64 * 1024 };
 
@@ -109,30 +109,6 @@ int grobo_motion_read_memory(const void *data, size_t size, const grobo_read_opt
     return grobo_motion_read(&(grobo_source){read_memory, &memory}, options, list, motion);
 }
 
-static int error_of_errno(void)
-{
-    switch (errno) {
-    case ENOENT:
-    case ENOTDIR:
-        return GROBO_ERR_NOENT;
-    case EACCES:
-    case EPERM:
-        return GROBO_ERR_PERM;
-    case EISDIR:
-        return GROBO_ERR_ISDIR;
-    default:
-        return GROBO_ERR_IO;
-    }
-}
-
-static int read_stream(void *ctx, void *buffer, size_t size)
-{
-    FILE *stream = ctx;
-    size_t count = fread(buffer, 1, size, stream);
-
-    return count == 0 && ferror(stream) ? error_of_errno() : (int)count;
-}
-
 int grobo_motion_read_file(const char *path, const grobo_read_options *options,
                            grobo_diagnostics *list, grobo_motion **motion)
 {
@@ -145,14 +121,12 @@ int grobo_motion_read_file(const char *path, const grobo_read_options *options,
         return GROBO_ERR_ARG;
     }
     named.name = named.name != NULL ? named.name : path;
-    FILE *stream = fopen(path, "rb");
-    if (stream == NULL) {
-        int result = error_of_errno();
-        grobo_i_say(list, &(grobo_i_said){named.name, "open", 0, 0, GROBO_SEVERITY_ERROR}, "%s",
-                    result == GROBO_ERR_NOENT ? "no such file" : grobo_error_text(result));
+    grobo_source source;
+    int result = grobo_i_stream_open_said(path, named.name, list, &source);
+    if (result < 0) {
         return result;
     }
-    int result = grobo_motion_read(&(grobo_source){read_stream, stream}, &named, list, motion);
-    (void)fclose(stream);
+    result = grobo_motion_read(&source, &named, list, motion);
+    grobo_i_stream_close(&source);
     return result;
 }

@@ -101,6 +101,8 @@ typedef struct grobo_i_robot_file {
     grobo_robot_def def;
     grobo_model model;
     const grobo_mem *mem;
+    const struct grobo_i_beside *beside; /* while it is read; NULL: no files are beside it */
+    struct grobo_i_own_servo *own;       /* models of a user's own, a list */
     grobo_joint joints[GROBO_JOINTS_MAX];
     grobo_group groups[GROBO_ROBOT_GROUPS_MAX];
     double rest_rad[GROBO_JOINTS_MAX];

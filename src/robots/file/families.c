@@ -45,13 +45,15 @@ const grobo_servo_model *grobo_i_family_row(const grobo_robot_family *family, si
     return *table != NULL ? &(*table)->models[index] : NULL;
 }
 
-const grobo_servo_model *grobo_i_family_servo(const grobo_robot_family *family, uint16_t model)
+const grobo_servo_model *grobo_i_joint_servo(const grobo_robot_def *def, int joint)
 {
-    const grobo_servo_model *servo;
-    for (size_t i = 0; (servo = grobo_i_family_row(family, i)) != NULL; i++) {
-        if (servo->number == model) {
-            return servo;
+    const grobo_joint *of = &def->model->joints[joint];
+    const grobo_servo_model *servo = of->servo;
+    for (size_t i = 0; servo == NULL; i++) {
+        const grobo_servo_model *row = grobo_i_family_row(def->family, i);
+        if (row == NULL || row->number == of->servo_model) {
+            return row;
         }
     }
-    return NULL;
+    return servo;
 }

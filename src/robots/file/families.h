@@ -14,7 +14,7 @@ extern const grobo_sim_family *const grobo_i_sim_families[];
 /* Servo number index of a family, NULL behind the last. */
 const grobo_servo_model *grobo_i_family_row(const grobo_robot_family *family, size_t index);
 
-/* The servo of this model, NULL: none. */
-const grobo_servo_model *grobo_i_family_servo(const grobo_robot_family *family, uint16_t model);
+/* The servo of a joint, NULL: none. */
+const grobo_servo_model *grobo_i_joint_servo(const grobo_robot_def *def, int joint);
 
 #endif

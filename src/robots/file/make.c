@@ -9,6 +9,7 @@
 #include "src/motion/text/nearest.h"
 #include "src/robots/file/draft.h"
 #include "src/robots/file/families.h"
+#include "src/robots/file/own.h"
 #include "src/robots/robots.h"
 
 typedef struct maker {
@@ -135,27 +136,38 @@ static void make_safety(maker *m)
 /* A servo that carries something is slower than its maker says. */
 #define OF_ITS_SPEED 0.8
 
-/* The joint's servo: its number, and its speed where the file says none. */
-static void find_servo(const maker *m, int j, grobo_joint *joint)
+/* The servo of this name; NULL with a complaint. */
+static const grobo_servo_model *servo_called(const maker *m, const char *name, grobo_i_place place)
 {
-    const grobo_i_joint_draft *draft = &m->draft->joint[j];
     grobo_i_nearest nearest = {NULL, 0};
     const grobo_servo_model *servo;
+    if (grobo_i_is_own_servo(name)) {
+        return grobo_i_own_servo_find(m->reader, m->file, name, place);
+    }
     for (size_t i = 0; (servo = grobo_i_family_row(m->file->def.family, i)) != NULL; i++) {
-        if (strcmp(servo->name, draft->servo) == 0) {
-            joint->servo_model = servo->number;
-            double own_deg_s =
-                OF_ITS_SPEED * servo->speed_dps / (joint->gear > 0 ? joint->gear : 1);
-            joint->max_speed_rad_s =
-                grobo_rad_from_deg(joint_has(m, j, "speed_deg_s") ? draft->speed_deg_s : own_deg_s);
-            return;
+        if (strcmp(servo->name, name) == 0) {
+            return servo;
         }
-        grobo_i_nearest_try(&nearest, draft->servo, servo->name);
+        grobo_i_nearest_try(&nearest, name, servo->name);
     }
     char what[96];
     snprintf(what, sizeof what, "servo of family %s called", m->file->def.family->name);
-    (void)grobo_i_complain_word(m->reader, joint_place(m, j, "servo"), what, draft->servo,
-                                nearest_of(&nearest));
+    (void)grobo_i_complain_word(m->reader, place, what, name, nearest_of(&nearest));
+    return NULL;
+}
+
+/* The joint's servo, and its speed where the file says none. */
+static void find_servo(const maker *m, int j, grobo_joint *joint)
+{
+    const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    joint->servo = servo_called(m, draft->servo, joint_place(m, j, "servo"));
+    if (joint->servo != NULL) {
+        double own_deg_s =
+            OF_ITS_SPEED * joint->servo->speed_dps / (joint->gear > 0 ? joint->gear : 1);
+        joint->servo_model = joint->servo->number;
+        joint->max_speed_rad_s =
+            grobo_rad_from_deg(joint_has(m, j, "speed_deg_s") ? draft->speed_deg_s : own_deg_s);
+    }
 }
 
 /* The joint of this name, else -1 with a complaint at `place`. */

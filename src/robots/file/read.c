@@ -543,44 +543,13 @@ static int read_usb(grobo_i_events *events, void *draft)
 
 /* ---- all of it ----------------------------------------------------------------------------- */
 
-static int read_document(grobo_i_events *events, grobo_i_draft *draft)
+static int read_robot(grobo_i_events *events, void *target)
 {
-    const grobo_i_event *event;
-    int result = grobo_i_peek(events, &event);
-    if (result == 0 && event->kind != GROBO_I_MAP) {
-        return grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "type", event->place,
-                              "not a robot's file: no mapping at the top");
-    }
-    if (result == 0) {
-        result = read_block(events, GROBO_I_BLOCK_ROBOT, draft, draft->at, &draft->place);
-    }
-    if (result == 0) {
-        result = grobo_i_next(events, &event); /* the document's end */
-    }
-    if (result < 0) {
-        return result;
-    }
-    const grobo_i_place end = event->place;
-    result = grobo_i_another_document(events);
-    return result > 0 ? grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "documents", end,
-                                       "another document behind the first")
-                      : result;
+    grobo_i_draft *draft = target;
+    return read_block(events, GROBO_I_BLOCK_ROBOT, draft, draft->at, &draft->place);
 }
 
 int grobo_i_read_draft(grobo_i_reader *reader, grobo_i_draft *draft)
 {
-    grobo_i_events events;
-    int result = grobo_i_input_fill(&reader->input);
-    if (result < 0) {
-        return grobo_i_refuse(reader, result, "read", (grobo_i_place){0, 0}, "%s",
-                              grobo_error_text(result));
-    }
-    result = grobo_i_events_begin(&events, reader);
-    if (result < 0) {
-        return result;
-    }
-    events.refuses_aliases = true;
-    result = read_document(&events, draft);
-    grobo_i_events_end(&events);
-    return result;
+    return grobo_i_read_document(reader, "a robot's file", read_robot, draft);
 }

@@ -287,6 +287,7 @@ static int read_row(grobo_i_events *events, void *target, const char *name)
             .reg = {.bytes = 1, .max = 255}, .layout = draft->layout, .values = draft->values};
         snprintf(row->name, sizeof row->name, "%s", name);
     }
+    row->place = place;
     int result = grobo_i_read_map(events, &row_keys, row, &seen);
     row->layout = (seen & LAYOUT) != 0 ? draft->layout : row->layout;
     row->values = (seen & VALUES) != 0 ? draft->values : row->values;
@@ -340,9 +341,12 @@ static int read_like(grobo_i_events *events, void *target)
     if (result < 0 || *name == '\0') {
         return result;
     }
-    if (draft->n_rates > 0 || draft->n_rows > 0) {
+    const grobo_servo_model *m = &draft->model;
+    bool numbers = m->number > 0 || m->span_ticks > 0 || m->speed_dps > 0 || m->torque_mnm > 0 ||
+                   m->current_ma > 0 || m->voltage_mv > 0 || m->firmware > 0;
+    if (draft->n_rates > 0 || draft->n_rows > 0 || draft->n_indirect > 0 || numbers) {
         return grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "order", place,
-                              "like: it comes before rates and registers");
+                              "like: it comes before what differs: numbers, rates, registers");
     }
     return draft->like(draft, events->reader, name, place);
 }
@@ -577,42 +581,15 @@ static int unknown_model_key(grobo_i_events *events, void *target, const char *k
     return unknown_key(events, &model_keys, key);
 }
 
-static int read_document(grobo_i_events *events, grobo_i_servo_draft *draft)
+static int read_servo(grobo_i_events *events, void *draft)
 {
-    const grobo_i_event *event;
     uint32_t seen;
-    int result = grobo_i_peek(events, &event);
-    if (result == 0 && event->kind != GROBO_I_MAP) {
-        return grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "type", event->place,
-                              "not a servo model's file: no mapping at the top");
-    }
-    result = result < 0 ? result : grobo_i_read_map(events, &model_keys, draft, &seen);
-    result = result < 0 ? result : grobo_i_next(events, &event); /* the document's end */
-    if (result < 0) {
-        return result;
-    }
-    const grobo_i_place end = event->place;
-    result = grobo_i_another_document(events);
-    return result > 0 ? grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "documents", end,
-                                       "another document behind the first")
-                      : result;
+    return grobo_i_read_map(events, &model_keys, draft, &seen);
 }
 
 int grobo_i_servo_read(grobo_i_reader *reader, grobo_i_servo_draft *draft)
 {
-    grobo_i_events events;
-    int result = grobo_i_input_fill(&reader->input);
-    if (result < 0) {
-        return grobo_i_refuse(reader, result, "read", (grobo_i_place){0, 0}, "%s",
-                              grobo_error_text(result));
-    }
-    result = grobo_i_events_begin(&events, reader);
-    if (result < 0) {
-        return result;
-    }
-    events.refuses_aliases = true;
-    result = read_document(&events, draft);
-    grobo_i_events_end(&events);
+    int result = grobo_i_read_document(reader, "a servo model's file", read_servo, draft);
     return result < 0 ? result : reader->result;
 }
 
@@ -652,8 +629,8 @@ static int by_address(const void *a, const void *b)
 
 static int complain(grobo_i_reader *reader, const grobo_i_servo_row *row, const char *text)
 {
-    return grobo_i_complain(reader, GROBO_ERR_SYNTAX, "register", (grobo_i_place){0, 0},
-                            "register %s: %s", row->name, text);
+    return grobo_i_complain(reader, GROBO_ERR_SYNTAX, "register", row->place, "register %s: %s",
+                            row->name, text);
 }
 
 /* What a value of the range can be written as. */
@@ -665,6 +642,25 @@ static bool fits(const grobo_servo_register *reg)
                     : reg->sign == GROBO_SIGN_TWOS ? -most - 1
                                                    : -most;
     return reg->min >= least && reg->max <= most;
+}
+
+/* What a driver or a simulated servo divides by. */
+static void check_numbers(grobo_i_reader *reader, const grobo_i_servo_draft *draft)
+{
+    const grobo_servo_model *m = &draft->model;
+    const struct {
+        const char *key;
+        bool given;
+    } keys[] = {{"scale", m->span_ticks > 0 && m->span_deg > 0},
+                {"speed_dps", m->speed_dps > 0},
+                {"current_ma", m->current_ma > 0},
+                {"voltage_mv", m->voltage_mv > 0}};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+        if (!keys[i].given) {
+            (void)grobo_i_complain(reader, GROBO_ERR_SYNTAX, "missing", draft->place,
+                                   "%s: it has no '%s'", draft->name, keys[i].key);
+        }
+    }
 }
 
 int grobo_i_servo_finish(grobo_i_reader *reader, grobo_i_servo_draft *draft)
@@ -695,14 +691,11 @@ int grobo_i_servo_finish(grobo_i_reader *reader, grobo_i_servo_draft *draft)
     }
     for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++) {
         if (had[needed[i]] == 0) {
-            (void)grobo_i_complain(reader, GROBO_ERR_SYNTAX, "missing", (grobo_i_place){0, 0},
+            (void)grobo_i_complain(reader, GROBO_ERR_SYNTAX, "missing", draft->place,
                                    "%s: no register has the role '%s'", draft->name,
                                    roles[needed[i]]);
         }
     }
-    if (draft->model.span_ticks == 0 || draft->model.span_deg == 0) {
-        (void)grobo_i_complain(reader, GROBO_ERR_SYNTAX, "missing", (grobo_i_place){0, 0},
-                               "%s: it has no 'scale'", draft->name);
-    }
+    check_numbers(reader, draft);
     return reader->result;
 }

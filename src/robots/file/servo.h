@@ -25,6 +25,7 @@ typedef struct grobo_i_servo_row {
     grobo_servo_register reg; /* name and unit point into the row that is filled at the end */
     grobo_i_servo_text name, unit;
     uint32_t layout, values; /* address and size; default and range */
+    grobo_i_place place;     /* where a file spoke of it last */
 } grobo_i_servo_row;
 
 typedef struct grobo_i_servo_draft grobo_i_servo_draft;
@@ -41,6 +42,7 @@ struct grobo_i_servo_draft {
     grobo_servo_indirect indirect[GROBO_I_SERVO_INDIRECTS];
     grobo_i_servo_text source[GROBO_I_SERVO_SOURCES];
     uint32_t layout, values; /* sources of the file that is being read */
+    grobo_i_place place;     /* of what concerns the whole; 0: the file */
     int depth;
     /* Fills the draft with the model or file of this name; complains where there is none. */
     int (*like)(grobo_i_servo_draft *draft, grobo_i_reader *reader, const char *name,

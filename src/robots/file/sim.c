@@ -15,7 +15,7 @@ int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring, grobo_r
     sim->config.wiring = wiring;
     sim->config.baud_bps = def->baud_bps;
     for (int j = 0; j < def->model->n_joints; j++) {
-        sim->servos[j] = grobo_i_family_servo(def->family, def->model->joints[j].servo_model);
+        sim->servos[j] = grobo_i_joint_servo(def, j);
     }
     sim->config.servos = sim->servos;
     sim->config.families = grobo_i_sim_families;

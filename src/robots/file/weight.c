@@ -39,8 +39,7 @@ static bool given(const grobo_robot_def *def, int j, grobo_sim_motor *motor)
 {
     static const grobo_robot_motor nothing;
     const grobo_robot_motor *said = def->motors != NULL ? &def->motors[j] : &nothing;
-    const grobo_servo_model *servo =
-        grobo_i_family_servo(def->family, def->model->joints[j].servo_model);
+    const grobo_servo_model *servo = grobo_i_joint_servo(def, j);
     if (memcmp(said, &nothing, sizeof nothing) == 0 || grobo_sim_motor_of(servo, motor) < 0) {
         return false;
     }

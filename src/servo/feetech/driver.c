@@ -18,7 +18,7 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
     if (role == GROBO_ROLE_MODE) {
         return GROBO_STS_MODE_POSITION;
     }
-    if (servo->table != &grobo_i_sts_table) {
+    if (grobo_servo_series(servo) != &grobo_i_sts_table) {
         return found & ~(int32_t)GROBO_STS_PHASE_REVERSE;
     }
     unsigned bits = GROBO_STS_PHASE_FINE_SPEED | (joint->turns ? GROBO_STS_PHASE_TURNS : 0);
@@ -28,7 +28,7 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
 /* SCS stay silent (LeRobot). */
 static bool sync_read(const grobo_servo_model *servo)
 {
-    return servo->table == &grobo_i_sts_table;
+    return grobo_servo_series(servo) == &grobo_i_sts_table;
 }
 
 /*

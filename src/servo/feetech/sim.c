@@ -230,7 +230,7 @@ static const grobo_i_dxl1_series scs = {.locks = true,
 
 static const grobo_i_dxl1_series *series_of(const grobo_sim_servo *servo)
 {
-    return servo->model->table == &grobo_i_sts_table ? &sts : &scs;
+    return grobo_servo_series(servo->model) == &grobo_i_sts_table ? &sts : &scs;
 }
 
 static void packet(grobo_sim *sim, const grobo_sim_event *raw)

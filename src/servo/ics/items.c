@@ -8,7 +8,7 @@ enum { ICS36 = 36 };
 
 bool grobo_ics_tells_position(const grobo_servo_model *servo)
 {
-    return servo != NULL && servo->table == &grobo_i_ics_table && servo->firmware == ICS36;
+    return grobo_servo_series(servo) == &grobo_i_ics_table && servo->firmware == ICS36;
 }
 
 const grobo_i_item grobo_i_ics_items[] = {

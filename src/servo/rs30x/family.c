@@ -19,4 +19,5 @@ const grobo_robot_family grobo_i_family_rs30x = {
     .tables = {&grobo_i_rs30x_table},
     .baud_bps = 115200,
     .wiring = GROBO_WIRING_BUS,
+    .fixed = true,
     .init = {[GROBO_WIRING_BOARD] = init_board, [GROBO_WIRING_BUS] = init_bus}};

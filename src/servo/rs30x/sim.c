@@ -30,8 +30,7 @@ const grobo_servo_model *grobo_i_sim_rs30x_model(uint16_t number)
 /* Lacks what came with RS303MR: No.22, 23, 60-127, answers to all (manual of RS301CR/RS302CD). */
 static bool is_early(const grobo_sim_servo *servo)
 {
-    return servo->model->number == GROBO_RS30X_RS301CR ||
-           servo->model->number == GROBO_RS30X_RS302CD;
+    return grobo_servo_register_at(servo->model, GROBO_RS30X_SILENCE_TORQUE) == NULL;
 }
 
 /* The register that an address begins or continues, if the servo has it. */

@@ -16,6 +16,17 @@ static bool reaches(const grobo_joint *joint, const grobo_servo_model *servo, do
     return ticks >= goal->min && ticks <= goal->max && (joint->turns ? around : turn);
 }
 
+/* Whether a servo is of one of the family's series. */
+static bool talks(const grobo_i_family *family, const grobo_servo_model *servo)
+{
+    const grobo_servo_table *series = grobo_servo_series(servo);
+    bool known = false;
+    for (int i = 0; i < GROBO_I_TABLES; i++) {
+        known = known || (series != NULL && series == family->tables[i]);
+    }
+    return known;
+}
+
 /* A family without times keeps its unit all the same: it is what a speed is computed of. */
 int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo_protocol *protocol,
                        const grobo_i_family *family)
@@ -39,7 +50,7 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
         const grobo_joint *joint = &model->joints[j];
         const grobo_servo_model *servo = grobo_i_table_servo(made, j);
         bool kept = !joint->calibrated || !family->offset_trims; /* where its middle is */
-        if (servo == NULL || !kept || !reaches(joint, servo, joint->min_rad) ||
+        if (!talks(family, servo) || !kept || !reaches(joint, servo, joint->min_rad) ||
             !reaches(joint, servo, joint->max_rad)) {
             return GROBO_ERR_ARG;
         }

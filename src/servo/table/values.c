@@ -9,10 +9,10 @@
 const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint)
 {
     const grobo_i_family *family = self->family;
-    const grobo_servo_model *found = NULL;
+    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_servo_model *found = moved->servo;
     for (int i = 0; found == NULL && i < GROBO_I_TABLES; i++) {
-        found =
-            grobo_servo_model_numbered(family->tables[i], self->model->joints[joint].servo_model);
+        found = grobo_servo_model_numbered(family->tables[i], moved->servo_model);
     }
     return found;
 }

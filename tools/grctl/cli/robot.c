@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,23 +17,9 @@ typedef struct kept {
 } kept;
 static kept *all;
 
-static int read_stream(void *ctx, void *buffer, size_t size)
-{
-    size_t n = fread(buffer, 1, size, ctx);
-    return n == 0 && ferror((FILE *)ctx) ? GROBO_ERR_IO : (int)n;
-}
-
 int robot_read(const char *path, grobo_diagnostics *list, grobo_robot_def **def)
 {
-    FILE *file = os_is_folder(path) ? NULL : fopen(path, "rb");
-    if (!file) {
-        return os_is_folder(path) ? GROBO_ERR_ISDIR
-               : errno == EACCES  ? GROBO_ERR_PERM
-                                  : GROBO_ERR_NOENT;
-    }
-    int error = grobo_robot_def_read(&(grobo_source){read_stream, file}, path, list, NULL, def);
-    fclose(file);
-    return error;
+    return os_is_folder(path) ? GROBO_ERR_ISDIR : grobo_robot_def_read_file(path, list, NULL, def);
 }
 
 static bool is_path(const char *name)

@@ -165,11 +165,11 @@ static const grobo_servo_table *table_of(const farm *f)
 {
     const grobo_sim_config config = sim_config(f, 0);
     for (int i = 1; i < config.model->n_joints; i++) {
-        if (config.servos[i]->table != config.servos[0]->table) {
+        if (grobo_servo_series(config.servos[i]) != grobo_servo_series(config.servos[0])) {
             return NULL;
         }
     }
-    return config.servos[0]->table;
+    return grobo_servo_series(config.servos[0]);
 }
 
 /* How the servos talk, where all are of one family; else NULL. */

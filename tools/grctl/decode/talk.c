@@ -28,11 +28,11 @@ static bool has(const grobo_robot_family *family, const grobo_servo_table *table
 const grobo_words *talk_of_servo(const grobo_servo_model *servo)
 {
     const grobo_family *f = grobo_families();
-    while (f->robot && !(servo && has(f->robot, servo->table))) {
+    while (f->robot && !(servo && has(f->robot, grobo_servo_series(servo)))) {
         f++;
     }
     for (const grobo_words *const *words = f->robot ? f->words : NULL; words && *words; words++) {
-        if ((*words)->table == servo->table) {
+        if ((*words)->table == grobo_servo_series(servo)) {
             return *words;
         }
     }
@@ -89,7 +89,9 @@ void talk_learn(talk *t, const grobo_telegram *said)
                                                       part->data + (reg->address - part->address));
             const grobo_servo_model *found =
                 grobo_servo_model_numbered(t->words->table, (uint16_t)number);
-            t->servo[part->id] = found ? found : t->servo[part->id];
+            const grobo_servo_model *known = t->servo[part->id];
+            bool same = known && known->number == number; /* several may have one number */
+            t->servo[part->id] = found && !same ? found : known;
         }
     }
 }

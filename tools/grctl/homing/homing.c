@@ -33,9 +33,9 @@ typedef struct calibration {
  * mx_multi_turn_offset), STS take it away (LeRobot). 0: this one keeps none; its range alone. */
 static int sign_of_offset(const grobo_joint *joint, const grobo_servo_model *servo)
 {
-    bool adds = servo->table == grobo_dxl2_table() ||
+    bool adds = grobo_servo_series(servo) == grobo_dxl2_table() ||
                 (joint->turns && grobo_servo_register_of(servo, GROBO_ROLE_OFFSET));
-    return servo->table == grobo_sts_table() ? -1 : adds ? 1 : 0;
+    return grobo_servo_series(servo) == grobo_sts_table() ? -1 : adds ? 1 : 0;
 }
 
 static const grobo_joint *joint_of(const app *a, int joint)
@@ -51,8 +51,10 @@ static const grobo_servo_model *servo_of(const app *a, int joint)
 /* Each of its limits is a register of its own. */
 static bool keeps_range(const grobo_servo_model *servo)
 {
-    return servo && (servo->table == grobo_sts_table() || servo->table == grobo_scs_table() ||
-                     servo->table == grobo_dxl1_table() || servo->table == grobo_dxl2_table());
+    return servo && (grobo_servo_series(servo) == grobo_sts_table() ||
+                     grobo_servo_series(servo) == grobo_scs_table() ||
+                     grobo_servo_series(servo) == grobo_dxl1_table() ||
+                     grobo_servo_series(servo) == grobo_dxl2_table());
 }
 
 bool homing_fits(const app *a)
@@ -269,7 +271,7 @@ static int home_joint(calibration *k, int j)
     const grobo_joint *joint = joint_of(k->a, j);
     int sign = sign_of_offset(joint, servo);
     /* DYNAMIXEL X within one turn take no more than a quarter (emanual homing_offset). */
-    int32_t most = servo->table == grobo_dxl2_table() && !joint->turns
+    int32_t most = grobo_servo_series(servo) == grobo_dxl2_table() && !joint->turns
                        ? servo->span_ticks / 4
                        : grobo_servo_register_of(servo, GROBO_ROLE_OFFSET)->max;
     int status = read_here(k, j, write_role(k, j, GROBO_ROLE_OFFSET, 0));

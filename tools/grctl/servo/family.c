@@ -103,7 +103,7 @@ const grobo_robot_family *family_of_servo(const grobo_servo_model *servo)
     const grobo_servo_table *table;
     for (size_t f = 0; grobo_robot_family_at(f); f++) {
         for (size_t i = 0; (table = grobo_robot_family_at(f)->tables[i]) != NULL; i++) {
-            if (table == servo->table) {
+            if (table == grobo_servo_series(servo)) {
                 return grobo_robot_family_at(f);
             }
         }
@@ -130,10 +130,22 @@ const grobo_servo_model *family_model(const grobo_robot_family *family, const ch
     return NULL;
 }
 
+/* The servo of this number that a joint of the robot has; NULL: none. */
+static const grobo_servo_model *robot_numbered(const grobo_driver *driver, uint16_t number)
+{
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        const grobo_servo_model *servo = driver->model->joints[j].servo;
+        if (servo && servo->number == number) {
+            return servo;
+        }
+    }
+    return NULL;
+}
+
 const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t number)
 {
     const grobo_robot_family *family = family_of_driver(driver);
-    const grobo_servo_model *found = NULL;
+    const grobo_servo_model *found = robot_numbered(driver, number);
     const grobo_servo_table *table;
     for (size_t i = 0; family && !found && (table = family->tables[i]) != NULL; i++) {
         found = grobo_servo_model_numbered(table, number);
@@ -141,12 +153,17 @@ const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t nu
     return found;
 }
 
+const grobo_servo_model *family_joint_servo(const grobo_driver *driver, int joint)
+{
+    const grobo_joint *of = &driver->model->joints[joint];
+    return of->servo ? of->servo : family_numbered(driver, of->servo_model);
+}
+
 const grobo_servo_model *family_servo(const grobo_driver *driver, int id)
 {
     int joint = grobo_model_joint_of_motor(driver->model, id);
     const grobo_robot_family *family = family_of_driver(driver);
-    const grobo_servo_model *found =
-        joint < 0 ? NULL : family_numbered(driver, driver->model->joints[joint].servo_model);
+    const grobo_servo_model *found = joint < 0 ? NULL : family_joint_servo(driver, joint);
     return found || !family ? found : &family->tables[0]->models[0];
 }
 
@@ -158,8 +175,11 @@ const grobo_servo_model *family_identify(const grobo_driver *driver, const uint8
     for (size_t i = 0; family && !found && (table = family->tables[i]) != NULL; i++) {
         const grobo_servo_model *any = &table->models[0];
         const grobo_servo_register *model = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
-        int32_t number = grobo_servo_register_get(any, model, bytes);
-        found = grobo_servo_model_numbered(table, (uint16_t)number);
+        uint16_t number = (uint16_t)grobo_servo_register_get(any, model, bytes);
+        found = robot_numbered(driver, number);
+        found = found && grobo_servo_series(found) == table
+                    ? found
+                    : grobo_servo_model_numbered(table, number);
     }
     return found;
 }

@@ -43,7 +43,11 @@ const grobo_servo_model *family_servo(const grobo_driver *driver, int id);
 /* The servo of this name in a family, NULL: none. */
 const grobo_servo_model *family_model(const grobo_robot_family *family, const char *name);
 
-/* The servo of this number; NULL: not known. */
+/* The servo of a joint; NULL: not named, or of no family. */
+const grobo_servo_model *family_joint_servo(const grobo_driver *driver, int joint);
+
+/* The servo of this number, of those that the robot's joints name, else of the family; NULL: not
+ * known. */
 const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t number);
 
 /*

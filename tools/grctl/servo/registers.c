@@ -79,7 +79,7 @@ static const char *word_of(const grobo_servo_model *servo, const grobo_servo_reg
                            int32_t counts)
 {
     static const char *const torques[] = {"off", "on", "brake"};
-    bool brakes = servo && servo->table == grobo_rs30x_table();
+    bool brakes = servo && grobo_servo_series(servo) == grobo_rs30x_table();
     if (reg->role == GROBO_ROLE_TORQUE && counts >= 0 && counts <= (brakes ? 2 : 1)) {
         return torques[counts];
     }

@@ -36,7 +36,7 @@ static void read_limits(conn *c, found_servo *one)
     const grobo_servo_register *mode = grobo_servo_register_of(one->servo, GROBO_ROLE_MODE);
     double low, high;
     int32_t is = 0;
-    one->turns = one->servo->table == grobo_dxl2_table() && mode &&
+    one->turns = grobo_servo_series(one->servo) == grobo_dxl2_table() && mode &&
                  servos_get(c, one->id, one->servo, mode, &is) == GROBO_OK && is == MODE_EXTENDED;
     const grobo_servo_register *offset = grobo_servo_register_of(one->servo, GROBO_ROLE_OFFSET);
     one->calibrated =

@@ -61,22 +61,14 @@ def _shipped(name: str) -> Any:
 
 
 def _read(path: str) -> Any:
-    with open(path, "rb") as file:
-        def read(_: Any, buffer: Any, size: int) -> int:
-            data = file.read(size)
-            ffi.memmove(buffer, data, len(data))
-            return len(data)
-
-        reader = ffi.callback("int(void *, void *, size_t)", read, error=lib.GROBO_ERR_IO)
-        source = ffi.new("grobo_source *", {"read": reader})
-        problems = ffi.new("grobo_diagnostics **")
-        check(lib.grobo_diagnostics_new(ffi.NULL, problems), path)
-        found = ffi.gc(problems[0], lib.grobo_diagnostics_free)
-        made = ffi.new("grobo_robot_def **")
-        result = lib.grobo_robot_def_read(source, os.fsencode(path), found, ffi.NULL, made)
-        if result < 0:
-            raise error(result, path, reason=first_error(found))
-        return ffi.gc(made[0], lib.grobo_robot_def_free)
+    problems = ffi.new("grobo_diagnostics **")
+    check(lib.grobo_diagnostics_new(ffi.NULL, problems), path)
+    found = ffi.gc(problems[0], lib.grobo_diagnostics_free)
+    made = ffi.new("grobo_robot_def **")
+    result = lib.grobo_robot_def_read_file(os.fsencode(path), found, ffi.NULL, made)
+    if result < 0:
+        raise error(result, path, reason=first_error(found))
+    return ffi.gc(made[0], lib.grobo_robot_def_free)
 
 
 def first_error(found: Any) -> Optional[str]:
