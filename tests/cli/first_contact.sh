@@ -57,11 +57,16 @@ check "there is a trace of the reading" traced
 check "and of nothing else" [ ! -e "$work/shy-move.pcapng" ]
 check "a report is not written over" contact 2 '\n' shy -d "$robot"
 if have_json; then
-    check_json "the report as JSON" \
-        'lines[0]["robot"] == "gr001" and len(lines[0]["servos"]) == 20 and
-        lines[0]["servos"][3]["registers"]["id"] == 12 and lines[0]["not_as_assumed"] == 0 and
-        {s["name"] for s in lines[0]["steps"]} > {"ping", "models", "latency", "board", "echo"}' \
-        on_robot --json first-contact --yes -o "$work/told"
+    # On a machine that is busy half of the replies may be late, and no more is otherwise.
+    told() {
+        on_robot --json first-contact --yes -o "$work/told" >"$work/out" 2>"$work/err"
+        [ $? -le 1 ] && json 'lines[0]["robot"] == "gr001" and len(lines[0]["servos"]) == 20 and
+            lines[0]["servos"][3]["registers"]["id"] == 12 and
+            lines[0]["not_as_assumed"] == sum(s["verdict"] == "not_as_assumed"
+                for s in lines[0]["steps"] if s["name"] in ("latency", "line")) and
+            {s["name"] for s in lines[0]["steps"]} > {"ping", "models", "latency", "board", "echo"}'
+    }
+    check "the report as JSON" told
 fi
 stop_sim
 done_testing
