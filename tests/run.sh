@@ -171,17 +171,30 @@ awk -v logs="$logs" -v first=" ${TEST_FIRST:-} " -v one_pool="${TEST_JOBS:-}$wra
 awk -v logs="$logs" -v limit_s="$limit_s" -v slow="${TEST_SLOWEST:-5}" '
 function problem(text) { failed++; bad = 1; notes = notes "  " text "\n" }
 
+# What needs the reference material, which users do not have, is one skip, behind which all are told.
+function skip(text) {
+    if (text ~ /reference material/) {
+        skipped += !material
+        sub(/; [^;]*reference material.*/, "", text)
+        sub(/: [^:]*reference material.*/, "", text)
+        material++
+        of_material = of_material "      " text "\n"
+    } else {
+        skipped++
+        skips = skips "skip  " text "\n"
+    }
+}
+
 # A result line: "ok 3 - name", "not ok 3 - name", "ok 3 # SKIP why", and of cmocka
 # "not ok 3 # SKIP name".
 function result(line,    name) {
     results++
     if (line ~ /# *[Ss][Kk][Ii][Pp]/) {
-        skipped++
         name = line
         sub(/^.*# *[Ss][Kk][Ii][Pp] */, "", name)
         sub(/\n$/, "", said)
         gsub(/\n/, "; ", said)
-        skips = skips "skip  " shown ": " name (said != "" ? ": " said : "") "\n"
+        skip(shown ": " name (said != "" ? ": " said : ""))
     } else if (line ~ /^ok/) {
         passed++
     } else {
@@ -260,9 +273,8 @@ function note_times(line,    words) {
         } else if (line ~ /^1\.\.0 *#/) {
             skipped_all = 1
             plan = 0
-            skipped++
             sub(/^1\.\.0 *# *([Ss][Kk][Ii][Pp])? */, "", line)
-            skips = skips "skip  " shown ": " line "\n"
+            skip(shown ": " line)
         } else if (line ~ /^1\.\.[0-9]+/) {
             # A program of several groups has a plan for each.
             plan = (plan < 0 ? 0 : plan) + substr(line, 4)
@@ -281,6 +293,10 @@ function note_times(line,    words) {
 
 END {
     printf "%s", skips
+    if (material) {
+        printf "skip  no reference material beside the checkout, which %d tests need:\n%s", \
+            material, of_material
+    }
     if (NR > 1) {
         slowest = "sort -rn | head -n " slow " | cut -d \" \" -f 2-"
         printf "%s", times | slowest

@@ -6,8 +6,7 @@
 #                        --mutants | --packages | --cockpit] [--dry-run]
 #   --demo     what a build and the demo need (default)
 #   --check    that, what `make check` needs, and the programs without which it skips checks
-#   --ci       that, and what the other stages of .ci/run need: clang with libFuzzer, valgrind,
-#              abidiff
+#   --ci       that, and what the other stages of .ci/run need: clang with libFuzzer, abidiff
 #   --cross    what `make cross TARGET=...` needs (Debian only)
 #   --drivers  what --check needs, and `make check-drivers`
 #   --mutants  what --check needs, and `make check-mutants`
@@ -256,6 +255,11 @@ have_module() {
     esac
 }
 
+have_python_headers() {
+    python3 -c 'import os, sys, sysconfig
+sys.exit(not os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h")))' 2>/dev/null
+}
+
 have_mdoc() {
     have_command groff && [ -e /usr/share/groff/current/tmac/doc.tmac ]
 }
@@ -286,6 +290,11 @@ look_wanted() {
         doxygen doxygen doxygen doxygen doxygen
     need glib 'to check the guide of loops' have_library glib-2.0 -- \
         libglib2.0-dev glib2-devel glib2 glib-dev glib2-devel
+    need valgrind 'to check memory' have_command valgrind -- \
+        valgrind valgrind valgrind valgrind valgrind
+    need gdb 'to check the guard beside a debugger' have_command gdb -- gdb gdb gdb gdb gdb
+    [ "$manager" != apt-get ] ||
+        need "Python's headers" 'to check the Python package' have_python_headers -- python3-dev
     need tmux 'to check the shell at a terminal' have_command tmux -- \
         tmux tmux tmux tmux tmux
     need zsh 'to check completion' have_command zsh -- zsh zsh zsh zsh zsh
@@ -307,8 +316,6 @@ look_wanted() {
     [ "$manager" != apt-get ] ||
         need clang-format 'to check the formatting' have_command clang-format-14 -- clang-format-14
     [ $level -ge 3 ] || return
-    need valgrind 'to check memory' have_command valgrind -- \
-        valgrind valgrind valgrind valgrind valgrind
     [ "$manager" != apt-get ] ||
         need abidiff 'to compare binary interfaces' have_command abidiff -- abigail-tools
     need 'clang with libFuzzer' 'to fuzz' have_fuzzer -- \

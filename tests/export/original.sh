@@ -84,7 +84,7 @@ if [ -r "$reference" ]; then
     test_that 'its calls in C++ have the arguments of the reference document' same_arguments
 else
     test_case 'its calls in C++'
-    skip 'its calls in C++' "no $reference"
+    skip 'its calls in C++' "no $reference: reference material beside the checkout"
 fi
 test_case 'its C compiles'
 if [ -n "${CROSS:-}" ]; then

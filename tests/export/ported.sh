@@ -68,10 +68,7 @@ console() {
 }
 test_that 'console' console
 test_that 'the guide tells how many lines are new' told_lines
-test_case 'the C++ compiles with the original'
-if [ -d "${GROBO_ORIGINAL:-}/libgrobot" ]; then
-    check 'the C++ compiles' cxx_compiles
-else
-    skip 'the C++ compiles' 'no sources of the original: GROBO_ORIGINAL is not set'
-fi
+# The original's sources are not free to be handed on: measured by who has them.
+[ ! -d "${GROBO_ORIGINAL:-}/libgrobot" ] ||
+    test_that 'the C++ compiles with the original' cxx_compiles
 done_testing

@@ -44,6 +44,10 @@ S
 program skips_all <<'S'
 echo '1..0 # SKIP no tool'
 S
+program wants_material <<'S'
+printf '1..2\nx.json is missing: reference material beside the checkout\nnot ok 1 # SKIP one\n'
+printf 'y.json is missing: reference material beside the checkout\nnot ok 2 # SKIP other\n'
+S
 program empty <<'S'
 S
 program empty_group <<'S'
@@ -161,6 +165,8 @@ test_that 'what waits does so beside the others' \
 test_that 'a skip is told with its reason' \
     ends 0 '1 passed, 0 failed, 1 skipped' 'with_a_robot: no robot here' ./skips
 test_that 'a program may skip whole' ends 0 '0 passed, 0 failed, 1 skipped' 'no tool' ./skips_all
+test_that 'what needs reference material is one skip, and each is told' \
+    ends 0 '0 passed, 0 failed, 2 skipped' 'wants_material: other: y.json' ./wants_material ./skips_all
 test_that 'no output is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty
 test_that 'no test is a failure' \
     ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty_group

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "src/motion/text/number.h"
+#include "tests/support/os.h"
 #include "tests/support/test.h"
 
 TEST(test_numbers)
@@ -110,16 +111,11 @@ TEST(test_numbers_are_rounded_right)
 
 TEST(test_locale)
 {
-    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
     char text[GROBO_I_NUMBER_BYTES];
     double value;
-    bool found = false;
 
-    for (size_t i = 0; i < sizeof names / sizeof names[0] && !found; i++) {
-        found = setlocale(LC_NUMERIC, names[i]) != NULL;
-    }
-    if (!found) {
-        print_message("no locale with a decimal comma is installed\n");
+    if (!test_locale_with_comma()) {
+        print_message("no locale with a decimal comma can be had\n");
         skip();
     }
     bool parsed = grobo_i_parse_number("0.33333333333333331", 19, &value);

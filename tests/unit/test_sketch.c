@@ -150,7 +150,7 @@ TEST(gr001_has_the_limits_of_its_body)
     snprintf(path, sizeof path, "%s/data/choreonoid/GR001.body", shared ? shared : "../shared");
     char *bytes = file_bytes(path);
     if (!bytes) {
-        print_message("no %s\n", path);
+        print_message("%s is missing: reference material beside the checkout\n", path);
         skip();
     }
     const grobo_robot_def *own = shipped("gr001");

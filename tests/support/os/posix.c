@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <locale.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,4 +38,22 @@ int64_t test_cpu_us(void)
     }
     return (int64_t)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1000000 +
            usage.ru_utime.tv_usec + usage.ru_stime.tv_usec;
+}
+
+bool test_locale_with_comma(void)
+{
+    static const char name[] = "de_DE.UTF-8";
+    char folder[300];
+    char command[800];
+
+    if (setlocale(LC_NUMERIC, name) != NULL) {
+        return true;
+    }
+    test_folder_new(folder, sizeof folder);
+    snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 '%s/%s' >'%s/said' 2>&1", folder,
+             name, folder);
+    bool made = system(command) == 0 && setenv("LOCPATH", folder, 1) == 0 &&
+                setlocale(LC_NUMERIC, name) != NULL;
+    snprintf(command, sizeof command, "rm -rf '%s'", folder);
+    return system(command) == 0 && made;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <windows.h>
+#include <locale.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -43,4 +44,9 @@ int64_t test_cpu_us(void)
     return ((((int64_t)kernel.dwHighDateTime + user.dwHighDateTime) << 32) + kernel.dwLowDateTime +
             user.dwLowDateTime) /
            10;
+}
+
+bool test_locale_with_comma(void)
+{
+    return setlocale(LC_NUMERIC, "German_Germany.1252") != NULL;
 }
