@@ -171,7 +171,7 @@ awk -v logs="$logs" -v first=" ${TEST_FIRST:-} " -v one_pool="${TEST_JOBS:-}$wra
 awk -v logs="$logs" -v limit_s="$limit_s" -v slow="${TEST_SLOWEST:-5}" '
 function problem(text) { failed++; bad = 1; notes = notes "  " text "\n" }
 
-# What needs the reference material, which users do not have, is one skip, behind which all are told.
+# What needs the reference material, which users do not have, is one skip; all are told behind it.
 function skip(text) {
     if (text ~ /reference material/) {
         skipped += !material

@@ -7,8 +7,8 @@
 READ1='54 09 FA AF 01 0F 2A 02 00 26 0A' # position of servo 1, which is 0.0 deg
 test_case 'to a robot'
 
-# An adapter hands over a reply in one piece: on a busy machine it could stand still in its middle for
-# so long that it is cut there.
+# An adapter hands over a reply in one piece: on a busy machine it could stand still in its middle
+# for so long that it is cut there.
 start_told_sim --latency 16 || { echo "Bail out! the simulator did not start"; exit 1; }
 
 

@@ -127,8 +127,9 @@ compilers() {
     for year in 17 20; do
         echo "C++$year, ${cxx%% *}: $cxx -std=c++$year ${cxx11#* }"
     done
-    # Where it is: it belongs to what continuous integration installs.
-    [ -n "$emulator" ] || [ "${cc%% *}" = clang ] || ! command -v clang++ >/dev/null || printf '%s\n' \
+    # clang belongs to what continuous integration installs.
+    [ -n "$emulator" ] || [ "${cc%% *}" = clang ] || ! command -v clang++ >/dev/null ||
+        printf '%s\n' \
         "C, clang: clang $c11" "C++, clang: clang++ $cxx11"
 }
 

@@ -166,7 +166,8 @@ test_that 'a skip is told with its reason' \
     ends 0 '1 passed, 0 failed, 1 skipped' 'with_a_robot: no robot here' ./skips
 test_that 'a program may skip whole' ends 0 '0 passed, 0 failed, 1 skipped' 'no tool' ./skips_all
 test_that 'what needs reference material is one skip, and each is told' \
-    ends 0 '0 passed, 0 failed, 2 skipped' 'wants_material: other: y.json' ./wants_material ./skips_all
+    ends 0 '0 passed, 0 failed, 2 skipped' 'wants_material: other: y.json' \
+    ./wants_material ./skips_all
 test_that 'no output is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty
 test_that 'no test is a failure' \
     ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty_group
