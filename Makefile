@@ -534,7 +534,7 @@ python: $(SHARED_LIB) $(PYTHON_DIR)/grobo/_abi.py ## the Python package, in buil
 	@cp $(SHARED_LIB) $(PYTHON_DIR)/grobo
 	@echo "VERSION = '$(VERSION)'" >$(PYTHON_DIR)/grobo/_version.py
 
-$(PYTHON_DIR)/grobo/_abi.py: tools/python/generate.py src/libgrobo.map $(wildcard include/grobo/*.h)
+$(PYTHON_DIR)/grobo/_abi.py: tools/python/generate.py src/libgrobo.map $(wildcard include/grobo/*.h include/grobo/core/*.h)
 	@mkdir -p $(@D)
 	@$(PYTHON) tools/python/generate.py . "$(CC)" $@ >/dev/null
 
@@ -588,8 +588,9 @@ endef
 install-lib: lib ## headers, libraries and what finds them: pkg-config, CMake
 	install -d "$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(LIBDIR)/cmake/grobo" "$(DESTDIR)$(INCLUDEDIR)/grobo" \
 	    $(if $(IMPORT_LIB),"$(DESTDIR)$(BINDIR)")
-	install -m 644 include/grobo/*.h ports/$(PORT)/include/grobo/*.h "$(DESTDIR)$(INCLUDEDIR)/grobo"
-	install -d "$(DESTDIR)$(INCLUDEDIR)/grobo/classic"
+	install -m 644 include/grobo/*.h "$(DESTDIR)$(INCLUDEDIR)/grobo"
+	install -d "$(DESTDIR)$(INCLUDEDIR)/grobo/core" "$(DESTDIR)$(INCLUDEDIR)/grobo/classic"
+	install -m 644 include/grobo/core/*.h ports/$(PORT)/include/grobo/core/*.h "$(DESTDIR)$(INCLUDEDIR)/grobo/core"
 	install -m 644 include/grobo/classic/*.h "$(DESTDIR)$(INCLUDEDIR)/grobo/classic"
 	install -m 644 $(STATIC_LIB) $(CORE_LIB) $(CLASSIC_LIB) "$(DESTDIR)$(LIBDIR)"
 	$(if $(SHARED_LIB),$(install_shared))

@@ -2,7 +2,7 @@
 /* A robot follows another one: every period the leader's posture becomes the follower's target. */
 #include <stdio.h>
 
-#include <grobo/grobo.h>
+#include <grobo/core/runner.h>
 
 static int follow(grobo_runner *leader, grobo_runner *follower)
 {

@@ -2,8 +2,8 @@
 /* The engine as firmware runs it: bytes and the time in, bytes and the next deadline out. */
 #include <stdio.h>
 
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 
 static grobo_robot robot; /* storage of the program: there is no heap */
 static grobo_sim sim;     /* stands for UART and servos */

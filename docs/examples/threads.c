@@ -2,6 +2,7 @@
 /* One thread moves the robot, another one looks at it meanwhile. Neither runs the loop. */
 #include <stdio.h>
 
+#include <grobo/core/runner.h>
 #include <grobo/grobo.h>
 
 static GROBO_THREAD_FUNC move(void *arg)

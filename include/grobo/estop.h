@@ -26,7 +26,7 @@
 #ifndef GROBO_ESTOP_H
 #define GROBO_ESTOP_H
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 GROBO_BEGIN_DECLS
 

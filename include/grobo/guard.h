@@ -44,7 +44,7 @@
 #ifndef GROBO_GUARD_H
 #define GROBO_GUARD_H
 
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
 #include <grobo/mem.h>
 
 GROBO_BEGIN_DECLS

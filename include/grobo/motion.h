@@ -105,18 +105,6 @@ GROBO_API int grobo_motion_dup(const grobo_motion *motion, grobo_motion **copy);
  * grobo_motion_renew() makes an empty one of increments.
  */
 GROBO_API void grobo_motion_clear(grobo_motion *motion);
-/**
- * Makes it an empty motion of a kind, as grobo_motion_new() does: what it has goes, but for the
- * number of joints. A kind that is none changes nothing.
- */
-GROBO_API void grobo_motion_renew(grobo_motion *motion, grobo_motion_kind kind);
-/**
- * Makes absolute postures of a motion of increments, which count from start: each with the joints
- * and the time it had. Names and kept keys of its postures go. A motion of another kind stays.
- * @param start sets every joint that the motion sets
- * @return 0, GROBO_ERR_ARG (start lacks a joint) or GROBO_ERR_NOMEM.
- */
-GROBO_API int grobo_motion_resolve(grobo_motion *motion, const grobo_posture *start);
 
 /* ---- the motion itself -------------------------------------------------------------------- */
 
@@ -126,12 +114,6 @@ GROBO_API size_t grobo_motion_size(const grobo_motion *motion);
 GROBO_API grobo_motion_kind grobo_motion_get_kind(const grobo_motion *motion);
 /** Number of joints of its postures. */
 GROBO_API int grobo_motion_joints(const grobo_motion *motion);
-/**
- * Sets the number of joints, 0..GROBO_JOINTS_MAX. New joints are not set in the postures there
- * are; angles of joints taken away are lost. Constant time to grow.
- * @return n_joints, GROBO_ERR_CAP or GROBO_ERR_ARG.
- */
-GROBO_API int grobo_motion_set_joints(grobo_motion *motion, int n_joints);
 /** The motion's name, "" where it has none. Valid until it is changed or freed. */
 GROBO_API const char *grobo_motion_name(const grobo_motion *motion);
 /** Sets the name (copied). @return 0, GROBO_ERR_ARG (not UTF-8), GROBO_ERR_CAP, GROBO_ERR_NOMEM. */
@@ -144,10 +126,6 @@ GROBO_API int grobo_motion_set_target_body(grobo_motion *motion, const char *nam
 GROBO_API double grobo_motion_frame_rate(const grobo_motion *motion);
 /** Sets the frame rate: finite, > 0. @return 0 or GROBO_ERR_ARG (also for the other kinds). */
 GROBO_API int grobo_motion_set_frame_rate(grobo_motion *motion, double rate_hz);
-/** True if each frame has a time of its own; false: frame i stands at i / rate. */
-GROBO_API bool grobo_motion_has_frame_times(const grobo_motion *motion);
-/** Gives each frame a time of its own, starting at i / rate, or takes it. @return 0 or ARG. */
-GROBO_API int grobo_motion_set_frame_times(grobo_motion *motion, bool own);
 
 /* ---- postures ----------------------------------------------------------------------------- */
 
@@ -157,19 +135,8 @@ GROBO_API int grobo_motion_set_frame_times(grobo_motion *motion, bool own);
  * @return 0, or GROBO_ERR_ARG (n too large; the posture is untouched).
  */
 GROBO_API int grobo_motion_get(const grobo_motion *motion, size_t n, grobo_posture *posture);
-/**
- * Posture n from the back, counted as the original does: get(size - n), so 1 is the last and
- * size the first. @return 0, or GROBO_ERR_ARG for 0 and above size.
- */
-GROBO_API int grobo_motion_rget(const grobo_motion *motion, size_t n, grobo_posture *posture);
 /** Time of posture n as the file gives it, in seconds. @return 0 or GROBO_ERR_ARG. */
 GROBO_API int grobo_motion_time_s(const grobo_motion *motion, size_t n, double *time_s);
-/**
- * Time from the posture before (the first: from 0) to posture n. For .m and .mseq 0 where the
- * times mean 'default' (a step <= 0 or >= 10 s); for the others 0 where times are equal or go back.
- * @return >= 0, or GROBO_ERR_ARG.
- */
-GROBO_API int64_t grobo_motion_step_us(const grobo_motion *motion, size_t n);
 /**
  * When the last posture is reached, with default_us for each step that gives no time (negative:
  * GROBO_MOTION_DEFAULT_US); an .m that begins at 0 begins with its first posture. For key poses
@@ -186,90 +153,17 @@ GROBO_API int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t def
  *   radians), GROBO_ERR_NAN, GROBO_ERR_CAP (GROBO_MOTION_FRAMES_MAX), GROBO_ERR_NOMEM.
  */
 GROBO_API int grobo_motion_append(grobo_motion *motion, const grobo_posture *posture);
-/** Appends a posture at an absolute time as files have it. Errors as grobo_motion_append(). */
-GROBO_API int grobo_motion_append_at(grobo_motion *motion, double time_s,
-                                     const grobo_posture *posture);
 /**
  * Inserts a posture before posture n (n = size appends). Durations stay: what comes after is
  * reached posture->time_us later. Errors as grobo_motion_append().
  */
 GROBO_API int grobo_motion_insert(grobo_motion *motion, size_t n, const grobo_posture *posture);
-/**
- * Inserts a posture at an absolute time, behind those that are not later; all other times stay.
- * For key poses and frames with times. @return its number, or as grobo_motion_append();
- * GROBO_ERR_TYPE for the other kinds. (The number is at most GROBO_MOTION_FRAMES_MAX.)
- */
-GROBO_API int grobo_motion_insert_at(grobo_motion *motion, double time_s,
-                                     const grobo_posture *posture);
 /** Deletes posture n and its step: what comes after is reached earlier. @return 0 or ARG. */
 GROBO_API int grobo_motion_delete(grobo_motion *motion, size_t n);
-/** Deletes posture n; the times of all others stay. @return 0 or GROBO_ERR_ARG. */
-GROBO_API int grobo_motion_delete_keep_times(grobo_motion *motion, size_t n);
 /** Replaces joints and angles of posture n; its time stays. Errors as grobo_motion_append(). */
 GROBO_API int grobo_motion_set(grobo_motion *motion, size_t n, const grobo_posture *posture);
-/** Sets the time of posture n: finite. @return 0, GROBO_ERR_ARG, GROBO_ERR_NAN. */
-GROBO_API int grobo_motion_set_time_s(grobo_motion *motion, size_t n, double time_s);
-
-/* ---- what key poses have besides ---------------------------------------------------------- */
-
-/** What key n has besides; all zero where nothing. @return 0 or GROBO_ERR_ARG. */
-GROBO_API int grobo_motion_get_key(const grobo_motion *motion, size_t n, grobo_key_info *info);
-/** Sets it. @return 0, GROBO_ERR_ARG (no such key, time negative), GROBO_ERR_NAN, NOMEM. */
-GROBO_API int grobo_motion_set_key(grobo_motion *motion, size_t n, const grobo_key_info *info);
-/** Name of key n, "" where it has none (or there is no key n). Valid until it is changed. */
-GROBO_API const char *grobo_motion_key_name(const grobo_motion *motion, size_t n);
-/** Names key n; errors as grobo_motion_set_name(). */
-GROBO_API int grobo_motion_set_key_name(grobo_motion *motion, size_t n, const char *name);
-/** Link targets of key n, *count of them. @return them, valid until a change, or NULL. */
-GROBO_API const grobo_ik_link *grobo_motion_ik_links(const grobo_motion *motion, size_t n,
-                                                     size_t *count);
-/**
- * Replaces the link targets of key n (copied); count 0 takes them away. Kept keys of links go.
- * @return 0, GROBO_ERR_ARG, GROBO_ERR_NAN, GROBO_ERR_CAP (GROBO_IK_LINKS_MAX), GROBO_ERR_NOMEM.
- */
-GROBO_API int grobo_motion_set_ik_links(grobo_motion *motion, size_t n, const grobo_ik_link *links,
-                                        size_t count);
-/** Number of kept keys of key n, or of the motion itself (GROBO_MOTION_TOP). */
-GROBO_API size_t grobo_motion_kept_count(const grobo_motion *motion, size_t n);
-/** Kept key i of key n. @return 0 or GROBO_ERR_ARG. The texts are valid until a change. */
-GROBO_API int grobo_motion_get_kept(const grobo_motion *motion, size_t n, size_t i,
-                                    grobo_kept *kept);
-/**
- * Adds a kept key to key n or to the motion itself; its texts are copied. The value must be YAML
- * in flow style on one line: it is written as it is.
- * @return 0, GROBO_ERR_ARG, GROBO_ERR_EXISTS, GROBO_ERR_CAP, GROBO_ERR_NOMEM.
- */
-GROBO_API int grobo_motion_keep(grobo_motion *motion, size_t n, const grobo_kept *kept);
-/** Line of the file that key n was read from, counted from 1; 0 where it was not read. */
-GROBO_API uint32_t grobo_motion_line(const grobo_motion *motion, size_t n);
-/**
- * Where in its file the angle of a joint of key n stands, for a motion read with keep_positions.
- * @return true and line and column counted from 1, or false and both untouched.
- */
-GROBO_API bool grobo_motion_position(const grobo_motion *motion, size_t n, int joint,
-                                     uint32_t *line, uint32_t *column);
-
-/* ---- walking through ---------------------------------------------------------------------- */
-
-/** Sets the direction of grobo_motion_next(); the place stays. @return reverse. */
-GROBO_API bool grobo_motion_set_reverse(grobo_motion *motion, bool reverse);
-/** The direction. */
-GROBO_API bool grobo_motion_is_reverse(const grobo_motion *motion);
-/** Goes to the first posture, in reverse to the last. */
-GROBO_API void grobo_motion_reset(grobo_motion *motion);
-/** Number of the posture that next gives; size or above (SIZE_MAX in reverse) behind the end. */
-GROBO_API size_t grobo_motion_current(const grobo_motion *motion);
-/** Gives the current posture and steps to the next.
- *  @return 1, or 0 behind the end (posture untouched) */
-GROBO_API int grobo_motion_next(grobo_motion *motion, grobo_posture *posture);
 
 /* ---- comparing and editing whole motions -------------------------------------------------- */
-
-/** True if kind, joints, times, postures, details and links are the same to the bit. */
-GROBO_API bool grobo_motion_equal(const grobo_motion *a, const grobo_motion *b);
-/** True if kind, size and set joints agree and every angle and time differs by less than these. */
-GROBO_API bool grobo_motion_near(const grobo_motion *a, const grobo_motion *b, double delta_rad,
-                                 double delta_s);
 
 /**
  * Appends a deep copy of another motion, its steps as they are. One of another kind or frame rate
@@ -321,13 +215,6 @@ GROBO_API int grobo_motion_crop(grobo_motion *motion, int64_t from_us, int64_t t
  * see grobo_motion_set_target_body(). False where the model is NULL.
  */
 GROBO_API bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model);
-/**
- * Where a motion starts when no robot was read: what .mseq counts from, and where joints are that
- * no posture sets. The model's initial posture for a motion that is for it, else 0 everywhere.
- * @param[out] start all joints set: the model's, or as many as the motion has.
- */
-GROBO_API void grobo_motion_start(const grobo_motion *motion, const grobo_model *model,
-                                  grobo_posture *start);
 
 /* ---- playing ------------------------------------------------------------------------------ */
 

@@ -8,9 +8,9 @@
 #ifndef GROBO_ROBOT_CONFIG_H
 #define GROBO_ROBOT_CONFIG_H
 
-#include <grobo/bus.h>
-#include <grobo/driver.h>
-#include <grobo/sequencer.h>
+#include <grobo/core/bus.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/sequencer.h>
 
 GROBO_BEGIN_DECLS
 

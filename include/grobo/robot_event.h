@@ -6,10 +6,10 @@
 #ifndef GROBO_ROBOT_EVENT_H
 #define GROBO_ROBOT_EVENT_H
 
-#include <grobo/bus.h>
 #include <grobo/callback.h>
-#include <grobo/driver.h>
-#include <grobo/sequencer.h>
+#include <grobo/core/bus.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/sequencer.h>
 
 GROBO_BEGIN_DECLS
 

@@ -11,11 +11,11 @@
 #ifndef GROBO_ROBOT_FILE_H
 #define GROBO_ROBOT_FILE_H
 
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/registers.h>
+#include <grobo/core/sim_physics.h>
+#include <grobo/core/words.h>
 #include <grobo/motion_io.h>
-#include <grobo/registers.h>
-#include <grobo/sim_physics.h>
-#include <grobo/words.h>
 
 GROBO_BEGIN_DECLS
 

@@ -30,9 +30,9 @@
 #ifndef GROBO_SESSION_H
 #define GROBO_SESSION_H
 
+#include <grobo/core/serial.h>
 #include <grobo/guard.h>
 #include <grobo/robot.h>
-#include <grobo/serial.h>
 #include <grobo/sim.h>
 
 GROBO_BEGIN_DECLS

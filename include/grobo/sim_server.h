@@ -11,7 +11,7 @@
 #ifndef GROBO_SIM_SERVER_H
 #define GROBO_SIM_SERVER_H
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 #include <grobo/sim.h>
 
 GROBO_BEGIN_DECLS

@@ -3,7 +3,7 @@
 #ifndef GROBO_PORTS_COMMON_H
 #define GROBO_PORTS_COMMON_H
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 /* ---- any port: common.c ------------------------------------------------------------------- */
 

@@ -6,7 +6,7 @@
 #ifndef GROBO_PORTS_GUARD_H
 #define GROBO_PORTS_GUARD_H
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 /* ---- the program's side ------------------------------------------------------------------- */
 

@@ -11,7 +11,7 @@
 #ifndef GROBO_PORTS_NOTES_H
 #define GROBO_PORTS_NOTES_H
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 enum { NOTE_FOLDERS = 2, NOTE_FOLDER_BYTES = 512, NOTE_NAME_BYTES = 240, NOTE_TEXT_BYTES = 2048 };
 

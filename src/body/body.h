@@ -3,7 +3,7 @@
 #ifndef GROBO_SRC_BODY_BODY_PRIV_H
 #define GROBO_SRC_BODY_BODY_PRIV_H
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 #include <grobo/mem.h>
 
 #include "src/body/track.h"

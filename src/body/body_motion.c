@@ -2,7 +2,8 @@
 /* From a motion's key poses to the body's, and back to frames. */
 #include <string.h>
 
-#include <grobo/body_motion.h>
+#include <grobo/core/body_motion.h>
+#include <grobo/core/motion.h>
 
 #include "src/base/sized.h"
 #include "src/body/body.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* GR001's rigid bodies: the numbers of the model file the maker published (GR001.body: translation,
  * jointAxis, mass, centerOfMass, inertia; metres, kilograms), links in the order of that file. */
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 
 #include "src/body/body.h"
 

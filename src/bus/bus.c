@@ -7,7 +7,7 @@
  */
 #include <string.h>
 
-#include <grobo/bus.h>
+#include <grobo/core/bus.h>
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"

@@ -6,7 +6,7 @@
 #ifndef GROBO_CORE_FRAMER_H
 #define GROBO_CORE_FRAMER_H
 
-#include <grobo/protocol.h>
+#include <grobo/core/protocol.h>
 
 /* As grobo_protocol.measure. */
 typedef int (*grobo_i_measure)(const uint8_t *bytes, size_t n, unsigned accept);

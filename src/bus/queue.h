@@ -3,7 +3,7 @@
 #ifndef GROBO_CORE_BUS_QUEUE_H
 #define GROBO_CORE_BUS_QUEUE_H
 
-#include <grobo/bus.h>
+#include <grobo/core/bus.h>
 
 /* Asserts what always holds of a bus between two calls; nothing with NDEBUG. */
 void grobo_i_bus_assert(const grobo_bus *bus);

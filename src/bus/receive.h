@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* What a bus makes of the bytes that come; grobo_bus_rx itself is in grobo/bus.h. */
+/* What a bus makes of the bytes that come; grobo_bus_rx itself is in grobo/core/bus.h. */
 #ifndef GROBO_CORE_BUS_RECEIVE_H
 #define GROBO_CORE_BUS_RECEIVE_H
 
-#include <grobo/bus.h>
+#include <grobo/core/bus.h>
 
 /* Drops the stump of an earlier reply: it must not become the head of the next one. */
 void grobo_i_bus_clear_line(grobo_bus *bus);

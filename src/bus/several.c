@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Several replies to one frame. A file of its own: only protocols that have such frames name it. */
-#include <grobo/bus.h>
+#include <grobo/core/bus.h>
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"

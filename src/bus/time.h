@@ -3,7 +3,7 @@
 #ifndef GROBO_CORE_BUS_TIME_H
 #define GROBO_CORE_BUS_TIME_H
 
-#include <grobo/bus.h>
+#include <grobo/core/bus.h>
 
 /* Time given above the computed one to attempt number attempts (1 the first). */
 uint32_t grobo_i_bus_margin_us(const grobo_bus *bus, unsigned attempts);

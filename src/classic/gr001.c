@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/classic/classic.h"
 
 /* ---- making ------------------------------------------------------------------------------- */

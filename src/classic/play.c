@@ -4,6 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+#include <grobo/core/runner.h>
+
 #include "src/classic/classic.h"
 
 /* ---- moving ------------------------------------------------------------------------------- */

@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+#include <grobo/core/runner.h>
+
 #include "src/classic/classic.h"
 
 /* ---- not in the document ------------------------------------------------------------------ */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
 
-#include <grobo/interpolate.h>
+#include <grobo/core/interpolate.h>
 
 /* ---- order: a heap sort, as it needs no memory and never degrades ---- */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The states of a sequencer in words, and which may follow which: playing needs neither. */
-#include <grobo/sequencer.h>
+#include <grobo/core/sequencer.h>
 
 const char *grobo_sequencer_state_name(grobo_sequencer_state state)
 {

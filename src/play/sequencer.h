@@ -3,7 +3,7 @@
 #ifndef GROBO_SEQUENCER_I_H
 #define GROBO_SEQUENCER_I_H
 
-#include <grobo/sequencer.h>
+#include <grobo/core/sequencer.h>
 
 /*
  * Checks a clip with its options and fills in the defaults. By keys it reads all of them.

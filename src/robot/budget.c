@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* How many motion frames a second leave time to read every joint: the one rule for all callers. */
+#include <grobo/core/robot.h>
+
 #include "src/robot/robot.h"
 
 #define SECOND_US 1000000u

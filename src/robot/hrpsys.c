@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/hrpsys.h>
+#include <grobo/core/hrpsys.h>
 
 static const grobo_model *model_of(const grobo_hrpsys *hrpsys)
 {

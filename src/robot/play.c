@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/base/sized.h"
 #include "src/robot/robot.h"
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What may be asked of the engine. */
+#include <grobo/core/robot.h>
+
 #include "src/robot/robot.h"
 
 void grobo_i_lock(const grobo_robot *robot)

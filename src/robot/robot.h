@@ -30,12 +30,12 @@
  *   robot.c      life, pump, link
  *   hrpsys.c     another view of it all
  */
-#ifndef GROBO_CORE_ROBOT_H
-#define GROBO_CORE_ROBOT_H
+#ifndef GROBO_ROBOT_ROBOT_I_H
+#define GROBO_ROBOT_ROBOT_I_H
 
 #include <stddef.h>
 
-#include <grobo/static.h>
+#include <grobo/core/static.h>
 
 /* ---- event.c --------------------------------------------------------------------------------- */
 

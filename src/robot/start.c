@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A motion that waits for its start: for who begins several robots together. */
+#include <grobo/core/robot.h>
+
 #include "src/robot/robot.h"
 
 int grobo_robot_start_at(grobo_robot *robot, int64_t start_us)

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Made from src/robots/gr001.yaml by `make robots`. */
-#include <grobo/board.h>
+#include <grobo/core/board.h>
 
 #include "src/robots/robots.h"
 #include "src/servo/rs30x/driver.h"

@@ -2,8 +2,8 @@
 /* What a driver table must have. */
 #include <math.h>
 
-#include <grobo/driver.h>
-#include <grobo/sequencer.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/sequencer.h>
 
 static bool functions_present(const grobo_driver *driver)
 {

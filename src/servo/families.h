@@ -7,8 +7,8 @@
 #ifndef GROBO_SERVO_FAMILIES_H
 #define GROBO_SERVO_FAMILIES_H
 
+#include <grobo/core/words.h>
 #include <grobo/robot_file.h>
-#include <grobo/words.h>
 
 #define FAMILY(name, directory)                                                                    \
     extern const grobo_robot_family grobo_i_family_##name;                                         \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Register tables of any family: looked up, values taken from bytes and put into them. */
-#include <grobo/registers.h>
+#include <grobo/core/registers.h>
 
 enum { BYTES_MAX = 4 };
 

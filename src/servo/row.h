@@ -3,7 +3,7 @@
 #ifndef GROBO_CORE_SERVO_ROW_H
 #define GROBO_CORE_SERVO_ROW_H
 
-#include <grobo/registers.h>
+#include <grobo/core/registers.h>
 
 /* Flags of a row: what is measured, what may be written, what is kept, both. */
 enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };

@@ -4,8 +4,8 @@
 #ifndef GROBO_CORE_SERVO_TABLES_H
 #define GROBO_CORE_SERVO_TABLES_H
 
-#include <grobo/protocol.h>
-#include <grobo/registers.h>
+#include <grobo/core/protocol.h>
+#include <grobo/core/registers.h>
 
 extern const grobo_protocol grobo_i_board_protocol;
 extern const grobo_protocol grobo_i_dxl1_protocol;

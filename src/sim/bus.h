@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_BUS_H
 #define GROBO_SIM_BUS_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 /* A byte of the board or host is over on the bus. */
 void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns);

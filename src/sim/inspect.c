@@ -2,6 +2,8 @@
 /* What a test, or a person at the simulator, sees and changes behind the robot's back. */
 #include <string.h>
 
+#include <grobo/core/sim.h>
+
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/power.h"
 #include "src/sim/servo/registers.h"

@@ -7,6 +7,8 @@
  */
 #include <string.h>
 
+#include <grobo/core/sim.h>
+
 #include "src/base/instant.h"
 #include "src/base/sized.h"
 #include "src/robots/robots.h"

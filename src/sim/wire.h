@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_WIRE_H
 #define GROBO_SIM_WIRE_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 /* Bytes that there is room for, byte_ns each, the first from at_ns on. */
 void grobo_i_sim_wire_write(grobo_sim_wire *wire, const uint8_t *bytes, size_t n, int64_t at_ns,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/team.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/team.h>
 
 #include "src/base/assert.h"
 #include "src/base/memory.h"

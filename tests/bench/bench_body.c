@@ -4,7 +4,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include <grobo/body_motion.h>
+#include <grobo/core/body_motion.h>
+#include <grobo/core/motion.h>
 #include <grobo/motion_io.h>
 
 #include "tests/bench/bench.h"

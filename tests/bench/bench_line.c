@@ -27,8 +27,9 @@
 
 #include <event2/event.h>
 
-#include <grobo/loop.h>
-#include <grobo/rs30x.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/rs30x.h>
 #include <grobo/session.h>
 
 #include "tests/bench/bench.h"

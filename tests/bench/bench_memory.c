@@ -4,11 +4,11 @@
 
 #include <event2/event.h>
 
-#include <grobo/loop.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 #include <grobo/session.h>
 #include <grobo/sim_server.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
 
 #include "tests/bench/bench.h"
 #include "tests/support/counted_mem.h"

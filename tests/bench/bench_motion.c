@@ -14,7 +14,7 @@
 
 #include <yaml.h>
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 #include "tests/bench/bench.h"
 

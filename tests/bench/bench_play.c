@@ -15,7 +15,8 @@
 
 #include <event2/event.h>
 
-#include <grobo/loop.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/robot.h>
 #include <grobo/session.h>
 #include <grobo/sim_server.h>
 

@@ -8,9 +8,10 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 
-#include <grobo/gr001.h>
-#include <grobo/port.h>
-#include <grobo/static.h>
+#include <grobo/core/gr001.h>
+#include <grobo/core/port.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/static.h>
 
 #include "tests/bench/bench.h"
 

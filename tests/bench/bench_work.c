@@ -10,13 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/body_motion.h>
-#include <grobo/motion_io.h>
+#include <grobo/core/board.h>
+#include <grobo/core/body_motion.h>
+#include <grobo/core/motion_io.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/rs30x.h>
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 #include <grobo/robot_file.h>
-#include <grobo/rs30x.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
 
 #include "tests/bench/bench.h"
 #include "tests/bench/one_servo.h"

@@ -3,7 +3,7 @@
 #ifndef GROBO_BENCH_ONE_SERVO_H
 #define GROBO_BENCH_ONE_SERVO_H
 
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
 
 static const grobo_joint one_servo_joint = {
     .name = "J", .min_rad = -1, .max_rad = 1, .max_speed_rad_s = 1, .motor = 1, .mirror_sign = 1};

@@ -8,8 +8,10 @@
  */
 #include <string.h>
 
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 
 #include "docs/examples/firmware/mcu.h"
 #include "tests/support/tables.h"

@@ -12,7 +12,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "tests/support/line.h"
 #include "tests/support/test.h"

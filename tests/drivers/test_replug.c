@@ -14,6 +14,8 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/guarded.h"
 #include "tests/support/loop.h"
 #include "tests/support/os.h"

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/bus.h>
+#include <grobo/core/board.h>
+#include <grobo/core/bus.h>
 
 #include "tests/support/bus_peer.h"
 #include "tests/support/test.h"

@@ -3,8 +3,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/bus.h>
+#include <grobo/core/board.h>
+#include <grobo/core/bus.h>
 
 #include "tests/support/bus_peer.h"
 #include "tests/support/tables.h"

@@ -4,8 +4,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
 
 #include "tests/support/bus_peer.h"
 #include "tests/support/tables.h"

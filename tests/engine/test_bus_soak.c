@@ -9,8 +9,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/bus.h>
+#include <grobo/core/board.h>
+#include <grobo/core/bus.h>
 
 #include "src/bus/framer.h"
 #include "tests/support/tables.h"

@@ -8,13 +8,13 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/bus.h>
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/ics.h>
-#include <grobo/lx16a.h>
-#include <grobo/rs30x.h>
+#include <grobo/core/board.h>
+#include <grobo/core/bus.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/ics.h>
+#include <grobo/core/lx16a.h>
+#include <grobo/core/rs30x.h>
 
 #include "tests/support/next_random.h"
 #include "tests/support/tables.h"

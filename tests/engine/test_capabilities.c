@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/rs30x.h>
+#include <grobo/core/sim.h>
 #include <grobo/robot_file.h>
-#include <grobo/rs30x.h>
 
 #include "src/servo/families.h"
 #include "tests/support/family_kit.h"

@@ -5,7 +5,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/rs30x.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/rs30x.h>
 
 #include "tests/support/table_bus.h"
 #include "tests/support/tables.h"

@@ -4,9 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/ics.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/ics.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/sim.h>
 
 #include "src/sim/servo/shaft.h"
 #include "tests/support/family_kit.h"

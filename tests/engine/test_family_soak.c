@@ -25,6 +25,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/base/instant.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/next_random.h"

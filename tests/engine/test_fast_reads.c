@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
+#include <grobo/core/dxl2.h>
 
 #include "tests/support/family_kit.h"
 #include "tests/support/tables.h"

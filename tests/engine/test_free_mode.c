@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdint.h>
 
-#include <grobo/gr001.h>
+#include <grobo/core/gr001.h>
 
 #include "tests/support/rig.h"
 #include "tests/support/tables.h"

@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/gr001.h>
+#include <grobo/core/gr001.h>
+#include <grobo/core/motion.h>
 
 #include "tests/support/rig.h"
 #include "tests/support/tables.h"

@@ -27,6 +27,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/halt_kit.h"
 #include "tests/support/next_random.h"
 #include "tests/support/test.h"

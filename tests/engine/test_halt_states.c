@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/halt_kit.h"
 #include "tests/support/test.h"
 

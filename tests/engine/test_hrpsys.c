@@ -3,9 +3,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/hrpsys.h>
-#include <grobo/static.h>
+#include <grobo/core/board.h>
+#include <grobo/core/hrpsys.h>
+#include <grobo/core/static.h>
 
 #include "tests/support/rig.h"
 #include "tests/support/tables.h"

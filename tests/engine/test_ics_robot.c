@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/ics.h>
+#include <grobo/core/ics.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/sim.h>
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/family_kit.h"

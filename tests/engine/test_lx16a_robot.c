@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/lx16a.h>
+#include <grobo/core/lx16a.h>
+#include <grobo/core/robot.h>
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/family_kit.h"

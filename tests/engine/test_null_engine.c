@@ -4,12 +4,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <grobo/board.h>
-#include <grobo/hrpsys.h>
-#include <grobo/sim_physics.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
-#include <grobo/team.h>
+#include <grobo/core/board.h>
+#include <grobo/core/hrpsys.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_physics.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
+#include <grobo/core/team.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/rs30x.h>
+#include <grobo/core/rs30x.h>
 
 #include "src/robot/robot.h"
 #include "tests/support/many_joints.h"

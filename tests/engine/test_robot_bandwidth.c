@@ -18,6 +18,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/robot/robot.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"

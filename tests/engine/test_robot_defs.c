@@ -4,10 +4,12 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 #include <grobo/robot_file.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
 
 #include "src/robots/robots.h"
 #include "tests/support/tables.h"

@@ -2,6 +2,8 @@
 /* Requests that are made while others are carried out: side by side, in place of them, behind. */
 #include <stdint.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdint.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -4,6 +4,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/rig.h"
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

@@ -4,8 +4,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/gr001.h>
-#include <grobo/hrpsys.h>
+#include <grobo/core/gr001.h>
+#include <grobo/core/hrpsys.h>
+#include <grobo/core/robot.h>
 
 #include "tests/support/rig.h"
 #include "tests/support/tables.h"

@@ -5,6 +5,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/raw_frames.h"
 #include "tests/support/test.h"
 

@@ -4,9 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/sim_static.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/tables.h"

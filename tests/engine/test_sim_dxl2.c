@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/sim.h>
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/tables.h"

@@ -4,6 +4,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <grobo/core/sim.h>
+
 #include "tests/support/simkit.h"
 #include "tests/support/test.h"
 

@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/lx16a.h>
+#include <grobo/core/lx16a.h>
+#include <grobo/core/sim.h>
 
 #include "tests/support/simkit.h"
 #include "tests/support/tables.h"

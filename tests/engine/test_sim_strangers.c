@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/feetech.h>
-#include <grobo/ics.h>
-#include <grobo/lx16a.h>
-#include <grobo/protocol.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/ics.h>
+#include <grobo/core/lx16a.h>
+#include <grobo/core/protocol.h>
 
 #include "tests/support/chain_kit.h"
 #include "tests/support/next_random.h"

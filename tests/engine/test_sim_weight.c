@@ -7,8 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
 #include <grobo/robot_file.h>
-#include <grobo/sim_static.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

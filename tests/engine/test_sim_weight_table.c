@@ -9,10 +9,11 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 #include <grobo/posture.h>
 #include <grobo/robot_file.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
 
 #include "tests/support/test.h"
 

@@ -9,8 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/rs30x.h>
+#include <grobo/core/board.h>
+#include <grobo/core/rs30x.h>
+#include <grobo/core/sim.h>
 
 #include "src/sim/servo/talk.h"
 #include "tests/support/simkit.h"

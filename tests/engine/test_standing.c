@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/robot/robot.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/rig.h"

@@ -5,7 +5,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/board.h>
+#include <grobo/core/board.h>
+#include <grobo/core/robot.h>
 
 #include "tests/support/rig.h"
 #include "tests/support/test.h"

@@ -3,7 +3,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/team.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/team.h>
 
 #include "tests/support/counted_mem.h"
 #include "tests/support/rig.h"

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/sim.h>
+
 #include "tests/support/family_kit.h"
 #include "tests/support/test.h"
 

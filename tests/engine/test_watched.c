@@ -7,6 +7,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/many_joints.h"
 #include "tests/support/rig.h"
 #include "tests/support/tables.h"

@@ -9,8 +9,8 @@ set -u
 
 by_pkg_config() {
     cat >"$work/core.c" <<'C'
-#include <grobo/rs30x.h>
-#include <grobo/static.h>
+#include <grobo/core/rs30x.h>
+#include <grobo/core/static.h>
 int main(void)
 {
     grobo_driver driver;

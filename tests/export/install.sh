@@ -109,12 +109,10 @@ readme_program() {
 }
 
 every_header() {
-    for header in "$tree"/opt/grobo/include/grobo/*.h; do
-        echo "#include <grobo/${header##*/}>"
-    done >"$work/all.c"
-    echo '#include <grobo/classic/classic.h>' >>"$work/all.c"
+    (cd "$tree/opt/grobo/include" && find grobo -name '*.h') |
+        sed 's/.*/#include <&>/' >"$work/all.c"
     echo 'int main(void) { return 0; }' >>"$work/all.c"
-    [ "$(grep -c include "$work/all.c")" -ge "$(ls include/grobo/*.h | wc -l)" ] &&
+    [ "$(grep -c include "$work/all.c")" -ge "$(find include -name '*.h' | wc -l)" ] &&
         builds "$1" "$work/all.c"
 }
 
@@ -152,7 +150,7 @@ C
 plain_drivers() {
     cat >"$work/plain.c" <<'C'
 #include <string.h>
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
 static grobo_driver driver;
 static int is_refused(void)
 {
@@ -179,8 +177,8 @@ C
 
 # Takes the last two fields of each structure with a size out of the installed headers.
 yesterdays_headers() {
-    mkdir -p "$work/yesterday/grobo"
-    for header in "$tree"/opt/grobo/include/grobo/*.h; do
+    mkdir -p "$work/yesterday/grobo/core"
+    for header in $(cd "$tree/opt/grobo/include/grobo" && ls -- *.h core/*.h); do
         awk '
         /size_t size; .*_(CONFIG|OPTIONS)_INIT/ { print; n = 0; inside = 1; next }
         inside && /^}/ {
@@ -197,7 +195,7 @@ yesterdays_headers() {
             }
             next
         }
-        { print }' "$header" >"$work/yesterday/grobo/${header##*/}"
+        { print }' "$tree/opt/grobo/include/grobo/$header" >"$work/yesterday/grobo/$header"
     done
     ! cmp -s "$work/yesterday/grobo/session.h" "$tree/opt/grobo/include/grobo/session.h"
 }

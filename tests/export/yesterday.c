@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <grobo/core/body.h>
+#include <grobo/core/motion_io.h>
+#include <grobo/core/serial.h>
 #include <grobo/grobo.h>
 
 #define FENCED(type, name, init)                                                                   \

@@ -5,7 +5,7 @@
 
 #include <event2/event.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "tests/support/line.h"
 #include "tests/support/test.h"

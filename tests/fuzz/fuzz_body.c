@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 
 #include "tests/fuzz/target.h"
 #include "tests/support/tables.h"

@@ -7,8 +7,8 @@
  */
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/bus.h>
+#include <grobo/core/board.h>
+#include <grobo/core/bus.h>
 
 #include "src/bus/framer.h"
 #include "tests/fuzz/target.h"

@@ -3,6 +3,8 @@
  * written to any other format it can be read, with as many postures. */
 #include <string.h>
 
+#include <grobo/core/motion.h>
+
 #include "tests/fuzz/motion_target.h"
 #include "tests/support/tables.h"
 

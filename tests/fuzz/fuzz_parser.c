@@ -7,8 +7,8 @@
  */
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/rs30x.h>
+#include <grobo/core/board.h>
+#include <grobo/core/rs30x.h>
 
 #include "tests/fuzz/target.h"
 

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/sim_static.h>
 #include <grobo/robot_file.h>
-#include <grobo/sim_static.h>
 
 #include "tests/fuzz/target.h"
 

@@ -13,7 +13,7 @@
 #include <event2/bufferevent.h>
 #include <event2/event.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tests/fuzz/target.h"
 #include "tests/support/tables.h"

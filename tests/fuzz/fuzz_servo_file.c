@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 #include "src/robots/file/own.h"
 #include "tests/fuzz/target.h"

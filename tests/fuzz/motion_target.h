@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion.h>
+#include <grobo/core/motion_io.h>
 
 #include "tests/fuzz/target.h"
 #include "tests/support/tables.h"

@@ -6,9 +6,9 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/loop.h>
+#include <grobo/core/runner.h>
 #include <grobo/estop.h>
-#include <grobo/loop.h>
-#include <grobo/runner.h>
 
 #include "ports/common/notes.h"
 #include "src/link/session/session.h"

@@ -10,9 +10,9 @@
 
 #include <event2/event.h>
 
-#include <grobo/loop.h>
-#include <grobo/port.h>
-#include <grobo/runner.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/port.h>
+#include <grobo/core/runner.h>
 #include <grobo/session.h>
 #include <grobo/sim_server.h>
 

@@ -13,6 +13,7 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/sim.h>
 #include <grobo/guard.h>
 #include <grobo/session.h>
 

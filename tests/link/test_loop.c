@@ -3,8 +3,8 @@
 
 #include <event2/event.h>
 
-#include <grobo/loop.h>
-#include <grobo/port.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/port.h>
 
 #include "tests/support/test.h"
 

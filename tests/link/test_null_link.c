@@ -7,14 +7,15 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/gr001.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/runner.h>
+#include <grobo/core/static.h>
 #include <grobo/estop.h>
-#include <grobo/gr001.h>
 #include <grobo/guard.h>
-#include <grobo/loop.h>
-#include <grobo/runner.h>
 #include <grobo/session.h>
 #include <grobo/sim_server.h>
-#include <grobo/static.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/loop.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/sim.h>
 
 #include "tests/support/files.h"
 #include "tests/support/spy.h"

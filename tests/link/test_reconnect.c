@@ -10,6 +10,8 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/folder.h"
 #include "tests/support/loop.h"
 #include "tests/support/os.h"

@@ -10,6 +10,8 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/sim.h>
+
 #include "tests/support/counted_mem.h"
 #include "tests/support/folder.h"
 #include "tests/support/runner_kit.h"

@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/runner.h>
+#include <grobo/core/runner.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

@@ -7,6 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/runner_kit.h"
 #include "tests/support/test.h"
 

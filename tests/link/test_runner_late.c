@@ -3,7 +3,7 @@
 #include <poll.h>
 #include <stdint.h>
 
-#include <grobo/runner.h>
+#include <grobo/core/runner.h>
 
 #include "tests/support/line.h"
 #include "tests/support/test.h"

@@ -2,7 +2,7 @@
 /* The life of a runner: its thread or the caller's, its rounds, its end; one caller at a time. */
 #include <stdint.h>
 
-#include <grobo/runner.h>
+#include <grobo/core/runner.h>
 
 #include "tests/support/test.h"
 

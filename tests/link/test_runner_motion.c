@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/motion.h>
+#include <grobo/core/robot.h>
+
 #include "tests/support/runner_kit.h"
 #include "tests/support/test.h"
 

@@ -2,7 +2,8 @@
 /* Emergency stops of a runner whose loop is held, has no thread, or has no line. */
 #include <stdint.h>
 
-#include <grobo/board.h>
+#include <grobo/core/board.h>
+#include <grobo/core/robot.h>
 
 #include "tests/support/stop_kit.h"
 #include "tests/support/test.h"

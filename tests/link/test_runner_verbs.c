@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* One set of verbs: the engine of a runner, used by any thread. */
 
-#include <grobo/gr001.h>
+#include <grobo/core/gr001.h>
 
 #include "tests/support/runner_kit.h"
 #include "tests/support/test.h"

@@ -5,7 +5,7 @@
 
 #include <event2/event.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "src/link/serial/serial.h"
 #include "tests/support/counted_mem.h"

@@ -10,7 +10,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "tests/support/line.h"
 #include "tests/support/test.h"

@@ -8,6 +8,8 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/robot.h>
+#include <grobo/core/sim.h>
 #include <grobo/robot_file.h>
 
 #include "src/link/session/session.h"

@@ -8,6 +8,8 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/sim.h>
+
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
 #include "tests/support/far_robot.h"

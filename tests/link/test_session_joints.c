@@ -5,7 +5,7 @@
 
 #include <event2/event.h>
 
-#include <grobo/board.h>
+#include <grobo/core/board.h>
 #include <grobo/session.h>
 
 #include "tests/support/loop.h"

@@ -5,8 +5,9 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/robot.h>
+#include <grobo/core/static.h>
 #include <grobo/session.h>
-#include <grobo/static.h>
 
 #include "tests/support/line.h"
 #include "tests/support/loop.h"

@@ -9,6 +9,8 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/link/runner/runner.h"
 #include "src/link/session/session.h"
 #include "tests/support/hold.h"

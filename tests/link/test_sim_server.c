@@ -13,8 +13,9 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
 #include <grobo/estop.h>
-#include <grobo/sim_static.h>
 
 #include "tests/support/counted_mem.h"
 #include "tests/support/folder.h"

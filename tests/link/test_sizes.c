@@ -5,10 +5,14 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/body_motion.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/motion_io.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
+#include <grobo/core/team.h>
 #include <grobo/grobo.h>
-#include <grobo/loop.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

@@ -6,10 +6,10 @@
 
 #include <event2/event.h>
 
-#include <grobo/loop.h>
-#include <grobo/port.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/port.h>
+#include <grobo/core/team.h>
 #include <grobo/session.h>
-#include <grobo/team.h>
 
 #include "tests/support/rig.h"
 #include "tests/support/test.h"

@@ -2,9 +2,9 @@
 /* The views of the engine, gr001.h and hrpsys.h, on a robot that runs: on its runner's thread. */
 #include <string.h>
 
-#include <grobo/gr001.h>
-#include <grobo/hrpsys.h>
-#include <grobo/runner.h>
+#include <grobo/core/gr001.h>
+#include <grobo/core/hrpsys.h>
+#include <grobo/core/runner.h>
 
 #include "tests/support/test.h"
 

@@ -347,7 +347,31 @@ sample include/grobo/grobo.h <<'C'
 C
 check 'headers: an umbrella with a hole' \
     refuses 'grobo.h:1: headers: does not include <grobo/a.h>' sh "$gates/headers.sh"
-rm include/grobo/a.h include/grobo/grobo.h
+sample include/grobo/grobo.h <<'C'
+#include <grobo/a.h>
+C
+sample include/grobo/core/b.h <<'C'
+int grobo_b(int class);
+C
+sed 's/class/x/' include/grobo/core/b.h >include/grobo/a.h
+if command -v "${CXX:-g++}" >/dev/null; then
+    check 'headers: one of the core too' \
+        refuses 'core/b.h:1: headers: does not compile alone as C++11' sh "$gates/headers.sh"
+else
+    skip 'headers: one of the core too' 'no C++ compiler'
+fi
+rm -r include/grobo/core
+i=0
+while [ $i -lt 201 ]; do
+    echo "GROBO_API int grobo_number_$i(void);"
+    i=$((i + 1))
+done >include/grobo/functions
+{ echo '#define GROBO_API' && sed 200q include/grobo/functions; } >include/grobo/a.h
+check 'headers: a main shelf of 200 functions' sh "$gates/headers.sh"
+{ echo '#define GROBO_API' && cat include/grobo/functions; } >include/grobo/a.h
+check 'headers: one more' refuses '201 functions and 203 lines on the main shelf' \
+    sh "$gates/headers.sh"
+rm include/grobo/a.h include/grobo/grobo.h include/grobo/functions
 sample src/bus/private.h <<'C'
 struct a { size_t n; };
 C

@@ -13,9 +13,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
 #include <grobo/posture.h>
 #include <grobo/robot_file.h>
-#include <grobo/sim_static.h>
 
 enum { LIFT = 1, ELBOW = 2, SECOND_US = 1000000 };
 

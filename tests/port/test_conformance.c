@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What any port must do, by the functions of grobo/port.h alone: a serial port against a
+ * What any port must do, by the functions of grobo/core/port.h alone: a serial port against a
  * pseudo-terminal, a connection against a listener. Where the system has no pseudo-terminals,
  * GROBO_TEST_SERIAL names two serial ports joined by a null-modem cable: "COM10,COM11"; with
  * GROBO_TEST_NO_PARITY they need have no parity bit.
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tests/support/test.h"
 

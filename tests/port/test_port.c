@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "ports/common/common.h"
 #include "tests/support/test.h"

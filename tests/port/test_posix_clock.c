@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/wait.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tests/support/test.h"
 

@@ -2,7 +2,7 @@
 /* Threads of the POSIX port and signals. */
 #include <signal.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tests/support/test.h"
 

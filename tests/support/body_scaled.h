@@ -3,7 +3,7 @@
 #ifndef GROBO_TESTS_BODY_SCALED_H
 #define GROBO_TESTS_BODY_SCALED_H
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 
 struct body_scaled {
     grobo_body_model model;

@@ -3,7 +3,7 @@
 #ifndef GROBO_TESTS_BODY_SCRIPT_H
 #define GROBO_TESTS_BODY_SCRIPT_H
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 
 enum { WAIST = 0, RIGHT = 6, LEFT = 12, KEYS_MAX = 8, TARGETS_MAX = 3, JOINTS = 20 };
 

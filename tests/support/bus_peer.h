@@ -6,8 +6,8 @@
 #ifndef GROBO_TEST_BUS_PEER_H
 #define GROBO_TEST_BUS_PEER_H
 
-#include <grobo/board.h>
-#include <grobo/bus.h>
+#include <grobo/core/board.h>
+#include <grobo/core/bus.h>
 
 /* Through the board, everything else by default. */
 extern const grobo_bus_config board_line;

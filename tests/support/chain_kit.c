@@ -2,9 +2,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/ics.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/ics.h>
 #include <grobo/robot_file.h>
 
 #include "tests/support/chain_kit.h"

@@ -3,7 +3,7 @@
 #ifndef GROBO_TEST_CHAIN_KIT_H
 #define GROBO_TEST_CHAIN_KIT_H
 
-#include <grobo/dxl2.h>
+#include <grobo/core/dxl2.h>
 
 #include "tests/support/simkit.h"
 

@@ -2,10 +2,11 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/ics.h>
-#include <grobo/lx16a.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/ics.h>
+#include <grobo/core/lx16a.h>
+#include <grobo/core/sim.h>
 #include <grobo/robot_file.h>
 
 #include "src/base/instant.h"

@@ -4,9 +4,9 @@
 #ifndef GROBO_TEST_FAMILY_KIT_H
 #define GROBO_TEST_FAMILY_KIT_H
 
-#include <grobo/registers.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
+#include <grobo/core/registers.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 
 enum { FAMILY_JOINTS = 4, FAMILY_EVENTS = 64, FAMILY_SENT = 32 };
 

@@ -5,6 +5,8 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/sim.h>
+
 #include "tests/support/far_robot.h"
 #include "tests/support/test.h"
 

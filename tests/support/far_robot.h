@@ -3,7 +3,7 @@
 #ifndef GROBO_TESTS_FAR_ROBOT_H
 #define GROBO_TESTS_FAR_ROBOT_H
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 #include <grobo/sim_server.h>
 
 /* Its line: the fastest that an emulator of another machine passes on. */

@@ -7,6 +7,7 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/robot.h>
 #include <grobo/session.h>
 
 #include "tests/support/guarded.h"

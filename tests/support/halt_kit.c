@@ -3,12 +3,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/dxl1.h>
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/gr001.h>
-#include <grobo/ics.h>
-#include <grobo/lx16a.h>
+#include <grobo/core/dxl1.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/gr001.h>
+#include <grobo/core/ics.h>
+#include <grobo/core/lx16a.h>
 
 #include "src/base/instant.h"
 #include "tests/support/halt_kit.h"

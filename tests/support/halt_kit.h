@@ -7,9 +7,9 @@
 #ifndef GROBO_TESTS_HALT_KIT_H
 #define GROBO_TESTS_HALT_KIT_H
 
-#include <grobo/driver.h>
-#include <grobo/registers.h>
-#include <grobo/static.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/registers.h>
+#include <grobo/core/static.h>
 
 #include "tests/support/far_side.h"
 

@@ -3,7 +3,7 @@
 #ifndef GROBO_TESTS_HOLD_H
 #define GROBO_TESTS_HOLD_H
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 typedef struct hold {
     grobo_mutex lock;

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 typedef struct test_line {
     int fd;          /* the far end, non-blocking; -1 when closed */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdint.h>
 
-#include <grobo/board.h>
+#include <grobo/core/board.h>
 
 #include "tests/support/many_joints.h"
 #include "tests/support/tables.h"

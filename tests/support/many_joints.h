@@ -3,7 +3,7 @@
 #ifndef GROBO_TEST_MANY_JOINTS_H
 #define GROBO_TEST_MANY_JOINTS_H
 
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
 
 /* A driver for n joints: those of GR001, again from the first where there are more, without groups
  * and mirrors. Static: the next call makes it anew, whatever was changed. */

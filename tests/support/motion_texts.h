@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 /* One of everything that a key pose may have. */
 extern const char full_pose[];

@@ -3,6 +3,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/next_random.h"
 #include "tests/support/restless.h"
 #include "tests/support/test.h"

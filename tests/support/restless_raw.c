@@ -4,6 +4,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include <grobo/core/robot.h>
+
 #include "tests/support/restless.h"
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

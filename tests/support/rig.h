@@ -6,9 +6,9 @@
 #ifndef GROBO_TEST_RIG_H
 #define GROBO_TEST_RIG_H
 
-#include <grobo/board.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
+#include <grobo/core/board.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 
 #include "tests/support/test.h"
 #include "tests/support/witness.h"

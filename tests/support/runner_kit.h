@@ -3,7 +3,7 @@
 #ifndef GROBO_TESTS_RUNNER_KIT_H
 #define GROBO_TESTS_RUNNER_KIT_H
 
-#include <grobo/runner.h>
+#include <grobo/core/runner.h>
 
 #include "tests/support/test.h"
 

@@ -3,7 +3,7 @@
 #ifndef SAMPLE_CLIP_H
 #define SAMPLE_CLIP_H
 
-#include <grobo/sequencer.h>
+#include <grobo/core/sequencer.h>
 
 enum { SAMPLE_JOINTS = 3, SAMPLE_KEYS_MAX = 64, SAMPLE_FRAMES_MAX = 8192 };
 

@@ -4,7 +4,7 @@
 
 #include <event2/event.h>
 
-#include <grobo/loop.h>
+#include <grobo/core/loop.h>
 
 #include "tests/support/loop.h"
 #include "tests/support/session_kit.h"

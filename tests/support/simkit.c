@@ -2,6 +2,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <grobo/core/sim.h>
+
 #include "tests/support/simkit.h"
 #include "tests/support/test.h"
 #include "tests/support/vectors.h"

@@ -6,7 +6,7 @@
 #ifndef GROBO_TEST_SIMKIT_H
 #define GROBO_TEST_SIMKIT_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 enum { SIMKIT_BYTES = 4096, SIMKIT_EVENTS = 512 };
 

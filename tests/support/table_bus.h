@@ -6,9 +6,9 @@
 #ifndef GROBO_TEST_TABLE_BUS_H
 #define GROBO_TEST_TABLE_BUS_H
 
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/static.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/static.h>
 
 enum { TABLE_SERVOS_MAX = 8, TABLE_MEMORY = 256, TABLE_EVENTS = 512, TABLE_FRAMES = 4096 };
 

@@ -2,7 +2,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 #include "tests/support/test.h"
 #include "tests/support/witness.h"

@@ -10,11 +10,11 @@
 #ifndef GROBO_TEST_WITNESS_H
 #define GROBO_TEST_WITNESS_H
 
-#include <grobo/board.h>
-#include <grobo/bus.h>
-#include <grobo/driver.h>
-#include <grobo/sim.h>
-#include <grobo/static.h>
+#include <grobo/core/board.h>
+#include <grobo/core/bus.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/sim.h>
+#include <grobo/core/static.h>
 
 enum {
     WITNESS_BYTES = 64,

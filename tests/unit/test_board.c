@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/board.h>
+#include <grobo/core/board.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

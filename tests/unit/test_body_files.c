@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/body_motion.h>
+#include <grobo/core/body_motion.h>
 #include <grobo/motion_io.h>
 
 #include "tests/support/body_script.h"

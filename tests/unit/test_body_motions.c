@@ -2,7 +2,7 @@
 /* The motions this project brings along stand by its own lint: within limits and speeds, no foot
  * slips, and the ZMP well inside the soles, however they are played. */
 
-#include <grobo/body_motion.h>
+#include <grobo/core/body_motion.h>
 #include <grobo/motion_io.h>
 
 #include "tests/support/tables.h"

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

@@ -4,11 +4,11 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/driver.h>
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/sequencer.h>
+#include <grobo/core/board.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/sequencer.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/feetech.h>
-#include <grobo/protocol.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/protocol.h>
 
 #include "tests/support/next_random.h"
 #include "tests/support/test.h"

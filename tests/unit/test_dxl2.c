@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/protocol.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/protocol.h>
 
 #include "tests/support/next_random.h"
 #include "tests/support/test.h"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/ics.h>
+#include <grobo/core/ics.h>
 
 #include "tests/support/next_random.h"
 #include "tests/support/test.h"

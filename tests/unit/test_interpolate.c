@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/interpolate.h>
+#include <grobo/core/interpolate.h>
 
 #include "tests/support/files.h"
 #include "tests/support/next_random.h"

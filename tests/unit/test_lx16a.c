@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/lx16a.h>
+#include <grobo/core/lx16a.h>
 
 #include "tests/support/next_random.h"
 #include "tests/support/test.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/motion.h>
+#include <grobo/core/motion.h>
 #include <grobo/motion_io.h>
 
 #include "tests/support/counted_mem.h"

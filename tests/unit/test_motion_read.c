@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/motion.h>
+
 #include "tests/support/counted_mem.h"
 #include "tests/support/motion_texts.h"
 #include "tests/support/tables.h"

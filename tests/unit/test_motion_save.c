@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/motion.h>
+
 #include "tests/support/files.h"
 #include "tests/support/folder.h"
 #include "tests/support/motion_texts.h"

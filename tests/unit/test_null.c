@@ -5,17 +5,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <grobo/board.h>
-#include <grobo/body_motion.h>
-#include <grobo/driver.h>
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/ics.h>
-#include <grobo/interpolate.h>
-#include <grobo/lx16a.h>
-#include <grobo/motion_io.h>
+#include <grobo/core/board.h>
+#include <grobo/core/body_motion.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/ics.h>
+#include <grobo/core/interpolate.h>
+#include <grobo/core/lx16a.h>
+#include <grobo/core/motion.h>
+#include <grobo/core/motion_io.h>
+#include <grobo/core/rs30x.h>
 #include <grobo/robot_file.h>
-#include <grobo/rs30x.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <grobo/core/sim_static.h>
 #include <grobo/posture.h>
 #include <grobo/robot_file.h>
-#include <grobo/sim_static.h>
 
 #include "src/robots/file/families.h"
 #include "src/robots/file/own.h"

@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/board.h>
+#include <grobo/core/board.h>
 
 #include "tests/support/test.h"
 

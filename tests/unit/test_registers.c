@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
-#include <grobo/rs30x.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/rs30x.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

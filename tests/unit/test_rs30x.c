@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/rs30x.h>
+#include <grobo/core/rs30x.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

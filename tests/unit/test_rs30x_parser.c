@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/rs30x.h>
+#include <grobo/core/rs30x.h>
 
 #include "src/bus/framer.h"
 #include "tests/support/test.h"

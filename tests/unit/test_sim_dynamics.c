@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 #include <grobo/robot_file.h>
 
 #include "src/base/memory.h"

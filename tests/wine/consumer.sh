@@ -43,9 +43,7 @@ imports() {
 }
 
 every_header() {
-    for header in "$place"/include/grobo/*.h; do
-        echo "#include <grobo/${header##*/}>"
-    done >"$work/all.c"
+    (cd "$place/include" && find grobo -name '*.h') | sed 's/.*/#include <&>/' >"$work/all.c"
     echo 'int main(void) { return grobo_gr001_model()->n_joints == 20 ? 0 : 1; }' >>"$work/all.c"
     builds "$1" "$work/all.c" && $EMULATOR "$place/bin/program.exe"
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What things take in memory, as the sizes of symbols: tools/baremetal/size.sh reads them. */
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 
 enum {
     JOINTS = 20,

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Gate: each header compiles alone, a public one as C11 and as C++11; grobo.h includes them all.
+# Gate: each header compiles alone, a public one as C11 and as C++11; grobo.h includes all of the
+# main shelf, which is small enough to be read.
 #
 # usage: headers.sh        (CC, CXX and CPPFLAGS from the environment; run at the top)
 set -u
@@ -28,23 +29,30 @@ try() {
 
 # The lists of flags are meant to be split.
 # shellcheck disable=SC2086
-for header in include/grobo/*.h include/grobo/classic/*.h ports/*/include/grobo/*.h; do
+for header in include/grobo/*.h include/grobo/*/*.h ports/*/include/grobo/*/*.h; do
     [ -f "$header" ] || continue
     try "$header" C11 $cc -x c -std=c11 $warnings -Wstrict-prototypes $flags -I.
     if command -v "${cxx%% *}" >/dev/null 2>&1; then
         try "$header" C++11 $cxx -x c++ -std=c++11 $warnings $flags -I.
     fi
 done
-# The umbrella is for those who do not want to know which header; export.h comes with any of them,
-# and static.h, sim_static.h are for those who keep an engine or a simulator themselves.
+# The umbrella is for those who do not want to know which header of the main shelf; export.h comes
+# with any of them.
 if [ -f include/grobo/grobo.h ]; then
     for header in include/grobo/*.h; do
         name=${header##*/}
-        case $name in grobo.h | export.h | static.h | sim_static.h) continue ;; esac
+        case $name in grobo.h | export.h) continue ;; esac
         grep -q "<grobo/$name>" include/grobo/grobo.h && continue
         echo "include/grobo/grobo.h:1: headers: does not include <grobo/$name>"
         bad=1
     done
+    functions=$(cat include/grobo/*.h | grep -c '^GROBO_API')
+    lines=$(cat include/grobo/*.h | wc -l)
+    [ "$functions" -le 200 ] && [ "$lines" -le 4500 ] || {
+        echo "include/grobo/grobo.h:1: headers: $functions functions and $lines lines on the main" \
+            "shelf, more than 200 and 4500: what few programs need goes to include/grobo/core"
+        bad=1
+    }
 fi
 # shellcheck disable=SC2086
 for header in $(find src ports tools tests -name '*.h' ! -path '*/include/grobo/*'); do

@@ -17,7 +17,8 @@ cat tests/*/test_null*.c | awk 'BEGIN { RS = ";" }
 }' | sort -u >"$work/tried"
 bad=0
 for name in $(comm -23 "$work/declared" "$work/tried"); do
-    echo "$(grep -lE "(^|[^A-Za-z0-9_])$name *\(" include/grobo/*.h | head -n 1):1: null:" \
+    place=$(find include -name '*.h' -exec grep -lE "(^|[^A-Za-z0-9_])$name *\(" {} + | head -n 1)
+    echo "$place:1: null:" \
         "no tests/*/test_null*.c gives NULL to $name"
     bad=1
 done

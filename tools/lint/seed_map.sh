@@ -13,4 +13,4 @@ members=${GROBO_SHARED:-../shared}/seed/members.tsv
 awk -v members="$members" -f "$gates/strip.awk" -f "$gates/named_tests.awk" \
     -f "$gates/seed_map.awk" \
     include/grobo/*.h \
-    $(ls include/grobo/classic/*.h ports/posix/include/grobo/*.h 2>/dev/null) docs/seed-map.md
+    $(ls include/grobo/*/*.h ports/posix/include/grobo/*/*.h 2>/dev/null) docs/seed-map.md

@@ -15,7 +15,7 @@ nm=${NM:-nm}
 # attribute's, or before [ or ; for data.
 declared() {
     cat include/grobo/*.h include/grobo/core/*.h include/grobo/classic/*.h \
-        ports/posix/include/grobo/*.h 2>/dev/null | awk -v pointers="${2:-}" '
+        ports/posix/include/grobo/core/*.h 2>/dev/null | awk -v pointers="${2:-}" '
     /^GROBO_'"$1"'/ { text = ""; open = 1 }
     open { text = text " " $0 }
     open && /;/ {
@@ -71,8 +71,9 @@ for name in $(comm -13 "$work/declared" "$work/exported"); do
     bad=1
 done
 for name in $(comm -23 "$work/declared" "$work/exported"); do
-    echo "$(grep -lE "(^|[^A-Za-z0-9_])$name *[(;[]" include/grobo/*.h | head -n 1):1: symbols:" \
-        "declares $name, which nobody defines"
+    place=$(find include -name '*.h' -exec grep -lE "(^|[^A-Za-z0-9_])$name *[(;[]" {} + |
+        head -n 1)
+    echo "$place:1: symbols: declares $name, which nobody defines"
     bad=1
 done
 for name in $(grep -v '^grobo_' "$work/exported"); do

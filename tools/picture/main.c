@@ -8,10 +8,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 #include <grobo/motion_io.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
 
 #define FRAME_US 100000
 #define MAX_FRAMES 400

@@ -30,6 +30,17 @@ DROPPED = re.compile(r"\bpthread_(mutex|cond)_t\b|\bgrobo_(mutex|cond)\b")
 NUMBER = re.compile(r"^#define (GROBO_\w+) \(?(-?(?:0x[0-9A-Fa-f]+|\d+))[uUlL]*\)?$", re.M)
 
 
+# What completes a type that others only point to.
+IN_STORAGE = {"core/static.h", "core/sim_static.h"}
+
+
+def headers(top):
+    """The headers of the main shelf and of the core."""
+    folder = Path(top, "include/grobo")
+    found = sorted([*folder.glob("*.h"), *folder.glob("core/*.h")])
+    return [name for p in found if (name := p.relative_to(folder).as_posix()) not in IN_STORAGE]
+
+
 def preprocess(top, cc, *options):
     with tempfile.TemporaryDirectory() as folder:
         for name, text in STAND_INS.items():
@@ -37,7 +48,7 @@ def preprocess(top, cc, *options):
         command = [*cc.split(), "-E", "-P", "-nostdinc", "-U__GNUC__", "-I", folder]
         command += ["-I", f"{top}/include", "-I", f"{top}/ports/posix/include", *options]
         command += ["-x", "c", "-"]
-        text = "#include <grobo/grobo.h>\n"
+        text = "".join(f"#include <grobo/{name}>\n" for name in headers(top))
         return subprocess.run(command, input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
 
 

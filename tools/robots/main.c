@@ -268,7 +268,7 @@ static void print(const grobo_robot_def *def)
            "*/\n",
            def->name);
     if (is_gr001) {
-        printf("#include <grobo/board.h>\n\n#include \"src/robots/robots.h\"\n"
+        printf("#include <grobo/core/board.h>\n\n#include \"src/robots/robots.h\"\n"
                "#include \"src/servo/rs30x/driver.h\"\n#include \"src/servo/tables.h\"\n\n");
     } else {
         printf("#include \"src/robots/robots.h\"\n\n");

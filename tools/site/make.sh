@@ -32,6 +32,7 @@ made() {
         case $(doxygen --version) in 1.9.4*) exit 1 ;; esac
     fi
 }
-made NO YES include/grobo
-made YES NO tools/site/index.md docs docs/guide ports/README.md motions/README.md include/grobo
+made NO YES include/grobo include/grobo/core
+made YES NO tools/site/index.md docs docs/guide ports/README.md motions/README.md include/grobo \
+    include/grobo/core
 rm -f "$OUT/Doxyfile" "$OUT/warnings"

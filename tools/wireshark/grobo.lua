@@ -10,7 +10,7 @@
 -- A packet of a trace is a chunk as one read or write of the line gave it: half a frame, or three.
 -- Chunks of a direction are put together here; a frame is shown in the packet with its last byte.
 -- What counts as a frame, and where the next one begins after rubbish, is decided as by the
--- library (include/grobo/rs30x.h, board.h) and `grctl decode`; tests/cli/wireshark.sh compares.
+-- library (include/grobo/core/rs30x.h, board.h) and `grctl decode`; tests/cli/wireshark.sh compares.
 
 local grobo = Proto("grobo", "GROBO serial servo robot")
 

@@ -6,7 +6,7 @@
  * The wires' time is the simulator's business, since an emulated UART takes none. Between a UART
  * that does and real servos, the same loop moves bytes and asks nothing but the clock.
  */
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 #include "mcu.h"
 

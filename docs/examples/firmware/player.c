@@ -3,7 +3,7 @@
  * The other end of the wire: a microcontroller that has a GR001 at its UART and makes it wave, with
  * the engine's limits, read-back and watch over heat and voltage. It holds the last posture.
  */
-#include <grobo/static.h>
+#include <grobo/core/static.h>
 
 #include "mcu.h"
 

@@ -17,8 +17,8 @@
 #ifndef GROBO_CLASSIC_SERIAL_COM_H
 #define GROBO_CLASSIC_SERIAL_COM_H
 
-#include <grobo/port.h>
-#include <grobo/serial.h>
+#include <grobo/core/port.h>
+#include <grobo/core/serial.h>
 
 GROBO_BEGIN_DECLS
 

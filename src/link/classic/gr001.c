@@ -2,7 +2,7 @@
 /* GR001 by motor number and in motor order, on the engine; and for people, into a stream. */
 #include <math.h>
 
-#include <grobo/gr001.h>
+#include <grobo/core/gr001.h>
 
 #include "src/motion/store/container.h"
 #include "src/robots/robots.h"

@@ -24,8 +24,8 @@
 
 #include <stdatomic.h>
 
+#include <grobo/core/robot.h>
 #include <grobo/guard.h>
-#include <grobo/robot.h>
 
 #include "ports/common/guard.h"
 

@@ -8,8 +8,8 @@
  */
 #include <string.h>
 
-#include <grobo/serial.h>
-#include <grobo/static.h>
+#include <grobo/core/serial.h>
+#include <grobo/core/static.h>
 
 #include "src/base/instant.h"
 #include "src/base/sized.h"

@@ -2,6 +2,8 @@
 /* What the loop of a runner is told by its session, and hands on to the user's callbacks. */
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/link/runner/runner.h"
 
 /* ---- the line ----------------------------------------------------------------------------- */

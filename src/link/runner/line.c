@@ -2,6 +2,8 @@
 /* A runner's line, servos, readings, raw commands and safety: the session's, for every thread. */
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/link/runner/runner.h"
 #include "src/link/session/session.h"
 

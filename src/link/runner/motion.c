@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A runner's target and current motion: sent and played, its postures, its files. */
+#include <grobo/core/robot.h>
+
 #include "src/base/sized.h"
 #include "src/link/runner/runner.h"
 #include "src/link/session/session.h"

@@ -3,6 +3,8 @@
  * What a runner has the engine do, and how that ended. A request is made without the lock, so its
  * end may be told before its number is noted: then the end is found among those that were told.
  */
+#include <grobo/core/robot.h>
+
 #include "src/link/runner/runner.h"
 
 int grobo_i_runner_end_of_job(const grobo_runner *runner, int number)

@@ -9,6 +9,8 @@
  */
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/base/assert.h"
 #include "src/base/memory.h"
 #include "src/base/sized.h"

@@ -17,7 +17,7 @@
 
 #include <event2/event.h>
 
-#include <grobo/runner.h>
+#include <grobo/core/runner.h>
 
 /* What a call's function returns while it is not over. */
 #define CALL_PENDING INT_MIN

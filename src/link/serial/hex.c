@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 static const char digits[] = "0123456789ABCDEF";
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <event2/event.h>
 
-#include <grobo/loop.h>
-#include <grobo/port.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/port.h>
 
 #include "src/link/serial/loop.h"
 

@@ -5,7 +5,7 @@
 
 #include <sys/time.h>
 
-#include <grobo/loop.h>
+#include <grobo/core/loop.h>
 #include <grobo/types.h>
 
 #include "src/base/memory.h"

@@ -7,7 +7,7 @@
 
 #include <event2/event.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 /* Longest a connection may take to be established. */
 #define CONNECT_TIMEOUT_US INT64_C(2000000)

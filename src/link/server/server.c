@@ -4,9 +4,10 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
 #include <grobo/estop.h>
 #include <grobo/sim_server.h>
-#include <grobo/sim_static.h>
 
 #include "src/base/instant.h"
 #include "src/base/sized.h"

@@ -2,6 +2,8 @@
 /* What a session speaks over: a serial port, or the simulator. And the ports that may be one. */
 #include <string.h>
 
+#include <grobo/core/sim.h>
+
 #include "src/base/assert.h"
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"

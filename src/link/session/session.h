@@ -11,9 +11,9 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 #include <grobo/session.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
 
 #include "src/link/guard/estop.h"
 

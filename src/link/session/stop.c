@@ -14,6 +14,8 @@
  */
 #include <errno.h>
 
+#include <grobo/core/robot.h>
+
 #include "src/link/session/session.h"
 #include "src/robot/robot.h"
 

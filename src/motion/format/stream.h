@@ -3,7 +3,7 @@
 #ifndef GROBO_MOTION_STREAM_H
 #define GROBO_MOTION_STREAM_H
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 /* Opens a file for reading. @return 0, or GROBO_ERR_NOENT, _PERM, _ISDIR, _IO */
 int grobo_i_stream_open(const char *path, grobo_source *source);

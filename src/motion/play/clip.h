@@ -3,7 +3,7 @@
 #ifndef GROBO_MOTION_CLIP_PRIVATE_H
 #define GROBO_MOTION_CLIP_PRIVATE_H
 
-#include <grobo/interpolate.h>
+#include <grobo/core/interpolate.h>
 
 #include "src/motion/store/container.h"
 

@@ -9,7 +9,7 @@
 #ifndef GROBO_MOTION_CONTAINER_H
 #define GROBO_MOTION_CONTAINER_H
 
-#include <grobo/motion.h>
+#include <grobo/core/motion.h>
 
 /* Latest time of a posture, either way: far beyond use, and exact in microseconds. */
 #define GROBO_I_TIME_MAX_S 1e9

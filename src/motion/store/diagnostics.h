@@ -5,7 +5,7 @@
 
 #include <stdarg.h>
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 #if defined(__GNUC__)
 #define GROBO_I_FORMAT(text, first) __attribute__((format(printf, text, first)))

@@ -3,7 +3,7 @@
 #ifndef GROBO_MOTION_OUT_H
 #define GROBO_MOTION_OUT_H
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 typedef struct grobo_i_out {
     const grobo_sink *sink;

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 #include "src/base/memory.h"
 #include "src/motion/text/nearest.h"

@@ -6,7 +6,7 @@
 #ifndef GROBO_ROBOTS_SERVO_H
 #define GROBO_ROBOTS_SERVO_H
 
-#include <grobo/registers.h>
+#include <grobo/core/registers.h>
 
 #include "src/motion/format/fields.h"
 

@@ -3,7 +3,7 @@
 #ifndef GROBO_CORE_DXL1_DRIVER_H
 #define GROBO_CORE_DXL1_DRIVER_H
 
-#include <grobo/dxl1.h>
+#include <grobo/core/dxl1.h>
 
 #include "src/servo/table/family.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/dxl1.h>
+#include <grobo/core/dxl1.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

@@ -2,8 +2,8 @@
 /* Frames of DYNAMIXEL Protocol 1.0 and of Feetech: measured, taken apart, built. */
 #include <string.h>
 
-#include <grobo/dxl1.h>
-#include <grobo/protocol.h>
+#include <grobo/core/dxl1.h>
+#include <grobo/core/protocol.h>
 
 enum {
     HEADER = 0xFF,

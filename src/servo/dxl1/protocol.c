@@ -4,7 +4,7 @@
  * if a host had sent it answers nothing: an echo that nobody reckons with, or another host's. */
 #include <string.h>
 
-#include <grobo/bus.h>
+#include <grobo/core/bus.h>
 
 #include "src/servo/dxl1/protocol.h"
 #include "src/servo/tables.h"

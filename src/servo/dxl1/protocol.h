@@ -3,7 +3,7 @@
 #ifndef GROBO_CORE_DXL1_PROTOCOL_H
 #define GROBO_CORE_DXL1_PROTOCOL_H
 
-#include <grobo/dxl1.h>
+#include <grobo/core/dxl1.h>
 
 /* Of grobo_protocol. */
 int grobo_i_dxl1_measure(const uint8_t *bytes, size_t n, unsigned accept);

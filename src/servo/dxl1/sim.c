@@ -2,6 +2,8 @@
 /* Simulated AX and MX of DYNAMIXEL: what they have beside packets of Protocol 1.0 and registers. */
 #include <math.h>
 
+#include <grobo/core/sim.h>
+
 #include "src/servo/dxl1/sim_packets.h"
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

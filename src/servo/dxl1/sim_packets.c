@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/protocol.h>
+#include <grobo/core/protocol.h>
 
 #include "src/base/bytes.h"
 #include "src/servo/dxl1/sim_packets.h"

@@ -6,7 +6,7 @@
 #ifndef GROBO_SERVO_DXL1_SIM_PACKETS_H
 #define GROBO_SERVO_DXL1_SIM_PACKETS_H
 
-#include <grobo/dxl1.h>
+#include <grobo/core/dxl1.h>
 
 #include "src/sim/servo/family.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Made from src/servo/models/dxl1 by `make servos`: registers and models. */
-#include <grobo/dxl1.h>
+#include <grobo/core/dxl1.h>
 
 #include "src/servo/row.h"
 #include "src/servo/tables.h"

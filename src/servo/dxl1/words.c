@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What frames of AX and MX say. */
-#include <grobo/dxl1.h>
+#include <grobo/core/dxl1.h>
 
 #include "src/servo/dxl1/words_frames.h"
 #include "src/servo/families.h"

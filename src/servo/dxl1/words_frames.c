@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/dxl1.h>
+#include <grobo/core/dxl1.h>
 
 #include "src/servo/dxl1/words_frames.h"
 #include "src/servo/tables.h"

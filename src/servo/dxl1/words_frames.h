@@ -3,7 +3,7 @@
 #ifndef GROBO_SERVO_DXL1_WORDS_FRAMES_H
 #define GROBO_SERVO_DXL1_WORDS_FRAMES_H
 
-#include <grobo/words.h>
+#include <grobo/core/words.h>
 
 /* The meanings of the bits of a status' error; NULL: unknown. */
 typedef const char *const grobo_i_dxl1_bits[8];

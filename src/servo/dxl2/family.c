@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/dxl2.h>
+#include <grobo/core/dxl2.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

@@ -2,8 +2,8 @@
 /* Frames of DYNAMIXEL Protocol 2.0: measured, taken apart, built. */
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/protocol.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/protocol.h>
 
 #include "src/base/bytes.h"
 

@@ -2,8 +2,8 @@
 /* DYNAMIXEL Protocol 2.0 for the bus: what a frame is answered by, and what a status tells. */
 #include <string.h>
 
-#include <grobo/bus.h>
-#include <grobo/dxl2.h>
+#include <grobo/core/bus.h>
+#include <grobo/core/dxl2.h>
 
 #include "src/base/bytes.h"
 #include "src/servo/tables.h"

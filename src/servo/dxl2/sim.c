@@ -4,8 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/protocol.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/protocol.h>
+#include <grobo/core/sim.h>
 
 #include "src/base/bytes.h"
 #include "src/servo/families.h"

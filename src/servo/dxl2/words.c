@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
+#include <grobo/core/dxl2.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

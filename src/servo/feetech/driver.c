@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Robots of Feetech's STS, SMS and SCS servos, on one bus too. */
-#include <grobo/feetech.h>
+#include <grobo/core/feetech.h>
 
 #include "src/servo/dxl1/driver.h"
 #include "src/servo/tables.h"

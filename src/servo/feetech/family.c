@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/feetech.h>
+#include <grobo/core/feetech.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Feetech's servos for the bus: the frames of DYNAMIXEL 1.0 with other errors. */
-#include <grobo/bus.h>
-#include <grobo/feetech.h>
+#include <grobo/core/bus.h>
+#include <grobo/core/feetech.h>
 
 #include "src/servo/dxl1/protocol.h"
 #include "src/servo/tables.h"

@@ -3,7 +3,8 @@
  * Protocol 1.0. */
 #include <string.h>
 
-#include <grobo/feetech.h>
+#include <grobo/core/feetech.h>
+#include <grobo/core/sim.h>
 
 #include "src/base/bytes.h"
 #include "src/servo/dxl1/sim_packets.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Made from src/servo/models/sts by `make servos`: registers and models. */
-#include <grobo/feetech.h>
+#include <grobo/core/feetech.h>
 
 #include "src/servo/row.h"
 #include "src/servo/tables.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What frames of Feetech's servos say: those of Protocol 1.0, with instructions of their own. */
-#include <grobo/feetech.h>
+#include <grobo/core/feetech.h>
 
 #include "src/servo/dxl1/words_frames.h"
 #include "src/servo/families.h"

@@ -2,7 +2,7 @@
 /* Frames of GR001's controller board. The push parser, which only its stand-ins need, is apart. */
 #include <string.h>
 
-#include <grobo/board.h>
+#include <grobo/core/board.h>
 
 #include "src/servo/rs30x/packet.h"
 #include "src/servo/tables.h"

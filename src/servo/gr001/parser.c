@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The push parser of board frames: for who stands in for the board. */
-#include <grobo/board.h>
+#include <grobo/core/board.h>
 
 #include "src/bus/framer.h"
 

@@ -7,7 +7,7 @@
  */
 #include <math.h>
 
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
 
 #include "src/base/bytes.h"
 #include "src/servo/ics/items.h"

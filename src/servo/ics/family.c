@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/ics.h>
+#include <grobo/core/ics.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

@@ -6,7 +6,7 @@
 #ifndef GROBO_CORE_ICS_ITEMS_H
 #define GROBO_CORE_ICS_ITEMS_H
 
-#include <grobo/ics.h>
+#include <grobo/core/ics.h>
 
 #include "src/servo/item.h"
 

@@ -2,7 +2,7 @@
 /* Frames of Kondo KRS servos: measured, taken apart, built. */
 #include <string.h>
 
-#include <grobo/ics.h>
+#include <grobo/core/ics.h>
 
 enum {
     COMMAND_BITS = 0xE0,

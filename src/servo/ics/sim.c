@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/ics.h>
+#include <grobo/core/ics.h>
+#include <grobo/core/sim.h>
 
 #include "src/servo/families.h"
 #include "src/servo/ics/items.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Made from src/servo/models/ics by `make servos`: registers and models. */
-#include <grobo/ics.h>
+#include <grobo/core/ics.h>
 
 #include "src/servo/row.h"
 #include "src/servo/tables.h"

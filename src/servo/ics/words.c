@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/ics.h>
+#include <grobo/core/ics.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

@@ -2,7 +2,7 @@
 /* Robots of LewanSoul and Hiwonder servos: one frame for one servo, one value a frame. */
 #include <math.h>
 
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
 
 #include "src/base/bytes.h"
 #include "src/servo/lx16a/items.h"

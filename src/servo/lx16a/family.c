@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/lx16a.h>
+#include <grobo/core/lx16a.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

@@ -2,7 +2,7 @@
 #ifndef GROBO_CORE_LX16A_ITEMS_H
 #define GROBO_CORE_LX16A_ITEMS_H
 
-#include <grobo/lx16a.h>
+#include <grobo/core/lx16a.h>
 
 #include "src/servo/item.h"
 

@@ -2,7 +2,7 @@
 /* Frames of LewanSoul and Hiwonder servos: measured, taken apart, built. */
 #include <string.h>
 
-#include <grobo/lx16a.h>
+#include <grobo/core/lx16a.h>
 
 enum {
     HEADER = 0x55,

@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/lx16a.h>
+#include <grobo/core/lx16a.h>
+#include <grobo/core/sim.h>
 
 #include "src/base/bytes.h"
 #include "src/servo/families.h"

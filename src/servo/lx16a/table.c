@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Made from src/servo/models/lx16a by `make servos`: registers and models. */
-#include <grobo/lx16a.h>
+#include <grobo/core/lx16a.h>
 
 #include "src/servo/row.h"
 #include "src/servo/tables.h"

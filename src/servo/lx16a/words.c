@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/lx16a.h>
+#include <grobo/core/lx16a.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

@@ -2,7 +2,7 @@
 /* The driver functions of robots made of RS30x servos, on any line. */
 #include <string.h>
 
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
 
 #include "src/base/bytes.h"
 #include "src/servo/rs30x/driver.h"

@@ -3,9 +3,9 @@
 #ifndef GROBO_CORE_RS30X_DRIVER_H
 #define GROBO_CORE_RS30X_DRIVER_H
 
-#include <grobo/driver.h>
-#include <grobo/rs30x.h>
-#include <grobo/sequencer.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/rs30x.h>
+#include <grobo/core/sequencer.h>
 
 int grobo_i_rs30x_check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);
 int grobo_i_rs30x_posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,

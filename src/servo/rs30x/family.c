@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/board.h>
+#include <grobo/core/board.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

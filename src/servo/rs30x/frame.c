@@ -2,7 +2,7 @@
 /* The frames that a driver sends, whatever the line. */
 #include <string.h>
 
-#include <grobo/rs30x.h>
+#include <grobo/core/rs30x.h>
 
 int grobo_frame_wrap(const grobo_protocol *protocol, const uint8_t *packet, size_t n, uint8_t *buf,
                      size_t cap)

@@ -3,7 +3,7 @@
 #ifndef GROBO_CORE_RS30X_PACKET_H
 #define GROBO_CORE_RS30X_PACKET_H
 
-#include <grobo/rs30x.h>
+#include <grobo/core/rs30x.h>
 
 enum {
     GROBO_I_AT_ID = 2,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Made from src/servo/models/rs30x by `make servos`: registers and models. */
-#include <grobo/rs30x.h>
+#include <grobo/core/rs30x.h>
 
 #include "src/servo/row.h"
 #include "src/servo/tables.h"

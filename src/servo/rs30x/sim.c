@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/sim.h>
+
 #include "src/base/bytes.h"
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

@@ -2,7 +2,7 @@
 /* The present values of a servo out of a block of its registers. */
 #include <string.h>
 
-#include <grobo/rs30x.h>
+#include <grobo/core/rs30x.h>
 
 #include "src/base/bytes.h"
 

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/rs30x.h>
+#include <grobo/core/board.h>
+#include <grobo/core/rs30x.h>
 
 #include "src/servo/families.h"
 #include "src/servo/tables.h"

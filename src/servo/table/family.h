@@ -6,8 +6,8 @@
 #ifndef GROBO_CORE_TABLE_FAMILY_H
 #define GROBO_CORE_TABLE_FAMILY_H
 
-#include <grobo/driver.h>
-#include <grobo/dxl2.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/dxl2.h>
 
 enum { GROBO_I_TABLES = 2 };
 

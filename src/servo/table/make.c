@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the tables of all families have in common that name their servos by a table of registers. */
-#include <grobo/sequencer.h>
+#include <grobo/core/sequencer.h>
 
 #include "src/servo/table/family.h"
 

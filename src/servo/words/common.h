@@ -3,7 +3,7 @@
 #ifndef GROBO_SERVO_WORDS_COMMON_H
 #define GROBO_SERVO_WORDS_COMMON_H
 
-#include <grobo/words.h>
+#include <grobo/core/words.h>
 
 /* What of packets is believed: GROBO_ACCEPT_... */
 unsigned grobo_i_words_accept(const grobo_words_look *look);

@@ -6,9 +6,9 @@
 #ifndef GROBO_SERVO_WORDS_INSTRUCTIONS_H
 #define GROBO_SERVO_WORDS_INSTRUCTIONS_H
 
-#include <grobo/dxl1.h>
-#include <grobo/dxl2.h>
-#include <grobo/words.h>
+#include <grobo/core/dxl1.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/words.h>
 
 /* Who has an instruction. */
 enum { GROBO_I_WORDS_X = 1, GROBO_I_WORDS_AX_MX = 2, GROBO_I_WORDS_STS = 4, GROBO_I_WORDS_SCS = 8 };

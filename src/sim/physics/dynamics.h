@@ -6,7 +6,7 @@
 #ifndef GROBO_SIM_DYNAMICS_H
 #define GROBO_SIM_DYNAMICS_H
 
-#include <grobo/sim_physics.h>
+#include <grobo/core/sim_physics.h>
 
 enum { GROBO_I_BODIES_MAX = GROBO_JOINTS_MAX };
 

@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_MOTOR_H
 #define GROBO_SIM_MOTOR_H
 
-#include <grobo/sim_physics.h>
+#include <grobo/core/sim_physics.h>
 
 /* A position loop as its registers have it. Errors in radians of the servo's shaft. */
 typedef struct grobo_i_loop {

@@ -7,7 +7,7 @@
 #ifndef GROBO_SIM_FAMILY_H
 #define GROBO_SIM_FAMILY_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 struct grobo_sim_family {
     /* Rate of the line where nothing else is asked for; 0: 1 Mbps. */

@@ -2,6 +2,8 @@
 /* Chance: one generator a fault, so that turning one on does not change when another strikes. */
 #include <string.h>
 
+#include <grobo/core/sim.h>
+
 #include "src/sim/servo/fault.h"
 #include "src/sim/servo/note.h"
 

@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_FAULT_H
 #define GROBO_SIM_FAULT_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 /* The generator of what is no fault: start posture, bytes at a wrong rate. */
 #define GROBO_I_SIM_CHANCE GROBO_SIM_FAULTS

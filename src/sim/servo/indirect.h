@@ -6,7 +6,7 @@
 #ifndef GROBO_SIM_INDIRECT_H
 #define GROBO_SIM_INDIRECT_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 typedef enum grobo_i_indirect_kind {
     GROBO_I_INDIRECT_REGISTERS, /* of the table, or none at all */

@@ -7,7 +7,7 @@
 #ifndef GROBO_SIM_NOTE_H
 #define GROBO_SIM_NOTE_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 static inline void grobo_i_sim_tell(grobo_sim *sim, const grobo_sim_event *event)
 {

@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_POWER_H
 #define GROBO_SIM_POWER_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 /* Out of and into power, with another flash. */
 void grobo_i_sim_exchange_flash(grobo_sim *sim, int servo, const uint8_t *flash);

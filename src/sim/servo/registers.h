@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_SERVO_REGISTERS_H
 #define GROBO_SIM_SERVO_REGISTERS_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 /* Value of the register of a role; 0 where the model has none. */
 int32_t grobo_i_dxl_get(const grobo_sim_servo *servo, grobo_register_role role);

@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_SERVO_H
 #define GROBO_SIM_SERVO_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 /* Bytes of a simulator with no more servos than this model has joints, NULL: a GR001. What lies
  * behind them of a grobo_sim is not there. */

@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_SHAFT_H
 #define GROBO_SIM_SHAFT_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us);
 /* What the servo's plan is: where its shaft is without weight, and what its loop follows with. */

@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_TALK_H
 #define GROBO_SIM_TALK_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 /* Servos begin to say bytes at start_ns. */
 void grobo_i_sim_talk(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t start_ns);

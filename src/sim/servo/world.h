@@ -9,7 +9,7 @@
 #ifndef GROBO_SIM_WORLD_H
 #define GROBO_SIM_WORLD_H
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim_static.h>
 
 /* What a shaft does, at the end of the latest step. */
 typedef struct grobo_i_body {

@@ -8,8 +8,8 @@
 #ifndef GROBO_SERVO_ACME_H
 #define GROBO_SERVO_ACME_H
 
-#include <grobo/driver.h>
-#include <grobo/dxl2.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/dxl2.h>
 
 enum { ACME_OVERHEAD_BYTES = 5, ACME_FRAME_MAX_BYTES = 120, ACME_ID_MAX = 99, ACME_ID_ALL = 255 };
 

@@ -136,8 +136,8 @@ class Binding(unittest.TestCase):
             return re.findall(r"GROBO_API [^;]*?\b(grobo_\w+)\(", text)
 
         listed = re.findall(r"^\s*(grobo_\w+);", Path("src/libgrobo.map").read_text(), re.M)
-        in_storage = declared("static.h", "sim_static.h")
-        in_storage += [n for n in declared("port.h") if re.match("grobo_(mutex|cond)_", n)]
+        in_storage = declared("core/static.h", "core/sim_static.h")
+        in_storage += [n for n in declared("core/port.h") if re.match("grobo_(mutex|cond)_", n)]
         self.assertGreater(len(listed), 500)
         self.assertEqual([n for n in listed if not hasattr(_lib.lib, n)], sorted(in_storage))
 
@@ -162,11 +162,13 @@ class Binding(unittest.TestCase):
             [sys.executable, "tools/python/generate.py", ".", os.environ["CC"], "--print"],
             stdout=subprocess.PIPE, text=True, check=True,
         ).stdout
+        headers = [*Path("include/grobo").glob("*.h"), *Path("include/grobo").glob("core/*.h")]
+        includes = "".join(f"#include <{p.relative_to('include')}>\n" for p in headers)
         with tempfile.TemporaryDirectory() as folder:
             ffi = cffi.FFI()
             ffi.cdef(text)
             ffi.set_source(
-                "proof", "#include <grobo/grobo.h>\n",
+                "proof", includes,
                 include_dirs=[os.path.abspath("include"), os.path.abspath("ports/posix/include")],
                 extra_compile_args=["-O0", "-w"], extra_link_args=["-Wl,-z,lazy"],
             )

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
 
+#include <grobo/core/motion.h>
+
 #include "tools/grctl/body/check.h"
 
 /* Nearer to the edge real feet, floors and servos decide. */

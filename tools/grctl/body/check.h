@@ -3,7 +3,7 @@
 #ifndef GRCTL_CHECK_WHOLE_H
 #define GRCTL_CHECK_WHOLE_H
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 #include "tools/grctl/body/whole.h"
 

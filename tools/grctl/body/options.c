@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <grobo/core/motion.h>
+
 #include "tools/grctl/body/check.h"
 #include "tools/grctl/body/options.h"
 

@@ -3,8 +3,8 @@
 #ifndef GRCTL_BODY_OPTIONS_H
 #define GRCTL_BODY_OPTIONS_H
 
-#include <grobo/body_motion.h>
-#include <grobo/motion_io.h>
+#include <grobo/core/body_motion.h>
+#include <grobo/core/motion_io.h>
 
 #include "tools/grctl/cli/app.h"
 

@@ -3,7 +3,7 @@
 #ifndef GRCTL_WHOLE_H
 #define GRCTL_WHOLE_H
 
-#include <grobo/body_motion.h>
+#include <grobo/core/body_motion.h>
 
 #include "tools/grctl/cli/app.h"
 

@@ -8,7 +8,7 @@
 
 #include <jansson.h>
 
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
 #include <grobo/robot_event.h>
 
 #include "tools/grctl/cli/cli.h"

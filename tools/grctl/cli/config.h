@@ -19,8 +19,8 @@
 #ifndef GRCTL_CONFIG_H
 #define GRCTL_CONFIG_H
 
-#include <grobo/driver.h>
-#include <grobo/serial.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/serial.h>
 
 #include "tools/grctl/cli/app.h"
 

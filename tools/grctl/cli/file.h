@@ -3,7 +3,7 @@
 #ifndef GRCTL_FILE_H
 #define GRCTL_FILE_H
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cli/heap.h"

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/cli/writer.h"
 #include "tools/grctl/os/os.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the wire allows: computed from the same costs that the bus plans with. */
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cmd/commands.h"

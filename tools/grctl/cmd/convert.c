@@ -2,6 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/motion.h>
+
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/heap.h"

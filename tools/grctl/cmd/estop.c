@@ -11,9 +11,9 @@
 #include <stdarg.h>
 #include <string.h>
 
+#include <grobo/core/port.h>
 #include <grobo/estop.h>
 #include <grobo/guard.h>
-#include <grobo/port.h>
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cmd/commands.h"

@@ -2,6 +2,8 @@
 /* The robots of a group, seen together: a line each, again and again. */
 #include <math.h>
 
+#include <grobo/core/robot.h>
+
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/lang/lang.h"

@@ -4,6 +4,8 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/robot.h>
+
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/lang/lang.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cmd/commands.h"

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"

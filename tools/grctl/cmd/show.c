@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 
+#include <grobo/core/motion.h>
+
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"

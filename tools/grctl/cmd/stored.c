@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* slot and scenario: what the board has in its own memory. */
+#include <grobo/core/robot.h>
+
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 

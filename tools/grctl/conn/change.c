@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/serial.h>
-#include <grobo/sim.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/serial.h>
+#include <grobo/core/sim.h>
 
 #include "tools/grctl/conn/change.h"
 #include "tools/grctl/conn/servos.h"

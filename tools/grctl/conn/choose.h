@@ -6,7 +6,7 @@
 #ifndef GRCTL_CHOOSE_H
 #define GRCTL_CHOOSE_H
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 enum { CHOOSE_MAX = 32 };
 

@@ -2,8 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/port.h>
+#include <grobo/core/robot.h>
 #include <grobo/estop.h>
-#include <grobo/port.h>
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/progress.h"

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 #include <grobo/session.h>
 
 #include "tools/grctl/cli/robot.h"

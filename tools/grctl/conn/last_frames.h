@@ -3,8 +3,8 @@
 #ifndef GRCTL_LAST_FRAMES_H
 #define GRCTL_LAST_FRAMES_H
 
-#include <grobo/protocol.h>
-#include <grobo/serial.h>
+#include <grobo/core/protocol.h>
+#include <grobo/core/serial.h>
 
 enum { LAST_FRAMES = 80, LAST_FRAME_BYTES = 64 };
 

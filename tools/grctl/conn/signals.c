@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Signals while a command has the robot: those that end it, and Ctrl-Z. */
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/os/keys.h"

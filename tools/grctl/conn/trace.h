@@ -3,7 +3,7 @@
 #ifndef GRCTL_TRACE_H
 #define GRCTL_TRACE_H
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cli/writer.h"

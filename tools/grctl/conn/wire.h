@@ -3,7 +3,7 @@
 #ifndef GRCTL_WIRE_H
 #define GRCTL_WIRE_H
 
-#include <grobo/robot.h>
+#include <grobo/core/robot.h>
 
 typedef struct wire_cost {
     char name[24];

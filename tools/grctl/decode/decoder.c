@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/decode/decoder.h"

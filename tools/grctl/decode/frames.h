@@ -8,7 +8,7 @@
 #ifndef GRCTL_FRAMES_H
 #define GRCTL_FRAMES_H
 
-#include <grobo/board.h>
+#include <grobo/core/board.h>
 
 #include "tools/grctl/decode/talk.h"
 

@@ -5,7 +5,8 @@
  */
 #include <string.h>
 
-#include <grobo/driver.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/robot.h>
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/progress.h"

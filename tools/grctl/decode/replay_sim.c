@@ -2,7 +2,8 @@
 /* A trace against a fresh simulator: chunks as they were, at their times, in virtual time. */
 #include <string.h>
 
-#include <grobo/sim_static.h>
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
 
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/decode/replay.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Who talks on a line, and in which family's frames: what frames say (grobo/words.h) of whom. */
+/* Who talks on a line, and in which family's frames: what frames say of whom
+ * (grobo/core/words.h). */
 #ifndef GRCTL_TALK_H
 #define GRCTL_TALK_H
 

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "tools/grctl/decode/explain.h"
 #include "tools/grctl/decode/saytext.h"

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "tools/grctl/doctor/checkup.h"
 #include "tools/grctl/os/node.h"

@@ -2,6 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/fleet/agent.h"
 #include "tools/grctl/fleet/orders.h"

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
 #include <grobo/files.h>
 
 #include "tools/grctl/cli/file.h"

@@ -2,6 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tools/grctl/fleet/say.h"
 #include "tools/grctl/fleet/spool.h"
 #include "tools/grctl/fleet/wire.h"

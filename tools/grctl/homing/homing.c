@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include <grobo/dxl1.h>
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
+#include <grobo/core/dxl1.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/feetech.h>
 
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/conn/conn.h"

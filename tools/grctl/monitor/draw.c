@@ -2,6 +2,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/monitor/monitor.h"
 #include "tools/grctl/screen/screen.h"

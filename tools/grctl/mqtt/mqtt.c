@@ -11,7 +11,7 @@
 #include <event2/buffer.h>
 #include <event2/event.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/mqtt/direct.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the command asks of the operating system beyond grobo/port.h. A folder of os/ has it for
- * each, and keys.h, node.h and pipe.h too.
+ * What the command asks of the operating system beyond grobo/core/port.h. A folder of os/ has it
+ * for each, and keys.h, node.h and pipe.h too.
  */
 #ifndef GRCTL_OS_H
 #define GRCTL_OS_H

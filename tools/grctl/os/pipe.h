@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 /* Is the file a pipe, such as a shell makes of <(command)? */
 bool pipe_is(const char *path);

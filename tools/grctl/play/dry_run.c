@@ -6,9 +6,10 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/sim.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
 #include <grobo/session.h>
-#include <grobo/sim_static.h>
-#include <grobo/static.h>
 
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/trace.h"

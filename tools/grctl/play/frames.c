@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <grobo/core/robot.h>
+
 #include "tools/grctl/play/frames.h"
 
 json_t *frames_json(const conn *c)

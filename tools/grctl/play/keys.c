@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <grobo/core/robot.h>
 #include <grobo/estop.h>
 
 #include "tools/grctl/play/keys.h"

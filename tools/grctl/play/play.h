@@ -3,8 +3,8 @@
 #ifndef GRCTL_PLAY_H
 #define GRCTL_PLAY_H
 
-#include <grobo/motion_io.h>
-#include <grobo/sequencer.h>
+#include <grobo/core/motion_io.h>
+#include <grobo/core/sequencer.h>
 
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/conn/conn.h"

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include <grobo/core/motion.h>
+
 #include "tools/grctl/body/check.h"
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"

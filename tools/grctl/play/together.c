@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The robots of a group play a motion in step. */
+#include <grobo/core/robot.h>
+
 #include "tools/grctl/os/keys.h"
 #include "tools/grctl/play/frames.h"
 #include "tools/grctl/play/troupe.h"

@@ -3,7 +3,7 @@
 #ifndef GRCTL_TROUPE_H
 #define GRCTL_TROUPE_H
 
-#include <grobo/team.h>
+#include <grobo/core/team.h>
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/conn/conn.h"

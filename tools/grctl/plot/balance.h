@@ -3,7 +3,7 @@
 #ifndef GRCTL_PLOT_BALANCE_H
 #define GRCTL_PLOT_BALANCE_H
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 
 #include "tools/grctl/plot/svg.h"
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 #include "tools/grctl/plot/layout.h"
 #include "tools/grctl/plot/scale.h"

@@ -3,7 +3,7 @@
 #ifndef GRCTL_PLOT_H
 #define GRCTL_PLOT_H
 
-#include <grobo/motion.h>
+#include <grobo/core/motion.h>
 
 #include "tools/grctl/plot/balance.h"
 #include "tools/grctl/plot/svg.h"

@@ -3,8 +3,8 @@
 #ifndef GRCTL_FAMILY_H
 #define GRCTL_FAMILY_H
 
-#include <grobo/driver.h>
-#include <grobo/registers.h>
+#include <grobo/core/driver.h>
+#include <grobo/core/registers.h>
 #include <grobo/robot_file.h>
 
 /* Names for options, filled by family_list(): of the families, the same behind "all", and of all

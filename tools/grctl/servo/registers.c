@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/rs30x.h>
+#include <grobo/core/rs30x.h>
 
 #include "tools/grctl/servo/registers.h"
 

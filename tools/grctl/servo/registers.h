@@ -3,7 +3,7 @@
 #ifndef GRCTL_REGISTERS_H
 #define GRCTL_REGISTERS_H
 
-#include <grobo/registers.h>
+#include <grobo/core/registers.h>
 
 #include "tools/grctl/cli/app.h"
 

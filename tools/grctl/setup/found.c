@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/dxl2.h>
-#include <grobo/port.h>
+#include <grobo/core/dxl2.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/conn/servos.h"

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"

@@ -5,7 +5,7 @@
 
 #include <signal.h>
 
-#include <grobo/motion.h>
+#include <grobo/core/motion.h>
 
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/edit/edit.h"

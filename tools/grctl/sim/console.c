@@ -2,6 +2,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/sim.h>
+
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/sim/console.h"
 

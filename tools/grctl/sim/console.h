@@ -5,7 +5,7 @@
 
 #include <event2/event.h>
 
-#include <grobo/sim_physics.h>
+#include <grobo/core/sim_physics.h>
 #include <grobo/sim_server.h>
 
 #include "tools/grctl/cli/app.h"

@@ -7,7 +7,8 @@
 #include <errno.h>
 #include <string.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
+#include <grobo/core/sim.h>
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/lang/lang.h"

@@ -3,7 +3,7 @@
 #ifndef GRCTL_SIM_STRICT_H
 #define GRCTL_SIM_STRICT_H
 
-#include <grobo/sim.h>
+#include <grobo/core/sim.h>
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/decode/frames.h"

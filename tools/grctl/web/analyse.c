@@ -2,6 +2,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/motion.h>
+
 #include "tools/grctl/body/check.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"

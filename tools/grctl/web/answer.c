@@ -2,7 +2,7 @@
 /* What every part of `serve` says to a request, and asks of the robot. */
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/web/serve.h"
 

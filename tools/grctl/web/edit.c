@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/motion.h>
+
 #include "tools/grctl/cli/heap.h"
 #include "tools/grctl/play/play.h"
 #include "tools/grctl/web/edit.h"

@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-#include <grobo/motion_io.h>
+#include <grobo/core/motion_io.h>
 
 #include "tools/grctl/cli/app.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cli/heap.h"

@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 #include <grobo/version.h>
 
 #include "tools/grctl/fleet/leader.h"

@@ -12,7 +12,7 @@
 #include <event2/keyvalq_struct.h>
 #include <event2/listener.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/cli/heap.h"
 #include "tools/grctl/os/net.h"

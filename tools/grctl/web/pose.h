@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 #include <grobo/posture.h>
 
 #include "tools/grctl/cli/app.h"

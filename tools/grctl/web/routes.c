@@ -2,7 +2,7 @@
 /* Which path is what, and what every request has to bring along. */
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/web/door.h"
 #include "tools/grctl/web/fields.h"

@@ -6,7 +6,7 @@
 
 #include <event2/http.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/web/door.h"
 #include "tools/grctl/web/pose.h"

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 #include <grobo/version.h>
 
 #include "tools/grctl/cli/joints.h"

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/port.h>
 #include <grobo/estop.h>
-#include <grobo/port.h>
 
 #include "tools/grctl/web/serve.h"
 

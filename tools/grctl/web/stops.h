@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-#include <grobo/robot.h>
+#include <grobo/core/robot.h>
 
 #include "tools/grctl/web/lease.h"
 

@@ -2,7 +2,7 @@
 /* What a page may ask of the robot. */
 #include <string.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/web/serve.h"

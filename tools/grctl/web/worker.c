@@ -3,7 +3,7 @@
 
 #include <event2/event.h>
 
-#include <grobo/port.h>
+#include <grobo/core/port.h>
 
 #include "tools/grctl/os/alarm.h"
 #include "tools/grctl/web/worker.h"

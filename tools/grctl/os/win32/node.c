@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/serial.h>
+#include <grobo/core/serial.h>
 
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"

@@ -35,8 +35,8 @@
  * Angles are radians in joint order. One thread at a time, that of the engine.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_HRPSYS_H
-#define GROBO_HRPSYS_H
+#ifndef GROBO_CORE_HRPSYS_H
+#define GROBO_CORE_HRPSYS_H
 
 #include <grobo/robot.h>
 

@@ -22,14 +22,14 @@
  * inside its callbacks, grobo_serial_free() too.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_SERIAL_H
-#define GROBO_SERIAL_H
+#ifndef GROBO_CORE_SERIAL_H
+#define GROBO_CORE_SERIAL_H
 
 #include <stdio.h>
 
-#include <grobo/loop.h>
+#include <grobo/core/loop.h>
+#include <grobo/core/port.h>
 #include <grobo/mem.h>
-#include <grobo/port.h>
 #include <grobo/types.h>
 
 GROBO_BEGIN_DECLS

@@ -13,8 +13,8 @@
  * One thread at a time per engine.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_GR001_H
-#define GROBO_GR001_H
+#ifndef GROBO_CORE_GR001_H
+#define GROBO_CORE_GR001_H
 
 #include <stdio.h>
 

@@ -9,8 +9,8 @@
  * (lx16a.h), grobo_ics_table (ics.h). All functions are pure and thread safe.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_REGISTERS_H
-#define GROBO_REGISTERS_H
+#ifndef GROBO_CORE_REGISTERS_H
+#define GROBO_CORE_REGISTERS_H
 
 #include <grobo/types.h>
 

@@ -49,11 +49,11 @@
  * function only the questions are.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_BUS_H
-#define GROBO_BUS_H
+#ifndef GROBO_CORE_BUS_H
+#define GROBO_CORE_BUS_H
 
+#include <grobo/core/protocol.h>
 #include <grobo/limits.h>
-#include <grobo/protocol.h>
 
 GROBO_BEGIN_DECLS
 

@@ -10,11 +10,11 @@
  * Source of the constants: the maker's ICS3.5 Software Manual; reading of positions (3.6): the
  * maker's Arduino library IcsBaseClass.
  */
-#ifndef GROBO_ICS_H
-#define GROBO_ICS_H
+#ifndef GROBO_CORE_ICS_H
+#define GROBO_CORE_ICS_H
 
-#include <grobo/protocol.h>
-#include <grobo/registers.h>
+#include <grobo/core/protocol.h>
+#include <grobo/core/registers.h>
 
 GROBO_BEGIN_DECLS
 

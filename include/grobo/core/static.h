@@ -17,12 +17,12 @@
  * @endcode
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_STATIC_H
-#define GROBO_STATIC_H
+#ifndef GROBO_CORE_STATIC_H
+#define GROBO_CORE_STATIC_H
 
-#include <grobo/bus.h>
-#include <grobo/robot.h>
-#include <grobo/sequencer.h>
+#include <grobo/core/bus.h>
+#include <grobo/core/robot.h>
+#include <grobo/core/sequencer.h>
 
 GROBO_BEGIN_DECLS
 

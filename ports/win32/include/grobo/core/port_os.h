@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * @file port_os.h
- * @brief The operating system's types behind grobo/port.h: Win32.
+ * @brief The operating system's types behind grobo/core/port.h: Win32.
  *
  * Each port brings a file of this name with the same names in it; the one of the port that the
  * library was built for is installed beside port.h. It does without <windows.h>, whose names would
  * come with every header of the library.
  */
-#ifndef GROBO_PORT_OS_H
-#define GROBO_PORT_OS_H
+#ifndef GROBO_CORE_PORT_OS_H
+#define GROBO_CORE_PORT_OS_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -8,10 +8,10 @@
  * threads: one at a time for a body and for what plays it; two bodies share nothing.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_BODY_MOTION_H
-#define GROBO_BODY_MOTION_H
+#ifndef GROBO_CORE_BODY_MOTION_H
+#define GROBO_CORE_BODY_MOTION_H
 
-#include <grobo/body.h>
+#include <grobo/core/body.h>
 #include <grobo/motion.h>
 
 GROBO_BEGIN_DECLS

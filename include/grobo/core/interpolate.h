@@ -17,8 +17,8 @@
  * function is safe from any thread that owns its arguments.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_INTERPOLATE_H
-#define GROBO_INTERPOLATE_H
+#ifndef GROBO_CORE_INTERPOLATE_H
+#define GROBO_CORE_INTERPOLATE_H
 
 #include <grobo/types.h>
 

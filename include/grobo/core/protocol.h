@@ -12,8 +12,8 @@
  * No function of a table is given NULL. n is the number of bytes, cap the room of a buffer. What
  * builds a frame returns its bytes, or GROBO_ERR_SPACE.
  */
-#ifndef GROBO_PROTOCOL_H
-#define GROBO_PROTOCOL_H
+#ifndef GROBO_CORE_PROTOCOL_H
+#define GROBO_CORE_PROTOCOL_H
 
 #include <stddef.h>
 

@@ -9,10 +9,10 @@
  * Source of the constants: LeRobot motors/feetech/tables.py, the maker's FTServo SDK, its memory
  * tables, and a dump of a real SO-101 arm's registers.
  */
-#ifndef GROBO_FEETECH_H
-#define GROBO_FEETECH_H
+#ifndef GROBO_CORE_FEETECH_H
+#define GROBO_CORE_FEETECH_H
 
-#include <grobo/dxl1.h>
+#include <grobo/core/dxl1.h>
 
 GROBO_BEGIN_DECLS
 

@@ -9,11 +9,11 @@
  *
  * Source of the constants: the maker's "Bus Servo Communication Protocol".
  */
-#ifndef GROBO_LX16A_H
-#define GROBO_LX16A_H
+#ifndef GROBO_CORE_LX16A_H
+#define GROBO_CORE_LX16A_H
 
-#include <grobo/protocol.h>
-#include <grobo/registers.h>
+#include <grobo/core/protocol.h>
+#include <grobo/core/registers.h>
 
 GROBO_BEGIN_DECLS
 

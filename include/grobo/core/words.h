@@ -11,12 +11,12 @@
  *
  * No function of a table is given NULL. n is the number of bytes of a buffer.
  */
-#ifndef GROBO_WORDS_H
-#define GROBO_WORDS_H
+#ifndef GROBO_CORE_WORDS_H
+#define GROBO_CORE_WORDS_H
 
+#include <grobo/core/protocol.h>
+#include <grobo/core/registers.h>
 #include <grobo/model.h>
-#include <grobo/protocol.h>
-#include <grobo/registers.h>
 
 GROBO_BEGIN_DECLS
 

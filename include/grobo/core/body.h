@@ -10,8 +10,8 @@
  * the world's. A grobo_body belongs to one thread at a time; two bodies share nothing.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_BODY_H
-#define GROBO_BODY_H
+#ifndef GROBO_CORE_BODY_H
+#define GROBO_CORE_BODY_H
 
 #include <grobo/model.h>
 

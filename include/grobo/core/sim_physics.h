@@ -16,8 +16,8 @@
  * servos' shafts), torques Nm at the joints, unless a name says otherwise.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_SIM_PHYSICS_H
-#define GROBO_SIM_PHYSICS_H
+#ifndef GROBO_CORE_SIM_PHYSICS_H
+#define GROBO_CORE_SIM_PHYSICS_H
 
 #include <grobo/mem.h>
 #include <grobo/sim.h>

@@ -3,7 +3,7 @@
  * @file port.h
  * @brief What the library asks of an operating system: clock, thread, lock, byte ports.
  *
- * A port is a folder (ports/posix, ports/win32) that brings grobo/port_os.h with the types and
+ * A port is a folder (ports/posix, ports/win32) that brings grobo/core/port_os.h with the types and
  * implements everything declared here. ports/README.md explains how to write another one.
  *
  * Nothing here knows an event loop. A byte port has a socket that a loop can wait on: on
@@ -11,10 +11,10 @@
  * from and to the COM handle by overlapped I/O.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_PORT_H
-#define GROBO_PORT_H
+#ifndef GROBO_CORE_PORT_H
+#define GROBO_CORE_PORT_H
 
-#include <grobo/port_os.h>
+#include <grobo/core/port_os.h>
 #include <grobo/types.h>
 
 GROBO_BEGIN_DECLS

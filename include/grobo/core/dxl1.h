@@ -9,11 +9,11 @@
  * Source of the constants: the maker's manual (ROBOTIS emanual: protocol1.md, the pages of AX-12A,
  * AX-18A, MX-28, MX-64, MX-106); Feetech: FTServo SDK, LeRobot's tables.
  */
-#ifndef GROBO_DXL1_H
-#define GROBO_DXL1_H
+#ifndef GROBO_CORE_DXL1_H
+#define GROBO_CORE_DXL1_H
 
-#include <grobo/protocol.h>
-#include <grobo/registers.h>
+#include <grobo/core/protocol.h>
+#include <grobo/core/registers.h>
 
 GROBO_BEGIN_DECLS
 

@@ -22,8 +22,8 @@
  * For the thread that pumps the robots. Requests may be made from on_event; a team is not freed
  * there. NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_TEAM_H
-#define GROBO_TEAM_H
+#ifndef GROBO_CORE_TEAM_H
+#define GROBO_CORE_TEAM_H
 
 #include <grobo/mem.h>
 #include <grobo/robot.h>

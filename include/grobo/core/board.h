@@ -11,10 +11,10 @@
  * Choreonoid's GRobotPlugin (A, P, and the frames of GR001). Functions are re-entrant.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_BOARD_H
-#define GROBO_BOARD_H
+#ifndef GROBO_CORE_BOARD_H
+#define GROBO_CORE_BOARD_H
 
-#include <grobo/rs30x.h>
+#include <grobo/core/rs30x.h>
 
 GROBO_BEGIN_DECLS
 

@@ -7,10 +7,10 @@
  * libgrobo.a). With the shared library a simulator comes from session.h or sim_server.h.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_SIM_STATIC_H
-#define GROBO_SIM_STATIC_H
+#ifndef GROBO_CORE_SIM_STATIC_H
+#define GROBO_CORE_SIM_STATIC_H
 
-#include <grobo/sim.h>
+#include <grobo/core/sim.h>
 
 GROBO_BEGIN_DECLS
 

@@ -8,11 +8,11 @@
  * Source of the constants: the maker's manual (ROBOTIS emanual: protocol2.md, the pages of XL330,
  * XL430, XM430); fast reads: DynamixelSDK group_sync_read.py.
  */
-#ifndef GROBO_DXL2_H
-#define GROBO_DXL2_H
+#ifndef GROBO_CORE_DXL2_H
+#define GROBO_CORE_DXL2_H
 
-#include <grobo/protocol.h>
-#include <grobo/registers.h>
+#include <grobo/core/protocol.h>
+#include <grobo/core/registers.h>
 
 GROBO_BEGIN_DECLS
 

@@ -23,8 +23,8 @@
  * sequencer belongs to one thread at a time.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_SEQUENCER_H
-#define GROBO_SEQUENCER_H
+#ifndef GROBO_CORE_SEQUENCER_H
+#define GROBO_CORE_SEQUENCER_H
 
 #include <grobo/clip.h>
 

@@ -12,13 +12,13 @@
  * of servo or board replaces all of them, and brings a protocol of its own (protocol.h).
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_DRIVER_H
-#define GROBO_DRIVER_H
+#ifndef GROBO_CORE_DRIVER_H
+#define GROBO_CORE_DRIVER_H
 
+#include <grobo/core/protocol.h>
+#include <grobo/core/registers.h>
 #include <grobo/model.h>
 #include <grobo/posture.h>
-#include <grobo/protocol.h>
-#include <grobo/registers.h>
 
 GROBO_BEGIN_DECLS
 

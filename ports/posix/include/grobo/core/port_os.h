@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * @file port_os.h
- * @brief The operating system's types behind grobo/port.h: POSIX.
+ * @brief The operating system's types behind grobo/core/port.h: POSIX.
  *
  * Each port brings a file of this name with the same names in it; the one of the port that the
  * library was built for is installed beside port.h.
  */
-#ifndef GROBO_PORT_OS_H
-#define GROBO_PORT_OS_H
+#ifndef GROBO_CORE_PORT_OS_H
+#define GROBO_CORE_PORT_OS_H
 
 #include <pthread.h>
 #include <stddef.h>

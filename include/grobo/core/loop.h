@@ -6,8 +6,8 @@
  * All of it belongs to the thread that runs the loop. The clock is grobo_now_us() of port.h.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_LOOP_H
-#define GROBO_LOOP_H
+#ifndef GROBO_CORE_LOOP_H
+#define GROBO_CORE_LOOP_H
 
 #include <grobo/mem.h>
 #include <grobo/types.h>

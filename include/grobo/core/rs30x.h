@@ -12,11 +12,11 @@
  * p.17-29), RS204MD manual p.23-24 (NACK, second spelling of the factory reset).
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
-#ifndef GROBO_RS30X_H
-#define GROBO_RS30X_H
+#ifndef GROBO_CORE_RS30X_H
+#define GROBO_CORE_RS30X_H
 
-#include <grobo/protocol.h>
-#include <grobo/registers.h>
+#include <grobo/core/protocol.h>
+#include <grobo/core/registers.h>
 
 GROBO_BEGIN_DECLS
 
