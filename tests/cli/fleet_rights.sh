@@ -59,6 +59,7 @@ check "who may see all" wait_for exits 0 fleet operator list
 # What libmosquitto makes of that depends on its version.
 check "TLS where nobody listens" fails 1 'fleet: 127.0.0.1: ' \
     as operator "$GRCTL" fleet list --broker mqtts://operator@127.0.0.1:1 --ca "$work/true-ca.crt"
+check "but no file is blamed" sh -c '! grep -q "cannot be read" "$1"' sh "$work/err"
 check "a wrong password" fails 1 '[Nn]ot authorized' env GRCTL_MQTT_PASSWORD=wrong \
     "$GRCTL" fleet list --broker "mqtts://operator@127.0.0.1:$port" --ca "$work/true-ca.crt"
 check "a certificate of another" fails 1 'fleet: 127.0.0.1: ' \

@@ -175,6 +175,29 @@ static bool look_up(direct *m, const char **why)
     return true;
 }
 
+/* Whether a file has something in the form of PEM (RFC 7468); NULL: none is named. */
+static bool has_pem(const char *path)
+{
+    FILE *file = path ? fopen(path, "r") : NULL;
+    char line[128];
+    bool found = !path;
+    while (file && !found && fgets(line, sizeof line, file)) {
+        found = strncmp(line, "-----BEGIN ", 11) == 0;
+    }
+    if (file) {
+        (void)fclose(file);
+    }
+    return found;
+}
+
+/* libmosquitto says the same of its files and of a peer that does not shake hands. */
+static const char *why_no_tls(const mqtt_config *c)
+{
+    return has_pem(c->ca) && has_pem(c->certificate) && has_pem(c->key)
+               ? _("no TLS with what listens there, or none that these certificates fit")
+               : _("a certificate or key cannot be read");
+}
+
 static void connect_now(direct *m)
 {
     const mqtt_config *c = &m->config;
@@ -190,7 +213,7 @@ static void connect_now(direct *m)
         mosquitto_connect_async(m->client, c->ca ? c->host : m->address, c->port, c->keepalive_s);
     if (result != MOSQ_ERR_SUCCESS) {
         lost(m, result == MOSQ_ERR_ERRNO ? _("the broker cannot be reached")
-                : result == MOSQ_ERR_TLS ? _("a certificate or key cannot be read")
+                : result == MOSQ_ERR_TLS ? why_no_tls(c)
                                          : mosquitto_strerror(result));
         return;
     }
