@@ -21,10 +21,17 @@
  *   which continues with its other joints and ends with GROBO_ERR_SUPERSEDED.
  * - Readings run beside everything but what has the robot for itself: the check, the preparation
  *   of a play, flash and restart, a stored motion, the exit, the emergency stop.
- * - Moves and readings that cannot begin yet wait in their order (GROBO_ROBOT_QUEUE of them, then
- *   GROBO_ERR_FULL) for GROBO_ROBOT_QUEUE_US at most (GROBO_ERR_STALE). A stop, a trip, a motion
- *   that fails, a lost line and free mode end what waits. Where a pump that is held up has 20 ends
- *   and other events to report, they are refused with GROBO_ERR_FULL too.
+ * - Moves, readings and torque on that cannot begin yet wait in their order (GROBO_ROBOT_QUEUE of
+ *   them, then GROBO_ERR_FULL) for GROBO_ROBOT_QUEUE_US at most (GROBO_ERR_STALE). A stop, a trip,
+ *   a motion that fails, a lost line and free mode end what waits. Where a pump that is held up
+ *   has 20 ends and other events to report, they are refused with GROBO_ERR_FULL too. Torque on
+ *   waits for other torque and for a place alone.
+ * - A robot may be asked joint by joint. A request joins a job that was asked for just before,
+ *   where it is as if both had been asked for at once, and returns the number of that one: a
+ *   reading of the same kind, torque on, off or brake, and a move of one joint that takes the same
+ *   time; where no place is free, one of another time as well. The job ends once, for all of its
+ *   joints. grobo_event_job.failed has those for which it failed: of a move that is joined, too,
+ *   the others are done.
  * - Torque off and brake, stop, exit and the emergency stop take the place of what is in their way.
  * - All others are refused with GROBO_ERR_STATE while their joints are busy.
  * Playing is not a job: grobo_robot_play() prepares as a job, then the sequencer runs beside the

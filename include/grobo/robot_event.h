@@ -68,14 +68,16 @@ typedef enum grobo_event_kind {
 
 /** GROBO_EVENT_JOB. */
 typedef struct grobo_event_job {
-    int number;              /**< what the request returned */
-    grobo_job_kind kind;     /**< what it was */
-    int result;              /**< GROBO_OK or the first error */
-    int joint;               /**< joint the error is about, or -1 */
-    double value;            /**< value at fault (LIMIT: degrees; NAN), else 0 */
-    grobo_joint_mask failed; /**< joints for which it failed; the others are done */
-    const uint8_t *data;     /**< reply of RAW, registers of REGISTERS; valid in the call only */
-    size_t size;             /**< bytes at data */
+    int number;          /**< what the request returned */
+    grobo_job_kind kind; /**< what it was */
+    int result;          /**< GROBO_OK or the first error */
+    int joint;           /**< joint the error is about, or -1 */
+    double value;        /**< value at fault (LIMIT: degrees; NAN), else 0 */
+    grobo_joint_mask
+        failed;          /**< joints for which it failed; the others are done. Of an error that is
+                                not one joint's, as GROBO_ERR_CANCELED: all that it had */
+    const uint8_t *data; /**< reply of RAW, registers of REGISTERS; valid in the call only */
+    size_t size;         /**< bytes at data */
 } grobo_event_job;
 
 /** GROBO_EVENT_JOINT: see grobo_robot_joint() for the values. */

@@ -65,7 +65,8 @@ int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot
     job->reply_bytes = 0;
     job->begun_us = robot->now_us;
     job->until_us = job->bound_us = GROBO_NEVER_US;
-    job->lets_go = job->sits = false;
+    job->lets_go = job->sits = job->singly = false;
+    job->out = job->turned = 0;
     return job->number;
 }
 
@@ -73,6 +74,13 @@ void grobo_i_job_end(grobo_robot *robot, int result)
 {
     grobo_robot_task *job = robot->job;
     GROBO_ASSERT(job->kind != GROBO_JOB_NONE && result <= GROBO_OK);
+    /* An error that is not one joint's: nothing shows that any of them is done. */
+    bool whole = result < 0 && (result != job->result || job->failed == 0);
+    if (result == GROBO_OK && job->out != 0) {
+        result = job->out_result;
+        job->joint = job->out_joint;
+        job->value = job->out_value;
+    }
     if (result == GROBO_OK && job->superseded != 0) {
         result = GROBO_ERR_SUPERSEDED;
     }
@@ -82,7 +90,7 @@ void grobo_i_job_end(grobo_robot *robot, int result)
     event.u.job.result = result;
     event.u.job.joint = job->joint;
     event.u.job.value = job->value;
-    event.u.job.failed = job->failed | job->superseded;
+    event.u.job.failed = job->failed | job->superseded | job->out | (whole ? job->joints : 0);
     event.u.job.data = robot->reply;
     event.u.job.size = job->reply_bytes;
     if (job->kind == GROBO_JOB_ESTOP && result != GROBO_ERR_UNPLUGGED) {
@@ -163,6 +171,24 @@ void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double val
         job->value = value;
     }
     job->failed |= GROBO_JOINT_BIT(joint);
+}
+
+void grobo_i_job_give_up(grobo_robot *robot, grobo_joint_mask joints)
+{
+    grobo_robot_task *job = robot->job;
+    GROBO_ASSERT(job->singly && job->result < 0 && joints != 0);
+    if (job->out == 0) {
+        job->out_result = job->result;
+        job->out_joint = job->joint;
+        job->out_value = job->value;
+    }
+    job->out |= joints;
+    job->joints &= ~joints;
+    job->target.set &= ~joints;
+    job->todo &= ~joints;
+    job->pending &= ~joints;
+    job->failed &= ~joints;
+    job->result = job->failed == 0 ? GROBO_OK : job->result;
 }
 
 void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step)

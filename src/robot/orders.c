@@ -91,10 +91,10 @@ grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chun
 
 /* ---- targets --------------------------------------------------------------------------------- */
 
-static int64_t time_asked(const grobo_robot *robot, const grobo_posture *posture)
+static int64_t time_asked(const grobo_robot *robot, int64_t time_us)
 {
     int64_t step_us = robot->driver->time_step_us;
-    int64_t time_us = posture->time_us > 0 ? posture->time_us : robot->config.default_time_us;
+    time_us = time_us > 0 ? time_us : robot->config.default_time_us;
     time_us = grobo_i_sooner(time_us, robot->driver->time_max_us);
     return grobo_i_later((time_us + step_us / 2) / step_us, 1) * step_us;
 }
@@ -112,11 +112,15 @@ static int stabilize(grobo_robot *robot, grobo_posture *target)
 
 /* Times the target from where its joints are now, and has it wait. It is timed again when it
  * leaves. */
-static int await_line(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
+static int await_line(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target,
+                      const int32_t *joint_time_us)
 {
-    int64_t asked_us = time_asked(robot, &target->posture);
+    int64_t asked_us = time_asked(robot, target->posture.time_us);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         target->joint_time_us[j] = asked_us;
+    }
+    for (int j = 0; joint_time_us != NULL && j < robot->driver->model->n_joints; j++) {
+        target->joint_time_us[j] = time_asked(robot, joint_time_us[j]);
     }
     int result = grobo_i_gate_time(robot, order, target);
     for (int j = 0; result >= 0 && j < robot->driver->model->n_joints; j++) {
@@ -153,7 +157,7 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
                                .stops = how->stops,
                                .rests = how->rests};
     if (result >= 0) {
-        result = await_line(robot, &order, &target);
+        result = await_line(robot, &order, &target, how->joint_time_us);
     }
     if (result >= 0) {
         robot->motion_us = 0;

@@ -2,8 +2,8 @@
 /*
  * Which jobs run side by side, and what waits for its turn. Moves, readings, torque, registers and
  * raw frames of different joints do not disturb each other; a reading disturbs nobody. A move takes
- * its joints from the move before it. What else there is has the robot for itself. Moves and
- * readings that cannot begin yet wait, in their order.
+ * its joints from the move before it. What else there is has the robot for itself. Moves, readings
+ * and torque on that cannot begin yet wait, in their order; join.c joins them.
  */
 #include <string.h>
 
@@ -61,7 +61,7 @@ grobo_joint_mask grobo_i_joints_of_moves(const grobo_robot *robot)
     return joints;
 }
 
-/* ---- moves and readings ---------------------------------------------------------------------- */
+/* ---- moves, readings, torque on -------------------------------------------------------------- */
 
 /* What a motion sets is the motion's; who wants to move that stops it first. */
 static bool is_played(const grobo_robot *robot, grobo_joint_mask joints)
@@ -82,29 +82,57 @@ int grobo_i_move_takes(grobo_robot *robot, grobo_joint_mask joints)
 
 static int admit(grobo_robot *robot, const grobo_robot_wish *wish)
 {
-    bool moves = wish->kind == GROBO_JOB_MOVE;
+    bool moves = wish->kind != GROBO_JOB_SENSE;
     int result = grobo_i_admit(robot, wish->kind, wish->joints, moves);
     if (result < 0) {
         return result;
     }
-    bool played = is_played(robot, wish->joints);
+    /* Frames of a motion would part goal and present angle of what gets torque again. */
+    bool played = wish->kind == GROBO_JOB_TORQUE ? grobo_robot_is_playing(robot)
+                                                 : is_played(robot, wish->joints);
     bool leaving = robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
     return moves && (played || leaving) ? GROBO_ERR_STATE : result;
 }
 
+/* Torque on waits for other torque and for a place, and is refused while its joints do anything
+ * else. */
+static bool may_wait(const grobo_robot *robot, const grobo_robot_wish *wish)
+{
+    bool busy = false;
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        const grobo_robot_task *job = &robot->jobs[i];
+        bool joins = job->kind == GROBO_JOB_NONE || job->kind == GROBO_JOB_SENSE ||
+                     job->kind == GROBO_JOB_TORQUE;
+        busy = busy || (!joins && (is_alone(job) || (job->joints & wish->joints) != 0));
+    }
+    return wish->kind != GROBO_JOB_TORQUE || !busy;
+}
+
+static const grobo_robot_step_fn *script_of(grobo_job_kind kind)
+{
+    return kind == GROBO_JOB_MOVE     ? grobo_i_script_move
+           : kind == GROBO_JOB_TORQUE ? grobo_i_script_torque_on
+                                      : grobo_i_script_sense;
+}
+
 static int begin(grobo_robot *robot, const grobo_robot_wish *wish)
 {
-    bool moves = wish->kind == GROBO_JOB_MOVE;
-    if (moves) {
+    if (wish->kind == GROBO_JOB_MOVE) {
         grobo_i_jobs_leave(robot, wish->joints);
         grobo_i_jobs_close_up(robot);
+    }
+    if (wish->kind != GROBO_JOB_SENSE) {
         robot->free_joints &= ~wish->joints;
     }
-    int number = grobo_i_job_start(
-        robot, wish->kind, moves ? grobo_i_script_move : grobo_i_script_sense, wish->number);
+    int number = grobo_i_job_start(robot, wish->kind, script_of(wish->kind), wish->number);
     robot->job->joints = wish->joints;
     robot->job->target = wish->target;
     robot->job->sense = wish->sense;
+    robot->job->torque = GROBO_TORQUE_ON;
+    robot->job->singly = wish->singly;
+    if (wish->singly) {
+        memcpy(robot->job->joint_time_us, wish->joint_time_us, sizeof wish->joint_time_us);
+    }
     grobo_i_job_run(robot);
     return number;
 }
@@ -116,6 +144,18 @@ static int begin(grobo_robot *robot, const grobo_robot_wish *wish)
 int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_wish *wish)
 {
     int result = admit(robot, wish);
+    if (result < 0) {
+        return result;
+    }
+    bool some = robot->jobs[0].kind != GROBO_JOB_NONE; /* where one runs, the first does */
+    int joined = some ? grobo_i_join_job(robot, wish) : 0;
+    if (joined == 0 && result == GROBO_I_LATER && !may_wait(robot, wish)) {
+        return GROBO_ERR_STATE;
+    }
+    joined = joined != 0 ? joined : grobo_i_join_waiting(robot, wish);
+    if (joined != 0) {
+        return joined;
+    }
     if (result >= 0 && robot->events_n >= GROBO_ROBOT_EVENTS - EVENTS_TO_END) {
         result = GROBO_ERR_FULL; /* the pump has not told for long what has ended */
     }

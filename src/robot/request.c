@@ -87,13 +87,50 @@ static bool is_alone(const grobo_robot_task *job)
            job->kind == GROBO_JOB_STORED;
 }
 
-static int admit_torque(grobo_robot *robot, grobo_joint_mask joints, bool on)
+static int switch_on(grobo_robot *robot, grobo_joint_mask joints)
 {
-    if (on) {
-        int result = admit(robot, GROBO_JOB_TORQUE, joints, true);
-        /* Frames of a motion would part goal and present angle again. */
-        return result >= 0 && grobo_robot_is_playing(robot) ? GROBO_ERR_STATE : result;
+    const grobo_robot_wish wish = {
+        .kind = GROBO_JOB_TORQUE, .joints = joints, .sense = GROBO_SENSE_ALL};
+    if (robot->driver->torque != NULL) {
+        return grobo_i_queue_ask(robot, &wish);
     }
+    int result = admit(robot, GROBO_JOB_TORQUE, joints, true);
+    return result < 0 ? result : GROBO_ERR_UNSUPPORTED;
+}
+
+static bool is_not_off(const grobo_robot_task *job)
+{
+    return job->kind != GROBO_JOB_TORQUE || job->torque == GROBO_TORQUE_ON;
+}
+
+/* There is always room: what does the same is joined, what does not makes way. */
+static int begin_off(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode)
+{
+    int number = grobo_i_join_off(robot, joints, mode, false);
+    if (number > 0) {
+        return number;
+    }
+    grobo_i_jobs_leave(robot, joints);
+    if (!grobo_i_jobs_have_room(robot, true)) {
+        number = grobo_i_join_off(robot, joints, mode, true);
+    }
+    if (number == 0 && !grobo_i_jobs_have_room(robot, true)) {
+        bool (*others)(const grobo_robot_task *job) =
+            grobo_i_jobs_any(robot, is_not_off) ? is_not_off : NULL;
+        grobo_i_jobs_end(robot, others, GROBO_ERR_CANCELED);
+    }
+    if (number == 0) {
+        grobo_i_jobs_close_up(robot);
+        number = grobo_i_job_start(robot, GROBO_JOB_TORQUE, grobo_i_script_torque_off, 0);
+        robot->job->joints = joints;
+        robot->job->torque = mode;
+        grobo_i_job_run(robot);
+    }
+    return number;
+}
+
+static int switch_off(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode)
+{
     if (!robot->link) {
         return GROBO_ERR_CLOSED;
     }
@@ -101,7 +138,14 @@ static int admit_torque(grobo_robot *robot, grobo_joint_mask joints, bool on)
     if (grobo_i_jobs_any(robot, is_patient)) {
         return GROBO_ERR_STATE;
     }
-    return GROBO_OK;
+    if (robot->driver->torque == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    stop_prepared(robot);
+    grobo_i_jobs_end(robot, is_alone, GROBO_ERR_CANCELED);
+    grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
+    robot->free_joints &= ~joints;
+    return begin_off(robot, joints, mode);
 }
 
 int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode)
@@ -110,33 +154,21 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    bool on = mode == GROBO_TORQUE_ON;
-    int result = admit_torque(robot, joints, on);
-    if (result >= 0 && robot->driver->torque == NULL) {
-        result = GROBO_ERR_UNSUPPORTED;
+    int result = !joints_sound(robot, joints) || (unsigned)mode > GROBO_TORQUE_BRAKE ? GROBO_ERR_ARG
+                 : mode == GROBO_TORQUE_ON ? switch_on(robot, joints)
+                                           : switch_off(robot, joints, mode);
+    grobo_i_end(robot);
+    return result;
+}
+
+/* A move of one joint may be joined to others. */
+static void singly(grobo_robot_wish *wish)
+{
+    int64_t time_us = grobo_i_later(wish->target.time_us, 0);
+    wish->singly = grobo_joints_count(wish->joints) == 1 && time_us <= INT32_MAX;
+    if (wish->singly) {
+        wish->joint_time_us[grobo_i_lowest(wish->joints)] = (int32_t)time_us;
     }
-    if (!joints_sound(robot, joints) || (unsigned)mode > GROBO_TORQUE_BRAKE) {
-        result = GROBO_ERR_ARG;
-    }
-    if (result < 0) {
-        return refuse(robot, result);
-    }
-    if (!on) {
-        stop_prepared(robot);
-        grobo_i_jobs_end(robot, is_alone, GROBO_ERR_CANCELED);
-        grobo_i_jobs_leave(robot, joints);
-        grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
-        if (!grobo_i_jobs_have_room(robot, true)) {
-            grobo_i_jobs_end(robot, NULL, GROBO_ERR_CANCELED); /* torques of others, all of them */
-        }
-        grobo_i_jobs_close_up(robot);
-    }
-    int number = grobo_i_job_start(robot, GROBO_JOB_TORQUE,
-                                   on ? grobo_i_script_torque_on : grobo_i_script_torque_off, 0);
-    robot->job->joints = joints;
-    robot->job->torque = mode;
-    robot->free_joints &= ~joints;
-    return begin(robot, number);
 }
 
 int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
@@ -152,6 +184,7 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
                                              : grobo_i_gate_target(robot, &wish.target);
     if (result >= 0) {
         wish.joints = wish.target.set;
+        singly(&wish);
         result = grobo_i_queue_ask(robot, &wish);
     }
     grobo_i_end(robot);
@@ -216,17 +249,22 @@ int grobo_robot_send(grobo_robot *robot, const grobo_posture *target)
     return result < 0 ? result : GROBO_OK;
 }
 
-/* Which of the jobs is the move that may go to these joints' target instead; NULL: none. */
+/* Which of the jobs is the move that may go to these joints' target instead: all of it, or these of
+ * several moves of single joints. NULL: none. */
 static grobo_robot_task *move_of(grobo_robot *robot, grobo_joint_mask joints)
 {
+    grobo_robot_task *shared = NULL;
     for (int i = 0; i < GROBO_ROBOT_JOBS && !robot->soft; i++) {
         grobo_robot_task *job = &robot->jobs[i];
-        if (job->kind == GROBO_JOB_MOVE && (job->joints & ~joints) == 0 &&
-            grobo_i_move_is_sent(job)) {
+        if (job->kind != GROBO_JOB_MOVE || !grobo_i_move_is_sent(job)) {
+            continue;
+        }
+        if ((job->joints & ~joints) == 0) {
             return job;
         }
+        shared = shared == NULL && job->singly && (job->joints & joints) != 0 ? job : shared;
     }
-    return NULL;
+    return shared;
 }
 
 int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)

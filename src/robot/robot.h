@@ -24,6 +24,7 @@
  *   sense.c      when the background reads which joint, free mode
  *   steps.c      the steps that scripts are made of
  *   turn.c       the end of a call and of a frame
+ *   join.c       requests joint by joint, joined to what was asked for just before
  *   queue.c      which jobs run side by side, and what waits for its turn
  *   request.c    the public requests: checks, then starts a script
  *   control.c    the public controls of a motion
@@ -226,8 +227,15 @@ void grobo_i_slots_cancel_job(grobo_robot *robot, int number);
 /* Takes back targets that have not left and move one of these joints; `played`: and those of the
  * motion that is played. Not what brings it to rest. */
 void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, bool played);
+/* Takes back targets that have not left and move none but these joints: what others wait for in the
+ * same frame leaves. */
+void grobo_i_slots_cancel_own(grobo_robot *robot, grobo_joint_mask joints);
 /* Takes back the parts of an order that wait behind this one, which has failed. */
 void grobo_i_slots_cancel_rest(const grobo_robot_slot *before);
+/* Takes back every frame of this job that has not left. @return the joints of their orders. */
+grobo_joint_mask grobo_i_slots_take_back(grobo_robot *robot, int number);
+/* True if a frame of this job that reads one of these joints has left. */
+bool grobo_i_slots_read(const grobo_robot *robot, int number, grobo_joint_mask joints);
 /* Takes back frames that would switch the torque of one of these joints on. */
 void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints);
 /* True if a frame that does this to the joint waits for the line; `torque` OFF for another deed. */
@@ -353,6 +361,7 @@ typedef struct grobo_i_motion {
     bool single;    /* from a stream of the caller's own */
     bool stops;     /* leaves after a latched stop as well */
     bool rests;     /* ends a motion: each joint comes to rest near where it is by then */
+    const int32_t *joint_time_us; /* as asked for each joint; NULL: as for all */
 } grobo_i_motion;
 /* Checks a target and has it wait for the line; its time is found when it leaves.
  * @return 0 or an error of the gate, the driver or the bus: then none of it is sent. */
@@ -426,6 +435,9 @@ int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot
 void grobo_i_job_run(grobo_robot *robot);
 /* Where one runs, the first place is not free. At the end of every call. */
 void grobo_i_jobs_close_up(grobo_robot *robot);
+/* Joints of a move asked for joint by joint have failed for good: it continues with its others. The
+ * error is the one of robot.job. */
+void grobo_i_job_give_up(grobo_robot *robot, grobo_joint_mask joints);
 /* Ends robot.job and tells so. */
 void grobo_i_job_end(grobo_robot *robot, int result);
 /* The same for each job of which that is true; NULL: of all. */
@@ -532,7 +544,8 @@ extern const grobo_robot_step_fn grobo_i_script_exit_sit[];
 
 /* True if the target of a move has been sent. */
 bool grobo_i_move_is_sent(const grobo_robot_task *job);
-/* Sends the joints of such a move, robot.job, to another target, and goes on from there. */
+/* Sends the joints of such a move, robot.job, to another target, and goes on from there; of one
+ * asked for joint by joint these joints alone. */
 void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target);
 
 /* ---- turn.c ---------------------------------------------------------------------------------- */
@@ -549,6 +562,17 @@ void grobo_i_reply_came(grobo_robot_slot *slot, const grobo_packet *reply);
 /* A frame is over: grobo_robot.over. The slot is a copy. */
 void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply);
 
+/* ---- join.c ---------------------------------------------------------------------------------- */
+
+/* Joins a request to a job or to one that waits, where it is as if both had been asked for at once:
+ * a reading or torque on to one that has not read these joints yet, a move of a joint to one that
+ * has not read its joints yet. @return the number of that job; 0: there is none. */
+int grobo_i_join_job(grobo_robot *robot, const grobo_robot_wish *wish);
+int grobo_i_join_waiting(grobo_robot *robot, const grobo_robot_wish *wish);
+/* Joins torque off or brake to a job that does the same; `sent`: to one that has sent its frames,
+ * too, which begins anew. @return the number of that job; 0: there is none. */
+int grobo_i_join_off(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode, bool sent);
+
 /* ---- queue.c --------------------------------------------------------------------------------- */
 
 /* May a job of this kind begin on these joints? GROBO_I_LATER: when others have ended. */
@@ -559,7 +583,8 @@ int grobo_i_admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask join
 int grobo_i_move_takes(grobo_robot *robot, grobo_joint_mask joints);
 /* Joints of the moves that run or wait. */
 grobo_joint_mask grobo_i_joints_of_moves(const grobo_robot *robot);
-/* Begins a move or a reading, or has it wait. @return its number, or the reason why not. */
+/* Begins a move, a reading or torque on, joins it to another one, or has it wait. @return its
+ * number, or the reason why not. */
 int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_wish *wish);
 /* Begins what waits and may go; ends what has waited too long. */
 void grobo_i_queue_step(grobo_robot *robot);

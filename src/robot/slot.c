@@ -290,6 +290,31 @@ void grobo_i_slots_cancel_job(grobo_robot *robot, int number)
     }
 }
 
+grobo_joint_mask grobo_i_slots_take_back(grobo_robot *robot, int number)
+{
+    grobo_joint_mask joints = 0;
+    for (int i = 0; i < robot->slots_end; i++) {
+        grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->job == number && waits(slot)) {
+            joints |= slot->order.joints;
+            cancel(slot);
+        }
+    }
+    return joints;
+}
+
+bool grobo_i_slots_read(const grobo_robot *robot, int number, grobo_joint_mask joints)
+{
+    for (int i = 0; i < robot->slots_end; i++) {
+        const grobo_robot_slot *slot = &robot->slots[i];
+        bool its = slot->use == GROBO_I_USE_JOB && slot->reads && slot->job == number;
+        if (its && (slot->part > 0 || !waits(slot)) && grobo_i_has(joints, slot->joint)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, bool played)
 {
     for (int i = 0; i < robot->slots_end; i++) {
@@ -298,6 +323,17 @@ void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, boo
         bool meant =
             (slot->order.joints & joints) != 0 || (played && slot->due_us != GROBO_NEVER_US);
         if (goal && meant && waits(slot) && !brings_rest(slot)) {
+            cancel(slot);
+        }
+    }
+}
+
+void grobo_i_slots_cancel_own(grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int i = 0; i < robot->slots_end; i++) {
+        grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->use == GROBO_I_USE_MOTION && (slot->order.joints & ~joints) == 0 && waits(slot) &&
+            !brings_rest(slot)) {
             cancel(slot);
         }
     }

@@ -157,10 +157,14 @@ static int step_hear_all(grobo_robot *robot)
     return robot->job->kind == GROBO_JOB_EXIT ? step_read_again(robot) : GROBO_I_NEXT;
 }
 
-/* From here on every joint is needed. */
+/* From here on every joint is needed, but of a move asked for joint by joint. */
 static int step_require(grobo_robot *robot)
 {
-    return robot->job->failed == 0 ? GROBO_I_NEXT : robot->job->result;
+    grobo_robot_task *job = robot->job;
+    if (job->failed != 0 && job->singly && (job->joints & ~job->failed) != 0) {
+        grobo_i_job_give_up(robot, job->failed);
+    }
+    return job->failed == 0 ? GROBO_I_NEXT : job->result;
 }
 
 /* Servos that tell no speed are read twice before they are sent anywhere: another program may have
@@ -284,6 +288,12 @@ static int step_pick_off(grobo_robot *robot)
         }
     }
     bool may = !robot->config.manual_torque || job->kind == GROBO_JOB_TORQUE;
+    if (!may && job->singly && job->pending != 0 && (job->joints & ~job->pending) != 0) {
+        job->result = GROBO_ERR_STATE;
+        job->joint = grobo_i_lowest(job->pending);
+        job->value = 0;
+        grobo_i_job_give_up(robot, job->pending);
+    }
     return job->pending == 0 || may ? GROBO_I_NEXT : GROBO_ERR_STATE;
 }
 
@@ -438,24 +448,44 @@ static int step_aim(grobo_robot *robot)
     return GROBO_I_NEXT;
 }
 
+/* The target of one joint cannot be sent: the others of a move asked for joint by joint go without
+ * it. @return false where that ends the move. */
+static bool send_without(grobo_robot *robot, grobo_joint_mask *left, int result)
+{
+    grobo_robot_task *job = robot->job;
+    job->joint = robot->fault_joint;
+    job->value = robot->fault_deg;
+    grobo_joint_mask bad = job->joint >= 0 ? GROBO_JOINT_BIT(job->joint) & *left : 0;
+    if (!job->singly || bad == 0 || job->joints == bad) {
+        return false;
+    }
+    job->result = result;
+    grobo_i_job_give_up(robot, bad);
+    *left &= ~bad;
+    return true;
+}
+
 static int step_send(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
     grobo_i_motion how = {.priority = job->priority,
                           .due_us = GROBO_NEVER_US,
+                          .each = job->singly,
                           .as_is = job->kind == GROBO_JOB_SETTLE, /* the stabilizer has seen it */
-                          .stops = job->kind == GROBO_JOB_EXIT};
-    grobo_joint_mask left = job->pending;
+                          .stops = job->kind == GROBO_JOB_EXIT,
+                          .joint_time_us = job->singly ? job->joint_time_us : NULL};
+    grobo_joint_mask all = job->turned != 0 ? job->turned & job->pending : job->pending;
+    grobo_joint_mask left = all;
+    job->turned = 0;
     while (left != 0) {
         grobo_posture part = job->target;
         part.set = grobo_i_take_chunk(&left, chunk_of(robot));
         int result = grobo_i_gate_send(robot, &part, &how);
-        if (result == GROBO_ERR_FULL && (left | part.set) != job->pending) {
+        if (result == GROBO_ERR_FULL && (left | part.set) != all) {
             break; /* the rest in the next round */
         }
-        if (result < 0) {
-            job->joint = robot->fault_joint;
-            job->value = robot->fault_deg;
+        left |= result < 0 ? part.set : 0;
+        if (result < 0 && !send_without(robot, &left, result)) {
             return result;
         }
     }
@@ -833,13 +863,36 @@ bool grobo_i_move_is_sent(const grobo_robot_task *job)
     return job->at > sending;
 }
 
+/* Of a move asked for joint by joint: the others are on their ways, or wait for the line. */
+static void retarget_some(grobo_robot *robot, const grobo_posture *target)
+{
+    grobo_robot_task *job = robot->job;
+    grobo_i_slots_cancel_own(robot, target->set);
+    for (int j = 0; j < target->n_joints; j++) {
+        if (grobo_i_has(target->set, j)) {
+            job->target.angle_rad[j] = target->angle_rad[j];
+            job->joint_time_us[j] = (int32_t)grobo_i_sooner(target->time_us, INT32_MAX);
+        }
+    }
+    job->joints |= target->set;
+    job->target.set = job->pending = job->joints;
+    job->turned |= target->set;
+}
+
 /* A reading on the wire comes to its end; whatever else the job waits for is over. */
 void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target)
 {
     grobo_robot_task *job = robot->job;
-    grobo_i_slots_cancel_goals(robot, job->joints, false);
-    job->target = *target;
-    job->joints = job->pending = target->set;
+    if ((job->joints & ~target->set) != 0) {
+        retarget_some(robot, target);
+    } else {
+        grobo_i_slots_cancel_goals(robot, job->joints, false);
+        job->target = *target;
+        job->joints = job->pending = target->set;
+        job->singly = false;
+        job->turned = 0;
+    }
+    job->out &= ~target->set;
     job->superseded &= ~target->set; /* what another move had is its own again */
     job->rounds = 0;
     job->failed = job->todo = 0;

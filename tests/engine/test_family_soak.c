@@ -230,6 +230,11 @@ static void began(int number)
         return;
     }
     user.still_us = 0;
+    for (unsigned i = 0; i < user.n_open; i++) {
+        if (user.open[i] == number) {
+            return; /* it joins one that waits, and ends with it */
+        }
+    }
     assert_true(user.n_open < OPEN_MAX);
     user.open[user.n_open] = number;
     user.open_us[user.n_open++] = kit.now_us;

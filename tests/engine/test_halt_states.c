@@ -256,12 +256,13 @@ static bool switching_torque(void)
     return grobo_robot_torque(&halt.robot, GROBO_JOINT_BIT(halt.of->other), GROBO_TORQUE_OFF) > 0;
 }
 
+/* Readings of other kinds, one behind the other: none joins the one before. */
 static bool queue_full(void)
 {
     bool made = moving();
     int r = 1;
     for (int i = 0; i < 32 && r > 0; i++) {
-        r = grobo_robot_sense(&halt.robot, all(), GROBO_SENSE_ALL);
+        r = grobo_robot_sense(&halt.robot, all(), (grobo_sense_kind)(i % 3));
     }
     return r == GROBO_ERR_FULL && made;
 }

@@ -280,7 +280,9 @@ TEST_WITH(rig_wirings, what_cannot_begin_waits)
             start_idle();
             run_job(0, idle ? GROBO_JOB_NONE : GROBO_JOB_CHECK, 0);
             if (idle) {
-                wait_in_queue(wish_of(GROBO_JOB_SENSE, 0), NOW + S);
+                grobo_robot_wish other = wish_of(GROBO_JOB_SENSE, 0);
+                other.sense = GROBO_SENSE_FULL;
+                wait_in_queue(other, NOW + S);
             }
             for (int i = idle; i < QUEUE; i++) {
                 const grobo_job_kind kind = i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE;
@@ -292,7 +294,8 @@ TEST_WITH(rig_wirings, what_cannot_begin_waits)
                 wish.begin_by_us = NOW + 2 * S;
                 assert_memory_equal(&robot.queue[i], &wish, sizeof wish);
             }
-            const grobo_robot_wish wish = wish_of(GROBO_JOB_SENSE, j);
+            grobo_robot_wish wish = wish_of(GROBO_JOB_SENSE, j);
+            wish.sense = GROBO_SENSE_FULL; /* another one: it cannot join the last */
             assert_int_equal(grobo_i_queue_ask(&robot, &wish), GROBO_ERR_FULL);
             assert_int_equal(robot.queued, QUEUE);
             assert_int_equal(robot.last_number, LAST_NUMBER + QUEUE - idle);
@@ -301,6 +304,146 @@ TEST_WITH(rig_wirings, what_cannot_begin_waits)
         }
     }
 }
+
+/* ---- joining --------------------------------------------------------------------------------- */
+
+/* It is in the middle of reading its joints, of which it has read those that are not left. */
+static void read_first(int at, grobo_job_kind kind, grobo_joint_mask joints, grobo_joint_mask left)
+{
+    run_job(at, kind, joints);
+    robot.jobs[at].at = 1;
+    robot.jobs[at].activity = GROBO_I_READ;
+    robot.jobs[at].todo = left;
+    robot.jobs[at].sense = GROBO_SENSE_GOAL;
+    robot.jobs[at].singly = kind == GROBO_JOB_MOVE;
+    robot.jobs[at].target = wish_of(kind, 0).target;
+    robot.jobs[at].target.set = joints;
+}
+
+static grobo_robot_wish single(grobo_job_kind kind, int joint)
+{
+    grobo_robot_wish wish = wish_of(kind, joint);
+    wish.singly = kind == GROBO_JOB_MOVE;
+    wish.joint_time_us[joint] = (int32_t)wish.target.time_us;
+    return wish;
+}
+
+static const grobo_job_kind joining[] = {GROBO_JOB_MOVE, GROBO_JOB_SENSE, GROBO_JOB_TORQUE};
+enum { JOINING = sizeof joining / sizeof joining[0] };
+
+TEST_WITH(rig_wirings, who_reads_its_joints_is_joined)
+{
+    for (int k = 0; k < JOINING; k++) {
+        for (int j = 0; j < N; j++) {
+            start_idle();
+            read_first(0, joining[k], GROBO_JOINT_BIT(other_of(j)), 0);
+            const grobo_robot_wish wish = single(joining[k], j);
+            robot.free_joints = wish.joints;
+            assert_int_equal(grobo_i_queue_ask(&robot, &wish), 100);
+            assert_int_equal(robot.queued, 0);
+            assert_int_equal(robot.jobs[1].kind, GROBO_JOB_NONE);
+            assert_true(robot.jobs[0].joints == bits(j, other_of(j)));
+            assert_true(robot.jobs[0].todo == wish.joints);
+            assert_true((robot.free_joints == 0) == (joining[k] != GROBO_JOB_SENSE));
+            if (joining[k] == GROBO_JOB_MOVE) {
+                assert_true(robot.jobs[0].target.set == robot.jobs[0].joints);
+                assert_true(robot.jobs[0].target.angle_rad[j] == wish.target.angle_rad[j]);
+                assert_int_equal(robot.jobs[0].joint_time_us[j], S);
+            }
+        }
+    }
+}
+
+/* One that has read a joint, or asked for it, does not serve who asks for it now. */
+TEST_WITH(rig_wirings, who_has_read_a_joint_is_not_joined_for_it)
+{
+    for (int j = 0; j < N; j++) {
+        start_idle();
+        read_first(0, GROBO_JOB_SENSE, bits(j, other_of(j)), GROBO_JOINT_BIT(other_of(j)));
+        const grobo_robot_wish wish = single(GROBO_JOB_SENSE, j);
+        assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+        start_idle();
+        read_first(0, GROBO_JOB_SENSE, bits(j, other_of(j)), bits(j, other_of(j)));
+        robot.slots_end = 1;
+        robot.slots[0].use = GROBO_I_USE_JOB;
+        robot.slots[0].reads = true;
+        robot.slots[0].joint = (uint8_t)j;
+        robot.slots[0].job = 100;
+        robot.slots[0].txn.sent_us = NOW - 1;
+        assert_false(grobo_i_join_job(&robot, &wish) == 100);
+        robot.slots[0].txn.sent_us = -1; /* it waits for the line: it tells where it is by then */
+        assert_int_equal(grobo_i_join_job(&robot, &wish), 100);
+        robot.slots[0].use = GROBO_I_USE_FREE;
+        robot.slots_end = 0;
+    }
+}
+
+TEST_WITH(rig_wirings, what_differs_is_not_joined)
+{
+    for (int j = 0; j < N; j++) {
+        for (int way = 0; way < 5; way++) {
+            start_idle();
+            const grobo_job_kind kind = way < 3 ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
+            read_first(0, kind, GROBO_JOINT_BIT(way == 2 ? j : other_of(j)), 0);
+            grobo_robot_wish wish = single(kind, j);
+            wish.singly = wish.singly && way != 0;
+            wish.target.time_us += way == 1; /* another time, */
+            robot.jobs[0].sense = way == 3 ? GROBO_SENSE_FULL : robot.jobs[0].sense;
+            robot.jobs[0].at = way == 4 ? 2 : 1;
+            assert_int_equal(grobo_i_join_job(&robot, &wish), 0);
+        }
+        /* unless there is no place for one of its own. */
+        start_idle();
+        read_first(0, GROBO_JOB_MOVE, GROBO_JOINT_BIT(other_of(j)), 0);
+        for (int at = 1; at < JOBS - 1; at++) {
+            run_job(at, GROBO_JOB_SENSE, 1);
+        }
+        grobo_robot_wish wish = single(GROBO_JOB_MOVE, j);
+        wish.target.time_us++;
+        wish.joint_time_us[j] = S + 1;
+        assert_int_equal(grobo_i_queue_ask(&robot, &wish), 100);
+        assert_int_equal(robot.jobs[0].joint_time_us[j], S + 1);
+    }
+}
+
+/* The last that is alike, behind all that have one of its joints. */
+TEST_WITH(rig_wirings, what_waits_is_joined)
+{
+    for (int k = 0; k < JOINING; k++) {
+        for (int j = 0; j < N; j++) {
+            start_idle();
+            run_job(0, joining[k] == GROBO_JOB_TORQUE ? GROBO_JOB_TORQUE : GROBO_JOB_CHECK,
+                    GROBO_JOINTS_ALL(N));
+            wait_in_queue(single(joining[k], other_of(j)), NOW + S);
+            wait_in_queue(single(GROBO_JOB_RAW, third_of(j)), NOW + S);
+            grobo_robot_wish wish = single(joining[k], j);
+            assert_int_equal(grobo_i_queue_ask(&robot, &wish), 50);
+            assert_true(robot.queue[0].joints == bits(j, other_of(j)));
+            assert_int_equal(robot.queued, 2);
+            wish = single(joining[k], third_of(j)); /* nothing goes before what has its joint */
+            assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+            assert_int_equal(robot.queued, 3);
+        }
+    }
+}
+
+/* Torque on waits for other torque, and is refused where its joint does something else. */
+TEST_WITH(rig_wirings, torque_on_waits_for_torque_alone)
+{
+    for (int running = GROBO_JOB_NONE + 1; running < GROBO_JOB_SETTLE; running++) {
+        for (int j = 0; j < N; j++) {
+            start_idle();
+            run_job(0, (grobo_job_kind)running, GROBO_JOINT_BIT(j));
+            const grobo_robot_wish wish = single(GROBO_JOB_TORQUE, j);
+            int is = grobo_i_queue_ask(&robot, &wish);
+            assert_int_equal(is > 0, running == GROBO_JOB_TORQUE || running == GROBO_JOB_SENSE);
+            assert_int_equal(robot.queued, running == GROBO_JOB_TORQUE);
+            assert_true(is > 0 || is == GROBO_ERR_STATE);
+        }
+    }
+}
+
+/* ---- turns ----------------------------------------------------------------------------------- */
 
 /* As many as may, the oldest first; who must wait lets nobody pass. */
 TEST_WITH(rig_wirings, what_waits_begins_in_its_order)

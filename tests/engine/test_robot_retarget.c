@@ -12,6 +12,18 @@ enum { TARGETS = 40 };
 
 static grobo_test_rig rig;
 
+/* True if a frame holds a goal of the neck: a short packet, or an entry of a long one (id 0, then
+ * address, bytes of an entry, entries, each led by its id: RS30x manual 6.2). */
+static bool is_goal(const uint8_t *p, size_t size)
+{
+    bool found = size == 12 && p[2] == NECK_ID && p[4] == GROBO_RS30X_GOAL;
+    bool is_long = size > 7 && p[2] == 0 && p[4] == GROBO_RS30X_GOAL;
+    for (int i = 0; is_long && i < p[6]; i++) {
+        found = found || p[7 + i * p[5]] == NECK_ID;
+    }
+    return found;
+}
+
 /* Goals of the neck in the frames sent since the last rig_forget(). */
 static int goals_sent(void)
 {
@@ -19,7 +31,7 @@ static int goals_sent(void)
     for (size_t i = 0; i < rig.n_sent; i++) {
         const uint8_t *p;
         size_t size = rig_packet(&rig.sent[i], &p);
-        n += size == 12 && p[2] == NECK_ID && p[4] == GROBO_RS30X_GOAL;
+        n += is_goal(p, size);
     }
     return n;
 }
@@ -228,4 +240,53 @@ TEST_WITH(rig_wirings, a_move_is_found_behind_other_jobs)
     rig_expect(&rig, number, GROBO_OK);
     assert_true(fabs(rig_angle_deg(&rig, NECK) + 5) < 0.2);
     rig_expect(&rig, other, GROBO_OK);
+}
+
+/* Moves of single joints asked for at once share a job; each goes to another target by itself, or
+ * takes one of a further joint, and the others go on. */
+TEST_WITH(rig_wirings, one_of_several_moves_is_redirected)
+{
+    begin(&quiet);
+    grobo_posture elbow = rig_posture(&rig, L_ELBOW, 60, 2000);
+    grobo_posture chest = rig_posture(&rig, CHEST, -10, 2000);
+    int number = move(30, 2000);
+    assert_int_equal(grobo_robot_move(&rig.robot, &elbow), number);
+    assert_int_equal(retarget(5, 100), GROBO_ERR_STATE); /* they are still being read */
+    rig_run(&rig, 500000);
+    assert_true(fabs(rig_angle_deg(&rig, L_ELBOW) - 30) < 2);
+    for (int i = 0; i < TARGETS; i++) {
+        rig_run(&rig, 20000);
+        assert_int_equal(retarget(5 + i * 0.1, 100), number);
+    }
+    rig_run(&rig, 300000); /* the elbow takes its 2 s, from when its frame left */
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 5 - (TARGETS - 1) * 0.1) < 0.3);
+    double elbow_deg = rig_angle_deg(&rig, L_ELBOW);
+    assert_true(elbow_deg > 45 && elbow_deg < 58);
+
+    grobo_posture two = rig_posture(&rig, NECK, -5, 1000);
+    assert_int_equal(grobo_posture_set_deg(&two, CHEST, -10), 0);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &chest), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &two), number);
+    const grobo_event_job *job = rig_expect(&rig, number, GROBO_OK);
+    assert_true(job->failed == 0);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) + 5) < 0.3);
+    assert_true(fabs(rig_angle_deg(&rig, CHEST) + 10) < 0.3);
+    assert_true(fabs(rig_angle_deg(&rig, L_ELBOW) - 60) < 0.3);
+}
+
+/* One frame of both was lost: what goes elsewhere is not sent back, and both arrive. */
+TEST_WITH(rig_wirings, a_lost_frame_of_several_moves_is_made_good)
+{
+    begin(&quiet);
+    grobo_posture elbow = rig_posture(&rig, L_ELBOW, 60, 500);
+    int number = move(10, 500);
+    assert_int_equal(grobo_robot_move(&rig.robot, &elbow), number);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, L_ELBOW, GROBO_SIM_CABLE_MUTE), 0);
+    rig_run(&rig, 80000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, L_ELBOW, GROBO_SIM_CABLE_IN), 0);
+    (void)retarget(-5, 500);
+    const grobo_event_job *job = rig_expect(&rig, number, GROBO_OK);
+    assert_true(job->failed == 0);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - (goals_sent() > 1 ? -5 : 10)) < 0.3);
+    assert_true(fabs(rig_angle_deg(&rig, L_ELBOW) - 60) < 0.3);
 }

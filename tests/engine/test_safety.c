@@ -441,7 +441,7 @@ TEST_WITH(rig_wirings, a_stop_may_be_the_answer_to_a_job_that_fails)
         rig_start_at(&rig, 0, &quiet);
         grobo_posture aim = rig_posture(&rig, NECK, 30, 5000);
         assert_true(grobo_robot_move(&rig.robot, &aim) > 0);
-        aim = rig_posture(&rig, R_ELBOW, -30, 5000);
+        aim = rig_posture(&rig, R_ELBOW, -30, 6000); /* of the same time it would join the first */
         assert_true(grobo_robot_move(&rig.robot, &aim) > 0);
         rig_run(&rig, 500000);
         asked = 0;

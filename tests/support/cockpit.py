@@ -716,6 +716,14 @@ def driving():
         same(page.state()["limp"], arm)
         angles = page.post("capture", joints=["right_arm"])["angle_deg"]
         same([j for j, a in enumerate(angles) if a is not None], arm)
+
+        def capture_one(name, joint):
+            got = page.post("capture", joints=[name])["angle_deg"]
+            same([j for j, a in enumerate(got) if a is not None], [joint])
+
+        # Joint by joint, each on a connection of its own: they share a reading.
+        names = {j["joint"]: j["name"] for j in page.get("/api/robot")["joints"]}
+        same(beside(*[(capture_one, names[j], j) for j in names]), [None] * len(names))
         page.target("torque", joints=["right_arm"], mode="hold")
         page.wait("the arm holds", lambda s: s["limp"] == [] and s["torque"][16] == "on")
         page.fall_silent()

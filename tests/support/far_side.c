@@ -235,6 +235,7 @@ static void lose(far_side *far, const far_frame *frame)
 static void obey_frame(far_side *far, far_frame *frame)
 {
     far->now_us = frame->due_us > far->now_us ? frame->due_us : far->now_us;
+    far->frames++;
     if (!far->family->sound(frame->bytes, frame->n)) {
         far->broken_frames++;
         return;

@@ -125,7 +125,7 @@ struct far_side {
     int lose_motor; /* motor frames until one is lost; FAR_NEVER */
     int lose_reply; /* replies until one is lost; FAR_NEVER */
     bool mute;      /* nobody answers */
-    int motor_frames, broken_frames, lost_frames;
+    int frames, motor_frames, broken_frames, lost_frames;
     int64_t lost_us; /* when the last frame or reply was lost */
     /* When the first frame, and the first motor frame, left since these were FAR_NEVER. */
     int64_t first_left_us, motor_left_us;

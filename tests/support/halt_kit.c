@@ -12,6 +12,7 @@
 
 #include "src/base/instant.h"
 #include "tests/support/halt_kit.h"
+#include "tests/support/many_joints.h"
 #include "tests/support/tables.h"
 #include "tests/support/test.h"
 
@@ -184,6 +185,26 @@ const halt_robot *halt_robot_named(const char *name)
 int halt_joint_of(int servo)
 {
     return grobo_model_joint_of_motor(halt.of->driver.model, (uint8_t)(servo + 1));
+}
+
+void halt_robot_make(halt_robot *robot, const char *of, int n_joints, int baud_bps)
+{
+    size_t i = 0;
+    while (i < ROBOTS && strcmp(recipes[i].name, of) != 0) {
+        i++;
+    }
+    assert_true(i < ROBOTS);
+    recipe from = recipes[i];
+    from.n_joints = n_joints;
+    from.baud_bps = baud_bps;
+    memset(robot, 0, sizeof *robot);
+    make(robot, &from);
+    if (robot->n_joints != n_joints) {
+        bool board = from.far == &far_board;
+        robot->driver = *many_joints(board ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS, n_joints);
+        robot->n_joints = n_joints;
+        robot->moved = robot->other = 0;
+    }
 }
 
 static int far_of(int joint)

@@ -76,6 +76,10 @@ extern bool halt_traced; /* prints what is on the wire once a stop is judged */
 const halt_robot *halt_robot_of(int number);
 const halt_robot *halt_robot_named(const char *name);
 
+/* Makes a robot of a family, by the name of one of those above, with n joints on a line of that
+ * rate; it must outlive its engine, and the next one made is in its place. */
+void halt_robot_make(halt_robot *robot, const char *of, int n_joints, int baud_bps);
+
 /* An engine that has just got its line, shafts limp: `moved` at deg, all others at 0. */
 void halt_begin(const halt_robot *robot, double deg);
 /* The same far side gets another program's engine. */

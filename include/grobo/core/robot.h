@@ -31,7 +31,8 @@ GROBO_API int grobo_robot_check(grobo_robot *robot);
  * Gives the move under way another target, which leaves next: the job ends when the joints are at
  * the target given last. For targets that come one after the other, each before the one before is
  * reached. What this target sets must include what the one before set (of several moves the first
- * of which that is true); joints that it sets besides must have been sensed and hold, as for
+ * of which that is true), but of moves of single joints that share a job: there the other joints
+ * go on to their own targets. Joints that it sets besides must have been sensed and hold, as for
  * grobo_robot_send(); a move that has them loses them.
  * @return the number of that job, or an error, and then the move is as it was: GROBO_ERR_STATE
  *         where no move is under way, or none that may be redirected yet: its first target waits to

@@ -171,6 +171,7 @@ typedef struct grobo_robot_task {
     grobo_torque torque;
     grobo_priority priority;
     grobo_posture target;
+    int32_t joint_time_us[GROBO_JOINTS_MAX]; /* of a move joint by joint: as asked for each */
     grobo_clip clip;
     grobo_play_options options;
     grobo_robot_order order; /* of the frame that it asks with */
@@ -186,9 +187,15 @@ typedef struct grobo_robot_task {
     int64_t bound_us; /* end of patience */
     bool lets_go;     /* by then its joints were told to be without torque */
     bool sits;        /* is on the way down: halted where the bound is over */
+    bool singly;      /* a move asked for joint by joint: each has its time, and fails alone */
+    grobo_joint_mask turned; /* of such a move, joints that were given another target: sent next */
+    grobo_joint_mask out;    /* of such a move, joints that have failed for good, */
+    int out_result;          /* the first of them so, */
+    int out_joint;           /* at this joint, */
+    double out_value;        /* with this value */
 } grobo_robot_task;
 
-/** A move or a reading that waits for its turn. Private. */
+/** A move, a reading or torque on that waits for its turn. Private. */
 typedef struct grobo_robot_wish {
     /* private */
     int number;
@@ -197,6 +204,8 @@ typedef struct grobo_robot_wish {
     grobo_sense_kind sense;
     int64_t begin_by_us;
     grobo_posture target;
+    int32_t joint_time_us[GROBO_JOINTS_MAX]; /* of moves of single joints */
+    bool singly;                             /* it is of such */
 } grobo_robot_wish;
 
 /** A robot engine. Caller storage; read it through the functions below. */

@@ -278,12 +278,12 @@ int grobo_i_runner_wait(grobo_runner *runner, grobo_runner_fn fn, void *arg, int
  * A job is the engine's: what is known of it here is its number, and how it has ended. */
 
 /* On the loop: how a job has ended. */
-static int result_of(grobo_runner *runner, int number)
+static int result_of(grobo_runner *runner, const runner_job *job)
 {
     grobo_i_runner_lock(runner);
-    int r = grobo_i_runner_end_of_job(runner, number);
+    int r = grobo_i_runner_end_of_job(runner, job->number, job->joints);
     grobo_i_runner_unlock(runner);
-    return r != CALL_PENDING || grobo_robot_is_pending(runner_robot(runner), number)
+    return r != CALL_PENDING || grobo_robot_is_pending(runner_robot(runner), job->number)
                ? r
                : GROBO_ERR_NOTFOUND;
 }
@@ -307,7 +307,7 @@ static int poll_job(void *arg, grobo_runner *runner)
         }
         job->number = r;
     }
-    int result = result_of(runner, job->number);
+    int result = result_of(runner, job);
     job->ended = result != CALL_PENDING;
     return result;
 }

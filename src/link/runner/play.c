@@ -7,11 +7,13 @@
 
 #include "src/link/runner/runner.h"
 
-int grobo_i_runner_end_of_job(const grobo_runner *runner, int number)
+int grobo_i_runner_end_of_job(const grobo_runner *runner, int number, grobo_joint_mask joints)
 {
     for (int i = 0; i < GROBO_RUNNER_ENDS; i++) {
-        if (runner->job_ends[i].number == number) {
-            return runner->job_ends[i].result;
+        const grobo_event_job *ended = &runner->job_ends[i];
+        if (ended->number == number) {
+            bool others = joints != 0 && ended->failed != 0 && (ended->failed & joints) == 0;
+            return ended->result < 0 && others ? GROBO_OK : ended->result;
         }
     }
     return CALL_PENDING;
@@ -41,7 +43,7 @@ static void note(grobo_runner *runner, int *place, int number)
 {
     grobo_i_runner_lock(runner);
     *place = number;
-    int r = grobo_i_runner_end_of_job(runner, number);
+    int r = grobo_i_runner_end_of_job(runner, number, 0);
     if (r != CALL_PENDING) {
         take_end(runner, number, r);
     }

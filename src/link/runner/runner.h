@@ -228,8 +228,9 @@ bool grobo_i_runner_has_exited(grobo_runner *runner);
 
 /* ---- play.c ---- */
 
-/* With the lock: how a job has ended; CALL_PENDING: its end was not told, or is forgotten. */
-int grobo_i_runner_end_of_job(const grobo_runner *runner, int number);
+/* With the lock: how a job has ended for these joints, of which others may have joined it; 0: for
+ * all. CALL_PENDING: its end was not told, or is forgotten. */
+int grobo_i_runner_end_of_job(const grobo_runner *runner, int number, grobo_joint_mask joints);
 
 /* With the lock: a job has ended. */
 void grobo_i_runner_end_job(grobo_runner *runner, const grobo_event_job *ended);

@@ -40,17 +40,41 @@ bool serve_is_based(serve *s, http_request *r, const json_t *body, const char *d
     return fine;
 }
 
-int serve_note_job(serve *s, int job, const char *doing)
+/* A place for a job; the end of an older one is no news where all are taken, but who waits for it
+ * gets its answer. */
+static serve_job *place_of(serve *s)
 {
-    serve_job *slot = &s->jobs[0];
-    for (int i = 0; job > 0 && i < SERVE_JOBS; i++) {
-        if (s->jobs[i].number == 0 || s->jobs[i].number == job) {
+    serve_job *slot = NULL;
+    for (int i = SERVE_JOBS - 1; i >= 0; i--) {
+        if (s->jobs[i].number == 0 || (!s->jobs[i].waiting && (!slot || slot->number != 0))) {
             slot = &s->jobs[i];
-            break;
         }
     }
-    if (job > 0 && slot->number != job) {
+    return slot;
+}
+
+int serve_note_job(serve *s, int job, const char *doing)
+{
+    for (int i = 0; i < SERVE_JOBS; i++) {
+        if (job > 0 && s->jobs[i].number == job) {
+            return job; /* it joined one that is told already */
+        }
+    }
+    serve_job *slot = place_of(s);
+    if (job > 0 && slot) {
         *slot = (serve_job){.number = job, .doing = doing};
+    }
+    return job;
+}
+
+int serve_await_job(serve *s, int job, http_request *r, grobo_joint_mask joints)
+{
+    serve_job *slot = place_of(s);
+    if (job > 0 && !slot) {
+        return GROBO_ERR_FULL;
+    }
+    if (job > 0) {
+        *slot = (serve_job){.number = job, .waiting = r, .joints = joints};
     }
     return job;
 }

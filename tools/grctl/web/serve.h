@@ -20,7 +20,8 @@
 #define SERVE_JOG_LOST_US INT64_C(1000000)
 #define SERVE_PLAY_LOST_US INT64_C(3000000)
 
-enum { SERVE_JOBS = 16, SERVE_HEARTBEAT_MS = 200 };
+/* A request for each joint of a robot, and some. */
+enum { SERVE_JOBS = GROBO_JOINTS_MAX + 16, SERVE_HEARTBEAT_MS = 200 };
 
 /* A job of the engine's that a request began. */
 typedef struct serve_job {
@@ -69,6 +70,9 @@ int64_t serve_ms(const serve *s, int64_t at_us);
 
 /* Notes a job: its end becomes an event. Returns the number, or the error. */
 int serve_note_job(serve *s, int job, const char *doing);
+/* The same of a reading: its end answers this request, with the angles of these joints. Requests
+ * may share a job. @return job, or GROBO_ERR_FULL. */
+int serve_await_job(serve *s, int job, http_request *r, grobo_joint_mask joints);
 
 /* Whether something moves, or is about to. */
 bool serve_is_moving(const serve *s);

@@ -266,16 +266,11 @@ void verb_capture(serve *s, http_request *r, json_t *body)
     if (given && !read_joints(s, r, given, &joints)) {
         return;
     }
+    /* Those of several clients may be one job. */
     int job = grobo_robot_sense(s->c.robot, joints, GROBO_SENSE_FULL);
-    if (serve_note_job(s, job, NULL) < 0) {
+    job = serve_await_job(s, job, r, joints);
+    if (job < 0) {
         serve_refuse(s, r, job, "capture");
-        return;
-    }
-    for (int i = 0; i < SERVE_JOBS; i++) {
-        if (s->jobs[i].number == job) {
-            s->jobs[i].waiting = r;
-            s->jobs[i].joints = joints;
-        }
     }
 }
 
