@@ -355,7 +355,7 @@ static void print_models(const table *t)
         } else {
             printf(", NULL, 0");
         }
-        printf("},\n");
+        printf(", %u},\n", m->fast_firmware);
     }
     printf("};\n\n");
 }

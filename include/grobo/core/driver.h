@@ -292,11 +292,11 @@ GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *m
  * Fills a table for a robot of DYNAMIXEL X servos (Protocol 2.0). grobo_joint.servo_model names the
  * servo by its model number. Goals come with a duration, which the servo takes for a profile: its
  * drive mode must be 4 (time, not reversed, not woken by a goal), and its operating mode 3, or 4
- * for a joint of several turns, or 5. All joints are read in one frame, and answer in one where
- * each is an XL330 with firmware 46 or newer. Torque on does not move a servo whose goal is where
- * it stands; whether it keeps an old goal depends on its firmware, so that the engine always sets
- * it. An error of its register shutdown cuts the torque until a reboot. No brake: torque is on or
- * off, and an emergency stop holds unless it is to release.
+ * for a joint of several turns, or 5. All joints are read in one frame, and answer in one where the
+ * firmware of each does (grobo_servo_model.fast_firmware). Torque on does not move a servo whose
+ * goal is where it stands; whether it keeps an old goal depends on its firmware, so that the engine
+ * always sets it. An error of its register shutdown cuts the torque until a reboot. No brake:
+ * torque is on or off, and an emergency stop holds unless it is to release.
  * Its bus watchdog is the dead-man: a servo that nothing was sent to for watchdog_us, 0.5 s, stops
  * where it is and keeps its torque; a move, a play or a torque on clears that.
  * Limits: 65 deg C, 5 lost replies, 60 deg/s for the first move; exit policy hold; an arm.

@@ -130,6 +130,10 @@ typedef struct grobo_servo_model {
     const struct grobo_servo_table *table; /**< of its series */
     const grobo_servo_indirect *indirect;  /**< indirect_count runs; NULL: none */
     uint8_t indirect_count;
+    uint8_t
+        fast_firmware; /**< of DYNAMIXEL: the first firmware that answers FAST SYNC READ and FAST
+                                BULK READ (ROBOTIS e-manual, Protocol 2.0, Fast Sync Read); 0: none
+                                does. What does not answer is silent */
 } grobo_servo_model;
 
 /** A series: registers by rising address, models, rates as its manuals list them. */

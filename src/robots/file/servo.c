@@ -385,13 +385,25 @@ NUMBER(torque_mnm, "torque_mnm")
 NUMBER(current_ma, "current_ma")
 NUMBER(voltage_mv, "voltage_mv")
 
+static int read_version(grobo_i_events *events, const char *what, uint8_t *version)
+{
+    long found = *version;
+    int result = read_whole(events, what, 0, UINT8_MAX, &found);
+    *version = (uint8_t)found;
+    return result;
+}
+
 static int read_firmware(grobo_i_events *events, void *target)
 {
     grobo_i_servo_draft *draft = target;
-    long found = draft->model.firmware;
-    int result = read_whole(events, "firmware", 0, UINT8_MAX, &found);
-    draft->model.firmware = (uint8_t)found;
-    return result;
+    return read_version(events, "firmware", &draft->model.firmware);
+}
+
+/* The first firmware that answers a fast sync read. */
+static int read_fast(grobo_i_events *events, void *target)
+{
+    grobo_i_servo_draft *draft = target;
+    return read_version(events, "fast_read", &draft->model.fast_firmware);
 }
 
 static int read_keeps(grobo_i_events *events, void *target)
@@ -562,6 +574,7 @@ static const grobo_i_field model_fields[] = {{"name", NULL, read_name},
                                              {"current_ma", NULL, read_current_ma},
                                              {"voltage_mv", NULL, read_voltage_mv},
                                              {"firmware", NULL, read_firmware},
+                                             {"fast_read", NULL, read_fast},
                                              {"joint", NULL, read_joint},
                                              {"keeps", NULL, read_keeps},
                                              {"big_endian", NULL, read_order},

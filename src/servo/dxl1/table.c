@@ -69,12 +69,13 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"AX-12A", 12, 1023, 300, 512, 354, 1500, 1500, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
-    {"AX-18A", 18, 1023, 300, 512, 582, 1800, 2200, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
-    {"MX-28", 29, 4096, 360, 2048, 330, 2500, 1400, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
-    {"MX-64", 310, 4096, 360, 2048, 378, 6000, 4100, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
-    {"MX-106", 320, 4096, 360, 2048, 270, 8400, 5200, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
-    {"AX-12W", 300, 1023, 300, 512, 324, 200, 1400, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0},
+    {"AX-12A", 12, 1023, 300, 512, 354, 1500, 1500, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0, 0},
+    {"AX-18A", 18, 1023, 300, 512, 582, 1800, 2200, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0, 0},
+    {"MX-28", 29, 4096, 360, 2048, 330, 2500, 1400, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0, 0},
+    {"MX-64", 310, 4096, 360, 2048, 378, 6000, 4100, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0, 0},
+    {"MX-106", 320, 4096, 360, 2048, 270, 8400, 5200, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0,
+     0},
+    {"AX-12W", 300, 1023, 300, 512, 324, 200, 1400, 12000, 24, 0, &grobo_i_dxl1_table, NULL, 0, 0},
 };
 
 static const grobo_servo_rate rates[] = {

@@ -32,15 +32,6 @@ static bool sync_read(const grobo_servo_model *servo)
     return true;
 }
 
-/* Firmware that answers, of the models where that is known, the two XL330 (issue
- * pollen-robotics/rustypot#122). What does not answer is silent. */
-#define FAST_FIRMWARE 46
-
-static bool fast_read(const grobo_servo_model *servo, int32_t firmware)
-{
-    return (servo->number == 1200 || servo->number == 1190) && firmware >= FAST_FIRMWARE;
-}
-
 /* Each has its error, its id, its data and a CRC; of the last one the CRC is the packet's. */
 static bool fast_part(const grobo_packet *reply, int n, int k, grobo_packet *part)
 {
@@ -79,7 +70,6 @@ static const grobo_i_family family = {
     .resets = true,
     .reboots = true,
     .sync_read = sync_read,
-    .fast_read = fast_read,
     .fast_part = fast_part,
     .pace = GROBO_I_PACE_PROFILE,
 };

@@ -697,13 +697,11 @@ static void fast_part(grobo_sim *sim, int index, const item *one, uint8_t *bytes
     grobo_i_indirect_read(servo, one->address, one->length, bytes + 2);
 }
 
-/* Older firmware of an XL330 is silent (issue pollen-robotics/rustypot#122). Of other models
- * nothing is known: theirs counts likewise. */
-#define FAST_FIRMWARE 46
-
+/* Firmware that has no such instruction is silent (issue pollen-robotics/rustypot#122). */
 static bool answers_fast(const grobo_sim_servo *servo, const item *one)
 {
-    return grobo_i_dxl_get(servo, GROBO_ROLE_FIRMWARE) >= FAST_FIRMWARE &&
+    uint8_t from = servo->model->fast_firmware;
+    return from > 0 && grobo_i_dxl_get(servo, GROBO_ROLE_FIRMWARE) >= from &&
            one->length <= GROBO_SIM_TALK_BYTES - 16 &&
            judge_read(servo, one->address, one->length) == GROBO_DXL2_DONE;
 }

@@ -49,7 +49,7 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"SCS0009", 1284, 1024, 300, 512, 600, 230, 1000, 6000, 3, 0, &grobo_i_scs_table, NULL, 0},
+    {"SCS0009", 1284, 1024, 300, 512, 600, 230, 1000, 6000, 3, 0, &grobo_i_scs_table, NULL, 0, 0},
 };
 
 static const grobo_servo_rate rates[] = {

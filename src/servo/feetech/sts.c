@@ -63,11 +63,13 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"STS3215", 777, 4096, 360, 2048, 300, 1910, 2400, 7400, 3, 0, &grobo_i_sts_table, NULL, 0},
-    {"STS3215-12V", 777, 4096, 360, 2048, 272, 2940, 2700, 12000, 3, 0, &grobo_i_sts_table, NULL,
+    {"STS3215", 777, 4096, 360, 2048, 300, 1910, 2400, 7400, 3, 0, &grobo_i_sts_table, NULL, 0, 0},
+    {"STS3215-12V", 777, 4096, 360, 2048, 272, 2940, 2700, 12000, 3, 0, &grobo_i_sts_table, NULL, 0,
      0},
-    {"STS3250", 2825, 4096, 360, 2048, 450, 4900, 4500, 12000, 3, 0, &grobo_i_sts_table, NULL, 0},
-    {"SM8512BL", 11272, 4096, 360, 2048, 270, 8300, 3900, 12000, 3, 0, &grobo_i_sts_table, NULL, 0},
+    {"STS3250", 2825, 4096, 360, 2048, 450, 4900, 4500, 12000, 3, 0, &grobo_i_sts_table, NULL, 0,
+     0},
+    {"SM8512BL", 11272, 4096, 360, 2048, 270, 8300, 3900, 12000, 3, 0, &grobo_i_sts_table, NULL, 0,
+     0},
 };
 
 static const grobo_servo_rate rates[] = {

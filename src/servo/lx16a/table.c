@@ -28,10 +28,10 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"LX-16A", 16, 1000, 240, 500, 375, 1670, 1000, 7400, 0, 0, &grobo_i_lx16a_table, NULL, 0},
-    {"LX-15D", 15, 1000, 240, 500, 375, 1670, 1000, 7400, 0, 0, &grobo_i_lx16a_table, NULL, 0},
-    {"LX-224", 224, 1000, 240, 500, 300, 1960, 1000, 7400, 0, 0, &grobo_i_lx16a_table, NULL, 0},
-    {"HTS-35H", 35, 1000, 240, 500, 333, 3430, 3000, 11100, 0, 0, &grobo_i_lx16a_table, NULL, 0},
+    {"LX-16A", 16, 1000, 240, 500, 375, 1670, 1000, 7400, 0, 0, &grobo_i_lx16a_table, NULL, 0, 0},
+    {"LX-15D", 15, 1000, 240, 500, 375, 1670, 1000, 7400, 0, 0, &grobo_i_lx16a_table, NULL, 0, 0},
+    {"LX-224", 224, 1000, 240, 500, 300, 1960, 1000, 7400, 0, 0, &grobo_i_lx16a_table, NULL, 0, 0},
+    {"HTS-35H", 35, 1000, 240, 500, 333, 3430, 3000, 11100, 0, 0, &grobo_i_lx16a_table, NULL, 0, 0},
 };
 
 static const uint64_t sets[] = {

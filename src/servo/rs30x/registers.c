@@ -39,10 +39,10 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"RS301CR", 12304, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0},
-    {"RS302CD", 12320, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0},
-    {"RS303MR", 12336, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0},
-    {"RS304MD", 12352, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0},
+    {"RS301CR", 12304, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
+    {"RS302CD", 12320, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
+    {"RS303MR", 12336, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
+    {"RS304MD", 12352, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
 };
 
 static const grobo_servo_rate rates[] = {

@@ -473,6 +473,6 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
     made.watchdog = family->watchdog_us > 0 ? watchdog : NULL;
     made.accel_rad_s2 = result >= 0 ? least_accel(&made) : 0;
     made.sense_many = result >= 0 && reads_alike(&made) ? sense_many : NULL;
-    made.sense_fast = made.sense_many != NULL && family->fast_read != NULL ? sense_fast : NULL;
+    made.sense_fast = made.sense_many != NULL && family->fast_part != NULL ? sense_fast : NULL;
     return grobo_i_table_give(driver, &made, result);
 }

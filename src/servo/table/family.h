@@ -40,9 +40,8 @@ typedef struct grobo_i_family {
     uint8_t reset[1], reset_bytes; /* data of FACTORY_RESET */
     bool resets, reboots;          /* instructions that it has */
     bool (*sync_read)(const grobo_servo_model *servo);
-    /* Whether a servo of this firmware answers FAST_SYNC_READ. NULL: none does, or has it. */
-    bool (*fast_read)(const grobo_servo_model *servo, int32_t firmware);
-    /* Takes the part of servo k out of a packet of n together. False: that is not in there. */
+    /* Takes the part of servo k out of a packet of n together, which answers FAST_SYNC_READ. False:
+     * that is not in there. NULL: no servo of the family answers it. */
     bool (*fast_part)(const grobo_packet *reply, int n, int k, grobo_packet *part);
     uint8_t pace;       /* grobo_i_pace */
     uint8_t off, brake; /* values of TORQUE; brake == off: it has none */

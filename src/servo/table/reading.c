@@ -154,8 +154,8 @@ int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const gr
     bool whole = value_of(&b, GROBO_ROLE_MODEL, &model); /* the first reading of all */
     int result = whole ? grobo_i_table_setup(family, moved, &b, state) : GROBO_OK;
     state->flags = reply->flags;
-    if (family->fast_read != NULL && value_of(&b, GROBO_ROLE_FIRMWARE, &firmware)) {
-        state->fast = family->fast_read(b.servo, firmware);
+    if (family->fast_part != NULL && value_of(&b, GROBO_ROLE_FIRMWARE, &firmware)) {
+        state->fast = b.servo->fast_firmware > 0 && firmware >= b.servo->fast_firmware;
         state->valid |= GROBO_FIELD_FAST;
     }
     take_angles(self, joint, &b, state);

@@ -26,8 +26,8 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"ACME-1", 11, 3000, 300, 1500, 360, 1500, 1000, 7400, 1, 0, &grobo_i_acme_table, NULL, 0},
-    {"ACME-2", 12, 3000, 300, 1500, 300, 3000, 2000, 7400, 1, 0, &grobo_i_acme_table, NULL, 0},
+    {"ACME-1", 11, 3000, 300, 1500, 360, 1500, 1000, 7400, 1, 0, &grobo_i_acme_table, NULL, 0, 0},
+    {"ACME-2", 12, 3000, 300, 1500, 300, 3000, 2000, 7400, 1, 0, &grobo_i_acme_table, NULL, 0, 0},
 };
 
 static const grobo_servo_rate rates[] = {{0, 0, 250000}, {1, 0, 115200}};
