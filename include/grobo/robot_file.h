@@ -11,6 +11,7 @@
 #ifndef GROBO_ROBOT_FILE_H
 #define GROBO_ROBOT_FILE_H
 
+#include <grobo/core/body.h>
 #include <grobo/core/driver.h>
 #include <grobo/core/registers.h>
 #include <grobo/core/sim_physics.h>
@@ -69,6 +70,13 @@ typedef struct grobo_robot_link {
     double inertia_kgm2[6]; /**< about that, along its axes: xx, yy, zz, xy, xz, yz */
 } grobo_robot_link;
 
+/** A foot: the last link of a leg, and the rectangle of its sole. */
+typedef struct grobo_robot_foot {
+    int8_t link;      /**< index of the part */
+    double sole_m[3]; /**< centre of the sole, in the part's frame */
+    double half_m[2]; /**< half of its length (along x) and width (along y) */
+} grobo_robot_foot;
+
 /** What a file says of a joint's motor, for a simulator with weight; 0: as the servo's model has it
  *  (grobo_sim_motor_of()). With any of it the motor counts as given (GROBO_SIM_MOTOR_GIVEN). */
 typedef struct grobo_robot_motor {
@@ -101,6 +109,8 @@ typedef struct grobo_robot_def {
     int8_t payload_link; /**< the part that holds what the robot carries; -1: not told */
     double payload_kg;   /**< the heaviest that its maker names; 0: not told */
     const grobo_robot_motor *motors; /**< by joint; NULL: as the servos' models have them */
+    uint8_t n_feet;                  /**< 2, or 0: they are not told */
+    grobo_robot_foot feet[2];        /**< in either order */
 } grobo_robot_def;
 
 /** Robot i of those that come with the library, counted from 0. @return NULL behind the last. */
@@ -132,6 +142,21 @@ GROBO_API int grobo_robot_def_read_file(const char *path, grobo_diagnostics *lis
 
 /** Frees what grobo_robot_def_read() or grobo_robot_def_read_file() gave; NULL is fine. */
 GROBO_API void grobo_robot_def_free(grobo_robot_def *def);
+
+/** A robot's body, for body.h; it must stay where it is. */
+typedef struct grobo_robot_body {
+    grobo_body_model model;
+    grobo_body_link links[GROBO_BODY_LINKS_MAX]; /**< the model's */
+} grobo_robot_body;
+
+/**
+ * The body of a robot whose description has feet: its first link is the waist, and its legs are as
+ * grobo_body_model asks. Frames of the body's links stand upright where all joints are at 0; parts
+ * that are fixed are joined to what carries them.
+ * @param def borrowed by the body
+ * @return 0, GROBO_ERR_ARG, or GROBO_ERR_UNSUPPORTED: no feet, or legs that are not solved
+ */
+GROBO_API int grobo_robot_def_body(const grobo_robot_def *def, grobo_robot_body *body);
 
 /**
  * Fills a driver for a robot.

@@ -461,6 +461,12 @@ const grobo_robot_def grobo_i_robot_gr001 = {.name = "gr001",
                                              .links = links,
                                              .n_links = 21,
                                              .payload_link = -1,
+                                             .n_feet = 2,
+                                             .feet =
+                                                 {
+                                                     {6, {-0.005, -0.01, -0.022}, {0.039, 0.025}},
+                                                     {12, {-0.005, 0.01, -0.022}, {0.039, 0.025}},
+                                                 },
                                              .limits = {.temperature_c = 65,
                                                         .lost_replies = 5,
                                                         .current_ma = 600,

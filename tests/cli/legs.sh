@@ -68,6 +68,30 @@ idle() {
 }
 check "legs that are no targets" idle
 
+test_case "a robot's file with feet"
+
+# alike OPTION...: a robot of a file has the legs of the one that comes with grctl.
+alike() {
+    "$GRCTL" show --rate 50 "$@" "$step" >"$work/first" &&
+        "$GRCTL" --robot ./src/robots/gr001.yaml show --rate 50 "$@" "$step" >"$work/second" &&
+        grep -q 'legs by inverse kinematics' "$work/first" && cmp "$work/first" "$work/second"
+}
+check "exact" alike
+check "numeric" alike --ik numeric
+check "with a balancer" alike --like robot
+sed '/^feet:/,$d; s/^name: gr001/name: footless/' src/robots/gr001.yaml >"$work/footless.yaml"
+check "without feet they are not solved, which is said" both exits 0 \
+    "$GRCTL" --robot "$work/footless.yaml" show "$step" --- \
+    says 'poses give legs by ikLinks: the feet of its robot are not known$'
+check "nor converted" fails 3 'have ikLinks, and the feet of their robot are not known; --ik off' \
+    "$GRCTL" --robot "$work/footless.yaml" convert "$step" "$work/footless.m"
+sed 's/link: R_ANKLE_R, sole/link: R_ANKEL_R, sole/' src/robots/gr001.yaml >"$work/wrong.yaml"
+check "a foot that is no link" both exits 3 "$GRCTL" robot check "$work/wrong.yaml" --- \
+    says "no link called 'R_ANKEL_R'.*R_ANKLE_R"
+sed '/link: L_ANKLE_R, sole/d' src/robots/gr001.yaml >"$work/wrong.yaml"
+check "one foot" both exits 3 "$GRCTL" robot check "$work/wrong.yaml" --- \
+    says 'one foot only, R_ANKLE_R: two are wanted'
+
 test_case "reference material"
 
 # golden MODE PRESET: every frame that Choreonoid's own code computes, within 1e-7 rad.
@@ -83,6 +107,13 @@ golden() {
 if [ -d "$data/golden" ]; then
     check "--like choreonoid is what its window shows" golden default choreonoid
     check "--like choreonoid-1.1 is what it made for the robot" golden compat11 choreonoid-1.1
+    check "Choreonoid's own body is imported" exits 0 "$GRCTL" robot import \
+        "$data/choreonoid/GR001.body" --family rs30x --servo RS301CR -o "$work/imported.yaml"
+    GRCTL_ROBOT=$work/imported.yaml
+    export GRCTL_ROBOT
+    check "its legs are those of its window" golden default choreonoid
+    check "and of 1.1" golden compat11 choreonoid-1.1
+    unset GRCTL_ROBOT
 else
     skip "presets against Choreonoid's frames" "no reference material beside the checkout"
 fi

@@ -162,7 +162,7 @@ check "which is said" drawn "$work/plot.svg" 'both feet are taken to stand'
 long_json='lines[0]["length_ms"] > 5500 and lines[0]["balance"]["margin_mm"] > 15'
 check_json "with the balancer it lasts a second longer" "$long_json" \
     "$GRCTL" plot --json --balance on -o "$work/plot.svg" motions/step.pseq
-check "of another robot nothing is known" fails 3 "no motion of GR001's" \
+check "of another robot nothing is known" fails 3 'for a robot whose feet are not known' \
     "$GRCTL" plot --balance "$work/many.yaml"
 
 test_case "our own"

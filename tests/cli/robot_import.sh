@@ -157,6 +157,11 @@ for ids in '--ids 1-6' '' "--ids gripper=6,${all_ids%,*}"; do
         -o "$work/first.yaml" --family feetech --servo STS3215 $ids --- right_ids
 done
 test_case "ids are taken or refused"
+listed() {
+    exits 0 take "$work/first.urdf" --yes --order file &&
+        [ "$(sed -n 's/.*name: \([a-z_]*\), id.*/\1/p' "$work/out" | head -n 1)" = gripper ]
+}
+check "or stands first, as it is listed" listed
 check "ids of a known robot are said" both exits 0 take "$work/first.urdf" --- \
     complains "ids as of so101, whose joints have these names: $all_ids"
 check "others are refused" fails 2 '--ids 2-7 gives shoulder_pan the id 2, in so101 it has 1' \

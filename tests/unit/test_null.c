@@ -577,6 +577,9 @@ TEST(robot_file_refuses_null)
     grobo_robot_def_free(NULL);
     REFUSES(grobo_robot_def_driver(NULL, GROBO_WIRING_BUS, &driver));
     REFUSES(grobo_robot_def_driver(grobo_i_robot_defs[0], GROBO_WIRING_BUS, NULL));
+    static grobo_robot_body own;
+    REFUSES(grobo_robot_def_body(NULL, &own));
+    REFUSES(grobo_robot_def_body(grobo_i_robot_defs[0], NULL));
     REFUSES(grobo_robot_def_sim(NULL, GROBO_WIRING_BUS, &sim));
     REFUSES(grobo_robot_def_sim(grobo_i_robot_defs[0], GROBO_WIRING_BUS, NULL));
     grobo_sim_physics *physics = NULL;

@@ -358,7 +358,7 @@ TEST(the_schema_has_the_same_keys)
         [GROBO_I_BLOCK_LINE] = "line",   [GROBO_I_BLOCK_SAFETY] = "safety",
         [GROBO_I_BLOCK_JOINT] = "joint", [GROBO_I_BLOCK_GROUP] = "group",
         [GROBO_I_BLOCK_LINK] = "link",   [GROBO_I_BLOCK_PAYLOAD] = "payload",
-        [GROBO_I_BLOCK_MOTOR] = "motor",
+        [GROBO_I_BLOCK_MOTOR] = "motor", [GROBO_I_BLOCK_FOOT] = "foot",
     };
     json_error_t error;
     json_t *schema = json_load_file("docs/robot.schema.json", 0, &error);

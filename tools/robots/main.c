@@ -253,6 +253,15 @@ static void print_def(const grobo_robot_def *def, const char *model)
     if (def->motors) {
         printf(".motors = motors, ");
     }
+    if (def->n_feet > 0) {
+        printf(".n_feet = 2, .feet = {");
+        for (int i = 0; i < 2; i++) {
+            const grobo_robot_foot *f = &def->feet[i];
+            printf("{%d, {%.15g, %.15g, %.15g}, {%.15g, %.15g}},", f->link, f->sole_m[0],
+                   f->sole_m[1], f->sole_m[2], f->half_m[0], f->half_m[1]);
+        }
+        printf("}, ");
+    }
     if (def->payload_kg > 0) {
         printf(".payload_kg = %.15g, ", def->payload_kg);
     }

@@ -19,6 +19,7 @@ typedef enum grobo_i_block {
     GROBO_I_BLOCK_GROUP,
     GROBO_I_BLOCK_LINK,
     GROBO_I_BLOCK_PAYLOAD,
+    GROBO_I_BLOCK_FOOT,
     GROBO_I_BLOCK_MOTOR,
     GROBO_I_BLOCKS
 } grobo_i_block;
@@ -67,6 +68,12 @@ typedef struct grobo_i_payload_draft {
     double max_kg;
 } grobo_i_payload_draft;
 
+typedef struct grobo_i_foot_draft {
+    grobo_i_place place, at[GROBO_I_KEYS_MAX];
+    grobo_i_name link;
+    double sole_m[3], half_m[2];
+} grobo_i_foot_draft;
+
 typedef struct grobo_i_line_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
     double baud_bps;
@@ -81,11 +88,12 @@ typedef struct grobo_i_draft {
     grobo_i_line_draft line;
     grobo_i_safety_draft safety;
     grobo_i_payload_draft payload;
-    int n_joints, n_groups, n_links, n_usb;
+    int n_joints, n_groups, n_links, n_usb, n_feet;
     grobo_i_joint_draft joint[GROBO_JOINTS_MAX];
     grobo_i_group_draft group[GROBO_ROBOT_GROUPS_MAX];
     grobo_i_link_draft link[GROBO_ROBOT_LINKS_MAX];
     grobo_usb_id usb[GROBO_ROBOT_USB_MAX];
+    grobo_i_foot_draft foot[2];
 } grobo_i_draft;
 
 /* The place of a key's value in a mapping that has it, else of the mapping. */

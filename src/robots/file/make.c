@@ -389,25 +389,52 @@ static void check_inertia(const maker *m, const grobo_i_link_draft *draft)
     }
 }
 
+/* The link of a name; -1: there is none, which is said. */
+static int find_link(const maker *m, const char *name, grobo_i_place place)
+{
+    const grobo_robot_def *def = &m->file->def;
+    grobo_i_nearest nearest = {NULL, 0};
+    for (int i = 0; i < def->n_links; i++) {
+        if (strcmp(def->links[i].name, name) == 0) {
+            return i;
+        }
+        grobo_i_nearest_try(&nearest, name, def->links[i].name);
+    }
+    (void)grobo_i_complain_word(m->reader, place, "link called", name, nearest_of(&nearest));
+    return -1;
+}
+
 static void make_payload(const maker *m)
 {
     const grobo_i_payload_draft *payload = &m->draft->payload;
     grobo_robot_def *def = &m->file->def;
-    grobo_i_nearest nearest = {NULL, 0};
     def->payload_link = -1;
-    if (*payload->link == '\0') {
-        return;
+    if (*payload->link != '\0') {
+        def->payload_link = (int8_t)find_link(m, payload->link, payload->place);
+        def->payload_kg = def->payload_link < 0 ? 0 : payload->max_kg;
     }
-    for (int i = 0; i < def->n_links; i++) {
-        if (strcmp(def->links[i].name, payload->link) == 0) {
-            def->payload_link = (int8_t)i;
-            def->payload_kg = payload->max_kg;
-            return;
-        }
-        grobo_i_nearest_try(&nearest, payload->link, def->links[i].name);
+}
+
+static void make_feet(const maker *m)
+{
+    const grobo_i_draft *draft = m->draft;
+    grobo_robot_def *def = &m->file->def;
+    if (draft->n_feet == 1) {
+        (void)complain(m, draft->foot[0].place, "feet", "one foot only, %s: two are wanted",
+                       draft->foot[0].link);
     }
-    (void)grobo_i_complain_word(m->reader, payload->place, "link called", payload->link,
-                                nearest_of(&nearest));
+    for (int i = 0; i < draft->n_feet; i++) {
+        const grobo_i_foot_draft *from = &draft->foot[i];
+        grobo_robot_foot *foot = &def->feet[i];
+        foot->link = (int8_t)find_link(m, from->link, from->place);
+        memcpy(foot->sole_m, from->sole_m, sizeof foot->sole_m);
+        memcpy(foot->half_m, from->half_m, sizeof foot->half_m);
+    }
+    if (draft->n_feet == 2 && def->feet[0].link == def->feet[1].link) {
+        (void)complain(m, draft->foot[1].place, "feet", "both feet are the link '%s'",
+                       draft->foot[1].link);
+    }
+    def->n_feet = draft->n_feet == 2 ? 2 : 0;
 }
 
 static void make_link(const maker *m, int index)
@@ -522,6 +549,7 @@ int grobo_i_robot_make(const grobo_i_draft *draft, grobo_i_robot_file *file)
         make_link(&m, i);
     }
     make_payload(&m);
+    make_feet(&m);
     if (m.reader->result < 0) {
         return m.reader->result;
     }

@@ -57,6 +57,11 @@ typedef struct keys {
     {                                                                                              \
         .name = (name_), .kind = KEY_NAME, .needed = true, .offset = offsetof(type, field)         \
     }
+#define NEEDED_NUMBERS(name_, type, field, n, low_, high_)                                         \
+    {                                                                                              \
+        .name = (name_), .kind = KEY_NUMBER, .count = (n), .needed = true,                         \
+        .offset = offsetof(type, field), .low = (low_), .high = (high_)                            \
+    }
 #define CALL(name_, fn)                                                                            \
     {                                                                                              \
         .name = (name_), .kind = KEY_CALL, .read = (fn)                                            \
@@ -70,6 +75,7 @@ static int read_groups(grobo_i_events *events, void *draft);
 static int read_links(grobo_i_events *events, void *draft);
 static int read_members(grobo_i_events *events, void *draft);
 static int read_payload(grobo_i_events *events, void *draft);
+static int read_feet(grobo_i_events *events, void *draft);
 static int read_motor(grobo_i_events *events, void *draft);
 
 #define ROBOT grobo_i_draft
@@ -95,6 +101,7 @@ static const key_row robot_keys[] = {
     CALL("groups", read_groups),
     CALL("links", read_links),
     CALL("payload", read_payload),
+    CALL("feet", read_feet),
 };
 
 static const key_row line_keys[] = {WHOLE("baud", grobo_i_line_draft, baud_bps, 300, 4000000)};
@@ -171,6 +178,12 @@ static const key_row payload_keys[] = {
     NUMBER("max_kg", grobo_i_payload_draft, max_kg, 0, 100),
 };
 
+static const key_row foot_keys[] = {
+    NEEDED("link", grobo_i_foot_draft, link),
+    NEEDED_NUMBERS("sole_m", grobo_i_foot_draft, sole_m, 3, -100, 100),
+    NEEDED_NUMBERS("half_m", grobo_i_foot_draft, half_m, 2, 0, 100),
+};
+
 #define KEYS(what, rows)                                                                           \
     {                                                                                              \
         what, rows, sizeof(rows) / sizeof(rows)[0]                                                 \
@@ -184,6 +197,7 @@ static const keys blocks[GROBO_I_BLOCKS] = {
     [GROBO_I_BLOCK_LINK] = KEYS("a link", link_keys),
     [GROBO_I_BLOCK_MOTOR] = KEYS("'motor'", motor_keys),
     [GROBO_I_BLOCK_PAYLOAD] = KEYS("'payload'", payload_keys),
+    [GROBO_I_BLOCK_FOOT] = KEYS("a foot", foot_keys),
 };
 
 const char *grobo_i_robot_key(grobo_i_block block, size_t index)
@@ -489,6 +503,22 @@ static int read_link(grobo_i_events *events, void *target)
 static int read_links(grobo_i_events *events, void *draft)
 {
     return grobo_i_read_list(events, "links", read_link, draft);
+}
+
+static int read_foot(grobo_i_events *events, void *target)
+{
+    grobo_i_draft *draft = target;
+    int result = need_room(events, "feet", draft->n_feet, 2);
+    if (result < 0) {
+        return result;
+    }
+    grobo_i_foot_draft *foot = &draft->foot[draft->n_feet++];
+    return read_block(events, GROBO_I_BLOCK_FOOT, foot, foot->at, &foot->place);
+}
+
+static int read_feet(grobo_i_events *events, void *draft)
+{
+    return grobo_i_read_list(events, "feet", read_foot, draft);
 }
 
 /* Four digits of a hexadecimal number. */

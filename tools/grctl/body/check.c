@@ -12,6 +12,7 @@ static const double margin_least_m = 0.005;
 enum { FALL_RATE_HZ = 100, FALL_FRAMES_MOST = 10000, FALL_POSTURES_MOST = 10000 };
 
 typedef struct finder {
+    whole_robot robot;
     const check_whole_how *how;
     const grobo_motion *motion;
     grobo_diagnostics *list;
@@ -35,18 +36,15 @@ static uint32_t line_at(const grobo_motion *motion, double at_s)
     return line;
 }
 
-static const char *link_name(int link)
-{
-    return grobo_gr001_body()->links[link].name;
-}
-
 /* What it is and how bad, without its time. */
-static void describe(const grobo_body_finding *f, char *text, size_t capacity)
+static void describe(const whole_robot *robot, const grobo_body_finding *f, char *text,
+                     size_t capacity)
 {
-    const grobo_joint *joint = &grobo_gr001_model()->joints[f->index];
+    const grobo_joint *joint = &robot->model->joints[f->index];
+    const grobo_body_link *link = &robot->body->links[f->index];
     switch (f->problem) {
     case GROBO_BODY_UNREACHABLE:
-        snprintf(text, capacity, "%s: the leg does not reach its target", link_name(f->index));
+        snprintf(text, capacity, "%s: the leg does not reach its target", link->name);
         return;
     case GROBO_BODY_ZMP_MARGIN:
         snprintf(text, capacity, "the ZMP is %s%.1f mm %s the soles", f->worst < 0 ? "" : "only ",
@@ -56,8 +54,7 @@ static void describe(const grobo_body_finding *f, char *text, size_t capacity)
         snprintf(text, capacity, "no foot stands");
         return;
     case GROBO_BODY_FOOT_SLIP:
-        snprintf(text, capacity, "%s: the standing foot slips %.1f mm", link_name(f->index),
-                 f->worst * 1e3);
+        snprintf(text, capacity, "%s: the standing foot slips %.1f mm", link->name, f->worst * 1e3);
         return;
     case GROBO_BODY_JOINT_LIMIT:
         snprintf(text, capacity, "%s: %.1f degrees beyond its limit", joint->name,
@@ -85,7 +82,7 @@ static bool is_wanted(const finder *f, const grobo_body_finding *finding)
     case GROBO_BODY_JOINT_LIMIT:
     case GROBO_BODY_JOINT_SPEED:
         return (f->how->what & CHECK_LEGS) != 0 && !f->standing &&
-               (whole_joints() & GROBO_JOINT_BIT(finding->index));
+               (whole_joints(f->robot.body) & GROBO_JOINT_BIT(finding->index));
     case GROBO_BODY_UNREACHABLE:
         return (f->how->what & CHECK_LEGS) != 0;
     case GROBO_BODY_ZMP_MARGIN:
@@ -103,7 +100,7 @@ static void report(const finder *f, const grobo_body_finding *finding, const cha
     d->file = f->how->path;
     d->message = message;
     d->line = line_at(f->motion, finding->begin_s);
-    describe(finding, what, sizeof what);
+    describe(&f->robot, finding, what, sizeof what);
     if (finding->end_s > finding->begin_s) {
         snprintf(message, sizeof message, "%s%s, at %.2f s (from %.2f to %.2f s)", prefix, what,
                  finding->worst_s, finding->begin_s, finding->end_s);
@@ -141,7 +138,8 @@ static void add(void *ctx, const grobo_body_finding *finding)
     if (!is_wanted(f, finding)) {
         return;
     }
-    if (finding->problem == GROBO_BODY_JOINT_LIMIT && f->how->slack && check_takes_slack(finding)) {
+    if (finding->problem == GROBO_BODY_JOINT_LIMIT && f->how->slack &&
+        check_takes_slack(f->robot.model, finding)) {
         check_add_slack(f->how->slack, finding);
     } else {
         report(f, finding, "", &d);
@@ -175,11 +173,10 @@ static void skip(const char *path, const char *why, grobo_diagnostics *list)
 
 /* ---- angles at a limit ---------------------------------------------------------------------- */
 
-bool check_takes_slack(const grobo_body_finding *limit)
+bool check_takes_slack(const grobo_model *model, const grobo_body_finding *limit)
 {
-    double max_rad = grobo_gr001_model()->joints[limit->index].max_rad;
-    return grobo_model_take_slack(grobo_gr001_model(), limit->index, max_rad + limit->worst) ==
-           max_rad;
+    double max_rad = model->joints[limit->index].max_rad;
+    return grobo_model_take_slack(model, limit->index, max_rad + limit->worst) == max_rad;
 }
 
 void check_add_slack(grobo_slack_taken *slack, const grobo_body_finding *limit)
@@ -192,7 +189,8 @@ void check_add_slack(grobo_slack_taken *slack, const grobo_body_finding *limit)
     slack->joint = limit->index;
 }
 
-void check_report_slack(const char *path, const grobo_slack_taken *slack, grobo_diagnostics *list)
+void check_report_slack(const char *path, const grobo_model *model, const grobo_slack_taken *slack,
+                        grobo_diagnostics *list)
 {
     char message[160];
     grobo_diagnostic d = {.file = path,
@@ -206,7 +204,7 @@ void check_report_slack(const char *path, const grobo_slack_taken *slack, grobo_
     snprintf(message, sizeof message,
              "%zu angle%s up to %.1f degrees outside %s limits (%s): clamped", slack->n,
              slack->n == 1 ? "" : "s", grobo_deg_from_rad(slack->worst_rad),
-             slack->n == 1 ? "its" : "their", grobo_gr001_model()->joints[slack->joint].name);
+             slack->n == 1 ? "its" : "their", model->joints[slack->joint].name);
     grobo_diagnostics_add(list, &d);
 }
 
@@ -225,7 +223,7 @@ static int look_at(finder *f, grobo_body *body)
 {
     grobo_body_check_options look = {
         GROBO_BODY_CHECK_OPTIONS_INIT,
-        .robot = grobo_gr001_model(),
+        .robot = f->robot.model,
         .margin_m = f->how->what & CHECK_BALANCE ? margin_least_m : 0,
         .speed_pct = f->how->speed_pct,
         .takes_slack = f->how->slack != NULL,
@@ -251,8 +249,9 @@ static int report_unknown(const check_whole_how *how, int error, grobo_diagnosti
     }
     if (how->what & CHECK_BALANCE) {
         skip(how->path,
-             error == GROBO_ERR_TYPE ? "not made for GR001: its balance is unknown"
-                                     : "has no postures to balance",
+             error == GROBO_ERR_TYPE
+                 ? "for a robot whose feet are not known: its balance is unknown"
+                 : "has no postures to balance",
              list);
     }
     return 0;
@@ -261,7 +260,7 @@ static int report_unknown(const check_whole_how *how, int error, grobo_diagnosti
 int check_whole(const app *a, const grobo_motion *motion, const grobo_body_options *options,
                 const check_whole_how *how, grobo_diagnostics *list)
 {
-    finder f = {.how = how, .motion = motion, .list = list};
+    finder f = {.robot = whole_robot_of(a, motion), .how = how, .motion = motion, .list = list};
     bool legs = (how->what & CHECK_LEGS) != 0 && whole_applies(a, motion, options);
     bool fall = (how->what & CHECK_FALL) != 0 && grobo_motion_size(motion) <= FALL_POSTURES_MOST;
     bool asked = legs || (how->what & CHECK_BALANCE) != 0;

@@ -33,10 +33,11 @@ int check_whole(const app *a, const grobo_motion *motion, const grobo_body_optio
                 const check_whole_how *how, grobo_diagnostics *list);
 
 /* True if a solved angle exceeds its limit by no more than the robot's slack. */
-bool check_takes_slack(const grobo_body_finding *limit);
+bool check_takes_slack(const grobo_model *model, const grobo_body_finding *limit);
 /* Adds that to what was counted. */
 void check_add_slack(grobo_slack_taken *slack, const grobo_body_finding *limit);
 /* The one warning of angles that are played at a limit, where there are any. */
-void check_report_slack(const char *path, const grobo_slack_taken *slack, grobo_diagnostics *list);
+void check_report_slack(const char *path, const grobo_model *model, const grobo_slack_taken *slack,
+                        grobo_diagnostics *list);
 
 #endif

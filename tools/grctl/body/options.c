@@ -78,13 +78,14 @@ int body_make(app *a, int base, const char *path, const grobo_motion *motion, do
         }
         return 0;
     }
-    error = grobo_body_new(grobo_gr001_body(), motion, &options, NULL, body);
+    error = grobo_body_new(whole_robot_of(a, motion).body, motion, &options, NULL, body);
     return error ? fail(a, path, error) : 0;
 }
 
 /* ---- refusing ------------------------------------------------------------------------------- */
 
 typedef struct refusal {
+    whole_robot robot;
     bool any, clamps;
     grobo_slack_taken *slack;
     grobo_body_finding first;
@@ -95,8 +96,9 @@ static void note_finding(void *ctx, const grobo_body_finding *finding)
     refusal *r = ctx;
     bool limit = finding->problem == GROBO_BODY_JOINT_LIMIT;
     bool refused = finding->problem == GROBO_BODY_UNREACHABLE || (limit && !r->clamps);
-    if (limit && check_takes_slack(finding)) {
-        if (whole_joints() & GROBO_JOINT_BIT(finding->index)) { /* the others are counted by key */
+    if (limit && check_takes_slack(r->robot.model, finding)) {
+        if (whole_joints(r->robot.body) &
+            GROBO_JOINT_BIT(finding->index)) { /* the others are counted by key */
             check_add_slack(r->slack, finding);
         }
         return;
@@ -108,10 +110,11 @@ static void note_finding(void *ctx, const grobo_body_finding *finding)
     r->first = *finding;
 }
 
-int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *slack)
+int body_refuse(app *a, const char *path, const grobo_motion *motion, grobo_body *body,
+                grobo_slack_taken *slack)
 {
-    refusal r = {.clamps = a->clamps, .slack = slack};
-    grobo_body_check_options how = {GROBO_BODY_CHECK_OPTIONS_INIT, .robot = grobo_gr001_model(),
+    refusal r = {.robot = whole_robot_of(a, motion), .clamps = a->clamps, .slack = slack};
+    grobo_body_check_options how = {GROBO_BODY_CHECK_OPTIONS_INIT, .robot = r.robot.model,
                                     .finding = note_finding, .ctx = &r};
     int error = grobo_body_check(body, &how);
     if (error < 0) {
@@ -123,12 +126,12 @@ int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *s
     if (r.first.problem == GROBO_BODY_UNREACHABLE) {
         return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_UNREACHABLE),
                         "%s: at %.2f s a leg does not reach its target (%s); see --ik off", path,
-                        r.first.begin_s, grobo_gr001_body()->links[r.first.index].name);
+                        r.first.begin_s, r.robot.body->links[r.first.index].name);
     }
     return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LIMIT),
                     "%s: at %.2f s %s is %.1f deg outside its limits once the legs are solved; "
                     "--clamp plays it at the limit",
-                    path, r.first.begin_s, grobo_gr001_model()->joints[r.first.index].name,
+                    path, r.first.begin_s, r.robot.model->joints[r.first.index].name,
                     grobo_deg_from_rad(r.first.worst));
 }
 

@@ -64,7 +64,8 @@ int body_make(app *a, int base, const char *path, const grobo_motion *motion, do
  * Refuses what a robot cannot do: legs that do not reach, angles beyond limits. Those within the
  * slack of a limit are counted. 0 or the status.
  */
-int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *slack);
+int body_refuse(app *a, const char *path, const grobo_motion *motion, grobo_body *body,
+                grobo_slack_taken *slack);
 
 /*
  * The motion with its legs solved: frames at a rate, or (0) a posture a key time. It belongs to the

@@ -12,7 +12,19 @@ typedef struct whole {
     grobo_clip clip;
 } whole;
 
-/* True if the motion has poses of GR001 that give the legs by ikLinks, and IK is on. */
+/* A robot and its body. */
+typedef struct whole_robot {
+    const grobo_model *model;
+    const grobo_body_model *body; /* NULL: it has no legs that are solved */
+} whole_robot;
+
+/* The robot that a motion is for; of a motion for no robot that is known the app's, without a body.
+ * The body stays to the end. */
+whole_robot whole_robot_of(const app *a, const grobo_motion *motion);
+/* The body of a model: that of the app's robot, or of one that comes with grctl. NULL: none. */
+const grobo_body_model *whole_legs(const app *a, const grobo_model *model);
+
+/* True if the motion has poses that give the legs of its robot by ikLinks, and IK is on. */
 bool whole_applies(const app *a, const grobo_motion *motion, const grobo_body_options *options);
 /*
  * Makes the clip that plays a motion, with the whole body where that applies. The motion must
@@ -22,12 +34,12 @@ int whole_open(const app *a, whole *w, const grobo_motion *motion, const grobo_c
                const grobo_body_options *options);
 void whole_close(whole *w);
 /* The joints that inverse kinematics moves. */
-grobo_joint_mask whole_joints(void);
+grobo_joint_mask whole_joints(const grobo_body_model *model);
 
 /*
  * A body for grobo_body_check(): as whole_open() where that applies; else *standing is set, and the
  * legs follow their angles on two feet that are taken to stand from the first pose on.
- * Returns 0 or a library error: GROBO_ERR_TYPE for what is no motion of GR001's.
+ * Returns 0 or a library error: GROBO_ERR_TYPE for a motion of a robot without a body.
  */
 int whole_body(const app *a, grobo_body **body, const grobo_motion *motion,
                const grobo_body_options *options, bool *standing);

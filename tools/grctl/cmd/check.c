@@ -59,12 +59,12 @@ static void check_file(const app *a, const char *path, const order *o, grobo_dia
     size_t before = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     int error = file_read(path, &read, list, &motion);
     if (!error) {
-        const grobo_model *model = file_model(a, motion);
-        error = grobo_motion_check(motion, model ? model : app_model(a), &check, list);
+        const grobo_model *model = whole_robot_of(a, motion).model;
+        error = grobo_motion_check(motion, model, &check, list);
         if (error >= 0) {
             error = check_whole(a, motion, &o->body, &how, list);
         }
-        check_report_slack(name, &slack, list);
+        check_report_slack(name, model, &slack, list);
         grobo_motion_free(motion);
     }
     if (error < 0 && grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) == before) {

@@ -130,8 +130,8 @@ static int refuse_links(app *a, const char *path, const grobo_motion *motion,
         return 0;
     }
     return app_fail(a, EXIT_FILE, "UNSUPPORTED",
-                    "%s: %zu of %zu poses have ikLinks, which are solved for GR001 only; --ik off "
-                    "converts the listed joints alone",
+                    "%s: %zu of %zu poses have ikLinks, and the feet of their robot are not known; "
+                    "--ik off converts the listed joints alone",
                     path, n, grobo_motion_size(motion));
 }
 

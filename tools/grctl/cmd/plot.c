@@ -165,7 +165,7 @@ static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject
     int error = whole_open(a, &w->played, motion, &plain, &body);
     subject->clip = &w->played.clip;
     if (w->played.body) {
-        subject->solved = whole_joints();
+        subject->solved = whole_joints(whole_robot_of(a, motion).body);
     }
     if (error || !app_option(a, OPT_BALANCE)->given) {
         return error;
@@ -212,8 +212,9 @@ static int plot(app *a, const order *o, const grobo_motion *motion)
         error = plot_collect(&w.data, &subject, &how);
     }
     if (error == GROBO_ERR_TYPE) {
-        status = app_fail(a, EXIT_FILE, "TYPE", "%s: no motion of GR001's: its balance is unknown",
-                          o->in);
+        status =
+            app_fail(a, EXIT_FILE, "TYPE",
+                     "%s: for a robot whose feet are not known: its balance is unknown", o->in);
     } else if (error) {
         status = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", o->in,
                           file_error_text(error));

@@ -10,7 +10,7 @@
 #include "tools/grctl/setup/ask.h"
 #include "tools/grctl/setup/found.h"
 
-enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_NAME, OPT_OUT };
+enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_ORDER, OPT_NAME, OPT_OUT };
 
 static const cli_option options[] = {
     [OPT_FAMILY] = OPTION_CHOICE("family", 0, family_names,
@@ -19,6 +19,8 @@ static const cli_option options[] = {
                               "import: its servos, one for all or for each joint"),
     [OPT_IDS] =
         OPTION_TEXT("ids", 0, "JOINT=ID,...", "import: id of each joint, those of @FILE, or 1-4,7"),
+    [OPT_ORDER] = OPTION_CHOICE("order", 0, "chain|file",
+                                "import: joints along the chain, or as a URDF lists them (chain)"),
     [OPT_NAME] = OPTION_TEXT("name", 0, "NAME", "import, new: name of the robot"),
     [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE", "import, new: the robot's file (standard output)"),
 };
@@ -247,6 +249,7 @@ static int run(app *a)
         const sketch_orders orders = {.family = app_option(a, OPT_FAMILY)->text,
                                       .servos = app_option(a, OPT_SERVO)->text,
                                       .ids = app_option(a, OPT_IDS)->text,
+                                      .as_listed = app_option(a, OPT_ORDER)->choice == 1,
                                       .name = app_option(a, OPT_NAME)->text,
                                       .out = app_option(a, OPT_OUT)->text,
                                       .ask = asks ? ask_line : NULL};
@@ -279,7 +282,10 @@ const cli_command cmd_robot = {
         "Ids are those of --ids; else those of a known robot whose joints have the same names;\n"
         "else they are asked for on a terminal, and missing ids are an error without one. --ids\n"
         "@FILE takes them from the robot in FILE by the names of joints. A list without names\n"
-        "goes along the chain: it is shown, and needs a yes or --yes.\n"
+        "goes along the chain: it is shown, and needs a yes or --yes. Joints stand along the\n"
+        "chain, too; with --order file as a URDF lists them, which is how Choreonoid numbers\n"
+        "them: its motions fit then. A body that names the soles of two feet gets 'feet', and its\n"
+        "legs are solved as GR001's.\n"
         "\n"
         "new: a robot's file of the servos that answer on the line of -d, of every family at its\n"
         "usual rates, or of --family, or at the rate of -b. Joints are called joint1 and so on;\n"

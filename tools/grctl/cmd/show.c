@@ -138,7 +138,7 @@ static size_t count_linked(const grobo_motion *motion)
     return n;
 }
 
-static void print_head(const show_rows *rows, const char *path, const char *format)
+static void print_head(const app *a, const show_rows *rows, const char *path, const char *format)
 {
     const grobo_motion *motion = rows->motion;
     double length_us = rows->as_played ? (double)rows->played.clip.length_us
@@ -156,8 +156,8 @@ static void print_head(const show_rows *rows, const char *path, const char *form
         app_print("legs by inverse kinematics\n");
     } else if (linked) {
         app_print("%zu of %zu poses give legs by ikLinks: %s\n", linked, grobo_motion_size(motion),
-                  rows->model ? "--ik exact shows their angles"
-                              : "only GR001's are solved, this is for another robot");
+                  whole_robot_of(a, motion).body ? "--ik exact shows their angles"
+                                                 : "the feet of its robot are not known");
     }
 }
 
@@ -176,7 +176,7 @@ static int show(app *a, show_rows *rows)
     if (a->json) {
         print_json(rows, path, format);
     } else {
-        print_head(rows, path, format);
+        print_head(a, rows, path, format);
         show_table(a, rows);
     }
     return 0;

@@ -51,6 +51,23 @@ static int fail(app *a, const char *path, int error)
     return app_fail_error(a, EXIT_FILE, error, "%s", path);
 }
 
+/* Whether it is still too fast however slowly it is played: no time lies between two postures. */
+static bool has_no_time(const app *a, const playlist *list, int i)
+{
+    grobo_check_options how = {GROBO_CHECK_OPTIONS_INIT, .name = list->path[i], .speed_pct = 1};
+    grobo_diagnostics *found = NULL;
+    grobo_diagnostic d;
+    bool refused = false;
+    if (grobo_diagnostics_new(NULL, &found) == GROBO_OK &&
+        grobo_motion_check(list->motion[i], app_model(a), &how, found) >= 0) {
+        for (size_t k = 0; grobo_diagnostics_get(found, k, &d) == 0; k++) {
+            refused = refused || strcmp(d.code, "too-fast") == 0;
+        }
+    }
+    grobo_diagnostics_free(found);
+    return refused;
+}
+
 /* Says the first thing that would be refused in play, with its place in the file. */
 static int check_one(app *a, const playlist *list, int i, grobo_slack_taken *slack,
                      grobo_diagnostics *found)
@@ -65,12 +82,15 @@ static int check_one(app *a, const playlist *list, int i, grobo_slack_taken *sla
         return fail(a, list->path[i], error);
     }
     if (!find_refused(a, found, &d)) {
-        return list->body[i] ? body_refuse(a, list->path[i], list->body[i], slack) : 0;
+        return list->body[i] ? body_refuse(a, list->path[i], list->motion[i], list->body[i], slack)
+                             : 0;
     }
     file_format(&d, false, text, sizeof text);
     return app_fail(a, EXIT_SAFETY, is_limit(&d) ? "LIMIT" : "SPEED", "%s; %s", text,
-                    is_limit(&d) ? _("--clamp plays it at the limit")
-                                 : _("a lower --speed gives it time"));
+                    is_limit(&d)              ? _("--clamp plays it at the limit")
+                    : has_no_time(a, list, i) ? _("no --speed gives it time: give that posture a "
+                                                  "later time in the file")
+                                              : _("a lower --speed gives it time"));
 }
 
 /* One warning of angles that are played at a limit, one where the robot would fall. */
@@ -86,7 +106,7 @@ static int add_warnings(app *a, const playlist *list, int i, grobo_slack_taken *
     if (error) {
         return error;
     }
-    check_report_slack(list->path[i], slack, found);
+    check_report_slack(list->path[i], app_model(a), slack, found);
     if (app_option(a, PLAY_FORCE)->given || !config_warns_of_falls(a)) {
         return 0;
     }

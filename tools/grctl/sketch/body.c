@@ -303,6 +303,25 @@ static bool take_link(reader *r, const yaml_node_t *link)
            take_joint(r, link, part);
 }
 
+/* "footLinks": link and sole of each foot, for Choreonoid's balancer. Other than two feet: none. */
+static bool take_feet(reader *r, const yaml_node_t *root)
+{
+    const yaml_node_t *list = find(r, root, "footLinks");
+    if (!list || length_of(list) != 2) {
+        return true;
+    }
+    for (int i = 0; i < 2; i++) {
+        const yaml_node_t *one = item(r, list, i);
+        sketch_foot *foot = &r->s->foot[i];
+        if (!take_text(r, one, "link", foot->link) ||
+            !take_numbers(r, find(r, one, "soleCenter"), 3, foot->sole_m)) {
+            return false;
+        }
+    }
+    r->s->n_feet = 2;
+    return true;
+}
+
 static bool take_robot(reader *r)
 {
     const yaml_node_t *root = yaml_document_get_root_node(&r->document);
@@ -331,7 +350,7 @@ static bool take_robot(reader *r)
             return false;
         }
     }
-    return true;
+    return take_feet(r, root);
 }
 
 bool sketch_read_body(sketch *s, const char *path, const char *bytes, size_t size, char *complaint,

@@ -183,6 +183,8 @@ int sketch_import(app *a, const char *path, const sketch_orders *orders)
     }
     s.n = 0;
     s.bare = false;
+    s.n_feet = 0;
+    s.as_listed = orders->as_listed;
     s.name[0] = s.usb[0] = '\0';
     snprintf(s.source, sizeof s.source, "%s", path);
     bool xml = is_xml(bytes, size);

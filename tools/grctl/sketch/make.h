@@ -11,6 +11,7 @@ typedef struct sketch_orders {
     const char *family; /* as a robot's file names it; NULL: a guess */
     const char *servos; /* "STS3215", or one for each joint with commas; NULL: a guess */
     const char *ids;    /* "turn=3,lift=4", "@FILE", or "1-4,7" along the chain; NULL: not given */
+    bool as_listed;     /* joints in the order of a URDF, not along the chain */
     const char *name;   /* of the robot; NULL: that of the description */
     const char *out;    /* the file; NULL: standard output */
     /* Asks a person for a line of at most SKETCH_ANSWER_BYTES; false: none came. NULL: no person is

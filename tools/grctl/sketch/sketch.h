@@ -51,6 +51,12 @@ typedef struct sketch_part {
     double zero_rad; /* of the servo, where its middle is not that of the joint */
 } sketch_part;
 
+/* A foot: its part, by the description's name, and the centre of its sole there. */
+typedef struct sketch_foot {
+    char link[SKETCH_TEXT_BYTES];
+    double sole_m[3];
+} sketch_foot;
+
 typedef struct sketch {
     char name[SKETCH_TEXT_BYTES];
     char source[SKETCH_TEXT_BYTES]; /* what it was made of, for the first line */
@@ -59,8 +65,10 @@ typedef struct sketch {
     int baud_bps;        /* 0: the factory's */
     bool guessed_servos; /* the command line does not give them */
     bool calibrated;     /* its servos keep a middle that was found by hand */
+    bool as_listed;      /* joints of a URDF in its order, which is how Choreonoid numbers them */
     bool bare;           /* parts are joints alone, and have no geometry */
-    int n, n_joints;
+    int n, n_joints, n_feet;
+    sketch_foot foot[2];          /* of a robot that stands on two */
     int along[SKETCH_PARTS_MAX];  /* parts, each behind its parent */
     int joints[SKETCH_PARTS_MAX]; /* parts that turn, in the order of joints */
     sketch_part part[SKETCH_PARTS_MAX];

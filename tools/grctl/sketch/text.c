@@ -71,7 +71,7 @@ static void put_vector(heap *to, const char *key, const double *v)
     if (v[0] == 0 && v[1] == 0 && v[2] == 0) {
         return;
     }
-    heap_print(to, ", %s: [%.7g, %.7g, %.7g]", key, v[0], v[1], v[2]);
+    heap_print(to, ", %s: [%.10g, %.10g, %.10g]", key, v[0], v[1], v[2]);
 }
 
 /* Centre of mass and inertia; not one that no body has, as many descriptions have for a
@@ -85,8 +85,8 @@ static void put_weight(heap *to, const sketch_part *part)
     }
     put_vector(to, "com_m", part->com_m);
     if (fmin(i[0], fmin(i[1], i[2])) > 0 && 2 * most <= all) {
-        heap_print(to, ", inertia_kgm2: [%.7g, %.7g, %.7g, %.7g, %.7g, %.7g]", i[0], i[1], i[2],
-                   i[3], i[4], i[5]);
+        heap_print(to, ", inertia_kgm2: [%.10g, %.10g, %.10g, %.10g, %.10g, %.10g]", i[0], i[1],
+                   i[2], i[3], i[4], i[5]);
     }
 }
 
@@ -111,7 +111,7 @@ static void put_link(heap *to, const sketch *s, const sketch_part *part)
     put_vector(to, "origin_m", origin_m);
     put_vector(to, "origin_deg", origin_deg);
     if (part->mass_kg > 0) {
-        heap_print(to, ", mass_kg: %.6g", part->mass_kg);
+        heap_print(to, ", mass_kg: %.10g", part->mass_kg);
     }
     put_weight(to, part);
     heap_print(to, "}");
@@ -119,6 +119,52 @@ static void put_link(heap *to, const sketch *s, const sketch_part *part)
         heap_print(to, " # taken as fixed: %s", plain(part->note));
     }
     heap_print(to, "\n");
+}
+
+/* The part that a foot is, or NULL. */
+static const sketch_part *part_of(const sketch *s, const sketch_foot *foot)
+{
+    for (int i = 0; i < s->n; i++) {
+        if (strcmp(s->part[i].name, foot->link) == 0) {
+            return &s->part[i];
+        }
+    }
+    return NULL;
+}
+
+/* Half of a side of a uniform plate with the mass and inertia of a part, less a tenth to be safe:
+ * descriptions have no outline of a sole. `along` and `across` are about the axes of that side and
+ * of the other. NAN: the part is no plate. */
+static double half_of(const sketch_part *part, double along, double across)
+{
+    double square_m2 = 6 * (part->inertia_kgm2[2] + across - along) / part->mass_kg;
+    return square_m2 > 0 ? round(0.45 * sqrt(square_m2) * 1e3) / 1e3 : NAN;
+}
+
+static void put_feet(heap *to, const sketch *s)
+{
+    const sketch_part *part[2] = {NULL, NULL};
+    double half_m[2][2];
+    for (int i = 0; i < s->n_feet; i++) {
+        part[i] = part_of(s, &s->foot[i]);
+        if (!part[i] || part[i]->mass_kg <= 0) {
+            return;
+        }
+        const double *inertia = part[i]->inertia_kgm2;
+        half_m[i][0] = half_of(part[i], inertia[0], inertia[1]);
+        half_m[i][1] = half_of(part[i], inertia[1], inertia[0]);
+        if (!(half_m[i][0] > 0 && half_m[i][1] > 0)) {
+            return;
+        }
+    }
+    for (int i = 0; i < s->n_feet; i++) {
+        const double *sole_m = s->foot[i].sole_m;
+        heap_print(to, "%s  - {link: %s, sole_m: [%.7g, %.7g, %.7g], half_m: [%.3g, %.3g]}\n",
+                   i ? ""
+                     : "\n# Sizes of the soles are those of plates that weigh as the feet.\n"
+                       "feet:\n",
+                   part[i]->shown, sole_m[0], sole_m[1], sole_m[2], half_m[i][0], half_m[i][1]);
+    }
 }
 
 char *sketch_text(sketch *s)
@@ -157,6 +203,7 @@ char *sketch_text(sketch *s)
         for (int i = 0; i < s->n; i++) {
             put_link(&to, s, &s->part[s->along[i]]);
         }
+        put_feet(&to, s);
     }
     return to.bytes;
 }

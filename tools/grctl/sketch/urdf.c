@@ -122,7 +122,7 @@ static void begin_joint(reader *r, const char *const *all)
         return;
     }
     take_text(r, all, "name", r->part->joint);
-    r->part->order = 0;
+    r->part->order = r->s->as_listed ? r->joints->n : 0;
     if (!type) {
         complain(r, "joint '%s' has no type", r->part->joint);
     } else if (strcmp(type, "revolute") == 0 || strcmp(type, "continuous") == 0) {

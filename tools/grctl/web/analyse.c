@@ -143,7 +143,7 @@ static void check(analysis *n, bool balance)
     grobo_motion *copy = NULL;
     (void)grobo_motion_check(n->motion, app_model(&n->app), &how, n->found);
     (void)check_whole(&n->app, n->motion, &body, &legs, n->found);
-    check_report_slack(path_of(n), &slack, n->found);
+    check_report_slack(path_of(n), app_model(&n->app), &slack, n->found);
     look_at_balance(n, balance);
     if (grobo_motion_dup(n->motion, &copy) != GROBO_OK) {
         n->status = app_fail_error(&n->app, EXIT_ROBOT, GROBO_ERR_NOMEM, "play");

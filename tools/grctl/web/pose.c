@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tools/grctl/body/whole.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/web/pose.h"
@@ -13,7 +14,7 @@ static const char *const sides[] = {"right", "left"};
 
 const grobo_body_model *pose_body(const app *a)
 {
-    return app_model(a) == grobo_gr001_model() ? grobo_gr001_body() : NULL;
+    return whole_legs(a, app_model(a));
 }
 
 /* ---- numbers --------------------------------------------------------------------------------- */
