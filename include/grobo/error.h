@@ -55,7 +55,9 @@ GROBO_BEGIN_DECLS
     X(UNWATCHED, -34, "rate leaves no time to read the joints")                                    \
     X(STALLED, -35, "stopped by the guard while the program stood still")                          \
     X(SUPERSEDED, -36, "another request took its joints")                                          \
-    X(SETUP, -37, "servo is not set up as its joint needs")
+    X(SETUP, -37, "servo is not set up as its joint needs")                                        \
+    X(PENDING, -38, "has not ended in the time given")                                             \
+    X(OUTSIDE, -39, "outside the directory of motions")
 
 /** The errors as an enum: GROBO_ERR_ARG, GROBO_ERR_NOMEM, ... */
 typedef enum grobo_error {

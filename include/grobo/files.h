@@ -44,7 +44,7 @@ typedef struct grobo_files {
     void (*discard)(grobo_file *file);
     /**
      * The true path of an existing file, every symbolic link followed, which must lie in
-     * directory (also with its links followed) or below. GROBO_ERR_PERM: it does not.
+     * directory (also with its links followed) or below. GROBO_ERR_OUTSIDE: it does not.
      * GROBO_ERR_ISDIR: it is a directory.
      */
     int (*inside)(const char *directory, const char *name, char *path, size_t path_bytes);

@@ -171,7 +171,8 @@ GROBO_API grobo_robot *grobo_runner_robot(grobo_runner *runner);
 /**
  * Waits for the end of a job of grobo_runner_robot(). Waits.
  * @param job what the request returned; an error of it is returned at once.
- * @return the job's result; GROBO_ERR_NOTFOUND of a job that is forgotten: of those that
+ * @return the job's result; GROBO_ERR_PENDING (it has not ended in the time given);
+ *   GROBO_ERR_NOTFOUND of a job that is forgotten: of those that
  *   have ended the last GROBO_RUNNER_ENDS are known.
  */
 GROBO_API int grobo_runner_wait_job(grobo_runner *runner, int job, int64_t timeout_us);
@@ -274,7 +275,7 @@ GROBO_API int grobo_runner_read_posture(grobo_runner *runner, grobo_posture *pos
 GROBO_API int grobo_runner_init_position(grobo_runner *runner);
 /** Waits until nothing moves, nothing is asked of the robot, and the last posture of a motion has
  *  been read back. @return how the last motion or target ended: GROBO_OK, GROBO_ERR_CANCELED
- *  (stopped), or why it failed. */
+ *  (stopped), or why it failed; GROBO_ERR_PENDING: it has not ended in the time given. */
 GROBO_API int grobo_runner_wait(grobo_runner *runner, int64_t timeout_us);
 
 /* ---- the current motion --------------------------------------------------------------------- */

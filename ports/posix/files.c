@@ -241,7 +241,7 @@ static int check_file(const char *real, const char *folder, char *path, size_t p
     struct stat status;
 
     if (!lies_in(real, folder)) {
-        return GROBO_ERR_PERM;
+        return GROBO_ERR_OUTSIDE;
     }
     if (stat(real, &status) != 0) {
         return grobo_i_posix_file_error(errno);

@@ -244,7 +244,7 @@ static int inside(const char *directory, const char *name, char *path, size_t pa
     size -= size > 0 && folder[size - 1] == '\\' ? 1 : 0;
     /* The system has spelt both, so they differ where the files do. */
     if (strncmp(real, folder, size) != 0 || real[size] != '\\') {
-        return GROBO_ERR_PERM;
+        return GROBO_ERR_OUTSIDE;
     }
     attributes = GetFileAttributesA(real);
     if (attributes == INVALID_FILE_ATTRIBUTES) {

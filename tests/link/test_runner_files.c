@@ -51,7 +51,7 @@ TEST_WITH(with_and_without_thread, what_cannot_be_loaded_leaves_nothing)
     assert_int_equal(grobo_runner_load_motion(runner, NULL, list), GROBO_ERR_ARG);
     assert_int_equal(runner_motion_size(runner), 0);
     runner_have_motion(2);
-    assert_int_equal(grobo_runner_load_motion(runner, "../a", list), GROBO_ERR_PERM);
+    assert_int_equal(grobo_runner_load_motion(runner, "../a", list), GROBO_ERR_OUTSIDE);
     assert_int_equal(runner_motion_size(runner), 0);
     put_file(in_folder("bad.m"), "this is no motion\n");
     runner_have_motion(2);

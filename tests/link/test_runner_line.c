@@ -283,7 +283,7 @@ TEST_WITH(on_line, a_robot_whose_owner_is_gone_is_left_well)
     runner_have_motion(1);
     (void)grobo_runner_set_motion_count(runner, 1000000);
     assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
-    assert_int_equal(grobo_runner_wait(runner, 600000), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_runner_wait(runner, 600000), GROBO_ERR_PENDING);
     assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 0), 0);
     assert_true(grobo_runner_is_playing(runner));
     /* And now nobody. */

@@ -326,7 +326,7 @@ TEST_WITH(with_and_without_thread, every_repetition_is_counted)
     assert_int_equal(grobo_runner_set_motion_count(runner, INT_MIN), GROBO_OK);
     assert_int_equal(grobo_runner_play_motion(runner, &at_a_rate), GROBO_OK);
     assert_int_equal(grobo_runner_command_count(runner), INT_MAX);
-    assert_int_equal(grobo_runner_wait(runner, 300000), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_runner_wait(runner, 300000), GROBO_ERR_PENDING);
     assert_int_equal(grobo_runner_command_count(runner), INT_MAX);
     assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), true), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);
@@ -375,7 +375,7 @@ TEST_WITH(with_and_without_thread, playing_is_stopped)
     assert_int_equal(grobo_runner_set_motion_count(runner, 10000), GROBO_OK);
     for (int at_once = 0; at_once < 2; at_once++) {
         assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
-        assert_int_equal(grobo_runner_wait(runner, 400000), GROBO_ERR_TIMEOUT);
+        assert_int_equal(grobo_runner_wait(runner, 400000), GROBO_ERR_PENDING);
         assert_true(grobo_runner_command_count(runner) >= 0);
         assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), at_once != 0), GROBO_OK);
         assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);

@@ -109,7 +109,7 @@ void move_for_long(void)
     assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
     assert_int_equal(grobo_runner_set_motion_time_us(runner, LONG_US), GROBO_OK);
     assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
-    assert_int_equal(grobo_runner_wait(runner, 300000), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_runner_wait(runner, 300000), GROBO_ERR_PENDING);
     assert_int_equal(grobo_runner_is_moving(runner), 1);
 }
 

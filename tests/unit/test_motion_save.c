@@ -229,7 +229,7 @@ TEST(test_find)
         "/etc/passwd", "..", "../x", "sub/../../x", "sub/..", "", "\\x", "c:x", "a/../b"};
     for (size_t i = 0; i < sizeof outside / sizeof outside[0]; i++) {
         assert_int_equal(grobo_motion_find(files, folder, outside[i], path, sizeof path),
-                         GROBO_ERR_PERM);
+                         GROBO_ERR_OUTSIDE);
     }
     assert_int_equal(grobo_motion_find(files, folder, "nothing", path, sizeof path),
                      GROBO_ERR_NOENT);

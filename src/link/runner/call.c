@@ -327,7 +327,12 @@ int grobo_runner_wait_job(grobo_runner *runner, int job, int64_t timeout_us)
     if (runner == NULL || job == 0) {
         return GROBO_ERR_ARG;
     }
-    return job < 0 ? job : grobo_i_runner_job(runner, &known, timeout_us);
+    if (job < 0) {
+        return job;
+    }
+    int r = grobo_i_runner_job(runner, &known, timeout_us);
+
+    return r == GROBO_ERR_TIMEOUT && !known.ended ? GROBO_ERR_PENDING : r;
 }
 
 /* ---- the public functions ----------------------------------------------------------------- */

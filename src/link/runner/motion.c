@@ -206,17 +206,22 @@ int grobo_runner_is_moving(grobo_runner *runner)
 
 static int await_rest(void *arg, grobo_runner *runner)
 {
-    (void)arg;
+    bool *at_rest = arg;
+
     if (grobo_runner_is_moving(runner) || grobo_robot_settling(runner_robot(runner)) ||
         grobo_robot_job(runner_robot(runner)) != GROBO_JOB_NONE) {
         return CALL_PENDING;
     }
+    *at_rest = true;
     RETURN_LOCKED(runner, int, GROBO_ERR_ARG, runner->motion_result);
 }
 
 int grobo_runner_wait(grobo_runner *runner, int64_t timeout_us)
 {
-    return grobo_i_runner_wait(runner, await_rest, NULL, timeout_us);
+    bool at_rest = false;
+    int r = grobo_i_runner_wait(runner, await_rest, &at_rest, timeout_us);
+
+    return r == GROBO_ERR_TIMEOUT && !at_rest ? GROBO_ERR_PENDING : r;
 }
 
 /* ---- reading files ------------------------------------------------------------------------ */

@@ -158,7 +158,7 @@ int grobo_motion_find(const grobo_files *files, const char *directory, const cha
     char tried[GROBO_PATH_MAX_BYTES];
 
     if (!stays_below(name)) {
-        return GROBO_ERR_PERM;
+        return GROBO_ERR_OUTSIDE;
     }
     if (grobo_motion_format_of_path(name) != GROBO_FORMAT_AUTO) {
         return files->inside(directory, name, path, path_bytes);

@@ -418,10 +418,8 @@ class Robot:
         while True:
             with self._runner.use() as runner:
                 result = lib.grobo_runner_wait(runner, us(SLICE))
-                if result == lib.GROBO_ERR_TIMEOUT and lib.grobo_runner_is_moving(runner) == 1:
+                if result == lib.GROBO_ERR_PENDING:
                     continue
-                if result == lib.GROBO_ERR_TIMEOUT:
-                    result = lib.grobo_runner_wait(runner, 0)
                 self._check(result, "play")
                 return
 
@@ -478,10 +476,8 @@ class Robot:
         while True:
             with self._runner.use() as runner:
                 result = lib.grobo_runner_wait_job(runner, job, us(SLICE))
-                if result == lib.GROBO_ERR_TIMEOUT:
-                    if lib.grobo_robot_is_pending(self._runner.robot, job):
-                        continue
-                    result = lib.grobo_runner_wait_job(runner, job, us(SLICE))
+                if result == lib.GROBO_ERR_PENDING:
+                    continue
                 self._check(result, what)
                 return
 
