@@ -93,7 +93,8 @@ TEST(test_find_through_links)
     assert_int_equal(symlink("/etc/passwd", in_folder("out")), 0);
     (void)unlink(in_folder("link.m"));
     assert_int_equal(symlink("/etc/passwd", in_folder("link.m")), 0);
-    assert_int_equal(grobo_motion_find(files, folder, "link", path, sizeof path), GROBO_ERR_OUTSIDE);
+    assert_int_equal(grobo_motion_find(files, folder, "link", path, sizeof path),
+                     GROBO_ERR_OUTSIDE);
     assert_string_equal(path, "untouched");
 }
 
