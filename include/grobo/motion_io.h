@@ -219,8 +219,8 @@ GROBO_API int grobo_motion_save(const grobo_motion *motion, const grobo_files *f
  * .pseq, .mseq in this order. The name may go into folders below, but not out of the directory:
  * an absolute name, "..", and a symbolic link that leads out are refused.
  * @param[out] path of the file, NUL-terminated on success.
- * @return 0, GROBO_ERR_OUTSIDE (out of the directory), GROBO_ERR_PERM, GROBO_ERR_NOENT, GROBO_ERR_ISDIR,
- *   GROBO_ERR_SPACE, GROBO_ERR_IO.
+ * @return 0, GROBO_ERR_OUTSIDE (out of the directory), GROBO_ERR_PERM, GROBO_ERR_NOENT,
+ *   GROBO_ERR_ISDIR, GROBO_ERR_SPACE, GROBO_ERR_IO.
  */
 GROBO_API int grobo_motion_find(const grobo_files *files, const char *directory, const char *name,
                                 char *path, size_t path_bytes);
