@@ -68,6 +68,46 @@ for one in so101:4:return_delay:5 pan-tilt:1:temperature_limit:60 gr001:2:delay:
     stop_sim
 done
 
+# Families whose values are parts of frames, and one that only its EEPROM as a whole can be read of.
+another_than() {
+    [ "$(awk '{ print $3 }' "$work/out")" != "$1" ]
+}
+two_lines() {
+    [ "$(wc -l <"$work/out")" -eq 2 ]
+}
+whole() {
+    kept=$(last_saved) &&
+        [ "$(grep -c '^    "[a-z_0-9]*": -\{0,1\}[0-9]*,\{0,1\}$' "$kept")" -ge "$1" ]
+}
+two_of() {
+    cat <<END
+name: two
+family: $1
+joints:
+  - {name: a, id: 1, servo: $2, limits_deg: [-90, 90]}
+  - {name: b, id: 2, servo: $2, limits_deg: [-90, 90]}
+END
+}
+while read -r family servo register value; do
+    two_of "$family" "$servo" >"$work/two.yaml"
+    start_sim --robot "$work/two.yaml"
+    check "of $servo" saves_and_restores "$work/two.yaml" 1 "$register" "$value"
+    check "all that a $servo keeps is in the file" whole 9
+    check "its other servo is another" \
+        both exits 0 of "$work/two.yaml" servo-get 2 "$register" --- another_than "$value"
+    check "two registers of a $servo at once" \
+        both exits 0 of "$work/two.yaml" servo-get 1 "$register" min_position --- \
+        two_lines
+    stop_sim
+done <<'END'
+lx16a LX-16A temperature_limit 60
+lx16a LX-16A max_position 900
+ics KRS-3301 temperature_limit 60
+ics KRS-3301 punch 5
+dynamixel1 MX-28 return_delay 10
+feetech SCS0009 return_delay 10
+END
+
 test_case "several registers are read in one frame"
 start_sim --robot koch
 several() {

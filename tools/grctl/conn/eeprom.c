@@ -17,6 +17,16 @@ static bool is_kept(const grobo_servo_register *reg)
     return (reg->flags & EEPROM) == EEPROM;
 }
 
+static size_t count_kept(const grobo_servo_model *servo)
+{
+    const grobo_servo_register *reg;
+    size_t n = 0;
+    for (size_t i = 0; (reg = grobo_servo_register_row(servo, i)) != NULL; i++) {
+        n += is_kept(reg);
+    }
+    return n;
+}
+
 static void take(void *registers, const grobo_servo_register *reg, int32_t value)
 {
     json_object_set_new(registers, reg->name, json_integer(value));
@@ -62,6 +72,9 @@ int eeprom_save(conn *c, int id, const grobo_servo_model *servo, char *path, siz
     json_t *registers = json_object();
     const servos_visit visit = {is_kept, take, registers};
     int error = servos_each(c, id, servo, &visit);
+    if (!error && json_object_size(registers) != count_kept(servo)) {
+        error = GROBO_ERR_UNSUPPORTED; /* a file of a part would put back a part */
+    }
     if (error) {
         json_decref(registers);
         return conn_fail_servo(c, error, id);

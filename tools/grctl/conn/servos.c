@@ -36,49 +36,56 @@ int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_serv
 /* RS30x return at most so much, and the board's line is shared. */
 enum { RS30X_BLOCK_BYTES = 30 };
 
-/* Rows from `first` on that one frame reads, of which the last is wanted; 0: it can be written
- * only. */
-static int rows_of_block(const conn *c, const grobo_servo_model *servo, size_t first,
-                         const servos_visit *visit)
+/* Bytes that one frame reads. */
+typedef struct run {
+    uint16_t from;
+    int length; /* 0: row can be written only */
+} run;
+
+/* As many registers as one frame reads from number `first` on, of which the last is wanted; where
+ * none can begin there, the piece that holds it. */
+static run run_of(const conn *c, const grobo_servo_model *servo, size_t first,
+                  const servos_visit *visit)
 {
     const grobo_driver *driver = grobo_robot_driver(c->robot);
+    const grobo_servo_register *begin = grobo_servo_register_row(servo, first), *end = begin;
     int most = family_is(driver, "rs30x") ? RS30X_BLOCK_BYTES : FAMILY_PIECE_BYTES;
-    int n = family_block(driver, servo, first, most);
-    while (n > 1 && !visit->wants(grobo_servo_register_row(servo, first + (size_t)n - 1))) {
-        n--;
-    }
-    return n;
-}
-
-static int read_rows(conn *c, int id, const grobo_servo_model *servo, size_t first, int n,
-                     const servos_visit *visit)
-{
-    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
-    const grobo_servo_register *begin = grobo_servo_register_row(servo, first);
-    const grobo_servo_register *reg = grobo_servo_register_row(servo, first + (size_t)n - 1);
-    int error =
-        servos_read(c, id, begin->address, reg->address + reg->bytes - begin->address, bytes);
-    for (int i = 0; i < n && !error; i++) {
-        reg = grobo_servo_register_row(servo, first + (size_t)i);
-        if (visit->wants(reg)) {
-            visit->take(
-                visit->ctx, reg,
-                grobo_servo_register_get(servo, reg, bytes + (reg->address - begin->address)));
+    run r = {begin->address, 0};
+    for (int n = family_block(driver, servo, first, most); n > 0; n--) {
+        end = grobo_servo_register_row(servo, first + (size_t)n - 1);
+        if (visit->wants(end)) {
+            break;
         }
     }
-    return error;
+    /* The last may be told only with what is behind it. */
+    int n = family_block(driver, servo, first, end->address + end->bytes - begin->address);
+    if (n == 0) {
+        r.length = family_piece(driver, servo, begin, &r.from);
+    } else {
+        end = grobo_servo_register_row(servo, first + (size_t)n - 1);
+        r.length = end->address + end->bytes - begin->address;
+    }
+    return r;
 }
 
 int servos_each(conn *c, int id, const grobo_servo_model *servo, const servos_visit *visit)
 {
     const grobo_servo_register *reg;
+    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
+    run have = {0, 0};
     int error = GROBO_OK;
-    for (size_t first = 0; !error && (reg = grobo_servo_register_row(servo, first)) != NULL;) {
-        int n = visit->wants(reg) ? rows_of_block(c, servo, first, visit) : 0;
-        if (n > 0) {
-            error = read_rows(c, id, servo, first, n, visit);
+    for (size_t i = 0; !error && (reg = grobo_servo_register_row(servo, i)) != NULL; i++) {
+        if (!visit->wants(reg)) {
+            continue;
         }
-        first += n > 0 ? (size_t)n : 1;
+        if (reg->address + reg->bytes > have.from + have.length) {
+            have = run_of(c, servo, i, visit);
+            error = have.length > 0 ? servos_read(c, id, have.from, have.length, bytes) : GROBO_OK;
+        }
+        if (!error && have.length > 0) {
+            visit->take(visit->ctx, reg,
+                        grobo_servo_register_get(servo, reg, bytes + (reg->address - have.from)));
+        }
     }
     return error;
 }
