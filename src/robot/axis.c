@@ -31,7 +31,7 @@ double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
         const grobo_robot_way own = {axis->state.angle_rad, axis->state.goal_rad, axis->angle_us,
                                      axis->own_until_us};
         return axis->own_until_us > axis->angle_us ? grobo_i_way_at(&own, now_us)
-                                                   : axis->state.angle_rad;
+                                                   : axis->state.angle_rad + grobo_i_load(axis);
     }
     int64_t at_us = axis->in_segments ? grobo_i_sooner(now_us, axis->told_to_us) : now_us;
     return grobo_i_way_at(&axis->way, at_us);
@@ -150,6 +150,7 @@ static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
     course c = seen(robot, joint);
     int64_t seen_us = axis->seen_us;
     double end_rad = axis->in_segments ? grobo_i_way_at(way, axis->told_to_us) : way->to_rad;
+    end_rad -= grobo_i_load(axis);
     if (seconds(way->from_us, seen_us) * accel_rad_s2 > 2 * wanted_rad_s) {
         wanted_rad_s = fmin(wanted_rad_s, fabs(c.rad_s)); /* too weak to be as fast by then */
     }
@@ -185,9 +186,9 @@ static double most_since(const grobo_robot *robot, int joint, int64_t now_us)
 static double along(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double way_rad = grobo_i_axis_commanded(axis, now_us);
+    double way_rad = grobo_i_axis_commanded(axis, now_us) - grobo_i_load(axis);
     double most_rad = most_since(robot, joint, now_us);
-    double end_rad = axis->way.to_rad;
+    double end_rad = axis->way.to_rad - grobo_i_load(axis);
     bool before = (way_rad - axis->seen_rad) * (end_rad - axis->seen_rad) < 0 &&
                   axis->seen_us >= axis->way.from_us;
     double left_rad = (before ? end_rad : way_rad) - axis->seen_rad;
@@ -207,7 +208,7 @@ static course turning(const grobo_robot *robot, int joint, int64_t now_us)
     if (is_guided(axis)) {
         return on_ramps(robot, joint, now_us);
     }
-    double end_rad = axis->state.goal_rad;
+    double end_rad = axis->state.goal_rad - grobo_i_load(axis);
     course c = go_on(seen(robot, joint), fmin(seconds(axis->seen_us, now_us), GOES_ON_S));
     bool there = tells_end(axis) && (end_rad - axis->seen_rad) * (end_rad - c.at_rad) < 0;
     return there ? (course){end_rad, 0} : c;
@@ -257,8 +258,9 @@ static double on_way_at(const grobo_robot *robot, int joint, int64_t at_us)
     if ((axis->state.valid & GROBO_FIELD_TIME) != 0) {
         return by_time(robot, joint, at_us);
     }
-    return is_guided(axis) && !axis->off_way ? along(robot, joint, at_us)
-                                             : grobo_i_axis_commanded(axis, at_us);
+    return is_guided(axis) && !axis->off_way
+               ? along(robot, joint, at_us)
+               : grobo_i_axis_commanded(axis, at_us) - grobo_i_load(axis);
 }
 
 double grobo_i_axis_place(const grobo_robot *robot, int joint)
@@ -299,7 +301,7 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
         on_rad = fmax(on_rad, c.rad_s * c.rad_s / (2 * accel_rad_s2));
     }
     bool guided = is_guided(axis) && !axis->off_way;
-    double end_rad = guided ? axis->way.to_rad : axis->state.goal_rad;
+    double end_rad = (guided ? axis->way.to_rad : axis->state.goal_rad) - grobo_i_load(axis);
     double left_rad = end_rad - c.at_rad;
     bool beyond = (guided || tells_end(axis)) && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
     return beyond ? end_rad : c.at_rad + copysign(on_rad, c.rad_s);
@@ -342,8 +344,8 @@ double grobo_i_axis_target(const grobo_robot_axis *axis)
 
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
 {
-    double angle_rad = axis->state.angle_rad;
-    axis->way = (grobo_robot_way){angle_rad, angle_rad, now_us, now_us};
+    double goal_rad = axis->state.angle_rad + grobo_i_load(axis);
+    axis->way = (grobo_robot_way){goal_rad, goal_rad, now_us, now_us};
     axis->in_segments = axis->off_way = false;
 }
 
@@ -402,6 +404,87 @@ bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
            grobo_i_later(grobo_i_axis_until(axis), axis->way.to_us) > now_us;
 }
 
+bool grobo_i_way_is_short(const grobo_robot_axis *axis)
+{
+    return axis->has_target && axis->in_segments && axis->told_to_us < axis->way.to_us;
+}
+
+bool grobo_i_goal_is_told(const grobo_robot_axis *axis)
+{
+    return axis->goal_us != GROBO_NEVER_US && axis->goal_us > axis->told_us;
+}
+
+/* ---- weight ---------------------------------------------------------------------------------- */
+
+/* No weight that a servo can carry makes a larger error; of a limited torque a part of that. The
+ * softest loop that is known, of an XL330 with the weight of an arm, has 14 degrees. */
+#define LOAD_MOST_RAD (20 * 0.017453292519943295)
+/* A joint that swings is not faster, nor further from where it hangs; and it rests by then. */
+#define SWINGS_DPS 40
+#define SWINGS_RAD (3 * 0.017453292519943295)
+#define SAGS_US 1500000
+
+double grobo_i_load_most(const grobo_robot *robot, int joint)
+{
+    int pct = robot->driver->model->joints[joint].torque_limit_pct;
+    return pct > 0 ? LOAD_MOST_RAD * pct / 100 : LOAD_MOST_RAD;
+}
+
+bool grobo_i_axis_is_counted(const grobo_robot_axis *axis)
+{
+    return GROBO_DRIVERS_PLAIN || (axis->state.valid & GROBO_FIELD_TIME) != 0;
+}
+
+/* True of one that is not, and tells how it turns. */
+static bool shows_swing(const grobo_robot *robot, const grobo_robot_axis *axis)
+{
+    return !grobo_i_axis_is_counted(axis) && !GROBO_I_EXTRA(robot->driver, tells_no_speed) &&
+           axis->seen_dps != GROBO_I_NO_SPEED;
+}
+
+bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool sent = axis->has_target && !axis->off_way;
+    *goal_rad = sent ? axis->way.to_rad : axis->state.goal_rad;
+    return sent ? !grobo_i_way_is_short(axis)
+                : axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us;
+}
+
+/* True of one that may not rest yet in the goal that it was told, or since then. */
+static bool settles(const grobo_robot *robot, const grobo_robot_axis *axis, int64_t since_us)
+{
+    int64_t from_us = grobo_i_later(axis->told_us, since_us);
+    from_us = axis->has_target ? grobo_i_later(from_us, axis->way.to_us) : from_us;
+    return robot->now_us - from_us <= SAGS_US;
+}
+
+bool grobo_i_swings(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double goal_rad, load_rad = grobo_i_load_kept(axis);
+    if (!shows_swing(robot, axis) || !grobo_i_axis_goal(robot, joint, &goal_rad)) {
+        return false;
+    }
+    double left_rad = goal_rad - load_rad - axis->seen_rad;
+    bool now = axis->goal_us == axis->angle_us || settles(robot, axis, 0);
+    bool sinks = now && axis->seen_dps * (goal_rad - axis->seen_rad) < 0;
+    return (sinks && fabs(left_rad) <= grobo_i_load_most(robot, joint)) ||
+           (load_rad != 0 && fabs(left_rad) <= SWINGS_RAD && abs(axis->seen_dps) <= SWINGS_DPS);
+}
+
+bool grobo_i_may_sag(const grobo_robot *robot, int joint, int64_t since_us)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double goal_rad;
+    return shows_swing(robot, axis) && grobo_i_axis_goal(robot, joint, &goal_rad) &&
+           grobo_i_goal_is_told(axis) &&
+           fabs(goal_rad - axis->seen_rad) <= grobo_i_load_most(robot, joint) &&
+           settles(robot, axis, since_us);
+}
+
+/* ---- moving ---------------------------------------------------------------------------------- */
+
 static bool turns(const grobo_robot_axis *axis)
 {
     return abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
@@ -409,7 +492,8 @@ static bool turns(const grobo_robot_axis *axis)
 
 bool grobo_i_axis_is_late(const grobo_robot_axis *axis)
 {
-    return !tells_speed(axis) && fabs(axis->state.angle_rad - axis->way.to_rad) > LAGS_RAD;
+    double off_rad = axis->state.angle_rad + grobo_i_load(axis) - axis->way.to_rad;
+    return !tells_speed(axis) && fabs(off_rad) > LAGS_RAD;
 }
 
 /* A ramp that was not read may end so much later. */
@@ -427,8 +511,8 @@ static bool is_on_ramp(const grobo_robot *robot, int joint)
         return false;
     }
     const course c = seen(robot, joint);
-    double left_rad =
-        copysign(axis->way.to_rad - c.at_rad, (axis->way.to_rad - c.at_rad) * c.rad_s);
+    double end_rad = axis->way.to_rad - grobo_i_load(axis);
+    double left_rad = copysign(end_rad - c.at_rad, (end_rad - c.at_rad) * c.rad_s);
     double over_rad = c.rad_s * c.rad_s / (2 * accel_rad_s2) - left_rad;
     double back_s = fabs(c.rad_s) / accel_rad_s2 + 2 * sqrt(fmax(over_rad, 0) / accel_rad_s2);
     double rad_s = fabs(turning(robot, joint, robot->now_us - RAMP_LATE_US).rad_s);
@@ -449,7 +533,9 @@ bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
                robot->now_us - axis->seen_us <= GROBO_WATCH_US;
     }
     return grobo_i_axis_tells_turn(robot, joint) && is_guided(axis) &&
-           fabs(grobo_i_axis_place(robot, joint) - axis->way.to_rad) > LAGS_RAD;
+           !grobo_i_swings(robot, joint) &&
+           fabs(grobo_i_axis_place(robot, joint) + grobo_i_load(axis) - axis->way.to_rad) >
+               LAGS_RAD;
 }
 
 bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)

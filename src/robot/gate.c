@@ -122,7 +122,7 @@ static double speed_limit(const grobo_robot *robot, int joint, bool soft)
 static double begin_of(const grobo_robot *robot, const grobo_robot_order *order, int joint)
 {
     return order->deed == GROBO_I_DEED_HALT || order->rests
-               ? grobo_i_axis_place(robot, joint)
+               ? grobo_i_axis_place(robot, joint) + grobo_i_load_kept(&robot->axes[joint])
                : grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
 }
 
@@ -182,7 +182,8 @@ static int64_t time_of_order(const grobo_robot *robot, const grobo_robot_order *
     bool alone = axis->way.to_us - axis->way.from_us > HALT_TIME_US; /* no next one soon */
     bool rests = order->rests && (at_once || alone);
     if (halts || (rests && axis->seen_us < axis->told_us + GROBO_I_BEGUN_US)) {
-        int64_t unsure_us = time_needed(robot, joint, axis->seen_rad, to_rad, false);
+        from_rad = axis->seen_rad + grobo_i_load_kept(axis);
+        int64_t unsure_us = time_needed(robot, joint, from_rad, to_rad, false);
         needed_us = grobo_i_later(needed_us, unsure_us);
     }
     double brake_us = order->rests ? grobo_i_axis_brake_us(robot, joint) : 0;
@@ -273,12 +274,13 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool halted = axis->last == 0; /* by what has no number: a raw frame, or a halt behind it */
-    double rest_rad =
-        grobo_i_axis_reached(robot, joint, robot->now_us + (halted ? HALT_AHEAD_US : 0));
+    int64_t rest_us = robot->now_us + (halted ? HALT_AHEAD_US : 0);
+    double rest_rad = grobo_i_axis_reached(robot, joint, rest_us);
     double here_rad = grobo_i_axis_place(robot, joint);
     double rad_s = fmin(grobo_i_axis_speed(robot, joint), speed_limit(robot, joint, soft));
     double most_rad = fmax(rad_s * (double)axis->next_time_us / 1e6 / 2, fabs(rest_rad - here_rad));
-    return halted ? rest_rad : fmin(fmax(axis->next_rad, here_rad - most_rad), here_rad + most_rad);
+    return halted ? grobo_i_goal_to_rest(robot, joint, rest_us)
+                  : grobo_i_goal_near(axis, axis->next_rad, here_rad, most_rad);
 }
 
 /* Where the joints of an order are to go by now, but for those that it would wake. @return whether
@@ -389,11 +391,11 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
                       grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
             const grobo_i_limits limits = grobo_i_joint_limits(robot, j);
-            double rest_rad = grobo_i_axis_reached(robot, j, rest_us);
-            double in_rad = fmin(fmax(rest_rad, limits.min_rad), limits.max_rad);
+            double goal_rad = grobo_i_goal_to_rest(robot, j, rest_us);
+            double in_rad = fmin(fmax(goal_rad, limits.min_rad), limits.max_rad);
             target->posture.angle_rad[j] = in_rad;
             target->joint_time_us[j] =
-                grobo_i_later(HALT_TIME_US, draw_time_us(robot, j, rest_rad, in_rad));
+                grobo_i_later(HALT_TIME_US, draw_time_us(robot, j, goal_rad, in_rad));
             target->posture.set |= GROBO_JOINT_BIT(j);
         }
     }
@@ -638,7 +640,8 @@ static double begin_of_halt(const grobo_robot *robot, const grobo_target *target
 {
     double to_rad = target->posture.angle_rad[joint];
     double way_rad = fabs(target->from_rad[joint] - to_rad);
-    double behind_rad = robot->axes[joint].state.angle_rad - to_rad;
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double behind_rad = axis->state.angle_rad + grobo_i_load_kept(axis) - to_rad;
     double most_rad = speed_limit(robot, joint, true) * (double)target->joint_time_us[joint] / 1e6;
     return fabs(behind_rad) <= way_rad
                ? target->from_rad[joint]

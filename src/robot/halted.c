@@ -34,7 +34,7 @@ static bool has_lost_it(const grobo_robot *robot, int joint)
     }
     return GROBO_I_EXTRA(robot->driver, tells_no_speed) &&
            robot->now_us > axis->way.to_us + LATE_US &&
-           fabs(axis->state.angle_rad - axis->way.to_rad) > BESIDE_RAD;
+           fabs(axis->state.angle_rad + grobo_i_load(axis) - axis->way.to_rad) > BESIDE_RAD;
 }
 
 void grobo_i_astray(grobo_robot *robot, int joint)

@@ -74,7 +74,8 @@ static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
         left_us = left_us > least_us ? left_us : least_us;
         axis->own_until_us = robot->now_us + (moves || creeps ? left_us : 0);
     }
-    axis->adrift = moves && !axis->has_target && axis->own_until_us <= robot->now_us;
+    axis->adrift = moves && !axis->has_target && axis->own_until_us <= robot->now_us &&
+                   !grobo_i_swings(robot, joint);
 }
 
 /* True if the servo has told since the last frame that its goal is another one; or did so before
@@ -120,8 +121,9 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
     }
     double then_rad = grobo_i_way_at(&axis->way, asked_us);
     double now_rad = grobo_i_way_at(&axis->way, robot->now_us);
-    double beside_rad = fmin(fabs(got->angle_rad - then_rad), fabs(got->angle_rad - now_rad));
-    bool between = (got->angle_rad - axis->way.from_rad) * (now_rad - got->angle_rad) >= 0;
+    double set_rad = got->angle_rad + grobo_i_load(axis);
+    double beside_rad = fmin(fabs(set_rad - then_rad), fabs(set_rad - now_rad));
+    bool between = (set_rad - axis->way.from_rad) * (now_rad - set_rad) >= 0;
     bool elsewhere = !between && asked_us - axis->told_us > TURNED_US;
     bool stands = abs(got->speed_dps) < GROBO_I_SLOW_DPS;
     bool never_began = stands && is_fast(&axis->way, asked_us) && beside_rad > BESIDE_RAD &&
@@ -141,22 +143,23 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
                        const grobo_joint_state *got)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
-    if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
-        grobo_i_stand_seen(robot, joint, asked_us, axis->state.angle_rad);
-        axis->sensed = true;
-        grobo_i_axis_seen(axis, asked_us, got);
-        take_move(robot, joint, got);
-        axis->off_way = is_astray(axis) || is_off_way(robot, joint, asked_us, got);
-        if (!axis->has_target) {
-            grobo_i_axis_here(axis, robot->now_us);
-        }
-    }
     if ((got->valid & GROBO_FIELD_GOAL) != 0) {
         axis->goal_us = robot->now_us;
     }
     if ((got->valid & GROBO_FIELD_TORQUE) != 0) {
         axis->torque_known = true;
         axis->torque_us = robot->now_us;
+    }
+    if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
+        grobo_i_stand_seen(robot, joint, asked_us, axis->state.angle_rad);
+        axis->sensed = true;
+        grobo_i_axis_seen(axis, asked_us, got);
+        take_move(robot, joint, got);
+        axis->off_way = is_astray(axis) || is_off_way(robot, joint, asked_us, got);
+        grobo_i_load_take(robot, joint, got);
+        if (!axis->has_target) {
+            grobo_i_axis_here(axis, robot->now_us);
+        }
     }
 }
 

@@ -10,6 +10,7 @@
  *   slot.c       frames under way: from an exchange to a transaction and back
  *   budget.c     how many motion frames a second leave time to read
  *   stand.c      whether a joint stands
+ *   weight.c     the error that carries a joint, and goals that keep it
  *   reading.c    what a reading tells of a joint
  *   ways.c       ways that are told in segments
  *   gate.c       the only way to motors: judges and notes each order as its frame leaves
@@ -54,6 +55,36 @@ static inline bool grobo_i_has(grobo_joint_mask joints, int joint)
 {
     return (joints & GROBO_JOINT_BIT(joint)) != 0;
 }
+
+/* How far its goal is beyond the place where it stands by that: the error that carries its weight;
+ * 0 where nothing is known of one (weight.c). The second is what a stop keeps of it. */
+static inline double grobo_i_load(const grobo_robot_axis *axis)
+{
+    return GROBO_DRIVERS_PLAIN ? 0 : axis->load_rad;
+}
+static inline double grobo_i_load_kept(const grobo_robot_axis *axis)
+{
+    bool kept = axis->load_is_sure || (axis->has_target && !axis->off_way);
+    return kept ? grobo_i_load(axis) : 0;
+}
+
+/* True if its goal was read, or its servo answered with it, behind the frame that left last: one
+ * read at the very moment when that left is the goal before. */
+bool grobo_i_goal_is_told(const grobo_robot_axis *axis);
+/* True while the servo was not told the end of its way. */
+bool grobo_i_way_is_short(const grobo_robot_axis *axis);
+/* A servo that reports the time of its way is counted along it. */
+bool grobo_i_axis_is_counted(const grobo_robot_axis *axis);
+/* The goal that its servo has, where that is known; false else. */
+bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad);
+/* The largest error that can be of a weight. */
+double grobo_i_load_most(const grobo_robot *robot, int joint);
+/* True of a joint that turns as a body that hangs in the goal of its servo: it sinks from there, or
+ * swings about the place where it stood. */
+bool grobo_i_swings(const grobo_robot *robot, int joint);
+/* True of a joint near the goal of its servo, which it may sag from, since it was told that goal or
+ * since then, and which did not have the time to come to rest. */
+bool grobo_i_may_sag(const grobo_robot *robot, int joint, int64_t since_us);
 
 /* All joints of the model. */
 grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot);
@@ -262,9 +293,6 @@ void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double 
 bool grobo_i_stand_left(const grobo_robot_axis *axis);
 /* True if it was read to stand since then. */
 bool grobo_i_stands(const grobo_robot *robot, int joint);
-/* True if its goal was read, or its servo answered with it, behind the frame that left last: one
- * read at the very moment when that left is the goal before. */
-bool grobo_i_goal_is_told(const grobo_robot_axis *axis);
 /* True if the goal read is the one that it was sent to, or of a way told in segments lies ahead of
  * where it was by then. */
 bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint);
@@ -273,6 +301,16 @@ bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint);
 void grobo_i_halt_left(grobo_robot *robot, grobo_joint_mask joints, bool halts);
 /* These are halted once they were read. */
 void grobo_i_halt_owe(grobo_robot *robot, grobo_joint_mask joints);
+
+/* ---- weight.c -------------------------------------------------------------------------------- */
+
+/* A reading of a joint: the load that it stands in, where it stands and its goal is known. */
+void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *got);
+/* The goal that has a joint rest where it can by then: it keeps the load. */
+double grobo_i_goal_to_rest(const grobo_robot *robot, int joint, int64_t rest_us);
+/* This goal, drawn in so that its joint rests no further than that from here. */
+double grobo_i_goal_near(const grobo_robot_axis *axis, double goal_rad, double here_rad,
+                         double most_rad);
 
 /* ---- reading.c ------------------------------------------------------------------------------- */
 
@@ -305,8 +343,6 @@ void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, gro
 void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target);
 /* When joints are told more; GROBO_NEVER_US: none is. */
 int64_t grobo_i_segments_due(const grobo_robot *robot);
-/* True while the servo was not told the end of its way. */
-bool grobo_i_way_is_short(const grobo_robot_axis *axis);
 /* The joints of which that is true now. */
 grobo_joint_mask grobo_i_joints_that(const grobo_robot *robot,
                                      bool (*is)(const grobo_robot_axis *axis, int64_t now_us));

@@ -67,11 +67,6 @@ bool grobo_i_stands(const grobo_robot *robot, int joint)
     return known && (there || axis->stood_us - axis->still_us >= grobo_i_stand_us(robot));
 }
 
-bool grobo_i_goal_is_told(const grobo_robot_axis *axis)
-{
-    return axis->goal_us != GROBO_NEVER_US && axis->goal_us > axis->told_us;
-}
-
 bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];

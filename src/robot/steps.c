@@ -657,17 +657,18 @@ static bool still_turns(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool trembles = axis->has_target && !axis->off_way && abs(axis->seen_dps) < TREMBLES_DPS &&
-                    near_rad(axis->way.to_rad, axis->seen_rad, TREMBLES_RAD);
+                    near_rad(axis->way.to_rad - grobo_i_load(axis), axis->seen_rad, TREMBLES_RAD);
     return grobo_i_axis_tells_turn(robot, joint) && !trembles &&
            axis->state.torque == GROBO_TORQUE_ON && abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
 }
 
-/* It is let go on, and looked at once more. */
+/* It is let go on, and looked at once more. One that swings in its load has arrived. */
 static bool arrives(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
-    bool arrives = axis->has_target && !axis->off_way && still_turns(robot, joint) &&
-                   near_rad(axis->way.to_rad, axis->seen_rad, ARRIVES_RAD);
+    bool swings = grobo_i_load(axis) != 0 && grobo_i_swings(robot, joint);
+    bool arrives = axis->has_target && !axis->off_way && still_turns(robot, joint) && !swings &&
+                   near_rad(axis->way.to_rad - grobo_i_load(axis), axis->seen_rad, ARRIVES_RAD);
     if (arrives) {
         axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ARRIVES_US);
     }
@@ -678,14 +679,19 @@ static bool arrives(grobo_robot *robot, int joint)
  * on its way: one that sags under its load turns the other way, or not at all. */
 #define CREEPS_FAR_RAD (3 * 0.017453292519943295)
 #define CREEPS_DPS 2
+/* One that swings so has turned back by then. */
+#define TURNS_BACK_US 500000
 
 static bool creeps_to_its_goal(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double left_rad = axis->state.goal_rad - axis->seen_rad;
+    double left_rad = axis->state.goal_rad - grobo_i_load(axis) - axis->seen_rad;
+    int64_t begun_us = robot->job->begun_us;
+    bool may_turn_back =
+        robot->now_us - begun_us <= TURNS_BACK_US && grobo_i_may_sag(robot, joint, begun_us);
     return grobo_i_axis_tells_turn(robot, joint) && axis->goal_us == axis->angle_us &&
            abs(axis->seen_dps) >= CREEPS_DPS && axis->seen_dps * left_rad > 0 &&
-           fabs(left_rad) > CREEPS_FAR_RAD;
+           fabs(left_rad) > CREEPS_FAR_RAD && !may_turn_back;
 }
 
 /* True if the servo, just read, says that it is on a way; notes that way. */
@@ -694,9 +700,10 @@ static bool is_astray(grobo_robot *robot, int joint)
     grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_joint_state *state = &axis->state;
     int64_t left_us = state->goal_time_us - state->time_us;
-    bool creeps = axis->goal_us == axis->angle_us && left_us > 0 &&
-                  !near_rad(state->goal_rad, state->angle_rad, THERE_RAD);
-    bool turns = still_turns(robot, joint) || creeps_to_its_goal(robot, joint);
+    bool creeps = (state->valid & GROBO_FIELD_TIME) != 0 && axis->goal_us == axis->angle_us &&
+                  left_us > 0 && !near_rad(state->goal_rad, state->angle_rad, THERE_RAD);
+    bool turns = (still_turns(robot, joint) && !grobo_i_swings(robot, joint)) ||
+                 creeps_to_its_goal(robot, joint);
     if (state->torque != GROBO_TORQUE_ON ||
         (axis->own_until_us <= robot->now_us && !axis->adrift && !creeps && !turns)) {
         return false;
@@ -779,7 +786,8 @@ static int step_moved(grobo_robot *robot)
     grobo_joint_mask doubt = job->pending & doubtful(robot), lost = job->pending & job->failed;
     grobo_joint_mask moved = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(doubt, j) && grobo_i_stand_left(&robot->axes[j])) {
+        if (grobo_i_has(doubt, j) && grobo_i_stand_left(&robot->axes[j]) &&
+            !grobo_i_swings(robot, j) && !grobo_i_may_sag(robot, j, job->begun_us)) {
             grobo_i_astray(robot, j);
             moved |= GROBO_JOINT_BIT(j);
         }

@@ -43,11 +43,6 @@ static int64_t part_us(const grobo_robot *robot, int joint, const grobo_robot_wa
     return (end_us - now_us + step_us - 1) / step_us * step_us;
 }
 
-bool grobo_i_way_is_short(const grobo_robot_axis *axis)
-{
-    return axis->has_target && axis->in_segments && axis->told_to_us < axis->way.to_us;
-}
-
 /* The end is repeated, too, while there is time for it: a frame may be lost. */
 static bool is_renewed(const grobo_robot_axis *axis, int64_t now_us)
 {

@@ -7,157 +7,29 @@
  * is bounded where its figures are good.
  */
 #include <math.h>
-#include <string.h>
-
-#include <grobo/core/sim.h>
-#include <grobo/core/sim_static.h>
-#include <grobo/core/static.h>
-#include <grobo/posture.h>
-#include <grobo/robot_file.h>
 
 #include "tests/support/test.h"
+#include "tests/support/weight_kit.h"
 
-enum { LIFT = 1, ELBOW = 2, N = 6, MOVES = 24, MS = 1000, SECOND_US = 1000000 };
+enum { LIFT = 1, ELBOW = 2, MOVES = 24 };
 
-static grobo_sim sim;
-static grobo_robot robot;
-static grobo_driver driver;
-static grobo_sim_physics *physics;
-static grobo_robot_sim setting;
-static int64_t now_us;
-static int ended, result;
-
-static int64_t clock_us(void *ctx)
+static int end(void)
 {
-    (void)ctx;
-    return now_us;
+    weight_finish();
+    return 0;
 }
 
-static void on_event(void *ctx, const grobo_event *event)
-{
-    (void)ctx;
-    if (event->kind == GROBO_EVENT_JOB) {
-        ended = event->u.job.number;
-        result = event->u.job.result;
-    }
-}
-
-static void exchange(void)
-{
-    uint8_t buf[256];
-    int n;
-    size_t got;
-    do {
-        while ((got = grobo_sim_tx(&sim, buf, sizeof buf, now_us)) > 0) {
-            grobo_robot_rx(&robot, buf, got, now_us);
-        }
-        grobo_robot_step(&robot, now_us);
-        while ((n = grobo_robot_tx(&robot, buf, sizeof buf, now_us)) > 0) {
-            assert_int_equal(grobo_sim_rx(&sim, buf, (size_t)n, now_us), n);
-        }
-    } while (grobo_sim_deadline(&sim) <= now_us);
-}
-
-static void run_us(int64_t us)
-{
-    for (int64_t until_us = now_us + us; now_us < until_us;) {
-        now_us += 250;
-        exchange();
-    }
-}
-
-/* Lets time pass until a job ends. */
-static int wait_for(int job)
-{
-    assert_true(job > 0);
-    int64_t until_us = now_us + 60LL * SECOND_US;
-    while (ended != job && now_us < until_us) {
-        run_us(MS);
-    }
-    assert_int_equal(ended, job);
-    return result;
-}
-
-static double angle_deg(int joint)
-{
-    grobo_sim_view view;
-    assert_int_equal(grobo_sim_look(&sim, joint, &view), 0);
-    return view.angle_mdeg / 1000.0;
-}
-
-static double goal_deg(int joint)
-{
-    const grobo_servo_register *reg =
-        grobo_servo_register_of(setting.servos[joint], GROBO_ROLE_GOAL);
-    int32_t ticks = 0;
-    assert_int_equal(grobo_sim_get_register(&sim, joint, reg->address, &ticks), 0);
-    return (ticks - 2048) * 360 / 4096.0;
-}
-
-/* As a new command meets the arm: an engine that knows nothing of it. */
-static void new_engine(void)
-{
-    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT};
-    const grobo_robot_host host = {.clock = clock_us};
-    assert_int_equal(grobo_robot_init(&robot, &driver, NULL, &config, now_us), 0);
-    grobo_robot_set_host(&robot, &host);
-    grobo_robot_on_event(&robot, on_event, NULL);
-    grobo_robot_link_up(&robot, now_us);
-    run_us(50 * MS);
-}
-
-/* An SO-101 that holds itself, with this gain in the registers of P. */
-static void begin(int gain)
-{
-    const grobo_robot_def *def = NULL;
-    for (size_t i = 0; grobo_robot_def_at(i) != NULL; i++) {
-        def = strcmp(grobo_robot_def_at(i)->name, "so101") == 0 ? grobo_robot_def_at(i) : def;
-    }
-    assert_non_null(def);
-    assert_int_equal(grobo_robot_def_driver(def, def->wiring, &driver), 0);
-    assert_int_equal(grobo_robot_def_sim(def, def->wiring, &setting), 0);
-    assert_int_equal(grobo_robot_def_physics(def, false, NULL, &physics), 0);
-    setting.config.physics = physics;
-    now_us = SECOND_US;
-    assert_int_equal(grobo_sim_init(&sim, &setting.config, now_us), 0);
-    for (int i = 0; i < N; i++) {
-        const grobo_servo_model *servo = setting.servos[i];
-        (void)grobo_sim_set_register(
-            &sim, i, grobo_servo_register_named(servo, "position_p")->address, gain);
-        (void)grobo_sim_set_register(&sim, i,
-                                     grobo_servo_register_of(servo, GROBO_ROLE_TORQUE)->address, 1);
-    }
-    now_us += 2 * SECOND_US;
-    grobo_sim_step(&sim, now_us);
-    new_engine();
-}
-
-static void finish(void)
-{
-    grobo_sim_physics_free(physics);
-    physics = NULL;
-}
-
-static int move(int joint, double deg, int ms)
-{
-    grobo_posture target;
-    assert_int_equal(grobo_posture_init(&target, N), 0);
-    assert_int_equal(grobo_posture_set_rad(&target, joint, grobo_rad_from_deg(deg)), 0);
-    target.time_us = ms * MS;
-    int job = grobo_robot_move(&robot, &target);
-    return job < 0 ? job : wait_for(job);
-}
+TESTS_BETWEEN(NULL, end)
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
 static void steady_error(int gain)
 {
-    begin(gain);
+    weight_begin("so101", gain);
     print_message("gain %2d | steady error of lift with the arm stretched out: %.2f deg\n", gain,
-                  angle_deg(LIFT) - goal_deg(LIFT));
-    double error_deg = angle_deg(LIFT) - goal_deg(LIFT);
+                  weight_angle_deg(LIFT) - weight_goal_deg(LIFT));
+    double error_deg = weight_angle_deg(LIFT) - weight_goal_deg(LIFT);
     assert_true(error_deg > 1.5 && error_deg < 5.5); /* 1.8 to 5 in the reference */
-    finish();
 }
 
 TEST(a_held_joint_has_a_steady_error)
@@ -171,23 +43,24 @@ static void moves_in_a_row(int gain)
 {
     int failed = 0;
     double largest_deg = 0;
-    begin(gain);
-    assert_int_equal(wait_for(grobo_robot_torque(&robot, GROBO_JOINTS_ALL(N), GROBO_TORQUE_ON)), 0);
+    weight_begin("so101", gain);
+    assert_int_equal(weight_torque(GROBO_TORQUE_ON), 0);
     for (int i = 0; i < MOVES; i++) {
         int joint = i % 2 == 0 ? LIFT : ELBOW;
         double to_deg = i % 4 < 2 ? 20 : -20;
-        new_engine();
-        int torque = grobo_robot_torque(&robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_ON);
-        bool fails = torque < 0 || wait_for(torque) < 0 || move(joint, to_deg, 500) < 0;
+        weight_new_engine();
+        int torque = grobo_robot_torque(&weight.robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_ON);
+        bool fails = torque < 0 || weight_wait(torque) < 0 || weight_move(joint, to_deg, 500) < 0;
         failed += fails;
-        wait_for(grobo_robot_exit(&robot, GROBO_EXIT_HOLD));
-        double off_deg = goal_deg(joint) - to_deg;
+        weight_wait(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
+        double off_deg = weight_goal_deg(joint) - to_deg;
         largest_deg = fmax(largest_deg, fabs(off_deg));
     }
     print_message("gain %2d | commands `move`, one after the other: %d of %d fail; goal off by up "
                   "to %.1f deg\n",
                   gain, failed, MOVES, largest_deg);
-    finish();
+    assert_int_equal(failed, 0);
+    assert_true(largest_deg < 0.5);
 }
 
 TEST(moves_one_after_the_other)
@@ -200,24 +73,20 @@ static void stop_and_rest(int gain)
 {
     double lowest_deg = 0;
     for (int k = 0; k < 5; k++) {
-        begin(gain);
-        assert_int_equal(wait_for(grobo_robot_torque(&robot, GROBO_JOINTS_ALL(N), GROBO_TORQUE_ON)),
-                         0);
-        grobo_posture target;
-        assert_int_equal(grobo_posture_init(&target, N), 0);
-        assert_int_equal(grobo_posture_set_rad(&target, LIFT, grobo_rad_from_deg(-30)), 0);
-        target.time_us = SECOND_US;
-        assert_true(grobo_robot_move(&robot, &target) > 0);
-        run_us((300 + 60 * k) * MS);
-        (void)grobo_robot_stop(&robot, true);
-        double at_deg = angle_deg(LIFT);
-        run_us(3 * SECOND_US);
-        lowest_deg = fmax(lowest_deg, angle_deg(LIFT) - at_deg); /* + lowers the tool */
-        finish();
+        weight_begin("so101", gain);
+        assert_int_equal(weight_torque(GROBO_TORQUE_ON), 0);
+        grobo_posture target = weight_target(LIFT, -30, 1000);
+        assert_true(grobo_robot_move(&weight.robot, &target) > 0);
+        weight_run((300 + 60 * k) * WEIGHT_MS);
+        (void)grobo_robot_stop(&weight.robot, true);
+        double at_deg = weight_angle_deg(LIFT);
+        weight_run(3 * WEIGHT_S);
+        lowest_deg = fmax(lowest_deg, weight_angle_deg(LIFT) - at_deg); /* + lowers the tool */
     }
     print_message(
         "gain %2d | a stop in motion ends lower than it was asked for by up to %.1f deg\n", gain,
         lowest_deg);
+    assert_true(lowest_deg < 0.5);
 }
 
 TEST(a_stop_in_motion)
@@ -229,15 +98,15 @@ TEST(a_stop_in_motion)
 /* Torque on where it is on, and a new engine: nothing dips. */
 TEST(connecting_and_torque_where_it_is_on)
 {
-    begin(16);
-    assert_int_equal(wait_for(grobo_robot_torque(&robot, GROBO_JOINTS_ALL(N), GROBO_TORQUE_ON)), 0);
-    run_us(2 * SECOND_US);
-    double before_deg = angle_deg(LIFT);
-    new_engine();
-    assert_int_equal(wait_for(grobo_robot_sense(&robot, GROBO_JOINTS_ALL(N), GROBO_SENSE_FULL)), 0);
-    run_us(2 * SECOND_US);
+    weight_begin("so101", 16);
+    assert_int_equal(weight_torque(GROBO_TORQUE_ON), 0);
+    weight_run(2 * WEIGHT_S);
+    double before_deg = weight_angle_deg(LIFT);
+    weight_new_engine();
+    assert_int_equal(
+        weight_wait(grobo_robot_sense(&weight.robot, GROBO_JOINTS_ALL(6), GROBO_SENSE_FULL)), 0);
+    weight_run(2 * WEIGHT_S);
     print_message("gain 16 | connecting at rest moves lift by %.2f deg\n",
-                  angle_deg(LIFT) - before_deg);
-    assert_true(fabs(angle_deg(LIFT) - before_deg) < 0.2);
-    finish();
+                  weight_angle_deg(LIFT) - before_deg);
+    assert_true(fabs(weight_angle_deg(LIFT) - before_deg) < 0.2);
 }

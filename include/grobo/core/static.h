@@ -149,6 +149,8 @@ typedef struct grobo_robot_axis {
     double still_rad;  /* the first of the positions that show that it stands */
     int64_t still_us;  /* when that came; GROBO_NEVER_US: none since it was told last */
     int64_t stood_us;  /* when the last of them was asked for */
+    double load_rad;   /* goal less angle where it stood last: the error that carries its weight */
+    bool load_is_sure; /* it was seen to stand so; else it may creep, and not by this program */
 } grobo_robot_axis;
 
 /** A job that runs. Private. */

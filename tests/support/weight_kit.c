@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: MIT */
+/* The engine and a simulated robot that has weight. */
+#include <string.h>
+
+#include <grobo/posture.h>
+
+#include "tests/support/test.h"
+#include "tests/support/weight_kit.h"
+
+weight_world weight;
+
+static int64_t clock_us(void *ctx)
+{
+    (void)ctx;
+    return weight.now_us;
+}
+
+static void on_event(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    if (event->kind == GROBO_EVENT_JOB) {
+        weight.ended = event->u.job.number;
+        weight.result = event->u.job.result;
+        weight.ended_us = weight.now_us;
+    } else if (event->kind == GROBO_EVENT_TRIP) {
+        weight.tripped = event->u.trip.trip;
+    }
+}
+
+static void exchange(void)
+{
+    uint8_t buf[256];
+    int n;
+    size_t got;
+    do {
+        while ((got = grobo_sim_tx(&weight.sim, buf, sizeof buf, weight.now_us)) > 0) {
+            grobo_robot_rx(&weight.robot, buf, got, weight.now_us);
+        }
+        grobo_robot_step(&weight.robot, weight.now_us);
+        while ((n = grobo_robot_tx(&weight.robot, buf, sizeof buf, weight.now_us)) > 0) {
+            if (weight.lose > 0) {
+                weight.lose--;
+            } else {
+                assert_int_equal(grobo_sim_rx(&weight.sim, buf, (size_t)n, weight.now_us), n);
+            }
+        }
+    } while (grobo_sim_deadline(&weight.sim) <= weight.now_us);
+}
+
+void weight_run(int64_t us)
+{
+    for (int64_t until_us = weight.now_us + us; weight.now_us < until_us;) {
+        weight.now_us += 250;
+        exchange();
+    }
+}
+
+int weight_wait(int job)
+{
+    assert_true(job > 0);
+    int64_t until_us = weight.now_us + 60LL * WEIGHT_S;
+    while (weight.ended != job && weight.now_us < until_us) {
+        weight_run(WEIGHT_MS);
+    }
+    assert_int_equal(weight.ended, job);
+    return weight.result;
+}
+
+double weight_angle_deg(int joint)
+{
+    grobo_sim_view view;
+    assert_int_equal(grobo_sim_look(&weight.sim, joint, &view), 0);
+    return view.angle_mdeg / 1000.0;
+}
+
+double weight_goal_deg(int joint)
+{
+    const grobo_servo_register *reg =
+        grobo_servo_register_of(weight.setting.servos[joint], GROBO_ROLE_GOAL);
+    int32_t ticks = 0;
+    assert_int_equal(grobo_sim_get_register(&weight.sim, joint, reg->address, &ticks), 0);
+    return (ticks - 2048) * 360 / 4096.0;
+}
+
+double weight_load_nm(int joint)
+{
+    grobo_sim_physics_view view;
+    assert_int_equal(grobo_sim_physics_look(weight.physics, joint, &view), 0);
+    return view.load_nm;
+}
+
+void weight_new_engine(void)
+{
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT};
+    const grobo_robot_host host = {.clock = clock_us};
+    assert_int_equal(grobo_robot_init(&weight.robot, &weight.driver, NULL, &config, weight.now_us),
+                     0);
+    grobo_robot_set_host(&weight.robot, &host);
+    grobo_robot_on_event(&weight.robot, on_event, NULL);
+    grobo_robot_link_up(&weight.robot, weight.now_us);
+    weight.tripped = GROBO_TRIP_NONE;
+    weight_run(50 * WEIGHT_MS);
+}
+
+static const grobo_robot_def *robot_named(const char *name)
+{
+    for (size_t i = 0; grobo_robot_def_at(i) != NULL; i++) {
+        if (strcmp(grobo_robot_def_at(i)->name, name) == 0) {
+            return grobo_robot_def_at(i);
+        }
+    }
+    fail_msg("no robot %s", name);
+    return NULL;
+}
+
+static void set_register(int joint, const grobo_servo_register *reg, int32_t value)
+{
+    if (reg != NULL) {
+        assert_int_equal(grobo_sim_set_register(&weight.sim, joint, reg->address, value), 0);
+    }
+}
+
+void weight_begin(const char *robot, int gain)
+{
+    weight_finish();
+    weight.def = robot_named(robot);
+    const grobo_wiring wiring = weight.def->wiring;
+    assert_int_equal(grobo_robot_def_driver(weight.def, wiring, &weight.driver), 0);
+    assert_int_equal(grobo_robot_def_sim(weight.def, wiring, &weight.setting), 0);
+    assert_int_equal(grobo_robot_def_physics(weight.def, false, NULL, &weight.physics), 0);
+    weight.setting.config.physics = weight.physics;
+    weight.now_us = WEIGHT_S;
+    weight.ended = 0;
+    weight.lose = 0;
+    assert_int_equal(grobo_sim_init(&weight.sim, &weight.setting.config, weight.now_us), 0);
+    for (int j = 0; j < weight.def->model->n_joints; j++) {
+        const grobo_servo_model *servo = weight.setting.servos[j];
+        if (gain > 0) {
+            set_register(j, grobo_servo_register_named(servo, "position_p"), gain);
+        }
+        set_register(j, grobo_servo_register_of(servo, GROBO_ROLE_TORQUE), 1);
+    }
+    weight.now_us += 2 * WEIGHT_S;
+    grobo_sim_step(&weight.sim, weight.now_us);
+    weight_new_engine();
+}
+
+void weight_finish(void)
+{
+    grobo_sim_physics_free(weight.physics);
+    weight.physics = NULL;
+}
+
+grobo_posture weight_target(int joint, double deg, int ms)
+{
+    grobo_posture target;
+    assert_int_equal(grobo_posture_init(&target, weight.def->model->n_joints), 0);
+    assert_int_equal(grobo_posture_set_rad(&target, joint, grobo_rad_from_deg(deg)), 0);
+    target.time_us = ms * WEIGHT_MS;
+    return target;
+}
+
+int weight_move(int joint, double deg, int ms)
+{
+    const grobo_posture target = weight_target(joint, deg, ms);
+    int job = grobo_robot_move(&weight.robot, &target);
+    return job < 0 ? job : weight_wait(job);
+}
+
+int weight_torque(grobo_torque mode)
+{
+    int job =
+        grobo_robot_torque(&weight.robot, GROBO_JOINTS_ALL(weight.def->model->n_joints), mode);
+    return job < 0 ? job : weight_wait(job);
+}
