@@ -36,7 +36,7 @@ static void hear_packet(grobo_sim *sim, const grobo_sim_ear *ear, size_t n)
     if (sim->config.wiring == GROBO_WIRING_BUS) {
         grobo_i_sim_frame_faults(sim);
     }
-    ear->family->packet(sim, &raw);
+    ear->family->packet(ear->family, sim, &raw);
 }
 
 /* What has come of a packet is forgotten. */
@@ -62,7 +62,7 @@ static void listen(grobo_sim *sim, grobo_sim_ear *ear)
         if (size > 0) {
             hear_packet(sim, ear, (size_t)size);
         } else if (size == GROBO_ERR_CHECKSUM && ear->family->broken != NULL) {
-            ear->family->broken(sim, ear->byte, ear->used);
+            ear->family->broken(ear->family, sim, ear->byte, ear->used);
         }
         ear->used = (uint16_t)(ear->used - (size > 0 ? size : 1));
         memmove(ear->byte, ear->byte + (size > 0 ? size : 1), ear->used);

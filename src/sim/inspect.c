@@ -102,8 +102,8 @@ int grobo_sim_set_id(grobo_sim *sim, int index, int id)
     if (servo == NULL) {
         return GROBO_ERR_ARG;
     }
-    return servo->family->set(sim, index,
-                              grobo_servo_register_of(servo->model, GROBO_ROLE_ID)->address, id);
+    return grobo_sim_set_register(
+        sim, index, grobo_servo_register_of(servo->model, GROBO_ROLE_ID)->address, id);
 }
 
 int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH_BYTES])
@@ -120,7 +120,11 @@ int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH
 int grobo_sim_set_register(grobo_sim *sim, int index, int address, int32_t value)
 {
     const grobo_sim_servo *servo = servo_at(sim, index);
-    return servo == NULL ? GROBO_ERR_ARG : servo->family->set(sim, index, address, value);
+    if (servo == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    return servo->family->set != NULL ? servo->family->set(sim, index, address, value)
+                                      : grobo_i_dxl_set(sim, index, address, value);
 }
 
 int grobo_sim_set_flash(grobo_sim *sim, int index, const uint8_t flash[GROBO_SIM_FLASH_BYTES])

@@ -239,12 +239,7 @@ void grobo_i_dxl1_sim_restart(grobo_sim *sim, int index)
 
 bool grobo_i_dxl1_sim_factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
-    int code = grobo_servo_baud_code(sim->servo[index].model, (int32_t)baud_bps);
-    if (code < 0 || id > GROBO_DXL1_ID_MAX) {
-        return false;
-    }
-    grobo_i_dxl_sold(sim, index, id, code);
-    return true;
+    return grobo_i_dxl_sell(sim, index, id, GROBO_DXL1_ID_MAX, baud_bps);
 }
 
 /* ---- writing ------------------------------------------------------------------------------- */
@@ -568,19 +563,14 @@ static void ping_all(const grobo_sim_family *family, grobo_sim *sim, const grobo
 static void spread(const grobo_sim_family *family, grobo_sim *sim, const grobo_dxl1_packet *packet,
                    int result, const grobo_sim_event *raw)
 {
-    for (int i = 0; i < sim->n_servos; i++) {
-        grobo_sim_servo *servo = &sim->servo[i];
+    int id = packet->id != GROBO_DXL1_ID_ALL ? packet->id : GROBO_I_DXL_ALL;
+    for (int i = -1; (i = grobo_i_dxl_hearer(sim, family, id, i, raw)) >= 0;) {
         grobo_i_dxl_round round = {0};
-        if (servo->family != family ||
-            (packet->id != GROBO_DXL1_ID_ALL && servo->plant.id != packet->id) ||
-            !grobo_i_sim_hears(sim, i, raw)) {
-            continue;
-        }
         if (packet->instruction == GROBO_DXL1_PING) {
             answer(sim, i, &round, 0, NULL, 0);
         } else if (result >= 0) {
             for_one(sim, i, packet);
-        } else if (judges(servo) && packet->id != GROBO_DXL1_ID_ALL) {
+        } else if (judges(&sim->servo[i]) && packet->id != GROBO_DXL1_ID_ALL) {
             answer(sim, i, &round, GROBO_DXL1_BAD_RANGE, NULL, 0);
         }
     }

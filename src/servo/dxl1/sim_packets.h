@@ -81,4 +81,13 @@ int64_t grobo_i_dxl1_sim_next_us(const grobo_sim *sim, int index);
 void grobo_i_dxl1_sim_act(grobo_sim *sim, int index);
 int grobo_i_dxl1_sim_store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n);
 
+/* All of a grobo_sim_family but its tables and its series. */
+#define GROBO_I_DXL1_SIM                                                                           \
+    .measure = grobo_i_dxl1_sim_measure, .packet = grobo_i_dxl1_sim_packet,                        \
+    .factory = grobo_i_dxl1_sim_factory, .boot = grobo_i_dxl1_sim_restart,                         \
+    .cut = grobo_i_dxl1_sim_cut, .goal_mdeg = grobo_i_dxl1_sim_goal_mdeg,                          \
+    .refresh = grobo_i_dxl1_sim_refresh, .bps = grobo_i_dxl1_sim_bps,                              \
+    .next_us = grobo_i_dxl1_sim_next_us, .act = grobo_i_dxl1_sim_act,                              \
+    .broken = grobo_i_dxl1_sim_broken, .store = grobo_i_dxl1_sim_store
+
 #endif

@@ -251,11 +251,9 @@ static bool has_mode(const grobo_sim_servo *servo, int32_t mode)
 static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    int code = grobo_servo_baud_code(servo->model, (int32_t)baud_bps);
-    if (code < 0 || id > GROBO_DXL2_ID_MAX) {
+    if (!grobo_i_dxl_sell(sim, index, id, GROBO_DXL2_ID_MAX, baud_bps)) {
         return false;
     }
-    grobo_i_dxl_sold(sim, index, id, code);
     if (sim->config.mounted) {
         const grobo_joint *joint = &sim->config.model->joints[index];
         bool grips = joint->torque_limit_pct > 0 && has_mode(servo, GROBO_DXL2_MODE_GRIP);
@@ -795,8 +793,9 @@ static void spread(grobo_sim *sim, const grobo_dxl2_packet *packet, int result,
     }
 }
 
-static void packet(grobo_sim *sim, const grobo_sim_event *raw)
+static void packet(const grobo_sim_family *self, grobo_sim *sim, const grobo_sim_event *raw)
 {
+    (void)self;
     uint8_t data[GROBO_DXL2_FRAME_MAX_BYTES];
     grobo_dxl2_packet parts = {.id = raw->bytes[4], .instruction = raw->bytes[7]};
     int result = grobo_dxl2_parse(raw->bytes, raw->n_bytes, data, sizeof data, &parts);
@@ -831,7 +830,6 @@ const grobo_sim_family grobo_i_sim_dxl2 = {.tables = {&grobo_i_dxl2_table},
                                            .bps = bps,
                                            .next_us = next_us,
                                            .act = act,
-                                           .set = grobo_i_dxl_set,
                                            .store = store};
 
 const grobo_sim_family *grobo_sim_dxl2(void)

@@ -234,31 +234,8 @@ static const grobo_i_dxl1_series *series_of(const grobo_sim_servo *servo)
     return grobo_servo_series(servo->model) == &grobo_i_sts_table ? &sts : &scs;
 }
 
-static void packet(grobo_sim *sim, const grobo_sim_event *raw)
-{
-    grobo_i_dxl1_sim_packet(&grobo_i_sim_feetech, sim, raw);
-}
-
-static void broken(grobo_sim *sim, const uint8_t *bytes, size_t n)
-{
-    grobo_i_dxl1_sim_broken(&grobo_i_sim_feetech, sim, bytes, n);
-}
-
-const grobo_sim_family grobo_i_sim_feetech = {.tables = {&grobo_i_sts_table, &grobo_i_scs_table},
-                                              .series = series_of,
-                                              .measure = grobo_i_dxl1_sim_measure,
-                                              .packet = packet,
-                                              .factory = grobo_i_dxl1_sim_factory,
-                                              .boot = grobo_i_dxl1_sim_restart,
-                                              .cut = grobo_i_dxl1_sim_cut,
-                                              .goal_mdeg = grobo_i_dxl1_sim_goal_mdeg,
-                                              .refresh = grobo_i_dxl1_sim_refresh,
-                                              .bps = grobo_i_dxl1_sim_bps,
-                                              .next_us = grobo_i_dxl1_sim_next_us,
-                                              .act = grobo_i_dxl1_sim_act,
-                                              .broken = broken,
-                                              .set = grobo_i_dxl_set,
-                                              .store = grobo_i_dxl1_sim_store};
+const grobo_sim_family grobo_i_sim_feetech = {
+    .tables = {&grobo_i_sts_table, &grobo_i_scs_table}, .series = series_of, GROBO_I_DXL1_SIM};
 
 const grobo_sim_family *grobo_sim_feetech(void)
 {

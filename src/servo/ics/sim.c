@@ -280,16 +280,13 @@ static void carry_out(grobo_sim *sim, int index, const grobo_ics_packet *packet)
     }
 }
 
-static void packet(grobo_sim *sim, const grobo_sim_event *raw)
+static void packet(const grobo_sim_family *self, grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_ics_packet found;
     (void)grobo_ics_parse(NULL, 0, raw->bytes, raw->n_bytes, &found);
-    for (int i = 0; i < sim->n_servos; i++) {
-        const grobo_sim_servo *servo = &sim->servo[i];
-        bool meant = found.command == GROBO_ICS_ID || servo->plant.id == found.id;
-        if (servo->family == &grobo_i_sim_ics && meant && grobo_i_sim_hears(sim, i, raw)) {
-            carry_out(sim, i, &found);
-        }
+    int id = found.command == GROBO_ICS_ID ? GROBO_I_DXL_ALL : found.id;
+    for (int i = -1; (i = grobo_i_dxl_hearer(sim, self, id, i, raw)) >= 0;) {
+        carry_out(sim, i, &found);
     }
 }
 
@@ -323,7 +320,6 @@ const grobo_sim_family grobo_i_sim_ics = {.usual_bps = 115200,
                                           .goal_mdeg = goal_mdeg,
                                           .refresh = refresh,
                                           .bps = bps,
-                                          .set = grobo_i_dxl_set,
                                           .store = store};
 
 const grobo_sim_family *grobo_sim_ics(void)

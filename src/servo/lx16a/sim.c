@@ -262,18 +262,14 @@ static void answer(grobo_sim *sim, int index, const grobo_lx16a_packet *asked)
 }
 
 /* All hear what is for all; of what they read only the id is answered then, at once. */
-static void packet(grobo_sim *sim, const grobo_sim_event *raw)
+static void packet(const grobo_sim_family *self, grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_lx16a_packet found;
     (void)grobo_lx16a_parse(raw->bytes, raw->n_bytes, &found);
     bool all = found.id == GROBO_LX16A_ID_ALL;
     bool reads = found.data_bytes == 0 && grobo_lx16a_reply_bytes(found.command) > 0;
-    for (int i = 0; i < sim->n_servos; i++) {
-        grobo_sim_servo *servo = &sim->servo[i];
-        if (servo->family != &grobo_i_sim_lx16a || (!all && servo->plant.id != found.id) ||
-            !grobo_i_sim_hears(sim, i, raw)) {
-            continue;
-        }
+    int id = all ? GROBO_I_DXL_ALL : found.id;
+    for (int i = -1; (i = grobo_i_dxl_hearer(sim, self, id, i, raw)) >= 0;) {
         if (!reads) {
             carry_out(sim, i, &found);
         } else if (!all || found.command == GROBO_LX16A_ID_READ) {
@@ -320,7 +316,6 @@ const grobo_sim_family grobo_i_sim_lx16a = {.usual_bps = BPS,
                                             .bps = bps,
                                             .next_us = next_us,
                                             .act = act,
-                                            .set = grobo_i_dxl_set,
                                             .store = store};
 
 const grobo_sim_family *grobo_sim_lx16a(void)

@@ -428,7 +428,7 @@ static int wanted(const grobo_sim_servo *servo, const grobo_sim_event *raw, grob
 {
     uint8_t own[GROBO_RS30X_PACKET_MAX_BYTES];
     uint8_t id = servo->reg[GROBO_RS30X_ID];
-    if (is_early(servo) || raw->bytes[2] != GROBO_RS30X_ID_ALL) {
+    if (raw->bytes[2] != GROBO_RS30X_ID_ALL || is_early(servo)) {
         return grobo_rs30x_reply_to(raw->bytes, raw->n_bytes, want);
     }
     memcpy(own, raw->bytes, raw->n_bytes);
@@ -515,7 +515,7 @@ static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *pac
     }
 }
 
-static void packet(grobo_sim *sim, const grobo_sim_event *raw)
+static void packet(const grobo_sim_family *self, grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_rs30x_packet parts;
     bool sum_ok;
@@ -525,7 +525,7 @@ static void packet(grobo_sim *sim, const grobo_sim_event *raw)
     note_ids(&parts, &ids);
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_sim_servo *servo = &sim->servo[i];
-        if (servo->family != &grobo_i_sim_rs30x || ids.first[servo->reg[GROBO_RS30X_ID]] == 0 ||
+        if (servo->family != self || ids.first[servo->reg[GROBO_RS30X_ID]] == 0 ||
             !grobo_i_sim_hears(sim, i, raw)) {
             continue;
         }

@@ -19,7 +19,7 @@ struct grobo_sim_family {
      * negative: none. good: a packet with a wrong sum is none either. */
     int (*measure)(const uint8_t *bytes, size_t n, bool good);
     /* The servos of the family carry out a packet that they heard; raw holds its bytes. */
-    void (*packet)(grobo_sim *sim, const grobo_sim_event *raw);
+    void (*packet)(const grobo_sim_family *self, grobo_sim *sim, const grobo_sim_event *raw);
     /* Registers and flash as from the factory, with an id and a rate that were set and saved since.
      * False: it has no such rate. */
     bool (*factory)(grobo_sim *sim, int servo, uint8_t id, uint32_t baud_bps);
@@ -42,9 +42,10 @@ struct grobo_sim_family {
     int64_t (*next_us)(const grobo_sim *sim, int servo);
     void (*act)(grobo_sim *sim, int servo);
     /* Bytes have the form of a packet and a wrong sum; NULL: nothing follows. */
-    void (*broken)(grobo_sim *sim, const uint8_t *bytes, size_t n);
+    void (*broken)(const grobo_sim_family *self, grobo_sim *sim, const uint8_t *bytes, size_t n);
     /* For inspection, as the factory would, with what follows from it: a register gets a value
-     * (GROBO_ERR_ARG where none begins at the address); and for grobo_i_dxl_set(), its bytes. */
+     * (GROBO_ERR_ARG where none begins at the address), NULL: grobo_i_dxl_set(); and for that, its
+     * bytes. */
     int (*set)(grobo_sim *sim, int servo, int address, int32_t value);
     int (*store)(grobo_sim *sim, int servo, int address, const uint8_t *bytes, size_t n);
     /* What the packets' code of several series knows them by (src/servo/dxl1/sim_packets.h). */

@@ -104,6 +104,16 @@ void grobo_i_dxl_sold(grobo_sim *sim, int index, uint8_t id, int baud_code)
     memcpy(servo->flash, servo->reg, sizeof servo->flash);
 }
 
+bool grobo_i_dxl_sell(grobo_sim *sim, int index, uint8_t id, uint8_t id_max, uint32_t baud_bps)
+{
+    int code = grobo_servo_baud_code(sim->servo[index].model, (int32_t)baud_bps);
+    bool has = code >= 0 && id <= id_max;
+    if (has) {
+        grobo_i_dxl_sold(sim, index, id, code);
+    }
+    return has;
+}
+
 void grobo_i_dxl_boot(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
@@ -305,12 +315,12 @@ void grobo_i_dxl_tell(grobo_sim *sim, int index, const grobo_servo_register *reg
                                              .value2 = goal ? 0 : value});
 }
 
-int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, uint8_t id, int before,
+int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, int id, int before,
                        const grobo_sim_event *raw)
 {
     for (int i = before + 1; i < sim->n_servos; i++) {
-        if (sim->servo[i].family == family && sim->servo[i].plant.id == id &&
-            grobo_i_sim_hears(sim, i, raw)) {
+        bool meant = id == GROBO_I_DXL_ALL || sim->servo[i].plant.id == id;
+        if (sim->servo[i].family == family && meant && grobo_i_sim_hears(sim, i, raw)) {
             return i;
         }
     }

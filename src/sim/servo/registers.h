@@ -54,10 +54,13 @@ int grobo_i_dxl_set(grobo_sim *sim, int servo, int address, int32_t value);
 
 /* Reports the value that was written to a register. */
 void grobo_i_dxl_tell(grobo_sim *sim, int servo, const grobo_servo_register *reg, int32_t value);
-/* The next servo behind `before` (-1: the first) that has this id and hears a packet; negative: no
- * more. Several may have one id, each is asked once. */
-int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, uint8_t id, int before,
+/* The next servo behind `before` (-1: the first) that has this id (GROBO_I_DXL_ALL: any) and hears
+ * a packet; negative: no more. Several may have one id, each is asked once. */
+enum { GROBO_I_DXL_ALL = -1 };
+int grobo_i_dxl_hearer(grobo_sim *sim, const grobo_sim_family *family, int id, int before,
                        const grobo_sim_event *raw);
+/* Has a servo as it is sold, at this id and rate. False: none has them. */
+bool grobo_i_dxl_sell(grobo_sim *sim, int servo, uint8_t id, uint8_t id_max, uint32_t baud_bps);
 
 /* What the battery's voltage is for a servo: each has a supply of its own kind. */
 int64_t grobo_i_dxl_own_mv(const grobo_sim *sim, const grobo_sim_servo *servo, int64_t battery_mv);

@@ -179,7 +179,7 @@ static void sync_write(grobo_sim *sim, const grobo_dxl2_packet *p, const grobo_s
     }
 }
 
-static void packet(grobo_sim *sim, const grobo_sim_event *raw)
+static void packet(const grobo_sim_family *self, grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_dxl2_packet p;
     if (grobo_i_acme_parse(raw->bytes, raw->n_bytes, NULL, 0, &p) < 0) {
@@ -190,7 +190,7 @@ static void packet(grobo_sim *sim, const grobo_sim_event *raw)
     } else if (p.id == GROBO_DXL2_ID_ALL && p.instruction == GROBO_DXL2_SYNC_WRITE) {
         sync_write(sim, &p, raw);
     } else if (p.id != GROBO_DXL2_ID_ALL) {
-        int i = grobo_i_dxl_hearer(sim, &grobo_i_sim_acme, p.id, -1, raw);
+        int i = grobo_i_dxl_hearer(sim, self, p.id, -1, raw);
         if (i >= 0) {
             for_one(sim, i, &p);
         }
@@ -213,5 +213,4 @@ const grobo_sim_family grobo_i_sim_acme = {.usual_bps = 250000,
                                            .goal_mdeg = goal_mdeg,
                                            .refresh = refresh,
                                            .bps = bps,
-                                           .set = grobo_i_dxl_set,
                                            .store = store};
