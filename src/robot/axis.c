@@ -430,11 +430,6 @@ double grobo_i_load_most(const grobo_robot *robot, int joint)
     return pct > 0 ? LOAD_MOST_RAD * pct / 100 : LOAD_MOST_RAD;
 }
 
-bool grobo_i_axis_is_counted(const grobo_robot_axis *axis)
-{
-    return GROBO_DRIVERS_PLAIN || (axis->state.valid & GROBO_FIELD_TIME) != 0;
-}
-
 /* True of one that is not, and tells how it turns. */
 static bool shows_swing(const grobo_robot *robot, const grobo_robot_axis *axis)
 {

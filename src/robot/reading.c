@@ -156,7 +156,9 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
         grobo_i_axis_seen(axis, asked_us, got);
         take_move(robot, joint, got);
         axis->off_way = is_astray(axis) || is_off_way(robot, joint, asked_us, got);
-        grobo_i_load_take(robot, joint, got);
+        if (!grobo_i_axis_is_counted(axis)) {
+            grobo_i_load_take(robot, joint, got);
+        }
         if (!axis->has_target) {
             grobo_i_axis_here(axis, robot->now_us);
         }

@@ -74,7 +74,10 @@ bool grobo_i_goal_is_told(const grobo_robot_axis *axis);
 /* True while the servo was not told the end of its way. */
 bool grobo_i_way_is_short(const grobo_robot_axis *axis);
 /* A servo that reports the time of its way is counted along it. */
-bool grobo_i_axis_is_counted(const grobo_robot_axis *axis);
+static inline bool grobo_i_axis_is_counted(const grobo_robot_axis *axis)
+{
+    return GROBO_DRIVERS_PLAIN || (axis->state.valid & GROBO_FIELD_TIME) != 0;
+}
 /* The goal that its servo has, where that is known; false else. */
 bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad);
 /* The largest error that can be of a weight. */

@@ -58,9 +58,9 @@ void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *g
     if (grobo_i_axis_is_limp(axis)) {
         axis->load_rad = 0;
     }
-    if (grobo_i_axis_is_counted(axis) || (got->valid & GROBO_FIELD_SPEED) == 0 ||
-        abs(got->speed_dps) > CALM_DPS || !grobo_i_axis_is_on(axis) ||
-        !grobo_i_axis_goal(robot, joint, &goal_rad) || !hangs(robot, joint, got)) {
+    if ((got->valid & GROBO_FIELD_SPEED) == 0 || abs(got->speed_dps) > CALM_DPS ||
+        !grobo_i_axis_is_on(axis) || !grobo_i_axis_goal(robot, joint, &goal_rad) ||
+        !hangs(robot, joint, got)) {
         return;
     }
     double load_rad = goal_rad - axis->state.angle_rad;
