@@ -346,6 +346,10 @@ TEST_WITH(rig_wirings, a_record_is_made_by_hand_and_played)
     assert_int_equal(record(motion, 400000), GROBO_ERR_STALE);
     assert_int_equal(grobo_motion_get(motion, 1, &posture), 0);
     assert_int_equal(posture.time_us, 600000);
+    turn(-30);
+    assert_int_equal(record(motion, 0), 3); /* 0 stays: the default time of who plays it */
+    assert_int_equal(grobo_motion_get(motion, 2, &posture), 0);
+    assert_int_equal(posture.time_us, 0);
     assert_true(posture.set == GROBO_JOINTS_ALL(20));
     assert_true(fabs(grobo_deg_from_rad(posture.angle_rad[NECK]) + 30) < 0.06);
 

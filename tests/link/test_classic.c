@@ -396,6 +396,8 @@ TEST_WITH(alone, the_current_posture_is_appended_and_recorded)
     assert_true(RobotMotion_get(g->motion, 0)->motionTime > 299);
     assert_true(RobotMotion_get(g->motion, 1)->motionTime > 699);
     assert_int_equal(RobotPosture_getDegree(RobotMotion_get(g->motion, 1), 10), 200);
+    assert_int_equal(SerialRobot_appendCurrentPosture_time(g, 0), 3);
+    assert_true(RobotMotion_get(g->motion, 2)->motionTime < 1);
     assert_int_equal(SerialRobot_setMotionCount(g, 0), 0);
     SerialRobot_clearMotion(g);
     assert_int_equal(SerialRobot_setMotionCount(g, 1), 0); /* empty */

@@ -68,6 +68,34 @@ TEST(what_has_come_is_read_before_there_is_silence)
     test_line_close(&line);
 }
 
+/* Its caller has been told that it did not leave in time, and may send another. */
+TEST(a_command_whose_time_is_over_does_not_leave)
+{
+    /* The line is never free: what is read is not answered, and waited for. */
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .bus.margin_us = 60000000,
+                                      .retries = -1, .sense_interval_us = 10000};
+    grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .robot = &robot, .skip_check = true};
+    grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session, .skip_exit = true};
+    int64_t end_us = grobo_now_us() + 5000000;
+    grobo_runner *runner;
+    uint8_t got[64];
+
+    test_line_open(&line);
+    session.device = line.device;
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
+    assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
+    while (test_line_read_some(&line, got, sizeof got) == 0) {
+        assert_true(grobo_now_us() < end_us);
+        assert_int_equal(grobo_runner_svc(runner), 1);
+    }
+    assert_int_equal(grobo_runner_send_command(runner, CHECK, sizeof CHECK, PATIENCE_US / 10),
+                     GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_runner_svc(runner), 1);
+    assert_int_equal(grobo_robot_job(grobo_runner_robot(runner)), GROBO_JOB_NONE);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
+    test_line_close(&line);
+}
+
 static bool trickles;
 
 /* The beginning of a reply, which is no answer yet: the command continues to wait. */

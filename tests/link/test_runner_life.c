@@ -102,6 +102,40 @@ TEST(the_thread_runs_until_it_is_told_to_stop)
     assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }
 
+/* On the loop: the thread is asked to stop, and ends behind this function. */
+static int stop_inside(void *arg, grobo_runner *from)
+{
+    (void)arg;
+    assert_true(grobo_runner_is_active(from));
+    assert_int_equal(grobo_runner_stop(from), GROBO_OK);
+    return grobo_runner_is_active(from) ? 1 : 0;
+}
+
+TEST(a_thread_that_was_asked_to_stop_is_not_active)
+{
+    make();
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+    assert_int_equal(grobo_runner_call(runner, stop_inside, NULL), 0);
+    assert_false(grobo_runner_is_active(runner));
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
+}
+
+TEST(closing_lets_the_robot_go_first)
+{
+    for (int threaded = 0; threaded < 2; threaded++) {
+        make();
+        if (threaded) {
+            assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+        }
+        assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
+        assert_int_equal(torque_on(), GROBO_OK);
+        assert_int_equal(grobo_runner_close(runner, 0), GROBO_OK);
+        assert_int_equal(exits, 1);
+        assert_int_equal(grobo_runner_free(runner), GROBO_OK);
+        assert_int_equal(exits, 1);
+    }
+}
+
 TEST(freeing_lets_the_robot_go_first)
 {
     for (int threaded = 0; threaded < 2; threaded++) {

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/time.h>
+#include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -315,6 +316,32 @@ TEST_WITH(fixture, bytes_from_before_open_are_gone)
     test_line_write(&line, "n", 1);
     assert_int_equal(grobo_serial_receive(serial, &byte, 1), 1);
     assert_int_equal(byte, 'n');
+}
+
+/* More than a pty holds, so that the line takes it in parts, while a child reads the other end. */
+TEST_WITH(fixture, a_send_of_several_writes_arrives_whole)
+{
+    static uint8_t much[100000];
+    grobo_serial_counters counters;
+    int status = -1;
+
+    test_line_needs_pty("a line that takes a part");
+    for (size_t i = 0; i < sizeof much; i++) {
+        much[i] = (uint8_t)(i * 7 + i / 251);
+    }
+    pid_t child = fork();
+    if (child == 0) {
+        static uint8_t got[sizeof much];
+        test_line_read(&line, got, sizeof got);
+        _exit(memcmp(got, much, sizeof much) != 0);
+    }
+    assert_true(child > 0);
+    assert_int_equal(grobo_serial_send(serial, much, sizeof much), sizeof much);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    grobo_serial_get_counters(serial, &counters);
+    assert_true(counters.short_writes > 0);
+    assert_int_equal(counters.tx_bytes, sizeof much);
 }
 
 TEST_WITH(fixture, a_line_that_takes_nothing_ends_a_send)
