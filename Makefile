@@ -52,7 +52,7 @@ FUZZ_S ?= 60
 # Who builds this may have compilers and libraries that are not known yet: a warning is an error in
 # .ci/run alone, which sets WERROR=-Werror.
 WERROR ?=
-SONAME ?= libgrobo.so.0
+SONAME ?= libgrobo.so.1
 LINK_NAME ?= libgrobo.so
 SHARED_FLAGS ?= -Wl,-soname,$(SONAME) -Wl,--version-script=src/libgrobo.map -Wl,-Bsymbolic-functions $(if $(SAN),,-Wl,-z,defs)
 OS_FLAGS ?= -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -D_FILE_OFFSET_BITS=64 -pthread
@@ -183,7 +183,7 @@ CLASSIC_SONAME := $(if $(IMPORT_LIB),,$(subst libgrobo,libgrobo-classic,$(SONAME
 CLASSIC_LINK_NAME := $(subst libgrobo,libgrobo-classic,$(LINK_NAME))
 CLASSIC_SHARED := $(if $(CLASSIC_SONAME),$(BUILD)/$(CLASSIC_SONAME))
 SHARED_LIB := $(if $(SONAME),$(BUILD)/$(SONAME))
-PC_FILES := $(BUILD)/grobo.pc $(BUILD)/grobo-core.pc $(BUILD)/grobo-classic.pc
+PC_FILES := $(BUILD)/grobo.pc $(BUILD)/grobo-path.pc $(BUILD)/grobo-core.pc $(BUILD)/grobo-classic.pc
 CMAKE_FILES := $(BUILD)/cmake/grobo-config.cmake $(BUILD)/cmake/grobo-config-version.cmake
 GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl$(EXE))
 # What runs on this machine: grctl, or a script that gives it to the emulator.
@@ -585,6 +585,12 @@ install -m 755 $(SHARED_LIB) "$(DESTDIR)$(if $(IMPORT_LIB),$(BINDIR),$(LIBDIR))"
 	    "$(DESTDIR)$(LIBDIR)/$(or $(IMPORT_LIB),$(LINK_NAME))"
 endef
 
+# For pkg-config --static: a link, or a copy where the system may have none.
+define install_static
+$(if $(IMPORT_LIB),install -m 644 $(BUILD)/$(file),ln -sf ../../$(file)) "$(DESTDIR)$(LIBDIR)/grobo/static/$(file)"
+
+endef
+
 install-lib: lib ## headers, libraries and what finds them: pkg-config, CMake
 	install -d "$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(LIBDIR)/cmake/grobo" "$(DESTDIR)$(INCLUDEDIR)/grobo" \
 	    $(if $(IMPORT_LIB),"$(DESTDIR)$(BINDIR)")
@@ -593,6 +599,8 @@ install-lib: lib ## headers, libraries and what finds them: pkg-config, CMake
 	install -m 644 include/grobo/core/*.h ports/$(PORT)/include/grobo/core/*.h "$(DESTDIR)$(INCLUDEDIR)/grobo/core"
 	install -m 644 include/grobo/classic/*.h "$(DESTDIR)$(INCLUDEDIR)/grobo/classic"
 	install -m 644 $(STATIC_LIB) $(CORE_LIB) $(CLASSIC_LIB) "$(DESTDIR)$(LIBDIR)"
+	install -d "$(DESTDIR)$(LIBDIR)/grobo/static"
+	$(foreach file,$(notdir $(STATIC_LIB) $(CLASSIC_LIB)),$(install_static))
 	$(if $(SHARED_LIB),$(install_shared))
 	$(if $(CLASSIC_SHARED),install -m 755 $(CLASSIC_SHARED) "$(DESTDIR)$(LIBDIR)")
 	$(if $(CLASSIC_SHARED),ln -sf $(CLASSIC_SONAME) "$(DESTDIR)$(LIBDIR)/$(CLASSIC_LINK_NAME)")
@@ -612,7 +620,7 @@ install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -m 644 tools/wireshark/grobo.lua "$(DESTDIR)$(DATADIR)/grobo/wireshark"
 
 uninstall: ## take out what install put in
-	rm -rf "$(DESTDIR)$(INCLUDEDIR)/grobo" "$(DESTDIR)$(LIBDIR)/cmake/grobo"
+	rm -rf "$(DESTDIR)$(INCLUDEDIR)/grobo" "$(DESTDIR)$(LIBDIR)/cmake/grobo" "$(DESTDIR)$(LIBDIR)/grobo"
 	rm -f $(foreach file,libgrobo.a libgrobo-core.a libgrobo-classic.a $(CLASSIC_LINK_NAME) $(CLASSIC_SONAME) $(LINK_NAME) $(SONAME) $(IMPORT_LIB) \
 	    $(patsubst $(BUILD)/%,pkgconfig/%,$(PC_FILES)),"$(DESTDIR)$(LIBDIR)/$(file)")
 	rm -f $(foreach file,grctl$(EXE) $(if $(IMPORT_LIB),$(SONAME)),"$(DESTDIR)$(BINDIR)/$(file)")
@@ -779,14 +787,19 @@ pc_path = $(patsubst $(PREFIX)/%,$${prefix}/%,$(1))
 # $(call pkg_config,DESCRIPTION,CFLAGS,LIBRARY,LINES): the lines of the file that is the target.
 pkg_config = 'prefix=$(pc_prefix)' 'libdir=$(call pc_path,$(LIBDIR))' \
     'includedir=$(call pc_path,$(INCLUDEDIR))' '' 'Name: $(basename $(@F))' 'Description: $(1)' \
-    'Version: $(VERSION)' 'Cflags: -I$${includedir}$(2)' 'Libs: -L$${libdir} $(3)' $(4)
+    'Version: $(VERSION)' 'Cflags: -I$${includedir}$(2)' 'Libs: $(3)' $(4)
+# With --static the directory that has static libraries alone is searched first: a linker takes the
+# shared library where both lie side by side. So the other directory comes from a file of its own.
 $(BUILD)/grobo.pc: FORCE
 	$(call keep,$(call pkg_config,Drives serial command-servo robots,,-lgrobo,'Cflags.private: $(WHOLE)' \
-	    'Requires.private: libevent_core yaml-0.1' 'Libs.private: $(OS_LIBS)'))
+	    'Requires: grobo-path' 'Requires.private: libevent_core yaml-0.1' \
+	    'Libs.private: -L$${libdir}/grobo/static $(OS_LIBS)'))
+$(BUILD)/grobo-path.pc: FORCE
+	$(call keep,$(call pkg_config,Where libraries of grobo are,,-L$${libdir}))
 $(BUILD)/grobo-classic.pc: FORCE
 	$(call keep,$(call pkg_config,The classes of the original GROBO library in C,,-lgrobo-classic,'Requires: grobo'))
 $(BUILD)/grobo-core.pc: FORCE
-	$(call keep,$(call pkg_config,The engine of grobo for loops and firmware of your own, $(WHOLE),-lgrobo-core -lm))
+	$(call keep,$(call pkg_config,The engine of grobo for loops and firmware of your own, $(WHOLE),-L$${libdir} -lgrobo-core -lm))
 
 # Its files are found from where it lies itself.
 up_from = $(if $(filter $(PREFIX)/%,$(2)),$${grobo_libdir}$(subst $(up),,$(foreach part,$(subst /, \

@@ -28,7 +28,7 @@ C
 cmake_installed() {
     cmake_project found 'find_package(grobo 0.1 REQUIRED)' "$link_c" "$link_cxx" &&
         cmake_builds found -DCMAKE_PREFIX_PATH="$work/moved" &&
-        readelf -d "$work/found/b/cxx" | grep -q 'NEEDED.*libgrobo\.so\.0'
+        readelf -d "$work/found/b/cxx" | grep -q 'NEEDED.*libgrobo\.so\.1'
 }
 
 cmake_static() {

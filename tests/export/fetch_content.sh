@@ -9,8 +9,8 @@ cmake_fetched() {
         "FetchContent_Declare(grobo URL $tarball SOURCE_SUBDIR tools/package)" \
         'set(BUILD_SHARED_LIBS ON)' 'FetchContent_MakeAvailable(grobo)' "$link_c" "$link_cxx" &&
         cmake_builds fetched &&
-        readelf -d "$work/fetched/b/c" | grep -q 'NEEDED.*libgrobo\.so\.0' &&
-        nm -D --defined-only "$(find "$work/fetched/b" -name 'libgrobo.so.0')" |
+        readelf -d "$work/fetched/b/c" | grep -q 'NEEDED.*libgrobo\.so\.1' &&
+        nm -D --defined-only "$(find "$work/fetched/b" -name 'libgrobo.so.1')" |
         sed -n 's/.* [TDBR] //p' | cut -d @ -f 1 | sort -u >"$work/exported" &&
         sed -n 's/^ *\(grobo_.*\);/\1/p' src/libgrobo.map | sort >"$work/listed" &&
         diff "$work/listed" "$work/exported"

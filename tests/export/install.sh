@@ -60,7 +60,30 @@ classic() {
 }
 
 needs() {
-    readelf -d "$work/program" | grep NEEDED | grep -q "libgrobo\.so\.0"
+    readelf -d "$work/program" | grep NEEDED | grep -q "libgrobo\.so\.1"
+}
+
+# Of the program and of the classic one, whatever of them was built last.
+needs_none() {
+    builds "${command}" tests/export/consumer.c --static && classic "$command" --static || return 1
+    for program in "$work/program" "$work/classic"; do
+        readelf -d "$program" | grep NEEDED | grep grobo && return 1
+    done
+    return 0
+}
+
+# Every program of docs/examples, by the line that README.md gives.
+examples() {
+    for source in docs/examples/*.c docs/examples/classic/*.c; do
+        case $source in
+        */classic/*) module=grobo-classic ;;
+        */own_loop.c) module='grobo libevent_core' ;; # it calls libevent itself
+        *) module=grobo ;;
+        esac
+        # shellcheck disable=SC2046,SC2086
+        ${CC:-gcc} $source ${WERROR:-} -o "$work/program" \
+            $(pkg-config --cflags --libs "$@" $module) || return 1
+    done
 }
 
 same_version() {
@@ -228,8 +251,11 @@ by_each() {
         check "$name: the classic shelf" classic "$command" "${1:-}"
         check "$name: the program of README.md" readme_program "$command" "$work/readme.c" "$@"
         check "$name: every function links" every_function "$command" "$work/all.c" "$@"
-        [ $# -gt 0 ] && continue
-        check "$name: asks for libgrobo.so.0" needs
+        if [ $# -gt 0 ]; then
+            check "$name: links libgrobo.a, with libgrobo.so beside it" needs_none
+            continue
+        fi
+        check "$name: asks for libgrobo.so.1" needs
         check "$name: every installed header together" every_header "$command"
     done <"$work/compilers"
 }
@@ -249,14 +275,16 @@ check 'completion for fish' grep -q '^complete ' "$share/fish/vendor_completions
 check 'pkg-config tells the version of the headers' same_version
 compilers >"$work/compilers"
 by_each
+check 'every example of docs/examples builds' examples
 test_case "a program that does not fit fails to link"
 check 'another GROBO_JOINTS_MAX fails to link' other_cap
 check 'a build for plain drivers refuses others' plain_drivers
 check 'headers with shorter structures' yesterdays_headers
 test_case "a program of yesterday runs with the library of today"
 check 'a program of yesterday runs with the library of today' yesterdays_program
-rm -f "$library"/libgrobo*.so*
 by_each --static
+check 'every example of docs/examples builds statically' examples --static
+rm -f "$library"/libgrobo*.so*
 check 'another GROBO_JOINTS_MAX fails to link statically' other_cap --static
 test_case "it is uninstalled"
 check 'uninstall' make_target uninstall

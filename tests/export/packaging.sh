@@ -123,7 +123,7 @@ installs_what_was_built() {
     grep -o -e '-DREMEMBERED.* -c -o .*' "$work/out" | head -n 3
     [ "$(grep -c -e "-DREMEMBERED='\"a b\"'.* -c -o .*guard\.o" "$work/out")" -eq 1 ] &&
         [ "$(grep -c -e ' -c -o ' "$work/out")" -eq 1 ] || return 1
-    ls "$work/b u/libgrobo.a" "$work/d e/opt/grobo/lib/libgrobo.so.0" \
+    ls "$work/b u/libgrobo.a" "$work/d e/opt/grobo/lib/libgrobo.so.1" \
         "$work/d e/opt/grobo/include/grobo/grobo.h"
 }
 

@@ -21,7 +21,7 @@ leave() {
 command -v "$python" >/dev/null || leave 'no python3'
 "$python" -c 'import cffi, sys; sys.exit(sys.version_info < (3, 9))' 2>/dev/null ||
     leave 'no cffi for Python 3.9 or later (python3-cffi; tools/setup.sh --check installs it)'
-nm "$build/libgrobo.so.0" 2>/dev/null | grep -q -e __asan_init -e __tsan_init &&
+nm "$build/libgrobo.so.1" 2>/dev/null | grep -q -e __asan_init -e __tsan_init &&
     leave 'the library is instrumented'
 
 made() {

@@ -30,7 +30,7 @@ complete() {
 }
 
 same_needs() {
-    for package in grctl libgrobo0; do
+    for package in grctl libgrobo1; do
         for arch in "$here" "$1"; do
             dpkg-deb -f "$(debs "$arch" | grep "/${package}_")" Depends >"$work/needs-$arch"
         done

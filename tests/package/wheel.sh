@@ -32,12 +32,12 @@ same_again() {
 
 # Another libevent in the same process must not be mixed up with ours.
 hides_the_rest() {
-    nm -D --defined-only "$build/wheel/$1/libgrobo.so.0" | grep -v -e ' grobo_' -e ' A GROBO_0$'
+    nm -D --defined-only "$build/wheel/$1/libgrobo.so.1" | grep -v -e ' grobo_' -e ' A GROBO_1$'
     [ $? -eq 1 ]
 }
 
 machine() {
-    readelf -h "$build/wheel/$1/libgrobo.so.0" | grep -i -e "Machine:.*$2"
+    readelf -h "$build/wheel/$1/libgrobo.so.1" | grep -i -e "Machine:.*$2"
 }
 
 installs() {

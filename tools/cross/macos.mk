@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # macOS on 64-bit ARM.
 
-SONAME := libgrobo.0.dylib
+SONAME := libgrobo.1.dylib
 LINK_NAME := libgrobo.dylib
 SHARED_FLAGS := -install_name @rpath/$(SONAME)
 OWN_CALLS :=

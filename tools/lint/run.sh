@@ -113,7 +113,7 @@ if [ "$1" = --all ]; then
     gate layers sh "$gates/layers.sh" "$2"
     gate robots sh tools/robots/make.sh --check "$2/tools/robots/robots"
     gate servos sh tools/servos/make.sh --check "$2/tools/servos/servos"
-    gate symbols sh "$gates/symbols.sh" "$2/libgrobo.so.0"
+    gate symbols sh "$gates/symbols.sh" "$2/libgrobo.so.1"
 fi
 
 gather

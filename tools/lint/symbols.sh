@@ -36,7 +36,7 @@ declared() {
 # The list of what is exported, for whoever reviews a change of it, and for the linker.
 map() {
     echo '# What the shared library exports: tools/lint/symbols.sh --map'
-    echo 'GROBO_0 {'
+    echo 'GROBO_1 {'
     echo '    global:'
     declared API | sed 's/.*/        &;/'
     printf '    local:\n        *;\n};\n'

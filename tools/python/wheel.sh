@@ -32,7 +32,7 @@ command -v cmake >/dev/null || die 'cmake is missing: tools/setup.sh --cross mac
 zig_libraries "$processor-linux-gnu.2.17" Linux
 
 unset MAKEFLAGS MAKELEVEL MFLAGS BUILD CC CFLAGS CPPFLAGS LDFLAGS
-make --no-print-directory -j2 "$build/wheel/$processor/libgrobo.so.0" \
+make --no-print-directory -j2 "$build/wheel/$processor/libgrobo.so.1" \
     BUILD="$build/wheel/$processor" CC="$work/bin/cc" AR="$work/bin/ar" WERROR= \
     CFLAGS="-O2 -ffile-prefix-map=$top=." LDFLAGS=-s \
     PKG_CONFIG="PKG_CONFIG_LIBDIR=$work/root/lib/pkgconfig pkg-config"
@@ -49,7 +49,7 @@ package=$build/wheel/package-$processor
 rm -rf "$package"
 mkdir "$package"
 cp -R "$build/python/." "$package"
-cp "$build/wheel/$processor/libgrobo.so.0" "$package/grobo"
+cp "$build/wheel/$processor/libgrobo.so.1" "$package/grobo"
 find "$package" -name __pycache__ -exec rm -rf {} +
 GROBO_PLATFORM=manylinux2014_$processor
 SOURCE_DATE_EPOCH=$(stat -c %Y CHANGELOG.md)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 ffi: Any = importlib.import_module("grobo._abi").ffi  # generate.py makes it
-NAME = "libgrobo.so.0"
+NAME = "libgrobo.so.1"
 
 
 def _path() -> str:
