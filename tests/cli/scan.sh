@@ -99,6 +99,14 @@ else
     cell '--wiring=bus --echo' 0 far busy
 fi
 
+test_case "one servo of an arm of six"
+start_sim --servo 1=STS3215 || { echo "Bail out! the simulator did not start"; exit 1; }
+# All silent ids with patience took 9 to 12 s; only the five of the arm need it.
+check_json "is found in a bounded time" 'len(lines[0]["servos"]) == 1 and lines[0]["sure"] and
+    lines[0]["silent"] == 253 and lines[0]["took_ms"] < 6000' \
+    "$GRCTL" -d "$robot" --robot so101 --json scan
+stop_sim
+
 # stranger: id 3 of a bus of STS3215; when 250 is asked a second master asks it, too.
 stranger() {
     cat >"$work/stranger.py" <<'PY'

@@ -136,7 +136,7 @@ COMMANDS = {
     "move": command(lambda r: [*D, "move", r.last, f"{r.near:g}", "100"]),
     "move beyond": command(lambda r: [*D, "move", r.last, f"{r.beyond:g}", "100"]),
     "pose": command(lambda r: [*D, "pose", "--time", "100", f"{r.last}={r.near:g}"]),
-    "pose all": command(lambda r: [*D, "pose", "--time", "100"] + [f"{j['init_deg']:g}" for j in r.joints]),
+    "pose all": command(lambda r: [*D, "pose", "--time", "100"] + [f"{j['init_deg']:g}" for j in sorted(r.joints, key=lambda j: j['motor'])]),
     "pose file": command(lambda r: [*D, "pose", "--time", "100", f"@{r.motion}:1"]),
     "play": command(lambda r: [*D, "play", r.motion]),
     "play table": command(lambda r: [*D, "play", "--table", "--reverse", "--speed", "200", r.motion]),

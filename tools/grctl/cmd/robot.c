@@ -180,7 +180,8 @@ static int run_check(app *a, const char *path)
     if (a->json) {
         app_print_json(json_pack("{s:b,s:o}", "ok", !error, "diagnostics", file_json(list)));
     } else if (!error && !warn_of_ids(a, def)) {
-        app_note(a, "%s: %d joints, nothing wrong", def->name, def->model->n_joints);
+        app_note(a, "%s: %d joint%s, nothing wrong", def->name, def->model->n_joints,
+                 def->model->n_joints == 1 ? "" : "s");
     }
     grobo_robot_def_free(def);
     grobo_diagnostics_free(list);

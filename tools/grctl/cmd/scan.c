@@ -348,10 +348,10 @@ const cli_command cmd_scan = {
     .summary = "find the servo ids that answer",
     .details =
         "Asks every id for its model and prints those that answer, however late. A silent id\n"
-        "costs 4 ms beside the wire's time. Where something comes late or broken, or where a\n"
-        "joint of the robot is missing, missing ids are asked again with more time. --timeout MS\n"
-        "gives each more time. The exit status is 1 if no servo answers, or if the result is not\n"
-        "certain. Nothing moves.\n"
+        "costs 4 ms beside the wire's time. Where something comes late or broken, missing ids are\n"
+        "asked again with more time; a joint of the robot that is missing is asked again in any\n"
+        "case. --timeout MS gives each more time. The exit status is 1 if no servo answers, or if\n"
+        "the result is not certain. Nothing moves.\n"
         "--family looks for servos of a family instead of the robot's, at their usual rates, at\n"
         "that of -b, or with --all-baud at all rates; 'all' tries every family and counts models\n"
         "that it knows.\n",

@@ -141,8 +141,16 @@ static uint32_t patience(const scan_pass *p)
     return (uint32_t)(2 * p->worst_us) + SERVOS_PATIENT_US;
 }
 
-/* Asks all ids that are missing, and listens to what is still on its way. */
-static int look(conn *c, scan_pass *p, uint32_t margin_us)
+/* The second look after late replies: as late as the latest, twice. What is later still counts when
+ * it comes, and makes another look. */
+static uint32_t margin_of_second(const scan_pass *p)
+{
+    return p->late ? (uint32_t)(2 * p->worst_us) + WIRE_SILENT_MARGIN_US : SERVOS_PATIENT_US;
+}
+
+/* Asks all ids that are missing, or the robot's alone, and listens to what is still on its
+ * way. */
+static int look(conn *c, scan_pass *p, uint32_t margin_us, bool joints_only)
 {
     int error = servos_wait(c, p->baud_bps, p->bytes, margin_us, -1, &p->timeout_us);
     p->late = false;
@@ -152,7 +160,8 @@ static int look(conn *c, scan_pass *p, uint32_t margin_us)
         if (p->progress) {
             p->progress(p, id);
         }
-        if (!p->there[id]) {
+        bool joint = grobo_model_joint_of_motor(conn_model(c), id) >= 0;
+        if (!p->there[id] && (joint || !joints_only)) {
             error = ask(c, p, id);
         }
     }
@@ -191,23 +200,27 @@ static bool has_suspects(const scan_pass *p)
 
 /*
  * The first look is quick: it takes a servo for silent after milliseconds. Where anything came late
- * or broken, or where a joint is missing, those that are missing are asked again with patience,
- * until a look finds nothing more and hears no rubbish.
+ * or broken, those that are missing are asked again with patience, until a look finds nothing more
+ * and hears no rubbish. Where all was well but joints of the robot are missing, they alone are
+ * asked again first: all ids with patience would take ten seconds.
  */
 static int look_until_sure(conn *c, scan_pass *p, bool *sure)
 {
-    bool few = p->last - p->first < FEW;
+    bool few = p->last - p->first < FEW, joints_only = false;
     int error = GROBO_OK, looks = 0;
     *sure = false;
     for (; !error && !*sure && looks < LOOKS_MAX; looks++) {
         int before = p->n;
         error = look(c, p,
-                     looks > 1      ? patience(p)
-                     : looks || few ? SERVOS_PATIENT_US
-                                    : WIRE_SILENT_MARGIN_US);
+                     looks > 1    ? patience(p)
+                     : few        ? SERVOS_PATIENT_US
+                     : looks == 1 ? margin_of_second(p)
+                                  : WIRE_SILENT_MARGIN_US,
+                     joints_only);
         bool clean = p->rubbish == 0 && !has_suspects(p);
         *sure = p->n == p->last - p->first + 1 ||
                 (clean && (looks ? p->n == before : !p->late && !misses_joint(c, p)));
+        joints_only = looks == 0 && clean && !p->late;
     }
     return error;
 }

@@ -13,6 +13,7 @@
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/setup/ask.h"
 #include "tools/grctl/setup/found.h"
+#include "tools/grctl/setup/ids.h"
 #include "tools/grctl/setup/setup.h"
 
 enum { TRIES = 5 };
@@ -29,6 +30,7 @@ typedef struct guide {
     int n_setup;  /* joints that answered, and are not set up */
     bool named;   /* in the configuration */
     bool calibrated;
+    bool fresh; /* its servos got their ids now */
 } guide;
 
 static void set_global(app *a, int global, const char *text)
@@ -225,14 +227,85 @@ static int choose_robot(guide *g, const found_servos *all)
     return app_fail(g->a, EXIT_USAGE, "NOTFOUND", "setup: %s", complaint);
 }
 
+/* Servos of a robot that is named do not all answer: new ones all have one id. */
+static int offer_ids(guide *g, const grobo_robot_def *def, found_servos *all)
+{
+    char question[APP_LINE_BYTES];
+    int status = found_look(g->a, def->family->name, all);
+    if (status || (all->sure && all->n >= def->model->n_joints)) {
+        return status;
+    }
+    snprintf(question, sizeof question,
+             _("%d of its %d servos answer. Are they new, to be given their ids one at a time?"),
+             all->n, def->model->n_joints);
+    if (ask_yes(g->a, question)) {
+        status = ids_give(g->a, def, all);
+        g->fresh = status == 0;
+    }
+    return status;
+}
+
+/* One servo, or several that disturb each other, may be new ones; the robot is not known yet. */
+static int offer_robot(guide *g, found_servos *all)
+{
+    char answer[ASK_BYTES], complaint[APP_LINE_BYTES] = "";
+    for (int i = 0; i < TRIES; i++) {
+        if (!ask_line(g->a,
+                      "new servos all have one id. To give them their ids, one at a time, name the "
+                      "robot; else no",
+                      "no", answer)) {
+            return gave_up(g);
+        }
+        if (strcmp(answer, "no") == 0) {
+            return 0;
+        }
+        const grobo_robot_def *def = robot_find(answer, complaint, sizeof complaint);
+        if (def && def->wiring == GROBO_WIRING_BUS) {
+            int status = ids_give(g->a, def, all);
+            snprintf(g->robot, sizeof g->robot, "%s", answer);
+            g->fresh = status == 0;
+            return status;
+        }
+        app_note(g->a, "%s",
+                 def ? _("ids of servos behind a board are not given here") : complaint);
+    }
+    return app_fail(g->a, EXIT_USAGE, "NOTFOUND", "setup: '%s' is no robot", answer);
+}
+
+/* A robot with these servos: one that is known, or a file. */
+static int take_found(guide *g, const found_servos *all)
+{
+    if (all->n == 0) {
+        return app_fail(
+            g->a, EXIT_ROBOT, "NOTFOUND",
+            "setup: no servo answers on %s: switch the robot on, push its cables in, and "
+            "run it again",
+            g->device);
+    }
+    for (int i = 0; i < all->n; i++) {
+        app_note(g->a, "  %3d  %-12s %7d bps  %s", all->servo[i].id, all->servo[i].servo->name,
+                 all->servo[i].baud_bps, all->servo[i].family->name);
+    }
+    int status = choose_robot(g, all);
+    if (!status) {
+        char complaint[APP_LINE_BYTES];
+        const grobo_robot_def *def = robot_find(g->robot, complaint, sizeof complaint);
+        g->baud_bps =
+            def && (int)def->baud_bps != all->servo[0].baud_bps ? all->servo[0].baud_bps : 0;
+    }
+    return status;
+}
+
 static int find_robot(guide *g)
 {
     static found_servos all;
     app *a = g->a;
-    if (app_global(a, GLOBAL_ROBOT)->given || strcmp(g->device, GROBO_DEVICE_SIM) == 0) {
+    bool simulated = strcmp(g->device, GROBO_DEVICE_SIM) == 0;
+    if (app_global(a, GLOBAL_ROBOT)->given || simulated) {
         const char *path = robot_path(a);
+        bool bus = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BUS;
         snprintf(g->robot, sizeof g->robot, "%s", *path ? path : robot_of(a)->name);
-        return 0;
+        return bus && !simulated ? offer_ids(g, robot_of(a), &all) : 0;
     }
     app_note(a, "asking which servos answer; nothing moves");
     if (answers(g, "gr001")) {
@@ -245,25 +318,10 @@ static int find_robot(guide *g)
         return status;
     }
     found_choose(a, &all);
-    if (all.n == 0) {
-        return app_fail(
-            a, EXIT_ROBOT, "NOTFOUND",
-            "setup: no servo answers on %s: switch the robot on, push its cables in, and "
-            "run it again",
-            g->device);
+    if (all.n == 1 || (all.n == 0 && !all.sure)) {
+        status = offer_robot(g, &all);
     }
-    for (int i = 0; i < all.n; i++) {
-        app_note(a, "  %3d  %-12s %7d bps  %s", all.servo[i].id, all.servo[i].servo->name,
-                 all.servo[i].baud_bps, all.servo[i].family->name);
-    }
-    status = choose_robot(g, &all);
-    if (!status) {
-        char complaint[APP_LINE_BYTES];
-        const grobo_robot_def *def = robot_find(g->robot, complaint, sizeof complaint);
-        g->baud_bps =
-            def && (int)def->baud_bps != all.servo[0].baud_bps ? all.servo[0].baud_bps : 0;
-    }
-    return status;
+    return status || *g->robot ? status : take_found(g, &all);
 }
 
 /* ---- its name -------------------------------------------------------------------------------- */
@@ -372,6 +430,66 @@ static int offer_calibration(guide *g)
     return status;
 }
 
+enum { STEP_DEG = 5, STEP_US = 1500000 };
+
+/* The joint goes a little, back to where it was, and is limp again. */
+static int step_and_back(conn *c, int joint)
+{
+    const grobo_model *model = conn_model(c);
+    const grobo_joint_mask bit = GROBO_JOINT_BIT(joint);
+    grobo_joint_info is;
+    int error = conn_sense(c, bit, GROBO_SENSE_FULL);
+    if (!error) {
+        error = grobo_robot_joint(c->robot, joint, &is);
+    }
+    if (error) {
+        return error;
+    }
+    double at_deg = grobo_deg_from_rad(is.state.angle_rad);
+    bool up = at_deg + STEP_DEG < grobo_deg_from_rad(model->joints[joint].max_rad);
+    const double ways_deg[] = {at_deg + (up ? STEP_DEG : -STEP_DEG), at_deg};
+    c->moving = true; /* from here on every way out carries out the exit policy */
+    error = conn_wait(c, grobo_robot_torque(c->robot, bit, GROBO_TORQUE_ON));
+    for (int i = 0; i < 2 && !error; i++) {
+        grobo_posture target;
+        grobo_posture_init(&target, model->n_joints);
+        grobo_posture_set_deg(&target, joint, ways_deg[i]);
+        target.time_us = STEP_US;
+        error = conn_wait(c, grobo_robot_move(c->robot, &target));
+    }
+    if (!error) {
+        error = conn_wait(c, grobo_robot_torque(c->robot, bit, GROBO_TORQUE_OFF));
+    }
+    c->moving = error != GROBO_OK;
+    return error;
+}
+
+/* Of a robot that was made ready now: its last joint. */
+static int move_first(guide *g)
+{
+    conn c;
+    char question[APP_LINE_BYTES];
+    int joint = app_model(g->a)->n_joints - 1;
+    const char *name = app_model(g->a)->joints[joint].name;
+    snprintf(
+        question, sizeof question,
+        _("move it for the first time? %s goes %d degrees and back, slowly; keep a hand at the "
+          "plug"),
+        name, STEP_DEG);
+    if (!(g->fresh || g->calibrated) || (g->n_setup > 0 && !g->calibrated) ||
+        !ask_yes(g->a, question)) {
+        return 0;
+    }
+    int status = conn_open_to_move(&c, g->a);
+    int error = status ? GROBO_OK : step_and_back(&c, joint);
+    if (error) {
+        status = conn_fail(&c, error, "setup");
+    } else if (!status) {
+        app_note(g->a, "%s moved, and is limp again", name);
+    }
+    return conn_close(&c, status);
+}
+
 /* From here on the command speaks to the robot that was found. */
 static int take_robot(guide *g)
 {
@@ -420,8 +538,8 @@ int setup_run(app *a)
     if (!ask_can(a, "'grctl ports', 'grctl doctor', 'grctl robot new'", &status)) {
         return status;
     }
-    int (*const steps[])(guide *) = {find_port, check_port,  find_robot,       take_robot,
-                                     give_name, read_joints, offer_calibration};
+    int (*const steps[])(guide *) = {find_port, check_port,  find_robot,        take_robot,
+                                     give_name, read_joints, offer_calibration, move_first};
     for (size_t i = 0; i < sizeof steps / sizeof *steps && !status; i++) {
         status = steps[i](&g);
     }

@@ -113,8 +113,8 @@ int sketch_write(app *a, sketch *s, const char *out, json_t *fits)
                                  out ? app_json_text(out) : NULL, "n_joints", sketch_joints(s),
                                  "text", out ? NULL : json_string(text), "fits", fits));
     } else if (!status && out) {
-        app_note(a, "%s: %d joints; check it, then: grctl --robot %s -d sim init", out,
-                 sketch_joints(s), out);
+        app_note(a, "%s: %d joint%s; check it, then: grctl --robot %s -d sim init", out,
+                 sketch_joints(s), sketch_joints(s) == 1 ? "" : "s", out);
     } else if (!status) {
         app_print("%s", text);
     }
