@@ -86,6 +86,19 @@ check "and can be set" fails 0 'my_gain 7 -> 100' cloned servo-set 3 my_gain 100
 check "doctor knows it" exits 0 cloned doctor
 check "so does info" both exits 0 cloned info --- says '^  3  Clone-15 .* turn$'
 check "it moves" fails 0 'done; largest error 0\.[0-4]' cloned move turn 50
+start_sim --robot "$work/cloned.yaml"
+found() {
+    exits 0 "$GRCTL" -d "$robot" -b 1000000 scan --family feetech &&
+        says '^  3  unknown model 4711 '
+}
+check "who does not know it says its number" found
+drops() {
+    "$GRCTL" -d "$robot" -b 1000000 robot new --family feetech -o "$work/new.yaml" 2>"$work/err" &&
+        grep -q 'id 3 .* unknown model 4711; .* describe it in a file' "$work/err" &&
+        grep -q 'id: 4, servo: STS3215' "$work/new.yaml" && ! grep -q 'id: 3' "$work/new.yaml"
+}
+check "and guesses nothing" drops
+stop_sim
 sed 's/3100/300/' "$work/clone.yaml" >"$work/short.yaml"
 sed 's/clone.yaml/short.yaml/' "$work/cloned.yaml" >"$work/shortened.yaml"
 check "its range is judged" fails 3 'shortened.yaml:4:58: turn: its servo does not reach' \

@@ -56,7 +56,7 @@ stop_sim
 start_sim --servo 1=STS3215,2=XL330-M288,3=STS3215 -b 1000000
 check "of two families that of most" both exits 0 new -b 1000000 --- \
     said 'skipped: XL330-M288 of id 2'
-check "who is nobody twice" [ "$(grep -c 'not known' "$work/err")" -eq 0 ]
+check "who is nobody twice" [ "$(grep -c 'unknown model' "$work/err")" -eq 0 ]
 stop_sim
 
 test_case "a simulator of its own"

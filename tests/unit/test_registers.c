@@ -108,6 +108,17 @@ TEST(models_have_their_own_rows)
         assert_int_equal(reg != NULL ? reg->address : -1, rows[i].address);
         assert_int_equal(reg != NULL ? reg->factory : 0, rows[i].factory);
     }
+    /* RX have the registers of AX; their pages of the e-manual. */
+    static const char *const rx[] = {"RX-24F", "RX-28", "RX-64"};
+    static const uint16_t numbers[] = {24, 28, 64};
+    for (size_t i = 0; i < 3; i++) {
+        const grobo_servo_model *model = grobo_servo_model_named(&grobo_i_dxl1_table, rx[i]);
+        assert_ptr_equal(grobo_servo_model_numbered(&grobo_i_dxl1_table, numbers[i]), model);
+        assert_int_equal(grobo_servo_register_named(model, "baud")->factory, 34);
+        assert_int_equal(grobo_servo_register_named(model, "temperature_limit")->factory, 80);
+        assert_int_equal(grobo_servo_register_named(model, "max_voltage")->factory, 190);
+        assert_int_equal(model->span_deg, 300);
+    }
     assert_null(grobo_servo_model_named(&grobo_i_dxl2_table, "XL330"));
     assert_null(grobo_servo_model_numbered(&grobo_i_dxl2_table, 9999));
 }

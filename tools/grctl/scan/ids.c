@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <stdio.h>
 #include <string.h>
 
 #include "tools/grctl/conn/servos.h"
@@ -14,17 +15,20 @@ scan_identity scan_identity_of(const grobo_driver *driver, const uint8_t *bytes)
 {
     const grobo_servo_model *any = family_servo(driver, -1);
     const grobo_servo_register *reg = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
-    scan_identity is = {.model = any->table->name,
-                        .family = family_of_servo(any)->name,
-                        .known = true,
-                        .firmware = -1};
+    scan_identity is = {.family = family_of_servo(any)->name, .known = true, .firmware = -1};
     uint16_t from = 0;
     (void)family_identity(driver, any, &from);
+    snprintf(is.model, sizeof is.model, "%s", any->table->name);
     if (reg) {
         const grobo_servo_model *model = family_identify(driver, bytes + (reg->address - from));
         is.servo = model;
         is.known = model != NULL;
-        is.model = model ? model->name : "unknown model";
+        int number = grobo_servo_register_get(any, reg, bytes + (reg->address - from));
+        if (model) {
+            snprintf(is.model, sizeof is.model, "%s", model->name);
+        } else {
+            snprintf(is.model, sizeof is.model, "unknown model %d", number);
+        }
     }
     reg = grobo_servo_register_of(any, GROBO_ROLE_FIRMWARE);
     if (reg) {

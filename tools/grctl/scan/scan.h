@@ -44,7 +44,8 @@ int scan_line(conn *c, scan_pass *p);
 
 /* What the registers of family_identity() say. */
 typedef struct scan_identity {
-    const char *model, *family;
+    char model[48]; /* its name, or "unknown model" with the number that it tells */
+    const char *family;
     const grobo_servo_model *servo; /* NULL: it does not tell, or is not known */
     bool known;
     int32_t firmware; /* -1: not told */

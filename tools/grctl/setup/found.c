@@ -97,6 +97,7 @@ static void end_rate(scan_search *what, const grobo_robot_family *family, conn *
                              .unknown = !is.known,
                              .id = id,
                              .baud_bps = p->baud_bps};
+        snprintf(one->model, sizeof one->model, "%s", is.model);
         if (is.known) {
             read_limits(c, one);
         }
@@ -148,8 +149,10 @@ static void drop_unknown(const app *a, found_servos *all)
         if (!one.unknown) {
             all->servo[kept++] = one;
         } else if (!better) {
-            app_note(a, "id %d at %d bps talks as %s do, but its model is not known", one.id,
-                     one.baud_bps, one.family->name);
+            app_note(a,
+                     "id %d at %d bps talks as %s do: %s; if it is like a known one, describe it "
+                     "in a file (docs/guide/own-servo.md)",
+                     one.id, one.baud_bps, one.family->name, one.model);
         }
     }
     all->n = kept;

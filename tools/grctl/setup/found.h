@@ -10,6 +10,7 @@ typedef struct found_servo {
     const grobo_servo_model *servo; /* the first of the family where it does not tell */
     bool told;                      /* its model */
     bool unknown;                   /* it tells one that nobody knows */
+    char model[48];                 /* its name, or the number of an unknown one */
     bool turns;                     /* it is set up to count several turns */
     bool calibrated;                /* it keeps an offset: its middle was found by hand */
     int id, baud_bps;
