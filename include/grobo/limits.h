@@ -77,7 +77,7 @@
 
 /** Transactions that may wait in one bus. */
 #ifndef GROBO_BUS_QUEUE_MAX
-#define GROBO_BUS_QUEUE_MAX 80
+#define GROBO_BUS_QUEUE_MAX (3 * GROBO_JOINTS_MAX + 16)
 #endif
 
 /** Servos a simulator has; at least the joints of its model. */

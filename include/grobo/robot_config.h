@@ -45,7 +45,8 @@ typedef enum grobo_goals {
 /** How far ahead a goal in segments goes, down to the unit of the driver's goal time. Without the
  *  host a joint moves for 400 ms at most: for this and the time of a frame that was on the line. */
 #define GROBO_SEGMENT_US 380000
-/** How often it is renewed. */
+/** How often it is renewed; less often on a line that is slow for the joints that move, see
+ *  grobo_budget.pace_us. */
 #define GROBO_SEGMENT_RENEW_US 100000
 
 /** Sense interval: no reading in the background. */
@@ -104,6 +105,9 @@ typedef struct grobo_budget {
     uint16_t watched_hz; /**< largest such rate; 0: on so slow a line there is none */
     uint16_t default_hz; /**< what grobo_play_options.rate_hz 0 stands for: watched_hz, but at most
                               GROBO_PLAY_RATE_HZ */
+    uint32_t pace_us;    /**< how often all joints can be told more of their ways in segments, each
+                              read in time: GROBO_SEGMENT_RENEW_US at least; 0: the line is too slow
+                              for that, an arm's moves of all joints are refused */
 } grobo_budget;
 
 /**

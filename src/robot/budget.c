@@ -15,14 +15,13 @@ uint32_t grobo_i_line_us(const grobo_bus *bus, const grobo_exchange *exchange)
     return cost.total_us;
 }
 
-/* Every joint to its initial angle, in as many frames as the driver needs. *answered: servos answer
- * their goals. */
-static int motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us,
-                       bool *answered)
+int grobo_i_motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
+                        grobo_joint_mask joints, uint32_t *us, bool *answered)
 {
     grobo_target target = {0};
     int more = 1;
     grobo_posture_init_pose(&target.posture, driver->model);
+    target.posture.set = joints;
     for (int j = 0; j < driver->model->n_joints; j++) {
         target.joint_time_us[j] = driver->time_step_us;
     }
@@ -36,8 +35,7 @@ static int motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *c
     return more;
 }
 
-/* The costliest joint counts: they are read in turn, unless one frame reads all. */
-static int reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us)
+int grobo_i_reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us)
 {
     int result = GROBO_OK;
     *us = 0;
@@ -87,9 +85,10 @@ static int budget_of(const grobo_bus *bus, const grobo_driver *driver, void *ctx
 {
     grobo_budget found;
     bool answered = false;
-    int result = motion_cost(bus, driver, ctx, &found.motion_us, &answered);
+    int result = grobo_i_motion_cost(bus, driver, ctx, GROBO_JOINTS_ALL(driver->model->n_joints),
+                                     &found.motion_us, &answered);
     if (result >= 0) {
-        result = reading_cost(bus, driver, ctx, &found.reading_us);
+        result = grobo_i_reading_cost(bus, driver, ctx, &found.reading_us);
     }
     if (result < 0) {
         return result;
@@ -100,6 +99,8 @@ static int budget_of(const grobo_bus *bus, const grobo_driver *driver, void *ctx
     found.watched_hz = watched_rate(&found, readings, watch_us);
     found.default_hz =
         found.watched_hz < GROBO_PLAY_RATE_HZ ? found.watched_hz : GROBO_PLAY_RATE_HZ;
+    const grobo_i_line line = {.bus = bus, .driver = driver, .ctx = ctx};
+    found.pace_us = grobo_i_pace_of(&line, GROBO_JOINTS_ALL(driver->model->n_joints));
     *budget = found;
     return GROBO_OK;
 }

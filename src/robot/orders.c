@@ -134,6 +134,19 @@ static int await_line(grobo_robot *robot, const grobo_robot_order *order, grobo_
     return result;
 }
 
+/* True if a joint is told its way in segments. */
+static bool is_long(const grobo_robot *robot, const grobo_robot_order *order,
+                    const grobo_target *target)
+{
+    bool is = false;
+    bool parts = grobo_i_goes_in_parts(robot, order);
+    for (int j = 0; parts && !is && j < robot->driver->model->n_joints; j++) {
+        is = grobo_i_has(order->joints, j) &&
+             grobo_i_segments_wanted(robot, target->joint_time_us[j]);
+    }
+    return is;
+}
+
 int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const grobo_i_motion *how)
 {
     grobo_target target;
@@ -158,6 +171,10 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
                                .rests = how->rests};
     if (result >= 0) {
         result = await_line(robot, &order, &target, how->joint_time_us);
+    }
+    if (result >= 0 && is_long(robot, &order, &target) &&
+        !grobo_i_pace(robot, joints | grobo_i_ways_renewed(robot))) {
+        result = GROBO_ERR_UNWATCHED;
     }
     if (result >= 0) {
         robot->motion_us = 0;

@@ -182,6 +182,10 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
                  : grobo_i_is_latched(robot) ? GROBO_ERR_LATCHED
                  : wish.target.set == 0      ? GROBO_ERR_ARG
                                              : grobo_i_gate_target(robot, &wish.target);
+    int64_t time_us = wish.target.time_us > 0 ? wish.target.time_us : robot->config.default_time_us;
+    if (result >= 0 && time_us > GROBO_SEGMENT_US && !grobo_i_pace_fits(robot, wish.target.set)) {
+        result = GROBO_ERR_UNWATCHED; /* a short one that gets more time is refused as it leaves */
+    }
     if (result >= 0) {
         wish.joints = wish.target.set;
         singly(&wish);
@@ -314,6 +318,9 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, grobo_play_opt
     }
     if (result >= 0 && !joints_sound(robot, *joints)) {
         result = *joints == 0 ? GROBO_ERR_EMPTY : GROBO_ERR_ARG;
+    }
+    if (result >= 0 && !grobo_i_pace_fits(robot, *joints)) {
+        result = GROBO_ERR_UNWATCHED;
     }
     return result < 0 ? result : grobo_i_play_rate(robot, options);
 }

@@ -100,6 +100,7 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
     if (grobo_bus_init(&robot->bus, &robot->config.bus) < 0) {
         return GROBO_ERR_ARG;
     }
+    robot->renew_us = GROBO_SEGMENT_RENEW_US;
     grobo_sequencer_init(&robot->sequencer, driver->model);
     for (int j = 0; j < driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];

@@ -9,6 +9,7 @@
  *   query.c      what may be asked
  *   slot.c       frames under way: from an exchange to a transaction and back
  *   budget.c     how many motion frames a second leave time to read
+ *   pace.c       how often the line carries more of the ways of joints, and readings beside
  *   stand.c      whether a joint stands
  *   weight.c     the error that carries a joint, and goals that keep it
  *   reading.c    what a reading tells of a joint
@@ -282,6 +283,32 @@ bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
 
 /* How long an exchange has the line, in microseconds. */
 uint32_t grobo_i_line_us(const grobo_bus *bus, const grobo_exchange *exchange);
+
+/* What a goal of all these joints costs, in as many frames as it takes. *answered: servos answer
+ * their goals. @return 0, or an error of the driver. */
+int grobo_i_motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
+                        grobo_joint_mask joints, uint32_t *us, bool *answered);
+/* The costliest reading of one joint, or of all where one frame reads all. */
+int grobo_i_reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us);
+
+/* ---- pace.c ---------------------------------------------------------------------------------- */
+
+/* A line and what drives servos on it. */
+typedef struct grobo_i_line {
+    const grobo_bus *bus;
+    const grobo_driver *driver;
+    void *ctx;   /* the driver's */
+    bool unread; /* nothing is read in the background */
+} grobo_i_line;
+
+/* grobo_budget.pace_us for these joints. */
+uint32_t grobo_i_pace_of(const grobo_i_line *line, grobo_joint_mask joints);
+/* True if the line can tell these joints their ways in segments in time, and read each as often as
+ * it must; or if they are told whole ways. */
+bool grobo_i_pace_fits(const grobo_robot *robot, grobo_joint_mask joints);
+/* These are told their ways from now on: how often. @return false, and nothing has changed, where
+ * the line is too slow for that. */
+bool grobo_i_pace(grobo_robot *robot, grobo_joint_mask joints);
 
 /* ---- stand.c --------------------------------------------------------------------------------- */
 

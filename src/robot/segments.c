@@ -2,7 +2,7 @@
 /*
  * Goals in segments, in time. Of a long move a frame asks for the next GROBO_SEGMENT_US only, and
  * every GROBO_SEGMENT_RENEW_US another one asks for more, so that a joint stops soon when none
- * comes. ways.c says what a frame asks for.
+ * comes; less often where the line is slow (pace.c). ways.c says what a frame asks for.
  *
  * A joint whose segment was over before the next one left stands where it ended. Then the host was
  * away: the move is over, and does not continue by itself.
@@ -46,8 +46,7 @@ static int64_t late_us(const grobo_robot *robot)
     int64_t most_us = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        int64_t since_us =
-            robot->now_us - axis->told_to_us + GROBO_SEGMENT_US - GROBO_SEGMENT_RENEW_US;
+        int64_t since_us = robot->now_us - axis->told_to_us + GROBO_SEGMENT_US - robot->renew_us;
         most_us = has_stopped(axis, robot->now_us) ? grobo_i_later(most_us, since_us) : most_us;
     }
     return most_us;
@@ -99,7 +98,7 @@ void grobo_i_segments_step(grobo_robot *robot)
     }
     int64_t due_us = grobo_i_segments_due(robot);
     if (due_us <= robot->now_us && !grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT)) {
-        bool late = due_us + GROBO_SEGMENT_RENEW_US <= robot->now_us;
+        bool late = due_us + robot->renew_us <= robot->now_us;
         robot->renewed_us = late ? robot->now_us : due_us; /* on its grid, so that ends are exact */
         robot->renews_owed = 0;
         grobo_i_gate_renew(robot, grobo_i_ways_renewed(robot));

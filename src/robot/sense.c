@@ -292,19 +292,19 @@ static void note_fast(grobo_robot *robot, int result)
     }
 }
 
-/* A first reading, the longest of all, has the line for no longer than this where it can be parted:
+/* A first reading, the longest, has the line for no longer than this where it can be parted:
  * a stop may wait for it. */
 #define FIRST_US 10000
 
 /* The next joints of a round, as many as have the time. */
-static int ask_first(grobo_robot *robot, grobo_robot_slot *slot)
+static int ask_some_of(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind kind,
+                       uint32_t most_us)
 {
     const grobo_driver *driver = robot->driver;
     grobo_joint_mask left = robot->round != 0 ? robot->round : grobo_i_all_joints(robot);
-    int result =
-        driver->sense_many(driver, robot->driver_ctx, left, GROBO_SENSE_ALL, &robot->built);
+    int result = driver->sense_many(driver, robot->driver_ctx, left, kind, &robot->built);
     uint32_t us = result >= 0 ? grobo_i_line_us(&robot->bus, &robot->built) : 0;
-    int n = grobo_joints_count(left), most = us > FIRST_US ? (int)(FIRST_US * (uint32_t)n / us) : n;
+    int n = grobo_joints_count(left), most = us > most_us ? (int)(most_us * (uint32_t)n / us) : n;
     slot->unread = 0;
     do {
         grobo_joint_mask next = GROBO_JOINT_BIT(grobo_i_lowest(left));
@@ -314,21 +314,26 @@ static int ask_first(grobo_robot *robot, grobo_robot_slot *slot)
     robot->round = left;
     return left == 0 && slot->unread == grobo_i_all_joints(robot)
                ? result
-               : driver->sense_many(driver, robot->driver_ctx, slot->unread, GROBO_SENSE_ALL,
-                                    &robot->built);
+               : driver->sense_many(driver, robot->driver_ctx, slot->unread, kind, &robot->built);
 }
 
-/* All of them in one frame. */
+/* All of them in one frame; while joints are told more of their ways, as many as have the time. */
 static int ask_each(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind kind)
 {
     const grobo_driver *driver = robot->driver;
-    robot->round = 0;
     slot->unread = grobo_i_all_joints(robot);
-    slot->fast =
-        are_fast(robot) && driver->sense_fast(driver, robot->driver_ctx, kind, &robot->built) >= 0;
-    return slot->fast
-               ? GROBO_OK
-               : driver->sense_many(driver, robot->driver_ctx, slot->unread, kind, &robot->built);
+    slot->fast = robot->round == 0 && are_fast(robot) &&
+                 driver->sense_fast(driver, robot->driver_ctx, kind, &robot->built) >= 0 &&
+                 (!robot->in_segments ||
+                  grobo_i_line_us(&robot->bus, &robot->built) <= (uint32_t)robot->read_us);
+    if (slot->fast) {
+        return GROBO_OK;
+    }
+    if (robot->in_segments) {
+        return ask_some_of(robot, slot, kind, (uint32_t)robot->read_us);
+    }
+    robot->round = 0;
+    return driver->sense_many(driver, robot->driver_ctx, slot->unread, kind, &robot->built);
 }
 
 /* Any that nothing is known of is asked where it is going, too. */
@@ -341,7 +346,7 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
         robot->config.sense_position_only && !(first && GROBO_I_EXTRA(robot->driver, keeps_setup));
     slot->many = true;
     int result = first && !angles
-                     ? ask_first(robot, slot)
+                     ? ask_some_of(robot, slot, GROBO_SENSE_ALL, FIRST_US)
                      : ask_each(robot, slot, angles ? GROBO_SENSE_POSITION : GROBO_SENSE_FULL);
     if (robot->round == 0) {
         robot->fast_forgotten = false;
@@ -439,11 +444,34 @@ static void give_way(grobo_robot *robot, grobo_robot_slot *waiting)
     }
 }
 
+/* One that was asked for before joints began to be told their ways in parts, and would have the
+ * line for too long, is asked for anew. */
+static void ask_for_less(grobo_robot *robot)
+{
+    for (int i = 0; i < robot->slots_end; i++) {
+        const grobo_robot_slot *slot = &robot->slots[i];
+        bool waits = slot->use == GROBO_I_USE_SENSE && robot->bus.active != &slot->txn;
+        if (!waits || grobo_joints_count(slot->unread) < 2) {
+            continue;
+        }
+        grobo_bus_cost cost;
+        grobo_bus_cost_of(&robot->bus, &slot->txn, &cost);
+        if (cost.total_us > (uint32_t)robot->read_us) {
+            robot->sense_us = robot->now_us;
+            (void)grobo_bus_cancel(&robot->bus, &robot->slots[i].txn);
+            return;
+        }
+    }
+}
+
 void grobo_i_sense_step(grobo_robot *robot)
 {
     int waiting = is_urgent(robot) ? find_waiting(robot) : -1;
     if (waiting >= 0) {
         give_way(robot, &robot->slots[waiting]);
+    }
+    if (robot->in_segments) {
+        ask_for_less(robot);
     }
     hurry(robot);
     bool due = is_due(robot) || unheard(robot) != 0 || grobo_i_halted_due(robot);

@@ -44,9 +44,9 @@ static int64_t part_us(const grobo_robot *robot, int joint, const grobo_robot_wa
 }
 
 /* The end is repeated, too, while there is time for it: a frame may be lost. */
-static bool is_renewed(const grobo_robot_axis *axis, int64_t now_us)
+static bool is_renewed(const grobo_robot *robot, const grobo_robot_axis *axis)
 {
-    bool late = axis->way.to_us - now_us < GROBO_SEGMENT_RENEW_US;
+    bool late = axis->way.to_us - robot->now_us < robot->renew_us;
     return grobo_i_way_is_short(axis) || (axis->has_target && axis->in_segments && !late);
 }
 
@@ -96,7 +96,11 @@ grobo_joint_mask grobo_i_joints_that(const grobo_robot *robot,
 
 grobo_joint_mask grobo_i_ways_renewed(const grobo_robot *robot)
 {
-    return robot->in_segments ? grobo_i_joints_that(robot, is_renewed) : 0;
+    grobo_joint_mask joints = 0;
+    for (int j = 0; robot->in_segments && j < robot->driver->model->n_joints; j++) {
+        joints |= is_renewed(robot, &robot->axes[j]) ? GROBO_JOINT_BIT(j) : 0;
+    }
+    return joints;
 }
 
 void grobo_i_segments_begin(grobo_robot *robot, int joint)
@@ -113,8 +117,7 @@ void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, gro
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (grobo_i_has(joints, j) && is_renewed(axis, robot->now_us) &&
-            axis->told_to_us > robot->now_us) {
+        if (grobo_i_has(joints, j) && is_renewed(robot, axis) && axis->told_to_us > robot->now_us) {
             int64_t time_us = part_us(robot, j, &axis->way, robot->now_us);
             target->joint_time_us[j] = time_us;
             target->posture.angle_rad[j] = place(robot, j, &axis->way, robot->now_us + time_us);
@@ -136,5 +139,5 @@ void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target)
 int64_t grobo_i_segments_due(const grobo_robot *robot)
 {
     bool some = grobo_i_ways_renewed(robot) != 0;
-    return some ? robot->renewed_us + GROBO_SEGMENT_RENEW_US : GROBO_NEVER_US;
+    return some ? robot->renewed_us + robot->renew_us : GROBO_NEVER_US;
 }

@@ -30,7 +30,7 @@ GROBO_BEGIN_DECLS
 
 /** Frames that the engine may have under way at a time: some families need one for each joint. */
 #ifndef GROBO_ROBOT_SLOTS
-#define GROBO_ROBOT_SLOTS (GROBO_JOINTS_MAX > 20 ? GROBO_JOINTS_MAX + 8 : 12)
+#define GROBO_ROBOT_SLOTS (GROBO_JOINTS_MAX > 20 ? 3 * GROBO_JOINTS_MAX + 8 : 12)
 #endif
 /** Bytes of these frames, each as long as it is. Three of the longest are kept for halts. */
 #ifndef GROBO_ROBOT_FRAMES_BYTES
@@ -243,6 +243,9 @@ struct grobo_robot {
     int64_t sense_us;       /* when the background reads next */
     uint32_t motion;        /* number of the last target */
     int64_t renewed_us;     /* when the ways in segments were told further */
+    int32_t renew_us;       /* how often they are: what the line can do, for these joints; */
+    int32_t read_us;        /* how long a reading may have the line meanwhile */
+    grobo_joint_mask paced; /* 0: not found yet */
     int64_t halt_us;        /* when the halts that are owed were asked for */
     int64_t hear_us;        /* joints that were not heard for long are not asked before */
     uint32_t told_item;     /* clip of the sequencer of which it was said that none watches it */

@@ -5,6 +5,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
 #include "tools/grctl/setup/ask.h"
@@ -160,6 +161,19 @@ static bool warn_of_ids(const app *a, const grobo_robot_def *def)
     return n > 0;
 }
 
+/* A line that does not carry moves of all joints. */
+static bool warn_of_line(const app *a, const grobo_robot_def *def)
+{
+    grobo_driver driver;
+    int baud_bps = (int)def->baud_bps, rate_bps = 0;
+    bool slow = grobo_robot_def_driver(def, def->wiring, &driver) >= 0 &&
+                wire_is_slow(&driver, baud_bps, &rate_bps);
+    if (slow) {
+        app_note(a, "%s: %s", def->name, wire_slow_text(&driver, baud_bps, rate_bps));
+    }
+    return slow;
+}
+
 static int run_check(app *a, const char *path)
 {
     grobo_diagnostics *list = NULL;
@@ -179,7 +193,7 @@ static int run_check(app *a, const char *path)
     }
     if (a->json) {
         app_print_json(json_pack("{s:b,s:o}", "ok", !error, "diagnostics", file_json(list)));
-    } else if (!error && !warn_of_ids(a, def)) {
+    } else if (!error && !(warn_of_ids(a, def) | warn_of_line(a, def))) {
         app_note(a, "%s: %d joint%s, nothing wrong", def->name, def->model->n_joints,
                  def->model->n_joints == 1 ? "" : "s");
     }

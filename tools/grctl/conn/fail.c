@@ -7,6 +7,7 @@
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/servo/family.h"
 
@@ -245,9 +246,14 @@ static int fail_adrift(conn *c, const char *prefix, const char *who)
 
 int conn_fail_job(conn *c, int error, const char *prefix)
 {
+    const grobo_driver *driver = grobo_robot_driver(c->robot);
     const grobo_model *model = conn_model(c);
-    int joint = c->job.kind == GROBO_JOB_NONE ? -1 : c->job.joint;
+    int rate_bps, joint = c->job.kind == GROBO_JOB_NONE ? -1 : c->job.joint;
     char who[64];
+    if (error == GROBO_ERR_UNWATCHED && wire_is_slow(driver, (int)conn_baud(c->a), &rate_bps)) {
+        return app_fail(c->a, EXIT_SAFETY, grobo_error_name(error), "%s: %s%s", conn_device(c),
+                        prefix, wire_slow_text(driver, (int)conn_baud(c->a), rate_bps));
+    }
     if (joint < 0 || joint >= model->n_joints) {
         return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s%s",
                         conn_device(c), prefix, app_error_text(error));

@@ -2,7 +2,10 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "tools/grctl/cli/app.h"
 #include "tools/grctl/conn/wire.h"
+#include "tools/grctl/lang/lang.h"
+#include "tools/grctl/servo/family.h"
 
 static void measure(const grobo_bus *bus, const grobo_exchange *exchange, wire_cost *to)
 {
@@ -60,6 +63,59 @@ int wire_budget(const grobo_driver *driver, int baud_bps, grobo_budget *budget)
 {
     grobo_bus_config line = {.baud_bps = (uint32_t)baud_bps};
     return grobo_budget_init(budget, driver, NULL, &line);
+}
+
+/* Whether all of a driver's servos have that rate. */
+static bool have_rate(const grobo_driver *driver, int baud_bps)
+{
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        const grobo_servo_model *servo = family_servo(driver, driver->model->joints[j].motor);
+        if (!servo || !grobo_servo_register_of(servo, GROBO_ROLE_BAUD) ||
+            grobo_servo_baud_code(servo, baud_bps) < 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool is_slow(const grobo_driver *driver, int baud_bps)
+{
+    grobo_budget budget;
+    return driver->arm && wire_budget(driver, baud_bps, &budget) >= 0 && budget.pace_us == 0;
+}
+
+bool wire_is_slow(const grobo_driver *driver, int baud_bps, int *rate_bps)
+{
+    static const int rates_bps[] = {115200,  500000,  625000,  1000000,
+                                    1250000, 2000000, 3000000, 4000000};
+    *rate_bps = 0;
+    if (!is_slow(driver, baud_bps)) {
+        return false;
+    }
+    for (size_t i = 0; i < sizeof rates_bps / sizeof rates_bps[0] && *rate_bps == 0; i++) {
+        bool enough = rates_bps[i] > baud_bps && have_rate(driver, rates_bps[i]) &&
+                      !is_slow(driver, rates_bps[i]);
+        *rate_bps = enough ? rates_bps[i] : 0;
+    }
+    return true;
+}
+
+const char *wire_slow_text(const grobo_driver *driver, int baud_bps, int rate_bps)
+{
+    static char text[APP_LINE_BYTES];
+    int n = driver->model->n_joints;
+    if (rate_bps > 0) {
+        snprintf(text, sizeof text,
+                 _("%d bps are too slow to move and read %d joints in time; raise the baud rate: "
+                   "grctl servo-set ID baud %d --flash"),
+                 baud_bps, n, rate_bps);
+    } else {
+        snprintf(text, sizeof text,
+                 _("%d bps are too slow to move and read %d joints in time, and the servos have no "
+                   "faster rate; move fewer joints at a time"),
+                 baud_bps, n);
+    }
+    return text;
 }
 
 int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t *time_us)

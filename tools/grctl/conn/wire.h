@@ -17,6 +17,13 @@ enum { WIRE_MOTION, WIRE_READ_FULL, WIRE_READ_ANGLE, WIRE_COSTS };
  * none. */
 int wire_budget(const grobo_driver *driver, int baud_bps, grobo_budget *budget);
 
+/* True if the line is too slow for moves of all joints at once, of a robot that is moved in
+ * segments. Then *rate_bps is the lowest rate of its servos that is enough; 0: none is. */
+bool wire_is_slow(const grobo_driver *driver, int baud_bps, int *rate_bps);
+
+/* What to say then, and what helps; static until the next call. */
+const char *wire_slow_text(const grobo_driver *driver, int baud_bps, int rate_bps);
+
 /* Fills all WIRE_COSTS of them. Returns 0 or GROBO_ERR_ARG for a baud rate that is none. */
 int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs);
 

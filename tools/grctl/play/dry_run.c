@@ -13,6 +13,7 @@
 
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/trace.h"
+#include "tools/grctl/conn/wire.h"
 #include "tools/grctl/play/play.h"
 
 typedef struct rehearsal {
@@ -26,6 +27,7 @@ typedef struct rehearsal {
     bool playing, over;
     int error;
     unsigned long frames;
+    int rounds; /* of the pump, in this instant */
 } rehearsal;
 
 static void on_event(void *ctx, const grobo_event *event)
@@ -47,7 +49,7 @@ static void on_event(void *ctx, const grobo_event *event)
 static void print_frame(rehearsal *r, const uint8_t *frame, int size)
 {
     const grobo_driver *driver = grobo_robot_driver(&r->robot);
-    char hex[3 * GROBO_RS30X_PACKET_MAX_BYTES + 1] = "";
+    char hex[3 * GROBO_FRAME_MAX_BYTES + 1] = "";
     grobo_target target = {0};
     grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1] = {0};
     if (!r->playing || driver->inspect(driver, NULL, frame, (size_t)size, &target, torqued) < 0 ||
@@ -69,10 +71,13 @@ static void print_frame(rehearsal *r, const uint8_t *frame, int size)
     }
 }
 
+/* So many rounds in one instant, and time stands still. */
+enum { ROUNDS_AT_ONCE = 10000 };
+
 /* One round of the pump; false when nothing will happen any more. */
 static bool turn(rehearsal *r)
 {
-    uint8_t buf[256];
+    uint8_t buf[GROBO_FRAME_MAX_BYTES];
     size_t n = grobo_sim_tx(&r->sim, buf, sizeof buf, r->now_us);
     int sent;
     trace_bytes(&r->trace, GROBO_DIR_RX, r->now_us, buf, n);
@@ -91,10 +96,11 @@ static bool turn(rehearsal *r)
     if (next == GROBO_NEVER_US) {
         return false;
     }
+    r->rounds = next > r->now_us ? 0 : r->rounds + 1;
     if (next > r->now_us) {
         r->now_us = next;
     }
-    return true;
+    return r->rounds < ROUNDS_AT_ONCE;
 }
 
 /* The simulated robot takes the first posture, as far as the motion gives one. */
@@ -126,6 +132,9 @@ static int play(rehearsal *r, playlist *list)
         error = grobo_robot_enqueue(&r->robot, &list->clip[i], &list->options[i]);
     }
     while (error >= 0 && !r->over && turn(r)) {
+    }
+    if (error >= 0 && !r->over) {
+        error = GROBO_ERR_TIMEOUT;
     }
     return error < 0 ? error : r->error;
 }
@@ -162,7 +171,11 @@ int play_dry_run(playlist *list, app *a)
         grobo_robot_link_up(&r.robot, 0);
         error = play(&r, list);
     }
-    if (error < 0) {
+    int rate_bps;
+    if (error == GROBO_ERR_UNWATCHED && wire_is_slow(app_driver(a), (int)conn_baud(a), &rate_bps)) {
+        status = app_fail(a, EXIT_SAFETY, grobo_error_name(error), "%s",
+                          wire_slow_text(app_driver(a), (int)conn_baud(a), rate_bps));
+    } else if (error < 0) {
         status = app_fail_error(a, app_status_of(error), error, "play");
     }
     return trace_close(&r.trace, a, status);
