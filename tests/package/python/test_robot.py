@@ -467,6 +467,84 @@ class Exiting(unittest.TestCase):
             self.assertEqual(robot.status().joints["R_ELBOW_P"].torque, Torque.OFF)
 
 
+@unittest.skipUnless(os.environ.get("GRCTL") and sys.platform == "linux", "needs $GRCTL")
+class Guarded(unittest.TestCase):
+    """A second process stops the joints when Python is killed, unless a program says guard=False."""
+
+    PROGRAM = (
+        "import sys, time, grobo\n"
+        "robot = grobo.connect(sys.argv[1], robot=sys.argv[2], guard=sys.argv[3] == 'True',\n"
+        "                      sense_interval=0.02)\n"
+        "robot.torque(True)\n"
+        "robot.angles()\n"
+        "joint, was = robot.joints[0], robot.status().joints[robot.joints[0]].angle\n"
+        "robot._move(grobo.robot.posture({joint: was - 0.5}, 15, robot._model))\n"
+        "while robot.status().joints[joint].angle > was - 0.05:\n"
+        "    time.sleep(0.01)\n"
+        "print('moves', flush=True)\n"
+        "time.sleep(60)\n"
+    )
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.link = Path(folder.name, "arm")
+
+    def simulate(self, robot):
+        command = [os.environ["GRCTL"], "sim", "--robot", robot, "--link", str(self.link)]
+        sim = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(sim.wait)
+        self.addCleanup(sim.terminate)
+        until(self.link.exists)
+
+    def moved_after_a_kill(self, robot, guard):
+        """How far a joint moves within half a second, once the port is free again."""
+        self.simulate(robot)
+        program = subprocess.Popen(
+            [sys.executable, "-c", self.PROGRAM, str(self.link), robot, str(guard)],
+            stdout=subprocess.PIPE, env={**os.environ, "GRCTL_GUARD": os.environ["GRCTL"]},
+        )
+        self.assertEqual(program.stdout.readline(), b"moves\n")
+        program.kill()
+        program.wait()
+        program.stdout.close()
+        for _ in range(200):  # its guard has the port for up to two seconds
+            try:
+                reader = grobo.connect(str(self.link), robot=robot, exit=None, guard=False)
+                break
+            except grobo.Error:
+                time.sleep(0.05)
+        with reader:
+            time.sleep(0.3)  # it may have been on its way when it was stopped
+            joint = reader[reader.joints[0]]
+            before = joint.angle
+            time.sleep(0.5)
+            return before - joint.angle
+
+    def test_a_killed_program_leaves_no_joint_moving(self):
+        self.assertAlmostEqual(self.moved_after_a_kill("gr001", True), 0, delta=0.003)
+
+    def test_so_of_another_robot(self):
+        self.assertAlmostEqual(self.moved_after_a_kill("so101", True), 0, delta=0.003)
+
+    def test_so_of_a_file(self):
+        arm = self.folder / "arm.yaml"
+        arm.write_text(Path("src/robots/so101.yaml").read_text())
+        self.assertAlmostEqual(self.moved_after_a_kill(str(arm), True), 0, delta=0.003)
+
+    def test_without_a_guard_it_goes_on(self):
+        self.assertGreater(self.moved_after_a_kill("gr001", False), 0.005)
+
+    def test_where_there_is_no_guard_that_is_said_once(self):
+        self.simulate("so101")
+        with mock.patch.dict(os.environ, {"GRCTL_GUARD": "/nonexistent"}):
+            with self.assertLogs("grobo", "WARNING") as log:
+                grobo.connect(str(self.link), robot="so101", exit=None).close()
+        self.assertEqual(len(log.output), 1)
+        self.assertIn("no guard", log.output[0])
+
+
 def posture_row(robot, elbow):
     row = [float("nan")] * len(robot.joints)
     row[robot.joints.index("R_ELBOW_P")] = elbow

@@ -33,13 +33,14 @@ static const grobo_driver *find_driver(void *ctx, const char *name, grobo_wiring
     static config_robot robot;
     guard_robot given = {.trimmed = false};
     (void)ctx;
-    if (bytes && bytes != sizeof given) {
+    if (bytes && bytes <= sizeof given.robot) { /* of a program that is not grctl */
+        memcpy(given.robot, data, bytes);
+    } else if (bytes == sizeof given) {
+        memcpy(&given, data, sizeof given);
+    } else if (bytes) {
         return NULL;
     }
-    if (bytes) {
-        memcpy(&given, data, sizeof given);
-        given.robot[sizeof given.robot - 1] = '\0';
-    }
+    given.robot[sizeof given.robot - 1] = '\0';
     const grobo_driver *inner =
         *given.robot ? make_driver(&given, wiring) : grobo_gr001_driver(wiring);
     if (!inner || strcmp(name, inner->name) != 0) {
@@ -64,10 +65,11 @@ static void on_stop(void *ctx, grobo_guard_cause cause, int result)
     }
     if (result < 0) {
         fprintf(stderr,
-                _("grctl was killed; not every joint is seen to stand: %s; switch the robot off\n"),
+                _("the program was killed; not every joint is seen to stand: %s; switch the robot "
+                  "off\n"),
                 app_error_text(result));
     } else {
-        fprintf(stderr, _("grctl was killed; its guard stopped the robot\n"));
+        fprintf(stderr, _("the program was killed; its guard stopped the robot\n"));
     }
     fflush(stderr);
 }

@@ -11,7 +11,8 @@
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/robot.h"
 
-/* Of a configured robot, or of another than GR001, as it goes to the guard. */
+/* Of a configured robot, or of another than GR001, as it goes to the guard. Other programs, such as
+ * those in Python, give the first field alone, as far as its NUL. */
 typedef struct guard_robot {
     char robot[ROBOT_PATH_BYTES - 64]; /* what robot_find() takes; "": GR001 */
     bool trimmed;

@@ -18,6 +18,7 @@ class Description:
 
     def __init__(self, name: Union[str, "os.PathLike[str]"] = "gr001") -> None:
         text = os.fspath(name)
+        self._place = text  # by which a guard finds it
         shipped = isinstance(name, str) and not set(text) & {"/", os.sep, "."}
         self._c = _shipped(text) if shipped else _read(text)
         self.model = self._c.model
@@ -42,6 +43,12 @@ class Description:
             name: (float(self.model.joints[j].min_rad), float(self.model.joints[j].max_rad))
             for j, name in enumerate(self.joints)
         }
+
+    @property
+    def _guarded_by(self) -> bytes:
+        """How the guard's program, in a folder of its own, finds this robot."""
+        shipped = not set(self._place) & {"/", os.sep, "."}
+        return os.fsencode(self._place if shipped else os.path.abspath(self._place)) + b"\0"
 
     def configure(self, session: Any) -> None:
         """Has a session talk to this robot, which must live as long as it."""

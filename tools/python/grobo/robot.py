@@ -72,12 +72,37 @@ class Status:
     joints: Mapping[str, JointStatus]
 
 
+def _start_guard(device: str) -> Any:
+    """A process that stops the robot if this one dies; NULL where there is none, which is logged."""
+    made = ffi.new("grobo_guard **")
+    if device == "sim" or not has("grobo_guard_new"):
+        return ffi.NULL
+    config = new("grobo_guard_config")
+    program = ffi.NULL
+    if os.environ.get("GRCTL_GUARD"):
+        program = ffi.new("char[]", os.fsencode(os.environ["GRCTL_GUARD"]))
+    config.program = program
+    result = lib.grobo_guard_new(config, made)
+    if result == lib.GROBO_ERR_UNSUPPORTED:
+        return ffi.NULL
+    if result < 0:
+        reason = errors.error(result, "guard")
+        log.warning("%s: no guard (%s): if Python is killed, joints go on to their targets; install "
+                    "grctl, or name it in GRCTL_GUARD", device, reason)
+        return ffi.NULL
+    return made[0]
+
+
 class _Runner:
     """The C side, and what must live as long as it."""
 
     def __init__(self, config: Any, keep: List[Any]) -> None:
         made = ffi.new("grobo_runner **")
-        errors.check(lib.grobo_runner_new(config, made), "robot")
+        self.guard = config.session.guard
+        result = lib.grobo_runner_new(config, made)
+        if result < 0:
+            self.free_guard()
+        errors.check(result, "robot")
         self.leaves = not config.skip_exit
         self.handle = made[0]
         self.robot = lib.grobo_runner_robot(self.handle)
@@ -122,8 +147,14 @@ class _Runner:
             result: int = lib.grobo_runner_close(self.handle, 0)
             handle, self.handle = self.handle, ffi.NULL
             lib.grobo_runner_free(handle)
+            self.free_guard()
             _open.discard(self)
             return result
+
+    def free_guard(self) -> None:
+        if self.guard != ffi.NULL:
+            lib.grobo_guard_free(self.guard)
+        self.guard = ffi.NULL
 
 
 _open: Set[_Runner] = set()
@@ -191,7 +222,8 @@ class Robot:
     first port on which a robot answers. `robot`: what it is, see grobo.Description. `exit` says
     what the servos do when it is closed; None leaves them as they are. `owner_timeout`: after so
     many seconds without a call of this program the exit policy is carried out; 0: never. `events`:
-    how many events are kept, see grobo.aio.
+    how many events are kept, see grobo.aio. `guard`: a process beside this one (the installed
+    grctl, or $GRCTL_GUARD) that stops the joints when Python is killed or stopped.
     """
 
     def __init__(
@@ -205,6 +237,7 @@ class Robot:
         events: int = 0,
         robot: Union[str, "os.PathLike[str]", Description] = "gr001",
         sense_interval: Optional[float] = None,
+        guard: bool = True,
     ) -> None:
         _close_all(dropped=True)  # one of them may have the device
         if not isinstance(robot, Description):
@@ -231,7 +264,14 @@ class Robot:
                 raise errors.error(lib.GROBO_ERR_UNSUPPORTED, "events")
             config.events = events
         self.device = device
-        self._runner = _Runner(config, [name, robot_config, session, robot])
+        keep = [name, robot_config, session, robot]
+        if guard:
+            session.guard = _start_guard(device)
+            found_by = ffi.new("char[]", robot._guarded_by)
+            session.guard_data = found_by
+            session.guard_bytes = len(robot._guarded_by)
+            keep.append(found_by)
+        self._runner = _Runner(config, keep)
         try:
             with self._runner.use() as runner:
                 self.joints = robot.joints
