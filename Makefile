@@ -95,7 +95,9 @@ CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(patsubst -I%,-isystem%,$(call flags,
 CMOCKA_LIBS = $(call once,CMOCKA_LIBS,$(call flags,--libs,cmocka))
 JSON_CFLAGS = $(call once,JSON_CFLAGS,$(call flags,--cflags,jansson))
 JSON_LIBS = $(call once,JSON_LIBS,$(call flags,--libs,jansson))
-TOOL_LIBS = $(call once,TOOL_LIBS,$(JSON_LIBS) $(XML_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS) $(WEB_LIBS) $(MQTT_LIBS))
+TOOL_LIBS = $(call once,TOOL_LIBS,$(BASE_LIBS) $(WEB_LIBS) $(MQTT_LIBS))
+# Of grctl itself; the programs beside it have the others.
+BASE_LIBS = $(call once,BASE_LIBS,$(JSON_LIBS) $(XML_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS))
 # The shell edits lines where libedit is there, else it reads them plainly.
 EDIT := $(if $(shell $(PKG_CONFIG) --exists libedit 2>/dev/null && echo yes),libedit,plain)
 EDIT_CFLAGS = $(if $(filter libedit,$(EDIT)),$(call once,EDIT_CFLAGS_FOUND,$(call flags,--cflags,libedit)))
@@ -130,7 +132,7 @@ CHOSEN := tools/grctl/edit/% tools/grctl/screen/% tools/grctl/xml/% tools/grctl/
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out $(CHOSEN),\
     $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
     tools/grctl/screen/$(SCREEN).c tools/grctl/xml/$(XML).c tools/grctl/mqtt/$(MQTT).c \
-    $(if $(filter none,$(WEB)),tools/grctl/web/none.c,\
+    $(if $(filter none,$(WEB)),tools/grctl/web/none.c tools/grctl/web/run.c,\
     $(filter-out tools/grctl/web/none.c,$(wildcard tools/grctl/web/*.c)))))
 # LEFT_OUT, of a target: tests that its system cannot run, and what only they use. WITHOUT: tests that
 # a caller has no use for.
@@ -186,6 +188,10 @@ SHARED_LIB := $(if $(SONAME),$(BUILD)/$(SONAME))
 PC_FILES := $(BUILD)/grobo.pc $(BUILD)/grobo-path.pc $(BUILD)/grobo-core.pc $(BUILD)/grobo-classic.pc
 CMAKE_FILES := $(BUILD)/cmake/grobo-config.cmake $(BUILD)/cmake/grobo-config-version.cmake
 GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl$(EXE))
+# What `grctl serve`, `grctl agent` and `grctl fleet` are. WHOLE_GRCTL: they are in grctl itself, where a
+# program cannot become another one, or is to be one file.
+WHOLE_GRCTL := $(if $(EMULATOR)$(filter win32,$(PORT))$(filter -static,$(LDFLAGS)),yes)
+BESIDE := $(if $(TOOL_SRCS),$(if $(WHOLE_GRCTL),,$(BUILD)/grctl-serve$(EXE) $(BUILD)/grctl-fleet$(EXE)))
 # What runs on this machine: grctl, or a script that gives it to the emulator.
 GRCTL_RUN := $(if $(EMULATOR),$(BUILD)/run/grctl,$(GRCTL))
 BARE := $(if $(TOOL_SRCS),$(BUILD)/bare/grctl$(EXE))
@@ -211,7 +217,7 @@ help: ## this list
 	@echo '  ONLY=joints RING="unit engine" (for test) PREFIX=/usr/local DESTDIR= V=1'
 	@echo '  TARGET=one of $(TARGETS) (for cross)'
 
-all: lib $(GRCTL) $(GRCTL_RUN) $(ALSO) ## libraries and grctl, in build/
+all: lib $(GRCTL) $(BESIDE) $(GRCTL_RUN) $(ALSO) ## libraries and grctl, in build/
 
 lib: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(CLASSIC_LIB) $(CLASSIC_SHARED) $(PC_FILES) $(CMAKE_FILES) ## the libraries alone: libevent and libyaml are enough
 
@@ -223,7 +229,7 @@ demo: ## play MOTION=motions/greet.pseq on a simulated robot behind a pty
 
 cockpit: ## the cockpit of a simulated robot: a link for the browser
 	@tools/setup.sh --demo
-	@$(MAKE) --no-print-directory $(BUILD)/grctl
+	@$(MAKE) --no-print-directory $(BUILD)/grctl $(BUILD)/grctl-serve
 	@$(BUILD)/grctl -d sim serve motions
 
 check: ## set up what is missing, build, lint, run every test
@@ -610,6 +616,8 @@ install-lib: lib ## headers, libraries and what finds them: pkg-config, CMake
 install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -d "$(DESTDIR)$(BINDIR)"
 	$(if $(GRCTL),install -m 755 $(GRCTL) "$(DESTDIR)$(BINDIR)")
+	$(if $(BESIDE),install -d "$(DESTDIR)$(PREFIX)/libexec/grctl")
+	$(if $(BESIDE),install -m 755 $(BESIDE) "$(DESTDIR)$(PREFIX)/libexec/grctl")
 	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
 	install -d "$(DESTDIR)$(DATADIR)/man/man5" "$(DESTDIR)$(DATADIR)/grobo/udev" "$(DESTDIR)$(DATADIR)/grobo/systemd" \
 	    "$(DESTDIR)$(DATADIR)/grobo/wireshark"
@@ -623,6 +631,7 @@ uninstall: ## take out what install put in
 	rm -rf "$(DESTDIR)$(INCLUDEDIR)/grobo" "$(DESTDIR)$(LIBDIR)/cmake/grobo" "$(DESTDIR)$(LIBDIR)/grobo"
 	rm -f $(foreach file,libgrobo.a libgrobo-core.a libgrobo-classic.a $(CLASSIC_LINK_NAME) $(CLASSIC_SONAME) $(LINK_NAME) $(SONAME) $(IMPORT_LIB) \
 	    $(patsubst $(BUILD)/%,pkgconfig/%,$(PC_FILES)),"$(DESTDIR)$(LIBDIR)/$(file)")
+	rm -rf "$(DESTDIR)$(PREFIX)/libexec/grctl"
 	rm -f $(foreach file,grctl$(EXE) $(if $(IMPORT_LIB),$(SONAME)),"$(DESTDIR)$(BINDIR)/$(file)")
 	rm -f $(foreach page,$(PAGES),"$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page)))")
 	rm -f "$(DESTDIR)$(DATADIR)/man/man5/grctl-json.5"
@@ -705,7 +714,8 @@ $(CORE_LIB): $(CORE_OBJS)
 $(CLASSIC_LIB): $(CLASSIC_OBJS)
 $(SUPPORT_LIB): $(SUPPORT_OBJS)
 # The command without its main: tests link parts of it.
-$(TOOL_LIB): $(filter-out %/main.o,$(TOOL_OBJS))
+BESIDE_OBJS := $(call objects,$(patsubst %,tools/grctl/%.c,serve_main web/run fleet_main fleet/run_agent fleet/run_fleet))
+$(TOOL_LIB): $(filter-out %/main.o $(BESIDE_OBJS),$(TOOL_OBJS))
 $(STATIC_LIB) $(CORE_LIB) $(CLASSIC_LIB) $(SUPPORT_LIB) $(TOOL_LIB): $(BUILD)/.flags
 	$(say) AR $@
 	@rm -f $@
@@ -734,9 +744,17 @@ $(CLASSIC_SHARED): $(CLASSIC_OBJS) $(SHARED_LIB)
 	$(Q)$(CC) -shared $(subst $(SONAME),$(CLASSIC_SONAME),$(filter-out %.map,$(SHARED_FLAGS))) $(ALL_LDFLAGS) -o $@ $(CLASSIC_OBJS) $(SHARED_LIB) $(OS_LIBS)
 	@ln -sf $(CLASSIC_SONAME) $(BUILD)/$(CLASSIC_LINK_NAME)
 
-$(BUILD)/grctl$(EXE): $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
+WHOLE_OBJS := $(filter-out %/fleet_main.o,$(BESIDE_OBJS))
+$(BUILD)/grctl$(EXE): $(if $(WHOLE_GRCTL),$(WHOLE_OBJS),$(BUILD)/tools/grctl/main.o) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(TOOL_LIBS) $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(if $(WHOLE_GRCTL),$(TOOL_LIBS),$(BASE_LIBS)) $(LIBS)
+
+# What the archive has for grctl in their place (beside.c) is not taken: their objects come first.
+$(BUILD)/grctl-serve$(EXE): $(filter %/serve_main.o %/web/run.o,$(BESIDE_OBJS))
+$(BUILD)/grctl-fleet$(EXE): $(filter %/fleet_main.o %/run_agent.o %/run_fleet.o,$(BESIDE_OBJS))
+$(BESIDE): $(TOOL_LIB) $(STATIC_LIB)
+	$(say) LD $@
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $(filter %.o,$^) $(TOOL_LIB) $(STATIC_LIB) $(TOOL_LIBS) $(LIBS)
 
 # Of the reader alone: it makes the tables that the library has.
 $(ROBOTS): $(BUILD)/tools/robots/main.o $(STATIC_LIB)
@@ -747,7 +765,7 @@ $(ROBOTS) $(SERVOS) $(PICTURE):
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 # With none of the libraries that it can do without: tests/export/optional.sh.
-$(BARE): $(call objects,$(patsubst %,tools/grctl/%.c,main edit/plain screen/none xml/none mqtt/none web/none)) \
+$(BARE): $(WHOLE_OBJS) $(call objects,$(patsubst %,tools/grctl/%.c,edit/plain screen/none xml/none mqtt/none web/none)) \
     $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	@mkdir -p $(@D)

@@ -269,6 +269,12 @@ check 'that of what --json prints too' grep -q '^\.Dt GRCTL-JSON 5' "$share/man/
 check 'its schema' grep -q '"title": "What grctl --json prints' "$share/grobo/grctl.schema.json"
 check 'the dissector for Wireshark' grep -q '^local grobo = Proto(' \
     "$share/grobo/wireshark/grobo.lua"
+# By what is installed beside it alone.
+fleet_is_beside() {
+    ! "$tree/opt/grobo/bin/grctl" fleet list --broker mqtt://127.0.0.1:1 >"$work/said" 2>&1 &&
+        grep -q 'fleet: 127.0.0.1: ' "$work/said"
+}
+[ -n "${CROSS:-}${EMULATOR:-}" ] || check 'grctl fleet is beside it' fleet_is_beside
 check 'completion for bash' grep -q '^complete ' "$share/bash-completion/completions/grctl"
 check 'completion for zsh' grep -q '^#compdef' "$share/zsh/site-functions/_grctl"
 check 'completion for fish' grep -q '^complete ' "$share/fish/vendor_completions.d/grctl.fish"

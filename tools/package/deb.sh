@@ -74,7 +74,7 @@ if [ "$arch" = "$here" ]; then
     # libNAME SOVERSION PACKAGE (>= VERSION), of what these packages need.
     sed -n 's/^shlibs:Depends=//p' "$tree"/debian/*.substvars | tr ',' '\n' | sed 's/^ *//' |
         sort -u >"$out/needs"
-    for binary in "$tree/build/grctl" "$tree/build/libgrobo.so.1"; do
+    for binary in "$tree"/build/grctl "$tree"/build/grctl-[sf]* "$tree"/build/libgrobo.so.[0-9]; do
         objdump -p "$binary" | sed -n 's/^ *NEEDED *//p'
     done | sort -u | while read -r file; do
         path=$(ldconfig -p | sed -n "s|^\t$file (.* => ||p" | head -n 1)

@@ -1,45 +1,19 @@
 /* SPDX-License-Identifier: MIT */
+/* What `grctl serve` is told; it runs in a program of its own (beside.h). */
 #include "tools/grctl/cmd/commands.h"
-#include "tools/grctl/fleet/message.h"
-#include "tools/grctl/web/web.h"
+#include "tools/grctl/web/run.h"
 
-enum { OPT_PORT = BROKER_OPTIONS, OPT_LISTEN, OPT_NAME, OPT_OPERATOR, OPT_GROUP, OPTIONS };
-
-static const cli_option options[OPTIONS] = {
+static const cli_option options[SERVE_OPTIONS] = {
     BROKER_OPTION_ROWS,
-    [OPT_PORT] = OPTION_WHOLE("port", 'p', "PORT", 0, 65534,
-                              "port of the page; stop has the next one; 0: any two (8717)"),
-    [OPT_LISTEN] = OPTION_TEXT("listen", 0, "ADDRESS",
-                               "listen there, not on this machine alone; then all needs the token"),
-    [OPT_NAME] = OPTION_TEXT("name", 0, "HOST", "a name that browsers may use for this machine"),
-    [OPT_OPERATOR] = OPTION_FLAG("operator", 0, "a page that asks for control gets it at once"),
-    [OPT_GROUP] = OPTION_TEXT("group", 0, "NAME", "of a fleet: the robots of this group (all)"),
+    [SERVE_PORT] = OPTION_WHOLE("port", 'p', "PORT", 0, 65534,
+                                "port of the page; stop has the next one; 0: any two (8717)"),
+    [SERVE_LISTEN] =
+        OPTION_TEXT("listen", 0, "ADDRESS",
+                    "listen there, not on this machine alone; then all needs the token"),
+    [SERVE_NAME] = OPTION_TEXT("name", 0, "HOST", "a name that browsers may use for this machine"),
+    [SERVE_OPERATOR] = OPTION_FLAG("operator", 0, "a page that asks for control gets it at once"),
+    [SERVE_GROUP] = OPTION_TEXT("group", 0, "NAME", "of a fleet: the robots of this group (all)"),
 };
-
-static int run_fleet(app *a, const web_options *o)
-{
-    static broker b;
-    const cli_value *group = app_option(a, OPT_GROUP);
-    if (a->line.n_arguments) {
-        return app_fail(a, EXIT_USAGE, "ARG", "serve --broker: motions are not of a fleet");
-    }
-    if (group->given && !fleet_is_name(group->text)) {
-        return app_fail(a, EXIT_USAGE, "ARG",
-                        "serve: letters, digits, _ and - in the name of a group");
-    }
-    int status = broker_read(&b, a);
-    return status ? status : web_run_fleet(a, o, &b, group->given ? group->text : FLEET_ALL);
-}
-
-static int run(app *a)
-{
-    web_options o = {.folder = a->line.n_arguments ? a->line.argument[0] : ".",
-                     .listen = app_option(a, OPT_LISTEN)->text,
-                     .name = app_option(a, OPT_NAME)->text,
-                     .port = (uint16_t)app_number(a, OPT_PORT, WEB_PORT),
-                     .takes_over = app_option(a, OPT_OPERATOR)->given > 0};
-    return app_option(a, BROKER_URL)->given ? run_fleet(a, &o) : web_run(a, &o);
-}
 
 const cli_command cmd_serve = {
     .name = "serve",
@@ -62,5 +36,5 @@ const cli_command cmd_serve = {
     .example = "  grctl serve -d sim motions\n  grctl serve --listen 0.0.0.0 --name robot.local\n"
                "  grctl serve --broker mqtt://stage.local\n",
     COMMAND_OPTIONS(options),
-    .run = run,
+    .run = serve_run,
 };

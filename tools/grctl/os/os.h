@@ -49,6 +49,14 @@ char *os_printed(void (*print)(FILE *to));
  * result is argv0 or static.
  */
 const char *os_own_program(const char *argv0);
+/*
+ * The path of a program of this name in the directory of this very one, or in ../libexec/grctl of
+ * that. False where there is none, or path is too small.
+ */
+bool os_beside(const char *argv0, const char *name, char *path, size_t capacity);
+/* Becomes that program, with these words (ending with NULL; the first is replaced by the path).
+ * Returns where that cannot be. */
+void os_become(const char *path, char *const *words);
 /* What this machine is called, "" where it has no name. */
 void os_host_name(char *name, size_t capacity);
 /* Suspends this process, as Ctrl-Z does without a handler; returns when it continues. */

@@ -5,6 +5,8 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -36,6 +38,40 @@ const char *os_own_program(const char *argv0)
     /* Of Linux: this very file, though another has its name by now. */
     static const char self[] = "/proc/self/exe";
     return access(self, X_OK) == 0 ? self : argv0;
+}
+
+static bool is_beside(const char *own, size_t folder, const char *where, const char *name,
+                      char *path, size_t capacity)
+{
+    int n = snprintf(path, capacity, "%.*s%s/%s", (int)folder, own, where, name);
+    return n > 0 && (size_t)n < capacity && access(path, X_OK) == 0;
+}
+
+bool os_beside(const char *argv0, const char *name, char *path, size_t capacity)
+{
+    char *own = realpath(os_own_program(argv0), NULL);
+    const char *slash = own ? strrchr(own, '/') : NULL;
+    size_t folder = slash ? (size_t)(slash - own) : 0;
+    bool found = slash && (is_beside(own, folder, "", name, path, capacity) ||
+                           is_beside(own, folder, "/../libexec/grctl", name, path, capacity));
+    free(own);
+    return found;
+}
+
+enum { WORDS_MAX = 1024 };
+
+void os_become(const char *path, char *const *words)
+{
+    char *given[WORDS_MAX] = {(char *)(uintptr_t)path}; /* it does not write to it */
+    int n = 1;
+    while (words[0] && words[n] && n < WORDS_MAX - 1) {
+        given[n] = words[n];
+        n++;
+    }
+    fflush(NULL);
+    if (!words[0] || !words[n]) {
+        execv(path, given);
+    }
 }
 
 void os_host_name(char *name, size_t capacity)

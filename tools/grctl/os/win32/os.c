@@ -260,6 +260,22 @@ const char *os_own_program(const char *argv0)
     return argv0;
 }
 
+/* Here the command is one program (Makefile, WHOLE). */
+bool os_beside(const char *argv0, const char *name, char *path, size_t capacity)
+{
+    (void)argv0;
+    (void)name;
+    (void)path;
+    (void)capacity;
+    return false;
+}
+
+void os_become(const char *path, char *const *words)
+{
+    (void)path;
+    (void)words;
+}
+
 void os_take_signals(void)
 {
     static bool taken;

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT */
+/* The program grctl-fleet, which `grctl agent` and `grctl fleet` are; it uses other commands too. */
+#include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/start.h"
+#include "tools/grctl/mqtt/host.h"
+#include "tools/grctl/mqtt/mqtt.h"
+
+#define POINTER(name) &cmd_##name,
+static const cli_command *const commands[] = {GRCTL_COMMANDS(POINTER)};
+#undef POINTER
+
+int main(int argc, char **argv)
+{
+    static const start_program program = {.commands = commands,
+                                          .n_commands = sizeof commands / sizeof commands[0],
+                                          .word = MQTT_HOST_WORD,
+                                          .run_word = mqtt_host_main};
+    mqtt_note_program(argv[0]);
+    return start(argc, argv, &program);
+}
