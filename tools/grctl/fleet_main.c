@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The program grctl-fleet, which `grctl agent` and `grctl fleet` are; it uses other commands too. */
+/* The program grctl-fleet: `grctl agent` and `grctl fleet`, which use other commands too. */
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/start.h"
 #include "tools/grctl/mqtt/host.h"
