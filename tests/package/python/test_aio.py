@@ -44,7 +44,8 @@ class Aio(unittest.IsolatedAsyncioTestCase):
         self.assertAlmostEqual(angles["R_ELBOW_P"], -0.8, delta=0.02)
         self.assertAlmostEqual(angles["L_ELBOW_P"], -0.4, delta=0.02)
         jobs = [e for e in self.events if e.kind == "job" and e.state == "move"]
-        self.assertEqual([e.error for e in jobs], [None, None, None])
+        self.assertIn(len(jobs), (2, 3))  # they may have been joined to one
+        self.assertEqual({e.error for e in jobs}, {None})
 
     async def test_the_loop_turns_while_the_robot_moves(self):
         moving = asyncio.create_task(self.robot.init(time=0.5))

@@ -123,7 +123,8 @@ class Binding(unittest.TestCase):
         self.assertGreater(len(listed), 30)
         for name, code in listed:
             made = errors.error(int(code), "x")
-            self.assertIs(type(made), getattr(errors, name.capitalize()))
+            called = errors._NAMES.get(name, name.capitalize())
+            self.assertIs(type(made), getattr(errors, called))
             self.assertEqual(made.code, int(code))
         self.assertIsInstance(errors.error(-13, "x"), TimeoutError)
         self.assertIsInstance(errors.error(-20, "x"), ConnectionError)

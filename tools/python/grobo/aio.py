@@ -50,7 +50,8 @@ class Robot:
 
     def __init__(self, robot: _Blocking) -> None:
         self._robot = robot
-        self._jobs: Dict[int, "asyncio.Future[int]"] = {}
+        # Moves that were joined have one job.
+        self._jobs: Dict[int, List["asyncio.Future[int]"]] = {}
         self._readers: List["asyncio.Queue[Optional[Event]]"] = []
         self._event = new("grobo_runner_event")
         self._loop = asyncio.get_running_loop()
@@ -100,13 +101,13 @@ class Robot:
                     self._end(job, errors.error(result, "move") if result < 0 else None)
 
     def _end(self, job: int, error: Optional[errors.Error]) -> None:
-        future = self._jobs.pop(job, None)
-        if future is None or future.done():
-            return
-        if error is not None:
-            future.set_exception(error)
-        else:
-            future.set_result(0)
+        for future in self._jobs.pop(job, []):
+            if future.done():
+                continue
+            if error is not None:
+                future.set_exception(error)
+            else:
+                future.set_result(0)
 
     def _read(self, c: Any) -> Event:
         lost = int(c.lost)
@@ -159,11 +160,13 @@ class Robot:
     async def _moved(self, target: Any) -> None:
         job = self._robot._move(target)
         future: "asyncio.Future[int]" = self._loop.create_future()
-        self._jobs[job] = future
+        self._jobs.setdefault(job, []).append(future)
         try:
             await future
         except asyncio.CancelledError:
-            self._jobs.pop(job, None)
+            waiting = self._jobs.get(job, [])
+            if future in waiting:
+                waiting.remove(future)
             self._stop_unless_closing()
             raise
 
@@ -223,10 +226,8 @@ class Robot:
         try:
             await self._loop.run_in_executor(None, self._robot.close)
         finally:
-            for future in self._jobs.values():
-                if not future.done():
-                    future.set_exception(errors.error(lib.GROBO_ERR_CLOSED, "robot"))
-            self._jobs.clear()
+            for job in list(self._jobs):
+                self._end(job, errors.error(lib.GROBO_ERR_CLOSED, "robot"))
             for queue in self._readers:
                 queue.put_nowait(None)
 
