@@ -6,11 +6,13 @@ import dataclasses
 import math
 import os
 import re
+import subprocess
 import sys
 import tempfile
 import time
 import unittest
 from pathlib import Path
+from unittest import mock
 
 HERE = Path(__file__).parent
 TOP = HERE.parents[2]
@@ -31,7 +33,10 @@ import grobo  # noqa: E402
 import lerobot_robot_grobo  # noqa: E402
 from lerobot.robots import RobotConfig, make_robot_from_config  # noqa: E402
 from lerobot.utils.errors import DeviceAlreadyConnectedError, DeviceNotConnectedError  # noqa: E402
-from lerobot_robot_grobo import Grobo, GroboConfig  # noqa: E402
+from lerobot_robot_grobo import (  # noqa: E402
+    Grobo, GroboConfig, GroboLeader, GroboLeaderConfig,
+)
+from lerobot_robot_grobo.scale import Scale  # noqa: E402
 
 PERIOD_S = 0.02
 
@@ -56,6 +61,12 @@ class Plugin(unittest.TestCase):
         robot = make_robot_from_config(self.config(**options))
         self.addCleanup(robot.disconnect)
         return robot
+
+    def make_leader(self, port="sim"):
+        config = GroboLeaderConfig(port=port, id="bench", calibration_dir=self.folder)
+        leader = GroboLeader(config)
+        self.addCleanup(leader.disconnect)
+        return leader
 
     def drive(self, robot, target, done):
         """As LeRobot's loop: observe, act, each period."""
@@ -103,12 +114,13 @@ class Plugin(unittest.TestCase):
         self.assertIs(robot.action_features["elbow_flex.pos"], float)
         self.assertEqual(robot.observation_features, robot.action_features)
         self.assertFalse(robot.is_connected)
-        self.assertTrue(robot.is_calibrated)
+        self.assertFalse(robot.is_calibrated)  # nobody has read it yet
 
     def test_connecting_moves_nothing_and_holds(self):
         robot = self.make()
         robot.connect()
         self.assertTrue(robot.is_connected)
+        self.assertTrue(robot.is_calibrated)
         joints = robot._robot.status().joints.values()
         self.assertEqual({joint.torque for joint in joints}, {grobo.Torque.ON})
         self.assertTrue(all(abs(joint.target - joint.angle) < 0.01 for joint in joints))
@@ -122,6 +134,69 @@ class Plugin(unittest.TestCase):
         seen = self.drive(robot, target, lambda s: abs(s["elbow_flex.pos"] - 12) < 0.5)
         self.assertEqual(set(seen), set(robot.observation_features))
         self.drive(robot, target, lambda s: abs(s["gripper.pos"] - 20) < 0.5)
+
+    def test_a_gripper_is_a_part_of_its_range(self):
+        """As LeRobot has it: 0 closed, 100 open; degrees where that is asked for."""
+        robot = self.make(max_relative_target=None)
+        robot.connect()
+        low, high = (math.degrees(end) for end in robot._description.limits["gripper"])
+        for percent in 0.0, 50.0, 100.0:
+            sent = robot.send_action({"gripper.pos": percent})
+            self.assertAlmostEqual(sent["gripper.pos"], percent)
+            self.drive(robot, sent, lambda s: abs(s["gripper.pos"] - percent) < 0.5)
+            at = robot._robot.status().joints["gripper"].degrees
+            self.assertAlmostEqual(at, low + percent / 100 * (high - low), delta=1)
+        self.assertEqual(robot.send_action({"gripper.pos": 130.0})["gripper.pos"], 100)
+        robot.disconnect()
+        robot = self.make(percent=())
+        robot.connect()
+        self.assertAlmostEqual(robot.send_action({"gripper.pos": 3.0})["gripper.pos"], 3)
+
+    def test_its_range_is_that_of_lerobots_calibration(self):
+        one = type("Calibration", (), {"range_min": 2048, "range_max": 2048 + 1024})
+        scale = Scale(grobo.Description("so101"), ("gripper",), {"gripper": one})
+        joint = grobo.JointStatus("gripper", 0.0, 0.0, None, None, None, None, None)
+        self.assertAlmostEqual(scale.shown(joint, math.radians(45)), 50)
+        self.assertAlmostEqual(scale.angle(joint, 100), math.radians(90))
+        kept = dataclasses.replace(joint, range=(0.0, 1.0))
+        scale = Scale(grobo.Description("so101"), ("gripper",), {})
+        self.assertAlmostEqual(scale.shown(kept, 0.25), 25)
+
+    def test_a_leader_is_limp_and_tells_where_it_is(self):
+        leader = self.make_leader()
+        self.assertFalse(leader.is_connected or leader.is_calibrated)
+        with self.assertRaises(DeviceNotConnectedError):
+            leader.get_action()
+        leader.connect()
+        self.assertTrue(leader.is_connected and leader.is_calibrated)
+        joints = leader._robot.status().joints.values()
+        self.assertEqual({joint.torque for joint in joints}, {grobo.Torque.OFF})
+        follower = self.make()
+        follower.connect()
+        action = leader.get_action()
+        self.assertEqual(set(action), set(follower.action_features))
+        sent = follower.send_action(action)
+        self.assertAlmostEqual(sent["wrist_flex.pos"], action["wrist_flex.pos"], delta=0.1)
+        self.assertEqual(leader.feedback_features, {})
+        leader.send_feedback({})
+        leader.disconnect()
+        self.assertFalse(leader.is_connected)
+
+    @unittest.skipUnless(os.environ.get("GRCTL"), "needs $GRCTL")
+    def test_an_arm_from_the_factory_is_not_calibrated(self):
+        link = self.folder / "arm"
+        servos = ",".join(f"{i}=STS3215" for i in range(1, 7))
+        sim = subprocess.Popen([os.environ["GRCTL"], "sim", "--servo", servos, "--link", str(link)],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(sim.wait)
+        self.addCleanup(sim.terminate)
+        until(link.exists)
+        with mock.patch.dict(os.environ, {"GRCTL_GUARD": os.environ["GRCTL"]}):
+            for device in (self.make_leader(port=str(link)),
+                           Grobo(dataclasses.replace(self.config(), port=str(link)))):
+                with self.assertRaises(grobo.errors.Setup):
+                    device.connect()
+                self.assertFalse(device.is_connected or device.is_calibrated)
 
     def test_what_is_returned_is_what_was_sent(self):
         robot = self.make(max_relative_target=None)

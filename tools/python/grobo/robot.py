@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import (
-    Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Type, Union,
+    Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple, Type, Union,
 )
 
 from grobo import errors
@@ -54,6 +54,10 @@ class JointStatus:
     temperature_c: Optional[int]
     current_ma: Optional[int]
     voltage_mv: Optional[int]
+    ready: Optional[bool] = None
+    """False: its servo is not set up as its joint needs it, or was never calibrated."""
+    range: Optional[Tuple[float, float]] = None
+    """How far a calibrated joint goes, as its servo keeps it, in radians."""
 
     @property
     def degrees(self) -> Optional[float]:
@@ -600,6 +604,8 @@ def _joint_status(name: str, info: Any) -> JointStatus:
         temperature_c=known(lib.GROBO_FIELD_TEMPERATURE, state.temperature_c),
         current_ma=known(lib.GROBO_FIELD_CURRENT, state.current_ma),
         voltage_mv=known(lib.GROBO_FIELD_VOLTAGE, state.voltage_mv),
+        ready=False if info.status == lib.GROBO_ERR_SETUP else None if never else True,
+        range=known(lib.GROBO_FIELD_RANGE, (state.low_rad, state.high_rad)),
     )
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A robot of libgrobo with the interface of LeRobot's robots.
 
-Observations and actions are degrees by "JOINT.pos". The thread of the library reads the joints;
+Observations and actions are degrees by "JOINT.pos", of a gripper 0..100 over its range. The thread of the library reads the joints;
 get_observation() takes what was read last and never waits for the line. An action is clipped here:
 near where each joint was read (max_relative_target), so that a policy that jumps does not throw the
 arm, and to the limits. The library checks and times it as any target; what is returned is what was
@@ -18,6 +18,7 @@ from lerobot.robots import Robot
 from lerobot.utils.errors import DeviceAlreadyConnectedError, DeviceNotConnectedError
 
 from lerobot_robot_grobo.config_grobo import GroboConfig
+from lerobot_robot_grobo.scale import Scale
 
 
 def most_relative(option: Any, joints: list[str]) -> dict[str, float]:
@@ -51,6 +52,8 @@ class Grobo(Robot):
             raise ValueError(f"on_exit {config.on_exit!r}: default, hold, sit or off")
         self._exit = grobo.Exit[config.on_exit.upper()]
         self._most = most_relative(config.max_relative_target, self._description.joints)
+        calibration = getattr(self, "calibration", {})
+        self._scale = Scale(self._description, config.percent, calibration)
         self.cameras = make_cameras_from_configs(config.cameras) if config.cameras else {}
 
     # ---- what it has; also before it is connected --------------------------------------------
@@ -96,10 +99,14 @@ class Grobo(Robot):
 
     @property
     def is_calibrated(self) -> bool:
-        return True
+        """Whether each joint was read, and its servo is set up and calibrated as it needs it."""
+        return self._robot is not None and all(
+            joint.ready for joint in self._robot.status().joints.values()
+        )
 
     def calibrate(self) -> None:
-        """Nothing: `grctl calibrate` keeps the calibration in the servos."""
+        """Nothing: `grctl calibrate` keeps the calibration in the servos, and reads LeRobot's
+        files."""
 
     def configure(self) -> None:
         """Torque comes on with each goal at the present angle."""
@@ -123,7 +130,7 @@ class Grobo(Robot):
     def get_observation(self) -> dict[str, Any]:
         seen: dict[str, Any] = {}
         for name, joint in self._connected().status().joints.items():
-            seen[f"{name}.pos"] = math.degrees(self._present(joint))
+            seen[f"{name}.pos"] = self._scale.shown(joint, self._present(joint))
         for name, camera in self.cameras.items():
             if getattr(camera, "use_rgb", True):
                 seen[name] = camera.read_latest()
@@ -136,21 +143,25 @@ class Grobo(Robot):
         limits = self._description.limits
         read = robot.status().joints
         target = {}
-        for key, degrees in action.items():
+        for key, shown in action.items():
             joint = key.removesuffix(".pos")
             if joint == key or joint not in limits:
                 raise KeyError(f"{self} has no {key!r}")
-            angle = math.radians(float(degrees))
-            if not math.isfinite(angle):
-                raise ValueError(f"{self}: {key} is {degrees}")
+            if not math.isfinite(float(shown)):
+                raise ValueError(f"{self}: {key} is {shown}")
+            angle = self._scale.angle(read[joint], float(shown))
             most = self._most[joint]
             if most < math.inf:
                 present = self._present(read[joint])
                 angle = min(max(angle, present - most), present + most)
             low, high = limits[joint]
+            ends = read[joint].range or (low, high)
+            low, high = max(low, ends[0]), min(high, ends[1])
             target[joint] = min(max(angle, low), high)
         robot.send(target, time=self.config.action_s)
-        return {f"{joint}.pos": math.degrees(angle) for joint, angle in target.items()}
+        return {
+            f"{joint}.pos": self._scale.shown(read[joint], angle) for joint, angle in target.items()
+        }
 
     def _present(self, joint: grobo.JointStatus) -> float:
         """Where a joint was read, in radians."""
