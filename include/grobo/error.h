@@ -52,7 +52,7 @@ GROBO_BEGIN_DECLS
     X(ISDIR, -31, "is a directory")                                                                \
     X(UNREACHABLE, -32, "target out of reach")                                                     \
     X(DISK, -33, "no room left on the disk")                                                       \
-    X(UNWATCHED, -34, "rate leaves no time to read the joints")                                    \
+    X(UNWATCHED, -34, "the line leaves no time to read the joints")                                \
     X(STALLED, -35, "stopped by the guard while the program stood still")                          \
     X(SUPERSEDED, -36, "another request took its joints")                                          \
     X(SETUP, -37, "servo is not set up as its joint needs")                                        \

@@ -87,6 +87,15 @@ check "play is refused" fails 4 "$raise" \
     "$GRCTL" --robot "$work/slow.yaml" -d sim play --force "$work/motion-64.yaml"
 check "a dry run is refused" fails 4 "$raise" \
     "$GRCTL" --robot "$work/slow.yaml" -d sim play --dry-run --force "$work/motion-64.yaml"
+check_json "and in JSON" 'lines[0]["ok"] and "115200" in lines[0]["slow_line"]' \
+    "$GRCTL" --json robot check "$work/slow.yaml"
+check_json "budget has it, too" 'lines[0]["pace_us"] == 0' \
+    "$GRCTL" --json --robot "$work/slow.yaml" budget
+budgets() {
+    exits 0 "$GRCTL" --robot "$work/slow.yaml" budget && says "^$raise" &&
+        exits 0 "$GRCTL" --robot so101 budget && says '^ways in segments *renewed every 100 ms$'
+}
+check "and in words" budgets
 robot_of fast dynamixel2 XL430-W250 64 1 1000000
 check "a fast one is not" checked fast '64 joints, nothing wrong$'
 robot_of only lx16a LX-16A 64 1 115200

@@ -47,6 +47,17 @@ static void print_delay(const grobo_driver *driver)
     }
 }
 
+/* How often an arm is told more of its ways. */
+static void print_pace(const grobo_driver *driver, const grobo_budget *line, int baud_bps)
+{
+    int rate_bps;
+    if (driver->arm && line->pace_us > 0) {
+        app_print("ways in segments          renewed every %.0f ms\n", line->pace_us / 1e3);
+    } else if (wire_is_slow(driver, baud_bps, &rate_bps)) {
+        app_print("%s\n", wire_slow_text(driver, baud_bps, rate_bps));
+    }
+}
+
 static void print_text(const wire_cost *costs, const grobo_budget *line, int baud_bps,
                        double rate_hz, int n_joints)
 {
@@ -112,9 +123,11 @@ static int run(app *a)
         json_t *o = to_json(costs, &line, baud_bps, rate_hz, driver->model->n_joints);
         json_object_set_new(o, "return_delay_us",
                             json_integer((json_int_t)driver->protocol->return_delay_us));
+        json_object_set_new(o, "pace_us", json_integer((json_int_t)line.pace_us));
         app_print_json(o);
     } else {
         print_text(costs, &line, baud_bps, rate_hz, driver->model->n_joints);
+        print_pace(driver, &line, baud_bps);
         print_delay(driver);
     }
     return EXIT_DONE;

@@ -161,17 +161,14 @@ static bool warn_of_ids(const app *a, const grobo_robot_def *def)
     return n > 0;
 }
 
-/* A line that does not carry moves of all joints. */
-static bool warn_of_line(const app *a, const grobo_robot_def *def)
+/* What is to be said of a line that does not carry moves of all joints; NULL: it does. */
+static const char *slow_line(const grobo_robot_def *def)
 {
     grobo_driver driver;
     int baud_bps = (int)def->baud_bps, rate_bps = 0;
     bool slow = grobo_robot_def_driver(def, def->wiring, &driver) >= 0 &&
                 wire_is_slow(&driver, baud_bps, &rate_bps);
-    if (slow) {
-        app_note(a, "%s: %s", def->name, wire_slow_text(&driver, baud_bps, rate_bps));
-    }
-    return slow;
+    return slow ? wire_slow_text(&driver, baud_bps, rate_bps) : NULL;
 }
 
 static int run_check(app *a, const char *path)
@@ -191,9 +188,14 @@ static int run_check(app *a, const char *path)
     for (size_t i = 0; !a->json && grobo_diagnostics_get(list, i, &d) == 0; i++) {
         file_print(a, &d, "");
     }
+    const char *slow = error ? NULL : slow_line(def);
     if (a->json) {
-        app_print_json(json_pack("{s:b,s:o}", "ok", !error, "diagnostics", file_json(list)));
-    } else if (!error && !(warn_of_ids(a, def) | warn_of_line(a, def))) {
+        app_print_json(json_pack("{s:b,s:o,s:s*}", "ok", !error, "diagnostics", file_json(list),
+                                 "slow_line", slow));
+    } else if (slow) {
+        (void)warn_of_ids(a, def);
+        app_note(a, "%s: %s", def->name, slow);
+    } else if (!error && !warn_of_ids(a, def)) {
         app_note(a, "%s: %d joint%s, nothing wrong", def->name, def->model->n_joints,
                  def->model->n_joints == 1 ? "" : "s");
     }
