@@ -35,7 +35,7 @@ check "poses that give legs by links are counted" both exits 0 "$GRCTL" show mot
 anothers() {
     sed 's/^targetBody: .*/targetBody: "KNIGHT"/' motions/step.pseq >"$work/knight.pseq"
     exits 0 "$GRCTL" show "$work/knight.pseq" &&
-        says '^9 of 9 poses give legs by ikLinks: only GR001.s are solved'
+        says '^9 of 9 poses give legs by ikLinks: the feet of its robot are not known'
 }
 check "another robot's are not promised" anothers
 
