@@ -92,6 +92,27 @@ found() {
         says '^  3  unknown model 4711 '
 }
 check "who does not know it says its number" found
+sed '/clone.yaml/d' "$work/cloned.yaml" >"$work/alone.yaml"
+alone() {
+    "$GRCTL" --robot "$work/alone.yaml" -d "$robot" "$@" >"$work/out" 2>"$work/err"
+}
+any() {
+    alone servo-get 3 && says '^ 42  goal_position  *[0-9]*$' && says '^ 62  voltage .* V$' &&
+        grep -q 'servo 3: unknown model 4711; as STS-ANY, what all of its series have' "$work/err"
+}
+check "shows what all have, and counts for what is not known" any
+check "not of one that is known" \
+    both alone servo-get 4 goal_position --- says '^ 42  goal_position .* deg$'
+for any in feetech:STS-ANY dynamixel2:X-ANY dynamixel1:AX-MX-ANY; do
+    cat >"$work/any.yaml" <<END
+name: a
+family: ${any%:*}
+joints:
+  - {name: x, id: 1, servo: ${any#*:}, limits_deg: [-9, 9]}
+END
+    check "${any#*:} is no joint" fails 3 "x: ${any#*:} stands for servos of which the scale" \
+        "$GRCTL" --robot "$work/any.yaml" joints
+done
 drops() {
     "$GRCTL" -d "$robot" -b 1000000 robot new --family feetech -o "$work/new.yaml" 2>"$work/err" &&
         grep -q 'id 3 .* unknown model 4711; .* describe it in a file' "$work/err" &&

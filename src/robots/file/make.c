@@ -311,8 +311,10 @@ static void check_servos(maker *m)
         int result = init(&m->driver, &one);
         if (result == GROBO_ERR_UNSUPPORTED) {
             (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "servo", joint_place(m, j, "servo"),
-                                   "%s: a %s does not tell where it stands", joint.name,
-                                   m->draft->joint[j].servo);
+                                   joint.servo->number != 0
+                                       ? "%s: a %s does not tell where it stands"
+                                       : "%s: %s stands for servos of which the scale is not known",
+                                   joint.name, m->draft->joint[j].servo);
             continue;
         }
         bool calibrated = joint.calibrated;

@@ -49,6 +49,9 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
     for (int j = 0; j < model->n_joints; j++) {
         const grobo_joint *joint = &model->joints[j];
         const grobo_servo_model *servo = grobo_i_table_servo(made, j);
+        if (servo != NULL && (servo->flags & GROBO_MODEL_NO_JOINT) != 0) {
+            return GROBO_ERR_UNSUPPORTED;
+        }
         bool kept = !joint->calibrated || !family->offset_trims; /* where its middle is */
         if (!talks(family, servo) || !kept || !reaches(joint, servo, joint->min_rad) ||
             !reaches(joint, servo, joint->max_rad)) {

@@ -131,6 +131,10 @@ int servos_model(conn *c, int id, const grobo_servo_model **servo)
     }
     int error = servos_read(c, id, reg->address, reg->bytes, bytes);
     const grobo_servo_model *found = error ? NULL : family_identify(driver, bytes);
+    if (!error && !found && family_is_any(*servo)) {
+        app_note(c->a, "servo %d: unknown model %d; as %s, what all of its series have", id,
+                 (int)grobo_servo_register_get(*servo, reg, bytes), (*servo)->name);
+    }
     *servo = found ? found : *servo;
     return error;
 }

@@ -159,12 +159,29 @@ const grobo_servo_model *family_joint_servo(const grobo_driver *driver, int join
     return of->servo ? of->servo : family_numbered(driver, of->servo_model);
 }
 
+bool family_is_any(const grobo_servo_model *servo)
+{
+    return servo->number == 0 && (servo->flags & GROBO_MODEL_NO_JOINT) != 0;
+}
+
+/* What all servos of a family have, where the library describes that; else its first model. */
+static const grobo_servo_model *any_of(const grobo_robot_family *family)
+{
+    const grobo_servo_table *table = family->tables[0];
+    for (int m = 0; m < table->model_count; m++) {
+        if (family_is_any(&table->models[m])) {
+            return &table->models[m];
+        }
+    }
+    return &table->models[0];
+}
+
 const grobo_servo_model *family_servo(const grobo_driver *driver, int id)
 {
     int joint = grobo_model_joint_of_motor(driver->model, id);
     const grobo_robot_family *family = family_of_driver(driver);
     const grobo_servo_model *found = joint < 0 ? NULL : family_joint_servo(driver, joint);
-    return found || !family ? found : &family->tables[0]->models[0];
+    return found || !family ? found : joint < 0 ? any_of(family) : &family->tables[0]->models[0];
 }
 
 const grobo_servo_model *family_identify(const grobo_driver *driver, const uint8_t *bytes)

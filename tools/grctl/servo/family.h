@@ -35,10 +35,14 @@ const grobo_robot_family *family_of_servo(const grobo_servo_model *servo);
 bool family_is(const grobo_driver *driver, const char *name);
 
 /*
- * The servo of a driver's joint by its id; of an id that is no joint's, and of a joint whose servo
- * is not named, the first model of the family. NULL: the family has no registers.
+ * The servo of a driver's joint by its id; of an id that is no joint's what all of the family have,
+ * where that is described, else its first model, as of a joint whose servo is not named. NULL: the
+ * family has no registers.
  */
 const grobo_servo_model *family_servo(const grobo_driver *driver, int id);
+
+/* Whether a model stands for all of its series: one whose number is not known. */
+bool family_is_any(const grobo_servo_model *servo);
 
 /* The servo of this name in a family, NULL: none. */
 const grobo_servo_model *family_model(const grobo_robot_family *family, const char *name);
