@@ -4,22 +4,14 @@
 
 #include <grobo/grobo.h>
 
-static int read_file(void *ctx, void *buffer, size_t size)
-{
-    size_t n = fread(buffer, 1, size, ctx);
-    return n == 0 && ferror((FILE *)ctx) ? GROBO_ERR_IO : (int)n;
-}
-
 int main(int argc, char **argv)
 {
     const char *path = argc > 1 ? argv[1] : "src/robots/so101.yaml";
-    FILE *file = fopen(path, "rb");
-    const grobo_source source = {read_file, file};
     grobo_robot_def *def;
     grobo_robot_sim sim;
     grobo_driver driver;
     grobo_runner *runner = NULL;
-    if (!file || grobo_robot_def_read(&source, path, NULL, NULL, &def) < 0 ||
+    if (grobo_robot_def_read_file(path, NULL, NULL, &def) < 0 ||
         grobo_robot_def_driver(def, def->wiring, &driver) < 0 ||
         grobo_robot_def_sim(def, def->wiring, &sim) < 0) {
         return 1;
@@ -35,5 +27,5 @@ int main(int argc, char **argv)
     printf("%s: %s\n", def->title, grobo_error_text(result));
     (void)grobo_runner_free(runner);
     grobo_robot_def_free(def);
-    return fclose(file) != 0 || result < 0;
+    return result < 0;
 }

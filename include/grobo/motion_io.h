@@ -49,6 +49,8 @@ GROBO_API void grobo_diagnostics_free(grobo_diagnostics *list);
 GROBO_API void grobo_diagnostics_clear(grobo_diagnostics *list);
 /** Number of diagnostics of a severity that were added, kept or not. NULL has none. */
 GROBO_API size_t grobo_diagnostics_total(const grobo_diagnostics *list, grobo_severity severity);
+/** Number of diagnostics that are kept: those that grobo_diagnostics_get() gives. NULL has none. */
+GROBO_API size_t grobo_diagnostics_kept(const grobo_diagnostics *list);
 /** Diagnostic i of those that are kept, in the order they were found. @return 0, or GROBO_ERR_ARG:
  *  there are not so many. */
 GROBO_API int grobo_diagnostics_get(const grobo_diagnostics *list, size_t i,

@@ -115,6 +115,8 @@ typedef struct grobo_robot_def {
 
 /** Robot i of those that come with the library, counted from 0. @return NULL behind the last. */
 GROBO_API const grobo_robot_def *grobo_robot_def_at(size_t i);
+/** The robot of the library of this name ("so101"). @return NULL where there is none. */
+GROBO_API const grobo_robot_def *grobo_robot_def_find(const char *name);
 
 /**
  * Reads the description of a robot. Every mistake is in the list, with its line and column.

@@ -117,9 +117,7 @@ int main(int argc, char **argv)
     static int n;
     int64_t now_us = 0;
     grobo_sim_physics *physics = NULL;
-    for (size_t i = 0; grobo_robot_def_at(i) != NULL; i++) {
-        def = strcmp(grobo_robot_def_at(i)->name, "so101") == 0 ? grobo_robot_def_at(i) : def;
-    }
+    def = grobo_robot_def_find("so101");
     if (argc > 1 && strcmp(argv[1], "--mjcf") == 0) {
         print_mjcf();
         return 0;

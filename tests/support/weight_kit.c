@@ -104,13 +104,8 @@ void weight_new_engine(void)
 
 static const grobo_robot_def *robot_named(const char *name)
 {
-    for (size_t i = 0; grobo_robot_def_at(i) != NULL; i++) {
-        if (strcmp(grobo_robot_def_at(i)->name, name) == 0) {
-            return grobo_robot_def_at(i);
-        }
-    }
-    fail_msg("no robot %s", name);
-    return NULL;
+    assert_non_null(grobo_robot_def_find(name));
+    return grobo_robot_def_find(name);
 }
 
 static void set_register(int joint, const grobo_servo_register *reg, int32_t value)

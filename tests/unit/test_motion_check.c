@@ -292,6 +292,7 @@ TEST(test_list_is_bounded)
     }
     assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR),
                      GROBO_DIAGNOSTICS_MAX + 10);
+    assert_int_equal(grobo_diagnostics_kept(list), GROBO_DIAGNOSTICS_MAX);
     assert_int_equal(grobo_diagnostics_get(list, 3, &said), 0);
     assert_string_equal(said.file, "a");
     assert_int_equal(said.line, 4);

@@ -425,6 +425,7 @@ TEST(motion_io_refuses_null_in_its_first_functions)
     grobo_diagnostics_free(NULL);
     grobo_diagnostics_clear(NULL);
     assert_int_equal(grobo_diagnostics_total(NULL, 0), 0);
+    assert_int_equal(grobo_diagnostics_kept(NULL), 0);
     REFUSES(grobo_diagnostics_get(NULL, 0, &diagnostic));
     REFUSES(grobo_diagnostics_get(list, 0, NULL));
     grobo_diagnostics_add(NULL, &diagnostic);
@@ -573,6 +574,7 @@ TEST(robot_file_refuses_null)
     REFUSES(grobo_robot_def_read(&bytes_of, NULL, NULL, NULL, &def));
     REFUSES(grobo_robot_def_read(&bytes_of, "", NULL, NULL, NULL));
     REFUSES(grobo_robot_def_read_file(NULL, NULL, NULL, &def));
+    assert_null(grobo_robot_def_find(NULL));
     REFUSES(grobo_robot_def_read_file("", NULL, NULL, NULL));
     grobo_robot_def_free(NULL);
     REFUSES(grobo_robot_def_driver(NULL, GROBO_WIRING_BUS, &driver));

@@ -95,6 +95,20 @@ TEST(a_gear_takes_speed)
     grobo_robot_def_free(def);
 }
 
+TEST(each_robot_of_the_library_is_found_by_its_name)
+{
+    int n = 0;
+
+    for (; grobo_robot_def_at((size_t)n) != NULL; n++) {
+        const grobo_robot_def *def = grobo_robot_def_at((size_t)n);
+        assert_ptr_equal(grobo_robot_def_find(def->name), def);
+    }
+    assert_true(n >= 7);
+    assert_null(grobo_robot_def_find("so10"));
+    assert_null(grobo_robot_def_find("SO-101 (follower)"));
+    assert_null(grobo_robot_def_find(""));
+}
+
 TEST(a_whole_file_is_read)
 {
     grobo_robot_def *def = NULL;

@@ -69,6 +69,11 @@ size_t grobo_diagnostics_total(const grobo_diagnostics *list, grobo_severity sev
     return list != NULL && (unsigned)severity < SEVERITIES ? list->totals[severity] : 0;
 }
 
+size_t grobo_diagnostics_kept(const grobo_diagnostics *list)
+{
+    return list != NULL ? list->count : 0;
+}
+
 int grobo_diagnostics_get(const grobo_diagnostics *list, size_t i, grobo_diagnostic *diagnostic)
 {
     if (list == NULL || diagnostic == NULL || i >= list->count) {

@@ -67,10 +67,10 @@ const grobo_robot_def *robot_find(const char *name, char *complaint, size_t capa
     if (is_path(name)) {
         return find_file(name, complaint, capacity);
     }
+    if (grobo_robot_def_find(name)) {
+        return grobo_robot_def_find(name);
+    }
     for (size_t i = 0; grobo_robot_def_at(i); i++) {
-        if (strcmp(grobo_robot_def_at(i)->name, name) == 0) {
-            return grobo_robot_def_at(i);
-        }
         cli_guess_try(&guess, grobo_robot_def_at(i)->name);
     }
     if (guess.best) {
