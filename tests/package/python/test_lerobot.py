@@ -3,6 +3,7 @@
 one (GROBO_LEROBOT=real, with torch or without), and a simulator."""
 
 import dataclasses
+import json
 import math
 import os
 import re
@@ -101,6 +102,24 @@ class Plugin(unittest.TestCase):
         config = draccus.parse(config_class=command, args=options.split()).robot
         self.assertEqual((type(config), config.port, config.robot, config.stale_s, config.on_exit),
                          (GroboConfig, "sim", "koch", 1.0, "default"))
+
+    @unittest.skipUnless(REAL, "LeRobot's own search")
+    def test_lerobot_makes_the_leader_of_its_options(self):
+        import draccus
+        from lerobot.teleoperators import TeleoperatorConfig, make_teleoperator_from_config
+
+        command = dataclasses.make_dataclass("Command", [("teleop", TeleoperatorConfig)])
+        options = "--teleop.type=grobo_leader --teleop.port=sim --teleop.id=bench"
+        options += f" --teleop.calibration_dir={self.folder}"
+        calibration = {"id": 6, "drive_mode": 0, "homing_offset": 0, "range_min": 1948,
+                       "range_max": 2148}
+        (self.folder / "bench.json").write_text(json.dumps({"gripper": calibration}))
+        config = draccus.parse(config_class=command, args=options.split()).teleop
+        leader = make_teleoperator_from_config(config)
+        self.addCleanup(leader.disconnect)
+        self.assertIsInstance(leader, GroboLeader)
+        leader.connect()
+        self.assertAlmostEqual(leader.get_action()["gripper.pos"], 50, delta=1)
 
     def test_its_config_makes_it(self):
         robot = self.make()
