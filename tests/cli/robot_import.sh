@@ -100,6 +100,28 @@ check "a body as Choreonoid writes it today" both exits 0 take "$work/new.body" 
     --servo STS3215 --- says 'LIFT, id: 1, servo: STS3215, limits_deg: \[-20, 60\]}$'
 check "with the speed of its slower direction" \
     says 'TURN, id: 2, servo: STS3215, limits_deg: \[-90, 90\], speed_deg_s: 90}$'
+{
+    cat "$work/arm.body"
+    echo 'standardPose: [10, -30]'
+    echo 'symmetricJoints: [[TURN, LIFT, -1], [GONE, TURN]]'
+} >"$work/pair.body"
+check "its standard pose is the initial one, within the limits" both exits 0 \
+    take "$work/pair.body" --ids TURN=1,LIFT=2 --- \
+    says 'LIFT, .*limits_deg: \[-20, 60\], init_deg: -20, mirror: TURN, mirror_sign: -1}$'
+check "and its joints have partners in the mirror" \
+    says 'TURN, .*init_deg: 10, mirror: LIFT, mirror_sign: -1}$'
+{
+    cat "$work/arm.body"
+    echo 'symmetricJoints: [[TURN]]'
+} >"$work/alone.body"
+check "or turn the other way themselves" both exits 0 take "$work/alone.body" \
+    --ids TURN=1,LIFT=2 --- says 'TURN, .*limits_deg: \[-90, 90\], mirror_sign: -1}$'
+{
+    cat "$work/arm.body"
+    echo 'symmetricJoints: [TURN]'
+} >"$work/odd.body"
+check "a row that is none" fails 3 'odd.body:[0-9]*: one or two joints and a sign are wanted' \
+    take "$work/odd.body" --ids TURN=1,LIFT=2
 test_case "mistakes in ids and files are refused"
 check "too few ids" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1
 check "too many" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1-3

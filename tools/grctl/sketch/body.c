@@ -322,6 +322,55 @@ static bool take_feet(reader *r, const yaml_node_t *root)
     return true;
 }
 
+static sketch_part *part_called(const reader *r, const char *name)
+{
+    for (int i = 0; name && i < r->s->n; i++) {
+        if (strcmp(r->s->part[i].name, name) == 0) {
+            return &r->s->part[i];
+        }
+    }
+    return NULL;
+}
+
+/* "symmetricJoints": [A, B, sign of the angle], or [A]: itself with the other sign. One that names
+ * no joint is passed over, as Choreonoid does. */
+static bool take_symmetry(reader *r, const yaml_node_t *root)
+{
+    const yaml_node_t *list = find(r, root, "symmetricJoints");
+    for (int i = 0; list && i < length_of(list); i++) {
+        const yaml_node_t *row = item(r, list, i);
+        int n = length_of(row);
+        double sign = n == 1 ? -1 : 1;
+        if (n < 1 || n > 3 || (n == 3 && !take_numbers(r, item(r, row, 2), 1, &sign))) {
+            return n >= 1 && n <= 3 ? false
+                                    : complain(r, row, "one or two joints and a sign are wanted");
+        }
+        sketch_part *pair[2] = {part_called(r, text_of(item(r, row, 0))),
+                                part_called(r, text_of(item(r, row, n > 1)))};
+        for (int k = 0; k < 2 && pair[0] && pair[1]; k++) {
+            memcpy(pair[k]->mirror, pair[1 - k]->name, sizeof pair[k]->mirror);
+            pair[k]->mirror_sign = sign < 0 ? -1 : 1;
+        }
+    }
+    return true;
+}
+
+/* "standardPose": an angle for each joint, by its number. */
+static bool take_stand(reader *r, const yaml_node_t *root)
+{
+    const yaml_node_t *list = find(r, root, "standardPose");
+    int n = list ? length_of(list) : 0;
+    for (int i = 0; i < r->s->n; i++) {
+        sketch_part *part = &r->s->part[i];
+        if (part->motion == SKETCH_TURNS && part->order < n &&
+            !take_numbers(r, item(r, list, part->order), 1, &part->stand_rad)) {
+            return false;
+        }
+        part->stand_rad *= r->unit_rad;
+    }
+    return true;
+}
+
 static bool take_robot(reader *r)
 {
     const yaml_node_t *root = yaml_document_get_root_node(&r->document);
@@ -350,7 +399,7 @@ static bool take_robot(reader *r)
             return false;
         }
     }
-    return take_feet(r, root);
+    return take_feet(r, root) && take_symmetry(r, root) && take_stand(r, root);
 }
 
 bool sketch_read_body(sketch *s, const char *path, const char *bytes, size_t size, char *complaint,

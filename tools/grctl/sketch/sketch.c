@@ -276,6 +276,17 @@ static bool fits_gear(const sketch_part *part, double half_rad)
            part->limits_rad[1] - part->limits_rad[0] <= 2 * half_rad;
 }
 
+/* Its initial posture: that of the description; else 0, or the middle where that is outside. */
+static void stand_within(sketch_part *part)
+{
+    const double *limits = part->limits_rad;
+    if (part->stand_rad != 0) {
+        part->init_rad = fmax(limits[0], fmin(limits[1], part->stand_rad));
+    } else if (limits[0] > 0 || limits[1] < 0) {
+        part->init_rad = (limits[0] + limits[1]) / 2;
+    }
+}
+
 /* As it is, else with the servo's middle in the middle of the range, else cut. False: its gear
  * does not fit. */
 static bool fit_joint(const sketch *s, sketch_part *part)
@@ -307,9 +318,7 @@ static bool fit_joint(const sketch *s, sketch_part *part)
         limits[0] = apart || limits[0] < -half_rad ? -half_rad : limits[0];
         limits[1] = apart || limits[1] > half_rad ? half_rad : limits[1];
     }
-    if (limits[0] > 0 || limits[1] < 0) {
-        part->init_rad = (limits[0] + limits[1]) / 2;
-    }
+    stand_within(part);
     return true;
 }
 

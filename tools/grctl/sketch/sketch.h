@@ -39,6 +39,9 @@ typedef struct sketch_part {
     double com_m[3]; /* its centre of mass, in its frame */
     double
         inertia_kgm2[6]; /* about that, along its axes: xx, yy, zz, xy, xz, yz; all 0: not told */
+    char mirror[SKETCH_TEXT_BYTES]; /* part of the joint's partner in the mirror, or "": not told */
+    int mirror_sign;                /* of the angle there */
+    double stand_rad; /* its angle in the initial posture, as the description has it */
     /* of a joint, set by who knows */
     int id;
     bool turns; /* its servo counts several turns */

@@ -34,7 +34,29 @@ static double limit(double angle_rad)
     return tidy(grobo_deg_from_rad(angle_rad), 1e-6);
 }
 
-static void put_joint(heap *to, const sketch_part *part)
+/* The joint of a part of this name, that turns; NULL: none. */
+static const char *joint_of(const sketch *s, const char *name)
+{
+    for (int i = 0; i < s->n && *name; i++) {
+        if (s->part[i].motion == SKETCH_TURNS && strcmp(s->part[i].name, name) == 0) {
+            return s->part[i].called;
+        }
+    }
+    return NULL;
+}
+
+static void put_mirror(heap *to, const sketch *s, const sketch_part *part)
+{
+    const char *mirror = joint_of(s, part->mirror);
+    if (mirror && strcmp(mirror, part->called) != 0) {
+        heap_print(to, ", mirror: %s", mirror);
+    }
+    if (mirror && part->mirror_sign < 0) {
+        heap_print(to, ", mirror_sign: -1");
+    }
+}
+
+static void put_joint(heap *to, const sketch *s, const sketch_part *part)
 {
     heap_print(to, "  - {name: %s, id: %d, servo: %s, limits_deg: [%.6g, %.6g]", part->called,
                part->id, part->servo->name, limit(part->limits_rad[0]), limit(part->limits_rad[1]));
@@ -55,6 +77,7 @@ static void put_joint(heap *to, const sketch_part *part)
     if (speed_dps >= 1 && speed_dps < 0.8 * part->servo->speed_dps / gear) {
         heap_print(to, ", speed_deg_s: %.6g", speed_dps);
     }
+    put_mirror(to, s, part);
     heap_print(to, part->turns ? ", turns: true}" : "}");
     const char *name = *part->joint ? part->joint : part->name;
     if (strcmp(name, part->called) != 0) {
@@ -188,7 +211,7 @@ char *sketch_text(sketch *s)
     }
     heap_print(&to, "\njoints:\n");
     for (int i = 0; i < s->n_joints; i++) {
-        put_joint(&to, sketch_joint(s, i));
+        put_joint(&to, s, sketch_joint(s, i));
     }
     heap_print(&to, "\ngroups:\n  - {name: all, joints: [");
     for (int i = 0; i < s->n_joints; i++) {
