@@ -390,12 +390,6 @@ static int fail_open(conn *c, int error)
     return fail_closed(c, error);
 }
 
-uint32_t conn_baud(const app *a)
-{
-    const cli_value *baud = app_global(a, GLOBAL_BAUD);
-    return baud->given ? (uint32_t)baud->number : robot_of(a)->baud_bps;
-}
-
 grobo_robot_config conn_robot_config(const app *a)
 {
     grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,

@@ -23,6 +23,12 @@ const grobo_model *conn_model(const conn *c)
     return grobo_robot_driver(c->robot)->model;
 }
 
+uint32_t conn_baud(const app *a)
+{
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    return baud->given ? (uint32_t)baud->number : robot_of(a)->baud_bps;
+}
+
 /* ---- the bytes of the line ------------------------------------------------------------------ */
 
 /* From -vv on, but not over a full screen. */
