@@ -258,6 +258,19 @@ class Others(unittest.TestCase):
         with self.assertRaises(FileNotFoundError):
             grobo.Description("./none.yaml")
 
+    def test_a_servo_beside_a_robots_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, servo = Path(folder, "arm.yaml"), Path(folder, "mine.yaml")
+            path.write_text("name: arm\nfamily: feetech\njoints:\n  - {name: x, id: 1, "
+                            "servo: ./mine.yaml, limits_deg: [-9, 9]}\n")
+            servo.write_text("name: Mine\nlike: STS3215\nnumber: 4711\n")
+            with grobo.connect("sim", robot=path) as robot:
+                robot.move({"x": 0.1}, time=0.2)
+            servo.write_text("name: Mine\nlike: STS3215\nnumbr: 4711\n")
+            with self.assertRaises(errors.Syntax) as caught:
+                grobo.Description(path)
+            self.assertIn("mine.yaml, line 3: no key", str(caught.exception))
+
     def test_a_loop_of_ones_own_sends_targets(self):
         with grobo.connect("sim", robot="so101", sense_interval=0.02) as robot:
             with self.assertRaises(errors.Error):

@@ -74,16 +74,19 @@ def _read(path: str) -> Any:
     made = ffi.new("grobo_robot_def **")
     result = lib.grobo_robot_def_read_file(os.fsencode(path), found, ffi.NULL, made)
     if result < 0:
-        raise error(result, path, reason=first_error(found))
+        raise error(result, path, reason=first_error(found, path))
     return ffi.gc(made[0], lib.grobo_robot_def_free)
 
 
-def first_error(found: Any) -> Optional[str]:
+def first_error(found: Any, path: str = "") -> Optional[str]:
+    """What is wrong and where: with its file where that is not `path`, as of a servo beside it."""
     problem = ffi.new("grobo_diagnostic *")
     for i in itertools.count():
         if lib.grobo_diagnostics_get(found, i, problem) < 0:
             return None
         if problem.severity == lib.GROBO_SEVERITY_ERROR:
             text: str = ffi.string(problem.message).decode()
-            return f"line {problem.line}: {text}" if problem.line else text
+            file = os.fsdecode(ffi.string(problem.file))
+            place = f"{file}, " if path and file not in ("", path) else ""
+            return f"{place}line {problem.line}: {text}" if problem.line else f"{place}{text}"
     return None
