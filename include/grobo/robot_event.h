@@ -71,8 +71,10 @@ typedef struct grobo_event_job {
     int number;          /**< what the request returned */
     grobo_job_kind kind; /**< what it was */
     int result;          /**< GROBO_OK or the first error */
-    int joint;           /**< joint the error is about, or -1 */
-    double value;        /**< value at fault (LIMIT: degrees; NAN), else 0 */
+    int joint;    /**< joint the error is about, or -1. Of a move that is done: one that still
+                                moved 1.5 s after its way was over */
+    double value; /**< value at fault (LIMIT: degrees; NAN), else 0. Of a move that is done: how
+                                far that joint is beyond its goal, degrees */
     grobo_joint_mask
         failed;          /**< joints for which it failed; the others are done. Of an error that is
                                 not one joint's, as GROBO_ERR_CANCELED: all that it had */

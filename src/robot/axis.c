@@ -545,11 +545,23 @@ bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
     return false;
 }
 
+/* A joint so near the goal that its own servo holds comes to rest there, or swings: no other
+ * program moves it away. */
+#define NEAR_GOAL_RAD (6 * 0.017453292519943295)
+
+static bool is_near_goal(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double goal_rad;
+    return !grobo_i_axis_is_counted(axis) && grobo_i_axis_goal(robot, joint, &goal_rad) &&
+           fabs(goal_rad - axis->seen_rad) <= NEAR_GOAL_RAD;
+}
+
 bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints, int *joint)
 {
     *joint = -1;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(joints, j) && robot->axes[j].adrift) {
+        if (grobo_i_has(joints, j) && robot->axes[j].adrift && !is_near_goal(robot, j)) {
             *joint = j;
             return true;
         }

@@ -37,6 +37,9 @@ int grobo_i_admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask join
         return GROBO_ERR_CLOSED;
     }
     grobo_i_make_way(robot);
+    if (kind != GROBO_JOB_SENSE) {
+        grobo_i_jobs_end(robot, grobo_i_move_settles, GROBO_OK);
+    }
     grobo_i_jobs_close_up(robot);
     if (moves && grobo_i_is_latched(robot)) {
         return GROBO_ERR_LATCHED;

@@ -116,7 +116,10 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
     if ((got->valid & GROBO_FIELD_SPEED) == 0) {
         return axis->off_way;
     }
-    if (axis->has_target && !axis->in_segments && has_not_taken(robot, axis, got)) {
+    if (!axis->has_target || axis->in_segments) {
+        return false;
+    }
+    if (has_not_taken(robot, axis, got)) {
         return true;
     }
     double then_rad = grobo_i_way_at(&axis->way, asked_us);
@@ -128,8 +131,7 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
     bool stands = abs(got->speed_dps) < GROBO_I_SLOW_DPS;
     bool never_began = stands && is_fast(&axis->way, asked_us) && beside_rad > BESIDE_RAD &&
                        asked_us - axis->told_us > GROBO_I_BEGUN_US;
-    return axis->has_target && !axis->in_segments &&
-           (never_began || (beside_rad > GROBO_I_OFF_WAY_RAD && (elsewhere || stands)));
+    return never_began || (beside_rad > GROBO_I_OFF_WAY_RAD && (elsewhere || stands));
 }
 
 /* No frame has told it the way that it is taken to be on (grobo_i_astray()). */

@@ -321,6 +321,9 @@ void grobo_i_stand_forget(grobo_robot_axis *axis);
 void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double angle_rad);
 /* True if the last reading found the joint elsewhere than the one before. */
 bool grobo_i_stand_left(const grobo_robot_axis *axis);
+/* True of a joint whose way is over, and which by the last reading is at its end, or hangs beside
+ * it, and is slow; or has not moved between two of them. Less than what follows. */
+bool grobo_i_rests(const grobo_robot *robot, int joint);
 /* True if it was read to stand since then. */
 bool grobo_i_stands(const grobo_robot *robot, int joint);
 /* True if the goal read is the one that it was sent to, or of a way told in segments lies ahead of
@@ -608,6 +611,8 @@ extern const grobo_robot_step_fn grobo_i_script_exit_off[];
 extern const grobo_robot_step_fn grobo_i_script_exit_hold[];
 extern const grobo_robot_step_fn grobo_i_script_exit_sit[];
 
+/* True of a move that is done, and whose joints come to rest yet. */
+bool grobo_i_move_settles(const grobo_robot_task *job);
 /* True if the target of a move has been sent. */
 bool grobo_i_move_is_sent(const grobo_robot_task *job);
 /* Sends the joints of such a move, robot.job, to another target, and goes on from there; of one

@@ -7,6 +7,7 @@
  * was read back and reached.
  */
 #include <math.h>
+#include <stdlib.h>
 
 #include "src/robot/robot.h"
 
@@ -83,6 +84,20 @@ bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint)
 
 /* A servo that restarts hears again by then. */
 #define HALTED_BY_US 2500000
+
+/* So far apart, two positions of a joint that does not turn are no chance. */
+#define RESTS_US 80000
+
+bool grobo_i_rests(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double off_rad = axis->state.angle_rad + grobo_i_load(axis) - axis->way.to_rad;
+    bool told = axis->seen_us >= axis->way.to_us && axis->seen_dps != GROBO_I_NO_SPEED &&
+                !GROBO_I_EXTRA(robot->driver, tells_no_speed);
+    bool slow = told && abs(axis->seen_dps) < GROBO_I_SLOW_DPS;
+    bool again = axis->still_us != GROBO_NEVER_US && axis->stood_us - axis->still_us >= RESTS_US;
+    return fabs(off_rad) <= still_rad(robot) ? slow || !told || again : again && (slow || !told);
+}
 
 void grobo_i_halt_left(grobo_robot *robot, grobo_joint_mask joints, bool halts)
 {

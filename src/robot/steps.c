@@ -477,6 +477,7 @@ static int step_send(grobo_robot *robot)
     grobo_joint_mask all = job->turned != 0 ? job->turned & job->pending : job->pending;
     grobo_joint_mask left = all;
     job->turned = 0;
+    job->sent_us = robot->now_us;
     while (left != 0) {
         grobo_posture part = job->target;
         part.set = grobo_i_take_chunk(&left, chunk_of(robot));
@@ -515,13 +516,23 @@ static int step_read_back(grobo_robot *robot)
     return step_read_pending(robot);
 }
 
-/* Of the joints just read, those whose goal is not the one they were sent to. */
+/* True of a joint that the frames of the target left out: a servo may have restarted, and gets no
+ * goal before it was heard. By now it was. */
+static bool is_unsent(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    return GROBO_I_EXTRA(robot->driver, goal_energises) && robot->job->sent_us > 0 &&
+           (!axis->has_target || axis->way.from_us < robot->job->sent_us ||
+            axis->way.to_us <= axis->way.from_us);
+}
+
+/* Of the joints just read, those whose goal is not the one they were sent to, or that were not. */
 static grobo_joint_mask not_taken(const grobo_robot *robot)
 {
     grobo_joint_mask read = robot->job->pending & ~robot->job->failed;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(read, j) && !grobo_i_goal_is_taken(robot, j)) {
+        if (grobo_i_has(read, j) && (!grobo_i_goal_is_taken(robot, j) || is_unsent(robot, j))) {
             bad |= GROBO_JOINT_BIT(j);
         }
     }
@@ -557,6 +568,46 @@ static int step_arrived(grobo_robot *robot)
     int result = again(robot, bad, step_send);
     robot->soft = result == GROBO_I_NEXT && bad == 0 ? false : robot->soft;
     return result;
+}
+
+/* A joint that carries weight sags or swings behind its way. It is read so often until it rests,
+ * and no longer than that; then its move is over, and its event names how far it is from its
+ * goal. */
+#define RESTS_AGAIN_US 50000
+#define RESTS_BY_US 1500000
+
+static int step_rest(grobo_robot *robot)
+{
+    grobo_robot_task *job = robot->job;
+    job->pending = 0;
+    job->until_us = robot->now_us + RESTS_AGAIN_US;
+    bool looks = !GROBO_DRIVERS_PLAIN && job->result == GROBO_OK;
+    for (int j = 0; looks && j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool late = robot->now_us - axis->way.to_us >= RESTS_BY_US;
+        bool asked = grobo_i_has(job->joints, j) && axis->has_target;
+        if (!asked || grobo_i_rests(robot, j)) {
+            continue;
+        }
+        job->pending |= late ? 0 : GROBO_JOINT_BIT(j);
+        if (late) {
+            job->joint = j;
+            job->value = grobo_deg_from_rad(axis->state.angle_rad - axis->way.to_rad);
+        }
+    }
+    return job->pending != 0 ? GROBO_I_WAIT : GROBO_I_NEXT;
+}
+
+/* That a reading of it is lost makes no move fail. */
+static int step_rest_more(grobo_robot *robot)
+{
+    grobo_robot_task *job = robot->job;
+    if (!GROBO_DRIVERS_PLAIN && job->pending != 0) {
+        job->failed = 0;
+        job->result = GROBO_OK;
+        grobo_i_job_goto(robot, step_rest);
+    }
+    return GROBO_I_NEXT;
 }
 
 /* A joint that has so far to go to where playing begins is looked after. */
@@ -843,8 +894,10 @@ const grobo_robot_step_fn grobo_i_script_sense[] = {step_read, NULL};
 const grobo_robot_step_fn grobo_i_script_torque_on[] = {step_read, TWICE, SWITCH_ON, NULL};
 const grobo_robot_step_fn grobo_i_script_torque_off[] = {SWITCH, NULL};
 const grobo_robot_step_fn grobo_i_script_move[] = {
-    step_read,    TWICE,          step_read_again, step_require, SWITCH_ON,
-    step_require, step_from_here, step_aim,        MOVE,         NULL};
+    step_read, TWICE,        step_read_again,   step_require,
+    SWITCH_ON, step_require, step_from_here,    step_aim,
+    MOVE,      step_rest,    step_read_pending, step_rest_more,
+    NULL};
 const grobo_robot_step_fn grobo_i_script_play[] = {
     step_read,      TWICE,     step_read_again, step_require,    SWITCH_ON, step_require,
     step_from_here, step_play, step_read_back,  step_approached, NULL};
@@ -861,6 +914,18 @@ const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
     MOVE,       step_require, step_let_go,     step_watchdog_clear, SWITCH,         NULL};
 
 /* ---- another target -------------------------------------------------------------------------- */
+
+bool grobo_i_move_settles(const grobo_robot_task *job)
+{
+    unsigned resting = 0;
+    if (GROBO_DRIVERS_PLAIN || job->kind != GROBO_JOB_MOVE || job->script != grobo_i_script_move) {
+        return false;
+    }
+    while (job->script[resting] != step_rest) {
+        resting++;
+    }
+    return job->at > resting;
+}
 
 bool grobo_i_move_is_sent(const grobo_robot_task *job)
 {

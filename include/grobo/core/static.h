@@ -179,6 +179,7 @@ typedef struct grobo_robot_task {
     grobo_robot_order order; /* of the frame that it asks with */
     int64_t settle_us;       /* silence that is needed after it */
     int64_t leave_by_us;     /* after that it does not leave; 0: always */
+    int64_t sent_us;         /* when its target was given to the line last */
     int part;
     int rounds;      /* of repeating what was not taken */
     int restarts;    /* of all of it */
