@@ -7,6 +7,10 @@
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
 
+/* How often the loop turns while the guard knows that a joint moves: it stops one whose loop does
+ * not turn for GROBO_GUARD_SILENCE_US, and is told soon when nothing moves any more. */
+#define GUARD_BEAT_US INT64_C(50000)
+
 /* Says once that the robot has no guard any more. */
 static void say_unguarded(grobo_session *session, int error)
 {
@@ -117,6 +121,14 @@ bool grobo_i_session_guard_has_it(grobo_session *session)
         event_active(session->guard_news, EV_READ, 0); /* told from the loop */
     }
     return guard->taken;
+}
+
+int64_t grobo_i_session_guard_deadline(const grobo_session *session)
+{
+    const grobo_guard *guard = session->config.guard;
+    bool watched = session->guard_news != NULL && guard->has_port && guard->message.moves != 0;
+
+    return watched ? grobo_now_us() + GUARD_BEAT_US : GROBO_NEVER_US;
 }
 
 void grobo_i_session_guard_tell(grobo_session *session)

@@ -119,6 +119,7 @@ void grobo_i_session_send(grobo_session *session)
         deadline_us = give_all(session);
         grobo_i_session_guard_tell(session);
         deadline_us = grobo_i_sooner(deadline_us, session->line->deadline(session));
+        deadline_us = grobo_i_sooner(deadline_us, grobo_i_session_guard_deadline(session));
         deadline_us = grobo_i_sooner(deadline_us, grobo_i_session_estop_deadline(session));
         break;
     case GROBO_SESSION_WAITING:

@@ -215,6 +215,9 @@ bool grobo_i_session_guard_has_it(grobo_session *session);
 /* After: says whether joints are on their way. */
 void grobo_i_session_guard_tell(grobo_session *session);
 
+/* When the loop turns for the guard though nothing is due; GROBO_NEVER_US where nothing moves. */
+int64_t grobo_i_session_guard_deadline(const grobo_session *session);
+
 /* ---- line.c ---- */
 
 /* Frees the simulator, where there is one. */
