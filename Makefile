@@ -500,11 +500,11 @@ coverage: ## which lines the tests reach, by file
 	@$(MAKE) --no-print-directory check-coverage FILES=yes
 
 # Percent of the lines of each part of the tree.
-GATES ?= src=96 ports=85 tools=93
+GATES ?= src=97 ports=85 tools=93
 FILES ?=
 # Whether the tests pass is judged by a build without counters, which is quicker at its exit. Left out
 # is what runs again what other tests run.
-check-coverage: ## that the tests reach 96 % of the lines of src, 85 % of ports, 93 % of tools
+check-coverage: ## that the tests reach 97 % of the lines of src, 85 % of ports, 93 % of tools
 	@mkdir -p $(BUILD)/cov
 	@find $(BUILD)/cov -name '*.gcda' -delete
 	@TEST_WAITERS=2 $(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COVERAGE=yes CFLAGS='-O1 -g' \
