@@ -116,6 +116,9 @@ TEST_WITH(rig_wirings, three_low_voltages_in_a_row_trip)
         robot.low_readings = 2;
         read_as(j, low);
         assert_int_equal(robot.low_readings, 0);
+        robot.config.voltage_mv = 1; /* the lowest that is watched for */
+        read_as(j, (grobo_joint_state){.voltage_mv = 0, .valid = GROBO_FIELD_VOLTAGE});
+        assert_int_equal(robot.low_readings, 1);
     }
 }
 
