@@ -128,6 +128,34 @@ TEST_WITH(rig_wirings, a_servo_with_ramps_is_where_these_bring_it)
     driver.accel_rad_s2 = 0;
 }
 
+/* Behind its way it has come what it can at the speed of the way, or at its own where that is
+ * larger; how another joint turns is nothing to it. */
+TEST_WITH(rig_wirings, a_joint_comes_along_at_its_own_speed)
+{
+    static const struct {
+        int16_t dps, other_dps;
+        double deg;
+    } rows[] = {{30, 150, 30}, {150, 30, 35}, {-150, 30, 35}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start();
+            grobo_robot_axis *axis = &robot.axes[j];
+            axis->way = (grobo_robot_way){0, RAD(100), NOW - S / 2, NOW + S / 2};
+            for (int k = 0; k < N; k++) {
+                robot.axes[k].seen_dps = k == j ? rows[i].dps : rows[i].other_dps;
+                robot.axes[k].state.valid |= GROBO_FIELD_SPEED;
+                robot.axes[k].state.valid &= (uint16_t)~GROBO_FIELD_TIME;
+            }
+            axis->seen_rad = RAD(20);
+            axis->seen_us = NOW - S / 10;
+            double deg = grobo_i_axis_reached(&robot, j, NOW) / RAD(1);
+            if (fabs(deg - rows[i].deg) > 0.01) {
+                fail_msg("row %zu: at %.2f deg", i, deg);
+            }
+        }
+    }
+}
+
 TEST_WITH(rig_wirings, a_joint_that_is_not_limp_moves_to_the_end_of_its_way)
 {
     static const struct {
