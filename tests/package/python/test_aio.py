@@ -31,7 +31,9 @@ class Aio(unittest.IsolatedAsyncioTestCase):
             self.events.append(event)
 
     async def until(self, condition):
+        end = asyncio.get_running_loop().time() + 60
         while not condition():
+            self.assertLess(asyncio.get_running_loop().time(), end, "it does not come about")
             await asyncio.sleep(0.005)
 
     async def test_moves_of_different_joints_are_under_way_together(self):
