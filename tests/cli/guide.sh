@@ -23,7 +23,7 @@ parts() {
     open { print >>file }' "$@"
 }
 parts "$work/commands" docs/guide/motions.md docs/guide/whole-body.md docs/guide/scripts.md \
-    docs/guide/own-robot.md docs/guide/first-hour.md motions/README.md
+    docs/guide/own-robot.md docs/guide/own-servo.md docs/guide/first-hour.md motions/README.md
 parts "$work/commands" docs/README.ja.md docs/guide/first-hour.ja.md
 parts "$work/arm-commands" docs/guide/arm.md docs/guide/lerobot.md # with an SO-101
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include <grobo/core/body.h>
+#include <grobo/core/body_motion.h>
 #include <grobo/core/motion_io.h>
 #include <grobo/core/serial.h>
 #include <grobo/grobo.h>

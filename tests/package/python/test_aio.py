@@ -65,7 +65,8 @@ class Aio(unittest.IsolatedAsyncioTestCase):
     async def test_a_cancelled_task_stops_the_robot(self):
         for verb in (self.robot.play(GREET), self.robot.move({"R_ELBOW_P": -1.0}, time=20)):
             task = asyncio.create_task(verb)
-            await self.until(lambda: self.robot.status().moving)
+            await self.until(lambda: self.robot.status().moving or task.done())
+            self.assertFalse(task.done() and task.exception(), "it was refused")
             task.cancel()
             with self.assertRaises(asyncio.CancelledError):
                 await task

@@ -16,7 +16,7 @@ from types import TracebackType
 from typing import Any, AsyncIterator, Dict, Iterable, List, Optional, Type, Union
 
 from grobo import errors
-from grobo._lib import ffi, has, lib, new, quick
+from grobo._lib import ffi, has, lib, new, quick, us
 from grobo.motion import Motion, init_pose, posture
 from grobo.robot import Angles, Exit, Status, Torque, log
 from grobo.robot import Robot as _Blocking
@@ -168,6 +168,7 @@ class Robot:
             if future in waiting:
                 waiting.remove(future)
             self._stop_unless_closing()
+            await self._obeyed()
             raise
 
     async def _in_thread(self, function: Any, *args: Any) -> Any:
@@ -182,7 +183,21 @@ class Robot:
             await asyncio.wait([call])
             call.exception()
             self._stop_unless_closing()  # what it has begun meanwhile
+            await self._obeyed()
             raise
+
+    async def _obeyed(self) -> None:
+        """Until a stop has been carried out: what is asked for after it is not for it to cancel."""
+
+        def wait() -> None:
+            with self._robot._runner.use() as runner:
+                lib.grobo_runner_wait(runner, us(2.0))
+
+        if not self._robot._runner.closing:
+            try:
+                await asyncio.shield(self._in_thread(wait))
+            except errors.Error:
+                pass  # it was closed meanwhile
 
     def _stop_unless_closing(self) -> None:
         if not self._robot._runner.closing:
