@@ -29,27 +29,10 @@ static void turn(const double r[9], const double v[3], double out[3])
     }
 }
 
-/* Roll, pitch, yaw about fixed axes. */
-static void rotation_of(const double rpy_rad[3], double r[9])
-{
-    double cr = cos(rpy_rad[0]), sr = sin(rpy_rad[0]), cp = cos(rpy_rad[1]), sp = sin(rpy_rad[1]);
-    double cy = cos(rpy_rad[2]), sy = sin(rpy_rad[2]);
-    const double made[9] = {cy * cp,
-                            cy * sp * sr - sy * cr,
-                            cy * sp * cr + sy * sr,
-                            sy * cp,
-                            sy * sp * sr + cy * cr,
-                            sy * sp * cr - cy * sr,
-                            -sp,
-                            cp * sr,
-                            cp * cr};
-    memcpy(r, made, sizeof made);
-}
-
 static void place(const grobo_robot_link *link, const frame *parent, frame *to)
 {
     double own[9], at[3];
-    rotation_of(link->origin_rad, own);
+    grobo_i_rotation(own, link->origin_rad);
     turn(parent->r, link->origin_m, at);
     for (int i = 0; i < 3; i++) {
         to->p_m[i] = parent->p_m[i] + at[i];

@@ -6,6 +6,7 @@
 #include <grobo/robot_file.h>
 
 #include "src/robots/file/families.h"
+#include "src/robots/robots.h"
 
 bool grobo_robot_def_has_weight(const grobo_robot_def *def)
 {
@@ -17,8 +18,7 @@ bool grobo_robot_def_has_weight(const grobo_robot_def *def)
     return false;
 }
 
-/* Roll, pitch, yaw about fixed axes. */
-static void rotation(double r[9], const double rpy[3])
+void grobo_i_rotation(double r[9], const double rpy[3])
 {
     double cr = cos(rpy[0]), sr = sin(rpy[0]), cp = cos(rpy[1]), sp = sin(rpy[1]);
     double cy = cos(rpy[2]), sy = sin(rpy[2]);
@@ -75,7 +75,7 @@ int grobo_robot_def_physics(const grobo_robot_def *def, bool real_time, const gr
         memcpy(to->axis, from->axis, sizeof to->axis);
         memcpy(to->com_m, from->com_m, sizeof to->com_m);
         memcpy(to->inertia_kgm2, from->inertia_kgm2, sizeof to->inertia_kgm2);
-        rotation(to->r, from->origin_rad);
+        grobo_i_rotation(to->r, from->origin_rad);
     }
     grobo_sim_motor motor[GROBO_JOINTS_MAX];
     const grobo_sim_motor *motors[GROBO_JOINTS_MAX] = {NULL};
