@@ -714,7 +714,7 @@ $(CORE_LIB): $(CORE_OBJS)
 $(CLASSIC_LIB): $(CLASSIC_OBJS)
 $(SUPPORT_LIB): $(SUPPORT_OBJS)
 # The command without its main: tests link parts of it.
-BESIDE_OBJS := $(call objects,$(patsubst %,tools/grctl/%.c,serve_main web/run fleet_main fleet/run_agent fleet/run_fleet))
+BESIDE_OBJS := $(call objects,$(patsubst %,tools/grctl/%.c,broker_main web/run fleet/run_agent fleet/run_fleet))
 $(TOOL_LIB): $(filter-out %/main.o $(BESIDE_OBJS),$(TOOL_OBJS))
 $(STATIC_LIB) $(CORE_LIB) $(CLASSIC_LIB) $(SUPPORT_LIB) $(TOOL_LIB): $(BUILD)/.flags
 	$(say) AR $@
@@ -744,14 +744,13 @@ $(CLASSIC_SHARED): $(CLASSIC_OBJS) $(SHARED_LIB)
 	$(Q)$(CC) -shared $(subst $(SONAME),$(CLASSIC_SONAME),$(filter-out %.map,$(SHARED_FLAGS))) $(ALL_LDFLAGS) -o $@ $(CLASSIC_OBJS) $(SHARED_LIB) $(OS_LIBS)
 	@ln -sf $(CLASSIC_SONAME) $(BUILD)/$(CLASSIC_LINK_NAME)
 
-WHOLE_OBJS := $(filter-out %/fleet_main.o,$(BESIDE_OBJS))
-$(BUILD)/grctl$(EXE): $(if $(WHOLE_GRCTL),$(WHOLE_OBJS),$(BUILD)/tools/grctl/main.o) $(TOOL_LIB) $(STATIC_LIB)
+$(BUILD)/grctl$(EXE): $(if $(WHOLE_GRCTL),$(BESIDE_OBJS),$(BUILD)/tools/grctl/main.o) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(if $(WHOLE_GRCTL),$(TOOL_LIBS),$(BASE_LIBS)) $(LIBS)
 
 # What the archive has for grctl in their place (beside.c) is not taken: their objects come first.
-$(BUILD)/grctl-serve$(EXE): $(filter %/serve_main.o %/web/run.o,$(BESIDE_OBJS))
-$(BUILD)/grctl-fleet$(EXE): $(filter %/fleet_main.o %/run_agent.o %/run_fleet.o,$(BESIDE_OBJS))
+$(BUILD)/grctl-serve$(EXE): $(filter %/broker_main.o %/web/run.o,$(BESIDE_OBJS))
+$(BUILD)/grctl-fleet$(EXE): $(filter %/broker_main.o %/run_agent.o %/run_fleet.o,$(BESIDE_OBJS))
 $(BESIDE): $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $(filter %.o,$^) $(TOOL_LIB) $(STATIC_LIB) $(TOOL_LIBS) $(LIBS)
@@ -765,7 +764,7 @@ $(ROBOTS) $(SERVOS) $(PICTURE):
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 # With none of the libraries that it can do without: tests/export/optional.sh.
-$(BARE): $(WHOLE_OBJS) $(call objects,$(patsubst %,tools/grctl/%.c,edit/plain screen/none xml/none mqtt/none web/none)) \
+$(BARE): $(BESIDE_OBJS) $(call objects,$(patsubst %,tools/grctl/%.c,edit/plain screen/none xml/none mqtt/none web/none)) \
     $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	@mkdir -p $(@D)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The beginning of every program of this command: language, guard, completion, the line. */
 #include <locale.h>
 #include <string.h>
 

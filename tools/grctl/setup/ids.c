@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Gives new servos their ids, one servo on the line at a time; goes on where it was ended. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The program grctl-fleet: `grctl agent` and `grctl fleet`, which use other commands too. */
+/* grctl-serve and grctl-fleet: they differ in what they are linked with, and have brokers. */
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/start.h"
 #include "tools/grctl/mqtt/host.h"
