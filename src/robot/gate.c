@@ -21,7 +21,7 @@
 
 /* What the frame of an order says. */
 typedef struct saying {
-    grobo_target target;                              /* where to, for deeds that move */
+    grobo_target target;                              /* where to, for orders that move */
     grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1]; /* what it switches, by mode */
     bool as_asked; /* a goal of all its joints, to where each was asked to go, in that time */
 } saying;
@@ -121,7 +121,7 @@ static double speed_limit(const grobo_robot *robot, int joint, bool soft)
 /* Where a way begins: one to rest where the joint is, any other where the way before is by now. */
 static double begin_of(const grobo_robot *robot, const grobo_robot_order *order, int joint)
 {
-    return order->deed == GROBO_I_DEED_HALT || order->rests
+    return order->kind == GROBO_I_ORDER_HALT || order->rests
                ? grobo_i_axis_place(robot, joint) + grobo_i_load_kept(&robot->axes[joint])
                : grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
 }
@@ -177,7 +177,7 @@ static int64_t time_of_order(const grobo_robot *robot, const grobo_robot_order *
     const grobo_robot_axis *axis = &robot->axes[joint];
     double from_rad = begin_of(robot, order, joint);
     int64_t needed_us = time_needed(robot, joint, from_rad, to_rad, robot->soft || order->soft);
-    bool halts = order->deed == GROBO_I_DEED_HALT && axis->seen_us < axis->told_us;
+    bool halts = order->kind == GROBO_I_ORDER_HALT && axis->seen_us < axis->told_us;
     bool at_once = axis->next_time_us < HALT_TIME_US;
     bool alone = axis->way.to_us - axis->way.from_us > HALT_TIME_US; /* no next one soon */
     bool rests = order->rests && (at_once || alone);
@@ -205,7 +205,7 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
 {
     bool soft = robot->soft || order->soft;
     /* Its times, as they were asked for; from where it is by its way. */
-    bool on_grid = order->deed == GROBO_I_DEED_GOAL && !order->rests;
+    bool on_grid = order->kind == GROBO_I_ORDER_GOAL && !order->rests;
     bool stretched = false;
     int64_t longest_us = 0, asked_us = -1;
     grobo_i_span asked = 0;
@@ -574,29 +574,29 @@ static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo
                  moment when, saying *says)
 {
     say_nothing(robot, says);
-    switch ((grobo_i_deed)order->deed) {
-    case GROBO_I_DEED_NONE:
+    switch ((grobo_i_order_kind)order->kind) {
+    case GROBO_I_ORDER_NONE:
         return GROBO_OK;
-    case GROBO_I_DEED_GOAL:
+    case GROBO_I_ORDER_GOAL:
         return judge_goal(robot, order, when, says);
-    case GROBO_I_DEED_SEGMENT:
+    case GROBO_I_ORDER_SEGMENT:
         return judge_segment(robot, order, &says->target);
-    case GROBO_I_DEED_HALT:
+    case GROBO_I_ORDER_HALT:
         return judge_halt(robot, order, &says->target);
-    case GROBO_I_DEED_HOLD:
+    case GROBO_I_ORDER_HOLD:
         return judge_hold(robot, order, &says->target);
-    case GROBO_I_DEED_TORQUE:
+    case GROBO_I_ORDER_TORQUE:
         return judge_torque(robot, order, says);
-    case GROBO_I_DEED_RAW:
+    case GROBO_I_ORDER_RAW:
         return judge_raw(robot, exchange, says);
-    case GROBO_I_DEED_UNKNOWN:
+    case GROBO_I_ORDER_UNKNOWN:
         return robot->trip.latched ? GROBO_ERR_LATCHED : judge_alone(robot);
-    case GROBO_I_DEED_SETTING:
+    case GROBO_I_ORDER_SETTING:
         return judge_setting(robot, order->joints, when == LEAVES_AGAIN);
-    case GROBO_I_DEED_COMMAND:
+    case GROBO_I_ORDER_COMMAND:
         return judge_alone(robot);
     }
-    GROBO_ASSERT(false); /* each deed returns above */
+    GROBO_ASSERT(false); /* each kind returns above */
     return GROBO_ERR_ARG;
 }
 
@@ -619,14 +619,14 @@ int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_r
     grobo_joint_mask moved = says.target.posture.set | says.torqued[GROBO_TORQUE_ON];
     *order = (grobo_robot_order){.single = true};
     if (result == GROBO_ERR_UNSUPPORTED && robot->config.accept_unknown_raw) {
-        order->deed = GROBO_I_DEED_UNKNOWN;
+        order->kind = GROBO_I_ORDER_UNKNOWN;
         order->joints = grobo_i_all_joints(robot);
         order->moves = true;
     } else if (result < 0) {
         return result;
     } else {
         order->joints = moved | says.torqued[GROBO_TORQUE_OFF] | says.torqued[GROBO_TORQUE_BRAKE];
-        order->deed = order->joints != 0 ? GROBO_I_DEED_RAW : GROBO_I_DEED_NONE;
+        order->kind = order->joints != 0 ? GROBO_I_ORDER_RAW : GROBO_I_ORDER_NONE;
         order->moves = moved != 0;
     }
     return grobo_i_gate_judge(robot, order, exchange);
@@ -673,16 +673,16 @@ static bool is_timed(const grobo_driver *driver)
 static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order *order,
                                saying *says, grobo_target *part)
 {
-    bool cut =
-        order->deed == GROBO_I_DEED_GOAL && grobo_i_segments_cut(robot, order, &says->target, part);
+    bool cut = order->kind == GROBO_I_ORDER_GOAL &&
+               grobo_i_segments_cut(robot, order, &says->target, part);
     grobo_target *target = cut ? part : &says->target;
     bool timed = is_timed(robot->driver);
     for (int j = 0; !timed && j < robot->driver->model->n_joints; j++) {
         target->from_rad[j] = begin_of(robot, order, j);
-        if (order->deed == GROBO_I_DEED_HALT) {
+        if (order->kind == GROBO_I_ORDER_HALT) {
             target->from_rad[j] = begin_of_halt(robot, target, j);
         }
-        if (order->deed == GROBO_I_DEED_HALT || order->rests) {
+        if (order->kind == GROBO_I_ORDER_HALT || order->rests) {
             target->from_rad[j] = begin_of_rest(robot, target, j);
         }
     }
@@ -695,7 +695,7 @@ static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, 
 {
     const grobo_driver *driver = robot->driver;
     memset(exchange, 0, offsetof(grobo_exchange, frame));
-    return order->deed == GROBO_I_DEED_TORQUE
+    return order->kind == GROBO_I_ORDER_TORQUE
                ? driver->torque(driver, robot->driver_ctx, says->torqued[order->torque],
                                 (grobo_torque)order->torque, part, exchange)
                : driver->posture(driver, robot->driver_ctx, target, part, exchange);
@@ -705,7 +705,7 @@ static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, 
  * time it leaves. */
 static void says_all(const grobo_robot *robot, const grobo_robot_order *order, saying *says)
 {
-    if (order->deed == GROBO_I_DEED_TORQUE) {
+    if (order->kind == GROBO_I_ORDER_TORQUE) {
         says->torqued[order->torque] = order->joints;
         return;
     }
@@ -746,9 +746,9 @@ int grobo_i_gate_build(grobo_robot *robot, grobo_robot_order *order, grobo_excha
 
 static bool is_built(const grobo_robot_order *order)
 {
-    return order->deed == GROBO_I_DEED_GOAL || order->deed == GROBO_I_DEED_SEGMENT ||
-           order->deed == GROBO_I_DEED_HALT || order->deed == GROBO_I_DEED_HOLD ||
-           order->deed == GROBO_I_DEED_TORQUE;
+    return order->kind == GROBO_I_ORDER_GOAL || order->kind == GROBO_I_ORDER_SEGMENT ||
+           order->kind == GROBO_I_ORDER_HALT || order->kind == GROBO_I_ORDER_HOLD ||
+           order->kind == GROBO_I_ORDER_TORQUE;
 }
 
 /* ---- noting ---------------------------------------------------------------------------------- */
@@ -772,7 +772,7 @@ static void forget(grobo_robot *robot, grobo_joint_mask joints, bool torque_too)
 static void note_way(grobo_robot *robot, const grobo_robot_order *order, const grobo_target *target)
 {
     int64_t now_us = robot->now_us;
-    bool parts = order->deed == GROBO_I_DEED_GOAL && grobo_i_goes_in_parts(robot, order);
+    bool parts = order->kind == GROBO_I_ORDER_GOAL && grobo_i_goes_in_parts(robot, order);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(target->posture.set, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
@@ -847,30 +847,30 @@ static void note_goals(grobo_robot *robot, const grobo_robot_slot *slot, const s
 
 static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying *says)
 {
-    switch ((grobo_i_deed)slot->order.deed) {
-    case GROBO_I_DEED_NONE:
-    case GROBO_I_DEED_GOAL:
-    case GROBO_I_DEED_HALT:
-    case GROBO_I_DEED_TORQUE:
-    case GROBO_I_DEED_RAW:
+    switch ((grobo_i_order_kind)slot->order.kind) {
+    case GROBO_I_ORDER_NONE:
+    case GROBO_I_ORDER_GOAL:
+    case GROBO_I_ORDER_HALT:
+    case GROBO_I_ORDER_TORQUE:
+    case GROBO_I_ORDER_RAW:
         note_torque(robot, says);
         note_goals(robot, slot, says);
         break;
-    case GROBO_I_DEED_SEGMENT:
+    case GROBO_I_ORDER_SEGMENT:
         grobo_i_segments_told(robot, &says->target);
         return; /* the way is the one that was noted */
-    case GROBO_I_DEED_HOLD:
+    case GROBO_I_ORDER_HOLD:
         note_hold(robot, says->target.posture.set);
         break;
-    case GROBO_I_DEED_UNKNOWN:
+    case GROBO_I_ORDER_UNKNOWN:
         forget(robot, slot->order.joints, false);
         break;
-    case GROBO_I_DEED_SETTING:
-    case GROBO_I_DEED_COMMAND:
+    case GROBO_I_ORDER_SETTING:
+    case GROBO_I_ORDER_COMMAND:
         forget(robot, slot->order.joints, true); /* the servo is without torque afterwards */
         break;
     }
-    bool halts = slot->order.deed == GROBO_I_DEED_HALT; /* of its joints those that move */
+    bool halts = slot->order.kind == GROBO_I_ORDER_HALT; /* of its joints those that move */
     grobo_joint_mask told = halts ? says->target.posture.set : slot->order.joints;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(told, j)) {
@@ -930,11 +930,11 @@ static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
     GROBO_ASSERT(to->set == 0 || check_target(robot, to, &joint) == GROBO_OK);
     GROBO_ASSERT(!robot->trip.latched || on == 0);
     GROBO_ASSERT(!robot->trip.latched || to->set == 0 || order->stops);
-    GROBO_ASSERT((to->set & robot->free_joints) == 0 || order->deed == GROBO_I_DEED_HOLD ||
-                 order->deed == GROBO_I_DEED_HALT);
+    GROBO_ASSERT((to->set & robot->free_joints) == 0 || order->kind == GROBO_I_ORDER_HOLD ||
+                 order->kind == GROBO_I_ORDER_HALT);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         GROBO_ASSERT(!grobo_i_has(to->set, j) || says->target.joint_time_us[j] > 0 ||
-                     order->deed == GROBO_I_DEED_RAW);
+                     order->kind == GROBO_I_ORDER_RAW);
     }
 }
 
@@ -942,7 +942,7 @@ static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
 static const grobo_exchange *waiting(const grobo_robot_slot *slot)
 {
     grobo_exchange *frame = &slot->robot->built;
-    if (slot->order.deed == GROBO_I_DEED_RAW) {
+    if (slot->order.kind == GROBO_I_ORDER_RAW) {
         frame->frame_bytes = slot->txn.frame_bytes;
         memcpy(frame->frame, slot->txn.frame, slot->txn.frame_bytes);
     }
@@ -980,7 +980,7 @@ int grobo_i_gate_leave(grobo_robot_slot *slot)
     moment when = slot->txn.sent_us >= 0 ? LEAVES_AGAIN : LEAVES;
     saying says;
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && robot->link);
-    if (slot->order.deed == GROBO_I_DEED_NONE && slot->order.joints == 0) {
+    if (slot->order.kind == GROBO_I_ORDER_NONE && slot->order.joints == 0) {
         return GROBO_OK; /* a reading: it tells no joint anything */
     }
     if (slot->order.rests) { /* who became unknown while it waited is not brought to rest by it */

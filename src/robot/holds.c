@@ -62,7 +62,7 @@ static void assert_slot(const grobo_robot *robot, const grobo_robot_slot *slot)
     GROBO_ASSERT(slot->use != GROBO_I_USE_JOB || grobo_i_job_has(slot));
     GROBO_ASSERT((slot->order.joints & ~grobo_i_all_joints(robot)) == 0);
     /* What waits to move a joint ends with the stop; what brings a motion to rest may leave. */
-    bool goal = slot->order.deed == GROBO_I_DEED_GOAL || slot->order.deed == GROBO_I_DEED_SEGMENT;
+    bool goal = slot->order.kind == GROBO_I_ORDER_GOAL || slot->order.kind == GROBO_I_ORDER_SEGMENT;
     GROBO_ASSERT(!robot->trip.latched || !goal || slot->order.stops || slot->txn.sent_us >= 0);
 }
 

@@ -162,7 +162,7 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
     robot->motion = robot->motion == UINT32_MAX ? 1 : robot->motion + 1;
     grobo_robot_order order = {.joints = joints,
                                .number = robot->motion,
-                               .deed = GROBO_I_DEED_GOAL,
+                               .kind = GROBO_I_ORDER_GOAL,
                                .each = how->each,
                                .soft = robot->soft,
                                .single = how->single,
@@ -190,7 +190,7 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
 void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints)
 {
     grobo_robot_order order = {
-        .joints = joints, .deed = GROBO_I_DEED_SEGMENT, .each = true, .moves = true};
+        .joints = joints, .kind = GROBO_I_ORDER_SEGMENT, .each = true, .moves = true};
     (void)send_order(robot, order,
                      &(way_out){GROBO_I_USE_SEGMENT, GROBO_PRIORITY_MOTION, GROBO_NEVER_US});
 }
@@ -201,7 +201,7 @@ static void send_halt(grobo_robot *robot, grobo_joint_mask joints, bool owed)
 {
     grobo_robot_order order = {.joints = joints,
                                .asked_us = robot->now_us,
-                               .deed = GROBO_I_DEED_HALT,
+                               .kind = GROBO_I_ORDER_HALT,
                                .each = true,
                                .stops = true,
                                .owed = owed};
@@ -296,7 +296,7 @@ static grobo_priority priority_of_job(const grobo_robot *robot)
 
 int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk chunk)
 {
-    grobo_robot_order order = {.deed = GROBO_I_DEED_HOLD, .each = true};
+    grobo_robot_order order = {.kind = GROBO_I_ORDER_HOLD, .each = true};
     int result = GROBO_OK;
     while (joints != 0 && result >= 0) {
         order.joints = grobo_i_take_chunk(&joints, chunk);
@@ -310,7 +310,7 @@ int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torqu
                         grobo_i_chunk chunk)
 {
     grobo_robot_order order = {
-        .asked_us = robot->now_us, .deed = GROBO_I_DEED_TORQUE, .torque = (uint8_t)mode};
+        .asked_us = robot->now_us, .kind = GROBO_I_ORDER_TORQUE, .torque = (uint8_t)mode};
     if (robot->driver->torque == NULL) {
         return GROBO_ERR_UNSUPPORTED;
     }

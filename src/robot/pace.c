@@ -111,7 +111,7 @@ static grobo_i_line line_of(const grobo_robot *robot)
 
 bool grobo_i_pace_fits(const grobo_robot *robot, grobo_joint_mask joints)
 {
-    const grobo_robot_order order = {.deed = GROBO_I_DEED_GOAL};
+    const grobo_robot_order order = {.kind = GROBO_I_ORDER_GOAL};
     grobo_i_line line = line_of(robot);
     return joints == 0 || !grobo_i_goes_in_parts(robot, &order) ||
            grobo_i_pace_of(&line, joints) > 0;

@@ -137,7 +137,7 @@ bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
         if (slot->use != GROBO_I_USE_FREE && grobo_txn_is_pending(&slot->txn)) {
             waits = waits || slot->order.stops ||
                     (slot->txn.priority == GROBO_PRIORITY_STOP &&
-                     slot->order.deed != GROBO_I_DEED_NONE);
+                     slot->order.kind != GROBO_I_ORDER_NONE);
         }
     }
     waits = waits && robot->bus.active == NULL && grobo_bus_free_at(&robot->bus, now_us) <= now_us;

@@ -426,7 +426,7 @@ static int admit_write(grobo_robot *robot, const grobo_register_io *io, grobo_ro
         return GROBO_ERR_UNSUPPORTED;
     }
     if (kind == GROBO_WRITE_SETTING) {
-        order->deed = GROBO_I_DEED_SETTING;
+        order->kind = GROBO_I_ORDER_SETTING;
         order->joints = joint_of(robot, io->id);
     }
     return grobo_i_gate_judge(robot, order, NULL);
@@ -438,7 +438,7 @@ int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io)
         return GROBO_ERR_ARG;
     }
     grobo_exchange exchange = {0};
-    grobo_robot_order order = {.deed = GROBO_I_DEED_NONE};
+    grobo_robot_order order = {.kind = GROBO_I_ORDER_NONE};
     grobo_i_begin(robot);
     int result = admit(robot, GROBO_JOB_REGISTERS, joint_of(robot, io->id), false);
     if (!is_servo(robot, io->id) || io->length < 1) {
@@ -465,7 +465,7 @@ int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command)
         return GROBO_ERR_ARG;
     }
     grobo_exchange exchange = {0};
-    grobo_robot_order order = {.deed = GROBO_I_DEED_COMMAND};
+    grobo_robot_order order = {.kind = GROBO_I_ORDER_COMMAND};
     grobo_i_begin(robot);
     int result = admit(robot, GROBO_JOB_COMMAND, 0, false);
     if (result >= 0) {
@@ -494,7 +494,7 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number)
     }
     grobo_exchange exchange = {0};
     grobo_robot_order order = {
-        .deed = GROBO_I_DEED_UNKNOWN, .joints = grobo_i_all_joints(robot), .moves = true};
+        .kind = GROBO_I_ORDER_UNKNOWN, .joints = grobo_i_all_joints(robot), .moves = true};
     grobo_i_begin(robot);
     int result = admit(robot, GROBO_JOB_STORED, 0, true);
     if (result >= 0) {

@@ -225,19 +225,19 @@ typedef enum grobo_i_use {
     GROBO_I_USE_PLAIN    /* sent for its effect; a later reading shows whether it took */
 } grobo_i_use;
 
-/* What a frame does to joints: grobo_robot_order.deed. */
-typedef enum grobo_i_deed {
-    GROBO_I_DEED_NONE = 0, /* it reads, or writes what moves nothing */
-    GROBO_I_DEED_GOAL,     /* joints go to their targets, grobo_robot_axis.next */
-    GROBO_I_DEED_SEGMENT,  /* joints go further on the ways that they are on */
-    GROBO_I_DEED_HALT,     /* joints that move stop where they are by then */
-    GROBO_I_DEED_HOLD,     /* goals of joints without torque become where they are */
-    GROBO_I_DEED_TORQUE,   /* torque is switched */
-    GROBO_I_DEED_RAW,      /* what the driver reads in a frame of the user's */
-    GROBO_I_DEED_UNKNOWN,  /* nobody can read what: a raw frame, a motion of the robot's own */
-    GROBO_I_DEED_SETTING,  /* a goal means something else to these afterwards */
-    GROBO_I_DEED_COMMAND   /* a servo is busy with itself; `joints` restart without torque */
-} grobo_i_deed;
+/* What a frame does to joints: grobo_robot_order.kind. */
+typedef enum grobo_i_order_kind {
+    GROBO_I_ORDER_NONE = 0, /* it reads, or writes what moves nothing */
+    GROBO_I_ORDER_GOAL,     /* joints go to their targets, grobo_robot_axis.next */
+    GROBO_I_ORDER_SEGMENT,  /* joints go further on the ways that they are on */
+    GROBO_I_ORDER_HALT,     /* joints that move stop where they are by then */
+    GROBO_I_ORDER_HOLD,     /* goals of joints without torque become where they are */
+    GROBO_I_ORDER_TORQUE,   /* torque is switched */
+    GROBO_I_ORDER_RAW,      /* what the driver reads in a frame of the user's */
+    GROBO_I_ORDER_UNKNOWN,  /* nobody can read what: a raw frame, a motion of the robot's own */
+    GROBO_I_ORDER_SETTING,  /* a goal means something else to these afterwards */
+    GROBO_I_ORDER_COMMAND   /* a servo is busy with itself; `joints` restart without torque */
+} grobo_i_order_kind;
 
 /* The index of a free slot, or -1; there is always one for a halt. */
 int grobo_i_slot_find(const grobo_robot *robot, grobo_i_use use);
@@ -273,8 +273,8 @@ grobo_joint_mask grobo_i_slots_take_back(grobo_robot *robot, int number);
 bool grobo_i_slots_read(const grobo_robot *robot, int number, grobo_joint_mask joints);
 /* Takes back frames that would switch the torque of one of these joints on. */
 void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints);
-/* True if a frame that does this to the joint waits for the line; `torque` OFF for another deed. */
-bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_i_deed deed,
+/* True if such an order to the joint waits for the line; `torque` OFF where it switches none. */
+bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_i_order_kind kind,
                         grobo_torque torque);
 /* True if a frame of this use is under way. */
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);

@@ -24,7 +24,7 @@
  * no brake gives way without torque. */
 static void switch_once(grobo_robot *robot, grobo_joint_mask joint, grobo_torque mode)
 {
-    bool waits = grobo_i_slots_wait(robot, joint, GROBO_I_DEED_TORQUE, mode);
+    bool waits = grobo_i_slots_wait(robot, joint, GROBO_I_ORDER_TORQUE, mode);
     int result = waits ? GROBO_OK : grobo_i_gate_torque(robot, joint, mode, GROBO_I_WHOLE);
     if (result == GROBO_ERR_UNSUPPORTED && mode == GROBO_TORQUE_BRAKE) {
         switch_once(robot, joint, GROBO_TORQUE_OFF);
@@ -72,7 +72,7 @@ static void free_joint(grobo_robot *robot, int joint)
         axis->held = grobo_i_goal_holds(robot, joint);
         if (axis->held) {
             switch_once(robot, bit, GROBO_TORQUE_ON);
-        } else if (!grobo_i_slots_wait(robot, bit, GROBO_I_DEED_HOLD, GROBO_TORQUE_OFF)) {
+        } else if (!grobo_i_slots_wait(robot, bit, GROBO_I_ORDER_HOLD, GROBO_TORQUE_OFF)) {
             (void)grobo_i_gate_hold(robot, bit, GROBO_I_WHOLE);
         }
     }

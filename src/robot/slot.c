@@ -355,20 +355,20 @@ void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int i = 0; i < robot->slots_end; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
-        bool on = slot->order.deed == GROBO_I_DEED_TORQUE && slot->order.torque == GROBO_TORQUE_ON;
+        bool on = slot->order.kind == GROBO_I_ORDER_TORQUE && slot->order.torque == GROBO_TORQUE_ON;
         if (on && waits(slot) && (slot->order.joints & joints) != 0) {
             cancel(slot);
         }
     }
 }
 
-bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_i_deed deed,
+bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_i_order_kind kind,
                         grobo_torque torque)
 {
     for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         const grobo_robot_order *order = &slot->order;
-        if (waits(slot) && order->deed == deed && order->torque == torque &&
+        if (waits(slot) && order->kind == kind && order->torque == torque &&
             (order->joints & joint) != 0) {
             return true;
         }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The gate, deed by deed: what each is refused for, by name, and which time it gets. */
+/* The gate, one kind of order after the other: what each is refused for, and which time it gets. */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -19,7 +19,7 @@ TEST_WITH(rig_wirings, a_goal_is_judged_as_it_leaves)
 {
     for (int j = 0; j < N; j++) {
         grobo_robot_order order = {
-            .joints = bits(j, other_of(j)), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
+            .joints = bits(j, other_of(j)), .number = NUMBER, .kind = GROBO_I_ORDER_GOAL};
         start();
         assert_int_equal(judge(order), GROBO_ERR_SUPERSEDED); /* none waits */
         await(j, 1, S);
@@ -59,7 +59,7 @@ TEST_WITH(rig_wirings, a_goal_that_would_wake_a_servo_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order goal = {
-            .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
+            .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .kind = GROBO_I_ORDER_GOAL};
         for (int wakes = 0; wakes < 2; wakes++) {
             start();
             driver.goal_energises = wakes;
@@ -93,9 +93,9 @@ TEST_WITH(rig_wirings, torque_off_and_brake_take_back_torque_on_that_waits)
             assert_int_equal(grobo_i_gate_torque(&robot, joint, modes[i], GROBO_I_WHOLE), GROBO_OK);
             bool on = modes[i] == GROBO_TORQUE_ON;
             assert_int_equal(grobo_bus_pending(&robot.bus), on ? 2 : 1);
-            assert_true(grobo_i_slots_wait(&robot, joint, GROBO_I_DEED_TORQUE, modes[i]));
+            assert_true(grobo_i_slots_wait(&robot, joint, GROBO_I_ORDER_TORQUE, modes[i]));
             assert_int_equal(
-                grobo_i_slots_wait(&robot, joint, GROBO_I_DEED_TORQUE, GROBO_TORQUE_ON), on);
+                grobo_i_slots_wait(&robot, joint, GROBO_I_ORDER_TORQUE, GROBO_TORQUE_ON), on);
         }
     }
 }
@@ -105,7 +105,7 @@ TEST_WITH(rig_wirings, a_goal_goes_again_until_another_takes_its_place)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
-            .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
+            .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .kind = GROBO_I_ORDER_GOAL};
         start();
         await(j, 5, 2 * S);
         robot.axes[j].next = 0;
@@ -124,8 +124,10 @@ TEST_WITH(rig_wirings, a_goal_goes_again_until_another_takes_its_place)
 TEST_WITH(rig_wirings, a_halt_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
-        const grobo_robot_order order = {
-            .joints = GROBO_JOINT_BIT(j), .asked_us = NOW, .deed = GROBO_I_DEED_HALT, .each = true};
+        const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
+                                         .asked_us = NOW,
+                                         .kind = GROBO_I_ORDER_HALT,
+                                         .each = true};
         start();
         set_going(other_of(j));
         assert_int_equal(judge(order), GROBO_ERR_EMPTY);
@@ -160,7 +162,7 @@ TEST_WITH(rig_wirings, a_halt_stops_ahead_of_where_joints_are)
             set_going(j);
             assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
                                                        .asked_us = NOW - rows[i].ago_ms * MS,
-                                                       .deed = GROBO_I_DEED_HALT,
+                                                       .kind = GROBO_I_ORDER_HALT,
                                                        .each = true,
                                                        .stops = true}),
                              GROBO_OK);
@@ -175,7 +177,7 @@ TEST_WITH(rig_wirings, a_hold_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
-            .joints = GROBO_JOINT_BIT(j), .deed = GROBO_I_DEED_HOLD, .each = true};
+            .joints = GROBO_JOINT_BIT(j), .kind = GROBO_I_ORDER_HOLD, .each = true};
         start();
         make_limp(other_of(j));
         assert_int_equal(judge(order), GROBO_ERR_STATE); /* it has torque */
@@ -204,7 +206,7 @@ TEST_WITH(rig_wirings, torque_is_refused_by_name)
     for (int j = 0; j < N; j++) {
         grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
                                    .asked_us = NOW,
-                                   .deed = GROBO_I_DEED_TORQUE,
+                                   .kind = GROBO_I_ORDER_TORQUE,
                                    .torque = GROBO_TORQUE_ON};
         start();
         make_limp(j);
@@ -249,7 +251,7 @@ TEST_WITH(rig_wirings, torque_comes_on_for_those_that_are_held)
         robot.axes[other_of(j)].held = false;
         assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
                                                    .asked_us = NOW,
-                                                   .deed = GROBO_I_DEED_TORQUE,
+                                                   .kind = GROBO_I_ORDER_TORQUE,
                                                    .torque = GROBO_TORQUE_ON}),
                          GROBO_OK);
         expect_torque(j, GROBO_TORQUE_ON);
@@ -261,7 +263,7 @@ TEST_WITH(rig_wirings, a_segment_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {
-            .joints = GROBO_JOINT_BIT(j), .deed = GROBO_I_DEED_SEGMENT, .each = true};
+            .joints = GROBO_JOINT_BIT(j), .kind = GROBO_I_ORDER_SEGMENT, .each = true};
         start();
         set_going(j);
         set_going(other_of(j));
@@ -288,7 +290,7 @@ TEST_WITH(rig_wirings, a_setting_is_refused_by_name)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
-                                         .deed = GROBO_I_DEED_SETTING};
+                                         .kind = GROBO_I_ORDER_SETTING};
         start();
         make_limp(j);
         assert_int_equal(judge(order), GROBO_OK);
@@ -312,9 +314,9 @@ TEST_WITH(rig_wirings, what_needs_silence_is_refused_while_something_moves)
 {
     for (int j = 0; j < N; j++) {
         const grobo_robot_order command = {.joints = GROBO_JOINT_BIT(other_of(j)),
-                                           .deed = GROBO_I_DEED_COMMAND};
+                                           .kind = GROBO_I_ORDER_COMMAND};
         const grobo_robot_order unknown = {.joints = GROBO_JOINTS_ALL(N),
-                                           .deed = GROBO_I_DEED_UNKNOWN};
+                                           .kind = GROBO_I_ORDER_UNKNOWN};
         start();
         assert_int_equal(judge(command), GROBO_OK);
         assert_int_equal(judge(unknown), GROBO_OK);
@@ -338,7 +340,7 @@ TEST_WITH(rig_wirings, a_second_attempt_is_passed_by_what_left_since)
     for (int j = 0; j < N; j++) {
         start();
         take((grobo_robot_order){.joints = bits(j, other_of(j)),
-                                 .deed = GROBO_I_DEED_TORQUE,
+                                 .kind = GROBO_I_ORDER_TORQUE,
                                  .torque = GROBO_TORQUE_OFF});
         slot->txn.sent_us = NOW - 7; /* all were told something then */
         robot.axes[third_of(j)].told_us = NOW;
@@ -361,13 +363,13 @@ TEST_WITH(rig_wirings, a_second_attempt_is_passed_by_what_left_since)
 /* The driver has no such part, and so nothing leaves. */
 TEST_WITH(rig_wirings, a_frame_that_there_is_not_does_not_leave)
 {
-    for (int deed = 0; deed < 2; deed++) {
+    for (int torque = 0; torque < 2; torque++) {
         start();
         await(4, 1, S);
         assert_int_equal(leave((grobo_robot_order){
                              .joints = GROBO_JOINT_BIT(4),
                              .number = NUMBER,
-                             .deed = (uint8_t)(deed ? GROBO_I_DEED_TORQUE : GROBO_I_DEED_GOAL),
+                             .kind = (uint8_t)(torque ? GROBO_I_ORDER_TORQUE : GROBO_I_ORDER_GOAL),
                              .part = 1}),
                          GROBO_ERR_EMPTY);
         expect_axes();
@@ -379,14 +381,14 @@ TEST_WITH(rig_wirings, a_frame_that_there_is_not_does_not_leave)
 TEST_WITH(rig_wirings, each_part_has_joints_of_its_own)
 {
     grobo_robot_order order = {.joints = GROBO_JOINTS_ALL(N), .number = 1};
-    for (int deed = 0; deed < 2; deed++) {
+    for (int torque = 0; torque < 2; torque++) {
         int next = 0;
         start();
         for (int j = 0; j < N; j++) {
             await(j, 0, S);
             robot.axes[j].next = 1;
         }
-        order.deed = deed ? GROBO_I_DEED_TORQUE : GROBO_I_DEED_GOAL;
+        order.kind = torque ? GROBO_I_ORDER_TORQUE : GROBO_I_ORDER_GOAL;
         order.part = 0;
         grobo_exchange exchange;
         int result = grobo_i_gate_build(&robot, &order, &exchange);
@@ -409,7 +411,7 @@ TEST_WITH(rig_wirings, each_part_has_joints_of_its_own)
         assert_int_equal(next, N);
         assert_int_equal(result, order.part > 1 ? GROBO_ERR_CAP : 1);
         assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), 0);
-        assert_true(deed == 1 || robot.axes[0].next == 0);
+        assert_true(torque == 1 || robot.axes[0].next == 0);
     }
 }
 
@@ -444,7 +446,7 @@ TEST_WITH(rig_wirings, several_joints_go_in_one_frame)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         grobo_robot_order order = {.joints = rows[i].joints == 1 ? 1 : 3,
                                    .number = NUMBER,
-                                   .deed = GROBO_I_DEED_GOAL,
+                                   .kind = GROBO_I_ORDER_GOAL,
                                    .part = (uint8_t)rows[i].part};
         grobo_exchange exchange;
         start();
@@ -536,7 +538,7 @@ TEST_WITH(rig_wirings, a_goal_keeps_a_time_that_is_long_enough)
     for (int i = 0; i < 3 * N; i++) {
         const int j = i / 3, pct = pcts[i % 3];
         const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = pct};
-        const grobo_robot_order order = {.deed = GROBO_I_DEED_GOAL, .each = true};
+        const grobo_robot_order order = {.kind = GROBO_I_ORDER_GOAL, .each = true};
         const int64_t be_us = steps_up((50.037 - 0.1) / (speed_dps(j) * pct / 100) * 1e6);
         for (int64_t more_us = -10000; more_us <= 10000; more_us += 10000) {
             grobo_target target = {0};
@@ -568,14 +570,14 @@ TEST_WITH(rig_wirings, a_time_that_the_wire_does_not_have_is_no_long_enough_one)
     driver.time_step_us = 30000;
     target.posture.angle_rad[0] = here_rad(0) + RAD(speed_dps(0) * 0.095);
     target.joint_time_us[0] = 100000;
-    const grobo_robot_order halt = {.deed = GROBO_I_DEED_HALT, .each = true};
+    const grobo_robot_order halt = {.kind = GROBO_I_ORDER_HALT, .each = true};
     assert_int_equal(grobo_i_gate_time(&robot, &halt, &target), GROBO_OK);
     assert_int_equal(target.joint_time_us[0], 120000);
     driver.time_step_us = 10000;
     driver.time_max_us = 105000; /* ten units, and half of one */
     target.posture.angle_rad[0] = here_rad(0) + RAD(speed_dps(0) * 0.104 + 0.1);
     target.joint_time_us[0] = 110000;
-    const grobo_robot_order goal = {.deed = GROBO_I_DEED_GOAL, .each = true};
+    const grobo_robot_order goal = {.kind = GROBO_I_ORDER_GOAL, .each = true};
     assert_int_equal(grobo_i_gate_time(&robot, &goal, &target), GROBO_ERR_SPEED);
     driver = kept;
 }
@@ -606,7 +608,7 @@ TEST_WITH(rig_wirings, a_goal_that_leaves_late_gets_the_time_from_there)
             await(j, -30, 10 * MS);
             take((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
                                      .number = NUMBER,
-                                     .deed = GROBO_I_DEED_GOAL,
+                                     .kind = GROBO_I_ORDER_GOAL,
                                      .soft = soft,
                                      .each = true});
             assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
@@ -695,7 +697,7 @@ TEST_WITH(rig_wirings, a_motion_rests_near_where_joints_are)
                 await(j, 10 + way_deg, 40 * MS);
                 assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
                                                            .number = NUMBER,
-                                                           .deed = GROBO_I_DEED_GOAL,
+                                                           .kind = GROBO_I_ORDER_GOAL,
                                                            .each = true,
                                                            .soft = how / 2 == 2,
                                                            .rests = true}),
@@ -723,7 +725,7 @@ TEST_WITH(rig_wirings, nothing_rests_outside_the_limits)
                 leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
                                           .number = NUMBER,
                                           .asked_us = NOW,
-                                          .deed = halts ? GROBO_I_DEED_HALT : GROBO_I_DEED_GOAL,
+                                          .kind = halts ? GROBO_I_ORDER_HALT : GROBO_I_ORDER_GOAL,
                                           .each = true,
                                           .rests = true}),
                 GROBO_OK);
@@ -743,7 +745,7 @@ TEST_WITH(rig_wirings, a_motion_rests_where_others_have_joints_stand)
         robot.axes[j].last = 0;
         assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
                                                    .number = NUMBER,
-                                                   .deed = GROBO_I_DEED_GOAL,
+                                                   .kind = GROBO_I_ORDER_GOAL,
                                                    .each = true,
                                                    .rests = true}),
                          GROBO_OK);
@@ -824,7 +826,7 @@ TEST_WITH(rig_wirings, what_waits_has_room_for_all_its_joints)
         grobo_target target = {0};
         grobo_robot_order order = {.joints = bits(j, other_of(j)) | GROBO_JOINT_BIT(third_of(j)),
                                    .asked_us = NOW,
-                                   .deed = GROBO_I_DEED_HALT,
+                                   .kind = GROBO_I_ORDER_HALT,
                                    .each = true,
                                    .stops = true};
         start();
@@ -841,7 +843,7 @@ TEST_WITH(rig_wirings, what_waits_has_room_for_all_its_joints)
 
         make_limp(j);
         robot.axes[j].held = false;
-        order.deed = GROBO_I_DEED_TORQUE;
+        order.kind = GROBO_I_ORDER_TORQUE;
         order.torque = GROBO_TORQUE_ON;
         assert_int_equal(
             driver.torque(&driver, robot.driver_ctx, order.joints, GROBO_TORQUE_ON, 0, &be), 1);

@@ -16,7 +16,7 @@ TEST_WITH(rig_wirings, a_goal_is_noted_of_its_joints_alone)
             start();
             const grobo_joint_mask both = bits(j, other_of(j));
             const grobo_robot_order order = {
-                .joints = both, .number = NUMBER, .deed = GROBO_I_DEED_GOAL, .each = true};
+                .joints = both, .number = NUMBER, .kind = GROBO_I_ORDER_GOAL, .each = true};
             robot.played_joints = played ? GROBO_JOINT_BIT(third_of(j)) : GROBO_JOINTS_ALL(N);
             robot.axes[j].off_way = true; /* it stands where it was read */
             robot.axes[j].way.to_rad += RAD(30);
@@ -46,7 +46,7 @@ TEST_WITH(rig_wirings, a_halt_is_noted_of_what_moves)
         set_going(j);
         take((grobo_robot_order){.joints = GROBO_JOINTS_ALL(N),
                                  .asked_us = NOW - 10 * MS,
-                                 .deed = GROBO_I_DEED_HALT,
+                                 .kind = GROBO_I_ORDER_HALT,
                                  .each = true,
                                  .stops = true});
         assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
@@ -86,7 +86,7 @@ static void expect_begin(int j, double read_deg, double begin_deg)
     driver.posture = catch_posture;
     int r = leave((grobo_robot_order){.joints = GROBO_JOINTS_ALL(N),
                                       .asked_us = NOW - 10 * MS,
-                                      .deed = GROBO_I_DEED_HALT,
+                                      .kind = GROBO_I_ORDER_HALT,
                                       .each = true,
                                       .stops = true});
     driver.posture = true_posture;
@@ -121,7 +121,7 @@ TEST_WITH(rig_wirings, a_hold_is_noted_of_its_joints_alone)
         robot.axes[j].in_segments = robot.axes[other_of(j)].off_way = true;
         robot.axes[j].held = robot.axes[other_of(j)].held = false; /* until it is read back */
         assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
-                                                   .deed = GROBO_I_DEED_HOLD,
+                                                   .kind = GROBO_I_ORDER_HOLD,
                                                    .each = true}),
                          GROBO_OK);
         expect_goals(bits(j, other_of(j)), 0, driver.time_step_us);
@@ -152,7 +152,7 @@ TEST_WITH(rig_wirings, torque_is_noted_of_its_joints_alone)
                 }
                 assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
                                                            .asked_us = NOW,
-                                                           .deed = GROBO_I_DEED_TORQUE,
+                                                           .kind = GROBO_I_ORDER_TORQUE,
                                                            .torque = (uint8_t)mode}),
                                  GROBO_OK);
                 expect_torque(j, (grobo_torque)mode);
@@ -174,23 +174,23 @@ TEST_WITH(rig_wirings, torque_is_noted_of_its_joints_alone)
 /* What nobody can read, a setting, a restart: what is known of the joint is no longer true. */
 TEST_WITH(rig_wirings, what_leaves_joints_unknown_is_noted_of_them_alone)
 {
-    static const grobo_i_deed deeds[] = {GROBO_I_DEED_UNKNOWN, GROBO_I_DEED_SETTING,
-                                         GROBO_I_DEED_COMMAND};
+    static const grobo_i_order_kind kinds[] = {GROBO_I_ORDER_UNKNOWN, GROBO_I_ORDER_SETTING,
+                                               GROBO_I_ORDER_COMMAND};
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < 3; i++) {
             start();
-            if (deeds[i] == GROBO_I_DEED_SETTING) {
+            if (kinds[i] == GROBO_I_ORDER_SETTING) {
                 robot.axes[j].state.torque = GROBO_TORQUE_OFF;
                 robot.axes[other_of(j)].state.torque = GROBO_TORQUE_OFF;
             }
             assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
-                                                       .deed = (uint8_t)deeds[i]}),
+                                                       .kind = (uint8_t)kinds[i]}),
                              GROBO_OK);
             for (int k = 0; k < N; k++) {
                 if (k == j || k == other_of(j)) {
                     before[k].sensed = before[k].has_target = before[k].held = false;
                     before[k].wants_torque = before[k].torque_known =
-                        deeds[i] == GROBO_I_DEED_UNKNOWN;
+                        kinds[i] == GROBO_I_ORDER_UNKNOWN;
                     before[k].own_until_us = 0;
                     before[k].told_us = NOW;
                     before[k].last = 0;
@@ -212,7 +212,7 @@ TEST_WITH(rig_wirings, what_is_unknown_already_stays_so)
         robot.axes[j].torque_known = j % 3 != 0;
     }
     assert_int_equal(
-        leave((grobo_robot_order){.joints = GROBO_JOINTS_ALL(N), .deed = GROBO_I_DEED_UNKNOWN}),
+        leave((grobo_robot_order){.joints = GROBO_JOINTS_ALL(N), .kind = GROBO_I_ORDER_UNKNOWN}),
         GROBO_OK);
     for (int j = 0; j < N; j++) {
         assert_int_equal(robot.axes[j].wants_torque, j % 2 != 0);
@@ -224,7 +224,7 @@ TEST_WITH(rig_wirings, what_is_unknown_already_stays_so)
 TEST_WITH(rig_wirings, what_does_nothing_to_a_joint_notes_nothing)
 {
     start();
-    assert_int_equal(leave((grobo_robot_order){.deed = GROBO_I_DEED_NONE}), GROBO_OK);
+    assert_int_equal(leave((grobo_robot_order){.kind = GROBO_I_ORDER_NONE}), GROBO_OK);
     expect_axes();
     assert_false(robot.soft);
     assert_true(robot.played_joints == GROBO_JOINTS_ALL(N));
@@ -242,7 +242,7 @@ TEST_WITH(rig_wirings, a_segment_is_noted_of_its_joints_alone)
             robot.axes[k].told_to_us = NOW + 50 * MS;
         }
         assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
-                                                   .deed = GROBO_I_DEED_SEGMENT,
+                                                   .kind = GROBO_I_ORDER_SEGMENT,
                                                    .each = true}),
                          GROBO_OK);
         expect_goals(bits(j, other_of(j)), 13.8, GROBO_SEGMENT_US); /* 10, and 3.8 ahead */
@@ -266,7 +266,7 @@ TEST_WITH(rig_wirings, a_goal_in_segments_is_noted_of_its_joints_alone)
             await(third_of(j), 5, 2 * S); /* in another frame */
             assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
                                                        .number = NUMBER,
-                                                       .deed = GROBO_I_DEED_GOAL,
+                                                       .kind = GROBO_I_ORDER_GOAL,
                                                        .each = true}),
                              GROBO_OK);
             doubled_goal = whole ? j : -1;
@@ -296,7 +296,7 @@ TEST_WITH(rig_wirings, the_slow_move_is_over_when_its_first_target_is_reached)
             await(other_of(j), 5, 200 * MS);
             take((grobo_robot_order){.joints = bits(j, other_of(j)),
                                      .number = NUMBER,
-                                     .deed = GROBO_I_DEED_GOAL,
+                                     .kind = GROBO_I_ORDER_GOAL,
                                      .each = true,
                                      .single = how == 0});
             slot->due_us = how == 2 ? NOW : GROBO_NEVER_US;
@@ -311,7 +311,7 @@ TEST_WITH(rig_wirings, the_slow_move_is_over_when_its_first_target_is_reached)
                 await(j, 5, 300 * MS);
                 assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
                                                            .number = NUMBER,
-                                                           .deed = GROBO_I_DEED_GOAL,
+                                                           .kind = GROBO_I_ORDER_GOAL,
                                                            .single = true}),
                                  GROBO_OK);
                 drop();

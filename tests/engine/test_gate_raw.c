@@ -51,7 +51,7 @@ TEST_WITH(rig_wirings, a_raw_goal_is_noted_like_one_of_ours)
         grobo_robot_order order;
         start();
         assert_int_equal(raw_goal_of(j, 5, 2000, &order), GROBO_OK);
-        assert_int_equal(order.deed, GROBO_I_DEED_RAW);
+        assert_int_equal(order.kind, GROBO_I_ORDER_RAW);
         assert_true(order.joints == GROBO_JOINT_BIT(j) && order.moves && order.single);
         assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
         note_goal(j, 5, 2 * S);
@@ -72,7 +72,7 @@ TEST_WITH(rig_wirings, a_raw_torque_is_noted_like_one_of_ours)
             bool on = mode == GROBO_TORQUE_ON;
             start();
             assert_int_equal(raw_torque_of(j, (grobo_torque)mode, &order), GROBO_OK);
-            assert_int_equal(order.deed, GROBO_I_DEED_RAW);
+            assert_int_equal(order.kind, GROBO_I_ORDER_RAW);
             assert_true(order.joints == GROBO_JOINT_BIT(j) && order.moves == on);
             assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
             before[j].told_us = NOW;
@@ -95,7 +95,7 @@ TEST_WITH(rig_wirings, a_raw_frame_that_reads_is_about_no_joint)
     latch(GROBO_TRIP_ESTOP);
     assert_int_equal(raw(packet, grobo_rs30x_read(2, 42, 2, packet, sizeof packet), &order),
                      GROBO_OK);
-    assert_int_equal(order.deed, GROBO_I_DEED_NONE);
+    assert_int_equal(order.kind, GROBO_I_ORDER_NONE);
     assert_true(order.joints == 0 && !order.moves);
     drop();
 }
@@ -232,7 +232,7 @@ TEST_WITH(rig_wirings, a_raw_frame_that_nobody_can_read_is_refused_unless_asked)
             int size = grobo_rs30x_read(2, 42, 2, packet, sizeof packet);
             assert_int_equal(raw(packet, size, &order), accept ? GROBO_OK : GROBO_ERR_UNSUPPORTED);
             if (accept) {
-                assert_int_equal(order.deed, GROBO_I_DEED_UNKNOWN);
+                assert_int_equal(order.kind, GROBO_I_ORDER_UNKNOWN);
                 assert_true(order.joints == GROBO_JOINTS_ALL(N) && order.moves && order.single);
                 assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
                 drop();

@@ -200,7 +200,7 @@ TEST_WITH(rig_wirings, the_time_is_the_one_that_doubles_find)
         /* On the way that may be gone in that time, or close to it. */
         double most_rad = speed_rad_s * (double)asked_us * 1e-6;
         double way_rad = i % 3 == 0 ? most_rad * (1 + (part - 0.5) * 1e-5) : most_rad * 2 * part;
-        grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j), .deed = GROBO_I_DEED_GOAL};
+        grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j), .kind = GROBO_I_ORDER_GOAL};
         grobo_target target = {.posture = {.n_joints = (uint8_t)N}};
         robot.axes[j].way = (grobo_robot_way){from_rad, from_rad, NOW - 20, NOW - 10};
         target.posture.set = order.joints;

@@ -124,7 +124,7 @@ TEST_WITH(rig_wirings, free_mode_is_not_as_urgent_as_a_stop)
         for (int s = 0; s < GROBO_ROBOT_SLOTS; s++) {
             const grobo_robot_slot *slot = &rig.robot.slots[s];
             bool switches =
-                slot->use != GROBO_I_USE_FREE && slot->order.deed == GROBO_I_DEED_TORQUE;
+                slot->use != GROBO_I_USE_FREE && slot->order.kind == GROBO_I_ORDER_TORQUE;
             assert_true(!switches || slot->txn.priority == GROBO_PRIORITY_USER);
             seen = seen || switches;
         }

@@ -16,8 +16,8 @@
 
 enum { MANY_US = 300, LONG_S = 60, MOVE_US = 900000, NUMBERS = 1024 };
 
-typedef enum deed { ON, READ, MOVE, OFF, BRAKE, DEEDS } deed;
-static const char *const deed_names[] = {"torque on", "read", "move", "torque off", "brake"};
+typedef enum kind { ON, READ, MOVE, OFF, BRAKE, KINDS } kind;
+static const char *const kind_names[] = {"torque on", "read", "move", "torque off", "brake"};
 
 typedef struct set_up {
     const char *name, *of;
@@ -81,7 +81,7 @@ static grobo_posture target_of(grobo_joint_mask joints, int64_t time_us)
     return p;
 }
 
-static int ask(deed d, grobo_joint_mask joints, int64_t time_us)
+static int ask(kind d, grobo_joint_mask joints, int64_t time_us)
 {
     grobo_posture target = target_of(joints, time_us);
     switch (d) {
@@ -95,7 +95,7 @@ static int ask(deed d, grobo_joint_mask joints, int64_t time_us)
         return grobo_robot_torque(&halt.robot, joints, GROBO_TORQUE_OFF);
     case BRAKE:
         return grobo_robot_torque(&halt.robot, joints, GROBO_TORQUE_BRAKE);
-    case DEEDS:
+    case KINDS:
         break;
     }
     return GROBO_ERR_ARG;
@@ -113,17 +113,17 @@ static bool can_brake(void)
     return made.far == &far_board || made.far == &far_bus;
 }
 
-static int end_of(deed d)
+static int end_of(kind d)
 {
     return d == BRAKE && !can_brake() ? GROBO_ERR_UNSUPPORTED : GROBO_OK;
 }
 
-static int far_torque_of(deed d)
+static int far_torque_of(kind d)
 {
     return d == ON || d == MOVE || end_of(d) < 0 ? 1 : d == BRAKE ? 2 : 0;
 }
 
-static void begin(const set_up *s, int n, deed d)
+static void begin(const set_up *s, int n, kind d)
 {
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
                                        .sense_interval_us = GROBO_SENSE_NEVER};
@@ -184,7 +184,7 @@ static void await_all(const int *number, int n, int expected, const char *what)
     assert_true(expected < 0 || bad_joints == 0);
 }
 
-static void expect_done(deed d, const char *what)
+static void expect_done(kind d, const char *what)
 {
     grobo_posture target = target_of(GROBO_JOINTS_ALL(made.n_joints), 0);
     for (int j = 0; j < made.n_joints; j++) {
@@ -212,10 +212,10 @@ static void expect_done(deed d, const char *what)
 }
 
 /* All at once: the frames that it takes. */
-static int frames_of_one(const set_up *s, int n, deed d)
+static int frames_of_one(const set_up *s, int n, kind d)
 {
     char what[120];
-    (void)snprintf(what, sizeof what, "%s, %s, %d joints at once", s->name, deed_names[d], n);
+    (void)snprintf(what, sizeof what, "%s, %s, %d joints at once", s->name, kind_names[d], n);
     begin(s, n, d);
     int number = ask(d, GROBO_JOINTS_ALL(n), MOVE_US);
     if (number <= 0) {
@@ -228,12 +228,12 @@ static int frames_of_one(const set_up *s, int n, deed d)
 
 /* gap_us: the engine runs so long behind each request; 0: it does not. step_us: how much longer
  * each move is than the one before. */
-static int frames_of_each(const set_up *s, int n, deed d, int gap_us, int step_us)
+static int frames_of_each(const set_up *s, int n, kind d, int gap_us, int step_us)
 {
     int number[GROBO_JOINTS_MAX];
     char what[120];
     (void)snprintf(what, sizeof what, "%s, %s, %d joints one by one, %d us and %d us between",
-                   s->name, deed_names[d], n, gap_us, step_us);
+                   s->name, kind_names[d], n, gap_us, step_us);
     begin(s, n, d);
     for (int j = 0; j < n; j++) {
         number[j] = ask(d, GROBO_JOINT_BIT(j), MOVE_US + (int64_t)j * step_us);
@@ -252,12 +252,12 @@ static int frames_of_each(const set_up *s, int n, deed d, int gap_us, int step_u
 TEST_EACH(set_up, set_ups, a_robot_is_asked_joint_by_joint)
 {
     for (const int *n = row->joints; *n != 0; n++) {
-        for (deed d = ON; d < DEEDS; d++) {
+        for (kind d = ON; d < KINDS; d++) {
             int one = frames_of_one(row, *n, d);
             int each = frames_of_each(row, *n, d, 0, 0);
             if (each > one) {
                 fail_msg("%s, %s: %d joints take %d frames, one by one %d", row->name,
-                         deed_names[d], *n, one, each);
+                         kind_names[d], *n, one, each);
             }
             (void)frames_of_each(row, *n, d, MANY_US, 0);
             if (d == MOVE) {

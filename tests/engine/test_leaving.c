@@ -302,7 +302,7 @@ TEST_WITH(rig_wirings, an_exit_is_carried_out_as_it_is_asked_for)
         assert_int_equal(job->torque, GROBO_TORQUE_OFF);
         assert_true(job->joints == rig_all(&rig) && rig.robot.free_joints == 0);
         assert_true(job->bound_us == (i % 2 == 0 ? rig.now_us + 5 * S : GROBO_NEVER_US));
-        assert_false(grobo_i_slots_wait(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_I_DEED_TORQUE,
+        assert_false(grobo_i_slots_wait(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_I_ORDER_TORQUE,
                                         GROBO_TORQUE_ON));
         rig_expect(&rig, number, GROBO_OK);
     }

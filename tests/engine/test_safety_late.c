@@ -224,13 +224,13 @@ TEST_WITH(rig_wirings, torque_that_waited_for_long_stays_off)
 /* True while a frame waits that switches torque on; that sets the goal to where the neck is. */
 static bool torque_waits(void)
 {
-    return grobo_i_slots_wait(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_I_DEED_TORQUE,
+    return grobo_i_slots_wait(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_I_ORDER_TORQUE,
                               GROBO_TORQUE_ON);
 }
 
 static bool hold_waits(void)
 {
-    return grobo_i_slots_wait(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_I_DEED_HOLD,
+    return grobo_i_slots_wait(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_I_ORDER_HOLD,
                               GROBO_TORQUE_OFF);
 }
 

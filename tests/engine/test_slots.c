@@ -320,7 +320,7 @@ TEST_WITH(rig_wirings, every_slot_is_looked_at)
             slot->job = i == at ? 4 : 5;
             slot->order =
                 (grobo_robot_order){.joints = 2,
-                                    .deed = GROBO_I_DEED_TORQUE,
+                                    .kind = GROBO_I_ORDER_TORQUE,
                                     .torque = i == at ? GROBO_TORQUE_ON : GROBO_TORQUE_BRAKE};
             assert_int_equal(driver.sense(&driver, NULL, 0, GROBO_SENSE_ALL, &robot.built), 0);
             assert_int_equal(
@@ -331,7 +331,7 @@ TEST_WITH(rig_wirings, every_slot_is_looked_at)
         robot.over = count_ended;
         ended = 0;
         assert_true(grobo_i_slots_busy(&robot, GROBO_I_USE_MOTION));
-        assert_true(grobo_i_slots_wait(&robot, 2, GROBO_I_DEED_TORQUE, GROBO_TORQUE_ON));
+        assert_true(grobo_i_slots_wait(&robot, 2, GROBO_I_ORDER_TORQUE, GROBO_TORQUE_ON));
         switch ((at + (N & 1)) % 4) { /* on both wirings all of the last slots */
         case 0:
             grobo_i_slots_cancel_goals(&robot, GROBO_JOINTS_ALL(64), true);
@@ -368,7 +368,7 @@ TEST_WITH(rig_wirings, frames_are_taken_back_in_the_order_of_their_slots)
             submit(i, GROBO_I_USE_MOTION,
                    (grobo_robot_order){.joints = 2,
                                        .part = (uint8_t)i,
-                                       .deed = GROBO_I_DEED_TORQUE,
+                                       .kind = GROBO_I_ORDER_TORQUE,
                                        .torque = GROBO_TORQUE_ON})
                 ->job = 4;
         }
@@ -437,13 +437,14 @@ TEST_WITH(rig_wirings, played_goals_that_wait_are_taken_back_if_asked)
 TEST_WITH(rig_wirings, torque_that_waits_is_kept_off)
 {
     for (int j = 0; j < N; j++) {
-        const grobo_robot_order on = {
-            .joints = bits(j, other_of(j)), .deed = GROBO_I_DEED_TORQUE, .torque = GROBO_TORQUE_ON};
+        const grobo_robot_order on = {.joints = bits(j, other_of(j)),
+                                      .kind = GROBO_I_ORDER_TORQUE,
+                                      .torque = GROBO_TORQUE_ON};
         grobo_robot_order off = on;
         grobo_robot_order hold = on;
         grobo_robot_order others = on;
         off.torque = GROBO_TORQUE_BRAKE;
-        hold.deed = GROBO_I_DEED_HOLD;
+        hold.kind = GROBO_I_ORDER_HOLD;
         others.joints = ~on.joints;
         for (int i = 0; i < 3; i++) {
             start();
@@ -473,20 +474,20 @@ TEST_WITH(rig_wirings, a_frame_that_waits_is_known_by_what_it_does)
         start();
         grobo_robot_slot *slot = submit(0, GROBO_I_USE_PLAIN,
                                         (grobo_robot_order){.joints = bits(j, other_of(j)),
-                                                            .deed = GROBO_I_DEED_TORQUE,
+                                                            .kind = GROBO_I_ORDER_TORQUE,
                                                             .torque = GROBO_TORQUE_ON});
         put_behind_the_slots(&(grobo_robot_slot){
             .use = GROBO_I_USE_PLAIN,
             .txn = {.sent_us = -1},
-            .order = {.joints = GROBO_JOINTS_ALL(N), .deed = GROBO_I_DEED_HOLD}});
-        assert_true(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_TORQUE, GROBO_TORQUE_ON));
-        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_TORQUE, GROBO_TORQUE_BRAKE));
-        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_HOLD, GROBO_TORQUE_ON));
-        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_HOLD, GROBO_TORQUE_OFF));
-        assert_false(grobo_i_slots_wait(&robot, GROBO_JOINT_BIT(third_of(j)), GROBO_I_DEED_TORQUE,
+            .order = {.joints = GROBO_JOINTS_ALL(N), .kind = GROBO_I_ORDER_HOLD}});
+        assert_true(grobo_i_slots_wait(&robot, bit, GROBO_I_ORDER_TORQUE, GROBO_TORQUE_ON));
+        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_ORDER_TORQUE, GROBO_TORQUE_BRAKE));
+        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_ORDER_HOLD, GROBO_TORQUE_ON));
+        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_ORDER_HOLD, GROBO_TORQUE_OFF));
+        assert_false(grobo_i_slots_wait(&robot, GROBO_JOINT_BIT(third_of(j)), GROBO_I_ORDER_TORQUE,
                                         GROBO_TORQUE_ON));
         slot->txn.sent_us = 0;
-        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_TORQUE, GROBO_TORQUE_ON));
+        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_ORDER_TORQUE, GROBO_TORQUE_ON));
     }
 }
 
@@ -573,7 +574,7 @@ TEST_WITH(rig_wirings, how_a_target_is_sent_is_in_its_order)
         const grobo_posture target = target_of(bit % N, 0.1, S);
         assert_int_equal(grobo_i_gate_send(&robot, &target, &how), GROBO_OK);
         const grobo_robot_slot *slot = &robot.slots[0];
-        assert_int_equal(slot->order.deed, GROBO_I_DEED_GOAL);
+        assert_int_equal(slot->order.kind, GROBO_I_ORDER_GOAL);
         assert_true(slot->order.joints == GROBO_JOINT_BIT(bit % N));
         assert_int_equal(slot->order.number, 1);
         assert_int_equal(slot->order.soft, (bit & 1) != 0);
@@ -720,7 +721,7 @@ TEST_WITH(rig_wirings, a_renewal_goes_with_the_motion_frames)
         expect_used(1);
         assert_int_equal(slot->use, GROBO_I_USE_SEGMENT);
         assert_int_equal(slot->txn.priority, GROBO_PRIORITY_MOTION);
-        assert_int_equal(slot->order.deed, GROBO_I_DEED_SEGMENT);
+        assert_int_equal(slot->order.kind, GROBO_I_ORDER_SEGMENT);
         assert_true(slot->order.joints == bits(j, other_of(j)));
         assert_true(slot->order.each && slot->order.moves && !slot->order.stops);
         assert_true(slot->due_us == GROBO_NEVER_US);
@@ -743,7 +744,7 @@ TEST_WITH(rig_wirings, torque_is_as_urgent_as_what_asks_for_it)
             assert_int_equal(slot->txn.priority,
                              by_job ? GROBO_PRIORITY_STOP : GROBO_PRIORITY_USER);
             assert_int_equal(slot->use, GROBO_I_USE_PLAIN);
-            assert_int_equal(slot->order.deed, GROBO_I_DEED_TORQUE);
+            assert_int_equal(slot->order.kind, GROBO_I_ORDER_TORQUE);
             assert_int_equal(slot->order.torque, GROBO_TORQUE_BRAKE);
             assert_true(slot->order.joints == GROBO_JOINT_BIT(j));
             assert_true(slot->order.asked_us == NOW && slot->due_us == GROBO_NEVER_US);
@@ -789,7 +790,7 @@ TEST_WITH(rig_wirings, small_frames_have_four_joints)
     static const grobo_joint_mask be[] = {0xF, 0xF0, 0x300};
     for (int i = 0; i < 3; i++) {
         assert_true(robot.slots[i].order.joints == be[i]);
-        assert_int_equal(robot.slots[i].order.deed, GROBO_I_DEED_HOLD);
+        assert_int_equal(robot.slots[i].order.kind, GROBO_I_ORDER_HOLD);
         assert_int_equal(robot.slots[i].txn.priority, GROBO_PRIORITY_USER);
         assert_int_equal(robot.slots[i].use, GROBO_I_USE_PLAIN);
     }
@@ -815,7 +816,7 @@ TEST_WITH(rig_wirings, a_halt_goes_to_what_moves)
         const grobo_robot_slot *slot = &robot.slots[0];
         assert_int_equal(slot->use, GROBO_I_USE_HALT);
         assert_int_equal(slot->txn.priority, GROBO_PRIORITY_STOP);
-        assert_int_equal(slot->order.deed, GROBO_I_DEED_HALT);
+        assert_int_equal(slot->order.kind, GROBO_I_ORDER_HALT);
         const grobo_joint_mask of =
             slot->order.joints; /* of all asked for, what fits into a frame */
         assert_true((of & bits(j, other_of(j))) == GROBO_JOINT_BIT(j));

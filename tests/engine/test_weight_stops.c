@@ -220,20 +220,20 @@ static int arm_joints(void)
     return weight.def->model->n_joints - 1;
 }
 
-static void hundred_deeds(const arm *row, uint32_t seed)
+static void hundred_actions(const arm *row, uint32_t seed)
 {
     double before_deg[GROBO_JOINTS_MAX], first_deg[GROBO_JOINTS_MAX];
     for (int j = 0; j < arm_joints(); j++) {
         before_deg[j] = first_deg[j] = weight_angle_deg(j);
     }
     for (int i = 0; i < DEEDS; i++) {
-        const char *deed = do_nothing_much(&seed);
+        const char *action = do_nothing_much(&seed);
         weight_run((int)(next_random(&seed) % 400) * WEIGHT_MS);
         for (int j = 0; j < arm_joints(); j++) {
             double deg = weight_angle_deg(j);
             if (fabs(deg - before_deg[j]) > STAYS_DEG || fabs(deg - first_deg[j]) > STAYS_DEG) {
-                fail_msg("%s: deed %d, %s: joint %d at %.2f deg; before %.2f, first %.2f",
-                         row->name, i, deed, j, deg, before_deg[j], first_deg[j]);
+                fail_msg("%s: action %d, %s: joint %d at %.2f deg; before %.2f, first %.2f",
+                         row->name, i, action, j, deg, before_deg[j], first_deg[j]);
             }
             before_deg[j] = deg;
         }
@@ -247,7 +247,7 @@ TEST_EACH(arm, arms, nothing_moves_a_loaded_arm_at_rest)
     assert_int_equal(weight_move(LIFT, -20, 1000), 0);
     assert_int_equal(weight_move(ELBOW, 20, 1000), 0);
     weight_run(2 * WEIGHT_S);
-    hundred_deeds(row, 1);
+    hundred_actions(row, 1);
 }
 
 /* Right behind a move, while the arm still sags or swings, nothing makes it creep either: it comes

@@ -72,7 +72,7 @@ typedef struct grobo_robot_order {
     grobo_joint_mask joints; /* that it moves, switches, or leaves unknown */
     uint32_t number;         /* of its target, see grobo_robot_axis.next */
     int64_t asked_us;        /* a halt, torque: when it was asked for */
-    uint8_t deed;            /* what it does; 0: nothing to any joint */
+    uint8_t kind;            /* what it does; 0: nothing to any joint */
     uint8_t torque;          /* the grobo_torque that it switches to */
     uint8_t part;            /* which of the driver's frames for one joint */
     bool each;               /* more time only for joints that need it, not for all alike */
