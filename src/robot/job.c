@@ -144,12 +144,12 @@ void grobo_i_jobs_leave(grobo_robot *robot, grobo_joint_mask joints)
     grobo_i_slots_cancel_goals(robot, joints, false);
 }
 
-void grobo_i_queue_tell(grobo_robot *robot, const grobo_robot_wish *wish, int result)
+void grobo_i_queue_tell(grobo_robot *robot, const grobo_robot_request *request, int result)
 {
     grobo_event event = {.kind = GROBO_EVENT_JOB};
     event.u.job = (grobo_event_job){
-        .number = wish->number, .kind = wish->kind, .result = result, .joint = -1};
-    event.u.job.failed = wish->joints;
+        .number = request->number, .kind = request->kind, .result = result, .joint = -1};
+    event.u.job.failed = request->joints;
     grobo_i_tell(robot, &event);
 }
 

@@ -20,7 +20,7 @@
 
 /* ---- moves, readings, torque on -------------------------------------------------------------- */
 
-static void merge(grobo_posture *into, int32_t *into_us, const grobo_robot_wish *from)
+static void merge(grobo_posture *into, int32_t *into_us, const grobo_robot_request *from)
 {
     for (int j = 0; j < from->target.n_joints; j++) {
         if (grobo_i_has(from->target.set, j)) {
@@ -45,19 +45,19 @@ static bool reads_first(const grobo_robot_task *job)
 }
 
 static bool is_joinable(const grobo_robot *robot, const grobo_robot_task *job,
-                        const grobo_robot_wish *wish)
+                        const grobo_robot_request *request)
 {
-    if (job->kind != wish->kind || !reads_first(job)) {
+    if (job->kind != request->kind || !reads_first(job)) {
         return false;
     }
     grobo_joint_mask known = job->joints | job->superseded | job->failed | job->out;
-    if (wish->kind == GROBO_JOB_MOVE) {
-        return wish->singly && job->singly && (known & wish->joints) == 0 &&
-               (job->target.time_us == wish->target.time_us || may_differ(robot));
+    if (request->kind == GROBO_JOB_MOVE) {
+        return request->singly && job->singly && (known & request->joints) == 0 &&
+               (job->target.time_us == request->target.time_us || may_differ(robot));
     }
-    return (wish->kind != GROBO_JOB_SENSE || job->sense == wish->sense) &&
-           (known & wish->joints & ~job->todo) == 0 &&
-           !grobo_i_slots_read(robot, job->number, wish->joints);
+    return (request->kind != GROBO_JOB_SENSE || job->sense == request->sense) &&
+           (known & request->joints & ~job->todo) == 0 &&
+           !grobo_i_slots_read(robot, job->number, request->joints);
 }
 
 static bool is_waited_for(const grobo_robot *robot, grobo_joint_mask joints)
@@ -83,40 +83,40 @@ static grobo_joint_mask used_beside(const grobo_robot *robot, const grobo_robot_
     return used;
 }
 
-int grobo_i_join_job(grobo_robot *robot, const grobo_robot_wish *wish)
+int grobo_i_join_job(grobo_robot *robot, const grobo_robot_request *request)
 {
     grobo_robot_task *job = robot->jobs;
-    while (job < robot->jobs + GROBO_ROBOT_JOBS && !is_joinable(robot, job, wish)) {
+    while (job < robot->jobs + GROBO_ROBOT_JOBS && !is_joinable(robot, job, request)) {
         job++;
     }
-    if (job == robot->jobs + GROBO_ROBOT_JOBS || is_waited_for(robot, wish->joints) ||
-        (used_beside(robot, job) & wish->joints) != 0) {
+    if (job == robot->jobs + GROBO_ROBOT_JOBS || is_waited_for(robot, request->joints) ||
+        (used_beside(robot, job) & request->joints) != 0) {
         return 0;
     }
-    if (wish->kind == GROBO_JOB_MOVE) {
-        grobo_i_jobs_leave(robot, wish->joints);
-        merge(&job->target, job->joint_time_us, wish);
+    if (request->kind == GROBO_JOB_MOVE) {
+        grobo_i_jobs_leave(robot, request->joints);
+        merge(&job->target, job->joint_time_us, request);
     }
-    if (wish->kind != GROBO_JOB_SENSE) {
-        robot->free_joints &= ~wish->joints;
+    if (request->kind != GROBO_JOB_SENSE) {
+        robot->free_joints &= ~request->joints;
     }
-    job->todo |= wish->joints;
-    job->joints |= wish->joints;
+    job->todo |= request->joints;
+    job->joints |= request->joints;
     return job->number;
 }
 
-int grobo_i_join_waiting(grobo_robot *robot, const grobo_robot_wish *wish)
+int grobo_i_join_waiting(grobo_robot *robot, const grobo_robot_request *request)
 {
-    bool moves = wish->kind == GROBO_JOB_MOVE;
+    bool moves = request->kind == GROBO_JOB_MOVE;
     for (unsigned i = robot->queued; i-- > 0;) {
-        grobo_robot_wish *other = &robot->queue[i];
-        bool overlaps = (other->joints & wish->joints) != 0;
-        bool alike = other->kind == wish->kind && other->sense == wish->sense;
-        bool singly = wish->singly && other->singly && !overlaps &&
-                      (other->target.time_us == wish->target.time_us || may_differ(robot));
+        grobo_robot_request *other = &robot->queue[i];
+        bool overlaps = (other->joints & request->joints) != 0;
+        bool alike = other->kind == request->kind && other->sense == request->sense;
+        bool singly = request->singly && other->singly && !overlaps &&
+                      (other->target.time_us == request->target.time_us || may_differ(robot));
         if (alike && (!moves || singly)) {
-            other->joints |= wish->joints;
-            merge(&other->target, other->joint_time_us, wish);
+            other->joints |= request->joints;
+            merge(&other->target, other->joint_time_us, request);
             return other->number;
         }
         if (overlaps) {

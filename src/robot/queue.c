@@ -83,32 +83,32 @@ int grobo_i_move_takes(grobo_robot *robot, grobo_joint_mask joints)
     return GROBO_OK;
 }
 
-static int admit(grobo_robot *robot, const grobo_robot_wish *wish)
+static int admit(grobo_robot *robot, const grobo_robot_request *request)
 {
-    bool moves = wish->kind != GROBO_JOB_SENSE;
-    int result = grobo_i_admit(robot, wish->kind, wish->joints, moves);
+    bool moves = request->kind != GROBO_JOB_SENSE;
+    int result = grobo_i_admit(robot, request->kind, request->joints, moves);
     if (result < 0) {
         return result;
     }
     /* Frames of a motion would part goal and present angle of what gets torque again. */
-    bool played = wish->kind == GROBO_JOB_TORQUE ? grobo_robot_is_playing(robot)
-                                                 : is_played(robot, wish->joints);
+    bool played = request->kind == GROBO_JOB_TORQUE ? grobo_robot_is_playing(robot)
+                                                    : is_played(robot, request->joints);
     bool leaving = robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
     return moves && (played || leaving) ? GROBO_ERR_STATE : result;
 }
 
 /* Torque on waits for other torque and for a place, and is refused while its joints do anything
  * else. */
-static bool may_wait(const grobo_robot *robot, const grobo_robot_wish *wish)
+static bool may_wait(const grobo_robot *robot, const grobo_robot_request *request)
 {
     bool busy = false;
     for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
         const grobo_robot_task *job = &robot->jobs[i];
         bool joins = job->kind == GROBO_JOB_NONE || job->kind == GROBO_JOB_SENSE ||
                      job->kind == GROBO_JOB_TORQUE;
-        busy = busy || (!joins && (is_alone(job) || (job->joints & wish->joints) != 0));
+        busy = busy || (!joins && (is_alone(job) || (job->joints & request->joints) != 0));
     }
-    return wish->kind != GROBO_JOB_TORQUE || !busy;
+    return request->kind != GROBO_JOB_TORQUE || !busy;
 }
 
 static const grobo_robot_step_fn *script_of(grobo_job_kind kind)
@@ -118,23 +118,23 @@ static const grobo_robot_step_fn *script_of(grobo_job_kind kind)
                                       : grobo_i_script_sense;
 }
 
-static int begin(grobo_robot *robot, const grobo_robot_wish *wish)
+static int begin(grobo_robot *robot, const grobo_robot_request *request)
 {
-    if (wish->kind == GROBO_JOB_MOVE) {
-        grobo_i_jobs_leave(robot, wish->joints);
+    if (request->kind == GROBO_JOB_MOVE) {
+        grobo_i_jobs_leave(robot, request->joints);
         grobo_i_jobs_close_up(robot);
     }
-    if (wish->kind != GROBO_JOB_SENSE) {
-        robot->free_joints &= ~wish->joints;
+    if (request->kind != GROBO_JOB_SENSE) {
+        robot->free_joints &= ~request->joints;
     }
-    int number = grobo_i_job_start(robot, wish->kind, script_of(wish->kind), wish->number);
-    robot->job->joints = wish->joints;
-    robot->job->target = wish->target;
-    robot->job->sense = wish->sense;
+    int number = grobo_i_job_start(robot, request->kind, script_of(request->kind), request->number);
+    robot->job->joints = request->joints;
+    robot->job->target = request->target;
+    robot->job->sense = request->sense;
     robot->job->torque = GROBO_TORQUE_ON;
-    robot->job->singly = wish->singly;
-    if (wish->singly) {
-        memcpy(robot->job->joint_time_us, wish->joint_time_us, sizeof wish->joint_time_us);
+    robot->job->singly = request->singly;
+    if (request->singly) {
+        memcpy(robot->job->joint_time_us, request->joint_time_us, sizeof request->joint_time_us);
     }
     grobo_i_job_run(robot);
     return number;
@@ -144,18 +144,18 @@ static int begin(grobo_robot *robot, const grobo_robot_wish *wish)
  * a stop tells. */
 #define EVENTS_TO_END (GROBO_ROBOT_JOBS + GROBO_ROBOT_QUEUE + 4)
 
-int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_wish *wish)
+int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_request *request)
 {
-    int result = admit(robot, wish);
+    int result = admit(robot, request);
     if (result < 0) {
         return result;
     }
     bool some = robot->jobs[0].kind != GROBO_JOB_NONE; /* where one runs, the first does */
-    int joined = some ? grobo_i_join_job(robot, wish) : 0;
-    if (joined == 0 && result == GROBO_I_LATER && !may_wait(robot, wish)) {
+    int joined = some ? grobo_i_join_job(robot, request) : 0;
+    if (joined == 0 && result == GROBO_I_LATER && !may_wait(robot, request)) {
         return GROBO_ERR_STATE;
     }
-    joined = joined != 0 ? joined : grobo_i_join_waiting(robot, wish);
+    joined = joined != 0 ? joined : grobo_i_join_waiting(robot, request);
     if (joined != 0) {
         return joined;
     }
@@ -166,13 +166,13 @@ int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_wish *wish)
         return result;
     }
     if (result == GROBO_OK && robot->queued == 0) {
-        return begin(robot, wish);
+        return begin(robot, request);
     }
     if (robot->queued == GROBO_ROBOT_QUEUE) {
         return GROBO_ERR_FULL;
     }
-    grobo_robot_wish *last = &robot->queue[robot->queued++];
-    *last = *wish;
+    grobo_robot_request *last = &robot->queue[robot->queued++];
+    *last = *request;
     last->number = grobo_i_job_number(robot);
     last->begin_by_us = robot->now_us + GROBO_ROBOT_QUEUE_US;
     return last->number;
@@ -182,7 +182,7 @@ void grobo_i_queue_step(grobo_robot *robot)
 {
     robot->queue_may_go = false;
     while (robot->queued > 0) {
-        grobo_robot_wish first = robot->queue[0];
+        grobo_robot_request first = robot->queue[0];
         int result = robot->now_us < first.begin_by_us ? admit(robot, &first) : GROBO_ERR_STALE;
         if (result == GROBO_I_LATER) {
             return;

@@ -57,9 +57,9 @@ int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_k
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    const grobo_robot_wish wish = {.kind = GROBO_JOB_SENSE, .joints = joints, .sense = kind};
+    const grobo_robot_request request = {.kind = GROBO_JOB_SENSE, .joints = joints, .sense = kind};
     int result = joints_sound(robot, joints) && (unsigned)kind <= GROBO_SENSE_ALL
-                     ? grobo_i_queue_ask(robot, &wish)
+                     ? grobo_i_queue_ask(robot, &request)
                      : GROBO_ERR_ARG;
     grobo_i_end(robot);
     return result;
@@ -89,10 +89,10 @@ static bool is_alone(const grobo_robot_task *job)
 
 static int switch_on(grobo_robot *robot, grobo_joint_mask joints)
 {
-    const grobo_robot_wish wish = {
+    const grobo_robot_request request = {
         .kind = GROBO_JOB_TORQUE, .joints = joints, .sense = GROBO_SENSE_ALL};
     if (robot->driver->torque != NULL) {
-        return grobo_i_queue_ask(robot, &wish);
+        return grobo_i_queue_ask(robot, &request);
     }
     int result = admit(robot, GROBO_JOB_TORQUE, joints, true);
     return result < 0 ? result : GROBO_ERR_UNSUPPORTED;
@@ -162,12 +162,12 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
 }
 
 /* A move of one joint may be joined to others. */
-static void singly(grobo_robot_wish *wish)
+static void singly(grobo_robot_request *request)
 {
-    int64_t time_us = grobo_i_later(wish->target.time_us, 0);
-    wish->singly = grobo_joints_count(wish->joints) == 1 && time_us <= INT32_MAX;
-    if (wish->singly) {
-        wish->joint_time_us[grobo_i_lowest(wish->joints)] = (int32_t)time_us;
+    int64_t time_us = grobo_i_later(request->target.time_us, 0);
+    request->singly = grobo_joints_count(request->joints) == 1 && time_us <= INT32_MAX;
+    if (request->singly) {
+        request->joint_time_us[grobo_i_lowest(request->joints)] = (int32_t)time_us;
     }
 }
 
@@ -177,19 +177,22 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    grobo_robot_wish wish = {.kind = GROBO_JOB_MOVE, .joints = target->set, .target = *target};
+    grobo_robot_request request = {
+        .kind = GROBO_JOB_MOVE, .joints = target->set, .target = *target};
     int result = !robot->link                ? GROBO_ERR_CLOSED
                  : grobo_i_is_latched(robot) ? GROBO_ERR_LATCHED
-                 : wish.target.set == 0      ? GROBO_ERR_ARG
-                                             : grobo_i_gate_target(robot, &wish.target);
-    int64_t time_us = wish.target.time_us > 0 ? wish.target.time_us : robot->config.default_time_us;
-    if (result >= 0 && time_us > GROBO_SEGMENT_US && !grobo_i_pace_fits(robot, wish.target.set)) {
+                 : request.target.set == 0   ? GROBO_ERR_ARG
+                                             : grobo_i_gate_target(robot, &request.target);
+    int64_t time_us =
+        request.target.time_us > 0 ? request.target.time_us : robot->config.default_time_us;
+    if (result >= 0 && time_us > GROBO_SEGMENT_US &&
+        !grobo_i_pace_fits(robot, request.target.set)) {
         result = GROBO_ERR_UNWATCHED; /* a short one that gets more time is refused as it leaves */
     }
     if (result >= 0) {
-        wish.joints = wish.target.set;
-        singly(&wish);
-        result = grobo_i_queue_ask(robot, &wish);
+        request.joints = request.target.set;
+        singly(&request);
+        result = grobo_i_queue_ask(robot, &request);
     }
     grobo_i_end(robot);
     return result;

@@ -514,7 +514,7 @@ void grobo_i_jobs_end(grobo_robot *robot, bool (*is)(const grobo_robot_task *job
 /* Moves and torques that run leave these joints to another; one that has no joint left ends. */
 void grobo_i_jobs_leave(grobo_robot *robot, grobo_joint_mask joints);
 /* Tells how one that waited for its turn has ended. */
-void grobo_i_queue_tell(grobo_robot *robot, const grobo_robot_wish *wish, int result);
+void grobo_i_queue_tell(grobo_robot *robot, const grobo_robot_request *request, int result);
 /* Ends what waits for its turn. */
 void grobo_i_queue_end(grobo_robot *robot, int result);
 /* One joint failed; the job goes on with the others. The first error is the job's result. */
@@ -638,8 +638,8 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
 /* Joins a request to a job or to one that waits, where it is as if both had been asked for at once:
  * a reading or torque on to one that has not read these joints yet, a move of a joint to one that
  * has not read its joints yet. @return the number of that job; 0: there is none. */
-int grobo_i_join_job(grobo_robot *robot, const grobo_robot_wish *wish);
-int grobo_i_join_waiting(grobo_robot *robot, const grobo_robot_wish *wish);
+int grobo_i_join_job(grobo_robot *robot, const grobo_robot_request *request);
+int grobo_i_join_waiting(grobo_robot *robot, const grobo_robot_request *request);
 /* Joins torque off or brake to a job that does the same; `sent`: to one that has sent its frames,
  * too, which begins anew. @return the number of that job; 0: there is none. */
 int grobo_i_join_off(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode, bool sent);
@@ -656,7 +656,7 @@ int grobo_i_move_takes(grobo_robot *robot, grobo_joint_mask joints);
 grobo_joint_mask grobo_i_joints_of_moves(const grobo_robot *robot);
 /* Begins a move, a reading or torque on, joins it to another one, or has it wait. @return its
  * number, or the reason why not. */
-int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_wish *wish);
+int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_request *request);
 /* Begins what waits and may go; ends what has waited too long. */
 void grobo_i_queue_step(grobo_robot *robot);
 /* When that is next. */

@@ -33,35 +33,35 @@ static void run_job(int at, grobo_job_kind kind, grobo_joint_mask joints)
     job->until_us = job->bound_us = GROBO_NEVER_US;
 }
 
-static grobo_robot_wish wish_of(grobo_job_kind kind, int joint)
+static grobo_robot_request request_of(grobo_job_kind kind, int joint)
 {
-    grobo_robot_wish wish = {
+    grobo_robot_request request = {
         .kind = kind, .joints = GROBO_JOINT_BIT(joint), .sense = GROBO_SENSE_GOAL};
-    assert_int_equal(grobo_posture_init(&wish.target, N), 0);
-    wish.target.set = wish.joints;
-    wish.target.angle_rad[joint] = here_rad(joint) + RAD(3);
-    wish.target.time_us = S;
-    return wish;
+    assert_int_equal(grobo_posture_init(&request.target, N), 0);
+    request.target.set = request.joints;
+    request.target.angle_rad[joint] = here_rad(joint) + RAD(3);
+    request.target.time_us = S;
+    return request;
 }
 
 /* It waits, and may begin by then. */
-static void wait_in_queue(grobo_robot_wish wish, int64_t begin_by_us)
+static void wait_in_queue(grobo_robot_request request, int64_t begin_by_us)
 {
-    wish.number = 50 + (int)robot.queued;
-    wish.begin_by_us = begin_by_us;
-    robot.queue[robot.queued++] = wish;
+    request.number = 50 + (int)robot.queued;
+    request.begin_by_us = begin_by_us;
+    robot.queue[robot.queued++] = request;
 }
 
 static void expect_begun(int at, int number, grobo_job_kind kind, int joint)
 {
     const grobo_robot_task *job = &robot.jobs[at];
-    const grobo_robot_wish wish = wish_of(kind, joint);
+    const grobo_robot_request request = request_of(kind, joint);
     bool moves = kind == GROBO_JOB_MOVE;
     assert_int_equal(job->kind, kind);
     assert_int_equal(job->number, number);
-    assert_true(job->joints == wish.joints);
+    assert_true(job->joints == request.joints);
     assert_ptr_equal(job->script, moves ? grobo_i_script_move : grobo_i_script_sense);
-    assert_memory_equal(&job->target, &wish.target, sizeof wish.target);
+    assert_memory_equal(&job->target, &request.target, sizeof request.target);
     assert_int_equal(job->activity, GROBO_I_READ); /* it has begun already */
     assert_true(moves || job->sense == GROBO_SENSE_GOAL);
     assert_true(robot.job == robot.jobs);
@@ -172,12 +172,12 @@ TEST_WITH(rig_wirings, moves_that_run_or_wait_have_their_joints)
                     run_job(i, GROBO_JOB_SENSE, all_but(j));
                 }
                 for (int i = 0; i < QUEUE; i++) {
-                    wait_in_queue(wish_of(GROBO_JOB_SENSE, other_of(j)), NOW);
+                    wait_in_queue(request_of(GROBO_JOB_SENSE, other_of(j)), NOW);
                 }
                 if (at < JOBS) {
                     run_job(at, (grobo_job_kind)kind, GROBO_JOINT_BIT(j));
                 } else {
-                    robot.queue[at - JOBS] = wish_of((grobo_job_kind)kind, j);
+                    robot.queue[at - JOBS] = request_of((grobo_job_kind)kind, j);
                 }
                 assert_true(grobo_i_joints_of_moves(&robot) ==
                             (kind == GROBO_JOB_MOVE ? GROBO_JOINT_BIT(j) : 0));
@@ -196,11 +196,11 @@ TEST_WITH(rig_wirings, what_nothing_is_in_the_way_of_begins_at_once)
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
             const grobo_job_kind kind = moves ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
-            const grobo_robot_wish wish = wish_of(kind, j);
+            const grobo_robot_request request = request_of(kind, j);
             start_idle();
             run_job(0, GROBO_JOB_REGISTERS, GROBO_JOINT_BIT(other_of(j)));
             robot.free_joints = GROBO_JOINTS_ALL(N);
-            assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+            assert_int_equal(grobo_i_queue_ask(&robot, &request), LAST_NUMBER + 1);
             expect_begun(1, LAST_NUMBER + 1, kind, j);
             assert_int_equal(robot.queued, 0);
             assert_true(robot.free_joints == (moves ? all_but(j) : GROBO_JOINTS_ALL(N)));
@@ -214,21 +214,21 @@ TEST_WITH(rig_wirings, a_move_takes_its_joints_from_moves_before)
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
             const grobo_job_kind kind = moves ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
-            const grobo_robot_wish wish = wish_of(kind, j);
+            const grobo_robot_request request = request_of(kind, j);
             start_idle();
             run_job(0, GROBO_JOB_MOVE, bits(j, other_of(j)));
-            assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+            assert_int_equal(grobo_i_queue_ask(&robot, &request), LAST_NUMBER + 1);
             expect_begun(1, LAST_NUMBER + 1, kind, j);
             assert_true(robot.jobs[0].joints ==
                         (moves ? GROBO_JOINT_BIT(other_of(j)) : bits(j, other_of(j))));
             assert_true(robot.jobs[0].superseded == (moves ? GROBO_JOINT_BIT(j) : 0));
             assert_int_equal(robot.events_n, 0);
         }
-        const grobo_robot_wish wish = wish_of(GROBO_JOB_MOVE, j);
+        const grobo_robot_request request = request_of(GROBO_JOB_MOVE, j);
         start_idle();
         run_job(0, GROBO_JOB_MOVE, GROBO_JOINT_BIT(j));
         run_job(1, GROBO_JOB_SENSE, GROBO_JOINTS_ALL(N));
-        assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+        assert_int_equal(grobo_i_queue_ask(&robot, &request), LAST_NUMBER + 1);
         assert_int_equal(robot.jobs[0].number, 101);
         expect_begun(1, LAST_NUMBER + 1, GROBO_JOB_MOVE, j);
         assert_int_equal(robot.events_n, 1);
@@ -243,28 +243,28 @@ TEST_WITH(rig_wirings, a_move_of_what_plays_or_leaves_or_tripped_is_refused)
     for (int j = 0; j < N; j++) {
         for (int moves = 0; moves < 2; moves++) {
             const grobo_job_kind kind = moves ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
-            const grobo_robot_wish wish = wish_of(kind, j);
+            const grobo_robot_request request = request_of(kind, j);
             for (int how = 0; how < 3; how++) { /* played, a joint that is not, not played now */
                 start_idle();
                 robot.sequencer.state = how < 2 ? GROBO_SEQUENCER_PLAYING : GROBO_SEQUENCER_IDLE;
                 robot.clip_joints = how == 1 ? all_but(j) : bits(j, other_of(j));
-                assert_int_equal(grobo_i_queue_ask(&robot, &wish),
+                assert_int_equal(grobo_i_queue_ask(&robot, &request),
                                  moves && how == 0 ? GROBO_ERR_STATE : LAST_NUMBER + 1);
             }
             for (int leaves = GROBO_JOB_NONE + 1; leaves < GROBO_JOB_SETTLE; leaves++) {
                 bool refused = moves && (leaves == GROBO_JOB_EXIT || leaves == GROBO_JOB_ESTOP);
                 start_idle();
                 run_job(0, (grobo_job_kind)leaves, GROBO_JOINT_BIT(other_of(j)));
-                assert_int_equal(grobo_i_queue_ask(&robot, &wish),
+                assert_int_equal(grobo_i_queue_ask(&robot, &request),
                                  refused ? GROBO_ERR_STATE : LAST_NUMBER + 1);
                 assert_int_equal(robot.queued, !refused && !shared[leaves]);
             }
             start_idle();
             robot.link = false;
-            assert_int_equal(grobo_i_queue_ask(&robot, &wish), GROBO_ERR_CLOSED);
+            assert_int_equal(grobo_i_queue_ask(&robot, &request), GROBO_ERR_CLOSED);
             robot.link = true;
             latch(GROBO_TRIP_VOLTAGE);
-            assert_int_equal(grobo_i_queue_ask(&robot, &wish),
+            assert_int_equal(grobo_i_queue_ask(&robot, &request),
                              moves ? GROBO_ERR_LATCHED : LAST_NUMBER + 1);
         }
     }
@@ -280,23 +280,23 @@ TEST_WITH(rig_wirings, what_cannot_begin_waits)
             start_idle();
             run_job(0, idle ? GROBO_JOB_NONE : GROBO_JOB_CHECK, 0);
             if (idle) {
-                grobo_robot_wish other = wish_of(GROBO_JOB_SENSE, 0);
+                grobo_robot_request other = request_of(GROBO_JOB_SENSE, 0);
                 other.sense = GROBO_SENSE_FULL;
                 wait_in_queue(other, NOW + S);
             }
             for (int i = idle; i < QUEUE; i++) {
                 const grobo_job_kind kind = i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE;
-                grobo_robot_wish wish = wish_of(kind, j);
+                grobo_robot_request request = request_of(kind, j);
                 int number = LAST_NUMBER + 1 + i - idle;
-                assert_int_equal(grobo_i_queue_ask(&robot, &wish), number);
+                assert_int_equal(grobo_i_queue_ask(&robot, &request), number);
                 assert_int_equal(robot.queued, i + 1);
-                wish.number = number;
-                wish.begin_by_us = NOW + 2 * S;
-                assert_memory_equal(&robot.queue[i], &wish, sizeof wish);
+                request.number = number;
+                request.begin_by_us = NOW + 2 * S;
+                assert_memory_equal(&robot.queue[i], &request, sizeof request);
             }
-            grobo_robot_wish wish = wish_of(GROBO_JOB_SENSE, j);
-            wish.sense = GROBO_SENSE_FULL; /* another one: it cannot join the last */
-            assert_int_equal(grobo_i_queue_ask(&robot, &wish), GROBO_ERR_FULL);
+            grobo_robot_request request = request_of(GROBO_JOB_SENSE, j);
+            request.sense = GROBO_SENSE_FULL; /* another one: it cannot join the last */
+            assert_int_equal(grobo_i_queue_ask(&robot, &request), GROBO_ERR_FULL);
             assert_int_equal(robot.queued, QUEUE);
             assert_int_equal(robot.last_number, LAST_NUMBER + QUEUE - idle);
             assert_int_equal(robot.jobs[0].kind, idle ? GROBO_JOB_NONE : GROBO_JOB_CHECK);
@@ -316,16 +316,16 @@ static void read_first(int at, grobo_job_kind kind, grobo_joint_mask joints, gro
     robot.jobs[at].todo = left;
     robot.jobs[at].sense = GROBO_SENSE_GOAL;
     robot.jobs[at].singly = kind == GROBO_JOB_MOVE;
-    robot.jobs[at].target = wish_of(kind, 0).target;
+    robot.jobs[at].target = request_of(kind, 0).target;
     robot.jobs[at].target.set = joints;
 }
 
-static grobo_robot_wish single(grobo_job_kind kind, int joint)
+static grobo_robot_request single(grobo_job_kind kind, int joint)
 {
-    grobo_robot_wish wish = wish_of(kind, joint);
-    wish.singly = kind == GROBO_JOB_MOVE;
-    wish.joint_time_us[joint] = (int32_t)wish.target.time_us;
-    return wish;
+    grobo_robot_request request = request_of(kind, joint);
+    request.singly = kind == GROBO_JOB_MOVE;
+    request.joint_time_us[joint] = (int32_t)request.target.time_us;
+    return request;
 }
 
 static const grobo_job_kind joining[] = {GROBO_JOB_MOVE, GROBO_JOB_SENSE, GROBO_JOB_TORQUE};
@@ -337,17 +337,17 @@ TEST_WITH(rig_wirings, who_reads_its_joints_is_joined)
         for (int j = 0; j < N; j++) {
             start_idle();
             read_first(0, joining[k], GROBO_JOINT_BIT(other_of(j)), 0);
-            const grobo_robot_wish wish = single(joining[k], j);
-            robot.free_joints = wish.joints;
-            assert_int_equal(grobo_i_queue_ask(&robot, &wish), 100);
+            const grobo_robot_request request = single(joining[k], j);
+            robot.free_joints = request.joints;
+            assert_int_equal(grobo_i_queue_ask(&robot, &request), 100);
             assert_int_equal(robot.queued, 0);
             assert_int_equal(robot.jobs[1].kind, GROBO_JOB_NONE);
             assert_true(robot.jobs[0].joints == bits(j, other_of(j)));
-            assert_true(robot.jobs[0].todo == wish.joints);
+            assert_true(robot.jobs[0].todo == request.joints);
             assert_true((robot.free_joints == 0) == (joining[k] != GROBO_JOB_SENSE));
             if (joining[k] == GROBO_JOB_MOVE) {
                 assert_true(robot.jobs[0].target.set == robot.jobs[0].joints);
-                assert_true(robot.jobs[0].target.angle_rad[j] == wish.target.angle_rad[j]);
+                assert_true(robot.jobs[0].target.angle_rad[j] == request.target.angle_rad[j]);
                 assert_int_equal(robot.jobs[0].joint_time_us[j], S);
             }
         }
@@ -360,8 +360,8 @@ TEST_WITH(rig_wirings, who_has_read_a_joint_is_not_joined_for_it)
     for (int j = 0; j < N; j++) {
         start_idle();
         read_first(0, GROBO_JOB_SENSE, bits(j, other_of(j)), GROBO_JOINT_BIT(other_of(j)));
-        const grobo_robot_wish wish = single(GROBO_JOB_SENSE, j);
-        assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+        const grobo_robot_request request = single(GROBO_JOB_SENSE, j);
+        assert_int_equal(grobo_i_queue_ask(&robot, &request), LAST_NUMBER + 1);
         start_idle();
         read_first(0, GROBO_JOB_SENSE, bits(j, other_of(j)), bits(j, other_of(j)));
         robot.slots_end = 1;
@@ -370,9 +370,9 @@ TEST_WITH(rig_wirings, who_has_read_a_joint_is_not_joined_for_it)
         robot.slots[0].joint = (uint8_t)j;
         robot.slots[0].job = 100;
         robot.slots[0].txn.sent_us = NOW - 1;
-        assert_false(grobo_i_join_job(&robot, &wish) == 100);
+        assert_false(grobo_i_join_job(&robot, &request) == 100);
         robot.slots[0].txn.sent_us = -1; /* it waits for the line: it tells where it is by then */
-        assert_int_equal(grobo_i_join_job(&robot, &wish), 100);
+        assert_int_equal(grobo_i_join_job(&robot, &request), 100);
         robot.slots[0].use = GROBO_I_USE_FREE;
         robot.slots_end = 0;
     }
@@ -385,12 +385,12 @@ TEST_WITH(rig_wirings, what_differs_is_not_joined)
             start_idle();
             const grobo_job_kind kind = way < 3 ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
             read_first(0, kind, GROBO_JOINT_BIT(way == 2 ? j : other_of(j)), 0);
-            grobo_robot_wish wish = single(kind, j);
-            wish.singly = wish.singly && way != 0;
-            wish.target.time_us += way == 1; /* another time, */
+            grobo_robot_request request = single(kind, j);
+            request.singly = request.singly && way != 0;
+            request.target.time_us += way == 1; /* another time, */
             robot.jobs[0].sense = way == 3 ? GROBO_SENSE_FULL : robot.jobs[0].sense;
             robot.jobs[0].at = way == 4 ? 2 : 1;
-            assert_int_equal(grobo_i_join_job(&robot, &wish), 0);
+            assert_int_equal(grobo_i_join_job(&robot, &request), 0);
         }
         /* unless there is no place for one of its own. */
         start_idle();
@@ -398,10 +398,10 @@ TEST_WITH(rig_wirings, what_differs_is_not_joined)
         for (int at = 1; at < JOBS - 1; at++) {
             run_job(at, GROBO_JOB_SENSE, 1);
         }
-        grobo_robot_wish wish = single(GROBO_JOB_MOVE, j);
-        wish.target.time_us++;
-        wish.joint_time_us[j] = S + 1;
-        assert_int_equal(grobo_i_queue_ask(&robot, &wish), 100);
+        grobo_robot_request request = single(GROBO_JOB_MOVE, j);
+        request.target.time_us++;
+        request.joint_time_us[j] = S + 1;
+        assert_int_equal(grobo_i_queue_ask(&robot, &request), 100);
         assert_int_equal(robot.jobs[0].joint_time_us[j], S + 1);
     }
 }
@@ -416,12 +416,12 @@ TEST_WITH(rig_wirings, what_waits_is_joined)
                     GROBO_JOINTS_ALL(N));
             wait_in_queue(single(joining[k], other_of(j)), NOW + S);
             wait_in_queue(single(GROBO_JOB_RAW, third_of(j)), NOW + S);
-            grobo_robot_wish wish = single(joining[k], j);
-            assert_int_equal(grobo_i_queue_ask(&robot, &wish), 50);
+            grobo_robot_request request = single(joining[k], j);
+            assert_int_equal(grobo_i_queue_ask(&robot, &request), 50);
             assert_true(robot.queue[0].joints == bits(j, other_of(j)));
             assert_int_equal(robot.queued, 2);
-            wish = single(joining[k], third_of(j)); /* nothing goes before what has its joint */
-            assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+            request = single(joining[k], third_of(j)); /* nothing goes before what has its joint */
+            assert_int_equal(grobo_i_queue_ask(&robot, &request), LAST_NUMBER + 1);
             assert_int_equal(robot.queued, 3);
         }
     }
@@ -434,8 +434,8 @@ TEST_WITH(rig_wirings, torque_on_waits_for_torque_alone)
         for (int j = 0; j < N; j++) {
             start_idle();
             run_job(0, (grobo_job_kind)running, GROBO_JOINT_BIT(j));
-            const grobo_robot_wish wish = single(GROBO_JOB_TORQUE, j);
-            int is = grobo_i_queue_ask(&robot, &wish);
+            const grobo_robot_request request = single(GROBO_JOB_TORQUE, j);
+            int is = grobo_i_queue_ask(&robot, &request);
             assert_int_equal(is > 0, running == GROBO_JOB_TORQUE || running == GROBO_JOB_SENSE);
             assert_int_equal(robot.queued, running == GROBO_JOB_TORQUE);
             assert_true(is > 0 || is == GROBO_ERR_STATE);
@@ -451,10 +451,10 @@ TEST_WITH(rig_wirings, what_waits_begins_in_its_order)
     for (int j = 0; j < N; j++) {
         start_idle();
         run_job(0, GROBO_JOB_TORQUE, GROBO_JOINT_BIT(third_of(j)));
-        wait_in_queue(wish_of(GROBO_JOB_MOVE, j), NOW + 1);
-        wait_in_queue(wish_of(GROBO_JOB_MOVE, third_of(j)), NOW + 1);
-        wait_in_queue(wish_of(GROBO_JOB_SENSE, other_of(j)), NOW + 1);
-        wait_in_queue(wish_of(GROBO_JOB_SENSE, third_of(j)), NOW + 2);
+        wait_in_queue(request_of(GROBO_JOB_MOVE, j), NOW + 1);
+        wait_in_queue(request_of(GROBO_JOB_MOVE, third_of(j)), NOW + 1);
+        wait_in_queue(request_of(GROBO_JOB_SENSE, other_of(j)), NOW + 1);
+        wait_in_queue(request_of(GROBO_JOB_SENSE, third_of(j)), NOW + 2);
         robot.queue_may_go = true;
         grobo_i_queue_step(&robot);
         assert_false(robot.queue_may_go);
@@ -496,8 +496,8 @@ TEST_WITH(rig_wirings, what_has_waited_too_long_ends)
             start_idle();
             robot.sequencer.state = late ? GROBO_SEQUENCER_IDLE : GROBO_SEQUENCER_PLAYING;
             robot.clip_joints = GROBO_JOINT_BIT(j);
-            wait_in_queue(wish_of(GROBO_JOB_MOVE, j), late ? NOW : NOW + 1);
-            wait_in_queue(wish_of(GROBO_JOB_SENSE, other_of(j)), NOW + 1);
+            wait_in_queue(request_of(GROBO_JOB_MOVE, j), late ? NOW : NOW + 1);
+            wait_in_queue(request_of(GROBO_JOB_SENSE, other_of(j)), NOW + 1);
             grobo_i_queue_step(&robot);
             assert_int_equal(robot.queued, 0);
             expect_begun(0, 51, GROBO_JOB_SENSE, other_of(j));
@@ -513,7 +513,7 @@ TEST_WITH(rig_wirings, a_trip_ends_all_that_waits)
     for (int latched = 0; latched < 2; latched++) {
         start_idle();
         for (int i = 0; i < QUEUE; i++) {
-            wait_in_queue(wish_of(i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE, i), NOW + S);
+            wait_in_queue(request_of(i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE, i), NOW + S);
         }
         grobo_i_trip(&robot, GROBO_TRIP_HOST_STALL, -1, 0, latched);
         assert_int_equal(robot.queued, 0);
@@ -532,9 +532,9 @@ TEST_WITH(rig_wirings, the_queue_is_looked_at_when_something_may_have_changed)
         robot.queue_may_go = may;
         robot.queue[0].begin_by_us = NOW + 7; /* of one that has gone */
         assert_true(grobo_i_queue_deadline(&robot) == GROBO_NEVER_US);
-        wait_in_queue(wish_of(GROBO_JOB_SENSE, 3), NOW + 5);
+        wait_in_queue(request_of(GROBO_JOB_SENSE, 3), NOW + 5);
         assert_true(grobo_i_queue_deadline(&robot) == (may ? NOW : NOW + 5));
-        wait_in_queue(wish_of(GROBO_JOB_SENSE, 3), NOW + 4);
+        wait_in_queue(request_of(GROBO_JOB_SENSE, 3), NOW + 4);
         assert_true(grobo_i_queue_deadline(&robot) == (may ? NOW : NOW + 5));
     }
 }

@@ -241,7 +241,7 @@ struct grobo_driver {
     int (*stored)(const grobo_driver *self, void *ctx, grobo_stored_kind kind, int number,
                   grobo_exchange *exchange);
     /**
-     * Reads the wish out of a frame that a user hands in raw, so that the engine can check it as
+     * Reads what a raw frame of a user asks for, so that the engine can check it as
      * it checks its own: sets *target for joints the frame moves (times too), and adds the joints
      * whose torque it sets to torqued[], which has a mask for each grobo_torque and comes zeroed.
      * @return 0, or GROBO_ERR_UNSUPPORTED for a frame that cannot be understood, or that moves what

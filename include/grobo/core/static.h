@@ -199,7 +199,7 @@ typedef struct grobo_robot_task {
 } grobo_robot_task;
 
 /** A move, a reading or torque on that waits for its turn. Private. */
-typedef struct grobo_robot_wish {
+typedef struct grobo_robot_request {
     /* private */
     int number;
     grobo_job_kind kind;
@@ -209,7 +209,7 @@ typedef struct grobo_robot_wish {
     grobo_posture target;
     int32_t joint_time_us[GROBO_JOINTS_MAX]; /* of moves of single joints */
     bool singly;                             /* it is of such */
-} grobo_robot_wish;
+} grobo_robot_request;
 
 /** A robot engine. Caller storage; read it through the functions below. */
 struct grobo_robot {
@@ -225,10 +225,10 @@ struct grobo_robot {
     void *event_ctx;
     grobo_bus bus;
     grobo_sequencer sequencer;
-    grobo_sequencer_state told_state;          /* of the sequencer, to the callback */
-    grobo_robot_task jobs[GROBO_ROBOT_JOBS];   /* where one runs, the first does */
-    grobo_robot_task *job;                     /* of jobs: whose step runs, else the first */
-    grobo_robot_wish queue[GROBO_ROBOT_QUEUE]; /* the first is the oldest */
+    grobo_sequencer_state told_state;             /* of the sequencer, to the callback */
+    grobo_robot_task jobs[GROBO_ROBOT_JOBS];      /* where one runs, the first does */
+    grobo_robot_task *job;                        /* of jobs: whose step runs, else the first */
+    grobo_robot_request queue[GROBO_ROBOT_QUEUE]; /* the first is the oldest */
     unsigned queued;
     int slots_end; /* from here on all slots are free */
     grobo_robot_slot slots[GROBO_ROBOT_SLOTS];

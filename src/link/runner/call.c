@@ -209,28 +209,28 @@ static int64_t end_of(const grobo_runner *runner, int64_t timeout_us)
 }
 
 /* A call as its caller has it. */
-typedef struct call_wish {
+typedef struct call_request {
     grobo_runner_fn fn;
     void *arg;
     runner_job *job; /* arg, where fn waits for a job */
     int64_t timeout_us;
     bool urgent;
     bool users;
-} call_wish;
+} call_request;
 
-static int call_and_wait(grobo_runner *runner, const call_wish *wish)
+static int call_and_wait(grobo_runner *runner, const call_request *request)
 {
-    int64_t end_us = end_of(runner, wish->timeout_us);
+    int64_t end_us = end_of(runner, request->timeout_us);
     int result = GROBO_ERR_FULL;
 
     grobo_i_runner_lock(runner);
-    runner_slot *slot = take_slot(runner, wish->urgent ? RUNNER_SLOTS : GROBO_RUNNER_CALLS_MAX);
+    runner_slot *slot = take_slot(runner, request->urgent ? RUNNER_SLOTS : GROBO_RUNNER_CALLS_MAX);
     if (slot != NULL) {
-        hand_over(runner, slot, wish->fn, wish->arg);
-        slot->users = wish->users;
-        if (wish->job != NULL) {
-            wish->job->seen_losses = runner->losses;
-            wish->job->end_us = end_us;
+        hand_over(runner, slot, request->fn, request->arg);
+        slot->users = request->users;
+        if (request->job != NULL) {
+            request->job->seen_losses = runner->losses;
+            request->job->end_us = end_us;
         }
         result = wait_for(runner, slot, end_us);
     }
@@ -239,39 +239,39 @@ static int call_and_wait(grobo_runner *runner, const call_wish *wish)
 }
 
 /* These two are where a runner that is NULL is refused, for all public functions that come by. */
-static int wait_outside(grobo_runner *runner, const call_wish *wish)
+static int wait_outside(grobo_runner *runner, const call_request *request)
 {
     if (runner == NULL) {
         return GROBO_ERR_ARG;
     }
-    return grobo_i_runner_inside(runner) ? GROBO_ERR_STATE : call_and_wait(runner, wish);
+    return grobo_i_runner_inside(runner) ? GROBO_ERR_STATE : call_and_wait(runner, request);
 }
 
 /* In a callback at once, else handed over. */
-static int call(grobo_runner *runner, const call_wish *wish)
+static int call(grobo_runner *runner, const call_request *request)
 {
     if (runner == NULL) {
         return GROBO_ERR_ARG;
     }
     if (!grobo_i_runner_inside(runner)) {
-        return call_and_wait(runner, wish);
+        return call_and_wait(runner, request);
     }
     grobo_i_session_attend(runner->session);
-    return wish->fn(wish->arg, runner);
+    return request->fn(request->arg, runner);
 }
 
 int grobo_i_runner_call(grobo_runner *runner, grobo_runner_fn fn, void *arg)
 {
-    const call_wish wish = {.fn = fn, .arg = arg};
+    const call_request request = {.fn = fn, .arg = arg};
 
-    return call(runner, &wish);
+    return call(runner, &request);
 }
 
 int grobo_i_runner_wait(grobo_runner *runner, grobo_runner_fn fn, void *arg, int64_t timeout_us)
 {
-    const call_wish wish = {.fn = fn, .arg = arg, .timeout_us = timeout_us};
+    const call_request request = {.fn = fn, .arg = arg, .timeout_us = timeout_us};
 
-    return wait_outside(runner, &wish);
+    return wait_outside(runner, &request);
 }
 
 /* ---- jobs ------------------------------------------------------------------------------------
@@ -314,10 +314,10 @@ static int poll_job(void *arg, grobo_runner *runner)
 
 int grobo_i_runner_job(grobo_runner *runner, runner_job *job, int64_t timeout_us)
 {
-    const call_wish wish = {
+    const call_request request = {
         .fn = poll_job, .arg = job, .job = job, .timeout_us = timeout_us, .urgent = job->urgent};
 
-    return wait_outside(runner, &wish);
+    return wait_outside(runner, &request);
 }
 
 int grobo_runner_wait_job(grobo_runner *runner, int job, int64_t timeout_us)
@@ -339,9 +339,9 @@ int grobo_runner_wait_job(grobo_runner *runner, int job, int64_t timeout_us)
 
 int grobo_runner_call(grobo_runner *runner, grobo_runner_fn fn, void *arg)
 {
-    const call_wish wish = {.fn = fn, .arg = arg, .users = true};
+    const call_request request = {.fn = fn, .arg = arg, .users = true};
 
-    return fn != NULL ? call(runner, &wish) : GROBO_ERR_ARG;
+    return fn != NULL ? call(runner, &request) : GROBO_ERR_ARG;
 }
 
 /* With the lock: hands over without waiting. */

@@ -326,7 +326,7 @@ int grobo_i_rs30x_stored(const grobo_driver *self, void *ctx, grobo_stored_kind 
     return finish(self, size, exchange);
 }
 
-/* ---- reading the wish out of a raw frame ----------------------------------------------------- */
+/* ---- reading what a raw frame asks for ------------------------------------------------------ */
 
 /* Flags by which a servo does something with itself. */
 #define ACTS (GROBO_RS30X_FLASH | GROBO_RS30X_REBOOT | GROBO_RS30X_FACTORY)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What writing registers would do, and the wish in a frame that a user hands in. */
+/* What writing registers would do, and what a raw frame of a user asks for. */
 #include <math.h>
 #include <string.h>
 

@@ -11,7 +11,7 @@
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
-/* A mistake ends parsing, but not the wish for JSON that stands behind it. */
+/* A mistake ends parsing, but a --json behind it is still read. */
 static bool wants_json(int argc, char *const *argv)
 {
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
