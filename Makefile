@@ -208,7 +208,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-physics check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
+.PHONY: check-physics check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -340,6 +340,11 @@ check-cockpit: all ## the cockpit's page in Chromium (Playwright from PyPI, axe-
 	@GRCTL="$(abspath $(GRCTL))" PYTHON=$(BUILD)/cockpit/bin/python PICTURES="$(PICTURES)" \
 	    AXE=$(BUILD)/cockpit/node_modules/axe-core/axe.min.js BUILD="$(BUILD)" TEST_TIMEOUT_S=1200 \
 	    TEST_LOGS="$(BUILD)/logs/cockpit" tests/run.sh tests/cockpit/page.sh
+
+check-api: all ## what serve answers against docs/serve.openapi.json, by schemathesis (from PyPI)
+	-@python3 -m venv $(BUILD)/api && $(BUILD)/api/bin/pip install -q --disable-pip-version-check schemathesis==4.32.5
+	@GRCTL="$(abspath $(GRCTL))" SCHEMATHESIS="$(abspath $(BUILD)/api/bin/schemathesis)" BUILD="$(BUILD)" \
+	    TEST_TIMEOUT_S=1200 TEST_LOGS="$(BUILD)/logs/api" tests/run.sh tests/cockpit/api.sh
 
 cockpit-soak: all ## grctl serve with good and bad clients for MINUTES=60: its memory stays flat
 	@GRCTL="$(abspath $(GRCTL))" python3 tests/cockpit/soak.py $(or $(MINUTES),60)

@@ -31,6 +31,7 @@ stage_of() {
     wheel) echo check-wheel ;;
     roots) echo check-roots ;;
     cockpit) echo check-cockpit ;;
+    api) echo check-api ;;
     families) echo check-families ;;
     fleet) echo check-fleet ;;
     scan) echo check-scan ;;
@@ -41,7 +42,7 @@ stage_of() {
 }
 
 [ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts soak abi ports deb wheel roots \
-    cockpit families fleet scan stops matrix
+    cockpit api families fleet scan stops matrix
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done

@@ -9,6 +9,7 @@ has_jsonschema() {
 
 test_that "hosts, origins, tokens, methods that are refused" pages refusals
 test_that "what is too large or never whole is refused" pages sizes
+test_that "what is said twice, or in a way of its own, is refused in JSON" pages framing
 test_that "no path leads out of the folder" pages escapes
 test_that "beyond loopback everything needs the token" pages beyond_loopback
 test_that "the link leads to the page, wherever it listens" pages printed_links

@@ -352,11 +352,62 @@ def refusals():
         same(post([], "/stop", server.stop_port), 204, "and curl, with no content type")
 
 
+def framing():
+    """What a request says twice, or in a way of its own, is refused in JSON, with its connection."""
+    with Server() as server:
+        host = f"Host: 127.0.0.1:{server.port}\r\n"
+        fine = "Content-Length: 2\r\n"
+        for status, request in (
+                (400, f"POST /api/lease HTTP/1.1\r\n{host}{fine}{fine}\r\n{{}}"),
+                (400, f"POST /api/lease HTTP/1.1\r\n{host}{fine}Content-Length: 30\r\n\r\n{{}}"),
+                (400, f"POST /api/lease HTTP/1.1\r\n{host}Content-Length: 2, 2\r\n\r\n{{}}"),
+                (400, f"POST /api/lease HTTP/1.1\r\n{host}Content-Length: +2\r\n\r\n{{}}"),
+                (400, f"POST /api/lease HTTP/1.1\r\n{host}Content-Length: -2\r\n\r\n{{}}"),
+                (400, f"POST /api/lease HTTP/1.1\r\n{host}Content-Length:\r\n\r\n{{}}"),
+                (413, f"POST /api/lease HTTP/1.1\r\n{host}Content-Length: 99999999\r\n\r\n{{}}"),
+                (413, f"POST /api/lease HTTP/1.1\r\n{host}Content-Length: 1048577\r\n\r\n{{}}"),
+                (400, f"POST /api/lease HTTP/1.1\r\n{host}{fine}Transfer-Encoding: chunked\r\n\r\n"),
+                (501, f"POST /api/lease HTTP/1.1\r\n{host}Transfer-Encoding: gzip\r\n\r\n{{}}"),
+                (501, f"POST /api/lease HTTP/1.1\r\n{host}Transfer-Encoding: chunked, gzip\r\n\r\n"),
+                (417, f"POST /api/lease HTTP/1.1\r\n{host}{fine}Expect: 200-ok\r\n\r\n{{}}"),
+                (400, f"GET /api/state\r\n{host}\r\n"),
+                (400, f"GET /api/a b HTTP/1.1\r\n{host}\r\n"),
+                (400, f"GET\t/api/state HTTP/1.1\r\n{host}\r\n"),
+                (400, f" GET /api/state HTTP/1.1\r\n{host}\r\n"),
+                (400, f"GET /api/state HTTP/1.1\r\n{host}X: a\r\n folded\r\n\r\n"),
+                (400, f"GET /api/state HTTP/1.1\r\n{host}Content-Length : 2\r\n\r\n"),
+                (400, f"GET /api/state HTTP/1.1\r\n{host}: 2\r\n\r\n"),
+                (400, f"GET /api/state HTTP/1.1\r\n{host}nonsense\r\n\r\n"),
+                (400, f"GET /api/state HTTP/1.1\r\n{host}X: a\0b\r\n\r\n"),
+                (400, "\0\1\2\r\n\r\n"),
+                (505, f"GET /api/state HTTP/2.0\r\n{host}\r\n"),
+                (405, f"TRACE /api/state HTTP/1.1\r\n{host}\r\n"),
+                (405, f"QUERY /api/state HTTP/1.1\r\n{host}{fine}\r\n{{}}")):
+            head, _, body = raw(server.port, request.encode()).partition("\r\n\r\n")
+            same(int(head.split()[1]), status, request)
+            assert "Content-Type: application/json" in head, head
+            assert "Connection: close" in head, head
+            assert "Allow: GET\r\n" in head + "\r\n" or status != 405, head
+            assert json.loads(body)["error"]["message"], body
+        # Behind a request that is whole, nobody is asked before it is refused.
+        two = raw(server.port, f"GET /api/state HTTP/1.1\r\n{host}\r\nPOST /api/lease HTTP/1.1\r\n"
+                               f"{host}Content-Type: application/json\r\n{fine}{fine}\r\n{{}}".encode())
+        same([part.split()[0] for part in two.split("HTTP/1.1 ")[1:]], ["200", "400"])
+        # A stop whose length nobody can tell is carried out, and refused.
+        page = Page(server).take()
+        page.keep_beating()
+        page.target("move", angle_deg={"R_ELBOW_P": 40}, time_ms=3000)
+        page.wait("moving", lambda s: s["moving"])
+        raw(server.port, f"POST /api/stop HTTP/1.1\r\n{host}{fine}{fine}\r\n{{}}".encode())
+        page.wait("stopped", lambda s: s["stop"]["kind"] is not None)
+        page.fall_silent()
+
+
 def sizes():
     with Server() as server:
         host = f"Host: 127.0.0.1:{server.port}"
         text = raw(server.port, f"GET /api/state HTTP/1.1\r\n{host}\r\nX: {'y' * 9000}\r\n\r\n".encode())
-        same(text.split()[1], "400", "9 kB of header")
+        same(text.split()[1], "431", "9 kB of header")
         for path, size, wanted in (("/api/ik", 65 * 1024, 413), ("/api/ik", 2 * 1024 * 1024, 413),
                                    ("/api/preview", 65 * 1024, 400),
                                    ("/api/preview", 2 * 1024 * 1024, 413)):
@@ -695,7 +746,7 @@ def driving():
         no = expect(422, "limit", page.target, "move", angle_deg={"R_ELBOW_P": 120})
         same((no.error["joint"], no.error["name"], no.error["value"]), (16, "R_ELBOW_P", 120.0))
         expect(404, "noent", page.target, "play", motion="nothing.pseq")
-        expect(400, "notfound", page.target, "move", angle_deg={"R_ELBOW": 1})
+        expect(404, "notfound", page.target, "move", angle_deg={"R_ELBOW": 1})
         expect(400, "arg", page.target, "play", motion="greet.pseq", speed_pct=0)
         page.target("play", motion="greet.pseq", speed_pct=200, mirror=True)
         state = page.wait_played("playing")
@@ -760,7 +811,7 @@ def fields():
         same(no.error["message"], "torque: joints is missing; expected a list of names of joints "
                                   "or groups, or \"all\"")
         expect(400, "arg", page.post, "torque", **elbow)  # no sequence
-        expect(400, "notfound", page.target, "torque", joints=["R_ELBOW"], mode="off")
+        expect(404, "notfound", page.target, "torque", joints=["R_ELBOW"], mode="off")
         wrong = {
             "move": [{}, {"angle_deg": {}}, {"angle_deg": [0]}, {"angle_deg": {"CHEST_P": "1"}},
                      {"angle_deg": {"CHEST_P": None}}, {"pose": "sit"}, {"pose": None},
@@ -1514,7 +1565,7 @@ def motions():
                 put("new.pseq", bad, If_Match=new["etag"])
                 raise AssertionError(f"taken: {bad}")
             except Refused as no:
-                same(no.status, 400, str(no))
+                same(no.status, 422, str(no))
         status, headers, bytes_ = page.ask("GET", "/api/motions/new.pseq/file")
         same((status, headers["ETag"]), (200, new["etag"]))
         octets = {"Content-Type": "application/octet-stream", "If-None-Match": "*"}
@@ -1597,7 +1648,7 @@ def making():
             wanted = 3 if j["name"] == "CHEST_P" else was and was * j["mirror_sign"]
             same(made[2]["angle_deg"][j["joint"]], wanted, j["name"])
         same(made[2]["links"][0]["p_m"], [0, -0.033, 0.15])
-        expect(400, "arg", put, "c.pseq", {"keys": [{"time_ms": 0, "mirror": True}]},
+        expect(422, "arg", put, "c.pseq", {"keys": [{"time_ms": 0, "mirror": True}]},
                If_None_Match="*")
 
         # A target that is moved keeps its flags and keys of other programs; others stay.
@@ -1658,7 +1709,7 @@ def frames(page, put, content):
                       ("notfound", [{"time_ms": 0, "angle_deg": {"NOSE": 1}}]),
                       ("arg", [{"time_ms": 0, "angle_deg": {"CHEST_P": "x"}}]),
                       ("unsupported", [{"time_ms": 0, "links": []}])):
-        expect(400, code, put, "d.yaml", {**base, "keys": bad}, If_None_Match="*")
+        expect(422, code, put, "d.yaml", {**base, "keys": bad}, If_None_Match="*")
 
 
 def falls():
@@ -1702,10 +1753,11 @@ def ik():
         same([s["standing"] for s in lifted["body"]["soles"]], [False, True])
         far = page.post("ik", angle_deg=state["angle_deg"], handle="waist", p_m=[0, 0, 5])
         same((far["reached"], far["angle_deg"]), (False, [round(a, 4) for a in state["angle_deg"]]))
-        for bad in ({"handle": "nose"}, {"p_m": [0, 0]}, {"p_m": [0, 0, 1e9]},
-                    {"rotation": [1] * 9}, {"angle_deg": [0]}, {"angle_deg": ["x"] * 20}):
-            expect(400, "arg", page.post, "ik", **{"angle_deg": state["angle_deg"],
-                                                   "handle": "waist", "p_m": lower, **bad})
+        for status, bad in ((400, {"handle": "nose"}), (400, {"p_m": [0, 0]}),
+                            (422, {"p_m": [0, 0, 1e9]}), (422, {"rotation": [1] * 9}),
+                            (422, {"angle_deg": [0]}), (400, {"angle_deg": ["x"] * 20})):
+            expect(status, "arg", page.post, "ik", **{"angle_deg": state["angle_deg"],
+                                                      "handle": "waist", "p_m": lower, **bad})
 
 
 # ---- the interface -----------------------------------------------------------------------------

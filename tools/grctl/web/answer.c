@@ -140,7 +140,8 @@ void serve_refuse(serve *s, http_request *r, int error, const char *doing)
 void serve_refuse_said(http_request *r, int status, const app *a)
 {
     static const int statuses[] = {200, 409, 400, 422, 422};
-    bool missing = strcmp(a->failed, grobo_error_name(GROBO_ERR_NOENT)) == 0;
+    bool missing = strcmp(a->failed, grobo_error_name(GROBO_ERR_NOENT)) == 0 ||
+                   strcmp(a->failed, grobo_error_name(GROBO_ERR_NOTFOUND)) == 0;
     json_t *refusal = serve_refusal(a->failed, a->hushed);
     int found = status > 0 && status <= EXIT_SAFETY ? statuses[status] : 409;
     if (strcmp(a->failed, grobo_error_name(GROBO_ERR_TYPE)) == 0) {

@@ -121,7 +121,11 @@ static void expect(const field *f, char *text, size_t capacity)
         snprintf(text, capacity, "degrees by name of joint, {\"NAME\": 0.0}");
         break;
     case FIELD_NUMBERS:
-        snprintf(text, capacity, "a list of %.15g numbers", f->most);
+        if (f->least == f->most) {
+            snprintf(text, capacity, "a list of %.15g numbers", f->most);
+        } else {
+            snprintf(text, capacity, "a list of %.15g to %.15g numbers", f->least, f->most);
+        }
         break;
     case FIELD_LIST:
         snprintf(text, capacity, "a list");

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The HTTP side of `serve`: its two ports, requests as they come whole, replies. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,333 +18,15 @@
 #include "tools/grctl/cli/heap.h"
 #include "tools/grctl/os/net.h"
 #include "tools/grctl/web/head.h"
-#include "tools/grctl/web/http.h"
-
+#include "tools/grctl/web/http_own.h"
 enum {
-    IDLE_S = 5,          /* a silent connection, or half a request */
-    SEND_BYTES = 32768,  /* of the system for a stream: what a client may lag behind unseen */
-    SKIP_BYTES = 16384,  /* waiting for a stream's client: it misses the next state */
-    EVENT_BYTES = 65536, /* and the next event */
-    DROP_US = 3000000,   /* so long without reading */
-    SWEEP_US = 100000,
-    LISTENERS = 2,
-    SPARE = 8, /* accepted while others that were ended are going */
-    GUESTS = 2 * (HTTP_CONNECTIONS_MAX + SPARE)
+    IDLE_S = 5, /* a silent connection, or half a request */
+    SWEEP_US = 100000
 };
-/* A whole request comes within this time, however slowly. */
-#define REQUEST_US INT64_C(20000000)
-
-/* Who has made no whole request for so long may have to make room for who comes. */
-#define HALF_OPEN_US INT64_C(1000000)
-
-/* One of the two ports. */
-typedef struct port {
-    http *of;
-    struct evhttp *server;
-    struct evconnlistener *listeners[LISTENERS];
-    int n_listeners;
-    wall wall;
-} port;
-
-/*
- * A connection. libevent does not tell when one ends that never made a request: such a one is gone
- * when its socket is, or is that of another connection.
- */
-typedef struct guest {
-    port *at;                /* NULL: this place is free */
-    struct bufferevent *bev; /* for when it is heard or was just accepted, as it is there then */
-    const struct evbuffer *input;
-    struct evhttp_connection *connection; /* from the first request on */
-    evutil_socket_t fd;                   /* -1 until it is known */
-    char words[80];                       /* of its connection */
-    char address[64];                     /* "" on loopback, and until it is known */
-    int64_t heard_us;                     /* when it sent something, or came */
-    int64_t began_us;                     /* a request that is not whole, 0: none */
-    size_t head_bytes, got;               /* of the request that is not whole: kept, and came */
-    bool ended, judged;                   /* judged: its head is whole, and was looked at */
-} guest;
-
-typedef struct stream {
-    struct stream *next;
-    http *of;
-    struct evhttp_request *raw;
-    struct evhttp_connection *connection;
-    char address[64];
-    int64_t behind_us; /* since when it does not read, 0: it does */
-    bool ends;
-} stream;
-
-struct http {
-    http_config config;
-    port first, second;
-    guest guests[GUESTS];
-    char heads[GUESTS][HTTP_HEADER_BYTES + 1]; /* of requests that are not whole */
-    stream *streams;
-    http_request *waiting;
-    struct event *sweep, *reap, *greet;
-    int64_t second_us; /* the second in which changes are counted */
-    int changes;
-};
-
-/* ---- connections ----------------------------------------------------------------------------- */
-
-static int guests_of(const port *p, const char *address)
-{
-    int n = 0;
-    for (int i = 0; i < GUESTS; i++) {
-        const guest *g = &p->of->guests[i];
-        n += g->at == p && (!address || strcmp(g->address, address) == 0);
-    }
-    return n;
-}
-
-static guest *find_guest(http *h, const struct evbuffer *input,
-                         const struct evhttp_connection *connection)
-{
-    for (int i = 0; i < GUESTS; i++) {
-        guest *g = &h->guests[i];
-        if (g->at &&
-            ((input && g->input == input) || (connection && g->connection == connection))) {
-            return g;
-        }
-    }
-    return NULL;
-}
-
-static void open_door(port *p, bool open)
-{
-    for (int i = 0; i < p->n_listeners; i++) {
-        (void)(open ? evconnlistener_enable(p->listeners[i])
-                    : evconnlistener_disable(p->listeners[i]));
-    }
-}
-
-/* A request of it waits for its reply: true where that is a refusal which only lets it wait. */
-static bool is_waiting(const guest *g, bool *refused)
-{
-    for (const http_request *r = g->at->of->waiting; r; r = r->next) {
-        if (evhttp_request_get_connection(r->raw) == g->connection) {
-            *refused = r->refused_us != 0;
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool is_stream(const guest *g)
-{
-    for (const stream *s = g->at->of->streams; s; s = s->next) {
-        if (s->connection == g->connection) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* How well it can be spared; STAYS: it is served. */
-enum { STAYS, NEW, IDLE, WAITS_IN_VAIN };
-
-/*
- * One that had its reply and is kept for a next request may come again. One that has not made a
- * whole request for a second is spared first: it is half open.
- */
-static int spare(const guest *g, int64_t now_us)
-{
-    bool refused = false;
-    if (g->ended || g->fd < 0) {
-        return STAYS;
-    }
-    if (!g->connection || g->began_us) {
-        int64_t since_us = g->began_us ? g->began_us : g->heard_us;
-        return now_us - since_us > HALF_OPEN_US ? WAITS_IN_VAIN : NEW;
-    }
-    if (is_waiting(g, &refused)) {
-        return refused ? WAITS_IN_VAIN : STAYS;
-    }
-    struct bufferevent *bev = evhttp_connection_get_bufferevent(g->connection);
-    bool idle = !is_stream(g) && evbuffer_get_length(bufferevent_get_output(bev)) == 0;
-    return idle ? IDLE : STAYS;
-}
-
-/* The order in which guests make room: the address that has most, how well, how long. */
-static bool goes_before(const guest *a, const guest *b, int64_t now_us)
-{
-    int of_a = guests_of(a->at, a->address), of_b = guests_of(b->at, b->address);
-    int how_a = spare(a, now_us), how_b = spare(b, now_us);
-    int64_t since_a = a->began_us ? a->began_us : a->heard_us;
-    int64_t since_b = b->began_us ? b->began_us : b->heard_us;
-    return of_a != of_b ? of_a > of_b : how_a != how_b ? how_a > how_b : since_a < since_b;
-}
-
-/* The guest of a port that makes room first, of one address or of any (NULL). NULL: none can. */
-static guest *first_to_go(port *p, const char *address)
-{
-    int64_t now_us = grobo_now_us();
-    guest *first = NULL;
-    for (int i = 0; i < GUESTS; i++) {
-        guest *g = &p->of->guests[i];
-        bool asked = g->at == p && (!address || strcmp(g->address, address) == 0);
-        if (asked && spare(g, now_us) != STAYS && (!first || goes_before(g, first, now_us))) {
-            first = g;
-        }
-    }
-    return first;
-}
-
-/* Its socket is that of its connection still; one with a whole request says when it ends. */
-static bool is_there(const guest *g)
-{
-    char words[sizeof g->words];
-    return g->connection || g->fd < 0 ||
-           (net_connection(g->fd, words, sizeof words) && strcmp(words, g->words) == 0);
-}
-
-static void end_guest(guest *g)
-{
-    g->ended = true;
-    if (is_there(g)) {
-        net_end(g->fd); /* libevent sees that, and frees it */
-    }
-}
-
-/* Forgets those that have gone without a word. */
-static void forget_gone(port *p)
-{
-    for (int i = 0; i < GUESTS; i++) {
-        guest *g = &p->of->guests[i];
-        if (g->at == p && !is_there(g)) {
-            g->at = NULL;
-        }
-    }
-}
-
-static int served(const port *p)
-{
-    int n = 0;
-    for (int i = 0; i < GUESTS; i++) {
-        n += p->of->guests[i].at == p && !p->of->guests[i].ended;
-    }
-    return n;
-}
-
-/* There is a place for who comes next: nobody who has one without using it keeps it. */
-static void make_room(port *p)
-{
-    guest *g;
-    if (guests_of(p, NULL) >= HTTP_CONNECTIONS_MAX) {
-        forget_gone(p);
-    }
-    while (served(p) >= HTTP_CONNECTIONS_MAX && (g = first_to_go(p, NULL)) != NULL) {
-        end_guest(g);
-    }
-    open_door(p, served(p) < HTTP_CONNECTIONS_MAX &&
-                     guests_of(p, NULL) < HTTP_CONNECTIONS_MAX + SPARE);
-}
-
-static void sweep_guests(http *h)
-{
-    forget_gone(&h->first);
-    forget_gone(&h->second);
-    make_room(&h->first);
-    make_room(&h->second);
-}
-
-static guest *take_place(port *p, const struct evbuffer *input)
-{
-    guest *g = find_guest(p->of, input, NULL); /* of one that has gone: its memory is used again */
-    for (int i = 0; !g && i < GUESTS; i++) {
-        g = p->of->guests[i].at ? NULL : &p->of->guests[i];
-    }
-    if (g) {
-        *g = (guest){.at = p, .input = input, .fd = -1, .heard_us = grobo_now_us()};
-    }
-    return g;
-}
-
-/* Where it comes from, which is known from the moment after it was accepted. */
-static void name_guest(guest *g)
-{
-    g->fd = bufferevent_getfd(g->bev);
-    if (!net_connection(g->fd, g->words, sizeof g->words)) {
-        *g->words = '\0';
-    }
-    net_peer(g->fd, g->address, sizeof g->address);
-    if (*g->address && guests_of(g->at, g->address) > HTTP_ADDRESS_CONNECTIONS_MAX) {
-        guest *first = first_to_go(g->at, g->address);
-        end_guest(first ? first : g);
-    }
-}
-
-/* Right behind the accepting of connections: none of them has been read or freed. */
-static void on_greet(evutil_socket_t fd, short what, void *ctx)
-{
-    http *h = ctx;
-    (void)fd;
-    (void)what;
-    for (int i = 0; i < GUESTS; i++) {
-        if (h->guests[i].at && h->guests[i].fd < 0) {
-            name_guest(&h->guests[i]);
-        }
-    }
-    make_room(&h->first);
-    make_room(&h->second);
-}
-
-/* Whose request never gets whole. */
-static bool is_rude(guest *g)
-{
-    g->heard_us = grobo_now_us();
-    if (g->fd < 0) {
-        name_guest(g);
-    }
-    if (g->began_us == 0) {
-        g->began_us = g->heard_us;
-    }
-    return g->heard_us - g->began_us > REQUEST_US;
-}
-
-static void end_stream_of(http *h, const struct evhttp_connection *connection);
-static void hear_head(guest *g, const struct evbuffer *input, size_t added);
-
-/* A connection has sent something. */
-static void on_input(struct evbuffer *input, const struct evbuffer_cb_info *info, void *ctx)
-{
-    port *p = ctx;
-    guest *g = info->n_added > 0 ? find_guest(p->of, input, NULL) : NULL;
-    if (!g) {
-        return;
-    }
-    if (g->began_us == 0) {
-        g->head_bytes = g->got = 0;
-        g->judged = false;
-    }
-    if (is_rude(g)) {
-        end_guest(g);
-    }
-    hear_head(g, input, info->n_added);
-    if (g->connection) {
-        end_stream_of(p->of, g->connection); /* nobody would read it there */
-    }
-}
-
-/* At each connection that is accepted. Who comes when all places are taken waits in the system. */
-static struct bufferevent *on_connection(struct event_base *base, void *ctx)
-{
-    port *p = ctx;
-    struct bufferevent *bev = bufferevent_socket_new(base, -1, 0);
-    guest *g = bev ? take_place(p, bufferevent_get_input(bev)) : NULL;
-    if (g) {
-        g->bev = bev;
-        evbuffer_add_cb(bufferevent_get_input(bev), on_input, p);
-        event_active(p->of->greet, 0, 0);
-    }
-    make_room(p);
-    return bev;
-}
 
 /* ---- replies --------------------------------------------------------------------------------- */
 
-static void drop_request(http_request *r)
+void http_drop_request(http_request *r)
 {
     http_request **link = &r->server->waiting;
     while (*link != r) {
@@ -365,7 +48,7 @@ static wall_request as_wall(const http_request *r)
                           .headers = evhttp_request_get_input_headers(r->raw)};
 }
 
-static void add(const http_request *r, const char *name, const char *value)
+void http_add(const http_request *r, const char *name, const char *value)
 {
     evhttp_add_header(evhttp_request_get_output_headers(r->raw), name, value);
 }
@@ -380,19 +63,19 @@ static void add_policy(const http_request *r)
              "connect-src 'self' http://%s:%u; worker-src 'self'; manifest-src 'self'; "
              "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
              host ? host : "127.0.0.1", http_stop_port(r->server));
-    add(r, "Content-Security-Policy", text);
+    http_add(r, "Content-Security-Policy", text);
 }
 
 /* What every reply has. */
-static void add_headers(const http_request *r)
+void http_add_headers(const http_request *r)
 {
-    add(r, "X-Content-Type-Options", "nosniff");
-    add(r, "Referrer-Policy", "no-referrer");
-    add(r, "X-Frame-Options", "DENY");
-    add(r, "Cross-Origin-Opener-Policy", "same-origin");
+    http_add(r, "X-Content-Type-Options", "nosniff");
+    http_add(r, "Referrer-Policy", "no-referrer");
+    http_add(r, "X-Frame-Options", "DENY");
+    http_add(r, "Cross-Origin-Opener-Policy", "same-origin");
     /* Chromium takes two ports of an IP address for different sites, and then hides even that an
      * answer came; what a no-cors request sees of it is nothing but that. */
-    add(r, "Cross-Origin-Resource-Policy", r->second ? "cross-origin" : "same-origin");
+    http_add(r, "Cross-Origin-Resource-Policy", r->second ? "cross-origin" : "same-origin");
 }
 
 static void send_reply(http_request *r, int status, const void *bytes, size_t size)
@@ -405,15 +88,15 @@ static void send_reply(http_request *r, int status, const void *bytes, size_t si
     if (body) {
         evbuffer_free(body);
     }
-    drop_request(r);
+    http_drop_request(r);
 }
 
 void http_reply_text(http_request *r, int status, const char *text, size_t size)
 {
-    add_headers(r);
-    add(r, "Cache-Control", "no-store");
+    http_add_headers(r);
+    http_add(r, "Cache-Control", "no-store");
     if (text) {
-        add(r, "Content-Type", "application/json");
+        http_add(r, "Content-Type", "application/json");
     }
     send_reply(r, text ? status : 503, text, size);
 }
@@ -438,187 +121,35 @@ void http_refuse(http_request *r, int status, const char *code, const char *form
 
 void http_reply_empty(http_request *r)
 {
-    add_headers(r);
-    add(r, "Cache-Control", "no-store");
+    http_add_headers(r);
+    http_add(r, "Cache-Control", "no-store");
     send_reply(r, 204, NULL, 0);
 }
 
 void http_reply_content(http_request *r, const http_content *content)
 {
     const char *known = http_header(r, "If-None-Match");
-    add_headers(r);
-    add(r, "Cache-Control", content->lasts ? "max-age=31536000, immutable" : "no-cache");
+    http_add_headers(r);
+    http_add(r, "Cache-Control", content->lasts ? "max-age=31536000, immutable" : "no-cache");
     if (content->page) {
         add_policy(r);
     }
     if (content->etag) {
-        add(r, "ETag", content->etag);
+        http_add(r, "ETag", content->etag);
     }
     if (content->etag && known && strstr(known, content->etag)) {
         send_reply(r, 304, NULL, 0);
         return;
     }
     if (content->early && *content->early) {
-        add(r, "Link", content->early);
+        http_add(r, "Link", content->early);
     }
-    add(r, "Content-Type", content->type);
-    add(r, "Vary", "Accept-Encoding");
+    http_add(r, "Content-Type", content->type);
+    http_add(r, "Vary", "Accept-Encoding");
     if (content->gzip) {
-        add(r, "Content-Encoding", "gzip");
+        http_add(r, "Content-Encoding", "gzip");
     }
     send_reply(r, 200, content->bytes, content->size);
-}
-
-/* ---- streams --------------------------------------------------------------------------------- */
-
-static struct evbuffer *waiting_bytes(const stream *s)
-{
-    return bufferevent_get_output(evhttp_connection_get_bufferevent(s->connection));
-}
-
-/* A stream whose connection is gone, by the client or by us. */
-static void forget_stream(http *h, const struct evhttp_connection *connection)
-{
-    for (stream **link = &h->streams; *link; link = &(*link)->next) {
-        stream *s = *link;
-        if (s->connection == connection) {
-            *link = s->next;
-            if (!evhttp_request_get_connection(s->raw)) { /* libevent gave it to us */
-                evhttp_request_free(s->raw);
-            }
-            free(s);
-            return;
-        }
-    }
-}
-
-/* Of every connection that has made a request. */
-static void on_closed(struct evhttp_connection *connection, void *ctx)
-{
-    http *h = ctx;
-    guest *g = find_guest(h, NULL, connection);
-    port *p = g ? g->at : NULL;
-    if (g) {
-        g->at = NULL;
-    }
-    forget_stream(h, connection);
-    if (p) {
-        make_room(p);
-    }
-}
-
-/* Not from within its own callbacks. */
-static void end_stream(stream *s)
-{
-    s->ends = true;
-    event_active(s->of->reap, 0, 0);
-}
-
-static void end_stream_of(http *h, const struct evhttp_connection *connection)
-{
-    for (stream *s = h->streams; s; s = s->next) {
-        if (s->connection == connection) {
-            end_stream(s);
-        }
-    }
-}
-
-static void reap_streams(http *h)
-{
-    stream *s = h->streams;
-    while (s) {
-        stream *next = s->next;
-        if (s->ends) {
-            evhttp_connection_free(s->connection); /* which calls on_closed() */
-        }
-        s = next;
-    }
-}
-
-static void on_reap(evutil_socket_t fd, short what, void *ctx)
-{
-    (void)fd;
-    (void)what;
-    reap_streams(ctx);
-}
-
-static int streams_of(const http *h, const char *address)
-{
-    int n = 0;
-    for (const stream *s = h->streams; s; s = s->next) {
-        n += !address || strcmp(s->address, address) == 0;
-    }
-    return n;
-}
-
-int http_streams(const http *server)
-{
-    return streams_of(server, NULL);
-}
-
-static void send_chunk(stream *s, const char *text, size_t size)
-{
-    struct evbuffer *chunk = evbuffer_new();
-    if (chunk && evbuffer_add(chunk, text, size) == 0) {
-        evhttp_send_reply_chunk(s->raw, chunk);
-    } else {
-        end_stream(s); /* its page asks for another one, which misses nothing */
-    }
-    if (chunk) {
-        evbuffer_free(chunk);
-    }
-}
-
-void http_reply_stream(http_request *r, const char *first)
-{
-    http *h = r->server;
-    struct evhttp_connection *connection = evhttp_request_get_connection(r->raw);
-    stream *s = connection ? calloc(1, sizeof *s) : NULL;
-    if (!s) {
-        http_refuse(r, 503, "nomem", "no memory for a stream");
-        return;
-    }
-    struct bufferevent *bev = evhttp_connection_get_bufferevent(connection);
-    net_peer(bufferevent_getfd(bev), s->address, sizeof s->address);
-    if (http_streams(h) >= HTTP_STREAMS_MAX ||
-        (*s->address && streams_of(h, s->address) >= HTTP_ADDRESS_STREAMS_MAX)) {
-        free(s);
-        http_refuse(r, 503, "too_many", "too many streams are open");
-        return;
-    }
-    s->of = h;
-    s->raw = r->raw;
-    s->connection = connection;
-    s->next = h->streams;
-    h->streams = s;
-    add_headers(r);
-    add(r, "Cache-Control", "no-store");
-    add(r, "Content-Type", "text/event-stream");
-    net_keep_little(bufferevent_getfd(bev), SEND_BYTES); /* what waits there is the past */
-    evhttp_send_reply_start(r->raw, 200, NULL);
-    if (evbuffer_get_length(bufferevent_get_input(bev)) > 0) { /* it came with the request */
-        end_stream(s);
-    }
-    send_chunk(s, first, strlen(first));
-    drop_request(r);
-}
-
-void http_send(http *server, const char *text, size_t size, bool may_miss)
-{
-    int64_t now_us = grobo_now_us();
-    for (stream *s = server->streams; s; s = s->next) {
-        size_t waits = evbuffer_get_length(waiting_bytes(s));
-        if (waits <= (may_miss ? SKIP_BYTES : EVENT_BYTES)) {
-            send_chunk(s, text, size);
-        }
-        if (waits <= SKIP_BYTES) {
-            s->behind_us = 0;
-        } else if (s->behind_us == 0) {
-            s->behind_us = now_us;
-        } else if (now_us - s->behind_us > DROP_US) {
-            end_stream(s);
-        }
-    }
 }
 
 /* ---- requests -------------------------------------------------------------------------------- */
@@ -680,8 +211,29 @@ static bool is_flood(http *h)
     return ++h->changes > HTTP_CHANGES_PER_S;
 }
 
+/* The methods that a path has, as the header Allow lists them. */
+static void add_methods(const http_request *r)
+{
+    static const char *const methods[] = {"GET", "POST", "PUT"};
+    char text[32] = "";
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        http_request other = *r;
+        wall_rule rule = WALL_PAGE;
+        snprintf(other.method, sizeof other.method, "%s", methods[i]);
+        if (r->server->config.rule(r->server->config.ctx, &other, &rule) &&
+            strcmp(wall_method(rule), methods[i]) == 0) {
+            size_t n = strlen(text);
+            snprintf(text + n, sizeof text - n, "%s%s", n ? ", " : "", methods[i]);
+        }
+    }
+    http_add(r, "Allow", text);
+}
+
 static void refuse(http_request *r, wall_answer no)
 {
+    if (no.status == 405) {
+        add_methods(r);
+    }
     http_refuse(r, no.status, no.code, "%s", no.message);
 }
 
@@ -690,7 +242,9 @@ static wall_answer judge(http_request *r, wall_rule *rule)
 {
     const wall *w = &port_of(r)->wall;
     wall_request q = as_wall(r);
-    wall_answer no = wall_check_source(w, &q);
+    wall_answer no = head_is_framed(q.headers)
+                         ? wall_check_source(w, &q)
+                         : (wall_answer){400, "syntax", "the length of the body is not clear"};
     if (!no.status && (!head_split(q.uri, r->path, r->query) ||
                        !r->server->config.rule(r->server->config.ctx, r, rule))) {
         no = (wall_answer){404, "notfound", "there is no such path"};
@@ -710,62 +264,6 @@ static wall_answer judge_amount(http_request *r, wall_rule rule)
         return (wall_answer){429, "too_many", "more than 100 requests a second"};
     }
     return (wall_answer){0};
-}
-
-/* ---- a stop before its body ------------------------------------------------------------------ */
-
-/* A stop that comes from where it may come. */
-static bool may_stop(http_request *r, const char *uri, struct evkeyvalq *headers)
-{
-    const wall *w = &port_of(r)->wall;
-    wall_request q = {.method = "POST", .uri = uri, .headers = headers};
-    wall_rule rule = WALL_PAGE;
-    return wall_check_source(w, &q).status == 0 && head_split(uri, r->path, r->query) &&
-           r->server->config.rule(r->server->config.ctx, r, &rule) && rule == WALL_STOP &&
-           (!w->open ||
-            wall_check_token(w, evhttp_find_header(headers, "X-Grobo-Token")).status == 0);
-}
-
-static void judge_head(guest *g, char *text, size_t body_bytes)
-{
-    http *h = g->at->of;
-    struct evkeyvalq headers = {.tqh_first = NULL};
-    http_request r = {.server = h, .second = g->at == &h->second, .method = "POST"};
-    char *uri = NULL;
-    headers.tqh_last = &headers.tqh_first;
-    if (head_read(text, &uri, &headers) && !head_has_body(&headers, body_bytes) &&
-        may_stop(&r, uri, &headers)) {
-        h->config.early(h->config.ctx, &r);
-    }
-    evhttp_clear_headers(&headers);
-}
-
-/*
- * Has what came of a request beside libevent, which hands over nothing before the body is there and
- * refuses what it cannot read. A stop needs no body.
- */
-static void hear_head(guest *g, const struct evbuffer *input, size_t added)
-{
-    http *h = g->at->of;
-    char *text = h->heads[g - h->guests];
-    size_t take = HTTP_HEADER_BYTES - g->head_bytes, length = evbuffer_get_length(input);
-    struct evbuffer_ptr at;
-    g->got += added;
-    take = take < added ? take : added;
-    if (g->judged || !h->config.early || added > length ||
-        evbuffer_ptr_set((struct evbuffer *)(uintptr_t)input, &at, length - added,
-                         EVBUFFER_PTR_SET) < 0 ||
-        evbuffer_copyout_from((struct evbuffer *)(uintptr_t)input, &at, text + g->head_bytes,
-                              take) < 0) {
-        return;
-    }
-    g->head_bytes += take;
-    text[g->head_bytes] = '\0';
-    size_t size = head_end(text);
-    g->judged = size > 0 || g->head_bytes == HTTP_HEADER_BYTES;
-    if (size > 0) {
-        judge_head(g, text, g->got - size);
-    }
 }
 
 /* ---- whole requests -------------------------------------------------------------------------- */
@@ -788,23 +286,10 @@ static void serve_or_refuse(http_request *r)
     }
 }
 
-/* The connection has a whole request; from now on libevent tells when it ends. */
-static void know_guest(port *p, struct evhttp_connection *connection)
-{
-    const struct evbuffer *input =
-        bufferevent_get_input(evhttp_connection_get_bufferevent(connection));
-    guest *g = find_guest(p->of, input, NULL);
-    if (g) {
-        g->connection = connection;
-        g->began_us = 0;
-    }
-    evhttp_connection_set_closecb(connection, on_closed, p->of);
-}
-
 static void on_request(struct evhttp_request *raw, void *ctx)
 {
     port *p = ctx;
-    know_guest(p, evhttp_request_get_connection(raw));
+    guests_know(p, evhttp_request_get_connection(raw));
     http_request *r = calloc(1, sizeof *r);
     if (!r) {
         evhttp_send_reply(raw, 503, NULL, NULL);
@@ -816,6 +301,9 @@ static void on_request(struct evhttp_request *raw, void *ctx)
     r->next = p->of->waiting;
     p->of->waiting = r;
     snprintf(r->method, sizeof r->method, "%s", head_method((int)evhttp_request_get_command(raw)));
+    if (!*r->method || !head_is_framed(evhttp_request_get_input_headers(raw))) {
+        http_add(r, "Connection", "close"); /* what libevent left of a body is no next request */
+    }
     serve_or_refuse(r);
 }
 
@@ -840,7 +328,7 @@ static void on_sweep(evutil_socket_t fd, short what, void *ctx)
     (void)fd;
     (void)what;
     answer_late(ctx);
-    sweep_guests(ctx);
+    guests_sweep(ctx);
 }
 
 static bool listen_at(port *p, const char *address, uint16_t number)
@@ -861,7 +349,7 @@ static bool open_port(http *h, port *p, uint16_t number)
     if (!p->server) {
         return false;
     }
-    evhttp_set_bevcb(p->server, on_connection, p);
+    evhttp_set_bevcb(p->server, guests_accept, p);
     evhttp_set_gencb(p->server, on_request, p);
     evhttp_set_allowed_methods(p->server, 0xffff); /* the wall has its own answer to others */
     evhttp_set_max_headers_size(p->server, HTTP_HEADER_BYTES);
@@ -922,8 +410,8 @@ int http_new(const http_config *config, http **server, const char **complaint)
     }
     h->config = *config;
     h->sweep = event_new(config->base, -1, EV_PERSIST, on_sweep, h);
-    h->reap = event_new(config->base, -1, 0, on_reap, h);
-    h->greet = event_new(config->base, -1, 0, on_greet, h);
+    h->reap = event_new(config->base, -1, 0, streams_on_reap, h);
+    h->greet = event_new(config->base, -1, 0, guests_name, h);
     if (!h->sweep || !h->reap || !h->greet || event_add(h->sweep, &period) != 0) {
         http_free(h);
         return GROBO_ERR_NOMEM;
@@ -946,10 +434,7 @@ void http_free(http *server)
         return;
     }
     server->first.n_listeners = server->second.n_listeners = 0; /* they go before the connections */
-    for (stream *s = server->streams; s; s = s->next) {
-        s->ends = true;
-    }
-    reap_streams(server);
+    streams_free(server);
     if (server->first.server) {
         evhttp_free(server->first.server);
     }
@@ -957,7 +442,7 @@ void http_free(http *server)
         evhttp_free(server->second.server);
     }
     while (server->waiting) {
-        drop_request(server->waiting);
+        http_drop_request(server->waiting);
     }
     if (server->sweep) {
         event_free(server->sweep);

@@ -597,7 +597,7 @@ static grobo_motion *edited(ask *q, const json_t *edit, const char *name, const 
         error =
             edit_apply(edit, app_model(q->l->a), base, grobo_motion_format_of_path(q->name), &made);
         if (error) {
-            refuse(q, error == GROBO_ERR_NOMEM ? 503 : 400, grobo_error_name(error),
+            refuse(q, error == GROBO_ERR_NOMEM ? 503 : 422, grobo_error_name(error),
                    made.complaint);
         }
     }

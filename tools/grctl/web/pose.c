@@ -345,7 +345,7 @@ void pose_ik(serve *s, http_request *r, const json_t *body)
            pose_read_placement(json_object_get(body, "p_m"), json_object_get(body, "rotation"),
                                handle);
     if (!fine) {
-        http_refuse(r, 400, "arg",
+        http_refuse(r, 422, "arg",
                     "ik: angle_deg has all joints, handle is right_foot, left_foot or waist, p_m "
                     "and rotation are where it shall be");
         return;

@@ -150,14 +150,14 @@ static bool is_type_allowed(const wall_request *r, wall_rule rule)
     return false;
 }
 
-static const char *method_of(wall_rule rule)
+const char *wall_method(wall_rule rule)
 {
     return rule == WALL_PAGE || rule == WALL_READ ? "GET" : rule == WALL_SAVE ? "PUT" : "POST";
 }
 
 wall_answer wall_check_right(const wall *w, const wall_request *r, wall_rule rule)
 {
-    if (!r->method || strcmp(r->method, method_of(rule)) != 0) {
+    if (!r->method || strcmp(r->method, wall_method(rule)) != 0) {
         return refuse(405, "method", "this method is not for this path");
     }
     if (!is_type_allowed(r, rule)) {

@@ -54,6 +54,8 @@ typedef struct wall_answer {
 wall_answer wall_check_source(const wall *w, const wall_request *r);
 /* Method, content type, token. */
 wall_answer wall_check_right(const wall *w, const wall_request *r, wall_rule rule);
+/* The one method of what has this rule. */
+const char *wall_method(wall_rule rule);
 /* A token that stood elsewhere than in its header. */
 wall_answer wall_check_token(const wall *w, const char *token);
 
