@@ -4,19 +4,31 @@
 . tests/support/cli.sh
 own_sim
 
-# Opens the simulator as any program does, and writes bytes: "FA AF 01", "wait 30" pauses for 30 ms.
+# Opens the simulator as any program does, and writes bytes: "FA AF 01"; "wait 30" pauses for 30 ms,
+# "reply 8" reads a reply of 8 bytes.
 cat >"$work/client.py" <<'PY'
-import os, sys, time, tty
+import os, select, sys, time, tty
 fd = os.open(sys.argv[1], os.O_RDWR | os.O_NOCTTY)
 tty.setraw(fd)
 for what in sys.argv[2:]:
     if what.startswith("wait "):
         time.sleep(float(what[5:]) / 1e3)
+    elif what.startswith("reply "):
+        wanted = int(what[6:])
+        while wanted > 0 and select.select([fd], [], [], 30)[0]:
+            wanted -= len(os.read(fd, wanted))
     else:
         os.write(fd, bytes.fromhex(what))
 PY
 
-# strict OPTIONS --- BYTES...: the status when it is ended, the lines of its clients' offences.
+# offended: the simulator has printed an offence.
+offended() {
+    grep -q '^grctl: sim: robot ' "$work/sim.log"
+}
+
+# strict OPTIONS --- BYTES...: the status when it is ended, the lines of its clients' offences. Where
+# $awaits is set, such a line is waited for.
+awaits=
 strict() {
     strict_options=
     while [ "$1" != --- ]; do
@@ -27,6 +39,7 @@ strict() {
     # shellcheck disable=SC2086 # options are words
     start_sim --strict $strict_options
     python3 "$work/client.py" "$robot" "$@" "wait 60"
+    [ -z "$awaits" ] || wait_for offended
     kill -s TERM "$sim_pid"
     wait "$sim_pid"
     strict_status=$?
@@ -57,13 +70,18 @@ t() {
     code=$2
     bytes=$3
     shift 3
+    case $code in
+    rubbish | cut) awaits= ;; # told when the simulator ends
+    *) awaits=yes ;;
+    esac
     # shellcheck disable=SC2086 # options are words
     strict $chain --- "$@"
+    awaits=
     test_that "$name" offends "$code" "$bytes"
 }
 
 # shellcheck disable=SC2086 # options are words
-strict $chain --- 'FA AF 01 0F 2A 02 00 26' 'wait 30' 'FA AF 01 00 1E 04 01 84 03 0A 00 97' \
+strict $chain --- 'FA AF 01 0F 2A 02 00 26' 'reply 10' 'FA AF 01 00 1E 04 01 84 03 0A 00 97' \
     'wait 30' 'FA AF 01 40 FF 00 00 BE' 'wait 30' 'FA AF 01 0F 2A 02 00 26'
 faultless() {
     cat "$work/out"
@@ -129,7 +147,7 @@ stop_sim
 
 chain='--robot so101'
 # shellcheck disable=SC2086 # options are words
-strict $chain --- 'FF FF 01 04 02 38 02 BE' 'wait 30' 'FF FF 01 05 03 2A 00 08 C4'
+strict $chain --- 'FF FF 01 04 02 38 02 BE' 'reply 8' 'FF FF 01 05 03 2A 00 08 C4' 'reply 6'
 test_that "Feetech: a read and a goal" faultless
 t 'Feetech: a wrong sum' sum 'FF FF 01 04 02 38 02 BF$' 'FF FF 01 04 02 38 02 BF'
 t 'Feetech: a read-only register' range 'FF FF 01 05 03 38 00 08 B6$' 'FF FF 01 05 03 38 00 08 B6'
@@ -150,7 +168,7 @@ t 'what no MX-28 has' range 'FF FF 01 05 03 1E 30 75 33$' 'FF FF 01 05 03 1E 30 
 test_that 'and its own range' says '30000 .*outside -28672\.\.28672'
 # An id that was given while it ran goes with the model.
 # shellcheck disable=SC2086
-strict $chain --- 'FF FF 01 04 03 03 07 ED' 'wait 30' 'FF FF 07 05 03 1E C4 09 05'
+strict $chain --- 'FF FF 01 04 03 03 07 ED' 'reply 6' 'FF FF 07 05 03 1E C4 09 05' 'reply 6'
 test_that "by the id that it was given" faultless
 test_that "two families on a line" fails 2 'knows one family on a line' \
     "$GRCTL" sim --strict --servo 1=XL330-M288,2=STS3215

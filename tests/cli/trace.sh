@@ -11,7 +11,7 @@ frames() {
 
 # A busy machine may make the host ask again.
 status_is_traced() {
-    "$GRCTL" -d sim --timeout 500 --trace "$work/status" status >/dev/null || return 1
+    "$GRCTL" -d sim --timeout 5000 --trace "$work/status" status >/dev/null || return 1
     [ "$(frames "$work/status" ' host .*check the board; reply: ACK')" -ge 1 ] &&
         [ "$(frames "$work/status" ' robot .*ACK; .* ms after its request')" -ge 1 ] &&
         [ "$(frames "$work/status" ' host .*read No.30-53 of servo')" -ge 20 ] &&
