@@ -32,9 +32,13 @@ begin() {
     } &
     exec 8>"$work/answers"
 }
-# asked N PATTERN: the N-th line like that has come.
+# asked N PATTERN: the N-th line like that has come; none comes behind the end.
 asked() {
-    wait_for asked_now "$1" "$2" || { echo "no $1 of '$2' in:"; cat "$work/asked"; return 1; }
+    wait_for asked_or_ended "$1" "$2"
+    asked_now "$1" "$2" || { echo "no $1 of '$2' in:"; cat "$work/asked"; return 1; }
+}
+asked_or_ended() {
+    asked_now "$1" "$2" || [ -s "$work/status" ]
 }
 asked_now() {
     [ "$(grep -c -e "$2" "$work/asked")" -ge "$1" ]
