@@ -26,8 +26,8 @@ offended() {
     grep -q '^grctl: sim: robot ' "$work/sim.log"
 }
 
-# strict OPTIONS --- BYTES...: the status when it is ended, the lines of its clients' offences. Where
-# $awaits is set, such a line is waited for.
+# strict OPTIONS --- BYTES...: the status when it is ended, the lines of offences. Where $awaits is
+# set, such a line is waited for.
 awaits=
 strict() {
     strict_options=
