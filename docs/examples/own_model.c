@@ -11,11 +11,12 @@
         .motor = (i) + 1, .mirror = (i), .mirror_sign = 1                                          \
     }
 static const grobo_joint joints[] = {JOINT("PAN", 0, 1.5), JOINT("TILT", 1, 0.8)};
-static const grobo_model model = {.name = "HEAD", .joints = joints, .n_joints = 2};
+static const grobo_model model =
+    GROBO_TABLE(grobo_model, .name = "HEAD", GROBO_MODEL_JOINTS(joints), .n_joints = 2);
 
 int main(int argc, char **argv)
 {
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_posture target;
     grobo_runner *runner;
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,

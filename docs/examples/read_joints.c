@@ -23,7 +23,7 @@ int main(int argc, char **argv)
     for (int j = 0; result >= 0 && j < model->n_joints; j++) {
         double angle_deg;
         if (grobo_posture_get_deg(&posture, j, &angle_deg) >= 0) {
-            printf("%-12s %7.1f deg\n", model->joints[j].name, angle_deg);
+            printf("%-12s %7.1f deg\n", grobo_model_joint(model, j)->name, angle_deg);
         }
     }
     if (result < 0) {

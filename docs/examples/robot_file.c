@@ -9,7 +9,7 @@ int main(int argc, char **argv)
     const char *path = argc > 1 ? argv[1] : "src/robots/so101.yaml";
     grobo_robot_def *def;
     grobo_robot_sim sim;
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_runner *runner = NULL;
     if (grobo_robot_def_read_file(path, NULL, NULL, &def) < 0 ||
         grobo_robot_def_driver(def, def->wiring, &driver) < 0 ||

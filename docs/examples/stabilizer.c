@@ -18,7 +18,7 @@ static int keep_level(const grobo_driver *self, void *ctx, const grobo_posture *
 int main(void)
 {
     const grobo_robot_def *def = NULL;
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_robot_sim sim;
     grobo_runner *arm = NULL;
     grobo_posture at = {.n_joints = 6, .set = 0xE, .angle_rad = {0, 0.3, 0.2, 0}};

@@ -65,6 +65,14 @@
 #define GROBO_DRIVERS_PLAIN 0
 #endif
 
+/**
+ * 1 in a firmware whose drivers, models and protocols are compiled with the core: these tables keep
+ * no sizes, and none is looked at. See GROBO_TABLE() (types.h).
+ */
+#ifndef GROBO_TABLES_FIXED
+#define GROBO_TABLES_FIXED 0
+#endif
+
 /** Motions that may wait behind the one being played. */
 #ifndef GROBO_QUEUE_MAX
 #define GROBO_QUEUE_MAX 8

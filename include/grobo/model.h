@@ -14,7 +14,7 @@
 
 GROBO_BEGIN_DECLS
 
-/** One joint and the servo that moves it. */
+/** One joint and the servo that moves it. grobo_model.joint_size is the size of one. */
 typedef struct grobo_joint {
     const char *name;         /**< "R_KNEE_P" */
     double min_rad;           /**< lower limit of the angle */
@@ -55,8 +55,15 @@ typedef struct grobo_group {
 
 /** A robot's table. Borrowed by whatever is given one: it must outlive its users. */
 typedef struct grobo_model {
+#if !GROBO_TABLES_FIXED
+    size_t size; /**< GROBO_TABLE() */
+#endif
     const char *name;          /**< "GR001" */
-    const grobo_joint *joints; /**< n_joints of them, in joint order */
+    const grobo_joint *joints; /**< n_joints of them, in joint order; GROBO_MODEL_JOINTS() sets them
+                                    with their size. grobo_model_joint() reads one */
+#if !GROBO_TABLES_FIXED
+    size_t joint_size; /**< sizeof(grobo_joint), as the program was compiled */
+#endif
     const grobo_group *groups; /**< n_groups of them; the index is the seed's group number */
     uint8_t n_joints;          /**< 1..GROBO_JOINTS_MAX */
     uint8_t n_groups;          /**< may be 0 */
@@ -73,11 +80,27 @@ typedef struct grobo_model {
     const char *const *alike;
 } grobo_model;
 
+/** Initializes the joints of a model, in GROBO_TABLE(grobo_model, ...): an array, or a pointer. */
+#if GROBO_TABLES_FIXED
+#define GROBO_MODEL_JOINTS(array) .joints = (array)
+#elif !defined(__cplusplus) || __cplusplus >= 202002L
+#define GROBO_MODEL_JOINTS(array) .joints = (array), .joint_size = sizeof(grobo_joint)
+#else
+#define GROBO_MODEL_JOINTS(array) (array), sizeof(grobo_joint)
+#endif
+
 /**
- * Checks a table: counts within caps, names present and unique, motors unique and within
- * 0..GROBO_SERVO_ID_MAX (its family may have fewer: grobo_driver_check()), limits finite with
- * min <= init <= max, speed > 0, mirrors pairing up with equal signs, a finite zero, a gear that is
- * not negative, a torque limit of at most 100, a slack within its range.
+ * A joint of a model. A program must not index `joints` of a model that the library made: a library
+ * of another version has larger ones.
+ * @param joint 0..n-1. @return NULL where there is none. Thread safe.
+ */
+GROBO_API const grobo_joint *grobo_model_joint(const grobo_model *model, int joint);
+
+/**
+ * Checks a table: its sizes (GROBO_TABLE()), counts within caps, names present and unique, motors
+ * unique and within 0..GROBO_SERVO_ID_MAX (its family may have fewer: grobo_driver_check()), limits
+ * finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs, a finite zero, a
+ * gear that is not negative, a torque limit of at most 100, a slack within its range.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
 GROBO_API int grobo_model_check(const grobo_model *model);

@@ -163,6 +163,7 @@ GROBO_API int grobo_robot_def_body(const grobo_robot_def *def, grobo_robot_body 
 /**
  * Fills a driver for a robot.
  * @param def borrowed by the driver
+ * @param[in,out] driver GROBO_TABLE_INIT(grobo_driver)
  * @return 0, GROBO_ERR_ARG, or GROBO_ERR_UNSUPPORTED: its servos cannot be wired so
  */
 GROBO_API int grobo_robot_def_driver(const grobo_robot_def *def, grobo_wiring wiring,

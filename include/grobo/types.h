@@ -58,6 +58,40 @@
     }
 #endif
 
+/**
+ * A table that the library borrows and does not copy (grobo_driver, grobo_model, grobo_protocol),
+ * with its size as the program was compiled:
+ * @code
+ *   static const grobo_model model = GROBO_TABLE(grobo_model, .name = "HEAD",
+ *                                                GROBO_MODEL_JOINTS(joints), .n_joints = 2);
+ *   grobo_driver driver = GROBO_TABLE_INIT(grobo_driver); // for what a function fills in
+ * @endcode
+ * The library reads a member that lies behind the size of an older program's table as zero. With
+ * GROBO_ERR_ARG it refuses a size that no version had (0: not initialised), and a table of a newer
+ * program that sets a member which the library does not know. Where GROBO_TABLES_FIXED is set,
+ * tables have no size, and this is a plain initializer.
+ */
+#if GROBO_TABLES_FIXED
+#define GROBO_TABLE(type, ...)                                                                     \
+    {                                                                                              \
+        __VA_ARGS__                                                                                \
+    }
+#ifdef __cplusplus
+#define GROBO_TABLE_INIT(type) type()
+#else
+#define GROBO_TABLE_INIT(type)                                                                     \
+    {                                                                                              \
+        0                                                                                          \
+    }
+#endif
+#else
+#define GROBO_TABLE(type, ...)                                                                     \
+    {                                                                                              \
+        GROBO_SIZED(type), __VA_ARGS__                                                             \
+    }
+#define GROBO_TABLE_INIT(type) GROBO_INIT(type)
+#endif
+
 /** No deadline: later than any time. */
 #define GROBO_NEVER_US INT64_MAX
 

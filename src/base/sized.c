@@ -47,3 +47,23 @@ bool grobo_i_sized_give(void *to, const void *from, size_t from_bytes)
     memcpy((uint8_t *)to + sizeof size, (const uint8_t *)from + sizeof size, most - sizeof size);
     return true;
 }
+
+bool grobo_i_table_fits(const void *table, size_t size, size_t known, size_t least)
+{
+    const uint8_t *bytes = table;
+    bool fits = size >= least && size <= SIZED_MAX_BYTES;
+
+    for (size_t i = known; fits && i < size; i++) {
+        fits = bytes[i] == 0;
+    }
+    return fits;
+}
+
+void grobo_i_table_copy(void *to, size_t to_bytes, const void *from, size_t from_bytes)
+{
+    size_t most = to_bytes < from_bytes ? to_bytes : from_bytes;
+
+    memcpy((uint8_t *)to + sizeof to_bytes, (const uint8_t *)from + sizeof to_bytes,
+           most - sizeof to_bytes);
+    memset((uint8_t *)to + most, 0, to_bytes - most);
+}

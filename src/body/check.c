@@ -6,6 +6,7 @@
 #include "src/body/body.h"
 #include "src/body/polygon.h"
 #include "src/body/vec.h"
+#include "src/model/joint.h"
 
 #define SLIP_DEFAULT_M 1e-3
 /* A limit is kept when the angle rounded to the wire's 0.1 degree keeps it. */
@@ -108,7 +109,7 @@ static void check_joints(struct checking *now, const struct moment *at, const st
     const double t_s = at->report.time_s;
 
     for (int j = 0; robot != NULL && j < robot->n_joints; j++) {
-        const grobo_joint *joint = &robot->joints[j];
+        const grobo_joint *joint = grobo_i_joint(robot, j);
         const double beyond = at->beyond_rad[j];
         const double way = before == NULL ? 0 : fabs(at->q_rad[j] - before->q_rad[j]);
         const double speed = way * now->rate_hz;
@@ -216,8 +217,8 @@ static void take_moment(const struct checking *now, int frame, struct moment *mo
     for (int j = 0; robot != NULL && j < robot->n_joints; j++) {
         double *q_rad = &moment->q_rad[j];
 
-        moment->beyond_rad[j] =
-            fmax(robot->joints[j].min_rad - *q_rad, *q_rad - robot->joints[j].max_rad);
+        moment->beyond_rad[j] = fmax(grobo_i_joint(robot, j)->min_rad - *q_rad,
+                                     *q_rad - grobo_i_joint(robot, j)->max_rad);
         if (now->options->takes_slack) {
             *q_rad = grobo_model_take_slack(robot, j, *q_rad);
         }

@@ -11,6 +11,7 @@
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/base/sized.h"
 #include "src/bus/framer.h"
 #include "src/bus/queue.h"
 #include "src/bus/receive.h"
@@ -221,8 +222,8 @@ static void fill(uint32_t *value, uint32_t fallback)
 int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config)
 {
     if (bus == NULL || config == NULL || config->protocol == NULL ||
-        is_too_slow(config->baud_bps) || is_too_slow(config->servo_baud_bps) ||
-        (config->echo && config->protocol->relay != NULL)) {
+        !GROBO_I_FITS(config->protocol, relay) || is_too_slow(config->baud_bps) ||
+        is_too_slow(config->servo_baud_bps) || (config->echo && config->protocol->relay != NULL)) {
         return GROBO_ERR_ARG;
     }
     memset(bus, 0, sizeof *bus);

@@ -155,7 +155,8 @@ int GR001_moveJoint(GR001 *robot, unsigned char id, short deg, unsigned short cs
     int job = joint < 0
                   ? joint
                   : grobo_gr001_move(grobo_classic_engine(robot),
-                                     grobo_classic_model(robot)->joints[joint].motor, deg, cs);
+                                     grobo_model_joint(grobo_classic_model(robot), joint)->motor,
+                                     deg, cs);
     robot->inside->job = job > 0 ? job : robot->inside->job;
     return grobo_classic_end(robot, job, 0);
 }

@@ -108,7 +108,8 @@ static void order(struct serial_robot_inside *inside)
 
     for (int n = 0; n < model->n_joints; n++) {
         int at = n;
-        for (; at > 0 && model->joints[inside->joint_of[at - 1]].motor > model->joints[n].motor;
+        for (; at > 0 && grobo_model_joint(model, inside->joint_of[at - 1])->motor >
+                             grobo_model_joint(model, n)->motor;
              at--) {
             inside->joint_of[at] = inside->joint_of[at - 1];
         }
@@ -181,7 +182,11 @@ int SerialRobot_init(SerialRobot *robot, const char *devname, int n, const grobo
         return -1;
     }
     robot->inside->robot = robot;
-    robot->inside->driver = *driver;
+    robot->inside->driver.size = sizeof robot->inside->driver;
+    if (grobo_driver_copy(&robot->inside->driver, driver) < 0) {
+        free(robot->inside);
+        return -1;
+    }
     robot->inside->driver.stabilize = call_stabilizer;
     order(robot->inside);
     fill(robot);

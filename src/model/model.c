@@ -5,6 +5,8 @@
 #include <grobo/posture.h>
 
 #include "src/base/angle.h"
+#include "src/base/sized.h"
+#include "src/model/joint.h"
 
 static char lower(char c)
 {
@@ -69,7 +71,7 @@ static bool is_mount_good(const grobo_joint *joint)
 
 static bool is_joint_good(const grobo_model *model, int j)
 {
-    const grobo_joint *joint = &model->joints[j];
+    const grobo_joint *joint = grobo_i_joint(model, j);
     if (joint->name == NULL || joint->name[0] == '\0' || joint->motor > GROBO_SERVO_ID_MAX) {
         return false;
     }
@@ -81,19 +83,19 @@ static bool is_joint_good(const grobo_model *model, int j)
     if (!is_mount_good(joint)) {
         return false;
     }
-    if (joint->mirror >= model->n_joints || model->joints[joint->mirror].mirror != j ||
+    if (joint->mirror >= model->n_joints || grobo_i_joint(model, joint->mirror)->mirror != j ||
         (joint->mirror_sign != 1 && joint->mirror_sign != -1)) {
         return false;
     }
-    return model->joints[joint->mirror].mirror_sign == joint->mirror_sign;
+    return grobo_i_joint(model, joint->mirror)->mirror_sign == joint->mirror_sign;
 }
 
 static bool is_joint_unique(const grobo_model *model, int j)
 {
-    const grobo_joint *joint = &model->joints[j];
+    const grobo_joint *joint = grobo_i_joint(model, j);
     for (int i = 0; i < j; i++) {
-        if (model->joints[i].motor == joint->motor ||
-            is_name(model->joints[i].name, joint->name, strlen(joint->name))) {
+        if (grobo_i_joint(model, i)->motor == joint->motor ||
+            is_name(grobo_i_joint(model, i)->name, joint->name, strlen(joint->name))) {
             return false;
         }
     }
@@ -115,9 +117,31 @@ static bool is_group_good(const grobo_model *model, int g)
     return true;
 }
 
+/* Whether the sizes of model and joints are those of a version. */
+static bool is_size_good(const grobo_model *model)
+{
+#if GROBO_TABLES_FIXED
+    return model != NULL && model->joints != NULL;
+#else
+    bool good = model != NULL && GROBO_I_FITS(model, limit_slack_deg) && model->joints != NULL;
+    for (int j = 0; good && j < model->n_joints; j++) {
+        const grobo_joint *joint = grobo_i_joint(model, j);
+        good = grobo_i_table_fits(joint, model->joint_size, sizeof *joint,
+                                  GROBO_I_END_OF(joint, torque_limit_pct));
+    }
+    return good;
+#endif
+}
+
+const grobo_joint *grobo_model_joint(const grobo_model *model, int joint)
+{
+    bool known = model != NULL && joint >= 0 && joint < model->n_joints;
+    return known ? grobo_i_joint(model, joint) : NULL;
+}
+
 int grobo_model_check(const grobo_model *model)
 {
-    if (model == NULL || model->name == NULL || model->joints == NULL || model->n_joints < 1 ||
+    if (!is_size_good(model) || model->name == NULL || model->n_joints < 1 ||
         model->n_joints > GROBO_JOINTS_MAX || (model->groups == NULL && model->n_groups > 0) ||
         !(model->limit_slack_deg >= 0 && model->limit_slack_deg <= GROBO_LIMIT_SLACK_MAX_DEG)) {
         return GROBO_ERR_ARG;
@@ -140,7 +164,7 @@ double grobo_model_take_slack(const grobo_model *model, int joint, double angle_
     if (model == NULL) {
         return 0;
     }
-    const grobo_joint *limits = &model->joints[joint];
+    const grobo_joint *limits = grobo_i_joint(model, joint);
     const bool low = angle_rad < limits->min_rad;
     const double limit_rad = low ? limits->min_rad : limits->max_rad;
 
@@ -160,7 +184,7 @@ int grobo_model_joint_of_motor(const grobo_model *model, int motor)
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        if (model->joints[j].motor == motor) {
+        if (grobo_i_joint(model, j)->motor == motor) {
             return j;
         }
     }
@@ -172,7 +196,7 @@ int grobo_model_motor_of_joint(const grobo_model *model, int joint)
     if (model == NULL || joint < 0 || joint >= model->n_joints) {
         return GROBO_ERR_ARG;
     }
-    return model->joints[joint].motor;
+    return grobo_i_joint(model, joint)->motor;
 }
 
 int grobo_model_find_joint(const grobo_model *model, const char *name, size_t length)
@@ -181,7 +205,7 @@ int grobo_model_find_joint(const grobo_model *model, const char *name, size_t le
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        if (is_name(model->joints[j].name, name, length)) {
+        if (is_name(grobo_i_joint(model, j)->name, name, length)) {
             return j;
         }
     }

@@ -5,6 +5,7 @@
 #include <grobo/posture.h>
 
 #include "src/base/angle.h"
+#include "src/model/joint.h"
 
 #define PI 3.14159265358979323846
 
@@ -63,7 +64,7 @@ void grobo_posture_init_pose(grobo_posture *posture, const grobo_model *model)
     }
     (void)grobo_posture_init(posture, model->n_joints);
     for (int j = 0; j < model->n_joints; j++) {
-        posture->angle_rad[j] = model->joints[j].init_rad;
+        posture->angle_rad[j] = grobo_i_joint(model, j)->init_rad;
     }
     posture->set = GROBO_JOINTS_ALL(model->n_joints);
 }
@@ -229,7 +230,7 @@ int grobo_posture_mirror(grobo_posture *posture, const grobo_model *model)
     grobo_posture before = *posture;
     posture->set = 0;
     for (int j = 0; j < model->n_joints; j++) {
-        const grobo_joint *joint = &model->joints[j];
+        const grobo_joint *joint = grobo_i_joint(model, j);
         if (is_set(&before, joint->mirror)) {
             posture->angle_rad[j] = joint->mirror_sign * before.angle_rad[joint->mirror];
             posture->set |= GROBO_JOINT_BIT(j);
@@ -253,7 +254,7 @@ int grobo_posture_check(const grobo_posture *posture, const grobo_model *model, 
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        const grobo_joint *limits = &model->joints[j];
+        const grobo_joint *limits = grobo_i_joint(model, j);
         /* Most are inside, and need not be rounded, which keeps the order. */
         if (!is_set(posture, j) ||
             grobo_i_inside(limits->min_rad, posture->angle_rad[j], limits->max_rad)) {
@@ -291,7 +292,7 @@ int grobo_posture_clamp(grobo_posture *posture, const grobo_model *model)
     }
     int changed = 0;
     for (int j = 0; j < model->n_joints; j++) {
-        const grobo_joint *joint = &model->joints[j];
+        const grobo_joint *joint = grobo_i_joint(model, j);
         if (is_set(posture, j) && !within_limits(joint, posture->angle_rad[j])) {
             bool low = posture->angle_rad[j] < joint->min_rad;
             posture->angle_rad[j] = low ? joint->min_rad : joint->max_rad;
@@ -345,8 +346,8 @@ static int next_by_motor(const grobo_model *model, int motor)
 {
     int found = -1;
     for (int j = 0; j < model->n_joints; j++) {
-        if (model->joints[j].motor > motor &&
-            (found < 0 || model->joints[j].motor < model->joints[found].motor)) {
+        if (grobo_i_joint(model, j)->motor > motor &&
+            (found < 0 || grobo_i_joint(model, j)->motor < grobo_i_joint(model, found)->motor)) {
             found = j;
         }
     }
@@ -378,7 +379,7 @@ int grobo_posture_parse(grobo_posture *posture, const grobo_model *model, const 
         if (joint < 0) {
             return GROBO_ERR_CAP;
         }
-        motor = model->joints[joint].motor;
+        motor = grobo_i_joint(model, joint)->motor;
         parsed.angle_rad[joint] = grobo_rad_from_ddeg(number);
         parsed.set |= GROBO_JOINT_BIT(joint);
     }

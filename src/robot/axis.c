@@ -5,6 +5,7 @@
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/model/joint.h"
 #include "src/robot/robot.h"
 
 /* The goals of a way are on the wire's grid: this part of its step is no other goal. */
@@ -99,7 +100,7 @@ static bool tells_speed(const grobo_robot_axis *axis)
 static course seen(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double most_rad_s = MISREAD_PART * robot->driver->model->joints[joint].max_speed_rad_s;
+    double most_rad_s = MISREAD_PART * grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
     double rad_s = tells_speed(axis) ? grobo_rad_from_deg(axis->seen_dps) : 0;
     return (course){axis->seen_rad, copysign(fmin(fabs(rad_s), most_rad_s), rad_s)};
 }
@@ -174,7 +175,7 @@ static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
 static double most_since(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
+    double rad_s = grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
     if (axis->seen_us >= axis->way.from_us) {
         rad_s = fmax(way_speed(&axis->way), fabs(seen(robot, joint).rad_s));
     }
@@ -237,7 +238,7 @@ static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double way_rad = grobo_i_axis_commanded(axis, now_us);
-    double rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
+    double rad_s = grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
     if ((axis->state.valid & GROBO_FIELD_SPEED) == 0 || axis->off_way) {
         return way_rad;
     }
@@ -320,7 +321,7 @@ void grobo_i_axis_told(grobo_robot *robot, int joint)
 
 grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint)
 {
-    const grobo_joint *model = &robot->driver->model->joints[joint];
+    const grobo_joint *model = grobo_i_joint(robot->driver->model, joint);
     const grobo_joint_state *state = &robot->axes[joint].state;
     grobo_i_limits limits = {model->min_rad, model->max_rad};
     if ((state->valid & GROBO_FIELD_RANGE) != 0) {
@@ -333,7 +334,8 @@ grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint)
 bool grobo_i_torque_is_limited(const grobo_robot *robot, int joint)
 {
     const grobo_joint_state *state = &robot->axes[joint].state;
-    return GROBO_DRIVERS_PLAIN || robot->driver->model->joints[joint].torque_limit_pct == 0 ||
+    return GROBO_DRIVERS_PLAIN ||
+           grobo_i_joint(robot->driver->model, joint)->torque_limit_pct == 0 ||
            ((state->valid & GROBO_FIELD_TORQUE_LIMIT) != 0 && state->torque_limited);
 }
 
@@ -426,7 +428,7 @@ bool grobo_i_goal_is_told(const grobo_robot_axis *axis)
 
 double grobo_i_load_most(const grobo_robot *robot, int joint)
 {
-    int pct = robot->driver->model->joints[joint].torque_limit_pct;
+    int pct = grobo_i_joint(robot->driver->model, joint)->torque_limit_pct;
     return pct > 0 ? LOAD_MOST_RAD * pct / 100 : LOAD_MOST_RAD;
 }
 

@@ -106,7 +106,7 @@ void grobo_i_gate_single(grobo_robot *robot)
 
 static double speed_limit(const grobo_robot *robot, int joint, bool soft)
 {
-    double most = robot->driver->model->joints[joint].max_speed_rad_s;
+    double most = grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
     double limit_rad_s = most * robot->config.speed_limit_pct / 100;
     double approach_rad_s = grobo_rad_from_deg(robot->config.approach_dps);
     return soft ? fmin(approach_rad_s, limit_rad_s) : limit_rad_s;
@@ -196,7 +196,7 @@ static int64_t time_of_order(const grobo_robot *robot, const grobo_robot_order *
  * is closer than the rounding of both is left to that. */
 static bool is_ample(const grobo_robot *robot, int joint, double to_rad, grobo_i_span asked)
 {
-    double most_rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
+    double most_rad_s = grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
     double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
     return grobo_i_gets_there(from_rad, to_rad, most_rad_s, asked);
 }
@@ -666,7 +666,7 @@ static double begin_of_rest(const grobo_robot *robot, const grobo_target *target
 /* True if the driver looks at angles and times alone. */
 static bool is_timed(const grobo_driver *driver)
 {
-    return driver->posture == driver->timed_posture;
+    return driver->posture == GROBO_I_MEMBER(driver, driver->size, timed_posture);
 }
 
 /* What the frames of an order ask for: what it says, or the part of it that goes first. */

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "src/base/assert.h"
+#include "src/model/joint.h"
 #include "src/robot/robot.h"
 
 /* True if a frame waits that carries the joint's next target. */
@@ -22,7 +23,7 @@ static bool next_waits(const grobo_robot *robot, int joint)
 /* A target is never outside the limits by a unit of the wire, which is what the gate compares. */
 static bool is_inside(const grobo_robot *robot, int joint, double angle_rad)
 {
-    const grobo_joint *limits = &robot->driver->model->joints[joint];
+    const grobo_joint *limits = grobo_i_joint(robot->driver->model, joint);
     const int ddeg = grobo_ddeg_from_rad(angle_rad);
     return ddeg >= grobo_ddeg_from_rad(limits->min_rad) &&
            ddeg <= grobo_ddeg_from_rad(limits->max_rad);

@@ -4,6 +4,8 @@
 
 #include <grobo/core/hrpsys.h>
 
+#include "src/model/joint.h"
+
 static const grobo_model *model_of(const grobo_hrpsys *hrpsys)
 {
     return grobo_robot_driver(hrpsys->robot)->model;
@@ -282,7 +284,7 @@ int grobo_hrpsys_check_emergency(const grobo_hrpsys *hrpsys, char *reason, size_
     put(&w, grobo_trip_name(trip.trip), sizeof w.text);
     if (trip.joint >= 0) {
         put(&w, ": ", 2);
-        put(&w, model_of(hrpsys)->joints[trip.joint].name, GROBO_NAME_MAX_BYTES);
+        put(&w, grobo_i_joint(model_of(hrpsys), trip.joint)->name, GROBO_NAME_MAX_BYTES);
     }
     const telling *how = &tellings[trip.trip];
     if (how->before != NULL && trip.value != 0) { /* an overheated servo may not say how hot */

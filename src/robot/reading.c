@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "src/base/instant.h"
+#include "src/model/joint.h"
 #include "src/robot/robot.h"
 
 static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
@@ -66,7 +67,7 @@ static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
     bool on = axis->state.torque == GROBO_TORQUE_ON;
     bool moves = on && abs(got->speed_dps) >= GROBO_I_SLOW_DPS;
     if ((got->valid & move) == move) {
-        double most_rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
+        double most_rad_s = grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
         double way_rad = fabs(got->goal_rad - got->angle_rad);
         int64_t least_us = (int64_t)(way_rad / most_rad_s * 1e6);
         int64_t left_us = got->goal_time_us - got->time_us;

@@ -40,6 +40,9 @@
 
 #include <grobo/core/static.h>
 
+#include "src/base/sized.h"
+#include "src/model/joint.h"
+
 /* ---- event.c --------------------------------------------------------------------------------- */
 
 /* Puts an event into the queue. */

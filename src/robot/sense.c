@@ -5,6 +5,7 @@
 
 #include "src/base/instant.h"
 #include "src/bus/time.h"
+#include "src/model/joint.h"
 #include "src/robot/robot.h"
 
 /* In free mode a hand has so long to get a joint going, or to turn it back, before it holds. */
@@ -52,7 +53,7 @@ static void free_joint(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_joint_state *state = &axis->state;
-    int limit_ma = robot->driver->model->joints[joint].free_current_ma;
+    int limit_ma = grobo_i_joint(robot->driver->model, joint)->free_current_ma;
     grobo_joint_mask bit = GROBO_JOINT_BIT(joint);
     if (axis->goal_us != robot->now_us) {
         return; /* a reading from before, without the goal */

@@ -3,7 +3,7 @@
 
 int grobo_robot_def_driver(const grobo_robot_def *def, grobo_wiring wiring, grobo_driver *driver)
 {
-    grobo_driver made;
+    grobo_driver made = GROBO_TABLE_INIT(grobo_driver);
     if (def == NULL || driver == NULL || (unsigned)wiring > GROBO_WIRING_BUS) {
         return GROBO_ERR_ARG;
     }
@@ -20,6 +20,6 @@ int grobo_robot_def_driver(const grobo_robot_def *def, grobo_wiring wiring, grob
     made.rest_rad = def->rest_rad;
     made.readback = def->readback;
     made.n_readback = def->n_readback;
-    *driver = made;
-    return grobo_driver_check(driver);
+    result = grobo_driver_check(&made);
+    return result < 0 ? result : grobo_driver_copy(driver, &made);
 }

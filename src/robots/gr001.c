@@ -217,12 +217,9 @@ static const grobo_group groups[] = {
     {"arms", 0xFC000}, {"right_leg", 0x3F}, {"left_leg", 0xFC0},    {"legs", 0xFFF},
 };
 
-const grobo_model grobo_i_gr001_model = {.name = "GR001",
-                                         .joints = joints,
-                                         .groups = groups,
-                                         .n_groups = 8,
-                                         .n_joints = 20,
-                                         .limit_slack_deg = 1};
+const grobo_model grobo_i_gr001_model =
+    GROBO_TABLE(grobo_model, .name = "GR001", GROBO_MODEL_JOINTS(joints), .groups = groups,
+                .n_groups = 8, .n_joints = 20, .limit_slack_deg = 1);
 
 static const double rest_rad[] = {0,       0,        RAD(60),  RAD(-120), RAD(-60), 0,      0,
                                   0,       RAD(-60), RAD(120), RAD(60),   0,        0,      0,
@@ -428,26 +425,28 @@ static const grobo_robot_link links[] = {
 };
 
 const grobo_driver grobo_i_gr001_drivers[] = {
-    [GROBO_WIRING_BOARD] = {GROBO_I_RS30X_FUNCTIONS, .name = "GR001", .model = &grobo_i_gr001_model,
-                            .protocol = &grobo_i_board_protocol, .stored = grobo_i_rs30x_stored,
-                            .limits = {.temperature_c = 65,
-                                       .lost_replies = 5,
-                                       .current_ma = 600,
-                                       .voltage_mv = 6000,
-                                       .current_us = 1000000,
-                                       .approach_rad_s = RAD(60)},
-                            .on_exit = GROBO_EXIT_HOLD, .arm = false, .rest_rad = rest_rad,
-                            .readback = readback, .n_readback = 2},
-    [GROBO_WIRING_BUS] = {GROBO_I_RS30X_FUNCTIONS, .name = "GR001", .model = &grobo_i_gr001_model,
-                          .protocol = &grobo_i_rs30x_protocol,
-                          .limits = {.temperature_c = 65,
-                                     .lost_replies = 5,
-                                     .current_ma = 600,
-                                     .voltage_mv = 6000,
-                                     .current_us = 1000000,
-                                     .approach_rad_s = RAD(60)},
-                          .on_exit = GROBO_EXIT_HOLD, .arm = false, .rest_rad = rest_rad,
-                          .readback = readback, .n_readback = 2},
+    [GROBO_WIRING_BOARD] = GROBO_TABLE(
+        grobo_driver, GROBO_I_RS30X_FUNCTIONS, .name = "GR001", .model = &grobo_i_gr001_model,
+        .protocol = &grobo_i_board_protocol, .stored = grobo_i_rs30x_stored,
+        .limits = {.temperature_c = 65,
+                   .lost_replies = 5,
+                   .current_ma = 600,
+                   .voltage_mv = 6000,
+                   .current_us = 1000000,
+                   .approach_rad_s = RAD(60)},
+        .on_exit = GROBO_EXIT_HOLD, .arm = false, .rest_rad = rest_rad, .readback = readback,
+        .n_readback = 2),
+    [GROBO_WIRING_BUS] =
+        GROBO_TABLE(grobo_driver, GROBO_I_RS30X_FUNCTIONS, .name = "GR001",
+                    .model = &grobo_i_gr001_model, .protocol = &grobo_i_rs30x_protocol,
+                    .limits = {.temperature_c = 65,
+                               .lost_replies = 5,
+                               .current_ma = 600,
+                               .voltage_mv = 6000,
+                               .current_us = 1000000,
+                               .approach_rad_s = RAD(60)},
+                    .on_exit = GROBO_EXIT_HOLD, .arm = false, .rest_rad = rest_rad,
+                    .readback = readback, .n_readback = 2),
 };
 
 const grobo_robot_def grobo_i_robot_gr001 = {.name = "gr001",

@@ -85,12 +85,9 @@ static const grobo_group groups[] = {
     {"arm", 0x1F},
 };
 
-static const grobo_model model = {.name = "koch-leader",
-                                  .joints = joints,
-                                  .groups = groups,
-                                  .n_groups = 2,
-                                  .n_joints = 6,
-                                  .limit_slack_deg = 0};
+static const grobo_model model =
+    GROBO_TABLE(grobo_model, .name = "koch-leader", GROBO_MODEL_JOINTS(joints), .groups = groups,
+                .n_groups = 2, .n_joints = 6, .limit_slack_deg = 0);
 
 static const grobo_usb_id usb[] = {
     {0x1A86, 0x55D3},

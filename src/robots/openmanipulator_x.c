@@ -64,12 +64,9 @@ static const grobo_group groups[] = {
     {"arm", 0xF},
 };
 
-static const grobo_model model = {.name = "openmanipulator-x",
-                                  .joints = joints,
-                                  .groups = groups,
-                                  .n_groups = 2,
-                                  .n_joints = 5,
-                                  .limit_slack_deg = 0};
+static const grobo_model model =
+    GROBO_TABLE(grobo_model, .name = "openmanipulator-x", GROBO_MODEL_JOINTS(joints),
+                .groups = groups, .n_groups = 2, .n_joints = 5, .limit_slack_deg = 0);
 
 static const grobo_usb_id usb[] = {
     {0x0403, 0x6014},

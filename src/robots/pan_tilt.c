@@ -30,8 +30,9 @@ static const grobo_joint joints[] = {
      .zero_rad = RAD(30)},
 };
 
-static const grobo_model model = {
-    .name = "pan-tilt", .joints = joints, .n_joints = 2, .limit_slack_deg = 0};
+static const grobo_model model =
+    GROBO_TABLE(grobo_model, .name = "pan-tilt", GROBO_MODEL_JOINTS(joints), .n_joints = 2,
+                .limit_slack_deg = 0);
 
 const grobo_robot_def grobo_i_robot_pan_tilt = {.name = "pan-tilt",
                                                 .title = "Pan and tilt",

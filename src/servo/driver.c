@@ -5,6 +5,9 @@
 #include <grobo/core/driver.h>
 #include <grobo/core/sequencer.h>
 
+#include "src/base/sized.h"
+#include "src/model/joint.h"
+
 static bool functions_present(const grobo_driver *driver)
 {
     return driver->posture != NULL && driver->sense != NULL && driver->parse != NULL &&
@@ -24,7 +27,7 @@ static bool rest_sound(const grobo_driver *driver)
         return true;
     }
     for (int j = 0; j < driver->model->n_joints; j++) {
-        const grobo_joint *joint = &driver->model->joints[j];
+        const grobo_joint *joint = grobo_i_joint(driver->model, j);
         if (!(driver->rest_rad[j] >= joint->min_rad && driver->rest_rad[j] <= joint->max_rad)) {
             return false;
         }
@@ -57,8 +60,8 @@ static bool times_sound(const grobo_driver *driver)
 static bool joints_sound(const grobo_driver *driver)
 {
     for (int j = 0; j < driver->model->n_joints; j++) {
-        uint8_t id = driver->model->joints[j].motor;
-        bool limits = driver->model->joints[j].torque_limit_pct > 0;
+        uint8_t id = grobo_i_joint(driver->model, j)->motor;
+        bool limits = grobo_i_joint(driver->model, j)->torque_limit_pct > 0;
         if ((limits && driver->torque_limit == NULL) || id < driver->protocol->id_min ||
             id > driver->protocol->id_max) {
             return false;
@@ -77,17 +80,39 @@ static int check_plain(const grobo_driver *driver)
     return GROBO_DRIVERS_PLAIN && !plain ? GROBO_ERR_UNSUPPORTED : GROBO_OK;
 }
 
+int grobo_driver_copy(grobo_driver *to, const grobo_driver *from)
+{
+    if (to == NULL || from == NULL) {
+        return GROBO_ERR_ARG;
+    }
+#if GROBO_TABLES_FIXED
+    *to = *from;
+#else
+    size_t known = GROBO_I_END_OF(to, stabilize);
+    if (to->size < known || to->size > SIZED_MAX_BYTES || from->size < known) {
+        return GROBO_ERR_ARG;
+    }
+    grobo_i_table_copy(to, to->size, from, from->size);
+#endif
+    return GROBO_OK;
+}
+
+/* Tables whose sizes a version had, and a sound model. */
+static bool tables_sound(const grobo_driver *driver)
+{
+    return GROBO_I_FITS(driver, stabilize) && driver->name != NULL && driver->protocol != NULL &&
+           GROBO_I_FITS(driver->protocol, relay) && grobo_model_check(driver->model) >= 0;
+}
+
 int grobo_driver_check(const grobo_driver *driver)
 {
-    if (driver == NULL || driver->name == NULL || driver->model == NULL ||
-        grobo_model_check(driver->model) < 0) {
+    if (driver == NULL || !tables_sound(driver)) {
         return GROBO_ERR_ARG;
     }
     bool policy = driver->on_exit == GROBO_EXIT_OFF || driver->on_exit == GROBO_EXIT_HOLD ||
                   driver->on_exit == GROBO_EXIT_SIT;
-    if (!policy || driver->protocol == NULL || !joints_sound(driver) || !times_sound(driver) ||
-        !functions_present(driver) || !limits_sound(&driver->limits) || !rest_sound(driver) ||
-        !readback_sound(driver)) {
+    if (!policy || !joints_sound(driver) || !times_sound(driver) || !functions_present(driver) ||
+        !limits_sound(&driver->limits) || !rest_sound(driver) || !readback_sound(driver)) {
         return GROBO_ERR_ARG;
     }
     return check_plain(driver);

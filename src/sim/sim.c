@@ -11,6 +11,7 @@
 
 #include "src/base/instant.h"
 #include "src/base/sized.h"
+#include "src/model/joint.h"
 #include "src/robots/robots.h"
 #include "src/sim/board.h"
 #include "src/sim/bus.h"
@@ -430,7 +431,7 @@ static grobo_sim_ear *ear_of(grobo_sim *sim, const grobo_sim_family *family)
 static int init_servo(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_joint *joint = &sim->config.model->joints[index];
+    const grobo_joint *joint = grobo_i_joint(sim->config.model, index);
     servo->family = family_of(&sim->config, index);
     servo->model = sim->config.servos != NULL ? sim->config.servos[index] : NULL;
     if (servo->model == NULL) {

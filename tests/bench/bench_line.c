@@ -433,7 +433,7 @@ static int run_sessions(int lines, char **path)
     const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
                                       .sense_interval_us = in_background ? 1 : GROBO_SENSE_NEVER,
                                       .sense_position_only = true};
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
 
     if (grobo_rs30x_driver_init(&driver, &one_servo_model, &grobo_i_rs30x_protocol) < 0) {
         return 1;

@@ -267,7 +267,7 @@ static void silence_rows(void)
 
 /* ---- one reading, in the engine alone -------------------------------------------------------- */
 
-static grobo_driver one_servo;
+static grobo_driver one_servo = GROBO_TABLE_INIT(grobo_driver);
 static long ended_well;
 
 static void on_reading(void *ctx, const grobo_event *event)
@@ -359,8 +359,8 @@ static void prepare_play(void)
 
 static char joint_name[GROBO_JOINTS_MAX][8];
 static grobo_joint joint_of[GROBO_JOINTS_MAX];
-static grobo_model chain = {.name = "chain", .joints = joint_of};
-static grobo_driver chain_driver;
+static grobo_model chain = GROBO_TABLE(grobo_model, .name = "chain", GROBO_MODEL_JOINTS(joint_of));
+static grobo_driver chain_driver = GROBO_TABLE_INIT(grobo_driver);
 
 static int chain_sample(void *ctx, int64_t t_us, grobo_posture *posture)
 {

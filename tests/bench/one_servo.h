@@ -7,7 +7,7 @@
 
 static const grobo_joint one_servo_joint = {
     .name = "J", .min_rad = -1, .max_rad = 1, .max_speed_rad_s = 1, .motor = 1, .mirror_sign = 1};
-static const grobo_model one_servo_model = {
-    .name = "one servo", .joints = &one_servo_joint, .n_joints = 1};
+static const grobo_model one_servo_model = GROBO_TABLE(
+    grobo_model, .name = "one servo", GROBO_MODEL_JOINTS(&one_servo_joint), .n_joints = 1);
 
 #endif

@@ -27,7 +27,8 @@ enum { JOINTS = 3, MS = 1000, S = 1000000 };
     static const grobo_joint name##_joints[] = {JOINT("A", 1, number, 1, 0, 0),                    \
                                                 JOINT("B", 2, number, -1, 0, 1),                   \
                                                 JOINT("C", 3, number, 1, 20, 1.5)};                \
-    static const grobo_model name = {#name, name##_joints, NULL, JOINTS, 0, 0, NULL}
+    static const grobo_model name = GROBO_TABLE(grobo_model, #name, name##_joints,                 \
+                                                sizeof(grobo_joint), NULL, JOINTS, 0, 0, NULL)
 
 ARM(xl330, 1200);
 ARM(sts3215, 777);
@@ -60,6 +61,7 @@ static void begin(const family *f)
 {
     memset(&bus, 0, sizeof bus);
     now = f;
+    bus.driver.size = sizeof bus.driver;
     assert_int_equal(f->init(&bus.driver, f->model), GROBO_OK);
 }
 
@@ -311,7 +313,7 @@ TEST(what_is_set_up_otherwise_does_not_move)
 static void begin_with(const family *f, bool calibrated, uint8_t torque_limit_pct)
 {
     static grobo_joint joints[JOINTS];
-    static grobo_model model;
+    static grobo_model model = GROBO_TABLE_INIT(grobo_model);
     begin(f);
     memcpy(joints, f->model->joints, sizeof joints);
     for (int j = 0; j < JOINTS; j++) {
@@ -320,6 +322,7 @@ static void begin_with(const family *f, bool calibrated, uint8_t torque_limit_pc
     joints[0].torque_limit_pct = torque_limit_pct;
     model = *f->model;
     model.joints = joints;
+    bus.driver.size = sizeof bus.driver;
     assert_int_equal(f->init(&bus.driver, &model), GROBO_OK);
     table_start(&bus, &quiet);
 }
@@ -462,7 +465,7 @@ TEST(a_limit_that_is_kept_is_a_setup)
     assert_int_equal(moved_to(20, 20, 20), GROBO_OK);
     begin_with(&families[0], false, 30); /* a current is bounded in mode 5 alone */
     assert_int_equal(moved_to(20, 20, 20), GROBO_ERR_SETUP);
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_joint joint = {.name = "A",
                          .min_rad = -1,
                          .max_rad = 1,
@@ -471,7 +474,8 @@ TEST(a_limit_that_is_kept_is_a_setup)
                          .mirror_sign = 1,
                          .servo_model = 16,
                          .torque_limit_pct = 30};
-    const grobo_model one = {.name = "ONE", .joints = &joint, .n_joints = 1};
+    const grobo_model one =
+        GROBO_TABLE(grobo_model, .name = "ONE", GROBO_MODEL_JOINTS(&joint), .n_joints = 1);
     assert_int_equal(grobo_lx16a_driver_init(&driver, &one), GROBO_ERR_ARG);
     joint.servo_model = 3301;
     assert_int_equal(grobo_ics_driver_init(&driver, &one), GROBO_ERR_ARG);
@@ -527,7 +531,8 @@ TEST(a_coarser_count_is_refused)
     for (int way = 0; way < 3; way++) { /* where an MX counts no turns, it means nothing */
         const bool turns = way > 0;
         const uint8_t divider = way < 2 ? 2 : 1;
-        const grobo_model model = {.name = "mx28", .joints = joints, .n_joints = JOINTS};
+        const grobo_model model = GROBO_TABLE(grobo_model, .name = "mx28",
+                                              GROBO_MODEL_JOINTS(joints), .n_joints = JOINTS);
         const family mx = {&model, grobo_dxl1_driver_init, 0.09, 0, true, false};
         memcpy(joints, ax12_joints, sizeof joints);
         for (int j = 0; j < JOINTS; j++) {
@@ -693,7 +698,7 @@ TEST(a_raw_goal_leaves_a_gripper_its_limit)
 TEST(what_a_servo_cannot_reach_is_no_robot)
 {
     grobo_joint joints[JOINTS];
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     for (int i = 0; i < FAMILIES; i++) {
         grobo_model model = *families[i].model;
         model.joints = joints;

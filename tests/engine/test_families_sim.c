@@ -587,7 +587,7 @@ TEST(a_driver_tells_the_ramps_of_its_servos)
         assert_true(fabs(kit.driver.accel_rad_s2 / grobo_rad_from_deg(1) - told_dps2) < 0.01);
     }
     family_start(&kit, family_named("dxl1"), &watched, NULL);
-    grobo_driver mx;
+    grobo_driver mx = GROBO_TABLE_INIT(grobo_driver);
     for (int j = 0; j < JOINTS; j++) {
         kit.joints[j].servo_model = grobo_servo_model_named(&grobo_i_dxl1_table, "MX-28")->number;
     }

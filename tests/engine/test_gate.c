@@ -416,7 +416,7 @@ TEST_WITH(rig_wirings, each_part_has_joints_of_its_own)
 }
 
 static int parts; /* that the driver needs, whatever for */
-static grobo_driver whole;
+static grobo_driver whole = GROBO_TABLE_INIT(grobo_driver);
 
 static int posture_in_parts(const grobo_driver *self, void *ctx, const grobo_target *target,
                             int part, grobo_exchange *exchange)

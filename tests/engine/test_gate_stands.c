@@ -12,7 +12,7 @@
 static const bool held_against = GROBO_ASSERT_WALKS;
 
 static int built; /* frames, by the driver */
-static grobo_driver whole;
+static grobo_driver whole = GROBO_TABLE_INIT(grobo_driver);
 
 static int count_posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
                          grobo_exchange *exchange)

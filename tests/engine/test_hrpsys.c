@@ -63,7 +63,7 @@ TEST_WITH(rig_wirings, servo_knows_joints_and_groups_by_name)
 TEST_WITH(rig_wirings, all_joints_are_called_all_by_any_model)
 {
     static grobo_robot robot;
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_joint_mask joints = 0;
     grobo_model model = grobo_i_gr001_model;
     model.n_groups = 0;

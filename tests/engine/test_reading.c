@@ -162,7 +162,7 @@ TEST(a_driver_that_makes_no_number_of_a_reply_has_read_nothing)
 enum { N = GROBO_JOINTS_MAX };
 static const int64_t NOW = 50000000;
 
-static grobo_driver made;
+static grobo_driver made = GROBO_TABLE_INIT(grobo_driver);
 static grobo_robot robot;
 static grobo_robot_axis before[N];
 static grobo_joint_state given; /* what the driver makes of any reply */

@@ -18,7 +18,7 @@
 enum { S = 1000000 };
 
 static grobo_robot_sim configured;
-static grobo_driver driver;
+static grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
 static grobo_robot robot;
 static grobo_sim sim;
 static int64_t now_us;

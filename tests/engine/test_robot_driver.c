@@ -133,7 +133,7 @@ static int stabilize(const grobo_driver *self, void *ctx, const grobo_posture *s
 
 static void start(const grobo_robot_config *config)
 {
-    static grobo_driver driver;
+    static grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_robot_config used = *config;
     inner = grobo_gr001_driver(rig_wiring);
     driver = *inner;

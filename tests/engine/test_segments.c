@@ -26,7 +26,7 @@ enum { JOINTS = 20, SECOND_US = 1000000, MOVE_MS = 3000, LOOK_US = 5000 };
 
 static grobo_test_rig rig;
 static rig_clip clip;
-static grobo_driver arm;
+static grobo_driver arm = GROBO_TABLE_INIT(grobo_driver);
 
 static void start(const grobo_robot_config *config, const grobo_sim_config *sim)
 {

@@ -64,7 +64,8 @@ TEST(limp_start_is_within_stops_and_of_the_seed)
 TEST(a_start_at_zero_keeps_the_stops)
 {
     static grobo_joint joints[3];
-    static const grobo_model bent = {.name = "bent", .joints = joints, .n_joints = 3};
+    static const grobo_model bent =
+        GROBO_TABLE(grobo_model, .name = "bent", GROBO_MODEL_JOINTS(joints), .n_joints = 3);
     static const char *const joint_names[] = {"below", "across", "above"};
     static const double min_rad[] = {-2, -1, 0.5}, max_rad[] = {-0.5, 1, 2};
     for (uint8_t i = 0; i < 3; i++) {
@@ -98,7 +99,7 @@ TEST(there_is_no_servo_beyond_the_last)
 TEST(bad_configurations_are_refused)
 {
     static grobo_sim sim;
-    const grobo_model none = {.name = "none"};
+    const grobo_model none = GROBO_TABLE(grobo_model, .name = "none");
     const grobo_sim_config bad_model = {GROBO_SIM_CONFIG_INIT, .model = &none};
     const grobo_sim_config slow = {GROBO_SIM_CONFIG_INIT, .baud_bps = 10};
     const grobo_sim_config hot = {GROBO_SIM_CONFIG_INIT, .ambient_c = 100};

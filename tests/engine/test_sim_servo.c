@@ -141,7 +141,8 @@ static const grobo_joint late_joint = {.name = "ONE",
                                        .servo_model = GROBO_RS30X_RS303MR,
                                        .motor = 7,
                                        .mirror_sign = 1};
-static const grobo_model late_robot = {.name = "late", .joints = &late_joint, .n_joints = 1};
+static const grobo_model late_robot =
+    GROBO_TABLE(grobo_model, .name = "late", GROBO_MODEL_JOINTS(&late_joint), .n_joints = 1);
 
 TEST(later_models_have_more)
 {
@@ -345,7 +346,8 @@ TEST(one_packet_is_another_to_each_model)
                                       GROBO_RS30X_RS303MR};
     static const char *const names[] = {"A", "B", "C", "D"};
     grobo_joint joints[4];
-    const grobo_model model = {.name = "mixed", .joints = joints, .n_joints = 4};
+    const grobo_model model =
+        GROBO_TABLE(grobo_model, .name = "mixed", GROBO_MODEL_JOINTS(joints), .n_joints = 4);
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &model,
                                      .wiring = GROBO_WIRING_BUS};
     for (int i = 0; i < 4; i++) {
@@ -440,7 +442,7 @@ TEST(every_type_is_what_its_row_says)
 {
     grobo_joint joints[GROBO_SIM_SERVOS_MAX];
     char names[GROBO_SIM_SERVOS_MAX][8];
-    grobo_model model = {.name = "chain", .joints = joints};
+    grobo_model model = GROBO_TABLE(grobo_model, .name = "chain", GROBO_MODEL_JOINTS(joints));
     const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &model,
                                      .wiring = GROBO_WIRING_BUS, .no_stops = true};
     for (; model.n_joints < grobo_i_rs30x_table.model_count; model.n_joints++) {

@@ -352,7 +352,8 @@ static void hold_lever(const grobo_robot_family *family, const grobo_servo_model
                                .servo_model = servo->number,
                                .motor = 1,
                                .mirror_sign = 1};
-    const grobo_model model = {.name = "lever", .joints = &joint, .n_joints = 1};
+    const grobo_model model =
+        GROBO_TABLE(grobo_model, .name = "lever", GROBO_MODEL_JOINTS(&joint), .n_joints = 1);
     const grobo_sim_link link = {.parent = -1,
                                  .joint = 0,
                                  .r = {1, 0, 0, 0, 1, 0, 0, 0, 1},

@@ -650,7 +650,7 @@ TEST_WITH(rig_wirings, a_target_that_is_refused_does_not_wait)
 
 static int joints_fit;  /* into one frame of this driver */
 static int frames_each; /* that it needs for one joint; less than 0: it fails */
-static grobo_driver roomy;
+static grobo_driver roomy = GROBO_TABLE_INIT(grobo_driver);
 
 static int posture_of_few(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
                           grobo_exchange *exchange)

@@ -13,7 +13,7 @@ by_pkg_config() {
 #include <grobo/core/static.h>
 int main(void)
 {
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     return grobo_rs30x_driver_init(&driver, grobo_gr001_model(), grobo_rs30x_protocol()) < 0;
 }
 C

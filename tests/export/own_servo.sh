@@ -87,7 +87,7 @@ linked() {
 extern const grobo_robot_family $1;
 int main(void)
 {
-    static grobo_driver driver;
+    static grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     return $1.init[$1.wiring](&driver, 0) < 0;
 }
 C

@@ -32,7 +32,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     bytes from = {data, size};
     grobo_robot_def *def = NULL;
     grobo_diagnostics *list = NULL;
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     MUST(grobo_diagnostics_new(NULL, &list) == 0);
     int error = grobo_robot_def_read(&(grobo_source){read_bytes, &from}, "", list, NULL, &def);
     MUST((error == 0) == (def != NULL));

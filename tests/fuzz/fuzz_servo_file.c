@@ -70,7 +70,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const grobo_i_beside beside = {open_bytes, close_bytes, &servo};
     grobo_robot_def *def = NULL;
     grobo_diagnostics *list = NULL;
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     MUST(grobo_diagnostics_new(NULL, &list) == 0);
     int error =
         grobo_i_robot_read(&(grobo_source){read_bytes, &robot}, "", &beside, list, NULL, &def);

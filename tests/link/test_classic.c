@@ -426,8 +426,9 @@ TEST_WITH(robots, a_motion_is_not_begun_twice)
 TEST(a_robot_of_ones_own)
 {
     grobo_joint joints[3];
-    grobo_model model = {.name = "leg", .joints = joints, .n_joints = 3};
-    grobo_driver driver;
+    grobo_model model =
+        GROBO_TABLE(grobo_model, .name = "leg", GROBO_MODEL_JOINTS(joints), .n_joints = 3);
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
 
     for (int j = 0; j < 3; j++) { /* motors 9, 11, 10: ids 1, 3, 2 */
         joints[j] = grobo_i_gr001_model.joints[j];

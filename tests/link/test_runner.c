@@ -27,8 +27,9 @@ TEST_WITH(with_and_without_thread, name_and_joints)
 
     /* Of a robot of three joints. */
     grobo_joint joints[3];
-    grobo_model model = {.name = "leg", .joints = joints, .n_joints = 3};
-    grobo_driver driver;
+    grobo_model model =
+        GROBO_TABLE(grobo_model, .name = "leg", GROBO_MODEL_JOINTS(joints), .n_joints = 3);
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_runner *leg = NULL;
     for (int j = 0; j < 3; j++) {
         joints[j] = grobo_i_gr001_model.joints[j];

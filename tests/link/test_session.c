@@ -394,7 +394,7 @@ TEST_WITH(on_loop, who_is_checked_is_not_read)
     static const grobo_robot_config eager = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     static const grobo_robot_config bad = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = -2};
     const grobo_robot_def *const *arm = grobo_i_robot_defs;
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_robot_sim sim;
 
     while (strcmp((*arm)->name, "so101") != 0) {

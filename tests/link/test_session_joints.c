@@ -36,7 +36,7 @@ static void on_robot(void *ctx, const grobo_event *event)
 
 static void move_all(const grobo_model *model, grobo_wiring wiring)
 {
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_posture target;
     grobo_session *session;
     const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .unpaced = true};
@@ -84,7 +84,8 @@ TEST(every_number_of_joints_moves)
                                   .mirror_sign = 1};
     }
     for (size_t i = 0; i < sizeof numbers; i++) {
-        const grobo_model model = {.name = "many", .joints = joints, .n_joints = numbers[i]};
+        const grobo_model model = GROBO_TABLE(grobo_model, .name = "many",
+                                              GROBO_MODEL_JOINTS(joints), .n_joints = numbers[i]);
 
         move_all(&model, GROBO_WIRING_BOARD);
         move_all(&model, GROBO_WIRING_BUS);

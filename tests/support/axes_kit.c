@@ -9,11 +9,11 @@
 #include "tests/support/test.h"
 
 grobo_robot robot;
-grobo_driver driver;
+grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
 grobo_robot_axis before[GROBO_JOINTS_MAX];
 int inspected;
 
-static grobo_driver plain;
+static grobo_driver plain = GROBO_TABLE_INIT(grobo_driver);
 static int driver_ctx;
 
 /* ---- the driver's functions, called with the context that the robot was given ---------------- */

@@ -29,7 +29,8 @@ void chain_start(chain_kit *chain, const grobo_servo_model *servo, int n,
                                          .mirror = (uint8_t)i,
                                          .mirror_sign = 1};
     }
-    chain->model = (grobo_model){.name = "chain", .joints = chain->joints, .n_joints = (uint8_t)n};
+    chain->model = (grobo_model)GROBO_TABLE(
+        grobo_model, .name = "chain", GROBO_MODEL_JOINTS(chain->joints), .n_joints = (uint8_t)n);
     with.model = &chain->model;
     with.wiring = GROBO_WIRING_BUS;
     with.servos = chain->servos;

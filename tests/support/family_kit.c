@@ -109,7 +109,8 @@ static void make_joints(family_kit *kit)
                                        .mirror_sign = 1,
                                        .sign = j == 1 ? -1 : 1};
     }
-    kit->model = (grobo_model){.name = f->servo, .joints = kit->joints, .n_joints = FAMILY_JOINTS};
+    kit->model = (grobo_model)GROBO_TABLE(
+        grobo_model, .name = f->servo, GROBO_MODEL_JOINTS(kit->joints), .n_joints = FAMILY_JOINTS);
 }
 
 void family_start(family_kit *kit, const family *f, const grobo_robot_config *config,
@@ -137,6 +138,7 @@ void family_start(family_kit *kit, const family *f, const grobo_robot_config *co
     for (int j = 0; j < FAMILY_JOINTS && f->table == &grobo_i_dxl2_table; j++) {
         family_set_up(kit, j, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
     }
+    kit->driver.size = sizeof kit->driver;
     assert_int_equal(f->init(&kit->driver, &kit->model), GROBO_OK);
     assert_int_equal(grobo_robot_init(&kit->robot, &kit->driver, NULL, &used, kit->now_us),
                      GROBO_OK);

@@ -137,8 +137,10 @@ static void make_joints(halt_robot *robot, const struct kind *kind)
                                          .mirror_sign = 1,
                                          .sign = 1};
     }
-    robot->model = (grobo_model){
-        .name = kind->servo, .joints = robot->joints, .n_joints = (uint8_t)robot->n_joints};
+    robot->model = (grobo_model)GROBO_TABLE(grobo_model, .name = kind->servo,
+                                            GROBO_MODEL_JOINTS(robot->joints),
+                                            .n_joints = (uint8_t)robot->n_joints);
+    robot->driver.size = sizeof robot->driver;
     assert_int_equal(kind->init(&robot->driver, &robot->model), GROBO_OK);
     robot->driver.arm = true;
 }

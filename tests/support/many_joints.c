@@ -11,8 +11,8 @@ grobo_driver *many_joints(grobo_wiring wiring, int n)
 {
     static char names[GROBO_JOINTS_MAX][8];
     static grobo_joint joints[GROBO_JOINTS_MAX];
-    static grobo_model model;
-    static grobo_driver driver;
+    static grobo_model model = GROBO_TABLE_INIT(grobo_model);
+    static grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     model = grobo_i_gr001_model;
     for (int j = 0; j < n; j++) {
         joints[j] = grobo_i_gr001_model.joints[j % grobo_i_gr001_model.n_joints];
@@ -34,7 +34,7 @@ grobo_driver *many_joints(grobo_wiring wiring, int n)
 grobo_driver *many_unlike_joints(grobo_wiring wiring, int n)
 {
     static grobo_joint joints[GROBO_JOINTS_MAX];
-    static grobo_model model;
+    static grobo_model model = GROBO_TABLE_INIT(grobo_model);
     grobo_driver *driver = many_joints(wiring, n);
     model = *driver->model;
     for (int j = 0; j < n; j++) {

@@ -533,8 +533,8 @@ int rig_sent_ms(const grobo_test_rig *rig, int id)
 void rig_start_narrow(grobo_test_rig *rig)
 {
     static grobo_joint joints[GROBO_JOINTS_MAX];
-    static grobo_model model;
-    static grobo_driver driver;
+    static grobo_model model = GROBO_TABLE_INIT(grobo_model);
+    static grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .model = &grobo_i_gr001_model};
     model = grobo_i_gr001_model;
     memcpy(joints, model.joints, (size_t)model.n_joints * sizeof *joints);

@@ -30,7 +30,8 @@ static const grobo_joint joints[SAMPLE_JOINTS] = {
      .mirror_sign = 1},
 };
 
-const grobo_model sample_model = {.name = "SAMPLE", .joints = joints, .n_joints = SAMPLE_JOINTS};
+const grobo_model sample_model = GROBO_TABLE(grobo_model, .name = "SAMPLE",
+                                             GROBO_MODEL_JOINTS(joints), .n_joints = SAMPLE_JOINTS);
 
 static int sample_key_at(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
 {

@@ -120,6 +120,7 @@ void weight_begin(const char *robot, int gain)
     weight_finish();
     weight.def = robot_named(robot);
     const grobo_wiring wiring = weight.def->wiring;
+    weight.driver.size = sizeof weight.driver;
     assert_int_equal(grobo_robot_def_driver(weight.def, wiring, &weight.driver), 0);
     assert_int_equal(grobo_robot_def_sim(weight.def, wiring, &weight.setting), 0);
     assert_int_equal(grobo_robot_def_physics(weight.def, false, NULL, &weight.physics), 0);

@@ -109,7 +109,8 @@ TEST(more_joints_than_a_frame_holds_make_more_frames)
                                       "b0", "b1", "b2", "b3", "b4", "b5", "b6", "b7", "b8", "b9",
                                       "c0", "c1", "c2", "c3", "c4", "c5", "c6", "c7", "c8", "c9",
                                       "d0", "d1", "d2", "d3", "d4", "d5", "d6", "d7", "d8", "d9"};
-    grobo_model model = {.name = "many", .joints = joints, .n_joints = 40};
+    grobo_model model =
+        GROBO_TABLE(grobo_model, .name = "many", GROBO_MODEL_JOINTS(joints), .n_joints = 40);
     static const int frames[2][2] = {{23, 17}, {28, 12}}; /* 127 and 148 bytes of packet */
     for (int j = 0; j < 40; j++) {
         joints[j] = (grobo_joint){.name = names[j],
@@ -121,7 +122,7 @@ TEST(more_joints_than_a_frame_holds_make_more_frames)
                                   .mirror_sign = 1};
     }
     for (int w = 0; w < 2; w++) {
-        grobo_driver driver;
+        grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
         assert_int_equal(
             grobo_rs30x_driver_init(&driver, &model, grobo_wiring_protocol((grobo_wiring)w)), 0);
         assert_int_equal(grobo_driver_check(&driver), 0);
@@ -137,7 +138,7 @@ TEST(more_joints_than_a_frame_holds_make_more_frames)
         assert_int_equal(driver.posture(&driver, NULL, &target, 2, &exchange), 0);
         assert_true((driver.stored == NULL) == (w == GROBO_WIRING_BUS));
     }
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     assert_int_equal(
         grobo_rs30x_driver_init(&driver, &model, grobo_wiring_protocol((grobo_wiring)2)),
         GROBO_ERR_ARG);
@@ -226,8 +227,9 @@ static int read_as(const table_row *row, int32_t value)
                                .servo_model = row->servo,
                                .motor = 1,
                                .mirror_sign = 1};
-    const grobo_model model = {.name = "t", .joints = &joint, .n_joints = 1};
-    grobo_driver driver;
+    const grobo_model model =
+        GROBO_TABLE(grobo_model, .name = "t", GROBO_MODEL_JOINTS(&joint), .n_joints = 1);
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_joint_state got = {0};
     uint8_t bytes[256] = {0};
     assert_int_equal(row->init(&driver, &model), GROBO_OK);

@@ -224,7 +224,7 @@ TEST(joints_of_a_set_are_counted)
 /* One fault at a time in a table that is good otherwise. */
 static grobo_joint arm[2];
 static grobo_group arm_groups[2];
-static grobo_model two;
+static grobo_model two = GROBO_TABLE_INIT(grobo_model);
 
 static void make_two(void)
 {
@@ -244,7 +244,8 @@ static void make_two(void)
                            .mirror_sign = -1};
     arm_groups[0] = (grobo_group){"both", 3};
     arm_groups[1] = (grobo_group){"one", 1};
-    two = (grobo_model){"TWO", arm, arm_groups, 2, 2, 0, NULL};
+    two = (grobo_model)GROBO_TABLE(grobo_model, "TWO", arm, sizeof(grobo_joint), arm_groups, 2, 2,
+                                   0, NULL);
 }
 
 #define assert_refused(fault)                                                                      \

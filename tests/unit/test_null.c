@@ -47,7 +47,7 @@ static grobo_body_options body_options = {GROBO_BODY_OPTIONS_INIT};
 static grobo_motion *motion;
 static grobo_motion *made_motion;
 static grobo_clip clip;
-static grobo_driver made_driver;
+static grobo_driver made_driver = GROBO_TABLE_INIT(grobo_driver);
 static grobo_posture posture;
 static FILE *stream;
 static grobo_joint_mask joints;
@@ -232,6 +232,7 @@ TEST(dxl_refuses_null)
     REFUSES(grobo_dxl1_build(&packet1, bytes, sizeof bytes));
     assert_null(grobo_servo_model_named(NULL, "STS3215"));
     assert_null(grobo_servo_series(NULL));
+    assert_null(grobo_model_joint(NULL, 0));
     assert_null(grobo_servo_model_named(&grobo_i_sts_table, NULL));
     assert_null(grobo_servo_model_numbered(NULL, 777));
     assert_null(grobo_servo_register_row(NULL, 0));
@@ -274,6 +275,8 @@ TEST(lx16a_and_ics_refuse_null)
 TEST(driver_refuses_null)
 {
     REFUSES(grobo_driver_check(NULL));
+    REFUSES(grobo_driver_copy(NULL, &made_driver));
+    REFUSES(grobo_driver_copy(&made_driver, NULL));
     assert_int_equal(grobo_driver_wiring(NULL), GROBO_WIRING_BOARD);
     REFUSES(grobo_dxl2_driver_init(NULL, &grobo_i_gr001_model));
     REFUSES(grobo_dxl2_driver_init(&made_driver, NULL));
@@ -568,7 +571,7 @@ TEST(robot_file_refuses_null)
 {
     const grobo_source bytes_of = {0};
     grobo_robot_def *def = NULL;
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_robot_sim sim;
     REFUSES(grobo_robot_def_read(NULL, "", NULL, NULL, &def));
     REFUSES(grobo_robot_def_read(&bytes_of, NULL, NULL, NULL, &def));

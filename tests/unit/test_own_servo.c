@@ -99,7 +99,7 @@ TEST(a_model_of_ones_own_is_driven_and_simulated)
                0,
                0};
     grobo_robot_def *def = NULL;
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     assert_int_equal(read_robot(BESIDE, &s, NULL, &def), GROBO_OK);
     assert_int_equal(s.opened, 1); /* for both joints */
     const grobo_joint *x = &def->model->joints[0];

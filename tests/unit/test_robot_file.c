@@ -112,7 +112,7 @@ TEST(each_robot_of_the_library_is_found_by_its_name)
 TEST(a_whole_file_is_read)
 {
     grobo_robot_def *def = NULL;
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     assert_int_equal(read_def(whole, NULL, &def), GROBO_OK);
     grobo_diagnostic said;
     assert_int_equal(grobo_diagnostics_get(list, 0, &said), GROBO_ERR_ARG);

@@ -291,7 +291,7 @@ static void print_curve(int joint, int middle_px)
     }
     double scale = 44 / fmax(high - low, 1);
     printf("<text x=\"%d\" y=\"%d\">%s</text>\n", CURVE_X, middle_px - 30,
-           grobo_gr001_model()->joints[joint].name);
+           grobo_model_joint(grobo_gr001_model(), joint)->name);
     printf("<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%.0f to %.0f°</text>\n", CURVE_X + CURVE_W,
            middle_px - 30, low, high);
     printf("<path class=\"c\" d=\"");

@@ -44,7 +44,7 @@ static void print_joints(const grobo_model *model)
 {
     printf("static const grobo_joint joints[] = {\n");
     for (int i = 0; i < model->n_joints; i++) {
-        const grobo_joint *j = &model->joints[i];
+        const grobo_joint *j = grobo_model_joint(model, i);
         printf("    {.name = \"%s\", .min_rad = %s, .max_rad = %s, .max_speed_rad_s = %s, ",
                j->name, rad(j->min_rad), rad(j->max_rad), rad(j->max_speed_rad_s));
         printf(".init_rad = %s, .servo_model = 0x%04X, .free_current_ma = %u, .motor = %u, ",
@@ -91,12 +91,13 @@ static void print_model(const grobo_robot_def *def, const char *name)
     const grobo_model *model = def->model;
     print_joints(model);
     print_groups(model);
-    printf("%sconst grobo_model %s = {.name = \"%s\", .joints = joints, ",
+    printf("%sconst grobo_model %s = GROBO_TABLE(grobo_model, .name = \"%s\", "
+           "GROBO_MODEL_JOINTS(joints), ",
            strcmp(name, "model") == 0 ? "static " : "", name, model->name);
     if (model->n_groups > 0) {
         printf(".groups = groups, .n_groups = %u, ", model->n_groups);
     }
-    printf(".n_joints = %u, .limit_slack_deg = %.17g};\n\n", model->n_joints,
+    printf(".n_joints = %u, .limit_slack_deg = %.17g);\n\n", model->n_joints,
            model->limit_slack_deg);
 }
 
@@ -224,14 +225,15 @@ static void print_drivers(const grobo_robot_def *def)
     static const char *const protocols[] = {"board", "rs30x"};
     printf("const grobo_driver grobo_i_gr001_drivers[] = {\n");
     for (int w = 0; w < 2; w++) {
-        printf("[GROBO_WIRING_%s] = {GROBO_I_RS30X_FUNCTIONS, .name = \"%s\", ", wirings[w],
-               def->model->name);
+        printf("[GROBO_WIRING_%s] = GROBO_TABLE(grobo_driver, GROBO_I_RS30X_FUNCTIONS, "
+               ".name = \"%s\", ",
+               wirings[w], def->model->name);
         printf(".model = &grobo_i_gr001_model, .protocol = &grobo_i_%s_protocol, ", protocols[w]);
         if (w == GROBO_WIRING_BOARD) {
             printf(".stored = grobo_i_rs30x_stored, ");
         }
         print_safety(def);
-        printf("},\n");
+        printf("),\n");
     }
     printf("};\n\n");
 }

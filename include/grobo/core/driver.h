@@ -159,6 +159,9 @@ typedef struct grobo_driver grobo_driver;
  * comes zeroed, but for the bytes of its frame.
  */
 struct grobo_driver {
+#if !GROBO_TABLES_FIXED
+    size_t size; /**< GROBO_TABLE() or GROBO_TABLE_INIT() */
+#endif
     const char *name;               /**< "GR001" */
     const grobo_model *model;       /**< joints, motors, limits */
     const grobo_protocol *protocol; /**< how its servos talk, and over what line */
@@ -266,7 +269,16 @@ struct grobo_driver {
 };
 
 /**
- * Checks a table: functions that must be there, time step, limits, exit policy, the model
+ * Copies a table, for a program that changes a driver of the library: an assignment would take the
+ * library's size for the program's.
+ * @param[in,out] to its size is set: GROBO_TABLE_INIT(grobo_driver). What it has no room for is not
+ *   copied.
+ * @return 0, or GROBO_ERR_ARG: a size that no version had. Pure; thread safe.
+ */
+GROBO_API int grobo_driver_copy(grobo_driver *to, const grobo_driver *from);
+
+/**
+ * Checks a table: its size, functions that must be there, time step, limits, exit policy, the model
  * (grobo_model_check()), joints of `readback`.
  * @return 0, GROBO_ERR_ARG; GROBO_ERR_UNSUPPORTED where the build is for plain drivers alone and
  *         this is none (GROBO_DRIVERS_PLAIN of limits.h). Pure; thread safe.
@@ -280,10 +292,11 @@ GROBO_API grobo_wiring grobo_driver_wiring(const grobo_driver *driver);
  * Fills a table for a robot of RS30x servos: every function but `stabilize`, and `stored` only
  * where a board is in between. Limits: 70 deg C, 5 lost replies, 60 deg/s for the first move, no
  * limit of current and voltage; exit policy hold.
- * @param[out] driver the caller's table; change what is different in it afterwards.
+ * @param[in,out] driver the caller's table, GROBO_TABLE_INIT(grobo_driver); change what is
+ *   different in it afterwards.
  * @param model borrowed.
  * @param protocol grobo_rs30x_protocol, or grobo_board_protocol through GR001's board.
- * @return 0, or GROBO_ERR_ARG for a bad model or no protocol.
+ * @return 0, or GROBO_ERR_ARG for a bad model, no protocol, a size that no version had.
  */
 GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
                                       const grobo_protocol *protocol);
@@ -300,7 +313,8 @@ GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *m
  * Its bus watchdog is the dead-man: a servo that nothing was sent to for watchdog_us, 0.5 s, stops
  * where it is and keeps its torque; a move, a play or a torque on clears that.
  * Limits: 65 deg C, 5 lost replies, 60 deg/s for the first move; exit policy hold; an arm.
- * @param[out] driver the caller's table; change what is different in it afterwards.
+ * @param[in,out] driver the caller's table, GROBO_TABLE_INIT(grobo_driver); change what is
+ *   different in it afterwards.
  * @param model borrowed.
  * @return 0, or GROBO_ERR_ARG: a bad model, a servo that is not known, a joint beyond its reach.
  * Joints whose servo is set up otherwise are read with GROBO_ERR_SETUP, and never move.

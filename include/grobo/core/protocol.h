@@ -119,6 +119,9 @@ typedef bool (*grobo_several)(struct grobo_bus *bus, const grobo_packet *packet)
 
 /** A protocol. Everything but `relay`, `several` and `reply_at` must be there. */
 typedef struct grobo_protocol {
+#if !GROBO_TABLES_FIXED
+    size_t size; /**< GROBO_TABLE() */
+#endif
     const char *name; /**< "RS30x" */
     /**
      * Judges n > 0 bytes: the size of the good packet that they start with; 0 when they may start

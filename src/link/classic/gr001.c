@@ -4,6 +4,7 @@
 
 #include <grobo/core/gr001.h>
 
+#include "src/model/joint.h"
 #include "src/motion/store/container.h"
 #include "src/robots/robots.h"
 
@@ -17,7 +18,9 @@ static int order(const grobo_model *model, uint8_t *joints)
 {
     for (int n = 0; n < model->n_joints; n++) {
         int at = n;
-        for (; at > 0 && model->joints[joints[at - 1]].motor > model->joints[n].motor; at--) {
+        for (;
+             at > 0 && grobo_i_joint(model, joints[at - 1])->motor > grobo_i_joint(model, n)->motor;
+             at--) {
             joints[at] = joints[at - 1];
         }
         joints[at] = (uint8_t)n;
@@ -276,7 +279,7 @@ static int print_values(const grobo_model *model, const int32_t *value, int deci
     int n = order(model, joints);
     double scale = decimals == 0 ? 1 : 1000;
     for (int i = 0; i < n; i++) {
-        const grobo_joint *joint = &model->joints[joints[i]];
+        const grobo_joint *joint = grobo_i_joint(model, joints[i]);
         if (value[i] >= 0 && fprintf(stream, "%2d %-12s %6.*f %s\n", joint->motor, joint->name,
                                      decimals, value[i] / scale, unit) < 0) {
             return GROBO_ERR_IO;

@@ -2,13 +2,14 @@
 /* Left for right: y changes its sign, joints and links change places with their other side. */
 #include <string.h>
 
+#include "src/model/joint.h"
 #include "src/motion/store/container.h"
 
 /* The joint whose link is called so, or -1. */
 static int joint_of_link(const grobo_model *model, const char *name)
 {
     for (int j = 0; j < model->n_joints; j++) {
-        if (strcmp(model->joints[j].name, name) == 0) {
+        if (strcmp(grobo_i_joint(model, j)->name, name) == 0) {
             return j;
         }
     }
@@ -34,8 +35,8 @@ static int mirror_identity(grobo_ik_link *link, const grobo_model *model)
     if (joint >= model->n_joints) {
         return GROBO_ERR_NOTFOUND;
     }
-    joint = model->joints[joint].mirror;
-    const char *name = model->joints[joint].name;
+    joint = grobo_i_joint(model, joint)->mirror;
+    const char *name = grobo_i_joint(model, joint)->name;
     size_t length = strlen(name);
     if (link->name[0] != '\0') {
         if (length >= sizeof link->name) {
@@ -66,7 +67,7 @@ static int mirror_extra(grobo_i_extra *extra, const grobo_model *model)
 
     for (int j = 0; j < model->n_joints; j++) {
         if ((extra->info.stationary & GROBO_JOINT_BIT(j)) != 0) {
-            stationary |= GROBO_JOINT_BIT(model->joints[j].mirror);
+            stationary |= GROBO_JOINT_BIT(grobo_i_joint(model, j)->mirror);
         }
     }
     extra->info.stationary = stationary;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "src/base/sized.h"
+#include "src/model/joint.h"
 #include "src/motion/play/clip.h"
 #include "src/motion/store/diagnostics.h"
 
@@ -62,7 +63,7 @@ static void expect_angles(verification *v, uint32_t line, double t_s, const grob
         long long deg = tenths(grobo_deg_from_rad(wanted->angle_rad[j]));
         v->told |= bit;
         say_at(v, line, "angle-lost", "%s%.*d at %lld ms: %s%lld.%lld degrees are not in the copy",
-               named ? model->joints[j].name : "joint ", named ? 0 : 1, named ? 0 : j,
+               named ? grobo_i_joint(model, j)->name : "joint ", named ? 0 : 1, named ? 0 : j,
                llround(t_s * 1e3), deg < 0 ? "-" : "", llabs(deg) / 10, llabs(deg) % 10);
     }
 }

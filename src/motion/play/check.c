@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/base/sized.h"
+#include "src/model/joint.h"
 #include "src/motion/play/clip.h"
 #include "src/motion/store/diagnostics.h"
 #include "src/motion/text/number.h"
@@ -261,7 +262,7 @@ static bool is_refused(const check *c, int j, double angle_rad)
     if (c->options->slack != NULL) {
         angle_rad = grobo_model_take_slack(c->model, j, angle_rad);
     }
-    return is_outside(&c->model->joints[j], angle_rad);
+    return is_outside(grobo_i_joint(c->model, j), angle_rad);
 }
 
 /* The angle is played at the limit that it exceeds; counted. */
@@ -291,7 +292,7 @@ static bool goes_on(const check *c, grobo_joint_mask before, int j)
 
 static void say_outside(check *c, size_t row, int j, double angle_rad, const char *where)
 {
-    const grobo_joint *joint = &c->model->joints[j];
+    const grobo_joint *joint = grobo_i_joint(c->model, j);
     grobo_i_said said =
         at_joint(c, row, j, where[0] != '\0' ? "limit-between" : "limit", GROBO_SEVERITY_ERROR);
 
@@ -305,7 +306,7 @@ static void check_limit(check *c, size_t row, int j, double angle_rad)
 {
     grobo_joint_mask bit = GROBO_JOINT_BIT(j);
 
-    if (!is_outside(&c->model->joints[j], angle_rad) || takes_slack(c, row, j, angle_rad)) {
+    if (!is_outside(grobo_i_joint(c->model, j), angle_rad) || takes_slack(c, row, j, angle_rad)) {
         c->outside &= ~bit;
         return;
     }
@@ -370,7 +371,7 @@ static double furthest(const cubic *q, const grobo_spline_key *from, const grobo
 /* The curve that ends at a key: too steep, or swinging out of the limits. */
 static void check_curve(check *c, size_t row, int j, double at_s)
 {
-    const grobo_joint *joint = &c->model->joints[j];
+    const grobo_joint *joint = grobo_i_joint(c->model, j);
     const grobo_spline_track *track = &c->clip->tracks[j].keys;
     size_t k = c->segment[j];
 
@@ -417,7 +418,7 @@ static double time_for(const check *c, size_t i, size_t row, int j, double at_s)
 
 static void check_speed(check *c, size_t i, size_t row, int j, double angle_rad)
 {
-    const grobo_joint *joint = &c->model->joints[j];
+    const grobo_joint *joint = grobo_i_joint(c->model, j);
     grobo_joint_mask bit = GROBO_JOINT_BIT(j);
     double at_s = grobo_i_clip_at_s(c->clip, i);
     double way_rad = fabs(angle_rad - c->angle_rad[j]);

@@ -4,6 +4,7 @@
 
 #include "src/base/assert.h"
 #include "src/base/memory.h"
+#include "src/base/sized.h"
 #include "src/motion/store/container.h"
 #include "src/motion/text/utf8.h"
 
@@ -143,8 +144,10 @@ static bool names(const char *body, const grobo_model *model)
 {
     bool same = strcmp(body, model->name) == 0;
 
-    for (size_t i = 0; !same && model->alike != NULL && model->alike[i] != NULL; i++) {
-        same = strcmp(body, model->alike[i]) == 0;
+    const char *const *alike = GROBO_I_MEMBER(model, model->size, alike);
+
+    for (size_t i = 0; !same && alike != NULL && alike[i] != NULL; i++) {
+        same = strcmp(body, alike[i]) == 0;
     }
     return same;
 }

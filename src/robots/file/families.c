@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "src/model/joint.h"
 #include "src/robots/file/families.h"
 
 #define FAMILY(name, directory)                                                                    \
@@ -47,7 +48,7 @@ const grobo_servo_model *grobo_i_family_row(const grobo_robot_family *family, si
 
 const grobo_servo_model *grobo_i_joint_servo(const grobo_robot_def *def, int joint)
 {
-    const grobo_joint *of = &def->model->joints[joint];
+    const grobo_joint *of = grobo_i_joint(def->model, joint);
     const grobo_servo_model *servo = of->servo;
     for (size_t i = 0; servo == NULL; i++) {
         const grobo_servo_model *row = grobo_i_family_row(def->family, i);

@@ -6,6 +6,7 @@
 
 #include <grobo/posture.h>
 
+#include "src/model/joint.h"
 #include "src/motion/text/nearest.h"
 #include "src/robots/file/draft.h"
 #include "src/robots/file/families.h"
@@ -210,7 +211,8 @@ static void check_unique(const maker *m, int j)
     for (int i = 0; i < j; i++) {
         grobo_joint_mask found;
         const grobo_group as_group = {m->file->joint_names[i], 1};
-        const grobo_model one = {.joints = m->file->joints, .groups = &as_group, .n_groups = 1};
+        const grobo_model one = GROBO_TABLE(grobo_model, GROBO_MODEL_JOINTS(m->file->joints),
+                                            .groups = &as_group, .n_groups = 1);
         if (grobo_model_find_joints(&one, joint->name, strlen(joint->name), &found) >= 0) {
             (void)complain(m, joint_place(m, j, "name"), "twice", "two joints are called '%s'",
                            joint->name);
@@ -307,7 +309,8 @@ static void check_servos(maker *m)
         int id = joint.motor;
         joint.mirror = 0;
         joint.motor = 1; /* which each family has: its own is judged below */
-        const grobo_model one = {.name = m->file->model_name, .joints = &joint, .n_joints = 1};
+        const grobo_model one = GROBO_TABLE(grobo_model, .name = m->file->model_name,
+                                            GROBO_MODEL_JOINTS(&joint), .n_joints = 1);
         int result = init(&m->driver, &one);
         if (result == GROBO_ERR_UNSUPPORTED) {
             (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "servo", joint_place(m, j, "servo"),
@@ -489,11 +492,10 @@ static void make_names(const maker *m)
     memcpy(file->model_name, *draft->model != '\0' ? draft->model : draft->name,
            sizeof file->model_name);
     memcpy(file->usb, draft->usb, sizeof file->usb);
-    file->model = (grobo_model){.name = file->model_name,
-                                .joints = file->joints,
-                                .groups = file->groups,
-                                .n_joints = (uint8_t)draft->n_joints,
-                                .limit_slack_deg = draft->limit_slack_deg};
+    file->model = (grobo_model)GROBO_TABLE(grobo_model, .name = file->model_name,
+                                           GROBO_MODEL_JOINTS(file->joints), .groups = file->groups,
+                                           .n_joints = (uint8_t)draft->n_joints,
+                                           .limit_slack_deg = draft->limit_slack_deg);
     file->def = (grobo_robot_def){.name = file->name,
                                   .title = file->title,
                                   .model = &file->model,
@@ -507,7 +509,7 @@ static bool has_same_joints(const grobo_model *a, const grobo_model *b)
 {
     int j = 0;
     while (a->n_joints == b->n_joints && j < a->n_joints &&
-           strcmp(a->joints[j].name, b->joints[j].name) == 0) {
+           strcmp(grobo_i_joint(a, j)->name, grobo_i_joint(b, j)->name) == 0) {
         j++;
     }
     return j == a->n_joints;
@@ -530,7 +532,10 @@ static void find_alike(const maker *m)
 
 int grobo_i_robot_make(const grobo_i_draft *draft, grobo_i_robot_file *file)
 {
-    maker m = {.draft = draft, .reader = draft->reader, .file = file};
+    maker m = {.draft = draft,
+               .reader = draft->reader,
+               .file = file,
+               .driver = GROBO_TABLE_INIT(grobo_driver)};
     make_names(&m);
     if (draft->n_joints == 0) {
         return complain(&m, place_of(&m, "joints"), "missing", "%s has no joints", draft->name);

@@ -135,18 +135,11 @@ int grobo_i_dxl1_measure(const uint8_t *bytes, size_t n, unsigned accept)
     return size > GROBO_FRAME_MAX_BYTES ? GROBO_ERR_FRAME : size;
 }
 
-const grobo_protocol grobo_i_dxl1_protocol = {
-    .name = "DYNAMIXEL 1.0",
-    .measure = grobo_i_dxl1_measure,
-    .unpack = unpack,
-    .reply_to = grobo_i_dxl1_reply_to,
-    .reply_at = grobo_i_dxl1_reply_at,
-    .several = grobo_bus_several,
-    .return_delay_us = RETURN_DELAY_US,
-    .call_us = GROBO_DXL1_CALL_US,
-    .id_min = 0,
-    .id_max = GROBO_DXL1_ID_MAX,
-};
+const grobo_protocol grobo_i_dxl1_protocol = GROBO_TABLE(
+    grobo_protocol, .name = "DYNAMIXEL 1.0", .measure = grobo_i_dxl1_measure, .unpack = unpack,
+    .reply_to = grobo_i_dxl1_reply_to, .reply_at = grobo_i_dxl1_reply_at,
+    .several = grobo_bus_several, .return_delay_us = RETURN_DELAY_US, .call_us = GROBO_DXL1_CALL_US,
+    .id_min = 0, .id_max = GROBO_DXL1_ID_MAX);
 
 const grobo_protocol *grobo_dxl1_protocol(void)
 {

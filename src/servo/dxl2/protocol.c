@@ -154,18 +154,11 @@ static int measure(const uint8_t *bytes, size_t n, unsigned accept)
     return size > GROBO_FRAME_MAX_BYTES ? GROBO_ERR_FRAME : size;
 }
 
-const grobo_protocol grobo_i_dxl2_protocol = {
-    .name = "DYNAMIXEL 2.0",
-    .measure = measure,
-    .unpack = unpack,
-    .reply_to = reply_to,
-    .reply_at = reply_at,
-    .several = grobo_bus_several,
-    .return_delay_us = RETURN_DELAY_US,
-    .call_us = CALL_US,
-    .id_min = 0,
-    .id_max = GROBO_DXL2_ID_MAX,
-};
+const grobo_protocol grobo_i_dxl2_protocol =
+    GROBO_TABLE(grobo_protocol, .name = "DYNAMIXEL 2.0", .measure = measure, .unpack = unpack,
+                .reply_to = reply_to, .reply_at = reply_at, .several = grobo_bus_several,
+                .return_delay_us = RETURN_DELAY_US, .call_us = CALL_US, .id_min = 0,
+                .id_max = GROBO_DXL2_ID_MAX);
 
 const grobo_protocol *grobo_dxl2_protocol(void)
 {

@@ -9,6 +9,7 @@
 #include <grobo/core/sim.h>
 
 #include "src/base/bytes.h"
+#include "src/model/joint.h"
 #include "src/servo/families.h"
 #include "src/servo/tables.h"
 #include "src/sim/servo/family.h"
@@ -255,7 +256,7 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
         return false;
     }
     if (sim->config.mounted) {
-        const grobo_joint *joint = &sim->config.model->joints[index];
+        const grobo_joint *joint = grobo_i_joint(sim->config.model, index);
         bool grips = joint->torque_limit_pct > 0 && has_mode(servo, GROBO_DXL2_MODE_GRIP);
         grobo_i_dxl_put(servo, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
         grobo_i_dxl_put(servo, GROBO_ROLE_MODE,

@@ -242,16 +242,11 @@ static const grobo_relay relay = {
     .stored = build_stored,
 };
 
-const grobo_protocol grobo_i_board_protocol = {
-    .name = "GR001",
-    .measure = grobo_i_rs30x_measure,
-    .unpack = grobo_i_rs30x_unpack,
-    .reply_to = reply_to,
-    .return_delay_us = GROBO_RS30X_DELAY_US(0),
-    .id_min = 1,
-    .id_max = GROBO_RS30X_ID_MAX,
-    .relay = &relay,
-};
+const grobo_protocol grobo_i_board_protocol =
+    GROBO_TABLE(grobo_protocol, .name = "GR001", .measure = grobo_i_rs30x_measure,
+                .unpack = grobo_i_rs30x_unpack, .reply_to = reply_to,
+                .return_delay_us = GROBO_RS30X_DELAY_US(0), .id_min = 1,
+                .id_max = GROBO_RS30X_ID_MAX, .relay = &relay);
 
 const grobo_protocol *grobo_board_protocol(void)
 {

@@ -10,6 +10,7 @@
 #include <grobo/core/driver.h>
 
 #include "src/base/bytes.h"
+#include "src/model/joint.h"
 #include "src/servo/ics/items.h"
 #include "src/servo/table/items.h"
 #include "src/servo/tables.h"
@@ -45,7 +46,7 @@ static int send_position(const grobo_driver *self, int joint, int32_t position,
                          grobo_exchange *exchange)
 {
     const grobo_ics_packet packet = {.command = GROBO_ICS_POSITION,
-                                     .id = self->model->joints[joint].motor,
+                                     .id = grobo_i_joint(self->model, joint)->motor,
                                      .value = (uint16_t)position};
     return finish(self, &packet, exchange);
 }
@@ -72,7 +73,7 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
     if (j < 0) {
         return 0;
     }
-    const grobo_joint *joint = &self->model->joints[j];
+    const grobo_joint *joint = grobo_i_joint(self->model, j);
     int32_t ticks =
         grobo_i_table_ticks(joint, grobo_i_table_servo(self, j), target->posture.angle_rad[j]);
     const grobo_ics_packet speed = {.command = GROBO_ICS_WRITE,
@@ -90,7 +91,8 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
 /* The goal where it stands has switched it on already: to read the speed does nothing. */
 static int torque(const grobo_driver *self, int joint, bool on, grobo_exchange *exchange)
 {
-    return on ? read(self, self->model->joints[joint].motor, GROBO_I_ICS_READ(SPEED), exchange)
+    return on ? read(self, grobo_i_joint(self->model, joint)->motor, GROBO_I_ICS_READ(SPEED),
+                     exchange)
               : send_position(self, joint, GROBO_ICS_FREE, exchange);
 }
 
@@ -141,7 +143,7 @@ static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_pac
                  grobo_joint_state *state)
 {
     (void)ctx;
-    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
     const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
     const uint8_t *data = reply->data;
     if (reply->address >= GROBO_I_ICS_AT_GOAL) {
@@ -230,7 +232,7 @@ static int inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, si
         return GROBO_OK;
     }
     target->posture.angle_rad[joint] = grobo_i_table_angle(
-        &self->model->joints[joint], grobo_i_table_servo(self, joint), packet.value);
+        grobo_i_joint(self->model, joint), grobo_i_table_servo(self, joint), packet.value);
     target->posture.set |= GROBO_JOINT_BIT(joint);
     target->joint_time_us[joint] = 0;
     return GROBO_OK;
@@ -260,11 +262,8 @@ static const grobo_i_items items = {.family = {.tables = {&grobo_i_ics_table},
 
 int grobo_ics_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    grobo_driver made = {.goal_energises = true,
-                         .tells_no_speed = true,
-                         .posture = posture,
-                         .parse = parse,
-                         .inspect = inspect};
+    grobo_driver made = GROBO_TABLE(grobo_driver, .goal_energises = true, .tells_no_speed = true,
+                                    .posture = posture, .parse = parse, .inspect = inspect);
     int result = grobo_i_items_make(&made, model, &grobo_i_ics_protocol, &items);
     for (int j = 0; result >= 0 && j < model->n_joints; j++) {
         bool tells = grobo_ics_tells_position(grobo_i_table_servo(&made, j));

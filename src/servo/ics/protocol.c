@@ -120,17 +120,10 @@ static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
     return (int)found.bytes;
 }
 
-const grobo_protocol grobo_i_ics_protocol = {
-    .name = "Kondo ICS",
-    .measure = measure,
-    .unpack = unpack,
-    .reply_to = reply_to,
-    .return_delay_us = RETURN_DELAY_US,
-    .call_us = CALL_US,
-    .parity = GROBO_PARITY_EVEN,
-    .id_min = 0,
-    .id_max = GROBO_ICS_ID_MAX,
-};
+const grobo_protocol grobo_i_ics_protocol =
+    GROBO_TABLE(grobo_protocol, .name = "Kondo ICS", .measure = measure, .unpack = unpack,
+                .reply_to = reply_to, .return_delay_us = RETURN_DELAY_US, .call_us = CALL_US,
+                .parity = GROBO_PARITY_EVEN, .id_min = 0, .id_max = GROBO_ICS_ID_MAX);
 
 const grobo_protocol *grobo_ics_protocol(void)
 {

@@ -5,6 +5,7 @@
 #include <grobo/core/driver.h>
 
 #include "src/base/bytes.h"
+#include "src/model/joint.h"
 #include "src/servo/lx16a/items.h"
 #include "src/servo/table/items.h"
 #include "src/servo/tables.h"
@@ -55,7 +56,7 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
     if (j < 0) {
         return 0;
     }
-    const grobo_joint *joint = &self->model->joints[j];
+    const grobo_joint *joint = grobo_i_joint(self->model, j);
     int64_t ms = (target->joint_time_us[j] + MS_US / 2) / MS_US;
     int32_t ticks =
         grobo_i_table_ticks(joint, grobo_i_table_servo(self, j), target->posture.angle_rad[j]);
@@ -69,8 +70,8 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
 static int torque(const grobo_driver *self, int joint, bool on, grobo_exchange *exchange)
 {
     const uint8_t load = on;
-    return finish(self, self->model->joints[joint].motor, GROBO_LX16A_LOAD, &load, sizeof load,
-                  exchange);
+    return finish(self, grobo_i_joint(self->model, joint)->motor, GROBO_LX16A_LOAD, &load,
+                  sizeof load, exchange);
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */
@@ -104,7 +105,7 @@ static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_pac
                  grobo_joint_state *state)
 {
     (void)ctx;
-    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
     const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
     const grobo_i_item *item =
         grobo_i_item_at(grobo_i_lx16a_items, reply->address, (unsigned)reply->data_bytes);
@@ -182,7 +183,7 @@ static int inspect_joint(const grobo_driver *self, const grobo_lx16a_packet *pac
         return GROBO_OK;
     }
     if (packet->command != GROBO_LX16A_MOVE || packet->data_bytes != 4 ||
-        take_goal(&self->model->joints[joint], grobo_i_table_servo(self, joint), packet->data,
+        take_goal(grobo_i_joint(self->model, joint), grobo_i_table_servo(self, joint), packet->data,
                   &state) < 0) {
         return GROBO_ERR_UNSUPPORTED;
     }
@@ -206,7 +207,7 @@ static int inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, si
         return GROBO_OK;
     }
     for (int j = 0; j < self->model->n_joints; j++) {
-        if (packet.id == GROBO_LX16A_ID_ALL || packet.id == self->model->joints[j].motor) {
+        if (packet.id == GROBO_LX16A_ID_ALL || packet.id == grobo_i_joint(self->model, j)->motor) {
             result = inspect_joint(self, &packet, j, target, torqued);
             if (result < 0) {
                 return result;
@@ -245,12 +246,9 @@ static const grobo_i_items items = {.family = {.tables = {&grobo_i_lx16a_table},
 
 int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    grobo_driver made = {.goal_energises = true,
-                         .tells_no_speed = true,
-                         .posture = posture,
-                         .parse = parse,
-                         .command = command,
-                         .inspect = inspect};
+    grobo_driver made =
+        GROBO_TABLE(grobo_driver, .goal_energises = true, .tells_no_speed = true,
+                    .posture = posture, .parse = parse, .command = command, .inspect = inspect);
     int result = grobo_i_items_make(&made, model, &grobo_i_lx16a_protocol, &items);
     return grobo_i_table_give(driver, &made, result);
 }

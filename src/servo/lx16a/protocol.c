@@ -50,16 +50,10 @@ static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
     return (int)reply->bytes;
 }
 
-const grobo_protocol grobo_i_lx16a_protocol = {
-    .name = "Hiwonder LX",
-    .measure = grobo_lx16a_measure,
-    .unpack = unpack,
-    .reply_to = reply_to,
-    .return_delay_us = RETURN_DELAY_US,
-    .call_us = CALL_US,
-    .id_min = 0,
-    .id_max = GROBO_LX16A_ID_MAX,
-};
+const grobo_protocol grobo_i_lx16a_protocol =
+    GROBO_TABLE(grobo_protocol, .name = "Hiwonder LX", .measure = grobo_lx16a_measure,
+                .unpack = unpack, .reply_to = reply_to, .return_delay_us = RETURN_DELAY_US,
+                .call_us = CALL_US, .id_min = 0, .id_max = GROBO_LX16A_ID_MAX);
 
 const grobo_protocol *grobo_lx16a_protocol(void)
 {

@@ -5,6 +5,7 @@
 #include <grobo/core/driver.h>
 
 #include "src/base/bytes.h"
+#include "src/model/joint.h"
 #include "src/servo/rs30x/driver.h"
 
 /* A long packet of n servos has 8 + (1 + data) n bytes (protocol 3). */
@@ -42,13 +43,13 @@ static int joints_of_part(const grobo_model *model, grobo_joint_mask joints, int
         return 0;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        int motor = model->joints[j].motor;
+        int motor = grobo_i_joint(model, j)->motor;
         highest = motor > highest ? motor : highest;
     }
     memset(joint_of, 0, (size_t)highest + 1);
     for (int j = 0; j < model->n_joints; j++) {
         if ((joints & GROBO_JOINT_BIT(j)) != 0) {
-            joint_of[model->joints[j].motor] = (uint8_t)(j + 1);
+            joint_of[grobo_i_joint(model, j)->motor] = (uint8_t)(j + 1);
         }
     }
     for (int motor = 0; motor <= highest && n < capacity; motor++) {
@@ -71,8 +72,8 @@ int grobo_i_rs30x_check(const grobo_driver *self, void *ctx, int part, grobo_exc
     if (part >= self->model->n_joints) {
         return 0;
     }
-    int size = grobo_frame_read(self->protocol, self->model->joints[part].motor, GROBO_RS30X_MODEL,
-                                2, exchange->frame, sizeof exchange->frame);
+    int size = grobo_frame_read(self->protocol, grobo_i_joint(self->model, part)->motor,
+                                GROBO_RS30X_MODEL, 2, exchange->frame, sizeof exchange->frame);
     return finish_part(self, size, exchange);
 }
 
@@ -87,7 +88,7 @@ static uint16_t steps_of(const grobo_driver *self, int64_t time_us)
 static void fill_goal(const grobo_driver *self, const grobo_target *target, int joint,
                       grobo_rs30x_goal *goal)
 {
-    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
     goal->id = moved->motor;
     goal->pos_ddeg =
         grobo_ddeg_from_rad(grobo_joint_to_servo(moved, target->posture.angle_rad[joint]));
@@ -127,7 +128,7 @@ int grobo_i_rs30x_torque(const grobo_driver *self, void *ctx, grobo_joint_mask j
         return 0;
     }
     for (int i = 0; i < n; i++) {
-        torques[i].id = self->model->joints[list[i]].motor;
+        torques[i].id = grobo_i_joint(self->model, list[i])->motor;
         torques[i].value = (uint8_t)mode;
     }
     uint8_t *buf = exchange->frame;
@@ -152,7 +153,7 @@ int grobo_i_rs30x_sense(const grobo_driver *self, void *ctx, int joint, grobo_se
                         grobo_exchange *exchange)
 {
     (void)ctx;
-    uint8_t id = self->model->joints[joint].motor;
+    uint8_t id = grobo_i_joint(self->model, joint)->motor;
     uint8_t address = blocks[kind].address;
     uint8_t length = blocks[kind].length;
     const grobo_relay *relay = self->protocol->relay;
@@ -203,7 +204,7 @@ int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint, const gr
                         grobo_joint_state *state)
 {
     (void)ctx;
-    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
     grobo_rs30x_state got;
     int found =
         grobo_rs30x_state_decode((uint8_t)reply->address, reply->data, reply->data_bytes, &got);
@@ -367,7 +368,7 @@ static int inspect_joint(const grobo_driver *self, const share *s, int joint, gr
         int ddeg = grobo_i_get_i16(goal);
         int64_t units = time == NULL ? 0 : grobo_i_get_u16(time);
         target->posture.angle_rad[joint] =
-            grobo_joint_from_servo(&self->model->joints[joint], grobo_rad_from_ddeg(ddeg));
+            grobo_joint_from_servo(grobo_i_joint(self->model, joint), grobo_rad_from_ddeg(ddeg));
         target->posture.set |= bit;
         target->joint_time_us[joint] = units * self->time_step_us;
     }
@@ -388,7 +389,7 @@ static int inspect_share(const grobo_driver *self, const share *s, grobo_target 
         return GROBO_ERR_UNSUPPORTED;
     }
     for (int j = 0; j < self->model->n_joints; j++) {
-        if (s->id == GROBO_RS30X_ID_ALL || s->id == self->model->joints[j].motor) {
+        if (s->id == GROBO_RS30X_ID_ALL || s->id == grobo_i_joint(self->model, j)->motor) {
             int result = inspect_joint(self, s, j, target, torqued);
             if (result < 0) {
                 return result;
@@ -451,22 +452,19 @@ int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        if (model->joints[j].torque_limit_pct > 0 || model->joints[j].calibrated) {
+        if (grobo_i_joint(model, j)->torque_limit_pct > 0 || grobo_i_joint(model, j)->calibrated) {
             return GROBO_ERR_ARG; /* a reading does not show it */
         }
     }
-    *driver = (grobo_driver){
-        .name = model->name,
-        .model = model,
-        .protocol = protocol,
-        .on_exit = GROBO_EXIT_HOLD,
-        .limits = {.temperature_c = 70,
-                   .lost_replies = 5,
-                   .approach_rad_s = grobo_rad_from_deg(GROBO_PLAY_APPROACH_DEG_S)},
-        GROBO_I_RS30X_FUNCTIONS,
-    };
+    grobo_driver made =
+        GROBO_TABLE(grobo_driver, .name = model->name, .model = model, .protocol = protocol,
+                    .on_exit = GROBO_EXIT_HOLD,
+                    .limits = {.temperature_c = 70,
+                               .lost_replies = 5,
+                               .approach_rad_s = grobo_rad_from_deg(GROBO_PLAY_APPROACH_DEG_S)},
+                    GROBO_I_RS30X_FUNCTIONS);
     if (protocol->relay != NULL) {
-        driver->stored = grobo_i_rs30x_stored;
+        made.stored = grobo_i_rs30x_stored;
     }
-    return GROBO_OK;
+    return grobo_driver_copy(driver, &made);
 }

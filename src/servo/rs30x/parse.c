@@ -292,15 +292,10 @@ void grobo_i_rs30x_unpack(uint8_t *bytes, size_t n, grobo_packet *packet)
     }
 }
 
-const grobo_protocol grobo_i_rs30x_protocol = {
-    .name = "RS30x",
-    .measure = grobo_i_rs30x_measure,
-    .unpack = grobo_i_rs30x_unpack,
-    .reply_to = grobo_rs30x_reply_to,
-    .return_delay_us = GROBO_RS30X_DELAY_US(0),
-    .id_min = 1,
-    .id_max = GROBO_RS30X_ID_MAX,
-};
+const grobo_protocol grobo_i_rs30x_protocol = GROBO_TABLE(
+    grobo_protocol, .name = "RS30x", .measure = grobo_i_rs30x_measure,
+    .unpack = grobo_i_rs30x_unpack, .reply_to = grobo_rs30x_reply_to,
+    .return_delay_us = GROBO_RS30X_DELAY_US(0), .id_min = 1, .id_max = GROBO_RS30X_ID_MAX);
 
 const grobo_protocol *grobo_rs30x_protocol(void)
 {

@@ -6,6 +6,7 @@
 #include <grobo/core/sim.h>
 
 #include "src/base/bytes.h"
+#include "src/model/joint.h"
 #include "src/servo/families.h"
 #include "src/servo/tables.h"
 #include "src/sim/servo/family.h"
@@ -165,7 +166,7 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
     const grobo_servo_model *const *named = sim->config.servos;
     uint16_t number = named != NULL && named[index] != NULL
                           ? named[index]->number
-                          : sim->config.model->joints[index].servo_model;
+                          : grobo_i_joint(sim->config.model, index)->servo_model;
     int code = grobo_servo_baud_code(servo->model, (int32_t)baud_bps);
     if (code < 0) {
         return false;

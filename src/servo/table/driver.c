@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/model/joint.h"
 #include "src/servo/table/family.h"
 
 /* A run of registers. */
@@ -160,7 +161,7 @@ static int write_part(const grobo_driver *self, grobo_joint_mask joints, span s,
     }
     for (int j = 0; j < self->model->n_joints; j++) {
         if ((joints & GROBO_JOINT_BIT(j)) != 0) {
-            data[n] = self->model->joints[j].motor;
+            data[n] = grobo_i_joint(self->model, j)->motor;
             memset(data + n + 1, 0, each);
             put(self, j, what, s, data + n + 1);
             n += 1 + each;
@@ -201,7 +202,7 @@ static double least_accel(const grobo_driver *self)
 {
     double least_dps2 = INFINITY;
     for (int j = 0; j < self->model->n_joints; j++) {
-        const grobo_joint *joint = &self->model->joints[j];
+        const grobo_joint *joint = grobo_i_joint(self->model, j);
         const grobo_servo_model *servo = grobo_i_table_servo(self, j);
         const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_ACCELERATION);
         span s = goal_span(servo);
@@ -218,7 +219,7 @@ static void put_goal(const grobo_driver *self, int joint, const void *what, span
 {
     const grobo_target *target = what;
     const grobo_i_family *family = self->family;
-    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
     const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
     double angle_rad = target->posture.angle_rad[joint];
     int64_t time_us = target->joint_time_us[joint] > 0 ? target->joint_time_us[joint] : MS_US;
@@ -296,7 +297,7 @@ static void put_limit(const grobo_driver *self, int joint, const void *what, spa
     int32_t counts;
     const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
     const grobo_servo_register *reg =
-        grobo_i_table_limit(&self->model->joints[joint], servo, &counts);
+        grobo_i_table_limit(grobo_i_joint(self->model, joint), servo, &counts);
     (void)what;
     put_role(servo, (grobo_register_role)reg->role, counts, s, to);
 }
@@ -352,7 +353,7 @@ static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *
     }
     span s = {0, 0};
     widen(&s, grobo_i_table_servo(self, part), GROBO_ROLE_MODEL);
-    int result = read_span(self, self->model->joints[part].motor, s, exchange);
+    int result = read_span(self, grobo_i_joint(self->model, part)->motor, s, exchange);
     return result < 0 ? result : 1;
 }
 
@@ -361,7 +362,7 @@ static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kin
 {
     (void)ctx;
     span s = sense_span(grobo_i_table_servo(self, joint), kind);
-    return read_span(self, self->model->joints[joint].motor, s, exchange);
+    return read_span(self, grobo_i_joint(self->model, joint)->motor, s, exchange);
 }
 
 static int ask_many(const grobo_driver *self, grobo_dxl2_code instruction, grobo_joint_mask joints,
@@ -373,7 +374,7 @@ static int ask_many(const grobo_driver *self, grobo_dxl2_code instruction, grobo
     for (int j = 0; j < self->model->n_joints; j++) {
         if ((joints & GROBO_JOINT_BIT(j)) != 0) {
             s = sense_span(grobo_i_table_servo(self, j), kind);
-            ids[n++] = self->model->joints[j].motor;
+            ids[n++] = grobo_i_joint(self->model, j)->motor;
         }
     }
     const grobo_dxl2_packet packet = {.id = GROBO_DXL2_ID_ALL,
@@ -457,18 +458,11 @@ static bool reads_alike(const grobo_driver *self)
 int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
                          const grobo_protocol *protocol, const grobo_i_family *family)
 {
-    grobo_driver made = {
-        .check = check,
-        .posture = posture,
-        .torque = torque,
-        .torque_limit = torque_limit,
-        .sense = sense,
-        .parse = grobo_i_table_parse,
-        .write_kind = grobo_i_table_write_kind,
-        .registers = registers,
-        .command = command,
-        .inspect = grobo_i_table_inspect,
-    };
+    grobo_driver made =
+        GROBO_TABLE(grobo_driver, .check = check, .posture = posture, .torque = torque,
+                    .torque_limit = torque_limit, .sense = sense, .parse = grobo_i_table_parse,
+                    .write_kind = grobo_i_table_write_kind, .registers = registers,
+                    .command = command, .inspect = grobo_i_table_inspect);
     int result = grobo_i_table_make(&made, model, protocol, family);
     made.watchdog = family->watchdog_us > 0 ? watchdog : NULL;
     made.accel_rad_s2 = result >= 0 ? least_accel(&made) : 0;

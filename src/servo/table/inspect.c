@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/model/joint.h"
 #include "src/servo/table/family.h"
 
 /* ---- kinds of writes ------------------------------------------------------------------------- */
@@ -97,7 +98,7 @@ static int64_t time_of(const grobo_driver *self, int joint, const share *s, doub
                        double to_rad)
 {
     const grobo_i_family *family = self->family;
-    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
     const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
     int32_t speed = 0, ms = 0;
     if (value_of(servo, s, GROBO_ROLE_GOAL_TIME, &ms)) {
@@ -142,7 +143,7 @@ static int inspect_joint(const grobo_driver *self, const share *s, int joint, gr
     bool has_torque = value_of(servo, s, GROBO_ROLE_TORQUE, &torque);
     bool has_goal = value_of(servo, s, GROBO_ROLE_GOAL, &goal);
     grobo_write_kind kind = kind_of_run(servo, s->address, (int)s->n);
-    if (!may_write(&self->model->joints[joint], servo, s) ||
+    if (!may_write(grobo_i_joint(self->model, joint), servo, s) ||
         (kind == GROBO_WRITE_MOTOR && !has_torque && !has_goal)) {
         return GROBO_ERR_UNSUPPORTED;
     }
@@ -156,7 +157,7 @@ static int inspect_joint(const grobo_driver *self, const share *s, int joint, gr
                                         : GROBO_TORQUE_BRAKE] |= bit;
     }
     if (has_goal) {
-        double to_rad = grobo_i_table_angle(&self->model->joints[joint], servo, goal);
+        double to_rad = grobo_i_table_angle(grobo_i_joint(self->model, joint), servo, goal);
         if ((target->posture.set & bit) != 0) {
             return GROBO_ERR_UNSUPPORTED; /* two goals */
         }
@@ -172,7 +173,7 @@ static int inspect_share(const grobo_driver *self, const share *s, uint8_t id, g
 {
     bool found = false;
     for (int j = 0; j < self->model->n_joints; j++) {
-        if (id == GROBO_DXL2_ID_ALL || id == self->model->joints[j].motor) {
+        if (id == GROBO_DXL2_ID_ALL || id == grobo_i_joint(self->model, j)->motor) {
             int result = inspect_joint(self, s, j, target, torqued);
             if (result < 0) {
                 return result;

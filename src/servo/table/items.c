@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
+#include "src/model/joint.h"
 #include "src/servo/table/items.h"
 
 static int read_part(const grobo_driver *self, int joint, uint16_t code, grobo_exchange *exchange)
 {
     const grobo_i_items *items = self->family;
-    int result = items->read(self, self->model->joints[joint].motor, code, exchange);
+    int result = items->read(self, grobo_i_joint(self->model, joint)->motor, code, exchange);
     return result < 0 ? result : 1;
 }
 

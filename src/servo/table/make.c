@@ -2,6 +2,7 @@
 /* What the tables of all families have in common that name their servos by a table of registers. */
 #include <grobo/core/sequencer.h>
 
+#include "src/model/joint.h"
 #include "src/servo/table/family.h"
 
 #define MS_US 1000
@@ -47,7 +48,7 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
     made->on_exit = GROBO_EXIT_HOLD;
     made->arm = made->keeps_setup = true;
     for (int j = 0; j < model->n_joints; j++) {
-        const grobo_joint *joint = &model->joints[j];
+        const grobo_joint *joint = grobo_i_joint(model, j);
         const grobo_servo_model *servo = grobo_i_table_servo(made, j);
         if (servo != NULL && (servo->flags & GROBO_MODEL_NO_JOINT) != 0) {
             return GROBO_ERR_UNSUPPORTED;
@@ -67,8 +68,7 @@ int grobo_i_table_give(grobo_driver *driver, const grobo_driver *made, int resul
     if (result < 0 || driver == NULL) {
         return result < 0 ? result : GROBO_ERR_ARG;
     }
-    *driver = *made;
-    return GROBO_OK;
+    return grobo_driver_copy(driver, made);
 }
 
 int grobo_i_table_finish(const grobo_driver *self, int size, grobo_exchange *exchange)

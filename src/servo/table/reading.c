@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/model/joint.h"
 #include "src/servo/table/family.h"
 
 /* What a servo may say. A shaft may stand a little outside of its turn. */
@@ -29,7 +30,7 @@ static void take_angles(const grobo_driver *self, int joint, const grobo_i_block
                         grobo_joint_state *state)
 {
     const grobo_i_family *family = self->family;
-    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
     int32_t ticks, ms;
     double dps;
     if (value_of(b, GROBO_ROLE_POSITION, &ticks)) {
@@ -131,7 +132,7 @@ int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const gr
 {
     (void)ctx;
     const grobo_i_family *family = self->family;
-    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
     grobo_packet part;
     if (reply->id != moved->motor && family->fast_part != NULL) {
         if (!family->fast_part(reply, self->model->n_joints, joint, &part) ||

@@ -2,6 +2,8 @@
 /* Values of registers: out of blocks, in their units, as angles. */
 #include <math.h>
 
+#include "src/base/sized.h"
+#include "src/model/joint.h"
 #include "src/servo/table/family.h"
 
 #define RAD_PER_DEG 0.017453292519943295
@@ -9,8 +11,8 @@
 const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint)
 {
     const grobo_i_family *family = self->family;
-    const grobo_joint *moved = &self->model->joints[joint];
-    const grobo_servo_model *found = moved->servo;
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
+    const grobo_servo_model *found = GROBO_I_MEMBER(moved, self->model->joint_size, servo);
     for (int i = 0; found == NULL && i < GROBO_I_TABLES; i++) {
         found = grobo_servo_model_numbered(family->tables[i], moved->servo_model);
     }
@@ -41,7 +43,7 @@ bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role rol
 
 double grobo_i_table_speed_dps(const grobo_driver *self, const grobo_target *target, int joint)
 {
-    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_joint *moved = grobo_i_joint(self->model, joint);
     double ratio = grobo_joint_to_servo(moved, 1) - grobo_joint_to_servo(moved, 0);
     double way_rad = fabs(target->posture.angle_rad[joint] - target->from_rad[joint]);
     int64_t us = target->joint_time_us[joint] > 0 ? target->joint_time_us[joint] : 1;
@@ -106,7 +108,7 @@ double grobo_i_table_step_rad(const grobo_driver *self)
 {
     double step_rad = 0;
     for (int j = 0; j < self->model->n_joints; j++) {
-        const grobo_joint *joint = &self->model->joints[j];
+        const grobo_joint *joint = grobo_i_joint(self->model, j);
         const grobo_servo_model *servo = grobo_i_table_servo(self, j);
         double own_rad =
             fabs(grobo_i_table_angle(joint, servo, 1) - grobo_i_table_angle(joint, servo, 0));

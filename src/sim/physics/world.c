@@ -12,6 +12,7 @@
 #include "src/base/assert.h"
 #include "src/base/memory.h"
 #include "src/base/sized.h"
+#include "src/model/joint.h"
 #include "src/sim/physics/loops.h"
 #include "src/sim/physics/physics.h"
 #include "src/sim/servo/family.h"
@@ -367,7 +368,7 @@ static int fill(grobo_i_world *w, const grobo_sim_physics_config *config)
         memcpy(w->link_name[i], name, length);
     }
     for (int i = 0; i < w->n; i++) {
-        const grobo_joint *joint = &config->model->joints[i];
+        const grobo_joint *joint = grobo_i_joint(config->model, i);
         grobo_i_joint_world *j = &w->joint[i];
         j->zero_rad = grobo_joint_to_servo(joint, 0);
         j->ratio = grobo_joint_to_servo(joint, 1) - j->zero_rad;

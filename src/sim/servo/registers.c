@@ -6,6 +6,7 @@
 #include <grobo/posture.h>
 
 #include "src/base/assert.h"
+#include "src/model/joint.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/note.h"
 #include "src/sim/servo/registers.h"
@@ -91,7 +92,7 @@ void grobo_i_dxl_sold(grobo_sim *sim, int index, uint8_t id, int baud_code)
     grobo_i_dxl_factory(servo);
     grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
     grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, baud_code);
-    const grobo_joint *joint = &sim->config.model->joints[index];
+    const grobo_joint *joint = grobo_i_joint(sim->config.model, index);
     if (sim->config.mounted && joint->calibrated) {
         calibrate(servo, joint);
     }

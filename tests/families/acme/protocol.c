@@ -42,13 +42,7 @@ static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)
     return (int)reply->bytes;
 }
 
-const grobo_protocol grobo_i_acme_protocol = {
-    .name = "Acme",
-    .measure = grobo_i_acme_measure,
-    .unpack = unpack,
-    .reply_to = reply_to,
-    .return_delay_us = 100,
-    .call_us = 50000,
-    .id_min = 0,
-    .id_max = ACME_ID_MAX,
-};
+const grobo_protocol grobo_i_acme_protocol =
+    GROBO_TABLE(grobo_protocol, .name = "Acme", .measure = grobo_i_acme_measure, .unpack = unpack,
+                .reply_to = reply_to, .return_delay_us = 100, .call_us = 50000, .id_min = 0,
+                .id_max = ACME_ID_MAX);

@@ -40,7 +40,7 @@ static uint32_t line_at(const grobo_motion *motion, double at_s)
 static void describe(const whole_robot *robot, const grobo_body_finding *f, char *text,
                      size_t capacity)
 {
-    const grobo_joint *joint = &robot->model->joints[f->index];
+    const grobo_joint *joint = grobo_model_joint(robot->model, f->index);
     const grobo_body_link *link = &robot->body->links[f->index];
     switch (f->problem) {
     case GROBO_BODY_UNREACHABLE:
@@ -175,7 +175,7 @@ static void skip(const char *path, const char *why, grobo_diagnostics *list)
 
 bool check_takes_slack(const grobo_model *model, const grobo_body_finding *limit)
 {
-    double max_rad = model->joints[limit->index].max_rad;
+    double max_rad = grobo_model_joint(model, limit->index)->max_rad;
     return grobo_model_take_slack(model, limit->index, max_rad + limit->worst) == max_rad;
 }
 
@@ -204,7 +204,7 @@ void check_report_slack(const char *path, const grobo_model *model, const grobo_
     snprintf(message, sizeof message,
              "%zu angle%s up to %.1f degrees outside %s limits (%s): clamped", slack->n,
              slack->n == 1 ? "" : "s", grobo_deg_from_rad(slack->worst_rad),
-             slack->n == 1 ? "its" : "their", model->joints[slack->joint].name);
+             slack->n == 1 ? "its" : "their", grobo_model_joint(model, slack->joint)->name);
     grobo_diagnostics_add(list, &d);
 }
 

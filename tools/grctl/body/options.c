@@ -131,7 +131,7 @@ int body_refuse(app *a, const char *path, const grobo_motion *motion, grobo_body
     return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LIMIT),
                     "%s: at %.2f s %s is %.1f deg outside its limits once the legs are solved; "
                     "--clamp plays it at the limit",
-                    path, r.first.begin_s, r.robot.model->joints[r.first.index].name,
+                    path, r.first.begin_s, grobo_model_joint(r.robot.model, r.first.index)->name,
                     grobo_deg_from_rad(r.first.worst));
 }
 

@@ -52,7 +52,7 @@ void cli_offer_kind(const cli_offer *to, cli_argument kind)
             cli_offer_word(to, model->groups[i].name, "");
         }
         for (int i = 0; i < model->n_joints; i++) {
-            cli_offer_word(to, model->joints[i].name, "");
+            cli_offer_word(to, grobo_model_joint(model, i)->name, "");
         }
         break;
     case CLI_ARG_ROBOT:

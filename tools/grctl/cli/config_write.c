@@ -40,7 +40,8 @@ static void put_trims(const app *a, heap *to, const config_robot *robot)
     const char *before = "{";
     for (int j = 0; j < app_model(a)->n_joints; j++) {
         if (robot->trim_deg[j] != 0) {
-            heap_print(to, "%s%s: %.10g", before, app_model(a)->joints[j].name, robot->trim_deg[j]);
+            heap_print(to, "%s%s: %.10g", before, grobo_model_joint(app_model(a), j)->name,
+                       robot->trim_deg[j]);
             before = ", ";
         }
     }

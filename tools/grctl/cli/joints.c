@@ -8,7 +8,7 @@ const char *joints_nearest(const grobo_model *model, const char *name, size_t le
 {
     cli_guess guess = {.name = name, .length = length};
     for (int i = 0; i < model->n_joints; i++) {
-        cli_guess_try(&guess, model->joints[i].name);
+        cli_guess_try(&guess, grobo_model_joint(model, i)->name);
     }
     for (int i = 0; groups && i < model->n_groups; i++) {
         cli_guess_try(&guess, model->groups[i].name);
@@ -39,8 +39,8 @@ static int unknown(app *a, const char *what, const char *name, size_t length, bo
     int joint = an_example(model);
     return app_fail(a, EXIT_USAGE, "NOTFOUND",
                     "no %s called '%.*s'; joints are named as %s, m%d or j%d%s; see 'grctl joints'",
-                    what, (int)length, name, model->joints[joint].name, model->joints[joint].motor,
-                    joint, known);
+                    what, (int)length, name, grobo_model_joint(model, joint)->name,
+                    grobo_model_joint(model, joint)->motor, joint, known);
 }
 
 int joints_parse_all(app *a, int n, const char *const *names, grobo_joint_mask *joints)
@@ -101,7 +101,7 @@ int joints_parse_motion(app *a, const char *list, const grobo_model *model, int 
 int joints_parse_one(app *a, const char *name, size_t length, int *status)
 {
     int joint = grobo_model_find_joint(app_model(a), name, length);
-    const grobo_joint *like = &app_model(a)->joints[an_example(app_model(a))];
+    const grobo_joint *like = grobo_model_joint(app_model(a), an_example(app_model(a)));
     grobo_joint_mask group;
     if (joint >= 0) {
         return joint;
@@ -123,7 +123,7 @@ int joints_check_limits(app *a, const grobo_posture *posture, const char *doing)
     if (!error) {
         return 0;
     }
-    const grobo_joint *j = &app_model(a)->joints[joint];
+    const grobo_joint *j = grobo_model_joint(app_model(a), joint);
     return app_fail(a, EXIT_SAFETY, grobo_error_name(error),
                     "%s: %s (motor %d) to %.1f deg is outside its limits %.0f to %.0f", doing,
                     j->name, j->motor, grobo_deg_from_rad(posture->angle_rad[joint]),

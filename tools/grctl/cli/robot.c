@@ -102,6 +102,7 @@ static int make_driver(app *a, const char *name)
     if (a->def == grobo_robot_def_at(0)) {
         return 0;
     }
+    a->made.size = sizeof a->made;
     int error = grobo_robot_def_driver(a->def, (grobo_wiring)wiring->choice, &a->made);
     if (error == GROBO_ERR_UNSUPPORTED) {
         return app_fail(a, EXIT_USAGE, grobo_error_name(error),

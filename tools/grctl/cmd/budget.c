@@ -29,7 +29,7 @@ static double reads_per_s(const wire_cost *motion, const wire_cost *read, double
 static const grobo_servo_register *delay_of(const grobo_driver *driver)
 {
     const grobo_servo_register *reg = grobo_servo_register_of(
-        family_servo(driver, driver->model->joints[0].motor), GROBO_ROLE_RETURN_DELAY);
+        family_servo(driver, grobo_model_joint(driver->model, 0)->motor), GROBO_ROLE_RETURN_DELAY);
     return driver->protocol->return_delay_us > 0 && reg && reg->min == 0 ? reg : NULL;
 }
 

@@ -29,13 +29,14 @@ static void show(const app *a, const config_robot *before, const config_robot *a
     const grobo_model *model = app_model(a);
     for (int j = 0; j < model->n_joints; j++) {
         if (!a->json && after->trim_deg[j] != before->trim_deg[j]) {
-            app_print("%5d  %-12s  %6.1f -> %6.1f deg\n", model->joints[j].motor,
-                      model->joints[j].name, before->trim_deg[j], after->trim_deg[j]);
+            app_print("%5d  %-12s  %6.1f -> %6.1f deg\n", grobo_model_joint(model, j)->motor,
+                      grobo_model_joint(model, j)->name, before->trim_deg[j], after->trim_deg[j]);
         }
         json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:o,s:o}", "joint", j, "motor",
-                                              model->joints[j].motor, "name", model->joints[j].name,
-                                              "before_deg", app_json_number(before->trim_deg[j], 1),
-                                              "trim_deg", app_json_number(after->trim_deg[j], 1)));
+                                              grobo_model_joint(model, j)->motor, "name",
+                                              grobo_model_joint(model, j)->name, "before_deg",
+                                              app_json_number(before->trim_deg[j], 1), "trim_deg",
+                                              app_json_number(after->trim_deg[j], 1)));
     }
     if (a->json) {
         app_print_json(json_pack("{s:s,s:o,s:b,s:o}", "robot", after->name, "file",
@@ -91,7 +92,7 @@ static int set_trim(app *a, config_robot *after, int joint, double deg)
     if (fabs(deg) > CONFIG_TRIM_MAX_DEG) {
         return app_fail(a, EXIT_SAFETY, "LIMIT",
                         "calibrate: %s is %.1f deg off, more than %d; does its horn sit right?",
-                        app_model(a)->joints[joint].name, deg, CONFIG_TRIM_MAX_DEG);
+                        grobo_model_joint(app_model(a), joint)->name, deg, CONFIG_TRIM_MAX_DEG);
     }
     after->trim_deg[joint] = deg == 0 ? 0 : deg;
     return EXIT_DONE;
@@ -112,9 +113,10 @@ static int measure(app *a, config_robot *after)
         if (grobo_robot_joint(c.robot, j, &i) < 0) {
             continue;
         }
-        status = set_trim(a, after, j,
-                          a->robot->trim_deg[j] +
-                              grobo_deg_from_rad(i.state.angle_rad - model->joints[j].init_rad));
+        status = set_trim(
+            a, after, j,
+            a->robot->trim_deg[j] +
+                grobo_deg_from_rad(i.state.angle_rad - grobo_model_joint(model, j)->init_rad));
     }
     return conn_close(&c, status);
 }
@@ -140,7 +142,7 @@ static int run(app *a)
                                   .out = app_option(a, OPT_OUT)->text,
                                   .dry_run = app_option(a, OPT_DRY_RUN)->given > 0};
     bool files = orders.from || orders.restore || orders.out;
-    bool has_trims = a->robot && !app_model(a)->joints[0].calibrated;
+    bool has_trims = a->robot && !grobo_model_joint(app_model(a), 0)->calibrated;
     if (a->line.n_arguments == 0 && homing_fits(a) && (files || !has_trims)) {
         return homing_run(a, &orders);
     }

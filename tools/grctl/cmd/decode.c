@@ -163,7 +163,7 @@ static int decode_arguments(decoder *d)
 
 static int first_id(const app *a)
 {
-    return app_model(a)->joints[0].motor;
+    return grobo_model_joint(app_model(a), 0)->motor;
 }
 
 static int run(app *a)

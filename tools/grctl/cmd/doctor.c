@@ -198,7 +198,7 @@ static bool break_each_other(patient *p, int id)
 /* A servo that answers, but is set up for another joint, or as it left its factory. */
 static void say_setup(patient *p, const char *name, int joint)
 {
-    const char *who = p->model->joints[joint].name;
+    const char *who = grobo_model_joint(p->model, joint)->name;
     conn_setup why;
     if (conn_setup_of(&p->c, joint, &why)) {
         checkup_found(&p->k, name, why.fix, "%s: %s", who, why.fact);
@@ -210,7 +210,7 @@ static void say_setup(patient *p, const char *name, int joint)
 
 static void say_silent(patient *p, const char *name, int joint, int error)
 {
-    const grobo_joint *j = &p->model->joints[joint];
+    const grobo_joint *j = grobo_model_joint(p->model, joint);
     char fix[FIX_BYTES];
     if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
         snprintf(fix, sizeof fix, _("push its cable in; has it another id? grctl%s scan"),
@@ -232,7 +232,7 @@ static void say_silent(patient *p, const char *name, int joint, int error)
 static bool check_state(patient *p, const char *name, int joint, const grobo_joint_state *s)
 {
     const grobo_driver *driver = grobo_robot_driver(p->c.robot);
-    const grobo_joint *j = &p->model->joints[joint];
+    const grobo_joint *j = grobo_model_joint(p->model, joint);
     bool rs30x = family_is(driver, "rs30x");
     char fix[FIX_BYTES];
     snprintf(fix, sizeof fix, _("let it cool down: grctl servo off m%d"), j->motor);
@@ -285,7 +285,7 @@ static void keep_extremes(patient *p, const grobo_joint_state *s)
 static void check_model(patient *p, const char *name, int joint, const grobo_servo_model *type,
                         const grobo_joint_state *s)
 {
-    const grobo_joint *j = &p->model->joints[joint];
+    const grobo_joint *j = grobo_model_joint(p->model, joint);
     const grobo_driver *driver = grobo_robot_driver(p->c.robot);
     const grobo_servo_model *expected = family_numbered(driver, j->servo_model);
     if (j->servo_model && (!type || type->number != j->servo_model)) {
@@ -320,7 +320,7 @@ static void look_at_delay(patient *p, int id, const grobo_servo_model *servo)
 
 static void check_servo(patient *p, int joint)
 {
-    const grobo_joint *j = &p->model->joints[joint];
+    const grobo_joint *j = grobo_model_joint(p->model, joint);
     const grobo_driver *driver = grobo_robot_driver(p->c.robot);
     const grobo_servo_model *servo = family_servo(driver, j->motor);
     const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_MODEL);

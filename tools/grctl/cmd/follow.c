@@ -148,7 +148,7 @@ static double go_on(pair *p, const grobo_posture *wanted)
     const grobo_driver *driver = grobo_robot_driver(p->follower.c.robot);
     double most_rad = 0;
     for (int j = 0; j < driver->model->n_joints; j++) {
-        double dps = driver->model->joints[j].max_speed_rad_s;
+        double dps = grobo_model_joint(driver->model, j)->max_speed_rad_s;
         if (!(p->joints & GROBO_JOINT_BIT(j))) {
             continue;
         }

@@ -25,7 +25,7 @@ static void group_names(const grobo_model *model, int joint, char *names)
 
 static void print_joint(const grobo_model *model, int joint)
 {
-    const grobo_joint *j = &model->joints[joint];
+    const grobo_joint *j = grobo_model_joint(model, joint);
     char number[8], motor[8], names[NAMES_BYTES];
     snprintf(number, sizeof number, "j%d", joint);
     snprintf(motor, sizeof motor, "m%d", j->motor);
@@ -37,7 +37,7 @@ static void print_joint(const grobo_model *model, int joint)
 
 static json_t *joint_json(const grobo_model *model, int joint)
 {
-    const grobo_joint *j = &model->joints[joint];
+    const grobo_joint *j = grobo_model_joint(model, joint);
     return json_pack("{s:i,s:i,s:i,s:s,s:[o,o],s:o,s:o}", "joint", joint, "motor", j->motor, "id",
                      j->motor, "name", j->name, "limits_deg",
                      app_json_number(grobo_deg_from_rad(j->min_rad), 1),

@@ -142,8 +142,8 @@ static void nudge(monitor *m, double by_deg)
             continue;
         }
         double from_rad = i.has_target ? i.target_rad : i.state.angle_rad;
-        if (is_at_limit(&m->model->joints[j], from_rad, by_deg)) {
-            at_limit = &m->model->joints[j];
+        if (is_at_limit(grobo_model_joint(m->model, j), from_rad, by_deg)) {
+            at_limit = grobo_model_joint(m->model, j);
             continue;
         }
         grobo_posture_set_rad(&target, j, from_rad + grobo_rad_from_deg(by_deg));
@@ -312,7 +312,7 @@ static void queue_others(monitor *m)
 /* How the job ended that was asked for last; an end by our own hand is no complaint. */
 static void say_end(monitor *m, const grobo_event_job *job)
 {
-    const char *joint = job->joint >= 0 ? m->model->joints[job->joint].name : "";
+    const char *joint = job->joint >= 0 ? grobo_model_joint(m->model, job->joint)->name : "";
     if (job->number != m->job) {
         return;
     }

@@ -56,7 +56,8 @@ static void show(const view *v, const seat *s)
     seat_worst w = seat_get_worst(s);
     char heat[64] = "-", supply[16] = "-";
     if (w.hottest >= 0) {
-        snprintf(heat, sizeof heat, "%s %.0f C", model->joints[w.hottest].name, w.hottest_c);
+        snprintf(heat, sizeof heat, "%s %.0f C", grobo_model_joint(model, w.hottest)->name,
+                 w.hottest_c);
     }
     if (!isnan(w.lowest_v)) {
         snprintf(supply, sizeof supply, "%.2f V", w.lowest_v);

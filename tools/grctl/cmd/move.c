@@ -31,7 +31,7 @@ static void report(const conn *c, const grobo_posture *target)
         app_print_json(json_pack("{s:o,s:o}", "joints", render_joints_json(c, target->set),
                                  "max_error_deg", app_json_number(joint < 0 ? NAN : worst, 2)));
     } else if (joint >= 0) {
-        const char *name = conn_model(c)->joints[joint].name;
+        const char *name = grobo_model_joint(conn_model(c), joint)->name;
         if (worst < there_deg) {
             app_note(c->a, "done; largest error %.1f deg (%s)", worst, name);
         } else {
@@ -155,7 +155,7 @@ static int pose_of_joint(app *a, const char *text, grobo_posture *target)
     }
     if (target->set & GROBO_JOINT_BIT(joint)) {
         return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s': %s is there twice", text,
-                        app_model(a)->joints[joint].name);
+                        grobo_model_joint(app_model(a), joint)->name);
     }
     grobo_posture_set_deg(target, joint, deg);
     return 0;

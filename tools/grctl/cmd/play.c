@@ -178,7 +178,8 @@ static json_t *summary_json(const conn *c, deviation following, deviation end)
 static void print_deviation(const conn *c, const char *what, deviation d)
 {
     if (d.joint >= 0) {
-        app_print("%s %.1f deg (%s)\n", what, d.deg, conn_model(c)->joints[d.joint].name);
+        app_print("%s %.1f deg (%s)\n", what, d.deg,
+                  grobo_model_joint(conn_model(c), d.joint)->name);
     }
 }
 

@@ -162,7 +162,7 @@ static size_t add_angle(const recorder *r, const grobo_posture *now, int joint, 
                         size_t capacity)
 {
     const grobo_model *model = conn_model(&r->c);
-    int n = snprintf(text, capacity, "  %s %.1f", model->joints[joint].name,
+    int n = snprintf(text, capacity, "  %s %.1f", grobo_model_joint(model, joint)->name,
                      grobo_deg_from_rad(now->angle_rad[joint]));
     return n > 0 && (size_t)n < capacity ? (size_t)n : 0;
 }

@@ -150,11 +150,11 @@ static bool warn_of_ids(const app *a, const grobo_robot_def *def)
     const grobo_robot_def *known = sketch_namesake(def->model);
     int n = 0;
     for (int j = 0; known && j < def->model->n_joints; j++) {
-        const grobo_joint *joint = &def->model->joints[j];
+        const grobo_joint *joint = grobo_model_joint(def->model, j);
         int at = grobo_model_find_joint(known->model, joint->name, strlen(joint->name));
-        if (at >= 0 && known->model->joints[at].motor != joint->motor) {
+        if (at >= 0 && grobo_model_joint(known->model, at)->motor != joint->motor) {
             app_note(a, "%s: warning: %s has the id %d, in %s it has %d", def->name, joint->name,
-                     joint->motor, known->name, known->model->joints[at].motor);
+                     joint->motor, known->name, grobo_model_joint(known->model, at)->motor);
             n++;
         }
     }
@@ -164,7 +164,7 @@ static bool warn_of_ids(const app *a, const grobo_robot_def *def)
 /* What is to be said of a line that does not carry moves of all joints; NULL: it does. */
 static const char *slow_line(const grobo_robot_def *def)
 {
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     int baud_bps = (int)def->baud_bps, rate_bps = 0;
     bool slow = grobo_robot_def_driver(def, def->wiring, &driver) >= 0 &&
                 wire_is_slow(&driver, baud_bps, &rate_bps);

@@ -38,7 +38,7 @@ typedef struct found {
 static const char *joint_name(const found *f, int id)
 {
     int joint = f->family ? -1 : grobo_model_joint_of_motor(f->driver->model, id);
-    return joint < 0 ? NULL : f->driver->model->joints[joint].name;
+    return joint < 0 ? NULL : grobo_model_joint(f->driver->model, joint)->name;
 }
 
 /* One that answers with its identity, or (NULL) wrongly, or not at all where it should. */
@@ -244,7 +244,7 @@ static int run_families(app *a)
 static int need_registers(app *a)
 {
     const grobo_driver *driver = app_driver(a);
-    return family_servo(driver, driver->model->joints[0].motor)
+    return family_servo(driver, grobo_model_joint(driver->model, 0)->motor)
                ? 0
                : app_fail(a, EXIT_SAFETY, "UNSUPPORTED", "%s: servos of %s have no registers",
                           a->line.command->name, driver->model->name);

@@ -29,8 +29,9 @@ static void print_json(const conn *c, grobo_joint_mask joints)
             continue;
         }
         json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:s}", "joint", j, "motor",
-                                              model->joints[j].motor, "name", model->joints[j].name,
-                                              "torque", render_torque(&i)));
+                                              grobo_model_joint(model, j)->motor, "name",
+                                              grobo_model_joint(model, j)->name, "torque",
+                                              render_torque(&i)));
     }
     app_print_json(json_pack("{s:o}", "joints", list));
 }

@@ -34,8 +34,8 @@ static void say_setups(const conn *c, grobo_joint_mask joints)
     conn_setup why;
     for (int j = 0; j < model->n_joints && !app_option(c->a, OPT_WATCH)->given; j++) {
         if ((joints & GROBO_JOINT_BIT(j)) && conn_setup_of(c, j, &why)) {
-            app_note(c->a, "motor %d (%s): %s; %s", model->joints[j].motor, model->joints[j].name,
-                     why.fact, why.fix);
+            app_note(c->a, "motor %d (%s): %s; %s", grobo_model_joint(model, j)->motor,
+                     grobo_model_joint(model, j)->name, why.fact, why.fix);
         }
     }
 }

@@ -118,13 +118,14 @@ static int fail_trip(conn *c, const char *doing)
             "%s: stopped for safety: %s%s at motor %d (%s); let it cool down, then "
             "'grctl servo off m%d'; if it is reported again, switch the power off "
             "and on",
-            doing, _(grobo_trip_name(t->trip)), value, model->joints[t->joint].motor,
-            model->joints[t->joint].name, model->joints[t->joint].motor);
+            doing, _(grobo_trip_name(t->trip)), value, grobo_model_joint(model, t->joint)->motor,
+            grobo_model_joint(model, t->joint)->name, grobo_model_joint(model, t->joint)->motor);
     }
     if (t->joint >= 0 && t->joint < model->n_joints) {
         return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s at motor %d (%s)", doing,
-                             _(grobo_trip_name(t->trip)), value, model->joints[t->joint].motor,
-                             model->joints[t->joint].name);
+                             _(grobo_trip_name(t->trip)), value,
+                             grobo_model_joint(model, t->joint)->motor,
+                             grobo_model_joint(model, t->joint)->name);
     }
     return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s", doing,
                          _(grobo_trip_name(t->trip)), value);
@@ -162,9 +163,9 @@ static int fail_reply(conn *c, int error, int id, const char *prefix, const char
 static void setup_of_value(const grobo_driver *driver, int joint, const grobo_setup_fault *fault,
                            conn_setup *s)
 {
-    const int id = driver->model->joints[joint].motor;
+    const int id = grobo_model_joint(driver->model, joint)->motor;
     const char *name = fault->reg->name;
-    const bool calibrates = driver->model->joints[joint].calibrated;
+    const bool calibrates = grobo_model_joint(driver->model, joint)->calibrated;
     const bool is_min = fault->reg->role == GROBO_ROLE_MIN_POSITION;
     const bool is_max = fault->reg->role == GROBO_ROLE_MAX_POSITION;
     const int wanted = (int)(is_min ? fault->high : fault->low);
@@ -198,7 +199,8 @@ bool conn_setup_of(const conn *c, int joint, conn_setup *s)
                  fault->reg->name, (int)fault->found);
         snprintf(s->fix, sizeof s->fix, "%s", _("'grctl calibrate' does it"));
     } else if (fault->reg->role == GROBO_ROLE_MODEL) {
-        const grobo_servo_model *servo = family_servo(driver, driver->model->joints[joint].motor);
+        const grobo_servo_model *servo =
+            family_servo(driver, grobo_model_joint(driver->model, joint)->motor);
         const grobo_servo_model *other = family_numbered(driver, (uint16_t)fault->found);
         snprintf(s->fact, sizeof s->fact, _("its servo is %s (%d), not %s (%d)"),
                  other ? other->name : _("another"), (int)fault->found, servo->name, servo->number);
@@ -264,15 +266,15 @@ int conn_fail_job(conn *c, int error, const char *prefix)
         return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s%s",
                         conn_device(c), prefix, app_error_text(error));
     }
-    snprintf(who, sizeof who, _("motor %d (%s)"), model->joints[joint].motor,
-             model->joints[joint].name);
+    snprintf(who, sizeof who, _("motor %d (%s)"), grobo_model_joint(model, joint)->motor,
+             grobo_model_joint(model, joint)->name);
     if (conn_is_of_reply(error) && c->job.failed == GROBO_JOINTS_ALL(model->n_joints)) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: %sno servo answers; are they powered? see 'grctl doctor'",
                         conn_device(c), prefix);
     }
     if (conn_is_of_reply(error)) {
-        return fail_reply(c, error, model->joints[joint].motor, prefix, who);
+        return fail_reply(c, error, grobo_model_joint(model, joint)->motor, prefix, who);
     }
     if (error == GROBO_ERR_SETUP) {
         return fail_setup(c, joint, prefix, who);

@@ -20,7 +20,7 @@ _Static_assert(sizeof(guard_robot) <= GROBO_GUARD_DATA_BYTES, "the guard takes l
 /* Of a robot that is not GR001. */
 static const grobo_driver *make_driver(const guard_robot *given, grobo_wiring wiring)
 {
-    static grobo_driver made;
+    static grobo_driver made = GROBO_TABLE_INIT(grobo_driver);
     char complaint[APP_LINE_BYTES];
     const grobo_robot_def *def = robot_find(given->robot, complaint, sizeof complaint);
     return def && grobo_robot_def_driver(def, wiring, &made) == GROBO_OK ? &made : NULL;

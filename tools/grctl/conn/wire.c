@@ -69,7 +69,8 @@ int wire_budget(const grobo_driver *driver, int baud_bps, grobo_budget *budget)
 static bool have_rate(const grobo_driver *driver, int baud_bps)
 {
     for (int j = 0; j < driver->model->n_joints; j++) {
-        const grobo_servo_model *servo = family_servo(driver, driver->model->joints[j].motor);
+        const grobo_servo_model *servo =
+            family_servo(driver, grobo_model_joint(driver->model, j)->motor);
         if (!servo || !grobo_servo_register_of(servo, GROBO_ROLE_BAUD) ||
             grobo_servo_baud_code(servo, baud_bps) < 0) {
             return false;

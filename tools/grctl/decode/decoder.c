@@ -129,7 +129,7 @@ static talk talk_of(const app *a, const char *name)
     }
     t.model = driver->model;
     for (int j = 0; j < t.model->n_joints; j++) {
-        int id = t.model->joints[j].motor;
+        int id = grobo_model_joint(t.model, j)->motor;
         const grobo_servo_model *servo = family_servo(driver, id);
         bool told = !servo || grobo_servo_series(servo) == t.words->table;
         t.servo[id] = told ? servo : NULL;

@@ -160,7 +160,8 @@ void replay_begin(replay *r, frames_fn on_host)
 {
     unsigned wiring = r->wiring == GROBO_WIRING_BOARD ? GROBO_WORDS_BOARD : GROBO_WORDS_BUS;
     const grobo_model *model = app_model(r->a);
-    const grobo_words *own = talk_of_servo(family_servo(app_driver(r->a), model->joints[0].motor));
+    const grobo_words *own =
+        talk_of_servo(family_servo(app_driver(r->a), grobo_model_joint(model, 0)->motor));
     r->talk = (talk){.words = own ? own : talk_named("rs30x"), .model = model};
     frames_init(&r->host, &r->talk, FRAMES_HOST, wiring, on_host, r);
     frames_init(&r->robot[REPLAY_RECORDED], &r->talk, FRAMES_ROBOT, wiring, on_recorded, r);

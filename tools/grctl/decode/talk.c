@@ -64,7 +64,7 @@ const grobo_servo_model *talk_servo(const talk *t, int id)
 const char *talk_joint(const talk *t, int id)
 {
     int joint = t && t->model ? grobo_model_joint_of_motor(t->model, id) : -1;
-    return joint < 0 ? NULL : t->model->joints[joint].name;
+    return joint < 0 ? NULL : grobo_model_joint(t->model, joint)->name;
 }
 
 void talk_ask(talk *t, const uint8_t *bytes, size_t n)

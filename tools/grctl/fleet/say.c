@@ -101,7 +101,7 @@ static json_t *joints_of(const seat *s)
     const grobo_model *model = app_model(&s->a);
     json_t *list = json_array();
     for (int j = 0; j < model->n_joints; j++) {
-        const grobo_joint *joint = &model->joints[j];
+        const grobo_joint *joint = grobo_model_joint(model, j);
         json_array_append_new(list,
                               json_pack("{s:s,s:[o,o]}", "name", joint->name, "limits_deg",
                                         app_json_number(grobo_deg_from_rad(joint->min_rad), 2),

@@ -32,7 +32,7 @@ static bool holds(const grobo_servo_register *reg, int32_t value)
 
 static int read_joint(app *a, const char *path, const json_t *one, int joint, bool any, homing *h)
 {
-    const grobo_joint *moved = &app_model(a)->joints[joint];
+    const grobo_joint *moved = grobo_model_joint(app_model(a), joint);
     const grobo_servo_model *servo = family_servo(app_driver(a), moved->motor);
     int32_t id, mirrored;
     char text[128];
@@ -73,15 +73,15 @@ static int read_all(app *a, const char *path, const json_t *file, bool any, homi
     json_object_foreach((json_t *)file, key, one)
     {
         int joint = grobo_model_find_joint(model, key, strlen(key));
-        if (joint < 0 || strcmp(model->joints[joint].name, key) != 0) {
+        if (joint < 0 || strcmp(grobo_model_joint(model, joint)->name, key) != 0) {
             char text[128];
             snprintf(text, sizeof text, _("%s has no such joint"), robot_of(a)->name);
             return complain(a, path, key, text);
         }
     }
     for (int j = 0; j < model->n_joints; j++) {
-        int status =
-            read_joint(a, path, json_object_get(file, model->joints[j].name), j, any, &all[j]);
+        int status = read_joint(a, path, json_object_get(file, grobo_model_joint(model, j)->name),
+                                j, any, &all[j]);
         if (status) {
             return status;
         }
@@ -113,10 +113,11 @@ static char *make_text(const app *a, const homing *all, size_t *size)
     const grobo_model *model = app_model(a);
     json_t *file = json_object();
     for (int j = 0; j < model->n_joints; j++) {
-        json_object_set_new(file, model->joints[j].name,
-                            json_pack("{s:i,s:i,s:i,s:i,s:i}", "id", model->joints[j].motor,
-                                      "drive_mode", 0, "homing_offset", (int)all[j].offset,
-                                      "range_min", (int)all[j].min, "range_max", (int)all[j].max));
+        json_object_set_new(file, grobo_model_joint(model, j)->name,
+                            json_pack("{s:i,s:i,s:i,s:i,s:i}", "id",
+                                      grobo_model_joint(model, j)->motor, "drive_mode", 0,
+                                      "homing_offset", (int)all[j].offset, "range_min",
+                                      (int)all[j].min, "range_max", (int)all[j].max));
     }
     *size = json_dumpb(file, NULL, 0, JSON_INDENT(4));
     char *text = malloc(*size + 1);

@@ -40,7 +40,7 @@ static int sign_of_offset(const grobo_joint *joint, const grobo_servo_model *ser
 
 static const grobo_joint *joint_of(const app *a, int joint)
 {
-    return &app_model(a)->joints[joint];
+    return grobo_model_joint(app_model(a), joint);
 }
 
 static const grobo_servo_model *servo_of(const app *a, int joint)
@@ -123,7 +123,7 @@ static int write_role(calibration *k, int joint, grobo_register_role role, int32
 
 static int fail(calibration *k, int error, int joint)
 {
-    return conn_fail_servo(&k->c, error, app_model(k->a)->joints[joint].motor);
+    return conn_fail_servo(&k->c, error, grobo_model_joint(app_model(k->a), joint)->motor);
 }
 
 static int read_before(calibration *k)
@@ -213,8 +213,8 @@ static void widen(calibration *k, const int32_t *last)
             h->max = span - 1;
         }
         if (h->min != before.min || h->max != before.max) {
-            app_detail(k->a, "%s: %d to %d", app_model(k->a)->joints[j].name, (int)h->min,
-                       (int)h->max);
+            app_detail(k->a, "%s: %d to %d", grobo_model_joint(app_model(k->a), j)->name,
+                       (int)h->min, (int)h->max);
         }
     }
 }
@@ -225,8 +225,8 @@ static void draw(calibration *k)
     size_t at = 0;
     for (int j = 0; j < app_model(k->a)->n_joints && at < sizeof text - 1; j++) {
         int n = snprintf(text + at, sizeof text - at, "%s%s %d<%d<%d", at ? "  " : "",
-                         app_model(k->a)->joints[j].name, (int)k->wanted[j].min, (int)k->now[j],
-                         (int)k->wanted[j].max);
+                         grobo_model_joint(app_model(k->a), j)->name, (int)k->wanted[j].min,
+                         (int)k->now[j], (int)k->wanted[j].max);
         at += n > 0 ? (size_t)n : 0;
     }
     progress_draw(&k->line, -1, text);
@@ -318,7 +318,7 @@ static int check_ranges(calibration *k)
         const homing *h = &k->wanted[j];
         if (h->max - h->min < servo_of(k->a, j)->span_ticks / 36) {
             return app_fail(k->a, EXIT_USAGE, "EMPTY", "calibrate: %s was not moved",
-                            app_model(k->a)->joints[j].name);
+                            grobo_model_joint(app_model(k->a), j)->name);
         }
     }
     return 0;
@@ -380,7 +380,7 @@ static void report(const calibration *k)
 {
     json_t *list = json_array();
     for (int j = 0; j < app_model(k->a)->n_joints; j++) {
-        const grobo_joint *moved = &app_model(k->a)->joints[j];
+        const grobo_joint *moved = grobo_model_joint(app_model(k->a), j);
         const homing *is = &k->wanted[j], *was = &k->before[j];
         if (!k->a->json) {
             app_print("%5d  %-14s  offset %5d -> %5d  range %4d..%4d -> %4d..%4d\n", moved->motor,
@@ -492,7 +492,7 @@ int homing_run(app *a, const homing_orders *orders)
     memset(&k, 0, sizeof k);
     k.a = a;
     k.orders = orders;
-    if (!app_model(a)->joints[0].calibrated && !orders->restore) {
+    if (!grobo_model_joint(app_model(a), 0)->calibrated && !orders->restore) {
         return app_fail(
             a, EXIT_USAGE, "UNSUPPORTED",
             "calibrate: the file of %s does not say 'calibrated: true': its servos must "

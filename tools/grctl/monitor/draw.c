@@ -107,7 +107,7 @@ static void draw_values(const monitor *m, const grobo_joint_info *i, int row, in
 /* R_ and L_ are what the two columns say. */
 static const char *short_name(const monitor *m, int joint)
 {
-    const char *name = m->model->joints[joint].name;
+    const char *name = grobo_model_joint(m->model, joint)->name;
     bool sided = monitor_has_partner(m->model, joint) && name[0] && name[1] == '_' && name[2];
     return name + (sided ? 2 : 0);
 }
@@ -119,7 +119,7 @@ static void put_name(const monitor *m, const frame *f, int joint, int row, int c
     const char *name = short_name(m, joint);
     int length = (int)strlen(name);
     char text[MONITOR_TEXT_BYTES];
-    int at = snprintf(text, sizeof text, "%*d%c", f->id, m->model->joints[joint].motor,
+    int at = snprintf(text, sizeof text, "%*d%c", f->id, grobo_model_joint(m->model, joint)->motor,
                       chosen ? '>' : ' ');
     if (length > f->name) {
         snprintf(text + at, sizeof text - (size_t)at, "%.*s~%s", f->name - NAME_TAIL - 1, name,
@@ -149,7 +149,7 @@ static void draw_joint(const monitor *m, const frame *f, const monitor_cell *cel
 {
     int row = ROW_BODY + cell->row - f->top, column = cell->column * f->stride;
     int angle = column + f->id + 1 + f->name, bar = angle + ANGLE;
-    const grobo_joint *j = &m->model->joints[cell->joint];
+    const grobo_joint *j = grobo_model_joint(m->model, cell->joint);
     grobo_joint_info i;
     char text[64];
     put_name(m, f, cell->joint, row, column);
@@ -319,7 +319,7 @@ static int longest_name(const monitor *m)
 static int digits_of_ids(const grobo_model *model)
 {
     for (int j = 0; j < model->n_joints; j++) {
-        if (model->joints[j].motor >= THREE_DIGITS) {
+        if (grobo_model_joint(model, j)->motor >= THREE_DIGITS) {
             return 3;
         }
     }

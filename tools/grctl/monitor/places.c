@@ -25,7 +25,8 @@ static int limb_of(const grobo_model *model, int joint)
 
 bool monitor_has_partner(const grobo_model *model, int joint)
 {
-    return model->joints[joint].mirror != joint && model->joints[joint].mirror < model->n_joints;
+    return grobo_model_joint(model, joint)->mirror != joint &&
+           grobo_model_joint(model, joint)->mirror < model->n_joints;
 }
 
 static bool is_paired(const grobo_model *model)
@@ -41,8 +42,9 @@ static bool is_paired(const grobo_model *model)
 /* Of a pair: its name says so, else it is the earlier one. */
 static bool is_right(const grobo_model *model, int joint)
 {
-    int partner = model->joints[joint].mirror;
-    char here = model->joints[joint].name[0], there = model->joints[partner].name[0];
+    int partner = grobo_model_joint(model, joint)->mirror;
+    char here = grobo_model_joint(model, joint)->name[0],
+         there = grobo_model_joint(model, partner)->name[0];
     bool here_r = here == 'R' || here == 'r', there_r = there == 'R' || there == 'r';
     return here_r != there_r ? here_r : joint < partner;
 }
@@ -82,7 +84,7 @@ static int list_pairs(const grobo_model *model, line *lines)
     }
     for (int j = 0; j < model->n_joints; j++) {
         if (monitor_has_partner(model, j) && is_right(model, j)) {
-            n = add_line(lines, n, j, model->joints[j].mirror, limb_of(model, j));
+            n = add_line(lines, n, j, grobo_model_joint(model, j)->mirror, limb_of(model, j));
         }
     }
     return n;

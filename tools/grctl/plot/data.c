@@ -189,7 +189,7 @@ static int follow(collector *c, double rate_hz)
 static void joint_name(const grobo_model *model, int joint, char *name, size_t capacity)
 {
     if (model && joint < model->n_joints) {
-        snprintf(name, capacity, "%s", model->joints[joint].name);
+        snprintf(name, capacity, "%s", grobo_model_joint(model, joint)->name);
     } else {
         snprintf(name, capacity, "j%d", joint);
     }
@@ -210,7 +210,7 @@ static int add_curve(plot_data *data, int joint, int columns)
     curve->joint = joint;
     joint_name(data->of.model, joint, curve->name, sizeof curve->name);
     if (data->of.model && joint < data->of.model->n_joints) {
-        curve->limits = &data->of.model->joints[joint];
+        curve->limits = grobo_model_joint(data->of.model, joint);
     }
     curve->points = calloc((size_t)(columns + 1) * POINTS_A_COLUMN, sizeof *curve->points);
     curve->fast = calloc((size_t)columns + 2, sizeof *curve->fast);

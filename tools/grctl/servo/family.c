@@ -63,11 +63,12 @@ int family_usual_bps(const grobo_robot_family *family, size_t i)
 
 const grobo_driver *family_driver(const grobo_robot_family *family)
 {
-    static grobo_driver driver;
+    static grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     static grobo_joint joint;
     static const grobo_group all = {.name = "all", .joints = 1};
-    static const grobo_model model = {
-        .name = "any", .joints = &joint, .groups = &all, .n_joints = 1, .n_groups = 1};
+    static const grobo_model model =
+        GROBO_TABLE(grobo_model, .name = "any", GROBO_MODEL_JOINTS(&joint), .groups = &all,
+                    .n_joints = 1, .n_groups = 1);
     joint = (grobo_joint){.name = "any",
                           .min_rad = -0.1,
                           .max_rad = 0.1,
@@ -134,7 +135,7 @@ const grobo_servo_model *family_model(const grobo_robot_family *family, const ch
 static const grobo_servo_model *robot_numbered(const grobo_driver *driver, uint16_t number)
 {
     for (int j = 0; j < driver->model->n_joints; j++) {
-        const grobo_servo_model *servo = driver->model->joints[j].servo;
+        const grobo_servo_model *servo = grobo_model_joint(driver->model, j)->servo;
         if (servo && servo->number == number) {
             return servo;
         }
@@ -155,7 +156,7 @@ const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t nu
 
 const grobo_servo_model *family_joint_servo(const grobo_driver *driver, int joint)
 {
-    const grobo_joint *of = &driver->model->joints[joint];
+    const grobo_joint *of = grobo_model_joint(driver->model, joint);
     return of->servo ? of->servo : family_numbered(driver, of->servo_model);
 }
 
@@ -203,7 +204,7 @@ const grobo_servo_model *family_identify(const grobo_driver *driver, const uint8
 
 static bool can_read(const grobo_driver *driver, int address, int length)
 {
-    const grobo_register_io io = {.id = driver->model->joints[0].motor,
+    const grobo_register_io io = {.id = grobo_model_joint(driver->model, 0)->motor,
                                   .address = (uint16_t)address,
                                   .length = (uint16_t)length};
     grobo_exchange exchange = {0};

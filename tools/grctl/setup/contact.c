@@ -92,11 +92,11 @@ static void read_servos(contact *k)
     int n_there = 0, n_other = 0, n_registers = 0;
     for (int j = 0; j < model->n_joints && !k->c.signal && !k->c.link_error; j++) {
         uint8_t bytes[FAMILY_PIECE_BYTES];
-        int id = model->joints[j].motor;
+        int id = grobo_model_joint(model, j)->motor;
         const grobo_servo_model *servo = family_servo(driver, id);
         int length = family_identity(driver, servo, &address);
         int error = servos_read(&k->c, id, address, length, bytes);
-        json_t *one = json_pack("{s:i,s:s}", "id", id, "joint", model->joints[j].name);
+        json_t *one = json_pack("{s:i,s:s}", "id", id, "joint", grobo_model_joint(model, j)->name);
         if (error) {
             json_object_set_new(one, "status", app_json_code(grobo_error_name(error)));
         } else {
@@ -128,7 +128,7 @@ static int by_size(const void *a, const void *b)
 static void measure_times(contact *k)
 {
     const grobo_driver *driver = grobo_robot_driver(k->c.robot);
-    int id = driver->model->joints[k->joint].motor, n = 0;
+    int id = grobo_model_joint(driver->model, k->joint)->motor, n = 0;
     uint8_t bytes[FAMILY_PIECE_BYTES];
     int64_t took_us[READS];
     uint16_t address;
@@ -264,7 +264,7 @@ static int test_torque(contact *k)
 
 static int test_move(contact *k, double *step_deg)
 {
-    const grobo_joint *joint = &app_model(k->a)->joints[k->joint];
+    const grobo_joint *joint = grobo_model_joint(app_model(k->a), k->joint);
     double there_deg = 0, back_deg = 0;
     int status = contact_open(k, "move", true);
     if (status) {
@@ -304,7 +304,7 @@ static void ask_direction(contact *k, double step_deg)
 
 static int try_joint(contact *k)
 {
-    const char *name = app_model(k->a)->joints[k->joint].name;
+    const char *name = grobo_model_joint(app_model(k->a), k->joint)->name;
     char question[APP_LINE_BYTES];
     double step_deg = STEP_DEG;
     snprintf(question, sizeof question,

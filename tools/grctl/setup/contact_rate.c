@@ -154,7 +154,7 @@ static int try_rate(contact *k, const char *name, const servo_change *there, int
 static int ask_and_try(contact *k, const char *name, const servo_change *there, int old_bps)
 {
     char question[APP_LINE_BYTES];
-    const char *joint = app_model(k->a)->joints[k->joint].name;
+    const char *joint = grobo_model_joint(app_model(k->a), k->joint)->name;
     say_how_to_find(k, there, old_bps);
     snprintf(question, sizeof question,
              there->flash
@@ -177,7 +177,7 @@ int contact_try_rates(contact *k)
 {
     const grobo_driver *driver = app_driver(k->a);
     int old_bps = (int)conn_baud(k->a);
-    servo_change there = {.id = driver->model->joints[k->joint].motor};
+    servo_change there = {.id = grobo_model_joint(driver->model, k->joint)->motor};
     there.servo = family_servo(driver, there.id);
     there.reg = there.servo ? grobo_servo_register_of(there.servo, GROBO_ROLE_BAUD) : NULL;
     bool remote = strncmp(conn_requested(k->a), "tcp:", 4) == 0;

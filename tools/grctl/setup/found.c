@@ -198,7 +198,7 @@ bool found_fits(const found_servos *all, const grobo_robot_def *def)
     for (int i = 0; i < all->n; i++) {
         int joint = grobo_model_joint_of_motor(def->model, all->servo[i].id);
         if (joint < 0 || !all->servo[i].told ||
-            def->model->joints[joint].servo_model != all->servo[i].servo->number) {
+            grobo_model_joint(def->model, joint)->servo_model != all->servo[i].servo->number) {
             return false;
         }
     }

@@ -121,7 +121,7 @@ static int equip(const giving *g, const found_servo *one, int joint)
     conn c;
     app alone = *g->a;
     char path[EEPROM_PATH_BYTES] = "";
-    int id = g->def->model->joints[joint].motor, baud_bps = (int)g->def->baud_bps;
+    int id = grobo_model_joint(g->def->model, joint)->motor, baud_bps = (int)g->def->baud_bps;
     bool differs = one->id != id || one->baud_bps != baud_bps;
     alone.robot = NULL;
     alone.driver = family_driver(one->family);
@@ -145,10 +145,10 @@ static int equip(const giving *g, const found_servo *one, int joint)
     status = conn_close(&c, status);
     if (!status && differs) {
         app_note(g->a, "%s: id %d -> %d at %d bps, kept; what it kept before: %s",
-                 g->def->model->joints[joint].name, one->id, id, baud_bps, path);
+                 grobo_model_joint(g->def->model, joint)->name, one->id, id, baud_bps, path);
     } else if (!status) {
-        app_note(g->a, "%s: has the id %d at %d bps already", g->def->model->joints[joint].name, id,
-                 baud_bps);
+        app_note(g->a, "%s: has the id %d at %d bps already",
+                 grobo_model_joint(g->def->model, joint)->name, id, baud_bps);
     }
     return status;
 }
@@ -162,8 +162,8 @@ static bool is_right(const giving *g, int joint)
     const found_servo *one = &g->found.servo[0];
     const grobo_servo_model *wanted = NULL;
     for (size_t i = 0; g->def->family->tables[i] && !wanted; i++) {
-        wanted =
-            grobo_servo_model_numbered(g->def->family->tables[i], model->joints[joint].servo_model);
+        wanted = grobo_servo_model_numbered(g->def->family->tables[i],
+                                            grobo_model_joint(model, joint)->servo_model);
     }
     if (!g->found.sure) {
         app_note(g->a, "replies came broken: is more than one servo plugged in?");
@@ -171,10 +171,10 @@ static bool is_right(const giving *g, int joint)
         app_note(g->a, "no servo answers: has it power, is its plug in?");
     } else if (g->found.n > 1) {
         app_note(g->a, "%d servos answer: plug in that of %s alone", g->found.n,
-                 model->joints[joint].name);
+                 grobo_model_joint(model, joint)->name);
     } else if (one->told && wanted && one->servo->number != wanted->number) {
-        app_note(g->a, "that is a %s; %s has a %s", one->servo->name, model->joints[joint].name,
-                 wanted->name);
+        app_note(g->a, "that is a %s; %s has a %s", one->servo->name,
+                 grobo_model_joint(model, joint)->name, wanted->name);
     } else {
         return true;
     }
@@ -194,7 +194,7 @@ static bool is_anothers(const giving *g, int joint)
     }
     if (g->done & GROBO_JOINT_BIT(other)) {
         app_note(g->a, "that is the servo of %s, which has its id already; plug in that of %s",
-                 model->joints[other].name, model->joints[joint].name);
+                 grobo_model_joint(model, other)->name, grobo_model_joint(model, joint)->name);
         return true;
     }
     if (reg && id == reg->factory) {
@@ -202,14 +202,14 @@ static bool is_anothers(const giving *g, int joint)
     }
     snprintf(question, sizeof question,
              _("this servo has the id %d, of %s. Is it really that of %s?"), id,
-             model->joints[other].name, model->joints[joint].name);
+             grobo_model_joint(model, other)->name, grobo_model_joint(model, joint)->name);
     return !ask_yes(g->a, question);
 }
 
 static int give_one(giving *g, int joint)
 {
     char question[APP_LINE_BYTES], answer[ASK_BYTES];
-    const char *name = g->def->model->joints[joint].name;
+    const char *name = grobo_model_joint(g->def->model, joint)->name;
     snprintf(question, sizeof question,
              _("plug in the servo of %s alone, with power, and press enter (skip: it has its id)"),
              name);
@@ -242,11 +242,11 @@ static void name_missing(const giving *g, const found_servos *all)
     for (int j = 0; j < model->n_joints; j++) {
         bool there = false;
         for (int i = 0; i < all->n; i++) {
-            there |= all->servo[i].id == model->joints[j].motor;
+            there |= all->servo[i].id == grobo_model_joint(model, j)->motor;
         }
         if (!there) {
-            app_note(g->a, "%s (id %d) does not answer", model->joints[j].name,
-                     model->joints[j].motor);
+            app_note(g->a, "%s (id %d) does not answer", grobo_model_joint(model, j)->name,
+                     grobo_model_joint(model, j)->motor);
         }
     }
 }

@@ -400,13 +400,13 @@ static int read_joints(guide *g)
         g->n_read += read;
         if (!read && conn_setup_of(&c, j, &why)) {
             g->n_setup++;
-            app_note(a, "  %-16s %s; %s", model->joints[j].name, why.fact, why.fix);
+            app_note(a, "  %-16s %s; %s", grobo_model_joint(model, j)->name, why.fact, why.fix);
         } else if (read) {
-            app_note(a, "  %-16s %7.1f deg", model->joints[j].name,
+            app_note(a, "  %-16s %7.1f deg", grobo_model_joint(model, j)->name,
                      grobo_deg_from_rad(i.state.angle_rad));
         } else {
             app_note(a, "  %-16s does not answer as it should; see 'grctl -d %s doctor'",
-                     model->joints[j].name, g->name);
+                     grobo_model_joint(model, j)->name, g->name);
         }
     }
     return conn_close(&c, status);
@@ -446,7 +446,7 @@ static int step_and_back(conn *c, int joint)
         return error;
     }
     double at_deg = grobo_deg_from_rad(is.state.angle_rad);
-    bool up = at_deg + STEP_DEG < grobo_deg_from_rad(model->joints[joint].max_rad);
+    bool up = at_deg + STEP_DEG < grobo_deg_from_rad(grobo_model_joint(model, joint)->max_rad);
     const double ways_deg[] = {at_deg + (up ? STEP_DEG : -STEP_DEG), at_deg};
     c->moving = true; /* from here on every way out carries out the exit policy */
     error = conn_wait(c, grobo_robot_torque(c->robot, bit, GROBO_TORQUE_ON));
@@ -470,7 +470,7 @@ static int move_first(guide *g)
     conn c;
     char question[APP_LINE_BYTES];
     int joint = app_model(g->a)->n_joints - 1;
-    const char *name = app_model(g->a)->joints[joint].name;
+    const char *name = grobo_model_joint(app_model(g->a), joint)->name;
     snprintf(
         question, sizeof question,
         _("move it for the first time? %s goes %d degrees and back, slowly; keep a hand at the "

@@ -55,7 +55,7 @@ json_t *render_setup_json(const conn *c, int joint)
 
 static json_t *joint_json(const conn *c, int joint)
 {
-    const grobo_joint *j = &model_of(c)->joints[joint];
+    const grobo_joint *j = grobo_model_joint(model_of(c), joint);
     grobo_joint_info i;
     double target_rad;
     if (grobo_robot_joint(c->robot, joint, &i) < 0) {
@@ -102,7 +102,7 @@ static int name_width(const grobo_model *model)
 {
     int width = 12;
     for (int k = 0; k < model->n_joints; k++) {
-        int length = (int)strlen(model->joints[k].name);
+        int length = (int)strlen(grobo_model_joint(model, k)->name);
         width = length > width ? length : width;
     }
     return width;
@@ -122,7 +122,8 @@ void render_status(const conn *c, grobo_joint_mask joints)
             continue;
         }
         bool known = i.angle_age_us != GROBO_NEVER_US;
-        app_print("%5d  %-*s", model->joints[k].motor, width, model->joints[k].name);
+        app_print("%5d  %-*s", grobo_model_joint(model, k)->motor, width,
+                  grobo_model_joint(model, k)->name);
         cell(known, 5, 1, grobo_deg_from_rad(i.state.angle_rad));
         bool targeted = render_target(&i, &target_rad);
         cell(targeted, 6, 1, grobo_deg_from_rad(target_rad));
@@ -173,7 +174,8 @@ void render_reached(const conn *c)
             continue;
         }
         bool both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
-        app_print("%5d  %-*s", model->joints[k].motor, width, model->joints[k].name);
+        app_print("%5d  %-*s", grobo_model_joint(model, k)->motor, width,
+                  grobo_model_joint(model, k)->name);
         cell(i.has_target, 6, 1, grobo_deg_from_rad(i.target_rad));
         cell(i.angle_age_us != GROBO_NEVER_US, 7, 1, grobo_deg_from_rad(i.state.angle_rad));
         cell(both, 9, 2, grobo_deg_from_rad(i.state.angle_rad - i.target_rad));

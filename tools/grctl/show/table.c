@@ -21,7 +21,7 @@ const char *show_joint_name(const show_rows *rows, int c, char *buffer, size_t c
 {
     int joint = rows->joint[c];
     if (rows->model && joint < rows->model->n_joints) {
-        return rows->model->joints[joint].name;
+        return grobo_model_joint(rows->model, joint)->name;
     }
     snprintf(buffer, capacity, "j%d", joint);
     return buffer;
@@ -190,7 +190,7 @@ static bool is_outside(const table *t, int c, double deg)
     if (grobo_motion_get_kind(t->rows->motion) == GROBO_MOTION_STEPS && !t->rows->as_played) {
         return false;
     }
-    joint = &t->rows->model->joints[t->rows->joint[c]];
+    joint = grobo_model_joint(t->rows->model, t->rows->joint[c]);
     return ddeg < grobo_ddeg_from_rad(joint->min_rad) || ddeg > grobo_ddeg_from_rad(joint->max_rad);
 }
 

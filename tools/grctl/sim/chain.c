@@ -119,7 +119,8 @@ static int read_one(app *a, sim_chain *chain, const char *item, size_t length)
 
 int sim_chain_read(app *a, sim_chain *chain, const char *list)
 {
-    chain->model = (grobo_model){.name = "servos", .joints = chain->joints};
+    chain->model =
+        (grobo_model)GROBO_TABLE(grobo_model, .name = "servos", GROBO_MODEL_JOINTS(chain->joints));
     for (;;) {
         size_t length = strcspn(list, ",");
         int status = read_one(a, chain, list, length);

@@ -167,9 +167,9 @@ static void say_servo(const sim_console *console, int servo)
         return;
     }
     app_note(console->a, "%3d  %-12s  %7.1f deg  to %7.1f  torque %-5s  %4d mA  %5.1f C%s%s%s",
-             (int)v.id, console->model->joints[servo].name, v.angle_mdeg / 1e3, v.target_mdeg / 1e3,
-             torques[v.torque], (int)v.current_ma, v.temperature_c, _(cables[v.cable]),
-             v.moving ? _(", moving") : "", v.stalled ? _(", stalled") : "");
+             (int)v.id, grobo_model_joint(console->model, servo)->name, v.angle_mdeg / 1e3,
+             v.target_mdeg / 1e3, torques[v.torque], (int)v.current_ma, v.temperature_c,
+             _(cables[v.cable]), v.moving ? _(", moving") : "", v.stalled ? _(", stalled") : "");
 }
 
 static const char *look(sim_console *console)

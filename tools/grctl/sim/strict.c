@@ -195,7 +195,7 @@ void sim_strict_start(sim_strict *s, app *a, int robot, const grobo_sim_config *
                       .servos = sim->servos,
                       .talk = {.words = words}};
     for (int i = 0; sim->servos && i < sim->model->n_joints; i++) {
-        s->talk.servo[sim->model->joints[i].motor] = sim->servos[i];
+        s->talk.servo[grobo_model_joint(sim->model, i)->motor] = sim->servos[i];
     }
     frames_init(&s->host, &s->talk, FRAMES_HOST,
                 wiring == GROBO_WIRING_BUS ? GROBO_WORDS_BUS : GROBO_WORDS_BOARD, on_frame, s);

@@ -93,7 +93,7 @@ static int read_named(app *a, sketch *s, const char *text)
 static int find_joint(const grobo_model *model, const char *name)
 {
     for (int j = 0; j < model->n_joints; j++) {
-        if (strcmp(model->joints[j].name, name) == 0) {
+        if (strcmp(grobo_model_joint(model, j)->name, name) == 0) {
             return j;
         }
     }
@@ -105,7 +105,7 @@ const grobo_robot_def *sketch_namesake(const grobo_model *model)
     for (size_t i = 0; grobo_robot_def_at(i); i++) {
         const grobo_model *known = grobo_robot_def_at(i)->model;
         int n = 0;
-        while (n < model->n_joints && find_joint(known, model->joints[n].name) >= 0) {
+        while (n < model->n_joints && find_joint(known, grobo_model_joint(model, n)->name) >= 0) {
             n++;
         }
         if (n == model->n_joints && n == known->n_joints) {
@@ -130,7 +130,7 @@ static int read_robot(app *a, sketch *s, const char *text)
             return app_fail(a, EXIT_USAGE, "ARG", "--ids %s: %s has no joint '%s'", text, def->name,
                             part->called);
         }
-        part->id = def->model->joints[j].motor;
+        part->id = grobo_model_joint(def->model, j)->motor;
     }
     return EXIT_DONE;
 }
@@ -153,7 +153,7 @@ static const grobo_robot_def *known_robot(sketch *s)
 
 static int id_of(const grobo_robot_def *def, const sketch_part *part)
 {
-    return def->model->joints[find_joint(def->model, part->called)].motor;
+    return grobo_model_joint(def->model, find_joint(def->model, part->called))->motor;
 }
 
 /* ---- what a person sees --------------------------------------------------------------------- */

@@ -257,8 +257,9 @@ static bool reaches(const sketch *s, const sketch_part *part)
                                .sign = part->gear < 0 ? -1 : 0,
                                .gear = fabs(part->gear),
                                .zero_rad = part->zero_rad};
-    const grobo_model one = {.name = "one", .joints = &joint, .n_joints = 1};
-    grobo_driver driver;
+    const grobo_model one =
+        GROBO_TABLE(grobo_model, .name = "one", GROBO_MODEL_JOINTS(&joint), .n_joints = 1);
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     return s->family->init[s->family->wiring](&driver, &one) >= 0;
 }
 

@@ -117,7 +117,7 @@ void serve_blame(json_t *refusal, const serve *s, int joint, double value)
 {
     if (joint >= 0 && joint < s->model->n_joints) {
         json_object_set_new(refusal, "joint", json_integer(joint));
-        json_object_set_new(refusal, "name", json_string(s->model->joints[joint].name));
+        json_object_set_new(refusal, "name", json_string(grobo_model_joint(s->model, joint)->name));
         json_object_set_new(refusal, "value", app_json_number(value, 3));
     }
 }

@@ -219,7 +219,7 @@ bool pose_stand(const app *a, const grobo_posture *posture, grobo_body_stand *st
     double q_rad[GROBO_JOINTS_MAX];
     for (int j = 0; body && j < body->n_joints; j++) {
         bool set = j < posture->n_joints && (posture->set & GROBO_JOINT_BIT(j));
-        q_rad[j] = set ? posture->angle_rad[j] : app_model(a)->joints[j].init_rad;
+        q_rad[j] = set ? posture->angle_rad[j] : grobo_model_joint(app_model(a), j)->init_rad;
     }
     return body && grobo_body_stand_pose(body, q_rad, NULL, stood) == GROBO_OK;
 }
@@ -276,8 +276,8 @@ static json_t *beyond_limits(const grobo_model *model, const double *q_rad)
     static const double slack_rad = 0.05 * 3.14159265358979323846 / 180; /* the wire's half unit */
     grobo_joint_mask beyond = 0;
     for (int j = 0; j < model->n_joints; j++) {
-        if (q_rad[j] < model->joints[j].min_rad - slack_rad ||
-            q_rad[j] > model->joints[j].max_rad + slack_rad) {
+        if (q_rad[j] < grobo_model_joint(model, j)->min_rad - slack_rad ||
+            q_rad[j] > grobo_model_joint(model, j)->max_rad + slack_rad) {
             beyond |= GROBO_JOINT_BIT(j);
         }
     }

@@ -109,7 +109,7 @@ static bool zmp_of_motion(serve *s, const grobo_body_stand *now, double zmp_m[3]
         }
         for (int j = 0; j < s->model->n_joints; j++) {
             bool set = (posture.set & GROBO_JOINT_BIT(j)) != 0;
-            angles[i][j] = set ? posture.angle_rad[j] : s->model->joints[j].init_rad;
+            angles[i][j] = set ? posture.angle_rad[j] : grobo_model_joint(s->model, j)->init_rad;
         }
         root[i] = stood.root;
     }
@@ -177,7 +177,7 @@ static json_t *number(double value)
 
 static json_t *joint_json(const grobo_model *model, int j)
 {
-    const grobo_joint *joint = &model->joints[j];
+    const grobo_joint *joint = grobo_model_joint(model, j);
     return json_pack("{s:i,s:i,s:s,s:[o,o],s:o,s:o,s:o,s:i,s:i}", "joint", j, "motor", joint->motor,
                      "name", joint->name, "limits_deg",
                      app_json_number(grobo_deg_from_rad(joint->min_rad), 3),

@@ -9,6 +9,11 @@ from grobo._lib import ffi, lib
 from grobo.errors import check, error
 
 
+def joints_of(model: Any) -> List[Any]:
+    """The joints of a model, whatever version of the library made it."""
+    return [lib.grobo_model_joint(model, j) for j in range(model.n_joints)]
+
+
 class Description:
     """A robot's joints, servos, line and limits.
 
@@ -23,6 +28,7 @@ class Description:
         self._c = _shipped(text) if shipped else _read(text)
         self.model = self._c.model
         self._driver = ffi.new("grobo_driver *")
+        self._driver.size = ffi.sizeof("grobo_driver")
         self._sim = ffi.new("grobo_robot_sim *")
         check(lib.grobo_robot_def_driver(self._c, self._c.wiring, self._driver), text)
         check(lib.grobo_robot_def_sim(self._c, self._c.wiring, self._sim), text)
@@ -34,14 +40,14 @@ class Description:
 
     @property
     def joints(self) -> List[str]:
-        return [ffi.string(self.model.joints[j].name).decode() for j in range(self.model.n_joints)]
+        return [ffi.string(joint.name).decode() for joint in joints_of(self.model)]
 
     @property
     def limits(self) -> Dict[str, Tuple[float, float]]:
         """The range of each joint in radians."""
         return {
-            name: (float(self.model.joints[j].min_rad), float(self.model.joints[j].max_rad))
-            for j, name in enumerate(self.joints)
+            name: (float(joint.min_rad), float(joint.max_rad))
+            for name, joint in zip(self.joints, joints_of(self.model))
         }
 
     @property

@@ -26,7 +26,7 @@ def _array(rows: List[Any]) -> Any:
 
 
 def joint_names(model: Any) -> List[str]:
-    return [ffi.string(model.joints[j].name).decode() for j in range(model.n_joints)]
+    return [ffi.string(lib.grobo_model_joint(model, j).name).decode() for j in range(model.n_joints)]
 
 
 GR001 = lib.grobo_gr001_model()

@@ -19,7 +19,7 @@ class Scale:
     ) -> None:
         self._percent = set(percent) & set(robot.joints)
         self._limits = robot.limits
-        mounted = dict(zip(robot.joints, robot.model.joints[0 : len(robot.joints)]))
+        mounted = dict(zip(robot.joints, grobo.description.joints_of(robot.model)))
         self._of_file = {
             name: (self._of_ticks(one.range_min), self._of_ticks(one.range_max))
             for name, one in calibration.items()
