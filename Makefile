@@ -310,11 +310,14 @@ FAMILY_CLIENTS := dynamixel-sdk==4.1.0 rustypot==1.13.1 feetech-servo-sdk==1.0.0
     deepdiff draccus tqdm numpy huggingface-hub cffi
 # Its motors and robots alone: the rest of it wants torch.
 FAMILY_LEROBOT := lerobot==0.4.4
-check-physics: $(PLANT_PIPE) ## a simulated SO-101 whose links are in MuJoCo (from PyPI)
+check-physics: all $(PLANT_PIPE) ## simulated servos in front of bodies of MuJoCo (from PyPI)
 	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
-	    --disable-pip-version-check mujoco numpy || true
-	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy' 2>/dev/null; then \
-	    $(BUILD)/physics/bin/python tests/physics/mujoco_plant.py $(PLANT_PIPE); \
+	    --disable-pip-version-check mujoco numpy cffi || true
+	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
+	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	    $(BUILD)/physics/bin/python tests/physics/mujoco_plant.py $(PLANT_PIPE) && \
+	    GRCTL="$(call whole,$(GRCTL_RUN))" PYTHONPATH="$(abspath $(PYTHON_DIR))" \
+	    $(BUILD)/physics/bin/python tests/package/python/test_physics.py; \
 	else echo 'check-physics: skipped: MuJoCo cannot be had for this python3'; fi
 
 check-families: all ## clients of other servos (from PyPI) against the simulator

@@ -33,6 +33,7 @@ stage_of() {
     cockpit) echo check-cockpit ;;
     api) echo check-api ;;
     families) echo check-families ;;
+    physics) echo check-physics ;;
     fleet) echo check-fleet ;;
     scan) echo check-scan ;;
     stops) echo "test ONLY=serve_stop STOPS=16" ;;
@@ -42,7 +43,7 @@ stage_of() {
 }
 
 [ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts soak abi ports deb wheel roots \
-    cockpit api families fleet scan stops matrix
+    cockpit api families physics fleet scan stops matrix
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done

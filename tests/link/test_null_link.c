@@ -12,6 +12,7 @@
 #include <grobo/core/robot.h>
 #include <grobo/core/runner.h>
 #include <grobo/core/static.h>
+#include <grobo/core/virtual.h>
 #include <grobo/estop.h>
 #include <grobo/guard.h>
 #include <grobo/session.h>
@@ -393,6 +394,21 @@ TEST(thread_refuses_null_in_its_fourth_functions)
     REFUSES(grobo_runner_exit(NULL, 0, 1000));
     REFUSES(grobo_runner_post_exit(NULL, 0));
     REFUSES(grobo_runner_post_stop(NULL, true));
+}
+
+TEST(a_virtual_robot_refuses_null)
+{
+    static const grobo_virtual_config unreal = {GROBO_VIRTUAL_CONFIG_INIT};
+    grobo_virtual *unmade = NULL;
+    REFUSES(grobo_virtual_new(NULL, &unmade));
+    REFUSES(grobo_virtual_new(&unreal, NULL));
+    REFUSES(grobo_virtual_run(NULL, 1000));
+    REFUSES(grobo_virtual_now_us(NULL));
+    assert_null(grobo_virtual_robot(NULL));
+    assert_null(grobo_virtual_sim(NULL));
+    grobo_virtual_free(NULL);
+    REFUSES(grobo_loop_run(NULL, 1000));
+    grobo_loop_free(NULL);
 }
 
 TESTS_BETWEEN(set_up, tear_down)

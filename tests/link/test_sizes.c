@@ -12,6 +12,7 @@
 #include <grobo/core/sim_static.h>
 #include <grobo/core/static.h>
 #include <grobo/core/team.h>
+#include <grobo/core/virtual.h>
 #include <grobo/grobo.h>
 
 #include "tests/support/tables.h"
@@ -50,6 +51,14 @@ static int make_session(const void *config)
     grobo_session *made = NULL;
     int r = grobo_session_new(config, &made);
     grobo_session_free(made);
+    return r;
+}
+
+static int make_virtual(const void *config)
+{
+    grobo_virtual *made = NULL;
+    int r = grobo_virtual_new(config, &made);
+    grobo_virtual_free(made);
     return r;
 }
 
@@ -230,6 +239,9 @@ static int for_each(void (*look)(int (*take)(const void *config), const void *go
     const grobo_body_options solving = {GROBO_BODY_OPTIONS_INIT};
     const grobo_body_check_options balance = {GROBO_BODY_CHECK_OPTIONS_INIT};
 
+    const grobo_virtual_config unreal = {GROBO_VIRTUAL_CONFIG_INIT};
+
+    look(make_virtual, &unreal, sizeof unreal);
     look(make_robot, &robot, sizeof robot);
     look(configure, &robot, sizeof robot);
     look(make_sim, &of_sim, sizeof of_sim);
@@ -254,7 +266,7 @@ static int for_each(void (*look)(int (*take)(const void *config), const void *go
     look(verify, &writing, sizeof writing);
     look(make_body, &solving, sizeof solving);
     look(check_body, &balance, sizeof balance);
-    return 24;
+    return 25;
 }
 
 /* Room for a structure that is longer than today's. */
@@ -284,7 +296,7 @@ static void look_at_nonsense(int (*take)(const void *config), const void *good, 
 
 TEST(nonsense_is_refused)
 {
-    assert_int_equal(for_each(look_at_nonsense), 24);
+    assert_int_equal(for_each(look_at_nonsense), 25);
 }
 
 static void look_at_longer(int (*take)(const void *config), const void *good, size_t bytes)
@@ -299,7 +311,7 @@ static void look_at_longer(int (*take)(const void *config), const void *good, si
 
 TEST(what_a_newer_program_sets_is_refused)
 {
-    assert_int_equal(for_each(look_at_longer), 24);
+    assert_int_equal(for_each(look_at_longer), 25);
 }
 
 /* What is behind a shorter structure is not looked at. */

@@ -15,6 +15,7 @@
 #include <grobo/core/lx16a.h>
 #include <grobo/core/motion.h>
 #include <grobo/core/motion_io.h>
+#include <grobo/core/robot_plant.h>
 #include <grobo/core/rs30x.h>
 #include <grobo/robot_file.h>
 
@@ -591,6 +592,10 @@ TEST(robot_file_refuses_null)
     assert_false(grobo_robot_def_has_weight(NULL));
     REFUSES(grobo_robot_def_physics(NULL, false, NULL, &physics));
     REFUSES(grobo_robot_def_physics(grobo_i_robot_defs[0], false, NULL, NULL));
+    const grobo_sim_plant plant = {0};
+    REFUSES(grobo_robot_def_plant(NULL, &plant, false, NULL, &physics));
+    REFUSES(grobo_robot_def_plant(grobo_i_robot_defs[0], NULL, false, NULL, &physics));
+    REFUSES(grobo_robot_def_plant(grobo_i_robot_defs[0], &plant, false, NULL, NULL));
 }
 
 TESTS_BETWEEN(set_up, tear_down)

@@ -24,6 +24,17 @@ struct event_base;
  */
 GROBO_API struct event_base *grobo_loop_new(void);
 
+/** Frees a loop; NULL is fine. As event_base_free(), for programs that do not link libevent. */
+GROBO_API void grobo_loop_free(struct event_base *base);
+
+/**
+ * Runs a loop for a time: all that comes meanwhile is called back, in this thread. For programs
+ * whose own loop is another, and for those that do not link libevent.
+ * @param for_us 0 or more; 0: what is due already
+ * @return GROBO_OK, GROBO_ERR_ARG, GROBO_ERR_NOMEM, or GROBO_ERR_IO: libevent's backend has failed
+ */
+GROBO_API int grobo_loop_run(struct event_base *base, int64_t for_us);
+
 /** A one-shot timer with an absolute deadline. */
 typedef struct grobo_timer grobo_timer;
 

@@ -67,6 +67,40 @@ struct event_base *grobo_loop_new(void)
     return base;
 }
 
+void grobo_loop_free(struct event_base *base)
+{
+    if (base != NULL) {
+        event_base_free(base);
+    }
+}
+
+static void on_end(evutil_socket_t number, short what, void *ctx)
+{
+    (void)number, (void)what;
+    event_base_loopbreak(ctx);
+}
+
+int grobo_loop_run(struct event_base *base, int64_t for_us)
+{
+    if (base == NULL || for_us < 0) {
+        return GROBO_ERR_ARG;
+    }
+    if (for_us == 0) {
+        return event_base_loop(base, EVLOOP_NONBLOCK) < 0 ? GROBO_ERR_IO : GROBO_OK;
+    }
+    struct event *end = evtimer_new(base, on_end, base);
+    struct timeval tv = grobo_i_link_timeval(for_us);
+    if (end == NULL || evtimer_add(end, &tv) != 0) {
+        if (end != NULL) {
+            event_free(end);
+        }
+        return GROBO_ERR_NOMEM;
+    }
+    int result = event_base_loop(base, 0);
+    event_free(end);
+    return result < 0 ? GROBO_ERR_IO : GROBO_OK;
+}
+
 static int arm(grobo_timer *timer)
 {
     int64_t span_us = timer->deadline_us - grobo_now_us();

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/robot_file.h>
+#include <grobo/core/robot_plant.h>
 
 #include "src/robots/file/families.h"
 #include "src/robots/robots.h"
@@ -57,6 +57,20 @@ static bool given(const grobo_robot_def *def, int j, grobo_sim_motor *motor)
     return true;
 }
 
+/* The world of a configuration that has its links or its plant: the robot's motors are added. */
+static int make_world(const grobo_robot_def *def, grobo_sim_physics_config config,
+                      const grobo_mem *mem, grobo_sim_physics **physics)
+{
+    grobo_sim_motor motor[GROBO_JOINTS_MAX];
+    const grobo_sim_motor *motors[GROBO_JOINTS_MAX] = {NULL};
+    for (int j = 0; j < def->model->n_joints; j++) {
+        motors[j] = given(def, j, &motor[j]) ? &motor[j] : NULL;
+    }
+    config.model = def->model;
+    config.motors = motors;
+    return grobo_sim_physics_new(&config, mem, physics);
+}
+
 int grobo_robot_def_physics(const grobo_robot_def *def, bool real_time, const grobo_mem *mem,
                             grobo_sim_physics **physics)
 {
@@ -77,13 +91,18 @@ int grobo_robot_def_physics(const grobo_robot_def *def, bool real_time, const gr
         memcpy(to->inertia_kgm2, from->inertia_kgm2, sizeof to->inertia_kgm2);
         grobo_i_rotation(to->r, from->origin_rad);
     }
-    grobo_sim_motor motor[GROBO_JOINTS_MAX];
-    const grobo_sim_motor *motors[GROBO_JOINTS_MAX] = {NULL};
-    for (int j = 0; j < def->model->n_joints; j++) {
-        motors[j] = given(def, j, &motor[j]) ? &motor[j] : NULL;
+    const grobo_sim_physics_config config = {GROBO_SIM_PHYSICS_CONFIG_INIT, .links = links,
+                                             .n_links = def->n_links, .real_time = real_time};
+    return make_world(def, config, mem, physics);
+}
+
+int grobo_robot_def_plant(const grobo_robot_def *def, const grobo_sim_plant *plant, bool real_time,
+                          const grobo_mem *mem, grobo_sim_physics **physics)
+{
+    if (def == NULL || plant == NULL || plant->step == NULL || physics == NULL) {
+        return GROBO_ERR_ARG;
     }
-    const grobo_sim_physics_config config = {
-        GROBO_SIM_PHYSICS_CONFIG_INIT, .model = def->model, .links = links,
-        .n_links = def->n_links,       .motors = motors,    .real_time = real_time};
-    return grobo_sim_physics_new(&config, mem, physics);
+    const grobo_sim_physics_config config = {GROBO_SIM_PHYSICS_CONFIG_INIT, .plant = plant,
+                                             .real_time = real_time};
+    return make_world(def, config, mem, physics);
 }

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * An engine and a simulator, pumped by a clock that goes from one deadline to the next. In each
+ * round the engine gets what the simulator has said by now, does what is due, and gives its next
+ * frame, as static.h asks; a frame that the wire takes in part is given on before any other.
+ */
+#include <string.h>
+
+#include <grobo/core/gr001.h>
+#include <grobo/core/sim_static.h>
+#include <grobo/core/static.h>
+#include <grobo/core/virtual.h>
+
+#include "src/base/assert.h"
+#include "src/base/memory.h"
+#include "src/base/sized.h"
+#include "src/sim/servo/servo.h"
+
+struct grobo_virtual {
+    const grobo_mem *mem;
+    size_t bytes;
+    int64_t now_us;
+    int64_t replug_us; /* of a cable that is out; GROBO_NEVER_US: it is in */
+    size_t n_rest;
+    uint8_t rest[GROBO_FRAME_MAX_BYTES]; /* of a frame that the wire took in part */
+    grobo_robot robot;
+    grobo_sim sim; /* the last member: grobo_i_sim_bytes() */
+};
+
+/* ---- a round -------------------------------------------------------------------------------- */
+
+/* Bytes of a frame that go on the wire now. */
+static void give(grobo_virtual *robot, const uint8_t *frame, size_t size)
+{
+    size_t taken = grobo_sim_rx(&robot->sim, frame, size, robot->now_us);
+    GROBO_ASSERT(taken <= size && size - taken <= sizeof robot->rest);
+    robot->n_rest = size - taken;
+    memmove(robot->rest, frame + taken, robot->n_rest);
+}
+
+static void watch_cable(grobo_virtual *robot)
+{
+    if (robot->replug_us == GROBO_NEVER_US && grobo_sim_hung_up(&robot->sim)) {
+        robot->replug_us = robot->now_us + GROBO_VIRTUAL_REPLUG_US;
+        robot->n_rest = 0;
+        grobo_robot_link_down(&robot->robot, robot->now_us);
+    } else if (robot->now_us >= robot->replug_us) {
+        robot->replug_us = GROBO_NEVER_US;
+        grobo_sim_plug(&robot->sim, true, robot->now_us);
+        grobo_robot_link_up(&robot->robot, robot->now_us);
+    }
+}
+
+static int64_t sooner(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Does what is due; returns when the next round is. */
+static int64_t turn(grobo_virtual *robot)
+{
+    uint8_t bytes[GROBO_FRAME_MAX_BYTES];
+    size_t got = grobo_sim_tx(&robot->sim, bytes, sizeof bytes, robot->now_us);
+    grobo_robot_rx_step(&robot->robot, bytes, got, robot->now_us);
+    give(robot, robot->rest, robot->n_rest);
+    if (robot->n_rest == 0) {
+        int n = grobo_robot_tx(&robot->robot, bytes, sizeof bytes, robot->now_us);
+        if (n > 0) {
+            give(robot, bytes, (size_t)n);
+        }
+    }
+    watch_cable(robot);
+    int64_t sim_us = grobo_sim_packet_deadline(&robot->sim);
+    int64_t robot_us =
+        robot->n_rest > 0 ? GROBO_NEVER_US : grobo_robot_deadline(&robot->robot, robot->now_us);
+    return sooner(sooner(sim_us, robot_us), robot->replug_us);
+}
+
+int grobo_virtual_run(grobo_virtual *robot, int64_t for_us)
+{
+    if (robot == NULL || for_us < 0 || for_us >= GROBO_NEVER_US - robot->now_us) {
+        return GROBO_ERR_ARG;
+    }
+    int64_t end_us = robot->now_us + for_us;
+    int64_t next_us = turn(robot);
+    while (next_us <= end_us) {
+        robot->now_us = next_us > robot->now_us ? next_us : robot->now_us;
+        next_us = turn(robot);
+    }
+    robot->now_us = end_us;
+    grobo_sim_step(&robot->sim, end_us);
+    return GROBO_OK;
+}
+
+/* ---- life ----------------------------------------------------------------------------------- */
+
+static int64_t clock_us(void *ctx)
+{
+    const grobo_virtual *robot = ctx;
+    return robot->now_us;
+}
+
+/* One line has two ends. */
+static void complete(const grobo_driver *driver, grobo_robot_config *robot, grobo_sim_config *sim)
+{
+    sim->wiring = grobo_driver_wiring(driver);
+    sim->echo = robot->bus.echo;
+    sim->model = sim->model != NULL ? sim->model : driver->model;
+    sim->baud_bps = sim->baud_bps != 0 ? sim->baud_bps : robot->bus.baud_bps;
+    robot->bus.baud_bps = robot->bus.baud_bps != 0 ? robot->bus.baud_bps : sim->baud_bps;
+}
+
+static int start(grobo_virtual *robot, const grobo_driver *driver, void *driver_ctx,
+                 const grobo_robot_config *config, const grobo_sim_config *sim)
+{
+    robot->replug_us = GROBO_NEVER_US;
+    int result = grobo_sim_init_sized(&robot->sim, grobo_i_sim_bytes(sim->model), sim, 0);
+    if (result >= 0) {
+        result = grobo_robot_init(&robot->robot, driver, driver_ctx, config, 0);
+    }
+    if (result >= 0) {
+        const grobo_robot_host host = {.clock = clock_us, .ctx = robot};
+        grobo_robot_set_host(&robot->robot, &host);
+        grobo_robot_link_up(&robot->robot, 0);
+    }
+    return result;
+}
+
+int grobo_virtual_new(const grobo_virtual_config *config, grobo_virtual **made)
+{
+    grobo_virtual_config taken;
+    grobo_robot_config engine;
+    grobo_sim_config sim;
+    if (config == NULL || made == NULL || grobo_i_sized_take(&taken, sizeof taken, config) < 0 ||
+        grobo_i_sized_take(&engine, sizeof engine, taken.robot) < 0 ||
+        grobo_i_sized_take(&sim, sizeof sim, taken.sim) < 0) {
+        return GROBO_ERR_ARG;
+    }
+    const grobo_driver *driver =
+        taken.driver != NULL ? taken.driver : grobo_gr001_driver(GROBO_WIRING_BOARD);
+    int result = grobo_driver_check(driver);
+    if (result < 0) {
+        return result;
+    }
+    complete(driver, &engine, &sim);
+    size_t bytes = offsetof(grobo_virtual, sim) + grobo_i_sim_bytes(sim.model);
+    grobo_virtual *robot = grobo_i_new(taken.mem, bytes);
+    if (robot == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    robot->mem = taken.mem;
+    robot->bytes = bytes;
+    result = start(robot, driver, taken.driver_ctx, &engine, &sim);
+    if (result < 0) {
+        grobo_virtual_free(robot);
+        return result;
+    }
+    *made = robot;
+    return GROBO_OK;
+}
+
+void grobo_virtual_free(grobo_virtual *robot)
+{
+    if (robot != NULL) {
+        grobo_i_free(robot->mem, robot, robot->bytes);
+    }
+}
+
+grobo_robot *grobo_virtual_robot(grobo_virtual *robot)
+{
+    return robot != NULL ? &robot->robot : NULL;
+}
+
+grobo_sim *grobo_virtual_sim(grobo_virtual *robot)
+{
+    return robot != NULL ? &robot->sim : NULL;
+}
+
+int64_t grobo_virtual_now_us(const grobo_virtual *robot)
+{
+    return robot != NULL ? robot->now_us : GROBO_ERR_ARG;
+}

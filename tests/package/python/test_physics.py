@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: MIT
+"""Servos of the library in front of a body of MuJoCo."""
+
+import importlib.util
+import math
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import grobo
+from grobo import Description, errors
+
+HERE = all(importlib.util.find_spec(name) for name in ("mujoco", "numpy"))
+if HERE:
+    from grobo import _film
+    from grobo.physics import Body, Virtual
+needs_mujoco = unittest.skipUnless(HERE, "no MuJoCo (make check-physics gets it from PyPI)")
+
+# A pan-tilt head whose arm has 0.1 kg at 0.15 m, on a box that stands on the floor where BASE is a
+# free joint.
+HEAD = """<mujoco><option gravity="0 0 -9.80665"/><worldbody>
+<geom name="floor" type="plane" size="2 2 0.1"/>
+<body name="base" pos="0 0 0.1">BASE
+ <inertial pos="0 0 0" mass="0.5" diaginertia="0.001 0.001 0.001"/>
+ <geom type="box" size="0.04 0.04 0.05"/>
+ <body name="yoke" pos="0 0 0.06"><joint name="pan" axis="0 0 1"/>
+  <inertial pos="0 0 0" mass="0.05" diaginertia="1e-5 1e-5 1e-5"/>
+  <body name="arm" pos="0 0 0.02"><joint name="tilt" axis="0 1 0"/>
+   <inertial pos="0.15 0 0" mass="0.1" diaginertia="1e-5 1e-5 1e-5"/>
+   <geom type="sphere" pos="0.15 0 0" size="0.02" contype="0" conaffinity="0"/>
+</body></body></body></worldbody></mujoco>"""
+
+
+class Heads(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.fixed = self.folder / "fixed.xml"
+        self.fixed.write_text(HEAD.replace("BASE", ""))
+        self.free = self.folder / "free.xml"
+        self.free.write_text(HEAD.replace("BASE", '<freejoint name="root"/>'))
+        self.robot = Description("pan-tilt")
+
+    def virtual(self, path, **options):
+        made = Virtual(Body(path, self.robot, **options))
+        self.addCleanup(made.close)
+        return made
+
+
+@needs_mujoco
+class InVirtualTime(Heads):
+    def test_the_engine_moves_a_body_and_it_sags(self):
+        robot = self.virtual(self.fixed)
+        robot.init()
+        robot.run(2)
+        pan, tilt = robot.body.data.joint("pan").qpos[0], robot.body.data.joint("tilt").qpos[0]
+        self.assertAlmostEqual(math.degrees(pan), 0, delta=0.3)
+        # 0.147 Nm at a spring of 17.8 Nm/rad less friction: it hangs by up to 0.5 degrees.
+        self.assertGreater(math.degrees(tilt), -0.1)
+        self.assertLess(math.degrees(tilt), 0.8)
+        self.assertEqual(robot.trips, [])
+
+    def test_each_run_gives_the_same(self):
+        ends = []
+        for _ in range(2):
+            robot = self.virtual(self.free)
+            robot.init()
+            robot.body.push([1.0, 0, 0], 0.1)
+            robot.run(0.5)
+            ends.append(tuple(robot.body.data.qpos))
+        self.assertEqual(ends[0], ends[1])
+
+    def test_a_free_base_is_held_until_the_joints_have_torque(self):
+        robot = self.virtual(self.free)
+        robot.run(0.5)
+        self.assertTrue(robot.body.held)
+        self.assertEqual(robot.body.tilt().angle, 0)
+        robot.init()
+        robot.run(1)
+        self.assertFalse(robot.body.held)
+        self.assertFalse(robot.body.fallen)
+        self.assertLess(robot.body.tilt().angle, math.radians(2))
+
+    def test_it_falls_when_it_is_pushed(self):
+        robot = self.virtual(self.free)
+        robot.init()
+        robot.run(0.5)
+        robot.body.push([0, 8.0, 0], 0.3)
+        robot.run(2)
+        self.assertTrue(robot.body.fallen)
+        self.assertGreater(robot.body.tilt().angle, math.radians(45))
+
+    def test_faults_and_hands_of_the_simulator_work_there(self):
+        robot = self.virtual(self.fixed)
+        robot.init()
+        robot.hand("pan", 5.0)
+        robot.run(1)
+        self.assertGreater(math.degrees(robot.body.data.joint("pan").qpos[0]), 5)
+        robot.hand("pan", 0)
+        robot.block("tilt", True)
+        robot.run(0.1)
+        at = robot.body.data.joint("tilt").qpos[0]
+        robot.hand("tilt", -3)
+        robot.run(1)
+        self.assertAlmostEqual(robot.body.data.joint("tilt").qpos[0], at, delta=0.01)
+        robot.set_faults("silent=1")
+        robot.hand("tilt", 0)
+        robot.block("tilt", False)
+        with self.assertRaises(errors.Error):
+            robot.init()
+        with self.assertRaises(errors.Error):
+            robot.set_faults("nonsense=1")
+
+    def test_a_payload_weighs(self):
+        body = Body(self.fixed, self.robot)
+        arm = body.model.body("arm").id
+        body.set_payload(0.1, "arm")
+        self.assertAlmostEqual(body.model.body_mass[arm], 0.2)
+        self.assertAlmostEqual(body.model.body_ipos[arm][0], 0.075)
+        # 2 masses of 0.1 kg at 75 mm of their centre.
+        self.assertAlmostEqual(max(body.model.body_inertia[arm]), 1e-5 + 0.2 * 0.075**2)
+        with self.assertRaises(errors.Error):
+            body.set_payload(0.1, "nose")
+
+    def test_a_fixed_base_is_freed_and_stands_on_a_floor(self):
+        urdf = self.folder / "head.urdf"
+        link = ('<link name="{0}"><inertial><origin xyz="{1}"/><mass value="{2}"/><inertia ixx="1e-4"'
+                ' iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial>{3}</link>')
+        box = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+        joint = ('<joint name="{0}" type="revolute"><parent link="{1}"/><child link="{2}"/><origin '
+                 'xyz="0 0 {3}"/><axis xyz="{4}"/><limit lower="-2" upper="2" effort="9" '
+                 'velocity="9"/></joint>')
+        urdf.write_text('<robot name="head">' + link.format("base", "0 0 0", 1, box)
+                        + link.format("yoke", "0 0 0", 0.05, "")
+                        + link.format("arm", "0.05 0 0", 0.05, "")
+                        + joint.format("pan", "base", "yoke", 0.06, "0 0 1")
+                        + joint.format("tilt", "yoke", "arm", 0.02, "0 1 0") + "</robot>")
+        robot = self.virtual(urdf, free=True)
+        robot.init()
+        robot.run(1)
+        self.assertFalse(robot.body.fallen)
+        self.assertAlmostEqual(robot.body.tilt().height, 0.05, delta=0.01)
+
+    def test_what_a_file_lacks_is_named(self):
+        with self.assertRaisesRegex(LookupError, "no joint R_HIP_Y; its joints: pan, tilt"):
+            Body(self.fixed, Description("gr001"))
+        with self.assertRaisesRegex(FileNotFoundError, "nowhere.xml"):
+            Body("nowhere.xml", self.robot)
+        bad = self.folder / "bad.xml"
+        bad.write_text("<mujoco><nonsense/></mujoco>")
+        with self.assertRaisesRegex(ValueError, "bad.xml"):
+            Body(bad, self.robot)
+
+
+@needs_mujoco
+class InRealTime(Heads):
+    def serve(self, *options):
+        command = [sys.executable, "-m", "grobo.physics", str(self.free), "--robot", "pan-tilt",
+                   *options]
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+
+        def end():
+            process.kill()
+            process.communicate()
+
+        self.addCleanup(end)
+        return process, process.stdout.readline().strip()
+
+    def test_a_program_drives_it_behind_a_pty(self):
+        link = self.folder / "head"
+        process, device = self.serve("--link", str(link))
+        self.assertTrue(os.path.exists(device))
+        with grobo.connect(str(link), robot="pan-tilt", guard=False) as robot:
+            robot.init()
+            robot.move({"pan": 0.5}, time=0.3)
+            self.assertAlmostEqual(robot.angles(["pan"])["pan"], 0.5, delta=0.05)
+        process.stdin.write("look\npush 0 12 0 400\nnonsense\n")
+        process.stdin.flush()
+        said = ""
+        while "it fell" not in said:
+            line = process.stderr.readline()
+            self.assertTrue(line, said)
+            said += line
+        self.assertIn("what is 'nonsense'?", said)
+        out, _ = process.communicate("quit\n", timeout=60)
+        self.assertEqual(process.returncode, 0)
+        self.assertFalse(link.exists())
+
+    def test_a_tcp_port_serves_too(self):
+        process, device = self.serve("--tcp", "0", "--no-pty")
+        self.assertRegex(device, r"^tcp:127\.0\.0\.1:\d+$")
+        with socket.create_connection(("127.0.0.1", int(device.rsplit(":", 1)[1]))) as line:
+            line.sendall(bytes([255, 255, 1, 2, 1, 251]))  # a ping
+            line.settimeout(60)
+            self.assertEqual(line.recv(64)[:3], bytes([255, 255, 1]))
+        process.terminate()
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 128 + 15)
+
+    def test_mistakes_are_told(self):
+        done = subprocess.run([sys.executable, "-m", "grobo.physics", "nowhere.xml"],
+                              capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("nowhere.xml: no such file", done.stderr)
+
+
+@unittest.skipUnless(HERE, "no numpy")
+class Films(unittest.TestCase):
+    def test_a_picture_is_a_png(self):
+        import zlib
+
+        import numpy
+
+        frame = numpy.arange(5 * 4 * 3, dtype=numpy.uint8).reshape(5, 4, 3)
+        data = _film.png(frame)
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        length = int.from_bytes(data[33:37], "big")
+        self.assertEqual(data[37:41], b"IDAT")
+        rows = zlib.decompress(data[41:41 + length])
+        above = [0] * 12
+        for y in range(5):  # undone as the standard says
+            row = rows[y * 13:(y + 1) * 13]
+            self.assertEqual(row[0], 2)
+            above = [(b + a) % 256 for a, b in zip(above, row[1:])]
+            self.assertEqual(above, list(frame[y].flatten()))
+        film = _film.animated([frame, frame, frame], 25)
+        self.assertEqual((film.count(b"fcTL"), film.count(b"fdAT")), (3, 2))
+
+
+class Without(unittest.TestCase):
+    def test_without_mujoco_it_says_what_to_install(self):
+        code = ("import sys; sys.modules['mujoco'] = None\n"
+                "from grobo.physics import main; sys.exit(main(['x.xml']))")
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("MuJoCo is missing: pip install 'grobo[physics]'", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
