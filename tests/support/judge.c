@@ -167,9 +167,12 @@ void judge_estop_asked(judge *w, int result)
     }
     judge_raws_stopped(w, true);
     w->latched = w->by_estop = true;
-    w->resting = false; /* what follows is stricter */
-    w->estop_us = w->rig->now_us;
-    w->estop_waits = result > 0;
+    w->resting = false;               /* what follows is stricter */
+    if (result <= 0 || !w->made_up) { /* else it joins the one that began with the line */
+        w->estop_us = w->rig->now_us;
+        w->estop_waits = result > 0;
+    }
+    w->made_up = w->made_up && result <= 0;
     if (result > 0) {
         judge_job_began(w, result, GROBO_JOB_ESTOP);
     }
