@@ -496,6 +496,15 @@ bool grobo_i_axis_is_late(const grobo_robot_axis *axis)
 /* A ramp that was not read may end so much later. */
 #define RAMP_LATE_US 20000
 
+/* It comes back with its ramps, and no faster than it was sent. */
+static double way_back_s(const grobo_robot *robot, int joint, double way_rad)
+{
+    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
+    double sent_rad_s = fmax(told_speed(robot, joint), GROBO_I_REST_RAD_S);
+    double rad_s = fmin(sqrt(way_rad * accel_rad_s2), sent_rad_s);
+    return rad_s > 0 ? way_rad / rad_s + rad_s / accel_rad_s2 : 0;
+}
+
 /* Of a servo with ramps: what it takes to come to rest at the end of its way, which it passes, and
  * comes back to, where it is too fast for what is left. */
 static bool is_on_ramp(const grobo_robot *robot, int joint)
@@ -511,7 +520,7 @@ static bool is_on_ramp(const grobo_robot *robot, int joint)
     double end_rad = axis->way.to_rad - grobo_i_load(axis);
     double left_rad = copysign(end_rad - c.at_rad, (end_rad - c.at_rad) * c.rad_s);
     double over_rad = c.rad_s * c.rad_s / (2 * accel_rad_s2) - left_rad;
-    double back_s = fabs(c.rad_s) / accel_rad_s2 + 2 * sqrt(fmax(over_rad, 0) / accel_rad_s2);
+    double back_s = fabs(c.rad_s) / accel_rad_s2 + way_back_s(robot, joint, fmax(over_rad, 0));
     double rad_s = fabs(turning(robot, joint, robot->now_us - RAMP_LATE_US).rad_s);
     return rad_s >= grobo_rad_from_deg(GROBO_I_SLOW_DPS) ||
            (over_rad > 0 && seconds(axis->seen_us, robot->now_us) < back_s);

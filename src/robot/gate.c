@@ -648,15 +648,12 @@ static double begin_of_halt(const grobo_robot *robot, const grobo_target *target
                : to_rad + copysign(fmin(fabs(behind_rad), fmax(most_rad, way_rad)), behind_rad);
 }
 
-/* A servo that is told a speed comes to rest at this one at least: a joint a degree beside where it
- * is taken to be would creep there. A way that leads nowhere is gone at the approach speed. */
-#define REST_RAD_S (20 * 0.017453292519943295)
-
+/* A way that leads nowhere is gone at the approach speed. */
 static double begin_of_rest(const grobo_robot *robot, const grobo_target *target, int joint)
 {
     double to_rad = target->posture.angle_rad[joint];
     double way_rad = target->from_rad[joint] - to_rad;
-    double rad_s = fmin(speed_limit(robot, joint, true), REST_RAD_S);
+    double rad_s = fmin(speed_limit(robot, joint, true), GROBO_I_REST_RAD_S);
     double least_rad = rad_s * (double)target->joint_time_us[joint] / 1e6;
     return fabs(way_rad) < robot->driver->angle_step_rad
                ? target->from_rad[joint]

@@ -6,6 +6,7 @@
  * job reads all joints for that (an exit, an emergency stop), it repeats by itself.
  */
 #include <math.h>
+#include <stdlib.h>
 
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
@@ -37,6 +38,28 @@ static bool has_lost_it(const grobo_robot *robot, int joint)
            fabs(axis->state.angle_rad + grobo_i_load(axis) - axis->way.to_rad) > BESIDE_RAD;
 }
 
+/* So far beside its halt, a joint was not where it was taken to be: it had lost a frame before. */
+#define BESIDE_HALT_RAD (5 * 0.017453292519943295)
+/* Later, a weight may have drawn it there: one that is halted anew each time sinks to its end. Of
+ * servos that report the time of their way, the place of the goal is known. */
+#define ELSEWHERE_US 50000
+
+static bool is_beside(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double here_rad = grobo_i_way_at(&axis->way, axis->angle_us);
+    double off_rad = axis->state.angle_rad + grobo_i_load(axis) - here_rad;
+    return fabs(off_rad) > BESIDE_HALT_RAD && !grobo_i_rests(robot, joint);
+}
+
+static bool was_elsewhere(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool turns = axis->seen_dps != GROBO_I_NO_SPEED && abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
+    return turns && !grobo_i_axis_is_counted(axis) &&
+           axis->angle_us - axis->told_us <= ELSEWHERE_US && is_beside(robot, joint);
+}
+
 void grobo_i_astray(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
@@ -52,9 +75,11 @@ void grobo_i_halted_look(grobo_robot *robot, int joint)
         return; /* this was asked for before */
     }
     bool taken = grobo_i_goal_is_told(axis) && grobo_i_goal_is_taken(robot, joint);
-    if (taken || grobo_i_axis_is_limp(axis) || grobo_i_stands(robot, joint)) {
+    bool again = has_lost_it(robot, joint) || was_elsewhere(robot, joint);
+    if ((taken && !is_beside(robot, joint)) || grobo_i_axis_is_limp(axis) ||
+        grobo_i_stands(robot, joint)) {
         robot->halted &= ~GROBO_JOINT_BIT(joint);
-    } else if (has_lost_it(robot, joint) && !is_read_by_a_job(robot)) {
+    } else if (again && !is_read_by_a_job(robot)) {
         grobo_i_astray(robot, joint);
         grobo_i_gate_halt_again(robot, GROBO_JOINT_BIT(joint));
     }

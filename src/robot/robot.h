@@ -387,6 +387,10 @@ grobo_joint_mask grobo_i_ways_renewed(const grobo_robot *robot);
 
 /* ---- gate.c ---------------------------------------------------------------------------------- */
 
+/* A servo that is told a speed comes to rest at this one at least: a joint a degree beside where it
+ * is taken to be would creep there. */
+#define GROBO_I_REST_RAD_S (20 * 0.017453292519943295)
+
 /* The frame of this slot would leave now: judges its order, builds the frame anew from it, and
  * notes what it does. @return 0, or why it must not leave: then nothing is noted. */
 int grobo_i_gate_leave(grobo_robot_slot *slot);

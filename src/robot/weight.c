@@ -42,8 +42,8 @@ static bool hangs(const grobo_robot *robot, int joint, const grobo_joint_state *
     if (GROBO_I_EXTRA(robot->driver, tells_no_speed) && !stands) {
         return false;
     }
-    if (!axis->has_target || axis->off_way) {
-        return tells;
+    if (!axis->has_target || axis->off_way) { /* one that was told it just now has not begun */
+        return tells && robot->now_us - axis->told_us >= RESTS_US;
     }
     int64_t since_us = robot->now_us - axis->way.to_us;
     bool settled = since_us >= RESTS_US && since_us <= LATER_US;
