@@ -11,6 +11,9 @@ usage: asserts.py [option]...
   --only TEXT           sabotages whose head has this text
   --jobs N              how many at a time
 
+The head of a sabotage may begin with the test that its assertion ends: that one goes first, and is
+enough. Where it does not, all are tried, those that take long last, and the test is printed.
+
 A sabotage passes where a test is ended by the very assertion that it names. The last line is: N
 passed (assertions tripped), N failed (sabotages that do not trip theirs, wrong anchors), N skipped
 (assertions without a sabotage, which are printed).
@@ -28,8 +31,9 @@ sys.dont_write_bytecode = True
 import mutate  # noqa: E402
 import run  # noqa: E402
 
-CPU_LIMIT_S = 6
-HANGS_MAX = 4  # tests that a sabotage may keep busy for so long before it is given up
+# Each test gets the first; then those that took longer, some of them, the second.
+SHORT_S, LONG_S = 1, 20
+LONG_MAX = 8
 HANGS = ()
 MACRO = re.compile(r"GROBO_ASSERT\(")
 # Line and function are the compiler's; the text would be that of the macros behind it.
@@ -74,13 +78,14 @@ class Trip(run.Bench):
         groups = {os.path.splitext(os.path.basename(t))[0]: os.path.dirname(t)
                   for t in options.tests.split()}
         self.near = {t for t in self.tests if groups[t].endswith(("link", "port"))}
+        self.small = {t for t in self.tests if groups[t].endswith("unit")}
         self.hits_of = {}
 
-    def tripped(self, program, test, env):
+    def tripped(self, program, test, env, cpu_s):
         """Path and line of the assertion that ended the test, None, or HANGS."""
         try:
             done = subprocess.run([program, test], env=env, cwd=self.options.root, check=False,
-                                  preexec_fn=run.limit(CPU_LIMIT_S), timeout=20 * CPU_LIMIT_S,
+                                  preexec_fn=run.limit(cpu_s), timeout=20 * cpu_s,
                                   errors="replace", stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         except subprocess.TimeoutExpired:
@@ -90,57 +95,69 @@ class Trip(run.Bench):
         found = SAID.findall(done.stderr)
         return (found[-1][0], int(found[-1][1])) if found else None
 
-    def judge(self, mutant, assertion):
+    def order(self, mutant, hint):
+        """All tests that may reach it: what is known, what ended for others of its file, what is
+        named like it, small ones."""
+        in_link = mutant.path.startswith("src/link/")
+        stem = os.path.splitext(os.path.basename(mutant.path))[0]
+        return sorted((t for t in self.tests if (t in self.near) == in_link or t == hint),
+                      key=lambda t: (t != hint, -self.hits_of.get((mutant.path, t), 0),
+                                     stem not in t, t not in self.small))
+
+    def first_of(self, program, mutant, assertion, tests):
+        """The first test that ends by the assertion; what others ended by; those that took long."""
+        env = dict(os.environ, CMOCKA_MESSAGE_OUTPUT="TAP")
+        seen, late = set(), []
+        for test, cpu_s in tests:
+            at = self.tripped(program, test, env, cpu_s)
+            if at is HANGS:
+                late.append(test)
+            elif at is not None:
+                path = mutant.path if at[0] == "<stdin>" else at[0]
+                if path == assertion.path and at[1] in assertion.lines:
+                    self.hits_of[(mutant.path, test)] = self.hits_of.get((mutant.path, test), 0) + 1
+                    return test, seen, late
+                seen.add(f"{path}:{at[1]}")
+        return None, seen, late
+
+    def judge(self, mutant, assertion, hint):
         """The test that ends by the assertion, or what was seen instead."""
         obj = self.make(mutant)
         if obj is None:
             return None, "does not compile, or changes nothing"
-        program, seen, hangs = obj[:-2], set(), 0
-        in_link = mutant.path.startswith("src/link/")
-        before = self.killers.get("assert " + mutant.anchor)
-        order = sorted((t for t in self.tests if (t in self.near) == in_link),
-                       key=lambda t: (t != before, -self.hits_of.get((mutant.path, t), 0)))
-        env = dict(os.environ, CMOCKA_MESSAGE_OUTPUT="TAP")
+        program = obj[:-2]
         try:
             self.link([obj], program)
-            for test in order:
-                at = self.tripped(program, test, env)
-                if at is None:
-                    continue
-                if at is HANGS:
-                    hangs += 1
-                    if hangs == HANGS_MAX:
-                        return None, f"hangs in {HANGS_MAX} tests"
-                    continue
-                path = mutant.path if at[0] == "<stdin>" else at[0]
-                if path == assertion.path and at[1] in assertion.lines:
-                    self.hits_of[(mutant.path, test)] = self.hits_of.get((mutant.path, test), 0) + 1
-                    self.killers["assert " + mutant.anchor] = test
-                    return test, None
-                seen.add(f"{path}:{at[1]}")
+            tests = [(t, LONG_S if t == hint else SHORT_S) for t in self.order(mutant, hint)]
+            test, seen, late = self.first_of(program, mutant, assertion, tests)
+            if test is None:
+                again = [(t, LONG_S) for t in late[:LONG_MAX]]
+                test, more, late = self.first_of(program, mutant, assertion, again)
+                seen |= more
         finally:
             for path in (program, obj):
                 if os.path.exists(path):
                     os.unlink(path)
-        return None, "trips " + (", ".join(sorted(seen)) or "nothing")
+        took_long = ", and some take long" if test is None and late else ""
+        return test, None if test else "trips " + (", ".join(sorted(seen)) or "nothing") + took_long
 
 
 def read(path, functions, assertions):
-    """Triples of a head, its sabotage and its assertion; where an anchor is wrong, the reason."""
+    """A head, its sabotage, its assertion, where an anchor is wrong the reason, the known test."""
     for number, head, old, new in run.read_blocks(path):
-        match = re.fullmatch(r"(?:([\w/]+\.c):)?(\w+) trips (\w+): (.*)", head)
+        match = re.fullmatch(r"(?:(test_\w+): )?(?:([\w/]+\.c):)?(\w+) trips (\w+): (.*)", head)
         try:
             if not match:
-                raise run.Problem("not 'FUNCTION trips FUNCTION: ASSERTED'")
-            file, name, function, text = match.groups()
+                raise run.Problem("not '[TEST: ]FUNCTION trips FUNCTION: ASSERTED'")
+            hint, file, name, function, text = match.groups()
             named = [f for f in functions.get(name, [])
                      if file is None or f.path.endswith("/" + file)]
             if len(named) != 1:
                 raise run.Problem(f"missing anchor: one function {name}")
             assertion = find(assertions, function, text)
-            yield head, run.Named(named[0], old, new), assertion, None
+            yield head, run.Named(named[0], old, new), assertion, None, hint
         except run.Problem as problem:
-            yield head, None, None, f"{path}:{number}: {problem}"
+            yield head, None, None, f"{path}:{number}: {problem}", None
 
 
 def run_asserts(options, work):
@@ -154,7 +171,7 @@ def run_asserts(options, work):
     passed, failed = set(), 0
 
     def judge(row):
-        return (None, row[3]) if row[3] else trip.judge(row[1], row[2])
+        return (None, row[3]) if row[3] else trip.judge(row[1], row[2], row[4])
 
     for row in rows:
         if row[1] is not None:
@@ -166,9 +183,8 @@ def run_asserts(options, work):
                 print(f"{row[0]}: {problem}", flush=True)
             else:
                 passed.add(row[2].name)
-                if options.only or os.environ.get("V"):
+                if options.only or os.environ.get("V") or test != row[4]:
                     print(f"{row[0]}: {test}", flush=True)
-    trip.keep_killers()
     left = [] if options.only else [a for a in assertions if a.name not in
                                     {r[2].name for r in rows if r[2]}]
     for assertion in left:
