@@ -17,13 +17,16 @@ static void assert_apart(const grobo_bus *bus, const grobo_txn *txn)
 void grobo_i_bus_assert(const grobo_bus *bus)
 {
     unsigned queued = 0;
-    for (int p = 0; GROBO_ASSERT_WALKS && p < GROBO_PRIORITIES; p++) {
+    if (!GROBO_ASSERT_WALKS) {
+        return;
+    }
+    for (int p = 0; p < GROBO_PRIORITIES; p++) {
         for (const grobo_txn *at = bus->head[p]; at != NULL; at = at->next_) {
             GROBO_ASSERT(at->pending_ && (int)at->priority == p);
             queued++;
         }
     }
-    GROBO_ASSERT(!GROBO_ASSERT_WALKS || queued == bus->waiting);
+    GROBO_ASSERT(queued == bus->waiting);
     GROBO_ASSERT((bus->active == NULL) == (bus->phase == GROBO_BUS_IDLE));
     assert_apart(bus, bus->active);
     GROBO_ASSERT(bus->active == NULL || (bus->active->pending_ && bus->active->attempts_ > 0));

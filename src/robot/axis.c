@@ -610,7 +610,12 @@ int grobo_i_lowest(grobo_joint_mask joints)
 {
     GROBO_ASSERT(joints != 0);
     int j = 0;
-    while (!grobo_i_has(joints, j)) {
+    while ((joints & 0xFF) == 0) {
+        joints >>= 8;
+        j += 8;
+    }
+    while ((joints & 1) == 0) {
+        joints >>= 1;
         j++;
     }
     return j;

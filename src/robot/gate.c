@@ -553,7 +553,7 @@ static int judge_setting(const grobo_robot *robot, grobo_joint_mask joints, bool
  * knows what it makes joints do. */
 static int judge_alone(const grobo_robot *robot)
 {
-    bool moves = grobo_robot_is_playing(robot) || grobo_i_moving(robot, robot->now_us);
+    bool moves = grobo_i_is_playing(robot) || grobo_i_moving(robot, robot->now_us);
     return moves ? GROBO_ERR_STATE : GROBO_OK;
 }
 

@@ -92,7 +92,7 @@ static void assert_stop(const grobo_robot *robot)
     GROBO_ASSERT(!trip->latched || robot->free_joints == 0);
     GROBO_ASSERT(!robot->stop_owed || trip->trip == GROBO_TRIP_ESTOP);
     GROBO_ASSERT(robot->job->kind != GROBO_JOB_ESTOP || trip->trip == GROBO_TRIP_ESTOP);
-    GROBO_ASSERT(trip->trip != GROBO_TRIP_ESTOP || !grobo_robot_is_playing(robot));
+    GROBO_ASSERT(trip->trip != GROBO_TRIP_ESTOP || !grobo_i_is_playing(robot));
 }
 
 void grobo_i_robot_assert(const grobo_robot *robot)
@@ -124,7 +124,7 @@ void grobo_i_robot_assert(const grobo_robot *robot)
     }
     assert_stop(robot);
     GROBO_ASSERT(robot->acting == 0);
-    GROBO_ASSERT(robot->link || !grobo_robot_is_playing(robot));
+    GROBO_ASSERT(robot->link || !grobo_i_is_playing(robot));
     GROBO_ASSERT(robot->events_head < GROBO_ROBOT_EVENTS && robot->events_n <= GROBO_ROBOT_EVENTS);
     grobo_joint_mask told =
         robot->round | robot->other_round | robot->heard_round | robot->free_joints;

@@ -108,7 +108,7 @@ int grobo_i_play_rate(const grobo_robot *robot, grobo_play_options *chosen)
 
 bool grobo_i_play_unwatched(const grobo_robot *robot)
 {
-    return grobo_robot_is_playing(robot) && robot->sequencer.item.options.unwatched;
+    return grobo_i_is_playing(robot) && robot->sequencer.item.options.unwatched;
 }
 
 /* Once for each clip that begins. */
@@ -296,7 +296,7 @@ void grobo_i_play_reserve(grobo_robot *robot)
 
 void grobo_i_play_step(grobo_robot *robot)
 {
-    if (!grobo_robot_is_playing(robot)) {
+    if (!grobo_i_is_playing(robot)) {
         return;
     }
     watch_host(robot);

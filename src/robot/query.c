@@ -4,6 +4,7 @@
 
 #include "src/robot/robot.h"
 
+#if SIZE_MAX <= UINT32_MAX
 void grobo_i_lock(const grobo_robot *robot)
 {
     if (robot->host.lock != NULL) {
@@ -17,6 +18,7 @@ void grobo_i_unlock(const grobo_robot *robot)
         robot->host.unlock(robot->host.ctx);
     }
 }
+#endif
 
 int64_t grobo_i_now(const grobo_robot *robot)
 {
@@ -30,13 +32,28 @@ bool grobo_i_is_latched(const grobo_robot *robot)
     return robot->trip.latched || (host->is_stopped != NULL && host->is_stopped(host->ctx));
 }
 
-bool grobo_i_has_frame(const grobo_robot *robot, int64_t now_us)
+bool grobo_i_has_frame(const grobo_robot *robot, bool any, int64_t now_us)
 {
     const grobo_bus *bus = &robot->bus;
     grobo_i_lock(robot);
-    bool has = bus->waiting > 0 && bus->active == NULL && grobo_bus_deadline(bus, now_us) <= now_us;
+    bool has = bus->waiting > 0 && bus->active == NULL &&
+               (any || grobo_bus_deadline(bus, now_us) <= now_us);
     grobo_i_unlock(robot);
     return has;
+}
+
+static bool stops(const grobo_robot_slot *slot)
+{
+    return slot->order.stops ||
+           (slot->txn.priority == GROBO_PRIORITY_STOP && slot->order.kind != GROBO_I_ORDER_NONE);
+}
+
+bool grobo_i_frame_stops(const grobo_robot *robot)
+{
+    grobo_i_lock(robot);
+    bool does = robot->bus.active != NULL && stops(robot->bus.active->ctx);
+    grobo_i_unlock(robot);
+    return does;
 }
 
 bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_task *job))
@@ -135,9 +152,7 @@ bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
     for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         if (slot->use != GROBO_I_USE_FREE && grobo_txn_is_pending(&slot->txn)) {
-            waits = waits || slot->order.stops ||
-                    (slot->txn.priority == GROBO_PRIORITY_STOP &&
-                     slot->order.kind != GROBO_I_ORDER_NONE);
+            waits = waits || stops(slot);
         }
     }
     waits = waits && robot->bus.active == NULL && grobo_bus_free_at(&robot->bus, now_us) <= now_us;
@@ -254,9 +269,9 @@ bool grobo_robot_is_quiet(const grobo_robot *robot)
     return quiet;
 }
 
-bool grobo_robot_is_playing(const grobo_robot *robot)
+bool grobo_i_is_playing(const grobo_robot *robot)
 {
-    switch (grobo_robot_play_state(robot)) {
+    switch (robot->sequencer.state) {
     case GROBO_SEQUENCER_APPROACHING:
     case GROBO_SEQUENCER_PLAYING:
     case GROBO_SEQUENCER_PAUSED:
@@ -268,6 +283,17 @@ bool grobo_robot_is_playing(const grobo_robot *robot)
         return false;
     }
     return false;
+}
+
+bool grobo_robot_is_playing(const grobo_robot *robot)
+{
+    if (robot == NULL) {
+        return false;
+    }
+    grobo_i_lock(robot);
+    bool playing = grobo_i_is_playing(robot);
+    grobo_i_unlock(robot);
+    return playing;
 }
 
 void grobo_robot_progress(const grobo_robot *robot, grobo_play_progress *progress)
@@ -292,5 +318,5 @@ static bool is_move(const grobo_robot_task *job)
 
 bool grobo_i_in_motion(const grobo_robot *robot)
 {
-    return grobo_i_jobs_any(robot, is_move) || grobo_robot_is_playing(robot);
+    return grobo_i_jobs_any(robot, is_move) || grobo_i_is_playing(robot);
 }

@@ -69,7 +69,7 @@ grobo_joint_mask grobo_i_joints_of_moves(const grobo_robot *robot)
 /* What a motion sets is the motion's; who wants to move that stops it first. */
 static bool is_played(const grobo_robot *robot, grobo_joint_mask joints)
 {
-    return grobo_robot_is_playing(robot) && (robot->clip_joints & joints) != 0;
+    return grobo_i_is_playing(robot) && (robot->clip_joints & joints) != 0;
 }
 
 int grobo_i_move_takes(grobo_robot *robot, grobo_joint_mask joints)
@@ -91,7 +91,7 @@ static int admit(grobo_robot *robot, const grobo_robot_request *request)
         return result;
     }
     /* Frames of a motion would part goal and present angle of what gets torque again. */
-    bool played = request->kind == GROBO_JOB_TORQUE ? grobo_robot_is_playing(robot)
+    bool played = request->kind == GROBO_JOB_TORQUE ? grobo_i_is_playing(robot)
                                                     : is_played(robot, request->joints);
     bool leaving = robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
     return moves && (played || leaving) ? GROBO_ERR_STATE : result;
@@ -129,7 +129,12 @@ static int begin(grobo_robot *robot, const grobo_robot_request *request)
     }
     int number = grobo_i_job_start(robot, request->kind, script_of(request->kind), request->number);
     robot->job->joints = request->joints;
-    robot->job->target = request->target;
+    if (request->kind == GROBO_JOB_MOVE) {
+        robot->job->target = request->target;
+    } else {
+        robot->job->target.set = 0;
+        robot->job->target.time_us = 0;
+    }
     robot->job->sense = request->sense;
     robot->job->torque = GROBO_TORQUE_ON;
     robot->job->singly = request->singly;

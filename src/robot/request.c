@@ -57,7 +57,15 @@ int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_k
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    const grobo_robot_request request = {.kind = GROBO_JOB_SENSE, .joints = joints, .sense = kind};
+    grobo_robot_request request; /* a target is a move's alone: half a kilobyte is not cleared */
+    request.number = 0;
+    request.kind = GROBO_JOB_SENSE;
+    request.joints = joints;
+    request.sense = kind;
+    request.begin_by_us = 0;
+    request.target.set = 0;
+    request.target.time_us = 0;
+    request.singly = false;
     int result = joints_sound(robot, joints) && (unsigned)kind <= GROBO_SENSE_ALL
                      ? grobo_i_queue_ask(robot, &request)
                      : GROBO_ERR_ARG;
@@ -68,7 +76,7 @@ int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_k
 /* A motion that is being prepared goes no further. */
 static void stop_prepared(grobo_robot *robot)
 {
-    if (robot->job->kind == GROBO_JOB_PLAY && grobo_robot_is_playing(robot)) {
+    if (robot->job->kind == GROBO_JOB_PLAY && grobo_i_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
         grobo_i_slots_cancel_goals(robot, grobo_i_all_joints(robot), true);
     }
@@ -309,7 +317,7 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, grobo_play_opt
                       grobo_joint_mask *joints)
 {
     int result = admit(robot, GROBO_JOB_PLAY, 0, true);
-    if (result >= 0 && grobo_robot_is_playing(robot)) {
+    if (result >= 0 && grobo_i_is_playing(robot)) {
         result = GROBO_ERR_STATE;
     }
     if (result >= 0 && clip->n_joints != robot->driver->model->n_joints) {
@@ -577,7 +585,7 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
     if (robot->job->kind == GROBO_JOB_EXIT && robot->job->script == script) {
         return refuse(robot, robot->job->number); /* it is being carried out */
     }
-    if (grobo_robot_is_playing(robot)) {
+    if (grobo_i_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
     displace(robot, true);
@@ -684,7 +692,7 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on)
     grobo_i_begin(robot);
     /* Beside no job: one that is under way may still send joints to where they were. */
     int result = admit(robot, GROBO_JOB_PLAY, 0, true);
-    if (result >= 0 && grobo_robot_is_playing(robot)) {
+    if (result >= 0 && grobo_i_is_playing(robot)) {
         result = GROBO_ERR_STATE;
     }
     if (!joints_sound(robot, joints)) {

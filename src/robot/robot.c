@@ -321,7 +321,7 @@ void grobo_robot_link_down(grobo_robot *robot, int64_t now_us)
     if (robot->link) {
         robot->link = false;
         tell_kind(robot, GROBO_EVENT_LINK_DOWN);
-        if (grobo_robot_is_playing(robot)) {
+        if (grobo_i_is_playing(robot)) {
             (void)grobo_sequencer_fail(&robot->sequencer, GROBO_ERR_UNPLUGGED);
         }
         for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {

@@ -64,7 +64,7 @@ static void give_up(grobo_robot *robot)
         }
     }
     grobo_i_gate_soften(robot);
-    if (grobo_robot_is_playing(robot)) {
+    if (grobo_i_is_playing(robot)) {
         grobo_sequencer_reset(&robot->sequencer); /* what it sends next is from elsewhere */
     }
     if (silent >= 0) {

@@ -135,8 +135,8 @@ static int64_t interval_of(const grobo_robot *robot)
     if (interval_us == GROBO_SENSE_NEVER) {
         return WATCH_INTERVAL_US; /* of those that are not free */
     }
-    return grobo_robot_is_playing(robot) && interval_us > WATCH_INTERVAL_US ? WATCH_INTERVAL_US
-                                                                            : interval_us;
+    return grobo_i_is_playing(robot) && interval_us > WATCH_INTERVAL_US ? WATCH_INTERVAL_US
+                                                                        : interval_us;
 }
 
 /* Takes the next joint of a round through `all`, which begins again at its end. */

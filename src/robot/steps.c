@@ -679,7 +679,7 @@ static bool is_pressed(const grobo_robot *robot)
 
 static int step_quiet(grobo_robot *robot)
 {
-    bool still = !grobo_robot_is_playing(robot) && !grobo_i_slots_busy(robot, GROBO_I_USE_HALT);
+    bool still = !grobo_i_is_playing(robot) && !grobo_i_slots_busy(robot, GROBO_I_USE_HALT);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool ends = !grobo_i_axis_moves(axis, robot->now_us) || !grobo_i_may_halt(robot);

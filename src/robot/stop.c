@@ -15,7 +15,7 @@ void grobo_i_make_way(grobo_robot *robot)
 static grobo_joint_mask joints_of_motion(const grobo_robot *robot)
 {
     const grobo_sequencer *sequencer = &robot->sequencer;
-    if (!grobo_robot_is_playing(robot)) {
+    if (!grobo_i_is_playing(robot)) {
         return 0;
     }
     return grobo_sequencer_get_state(sequencer) == GROBO_SEQUENCER_STOPPING

@@ -62,7 +62,7 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
     grobo_i_slots_cancel_goals(robot, grobo_i_all_joints(robot), true);
     robot->counters.trips++;
     grobo_i_tell(robot, &event);
-    if (grobo_robot_is_playing(robot)) {
+    if (grobo_i_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
     grobo_i_queue_end(robot, latched ? GROBO_ERR_LATCHED : GROBO_ERR_CANCELED);

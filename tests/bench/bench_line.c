@@ -6,8 +6,10 @@
  * usage: bench_line serve BPS LATE_PERCENT LATE_US LINES COMMAND...
  *   runs the command with the paths of the lines behind its arguments, and answers until it ends.
  *   BPS: a reply comes when both frames have had their time on such a wire; 0: at once.
- *        bench_line session|sensing|libevent|libmodbus N PATH...
- *   session: a job each; sensing: in the background, as fast as the line allows.
+ *        bench_line session|session20|sensing|runner|libevent|libmodbus N PATH...
+ *   session: a job each; session20: the same with GR001's joints on a bus, in turn; sensing: in the
+ *   background, as fast as the line allows; runner: grobo_runner_read_angle() of these joints by a
+ *   thread beside the runner's.
  *   makes N transactions in all, one at a time on each line; prints transactions a second,
  *   microseconds of processor time of each, and the p99 of the lateness of a timer of 10 ms beside
  *   them.
@@ -30,6 +32,7 @@
 #include <grobo/core/loop.h>
 #include <grobo/core/robot.h>
 #include <grobo/core/rs30x.h>
+#include <grobo/core/runner.h>
 #include <grobo/session.h>
 
 #include "tests/bench/bench.h"
@@ -395,10 +398,14 @@ static int run_libevent(int lines, char **path)
 static grobo_session **sessions;
 static int n_sessions, n_up;
 static bool in_background;
+static int n_joints = 1, next_joint;
 
 static void sense(grobo_session *session)
 {
-    if (grobo_robot_sense(grobo_session_robot(session), 1, GROBO_SENSE_POSITION) < 0) {
+    const grobo_joint_mask joint = (grobo_joint_mask)1 << next_joint;
+
+    next_joint = (next_joint + 1) % n_joints;
+    if (grobo_robot_sense(grobo_session_robot(session), joint, GROBO_SENSE_POSITION) < 0) {
         (void)next_transaction(false);
     }
 }
@@ -428,6 +435,13 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
+/* The robot of one servo, or GR001's joints without its board. */
+static int begin_driver(grobo_driver *driver)
+{
+    return grobo_rs30x_driver_init(driver, n_joints == 1 ? &one_servo_model : &grobo_i_gr001_model,
+                                   &grobo_i_rs30x_protocol);
+}
+
 static int run_sessions(int lines, char **path)
 {
     const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
@@ -435,7 +449,7 @@ static int run_sessions(int lines, char **path)
                                       .sense_position_only = true};
     grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
 
-    if (grobo_rs30x_driver_init(&driver, &one_servo_model, &grobo_i_rs30x_protocol) < 0) {
+    if (begin_driver(&driver) < 0) {
         return 1;
     }
     begin_run();
@@ -466,6 +480,42 @@ static int run_sessions(int lines, char **path)
     }
     turn();
     return report(begin_us, begin_cpu_us);
+}
+
+/* The interface of threads: each call waits for its answer. */
+static int run_runner(const char *path)
+{
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
+                                      .sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_driver driver;
+    grobo_runner *runner = NULL;
+    double angle_rad;
+
+    n_joints = 20;
+    if (begin_driver(&driver) < 0) {
+        return 1;
+    }
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = path,
+                                          .driver = &driver, .robot = &robot, .skip_check = true};
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
+
+    if (grobo_runner_new(&config, &runner) < 0 || grobo_runner_start(runner) < 0 ||
+        grobo_runner_connect(runner, 0) < 0) {
+        fputs("bench_line: cannot start a runner\n", stderr);
+        return 1;
+    }
+    const int64_t begin_us = grobo_now_us();
+    const double begin_cpu_us = bench_cpu_us();
+
+    for (; run.ended < run.wanted; run.ended++) {
+        const int joint = (int)(run.ended % n_joints);
+
+        run.failed += grobo_runner_read_angle(runner, joint, &angle_rad, 0) == GROBO_OK ? 0 : 1;
+    }
+    int failed = report(begin_us, begin_cpu_us);
+
+    grobo_runner_free(runner);
+    return failed;
 }
 
 /* ---- a robot's whole cycle ------------------------------------------------------------------ */
@@ -601,7 +651,11 @@ int main(int argc, char **argv)
     if (strcmp(argv[1], "cycle") == 0) {
         return run_cycle(run.wanted, argv[3]);
     }
+    if (strcmp(argv[1], "runner") == 0) {
+        return run_runner(argv[3]);
+    }
     in_background = strcmp(argv[1], "sensing") == 0;
-    return in_background || strcmp(argv[1], "session") == 0 ? run_sessions(argc - 3, argv + 3)
-                                                            : run_libevent(argc - 3, argv + 3);
+    n_joints = strcmp(argv[1], "session20") == 0 ? 20 : 1;
+    return in_background || strncmp(argv[1], "session", 7) == 0 ? run_sessions(argc - 3, argv + 3)
+                                                                : run_libevent(argc - 3, argv + 3);
 }

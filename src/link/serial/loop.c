@@ -166,10 +166,11 @@ void grobo_timer_free(grobo_timer *timer)
 
 int grobo_timer_set(grobo_timer *timer, int64_t deadline_us)
 {
-    if (timer == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    int64_t now_us = grobo_now_us();
+    return timer == NULL ? GROBO_ERR_ARG : grobo_i_timer_set(timer, deadline_us, grobo_now_us());
+}
+
+int grobo_i_timer_set(grobo_timer *timer, int64_t deadline_us, int64_t now_us)
+{
     bool is_due = timer->deadline_us <= now_us;
 
     /* The clock is never negative: what was before it has passed, however long ago. */

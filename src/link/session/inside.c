@@ -5,7 +5,20 @@
 
 void grobo_i_session_enter(grobo_session *session)
 {
-    session->depth++;
+    if (session->depth++ == 0) {
+        session->turn_us = 0;
+    }
+}
+
+int64_t grobo_i_session_now(grobo_session *session)
+{
+    if (session->depth == 0) {
+        return grobo_now_us();
+    }
+    if (session->turn_us == 0) {
+        session->turn_us = grobo_now_us();
+    }
+    return session->turn_us;
 }
 
 void grobo_i_session_leave(grobo_session *session)
@@ -19,13 +32,14 @@ void grobo_i_session_leave(grobo_session *session)
 int64_t grobo_i_session_enter_callback(grobo_session *session)
 {
     session->in_callback++;
-    return grobo_now_us();
+    return grobo_i_session_now(session);
 }
 
 void grobo_i_session_leave_callback(grobo_session *session, grobo_callback callback,
                                     int64_t since_us)
 {
-    int64_t held_us = grobo_now_us() - since_us;
+    session->turn_us = grobo_now_us();
+    int64_t held_us = session->turn_us - since_us;
 
     GROBO_ASSERT(session->in_callback > 0);
     session->in_callback--;

@@ -2,6 +2,7 @@
 /* The bytes of a session: engine to line, line to engine, and when to look again. */
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
 #include "src/robot/robot.h"
@@ -27,6 +28,7 @@ void grobo_i_session_on_data(void *ctx, grobo_serial *serial, const uint8_t *byt
     grobo_session *session = ctx;
 
     grobo_i_session_enter(session);
+    session->turn_us = serial->read_us;
     if (serial->more) {
         grobo_robot_rx(&session->robot, bytes, size, serial->read_us);
         (void)grobo_i_session_step(session);
@@ -68,35 +70,35 @@ static void take_back(grobo_session *session)
 }
 
 /* The line takes a frame; what it holds back for one that stops the robot is taken back. */
-static bool make_room(grobo_session *session, bool stops)
+static bool make_room(grobo_session *session, int64_t now_us)
 {
     bool has_room = session->line->has_room(session);
 
-    if (!has_room && stops && session->given_bytes > 0) {
+    if (!has_room && session->given_bytes > 0 && grobo_robot_stops(&session->robot, now_us)) {
         take_back(session);
         has_room = session->line->has_room(session);
     }
     return has_room;
 }
 
-/* A frame may leave now, as far as engine and marks are concerned. */
+/* A frame may leave now, as far as engine and marks are concerned. Where the line is not asked for
+ * room by a call of the system, the engine says by its frame whether there is one. */
 static bool has_frame(const grobo_session *session, int64_t now_us)
 {
-    return grobo_i_has_frame(&session->robot, now_us) && !grobo_i_session_has_asked(session) &&
-           !grobo_i_session_estop_old(session, now_us);
+    return grobo_i_has_frame(&session->robot, session->robot.answered, now_us) &&
+           !grobo_i_session_has_asked(session) && !grobo_i_session_estop_old(session, now_us);
 }
 
 /* Gives what the engine wants to send now; when to look again. The line is asked only where there
  * is something for it: that may be a call of the system. */
 static int64_t give_all(grobo_session *session)
 {
-    const int64_t now_us = grobo_now_us();
+    const int64_t now_us = grobo_i_session_now(session);
 
     while (has_frame(session, now_us)) {
         uint8_t frame[GROBO_FRAME_MAX_BYTES];
-        bool stops = grobo_robot_stops(&session->robot, now_us);
 
-        if (grobo_i_session_guard_has_it(session) || !make_room(session, stops)) {
+        if (grobo_i_session_guard_has_it(session) || !make_room(session, now_us)) {
             return now_us + BUSY_US; /* it cannot leave yet, however long it has been due */
         }
         int size = grobo_robot_tx(&session->robot, frame, sizeof frame, now_us);
@@ -104,7 +106,7 @@ static int64_t give_all(grobo_session *session)
         if (size <= 0) {
             break;
         }
-        give(session, frame, (size_t)size, stops);
+        give(session, frame, (size_t)size, grobo_i_frame_stops(&session->robot));
     }
     return grobo_robot_deadline(&session->robot, now_us);
 }
@@ -135,7 +137,9 @@ void grobo_i_session_send(grobo_session *session)
     }
     /* Without memory for it, the wake-up socket has the loop look again at once, and again, until
      * there is some: what is due leaves when it is due. */
-    session->untimed = grobo_timer_set(session->timer, deadline_us) < 0;
+    session->untimed =
+        grobo_i_timer_set(session->timer, deadline_us, grobo_i_session_now(session)) < 0;
+    session->turn_us = 0;
     if (session->untimed) {
         grobo_i_session_wake(session);
     }

@@ -61,6 +61,7 @@ static int open_device(grobo_session *session, const char *device)
 {
     int r = session->line->open(session, device);
 
+    session->turn_us = 0; /* that may take its time */
     if (r >= 0) {
         session->state = GROBO_SESSION_OPENING;
     }
@@ -156,6 +157,7 @@ static void be_up(grobo_session *session)
     configure(session, true);
     grobo_i_session_estop_arm(session);
     grobo_i_session_guard_take(session);
+    session->turn_us = 0;
     grobo_i_session_say(session, GROBO_SESSION_EVENT_UP, GROBO_OK);
 }
 
@@ -264,7 +266,8 @@ static void count_estops(grobo_session *session)
     grobo_i_lock(&session->robot);
     unsigned estops = (unsigned)session->robot.counters.estops;
     grobo_i_unlock(&session->robot);
-    if (atomic_exchange(&session->seen_estops, estops) != estops &&
+    if (atomic_load(&session->seen_estops) != estops &&
+        atomic_exchange(&session->seen_estops, estops) != estops &&
         !atomic_load(&session->obeying)) {
         atomic_fetch_add(&session->estops, 1);
     }

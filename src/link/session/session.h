@@ -107,6 +107,7 @@ struct grobo_session {
     bool unguarded;           /* told that there is none any more */
 
     unsigned depth;                           /* calls that may call back, one inside another */
+    int64_t turn_us;                          /* the clock, as last read inside of them; 0: not */
     void (*on_leave)(grobo_session *session); /* of session.c: counts down, and settles */
     bool closing;                             /* closed in a callback */
     bool freed;                               /* freed in a callback */
@@ -121,6 +122,10 @@ struct grobo_session {
 /* Around everything that may call back; the last leave does what callbacks asked for, and pumps. */
 void grobo_i_session_enter(grobo_session *session);
 void grobo_i_session_leave(grobo_session *session);
+
+/* The time: as it was read last inside of enter and leave, by a callback that has returned or for
+ * what the line had; read anew where that was not, or where something took its time since. */
+int64_t grobo_i_session_now(grobo_session *session);
 
 /* Around every callback of the user. The first returns what the second takes. */
 int64_t grobo_i_session_enter_callback(grobo_session *session);

@@ -291,8 +291,13 @@ void grobo_i_session_estop_look(grobo_session *session)
 {
     bool pending = false;
 
-    if (grobo_i_session_estop_old(session, grobo_now_us()) &&
-        grobo_i_estop_watch_look(&session->estop, &pending)) {
+    if (!grobo_i_session_estop_old(session, grobo_i_session_now(session))) {
+        return;
+    }
+    bool looked = grobo_i_estop_watch_look(&session->estop, &pending);
+
+    session->turn_us = 0; /* a file system may take its time */
+    if (looked) {
         obey_mark(session);
     }
 }

@@ -8,7 +8,7 @@
 
 enum { VOLTAGE_UNIT_MV = 10 };
 
-/* In the order of the bits GROBO_RS30X_HAS_... */
+/* In the order of the bits GROBO_RS30X_HAS_..., and of their addresses. */
 enum { TORQUE, POSITION, TIME, SPEED, CURRENT, TEMPERATURE, VOLTAGE, FIELDS };
 
 static const struct {
@@ -36,16 +36,19 @@ int grobo_rs30x_state_decode(uint8_t address, const uint8_t *data, size_t n,
     uint8_t window[WINDOW_BYTES] = {0};
     int found = 0;
     unsigned has = 0;
-    for (int i = 0; i < FIELDS; i++) {
-        const uint8_t *field = NULL;
-        if (fields[i].address >= address) {
-            field = grobo_i_span_at(block, (size_t)(fields[i].address - address), fields[i].bytes);
+    int i = 0;
+    while (i < FIELDS && fields[i].address < address) {
+        i++;
+    }
+    for (; i < FIELDS; i++) { /* by address: behind one that is not there are none */
+        const uint8_t *field =
+            grobo_i_span_at(block, (size_t)(fields[i].address - address), fields[i].bytes);
+        if (field == NULL) {
+            break;
         }
-        if (field != NULL) {
-            memcpy(&window[fields[i].address - WINDOW_AT], field, fields[i].bytes);
-            has |= 1u << i;
-            found++;
-        }
+        memcpy(&window[fields[i].address - WINDOW_AT], field, fields[i].bytes);
+        has |= 1u << i;
+        found++;
     }
     state->torque = window[GROBO_RS30X_TORQUE - WINDOW_AT];
     state->pos_ddeg = grobo_i_get_i16(&window[GROBO_RS30X_POSITION - WINDOW_AT]);
