@@ -8,6 +8,7 @@
 #include <sys/select.h>
 #include <termios.h>
 #include <time.h>
+#include <unistd.h> /* says whether locks inherit priorities */
 
 #include "ports/posix/posix.h"
 

@@ -11,14 +11,25 @@
 
 /* ---- slots -------------------------------------------------------------------------------- */
 
-static runner_slot *take_slot(grobo_runner *runner, size_t most)
+static runner_slot *take_slot(grobo_runner *runner, int most)
 {
-    for (size_t i = 0; i < most; i++) {
+    for (int i = 0; i < most; i++) {
         if (runner->slot[i].state == CALL_FREE) {
+            runner->slots_end = i < runner->slots_end ? runner->slots_end : i + 1;
+            atomic_fetch_add(&runner->calls, 1);
             return &runner->slot[i];
         }
     }
     return NULL;
+}
+
+static void release(grobo_runner *runner, runner_slot *slot)
+{
+    slot->state = CALL_FREE;
+    while (runner->slots_end > 0 && runner->slot[runner->slots_end - 1].state == CALL_FREE) {
+        runner->slots_end--;
+    }
+    atomic_fetch_sub(&runner->calls, 1);
 }
 
 static void hand_over(grobo_runner *runner, runner_slot *slot, grobo_runner_fn fn, void *arg)
@@ -26,6 +37,7 @@ static void hand_over(grobo_runner *runner, runner_slot *slot, grobo_runner_fn f
     GROBO_ASSERT(slot->state == CALL_FREE && fn != NULL);
     slot->fn = fn;
     slot->arg = arg;
+    slot->job = NULL;
     slot->users = false;
     slot->impatient = false;
     slot->ticket = ++runner->tickets;
@@ -40,7 +52,7 @@ static runner_slot *next_call(grobo_runner *runner, uint64_t after)
 {
     runner_slot *next = NULL;
 
-    for (size_t i = 0; i < RUNNER_SLOTS; i++) {
+    for (int i = 0; i < runner->slots_end; i++) {
         runner_slot *slot = &runner->slot[i];
 
         if (slot->state == CALL_OPEN && slot->ticket > after &&
@@ -58,7 +70,7 @@ static void settle(grobo_runner *runner, runner_slot *slot, int result)
         slot->state = CALL_OPEN;
     } else if (slot->posted) {
         slot->posted = false;
-        slot->state = CALL_FREE;
+        release(runner, slot);
     } else {
         slot->result = result;
         slot->state = CALL_DONE;
@@ -77,14 +89,27 @@ static int call_user(grobo_runner *runner, grobo_runner_fn fn, void *arg)
     return r;
 }
 
-/* What was posted by grobo_session_post_estop() and its like goes before every call. */
-static void serve(grobo_runner *runner)
+/* With the lock: true if a call has to be looked at though nothing comes. */
+static bool is_to_be_polled(const grobo_runner *runner)
+{
+    for (int i = 0; i < runner->slots_end; i++) {
+        const runner_slot *slot = &runner->slot[i];
+        const runner_job *job = slot->job;
+
+        if (slot->state == CALL_OPEN && (job == NULL || job->number == 0)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void serve_calls(grobo_runner *runner)
 {
     runner_slot *slot;
     uint64_t after = 0;
 
     grobo_mutex_lock(&runner->lock);
-    runner->woken = false;
+    atomic_store(&runner->woken, false);
     uint64_t last = runner->tickets; /* what a callback hands over has the next round */
     while ((slot = next_call(runner, after)) != NULL && slot->ticket <= last) {
         grobo_runner_fn fn = slot->fn;
@@ -100,8 +125,19 @@ static void serve(grobo_runner *runner)
         grobo_mutex_lock(&runner->lock);
         settle(runner, slot, result);
     }
-    runner->asked = next_call(runner, 0) != NULL;
+    runner->asked = is_to_be_polled(runner);
     grobo_mutex_unlock(&runner->lock);
+}
+
+/* What was posted by grobo_session_post_estop() and its like goes before every call. Whoever calls
+ * behind this look wakes the loop. */
+static void serve(grobo_runner *runner)
+{
+    if (atomic_load(&runner->calls) > 0 || atomic_load(&runner->woken)) {
+        serve_calls(runner);
+    } else {
+        runner->asked = false;
+    }
     grobo_i_session_attend(runner->session);
 }
 
@@ -129,7 +165,8 @@ static int64_t next_look(grobo_runner *runner)
     if (runner->owner_timeout_us > 0) {
         grobo_mutex_lock(&runner->lock);
         /* One that was lost may come back, and be lost again. */
-        int64_t since_us = runner->owner_lost ? grobo_now_us() : runner->called_us;
+        int64_t since_us =
+            atomic_load(&runner->owner_lost) ? grobo_now_us() : atomic_load(&runner->called_us);
         grobo_mutex_unlock(&runner->lock);
         if (runner->owner_timeout_us < GROBO_NEVER_US - since_us) {
             next_us = grobo_i_sooner(next_us, since_us + runner->owner_timeout_us);
@@ -194,7 +231,7 @@ static int wait_for(grobo_runner *runner, runner_slot *slot, int64_t end_us)
         result = slot->result;
     }
     GROBO_ASSERT(slot->state == CALL_DONE || slot->state == CALL_OPEN);
-    slot->state = CALL_FREE;
+    release(runner, slot);
     return result;
 }
 
@@ -229,6 +266,7 @@ static int call_and_wait(grobo_runner *runner, const call_request *request)
         hand_over(runner, slot, request->fn, request->arg);
         slot->users = request->users;
         if (request->job != NULL) {
+            slot->job = request->job;
             request->job->seen_losses = runner->losses;
             request->job->end_us = end_us;
         }
@@ -312,8 +350,65 @@ static int poll_job(void *arg, grobo_runner *runner)
     return result;
 }
 
+static void unlink_job(grobo_runner *runner, const runner_job *job)
+{
+    runner_job **at = &runner->waiting;
+
+    while (*at != job) {
+        at = &(*at)->next;
+    }
+    *at = job->next;
+}
+
+/* With the lock: sleeps until the loop is told the end of a job that its caller began. */
+static int await(grobo_runner *runner, runner_job *job)
+{
+    job->next = runner->waiting;
+    runner->waiting = job;
+    do {
+        if (runner->looping || runner->running) {
+            grobo_i_runner_sleep(runner, job->end_us);
+        } else {
+            grobo_i_runner_take_turn(runner, job->end_us);
+        }
+    } while (!job->ended && grobo_now_us() < job->end_us);
+    unlink_job(runner, job);
+    return job->ended ? job->result : GROBO_ERR_TIMEOUT;
+}
+
+/*
+ * A reading is asked for by its caller, where a thread is in the loop and nothing was handed over
+ * before it: the engine is shared, and wakes the loop. @return CALL_PENDING: it is to be handed over.
+ */
+static int read_directly(grobo_runner *runner, runner_job *job, int64_t timeout_us)
+{
+    int r = CALL_PENDING;
+
+    if (runner == NULL || grobo_i_runner_inside(runner)) {
+        return r;
+    }
+    grobo_i_runner_lock(runner);
+    if (runner->running && runner->looping && atomic_load(&runner->calls) == 0 &&
+        !grobo_i_session_has_asked(runner->session)) {
+        job->end_us = end_of(runner, timeout_us);
+        job->begun_us = grobo_now_us();
+        job->number = job->start(runner, job);
+        r = job->number > 0                                                   ? await(runner, job)
+            : job->number == GROBO_ERR_FULL || job->number == GROBO_ERR_STATE ? CALL_PENDING
+                                                                              : job->number;
+        job->number = job->number > 0 ? job->number : 0;
+    }
+    grobo_i_runner_unlock(runner);
+    return r;
+}
+
 int grobo_i_runner_job(grobo_runner *runner, runner_job *job, int64_t timeout_us)
 {
+    int r = job->direct ? read_directly(runner, job, timeout_us) : CALL_PENDING;
+
+    if (r != CALL_PENDING) {
+        return r;
+    }
     const call_request request = {
         .fn = poll_job, .arg = job, .job = job, .timeout_us = timeout_us, .urgent = job->urgent};
 

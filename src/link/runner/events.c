@@ -5,6 +5,7 @@
 #include <grobo/core/robot.h>
 
 #include "src/link/runner/runner.h"
+#include "src/link/session/session.h"
 
 /* ---- the line ----------------------------------------------------------------------------- */
 
@@ -63,10 +64,14 @@ static void on_job(grobo_runner *runner, const grobo_event_job *ended)
     if (ended->kind == GROBO_JOB_RAW) {
         runner->recording = false;
         runner->raw_bytes = 0;
+        grobo_i_runner_tap(runner);
     }
     grobo_i_runner_lock(runner);
-    grobo_i_runner_end_job(runner, ended);
+    bool awaited = grobo_i_runner_end_job(runner, ended);
     grobo_i_runner_unlock(runner);
+    if (awaited) { /* behind the lock, which they take first */
+        grobo_i_runner_wake_all(runner);
+    }
 }
 
 void grobo_i_runner_on_robot(void *ctx, const grobo_event *event)
@@ -76,14 +81,23 @@ void grobo_i_runner_on_robot(void *ctx, const grobo_event *event)
     if (event->kind == GROBO_EVENT_JOB) {
         on_job(runner, &event->u.job);
     }
-    const grobo_runner_event kept = {.event = *event};
-    grobo_i_runner_keep(runner, &kept);
+    if (runner->capacity > 0) {
+        const grobo_runner_event kept = {.event = *event};
+        grobo_i_runner_keep(runner, &kept);
+    }
     if (runner->user.on_robot != NULL) {
         runner->user.on_robot(runner->user.ctx, event);
     }
 }
 
 /* ---- the bytes ---------------------------------------------------------------------------- */
+
+void grobo_i_runner_tap(grobo_runner *runner)
+{
+    bool looks = runner->raw_bytes > 0 || runner->recording || runner->user.on_tap != NULL;
+
+    runner->session->config.on_tap = looks ? grobo_i_runner_on_tap : NULL;
+}
 
 /* What comes between a raw command's leaving and its job's end is its reply. */
 void grobo_i_runner_on_tap(void *ctx, grobo_direction direction, int64_t now_us,

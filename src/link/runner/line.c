@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A runner's line, servos, readings, raw commands and safety: the session's, for every thread. */
+#include <stddef.h>
 #include <string.h>
 
 #include <grobo/core/robot.h>
@@ -251,15 +252,33 @@ static int sense_job(grobo_runner *runner, runner_job *job)
     return grobo_robot_sense(runner_robot(runner), job->joints, job->sense);
 }
 
+/* Some of its joints may have been read, however it ended. */
+static bool was_read(const runner_job *job, int result)
+{
+    return job->ended && result != GROBO_ERR_UNPLUGGED && result != GROBO_ERR_CANCELED;
+}
+
+/* Without clearing the bytes of a frame, of which it has none. */
+static void fill_sense(runner_job *job, grobo_joint_mask joints, grobo_sense_kind kind)
+{
+    memset(job, 0, offsetof(runner_job, frame));
+    job->start = sense_job;
+    job->joints = joints;
+    job->sense = kind;
+    job->direct = true;
+}
+
 /* Reads, and gives the joints that have been read since it began. @return their number, or why. */
 static int sense(grobo_runner *runner, grobo_joint_mask joints, grobo_sense_kind kind,
                  grobo_posture *posture, int64_t timeout_us)
 {
-    runner_job job = {.start = sense_job, .joints = joints, .sense = kind};
+    runner_job job;
+
+    fill_sense(&job, joints, kind);
     int r = grobo_i_runner_job(runner, &job, timeout_us);
     grobo_posture sensed;
 
-    if (!job.ended || r == GROBO_ERR_UNPLUGGED || r == GROBO_ERR_CANCELED) {
+    if (!was_read(&job, r)) {
         return r;
     }
     (void)grobo_robot_posture(runner_robot(runner), grobo_now_us() - job.begun_us, &sensed);
@@ -282,13 +301,22 @@ int grobo_runner_read_posture(grobo_runner *runner, grobo_posture *posture, int6
 
 int grobo_runner_read_angle(grobo_runner *runner, int joint, double *angle_rad, int64_t timeout_us)
 {
-    grobo_posture sensed;
+    grobo_joint_info info;
 
     if (angle_rad == NULL || runner == NULL || joint < 0 || joint >= grobo_runner_joints(runner)) {
         return GROBO_ERR_ARG;
     }
-    int r = sense(runner, GROBO_JOINT_BIT(joint), GROBO_SENSE_POSITION, &sensed, timeout_us);
-    return r > 0 ? grobo_posture_get_rad(&sensed, joint, angle_rad) : r;
+    runner_job job;
+
+    fill_sense(&job, GROBO_JOINT_BIT(joint), GROBO_SENSE_POSITION);
+    int r = grobo_i_runner_job(runner, &job, timeout_us);
+
+    if (was_read(&job, r) && grobo_robot_joint(runner_robot(runner), joint, &info) >= 0 &&
+        info.angle_age_us <= grobo_now_us() - job.begun_us) {
+        *angle_rad = info.state.angle_rad;
+        r = GROBO_OK;
+    }
+    return r;
 }
 
 /* ---- raw commands ------------------------------------------------------------------------- */
@@ -336,10 +364,12 @@ static int raw_job(grobo_runner *runner, runner_job *job)
     /* It may leave, and even be answered, before the request returns. */
     memcpy(runner->raw, job->frame, job->size);
     runner->raw_bytes = job->size;
+    grobo_i_runner_tap(runner);
     /* Who is told that it took too long is not to see it leave afterwards. */
     int r = grobo_robot_raw_until(runner_robot(runner), job->frame, job->size, job->end_us - 1);
     if (r < 0) {
         runner->raw_bytes = 0;
+        grobo_i_runner_tap(runner);
     }
     return r;
 }

@@ -7,13 +7,20 @@
 
 #include "src/link/runner/runner.h"
 
+/* How it has ended for these joints, of which others may have joined it; 0: for all. */
+static int result_for(const grobo_event_job *ended, grobo_joint_mask joints)
+{
+    bool others = joints != 0 && ended->failed != 0 && (ended->failed & joints) == 0;
+
+    return ended->result < 0 && others ? GROBO_OK : ended->result;
+}
+
 int grobo_i_runner_end_of_job(const grobo_runner *runner, int number, grobo_joint_mask joints)
 {
     for (int i = 0; i < GROBO_RUNNER_ENDS; i++) {
         const grobo_event_job *ended = &runner->job_ends[i];
         if (ended->number == number) {
-            bool others = joints != 0 && ended->failed != 0 && (ended->failed & joints) == 0;
-            return ended->result < 0 && others ? GROBO_OK : ended->result;
+            return result_for(ended, joints);
         }
     }
     return CALL_PENDING;
@@ -32,10 +39,19 @@ static void take_end(grobo_runner *runner, int number, int result)
     }
 }
 
-void grobo_i_runner_end_job(grobo_runner *runner, const grobo_event_job *ended)
+bool grobo_i_runner_end_job(grobo_runner *runner, const grobo_event_job *ended)
 {
+    bool awaited = false;
+
     runner->job_ends[runner->next_end++ % GROBO_RUNNER_ENDS] = *ended;
     take_end(runner, ended->number, ended->result);
+    for (runner_job *job = runner->waiting; job != NULL; job = job->next) {
+        if (job->number == ended->number) {
+            job->result = result_for(ended, job->joints);
+            job->ended = awaited = true;
+        }
+    }
+    return awaited;
 }
 
 /* Notes the number of a request in one of the two places. */
@@ -137,6 +153,9 @@ static int play_result(grobo_runner *runner)
 
 void grobo_i_runner_look_at_play(grobo_runner *runner)
 {
+    if (runner->play != PLAY_BEGUN) {
+        return;
+    }
     grobo_i_runner_lock(runner);
     bool prepared = runner->play == PLAY_BEGUN && runner->play_job == 0;
     int error = runner->play_error;

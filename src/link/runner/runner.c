@@ -28,10 +28,12 @@ static void look_for_owner(grobo_runner *runner, int64_t now_us)
     }
     grobo_i_runner_lock(runner);
     if (runner->sleepers > 0) {
-        runner->called_us = now_us; /* who waits is there */
+        atomic_store(&runner->called_us, now_us); /* who waits is there */
     }
-    if (!runner->owner_lost && now_us - runner->called_us >= runner->owner_timeout_us) {
-        runner->owner_lost = lost = true;
+    if (!atomic_load(&runner->owner_lost) &&
+        now_us - atomic_load(&runner->called_us) >= runner->owner_timeout_us) {
+        lost = true;
+        atomic_store(&runner->owner_lost, true);
     }
     grobo_i_runner_unlock(runner);
     if (lost && !grobo_i_runner_has_exited(runner)) {
@@ -86,11 +88,11 @@ static void run(grobo_runner *runner)
     }
     if (!runner->looping) {
         runner->looping = true;
-        while (!runner->stopping) {
-            grobo_mutex_unlock(&runner->lock);
+        grobo_mutex_unlock(&runner->lock);
+        while (!atomic_load(&runner->stopping)) {
             grobo_i_runner_round(runner, GROBO_NEVER_US);
-            grobo_mutex_lock(&runner->lock);
         }
+        grobo_mutex_lock(&runner->lock);
         runner->looping = false;
     }
     runner->running = false;
@@ -297,6 +299,7 @@ static int make_session(grobo_runner *runner)
     config.ctx = runner;
     r = grobo_session_new(&config, &runner->session);
     if (r >= 0) {
+        grobo_i_runner_tap(runner);
         grobo_i_runner_share(runner);
     }
     return r < 0 ? r : grobo_i_session_listen(runner->session, true);
@@ -334,7 +337,7 @@ static void fill(grobo_runner *runner, const grobo_runner_config *config)
     runner->timeout_us = config->timeout_us > 0 ? config->timeout_us : GROBO_RUNNER_TIMEOUT_US;
     runner->period_us = config->period_us != 0 ? config->period_us : GROBO_RUNNER_PERIOD_US;
     runner->tick_us = GROBO_NEVER_US;
-    runner->called_us = grobo_now_us();
+    atomic_store(&runner->called_us, grobo_now_us());
     runner->event_socket[0] = runner->event_socket[1] = GROBO_SOCKET_NULL;
 }
 

@@ -39,7 +39,10 @@ typedef struct runner_job {
     int number;  /* 0: not begun */
     bool looked; /* the loop has had its turn */
     bool ended;
-    uint64_t seen_losses; /* of the line, when the call was made */
+    bool direct;             /* reads alone: its caller may make the request */
+    int result;              /* where its caller made it */
+    struct runner_job *next; /* of those */
+    uint64_t seen_losses;    /* of the line, when the call was made */
     int64_t begun_us;
     int64_t end_us;          /* when its caller stops waiting */
     grobo_joint_mask joints; /* what `start` needs */
@@ -47,7 +50,7 @@ typedef struct runner_job {
     grobo_torque torque;
     grobo_exit_policy policy;
     size_t size;
-    uint8_t frame[GROBO_RUNNER_COMMAND_BYTES];
+    uint8_t frame[GROBO_RUNNER_COMMAND_BYTES]; /* the last member: fill_sense() in line.c */
 } runner_job;
 
 /* A thread that waits for the loop, or something posted. */
@@ -56,6 +59,7 @@ typedef struct runner_slot {
     uint64_t ticket;    /* the order of the calls */
     grobo_runner_fn fn; /* returns CALL_PENDING to be called again */
     void *arg;
+    const runner_job *job; /* arg, where fn waits for a job; NULL */
     int result;
     bool users;     /* fn is the user's */
     bool posted;    /* nobody waits */
@@ -89,18 +93,23 @@ struct grobo_runner {
     grobo_cond changed; /* a call is over, or the turn is free */
     int sleepers;       /* callers that sleep there */
     runner_slot slot[RUNNER_SLOTS];
+    int slots_end;       /* behind the last that is not free */
+    runner_job *waiting; /* begun by their callers, which sleep */
     uint64_t tickets;
     bool looping;    /* a thread is in a round */
     bool running;    /* the runner's thread, or somebody in grobo_runner_run() */
     bool ending;     /* it carries out the exit policy */
-    bool stopping;   /* it shall end */
     bool freeing;    /* what is posted has its last turn */
     uint64_t ends;   /* how often it has ended */
     bool has_thread; /* to be joined */
-    bool woken;      /* the loop has been woken since it looked at the slots */
     grobo_thread thread;
-    int64_t called_us; /* when another thread called last */
-    bool owner_lost;
+
+    /* by any thread */
+    atomic_bool stopping;       /* its thread shall end; set under lock */
+    atomic_int calls;           /* slots that are not free */
+    atomic_bool woken;          /* the loop has been woken since it looked at the slots */
+    _Atomic(int64_t) called_us; /* when another thread called last, where that counts */
+    atomic_bool owner_lost;
 
     /* under lock: settings and postures */
     char motion_dir[GROBO_PATH_MAX_BYTES];
@@ -118,8 +127,8 @@ struct grobo_runner {
     uint64_t losses;                             /* times the line was lost or closed */
     grobo_event_job job_ends[GROBO_RUNNER_ENDS]; /* a ring */
     unsigned next_end;
-    int move_job; /* number, 0 none */
-    play_stage play;
+    int move_job;             /* number, 0 none */
+    _Atomic(play_stage) play; /* the loop looks at it without */
     int play_job, play_error;
     grobo_motion *playing; /* what the clip reads */
     grobo_clip clip;
@@ -138,7 +147,7 @@ struct grobo_runner {
     struct event_base *base;
     grobo_timer *timer;
     int64_t tick_us;        /* end of the period; GROBO_NEVER_US while nobody needs it */
-    bool asked;             /* a call was not over when they were looked at */
+    bool asked;             /* a call waits for more than the end of a job */
     grobo_session *session; /* set by grobo_runner_new() for good */
     int line_error;         /* of the last event of the line */
     bool exited;            /* the exit policy is carried out */
@@ -220,6 +229,9 @@ void grobo_i_runner_on_robot(void *ctx, const grobo_event *event);
 void grobo_i_runner_on_tap(void *ctx, grobo_direction direction, int64_t now_us,
                            const uint8_t *bytes, size_t size);
 
+/* On the loop: bytes are looked at while a raw command is under way, or where the user does. */
+void grobo_i_runner_tap(grobo_runner *runner);
+
 /* On the loop: the line is down. */
 void grobo_i_runner_down(grobo_runner *runner, int error);
 
@@ -232,8 +244,8 @@ bool grobo_i_runner_has_exited(grobo_runner *runner);
  * all. CALL_PENDING: its end was not told, or is forgotten. */
 int grobo_i_runner_end_of_job(const grobo_runner *runner, int number, grobo_joint_mask joints);
 
-/* With the lock: a job has ended. */
-void grobo_i_runner_end_job(grobo_runner *runner, const grobo_event_job *ended);
+/* With the lock: a job has ended. @return true if its caller sleeps until then. */
+bool grobo_i_runner_end_job(grobo_runner *runner, const grobo_event_job *ended);
 
 /* Has the engine move to a posture, or play the motion that is `playing`. */
 int grobo_i_runner_move(grobo_runner *runner, const grobo_posture *target);

@@ -31,15 +31,19 @@ bool grobo_i_runner_inside(const grobo_runner *runner)
     return frame != NULL;
 }
 
+/* Somebody is there. */
+static void note_call(grobo_runner *runner)
+{
+    if (runner->owner_timeout_us > 0 && !grobo_i_runner_inside(runner)) {
+        atomic_store(&runner->called_us, grobo_now_us());
+        atomic_store(&runner->owner_lost, false);
+    }
+}
+
 void grobo_i_runner_lock(grobo_runner *runner)
 {
-    bool inside = grobo_i_runner_inside(runner);
-
     grobo_mutex_lock(&runner->lock);
-    if (!inside) {
-        runner->called_us = grobo_now_us();
-        runner->owner_lost = false;
-    }
+    note_call(runner);
 }
 
 void grobo_i_runner_unlock(grobo_runner *runner)
@@ -64,10 +68,7 @@ static void engine_lock(void *ctx)
     grobo_runner *runner = ctx;
 
     if (atomic_load(&runner->engine_thread) != &me) {
-        if (!grobo_i_runner_inside(runner)) {
-            grobo_i_runner_lock(runner); /* somebody is there */
-            grobo_i_runner_unlock(runner);
-        }
+        note_call(runner);
         grobo_mutex_lock(&runner->engine);
         GROBO_ASSERT(runner->engine_depth == 0);
         atomic_store(&runner->engine_thread, &me);
@@ -103,8 +104,7 @@ void grobo_i_runner_share(grobo_runner *runner)
 
 void grobo_i_runner_wake(grobo_runner *runner)
 {
-    if (!runner->woken) {
-        runner->woken = true;
+    if (!atomic_exchange(&runner->woken, true)) {
         grobo_i_session_wake(runner->session);
     }
 }

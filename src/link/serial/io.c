@@ -86,7 +86,9 @@ static void note_bytes(grobo_serial *serial, grobo_direction direction, const vo
         break;
     }
     if (serial->config.on_tap != NULL) {
-        serial->config.on_tap(serial->config.ctx, direction, grobo_now_us(), bytes, size);
+        int64_t now_us = direction == GROBO_DIR_RX ? serial->read_us : grobo_now_us();
+
+        serial->config.on_tap(serial->config.ctx, direction, now_us, bytes, size);
     }
 }
 

@@ -173,6 +173,11 @@ int grobo_i_timer_set(grobo_timer *timer, int64_t deadline_us, int64_t now_us)
 {
     bool is_due = timer->deadline_us <= now_us;
 
+    if (deadline_us == GROBO_NEVER_US && timer->deadline_us == GROBO_NEVER_US &&
+        timer->armed_us == GROBO_NEVER_US) {
+        return GROBO_OK;
+    }
+
     /* The clock is never negative: what was before it has passed, however long ago. */
     timer->deadline_us = deadline_us < 0 ? 0 : deadline_us;
     if (deadline_us == GROBO_NEVER_US) {

@@ -89,36 +89,58 @@ static bool has_frame(const grobo_session *session, int64_t now_us)
            !grobo_i_session_has_asked(session) && !grobo_i_session_estop_old(session, now_us);
 }
 
-/* Gives what the engine wants to send now; when to look again. The line is asked only where there
- * is something for it: that may be a call of the system. */
-static int64_t give_all(grobo_session *session)
+/* Where it asks for room the line may call back: not with the engine's lock. */
+static bool may_leave(grobo_session *session, int64_t now_us)
+{
+    grobo_robot *robot = &session->robot;
+
+    grobo_i_unlock(robot);
+    bool may = !grobo_i_session_guard_has_it(session) && make_room(session, now_us);
+
+    grobo_i_lock(robot);
+    return may;
+}
+
+/* Gives the frame that the engine wants to send now, if there is one; when to look again. The line
+ * is asked only where there is something for it: that may be a call of the system. Behind the
+ * frame there is none before that time, and what looks at its bytes asks for nothing. */
+static int64_t give_next(grobo_session *session)
 {
     const int64_t now_us = grobo_i_session_now(session);
+    grobo_robot *robot = &session->robot;
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+    int64_t deadline_us = now_us + BUSY_US; /* it cannot leave yet, however long it has been due */
+    bool stops = false, may = true;
+    int size = 0;
 
-    while (has_frame(session, now_us)) {
-        uint8_t frame[GROBO_FRAME_MAX_BYTES];
-
-        if (grobo_i_session_guard_has_it(session) || !make_room(session, now_us)) {
-            return now_us + BUSY_US; /* it cannot leave yet, however long it has been due */
-        }
-        int size = grobo_robot_tx(&session->robot, frame, sizeof frame, now_us);
-
-        if (size <= 0) {
-            break;
-        }
-        give(session, frame, (size_t)size, grobo_i_frame_stops(&session->robot));
+    grobo_i_lock(robot); /* once for all that is asked */
+    grobo_i_session_note_latch(session);
+    if (has_frame(session, now_us)) {
+        may = may_leave(session, now_us);
+        size = may ? grobo_robot_tx(robot, frame, sizeof frame, now_us) : 0;
+        stops = grobo_i_frame_stops(robot);
     }
-    return grobo_robot_deadline(&session->robot, now_us);
+    if (may) {
+        deadline_us = grobo_robot_deadline(robot, now_us);
+    }
+    grobo_i_unlock(robot);
+    if (size > 0) {
+        give(session, frame, (size_t)size, stops);
+    }
+    return deadline_us;
 }
 
 void grobo_i_session_send(grobo_session *session)
 {
     int64_t deadline_us = GROBO_NEVER_US;
 
+    if (session->state != GROBO_SESSION_CHECKING && session->state != GROBO_SESSION_UP) {
+        grobo_i_session_note_latch(session);
+    }
     switch (session->state) {
     case GROBO_SESSION_CHECKING:
     case GROBO_SESSION_UP:
-        deadline_us = give_all(session);
+        deadline_us = give_next(session);
         grobo_i_session_guard_tell(session);
         deadline_us = grobo_i_sooner(deadline_us, session->line->deadline(session));
         deadline_us = grobo_i_sooner(deadline_us, grobo_i_session_guard_deadline(session));

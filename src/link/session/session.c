@@ -217,8 +217,9 @@ static void on_robot(void *ctx, const grobo_event *event)
         grobo_i_session_estop_ended(session, event->u.job.result);
     }
 
-    grobo_i_session_note_latch(session);
-
+    if (stop) {
+        grobo_i_session_note_latch(session);
+    }
     if (checking && job && event->u.job.number == session->check_job) {
         /* Only an emergency stop takes its place. */
         session->check_ended = event->u.job.result != GROBO_ERR_CANCELED;
@@ -265,6 +266,7 @@ static void count_estops(grobo_session *session)
 {
     grobo_i_lock(&session->robot);
     unsigned estops = (unsigned)session->robot.counters.estops;
+    grobo_i_session_note_latch(session); /* a stop, or a reset */
     grobo_i_unlock(&session->robot);
     if (atomic_load(&session->seen_estops) != estops &&
         atomic_exchange(&session->seen_estops, estops) != estops &&
@@ -355,7 +357,6 @@ static void on_leave(grobo_session *session)
         grobo_i_session_obey(session);
         grobo_i_session_estop_look(session);
     }
-    grobo_i_session_note_latch(session);
     /* Still inside: the callbacks of what follows may come back here. */
     while (session->depth == 1 && session->check_ended && !session->closing) {
         end_check(session);

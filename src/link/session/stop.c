@@ -158,6 +158,9 @@ void grobo_i_session_obey(grobo_session *session)
         session->exit_owed = true;
         session->exit_policy = (grobo_exit_policy)((asked & ASK_POLICY) >> ASK_POLICY_SHIFT);
     }
+    if (asked != 0) { /* what take() noted may have been refused */
+        grobo_i_session_note_latch(session);
+    }
     exit_when_due(session);
 }
 
