@@ -411,7 +411,7 @@ bench-peers: ## bring libmodbus, rustypot, dynamixel-sdk, pyserial and yaml-cpp 
 	@tests/bench/peers.sh $(BUILD)/peers
 
 # Work whose instructions are counted is compiled as everybody does it.
-bench-count: $(BUILD)/tests/bench/bench_work ## instructions against tests/bench/instructions; UPDATE=1 keeps them
+bench-count: $(BUILD)/tests/bench/bench_work $(BUILD)/tests/bench/bench_line ## instructions against tests/bench/instructions; UPDATE=1 keeps them
 	@CC="$(CC)" FLAGS="$(CFLAGS) $(SAN)" tests/bench/count.sh $(BUILD) $(if $(UPDATE),--update,--gate)
 
 bench-pump: ## instructions of the engine on a Cortex-M0 and M4, counted by QEMU

@@ -216,7 +216,7 @@ int64_t grobo_i_now(const grobo_robot *robot);
 /* True if requests that move are refused: behind a latched stop, and one that is on its way. */
 bool grobo_i_is_latched(const grobo_robot *robot);
 
-/* True if a frame waits that the wire has time for now; `any`: or any, and nothing is on the line. */
+/* True if a frame waits that the wire has time for now; `any`: or any, and the line is free. */
 bool grobo_i_has_frame(const grobo_robot *robot, bool any, int64_t now_us);
 
 /* True if the frame that has just left stops joints. */

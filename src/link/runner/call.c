@@ -378,7 +378,8 @@ static int await(grobo_runner *runner, runner_job *job)
 
 /*
  * A reading is asked for by its caller, where a thread is in the loop and nothing was handed over
- * before it: the engine is shared, and wakes the loop. @return CALL_PENDING: it is to be handed over.
+ * before it: the engine is shared, and wakes the loop. @return CALL_PENDING: it has to be handed
+ * over.
  */
 static int read_directly(grobo_runner *runner, runner_job *job, int64_t timeout_us)
 {

@@ -32,21 +32,18 @@ int grobo_rs30x_state_decode(uint8_t address, const uint8_t *data, size_t n,
     if ((data == NULL && n > 0) || state == NULL) {
         return GROBO_ERR_ARG;
     }
-    const grobo_i_span block = {data, n};
     uint8_t window[WINDOW_BYTES] = {0};
     int found = 0;
     unsigned has = 0;
-    int i = 0;
-    while (i < FIELDS && fields[i].address < address) {
-        i++;
-    }
-    for (; i < FIELDS; i++) { /* by address: behind one that is not there are none */
-        const uint8_t *field =
-            grobo_i_span_at(block, (size_t)(fields[i].address - address), fields[i].bytes);
-        if (field == NULL) {
-            break;
+    for (int i = 0; i < FIELDS; i++) {
+        int at = fields[i].address - address;
+        if (at < 0) {
+            continue;
         }
-        memcpy(&window[fields[i].address - WINDOW_AT], field, fields[i].bytes);
+        if ((size_t)at + fields[i].bytes > n) {
+            break; /* and so are those behind it */
+        }
+        memcpy(&window[fields[i].address - WINDOW_AT], data + at, fields[i].bytes);
         has |= 1u << i;
         found++;
     }
