@@ -489,7 +489,7 @@ static int run_runner(const char *path)
 {
     const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
                                       .sense_interval_us = GROBO_SENSE_NEVER};
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     grobo_runner *runner = NULL;
     double angle_rad;
 
