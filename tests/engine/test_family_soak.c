@@ -201,8 +201,8 @@ static bool is_misread(family_kit *k, int joint, double is_deg)
            fabs(read_deg - is_deg) > HOLD_DEG;
 }
 
-/* A joint that is halted though no reply of it was whole for so long: it may have restarted, or hear
- * what it does not answer (docs/guide/safety.md). */
+/* A joint that is halted though no reply of it was whole for so long: it may have restarted, or
+ * hear what it does not answer (docs/guide/safety.md). */
 #define UNHEARD_US (800 * MS)
 
 static bool is_unheard(const family_kit *k, int joint)
