@@ -28,19 +28,20 @@ double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us)
 
 double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
 {
-    if (axis->off_way) {
+    if (grobo_i_is_stray(axis)) {
         const grobo_robot_way own = {axis->state.angle_rad, axis->state.goal_rad, axis->angle_us,
                                      axis->own_until_us};
         return axis->own_until_us > axis->angle_us ? grobo_i_way_at(&own, now_us)
                                                    : axis->state.angle_rad + grobo_i_load(axis);
     }
-    int64_t at_us = axis->in_segments ? grobo_i_sooner(now_us, axis->told_to_us) : now_us;
+    int64_t at_us =
+        grobo_i_is_in_segments(axis) ? grobo_i_sooner(now_us, axis->told_to_us) : now_us;
     return grobo_i_way_at(&axis->way, at_us);
 }
 
 int64_t grobo_i_axis_until(const grobo_robot_axis *axis)
 {
-    return axis->off_way ? axis->own_until_us : axis->way.to_us;
+    return grobo_i_is_stray(axis) ? axis->own_until_us : axis->way.to_us;
 }
 
 /* One that is so near the end of its way is there. */
@@ -79,7 +80,7 @@ static double seconds(int64_t from_us, int64_t to_us)
  * its servo told of. */
 static bool is_guided(const grobo_robot_axis *axis)
 {
-    return axis->off_way ? axis->own_until_us > axis->angle_us : axis->has_target;
+    return grobo_i_is_stray(axis) ? axis->own_until_us > axis->angle_us : grobo_i_has_target(axis);
 }
 
 /* 0 of a way that leads nowhere, whatever its time. */
@@ -150,7 +151,8 @@ static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
     double wanted_rad_s = told_speed(robot, joint);
     course c = seen(robot, joint);
     int64_t seen_us = axis->seen_us;
-    double end_rad = axis->in_segments ? grobo_i_way_at(way, axis->told_to_us) : way->to_rad;
+    double end_rad =
+        grobo_i_is_in_segments(axis) ? grobo_i_way_at(way, axis->told_to_us) : way->to_rad;
     end_rad -= grobo_i_load(axis);
     if (seconds(way->from_us, seen_us) * accel_rad_s2 > 2 * wanted_rad_s) {
         wanted_rad_s = fmin(wanted_rad_s, fabs(c.rad_s)); /* too weak to be as fast by then */
@@ -218,8 +220,8 @@ static course turning(const grobo_robot *robot, int joint, int64_t now_us)
 static bool has_course(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool known =
-        !is_guided(axis) || (!axis->off_way && GROBO_I_EXTRA(robot->driver, accel_rad_s2) > 0);
+    bool known = !is_guided(axis) ||
+                 (!grobo_i_is_stray(axis) && GROBO_I_EXTRA(robot->driver, accel_rad_s2) > 0);
     return grobo_i_axis_tells_turn(robot, joint) && known;
 }
 
@@ -239,7 +241,7 @@ static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
     const grobo_robot_axis *axis = &robot->axes[joint];
     double way_rad = grobo_i_axis_commanded(axis, now_us);
     double rad_s = grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
-    if ((axis->state.valid & GROBO_FIELD_SPEED) == 0 || axis->off_way) {
+    if ((axis->state.valid & GROBO_FIELD_SPEED) == 0 || grobo_i_is_stray(axis)) {
         return way_rad;
     }
     bool beside = is_beside(axis);
@@ -259,7 +261,7 @@ static double on_way_at(const grobo_robot *robot, int joint, int64_t at_us)
     if ((axis->state.valid & GROBO_FIELD_TIME) != 0) {
         return by_time(robot, joint, at_us);
     }
-    return is_guided(axis) && !axis->off_way
+    return is_guided(axis) && !grobo_i_is_stray(axis)
                ? along(robot, joint, at_us)
                : grobo_i_axis_commanded(axis, at_us) - grobo_i_load(axis);
 }
@@ -276,7 +278,7 @@ double grobo_i_axis_speed(const grobo_robot *robot, int joint)
     if (has_course(robot, joint)) {
         return fabs(turning(robot, joint, robot->now_us).rad_s);
     }
-    const grobo_robot_way way = axis->off_way
+    const grobo_robot_way way = grobo_i_is_stray(axis)
                                     ? (grobo_robot_way){axis->state.angle_rad, axis->state.goal_rad,
                                                         axis->angle_us, axis->own_until_us}
                                     : axis->way;
@@ -301,7 +303,7 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
     if (accel_rad_s2 > 0) {
         on_rad = fmax(on_rad, c.rad_s * c.rad_s / (2 * accel_rad_s2));
     }
-    bool guided = is_guided(axis) && !axis->off_way;
+    bool guided = is_guided(axis) && !grobo_i_is_stray(axis);
     double end_rad = (guided ? axis->way.to_rad : axis->state.goal_rad) - grobo_i_load(axis);
     double left_rad = end_rad - c.at_rad;
     bool beyond = (guided || tells_end(axis)) && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
@@ -348,7 +350,7 @@ void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
 {
     double goal_rad = axis->state.angle_rad + grobo_i_load(axis);
     axis->way = (grobo_robot_way){goal_rad, goal_rad, now_us, now_us};
-    axis->in_segments = axis->off_way = false;
+    grobo_i_joint_to(axis, GROBO_I_JOINT_REST);
 }
 
 void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us)
@@ -382,10 +384,10 @@ bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
 bool grobo_i_axis_is_unknown(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool astray = axis->off_way && axis->own_until_us <= robot->now_us &&
+    bool astray = grobo_i_is_stray(axis) && axis->own_until_us <= robot->now_us &&
                   abs(axis->state.speed_dps) >= GROBO_I_SLOW_DPS &&
                   robot->now_us - axis->angle_us > ASTRAY_OLD_US;
-    return !axis->sensed || astray || grobo_i_may_sleep(robot, joint);
+    return !grobo_i_is_sensed(axis) || astray || grobo_i_may_sleep(robot, joint);
 }
 
 bool grobo_i_may_halt(const grobo_robot *robot)
@@ -397,7 +399,7 @@ void grobo_i_axis_cut(grobo_robot_axis *axis)
 {
     axis->way.to_rad = grobo_i_way_at(&axis->way, axis->told_to_us);
     axis->way.to_us = grobo_i_sooner(axis->way.to_us, axis->told_to_us);
-    axis->in_segments = false;
+    grobo_i_joint_to(axis, GROBO_I_JOINT_REST);
 }
 
 bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
@@ -408,7 +410,8 @@ bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
 
 bool grobo_i_way_is_short(const grobo_robot_axis *axis)
 {
-    return axis->has_target && axis->in_segments && axis->told_to_us < axis->way.to_us;
+    return grobo_i_has_target(axis) && grobo_i_is_in_segments(axis) &&
+           axis->told_to_us < axis->way.to_us;
 }
 
 bool grobo_i_goal_is_told(const grobo_robot_axis *axis)
@@ -442,7 +445,7 @@ static bool shows_swing(const grobo_robot *robot, const grobo_robot_axis *axis)
 bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool sent = axis->has_target && !axis->off_way;
+    bool sent = grobo_i_has_target(axis) && !grobo_i_is_stray(axis);
     *goal_rad = sent ? axis->way.to_rad : axis->state.goal_rad;
     return sent ? !grobo_i_way_is_short(axis)
                 : axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us;
@@ -452,7 +455,7 @@ bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad)
 static bool settles(const grobo_robot *robot, const grobo_robot_axis *axis, int64_t since_us)
 {
     int64_t from_us = grobo_i_later(axis->told_us, since_us);
-    from_us = axis->has_target ? grobo_i_later(from_us, axis->way.to_us) : from_us;
+    from_us = grobo_i_has_target(axis) ? grobo_i_later(from_us, axis->way.to_us) : from_us;
     return robot->now_us - from_us <= SAGS_US;
 }
 
@@ -512,7 +515,7 @@ static bool is_on_ramp(const grobo_robot *robot, int joint)
     const grobo_robot_axis *axis = &robot->axes[joint];
     double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
     bool stood = !turns(axis) && axis->seen_us >= axis->way.to_us;
-    if (accel_rad_s2 <= 0 || stood || !axis->sensed || !has_course(robot, joint) ||
+    if (accel_rad_s2 <= 0 || stood || !grobo_i_is_sensed(axis) || !has_course(robot, joint) ||
         !is_guided(axis) || !grobo_i_axis_is_on(axis)) {
         return false;
     }
@@ -529,12 +532,12 @@ static bool is_on_ramp(const grobo_robot *robot, int joint)
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool stood = !turns(axis) && (axis->off_way || axis->seen_us >= axis->way.to_us);
-    if (stood || !tells_speed(axis) || !axis->sensed || !axis->has_target ||
+    bool stood = !turns(axis) && (grobo_i_is_stray(axis) || axis->seen_us >= axis->way.to_us);
+    if (stood || !tells_speed(axis) || !grobo_i_is_sensed(axis) || !grobo_i_has_target(axis) ||
         axis->seen_us < axis->told_us || !grobo_i_axis_is_on(axis)) {
         return false;
     }
-    if (axis->off_way) { /* where to, nobody knows */
+    if (grobo_i_is_stray(axis)) { /* where to, nobody knows */
         return axis->own_until_us <= axis->seen_us &&
                robot->now_us - axis->seen_us <= GROBO_WATCH_US;
     }
@@ -548,7 +551,7 @@ bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (axis->next != 0 || (axis->sensed && grobo_i_axis_moves(axis, now_us)) ||
+        if (axis->next != 0 || (grobo_i_is_sensed(axis) && grobo_i_axis_moves(axis, now_us)) ||
             (turns(axis) && grobo_i_axis_lags(robot, j)) || is_on_ramp(robot, j)) {
             return true;
         }
@@ -568,11 +571,12 @@ static bool is_near_goal(const grobo_robot *robot, int joint)
            fabs(goal_rad - axis->seen_rad) <= NEAR_GOAL_RAD;
 }
 
-bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints, int *joint)
+bool grobo_i_externally_moved(const grobo_robot *robot, grobo_joint_mask joints, int *joint)
 {
     *joint = -1;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(joints, j) && robot->axes[j].adrift && !is_near_goal(robot, j)) {
+        if (grobo_i_has(joints, j) && grobo_i_is_external(&robot->axes[j]) &&
+            !is_near_goal(robot, j)) {
             *joint = j;
             return true;
         }
@@ -583,7 +587,7 @@ bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints, int *join
 bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(joints, j) && !robot->axes[j].sensed) {
+        if (grobo_i_has(joints, j) && !grobo_i_is_sensed(&robot->axes[j])) {
             *joint = j;
             return false;
         }

@@ -49,7 +49,7 @@ int grobo_robot_stop(grobo_robot *robot, bool at_once)
     grobo_i_begin(robot);
     int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us), joint;
     grobo_i_make_way(robot); /* it might send again what is stopped here */
-    bool moves = grobo_i_adrift(robot, grobo_i_all_joints(robot), &joint) ||
+    bool moves = grobo_i_externally_moved(robot, grobo_i_all_joints(robot), &joint) ||
                  grobo_i_jobs_any(robot, grobo_i_job_moves) || robot->queued > 0 ||
                  grobo_i_moving(robot, robot->now_us);
     grobo_i_jobs_end(robot, grobo_i_job_moves, GROBO_ERR_CANCELED);

@@ -18,6 +18,7 @@
 #include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
+#include "src/robot/speed.h"
 
 /* What the frame of an order says. */
 typedef struct saying {
@@ -29,216 +30,6 @@ typedef struct saying {
 /* When an order is judged: its frame is built when it is asked for, and leaves, more than once if
  * it is not answered. */
 typedef enum moment { ASKED, BUILT, LEAVES, LEAVES_AGAIN } moment;
-
-/* ---- numbers and limits ---------------------------------------------------------------------- */
-
-/* Draws a joint in that would go further than its servo lets it. */
-static bool draw_in(const grobo_robot *robot, int joint, double *angle_rad)
-{
-    if ((robot->axes[joint].state.valid & GROBO_FIELD_RANGE) == 0) {
-        return false;
-    }
-    const grobo_i_limits limits = grobo_i_joint_limits(robot, joint);
-    double inside_rad = fmin(fmax(*angle_rad, limits.min_rad), limits.max_rad);
-    bool beyond = grobo_ddeg_from_rad(*angle_rad) != grobo_ddeg_from_rad(inside_rad);
-    *angle_rad = beyond ? inside_rad : *angle_rad;
-    return beyond;
-}
-
-/* As grobo_posture_check() and _clamp(), of the limits that hold. */
-static int check_target(const grobo_robot *robot, const grobo_posture *target, int *joint)
-{
-    int result = grobo_posture_check(target, robot->driver->model, joint);
-    for (int j = 0; result >= 0 && j < target->n_joints; j++) {
-        double angle_rad = target->angle_rad[j];
-        if (grobo_i_has(target->set, j) && draw_in(robot, j, &angle_rad)) {
-            *joint = j;
-            result = GROBO_ERR_LIMIT;
-        }
-    }
-    return result;
-}
-
-static int clamp_target(const grobo_robot *robot, grobo_posture *target)
-{
-    int clamped = grobo_posture_clamp(target, robot->driver->model);
-    for (int j = 0; clamped >= 0 && j < target->n_joints; j++) {
-        clamped += grobo_i_has(target->set, j) && draw_in(robot, j, &target->angle_rad[j]);
-    }
-    return clamped;
-}
-
-int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
-{
-    int joint = -1;
-    int result = check_target(robot, target, &joint);
-    if (result == GROBO_ERR_LIMIT && robot->config.limit_policy == GROBO_LIMIT_CLAMP) {
-        int clamped = clamp_target(robot, target);
-        if (clamped >= 0) {
-            robot->counters.clamped += (unsigned)clamped;
-            return GROBO_OK;
-        }
-        result = clamped; /* a joint behind the first one has no number at all */
-        joint = -1;
-    }
-    robot->fault_joint = joint;
-    robot->fault_deg = joint >= 0 ? grobo_deg_from_rad(target->angle_rad[joint]) : 0;
-    return result;
-}
-
-/* ---- speed ----------------------------------------------------------------------------------- */
-
-void grobo_i_gate_soften(grobo_robot *robot)
-{
-    robot->soft = true;
-    robot->soft_us = GROBO_NEVER_US;
-}
-
-/* Who times targets of his own may be early by this. */
-#define EARLY_US 10000
-
-void grobo_i_gate_single(grobo_robot *robot)
-{
-    if (robot->now_us >= robot->soft_us - EARLY_US) {
-        robot->soft = false; /* where the first target was, it is by now */
-    }
-}
-
-static double speed_limit(const grobo_robot *robot, int joint, bool soft)
-{
-    double most = grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
-    double limit_rad_s = most * robot->config.speed_limit_pct / 100;
-    double approach_rad_s = grobo_rad_from_deg(robot->config.approach_dps);
-    return soft ? fmin(approach_rad_s, limit_rad_s) : limit_rad_s;
-}
-
-/* A halt: joints stop where they are this long after it was asked for, or so long after it leaves
- * if that is later, so that none is thrown back; at half the speed. */
-#define HALT_AHEAD_US 50000
-#define HALT_LEAST_US 25000
-#define HALT_TIME_US 100000
-
-/* Where a way begins: one to rest where the joint is, any other where the way before is by now. */
-static double begin_of(const grobo_robot *robot, const grobo_robot_order *order, int joint)
-{
-    return order->kind == GROBO_I_ORDER_HALT || order->rests
-               ? grobo_i_axis_place(robot, joint) + grobo_i_load_kept(&robot->axes[joint])
-               : grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
-}
-
-/* The least time from there, in microseconds. */
-static double time_of_way(const grobo_robot *robot, int joint, double from_rad, double to_rad,
-                          bool soft)
-{
-    const grobo_robot_axis *axis = &robot->axes[joint];
-    /* Angles are rounded on the wire: that much further is not faster. */
-    double way_rad = fmax(fabs(to_rad - from_rad) - robot->driver->angle_step_rad, 0);
-    double time_us = way_rad / speed_limit(robot, joint, soft) * 1e6;
-    /* One that moves goes on until the frame is there. */
-    return soft && axis->way.to_us > robot->now_us ? fmax(time_us, HALT_TIME_US) : time_us;
-}
-
-/* In the wire's unit; GROBO_NEVER_US where the wire has no time that is long enough. */
-static int64_t on_time_grid(const grobo_robot *robot, double needed_us)
-{
-    int64_t step_us = robot->driver->time_step_us;
-    double steps = fmax(ceil(needed_us / (double)step_us), 1);
-    double most = (double)(robot->driver->time_max_us / step_us);
-    return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
-}
-
-/* The same in the wire's unit. */
-static int64_t time_needed(const grobo_robot *robot, int joint, double from_rad, double to_rad,
-                           bool soft)
-{
-    return on_time_grid(robot, time_of_way(robot, joint, from_rad, to_rad, soft));
-}
-
-int64_t grobo_i_gate_soft_us(const grobo_robot *robot, const grobo_posture *target)
-{
-    int64_t longest_us = 0;
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (grobo_i_has(target->set, j)) {
-            double from_rad = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
-            int64_t us = time_needed(robot, j, from_rad, target->angle_rad[j], true);
-            longest_us = grobo_i_later(longest_us, us);
-        }
-    }
-    return longest_us;
-}
-
-/* What stops a joint never asks for more than its speed from where it was read, either, where no
- * reading shows that it has begun its way: the frame may be lost. For a halt any reading since
- * does. Of a stream the next frame makes good a lost one, so that a soft stop keeps its time. The
- * end of a motion gives a joint the time to brake. */
-static int64_t time_of_order(const grobo_robot *robot, const grobo_robot_order *order, int joint,
-                             double to_rad)
-{
-    const grobo_robot_axis *axis = &robot->axes[joint];
-    double from_rad = begin_of(robot, order, joint);
-    int64_t needed_us = time_needed(robot, joint, from_rad, to_rad, robot->soft || order->soft);
-    bool halts = order->kind == GROBO_I_ORDER_HALT && axis->seen_us < axis->told_us;
-    bool at_once = axis->next_time_us < HALT_TIME_US;
-    bool alone = axis->way.to_us - axis->way.from_us > HALT_TIME_US; /* no next one soon */
-    bool rests = order->rests && (at_once || alone);
-    if (halts || (rests && axis->seen_us < axis->told_us + GROBO_I_BEGUN_US)) {
-        from_rad = axis->seen_rad + grobo_i_load_kept(axis);
-        int64_t unsure_us = time_needed(robot, joint, from_rad, to_rad, false);
-        needed_us = grobo_i_later(needed_us, unsure_us);
-    }
-    double brake_us = order->rests ? grobo_i_axis_brake_us(robot, joint) : 0;
-    return brake_us > 0 ? grobo_i_later(needed_us, on_time_grid(robot, brake_us + HALT_LEAST_US))
-                        : needed_us;
-}
-
-/* True where this time, a multiple of the wire's unit, is surely enough at full speed: without the
- * divisions of time_needed(), which are most of what a frame costs a processor that has none. What
- * is closer than the rounding of both is left to that. */
-static bool is_ample(const grobo_robot *robot, int joint, double to_rad, grobo_i_span asked)
-{
-    double most_rad_s = grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
-    double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
-    return grobo_i_gets_there(from_rad, to_rad, most_rad_s, asked);
-}
-
-int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
-{
-    bool soft = robot->soft || order->soft;
-    /* Its times, as they were asked for; from where it is by its way. */
-    bool on_grid = order->kind == GROBO_I_ORDER_GOAL && !order->rests;
-    bool stretched = false;
-    int64_t longest_us = 0, asked_us = -1;
-    grobo_i_span asked = 0;
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (!grobo_i_has(target->posture.set, j)) {
-            continue;
-        }
-        double to_rad = target->posture.angle_rad[j];
-        int64_t *time_us = &target->joint_time_us[j];
-        if (*time_us != asked_us) {
-            asked_us = *time_us;
-            longest_us = grobo_i_later(longest_us, asked_us);
-            bool may = on_grid && !soft && asked_us <= robot->driver->time_max_us;
-            asked = may ? grobo_i_span_of(asked_us, robot->config.speed_limit_pct) : 0;
-        }
-        if (asked > 0 && is_ample(robot, j, to_rad, asked)) {
-            continue;
-        }
-        int64_t needed_us = time_of_order(robot, order, j, to_rad);
-        if (needed_us == GROBO_NEVER_US) {
-            robot->fault_joint = j;
-            return GROBO_ERR_SPEED;
-        }
-        stretched = stretched || needed_us > *time_us;
-        *time_us = grobo_i_later(needed_us, *time_us);
-        longest_us = grobo_i_later(longest_us, *time_us);
-    }
-    robot->counters.stretched += stretched;
-    for (int j = 0; !order->each && j < robot->driver->model->n_joints; j++) {
-        target->joint_time_us[j] = longest_us;
-    }
-    return GROBO_OK;
-}
 
 /* ---- judging --------------------------------------------------------------------------------- */
 
@@ -261,9 +52,9 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
     if (GROBO_I_EXTRA(robot->driver, goal_energises) && !grobo_i_all_on(robot, joints)) {
         return GROBO_ERR_STATE;
     }
-    /* A joint in free mode is moved by a person; one adrift by somebody else. */
-    bool adrift = grobo_i_adrift(robot, joints, &robot->fault_joint);
-    bool others = adrift || (joints & robot->free_joints) != 0;
+    /* A joint in free mode is moved by a person; one externally moved by another program. */
+    bool moved = grobo_i_externally_moved(robot, joints, &robot->fault_joint);
+    bool others = moved || (joints & robot->free_joints) != 0;
     return others || !all_limited(robot, joints) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
@@ -274,10 +65,10 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool halted = axis->last == 0; /* by what has no number: a raw frame, or a halt behind it */
-    int64_t rest_us = robot->now_us + (halted ? HALT_AHEAD_US : 0);
+    int64_t rest_us = robot->now_us + (halted ? GROBO_I_HALT_AHEAD_US : 0);
     double rest_rad = grobo_i_axis_reached(robot, joint, rest_us);
     double here_rad = grobo_i_axis_place(robot, joint);
-    double rad_s = fmin(grobo_i_axis_speed(robot, joint), speed_limit(robot, joint, soft));
+    double rad_s = fmin(grobo_i_axis_speed(robot, joint), grobo_i_speed_limit(robot, joint, soft));
     double most_rad = fmax(rad_s * (double)axis->next_time_us / 1e6 / 2, fabs(rest_rad - here_rad));
     return halted ? grobo_i_goal_to_rest(robot, joint, rest_us)
                   : grobo_i_goal_near(axis, axis->next_rad, here_rad, most_rad);
@@ -322,7 +113,7 @@ static bool goes_as_asked(const grobo_robot *robot, const grobo_robot_order *ord
  * by now. */
 static int judge_way(grobo_robot *robot, const grobo_robot_order *order, saying *says)
 {
-    int clamped = clamp_target(robot, &says->target.posture); /* one may rest outside */
+    int clamped = grobo_i_target_clamp(robot, &says->target.posture); /* one may rest outside */
     int result = grobo_i_gate_time(robot, order, &says->target);
     says->as_asked = clamped == 0 && goes_as_asked(robot, order, &says->target);
     return result;
@@ -364,7 +155,7 @@ static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad
 {
     int64_t step_us = robot->driver->time_step_us;
     double way_rad = fabs(to_rad - from_rad);
-    double steps = ceil(way_rad / speed_limit(robot, joint, true) * 1e6 / (double)step_us);
+    double steps = ceil(way_rad / grobo_i_speed_limit(robot, joint, true) * 1e6 / (double)step_us);
     double most = (double)(robot->driver->time_max_us / step_us);
     return (int64_t)fmin(fmax(steps, 1), most) * step_us;
 }
@@ -372,7 +163,7 @@ static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad
 /* Of one that was read once, and tells no speed, nobody knows whether it moves. */
 static bool is_mute(const grobo_robot *robot, int joint)
 {
-    return GROBO_I_EXTRA(robot->driver, tells_no_speed) && !robot->axes[joint].has_target;
+    return GROBO_I_EXTRA(robot->driver, tells_no_speed) && !grobo_i_has_target(&robot->axes[joint]);
 }
 
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
@@ -381,12 +172,13 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     if (!grobo_i_may_halt(robot) && !order->owed) {
         return GROBO_ERR_LATCHED;
     }
-    int64_t rest_us = grobo_i_later(order->asked_us + HALT_AHEAD_US, robot->now_us + HALT_LEAST_US);
+    int64_t rest_us = grobo_i_later(order->asked_us + GROBO_I_HALT_AHEAD_US,
+                                    robot->now_us + GROBO_I_HALT_LEAST_US);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool goes_on = grobo_i_axis_moves(axis, robot->now_us) || grobo_i_axis_lags(robot, j) ||
-                       axis->adrift || (order->owed && is_mute(robot, j));
-        bool moves = axis->sensed && goes_on &&
+                       grobo_i_is_external(axis) || (order->owed && is_mute(robot, j));
+        bool moves = grobo_i_is_sensed(axis) && goes_on &&
                      (!GROBO_I_EXTRA(robot->driver, goal_energises) || axis->wants_torque ||
                       grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
@@ -395,7 +187,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
             double in_rad = fmin(fmax(goal_rad, limits.min_rad), limits.max_rad);
             target->posture.angle_rad[j] = in_rad;
             target->joint_time_us[j] =
-                grobo_i_later(HALT_TIME_US, draw_time_us(robot, j, goal_rad, in_rad));
+                grobo_i_later(GROBO_I_HALT_TIME_US, draw_time_us(robot, j, goal_rad, in_rad));
             target->posture.set |= GROBO_JOINT_BIT(j);
         }
     }
@@ -417,8 +209,8 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
         double hold_rad = grobo_i_hold_rad(robot, j);
         bool limited =
             !GROBO_I_EXTRA(robot->driver, goal_energises) || grobo_i_torque_is_limited(robot, j);
-        if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) && limited &&
-            !grobo_i_axis_is_on(axis)) {
+        if (grobo_i_has(order->joints, j) && grobo_i_is_sensed(axis) && !isnan(hold_rad) &&
+            limited && !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
             target->joint_time_us[j] = draw_time_us(robot, j, axis->state.angle_rad, hold_rad);
             target->posture.set |= GROBO_JOINT_BIT(j);
@@ -445,7 +237,7 @@ static int judge_torque(const grobo_robot *robot, const grobo_robot_order *order
     grobo_joint_mask may = order->joints;
     for (int j = 0; on && j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool holds = !stale && axis->held && grobo_i_goal_holds(robot, j) &&
+        bool holds = !stale && grobo_i_is_ready(axis) && grobo_i_goal_holds(robot, j) &&
                      grobo_i_torque_is_limited(robot, j);
         if (!holds && !grobo_i_axis_is_on(axis)) {
             may &= ~GROBO_JOINT_BIT(j);
@@ -488,7 +280,7 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
     int result = driver->inspect(driver, robot->driver_ctx, exchange->frame, exchange->frame_bytes,
                                  &says->target, says->torqued);
     if (result >= 0) {
-        result = check_target(robot, &target->posture, &robot->fault_joint);
+        result = grobo_i_target_check(robot, &target->posture, &robot->fault_joint);
     }
     if (result < 0) {
         return result;
@@ -512,8 +304,9 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
             return GROBO_ERR_STALE;
         }
         if (grobo_i_has(target->posture.set, j) &&
-            most_us < time_of_way(robot, j, grobo_i_axis_commanded(&robot->axes[j], robot->now_us),
-                                  target->posture.angle_rad[j], robot->soft)) {
+            most_us < grobo_i_trajectory_us(robot, j,
+                                            grobo_i_axis_commanded(&robot->axes[j], robot->now_us),
+                                            target->posture.angle_rad[j], robot->soft)) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
         }
@@ -642,7 +435,8 @@ static double begin_of_halt(const grobo_robot *robot, const grobo_target *target
     double way_rad = fabs(target->from_rad[joint] - to_rad);
     const grobo_robot_axis *axis = &robot->axes[joint];
     double behind_rad = axis->state.angle_rad + grobo_i_load_kept(axis) - to_rad;
-    double most_rad = speed_limit(robot, joint, true) * (double)target->joint_time_us[joint] / 1e6;
+    double most_rad =
+        grobo_i_speed_limit(robot, joint, true) * (double)target->joint_time_us[joint] / 1e6;
     return fabs(behind_rad) <= way_rad
                ? target->from_rad[joint]
                : to_rad + copysign(fmin(fabs(behind_rad), fmax(most_rad, way_rad)), behind_rad);
@@ -653,7 +447,7 @@ static double begin_of_rest(const grobo_robot *robot, const grobo_target *target
 {
     double to_rad = target->posture.angle_rad[joint];
     double way_rad = target->from_rad[joint] - to_rad;
-    double rad_s = fmin(speed_limit(robot, joint, true), GROBO_I_REST_RAD_S);
+    double rad_s = fmin(grobo_i_speed_limit(robot, joint, true), GROBO_I_REST_RAD_S);
     double least_rad = rad_s * (double)target->joint_time_us[joint] / 1e6;
     return fabs(way_rad) < robot->driver->angle_step_rad
                ? target->from_rad[joint]
@@ -675,7 +469,7 @@ static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order
     grobo_target *target = cut ? part : &says->target;
     bool timed = is_timed(robot->driver);
     for (int j = 0; !timed && j < robot->driver->model->n_joints; j++) {
-        target->from_rad[j] = begin_of(robot, order, j);
+        target->from_rad[j] = grobo_i_begin_of(robot, order, j);
         if (order->kind == GROBO_I_ORDER_HALT) {
             target->from_rad[j] = begin_of_halt(robot, target, j);
         }
@@ -755,7 +549,7 @@ static void forget(grobo_robot *robot, grobo_joint_mask joints, bool torque_too)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_has(joints, j)) {
-            axis->sensed = axis->has_target = axis->held = false;
+            grobo_i_joint_to(axis, GROBO_I_JOINT_FORGET);
             axis->wants_torque = axis->wants_torque && !torque_too;
             axis->torque_known = axis->torque_known && !torque_too;
             axis->own_until_us = 0;
@@ -773,14 +567,13 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(target->posture.set, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
-            double from_rad = begin_of(robot, order, j);
+            double from_rad = grobo_i_begin_of(robot, order, j);
             grobo_i_axis_told(robot, j);
             axis->way = (grobo_robot_way){from_rad, target->posture.angle_rad[j], now_us,
                                           now_us + target->joint_time_us[j]};
             axis->own_until_us = 0;
             robot->halts_owed &= ~GROBO_JOINT_BIT(j);
-            axis->has_target = true;
-            axis->adrift = axis->held = axis->in_segments = axis->off_way = false;
+            grobo_i_joint_to(axis, GROBO_I_JOINT_GOAL);
             if (parts && grobo_i_segments_wanted(robot, target->joint_time_us[j])) {
                 grobo_i_segments_begin(robot, j);
             }
@@ -794,10 +587,20 @@ static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
         if (grobo_i_has(joints, j)) {
             grobo_i_axis_rest(&robot->axes[j], robot->now_us);
             robot->axes[j].own_until_us = 0;
-            robot->axes[j].has_target = false;
+            grobo_i_joint_to(&robot->axes[j], GROBO_I_JOINT_HOLD);
             robot->halts_owed &= ~GROBO_JOINT_BIT(j);
         }
     }
+}
+
+/* What it was told of its trajectory until now ends with that. */
+static void let_go(grobo_robot_axis *axis)
+{
+    if (grobo_i_is_in_segments(axis)) {
+        grobo_i_axis_cut(axis);
+    }
+    grobo_i_joint_to(axis, GROBO_I_JOINT_OFF);
+    axis->wants_torque = axis->torque_known = false;
 }
 
 /* The switch is taken for done; a later reading shows. */
@@ -808,7 +611,7 @@ static void note_torque(grobo_robot *robot, const saying *says)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_has(off, j)) {
-            axis->wants_torque = axis->held = axis->has_target = axis->torque_known = false;
+            let_go(axis);
         } else if (grobo_i_has(on, j) && !grobo_i_axis_is_on(axis)) {
             axis->torque_known = false;
             grobo_i_gate_soften(robot); /* a hand may have moved it as long as it was off */
@@ -924,7 +727,7 @@ static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
     int joint = -1;
     GROBO_ASSERT(slot->txn.frame_bytes > 0);
     GROBO_ASSERT((to->set & ~grobo_i_all_joints(robot)) == 0 && (on & ~order->joints) == 0);
-    GROBO_ASSERT(to->set == 0 || check_target(robot, to, &joint) == GROBO_OK);
+    GROBO_ASSERT(to->set == 0 || grobo_i_target_check(robot, to, &joint) == GROBO_OK);
     GROBO_ASSERT(!robot->trip.latched || on == 0);
     GROBO_ASSERT(!robot->trip.latched || to->set == 0 || order->stops);
     GROBO_ASSERT((to->set & robot->free_joints) == 0 || order->kind == GROBO_I_ORDER_HOLD ||

@@ -65,7 +65,7 @@ void grobo_i_astray(grobo_robot *robot, int joint)
     grobo_robot_axis *axis = &robot->axes[joint];
     grobo_i_axis_here(axis, robot->now_us);
     axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ASTRAY_US);
-    axis->has_target = axis->off_way = true;
+    grobo_i_joint_to(axis, GROBO_I_JOINT_STRAYS);
 }
 
 void grobo_i_halted_look(grobo_robot *robot, int joint)

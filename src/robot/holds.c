@@ -34,17 +34,16 @@ static void assert_axis(const grobo_robot *robot, int joint)
     const grobo_robot_axis *axis = &robot->axes[joint];
     GROBO_ASSERT(axis->way.from_us <= axis->way.to_us);
     /* A way that its servo told of is another program's; where it was read to turn is no target. */
-    bool on_way = axis->has_target && axis->way.from_us < axis->way.to_us &&
+    bool on_way = grobo_i_has_target(axis) && axis->way.from_us < axis->way.to_us &&
                   axis->way.from_rad != axis->way.to_rad && axis->own_until_us == 0;
     GROBO_ASSERT(!on_way || is_inside(robot, joint, axis->way.to_rad));
     GROBO_ASSERT(axis->next == 0 || is_inside(robot, joint, axis->next_rad));
     GROBO_ASSERT(axis->next == 0 || next_waits(robot, joint));
-    GROBO_ASSERT(!axis->sensed || isfinite(axis->state.angle_rad));
-    GROBO_ASSERT(!axis->sensed || axis->angle_us != GROBO_NEVER_US);
-    GROBO_ASSERT(!axis->held || axis->sensed);
+    GROBO_ASSERT(!grobo_i_is_sensed(axis) || isfinite(axis->state.angle_rad));
+    GROBO_ASSERT(!grobo_i_is_sensed(axis) || axis->angle_us != GROBO_NEVER_US);
     GROBO_ASSERT(!axis->torque_known || (axis->state.valid & GROBO_FIELD_TORQUE) != 0);
     GROBO_ASSERT(!grobo_i_way_is_short(axis) || axis->told_to_us > axis->way.from_us);
-    GROBO_ASSERT(!axis->in_segments || robot->in_segments);
+    GROBO_ASSERT(!grobo_i_is_in_segments(axis) || robot->in_segments);
 }
 
 static void assert_slot(const grobo_robot *robot, const grobo_robot_slot *slot)

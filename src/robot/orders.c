@@ -3,6 +3,7 @@
  * Nothing is noted of them here but what waits; gate.c judges them again as they leave. */
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
+#include "src/robot/speed.h"
 
 /* How the frames of an order go. */
 typedef struct way_out {
@@ -223,7 +224,8 @@ grobo_joint_mask grobo_i_unknown(const grobo_robot *robot)
 static bool is_unread(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return robot->driver->arm && axis->has_target && !grobo_i_axis_moves(axis, robot->now_us) &&
+    return robot->driver->arm && grobo_i_has_target(axis) &&
+           !grobo_i_axis_moves(axis, robot->now_us) &&
            (axis->angle_us < axis->told_us || grobo_i_axis_is_late(axis));
 }
 
@@ -232,11 +234,11 @@ static bool is_unread(const grobo_robot *robot, int joint)
 static int64_t may_halt_at(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool read = axis->sensed && axis->angle_us >= robot->halt_us;
+    bool read = grobo_i_is_sensed(axis) && axis->angle_us >= robot->halt_us;
     if (read || (!grobo_i_axis_is_unknown(robot, joint) && !is_unread(robot, joint))) {
         return robot->now_us;
     }
-    bool sleeps = axis->sensed && grobo_i_may_sleep(robot, joint);
+    bool sleeps = grobo_i_is_sensed(axis) && grobo_i_may_sleep(robot, joint);
     return (sleeps ? axis->heard_us : robot->halt_us) + 3 * GROBO_I_RESTART_US;
 }
 

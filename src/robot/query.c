@@ -85,7 +85,7 @@ int grobo_robot_joint(const grobo_robot *robot, int joint, grobo_joint_info *inf
     info->full_age_us = age(axis->full_us, now_us);
     info->target_rad = grobo_i_axis_target(axis);
     info->status = axis->status;
-    info->has_target = axis->has_target || axis->next != 0;
+    info->has_target = grobo_i_has_target(axis) || axis->next != 0;
     info->torque_known = axis->torque_known;
     info->stands = grobo_i_stands(robot, joint);
     grobo_i_unlock(robot);
@@ -120,7 +120,7 @@ int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
     grobo_i_lock(robot);
     for (int j = 0; j < posture->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (axis->has_target || axis->next != 0) {
+        if (grobo_i_has_target(axis) || axis->next != 0) {
             posture->angle_rad[j] = grobo_i_axis_target(axis);
             posture->set |= GROBO_JOINT_BIT(j);
         }

@@ -55,14 +55,15 @@ double grobo_i_hold_rad(const grobo_robot *robot, int joint)
 }
 
 /* Where a servo is going, if it told: its angle was read. One that has time left creeps there,
- * however slowly. A host that was away, or another one, may have sent it. */
-static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *got)
+ * however slowly. A host that was away, or another one, may have sent it.
+ * @return whether it is externally moved: nobody knows where to. */
+static bool take_move(grobo_robot *robot, int joint, const grobo_joint_state *got)
 {
     const unsigned move = GROBO_FIELD_GOAL | GROBO_FIELD_TIME;
     grobo_robot_axis *axis = &robot->axes[joint];
     bool torque = (got->valid & GROBO_FIELD_TORQUE) != 0 || axis->torque_known; /* in parts */
     if ((got->valid & GROBO_FIELD_SPEED) == 0 || !torque) {
-        return;
+        return grobo_i_is_external(axis);
     }
     bool on = axis->state.torque == GROBO_TORQUE_ON;
     bool moves = on && abs(got->speed_dps) >= GROBO_I_SLOW_DPS;
@@ -75,8 +76,8 @@ static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
         left_us = left_us > least_us ? left_us : least_us;
         axis->own_until_us = robot->now_us + (moves || creeps ? left_us : 0);
     }
-    axis->adrift = moves && !axis->has_target && axis->own_until_us <= robot->now_us &&
-                   !grobo_i_swings(robot, joint);
+    return moves && !grobo_i_has_target(axis) && axis->own_until_us <= robot->now_us &&
+           !grobo_i_swings(robot, joint);
 }
 
 /* True if the servo has told since the last frame that its goal is another one; or did so before
@@ -115,9 +116,9 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     if ((got->valid & GROBO_FIELD_SPEED) == 0) {
-        return axis->off_way;
+        return grobo_i_is_stray(axis);
     }
-    if (!axis->has_target || axis->in_segments) {
+    if (!grobo_i_has_target(axis) || grobo_i_is_in_segments(axis)) {
         return false;
     }
     if (has_not_taken(robot, axis, got)) {
@@ -138,7 +139,7 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
 /* No frame has told it the way that it is taken to be on (grobo_i_astray()). */
 static bool is_astray(const grobo_robot_axis *axis)
 {
-    return axis->off_way && axis->way.from_us > axis->told_us;
+    return grobo_i_is_stray(axis) && axis->way.from_us > axis->told_us;
 }
 
 /* What a reading tells of where the joint is by now. */
@@ -155,14 +156,16 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
     }
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
         grobo_i_stand_seen(robot, joint, asked_us, axis->state.angle_rad);
-        axis->sensed = true;
         grobo_i_axis_seen(axis, asked_us, got);
-        take_move(robot, joint, got);
-        axis->off_way = is_astray(axis) || is_off_way(robot, joint, asked_us, got);
+        bool external = take_move(robot, joint, got);
+        bool stray = is_astray(axis) || is_off_way(robot, joint, asked_us, got);
+        grobo_i_joint_to(axis, stray      ? GROBO_I_JOINT_STRAYS
+                               : external ? GROBO_I_JOINT_TURNS
+                                          : GROBO_I_JOINT_READ);
         if (!grobo_i_axis_is_counted(axis)) {
             grobo_i_load_take(robot, joint, got);
         }
-        if (!axis->has_target) {
+        if (!grobo_i_has_target(axis)) {
             grobo_i_axis_here(axis, robot->now_us);
         }
     }
@@ -261,7 +264,7 @@ static void note_heard(const grobo_robot_slot *slot, const grobo_joint_state *go
     /* Where one broken reply of many puts joints to sleep, that is often: the part of its way that
      * it was not sent follows at once, since its last one ends soon. */
     bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL;
-    if (many && slept && axis->in_segments && !grobo_i_may_sleep(robot, slot->joint)) {
+    if (many && slept && grobo_i_is_in_segments(axis) && !grobo_i_may_sleep(robot, slot->joint)) {
         robot->renews_owed |= GROBO_JOINT_BIT(slot->joint);
     }
 }

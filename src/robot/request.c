@@ -7,6 +7,7 @@
 
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
+#include "src/robot/speed.h"
 
 /* May a job of this kind begin now? */
 static int admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask joints, bool moves)
@@ -211,7 +212,7 @@ static bool all_hold(const grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (grobo_i_has(joints, j) && axis->sensed && !grobo_i_axis_is_on(axis)) {
+        if (grobo_i_has(joints, j) && grobo_i_is_sensed(axis) && !grobo_i_axis_is_on(axis)) {
             return false;
         }
     }
@@ -230,7 +231,7 @@ static int admit_target(grobo_robot *robot, const grobo_posture *target)
     if (target->set == 0) {
         return GROBO_ERR_ARG;
     }
-    bool others = grobo_i_adrift(robot, target->set, &robot->fault_joint) ||
+    bool others = grobo_i_externally_moved(robot, target->set, &robot->fault_joint) ||
                   (target->set & robot->free_joints) != 0;
     return others || !all_hold(robot, target->set) ? GROBO_ERR_STATE : GROBO_OK;
 }

@@ -8,6 +8,7 @@
 #include "src/base/instant.h"
 #include "src/base/sized.h"
 #include "src/robot/robot.h"
+#include "src/robot/speed.h"
 
 #define STALL_US 250000
 #define EXIT_BOUND_US 10000000
@@ -297,8 +298,8 @@ static void forget(grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        axis->sensed = axis->has_target = axis->torque_known = axis->state.fast = false;
-        axis->wants_torque = axis->held = axis->adrift = false;
+        grobo_i_joint_to(axis, GROBO_I_JOINT_FORGET);
+        axis->torque_known = axis->wants_torque = axis->state.fast = false;
         axis->own_until_us = 0;
         axis->status = GROBO_ERR_UNPLUGGED;
         axis->lost = 0;

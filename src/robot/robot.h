@@ -5,6 +5,7 @@
  * `leave` when a frame would leave, `over` when it is over.
  *
  *   event.c      the queue of events
+ *   state.c      what moves a joint: states, events, and their table
  *   axis.c       where a joint is, by what it was sent to and what was read
  *   query.c      what may be asked
  *   slot.c       frames under way: from an exchange to a transaction and back
@@ -14,6 +15,7 @@
  *   weight.c     the error that carries a joint, and goals that keep it
  *   reading.c    what a reading tells of a joint
  *   ways.c       ways that are told in segments
+ *   speed.c      where targets may be, and how fast joints may go there
  *   gate.c       the only way to motors: judges and notes each order as its frame leaves
  *   orders.c     orders to motors: into frames that wait for the line
  *   halted.c     reads back what was halted, and repeats what was lost
@@ -42,6 +44,7 @@
 
 #include "src/base/sized.h"
 #include "src/model/joint.h"
+#include "src/robot/state.h"
 
 /* ---- event.c --------------------------------------------------------------------------------- */
 
@@ -68,7 +71,7 @@ static inline double grobo_i_load(const grobo_robot_axis *axis)
 }
 static inline double grobo_i_load_kept(const grobo_robot_axis *axis)
 {
-    bool kept = axis->load_is_sure || (axis->has_target && !axis->off_way);
+    bool kept = axis->load_is_sure || (grobo_i_has_target(axis) && !grobo_i_is_stray(axis));
     return kept ? grobo_i_load(axis) : 0;
 }
 
@@ -173,7 +176,7 @@ void grobo_i_axis_cut(grobo_robot_axis *axis);
 bool grobo_i_moving(const grobo_robot *robot, int64_t now_us);
 /* True if one of these moves though nothing was asked of it, nobody knows where to; *joint is the
  * first of them, else -1. */
-bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
+bool grobo_i_externally_moved(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
 /* True if all of these were sensed; else *joint is one that was not. */
 bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
 /* True if all of these are known to have torque. */
@@ -426,20 +429,6 @@ int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_r
 int grobo_i_gate_build(grobo_robot *robot, grobo_robot_order *order, grobo_exchange *exchange);
 /* The targets of this order wait no more: they have left, or never will. */
 void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order);
-/* Gives every joint of a target as much more time as it needs from where it is now.
- * @return 0, or GROBO_ERR_SPEED where the wire has no time that is long enough. */
-int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target);
-/* Checks numbers and limits of a target; clamps if so configured. The fault is kept for
- * grobo_robot_fault(). @return 0, GROBO_ERR_NAN, _LIMIT, _ARG. */
-int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target);
-/* The next move is the first from a sensed posture: a slow one. */
-void grobo_i_gate_soften(grobo_robot *robot);
-/* How long a whole goal takes then, from where the joints are now; GROBO_NEVER_US where the wire
- * has no time that is long enough. */
-int64_t grobo_i_gate_soft_us(const grobo_robot *robot, const grobo_posture *target);
-/* Before a target of a caller's own stream, from his loop or as a raw frame: the first of them is
- * the slow one. */
-void grobo_i_gate_single(grobo_robot *robot);
 /* True if the goal read back is the one that holds. */
 bool grobo_i_goal_holds(const grobo_robot *robot, int joint);
 /* Holds a goal this far from the angle to be the angle, for switching torque on. */

@@ -9,6 +9,7 @@
  */
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
+#include "src/robot/speed.h"
 
 static bool has_stopped(const grobo_robot_axis *axis, int64_t now_us)
 {
@@ -18,7 +19,7 @@ static bool has_stopped(const grobo_robot_axis *axis, int64_t now_us)
 static bool is_in_segments(const grobo_robot_axis *axis, int64_t now_us)
 {
     (void)now_us;
-    return axis->in_segments;
+    return grobo_i_is_in_segments(axis);
 }
 
 /* The first of the joints that stopped because their servos did not answer; -1: none. One that was

@@ -70,8 +70,9 @@ static void free_joint(grobo_robot *robot, int joint)
             switch_once(robot, bit, GROBO_TORQUE_BRAKE);
         }
     } else if (state->torque != GROBO_TORQUE_ON && rests) {
-        axis->held = grobo_i_goal_holds(robot, joint);
-        if (axis->held) {
+        bool holds = grobo_i_goal_holds(robot, joint);
+        grobo_i_joint_to(axis, holds ? GROBO_I_JOINT_HOLDS : GROBO_I_JOINT_LOOSE);
+        if (holds) {
             switch_once(robot, bit, GROBO_TORQUE_ON);
         } else if (!grobo_i_slots_wait(robot, bit, GROBO_I_ORDER_HOLD, GROBO_TORQUE_OFF)) {
             (void)grobo_i_gate_hold(robot, bit, GROBO_I_WHOLE);
@@ -234,18 +235,20 @@ static void hurry(grobo_robot *robot)
 /* Of a joint in free mode everything, and of one that nothing is known of: it may be on a way. */
 static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
 {
-    if (robot->heard_read && robot->axes[joint].sensed && !robot->axes[joint].off_way) {
+    if (robot->heard_read && grobo_i_is_sensed(&robot->axes[joint]) &&
+        !grobo_i_is_stray(&robot->axes[joint])) {
         bool halts = grobo_i_has(robot->halts_owed, joint); /* does it turn, and where to? */
         return halts || grobo_i_may_sleep(robot, joint) ? GROBO_SENSE_GOAL : GROBO_SENSE_POSITION;
     }
     if (grobo_i_has(robot->free_joints, joint)) {
         return GROBO_SENSE_ALL;
     }
-    bool first = GROBO_I_EXTRA(robot->driver, keeps_setup) && !robot->axes[joint].sensed;
+    bool first =
+        GROBO_I_EXTRA(robot->driver, keeps_setup) && !grobo_i_is_sensed(&robot->axes[joint]);
     if (robot->free_joints == 0 && robot->config.sense_position_only && !first) {
         return GROBO_SENSE_POSITION;
     }
-    return robot->axes[joint].sensed ? GROBO_SENSE_FULL : GROBO_SENSE_ALL;
+    return grobo_i_is_sensed(&robot->axes[joint]) ? GROBO_SENSE_FULL : GROBO_SENSE_ALL;
 }
 
 /* Which joint is read next; in turn with the others one that was not heard for long. */

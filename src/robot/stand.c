@@ -45,7 +45,7 @@ void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double 
     if (!is_since_stop(robot, asked_us)) {
         return;
     }
-    bool known = is_since_stop(robot, axis->still_us) && axis->sensed &&
+    bool known = is_since_stop(robot, axis->still_us) && grobo_i_is_sensed(axis) &&
                  asked_us - axis->stood_us <= GROBO_WATCH_US;
     if (!known || fabs(angle_rad - axis->still_rad) > still_rad(robot)) {
         axis->still_rad = angle_rad;
@@ -62,7 +62,7 @@ bool grobo_i_stand_left(const grobo_robot_axis *axis)
 bool grobo_i_stands(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool known = axis->sensed && is_since_stop(robot, axis->still_us);
+    bool known = grobo_i_is_sensed(axis) && is_since_stop(robot, axis->still_us);
     bool there = axis->goal_is_read && is_since_stop(robot, axis->goal_us) &&
                  fabs(axis->state.goal_rad - axis->state.angle_rad) <= still_rad(robot);
     return known && (there || axis->stood_us - axis->still_us >= grobo_i_stand_us(robot));
@@ -74,7 +74,7 @@ bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint)
     const grobo_robot_way *way = &axis->way;
     double same_rad = grobo_i_same_goal_rad(robot);
     double goal_rad = axis->state.goal_rad;
-    if (!axis->in_segments || axis->goal_us >= way->to_us) {
+    if (!grobo_i_is_in_segments(axis) || axis->goal_us >= way->to_us) {
         return fabs(goal_rad - way->to_rad) <= same_rad;
     }
     double here_rad = grobo_i_way_at(way, axis->goal_us);
@@ -121,7 +121,7 @@ void grobo_i_halt_owe(grobo_robot *robot, grobo_joint_mask joints)
             robot->hear_us = waits ? robot->hear_us : robot->now_us; /* it is asked at once */
             robot->halts_owed |= GROBO_JOINT_BIT(j);
             robot->halt_us = robot->now_us;
-            if (robot->axes[j].in_segments) {
+            if (grobo_i_is_in_segments(&robot->axes[j])) {
                 grobo_i_axis_cut(&robot->axes[j]);
             }
         }

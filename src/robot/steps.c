@@ -12,6 +12,7 @@
 
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
+#include "src/robot/speed.h"
 
 /* Rounds of writing again; a line that loses a byte in a hundred needs some. */
 #define ROUNDS 10
@@ -201,7 +202,8 @@ static int step_from_here(grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        bool on_way = axis->has_target && !axis->off_way && axis->way.to_us > robot->now_us;
+        bool on_way =
+            grobo_i_has_target(axis) && !grobo_i_is_stray(axis) && axis->way.to_us > robot->now_us;
         if (grobo_i_has(robot->job->joints & ~robot->job->failed, j) && !on_way) {
             grobo_i_axis_here(axis, robot->now_us);
         }
@@ -282,7 +284,9 @@ static int step_pick_off(grobo_robot *robot)
     job->torque = GROBO_TORQUE_ON;
     job->rounds = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        robot->axes[j].held = grobo_i_has(job->pending, j) ? false : robot->axes[j].held;
+        if (grobo_i_has(job->pending, j)) {
+            grobo_i_joint_to(&robot->axes[j], GROBO_I_JOINT_LOOSE);
+        }
         if (grobo_i_has(read & ~job->pending, j)) {
             robot->axes[j].wants_torque = true;
         }
@@ -338,7 +342,7 @@ static int step_hold(grobo_robot *robot)
             grobo_i_job_fail_joint(robot, j, GROBO_ERR_LIMIT,
                                    grobo_deg_from_rad(robot->axes[j].state.angle_rad));
             job->pending &= ~GROBO_JOINT_BIT(j);
-        } else if (grobo_i_has(job->pending, j) && !robot->axes[j].held) {
+        } else if (grobo_i_has(job->pending, j) && !grobo_i_is_ready(&robot->axes[j])) {
             loose |= GROBO_JOINT_BIT(j);
         }
     }
@@ -353,9 +357,10 @@ static int step_hold_check(grobo_robot *robot)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(job->pending, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
-            axis->held = !grobo_i_has(job->failed, j) && grobo_i_goal_is_told(axis) &&
+            bool holds = !grobo_i_has(job->failed, j) && grobo_i_goal_is_told(axis) &&
                          grobo_i_goal_holds(robot, j);
-            bad |= axis->held ? 0 : GROBO_JOINT_BIT(j);
+            grobo_i_joint_to(axis, holds ? GROBO_I_JOINT_HOLDS : GROBO_I_JOINT_LOOSE);
+            bad |= holds ? 0 : GROBO_JOINT_BIT(j);
         }
     }
     return again(robot, bad, step_hold);
@@ -416,14 +421,14 @@ static int step_torque_check(grobo_robot *robot)
         }
         if (grobo_i_has(job->failed, j) || !torque_taken(robot, j)) {
             bad |= GROBO_JOINT_BIT(j);
-            robot->axes[j].held = false;
+            grobo_i_joint_to(&robot->axes[j], GROBO_I_JOINT_LOOSE);
         } else {
             grobo_robot_axis *axis = &robot->axes[j];
             axis->wants_torque = on;
-            if (!on || !axis->has_target) { /* or it was sent on its way since it holds */
+            if (!on || !grobo_i_has_target(axis)) { /* or it was sent on its way since it holds */
                 grobo_i_axis_rest(axis, robot->now_us);
             }
-            axis->has_target = on;
+            grobo_i_joint_to(axis, on ? GROBO_I_JOINT_ON : GROBO_I_JOINT_OFF);
         }
     }
     job->pending = bad;
@@ -522,7 +527,7 @@ static bool is_unsent(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     return GROBO_I_EXTRA(robot->driver, goal_energises) && robot->job->sent_us > 0 &&
-           (!axis->has_target || axis->way.from_us < robot->job->sent_us ||
+           (!grobo_i_has_target(axis) || axis->way.from_us < robot->job->sent_us ||
             axis->way.to_us <= axis->way.from_us);
 }
 
@@ -585,7 +590,7 @@ static int step_rest(grobo_robot *robot)
     for (int j = 0; looks && j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool late = robot->now_us - axis->way.to_us >= RESTS_BY_US;
-        bool asked = grobo_i_has(job->joints, j) && axis->has_target;
+        bool asked = grobo_i_has(job->joints, j) && grobo_i_has_target(axis);
         if (!asked || grobo_i_rests(robot, j)) {
             continue;
         }
@@ -707,7 +712,8 @@ static int step_quiet(grobo_robot *robot)
 static bool still_turns(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool trembles = axis->has_target && !axis->off_way && abs(axis->seen_dps) < TREMBLES_DPS &&
+    bool trembles = grobo_i_has_target(axis) && !grobo_i_is_stray(axis) &&
+                    abs(axis->seen_dps) < TREMBLES_DPS &&
                     near_rad(axis->way.to_rad - grobo_i_load(axis), axis->seen_rad, TREMBLES_RAD);
     return grobo_i_axis_tells_turn(robot, joint) && !trembles &&
            axis->state.torque == GROBO_TORQUE_ON && abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
@@ -718,7 +724,8 @@ static bool arrives(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
     bool swings = grobo_i_load(axis) != 0 && grobo_i_swings(robot, joint);
-    bool arrives = axis->has_target && !axis->off_way && still_turns(robot, joint) && !swings &&
+    bool arrives = grobo_i_has_target(axis) && !grobo_i_is_stray(axis) &&
+                   still_turns(robot, joint) && !swings &&
                    near_rad(axis->way.to_rad - grobo_i_load(axis), axis->seen_rad, ARRIVES_RAD);
     if (arrives) {
         axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ARRIVES_US);
@@ -756,7 +763,7 @@ static bool is_astray(grobo_robot *robot, int joint)
     bool turns = (still_turns(robot, joint) && !grobo_i_swings(robot, joint)) ||
                  creeps_to_its_goal(robot, joint);
     if (state->torque != GROBO_TORQUE_ON ||
-        (axis->own_until_us <= robot->now_us && !axis->adrift && !creeps && !turns)) {
+        (axis->own_until_us <= robot->now_us && !grobo_i_is_external(axis) && !creeps && !turns)) {
         return false;
     }
     if (creeps) {

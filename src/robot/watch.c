@@ -54,7 +54,8 @@ static void watch_torque(grobo_robot *robot, int joint, const grobo_joint_state 
     grobo_robot_axis *axis = &robot->axes[joint];
     if ((got->valid & GROBO_FIELD_TORQUE) != 0 && axis->wants_torque &&
         got->torque == GROBO_TORQUE_OFF) {
-        axis->wants_torque = axis->has_target = axis->held = false;
+        axis->wants_torque = false;
+        grobo_i_joint_to(axis, GROBO_I_JOINT_OFF);
         grobo_i_trip(robot, GROBO_TRIP_TORQUE_LOST, joint, 0, true);
     }
 }

@@ -47,7 +47,8 @@ static int64_t part_us(const grobo_robot *robot, int joint, const grobo_robot_wa
 static bool is_renewed(const grobo_robot *robot, const grobo_robot_axis *axis)
 {
     bool late = axis->way.to_us - robot->now_us < robot->renew_us;
-    return grobo_i_way_is_short(axis) || (axis->has_target && axis->in_segments && !late);
+    return grobo_i_way_is_short(axis) ||
+           (grobo_i_has_target(axis) && grobo_i_is_in_segments(axis) && !late);
 }
 
 bool grobo_i_goes_in_parts(const grobo_robot *robot, const grobo_robot_order *order)
@@ -109,7 +110,8 @@ void grobo_i_segments_begin(grobo_robot *robot, int joint)
     if (grobo_i_ways_renewed(robot) == 0) {
         robot->renewed_us = robot->now_us;
     }
-    axis->in_segments = robot->in_segments = true;
+    grobo_i_joint_to(axis, GROBO_I_JOINT_SEGMENT);
+    robot->in_segments = true;
     axis->told_to_us = robot->now_us + part_us(robot, joint, &axis->way, robot->now_us);
 }
 

@@ -42,7 +42,8 @@ static bool hangs(const grobo_robot *robot, int joint, const grobo_joint_state *
     if (GROBO_I_EXTRA(robot->driver, tells_no_speed) && !stands) {
         return false;
     }
-    if (!axis->has_target || axis->off_way) { /* one that was told it just now has not begun */
+    if (!grobo_i_has_target(axis) || grobo_i_is_stray(axis)) {
+        /* one that was told it just now has not begun */
         return tells && robot->now_us - axis->told_us >= RESTS_US;
     }
     int64_t since_us = robot->now_us - axis->way.to_us;
@@ -67,7 +68,7 @@ void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *g
     double least_rad = fmax(LEAST_RAD, 2 * robot->driver->angle_step_rad);
     bool carries = fabs(load_rad) >= least_rad && fabs(load_rad) <= grobo_i_load_most(robot, joint);
     load_rad = carries ? load_rad : 0;
-    bool sent = axis->has_target && !axis->off_way;
+    bool sent = grobo_i_has_target(axis) && !grobo_i_is_stray(axis);
     bool same = fabs(load_rad - axis->load_rad) <= least_rad;
     axis->load_is_sure = sent || grobo_i_stands(robot, joint) || (axis->load_is_sure && same);
     axis->load_rad = load_rad;

@@ -4,6 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "src/robot/speed.h"
 #include "tests/support/gate_kit.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
@@ -24,27 +25,28 @@ TEST_WITH(rig_wirings, a_goal_is_judged_as_it_leaves)
         assert_int_equal(judge(order), GROBO_ERR_SUPERSEDED); /* none waits */
         await(j, 1, S);
         assert_int_equal(judge(order), GROBO_OK);
-        robot.axes[other_of(j)].sensed = false; /* another one's is not needed any more */
+        robot.axes[other_of(j)].phase =
+            GROBO_I_JOINT_UNKNOWN; /* another one's is not needed any more */
         assert_int_equal(judge(order), GROBO_OK);
-        robot.axes[j].sensed = false;
+        robot.axes[j].phase = GROBO_I_JOINT_UNKNOWN;
         robot.fault_joint = -1;
         assert_int_equal(leave(order), GROBO_ERR_STALE);
         assert_int_equal(robot.fault_joint, j);
         expect_axes();
         drop();
-        robot.axes[j].sensed = true;
+        robot.axes[j].phase = GROBO_I_JOINT_SENT;
         robot.free_joints = GROBO_JOINT_BIT(other_of(j));
         assert_int_equal(judge(order), GROBO_OK);
         robot.free_joints = GROBO_JOINT_BIT(j);
         assert_int_equal(judge(order), GROBO_ERR_STATE);
         assert_int_equal(robot.fault_joint, -1);
         robot.free_joints = 0;
-        robot.axes[other_of(j)].adrift = true;
+        robot.axes[other_of(j)].phase = GROBO_I_JOINT_EXTERNAL;
         assert_int_equal(judge(order), GROBO_OK);
-        robot.axes[j].adrift = true;
+        robot.axes[j].phase = GROBO_I_JOINT_EXTERNAL;
         assert_int_equal(judge(order), GROBO_ERR_STATE);
         assert_int_equal(robot.fault_joint, j);
-        robot.axes[j].adrift = false;
+        robot.axes[j].phase = GROBO_I_JOINT_SENT;
         latch(GROBO_TRIP_LOST_REPLIES);
         assert_int_equal(judge(order), GROBO_ERR_LATCHED);
         order.stops = true;
@@ -133,9 +135,9 @@ TEST_WITH(rig_wirings, a_halt_is_refused_by_name)
         assert_int_equal(judge(order), GROBO_ERR_EMPTY);
         set_going(j);
         assert_int_equal(judge(order), GROBO_OK);
-        robot.axes[j].sensed = false;
+        robot.axes[j].phase = GROBO_I_JOINT_UNKNOWN;
         assert_int_equal(judge(order), GROBO_ERR_EMPTY);
-        robot.axes[j].sensed = true;
+        robot.axes[j].phase = GROBO_I_JOINT_SENT;
         make_limp(j);
         assert_int_equal(judge(order), GROBO_ERR_EMPTY);
         robot.axes[j].torque_known = false; /* it may have torque all the same */
@@ -183,9 +185,9 @@ TEST_WITH(rig_wirings, a_hold_is_refused_by_name)
         assert_int_equal(judge(order), GROBO_ERR_STATE); /* it has torque */
         make_limp(j);
         assert_int_equal(judge(order), GROBO_OK);
-        robot.axes[j].sensed = false;
+        robot.axes[j].phase = GROBO_I_JOINT_UNKNOWN;
         assert_int_equal(judge(order), GROBO_ERR_STATE);
-        robot.axes[j].sensed = true;
+        robot.axes[j].phase = GROBO_I_JOINT_SENT;
         for (int end = -1; end <= 1; end += 2) { /* 3 degrees outside at most */
             robot.axes[j].state.angle_rad = end * RAD(70 + j + 3.01);
             assert_int_equal(judge(order), GROBO_ERR_STATE);
@@ -210,16 +212,16 @@ TEST_WITH(rig_wirings, torque_is_refused_by_name)
                                    .torque = GROBO_TORQUE_ON};
         start();
         make_limp(j);
-        robot.axes[other_of(j)].held = false;
+        robot.axes[other_of(j)].phase = GROBO_I_JOINT_IDLE;
         assert_int_equal(judge(order), GROBO_OK);
         order.asked_us = NOW - 2 * S;
         assert_int_equal(judge(order), GROBO_OK);
         order.asked_us = NOW - 2 * S - 1; /* waited for too long */
         assert_int_equal(judge(order), GROBO_ERR_STATE);
         order.asked_us = NOW;
-        robot.axes[j].held = false;
+        robot.axes[j].phase = GROBO_I_JOINT_IDLE;
         assert_int_equal(judge(order), GROBO_ERR_STATE);
-        robot.axes[j].held = true;
+        robot.axes[j].phase = GROBO_I_JOINT_READY;
         for (int end = -1; end <= 1; end += 2) { /* 2 degrees from its goal at most */
             robot.axes[j].state.goal_rad = here_rad(j) + end * RAD(2.01);
             assert_false(grobo_i_goal_holds(&robot, j));
@@ -236,7 +238,7 @@ TEST_WITH(rig_wirings, torque_is_refused_by_name)
         order.torque = GROBO_TORQUE_BRAKE;
         assert_int_equal(judge(order), GROBO_OK);
         order.torque = GROBO_TORQUE_OFF;
-        robot.axes[j].held = false;
+        robot.axes[j].phase = GROBO_I_JOINT_IDLE;
         assert_int_equal(judge(order), GROBO_OK);
     }
 }
@@ -248,7 +250,7 @@ TEST_WITH(rig_wirings, torque_comes_on_for_those_that_are_held)
         start();
         make_limp(j);
         make_limp(other_of(j));
-        robot.axes[other_of(j)].held = false;
+        robot.axes[other_of(j)].phase = GROBO_I_JOINT_IDLE;
         assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
                                                    .asked_us = NOW,
                                                    .kind = GROBO_I_ORDER_TORQUE,
@@ -267,17 +269,17 @@ TEST_WITH(rig_wirings, a_segment_is_refused_by_name)
         start();
         set_going(j);
         set_going(other_of(j));
-        robot.axes[other_of(j)].in_segments = true;
+        robot.axes[other_of(j)].phase = GROBO_I_JOINT_IN_SEGMENTS;
         robot.axes[other_of(j)].told_to_us = NOW + 1;
         assert_int_equal(judge(order), GROBO_ERR_EMPTY);
-        robot.axes[j].in_segments = true;
+        robot.axes[j].phase = GROBO_I_JOINT_IN_SEGMENTS;
         robot.axes[j].told_to_us = NOW;
         assert_int_equal(judge(order), GROBO_ERR_EMPTY); /* it stands */
         robot.axes[j].told_to_us = NOW + 1;
         assert_int_equal(judge(order), GROBO_OK);
-        robot.axes[j].sensed = false;
-        assert_int_equal(judge(order), GROBO_ERR_STALE);
-        robot.axes[j].sensed = true;
+        robot.axes[j].phase = GROBO_I_JOINT_UNKNOWN; /* what is forgotten is told no more */
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY);
+        robot.axes[j].phase = GROBO_I_JOINT_IN_SEGMENTS;
         robot.free_joints = GROBO_JOINT_BIT(j);
         assert_int_equal(judge(order), GROBO_ERR_STATE);
         robot.free_joints = 0;
@@ -805,10 +807,10 @@ TEST_WITH(rig_wirings, joints_are_ready_that_were_read_and_hold)
     for (int j = 0; j < N; j++) {
         start();
         assert_true(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
-        robot.axes[j].sensed = false; /* it is known to hold */
+        robot.axes[j].phase = GROBO_I_JOINT_UNKNOWN; /* it is known to hold */
         assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
         assert_true(grobo_i_gate_ready(&robot, all_but(j)));
-        robot.axes[j].sensed = true;
+        robot.axes[j].phase = GROBO_I_JOINT_SENT;
         robot.axes[j].torque_known = false;
         assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
         robot.axes[j].torque_known = true;
@@ -842,7 +844,7 @@ TEST_WITH(rig_wirings, what_waits_has_room_for_all_its_joints)
         assert_memory_equal(is.frame, be.frame, be.frame_bytes);
 
         make_limp(j);
-        robot.axes[j].held = false;
+        robot.axes[j].phase = GROBO_I_JOINT_IDLE;
         order.kind = GROBO_I_ORDER_TORQUE;
         order.torque = GROBO_TORQUE_ON;
         assert_int_equal(

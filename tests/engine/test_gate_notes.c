@@ -4,6 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "src/robot/speed.h"
 #include "tests/support/gate_kit.h"
 #include "tests/support/test.h"
 
@@ -18,9 +19,8 @@ TEST_WITH(rig_wirings, a_goal_is_noted_of_its_joints_alone)
             const grobo_robot_order order = {
                 .joints = both, .number = NUMBER, .kind = GROBO_I_ORDER_GOAL, .each = true};
             robot.played_joints = played ? GROBO_JOINT_BIT(third_of(j)) : GROBO_JOINTS_ALL(N);
-            robot.axes[j].off_way = true; /* it stands where it was read */
+            robot.axes[j].phase = GROBO_I_JOINT_STRAY; /* it stands where it was read */
             robot.axes[j].way.to_rad += RAD(30);
-            robot.axes[j].has_target = false;
             await(j, 5, 2 * S);
             await(other_of(j), 5, 2 * S);
             await(third_of(j), 5, 2 * S); /* its frame is another one */
@@ -118,8 +118,8 @@ TEST_WITH(rig_wirings, a_hold_is_noted_of_its_joints_alone)
         make_limp(j);
         make_limp(other_of(j));
         set_going(j);
-        robot.axes[j].in_segments = robot.axes[other_of(j)].off_way = true;
-        robot.axes[j].held = robot.axes[other_of(j)].held = false; /* until it is read back */
+        robot.axes[j].phase = GROBO_I_JOINT_IN_SEGMENTS;
+        robot.axes[other_of(j)].phase = GROBO_I_JOINT_STRAY;
         assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
                                                    .kind = GROBO_I_ORDER_HOLD,
                                                    .each = true}),
@@ -128,9 +128,8 @@ TEST_WITH(rig_wirings, a_hold_is_noted_of_its_joints_alone)
         for (int i = 0; i < 2; i++) {
             int k = i == 0 ? j : other_of(j);
             before[k].way = (grobo_robot_way){here_rad(k), here_rad(k), NOW, NOW};
-            before[k].in_segments = before[k].off_way = false;
             before[k].own_until_us = 0;
-            before[k].has_target = false;
+            before[k].phase = GROBO_I_JOINT_IDLE;
             before[k].told_us = NOW;
             before[k].last = 0;
         }
@@ -160,7 +159,8 @@ TEST_WITH(rig_wirings, torque_is_noted_of_its_joints_alone)
                 before[j].last = 0;
                 before[j].torque_known = on && !limp;
                 if (!on) {
-                    before[j].wants_torque = before[j].held = before[j].has_target = false;
+                    before[j].wants_torque = false;
+                    before[j].phase = GROBO_I_JOINT_IDLE;
                 }
                 expect_axes();
                 assert_int_equal(robot.soft, on && limp); /* a hand may have moved it */
@@ -188,7 +188,7 @@ TEST_WITH(rig_wirings, what_leaves_joints_unknown_is_noted_of_them_alone)
                              GROBO_OK);
             for (int k = 0; k < N; k++) {
                 if (k == j || k == other_of(j)) {
-                    before[k].sensed = before[k].has_target = before[k].held = false;
+                    before[k].phase = GROBO_I_JOINT_UNKNOWN;
                     before[k].wants_torque = before[k].torque_known =
                         kinds[i] == GROBO_I_ORDER_UNKNOWN;
                     before[k].own_until_us = 0;
@@ -238,7 +238,7 @@ TEST_WITH(rig_wirings, a_segment_is_noted_of_its_joints_alone)
         start();
         for (int k = 0; k < N; k++) {
             set_going(k);
-            robot.axes[k].in_segments = true;
+            robot.axes[k].phase = GROBO_I_JOINT_IN_SEGMENTS;
             robot.axes[k].told_to_us = NOW + 50 * MS;
         }
         assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
@@ -274,7 +274,7 @@ TEST_WITH(rig_wirings, a_goal_in_segments_is_noted_of_its_joints_alone)
             doubled_goal = -1;
             note_goal(j, 10, time_us);
             note_goal(other_of(j), 5, GROBO_SEGMENT_US);
-            before[j].in_segments = !whole;
+            before[j].phase = whole ? GROBO_I_JOINT_SENT : GROBO_I_JOINT_IN_SEGMENTS;
             before[j].told_to_us = whole ? NOW - 7 : NOW + GROBO_SEGMENT_US;
             expect_axes();
             assert_true(robot.renewed_us == (whole ? NOW - 1 : NOW));

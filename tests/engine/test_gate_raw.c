@@ -6,6 +6,7 @@
 
 #include <grobo/core/board.h>
 
+#include "src/robot/speed.h"
 #include "tests/support/gate_kit.h"
 #include "tests/support/test.h"
 
@@ -78,8 +79,8 @@ TEST_WITH(rig_wirings, a_raw_torque_is_noted_like_one_of_ours)
             before[j].told_us = NOW;
             before[j].last = 0;
             if (!on) {
-                before[j].wants_torque = before[j].held = false;
-                before[j].has_target = before[j].torque_known = false;
+                before[j].wants_torque = before[j].torque_known = false;
+                before[j].phase = GROBO_I_JOINT_IDLE;
             }
             expect_axes();
             drop();
@@ -160,7 +161,7 @@ TEST_WITH(rig_wirings, a_raw_frame_is_refused_by_name)
     for (int j = 0; j < N; j++) {
         grobo_robot_order order;
         start();
-        robot.axes[j].sensed = false;
+        robot.axes[j].phase = GROBO_I_JOINT_UNKNOWN;
         robot.axes[other_of(j)].torque_known = false;
         assert_int_equal(raw_goal_of(j, 0, 1000, &order), GROBO_ERR_STALE);
         assert_int_equal(robot.fault_joint, j);
@@ -172,7 +173,7 @@ TEST_WITH(rig_wirings, a_raw_frame_is_refused_by_name)
         drop();
         start();
         robot.free_joints = GROBO_JOINT_BIT(j);
-        robot.axes[other_of(j)].adrift = true;
+        robot.axes[other_of(j)].phase = GROBO_I_JOINT_EXTERNAL;
         assert_int_equal(raw_goal_of(j, 0, 1000, &order), GROBO_ERR_STATE);
         assert_int_equal(raw_goal_of(other_of(j), 0, 1000, &order), GROBO_ERR_STATE);
         start();

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/base/assert.h"
+#include "src/robot/speed.h"
 #include "tests/support/axes_kit.h"
 #include "tests/support/next_random.h"
 #include "tests/support/test.h"

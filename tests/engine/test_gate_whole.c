@@ -6,6 +6,7 @@
 #include <grobo/core/robot.h>
 
 #include "src/robot/robot.h"
+#include "src/robot/speed.h"
 #include "tests/support/raw_frames.h"
 #include "tests/support/test.h"
 

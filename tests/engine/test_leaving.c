@@ -60,7 +60,7 @@ TEST_WITH(rig_wirings, who_leaves_waits_until_all_is_quiet)
 typedef struct told {
     grobo_torque torque;
     int64_t own_us; /* until when it moves, from now */
-    bool adrift;
+    bool external;
     int64_t left_us; /* of its goal's time */
     double apart_deg;
     bool is_old; /* its goal was read before */
@@ -95,9 +95,8 @@ static void let_go_astray(int joint, const told *row)
     axis->state.goal_time_us = 4 * S + row->left_us;
     axis->state.time_us = 4 * S;
     axis->own_until_us = NOW + row->own_us;
-    axis->adrift = row->adrift;
     axis->goal_us = axis->angle_us - row->is_old;
-    axis->has_target = false;
+    axis->phase = row->external ? GROBO_I_JOINT_EXTERNAL : GROBO_I_JOINT_IDLE;
 }
 
 /* Its way is the one that its servo tells of; where it tells of none, it moves until the halt has
@@ -119,7 +118,7 @@ TEST_WITH(rig_wirings, who_leaves_stops_what_others_set_going)
                 before[j].way =
                     (grobo_robot_way){at->angle_rad, tells ? at->goal_rad : at->angle_rad,
                                       tells ? NOW - 5 : NOW, NOW + row->way_us};
-                before[j].has_target = before[j].off_way = true;
+                before[j].phase = GROBO_I_JOINT_STRAY;
             }
             expect_axes();
             assert_true(halting() == (row->astray ? GROBO_JOINT_BIT(j) : 0));
@@ -155,7 +154,7 @@ TEST_WITH(rig_wirings, who_leaves_waits_for_what_turns)
             axis->state.torque = rows[i].on ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF;
             axis->state.time_us = axis->state.goal_time_us = 0;
             axis->own_until_us = 0;
-            axis->has_target = true;
+            axis->phase = GROBO_I_JOINT_SENT;
             axis->seen_rad = axis->state.angle_rad;
             axis->seen_dps = (int16_t)rows[i].dps;
             axis->way.to_rad = axis->seen_rad + RAD(rows[i].left_deg);

@@ -55,23 +55,23 @@ static void on_the_way(void)
     rig_start(&rig, &quiet, NULL);
     int64_t now_us = rig.robot.now_us;
     neck()->way = (grobo_robot_way){0, RAD(40), now_us - 2000000, now_us + 2000000};
-    neck()->has_target = true;
+    neck()->phase = GROBO_I_JOINT_SENT;
 }
 
 TEST(a_joint_that_stands_beside_its_way_is_off_it)
 {
     on_the_way();
     read_state(20, 0);
-    assert_false(neck()->off_way);
+    assert_false(grobo_i_is_stray(neck()));
     read_state(5, 0);
-    assert_true(neck()->off_way);
+    assert_true(grobo_i_is_stray(neck()));
 }
 
 TEST(a_joint_that_moves_beside_its_way_is_late_and_on_it)
 {
     on_the_way();
     read_state(5, 30);
-    assert_false(neck()->off_way);
+    assert_false(grobo_i_is_stray(neck()));
 }
 
 /* Ahead of its way, or before its begin: 200 ms after the frame left it is on another one. */
@@ -88,7 +88,7 @@ TEST(a_joint_that_moves_where_its_way_is_not_is_off_it)
         on_the_way();
         neck()->told_us = rig.robot.now_us - rows[i].told_us;
         read_state(rows[i].deg, 30);
-        if (neck()->off_way != rows[i].off) {
+        if (grobo_i_is_stray(neck()) != rows[i].off) {
             fail_msg("row %zu", i);
         }
     }
@@ -97,9 +97,9 @@ TEST(a_joint_that_moves_where_its_way_is_not_is_off_it)
 TEST(a_joint_that_was_sent_nowhere_is_off_no_way)
 {
     on_the_way();
-    neck()->has_target = false;
+    neck()->phase = GROBO_I_JOINT_IDLE;
     read_state(5, 0);
-    assert_false(neck()->off_way);
+    assert_false(grobo_i_is_stray(neck()));
 }
 
 TEST(off_its_way_a_joint_is_on_its_own_or_where_it_was_read)
@@ -107,7 +107,7 @@ TEST(off_its_way_a_joint_is_on_its_own_or_where_it_was_read)
     on_the_way();
     read_state(5, 0);
     int64_t now_us = rig.robot.now_us;
-    assert_true(neck()->off_way);
+    assert_true(grobo_i_is_stray(neck()));
     neck()->state.goal_rad = RAD(15);
     neck()->own_until_us = now_us;
     assert_float_equal(grobo_i_axis_commanded(neck(), now_us + 500000), RAD(5), 1e-3);
@@ -120,13 +120,13 @@ TEST(an_angle_alone_tells_nothing_of_how_a_joint_moves)
 {
     static const uint8_t angle[] = {50, 0};
     on_the_way();
-    neck()->has_target = false;
+    neck()->phase = GROBO_I_JOINT_IDLE;
     read_state(5, 30); /* moves, nobody knows where to */
-    assert_true(neck()->adrift);
+    assert_true(grobo_i_is_external(neck()));
     read_neck(GROBO_RS30X_POSITION, angle, sizeof angle);
-    assert_true(neck()->adrift);
+    assert_true(grobo_i_is_external(neck()));
     read_state(5, 0);
-    assert_false(neck()->adrift);
+    assert_false(grobo_i_is_external(neck()));
 }
 
 static int parse_nonsense(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
@@ -207,7 +207,7 @@ static void start_with(const grobo_robot_config *config)
         axis->told_us = NOW - 7;
         axis->status = GROBO_ERR_TIMEOUT;
         axis->lost = 3;
-        axis->has_target = true;
+        axis->phase = GROBO_I_JOINT_SENT;
     }
     given = (grobo_joint_state){.angle_rad = RAD(10),
                                 .goal_rad = RAD(10),
@@ -266,6 +266,7 @@ TEST(what_a_reading_lacks_stays_as_it_was)
             given.angle_rad = RAD(10.01);
             given.goal_rad = RAD(10.02);
             robot.axes[j].state.valid = GROBO_FIELD_VOLTAGE | GROBO_FIELD_GOAL;
+            robot.axes[j].phase = GROBO_I_JOINT_UNKNOWN;
             const grobo_robot_axis *axis = take(j);
             const grobo_joint_state *is = &axis->state;
             const grobo_joint_state *was = &before[j].state;
@@ -291,7 +292,7 @@ TEST(what_a_reading_lacks_stays_as_it_was)
             assert_true(axis->angle_us == (angle ? NOW : NOW - 5));
             assert_true(axis->goal_us == (goal ? NOW : NOW - 5));
             assert_true(axis->full_us == ((valid & GROBO_FIELD_TEMPERATURE) != 0 ? NOW : NOW - 5));
-            assert_int_equal(axis->sensed, angle);
+            assert_int_equal(grobo_i_is_sensed(axis), angle);
             assert_int_equal(axis->torque_known, (valid & GROBO_FIELD_TORQUE) != 0);
         }
     }
@@ -305,10 +306,10 @@ TEST(a_reading_from_before_a_frame_tells_nothing_of_after_it)
             start_with(NULL);
             given.speed_dps = 20;
             given.angle_rad = RAD(40);
-            robot.axes[j].has_target = false;
+            robot.axes[j].phase = GROBO_I_JOINT_UNKNOWN;
             assert_int_equal(take_asked(j, NOW - 7 - late), GROBO_OK);
             const grobo_robot_axis *axis = &robot.axes[j];
-            assert_int_equal(axis->sensed, !late);
+            assert_int_equal(grobo_i_is_sensed(axis), !late);
             assert_int_equal(axis->torque_known, !late);
             assert_true(axis->goal_us == (late ? NOW - 5 : NOW));
             assert_true(late == (memcmp(&axis->way, &before[j].way, sizeof axis->way) == 0));
@@ -401,20 +402,20 @@ TEST(where_a_servo_goes_is_taken_from_what_it_tells)
                 fail_msg("joint %d, row %zu: %lld us left, not %lld", j, i,
                          (long long)(axis->own_until_us - NOW), (long long)be_us);
             }
-            assert_false(axis->adrift);
+            assert_false(grobo_i_is_external(axis));
         }
     }
 }
 
 /* One that moves though it was sent nowhere, and does not tell where to. */
-TEST(a_joint_is_adrift_that_moves_nobody_knows_where)
+TEST(a_joint_is_externally_moved_that_goes_nobody_knows_where)
 {
     enum { PACE = GROBO_FIELD_SPEED | GROBO_FIELD_TORQUE, ANGLE = GROBO_FIELD_ANGLE };
     static const struct {
         unsigned valid;
         int speed_dps;
         grobo_torque torque;
-        bool sent, adrift;
+        bool sent, external;
     } rows[] = {
         {ANGLE | PACE, 8, GROBO_TORQUE_ON, false, true},
         {ANGLE | PACE, -8, GROBO_TORQUE_ON, false, true},
@@ -437,13 +438,13 @@ TEST(a_joint_is_adrift_that_moves_nobody_knows_where)
             given.speed_dps = rows[i].speed_dps;
             given.torque = rows[i].torque;
             given.goal_rad += RAD(5);
-            robot.axes[j].has_target = rows[i].sent;
-            if (take(j)->adrift != rows[i].adrift) {
+            robot.axes[j].phase = rows[i].sent ? GROBO_I_JOINT_SENT : GROBO_I_JOINT_IDLE;
+            if (grobo_i_is_external(take(j)) != rows[i].external) {
                 fail_msg("joint %d, row %zu", j, i);
             }
-            if (rows[i].adrift && (rows[i].valid & PACE) == PACE) {
+            if (rows[i].external && (rows[i].valid & PACE) == PACE) {
                 given.valid = ANGLE | GROBO_FIELD_TORQUE; /* without its speed it stays so */
-                assert_true(take(j)->adrift);
+                assert_true(grobo_i_is_external(take(j)));
             }
         }
     }
@@ -460,13 +461,13 @@ TEST(a_joint_sent_nowhere_is_where_it_was_read)
             given.time_us = 2000000;
             given.angle_rad = RAD(20);
             given.goal_rad = RAD(30);
-            robot.axes[j].has_target = false;
+            robot.axes[j].phase = GROBO_I_JOINT_IDLE;
             const grobo_robot_axis *axis = take(j);
             expect("from", axis->way.from_rad, RAD(20));
             expect("to", axis->way.to_rad, moves ? RAD(30) : RAD(20));
             assert_true(axis->way.from_us == NOW);
             assert_true(axis->way.to_us == NOW + (moves ? 3000000 : 0));
-            robot.axes[j].has_target = true; /* sent somewhere, it is on its way */
+            robot.axes[j].phase = GROBO_I_JOINT_SENT; /* sent somewhere, it is on its way */
             given.angle_rad = RAD(22);
             expect("to", take(j)->way.to_rad, moves ? RAD(30) : RAD(20));
         }
@@ -486,6 +487,10 @@ static grobo_robot_axis *on_a_way(int joint)
     return axis;
 }
 
+/* On its trajectory, sent nowhere, in segments, off it. */
+static const grobo_i_joint_state hows[] = {GROBO_I_JOINT_SENT, GROBO_I_JOINT_IDLE,
+                                           GROBO_I_JOINT_IN_SEGMENTS, GROBO_I_JOINT_STRAY};
+
 /* 12 degrees from where it was when it was asked, and from where it is by now. */
 TEST(a_joint_that_stands_is_off_its_way_by_twelve_degrees)
 {
@@ -502,11 +507,9 @@ TEST(a_joint_that_stands_is_off_its_way_by_twelve_degrees)
                 grobo_robot_axis *axis = on_a_way(j);
                 given.angle_rad = RAD(rows[i].deg);
                 given.speed_dps = rows[i].speed_dps;
-                axis->has_target = how != 1;
-                axis->in_segments = how == 2;
-                axis->off_way = how == 3 && !rows[i].off;
+                axis->phase = (uint8_t)hows[how == 3 && rows[i].off ? 0 : how];
                 assert_int_equal(take_asked(j, NOW - 1000000), GROBO_OK);
-                assert_int_equal(axis->off_way, rows[i].off && (how == 0 || how == 3));
+                assert_int_equal(grobo_i_is_stray(axis), rows[i].off && (how == 0 || how == 3));
             }
         }
     }
@@ -534,7 +537,7 @@ TEST(a_joint_that_stands_on_a_fast_way_has_not_begun_it)
             given.angle_rad = RAD(rows[i].deg);
             given.speed_dps = rows[i].speed_dps;
             (void)take(j);
-            if (axis->off_way != rows[i].off) {
+            if (grobo_i_is_stray(axis) != rows[i].off) {
                 fail_msg("joint %d, row %zu", j, i);
             }
         }
@@ -549,9 +552,9 @@ TEST(without_its_speed_a_joint_stays_on_its_way_or_off_it)
             grobo_robot_axis *axis = on_a_way(j);
             given.valid = GROBO_FIELD_ANGLE;
             given.angle_rad = off ? RAD(30) : 0;
-            axis->off_way = off;
+            axis->phase = off ? GROBO_I_JOINT_STRAY : GROBO_I_JOINT_SENT;
             (void)take(j);
-            assert_int_equal(axis->off_way, off);
+            assert_int_equal(grobo_i_is_stray(axis), off);
         }
     }
 }
@@ -584,10 +587,9 @@ TEST(a_joint_whose_goal_is_another_is_off_its_way)
                 given.goal_rad = axis->state.goal_rad = RAD(rows[i].goal_deg);
                 axis->goal_us = rows[i].told_ago_us == GROBO_NEVER_US ? GROBO_NEVER_US
                                                                       : NOW - rows[i].told_ago_us;
-                axis->has_target = how != 1;
-                axis->in_segments = how == 2;
+                axis->phase = (uint8_t)hows[how];
                 (void)take(j);
-                if (axis->off_way != (rows[i].off && how == 0)) {
+                if (grobo_i_is_stray(axis) != (rows[i].off && how == 0)) {
                     fail_msg("joint %d, row %zu", j, i);
                 }
             }
@@ -604,21 +606,21 @@ TEST(what_is_at_the_bound_is_on_the_way)
         given.angle_rad = 12 * 0.017453292519943295;
         axis->state.goal_rad = 0.06 * 0.017453292519943295;
         (void)take(j);
-        assert_false(axis->off_way);
+        assert_false(grobo_i_is_stray(axis));
     }
 }
 
 /* Its goal is where it is, and it moves all the same. */
-TEST(a_joint_that_leaves_its_goal_is_adrift)
+TEST(a_joint_that_leaves_its_goal_is_externally_moved)
 {
     for (int j = 0; j < N; j++) {
         start_with(NULL);
         given.speed_dps = 30;
         given.goal_time_us = given.time_us;
-        robot.axes[j].has_target = false;
-        assert_true(take(j)->adrift);
+        robot.axes[j].phase = GROBO_I_JOINT_IDLE;
+        assert_true(grobo_i_is_external(take(j)));
         given.goal_time_us++; /* or the servo has time left for it */
-        assert_false(take(j)->adrift);
+        assert_false(grobo_i_is_external(take(j)));
     }
 }
 
@@ -634,7 +636,7 @@ TEST(a_joint_on_the_way_told_of_before_is_off_the_new_one)
             given.angle_rad = RAD(30);
             given.speed_dps = 30;
             (void)take(j);
-            assert_int_equal(axis->off_way, !over);
+            assert_int_equal(grobo_i_is_stray(axis), !over);
         }
     }
 }

@@ -4,6 +4,7 @@
 
 #include <grobo/core/robot.h>
 
+#include "src/robot/state.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -356,7 +357,8 @@ TEST_WITH(rig_wirings, a_refused_frame_hides_no_job)
     rig.robot.bus.free_us = rig.now_us + 20000; /* the line is taken */
     assert_true(grobo_robot_raw(&rig.robot, frame, (size_t)n) > 0);
     int moving = move(R_ELBOW, -60, 4000);
-    rig.robot.axes[NECK].adrift = true; /* it was read to be moved by somebody else */
+    rig.robot.axes[NECK].phase =
+        GROBO_I_JOINT_EXTERNAL; /* it was read to be moved by somebody else */
     rig.now_us += 20000;
     (void)grobo_robot_tx(&rig.robot, frame, sizeof frame, rig.now_us);
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_MOVE);

@@ -35,10 +35,10 @@ TEST_WITH(rig_wirings, a_joint_is_where_it_was_sent_or_read)
     axis.own_until_us = NOW + 2 * S;
     expect_equal(grobo_i_axis_commanded(&axis, NOW + 3 * S), 5, "on its way");
     assert_true(grobo_i_axis_until(&axis) == NOW + 4 * S);
-    axis.in_segments = true;
+    axis.phase = GROBO_I_JOINT_IN_SEGMENTS;
     expect_equal(grobo_i_axis_commanded(&axis, NOW + 3 * S), 3, "as far as it was told");
     expect_equal(grobo_i_axis_commanded(&axis, NOW + S / 2), 2.5, "before");
-    axis.off_way = true;
+    axis.phase = GROBO_I_JOINT_STRAY;
     expect_equal(grobo_i_axis_commanded(&axis, NOW + S), 12, "on its own way");
     expect_equal(grobo_i_axis_commanded(&axis, NOW + 3 * S), 14, "at its end");
     assert_true(grobo_i_axis_until(&axis) == NOW + 2 * S);
@@ -82,7 +82,7 @@ TEST_WITH(rig_wirings, a_joint_is_on_its_way_but_where_it_is_weak)
             axis->told_us = rows[i].told ? NOW : NOW - S / 2;
             axis->state.speed_dps = rows[i].dps;
             axis->state.valid &= (uint16_t)(rows[i].tells ? 0xFFFF : ~GROBO_FIELD_SPEED);
-            axis->off_way = rows[i].off;
+            axis->phase = rows[i].off ? GROBO_I_JOINT_STRAY : GROBO_I_JOINT_SENT;
             axis->own_until_us = 0;
             double on_deg = rows[i].told ? 0 : rows[i].dps * since_s;
             double deg = grobo_i_axis_reached(&robot, j, NOW) / RAD(1);
@@ -174,7 +174,8 @@ TEST_WITH(rig_wirings, a_joint_that_is_not_limp_moves_to_the_end_of_its_way)
         const grobo_robot_axis axis = {.state = {.torque = rows[i].torque},
                                        .way = {0, 1, 0, NOW + rows[i].way_us},
                                        .own_until_us = NOW + rows[i].own_us,
-                                       .off_way = rows[i].off,
+                                       .phase =
+                                           rows[i].off ? GROBO_I_JOINT_STRAY : GROBO_I_JOINT_SENT,
                                        .torque_known = rows[i].known};
         if (grobo_i_axis_moves(&axis, NOW) != rows[i].moves) {
             fail_msg("row %zu", i);
@@ -191,7 +192,7 @@ TEST_WITH(rig_wirings, a_joint_rests_where_it_was_read)
             start();
             grobo_robot_axis *axis = &robot.axes[j];
             set_going(j);
-            axis->in_segments = axis->off_way = true;
+            axis->phase = GROBO_I_JOINT_STRAY;
             axis->state.goal_rad += 1;
             axis->own_until_us = axis->angle_us + own; /* 0: it told of no way */
             keep_axes();
@@ -200,7 +201,7 @@ TEST_WITH(rig_wirings, a_joint_rests_where_it_was_read)
             } else {
                 grobo_i_axis_here(axis, NOW);
             }
-            before[j].in_segments = before[j].off_way = false;
+            before[j].phase = GROBO_I_JOINT_SENT;
             before[j].way = own == 1
                                 ? (grobo_robot_way){here_rad(j), here_rad(j) + 1, NOW - 5, NOW - 4}
                                 : (grobo_robot_way){here_rad(j), here_rad(j), NOW, NOW};
@@ -215,21 +216,21 @@ TEST_WITH(rig_wirings, joints_are_asked_for_by_their_bits)
         int joint = -1;
         start();
         assert_false(grobo_i_moving(&robot, NOW));
-        assert_false(grobo_i_adrift(&robot, GROBO_JOINTS_ALL(N), &joint));
+        assert_false(grobo_i_externally_moved(&robot, GROBO_JOINTS_ALL(N), &joint));
         assert_int_equal(joint, -1);
         assert_true(grobo_i_all_joints(&robot) == GROBO_JOINTS_ALL(N));
         assert_int_equal(grobo_i_lowest(GROBO_JOINT_BIT(j) | GROBO_JOINT_BIT(N - 1)), j);
-        robot.axes[j].adrift = true;
-        assert_true(grobo_i_adrift(&robot, GROBO_JOINT_BIT(j), &joint));
+        robot.axes[j].phase = GROBO_I_JOINT_EXTERNAL;
+        assert_true(grobo_i_externally_moved(&robot, GROBO_JOINT_BIT(j), &joint));
         assert_int_equal(joint, j);
-        assert_false(grobo_i_adrift(&robot, all_but(j), &joint));
+        assert_false(grobo_i_externally_moved(&robot, all_but(j), &joint));
         robot.axes[j].next = 1;
         assert_true(grobo_i_moving(&robot, NOW));
         robot.axes[j].next = 0;
         set_going(j);
         assert_true(grobo_i_moving(&robot, NOW));
         assert_false(grobo_i_moving(&robot, NOW + S));
-        robot.axes[j].sensed = false;
+        robot.axes[j].phase = GROBO_I_JOINT_UNKNOWN;
         assert_false(grobo_i_moving(&robot, NOW));
         assert_false(grobo_i_all_sensed(&robot, GROBO_JOINTS_ALL(N), &joint));
         assert_int_equal(joint, j);
@@ -314,7 +315,7 @@ TEST_WITH(rig_wirings, no_part_lies_outside_the_limits)
             start();
             robot.axes[j].way =
                 (grobo_robot_way){end * RAD(75 + j), end * RAD(65 + j), NOW, NOW + 2 * S};
-            robot.axes[j].in_segments = true;
+            robot.axes[j].phase = GROBO_I_JOINT_IN_SEGMENTS;
             robot.axes[j].told_to_us = NOW + 1;
             grobo_i_segments_aim(&robot, GROBO_JOINTS_ALL(N), &target);
             assert_true(target.posture.set == GROBO_JOINT_BIT(j));
@@ -349,7 +350,7 @@ static grobo_robot_axis *start_on(int joint, const told_way *row)
     set_going(third_of(joint)); /* a whole goal */
     axis->way = (grobo_robot_way){0, RAD(10), NOW, NOW + row->left_us};
     axis->told_to_us = NOW + row->told_us;
-    axis->in_segments = true;
+    axis->phase = GROBO_I_JOINT_IN_SEGMENTS;
     return axis;
 }
 
@@ -374,10 +375,9 @@ TEST_WITH(rig_wirings, the_next_frame_asks_for_more_of_each_way)
             grobo_robot_axis *axis = start_on(j, row);
             expect_aim(GROBO_JOINTS_ALL(N), j, row, row->time_us);
             expect_aim(all_but(j), j, row, 0);
-            axis->has_target = false;
+            axis->phase = GROBO_I_JOINT_IDLE;
             expect_aim(GROBO_JOINTS_ALL(N), j, row, 0);
-            axis->has_target = true;
-            axis->in_segments = false;
+            axis->phase = GROBO_I_JOINT_SENT;
             expect_aim(GROBO_JOINTS_ALL(N), j, row, 0);
         }
     }
@@ -390,9 +390,10 @@ TEST_WITH(rig_wirings, ways_are_told_on_until_they_end)
         for (int i = 0; i < 3 * TOLD_WAYS; i++) {
             const told_way *row = &told_ways[i / 3];
             grobo_robot_axis *axis = start_on(j, row);
-            axis->in_segments = i % 3 != 1;
+            static const grobo_i_joint_state phases[] = {GROBO_I_JOINT_IN_SEGMENTS,
+                                                         GROBO_I_JOINT_SENT, GROBO_I_JOINT_IDLE};
+            axis->phase = (uint8_t)phases[i % 3];
             robot.in_segments = true;
-            axis->has_target = i % 3 != 2;
             bool is_short = i % 3 == 0 && row->told_us < row->left_us;
             bool again = is_short || (i % 3 == 0 && row->left_us >= 100000);
             assert_int_equal(grobo_i_way_is_short(axis), is_short);
@@ -415,14 +416,14 @@ TEST_WITH(rig_wirings, the_first_way_sets_the_time_for_the_others)
         keep_axes();
         grobo_i_segments_begin(&robot, j);
         assert_true(robot.renewed_us == NOW);
-        before[j].in_segments = true;
+        before[j].phase = GROBO_I_JOINT_IN_SEGMENTS;
         before[j].told_to_us = NOW + GROBO_SEGMENT_US;
         expect_axes();
         robot.renewed_us = 2;
         robot.now_us = NOW + 10;
         grobo_i_segments_begin(&robot, other_of(j));
         assert_true(robot.renewed_us == 2);
-        before[other_of(j)].in_segments = true;
+        before[other_of(j)].phase = GROBO_I_JOINT_IN_SEGMENTS;
         before[other_of(j)].told_to_us = NOW + 10 + GROBO_SEGMENT_US;
         expect_axes();
     }
@@ -433,7 +434,8 @@ TEST_WITH(rig_wirings, the_first_way_sets_the_time_for_the_others)
 static void set_going_in_segments(int joint)
 {
     set_going(joint);
-    robot.axes[joint].in_segments = robot.in_segments = true;
+    robot.axes[joint].phase = GROBO_I_JOINT_IN_SEGMENTS;
+    robot.in_segments = true;
     robot.axes[joint].told_to_us = NOW + 200 * MS;
 }
 
@@ -486,7 +488,7 @@ TEST_WITH(rig_wirings, where_none_is_told_its_way_nobody_looks)
         set_going_in_segments(j);
         grobo_i_segments_step(&robot);
         assert_true(robot.in_segments);
-        robot.axes[j].in_segments = false;
+        robot.axes[j].phase = GROBO_I_JOINT_SENT;
         grobo_i_segments_step(&robot);
         assert_false(robot.in_segments);
         assert_true(grobo_i_segments_deadline(&robot) == GROBO_NEVER_US);
@@ -549,7 +551,7 @@ TEST_WITH(rig_wirings, a_way_that_was_not_told_on_is_given_up)
                     stands_rad = robot.axes[j].way.to_rad;
                     before[j].way.to_rad = stands_rad; /* its servo may be on the ramp there */
                     before[j].way.to_us = NOW;
-                    before[j].in_segments = false;
+                    before[j].phase = GROBO_I_JOINT_SENT;
                     const grobo_event *event = &robot.events[robot.events_head];
                     assert_int_equal(event->kind, GROBO_EVENT_TRIP);
                     assert_int_equal(event->u.trip.trip, GROBO_TRIP_HOST_STALL);

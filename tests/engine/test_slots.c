@@ -615,6 +615,7 @@ TEST_WITH(rig_wirings, a_target_that_is_refused_does_not_wait)
         {GROBO_OK, false, false, false, false},        {GROBO_OK, false, false, true, false},
         {GROBO_ERR_STALE, true, false, true, false},   {GROBO_ERR_LIMIT, false, true, true, false},
         {GROBO_ERR_SPACE, false, false, false, false}, {GROBO_ERR_FULL, false, false, true, true}};
+    static const grobo_i_joint_state when[] = {GROBO_I_JOINT_SENT, GROBO_I_JOINT_UNKNOWN};
     for (int j = 0; j < N; j++) {
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
             const int result = rows[i].result;
@@ -623,7 +624,7 @@ TEST_WITH(rig_wirings, a_target_that_is_refused_does_not_wait)
             const grobo_i_motion how = {.priority = GROBO_PRIORITY_MOTION,
                                         .due_us = GROBO_NEVER_US,
                                         .as_is = rows[i].as_is};
-            robot.axes[j].sensed = !rows[i].unread;
+            robot.axes[j].phase = (uint8_t)when[rows[i].unread];
             robot.axes[other_of(j)].next = 1000;
             robot.fault_joint = 99;
             driver.stabilize = turn_by_a_degree;
@@ -714,7 +715,7 @@ TEST_WITH(rig_wirings, a_renewal_goes_with_the_motion_frames)
     for (int j = 0; j < N; j++) {
         start();
         set_going(j);
-        robot.axes[j].in_segments = true;
+        robot.axes[j].phase = GROBO_I_JOINT_IN_SEGMENTS;
         robot.axes[j].told_to_us = NOW + 1;
         grobo_i_gate_renew(&robot, bits(j, other_of(j)));
         const grobo_robot_slot *slot = &robot.slots[0];
@@ -757,7 +758,7 @@ TEST_WITH(rig_wirings, torque_that_may_not_come_on_is_refused_by_name)
     for (int j = 0; j < N; j++) {
         start();
         make_limp(j);
-        robot.axes[j].held = false;
+        robot.axes[j].phase = GROBO_I_JOINT_IDLE;
         assert_int_equal(
             grobo_i_gate_torque(&robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON, GROBO_I_WHOLE),
             GROBO_ERR_STATE);
@@ -809,7 +810,7 @@ TEST_WITH(rig_wirings, a_halt_goes_to_what_moves)
         set_going(j);
         set_going(other_of(j));
         set_going(third_of(j));
-        robot.axes[third_of(j)].sensed = false;
+        robot.axes[third_of(j)].phase = GROBO_I_JOINT_UNKNOWN;
         grobo_i_gate_halt(&robot, all_but(other_of(j)));
         assert_int_equal(ended, 2);
         expect_used(1U | 4U);
@@ -826,7 +827,7 @@ TEST_WITH(rig_wirings, a_halt_goes_to_what_moves)
         assert_int_equal(slot->order.number, 0);
         assert_true(halting() == GROBO_JOINT_BIT(j));
         robot.axes[j].way.to_us = NOW;
-        robot.axes[third_of(j)].sensed = true;
+        robot.axes[third_of(j)].phase = GROBO_I_JOINT_SENT;
         assert_true(halting() == (of & GROBO_JOINT_BIT(third_of(j))));
     }
 }

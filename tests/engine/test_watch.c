@@ -137,7 +137,8 @@ TEST_WITH(rig_wirings, torque_that_is_lost_trips)
                                                i / 3 < 2 ? GROBO_FIELD_TORQUE : GROBO_FIELD_ANGLE});
             expect_trip(lost ? GROBO_TRIP_TORQUE_LOST : GROBO_TRIP_NONE, j, 0);
             if (lost) {
-                before[j].wants_torque = before[j].has_target = before[j].held = false;
+                before[j].wants_torque = false;
+                before[j].phase = GROBO_I_JOINT_IDLE;
             }
             expect_axes();
         }

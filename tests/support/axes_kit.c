@@ -71,17 +71,15 @@ void start_with(const grobo_robot_config *config)
         axis->told_us = axis->told_to_us = axis->seen_us = NOW - 7;
         axis->seen_rad = here_rad(j);
         axis->last = 3;
-        axis->sensed = axis->has_target = axis->torque_known = true;
-        axis->wants_torque = axis->held = true;
+        axis->phase = GROBO_I_JOINT_SENT;
+        axis->torque_known = axis->wants_torque = true;
     }
     for (int j = N; j < GROBO_JOINTS_MAX; j++) { /* of no joint: who looks there finds one moving */
         robot.axes[j] = (grobo_robot_axis){.way = {0, 1, NOW - S, NOW + 9 * S},
                                            .told_to_us = NOW,
                                            .next = 1,
-                                           .in_segments = true,
-                                           .sensed = true,
-                                           .has_target = true,
-                                           .adrift = true};
+                                           .phase = j % 2 == 0 ? GROBO_I_JOINT_EXTERNAL
+                                                               : GROBO_I_JOINT_IN_SEGMENTS};
     }
     keep_axes();
 }
@@ -125,6 +123,7 @@ void make_limp(int joint)
 {
     robot.axes[joint].state.torque = GROBO_TORQUE_OFF;
     robot.axes[joint].wants_torque = false;
+    robot.axes[joint].phase = GROBO_I_JOINT_READY;
 }
 
 void set_going(int joint)
@@ -191,14 +190,9 @@ static void expect_axis(int joint)
     SAME(next_rad)
     SAME(next_time_us)
     SAME(told_to_us)
-    SAME(in_segments)
-    SAME(sensed)
-    SAME(has_target)
+    SAME(phase)
     SAME(torque_known)
     SAME(wants_torque)
-    SAME(held)
-    SAME(off_way)
-    SAME(adrift)
 }
 
 void expect_axes(void)

@@ -90,8 +90,7 @@ void note_goal(int joint, double way_deg, int64_t time_us)
     axis->way =
         (grobo_robot_way){here_rad(joint), here_rad(joint) + RAD(way_deg), NOW, NOW + time_us};
     axis->own_until_us = 0;
-    axis->has_target = true;
-    axis->adrift = axis->held = axis->in_segments = axis->off_way = false;
+    axis->phase = GROBO_I_JOINT_SENT;
     axis->told_us = NOW;
     axis->last = NUMBER;
     axis->next = 0;

@@ -137,14 +137,9 @@ typedef struct grobo_robot_axis {
     uint16_t lost;             /* readings lost in a row */
     int16_t seen_dps;          /* how fast it turned at seen_us; INT16_MIN: not known */
     int64_t told_to_us;        /* in segments: until when on its way the servo was told to go */
-    bool in_segments;          /* it is told its way in parts */
-    bool sensed;               /* since the link came up */
-    bool has_target;           /* sent somewhere since then */
+    uint8_t phase;             /* what moves it, as far as is known (src/robot/state.h) */
     bool torque_known;
     bool wants_torque; /* we switched it on: to be without is a fault */
-    bool held;         /* goal read back to be the present angle: torque may come on */
-    bool off_way;      /* read to be elsewhere: it lost the frame of its way */
-    bool adrift;       /* moves though we sent it nowhere, and did not tell where to */
     bool goal_is_read; /* its goal was read since it was told last */
     double still_rad;  /* the first of the positions that show that it stands */
     int64_t still_us;  /* when that came; GROBO_NEVER_US: none since it was told last */
