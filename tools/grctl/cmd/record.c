@@ -17,6 +17,7 @@
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/fall.h"
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/keys.h"
@@ -272,6 +273,7 @@ static int let_fall(recorder *r, grobo_joint_mask joints)
     int n = grobo_joints_count(joints);
     app_note(c->a, "torque of %d joint%s goes off: hold the robot; what is raised falls", n,
              n == 1 ? "" : "s");
+    (void)fall_note(c, joints);
     return conn_wait(c, grobo_robot_torque(c->robot, joints, GROBO_TORQUE_OFF));
 }
 

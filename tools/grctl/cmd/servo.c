@@ -1,9 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include <grobo/core/robot.h>
+
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/fall.h"
 #include "tools/grctl/show/render.h"
+
+enum { OPT_LOWER };
+static const cli_option options[] = {
+    [OPT_LOWER] = OPTION_FLAG("lower", 0, "with off: go to the rest posture of the robot first"),
+};
 
 static bool parse_mode(const char *word, grobo_torque *mode)
 {
@@ -59,6 +68,36 @@ static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, co
     return EXIT_DONE;
 }
 
+/* To the rest posture of the robot's file, softly. */
+static int lower(conn *c, grobo_joint_mask joints)
+{
+    const grobo_driver *driver = grobo_robot_driver(c->robot);
+    grobo_posture target;
+    if (driver->rest_rad == NULL) {
+        return app_fail(c->a, EXIT_SAFETY, "UNSUPPORTED",
+                        "servo: the file of %s has no rest posture to lower it to; add one, or "
+                        "move it down first",
+                        driver->model->name);
+    }
+    (void)grobo_posture_init(&target, driver->model->n_joints);
+    for (int j = 0; j < target.n_joints; j++) {
+        target.angle_rad[j] = driver->rest_rad[j];
+    }
+    target.set = joints;
+    c->moving = true;
+    int error = conn_wait_shown(c, grobo_robot_move(c->robot, &target), "servo", 0);
+    return error ? conn_fail(c, error, "servo") : EXIT_DONE;
+}
+
+/* It reads first: a joint that does not answer is left out, and torque off reports it. */
+static int warn_of_fall(conn *c, grobo_joint_mask joints)
+{
+    if (grobo_robot_def_has_weight(robot_of(c->a))) {
+        (void)conn_sense(c, GROBO_JOINTS_ALL(conn_model(c)->n_joints), GROBO_SENSE_FULL);
+    }
+    return fall_ask(c, joints, "servo");
+}
+
 static int run(app *a)
 {
     conn c;
@@ -72,7 +111,17 @@ static int run(app *a)
     if (status) {
         return status;
     }
-    status = mode == GROBO_TORQUE_ON ? conn_open_to_move(&c, a) : conn_open(&c, a);
+    bool lowers = app_option(a, OPT_LOWER)->given;
+    if (lowers && mode != GROBO_TORQUE_OFF) {
+        return app_fail(a, EXIT_USAGE, "ARG", "servo: --lower goes with off");
+    }
+    status = mode == GROBO_TORQUE_ON || lowers ? conn_open_to_move(&c, a) : conn_open(&c, a);
+    if (!status && lowers) {
+        status = lower(&c, joints);
+    }
+    if (!status && mode == GROBO_TORQUE_OFF) {
+        status = warn_of_fall(&c, joints);
+    }
     if (!status) {
         status = switch_torque(&c, joints, mode, word);
     }
@@ -83,10 +132,14 @@ const cli_command cmd_servo = {
     .name = "servo",
     COMMAND_ARGUMENTS("on|off|brake [JOINT|GROUP]...", 1, -1, CLI_ARG_JOINT),
     .summary = "switch torque",
-    .details = "Switches the torque of all joints, or of those named, and reads it back. Before\n"
-               "torque comes on, each joint's target is set to where the joint is: nothing jumps.\n"
-               "Hold the robot when you switch it off: it falls.\n",
-    .example = "  grctl servo on\n  grctl servo off right_arm\n  grctl servo brake legs\n",
+    .details =
+        "Switches the torque of all joints, or of those named, and reads it back. Before\n"
+        "torque comes on, each joint's target is set to where the joint is: nothing jumps.\n"
+        "Hold the robot when you switch it off: it falls. Where its file has masses, the joints\n"
+        "that drop are named, and a terminal asks once (--yes: it does not).\n",
+    .example = "  grctl servo on\n  grctl servo off right_arm\n  grctl servo brake legs\n"
+               "  grctl servo off --lower\n",
     .group = CLI_GROUP_EACH,
+    COMMAND_OPTIONS(options),
     .run = run,
 };

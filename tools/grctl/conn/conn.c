@@ -10,6 +10,7 @@
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/fall.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
@@ -781,6 +782,9 @@ static int carry_out_policy(conn *c, int status)
         return EXIT_DONE;
     }
     c->leaving = true;
+    if (policy == GROBO_EXIT_OFF) {
+        (void)fall_note(c, GROBO_JOINTS_ALL(conn_model(c)->n_joints));
+    }
     error = conn_wait_shown(c, grobo_robot_exit(c->robot, policy), "leaving", 0);
     if (error && !c->signal && !app_global(c->a, GLOBAL_ON_EXIT)->given) {
         return status; /* nobody asked for it, and why the command failed has been said */

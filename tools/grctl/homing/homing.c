@@ -8,6 +8,7 @@
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/eeprom.h"
+#include "tools/grctl/conn/fall.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/homing/file.h"
 #include "tools/grctl/homing/homing.h"
@@ -335,6 +336,7 @@ static int hear_enter(calibration *k)
     k->look = conn_every(k->c.base, LOOK_US, conn_note, &k->is_due);
     progress_start(&k->line, k->a);
     app_note(k->a, "hold the robot, what is raised falls: torque goes off when you press enter");
+    (void)fall_note(&k->c, GROBO_JOINTS_ALL(app_model(k->a)->n_joints));
     return watch(k, false);
 }
 
@@ -423,6 +425,7 @@ static int let_limp(calibration *k)
     grobo_joint_mask all = GROBO_JOINTS_ALL(app_model(k->a)->n_joints);
     if (!k->listens) {
         app_note(k->a, "torque goes off: what is raised falls");
+        (void)fall_note(&k->c, all);
     }
     return conn_wait(&k->c, grobo_robot_torque(k->c.robot, all, GROBO_TORQUE_OFF));
 }
