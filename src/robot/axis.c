@@ -8,7 +8,7 @@
 #include "src/model/joint.h"
 #include "src/robot/robot.h"
 
-/* The goals of a way are on the wire's grid: this part of its step is no other goal. */
+/* The goals of a trajectory are on the wire's grid: this part of its step is no other goal. */
 #define SAME_GOAL_STEPS 0.6
 
 double grobo_i_same_goal_rad(const grobo_robot *robot)
@@ -16,35 +16,36 @@ double grobo_i_same_goal_rad(const grobo_robot *robot)
     return SAME_GOAL_STEPS * robot->driver->angle_step_rad;
 }
 
-double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us)
+double grobo_i_trajectory_at(const grobo_robot_trajectory *trajectory, int64_t now_us)
 {
-    int64_t at_us = grobo_i_later(now_us, way->from_us);
-    if (at_us >= way->to_us) {
-        return way->to_rad;
+    int64_t at_us = grobo_i_later(now_us, trajectory->from_us);
+    if (at_us >= trajectory->to_us) {
+        return trajectory->to_rad;
     }
-    double part = (double)(at_us - way->from_us) / (double)(way->to_us - way->from_us);
-    return way->from_rad + (way->to_rad - way->from_rad) * part;
+    double part =
+        (double)(at_us - trajectory->from_us) / (double)(trajectory->to_us - trajectory->from_us);
+    return trajectory->from_rad + (trajectory->to_rad - trajectory->from_rad) * part;
 }
 
 double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
 {
     if (grobo_i_is_stray(axis)) {
-        const grobo_robot_way own = {axis->state.angle_rad, axis->state.goal_rad, axis->angle_us,
-                                     axis->own_until_us};
-        return axis->own_until_us > axis->angle_us ? grobo_i_way_at(&own, now_us)
+        const grobo_robot_trajectory own = {axis->state.angle_rad, axis->state.goal_rad,
+                                            axis->angle_us, axis->own_until_us};
+        return axis->own_until_us > axis->angle_us ? grobo_i_trajectory_at(&own, now_us)
                                                    : axis->state.angle_rad + grobo_i_load(axis);
     }
     int64_t at_us =
         grobo_i_is_in_segments(axis) ? grobo_i_sooner(now_us, axis->told_to_us) : now_us;
-    return grobo_i_way_at(&axis->way, at_us);
+    return grobo_i_trajectory_at(&axis->trajectory, at_us);
 }
 
 int64_t grobo_i_axis_until(const grobo_robot_axis *axis)
 {
-    return grobo_i_is_stray(axis) ? axis->own_until_us : axis->way.to_us;
+    return grobo_i_is_stray(axis) ? axis->own_until_us : axis->trajectory.to_us;
 }
 
-/* One that is so near the end of its way is there. */
+/* One that is so near the end of its trajectory is there. */
 #define LAGS_RAD (1 * 0.017453292519943295)
 
 /* Where a joint is, and how fast it turns. */
@@ -83,11 +84,11 @@ static bool is_guided(const grobo_robot_axis *axis)
     return grobo_i_is_stray(axis) ? axis->own_until_us > axis->angle_us : grobo_i_has_target(axis);
 }
 
-/* 0 of a way that leads nowhere, whatever its time. */
-static double way_speed(const grobo_robot_way *way)
+/* 0 of a trajectory that leads nowhere, whatever its time. */
+static double trajectory_speed(const grobo_robot_trajectory *trajectory)
 {
-    double way_rad = fabs(way->to_rad - way->from_rad);
-    return way_rad > 0 ? way_rad / seconds(way->from_us, way->to_us) : 0;
+    double way_rad = fabs(trajectory->to_rad - trajectory->from_rad);
+    return way_rad > 0 ? way_rad / seconds(trajectory->from_us, trajectory->to_us) : 0;
 }
 
 static bool tells_speed(const grobo_robot_axis *axis)
@@ -131,37 +132,38 @@ bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint)
     return !GROBO_DRIVERS_PLAIN && tells_speed(axis) && (axis->state.valid & GROBO_FIELD_TIME) == 0;
 }
 
-/* The speed that the frame of its way asked for. Where that way leads nowhere, drivers have a joint
- * go the rest of the way before at the approach speed. */
+/* The speed that the frame of its trajectory asked for. Where that trajectory leads nowhere,
+ * drivers have a joint go the rest of the trajectory before at the approach speed. */
 static double told_speed(const grobo_robot *robot, int joint)
 {
-    const grobo_robot_way *way = &robot->axes[joint].way;
-    return fabs(way->to_rad - way->from_rad) < robot->driver->angle_step_rad
+    const grobo_robot_trajectory *trajectory = &robot->axes[joint].trajectory;
+    return fabs(trajectory->to_rad - trajectory->from_rad) < robot->driver->angle_step_rad
                ? robot->driver->limits.approach_rad_s
-               : way_speed(way);
+               : trajectory_speed(trajectory);
 }
 
-/* Of a servo with ramps that tells its speed: from there and then to the speed of its way, and to
- * rest at its end. */
+/* Of a servo with ramps that tells its speed: from there and then to the speed of its
+ * trajectory, and to rest at its end. */
 static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    const grobo_robot_way *way = &axis->way;
+    const grobo_robot_trajectory *trajectory = &axis->trajectory;
     double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
     double wanted_rad_s = told_speed(robot, joint);
     course c = seen(robot, joint);
     int64_t seen_us = axis->seen_us;
-    double end_rad =
-        grobo_i_is_in_segments(axis) ? grobo_i_way_at(way, axis->told_to_us) : way->to_rad;
+    double end_rad = grobo_i_is_in_segments(axis)
+                         ? grobo_i_trajectory_at(trajectory, axis->told_to_us)
+                         : trajectory->to_rad;
     end_rad -= grobo_i_load(axis);
-    if (seconds(way->from_us, seen_us) * accel_rad_s2 > 2 * wanted_rad_s) {
+    if (seconds(trajectory->from_us, seen_us) * accel_rad_s2 > 2 * wanted_rad_s) {
         wanted_rad_s = fmin(wanted_rad_s, fabs(c.rad_s)); /* too weak to be as fast by then */
     }
-    c = go_on(c, fmin(seconds(seen_us, way->from_us), GOES_ON_S));
+    c = go_on(c, fmin(seconds(seen_us, trajectory->from_us), GOES_ON_S));
     double left_rad = end_rad - c.at_rad;
     wanted_rad_s = left_rad == 0 ? 0 : copysign(wanted_rad_s, left_rad);
     c = speed_up(c, wanted_rad_s, accel_rad_s2,
-                 seconds(grobo_i_later(seen_us, way->from_us), now_us));
+                 seconds(grobo_i_later(seen_us, trajectory->from_us), now_us));
     double still_rad = copysign(end_rad - c.at_rad, (end_rad - c.at_rad) * left_rad);
     if (c.rad_s * left_rad <= 0) {
         return c;
@@ -172,28 +174,28 @@ static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
     return c;
 }
 
-/* How far a joint can have come since it was read: at the speed of its way, or the one it was read
- * to have; at its most where it was told since. */
+/* How far a joint can have come since it was read: at the speed of its trajectory, or the one it
+ * was read to have; at its most where it was told since. */
 static double most_since(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double rad_s = grobo_i_joint(robot->driver->model, joint)->max_speed_rad_s;
-    if (axis->seen_us >= axis->way.from_us) {
-        rad_s = fmax(way_speed(&axis->way), fabs(seen(robot, joint).rad_s));
+    if (axis->seen_us >= axis->trajectory.from_us) {
+        rad_s = fmax(trajectory_speed(&axis->trajectory), fabs(seen(robot, joint).rad_s));
     }
     return rad_s * seconds(axis->seen_us, now_us);
 }
 
-/* Where the way is by now, but not further than the joint can have come. One that is before its way
- * comes along it, too. */
+/* Where the trajectory is by now, but not further than the joint can have come. One that is
+ * before its trajectory comes along it, too. */
 static double along(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double way_rad = grobo_i_axis_commanded(axis, now_us) - grobo_i_load(axis);
     double most_rad = most_since(robot, joint, now_us);
-    double end_rad = axis->way.to_rad - grobo_i_load(axis);
+    double end_rad = axis->trajectory.to_rad - grobo_i_load(axis);
     bool before = (way_rad - axis->seen_rad) * (end_rad - axis->seen_rad) < 0 &&
-                  axis->seen_us >= axis->way.from_us;
+                  axis->seen_us >= axis->trajectory.from_us;
     double left_rad = (before ? end_rad : way_rad) - axis->seen_rad;
     return axis->seen_rad + copysign(fmin(fabs(left_rad), most_rad), left_rad);
 }
@@ -204,7 +206,7 @@ static bool tells_end(const grobo_robot_axis *axis)
     return axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->angle_us;
 }
 
-/* Of a servo that tells how it turns, and of which no way or its ramps are known. */
+/* Of a servo that tells how it turns, and of which no trajectory or its ramps are known. */
 static course turning(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
@@ -225,17 +227,19 @@ static bool has_course(const grobo_robot *robot, int joint)
     return grobo_i_axis_tells_turn(robot, joint) && known;
 }
 
-/* True of one that was read, since it was told, to be elsewhere than its way was by then: it is too
- * weak, or the frame before was lost. */
+/* True of one that was read, since it was told, to be elsewhere than its trajectory was by then:
+ * it is too weak, or the frame before was lost. */
 static bool is_beside(const grobo_robot_axis *axis)
 {
-    double asked_rad = fabs(axis->seen_rad - grobo_i_way_at(&axis->way, axis->seen_us));
-    double came_rad = fabs(axis->seen_rad - grobo_i_way_at(&axis->way, axis->angle_us));
-    return axis->seen_us >= axis->told_us && fmin(asked_rad, came_rad) > GROBO_I_OFF_WAY_RAD;
+    double asked_rad =
+        fabs(axis->seen_rad - grobo_i_trajectory_at(&axis->trajectory, axis->seen_us));
+    double came_rad =
+        fabs(axis->seen_rad - grobo_i_trajectory_at(&axis->trajectory, axis->angle_us));
+    return axis->seen_us >= axis->told_us && fmin(asked_rad, came_rad) > GROBO_I_OFF_TRAJECTORY_RAD;
 }
 
-/* Of a servo that tells the time of its way: there, but for one beside it, which goes on to its
- * goal at the speed that it told, and one that cannot have come there since it was read. */
+/* Of a servo that tells the time of its trajectory: there, but for one beside it, which goes on
+ * to its goal at the speed that it told, and one that cannot have come there since it was read. */
 static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
@@ -248,14 +252,14 @@ static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
     if (beside) {
         rad_s = fmin(grobo_rad_from_deg(abs(axis->state.speed_dps)), rad_s);
     }
-    double left_rad = (beside ? axis->way.to_rad : way_rad) - axis->seen_rad;
+    double left_rad = (beside ? axis->trajectory.to_rad : way_rad) - axis->seen_rad;
     double most_rad = rad_s * seconds(axis->seen_us, now_us);
-    bool behind = beside || fabs(left_rad) - most_rad > GROBO_I_OFF_WAY_RAD;
+    bool behind = beside || fabs(left_rad) - most_rad > GROBO_I_OFF_TRAJECTORY_RAD;
     return behind ? axis->seen_rad + copysign(fmin(most_rad, fabs(left_rad)), left_rad) : way_rad;
 }
 
 /* Of servos that do not tell how they turn, or that have no ramps: on a way that is known. */
-static double on_way_at(const grobo_robot *robot, int joint, int64_t at_us)
+static double on_trajectory_at(const grobo_robot *robot, int joint, int64_t at_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     if ((axis->state.valid & GROBO_FIELD_TIME) != 0) {
@@ -269,7 +273,7 @@ static double on_way_at(const grobo_robot *robot, int joint, int64_t at_us)
 double grobo_i_axis_place(const grobo_robot *robot, int joint)
 {
     return has_course(robot, joint) ? turning(robot, joint, robot->now_us).at_rad
-                                    : on_way_at(robot, joint, robot->now_us);
+                                    : on_trajectory_at(robot, joint, robot->now_us);
 }
 
 double grobo_i_axis_speed(const grobo_robot *robot, int joint)
@@ -278,11 +282,12 @@ double grobo_i_axis_speed(const grobo_robot *robot, int joint)
     if (has_course(robot, joint)) {
         return fabs(turning(robot, joint, robot->now_us).rad_s);
     }
-    const grobo_robot_way way = grobo_i_is_stray(axis)
-                                    ? (grobo_robot_way){axis->state.angle_rad, axis->state.goal_rad,
-                                                        axis->angle_us, axis->own_until_us}
-                                    : axis->way;
-    return way.to_us > robot->now_us ? way_speed(&way) : 0;
+    const grobo_robot_trajectory trajectory =
+        grobo_i_is_stray(axis)
+            ? (grobo_robot_trajectory){axis->state.angle_rad, axis->state.goal_rad, axis->angle_us,
+                                       axis->own_until_us}
+            : axis->trajectory;
+    return trajectory.to_us > robot->now_us ? trajectory_speed(&trajectory) : 0;
 }
 
 double grobo_i_axis_brake_us(const grobo_robot *robot, int joint)
@@ -296,7 +301,7 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
     const grobo_robot_axis *axis = &robot->axes[joint];
     double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
     if (!has_course(robot, joint)) {
-        return on_way_at(robot, joint, rest_us);
+        return on_trajectory_at(robot, joint, rest_us);
     }
     const course c = turning(robot, joint, robot->now_us);
     double on_rad = fabs(c.rad_s) * seconds(robot->now_us, rest_us);
@@ -304,7 +309,7 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
         on_rad = fmax(on_rad, c.rad_s * c.rad_s / (2 * accel_rad_s2));
     }
     bool guided = is_guided(axis) && !grobo_i_is_stray(axis);
-    double end_rad = (guided ? axis->way.to_rad : axis->state.goal_rad) - grobo_i_load(axis);
+    double end_rad = (guided ? axis->trajectory.to_rad : axis->state.goal_rad) - grobo_i_load(axis);
     double left_rad = end_rad - c.at_rad;
     bool beyond = (guided || tells_end(axis)) && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
     return beyond ? end_rad : c.at_rad + copysign(on_rad, c.rad_s);
@@ -343,13 +348,13 @@ bool grobo_i_torque_is_limited(const grobo_robot *robot, int joint)
 
 double grobo_i_axis_target(const grobo_robot_axis *axis)
 {
-    return axis->next != 0 ? axis->next_rad : axis->way.to_rad;
+    return axis->next != 0 ? axis->next_rad : axis->trajectory.to_rad;
 }
 
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
 {
     double goal_rad = axis->state.angle_rad + grobo_i_load(axis);
-    axis->way = (grobo_robot_way){goal_rad, goal_rad, now_us, now_us};
+    axis->trajectory = (grobo_robot_trajectory){goal_rad, goal_rad, now_us, now_us};
     grobo_i_joint_to(axis, GROBO_I_JOINT_REST);
 }
 
@@ -357,8 +362,8 @@ void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us)
 {
     grobo_i_axis_rest(axis, now_us);
     if (axis->own_until_us > axis->angle_us) { /* by now it may have arrived */
-        axis->way = (grobo_robot_way){axis->state.angle_rad, axis->state.goal_rad, axis->angle_us,
-                                      axis->own_until_us};
+        axis->trajectory = (grobo_robot_trajectory){axis->state.angle_rad, axis->state.goal_rad,
+                                                    axis->angle_us, axis->own_until_us};
     }
 }
 
@@ -397,21 +402,21 @@ bool grobo_i_may_halt(const grobo_robot *robot)
 
 void grobo_i_axis_cut(grobo_robot_axis *axis)
 {
-    axis->way.to_rad = grobo_i_way_at(&axis->way, axis->told_to_us);
-    axis->way.to_us = grobo_i_sooner(axis->way.to_us, axis->told_to_us);
+    axis->trajectory.to_rad = grobo_i_trajectory_at(&axis->trajectory, axis->told_to_us);
+    axis->trajectory.to_us = grobo_i_sooner(axis->trajectory.to_us, axis->told_to_us);
     grobo_i_joint_to(axis, GROBO_I_JOINT_REST);
 }
 
 bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
 {
     return !grobo_i_axis_is_limp(axis) &&
-           grobo_i_later(grobo_i_axis_until(axis), axis->way.to_us) > now_us;
+           grobo_i_later(grobo_i_axis_until(axis), axis->trajectory.to_us) > now_us;
 }
 
-bool grobo_i_way_is_short(const grobo_robot_axis *axis)
+bool grobo_i_trajectory_is_short(const grobo_robot_axis *axis)
 {
     return grobo_i_has_target(axis) && grobo_i_is_in_segments(axis) &&
-           axis->told_to_us < axis->way.to_us;
+           axis->told_to_us < axis->trajectory.to_us;
 }
 
 bool grobo_i_goal_is_told(const grobo_robot_axis *axis)
@@ -446,8 +451,8 @@ bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool sent = grobo_i_has_target(axis) && !grobo_i_is_stray(axis);
-    *goal_rad = sent ? axis->way.to_rad : axis->state.goal_rad;
-    return sent ? !grobo_i_way_is_short(axis)
+    *goal_rad = sent ? axis->trajectory.to_rad : axis->state.goal_rad;
+    return sent ? !grobo_i_trajectory_is_short(axis)
                 : axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us;
 }
 
@@ -455,7 +460,7 @@ bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad)
 static bool settles(const grobo_robot *robot, const grobo_robot_axis *axis, int64_t since_us)
 {
     int64_t from_us = grobo_i_later(axis->told_us, since_us);
-    from_us = grobo_i_has_target(axis) ? grobo_i_later(from_us, axis->way.to_us) : from_us;
+    from_us = grobo_i_has_target(axis) ? grobo_i_later(from_us, axis->trajectory.to_us) : from_us;
     return robot->now_us - from_us <= SAGS_US;
 }
 
@@ -492,7 +497,7 @@ static bool turns(const grobo_robot_axis *axis)
 
 bool grobo_i_axis_is_late(const grobo_robot_axis *axis)
 {
-    double off_rad = axis->state.angle_rad + grobo_i_load(axis) - axis->way.to_rad;
+    double off_rad = axis->state.angle_rad + grobo_i_load(axis) - axis->trajectory.to_rad;
     return !tells_speed(axis) && fabs(off_rad) > LAGS_RAD;
 }
 
@@ -508,19 +513,19 @@ static double way_back_s(const grobo_robot *robot, int joint, double way_rad)
     return rad_s > 0 ? way_rad / rad_s + rad_s / accel_rad_s2 : 0;
 }
 
-/* Of a servo with ramps: what it takes to come to rest at the end of its way, which it passes, and
- * comes back to, where it is too fast for what is left. */
+/* Of a servo with ramps: what it takes to come to rest at the end of its trajectory, which it
+ * passes, and comes back to, where it is too fast for what is left. */
 static bool is_on_ramp(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
-    bool stood = !turns(axis) && axis->seen_us >= axis->way.to_us;
+    bool stood = !turns(axis) && axis->seen_us >= axis->trajectory.to_us;
     if (accel_rad_s2 <= 0 || stood || !grobo_i_is_sensed(axis) || !has_course(robot, joint) ||
         !is_guided(axis) || !grobo_i_axis_is_on(axis)) {
         return false;
     }
     const course c = seen(robot, joint);
-    double end_rad = axis->way.to_rad - grobo_i_load(axis);
+    double end_rad = axis->trajectory.to_rad - grobo_i_load(axis);
     double left_rad = copysign(end_rad - c.at_rad, (end_rad - c.at_rad) * c.rad_s);
     double over_rad = c.rad_s * c.rad_s / (2 * accel_rad_s2) - left_rad;
     double back_s = fabs(c.rad_s) / accel_rad_s2 + way_back_s(robot, joint, fmax(over_rad, 0));
@@ -532,7 +537,8 @@ static bool is_on_ramp(const grobo_robot *robot, int joint)
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool stood = !turns(axis) && (grobo_i_is_stray(axis) || axis->seen_us >= axis->way.to_us);
+    bool stood =
+        !turns(axis) && (grobo_i_is_stray(axis) || axis->seen_us >= axis->trajectory.to_us);
     if (stood || !tells_speed(axis) || !grobo_i_is_sensed(axis) || !grobo_i_has_target(axis) ||
         axis->seen_us < axis->told_us || !grobo_i_axis_is_on(axis)) {
         return false;
@@ -543,7 +549,7 @@ bool grobo_i_axis_lags(const grobo_robot *robot, int joint)
     }
     return grobo_i_axis_tells_turn(robot, joint) && is_guided(axis) &&
            !grobo_i_swings(robot, joint) &&
-           fabs(grobo_i_axis_place(robot, joint) + grobo_i_load(axis) - axis->way.to_rad) >
+           fabs(grobo_i_axis_place(robot, joint) + grobo_i_load(axis) - axis->trajectory.to_rad) >
                LAGS_RAD;
 }
 

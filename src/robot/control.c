@@ -20,7 +20,7 @@ int grobo_robot_pause(grobo_robot *robot)
     }
     grobo_i_begin(robot);
     int result = grobo_sequencer_pause(&robot->sequencer, robot->now_us);
-    /* A clip before may have left joints on their way that this one does not move. */
+    /* A clip before may have left joints on their trajectory that this one does not move. */
     grobo_joint_mask left =
         robot->played_joints & (~robot->sequencer.to.set | grobo_i_unknown(robot));
     if (result >= 0 && left != 0) {

@@ -111,7 +111,7 @@ static bool goes_as_asked(const grobo_robot *robot, const grobo_robot_order *ord
 
 /* The angles and times of a goal: drawn in to its limits, and slow enough from where its joints are
  * by now. */
-static int judge_way(grobo_robot *robot, const grobo_robot_order *order, saying *says)
+static int judge_trajectory(grobo_robot *robot, const grobo_robot_order *order, saying *says)
 {
     int clamped = grobo_i_target_clamp(robot, &says->target.posture); /* one may rest outside */
     int result = grobo_i_gate_time(robot, order, &says->target);
@@ -123,7 +123,7 @@ static int judge_way(grobo_robot *robot, const grobo_robot_order *order, saying 
 static bool is_judged(grobo_robot *robot, const grobo_robot_order *order, const saying *says)
 {
     saying again = *says;
-    return judge_way(robot, order, &again) >= 0 &&
+    return judge_trajectory(robot, order, &again) >= 0 &&
            again.as_asked == goes_as_asked(robot, order, &says->target);
 }
 
@@ -142,7 +142,7 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment
     }
     int result = judge_joints(robot, target->posture.set);
     if (result >= 0 && (when != BUILT || order->rests)) {
-        result = judge_way(robot, order, says);
+        result = judge_trajectory(robot, order, says);
     } else if (result >= 0) {
         says->as_asked = target->posture.set == order->joints;
         GROBO_ASSERT(!GROBO_ASSERT_WALKS || is_judged(robot, order, says));
@@ -314,7 +314,7 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
     return GROBO_OK;
 }
 
-/* Further along the ways that its joints are on; another one may have taken their place. */
+/* Further along the trajectories that its joints are on; another one may have taken their place. */
 static int judge_segment(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
     if (robot->trip.latched) {
@@ -427,8 +427,9 @@ int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_r
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* Where a way begins, which is gone at a speed by servos that are told no time. One that is behind
- * comes to rest no later for that: a halt counts the way from where it was read. */
+/* Where a trajectory begins, which is gone at a speed by servos that are told no time. One that
+ * is behind comes to rest no later for that: a halt counts the trajectory from where it was
+ * read. */
 static double begin_of_halt(const grobo_robot *robot, const grobo_target *target, int joint)
 {
     double to_rad = target->posture.angle_rad[joint];
@@ -442,7 +443,7 @@ static double begin_of_halt(const grobo_robot *robot, const grobo_target *target
                : to_rad + copysign(fmin(fabs(behind_rad), fmax(most_rad, way_rad)), behind_rad);
 }
 
-/* A way that leads nowhere is gone at the approach speed. */
+/* A trajectory that leads nowhere is gone at the approach speed. */
 static double begin_of_rest(const grobo_robot *robot, const grobo_target *target, int joint)
 {
     double to_rad = target->posture.angle_rad[joint];
@@ -559,8 +560,9 @@ static void forget(grobo_robot *robot, grobo_joint_mask joints, bool torque_too)
     grobo_i_gate_soften(robot);
 }
 
-/* Where joints are on their way to from now on. */
-static void note_way(grobo_robot *robot, const grobo_robot_order *order, const grobo_target *target)
+/* Where joints are on their trajectory to from now on. */
+static void note_trajectory(grobo_robot *robot, const grobo_robot_order *order,
+                            const grobo_target *target)
 {
     int64_t now_us = robot->now_us;
     bool parts = order->kind == GROBO_I_ORDER_GOAL && grobo_i_goes_in_parts(robot, order);
@@ -569,8 +571,8 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
             grobo_robot_axis *axis = &robot->axes[j];
             double from_rad = grobo_i_begin_of(robot, order, j);
             grobo_i_axis_told(robot, j);
-            axis->way = (grobo_robot_way){from_rad, target->posture.angle_rad[j], now_us,
-                                          now_us + target->joint_time_us[j]};
+            axis->trajectory = (grobo_robot_trajectory){from_rad, target->posture.angle_rad[j],
+                                                        now_us, now_us + target->joint_time_us[j]};
             axis->own_until_us = 0;
             robot->halts_owed &= ~GROBO_JOINT_BIT(j);
             grobo_i_joint_to(axis, GROBO_I_JOINT_GOAL);
@@ -639,7 +641,7 @@ static void note_goals(grobo_robot *robot, const grobo_robot_slot *slot, const s
     if (target->posture.set == 0) {
         return;
     }
-    note_way(robot, &slot->order, target);
+    note_trajectory(robot, &slot->order, target);
     note_pace(robot, slot, target);
     robot->played_joints &= ~target->posture.set;
     robot->played_joints |= slot->due_us != GROBO_NEVER_US ? target->posture.set : 0;
@@ -658,7 +660,7 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
         break;
     case GROBO_I_ORDER_SEGMENT:
         grobo_i_segments_told(robot, &says->target);
-        return; /* the way is the one that was noted */
+        return; /* the trajectory is the one that was noted */
     case GROBO_I_ORDER_HOLD:
         note_hold(robot, says->target.posture.set);
         break;

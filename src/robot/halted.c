@@ -34,8 +34,8 @@ static bool has_lost_it(const grobo_robot *robot, int joint)
         return !grobo_i_goal_is_taken(robot, joint);
     }
     return GROBO_I_EXTRA(robot->driver, tells_no_speed) &&
-           robot->now_us > axis->way.to_us + LATE_US &&
-           fabs(axis->state.angle_rad + grobo_i_load(axis) - axis->way.to_rad) > BESIDE_RAD;
+           robot->now_us > axis->trajectory.to_us + LATE_US &&
+           fabs(axis->state.angle_rad + grobo_i_load(axis) - axis->trajectory.to_rad) > BESIDE_RAD;
 }
 
 /* So far beside its halt, a joint was not where it was taken to be: it had lost a frame before. */
@@ -47,7 +47,7 @@ static bool has_lost_it(const grobo_robot *robot, int joint)
 static bool is_beside(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double here_rad = grobo_i_way_at(&axis->way, axis->angle_us);
+    double here_rad = grobo_i_trajectory_at(&axis->trajectory, axis->angle_us);
     double off_rad = axis->state.angle_rad + grobo_i_load(axis) - here_rad;
     return fabs(off_rad) > BESIDE_HALT_RAD && !grobo_i_rests(robot, joint);
 }
@@ -64,7 +64,7 @@ void grobo_i_astray(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
     grobo_i_axis_here(axis, robot->now_us);
-    axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ASTRAY_US);
+    axis->trajectory.to_us = grobo_i_later(axis->trajectory.to_us, robot->now_us + ASTRAY_US);
     grobo_i_joint_to(axis, GROBO_I_JOINT_STRAYS);
 }
 

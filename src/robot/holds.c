@@ -32,17 +32,19 @@ static bool is_inside(const grobo_robot *robot, int joint, double angle_rad)
 static void assert_axis(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    GROBO_ASSERT(axis->way.from_us <= axis->way.to_us);
-    /* A way that its servo told of is another program's; where it was read to turn is no target. */
-    bool on_way = grobo_i_has_target(axis) && axis->way.from_us < axis->way.to_us &&
-                  axis->way.from_rad != axis->way.to_rad && axis->own_until_us == 0;
-    GROBO_ASSERT(!on_way || is_inside(robot, joint, axis->way.to_rad));
+    GROBO_ASSERT(axis->trajectory.from_us <= axis->trajectory.to_us);
+    /* A trajectory that its servo told of is another program's; where it was read to turn is no
+     * target. */
+    bool on_trajectory =
+        grobo_i_has_target(axis) && axis->trajectory.from_us < axis->trajectory.to_us &&
+        axis->trajectory.from_rad != axis->trajectory.to_rad && axis->own_until_us == 0;
+    GROBO_ASSERT(!on_trajectory || is_inside(robot, joint, axis->trajectory.to_rad));
     GROBO_ASSERT(axis->next == 0 || is_inside(robot, joint, axis->next_rad));
     GROBO_ASSERT(axis->next == 0 || next_waits(robot, joint));
     GROBO_ASSERT(!grobo_i_is_sensed(axis) || isfinite(axis->state.angle_rad));
     GROBO_ASSERT(!grobo_i_is_sensed(axis) || axis->angle_us != GROBO_NEVER_US);
     GROBO_ASSERT(!axis->torque_known || (axis->state.valid & GROBO_FIELD_TORQUE) != 0);
-    GROBO_ASSERT(!grobo_i_way_is_short(axis) || axis->told_to_us > axis->way.from_us);
+    GROBO_ASSERT(!grobo_i_trajectory_is_short(axis) || axis->told_to_us > axis->trajectory.from_us);
     GROBO_ASSERT(!grobo_i_is_in_segments(axis) || robot->in_segments);
 }
 

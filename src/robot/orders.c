@@ -135,7 +135,7 @@ static int await_line(grobo_robot *robot, const grobo_robot_order *order, grobo_
     return result;
 }
 
-/* True if a joint is told its way in segments. */
+/* True if a joint is told its trajectory in segments. */
 static bool is_long(const grobo_robot *robot, const grobo_robot_order *order,
                     const grobo_target *target)
 {
@@ -174,7 +174,7 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
         result = await_line(robot, &order, &target, how->joint_time_us);
     }
     if (result >= 0 && is_long(robot, &order, &target) &&
-        !grobo_i_pace(robot, joints | grobo_i_ways_renewed(robot))) {
+        !grobo_i_pace(robot, joints | grobo_i_trajectories_renewed(robot))) {
         result = GROBO_ERR_UNWATCHED;
     }
     if (result >= 0) {

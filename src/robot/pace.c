@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How often the line carries more of the ways of joints that are told in segments (segments.c), and
- * how long a reading may have the line in between. Frames of all joints that move, and as many
- * readings as each joint needs in its time, make a period; the shortest that does is taken, and
- * GROBO_SEGMENT_RENEW_US where that is longer. A servo's segment must not be over before the next
- * frame has come: a line that needs more is too slow for so many joints.
+ * How often the line carries more of the trajectories of joints that are told in segments
+ * (segments.c), and how long a reading may have the line in between. Frames of all joints that
+ * move, and as many readings as each joint needs in its time, make a period; the shortest that does
+ * is taken, and GROBO_SEGMENT_RENEW_US where that is longer. A servo's segment must not be over
+ * before the next frame has come: a line that needs more is too slow for so many joints. /
  */
 #include "src/base/instant.h"
 #include "src/robot/robot.h"

@@ -164,7 +164,8 @@ int grobo_i_play_start(grobo_robot *robot)
 
 /* ---- lateness -------------------------------------------------------------------------------- */
 
-/* Four an octave: where the highest bit is, and how far the number is on the way to the next. */
+/* Four an octave: where the highest bit is, and how far the number is on the trajectory to the
+ * next. */
 static int bin_of(int64_t late_us)
 {
     static const uint32_t edges[] = {0x9837F052, 0xB504F334, 0xD744FCCB}; /* 2^(31 + k/4) */

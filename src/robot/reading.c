@@ -81,38 +81,40 @@ static bool take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
 }
 
 /* True if the servo has told since the last frame that its goal is another one; or did so before
- * this reading, and does not move but on the way it told of then. */
+ * this reading, and does not move but on the trajectory it told of then. */
 static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis,
                           const grobo_joint_state *got)
 {
     bool as_told = abs(got->speed_dps) < GROBO_I_SLOW_DPS || axis->own_until_us > robot->now_us;
     bool before = grobo_i_goal_is_told(axis) && as_told;
     bool told = (got->valid & GROBO_FIELD_GOAL) != 0 || before;
-    return told && fabs(axis->state.goal_rad - axis->way.to_rad) > grobo_i_same_goal_rad(robot);
+    return told &&
+           fabs(axis->state.goal_rad - axis->trajectory.to_rad) > grobo_i_same_goal_rad(robot);
 }
 
-/* So long after its frame left a joint that is no place between the begin of its way and where it
- * should be by then is not on it: a weak one is behind, one that turns back has done so. */
+/* So long after its frame left a joint that is no place between the begin of its trajectory and
+ * where it should be by then is not on it: a weak one is behind, one that turns back has done
+ * so. */
 #define TURNED_US 200000
 
-/* One that is sent somewhere so fast, has had the time to begin, and stands so far beside its way
- * is not on it. */
+/* One that is sent somewhere so fast, has had the time to begin, and stands so far beside its
+ * trajectory is not on it. */
 #define BEGUN_RAD_S (30 * 0.017453292519943295)
 #define BESIDE_RAD (2 * 0.017453292519943295)
 
-static bool is_fast(const grobo_robot_way *way, int64_t then_us)
+static bool is_fast(const grobo_robot_trajectory *trajectory, int64_t then_us)
 {
-    double way_rad = fabs(way->to_rad - way->from_rad);
-    return way->to_us > then_us &&
-           way_rad * 1e6 > BEGUN_RAD_S * (double)(way->to_us - way->from_us);
+    double way_rad = fabs(trajectory->to_rad - trajectory->from_rad);
+    return trajectory->to_us > then_us &&
+           way_rad * 1e6 > BEGUN_RAD_S * (double)(trajectory->to_us - trajectory->from_us);
 }
 
-/* A joint that stands still, or creeps, beside its way has lost the frame, and so has one that is
- * ahead of it, or before it for long, or whose goal is another. Until the next one it is where it
- * was read, or on the way that its servo told of: a stop would throw it to where it should be by
- * then. The angle alone tells nothing of it. */
-static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
-                       const grobo_joint_state *got)
+/* A joint that stands still, or creeps, beside its trajectory has lost the frame, and so has one
+ * that is ahead of it, or before it for long, or whose goal is another. Until the next one it is
+ * where it was read, or on the trajectory that its servo told of: a stop would throw it to where
+ * it should be by then. The angle alone tells nothing of it. */
+static bool is_off_trajectory(const grobo_robot *robot, int joint, int64_t asked_us,
+                              const grobo_joint_state *got)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     if ((got->valid & GROBO_FIELD_SPEED) == 0) {
@@ -124,22 +126,22 @@ static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
     if (has_not_taken(robot, axis, got)) {
         return true;
     }
-    double then_rad = grobo_i_way_at(&axis->way, asked_us);
-    double now_rad = grobo_i_way_at(&axis->way, robot->now_us);
+    double then_rad = grobo_i_trajectory_at(&axis->trajectory, asked_us);
+    double now_rad = grobo_i_trajectory_at(&axis->trajectory, robot->now_us);
     double set_rad = got->angle_rad + grobo_i_load(axis);
     double beside_rad = fmin(fabs(set_rad - then_rad), fabs(set_rad - now_rad));
-    bool between = (set_rad - axis->way.from_rad) * (now_rad - set_rad) >= 0;
+    bool between = (set_rad - axis->trajectory.from_rad) * (now_rad - set_rad) >= 0;
     bool elsewhere = !between && asked_us - axis->told_us > TURNED_US;
     bool stands = abs(got->speed_dps) < GROBO_I_SLOW_DPS;
-    bool never_began = stands && is_fast(&axis->way, asked_us) && beside_rad > BESIDE_RAD &&
+    bool never_began = stands && is_fast(&axis->trajectory, asked_us) && beside_rad > BESIDE_RAD &&
                        asked_us - axis->told_us > GROBO_I_BEGUN_US;
-    return never_began || (beside_rad > GROBO_I_OFF_WAY_RAD && (elsewhere || stands));
+    return never_began || (beside_rad > GROBO_I_OFF_TRAJECTORY_RAD && (elsewhere || stands));
 }
 
-/* No frame has told it the way that it is taken to be on (grobo_i_astray()). */
+/* No frame has told it the trajectory that it is taken to be on (grobo_i_astray()). */
 static bool is_astray(const grobo_robot_axis *axis)
 {
-    return grobo_i_is_stray(axis) && axis->way.from_us > axis->told_us;
+    return grobo_i_is_stray(axis) && axis->trajectory.from_us > axis->told_us;
 }
 
 /* What a reading tells of where the joint is by now. */
@@ -158,7 +160,7 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
         grobo_i_stand_seen(robot, joint, asked_us, axis->state.angle_rad);
         grobo_i_axis_seen(axis, asked_us, got);
         bool external = take_move(robot, joint, got);
-        bool stray = is_astray(axis) || is_off_way(robot, joint, asked_us, got);
+        bool stray = is_astray(axis) || is_off_trajectory(robot, joint, asked_us, got);
         grobo_i_joint_to(axis, stray      ? GROBO_I_JOINT_STRAYS
                                : external ? GROBO_I_JOINT_TURNS
                                           : GROBO_I_JOINT_READ);
@@ -202,9 +204,9 @@ static void take_speed(const grobo_robot *robot, int joint, grobo_joint_state *g
 }
 
 /* Between an angle from before it was told to go elsewhere and one since then lies the speed of
- * neither way; between one from before a stop and one since then, that of a joint that another
- * program may have set going meanwhile. */
-static bool is_of_one_way(const grobo_robot *robot, const grobo_robot_axis *axis)
+ * neither trajectory; between one from before a stop and one since then, that of a joint that
+ * another program may have set going meanwhile. */
+static bool is_of_one_trajectory(const grobo_robot *robot, const grobo_robot_axis *axis)
 {
     return !GROBO_I_EXTRA(robot->driver, tells_no_speed) ||
            axis->angle_us >= grobo_i_later(axis->told_us, robot->stop_us);
@@ -219,7 +221,7 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
         got->angle_rad += correction(robot, joint);
     }
     take_speed(robot, joint, got);
-    bool one_way = is_of_one_way(robot, axis);
+    bool one_trajectory = is_of_one_trajectory(robot, axis);
     merge(axis, got);
     axis->status = GROBO_OK;
     axis->lost = 0;
@@ -231,7 +233,7 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
     }
     if (asked_us >= axis->told_us) {
         take_place(robot, joint, asked_us, got);
-        axis->seen_dps = one_way ? axis->seen_dps : GROBO_I_NO_SPEED;
+        axis->seen_dps = one_trajectory ? axis->seen_dps : GROBO_I_NO_SPEED;
     }
 }
 
@@ -261,8 +263,8 @@ static void note_heard(const grobo_robot_slot *slot, const grobo_joint_state *go
     if ((read && on) || slot->robot->now_us - axis->heard_us <= GROBO_I_RESTART_US) {
         axis->heard_us = grobo_i_later(axis->heard_us, slot->asked_us);
     }
-    /* Where one broken reply of many puts joints to sleep, that is often: the part of its way that
-     * it was not sent follows at once, since its last one ends soon. */
+    /* Where one broken reply of many puts joints to sleep, that is often: the part of its
+     * trajectory that it was not sent follows at once, since its last one ends soon. */
     bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL;
     if (many && slept && grobo_i_is_in_segments(axis) && !grobo_i_may_sleep(robot, slot->joint)) {
         robot->renews_owed |= GROBO_JOINT_BIT(slot->joint);

@@ -530,7 +530,7 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number)
 /* Ends what runs and what waits; what is moved by it is stopped, or all that moves. */
 static void displace(grobo_robot *robot, bool all)
 {
-    /* What a motion has sent before it plays is on its way, too. */
+    /* What a motion has sent before it plays is on its trajectory, too. */
     bool moves = all || grobo_i_jobs_any(robot, grobo_i_job_moves);
     stop_prepared(robot);
     grobo_i_jobs_end(robot, NULL, GROBO_ERR_CANCELED);
@@ -704,7 +704,7 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on)
     }
     if (result >= 0) {
         for (int j = 0; j < robot->driver->model->n_joints; j++) {
-            robot->axes[j].away_rad = INFINITY; /* it may be on a way */
+            robot->axes[j].away_rad = INFINITY; /* it may be on a trajectory */
         }
         grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
         robot->free_joints |= joints;

@@ -184,7 +184,7 @@ void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size, int64
 }
 
 /* Frames are judged in here, and what is refused may end a job. Events of that wait for the next
- * step: a callback must not come between this frame and its way to the line. */
+ * step: a callback must not come between this frame and its trajectory to the line. */
 int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us)
 {
     if (robot == NULL || buf == NULL) {
@@ -306,7 +306,7 @@ static void forget(grobo_robot *robot)
         axis->seen_dps = GROBO_I_NO_SPEED;
         grobo_i_stand_forget(axis);
         axis->current_since_us = GROBO_NEVER_US;
-        axis->way.to_us = robot->now_us;
+        axis->trajectory.to_us = robot->now_us;
     }
     robot->free_joints = robot->played_joints = robot->halts_owed = robot->renews_owed = 0;
     robot->halted = robot->halted_all = 0;

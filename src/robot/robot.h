@@ -10,11 +10,11 @@
  *   query.c      what may be asked
  *   slot.c       frames under way: from an exchange to a transaction and back
  *   budget.c     how many motion frames a second leave time to read
- *   pace.c       how often the line carries more of the ways of joints, and readings beside
+ *   pace.c       how often the line carries more of the trajectories of joints, and readings beside
  *   stand.c      whether a joint stands
  *   weight.c     the error that carries a joint, and goals that keep it
  *   reading.c    what a reading tells of a joint
- *   ways.c       ways that are told in segments
+ *   trajectories.c       trajectories that are told in segments
  *   speed.c      where targets may be, and how fast joints may go there
  *   gate.c       the only way to motors: judges and notes each order as its frame leaves
  *   orders.c     orders to motors: into frames that wait for the line
@@ -78,9 +78,9 @@ static inline double grobo_i_load_kept(const grobo_robot_axis *axis)
 /* True if its goal was read, or its servo answered with it, behind the frame that left last: one
  * read at the very moment when that left is the goal before. */
 bool grobo_i_goal_is_told(const grobo_robot_axis *axis);
-/* True while the servo was not told the end of its way. */
-bool grobo_i_way_is_short(const grobo_robot_axis *axis);
-/* A servo that reports the time of its way is counted along it. */
+/* True while the servo was not told the end of its trajectory. */
+bool grobo_i_trajectory_is_short(const grobo_robot_axis *axis);
+/* A servo that reports the time of its trajectory is counted along it. */
 static inline bool grobo_i_axis_is_counted(const grobo_robot_axis *axis)
 {
     return GROBO_DRIVERS_PLAIN || (axis->state.valid & GROBO_FIELD_TIME) != 0;
@@ -103,8 +103,8 @@ grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot);
 int grobo_i_lowest(grobo_joint_mask joints);
 /* Goals that differ by no more are the same on the wire. */
 double grobo_i_same_goal_rad(const grobo_robot *robot);
-/* Where a way is by then. */
-double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us);
+/* Where a trajectory is by then. */
+double grobo_i_trajectory_at(const grobo_robot_trajectory *trajectory, int64_t now_us);
 /* Where a joint is by now on the move it was sent on. */
 double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us);
 /* When it is there: on that move, or on the one its servo is on where it lost the frame. */
@@ -114,9 +114,9 @@ int64_t grobo_i_axis_until(const grobo_robot_axis *axis);
 bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us);
 /* Where it was last asked to go, whether that frame has left or waits. */
 double grobo_i_axis_target(const grobo_robot_axis *axis);
-/* An angle this far from the way that a joint was sent on is not of a joint on that way: more than
- * what the fastest one does while a frame is on its way. */
-#define GROBO_I_OFF_WAY_RAD (12 * 0.017453292519943295)
+/* An angle this far from the trajectory that a joint was sent on is not of a joint on that
+ * trajectory: more than what the fastest one does while a frame is on its trajectory. */
+#define GROBO_I_OFF_TRAJECTORY_RAD (12 * 0.017453292519943295)
 /* So long after it was told a joint turns that can, and no frame is under way. */
 #define GROBO_I_BEGUN_US 100000
 /* grobo_robot_axis.seen_dps of a reading without a speed. */
@@ -124,9 +124,10 @@ double grobo_i_axis_target(const grobo_robot_axis *axis);
 /* True of servos that tell how fast they turn and which way, and not how long: what was read last
  * is all that is known of their turning. */
 bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint);
-/* Where a joint is now. What counts is where it was read and how it can have gone on from there: it
- * may be behind its way by far, too weak for it or still turning the other way. A reading from
- * before the last frame that left to it says where it was then, and nothing of how it turns now. */
+/* Where a joint is now. What counts is where it was read and how it can have gone on from there:
+ * it may be behind its trajectory by far, too weak for it or still turning the other way. A
+ * reading from before the last frame that left to it says where it was then, and nothing of how
+ * it turns now. */
 double grobo_i_axis_place(const grobo_robot *robot, int joint);
 /* How fast it turns by that, in radians a second. */
 double grobo_i_axis_speed(const grobo_robot *robot, int joint);
@@ -137,10 +138,10 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
 /* What was read of where a joint is; and that it is told to go elsewhere from now on. */
 void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got);
 void grobo_i_axis_told(grobo_robot *robot, int joint);
-/* True of one that an angle alone has shown not to be at the end of its way: it may turn. */
+/* True of one that an angle alone has shown not to be at the end of its trajectory: it may turn. */
 bool grobo_i_axis_is_late(const grobo_robot_axis *axis);
-/* True of one whose way is over and that was read not to be there yet, or lately to turn and not to
- * be on it. */
+/* True of one whose trajectory is over and that was read not to be there yet, or lately to turn
+ * and not to be on it. */
 bool grobo_i_axis_lags(const grobo_robot *robot, int joint);
 /* Takes the sensed angle for where a joint is, nothing being asked of it. */
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
@@ -163,16 +164,16 @@ bool grobo_i_axis_is_limp(const grobo_robot_axis *axis);
 /* True if its servo may have restarted since it was known to have torque, and its next goal would
  * wake it, wherever it sank to: nothing came from it for so long, or a reply was lost. */
 bool grobo_i_may_sleep(const grobo_robot *robot, int joint);
-/* True where nobody knows where a joint is: it was not read since the line is there, it was read to
- * turn beside its way a while ago, or its servo may have restarted. A stop reads it before it halts
- * it. */
+/* True where nobody knows where a joint is: it was not read since the line is there, it was read
+ * to turn beside its trajectory a while ago, or its servo may have restarted. A stop reads it
+ * before it halts it. */
 bool grobo_i_axis_is_unknown(const grobo_robot *robot, int joint);
 /* False behind an emergency stop, which halts nobody where it takes the torque; of halts from
  * before it those alone leave that grobo_robot_latch() has found waiting. */
 bool grobo_i_may_halt(const grobo_robot *robot);
-/* The way of a joint in segments ends where it was told to go. */
+/* The trajectory of a joint in segments ends where it was told to go. */
 void grobo_i_axis_cut(grobo_robot_axis *axis);
-/* True while a joint is on the way it was sent on, or a target waits for the line. */
+/* True while a joint is on the trajectory it was sent on, or a target waits for the line. */
 bool grobo_i_moving(const grobo_robot *robot, int64_t now_us);
 /* True if one of these moves though nothing was asked of it, nobody knows where to; *joint is the
  * first of them, else -1. */
@@ -216,7 +217,8 @@ void grobo_i_unlock(const grobo_robot *robot);
 /* The time of a request or a question. */
 int64_t grobo_i_now(const grobo_robot *robot);
 
-/* True if requests that move are refused: behind a latched stop, and one that is on its way. */
+/* True if requests that move are refused: behind a latched stop, and one that is on its
+ * trajectory. */
 bool grobo_i_is_latched(const grobo_robot *robot);
 
 /* True if a frame waits that the wire has time for now; `any`: or any, and the line is free. */
@@ -247,7 +249,7 @@ typedef enum grobo_i_use {
     GROBO_I_USE_JOB,     /* its end goes to the job that is named in it */
     GROBO_I_USE_SENSE,   /* a reading of the background */
     GROBO_I_USE_MOTION,  /* a target; a played one if it has a due time */
-    GROBO_I_USE_SEGMENT, /* further on the ways of targets that have left */
+    GROBO_I_USE_SEGMENT, /* further on the trajectories of targets that have left */
     GROBO_I_USE_HALT,    /* what moves is to stop */
     GROBO_I_USE_PLAIN    /* sent for its effect; a later reading shows whether it took */
 } grobo_i_use;
@@ -256,7 +258,7 @@ typedef enum grobo_i_use {
 typedef enum grobo_i_order_kind {
     GROBO_I_ORDER_NONE = 0, /* it reads, or writes what moves nothing */
     GROBO_I_ORDER_GOAL,     /* joints go to their targets, grobo_robot_axis.next */
-    GROBO_I_ORDER_SEGMENT,  /* joints go further on the ways that they are on */
+    GROBO_I_ORDER_SEGMENT,  /* joints go further on the trajectories that they are on */
     GROBO_I_ORDER_HALT,     /* joints that move stop where they are by then */
     GROBO_I_ORDER_HOLD,     /* goals of joints without torque become where they are */
     GROBO_I_ORDER_TORQUE,   /* torque is switched */
@@ -330,11 +332,11 @@ typedef struct grobo_i_line {
 
 /* grobo_budget.pace_us for these joints. */
 uint32_t grobo_i_pace_of(const grobo_i_line *line, grobo_joint_mask joints);
-/* True if the line can tell these joints their ways in segments in time, and read each as often as
- * it must; or if they are told whole ways. */
+/* True if the line can tell these joints their trajectories in segments in time, and read each
+ * as often as it must; or if they are told whole trajectories. */
 bool grobo_i_pace_fits(const grobo_robot *robot, grobo_joint_mask joints);
-/* These are told their ways from now on: how often. @return false, and nothing has changed, where
- * the line is too slow for that. */
+/* These are told their trajectories from now on: how often. @return false, and nothing has
+ * changed, where the line is too slow for that. */
 bool grobo_i_pace(grobo_robot *robot, grobo_joint_mask joints);
 
 /* ---- stand.c --------------------------------------------------------------------------------- */
@@ -348,13 +350,13 @@ void grobo_i_stand_forget(grobo_robot_axis *axis);
 void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double angle_rad);
 /* True if the last reading found the joint elsewhere than the one before. */
 bool grobo_i_stand_left(const grobo_robot_axis *axis);
-/* True of a joint whose way is over, and which by the last reading is at its end, or hangs beside
- * it, and is slow; or has not moved between two of them. Less than what follows. */
+/* True of a joint whose trajectory is over, and which by the last reading is at its end, or
+ * hangs beside it, and is slow; or has not moved between two of them. Less than what follows. */
 bool grobo_i_rests(const grobo_robot *robot, int joint);
 /* True if it was read to stand since then. */
 bool grobo_i_stands(const grobo_robot *robot, int joint);
-/* True if the goal read is the one that it was sent to, or of a way told in segments lies ahead of
- * where it was by then. */
+/* True if the goal read is the one that it was sent to, or of a trajectory told in segments lies
+ * ahead of where it was by then. */
 bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint);
 
 /* A frame that tells these joints something has left: to stop, or anything else. */
@@ -387,16 +389,16 @@ bool grobo_i_is_loss(int result);
  * stands too far outside. */
 double grobo_i_hold_rad(const grobo_robot *robot, int joint);
 
-/* ---- ways.c ---------------------------------------------------------------------------------- */
+/* ---- trajectories.c ------------------------------------------------------------------------- */
 
-/* True if this order's joints are told their ways in parts, those that get so much time. */
+/* True if this order's joints are told their trajectories in parts, those that get so much time. */
 bool grobo_i_goes_in_parts(const grobo_robot *robot, const grobo_robot_order *order);
 bool grobo_i_segments_wanted(const grobo_robot *robot, int64_t time_us);
 /* The part of a target that its frame asks for. @return false, and nothing in *part, where that is
  * all of it. */
 bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
                           const grobo_target *whole, grobo_target *part);
-/* A joint begins the way just noted, which is told in parts. */
+/* A joint begins the trajectory just noted, which is told in parts. */
 void grobo_i_segments_begin(grobo_robot *robot, int joint);
 /* Where these of the joints that are told more go next; and that they were told. */
 void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, grobo_target *target);
@@ -406,8 +408,8 @@ int64_t grobo_i_segments_due(const grobo_robot *robot);
 /* The joints of which that is true now. */
 grobo_joint_mask grobo_i_joints_that(const grobo_robot *robot,
                                      bool (*is)(const grobo_robot_axis *axis, int64_t now_us));
-/* Joints that are told more of their ways. */
-grobo_joint_mask grobo_i_ways_renewed(const grobo_robot *robot);
+/* Joints that are told more of their trajectories. */
+grobo_joint_mask grobo_i_trajectories_renewed(const grobo_robot *robot);
 
 /* ---- gate.c ---------------------------------------------------------------------------------- */
 
@@ -452,7 +454,7 @@ typedef struct grobo_i_motion {
 /* Checks a target and has it wait for the line; its time is found when it leaves.
  * @return 0 or an error of the gate, the driver or the bus: then none of it is sent. */
 int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *target, const grobo_i_motion *how);
-/* Tells these joints more of the ways in segments that they are on. */
+/* Tells these joints more of the trajectories in segments that they are on. */
 void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints);
 /* Stops those of the joints that are being moved where they are, softly; targets that wait are
  * cancelled. One that may have restarted is owed its halt until it was heard, or is silent for
@@ -599,7 +601,8 @@ int grobo_i_play_start(grobo_robot *robot);
 
 /* ---- segments.c ------------------------------------------------------------------------------ */
 
-/* Tells more of their ways when it is time for that, and ends what the host has left standing. */
+/* Tells more of their trajectories when it is time for that, and ends what the host has left
+ * standing. */
 void grobo_i_segments_step(grobo_robot *robot);
 /* When that is to be looked at next. */
 int64_t grobo_i_segments_deadline(const grobo_robot *robot);

@@ -2,7 +2,7 @@
 /*
  * Goals in segments, in time. Of a long move a frame asks for the next GROBO_SEGMENT_US only, and
  * every GROBO_SEGMENT_RENEW_US another one asks for more, so that a joint stops soon when none
- * comes; less often where the line is slow (pace.c). ways.c says what a frame asks for.
+ * comes; less often where the line is slow (pace.c). trajectories.c says what a frame asks for.
  *
  * A joint whose segment was over before the next one left stands where it ended. Then the host was
  * away: the move is over, and does not continue by itself.
@@ -13,7 +13,7 @@
 
 static bool has_stopped(const grobo_robot_axis *axis, int64_t now_us)
 {
-    return grobo_i_way_is_short(axis) && axis->told_to_us <= now_us;
+    return grobo_i_trajectory_is_short(axis) && axis->told_to_us <= now_us;
 }
 
 static bool is_in_segments(const grobo_robot_axis *axis, int64_t now_us)
@@ -60,7 +60,7 @@ static void give_up(grobo_robot *robot)
     double late_ms = (double)late_us(robot) / 1000.0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        if (grobo_i_way_is_short(axis)) {
+        if (grobo_i_trajectory_is_short(axis)) {
             grobo_i_axis_cut(axis);
         }
     }
@@ -78,10 +78,11 @@ static void give_up(grobo_robot *robot)
     grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
 }
 
-/* True if a joint that had missed its part of the way is to get it before the others. */
+/* True if a joint that had missed its part of the trajectory is to get it before the others. */
 static bool renews_early(const grobo_robot *robot)
 {
-    return !GROBO_DRIVERS_PLAIN && (grobo_i_ways_renewed(robot) & robot->renews_owed) != 0 &&
+    return !GROBO_DRIVERS_PLAIN &&
+           (grobo_i_trajectories_renewed(robot) & robot->renews_owed) != 0 &&
            !grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT);
 }
 
@@ -102,9 +103,9 @@ void grobo_i_segments_step(grobo_robot *robot)
         bool late = due_us + robot->renew_us <= robot->now_us;
         robot->renewed_us = late ? robot->now_us : due_us; /* on its grid, so that ends are exact */
         robot->renews_owed = 0;
-        grobo_i_gate_renew(robot, grobo_i_ways_renewed(robot));
+        grobo_i_gate_renew(robot, grobo_i_trajectories_renewed(robot));
     } else if (renews_early(robot)) {
-        grobo_joint_mask joints = grobo_i_ways_renewed(robot) & robot->renews_owed;
+        grobo_joint_mask joints = grobo_i_trajectories_renewed(robot) & robot->renews_owed;
         robot->renews_owed = 0;
         grobo_i_gate_renew(robot, joints);
     }
@@ -122,7 +123,7 @@ int64_t grobo_i_segments_deadline(const grobo_robot *robot)
     at_us = renews_early(robot) ? robot->now_us : at_us;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (grobo_i_way_is_short(axis) && axis->told_to_us < at_us) {
+        if (grobo_i_trajectory_is_short(axis) && axis->told_to_us < at_us) {
             at_us = axis->told_to_us;
         }
     }

@@ -194,7 +194,7 @@ static int find_waiting(const grobo_robot *robot)
 /*
  * When the waiting reading goes before the next motion frame; GROBO_NEVER_US: not at all. It does
  * not while it could not leave anyway, since a lost reply may yet come: in the queue of the motion
- * frames it would stand in their way.
+ * frames it would stand in their trajectory.
  */
 static int64_t hurry_at(const grobo_robot *robot)
 {
@@ -232,7 +232,8 @@ static void hurry(grobo_robot *robot)
     (void)grobo_bus_raise(&robot->bus, txn, GROBO_PRIORITY_MOTION);
 }
 
-/* Of a joint in free mode everything, and of one that nothing is known of: it may be on a way. */
+/* Of a joint in free mode everything, and of one that nothing is known of: it may be on a
+ * trajectory. */
 static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
 {
     if (robot->heard_read && grobo_i_is_sensed(&robot->axes[joint]) &&
@@ -321,7 +322,8 @@ static int ask_some_of(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_k
                : driver->sense_many(driver, robot->driver_ctx, slot->unread, kind, &robot->built);
 }
 
-/* All of them in one frame; while joints are told more of their ways, as many as have the time. */
+/* All of them in one frame; while joints are told more of their trajectories, as many as have
+ * the time. */
 static int ask_each(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind kind)
 {
     const grobo_driver *driver = robot->driver;
@@ -448,8 +450,8 @@ static void give_way(grobo_robot *robot, grobo_robot_slot *waiting)
     }
 }
 
-/* One that was asked for before joints began to be told their ways in parts, and would have the
- * line for too long, is asked for anew. */
+/* One that was asked for before joints began to be told their trajectories in parts, and would
+ * have the line for too long, is asked for anew. */
 static void ask_for_less(grobo_robot *robot)
 {
     for (int i = 0; i < robot->slots_end; i++) {

@@ -92,7 +92,8 @@ double grobo_i_speed_limit(const grobo_robot *robot, int joint, bool soft)
     return soft ? fmin(approach_rad_s, limit_rad_s) : limit_rad_s;
 }
 
-/* Where a way begins: one to rest where the joint is, any other where the way before is by now. */
+/* Where a trajectory begins: one to rest where the joint is, any other where the trajectory
+ * before is by now. */
 double grobo_i_begin_of(const grobo_robot *robot, const grobo_robot_order *order, int joint)
 {
     return order->kind == GROBO_I_ORDER_HALT || order->rests
@@ -109,7 +110,8 @@ double grobo_i_trajectory_us(const grobo_robot *robot, int joint, double from_ra
     double way_rad = fmax(fabs(to_rad - from_rad) - robot->driver->angle_step_rad, 0);
     double time_us = way_rad / grobo_i_speed_limit(robot, joint, soft) * 1e6;
     /* One that moves goes on until the frame is there. */
-    return soft && axis->way.to_us > robot->now_us ? fmax(time_us, GROBO_I_HALT_TIME_US) : time_us;
+    return soft && axis->trajectory.to_us > robot->now_us ? fmax(time_us, GROBO_I_HALT_TIME_US)
+                                                          : time_us;
 }
 
 /* In the wire's unit; GROBO_NEVER_US where the wire has no time that is long enough. */
@@ -142,9 +144,9 @@ int64_t grobo_i_gate_soft_us(const grobo_robot *robot, const grobo_posture *targ
 }
 
 /* What stops a joint never asks for more than its speed from where it was read, either, where no
- * reading shows that it has begun its way: the frame may be lost. For a halt any reading since
- * does. Of a stream the next frame makes good a lost one, so that a soft stop keeps its time. The
- * end of a motion gives a joint the time to brake. */
+ * reading shows that it has begun its trajectory: the frame may be lost. For a halt any reading
+ * since does. Of a stream the next frame makes good a lost one, so that a soft stop keeps its
+ * time. The end of a motion gives a joint the time to brake. */
 static int64_t time_of_order(const grobo_robot *robot, const grobo_robot_order *order, int joint,
                              double to_rad)
 {
@@ -153,7 +155,8 @@ static int64_t time_of_order(const grobo_robot *robot, const grobo_robot_order *
     int64_t needed_us = time_needed(robot, joint, from_rad, to_rad, robot->soft || order->soft);
     bool halts = order->kind == GROBO_I_ORDER_HALT && axis->seen_us < axis->told_us;
     bool at_once = axis->next_time_us < GROBO_I_HALT_TIME_US;
-    bool alone = axis->way.to_us - axis->way.from_us > GROBO_I_HALT_TIME_US; /* no next one soon */
+    bool alone = axis->trajectory.to_us - axis->trajectory.from_us >
+                 GROBO_I_HALT_TIME_US; /* no next one soon */
     bool rests = order->rests && (at_once || alone);
     if (halts || (rests && axis->seen_us < axis->told_us + GROBO_I_BEGUN_US)) {
         from_rad = axis->seen_rad + grobo_i_load_kept(axis);
@@ -179,7 +182,7 @@ static bool is_ample(const grobo_robot *robot, int joint, double to_rad, grobo_i
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
     bool soft = robot->soft || order->soft;
-    /* Its times, as they were asked for; from where it is by its way. */
+    /* Its times, as they were asked for; from where it is by its trajectory. */
     bool on_grid = order->kind == GROBO_I_ORDER_GOAL && !order->rests;
     bool stretched = false;
     int64_t longest_us = 0, asked_us = -1;

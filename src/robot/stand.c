@@ -71,15 +71,15 @@ bool grobo_i_stands(const grobo_robot *robot, int joint)
 bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    const grobo_robot_way *way = &axis->way;
+    const grobo_robot_trajectory *trajectory = &axis->trajectory;
     double same_rad = grobo_i_same_goal_rad(robot);
     double goal_rad = axis->state.goal_rad;
-    if (!grobo_i_is_in_segments(axis) || axis->goal_us >= way->to_us) {
-        return fabs(goal_rad - way->to_rad) <= same_rad;
+    if (!grobo_i_is_in_segments(axis) || axis->goal_us >= trajectory->to_us) {
+        return fabs(goal_rad - trajectory->to_rad) <= same_rad;
     }
-    double here_rad = grobo_i_way_at(way, axis->goal_us);
-    return goal_rad >= fmin(here_rad, way->to_rad) - same_rad &&
-           goal_rad <= fmax(here_rad, way->to_rad) + same_rad;
+    double here_rad = grobo_i_trajectory_at(trajectory, axis->goal_us);
+    return goal_rad >= fmin(here_rad, trajectory->to_rad) - same_rad &&
+           goal_rad <= fmax(here_rad, trajectory->to_rad) + same_rad;
 }
 
 /* A servo that restarts hears again by then. */
@@ -91,8 +91,8 @@ bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint)
 bool grobo_i_rests(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double off_rad = axis->state.angle_rad + grobo_i_load(axis) - axis->way.to_rad;
-    bool told = axis->seen_us >= axis->way.to_us && axis->seen_dps != GROBO_I_NO_SPEED &&
+    double off_rad = axis->state.angle_rad + grobo_i_load(axis) - axis->trajectory.to_rad;
+    bool told = axis->seen_us >= axis->trajectory.to_us && axis->seen_dps != GROBO_I_NO_SPEED &&
                 !GROBO_I_EXTRA(robot->driver, tells_no_speed);
     bool slow = told && abs(axis->seen_dps) < GROBO_I_SLOW_DPS;
     bool again = axis->still_us != GROBO_NEVER_US && axis->stood_us - axis->still_us >= RESTS_US;

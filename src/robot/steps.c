@@ -21,8 +21,8 @@
 #define DEAF_US 2500000
 /* A servo starts when its frame has passed board and bus, and settles. */
 #define ARRIVAL_US 40000
-/* Between two looks at a joint lies a way that shows whether it moves: a count of a coarse servo
- * that flickers is no speed yet. */
+/* Between two looks at a joint lies a trajectory that shows whether it moves: a count of a
+ * coarse servo that flickers is no speed yet. */
 #define TWICE_US 80000
 /* How often a quieting robot is looked at. */
 #define QUIET_US 5000
@@ -169,7 +169,7 @@ static int step_require(grobo_robot *robot)
 }
 
 /* Servos that tell no speed are read twice before they are sent anywhere: another program may have
- * sent them on their way. Who is to stand is read twice since he was told to. */
+ * sent them on their trajectory. Who is to stand is read twice since he was told to. */
 static grobo_joint_mask of_unknown_speed(const grobo_robot *robot)
 {
     grobo_joint_mask found = 0;
@@ -197,14 +197,14 @@ static int step_read_twice(grobo_robot *robot)
 }
 
 /* Motions begin where the joints were just seen, not where they were told to be; those that are on
- * the way that they were told, where they are on it by now. */
+ * the trajectory that they were told, where they are on it by now. */
 static int step_from_here(grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        bool on_way =
-            grobo_i_has_target(axis) && !grobo_i_is_stray(axis) && axis->way.to_us > robot->now_us;
-        if (grobo_i_has(robot->job->joints & ~robot->job->failed, j) && !on_way) {
+        bool on_trajectory = grobo_i_has_target(axis) && !grobo_i_is_stray(axis) &&
+                             axis->trajectory.to_us > robot->now_us;
+        if (grobo_i_has(robot->job->joints & ~robot->job->failed, j) && !on_trajectory) {
             grobo_i_axis_here(axis, robot->now_us);
         }
     }
@@ -425,7 +425,8 @@ static int step_torque_check(grobo_robot *robot)
         } else {
             grobo_robot_axis *axis = &robot->axes[j];
             axis->wants_torque = on;
-            if (!on || !grobo_i_has_target(axis)) { /* or it was sent on its way since it holds */
+            if (!on ||
+                !grobo_i_has_target(axis)) { /* or it was sent on its trajectory since it holds */
                 grobo_i_axis_rest(axis, robot->now_us);
             }
             grobo_i_joint_to(axis, on ? GROBO_I_JOINT_ON : GROBO_I_JOINT_OFF);
@@ -508,7 +509,7 @@ static int step_arrive(grobo_robot *robot)
     }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(job->pending, j)) {
-            there_us = grobo_i_later(there_us, robot->axes[j].way.to_us);
+            there_us = grobo_i_later(there_us, robot->axes[j].trajectory.to_us);
         }
     }
     job->until_us = there_us + ARRIVAL_US;
@@ -527,8 +528,8 @@ static bool is_unsent(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     return GROBO_I_EXTRA(robot->driver, goal_energises) && robot->job->sent_us > 0 &&
-           (!grobo_i_has_target(axis) || axis->way.from_us < robot->job->sent_us ||
-            axis->way.to_us <= axis->way.from_us);
+           (!grobo_i_has_target(axis) || axis->trajectory.from_us < robot->job->sent_us ||
+            axis->trajectory.to_us <= axis->trajectory.from_us);
 }
 
 /* Of the joints just read, those whose goal is not the one they were sent to, or that were not. */
@@ -544,8 +545,8 @@ static grobo_joint_mask not_taken(const grobo_robot *robot)
     return bad;
 }
 
-/* Joints that are not on their way begin anew from where they were read. One that could not be
- * read is left alone: it is on its way or where it was, and nobody knows. */
+/* Joints that are not on their trajectory begin anew from where they were read. One that could
+ * not be read is left alone: it is on its trajectory or where it was, and nobody knows. */
 static int step_missed(grobo_robot *robot)
 {
     grobo_joint_mask bad = not_taken(robot);
@@ -575,9 +576,9 @@ static int step_arrived(grobo_robot *robot)
     return result;
 }
 
-/* A joint that carries weight sags or swings behind its way. It is read so often until it rests,
- * and no longer than that; then its move is over, and its event names how far it is from its
- * goal. */
+/* A joint that carries weight sags or swings behind its trajectory. It is read so often until it
+ * rests, and no longer than that; then its move is over, and its event names how far it is from
+ * its goal. */
 #define RESTS_AGAIN_US 50000
 #define RESTS_BY_US 1500000
 
@@ -589,7 +590,7 @@ static int step_rest(grobo_robot *robot)
     bool looks = !GROBO_DRIVERS_PLAIN && job->result == GROBO_OK;
     for (int j = 0; looks && j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool late = robot->now_us - axis->way.to_us >= RESTS_BY_US;
+        bool late = robot->now_us - axis->trajectory.to_us >= RESTS_BY_US;
         bool asked = grobo_i_has(job->joints, j) && grobo_i_has_target(axis);
         if (!asked || grobo_i_rests(robot, j)) {
             continue;
@@ -597,7 +598,7 @@ static int step_rest(grobo_robot *robot)
         job->pending |= late ? 0 : GROBO_JOINT_BIT(j);
         if (late) {
             job->joint = j;
-            job->value = grobo_deg_from_rad(axis->state.angle_rad - axis->way.to_rad);
+            job->value = grobo_deg_from_rad(axis->state.angle_rad - axis->trajectory.to_rad);
         }
     }
     return job->pending != 0 ? GROBO_I_WAIT : GROBO_I_NEXT;
@@ -701,8 +702,8 @@ static int step_quiet(grobo_robot *robot)
 /* Nearer than this to its goal, a servo is there. */
 #define THERE_RAD (0.2 * 0.017453292519943295)
 
-/* A servo that turns yet so near the end of its way comes to rest there; nearer and slower, it
- * stands and trembles. */
+/* A servo that turns yet so near the end of its trajectory comes to rest there; nearer and
+ * slower, it stands and trembles. */
 #define ARRIVES_RAD (3 * 0.017453292519943295)
 #define TREMBLES_RAD (1 * 0.017453292519943295)
 #define TREMBLES_DPS 60
@@ -712,9 +713,9 @@ static int step_quiet(grobo_robot *robot)
 static bool still_turns(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool trembles = grobo_i_has_target(axis) && !grobo_i_is_stray(axis) &&
-                    abs(axis->seen_dps) < TREMBLES_DPS &&
-                    near_rad(axis->way.to_rad - grobo_i_load(axis), axis->seen_rad, TREMBLES_RAD);
+    bool trembles =
+        grobo_i_has_target(axis) && !grobo_i_is_stray(axis) && abs(axis->seen_dps) < TREMBLES_DPS &&
+        near_rad(axis->trajectory.to_rad - grobo_i_load(axis), axis->seen_rad, TREMBLES_RAD);
     return grobo_i_axis_tells_turn(robot, joint) && !trembles &&
            axis->state.torque == GROBO_TORQUE_ON && abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
 }
@@ -724,17 +725,18 @@ static bool arrives(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
     bool swings = grobo_i_load(axis) != 0 && grobo_i_swings(robot, joint);
-    bool arrives = grobo_i_has_target(axis) && !grobo_i_is_stray(axis) &&
-                   still_turns(robot, joint) && !swings &&
-                   near_rad(axis->way.to_rad - grobo_i_load(axis), axis->seen_rad, ARRIVES_RAD);
+    bool arrives =
+        grobo_i_has_target(axis) && !grobo_i_is_stray(axis) && still_turns(robot, joint) &&
+        !swings &&
+        near_rad(axis->trajectory.to_rad - grobo_i_load(axis), axis->seen_rad, ARRIVES_RAD);
     if (arrives) {
-        axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ARRIVES_US);
+        axis->trajectory.to_us = grobo_i_later(axis->trajectory.to_us, robot->now_us + ARRIVES_US);
     }
     return arrives;
 }
 
 /* A joint so far from the goal that its servo just told of, and turning there, however slowly, is
- * on its way: one that sags under its load turns the other way, or not at all. */
+ * on its trajectory: one that sags under its load turns the other way, or not at all. */
 #define CREEPS_FAR_RAD (3 * 0.017453292519943295)
 #define CREEPS_DPS 2
 /* One that swings so has turned back by then. */
@@ -752,7 +754,7 @@ static bool creeps_to_its_goal(const grobo_robot *robot, int joint)
            fabs(left_rad) > CREEPS_FAR_RAD && !may_turn_back;
 }
 
-/* True if the servo, just read, says that it is on a way; notes that way. */
+/* True if the servo, just read, says that it is on a trajectory; notes that trajectory. */
 static bool is_astray(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
@@ -943,7 +945,8 @@ bool grobo_i_move_is_sent(const grobo_robot_task *job)
     return job->at > sending;
 }
 
-/* Of a move asked for joint by joint: the others are on their ways, or wait for the line. */
+/* Of a move asked for joint by joint: the others are on their trajectories, or wait for the
+ * line. */
 static void retarget_some(grobo_robot *robot, const grobo_posture *target)
 {
     grobo_robot_task *job = robot->job;

@@ -69,7 +69,7 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
     if (latched) {
         grobo_i_jobs_end(robot, must_end, GROBO_ERR_LATCHED);
     }
-    /* Before an emergency stop nothing goes out, and who leaves is on the way already. */
+    /* Before an emergency stop nothing goes out, and who leaves is on the trajectory already. */
     if (latched && reason != GROBO_TRIP_ESTOP && robot->jobs[0].kind != GROBO_JOB_EXIT) {
         grobo_i_stop_moves(robot);
     }

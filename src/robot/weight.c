@@ -13,8 +13,8 @@
  * sent by then than KEEPS_RAD: no stop throws a joint by more than that. An error that is larger
  * than any weight causes is that of a blocked joint, and is not kept.
  *
- * Servos that report the time of their way (RS30x) are counted along it: they are halted at the
- * place of the goal, not of the shaft, which keeps the error without any of this.
+ * Servos that report the time of their trajectory (RS30x) are counted along it: they are halted at
+ * the place of the goal, not of the shaft, which keeps the error without any of this. /
  */
 #include <math.h>
 #include <stdlib.h>
@@ -34,7 +34,7 @@
 #define LATER_US 3000000
 
 /* True of a joint that hangs in the goal that it has: this reading shows that goal, or one since
- * the frame of its way, and it does not swing any more. */
+ * the frame of its trajectory, and it does not swing any more. */
 static bool hangs(const grobo_robot *robot, int joint, const grobo_joint_state *got)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
@@ -46,7 +46,7 @@ static bool hangs(const grobo_robot *robot, int joint, const grobo_joint_state *
         /* one that was told it just now has not begun */
         return tells && robot->now_us - axis->told_us >= RESTS_US;
     }
-    int64_t since_us = robot->now_us - axis->way.to_us;
+    int64_t since_us = robot->now_us - axis->trajectory.to_us;
     bool settled = since_us >= RESTS_US && since_us <= LATER_US;
     return (settled || (stands && tells)) && grobo_i_goal_is_told(axis) &&
            grobo_i_goal_is_taken(robot, joint);

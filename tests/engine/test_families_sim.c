@@ -547,7 +547,7 @@ TEST(a_stop_reaches_a_joint_read_for_its_angle_alone)
         p.set = GROBO_JOINT_BIT(0);
         assert_int_equal(grobo_robot_send(&kit.robot, &p), GROBO_OK);
         family_run(&kit, 20 * MS);
-        while (kit.robot.axes[0].way.to_us > kit.now_us) {
+        while (kit.robot.axes[0].trajectory.to_us > kit.now_us) {
             family_run(&kit, 5 * MS);
         }
         for (int kind = 0; kind < 2; kind++) {

@@ -168,8 +168,9 @@ TEST_WITH(rig_wirings, a_halt_stops_ahead_of_where_joints_are)
                                                        .each = true,
                                                        .stops = true}),
                              GROBO_OK);
-            expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(rows[i].way_deg), "its rest");
-            assert_true(robot.axes[j].way.to_us == NOW + 100 * MS);
+            expect_equal(robot.axes[j].trajectory.to_rad, here_rad(j) + RAD(rows[i].way_deg),
+                         "its rest");
+            assert_true(robot.axes[j].trajectory.to_us == NOW + 100 * MS);
             drop();
         }
     }
@@ -615,9 +616,9 @@ TEST_WITH(rig_wirings, a_goal_that_leaves_late_gets_the_time_from_there)
                                      .each = true});
             assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
             int64_t be_us = steps_up((40 - 0.1) / (soft ? 60 : speed_dps(j)) * 1e6);
-            if (robot.axes[j].way.to_us != NOW + be_us) {
+            if (robot.axes[j].trajectory.to_us != NOW + be_us) {
                 fail_msg("joint %d: %lld us, not %lld", j,
-                         (long long)(robot.axes[j].way.to_us - NOW), (long long)be_us);
+                         (long long)(robot.axes[j].trajectory.to_us - NOW), (long long)be_us);
             }
             drop();
         }
@@ -633,7 +634,7 @@ TEST_WITH(rig_wirings, a_time_longer_than_the_wire_has_is_refused)
         for (int beyond = 0; beyond < 2; beyond++) {
             grobo_target target = {0};
             start_with(&(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .approach_dps = 0.5});
-            robot.axes[j].way.to_rad = RAD(-40);
+            robot.axes[j].trajectory.to_rad = RAD(-40);
             assert_int_equal(grobo_posture_init(&target.posture, N), 0);
             target.posture.set = bits(j, other_of(j));
             target.posture.angle_rad[j] = RAD(-40 + most_deg + (beyond ? 0.001 : -0.001));
@@ -656,7 +657,7 @@ TEST_WITH(rig_wirings, one_that_moves_is_not_caught_up_softly)
                 const grobo_robot_order order = {.each = true, .soft = soft};
                 grobo_target target = {0};
                 start();
-                robot.axes[j].way.to_us = NOW + moves;
+                robot.axes[j].trajectory.to_us = NOW + moves;
                 assert_int_equal(grobo_posture_init(&target.posture, N), 0);
                 target.posture.set = GROBO_JOINT_BIT(j);
                 target.posture.angle_rad[j] = here_rad(j);
@@ -694,8 +695,8 @@ TEST_WITH(rig_wirings, a_motion_rests_near_where_joints_are)
                 double way_deg = side * (most_deg + (far ? 1 : -0.5));
                 start();
                 robot.soft = how / 2 == 1;
-                robot.axes[j].way = (grobo_robot_way){here_rad(j), here_rad(j) + RAD(20),
-                                                      NOW - S / 8, NOW + S / 8}; /* 80 deg/s */
+                robot.axes[j].trajectory = (grobo_robot_trajectory){
+                    here_rad(j), here_rad(j) + RAD(20), NOW - S / 8, NOW + S / 8}; /* 80 deg/s */
                 await(j, 10 + way_deg, 40 * MS);
                 assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
                                                            .number = NUMBER,
@@ -704,7 +705,7 @@ TEST_WITH(rig_wirings, a_motion_rests_near_where_joints_are)
                                                            .soft = how / 2 == 2,
                                                            .rests = true}),
                                  GROBO_OK);
-                expect_equal(robot.axes[j].way.to_rad,
+                expect_equal(robot.axes[j].trajectory.to_rad,
                              here_rad(j) + RAD(10 + (far ? side * most_deg : way_deg)), "its rest");
                 drop();
             }
@@ -718,7 +719,8 @@ TEST_WITH(rig_wirings, nothing_rests_outside_the_limits)
     for (int j = 0; j < N; j++) {
         for (int halts = 0; halts < 2; halts++) {
             start();
-            robot.axes[j].way = (grobo_robot_way){RAD(72 + j), RAD(78 + j), NOW - S, NOW + S};
+            robot.axes[j].trajectory =
+                (grobo_robot_trajectory){RAD(72 + j), RAD(78 + j), NOW - S, NOW + S};
             robot.axes[j].seen_rad = RAD(75 + j);
             robot.axes[j].next = NUMBER;
             robot.axes[j].next_rad = RAD(70 + j);
@@ -731,7 +733,7 @@ TEST_WITH(rig_wirings, nothing_rests_outside_the_limits)
                                           .each = true,
                                           .rests = true}),
                 GROBO_OK);
-            expect_equal(robot.axes[j].way.to_rad, RAD(70 + j), "its rest");
+            expect_equal(robot.axes[j].trajectory.to_rad, RAD(70 + j), "its rest");
             drop();
         }
     }
@@ -751,7 +753,7 @@ TEST_WITH(rig_wirings, a_motion_rests_where_others_have_joints_stand)
                                                    .each = true,
                                                    .rests = true}),
                          GROBO_OK);
-        expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(10.5), "its rest");
+        expect_equal(robot.axes[j].trajectory.to_rad, here_rad(j) + RAD(10.5), "its rest");
         drop();
     }
 }

@@ -20,7 +20,7 @@ TEST_WITH(rig_wirings, a_goal_is_noted_of_its_joints_alone)
                 .joints = both, .number = NUMBER, .kind = GROBO_I_ORDER_GOAL, .each = true};
             robot.played_joints = played ? GROBO_JOINT_BIT(third_of(j)) : GROBO_JOINTS_ALL(N);
             robot.axes[j].phase = GROBO_I_JOINT_STRAY; /* it stands where it was read */
-            robot.axes[j].way.to_rad += RAD(30);
+            robot.axes[j].trajectory.to_rad += RAD(30);
             await(j, 5, 2 * S);
             await(other_of(j), 5, 2 * S);
             await(third_of(j), 5, 2 * S); /* its frame is another one */
@@ -52,12 +52,12 @@ TEST_WITH(rig_wirings, a_halt_is_noted_of_what_moves)
         assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
         /* 50 ms after it was asked for: 10.4 degrees on the way. */
         note_goal(j, 0, 100 * MS);
-        before[j].way.from_rad = here_rad(j) + RAD(10);
-        before[j].way.to_rad = robot.axes[j].way.to_rad;
+        before[j].trajectory.from_rad = here_rad(j) + RAD(10);
+        before[j].trajectory.to_rad = robot.axes[j].trajectory.to_rad;
         before[j].last = 0;
-        expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(10.4), "where it stops");
-        expect_equal(robot.axes[j].way.from_rad, here_rad(j) + RAD(10), "from where");
-        before[j].way.from_rad = robot.axes[j].way.from_rad;
+        expect_equal(robot.axes[j].trajectory.to_rad, here_rad(j) + RAD(10.4), "where it stops");
+        expect_equal(robot.axes[j].trajectory.from_rad, here_rad(j) + RAD(10), "from where");
+        before[j].trajectory.from_rad = robot.axes[j].trajectory.from_rad;
         expect_axes();
         expect_goals(GROBO_JOINT_BIT(j), 10.4, 100 * MS);
         assert_true(robot.played_joints == (GROBO_JOINTS_ALL(N) & all_but(j)));
@@ -127,7 +127,7 @@ TEST_WITH(rig_wirings, a_hold_is_noted_of_its_joints_alone)
         expect_goals(bits(j, other_of(j)), 0, driver.time_step_us);
         for (int i = 0; i < 2; i++) {
             int k = i == 0 ? j : other_of(j);
-            before[k].way = (grobo_robot_way){here_rad(k), here_rad(k), NOW, NOW};
+            before[k].trajectory = (grobo_robot_trajectory){here_rad(k), here_rad(k), NOW, NOW};
             before[k].own_until_us = 0;
             before[k].phase = GROBO_I_JOINT_IDLE;
             before[k].told_us = NOW;

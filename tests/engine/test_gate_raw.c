@@ -57,8 +57,8 @@ TEST_WITH(rig_wirings, a_raw_goal_is_noted_like_one_of_ours)
         assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
         note_goal(j, 5, 2 * S);
         before[j].last = 0;
-        expect_equal(robot.axes[j].way.to_rad, before[j].way.to_rad, "goal");
-        before[j].way.to_rad = robot.axes[j].way.to_rad;
+        expect_equal(robot.axes[j].trajectory.to_rad, before[j].trajectory.to_rad, "goal");
+        before[j].trajectory.to_rad = robot.axes[j].trajectory.to_rad;
         expect_axes();
         assert_true(robot.played_joints == (GROBO_JOINTS_ALL(N) & all_but(j)));
         drop();

@@ -68,12 +68,14 @@ static void it_waited(void)
 
 static void a_joint_was_behind(void)
 {
-    robot.axes[5].way = (grobo_robot_way){here_rad(5), here_rad(5) - RAD(140), NOW - S, NOW - 9};
+    robot.axes[5].trajectory =
+        (grobo_robot_trajectory){here_rad(5), here_rad(5) - RAD(140), NOW - S, NOW - 9};
 }
 
 static void a_joint_was_a_little_behind(void)
 {
-    robot.axes[5].way = (grobo_robot_way){here_rad(5), here_rad(5) - RAD(1), NOW - S, NOW - 9};
+    robot.axes[5].trajectory =
+        (grobo_robot_trajectory){here_rad(5), here_rad(5) - RAD(1), NOW - S, NOW - 9};
 }
 
 static void a_joint_got_another_target(void)
@@ -203,7 +205,7 @@ TEST_WITH(rig_wirings, the_time_is_the_one_that_doubles_find)
         double way_rad = i % 3 == 0 ? most_rad * (1 + (part - 0.5) * 1e-5) : most_rad * 2 * part;
         grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j), .kind = GROBO_I_ORDER_GOAL};
         grobo_target target = {.posture = {.n_joints = (uint8_t)N}};
-        robot.axes[j].way = (grobo_robot_way){from_rad, from_rad, NOW - 20, NOW - 10};
+        robot.axes[j].trajectory = (grobo_robot_trajectory){from_rad, from_rad, NOW - 20, NOW - 10};
         target.posture.set = order.joints;
         target.posture.angle_rad[j] = from_rad + (i % 2 == 0 ? way_rad : -way_rad);
         target.joint_time_us[j] = asked_us;

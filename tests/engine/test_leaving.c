@@ -43,7 +43,7 @@ TEST_WITH(rig_wirings, who_leaves_waits_until_all_is_quiet)
         for (int what = 0; what < 5; what++) {
             start();
             begin_job(GROBO_JOB_EXIT, grobo_i_script_exit_hold, QUIET);
-            robot.axes[j].way.to_us = what == 1 ? NOW + 1 : NOW;
+            robot.axes[j].trajectory.to_us = what == 1 ? NOW + 1 : NOW;
             robot.axes[j].next = what == 2;
             robot.sequencer.state = what == 3 ? GROBO_SEQUENCER_STOPPING : GROBO_SEQUENCER_IDLE;
             if (what == 4) {
@@ -115,9 +115,9 @@ TEST_WITH(rig_wirings, who_leaves_stops_what_others_set_going)
                 const grobo_joint_state *at = &robot.axes[j].state;
                 bool tells = row->until_us > -5; /* after it was read */
                 before[j].own_until_us = NOW + row->until_us;
-                before[j].way =
-                    (grobo_robot_way){at->angle_rad, tells ? at->goal_rad : at->angle_rad,
-                                      tells ? NOW - 5 : NOW, NOW + row->way_us};
+                before[j].trajectory =
+                    (grobo_robot_trajectory){at->angle_rad, tells ? at->goal_rad : at->angle_rad,
+                                             tells ? NOW - 5 : NOW, NOW + row->way_us};
                 before[j].phase = GROBO_I_JOINT_STRAY;
             }
             expect_axes();
@@ -157,13 +157,13 @@ TEST_WITH(rig_wirings, who_leaves_waits_for_what_turns)
             axis->phase = GROBO_I_JOINT_SENT;
             axis->seen_rad = axis->state.angle_rad;
             axis->seen_dps = (int16_t)rows[i].dps;
-            axis->way.to_rad = axis->seen_rad + RAD(rows[i].left_deg);
-            axis->way.to_us = NOW - 1;
+            axis->trajectory.to_rad = axis->seen_rad + RAD(rows[i].left_deg);
+            axis->trajectory.to_us = NOW - 1;
             assert_int_equal(take_step(), GROBO_I_NEXT);
             if ((halting() != 0) != rows[i].halts || (robot.job->at == QUIET) != rows[i].again) {
                 fail_msg("row %zu: joint %d", i, j);
             }
-            assert_true((axis->way.to_us > NOW) == rows[i].again);
+            assert_true((axis->trajectory.to_us > NOW) == rows[i].again);
         }
     }
 }

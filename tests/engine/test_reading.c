@@ -54,7 +54,7 @@ static void on_the_way(void)
 {
     rig_start(&rig, &quiet, NULL);
     int64_t now_us = rig.robot.now_us;
-    neck()->way = (grobo_robot_way){0, RAD(40), now_us - 2000000, now_us + 2000000};
+    neck()->trajectory = (grobo_robot_trajectory){0, RAD(40), now_us - 2000000, now_us + 2000000};
     neck()->phase = GROBO_I_JOINT_SENT;
 }
 
@@ -201,7 +201,7 @@ static void start_with(const grobo_robot_config *config)
                                           .torque = GROBO_TORQUE_BRAKE,
                                           .overheated = true,
                                           .flags = 17};
-        axis->way = (grobo_robot_way){RAD(10), RAD(10), NOW - 20, NOW - 10};
+        axis->trajectory = (grobo_robot_trajectory){RAD(10), RAD(10), NOW - 20, NOW - 10};
         axis->goal_us = axis->angle_us = axis->full_us = NOW - 5;
         axis->own_until_us = NOW - 3;
         axis->told_us = NOW - 7;
@@ -312,7 +312,8 @@ TEST(a_reading_from_before_a_frame_tells_nothing_of_after_it)
             assert_int_equal(grobo_i_is_sensed(axis), !late);
             assert_int_equal(axis->torque_known, !late);
             assert_true(axis->goal_us == (late ? NOW - 5 : NOW));
-            assert_true(late == (memcmp(&axis->way, &before[j].way, sizeof axis->way) == 0));
+            assert_true(late == (memcmp(&axis->trajectory, &before[j].trajectory,
+                                        sizeof axis->trajectory) == 0));
             assert_int_equal(axis->own_until_us != NOW - 3, !late);
             expect("angle", axis->state.angle_rad, RAD(40));
             assert_true(axis->angle_us == NOW);
@@ -463,13 +464,13 @@ TEST(a_joint_sent_nowhere_is_where_it_was_read)
             given.goal_rad = RAD(30);
             robot.axes[j].phase = GROBO_I_JOINT_IDLE;
             const grobo_robot_axis *axis = take(j);
-            expect("from", axis->way.from_rad, RAD(20));
-            expect("to", axis->way.to_rad, moves ? RAD(30) : RAD(20));
-            assert_true(axis->way.from_us == NOW);
-            assert_true(axis->way.to_us == NOW + (moves ? 3000000 : 0));
+            expect("from", axis->trajectory.from_rad, RAD(20));
+            expect("to", axis->trajectory.to_rad, moves ? RAD(30) : RAD(20));
+            assert_true(axis->trajectory.from_us == NOW);
+            assert_true(axis->trajectory.to_us == NOW + (moves ? 3000000 : 0));
             robot.axes[j].phase = GROBO_I_JOINT_SENT; /* sent somewhere, it is on its way */
             given.angle_rad = RAD(22);
-            expect("to", take(j)->way.to_rad, moves ? RAD(30) : RAD(20));
+            expect("to", take(j)->trajectory.to_rad, moves ? RAD(30) : RAD(20));
         }
     }
 }
@@ -479,7 +480,7 @@ static grobo_robot_axis *on_a_way(int joint)
 {
     start_with(NULL);
     grobo_robot_axis *axis = &robot.axes[joint];
-    axis->way = (grobo_robot_way){0, RAD(60), NOW - 3000000, NOW + 3000000};
+    axis->trajectory = (grobo_robot_trajectory){0, RAD(60), NOW - 3000000, NOW + 3000000};
     axis->told_us = NOW - 3000000;
     given.goal_rad = axis->state.goal_rad = RAD(60);
     given.goal_time_us = given.time_us = 0;
@@ -531,7 +532,7 @@ TEST(a_joint_that_stands_on_a_fast_way_has_not_begun_it)
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
             grobo_robot_axis *axis = on_a_way(j);
             double way_rad = RAD(rows[i].way_deg);
-            axis->way = (grobo_robot_way){0, way_rad, NOW - 500000, NOW + 500000};
+            axis->trajectory = (grobo_robot_trajectory){0, way_rad, NOW - 500000, NOW + 500000};
             axis->told_us = NOW - rows[i].told_ago_us;
             given.goal_rad = axis->state.goal_rad = way_rad;
             given.angle_rad = RAD(rows[i].deg);
@@ -602,7 +603,7 @@ TEST(what_is_at_the_bound_is_on_the_way)
 {
     for (int j = 0; j < N; j++) {
         grobo_robot_axis *axis = on_a_way(j);
-        axis->way = (grobo_robot_way){0, 0, NOW, NOW};
+        axis->trajectory = (grobo_robot_trajectory){0, 0, NOW, NOW};
         given.angle_rad = 12 * 0.017453292519943295;
         axis->state.goal_rad = 0.06 * 0.017453292519943295;
         (void)take(j);

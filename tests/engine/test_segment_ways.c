@@ -13,16 +13,16 @@
 
 TEST_WITH(rig_wirings, a_way_is_straight_in_time)
 {
-    static const grobo_robot_way way = {2, 6, NOW, NOW + 4 * S};
-    static const grobo_robot_way none = {2, 6, NOW, NOW};
+    static const grobo_robot_trajectory way = {2, 6, NOW, NOW + 4 * S};
+    static const grobo_robot_trajectory none = {2, 6, NOW, NOW};
     static const struct {
         int64_t at_us;
         double rad;
     } rows[] = {{NOW - S, 2},     {NOW, 2},         {NOW + 1, 2.000001}, {NOW + S, 3},
                 {NOW + 2 * S, 4}, {NOW + 4 * S, 6}, {NOW + 9 * S, 6}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        expect_equal(grobo_i_way_at(&way, rows[i].at_us), rows[i].rad, "place");
-        expect_equal(grobo_i_way_at(&none, rows[i].at_us), 6, "place on no way");
+        expect_equal(grobo_i_trajectory_at(&way, rows[i].at_us), rows[i].rad, "place");
+        expect_equal(grobo_i_trajectory_at(&none, rows[i].at_us), 6, "place on no way");
     }
 }
 
@@ -30,7 +30,7 @@ TEST_WITH(rig_wirings, a_way_is_straight_in_time)
 TEST_WITH(rig_wirings, a_joint_is_where_it_was_sent_or_read)
 {
     grobo_robot_axis axis = {.state = {.angle_rad = 10, .goal_rad = 14}, .angle_us = NOW};
-    axis.way = (grobo_robot_way){2, 6, NOW, NOW + 4 * S};
+    axis.trajectory = (grobo_robot_trajectory){2, 6, NOW, NOW + 4 * S};
     axis.told_to_us = NOW + S;
     axis.own_until_us = NOW + 2 * S;
     expect_equal(grobo_i_axis_commanded(&axis, NOW + 3 * S), 5, "on its way");
@@ -76,7 +76,7 @@ TEST_WITH(rig_wirings, a_joint_is_on_its_way_but_where_it_is_weak)
             start();
             grobo_robot_axis *axis = &robot.axes[j];
             double since_s = rows[i].since_deg / speed_dps(j);
-            axis->way = (grobo_robot_way){0, RAD(100), NOW - S / 2, NOW + S / 2};
+            axis->trajectory = (grobo_robot_trajectory){0, RAD(100), NOW - S / 2, NOW + S / 2};
             axis->state.angle_rad = axis->seen_rad = RAD(rows[i].seen_deg);
             axis->seen_us = NOW - (int64_t)(since_s * S);
             axis->told_us = rows[i].told ? NOW : NOW - S / 2;
@@ -114,7 +114,7 @@ TEST_WITH(rig_wirings, a_servo_with_ramps_is_where_these_bring_it)
             driver.accel_rad_s2 = RAD(1000);
             grobo_robot_axis *axis = &robot.axes[j];
             const int64_t begin_us = NOW - rows[i].rest_us / 1000 * 1000;
-            axis->way = (grobo_robot_way){0, RAD(100), begin_us, begin_us + S};
+            axis->trajectory = (grobo_robot_trajectory){0, RAD(100), begin_us, begin_us + S};
             axis->state.valid &= (uint16_t)~GROBO_FIELD_TIME;
             axis->seen_rad = RAD(rows[i].seen_deg);
             axis->seen_us = begin_us + rows[i].seen_us;
@@ -140,7 +140,7 @@ TEST_WITH(rig_wirings, a_joint_comes_along_at_its_own_speed)
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
             start();
             grobo_robot_axis *axis = &robot.axes[j];
-            axis->way = (grobo_robot_way){0, RAD(100), NOW - S / 2, NOW + S / 2};
+            axis->trajectory = (grobo_robot_trajectory){0, RAD(100), NOW - S / 2, NOW + S / 2};
             for (int k = 0; k < N; k++) {
                 robot.axes[k].seen_dps = k == j ? rows[i].dps : rows[i].other_dps;
                 robot.axes[k].state.valid |= GROBO_FIELD_SPEED;
@@ -172,7 +172,7 @@ TEST_WITH(rig_wirings, a_joint_that_is_not_limp_moves_to_the_end_of_its_way)
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const grobo_robot_axis axis = {.state = {.torque = rows[i].torque},
-                                       .way = {0, 1, 0, NOW + rows[i].way_us},
+                                       .trajectory = {0, 1, 0, NOW + rows[i].way_us},
                                        .own_until_us = NOW + rows[i].own_us,
                                        .phase =
                                            rows[i].off ? GROBO_I_JOINT_STRAY : GROBO_I_JOINT_SENT,
@@ -202,9 +202,9 @@ TEST_WITH(rig_wirings, a_joint_rests_where_it_was_read)
                 grobo_i_axis_here(axis, NOW);
             }
             before[j].phase = GROBO_I_JOINT_SENT;
-            before[j].way = own == 1
-                                ? (grobo_robot_way){here_rad(j), here_rad(j) + 1, NOW - 5, NOW - 4}
-                                : (grobo_robot_way){here_rad(j), here_rad(j), NOW, NOW};
+            before[j].trajectory =
+                own == 1 ? (grobo_robot_trajectory){here_rad(j), here_rad(j) + 1, NOW - 5, NOW - 4}
+                         : (grobo_robot_trajectory){here_rad(j), here_rad(j), NOW, NOW};
             expect_axes();
         }
     }
@@ -301,7 +301,7 @@ TEST_WITH(rig_wirings, the_first_frame_asks_for_a_segment)
         grobo_target same = part;
         assert_false(grobo_i_segments_cut(&robot, &(grobo_robot_order){0}, &whole, &part));
         assert_memory_equal(&part, &same, sizeof part);
-        expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(20), "nothing is noted");
+        expect_equal(robot.axes[j].trajectory.to_rad, here_rad(j) + RAD(20), "nothing is noted");
     }
 }
 
@@ -313,8 +313,8 @@ TEST_WITH(rig_wirings, no_part_lies_outside_the_limits)
         for (int end = -1; end <= 1; end += 2) {
             grobo_target target = {0};
             start();
-            robot.axes[j].way =
-                (grobo_robot_way){end * RAD(75 + j), end * RAD(65 + j), NOW, NOW + 2 * S};
+            robot.axes[j].trajectory =
+                (grobo_robot_trajectory){end * RAD(75 + j), end * RAD(65 + j), NOW, NOW + 2 * S};
             robot.axes[j].phase = GROBO_I_JOINT_IN_SEGMENTS;
             robot.axes[j].told_to_us = NOW + 1;
             grobo_i_segments_aim(&robot, GROBO_JOINTS_ALL(N), &target);
@@ -348,7 +348,7 @@ static grobo_robot_axis *start_on(int joint, const told_way *row)
     grobo_robot_axis *axis = &robot.axes[joint];
     start();
     set_going(third_of(joint)); /* a whole goal */
-    axis->way = (grobo_robot_way){0, RAD(10), NOW, NOW + row->left_us};
+    axis->trajectory = (grobo_robot_trajectory){0, RAD(10), NOW, NOW + row->left_us};
     axis->told_to_us = NOW + row->told_us;
     axis->phase = GROBO_I_JOINT_IN_SEGMENTS;
     return axis;
@@ -396,8 +396,8 @@ TEST_WITH(rig_wirings, ways_are_told_on_until_they_end)
             robot.in_segments = true;
             bool is_short = i % 3 == 0 && row->told_us < row->left_us;
             bool again = is_short || (i % 3 == 0 && row->left_us >= 100000);
-            assert_int_equal(grobo_i_way_is_short(axis), is_short);
-            assert_true(grobo_i_ways_renewed(&robot) == (again ? GROBO_JOINT_BIT(j) : 0));
+            assert_int_equal(grobo_i_trajectory_is_short(axis), is_short);
+            assert_true(grobo_i_trajectories_renewed(&robot) == (again ? GROBO_JOINT_BIT(j) : 0));
             robot.renewed_us = NOW;
             assert_true(grobo_i_segments_due(&robot) ==
                         (again ? NOW + GROBO_SEGMENT_RENEW_US : GROBO_NEVER_US));
@@ -547,10 +547,11 @@ TEST_WITH(rig_wirings, a_way_that_was_not_told_on_is_given_up)
                                  over && jobs[i].ends ? GROBO_JOB_NONE : jobs[i].kind);
                 if (over) {
                     double stands_rad = here_rad(j) + RAD(10);
-                    expect_equal(robot.axes[j].way.to_rad, stands_rad, "where it stands");
-                    stands_rad = robot.axes[j].way.to_rad;
-                    before[j].way.to_rad = stands_rad; /* its servo may be on the ramp there */
-                    before[j].way.to_us = NOW;
+                    expect_equal(robot.axes[j].trajectory.to_rad, stands_rad, "where it stands");
+                    stands_rad = robot.axes[j].trajectory.to_rad;
+                    before[j].trajectory.to_rad =
+                        stands_rad; /* its servo may be on the ramp there */
+                    before[j].trajectory.to_us = NOW;
                     before[j].phase = GROBO_I_JOINT_SENT;
                     const grobo_event *event = &robot.events[robot.events_head];
                     assert_int_equal(event->kind, GROBO_EVENT_TRIP);

@@ -826,7 +826,7 @@ TEST_WITH(rig_wirings, a_halt_goes_to_what_moves)
         assert_true(slot->due_us == GROBO_NEVER_US);
         assert_int_equal(slot->order.number, 0);
         assert_true(halting() == GROBO_JOINT_BIT(j));
-        robot.axes[j].way.to_us = NOW;
+        robot.axes[j].trajectory.to_us = NOW;
         robot.axes[third_of(j)].phase = GROBO_I_JOINT_SENT;
         assert_true(halting() == (of & GROBO_JOINT_BIT(third_of(j))));
     }

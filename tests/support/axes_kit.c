@@ -65,7 +65,7 @@ void start_with(const grobo_robot_config *config)
                                           .goal_rad = here_rad(j),
                                           .valid = 0xFF,
                                           .torque = GROBO_TORQUE_ON};
-        axis->way = (grobo_robot_way){here_rad(j), here_rad(j), NOW - 20, NOW - 10};
+        axis->trajectory = (grobo_robot_trajectory){here_rad(j), here_rad(j), NOW - 20, NOW - 10};
         axis->angle_us = axis->full_us = axis->goal_us = axis->torque_us = NOW - 5;
         axis->own_until_us = NOW - 3;
         axis->told_us = axis->told_to_us = axis->seen_us = NOW - 7;
@@ -75,7 +75,7 @@ void start_with(const grobo_robot_config *config)
         axis->torque_known = axis->wants_torque = true;
     }
     for (int j = N; j < GROBO_JOINTS_MAX; j++) { /* of no joint: who looks there finds one moving */
-        robot.axes[j] = (grobo_robot_axis){.way = {0, 1, NOW - S, NOW + 9 * S},
+        robot.axes[j] = (grobo_robot_axis){.trajectory = {0, 1, NOW - S, NOW + 9 * S},
                                            .told_to_us = NOW,
                                            .next = 1,
                                            .phase = j % 2 == 0 ? GROBO_I_JOINT_EXTERNAL
@@ -128,8 +128,8 @@ void make_limp(int joint)
 
 void set_going(int joint)
 {
-    robot.axes[joint].way =
-        (grobo_robot_way){here_rad(joint), here_rad(joint) + RAD(20), NOW - S, NOW + S};
+    robot.axes[joint].trajectory =
+        (grobo_robot_trajectory){here_rad(joint), here_rad(joint) + RAD(20), NOW - S, NOW + S};
 }
 
 void latch(grobo_trip reason)
@@ -181,10 +181,10 @@ static void expect_axis(int joint)
     SAME(angle_us)
     SAME(torque_us)
     SAME(told_us)
-    SAME(way.from_rad)
-    SAME(way.to_rad)
-    SAME(way.from_us)
-    SAME(way.to_us)
+    SAME(trajectory.from_rad)
+    SAME(trajectory.to_rad)
+    SAME(trajectory.from_us)
+    SAME(trajectory.to_us)
     SAME(last)
     SAME(next)
     SAME(next_rad)

@@ -87,8 +87,8 @@ void expect_torque(int joint, grobo_torque torque)
 void note_goal(int joint, double way_deg, int64_t time_us)
 {
     grobo_robot_axis *axis = &before[joint];
-    axis->way =
-        (grobo_robot_way){here_rad(joint), here_rad(joint) + RAD(way_deg), NOW, NOW + time_us};
+    axis->trajectory = (grobo_robot_trajectory){here_rad(joint), here_rad(joint) + RAD(way_deg),
+                                                NOW, NOW + time_us};
     axis->own_until_us = 0;
     axis->phase = GROBO_I_JOINT_SENT;
     axis->told_us = NOW;

@@ -107,37 +107,37 @@ typedef struct grobo_robot_slot {
 } grobo_robot_slot;
 
 /** A move of a joint, straight in time. Private. */
-typedef struct grobo_robot_way {
+typedef struct grobo_robot_trajectory {
     /* private */
     double from_rad, to_rad;
     int64_t from_us, to_us;
-} grobo_robot_way;
+} grobo_robot_trajectory;
 
 /** What is known of a joint. Private. */
 typedef struct grobo_robot_axis {
     /* private */
     grobo_joint_state state;
-    int64_t goal_us;           /* when its goal was read back */
-    int64_t own_until_us;      /* when the move that the servo told of is over */
-    int64_t angle_us, full_us; /* when read; GROBO_NEVER_US: never */
-    int64_t torque_us;         /* when its torque was, if that is known */
-    int64_t gave_way_us;       /* in free mode: when a hand pushed or turned it last */
-    int64_t current_since_us;  /* above its limit since; GROBO_NEVER_US: it is not */
-    int64_t told_us;           /* when a frame that moves or switches it left last */
-    int64_t heard_us;          /* its servo, with torque, answered what it was asked then */
-    grobo_robot_way way;       /* the move that the last frame sent it on */
-    uint32_t last;             /* number of the target that left last; 0: what had none */
-    uint32_t next;             /* number of the target that waits for the line; 0: none */
-    double next_rad;           /* that target */
-    double seen_rad;           /* where it was, by a reading asked for since it was told last */
-    int64_t seen_us;           /* when that was asked for */
-    double away_rad;           /* in free mode: how far from its goal when it was read last */
-    int64_t next_time_us;      /* and its time, so far */
-    int status;                /* of the last reading */
-    uint16_t lost;             /* readings lost in a row */
-    int16_t seen_dps;          /* how fast it turned at seen_us; INT16_MIN: not known */
-    int64_t told_to_us;        /* in segments: until when on its way the servo was told to go */
-    uint8_t phase;             /* what moves it, as far as is known (src/robot/state.h) */
+    int64_t goal_us;                   /* when its goal was read back */
+    int64_t own_until_us;              /* when the move that the servo told of is over */
+    int64_t angle_us, full_us;         /* when read; GROBO_NEVER_US: never */
+    int64_t torque_us;                 /* when its torque was, if that is known */
+    int64_t gave_way_us;               /* in free mode: when a hand pushed or turned it last */
+    int64_t current_since_us;          /* above its limit since; GROBO_NEVER_US: it is not */
+    int64_t told_us;                   /* when a frame that moves or switches it left last */
+    int64_t heard_us;                  /* its servo, with torque, answered what it was asked then */
+    grobo_robot_trajectory trajectory; /* the move that the last frame sent it on */
+    uint32_t last;                     /* number of the target that left last; 0: what had none */
+    uint32_t next;                     /* number of the target that waits for the line; 0: none */
+    double next_rad;                   /* that target */
+    double seen_rad;      /* where it was, by a reading asked for since it was told last */
+    int64_t seen_us;      /* when that was asked for */
+    double away_rad;      /* in free mode: how far from its goal when it was read last */
+    int64_t next_time_us; /* and its time, so far */
+    int status;           /* of the last reading */
+    uint16_t lost;        /* readings lost in a row */
+    int16_t seen_dps;     /* how fast it turned at seen_us; INT16_MIN: not known */
+    int64_t told_to_us;   /* in segments: until when on its trajectory the servo was told to go */
+    uint8_t phase;        /* what moves it, as far as is known (src/robot/state.h) */
     bool torque_known;
     bool wants_torque; /* we switched it on: to be without is a fault */
     bool goal_is_read; /* its goal was read since it was told last */
@@ -184,7 +184,7 @@ typedef struct grobo_robot_task {
     int64_t until_us; /* end of waiting */
     int64_t bound_us; /* end of patience */
     bool lets_go;     /* by then its joints were told to be without torque */
-    bool sits;        /* is on the way down: halted where the bound is over */
+    bool sits;        /* is on the trajectory down: halted where the bound is over */
     bool singly;      /* a move asked for joint by joint: each has its time, and fails alone */
     grobo_joint_mask turned; /* of such a move, joints that were given another target: sent next */
     grobo_joint_mask out;    /* of such a move, joints that have failed for good, */
@@ -238,7 +238,7 @@ struct grobo_robot {
     int64_t soft_us;        /* grobo_robot_send(): when its first target is reached */
     int64_t sense_us;       /* when the background reads next */
     uint32_t motion;        /* number of the last target */
-    int64_t renewed_us;     /* when the ways in segments were told further */
+    int64_t renewed_us;     /* when the trajectories in segments were told further */
     int32_t renew_us;       /* how often they are: what the line can do, for these joints; */
     int32_t read_us;        /* how long a reading may have the line meanwhile */
     grobo_joint_mask paced; /* 0: not found yet */
@@ -251,7 +251,7 @@ struct grobo_robot {
     grobo_joint_mask clip_joints;   /* of the motion that is played, and those behind it */
     grobo_joint_mask played_joints; /* sent where they go by the sequencer */
     grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
-    grobo_joint_mask renews_owed;   /* to be told more of their ways at once */
+    grobo_joint_mask renews_owed;   /* to be told more of their trajectories at once */
     grobo_joint_mask halts_owed;    /* to halt, and to be read before: their place is unknown */
     grobo_joint_mask heard_round;   /* of the joints that were not heard for long */
     grobo_joint_mask halted;        /* whose halt has left and was not read back yet */

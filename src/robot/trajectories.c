@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Ways that are told in segments: what of a way the next frame asks for. segments.c tells more of
- * them in time.
+ * Trajectories that are told in segments: what of a trajectory the next frame asks for. segments.c
+ * tells more of them in time.
  *
- * grobo_robot_axis.way is the whole move, as for a whole goal; told_to_us is how far along it the
- * servo was told to go. Frames are built when they leave, so that a renewal lies on the way
- * whenever that is.
+ * grobo_robot_axis.trajectory is the whole move, as for a whole goal; told_to_us is how far along
+ * it the servo was told to go. Frames are built when they leave, so that a renewal lies on the
+ * trajectory whenever that is. /
  */
 #include <math.h>
 
@@ -19,26 +19,27 @@ static int64_t most_us(const grobo_robot *robot)
     return GROBO_SEGMENT_US < step_us ? step_us : GROBO_SEGMENT_US / step_us * step_us;
 }
 
-/* Where a way is by then, and never outside the limits: it may begin there. */
-static double place(const grobo_robot *robot, int joint, const grobo_robot_way *way, int64_t at_us)
+/* Where a trajectory is by then, and never outside the limits: it may begin there. */
+static double place(const grobo_robot *robot, int joint, const grobo_robot_trajectory *trajectory,
+                    int64_t at_us)
 {
     const grobo_i_limits limits = grobo_i_joint_limits(robot, joint);
-    return fmin(fmax(grobo_i_way_at(way, at_us), limits.min_rad), limits.max_rad);
+    return fmin(fmax(grobo_i_trajectory_at(trajectory, at_us), limits.min_rad), limits.max_rad);
 }
 
-/* How long the next part of a way takes: a whole segment or what is left, and to its limit one that
- * is still outside by then, no faster than on all of the way. */
-static int64_t part_us(const grobo_robot *robot, int joint, const grobo_robot_way *way,
-                       int64_t now_us)
+/* How long the next part of a trajectory takes: a whole segment or what is left, and to its
+ * limit one that is still outside by then, no faster than on all of the trajectory. */
+static int64_t part_us(const grobo_robot *robot, int joint,
+                       const grobo_robot_trajectory *trajectory, int64_t now_us)
 {
     int64_t step_us = robot->driver->time_step_us;
-    int64_t end_us = grobo_i_sooner(way->to_us, now_us + most_us(robot));
-    double way_rad = way->to_rad - way->from_rad;
-    double left_rad = place(robot, joint, way, end_us) - way->from_rad;
-    double way_us = (double)(way->to_us - way->from_us);
-    if (fabs(left_rad) > fabs(grobo_i_way_at(way, end_us) - way->from_rad)) {
-        int64_t in_us = way->from_us + (int64_t)(left_rad / way_rad * way_us);
-        end_us = grobo_i_sooner(grobo_i_later(in_us, end_us), way->to_us);
+    int64_t end_us = grobo_i_sooner(trajectory->to_us, now_us + most_us(robot));
+    double way_rad = trajectory->to_rad - trajectory->from_rad;
+    double left_rad = place(robot, joint, trajectory, end_us) - trajectory->from_rad;
+    double way_us = (double)(trajectory->to_us - trajectory->from_us);
+    if (fabs(left_rad) > fabs(grobo_i_trajectory_at(trajectory, end_us) - trajectory->from_rad)) {
+        int64_t in_us = trajectory->from_us + (int64_t)(left_rad / way_rad * way_us);
+        end_us = grobo_i_sooner(grobo_i_later(in_us, end_us), trajectory->to_us);
     }
     return (end_us - now_us + step_us - 1) / step_us * step_us;
 }
@@ -46,8 +47,8 @@ static int64_t part_us(const grobo_robot *robot, int joint, const grobo_robot_wa
 /* The end is repeated, too, while there is time for it: a frame may be lost. */
 static bool is_renewed(const grobo_robot *robot, const grobo_robot_axis *axis)
 {
-    bool late = axis->way.to_us - robot->now_us < robot->renew_us;
-    return grobo_i_way_is_short(axis) ||
+    bool late = axis->trajectory.to_us - robot->now_us < robot->renew_us;
+    return grobo_i_trajectory_is_short(axis) ||
            (grobo_i_has_target(axis) && grobo_i_is_in_segments(axis) && !late);
 }
 
@@ -77,10 +78,11 @@ bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *ord
             *part = *whole;
             cut = true;
         }
-        const grobo_robot_way way = {grobo_i_axis_commanded(&robot->axes[j], robot->now_us),
-                                     whole->posture.angle_rad[j], 0, time_us};
-        part->joint_time_us[j] = part_us(robot, j, &way, 0);
-        part->posture.angle_rad[j] = place(robot, j, &way, part->joint_time_us[j]);
+        const grobo_robot_trajectory trajectory = {
+            grobo_i_axis_commanded(&robot->axes[j], robot->now_us), whole->posture.angle_rad[j], 0,
+            time_us};
+        part->joint_time_us[j] = part_us(robot, j, &trajectory, 0);
+        part->posture.angle_rad[j] = place(robot, j, &trajectory, part->joint_time_us[j]);
     }
     return cut;
 }
@@ -95,7 +97,7 @@ grobo_joint_mask grobo_i_joints_that(const grobo_robot *robot,
     return joints;
 }
 
-grobo_joint_mask grobo_i_ways_renewed(const grobo_robot *robot)
+grobo_joint_mask grobo_i_trajectories_renewed(const grobo_robot *robot)
 {
     grobo_joint_mask joints = 0;
     for (int j = 0; robot->in_segments && j < robot->driver->model->n_joints; j++) {
@@ -107,12 +109,12 @@ grobo_joint_mask grobo_i_ways_renewed(const grobo_robot *robot)
 void grobo_i_segments_begin(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
-    if (grobo_i_ways_renewed(robot) == 0) {
+    if (grobo_i_trajectories_renewed(robot) == 0) {
         robot->renewed_us = robot->now_us;
     }
     grobo_i_joint_to(axis, GROBO_I_JOINT_SEGMENT);
     robot->in_segments = true;
-    axis->told_to_us = robot->now_us + part_us(robot, joint, &axis->way, robot->now_us);
+    axis->told_to_us = robot->now_us + part_us(robot, joint, &axis->trajectory, robot->now_us);
 }
 
 void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, grobo_target *target)
@@ -120,9 +122,10 @@ void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, gro
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_has(joints, j) && is_renewed(robot, axis) && axis->told_to_us > robot->now_us) {
-            int64_t time_us = part_us(robot, j, &axis->way, robot->now_us);
+            int64_t time_us = part_us(robot, j, &axis->trajectory, robot->now_us);
             target->joint_time_us[j] = time_us;
-            target->posture.angle_rad[j] = place(robot, j, &axis->way, robot->now_us + time_us);
+            target->posture.angle_rad[j] =
+                place(robot, j, &axis->trajectory, robot->now_us + time_us);
             target->posture.set |= GROBO_JOINT_BIT(j);
         }
     }
@@ -140,6 +143,6 @@ void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target)
 
 int64_t grobo_i_segments_due(const grobo_robot *robot)
 {
-    bool some = grobo_i_ways_renewed(robot) != 0;
+    bool some = grobo_i_trajectories_renewed(robot) != 0;
     return some ? robot->renewed_us + robot->renew_us : GROBO_NEVER_US;
 }
