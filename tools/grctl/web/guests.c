@@ -249,7 +249,7 @@ static void on_input(struct evbuffer *input, const struct evbuffer_cb_info *info
     if (is_rude(g)) {
         guests_end(g);
     }
-    early_hear(g, input, info->n_added);
+    g->at->of->hear(g, input, info->n_added);
     if (g->connection) {
         streams_end_of(p->of, g->connection); /* nobody would read it there */
     }

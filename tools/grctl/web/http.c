@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The HTTP side of `serve`: its two ports, requests as they come whole, replies. */
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +14,6 @@
 
 #include <grobo/core/port.h>
 
-#include "tools/grctl/cli/heap.h"
 #include "tools/grctl/os/net.h"
 #include "tools/grctl/web/head.h"
 #include "tools/grctl/web/http_own.h"
@@ -25,16 +23,6 @@ enum {
 };
 
 /* ---- replies --------------------------------------------------------------------------------- */
-
-void http_drop_request(http_request *r)
-{
-    http_request **link = &r->server->waiting;
-    while (*link != r) {
-        link = &(*link)->next;
-    }
-    *link = r->next;
-    free(r);
-}
 
 static port *port_of(const http_request *r)
 {
@@ -46,11 +34,6 @@ static wall_request as_wall(const http_request *r)
     return (wall_request){.method = *r->method ? r->method : NULL,
                           .uri = evhttp_request_get_uri(r->raw),
                           .headers = evhttp_request_get_input_headers(r->raw)};
-}
-
-void http_add(const http_request *r, const char *name, const char *value)
-{
-    evhttp_add_header(evhttp_request_get_output_headers(r->raw), name, value);
 }
 
 static void add_policy(const http_request *r)
@@ -66,66 +49,6 @@ static void add_policy(const http_request *r)
     http_add(r, "Content-Security-Policy", text);
 }
 
-/* What every reply has. */
-void http_add_headers(const http_request *r)
-{
-    http_add(r, "X-Content-Type-Options", "nosniff");
-    http_add(r, "Referrer-Policy", "no-referrer");
-    http_add(r, "X-Frame-Options", "DENY");
-    http_add(r, "Cross-Origin-Opener-Policy", "same-origin");
-    /* Chromium takes two ports of an IP address for different sites, and then hides even that an
-     * answer came; what a no-cors request sees of it is nothing but that. */
-    http_add(r, "Cross-Origin-Resource-Policy", r->second ? "cross-origin" : "same-origin");
-}
-
-static void send_reply(http_request *r, int status, const void *bytes, size_t size)
-{
-    struct evbuffer *body = evbuffer_new();
-    if (size && (!body || evbuffer_add(body, bytes, size) != 0)) {
-        status = status < 400 ? 503 : status; /* what was done is done, but cannot be told */
-    }
-    evhttp_send_reply(r->raw, status, head_reason(status), body);
-    if (body) {
-        evbuffer_free(body);
-    }
-    http_drop_request(r);
-}
-
-void http_reply_text(http_request *r, int status, const char *text, size_t size)
-{
-    http_add_headers(r);
-    http_add(r, "Cache-Control", "no-store");
-    if (text) {
-        http_add(r, "Content-Type", "application/json");
-    }
-    send_reply(r, text ? status : 503, text, size);
-}
-
-void http_reply_json(http_request *r, int status, json_t *body)
-{
-    heap text = {0};
-    heap_json(&text, body);
-    http_reply_text(r, status, text.bytes, text.size);
-    free(text.bytes);
-}
-
-void http_refuse(http_request *r, int status, const char *code, const char *format, ...)
-{
-    char text[512];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    http_reply_json(r, status, json_pack("{s:{s:s,s:s}}", "error", "code", code, "message", text));
-}
-
-void http_reply_empty(http_request *r)
-{
-    http_add_headers(r);
-    http_add(r, "Cache-Control", "no-store");
-    send_reply(r, 204, NULL, 0);
-}
-
 void http_reply_content(http_request *r, const http_content *content)
 {
     const char *known = http_header(r, "If-None-Match");
@@ -138,7 +61,7 @@ void http_reply_content(http_request *r, const http_content *content)
         http_add(r, "ETag", content->etag);
     }
     if (content->etag && known && strstr(known, content->etag)) {
-        send_reply(r, 304, NULL, 0);
+        http_answer(r, 304, NULL, 0);
         return;
     }
     if (content->early && *content->early) {
@@ -149,7 +72,7 @@ void http_reply_content(http_request *r, const http_content *content)
     if (content->gzip) {
         http_add(r, "Content-Encoding", "gzip");
     }
-    send_reply(r, 200, content->bytes, content->size);
+    http_answer(r, 200, content->bytes, content->size);
 }
 
 /* ---- requests -------------------------------------------------------------------------------- */
@@ -409,6 +332,7 @@ int http_new(const http_config *config, http **server, const char **complaint)
         return GROBO_ERR_NOMEM;
     }
     h->config = *config;
+    h->hear = early_hear;
     h->sweep = event_new(config->base, -1, EV_PERSIST, on_sweep, h);
     h->reap = event_new(config->base, -1, 0, streams_on_reap, h);
     h->greet = event_new(config->base, -1, 0, guests_name, h);

@@ -64,6 +64,8 @@ typedef struct stream {
 
 struct http {
     http_config config;
+    /* What came of a request: early_hear(), which the connections know by this alone. */
+    void (*hear)(guest *g, struct evbuffer *input, size_t added);
     port first, second;
     guest guests[GUESTS];
     char heads[GUESTS][HTTP_HEADER_BYTES + 1]; /* of requests that are not whole */
@@ -107,12 +109,14 @@ void streams_forget(http *h, const struct evhttp_connection *connection);
 /* Ends all. */
 void streams_free(http *h);
 
-/* ---- what replies share (http.c) ------------------------------------------------------------- */
+/* ---- what replies share (reply.c) ------------------------------------------------------------ */
 
 /* The headers that every reply has. */
 void http_add_headers(const http_request *r);
 void http_add(const http_request *r, const char *name, const char *value);
 /* Forgets a request that has its reply. */
 void http_drop_request(http_request *r);
+/* Sends the reply, its body last; size 0: it has none. The request is gone then. */
+void http_answer(http_request *r, int status, const void *bytes, size_t size);
 
 #endif
