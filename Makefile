@@ -207,7 +207,7 @@ include tools/baremetal/baremetal.mk
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
+.PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-physics check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
@@ -435,6 +435,11 @@ picture: $(PICTURE) ## draw docs/robot.svg again: a simulated GR001 plays
 captures: $(BUILD)/grctl ## make the screens of docs/guide/tour.md and the table of safety.md again
 	@GRCTL="$(call whole,$(GRCTL))" TOUR_WRITE=yes sh tests/cli/tour.sh
 	@GRCTL="$(call whole,$(GRCTL))" TOUR_WRITE=yes sh tests/cli/deaths.sh
+
+analyse: ## shellcheck of all scripts, ruff (from PyPI) of all Python
+	-@! command -v apt-get >/dev/null || command -v shellcheck >/dev/null || tools/setup.sh --ci
+	-@python3 -m venv $(BUILD)/ruff && $(BUILD)/ruff/bin/pip install -q --disable-pip-version-check ruff
+	@RUFF="$(abspath $(BUILD)/ruff/bin/ruff)" BUILD="$(BUILD)" TEST_LOGS="$(BUILD)/logs/analyse" tests/run.sh tools/lint/analyse.sh
 
 tidy: ## clang-tidy over the library and the command; advice, not a gate
 	@status=0; for file in $(CORE_SRCS) $(OTHER_SRCS) $(TOOL_SRCS); do \

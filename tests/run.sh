@@ -46,8 +46,9 @@ is_wanted() {
     case $1 in
     *.sh) grep -E '^ *(test_case|test_that) ' "$1" ;;
     *@*) ;;
-    # shellcheck disable=SC2086
-    *) $wrapper "$1" --list </dev/null 2>/dev/null ;;
+    *)
+        # shellcheck disable=SC2086 # the wrapper may have options
+        $wrapper "$1" --list </dev/null 2>/dev/null ;;
     esac | alike | grep -qF -e "$only"
 }
 
@@ -68,10 +69,10 @@ run_one() {
     esac
     case $program in
     *.sh) set -- sh "$program" ;;
-    # $wrapper is a command with its options: it is meant to be split.
-    # shellcheck disable=SC2086
     *)
         is_called "$program" || set -- "$TEST_ONLY"
+        # $wrapper is a command with its options: it is meant to be split.
+        # shellcheck disable=SC2086
         set -- $wrapper "$program" "$@"
         ;;
     esac

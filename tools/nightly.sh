@@ -32,6 +32,7 @@ stage_of() {
     roots) echo check-roots ;;
     cockpit) echo check-cockpit ;;
     api) echo check-api ;;
+    analyse) echo analyse ;;
     families) echo check-families ;;
     physics) echo check-physics ;;
     fleet) echo check-fleet ;;
@@ -43,7 +44,7 @@ stage_of() {
 }
 
 [ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts soak abi ports deb wheel roots \
-    cockpit api families physics fleet scan stops matrix
+    analyse cockpit api families physics fleet scan stops matrix
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done

@@ -292,6 +292,8 @@ look_wanted() {
         libglib2.0-dev glib2-devel glib2 glib-dev glib2-devel
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
+    need shellcheck 'to check the scripts' have_command shellcheck -- \
+        shellcheck ShellCheck shellcheck shellcheck ShellCheck
     need gdb 'to check the guard beside a debugger' have_command gdb -- gdb gdb gdb gdb gdb
     [ "$manager" != apt-get ] ||
         need "Python's headers" 'to check the Python package' have_python_headers -- python3-dev

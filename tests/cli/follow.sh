@@ -29,6 +29,7 @@ trap end_follow_test EXIT
 written "$work/follower.log" SIMULATED || { echo "Bail out! no follower"; exit 1; }
 
 # follow [OPTION...]: begins it; what it says is in $work/events and $work/said.
+# shellcheck disable=SC2120 # options are for some calls
 follow() {
     : >"$work/events"
     seen=0

@@ -236,6 +236,7 @@ tool() {
 }
 png() {
     saved=$PATH
+    # shellcheck disable=SC2123 # it is the search path
     PATH=$work/tools
     exits "$@"
     png_status=$?

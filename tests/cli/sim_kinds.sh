@@ -51,7 +51,7 @@ check "--servo at another rate" both exits 0 "$GRCTL" -d "$robot" --timeout 60 -
     -b 460800 \
     servo-get 5 model --- says RS304MD
 stop_sim
-for wrong in 1=RS999 0=RS301CR 128=RS301CR 1=RS301CR,1=RS302CD 1 1= =RS301CR 1=RS301CR, \
+for wrong in 1=RS999 0=RS301CR 128=RS301CR 1=RS301CR,1=RS302CD 1 1= =RS301CR "1=RS301CR," \
     x=RS301CR; do
     check "--servo '$wrong'" fails 2 '^grctl: sim: --servo: ' timeout 5 "$GRCTL" sim \
         --servo "$wrong"

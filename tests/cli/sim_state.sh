@@ -5,6 +5,7 @@
 own_sim
 state=$work/flash
 
+# shellcheck disable=SC2120 # options are for some calls
 chain() {
     start_sim --servo 1=RS304MD,2=RS302CD --state "$state" "$@"
 }

@@ -601,7 +601,7 @@ def a_page_that_freezes_while_playing_does_what_was_declared(browser, server):
         found = [e for e in events(server, words) if e['id'] > before]
         assert len(found) == 1, (declared, found)
         note(f"{declared}: {found[0]['time_ms'] - at} ms after the page froze")
-        server.wait(lambda s: s['play']['state'] == end and s['job'] is None, end)
+        server.wait(lambda s, end=end: s['play']['state'] == end and s['job'] is None, end)
         assert set(server.state()['torque']) == {'on'}, declared
         comes_to_rest(server)
         page.close()

@@ -277,7 +277,7 @@ def rates(port):
     bus.disconnect()
     arm = rustypot.Sts3215PyController(port, 1000000, PATIENCE_MS / 1000)
     ids = list(range(1, SERVOS + 1))
-    told["rustypot"] = rate_of(lambda: arm.sync_read_present_position(ids), 2)
+    told["rustypot"] = rate_of(lambda arm=arm: arm.sync_read_present_position(ids), 2)
     del arm
 
     import grobo

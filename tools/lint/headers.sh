@@ -54,7 +54,7 @@ if [ -f include/grobo/grobo.h ]; then
         bad=1
     }
 fi
-# shellcheck disable=SC2086
+# shellcheck disable=SC2044,SC2086 # names here have no spaces
 for header in $(find src ports tools tests -name '*.h' ! -path '*/include/grobo/*'); do
     system=
     case $header in

@@ -61,6 +61,7 @@ fi
 (
     unset MAKEFLAGS MAKELEVEL MFLAGS BUILD CC CFLAGS CPPFLAGS LDFLAGS
     cd "$tree"
+    # shellcheck disable=SC2046 # an option, or nothing
     DEB_BUILD_OPTIONS="nocheck parallel=2" dpkg-buildpackage -b -us -uc -a"$arch" \
         $([ "$arch" = "$here" ] || echo -d)
 ) >"$out/log" 2>&1 || {

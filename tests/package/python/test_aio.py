@@ -65,7 +65,7 @@ class Aio(unittest.IsolatedAsyncioTestCase):
     async def test_a_cancelled_task_stops_the_robot(self):
         for verb in (self.robot.play(GREET), self.robot.move({"R_ELBOW_P": -1.0}, time=20)):
             task = asyncio.create_task(verb)
-            await self.until(lambda: self.robot.status().moving or task.done())
+            await self.until(lambda task=task: self.robot.status().moving or task.done())
             self.assertFalse(task.done() and task.exception(), "it was refused")
             task.cancel()
             with self.assertRaises(asyncio.CancelledError):
@@ -164,7 +164,7 @@ class Aside(unittest.IsolatedAsyncioTestCase):
         with self.assertRaises(ZeroDivisionError):
             async with await grobo.aio.connect("sim") as robot:
                 robot._robot.close = lambda: errors.check(-1, "exit policy")
-                1 / 0
+                raise ZeroDivisionError
         self.assertEqual(len(robot_module._open), 1)
         robot_module._close_all()
 

@@ -162,7 +162,7 @@ class Plugin(unittest.TestCase):
         for percent in 0.0, 50.0, 100.0:
             sent = robot.send_action({"gripper.pos": percent})
             self.assertAlmostEqual(sent["gripper.pos"], percent)
-            self.drive(robot, sent, lambda s: abs(s["gripper.pos"] - percent) < 0.5)
+            self.drive(robot, sent, lambda s, percent=percent: abs(s["gripper.pos"] - percent) < 0.5)
             at = robot._robot.status().joints["gripper"].degrees
             self.assertAlmostEqual(at, low + percent / 100 * (high - low), delta=1)
         self.assertEqual(robot.send_action({"gripper.pos": 130.0})["gripper.pos"], 100)

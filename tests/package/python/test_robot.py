@@ -474,7 +474,7 @@ class Exiting(unittest.TestCase):
         with self.assertRaises(ZeroDivisionError):
             with grobo.connect(str(self.link), exit=grobo.Exit.OFF) as robot:
                 robot.torque(True)
-                1 / 0
+                raise ZeroDivisionError
         with grobo.connect(str(self.link), exit=None) as robot:
             robot.angles()
             self.assertEqual(robot.status().joints["R_ELBOW_P"].torque, Torque.OFF)

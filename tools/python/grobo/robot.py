@@ -319,7 +319,7 @@ class Robot:
     def __del__(self) -> None:
         runner = getattr(self, "_runner", None)
         if runner is not None and not runner.closing and runner.process == os.getpid():
-            warnings.warn(f"robot {self.device} was not closed", ResourceWarning, source=self)
+            warnings.warn(f"robot {self.device} was not closed", ResourceWarning, 1, self)
             # Closed by the next robot, or at exit: this may be any thread, which must not wait here.
             runner.dropped = True
             if runner.leaves:

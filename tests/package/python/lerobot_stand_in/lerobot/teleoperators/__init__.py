@@ -19,7 +19,7 @@ class TeleoperatorConfig:
         return register
 
 
-class Teleoperator(abc.ABC):
+class Teleoperator(abc.ABC):  # noqa: B024 (as theirs)
     def __init__(self, config):
         self.id = config.id
         self.calibration = {}

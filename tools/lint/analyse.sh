@@ -1,0 +1,28 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# What other programs say of the scripts: shellcheck of the shell's, ruff of Python's. RUFF is its
+# command. What is left out here is left out for the reason beside it; a single place says its own.
+. tests/support/tap.sh
+
+# SC2034, SC2154: a file that is sourced has what its readers set, and sets what they read.
+# SC2148: such a file has no first line of its own. SC2010: the names that are listed are ours.
+# SC2100, SC2209: a word that is a command's name is not run. SC1007: FOO= COMMAND empties FOO.
+# SC1087: [ behind a variable begins a regular expression.
+left_out=SC1007,SC1087,SC2010,SC2034,SC2100,SC2148,SC2154,SC2209
+
+scripts=$(git ls-files '*.sh' .ci)
+programs=$(git ls-files '*.py')
+if command -v shellcheck >/dev/null; then
+    # shellcheck disable=SC2086 # names here have no spaces
+    check "shellcheck has nothing to say" shellcheck -S warning -x -e "$left_out" $scripts
+else
+    skip "shellcheck has nothing to say" "shellcheck is not installed"
+fi
+if "${RUFF:-ruff}" --version >/dev/null 2>&1; then
+    # shellcheck disable=SC2086
+    check "ruff has nothing to say" "${RUFF:-ruff}" check --no-cache --isolated \
+        --select E4,E7,E9,F,B,W,PLE --ignore B905 $programs
+else
+    skip "ruff has nothing to say" "ruff is not installed"
+fi
+done_testing
