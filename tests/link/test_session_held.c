@@ -289,6 +289,8 @@ TEST_WITH(on_sim, what_the_simulator_has_not_taken_by_a_stop_moves_nothing)
     }
     assert_in_range(session->backlog_bytes, 3, GOALS - 1);
     assert_true(grobo_robot_estop(robot()) > 0);
+    assert_true(loop_run(base, 20000)); /* what it holds is taken back */
+    assert_int_equal(session->given_bytes, 0);
     delay_line(sim, -hour_ns);
     while (session->backlog_bytes > 0 || grobo_sim_rx_room(sim) < GROBO_SIM_WIRE_BYTES) {
         (void)loop_run(base, 20000);
