@@ -39,6 +39,14 @@ typedef struct grobo_joint {
     /** Its servo: of a table of its family, or of a user's file. NULL: the first of the family
      *  whose number is servo_model. grobo_robot_def_read() sets it, as two may have one number. */
     const struct grobo_servo_model *servo;
+    /** A joint with a ratio follows another one: whatever moves, stops, switches or frees one of
+     *  the two does so with both, in one frame where the family can, and it goes to `ratio` times
+     *  the other's angle. It cannot be sent anywhere else. 0: it follows none. */
+    double ratio;
+    /** Two servos on one shaft: so far from there, by what is read of both, the engine stops
+     *  (GROBO_TRIP_APART), and a stop sends both to one place. 0: each has a shaft of its own. */
+    double apart_rad;
+    uint8_t follows; /**< the joint that it follows, which follows none itself */
 } grobo_joint;
 
 /** The angle of a joint's servo, from the middle of its range, where the joint is at an angle. */
@@ -100,7 +108,9 @@ GROBO_API const grobo_joint *grobo_model_joint(const grobo_model *model, int joi
  * Checks a table: its sizes (GROBO_TABLE()), counts within caps, names present and unique, motors
  * unique and within 0..GROBO_SERVO_ID_MAX (its family may have fewer: grobo_driver_check()), limits
  * finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs, a finite zero, a
- * gear that is not negative, a torque limit of at most 100, a slack within its range.
+ * gear that is not negative, a torque limit of at most 100, a slack within its range, joints that
+ * follow one that follows none, with limits and an initial angle that are that one's times the
+ * ratio.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
 GROBO_API int grobo_model_check(const grobo_model *model);

@@ -46,7 +46,9 @@ typedef enum grobo_trip {
     GROBO_TRIP_LIMIT,        /**< a played target outside limits; value: degrees. Not latched */
     GROBO_TRIP_NUMBER,       /**< a played target not finite. Not latched */
     GROBO_TRIP_HOST_STALL,   /**< value: ms late. Not latched */
-    GROBO_TRIP_ESTOP         /**< grobo_robot_estop() */
+    GROBO_TRIP_ESTOP,        /**< grobo_robot_estop() */
+    GROBO_TRIP_APART /**< a joint is not where the one that it follows has it; value: degrees
+                                  that it is off (grobo_joint.apart_rad) */
 } grobo_trip;
 
 /** Short lower-case name of a trip: "over-temperature". @return static string. Thread safe. */

@@ -16,4 +16,19 @@ static inline const grobo_joint *grobo_i_joint(const grobo_model *model, int joi
 #endif
 }
 
+/* Whether joints of this size have `ratio`, `apart_rad` and `follows`. */
+#if GROBO_TABLES_FIXED
+#define GROBO_I_HAS_FOLLOWS(model, joint) true
+#else
+#define GROBO_I_HAS_FOLLOWS(model, joint)                                                          \
+    ((size_t)((const char *)(&(joint)->follows + 1) - (const char *)(joint)) <= (model)->joint_size)
+#endif
+
+/* True of one that follows another one: then it has these three members. */
+static inline bool grobo_i_joint_follows(const grobo_model *model, int joint)
+{
+    const grobo_joint *of = grobo_i_joint(model, joint);
+    return GROBO_I_HAS_FOLLOWS(model, of) && of->ratio != 0;
+}
+
 #endif

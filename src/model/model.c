@@ -69,6 +69,44 @@ static bool is_mount_good(const grobo_joint *joint)
            isfinite(joint->gear);
 }
 
+/* Angles of a joint and of the one that it follows say the same. */
+#define SAME_RAD 1e-6
+
+static bool is_same(double a_rad, double b_rad)
+{
+    return fabs(a_rad - b_rad) <= SAME_RAD;
+}
+
+/* A joint that follows another one can go where that one sends it, and nowhere else. */
+static bool is_follower_good(const grobo_model *model, const grobo_joint *joint)
+{
+    if (!GROBO_I_HAS_FOLLOWS(model, joint)) {
+        return true;
+    }
+    bool alone = grobo_i_bits(joint->ratio) << 1 == 0;
+    if (GROBO_DRIVERS_PLAIN || alone) { /* a build for plain drivers has none that follow */
+        return alone && joint->follows == 0 && grobo_i_bits(joint->apart_rad) << 1 == 0;
+    }
+    if (joint->follows >= model->n_joints || !isfinite(joint->ratio) ||
+        !isfinite(joint->apart_rad) || joint->apart_rad < 0) {
+        return false;
+    }
+    const grobo_joint *first = grobo_i_joint(model, joint->follows);
+    double low_rad = first->min_rad * joint->ratio, high_rad = first->max_rad * joint->ratio;
+    return first != joint && first->ratio == 0 &&
+           is_same(joint->min_rad, fmin(low_rad, high_rad)) &&
+           is_same(joint->max_rad, fmax(low_rad, high_rad)) &&
+           is_same(joint->init_rad, first->init_rad * joint->ratio);
+}
+
+static bool is_mirror_good(const grobo_model *model, int j)
+{
+    const grobo_joint *joint = grobo_i_joint(model, j);
+    return joint->mirror < model->n_joints && grobo_i_joint(model, joint->mirror)->mirror == j &&
+           (joint->mirror_sign == 1 || joint->mirror_sign == -1) &&
+           grobo_i_joint(model, joint->mirror)->mirror_sign == joint->mirror_sign;
+}
+
 static bool is_joint_good(const grobo_model *model, int j)
 {
     const grobo_joint *joint = grobo_i_joint(model, j);
@@ -80,14 +118,7 @@ static bool is_joint_good(const grobo_model *model, int j)
         !(joint->max_speed_rad_s > 0.0 && isfinite(joint->max_speed_rad_s))) {
         return false;
     }
-    if (!is_mount_good(joint)) {
-        return false;
-    }
-    if (joint->mirror >= model->n_joints || grobo_i_joint(model, joint->mirror)->mirror != j ||
-        (joint->mirror_sign != 1 && joint->mirror_sign != -1)) {
-        return false;
-    }
-    return grobo_i_joint(model, joint->mirror)->mirror_sign == joint->mirror_sign;
+    return is_mount_good(joint) && is_mirror_good(model, j) && is_follower_good(model, joint);
 }
 
 static bool is_joint_unique(const grobo_model *model, int j)

@@ -335,6 +335,9 @@ grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint)
         limits.min_rad = fmax(limits.min_rad, state->low_rad);
         limits.max_rad = fmin(limits.max_rad, state->high_rad);
     }
+    if (grobo_i_followers(robot) != 0) {
+        grobo_i_couple_limits(robot, joint, &limits.min_rad, &limits.max_rad);
+    }
     return limits;
 }
 

@@ -137,6 +137,9 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment
         return GROBO_ERR_LATCHED;
     }
     bool sleeps = aim_goal(robot, order, robot->soft || order->soft, target);
+    if (order->rests) {
+        grobo_i_couple_rest(robot, target->posture.set, target);
+    }
     if (target->posture.set == 0) {
         return sleeps || order->rests ? GROBO_ERR_EMPTY : GROBO_ERR_SUPERSEDED;
     }
@@ -164,6 +167,18 @@ static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad
 static bool is_mute(const grobo_robot *robot, int joint)
 {
     return GROBO_I_EXTRA(robot->driver, tells_no_speed) && !grobo_i_has_target(&robot->axes[joint]);
+}
+
+/* Joints that a halt may name though they do not move: a goal would not wake them. */
+static grobo_joint_mask may_be_told(const grobo_robot *robot)
+{
+    grobo_joint_mask may = 0;
+    for (int j = 0; grobo_i_followers(robot) != 0 && j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool on = grobo_i_axis_is_on(axis) || !GROBO_I_EXTRA(robot->driver, goal_energises);
+        may |= grobo_i_is_sensed(axis) && on ? GROBO_JOINT_BIT(j) : 0;
+    }
+    return may & ~robot->halts_owed;
 }
 
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
@@ -194,6 +209,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     if (target->posture.set == 0) {
         return GROBO_ERR_EMPTY;
     }
+    grobo_i_couple_rest(robot, order->joints & may_be_told(robot), target);
     return grobo_i_gate_time(robot, order, target);
 }
 
@@ -281,6 +297,9 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
                                  &says->target, says->torqued);
     if (result >= 0) {
         result = grobo_i_target_check(robot, &target->posture, &robot->fault_joint);
+    }
+    if (result >= 0 && grobo_i_tears(robot, &target->posture, &robot->fault_joint)) {
+        result = GROBO_ERR_UNSUPPORTED;
     }
     if (result < 0) {
         return result;

@@ -49,6 +49,18 @@ static int send_parts(grobo_robot *robot, grobo_robot_order order, const way_out
     return more;
 }
 
+/* The same, with joints that follow others in the frame of those, where several have room. */
+static grobo_joint_mask take_together(const grobo_robot *robot, grobo_joint_mask *joints,
+                                      grobo_i_chunk chunk)
+{
+    grobo_joint_mask taken = grobo_i_take_chunk(joints, chunk);
+    if (chunk > 1) {
+        taken |= grobo_i_coupled(robot, taken) & *joints;
+    }
+    *joints &= ~taken;
+    return taken;
+}
+
 /* Each frame has joints of its own, so that what is noted of it is about these: as few frames as
  * the driver can do with. */
 static int send_order(grobo_robot *robot, grobo_robot_order order, const way_out *out)
@@ -60,7 +72,7 @@ static int send_order(grobo_robot *robot, grobo_robot_order order, const way_out
     while (left != 0 && result >= 0) {
         int chunk = (count + frames - 1) / frames;
         grobo_joint_mask rest = left;
-        order.joints = grobo_i_take_chunk(&rest, (grobo_i_chunk)chunk);
+        order.joints = take_together(robot, &rest, (grobo_i_chunk)chunk);
         result = chunk > 1 ? send_one(robot, &order, out) : send_parts(robot, order, out);
         if (result == GROBO_ERR_CAP && chunk > 1) {
             frames++;
@@ -301,7 +313,7 @@ int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk
     grobo_robot_order order = {.kind = GROBO_I_ORDER_HOLD, .each = true};
     int result = GROBO_OK;
     while (joints != 0 && result >= 0) {
-        order.joints = grobo_i_take_chunk(&joints, chunk);
+        order.joints = take_together(robot, &joints, chunk);
         result = send_order(robot, order,
                             &(way_out){GROBO_I_USE_PLAIN, GROBO_PRIORITY_USER, GROBO_NEVER_US});
     }
@@ -321,7 +333,7 @@ int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torqu
     }
     int result = GROBO_OK;
     while (joints != 0 && result >= 0) {
-        order.joints = grobo_i_take_chunk(&joints, chunk);
+        order.joints = take_together(robot, &joints, chunk);
         result = send_order(robot, order,
                             &(way_out){GROBO_I_USE_PLAIN, priority_of_job(robot), GROBO_NEVER_US});
     }

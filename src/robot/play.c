@@ -63,6 +63,11 @@ int grobo_i_play_joints(const grobo_robot *robot, const grobo_clip *clip,
         result = grobo_posture_mirror(&posture, robot->driver->model);
         *joints = posture.set;
     }
+    /* A clip cannot move a joint without the one that it follows. */
+    for (int joint; grobo_i_follows_alone(robot, *joints, &joint);) {
+        *joints &= ~GROBO_JOINT_BIT(joint);
+    }
+    *joints = grobo_i_coupled(robot, *joints);
     return result;
 }
 

@@ -222,6 +222,10 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
     }
     take_speed(robot, joint, got);
     bool one_trajectory = is_of_one_trajectory(robot, axis);
+    if (grobo_i_followers(robot) != 0 && (got->valid & GROBO_FIELD_ANGLE) != 0) {
+        axis->before_rad = axis->state.angle_rad;
+        axis->before_us = axis->angle_us;
+    }
     merge(axis, got);
     axis->status = GROBO_OK;
     axis->lost = 0;

@@ -163,6 +163,7 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
+    joints = grobo_i_coupled(robot, joints);
     int result = !joints_sound(robot, joints) || (unsigned)mode > GROBO_TORQUE_BRAKE ? GROBO_ERR_ARG
                  : mode == GROBO_TORQUE_ON ? switch_on(robot, joints)
                                            : switch_off(robot, joints, mode);
@@ -180,6 +181,12 @@ static void singly(grobo_robot_request *request)
     }
 }
 
+/* True of a target for a joint that follows another one, and not for that. */
+static bool follows_alone(grobo_robot *robot, const grobo_posture *target)
+{
+    return grobo_i_follows_alone(robot, target->set, &robot->fault_joint);
+}
+
 int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
 {
     if (robot == NULL || target == NULL) {
@@ -188,10 +195,11 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
     grobo_i_begin(robot);
     grobo_robot_request request = {
         .kind = GROBO_JOB_MOVE, .joints = target->set, .target = *target};
-    int result = !robot->link                ? GROBO_ERR_CLOSED
-                 : grobo_i_is_latched(robot) ? GROBO_ERR_LATCHED
-                 : request.target.set == 0   ? GROBO_ERR_ARG
-                                             : grobo_i_gate_target(robot, &request.target);
+    int result = !robot->link                   ? GROBO_ERR_CLOSED
+                 : grobo_i_is_latched(robot)    ? GROBO_ERR_LATCHED
+                 : request.target.set == 0      ? GROBO_ERR_ARG
+                 : follows_alone(robot, target) ? GROBO_ERR_UNSUPPORTED
+                                                : grobo_i_gate_target(robot, &request.target);
     int64_t time_us =
         request.target.time_us > 0 ? request.target.time_us : robot->config.default_time_us;
     if (result >= 0 && time_us > GROBO_SEGMENT_US &&
@@ -222,6 +230,7 @@ static bool all_hold(const grobo_robot *robot, grobo_joint_mask joints)
 /* A target for joints that nothing is read of before. */
 static int admit_target(grobo_robot *robot, const grobo_posture *target)
 {
+    grobo_joint_mask joints = grobo_i_coupled(robot, target->set);
     if (!robot->link) {
         return GROBO_ERR_CLOSED;
     }
@@ -231,9 +240,12 @@ static int admit_target(grobo_robot *robot, const grobo_posture *target)
     if (target->set == 0) {
         return GROBO_ERR_ARG;
     }
-    bool others = grobo_i_externally_moved(robot, target->set, &robot->fault_joint) ||
-                  (target->set & robot->free_joints) != 0;
-    return others || !all_hold(robot, target->set) ? GROBO_ERR_STATE : GROBO_OK;
+    if (follows_alone(robot, target)) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    bool others = grobo_i_externally_moved(robot, joints, &robot->fault_joint) ||
+                  (joints & robot->free_joints) != 0;
+    return others || !all_hold(robot, joints) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
 /* True while something moves the robot that a target of the caller's stream must not disturb. */
@@ -290,7 +302,7 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
     }
     grobo_i_begin(robot);
     grobo_posture checked = *target;
-    grobo_robot_task *job = move_of(robot, target->set);
+    grobo_robot_task *job = move_of(robot, grobo_i_coupled(robot, target->set));
     int result = admit_target(robot, target);
     if (result >= 0 && job == NULL) {
         result = GROBO_ERR_STATE;
@@ -326,7 +338,7 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, grobo_play_opt
     }
     if (result >= 0) {
         result = grobo_i_play_joints(robot, clip, options, joints);
-        *joints |= options->also;
+        *joints |= grobo_i_coupled(robot, options->also);
     }
     if (result >= 0 && !joints_sound(robot, *joints)) {
         result = *joints == 0 ? GROBO_ERR_EMPTY : GROBO_ERR_ARG;
@@ -691,6 +703,7 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on)
         return grobo_robot_torque(robot, joints, GROBO_TORQUE_ON);
     }
     grobo_i_begin(robot);
+    joints = grobo_i_coupled(robot, joints);
     /* Beside no job: one that is under way may still send joints to where they were. */
     int result = admit(robot, GROBO_JOB_PLAY, 0, true);
     if (result >= 0 && grobo_i_is_playing(robot)) {

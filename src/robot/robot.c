@@ -108,8 +108,11 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
         axis->angle_us = axis->full_us = axis->goal_us = GROBO_NEVER_US;
         axis->seen_dps = GROBO_I_NO_SPEED;
         grobo_i_stand_forget(axis);
-        axis->current_since_us = GROBO_NEVER_US;
+        axis->current_since_us = axis->before_us = GROBO_NEVER_US;
         axis->status = GROBO_ERR_EMPTY;
+        if (!GROBO_DRIVERS_PLAIN && grobo_i_joint_follows(driver->model, j)) {
+            robot->followers |= GROBO_JOINT_BIT(j);
+        }
     }
     robot->trip.joint = robot->fault_joint = -1;
     robot->now_us = robot->sense_us = now_us;

@@ -15,7 +15,8 @@
 /* Draws a joint in that would go further than its servo lets it. */
 static bool draw_in(const grobo_robot *robot, int joint, double *angle_rad)
 {
-    if ((robot->axes[joint].state.valid & GROBO_FIELD_RANGE) == 0) {
+    if ((robot->axes[joint].state.valid & GROBO_FIELD_RANGE) == 0 &&
+        grobo_i_followers(robot) == 0) {
         return false;
     }
     const grobo_i_limits limits = grobo_i_joint_limits(robot, joint);
@@ -51,6 +52,7 @@ int grobo_i_target_clamp(const grobo_robot *robot, grobo_posture *target)
 int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
 {
     int joint = -1;
+    grobo_i_couple(robot, target);
     int result = grobo_i_target_check(robot, target, &joint);
     if (result == GROBO_ERR_LIMIT && robot->config.limit_policy == GROBO_LIMIT_CLAMP) {
         int clamped = grobo_i_target_clamp(robot, target);
@@ -212,6 +214,7 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
         longest_us = grobo_i_later(longest_us, *time_us);
     }
     robot->counters.stretched += stretched;
+    grobo_i_couple_times(robot, target);
     for (int j = 0; !order->each && j < robot->driver->model->n_joints; j++) {
         target->joint_time_us[j] = longest_us;
     }

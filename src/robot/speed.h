@@ -8,8 +8,8 @@
 /* Gives every joint of a target as much more time as it needs from where it is now.
  * @return 0, or GROBO_ERR_SPEED where the wire has no time that is long enough. */
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target);
-/* Checks numbers and limits of a target; clamps if so configured. The fault is kept for
- * grobo_robot_fault(). @return 0, GROBO_ERR_NAN, _LIMIT, _ARG. */
+/* Has joints follow others, and checks numbers and limits of a target; clamps if so configured. The
+ * fault is kept for grobo_robot_fault(). @return 0, GROBO_ERR_NAN, _LIMIT, _ARG. */
 int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target);
 /* The next move is the first from a sensed posture: a slow one. */
 void grobo_i_gate_soften(grobo_robot *robot);

@@ -279,7 +279,8 @@ static int step_limit_check(grobo_robot *robot)
 static int step_pick_off(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
-    grobo_joint_mask read = job->joints & ~job->failed;
+    /* Of two that move together none is switched on without the other. */
+    grobo_joint_mask read = job->joints & ~grobo_i_coupled(robot, job->failed);
     job->pending = read & ~joints_with(robot, read, GROBO_TORQUE_ON);
     job->torque = GROBO_TORQUE_ON;
     job->rounds = 0;
@@ -341,7 +342,8 @@ static int step_hold(grobo_robot *robot)
         if (grobo_i_has(job->pending, j) && isnan(grobo_i_hold_rad(robot, j))) {
             grobo_i_job_fail_joint(robot, j, GROBO_ERR_LIMIT,
                                    grobo_deg_from_rad(robot->axes[j].state.angle_rad));
-            job->pending &= ~GROBO_JOINT_BIT(j);
+            job->pending &= ~grobo_i_coupled(robot, GROBO_JOINT_BIT(j));
+            loose &= job->pending;
         } else if (grobo_i_has(job->pending, j) && !grobo_i_is_ready(&robot->axes[j])) {
             loose |= GROBO_JOINT_BIT(j);
         }

@@ -15,6 +15,7 @@ static const char *const trip_names[] = {
     [GROBO_TRIP_NUMBER] = "not a number",
     [GROBO_TRIP_HOST_STALL] = "host stalled",
     [GROBO_TRIP_ESTOP] = "emergency stop",
+    [GROBO_TRIP_APART] = "servos apart",
 };
 
 const char *grobo_trip_name(grobo_trip trip)

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Judges what is read, and stops for safety. */
+#include <math.h>
+
 #include "src/robot/robot.h"
 
 /* So many readings of a low voltage in a row, of whatever joints: they share a battery. */
@@ -60,12 +62,34 @@ static void watch_torque(grobo_robot *robot, int joint, const grobo_joint_state 
     }
 }
 
+/* Servos on one shaft that are read to be so far apart so often in a row are. */
+#define APART_READINGS 3
+
+static void watch_apart(grobo_robot *robot, int joint, const grobo_joint_state *got)
+{
+    for (int f = 0; grobo_i_followers(robot) != 0 && f < robot->driver->model->n_joints; f++) {
+        const grobo_joint *own = grobo_i_joint(robot->driver->model, f);
+        if (!grobo_i_has(grobo_i_followers(robot), f)) {
+            continue;
+        }
+        bool watched = own->apart_rad > 0, told = (got->valid & GROBO_FIELD_ANGLE) != 0;
+        double apart_rad = watched && told ? grobo_i_apart_rad(robot, f, joint) : NAN;
+        if (apart_rad <= own->apart_rad) {
+            robot->axes[f].n_apart = 0;
+        } else if (apart_rad > own->apart_rad && ++robot->axes[f].n_apart >= APART_READINGS) {
+            robot->axes[f].n_apart = 0;
+            grobo_i_trip(robot, GROBO_TRIP_APART, f, grobo_deg_from_rad(apart_rad), true);
+        }
+    }
+}
+
 void grobo_i_watch_reading(grobo_robot *robot, int joint, const grobo_joint_state *got)
 {
     watch_heat(robot, joint, got);
     watch_current(robot, joint, got);
     watch_voltage(robot, joint, got);
     watch_torque(robot, joint, got);
+    watch_apart(robot, joint, got);
 }
 
 void grobo_i_watch_lost(grobo_robot *robot, int joint)

@@ -113,8 +113,8 @@ static void make_joints(family_kit *kit)
         grobo_model, .name = f->servo, GROBO_MODEL_JOINTS(kit->joints), .n_joints = FAMILY_JOINTS);
 }
 
-void family_start(family_kit *kit, const family *f, const grobo_robot_config *config,
-                  const grobo_sim_config *sim)
+void family_start_as(family_kit *kit, const family *f, const grobo_robot_config *config,
+                     const grobo_sim_config *sim, void (*change)(family_kit *kit))
 {
     grobo_robot_config used = *config;
     grobo_sim_config with =
@@ -125,6 +125,9 @@ void family_start(family_kit *kit, const family *f, const grobo_robot_config *co
     used.bus.baud_bps = f->baud_bps;
     used.bus.echo = f->echo;
     make_joints(kit);
+    if (change != NULL) {
+        change(kit);
+    }
     with.model = &kit->model;
     with.wiring = GROBO_WIRING_BUS;
     with.servos = kit->servos;
@@ -143,6 +146,12 @@ void family_start(family_kit *kit, const family *f, const grobo_robot_config *co
     assert_int_equal(grobo_robot_init(&kit->robot, &kit->driver, NULL, &used, kit->now_us),
                      GROBO_OK);
     family_listen(kit);
+}
+
+void family_start(family_kit *kit, const family *f, const grobo_robot_config *config,
+                  const grobo_sim_config *sim)
+{
+    family_start_as(kit, f, config, sim, NULL);
 }
 
 void family_listen(family_kit *kit)

@@ -53,6 +53,9 @@ typedef struct family_kit {
 /* sim NULL: seed 7. What of it makes the family is filled in. */
 void family_start(family_kit *kit, const family *f, const grobo_robot_config *config,
                   const grobo_sim_config *sim);
+/* The same with other joints: `change` is called when those above are made. */
+void family_start_as(family_kit *kit, const family *f, const grobo_robot_config *config,
+                     const grobo_sim_config *sim, void (*change)(family_kit *kit));
 /* Takes what the robot tells, and brings its link up: of one that was initialised anew, too. */
 void family_listen(family_kit *kit);
 /* Sets a register of a servo behind the robot's back. */

@@ -278,6 +278,31 @@ TEST(a_faulty_joint_is_refused)
     assert_refused(arm[1].mirror_sign = 1);
 }
 
+static void follow(void)
+{
+    arm[1].follows = 0;
+    arm[1].ratio = -0.5;
+    arm[1].min_rad = -0.5;
+    arm[1].max_rad = 0.5;
+}
+
+TEST(a_joint_follows_one_that_follows_none)
+{
+    make_two();
+    follow();
+    assert_int_equal(grobo_model_check(&two), 0);
+    assert_refused((follow(), arm[1].ratio = 0.5 * (double)NAN));
+    assert_refused((follow(), arm[1].ratio = -0.6));
+    assert_refused((follow(), arm[1].max_rad = 0.4));
+    assert_refused((follow(), arm[1].init_rad = 0.1));
+    assert_refused((follow(), arm[1].follows = 1));
+    assert_refused((follow(), arm[1].follows = 2));
+    assert_refused((follow(), arm[1].apart_rad = -0.1));
+    assert_refused((follow(), arm[1].apart_rad = (double)INFINITY));
+    assert_refused((follow(), arm[0].follows = 1, arm[0].ratio = -2));
+    assert_refused(arm[1].apart_rad = 0.1);
+}
+
 /* Turned round, geared down by 2, and 0.5 away where the joint is at 0. */
 TEST(a_servo_may_be_mounted_any_way)
 {

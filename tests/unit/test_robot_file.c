@@ -197,7 +197,37 @@ typedef struct mistake {
     int error; /* 0: SYNTAX */
 } mistake;
 
+#define TWO(more)                                                                                  \
+    HEAD "  - {name: x, servos: [1, 2], servo: STS3215, limits_deg: [-9, 9]" more "}\n"
+#define AFTER(more) HEAD JOINT "  - {name: y, id: 2, servo: STS3215, " more "}\n"
+
 static const mistake mistakes[] = {
+    {TWO(", id: 3"), 4, 5, "cannot have 'servos' and 'id' together", 0},
+    {TWO(", follows: x"), 4, 5, "cannot have 'follows' and 'servos' together", 0},
+    {TWO(", signs: [1, 0]"), 4, 75, "signs: 1 or -1 is wanted", 0},
+    {TWO(", signs: [1]"), 4, 75, "signs has 1 number, not 2", 0},
+    {TWO(", sign: -1, signs: [1, 1]"), 4, 74, "'sign' and 'signs' cannot be used together", 0},
+    {TWO(", apart_deg: 0.1"), 4, 79, "from 0.5 to 90", 0},
+    {HEAD "  - {name: x, servos: [1], servo: STS3215, limits_deg: [-9, 9]}\n", 4, 23,
+     "servos has 1 number, not 2", 0},
+    {HEAD "  - {name: x, servos: [1, 1], servo: STS3215, limits_deg: [-9, 9]}\n", 4, 5,
+     "x.2 has the id of another joint", 0},
+    {HEAD "  - {name: xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx,\n"
+          "     servos: [1, 2], servo: STS3215, limits_deg: [-9, 9]}\n",
+     4, 5, "too long for a joint of two servos", 0},
+    {TWO("") "  - {name: x.2, id: 3, servo: STS3215, limits_deg: [-9, 9]}\n", 5, 12,
+     "two joints are called 'x.2'", 0},
+    {WITH("apart_deg: 3"), 4, 70, "'apart_deg' needs 'servos' or 'follows'", 0},
+    {WITH("signs: [1, 1]"), 4, 66, "'signs' needs 'servos' or 'follows'", 0},
+    {WITH("ratio: 2"), 4, 66, "'ratio' needs 'servos' or 'follows'", 0},
+    {AFTER("follows: z"), 5, 47, "no joint called 'z'", 0},
+    {AFTER("follows: y"), 5, 47, "y: a joint cannot follow itself", 0},
+    {AFTER("follows: x, ratio: 0"), 5, 57, "y: a ratio is not 0", 0},
+    {AFTER("follows: x, limits_deg: [-9, 9]"), 5, 5, "'follows' and 'limits_deg' together", 0},
+    {AFTER("follows: x, init_deg: 1"), 5, 60, "'init_deg' is that of the joint that it follows", 0},
+    {AFTER("follows: x, ratio: 40"), 5, 5, "y: its servo does not reach these limits", 0},
+    {AFTER("follows: x") "  - {name: z, id: 3, servo: STS3215, follows: y}\n", 6, 47,
+     "the joint that it follows must not follow another one", 0},
     {"", 1, 1, "empty", 0},
     {"- a\n", 1, 1, "no mapping at the top", 0},
     {"name: [\n", 2, 1, "did not find expected", 0},
@@ -362,6 +392,42 @@ TEST(every_allocation_may_fail)
         }
         assert_int_equal(error, GROBO_ERR_NOMEM);
     }
+}
+
+/* ---- joints that follow others -------------------------------------------------------------- */
+
+TEST(two_servos_make_a_joint_and_one_that_follows)
+{
+    grobo_robot_def *def = NULL;
+    assert_int_equal(read_def("name: a\nfamily: feetech\njoints:\n"
+                              "  - {name: y, id: 4, servo: STS3215, follows: x, ratio: -0.5}\n"
+                              "  - {name: x, servos: [1, 2], servo: STS3215, limits_deg: [-20, 40],"
+                              " init_deg: 10, zero_deg: 5, sign: -1, mirror_sign: -1}\n"
+                              "  - {name: w, servos: [5, 6], servo: STS3215, limits_deg: [-9, 9],"
+                              " signs: [1, 1], zero_deg: 5, apart_deg: 3}\n"
+                              "groups:\n  - {name: g, joints: [x]}\n",
+                              NULL, &def),
+                     0);
+    const grobo_joint *j = def->model->joints;
+    assert_int_equal(def->model->n_joints, 5);
+    assert_string_equal(j[2].name, "x.2");
+    assert_int_equal(j[1].motor, 1);
+    assert_int_equal(j[2].motor, 2);
+    assert_int_equal(j[2].follows, 1);
+    assert_true(j[1].ratio == 0 && j[2].ratio == 1 && j[0].ratio == -0.5);
+    assert_int_equal(j[0].follows, 1);
+    assert_int_equal(j[1].sign, -1);
+    assert_int_equal(j[2].sign, 0); /* the other way round */
+    assert_true(fabs(j[1].zero_rad + j[2].zero_rad) < 1e-9 && j[1].zero_rad > 0);
+    assert_true(fabs(grobo_deg_from_rad(j[2].apart_rad) - 5) < 1e-9);
+    assert_true(fabs(grobo_deg_from_rad(j[4].apart_rad) - 3) < 1e-9);
+    assert_true(j[0].apart_rad == 0);
+    assert_true(j[4].zero_rad == j[3].zero_rad && j[4].sign >= 0 && j[3].sign >= 0);
+    assert_true(fabs(grobo_deg_from_rad(j[0].min_rad) + 20) < 1e-9);
+    assert_true(fabs(grobo_deg_from_rad(j[0].max_rad) - 10) < 1e-9);
+    assert_true(fabs(grobo_deg_from_rad(j[0].init_rad) + 5) < 1e-9);
+    assert_int_equal(def->model->groups[0].joints, 6);
+    grobo_robot_def_free(def);
 }
 
 /* ---- the schema ----------------------------------------------------------------------------- */

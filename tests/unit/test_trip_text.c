@@ -22,6 +22,7 @@ TEST(a_trip_says_what_it_measured)
         {GROBO_TRIP_HOST_STALL, 120.26, " (120.3 ms late)"},
         {GROBO_TRIP_TORQUE_LOST, 0, ""},
         {GROBO_TRIP_ESTOP, 0, ""},
+        {GROBO_TRIP_APART, 12.34, " (12.34 deg)"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const grobo_trip_info trip = {.trip = rows[i].trip, .value = rows[i].value};

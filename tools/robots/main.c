@@ -68,6 +68,10 @@ static void print_joints(const grobo_model *model)
         if (j->calibrated) {
             printf(", .calibrated = true");
         }
+        if (j->ratio != 0) {
+            printf(", .follows = %u, .ratio = %.17g, .apart_rad = %s", j->follows, j->ratio,
+                   rad(j->apart_rad));
+        }
         printf("},\n");
     }
     printf("};\n\n");

@@ -146,6 +146,9 @@ typedef struct grobo_robot_axis {
     int64_t stood_us;  /* when the last of them was asked for */
     double load_rad;   /* goal less angle where it stood last: the error that carries its weight */
     bool load_is_sure; /* it was seen to stand so; else it may creep, and not by this program */
+    uint8_t n_apart;   /* of one that follows: so often in a row it was read to be elsewhere */
+    double before_rad; /* the angle read before, of a robot with joints that follow others */
+    int64_t before_us; /* and when; GROBO_NEVER_US: there is none */
 } grobo_robot_axis;
 
 /** A job that runs. Private. */
@@ -247,6 +250,7 @@ struct grobo_robot {
     uint32_t told_item;     /* clip of the sequencer of which it was said that none watches it */
     uint32_t motion_us;     /* wire time of the last motion frames */
     grobo_joint_mask round; /* joints still to be read in this background round */
+    grobo_joint_mask followers; /* joints that follow others */
     grobo_joint_mask free_joints;
     grobo_joint_mask clip_joints;   /* of the motion that is played, and those behind it */
     grobo_joint_mask played_joints; /* sent where they go by the sequencer */

@@ -37,7 +37,9 @@ typedef struct grobo_i_motor_draft {
 
 typedef struct grobo_i_joint_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
-    grobo_i_name name, servo, mirror;
+    grobo_i_name name, servo, mirror, follows;
+    double servos[2], signs[2], apart_deg, ratio;
+    int twin; /* of its second servo, which is a joint of its own: the first one; else -1 */
     double id, limits_deg[2], init_deg, rest_deg, speed_deg_s, torque_limit_pct, free_ma, sign,
         zero_deg, gear, mirror_sign, readback_deg;
     bool turns;

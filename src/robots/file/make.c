@@ -185,9 +185,90 @@ static int find_joint(const maker *m, const char *name, grobo_i_place place)
     return -1;
 }
 
+/* How far servos on one shaft may be apart by what is read of them, where the file says nothing. */
+#define APART_DEG 5
+
+static bool follows(const maker *m, int j)
+{
+    return m->draft->joint[j].twin >= 0 || joint_has(m, j, "follows");
+}
+
+/* The joint that this one follows; -1 with a complaint. */
+static int followed_by(const maker *m, int j)
+{
+    const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    int first = draft->twin >= 0 ? draft->twin
+                                 : find_joint(m, draft->follows, joint_place(m, j, "follows"));
+    if (first == j || (first >= 0 && follows(m, first))) {
+        (void)complain(m, joint_place(m, j, "follows"), "follows",
+                       first == j ? "%s: a joint cannot follow itself"
+                                  : "%s: the joint that it follows must not follow another one",
+                       draft->name);
+        return -1;
+    }
+    return first;
+}
+
+/* What a joint has of the one that it follows, which is made by now. */
+static void make_follower(const maker *m, int j)
+{
+    const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    grobo_joint *joint = &m->file->joints[j];
+    int first = followed_by(m, j);
+    if (draft->ratio == 0) {
+        (void)complain(m, joint_place(m, j, "ratio"), "range", "%s: a ratio is not 0", draft->name);
+    }
+    if (first < 0 || draft->ratio == 0) {
+        return;
+    }
+    const grobo_joint *of = &m->file->joints[first];
+    bool apart = joint_has(m, j, "apart_deg");
+    joint->follows = (uint8_t)first;
+    joint->ratio = draft->twin >= 0 ? 1 : draft->ratio;
+    joint->apart_rad = grobo_rad_from_deg(apart              ? draft->apart_deg
+                                          : draft->twin >= 0 ? APART_DEG
+                                                             : 0);
+    /* Not -0, which would be printed so. */
+    joint->min_rad = fmin(of->min_rad * joint->ratio, of->max_rad * joint->ratio) + 0.0;
+    joint->max_rad = fmax(of->min_rad * joint->ratio, of->max_rad * joint->ratio) + 0.0;
+    joint->init_rad = of->init_rad * joint->ratio + 0.0;
+    m->file->rest_rad[j] = m->file->rest_rad[first] * joint->ratio + 0.0;
+}
+
+/* Keys that say nothing without another one. */
+static void check_coupling(const maker *m, int j)
+{
+    static const char *const of[][2] = {{"signs", "servos"},
+                                        {"ratio", "follows"},
+                                        {"apart_deg", NULL},
+                                        {"init_deg", ""},
+                                        {"rest_deg", ""}};
+    bool servos = joint_has(m, j, "servos"), coupled = joint_has(m, j, "follows");
+    for (size_t i = 0; i < sizeof of / sizeof of[0]; i++) {
+        const char *need = of[i][1];
+        bool alone = need == NULL      ? !servos && !coupled
+                     : need[0] == '\0' ? coupled
+                                       : !joint_has(m, j, need);
+        if (joint_has(m, j, of[i][0]) && alone) {
+            (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "keys", joint_place(m, j, of[i][0]),
+                                   need != NULL && need[0] == '\0'
+                                       ? "%s: '%s' is that of the joint that it follows"
+                                       : "%s: '%s' needs 'servos' or 'follows'",
+                                   m->draft->joint[j].name, of[i][0]);
+        }
+    }
+    if (servos && (joint_has(m, j, "sign") && joint_has(m, j, "signs"))) {
+        (void)complain(m, joint_place(m, j, "sign"), "keys",
+                       "%s: 'sign' and 'signs' cannot be used together", m->draft->joint[j].name);
+    }
+}
+
 static void make_limits(const maker *m, int j, grobo_joint *joint)
 {
     const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    if (follows(m, j)) {
+        return; /* they are those of the joint that it follows */
+    }
     joint->min_rad = grobo_rad_from_deg(draft->limits_deg[0]);
     joint->max_rad = grobo_rad_from_deg(draft->limits_deg[1]);
     joint->init_rad = grobo_rad_from_deg(draft->init_deg);
@@ -261,7 +342,11 @@ static void make_joint(const maker *m, int j)
                            .gear = draft->gear};
     if (draft->sign == 0 || draft->mirror_sign == 0) {
         const char *key = draft->sign == 0 ? "sign" : "mirror_sign";
-        (void)complain(m, joint_place(m, j, key), "range", "%s: 1 or -1 is wanted", key);
+        (void)complain(m, joint_place(m, j, joint_has(m, j, "signs") ? "signs" : key), "range",
+                       "%s: 1 or -1 is wanted", joint_has(m, j, "signs") ? "signs" : key);
+    }
+    if (draft->twin < 0) {
+        check_coupling(m, j);
     }
     make_limits(m, j, joint);
     find_servo(m, j, joint);
@@ -307,7 +392,8 @@ static void check_servos(maker *m)
     for (int j = 0; j < m->draft->n_joints; j++) {
         grobo_joint joint = m->file->joints[j];
         int id = joint.motor;
-        joint.mirror = 0;
+        joint.mirror = joint.follows = 0;
+        joint.ratio = joint.apart_rad = 0;
         joint.motor = 1; /* which each family has: its own is judged below */
         const grobo_model one = GROBO_TABLE(grobo_model, .name = m->file->model_name,
                                             GROBO_MODEL_JOINTS(&joint), .n_joints = 1);
@@ -354,7 +440,12 @@ static void make_groups(const maker *m)
     for (int g = 0; g < m->draft->n_groups; g++) {
         const grobo_i_group_draft *draft = &m->draft->group[g];
         memcpy(file->group_names[g], draft->name, sizeof draft->name);
-        file->groups[g] = (grobo_group){file->group_names[g], draft->joints};
+        grobo_joint_mask joints = draft->joints;
+        for (int j = 0; j < m->draft->n_joints; j++) {
+            int twin = m->draft->joint[j].twin;
+            joints |= twin >= 0 && (joints & GROBO_JOINT_BIT(twin)) != 0 ? GROBO_JOINT_BIT(j) : 0;
+        }
+        file->groups[g] = (grobo_group){file->group_names[g], joints};
         file->model.n_groups = (uint8_t)g;
         grobo_joint_mask found;
         if (grobo_model_find_joints(&file->model, draft->name, strlen(draft->name), &found) >= 0) {
@@ -543,6 +634,11 @@ int grobo_i_robot_make(const grobo_i_draft *draft, grobo_i_robot_file *file)
     make_family(&m);
     for (int j = 0; j < draft->n_joints && file->def.family != NULL; j++) {
         make_joint(&m, j);
+    }
+    for (int j = 0; j < draft->n_joints && m.reader->result == 0; j++) {
+        if (follows(&m, j)) {
+            make_follower(&m, j);
+        }
     }
     if (m.reader->result < 0) {
         return m.reader->result;

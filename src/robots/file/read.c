@@ -120,14 +120,17 @@ static const key_row joint_keys[] = {
     {.name = "id",
      .kind = KEY_WHOLE,
      .count = 1,
-     .needed = true,
      .offset = offsetof(JOINT, id),
+     .high = GROBO_SERVO_ID_MAX},
+    {.name = "servos",
+     .kind = KEY_WHOLE,
+     .count = 2,
+     .offset = offsetof(JOINT, servos),
      .high = GROBO_SERVO_ID_MAX},
     {.name = "servo", .kind = KEY_TEXT, .needed = true, .offset = offsetof(JOINT, servo)},
     {.name = "limits_deg",
      .kind = KEY_NUMBER,
      .count = 2,
-     .needed = true,
      .offset = offsetof(JOINT, limits_deg),
      .low = -360000,
      .high = 360000},
@@ -137,6 +140,15 @@ static const key_row joint_keys[] = {
     WHOLE("torque_limit_pct", JOINT, torque_limit_pct, 1, 100),
     WHOLE("free_ma", JOINT, free_ma, 0, 60000),
     WHOLE("sign", JOINT, sign, -1, 1),
+    {.name = "signs",
+     .kind = KEY_WHOLE,
+     .count = 2,
+     .offset = offsetof(JOINT, signs),
+     .low = -1,
+     .high = 1},
+    NUMBER("apart_deg", JOINT, apart_deg, 0.5, 90),
+    NAME("follows", JOINT, follows),
+    NUMBER("ratio", JOINT, ratio, -100, 100),
     NUMBER("zero_deg", JOINT, zero_deg, -360, 360),
     NUMBER("gear", JOINT, gear, 0.001, 1000),
     {.name = "turns", .kind = KEY_TRUTH, .offset = offsetof(JOINT, turns)},
@@ -410,6 +422,64 @@ static int need_room(grobo_i_events *events, const char *what, int n, int most)
                                                    event->place, "more than %d %s", most, what);
 }
 
+static int missing(grobo_i_events *events, const grobo_i_joint_draft *joint, const char *key)
+{
+    return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "missing", joint->place,
+                            "a joint has no '%s'", key);
+}
+
+/* Keys of a joint of which one makes another needless. */
+static int check_joint(grobo_i_events *events, const grobo_i_joint_draft *joint)
+{
+    bool id = grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "id");
+    bool servos = grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "servos");
+    bool follows = grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "follows");
+    bool limits = grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "limits_deg");
+    int result = id || servos ? 0 : missing(events, joint, "id");
+    if (result == 0 && !limits && !follows) {
+        result = missing(events, joint, "limits_deg");
+    }
+    if (result == 0 && ((id && servos) || (follows && (limits || servos)))) {
+        result = grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "keys", joint->place,
+                                  "a joint cannot have '%s' and '%s' together",
+                                  follows ? "follows" : "servos",
+                                  !follows ? "id"
+                                  : servos ? "servos"
+                                           : "limits_deg");
+    }
+    return result;
+}
+
+/* The second of two servos on one shaft is a joint that follows the first, right behind it. */
+static int add_twin(grobo_i_events *events, grobo_i_draft *draft)
+{
+    grobo_i_joint_draft *first = &draft->joint[draft->n_joints - 1];
+    int result = need_room(events, "joints", draft->n_joints, GROBO_JOINTS_MAX);
+    if (result < 0) {
+        return result;
+    }
+    grobo_i_joint_draft *second = &draft->joint[draft->n_joints++];
+    bool signs = grobo_i_has_key(GROBO_I_BLOCK_JOINT, first->at, "signs");
+    first->id = first->servos[0];
+    first->sign = signs ? first->signs[0] : first->sign;
+    *second = *first;
+    second->id = first->servos[1];
+    second->sign = signs ? first->signs[1] : -first->sign;
+    second->zero_deg = first->sign * second->sign < 0 ? -first->zero_deg : first->zero_deg;
+    second->twin = draft->n_joints - 2;
+    second->mirror[0] = '\0';
+    second->mirror_sign = 1;
+    second->at[index_of(GROBO_I_BLOCK_JOINT, "readback_deg")].line = 0;
+    size_t length = strlen(first->name);
+    if (length + 2 >= GROBO_NAME_MAX_BYTES) {
+        return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "name", first->place,
+                                "%s: too long for a joint of two servos: at most %d bytes",
+                                first->name, GROBO_NAME_MAX_BYTES - 3);
+    }
+    memcpy(second->name + length, ".2", sizeof ".2");
+    return 0;
+}
+
 static int read_joint(grobo_i_events *events, void *target)
 {
     grobo_i_draft *draft = target;
@@ -418,8 +488,12 @@ static int read_joint(grobo_i_events *events, void *target)
         return result;
     }
     grobo_i_joint_draft *joint = &draft->joint[draft->n_joints++];
-    joint->sign = joint->mirror_sign = 1;
-    return read_block(events, GROBO_I_BLOCK_JOINT, joint, joint->at, &joint->place);
+    joint->sign = joint->mirror_sign = joint->ratio = 1;
+    joint->twin = -1;
+    result = read_block(events, GROBO_I_BLOCK_JOINT, joint, joint->at, &joint->place);
+    result = result == 0 ? check_joint(events, joint) : result;
+    bool two = result == 0 && grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "servos");
+    return two ? add_twin(events, draft) : result;
 }
 
 static int read_joints(grobo_i_events *events, void *draft)

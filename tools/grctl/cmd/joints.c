@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* joints: the robot's table of joints. Offline. */
+#include <string.h>
 
 #include <grobo/model.h>
 
@@ -30,6 +31,11 @@ static void print_joint(const grobo_model *model, int joint)
     snprintf(number, sizeof number, "j%d", joint);
     snprintf(motor, sizeof motor, "m%d", j->motor);
     group_names(model, joint, names);
+    if (j->ratio != 0) {
+        size_t at = strlen(names);
+        snprintf(names + at, sizeof names - at, "%s(follows %s)", at ? " " : "",
+                 grobo_model_joint(model, j->follows)->name);
+    }
     app_print("%-12s  %5s  %5s  %6d  %4.0f  %4.0f  %4.0f  %s\n", j->name, number, motor, j->motor,
               grobo_deg_from_rad(j->min_rad), grobo_deg_from_rad(j->max_rad),
               grobo_deg_from_rad(j->init_rad), names);
@@ -38,12 +44,17 @@ static void print_joint(const grobo_model *model, int joint)
 static json_t *joint_json(const grobo_model *model, int joint)
 {
     const grobo_joint *j = grobo_model_joint(model, joint);
-    return json_pack("{s:i,s:i,s:i,s:s,s:[o,o],s:o,s:o}", "joint", joint, "motor", j->motor, "id",
-                     j->motor, "name", j->name, "limits_deg",
-                     app_json_number(grobo_deg_from_rad(j->min_rad), 1),
-                     app_json_number(grobo_deg_from_rad(j->max_rad), 1), "init_deg",
-                     app_json_number(grobo_deg_from_rad(j->init_rad), 1), "groups",
-                     joints_groups_json(model, joint));
+    json_t *row = json_pack("{s:i,s:i,s:i,s:s,s:[o,o],s:o,s:o}", "joint", joint, "motor", j->motor,
+                            "id", j->motor, "name", j->name, "limits_deg",
+                            app_json_number(grobo_deg_from_rad(j->min_rad), 1),
+                            app_json_number(grobo_deg_from_rad(j->max_rad), 1), "init_deg",
+                            app_json_number(grobo_deg_from_rad(j->init_rad), 1), "groups",
+                            joints_groups_json(model, joint));
+    if (j->ratio != 0) {
+        json_object_set_new(row, "follows", json_integer(j->follows));
+        json_object_set_new(row, "ratio", app_json_number(j->ratio, 6));
+    }
+    return row;
 }
 
 static int run(app *a)

@@ -53,10 +53,30 @@ static void report_longer(const conn *c, const grobo_posture *target, int64_t be
     }
 }
 
+/* A joint that follows another one goes where that one is sent. */
+static int check_followers(app *a, const grobo_posture *target, const char *doing)
+{
+    const grobo_model *model = app_model(a);
+    for (int j = 0; j < model->n_joints; j++) {
+        const grobo_joint *joint = grobo_model_joint(model, j);
+        const char *first = grobo_model_joint(model, joint->follows)->name;
+        bool named = joint->ratio != 0 && (target->set & GROBO_JOINT_BIT(j)) != 0;
+        if (named && (target->set & GROBO_JOINT_BIT(joint->follows)) == 0) {
+            return app_fail(a, EXIT_USAGE, "ARG", "%s: %s follows %s; move %s instead", doing,
+                            joint->name, first, first);
+        }
+    }
+    return 0;
+}
+
 static int go(app *a, const grobo_posture *target, const char *doing)
 {
     conn c;
-    int status = conn_open_to_move(&c, a);
+    int status = check_followers(a, target, doing);
+    if (status) {
+        return status;
+    }
+    status = conn_open_to_move(&c, a);
     if (!status) {
         int64_t began_us = grobo_now_us();
         int job = grobo_robot_move(c.robot, target);

@@ -79,6 +79,7 @@ static const char *trip_unit(grobo_trip trip)
     case GROBO_TRIP_LOST_REPLIES:
         return _(" in a row");
     case GROBO_TRIP_LIMIT:
+    case GROBO_TRIP_APART:
         return " deg";
     case GROBO_TRIP_HOST_STALL:
         return _(" ms late");
@@ -120,6 +121,16 @@ static int fail_trip(conn *c, const char *doing)
             "and on",
             doing, _(grobo_trip_name(t->trip)), value, grobo_model_joint(model, t->joint)->motor,
             grobo_model_joint(model, t->joint)->name, grobo_model_joint(model, t->joint)->motor);
+    }
+    if (t->joint >= 0 && t->joint < model->n_joints && t->trip == GROBO_TRIP_APART) {
+        const grobo_joint *joint = grobo_model_joint(model, t->joint);
+        const grobo_joint *first = grobo_model_joint(model, joint->follows);
+        return app_fail_trip(
+            c->a, t->trip,
+            "%s: stopped for safety: %s%s: motor %d (%s) and motor %d (%s) share a shaft; "
+            "check horns and gears, and calibrate both",
+            doing, _(grobo_trip_name(t->trip)), value, first->motor, first->name, joint->motor,
+            joint->name);
     }
     if (t->joint >= 0 && t->joint < model->n_joints) {
         return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s at motor %d (%s)", doing,

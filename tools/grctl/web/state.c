@@ -178,14 +178,19 @@ static json_t *number(double value)
 static json_t *joint_json(const grobo_model *model, int j)
 {
     const grobo_joint *joint = grobo_model_joint(model, j);
-    return json_pack("{s:i,s:i,s:s,s:[o,o],s:o,s:o,s:o,s:i,s:i}", "joint", j, "motor", joint->motor,
-                     "name", joint->name, "limits_deg",
-                     app_json_number(grobo_deg_from_rad(joint->min_rad), 3),
-                     app_json_number(grobo_deg_from_rad(joint->max_rad), 3), "init_deg",
-                     app_json_number(grobo_deg_from_rad(joint->init_rad), 3), "max_speed_dps",
-                     app_json_number(grobo_deg_from_rad(joint->max_speed_rad_s), 1), "groups",
-                     joints_groups_json(model, j), "mirror", joint->mirror, "mirror_sign",
-                     joint->mirror_sign < 0 ? -1 : 1);
+    json_t *row = json_pack(
+        "{s:i,s:i,s:s,s:[o,o],s:o,s:o,s:o,s:i,s:i}", "joint", j, "motor", joint->motor, "name",
+        joint->name, "limits_deg", app_json_number(grobo_deg_from_rad(joint->min_rad), 3),
+        app_json_number(grobo_deg_from_rad(joint->max_rad), 3), "init_deg",
+        app_json_number(grobo_deg_from_rad(joint->init_rad), 3), "max_speed_dps",
+        app_json_number(grobo_deg_from_rad(joint->max_speed_rad_s), 1), "groups",
+        joints_groups_json(model, j), "mirror", joint->mirror, "mirror_sign",
+        joint->mirror_sign < 0 ? -1 : 1);
+    if (joint->ratio != 0) {
+        json_object_set_new(row, "follows", json_integer(joint->follows));
+        json_object_set_new(row, "ratio", number(joint->ratio));
+    }
+    return row;
 }
 
 static json_t *all_joints_json(const grobo_model *model)

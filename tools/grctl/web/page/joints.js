@@ -142,6 +142,9 @@ export class Joints {
             this.slider.value = angle;
         }
         this.known = angle !== null;
+        if (joint >= 0 && this.rows[joint].joint.follows !== undefined) {
+            this.known = false; // it goes where the joint that it follows is sent
+        }
         this.slider.disabled = !this.known || !this.app.mayMove();
         this.show(angle || 0, false);
     }
