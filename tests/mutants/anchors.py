@@ -42,7 +42,7 @@ def read_sources():
 def lost_asserts(texts, names):
     assertions = [a for path, text in texts.items() if path.startswith(ASSERTED)
                   for a in asserts.assertions_of(path, mutate.functions_of(text), mutate.blank(text))]
-    return [problem for _, _, _, problem in asserts.read(HERE + "/asserts", names, assertions)
+    return [problem for _, _, _, problem, _ in asserts.read(HERE + "/asserts", names, assertions)
             if problem]
 
 
