@@ -72,7 +72,7 @@ TEST(a_robot_moves_and_each_run_gives_the_same)
 
 TEST(the_rate_of_the_line_is_that_of_the_robots_file)
 {
-    grobo_driver driver;
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
     static grobo_robot_sim setting;
     const grobo_robot_def *arm = grobo_robot_def_find("so101");
     grobo_virtual *robot = NULL;
