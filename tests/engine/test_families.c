@@ -374,7 +374,7 @@ TEST(a_calibrated_joint_goes_as_far_as_its_servo)
         begin_calibrated(&families[i]);
         for (int j = 0; j < JOINTS; j++) {
             const grobo_servo_model *servo = bus.servo[j].servo;
-            int32_t ticks_of_deg = servo->span_ticks / servo->span_deg;
+            int32_t ticks_of_deg = (int32_t)servo->span_ticks / servo->span_deg;
             table_put(&bus, j, GROBO_ROLE_MIN_POSITION, servo->middle - 30 * ticks_of_deg);
             table_put(&bus, j, GROBO_ROLE_MAX_POSITION, servo->middle + 50 * ticks_of_deg);
         }

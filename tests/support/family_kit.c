@@ -138,7 +138,8 @@ void family_start_as(family_kit *kit, const family *f, const grobo_robot_config 
     with.hook = on_sim;
     with.hook_ctx = kit;
     assert_int_equal(grobo_sim_init(&kit->sim, &with, kit->now_us), GROBO_OK);
-    for (int j = 0; j < FAMILY_JOINTS && f->table == &grobo_i_dxl2_table; j++) {
+    bool profiled = grobo_servo_register_of(kit->servos[0], GROBO_ROLE_DIRECTION) != NULL;
+    for (int j = 0; j < FAMILY_JOINTS && profiled && f->table == &grobo_i_dxl2_table; j++) {
         family_set_up(kit, j, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
     }
     kit->driver.size = sizeof kit->driver;

@@ -65,10 +65,13 @@ TEST(tables_are_whole)
                 GROBO_ROLE_MODEL,        GROBO_ROLE_ID,           GROBO_ROLE_BAUD,
                 GROBO_ROLE_TORQUE,       GROBO_ROLE_GOAL,         GROBO_ROLE_POSITION,
                 GROBO_ROLE_MIN_POSITION, GROBO_ROLE_MAX_POSITION, GROBO_ROLE_VOLTAGE,
-                GROBO_ROLE_TEMPERATURE,  GROBO_ROLE_RETURN_DELAY};
+                GROBO_ROLE_TEMPERATURE};
             for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++) {
                 assert_non_null(grobo_servo_register_of(model, needed[i]));
             }
+            bool hls = tables[t] == &grobo_i_sts_table &&
+                       grobo_servo_register_named(model, "secondary_id") != NULL;
+            assert_true((grobo_servo_register_of(model, GROBO_ROLE_RETURN_DELAY) == NULL) == hls);
             bool locks = grobo_servo_register_of(model, GROBO_ROLE_LOCK) != NULL;
             assert_true(locks || tables[t]->keeps != GROBO_KEEPS_LOCK);
         }
@@ -76,38 +79,80 @@ TEST(tables_are_whole)
 }
 
 /* The same item differs by model: what the maker's pages say. */
+static const struct {
+    const char *model, *name;
+    int address, factory; /* -1: the model has none */
+} own_rows[] = {
+    {"XL330-M288", "current_limit", 38, 1750},
+    {"XM430-W350", "current_limit", 38, 1193},
+    {"XC330-T288", "current_limit", 38, 910},
+    {"XL430-W250", "current_limit", -1, 0},
+    {"XL330-M288", "shutdown", 63, 53},
+    {"XL430-W250", "shutdown", 63, 52},
+    {"XL430-W250", "present_load", 126, 0},
+    {"XL330-M077", "present_current", 126, 0},
+    {"XM430-W350", "position_p", 84, 800},
+    {"XL430-W250", "position_d", 80, 4000},
+    {"XL330-M288", "max_voltage", 32, 70},
+    {"XC330-T181", "min_voltage", 34, 55},
+    {"XM430-W210", "temperature_limit", 31, 80},
+    {"2XL430-W250", "velocity_limit", 44, 265},
+    {"XC430-W150", "velocity_limit", 44, 460},
+    {"XC430-W150", "temperature_limit", 31, 80},
+    {"XC430-W150", "max_voltage", 32, 160},
+    {"XC430-W150", "velocity_i", 76, 1920},
+    {"XC430-W150", "position_d", 80, 0},
+    {"XC430-W150", "position_p", 84, 460},
+    {"XC430-W150", "moving_threshold", 24, 20},
+    {"XC430-W240", "velocity_limit", 44, 306},
+    {"XC430-W240", "position_p", 84, 700},
+    {"XC430-W240", "max_voltage", 32, 160},
+    {"XM430-W210", "velocity_limit", 44, 330},
+    {"XL330-M077", "velocity_limit", 44, 1620},
+    {"XL330-M077", "velocity_i", 76, 400},
+    {"XL330-M077", "velocity_p", 78, 40},
+    {"XL330-M077", "position_i", 82, 400},
+    {"XC330-M181", "velocity_limit", 44, 545},
+    {"XC330-M181", "velocity_i", 76, 1400},
+    {"XC330-M181", "position_p", 84, 1200},
+    {"XC330-T181", "velocity_limit", 44, 510},
+    {"XC330-T288", "velocity_limit", 44, 320},
+    {"XC330-T288", "model_information", 2, 0},
+    {"XL-320", "moving_speed", 32, 0},
+    {"XL-320", "present_position", 37, 0},
+    {"XL-320", "temperature_limit", 12, 65},
+    {"XL-320", "max_voltage", 14, 90},
+    {"XL-320", "shutdown", 18, 3},
+    {"PH54-200-S500-R", "current_limit", 38, 22740},
+    {"PH54-200-S500-R", "position_p", 532, 314},
+    {"PH54-200-S500-R", "shutdown", 63, 52},
+    {"PH54-100-S500-R", "shutdown", 63, 58},
+    {"PH42-020-S300-R", "max_position", 48, 303454},
+    {"PM54-060-S250-R", "acceleration_limit", 40, 11145},
+    {"PM54-040-S250-R", "velocity_limit", 44, 2840},
+    {"PM42-010-S260-R", "min_position", 52, -262931},
+    {"H54-200-S500-RA", "acceleration_limit", 40, 9982},
+    {"H54-100-S500-RA", "moving_threshold", 24, 50},
+    {"H42-20-S300-RA", "protocol_type", -1, 0},
+    {"M54-60-S250-RA", "temperature", 594, 0},
+    {"M54-40-S250-RA", "current_limit", 38, 4470},
+    {"M42-10-S260-RA", "goal_position", 564, 0},
+};
+
 TEST(models_have_their_own_rows)
 {
-    static const struct {
-        const char *model, *name;
-        int address, factory; /* -1: the model has none */
-    } rows[] = {
-        {"XL330-M288", "current_limit", 38, 1750},   {"XM430-W350", "current_limit", 38, 1193},
-        {"XC330-T288", "current_limit", 38, 910},    {"XL430-W250", "current_limit", -1, 0},
-        {"XL330-M288", "shutdown", 63, 53},          {"XL430-W250", "shutdown", 63, 52},
-        {"XL430-W250", "present_load", 126, 0},      {"XL330-M077", "present_current", 126, 0},
-        {"XM430-W350", "position_p", 84, 800},       {"XL430-W250", "position_d", 80, 4000},
-        {"XL330-M288", "max_voltage", 32, 70},       {"XC330-T181", "min_voltage", 34, 55},
-        {"XM430-W210", "temperature_limit", 31, 80}, {"2XL430-W250", "velocity_limit", 44, 265},
-        {"XC430-W150", "velocity_limit", 44, 460},   {"XC430-W150", "temperature_limit", 31, 80},
-        {"XC430-W150", "max_voltage", 32, 160},      {"XC430-W150", "velocity_i", 76, 1920},
-        {"XC430-W150", "position_d", 80, 0},         {"XC430-W150", "position_p", 84, 460},
-        {"XC430-W150", "moving_threshold", 24, 20},  {"XC430-W240", "velocity_limit", 44, 306},
-        {"XC430-W240", "position_p", 84, 700},       {"XC430-W240", "max_voltage", 32, 160},
-        {"XM430-W210", "velocity_limit", 44, 330},   {"XL330-M077", "velocity_limit", 44, 1620},
-        {"XL330-M077", "velocity_i", 76, 400},       {"XL330-M077", "velocity_p", 78, 40},
-        {"XL330-M077", "position_i", 82, 400},       {"XC330-M181", "velocity_limit", 44, 545},
-        {"XC330-M181", "velocity_i", 76, 1400},      {"XC330-M181", "position_p", 84, 1200},
-        {"XC330-T181", "velocity_limit", 44, 510},   {"XC330-T288", "velocity_limit", 44, 320},
-        {"XC330-T288", "model_information", 2, 0},
-    };
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < sizeof own_rows / sizeof own_rows[0]; i++) {
         const grobo_servo_model *model =
-            grobo_servo_model_named(&grobo_i_dxl2_table, rows[i].model);
-        const grobo_servo_register *reg = grobo_servo_register_named(model, rows[i].name);
-        assert_int_equal(reg != NULL ? reg->address : -1, rows[i].address);
-        assert_int_equal(reg != NULL ? reg->factory : 0, rows[i].factory);
+            grobo_servo_model_named(&grobo_i_dxl2_table, own_rows[i].model);
+        const grobo_servo_register *reg = grobo_servo_register_named(model, own_rows[i].name);
+        assert_int_equal(reg != NULL ? reg->address : -1, own_rows[i].address);
+        assert_int_equal(reg != NULL ? reg->factory : 0, own_rows[i].factory);
     }
+    /* The bound itself, as its page has it. */
+    const grobo_servo_register *bound = grobo_servo_register_named(
+        grobo_servo_model_named(&grobo_i_dxl2_table, "XC430-W150"), "max_voltage");
+    assert_int_equal(bound->min, 60);
+    assert_int_equal(bound->max, 160);
     /* RX have the registers of AX; their pages of the e-manual. */
     static const char *const rx[] = {"RX-24F", "RX-28", "RX-64"};
     static const uint16_t numbers[] = {24, 28, 64};
@@ -142,6 +187,44 @@ TEST(models_have_figures_of_their_voltage)
         assert_int_equal(model->torque_mnm, rows[i].mnm);
         assert_int_equal(model->current_ma, rows[i].ma);
         assert_int_equal(model->voltage_mv, rows[i].mv);
+    }
+}
+
+/* Numbers and scales, as the makers' pages have them. */
+TEST(models_have_their_numbers_and_scales)
+{
+    static const struct {
+        const grobo_servo_table *table;
+        const char *model;
+        unsigned number, ticks, deg;
+    } rows[] = {
+        {&grobo_i_dxl2_table, "XL-320", 350, 1023, 300},
+        {&grobo_i_dxl2_table, "PH54-200-S500-R", 2020, 1003846, 360},
+        {&grobo_i_dxl2_table, "PH54-100-S500-R", 2010, 1003846, 360},
+        {&grobo_i_dxl2_table, "PH42-020-S300-R", 2000, 607500, 360},
+        {&grobo_i_dxl2_table, "PM54-060-S250-R", 2120, 502834, 360},
+        {&grobo_i_dxl2_table, "PM54-040-S250-R", 2110, 502834, 360},
+        {&grobo_i_dxl2_table, "PM42-010-S260-R", 2100, 526374, 360},
+        {&grobo_i_dxl2_table, "H54-200-S500-RA", 54025, 1003846, 360},
+        {&grobo_i_dxl2_table, "H54-100-S500-RA", 53769, 1003846, 360},
+        {&grobo_i_dxl2_table, "H42-20-S300-RA", 51201, 607500, 360},
+        {&grobo_i_dxl2_table, "M54-60-S250-RA", 46353, 502834, 360},
+        {&grobo_i_dxl2_table, "M54-40-S250-RA", 46097, 502834, 360},
+        {&grobo_i_dxl2_table, "M42-10-S260-RA", 43289, 526374, 360},
+        {&grobo_i_dxl1_table, "MX-12W", 104, 4096, 360},
+        {&grobo_i_sts_table, "STS3032", 521, 4096, 360},
+        {&grobo_i_sts_table, "SM40BL", 10248, 4096, 360},
+        {&grobo_i_sts_table, "HLS3930", 4106, 4096, 360},
+        {&grobo_i_sts_table, "HLS3915", 5130, 4096, 360},
+        {&grobo_i_scs_table, "SCS225", 8969, 1024, 300},
+        {&grobo_i_rs30x_table, "RS405CB", 0x4050, 3000, 300},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_servo_model *model = grobo_servo_model_named(rows[i].table, rows[i].model);
+        assert_non_null(model);
+        assert_int_equal(model->number, rows[i].number);
+        assert_int_equal(model->span_ticks, rows[i].ticks);
+        assert_int_equal(model->span_deg, rows[i].deg);
     }
 }
 

@@ -71,11 +71,14 @@ typedef enum grobo_dxl2_error {
 } grobo_dxl2_error;
 
 /** Bits of the registers shutdown and hardware_error. */
-#define GROBO_DXL2_VOLTAGE 0x01u    /**< outside its limits */
-#define GROBO_DXL2_OVERHEATED 0x04u /**< above its limit */
-#define GROBO_DXL2_ENCODER 0x08u    /**< the encoder of the motor fails */
-#define GROBO_DXL2_SHOCK 0x10u      /**< an electrical shock, or too little power */
-#define GROBO_DXL2_OVERLOAD 0x20u   /**< a load that lasts */
+#define GROBO_DXL2_VOLTAGE 0x01u        /**< outside its limits */
+#define GROBO_DXL2_OVERHEATED 0x04u     /**< above its limit */
+#define GROBO_DXL2_ENCODER 0x08u        /**< the encoder of the motor fails */
+#define GROBO_DXL2_SHOCK 0x10u          /**< an electrical shock, or too little power */
+#define GROBO_DXL2_OVERLOAD 0x20u       /**< a load that lasts */
+#define GROBO_DXL2_XL320_OVERLOAD 0x01u /**< those of XL-320 (emanual xl320) */
+#define GROBO_DXL2_XL320_OVERHEATED 0x02u
+#define GROBO_DXL2_XL320_VOLTAGE 0x04u
 
 /** Operating modes. */
 typedef enum grobo_dxl2_mode {
@@ -84,7 +87,9 @@ typedef enum grobo_dxl2_mode {
     GROBO_DXL2_MODE_POSITION = 3, /**< one turn, between the limits */
     GROBO_DXL2_MODE_EXTENDED = 4, /**< 256 turns either way, no limits */
     GROBO_DXL2_MODE_GRIP = 5,     /**< position, bounded by the goal current */
-    GROBO_DXL2_MODE_PWM = 16
+    GROBO_DXL2_MODE_PWM = 16,
+    GROBO_DXL2_MODE_XL320_WHEEL = 1, /**< of XL-320: a speed of the output */
+    GROBO_DXL2_MODE_XL320_JOINT = 2  /**< of XL-320: positions of 300 degrees */
 } grobo_dxl2_mode;
 
 /** Bits of the drive mode. */

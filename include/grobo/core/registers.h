@@ -117,7 +117,7 @@ typedef struct grobo_servo_indirect {
 typedef struct grobo_servo_model {
     const char *name;                      /**< "XL330-M288" */
     uint16_t number;                       /**< as its register MODEL gives it */
-    uint16_t span_ticks;                   /**< counts of position ... */
+    uint32_t span_ticks;                   /**< counts of position ... */
     uint16_t span_deg;                     /**< ... in so many degrees */
     uint16_t middle;                       /**< the position in the middle of the span */
     uint16_t speed_dps;                    /**< top speed without load at voltage_mv */

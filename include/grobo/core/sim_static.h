@@ -14,15 +14,17 @@
 
 GROBO_BEGIN_DECLS
 
-/** Bytes of registers of a servo. Private. */
-#define GROBO_SIM_REGISTER_BYTES 160
+/** Bytes of registers of a servo; one that has more cannot be simulated. Private. */
+#ifndef GROBO_SIM_REGISTER_BYTES
+#define GROBO_SIM_REGISTER_BYTES 608
+#endif
 /** Those of them that survive power-off. Private. */
 #define GROBO_SIM_KEPT_BYTES 64
 /** Longest write that a servo keeps until its action. Private. */
 #define GROBO_SIM_WRITE_BYTES 32
 /** Indirect registers of a servo. Private. */
 #ifndef GROBO_SIM_INDIRECTS
-#define GROBO_SIM_INDIRECTS 56
+#define GROBO_SIM_INDIRECTS 128
 #endif
 /** Families on one line. Private. */
 #define GROBO_SIM_FAMILIES_MAX 4

@@ -11,6 +11,9 @@
 
 enum { ADDRESS_MAX = 1023 };
 
+/* Counts of a span: a goal of 256 turns is a number of 32 bits. */
+#define SPAN_MAX (1 << 22)
+
 static const char *const roles[] = {[GROBO_ROLE_NONE] = "none",
                                     [GROBO_ROLE_MODEL] = "model",
                                     [GROBO_ROLE_FIRMWARE] = "firmware",
@@ -363,12 +366,12 @@ static int read_scale(grobo_i_events *events, void *target)
         return result;
     }
     for (int i = 0; i < 3; i++) {
-        if (found[i] < (i < 2 ? 1 : 0) || found[i] > UINT16_MAX) {
+        if (found[i] < (i < 2 ? 1 : 0) || found[i] > (i == 0 ? SPAN_MAX : UINT16_MAX)) {
             return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "range", place,
                                     "scale: counts, the degrees that they are, the middle count");
         }
     }
-    draft->model.span_ticks = (uint16_t)found[0];
+    draft->model.span_ticks = (uint32_t)found[0];
     draft->model.span_deg = (uint16_t)found[1];
     draft->model.middle = (uint16_t)found[2];
     return 0;

@@ -18,18 +18,6 @@
 
 /* ---- units --------------------------------------------------------------------------------- */
 
-static double ax_speed_mdeg_s(const grobo_sim_servo *servo)
-{
-    (void)servo;
-    return 0.111 * 6000;
-}
-
-static double mx_speed_mdeg_s(const grobo_sim_servo *servo)
-{
-    (void)servo;
-    return 0.114 * 6000;
-}
-
 static double accel_mdeg_s2(const grobo_sim_servo *servo)
 {
     (void)servo;
@@ -78,7 +66,7 @@ static bool ax_is_wheel(const grobo_sim_servo *servo, double *speed_mdeg_s)
 static bool mx_is_wheel(const grobo_sim_servo *servo, double *speed_mdeg_s)
 {
     int32_t counts = grobo_i_dxl1_sim_bit10(grobo_i_dxl_get(servo, GROBO_ROLE_SPEED));
-    *speed_mdeg_s = mx_speed_mdeg_s(servo) * counts;
+    *speed_mdeg_s = grobo_i_dxl1_sim_speed_mdeg_s(servo) * counts;
     return grobo_i_dxl1_sim_limits_are(servo, 0);
 }
 
@@ -126,7 +114,7 @@ static void see_current(grobo_sim *sim, int index)
 /* ---- the family ---------------------------------------------------------------------------- */
 
 static const grobo_i_dxl1_series ax = {.judges = true,
-                                       .speed_mdeg_s = ax_speed_mdeg_s,
+                                       .speed_mdeg_s = grobo_i_dxl1_sim_speed_mdeg_s,
                                        .accel_mdeg_s2 = accel_mdeg_s2,
                                        .counts_turns = ax_counts_turns,
                                        .offset = ax_offset,
@@ -142,7 +130,7 @@ static const grobo_i_dxl1_series ax = {.judges = true,
 
 static const grobo_i_dxl1_series mx = {.judges = true,
                                        .bulk_read = true,
-                                       .speed_mdeg_s = mx_speed_mdeg_s,
+                                       .speed_mdeg_s = grobo_i_dxl1_sim_speed_mdeg_s,
                                        .accel_mdeg_s2 = accel_mdeg_s2,
                                        .counts_turns = mx_counts_turns,
                                        .offset = mx_offset,

@@ -10,6 +10,7 @@
 
 #include "src/base/bytes.h"
 #include "src/servo/dxl1/sim_packets.h"
+#include "src/servo/unit.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/note.h"
 #include "src/sim/servo/power.h"
@@ -40,6 +41,13 @@ bool grobo_i_dxl1_sim_limits_are(const grobo_sim_servo *servo, int32_t value)
 {
     return grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION) == value &&
            grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION) == value;
+}
+
+double grobo_i_dxl1_sim_speed_mdeg_s(const grobo_sim_servo *servo)
+{
+    const grobo_servo_register *reg =
+        grobo_servo_register_of(servo->model, GROBO_ROLE_PRESENT_SPEED);
+    return grobo_i_register_unit(reg) * 1000;
 }
 
 /* ---- positions ----------------------------------------------------------------------------- */

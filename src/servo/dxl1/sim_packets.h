@@ -62,6 +62,8 @@ bool grobo_i_dxl1_sim_limits_are(const grobo_sim_servo *servo, int32_t both);
 int32_t grobo_i_dxl1_sim_named(const grobo_sim_servo *servo, const char *name);
 /* Sign and magnitude with the sign in bit 10. */
 int32_t grobo_i_dxl1_sim_bit10(int32_t raw);
+/* A count of its speed, by the unit of that register. */
+double grobo_i_dxl1_sim_speed_mdeg_s(const grobo_sim_servo *servo);
 /* Registers changed: the plant is brought up to date. */
 void grobo_i_dxl1_sim_follow(grobo_sim *sim, int index);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Robots of DYNAMIXEL X servos. */
+/* Robots of DYNAMIXEL servos with Protocol 2.0: X, MX, P, PRO(A) and XL-320. */
+#include "src/servo/dxl2/series.h"
 #include "src/servo/table/family.h"
 #include "src/servo/tables.h"
 
@@ -12,11 +13,11 @@
 
 /* Goals are within one turn in mode 3 and 5 and count turns in mode 4; 5 bounds the current, as a
  * gripper needs it. Without the bit of time a duration would be taken for a velocity
- * (emanual drive_mode, opmode_six_2). */
+ * (emanual drive_mode, opmode_six_2). P have no mode 5: their current is bounded in each. */
 static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
                      grobo_register_role role, int32_t found)
 {
-    bool grips = joint->torque_limit_pct > 0 &&
+    bool grips = joint->torque_limit_pct > 0 && grobo_i_dxl2_series_of(servo) == GROBO_I_DXL2_X &&
                  grobo_servo_register_of(servo, GROBO_ROLE_GOAL_CURRENT) != NULL;
     if (role == GROBO_ROLE_DIRECTION) {
         return (found & ~(int32_t)DRIVE_BITS) | (int32_t)GROBO_DXL2_DRIVE_TIME;
@@ -50,11 +51,30 @@ static bool fast_part(const grobo_packet *reply, int n, int k, grobo_packet *par
     return true;
 }
 
+/* Wheel or joint (emanual xl320). */
+static int32_t xl320_wants(const grobo_joint *joint, const grobo_servo_model *servo,
+                           grobo_register_role role, int32_t found)
+{
+    (void)joint;
+    (void)servo;
+    return role == GROBO_ROLE_MODE ? GROBO_DXL2_MODE_XL320_JOINT : found;
+}
+
+static const grobo_i_family xl320;
+static const grobo_i_family family;
+
+static const grobo_i_family *of(const grobo_servo_model *servo)
+{
+    return grobo_i_dxl2_series_of(servo) == GROBO_I_DXL2_XL320 ? &xl320 : &family;
+}
+
 /*
  * A profile of this duration, without ramps, is a straight way in time. A set bit of the register
  * shutdown that occurs cuts the torque until a reboot (emanual shutdown).
  */
 static const grobo_i_family family = {
+    .of = of,
+    .numbers_errors = true,
     .tables = {&grobo_i_dxl2_table},
     .build = grobo_dxl2_build,
     .parse = grobo_dxl2_parse,
@@ -74,10 +94,21 @@ static const grobo_i_family family = {
     .pace = GROBO_I_PACE_PROFILE,
 };
 
+/* What of it the table asks of each servo: a goal has a speed, errors have bits of their own. */
+static const grobo_i_family xl320 = {
+    .numbers_errors = true,
+    .wants = xl320_wants,
+    .limits_mode = GROBO_DXL2_MODE_XL320_JOINT,
+    .overheated = GROBO_DXL2_XL320_OVERHEATED,
+    .cuts = 0xFF,
+    .fast_part = fast_part,
+    .pace = GROBO_I_PACE_SPEED,
+};
+
 int grobo_dxl2_driver_init(grobo_driver *driver, const grobo_model *model)
 {
     int result = grobo_i_table_driver(driver, model, &grobo_i_dxl2_protocol, &family);
-    if (result >= 0) {
+    if (result >= 0 && driver->watchdog != NULL) {
         driver->watchdog_us = WATCHDOG_US;
     }
     return result;

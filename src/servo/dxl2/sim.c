@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The X series of DYNAMIXEL: what packets of Protocol 2.0 do to its registers. */
+/*
+ * Simulated DYNAMIXEL X, MX(2.0), P, PRO(A) and XL-320: what their registers mean for the shaft,
+ * and which writes they take. Their units are those of their tables.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,10 +11,12 @@
 #include <grobo/core/protocol.h>
 #include <grobo/core/sim.h>
 
-#include "src/base/bytes.h"
 #include "src/model/joint.h"
+#include "src/servo/dxl2/series.h"
+#include "src/servo/dxl2/sim_packets.h"
 #include "src/servo/families.h"
 #include "src/servo/tables.h"
+#include "src/servo/unit.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/indirect.h"
 #include "src/sim/servo/note.h"
@@ -20,22 +25,56 @@
 #include "src/sim/servo/servo.h"
 #include "src/sim/servo/shaft.h"
 
-/* Counts: 0.229 rpm, 214.577 rev/min2, of the watchdog 20 ms, of a voltage 0.1 V. */
-#define SPEED_MDEG_S 1374.0
-#define ACCEL_MDEG_S2 21457.7
+/* Counts of the watchdog and of a voltage. */
 #define WATCHDOG_US 20000
 #define COUNT_MV 100
 /* A motor that works this hard for this long is overloaded. An assumption. */
 #define OVERLOAD_EFFORT 0.8
 #define OVERLOAD_US 1000000
-/* The largest homing offset that counts where a position is within one turn. */
-#define HOMING_ONE_TURN 1024
-/* Where the registers in RAM begin. */
-#define EEPROM_END 64
+/* The part of a turn that a homing offset may be where a position is within one turn. */
+#define HOMING_PART 4
+/* Of a speed of XL-320's output, whose sign is bit 10. */
+#define OUTPUT_FULL 1023
+#define OUTPUT_SIGN 1024
 
+static bool is_xl320(const grobo_sim_servo *servo)
+{
+    return grobo_i_dxl2_series_of(servo->model) == GROBO_I_DXL2_XL320;
+}
+
+/* XL-320 have two modes, with numbers of their own. */
 static int mode_of(const grobo_sim_servo *servo)
 {
-    return grobo_i_dxl_get(servo, GROBO_ROLE_MODE);
+    int32_t mode = grobo_i_dxl_get(servo, GROBO_ROLE_MODE);
+    return !is_xl320(servo)                      ? mode
+           : mode == GROBO_DXL2_MODE_XL320_JOINT ? GROBO_DXL2_MODE_POSITION
+                                                 : GROBO_DXL2_MODE_PWM;
+}
+
+static uint8_t error_of(const grobo_sim_servo *servo, unsigned error)
+{
+    return (uint8_t)(!is_xl320(servo)                 ? error
+                     : error == GROBO_DXL2_VOLTAGE    ? GROBO_DXL2_XL320_VOLTAGE
+                     : error == GROBO_DXL2_OVERHEATED ? GROBO_DXL2_XL320_OVERHEATED
+                                                      : GROBO_DXL2_XL320_OVERLOAD);
+}
+
+/* A count of the register of a role; 0: there is none. */
+static double unit_of(const grobo_sim_servo *servo, grobo_register_role role)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(servo->model, role);
+    return reg == NULL ? 0 : grobo_i_register_unit(reg);
+}
+
+static double speed_mdeg_s(const grobo_sim_servo *servo)
+{
+    return unit_of(servo, GROBO_ROLE_PRESENT_SPEED) * 1000;
+}
+
+/* The unit is rev/min2, of which a minute more is in the time. */
+static double accel_mdeg_s2(const grobo_sim_servo *servo)
+{
+    return unit_of(servo, GROBO_ROLE_ACCELERATION) * 1000 / 60;
 }
 
 static bool places(int mode)
@@ -49,7 +88,7 @@ static bool drives_by_time(const grobo_sim_servo *servo)
     return (grobo_i_dxl_get(servo, GROBO_ROLE_DIRECTION) & (int)GROBO_DXL2_DRIVE_TIME) != 0;
 }
 
-static bool reverses(const grobo_sim_servo *servo)
+bool grobo_i_dxl2_sim_reverses(const grobo_sim_servo *servo)
 {
     return (grobo_i_dxl_get(servo, GROBO_ROLE_DIRECTION) & (int)GROBO_DXL2_DRIVE_REVERSE) != 0;
 }
@@ -58,11 +97,12 @@ static bool reverses(const grobo_sim_servo *servo)
 
 static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
 {
-    int32_t ticks = grobo_i_dxl_ticks(servo, reverses(servo), angle_mdeg);
+    int32_t ticks = grobo_i_dxl_ticks(servo, grobo_i_dxl2_sim_reverses(servo), angle_mdeg);
     int32_t offset = grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
-    if (mode_of(servo) == GROBO_DXL2_MODE_POSITION) {
-        bool counts = offset >= -HOMING_ONE_TURN && offset <= HOMING_ONE_TURN;
-        return grobo_i_dxl_wrap(ticks, grobo_i_dxl_turn(servo)) + (counts ? offset : 0);
+    int32_t turn = grobo_i_dxl_turn(servo), first = grobo_i_first_tick(servo->model);
+    if (mode_of(servo) == GROBO_DXL2_MODE_POSITION && turn > 0) {
+        bool counts = abs(offset) <= turn / HOMING_PART;
+        return first + grobo_i_dxl_wrap(ticks - first, turn) + (counts ? offset : 0);
     }
     return ticks - servo->turns_ticks + offset;
 }
@@ -72,31 +112,51 @@ static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
 {
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     int32_t way = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL) - position_at(servo, here_mdeg);
-    int32_t ticks = grobo_i_dxl_ticks(servo, false, here_mdeg) + (reverses(servo) ? -way : way);
+    int32_t ticks = grobo_i_dxl_ticks(servo, false, here_mdeg) +
+                    (grobo_i_dxl2_sim_reverses(servo) ? -way : way);
     return (int32_t)lround((ticks - servo->model->middle) * grobo_i_dxl_tick_mdeg(servo));
 }
 
 /* ---- the shaft's side ---------------------------------------------------------------------- */
 
+/* Part of what it can, by a register of the output. */
+static double output_of(const grobo_sim_servo *servo)
+{
+    int32_t counts = grobo_i_dxl_get(servo, GROBO_ROLE_SPEED);
+    if (is_xl320(servo)) {
+        double part = (double)(counts % OUTPUT_SIGN) / OUTPUT_FULL;
+        return counts >= OUTPUT_SIGN ? -part : part;
+    }
+    const grobo_servo_register *pwm = grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_PWM);
+    return (double)grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_PWM) / pwm->max;
+}
+
 static void follow_wheel(grobo_sim_servo *servo, int mode)
 {
     grobo_sim_wants *plant = &servo->plant;
-    double speed = 0;
+    double speed = plant->speed_mdeg_s;
     if (mode == GROBO_DXL2_MODE_VELOCITY) {
-        speed = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_SPEED) * SPEED_MDEG_S;
+        speed = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_SPEED) * speed_mdeg_s(servo);
     } else if (mode == GROBO_DXL2_MODE_PWM) {
-        const grobo_servo_register *pwm =
-            grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_PWM);
-        speed =
-            (double)plant->speed_mdeg_s * grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_PWM) / pwm->max;
+        speed *= output_of(servo);
     } else { /* a current without a load: as fast as it can */
         int32_t current = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT);
-        speed = (current > 0) - (current < 0);
-        speed *= plant->speed_mdeg_s;
+        speed *= (current > 0) - (current < 0);
     }
     speed = fmin(fmax(speed, -plant->speed_mdeg_s), plant->speed_mdeg_s);
     plant->wheel = true;
-    plant->wheel_mdeg_s = (int32_t)lround(reverses(servo) ? -speed : speed);
+    plant->wheel_mdeg_s = (int32_t)lround(grobo_i_dxl2_sim_reverses(servo) ? -speed : speed);
+}
+
+/* The register that bounds the current in this mode; NULL: none does. */
+static const grobo_servo_register *bound_of(const grobo_sim_servo *servo, int mode)
+{
+    grobo_i_dxl2_series series = grobo_i_dxl2_series_of(servo->model);
+    bool current = series == GROBO_I_DXL2_P || mode == GROBO_DXL2_MODE_GRIP;
+    return series == GROBO_I_DXL2_XL320
+               ? grobo_servo_register_of(servo->model, GROBO_ROLE_TORQUE_LIMIT)
+           : current ? grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT)
+                     : NULL;
 }
 
 static void follow(grobo_sim *sim, int index)
@@ -107,11 +167,10 @@ static void follow(grobo_sim *sim, int index)
     int32_t velocity = grobo_i_dxl_get(servo, GROBO_ROLE_SPEED);
     int32_t acceleration = grobo_i_dxl_get(servo, GROBO_ROLE_ACCELERATION);
     grobo_i_dxl_follow(sim, index);
-    if (mode == GROBO_DXL2_MODE_GRIP) {
-        const grobo_servo_register *current =
-            grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT);
-        plant->most_ma =
-            plant->stall_ma * abs(grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT)) / current->max;
+    const grobo_servo_register *bound = bound_of(servo, mode);
+    if (bound != NULL) {
+        int64_t counts = abs(grobo_i_dxl_get(servo, (grobo_register_role)bound->role));
+        plant->most_ma = (int32_t)(plant->stall_ma * counts / bound->max);
     }
     if (!places(mode)) {
         follow_wheel(servo, mode);
@@ -120,8 +179,9 @@ static void follow(grobo_sim *sim, int index)
         plant->ramp_us =
             acceleration * 1000 < plant->time_us / 2 ? acceleration * 1000 : plant->time_us / 2;
     } else {
-        plant->cap_mdeg_s = (int32_t)lround(velocity * SPEED_MDEG_S);
-        plant->accel_mdeg_s2 = (int32_t)lround(fmin(acceleration * ACCEL_MDEG_S2, INT32_MAX));
+        plant->cap_mdeg_s = (int32_t)lround(velocity * speed_mdeg_s(servo));
+        plant->accel_mdeg_s2 =
+            (int32_t)lround(fmin(acceleration * accel_mdeg_s2(servo), INT32_MAX));
     }
 }
 
@@ -129,18 +189,19 @@ static void cut(grobo_sim *sim, int index, bool hot)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 0);
-    servo->status |= hot ? GROBO_DXL2_OVERHEATED : 0;
+    servo->status |= hot ? error_of(servo, GROBO_DXL2_OVERHEATED) : 0;
     follow(sim, index);
 }
 
-static void refresh(grobo_sim *sim, int index)
+void grobo_i_dxl2_sim_refresh(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_servo_register *current = grobo_servo_register_of(servo->model, GROBO_ROLE_CURRENT);
+    const grobo_servo_register *pwm = grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_PWM);
     int64_t now_us = sim->now_us;
+    double speed = speed_mdeg_s(servo);
     grobo_i_sim_settle(sim, index);
-    double count_ma = current == NULL ? 0 : current->unit[0] == '1' ? 1 : 2.69;
-    grobo_i_dxl_refresh(sim, index, reverses(servo) ? -SPEED_MDEG_S : SPEED_MDEG_S, count_ma);
+    grobo_i_dxl_refresh(sim, index, grobo_i_dxl2_sim_reverses(servo) ? -speed : speed,
+                        unit_of(servo, GROBO_ROLE_CURRENT));
     int32_t position = position_at(servo, grobo_i_sim_angle_mdeg(servo, now_us));
     grobo_i_dxl_put(servo, GROBO_ROLE_POSITION, position);
     grobo_i_dxl_put(servo, GROBO_ROLE_ERROR, servo->status);
@@ -148,12 +209,14 @@ static void refresh(grobo_sim *sim, int index)
                                        "tick", "moving_status"};
     bool moves = grobo_i_sim_moving(servo, now_us);
     const int64_t values[] = {position, grobo_i_dxl_get(servo, GROBO_ROLE_PRESENT_SPEED),
-                              lround(grobo_i_dxl_effort(sim, index) * 885), now_us / 1000 % 32768,
-                              moves ? 0x32 : 0x01};
+                              lround(grobo_i_dxl_effort(sim, index) * (pwm != NULL ? pwm->max : 0)),
+                              now_us / 1000 % 32768, moves ? 0x32 : 0x01};
     for (size_t i = 0; i < sizeof same / sizeof *same; i++) {
-        const grobo_servo_register *reg = grobo_i_dxl_row(servo, same[i]);
-        (void)grobo_servo_register_put(servo->model, reg, (int32_t)values[i],
-                                       &servo->reg[reg->address]);
+        const grobo_servo_register *reg = grobo_servo_register_named(servo->model, same[i]);
+        if (reg != NULL) {
+            (void)grobo_servo_register_put(servo->model, reg, (int32_t)values[i],
+                                           &servo->reg[reg->address]);
+        }
     }
 }
 
@@ -163,7 +226,7 @@ static int64_t overload_us(const grobo_sim_servo *servo)
 {
     int64_t since_us = grobo_i_sim_strained_us(servo);
     bool works = since_us != GROBO_NEVER_US && grobo_i_sim_strain(servo) >= OVERLOAD_EFFORT &&
-                 (servo->status & GROBO_DXL2_OVERLOAD) == 0;
+                 (servo->status & error_of(servo, GROBO_DXL2_OVERLOAD)) == 0;
     return works ? since_us + OVERLOAD_US : GROBO_NEVER_US;
 }
 
@@ -181,7 +244,8 @@ static int64_t next_us(const grobo_sim *sim, int index)
     if (!servo->powered) {
         return GROBO_NEVER_US;
     }
-    if ((servo->status & GROBO_DXL2_VOLTAGE) == 0 && !grobo_i_dxl_fed(sim, servo, COUNT_MV)) {
+    if ((servo->status & error_of(servo, GROBO_DXL2_VOLTAGE)) == 0 &&
+        !grobo_i_dxl_fed(sim, servo, COUNT_MV)) {
         return sim->now_us;
     }
     int64_t load_us = overload_us(servo), dog_us = watchdog_us(servo);
@@ -203,10 +267,11 @@ static void fail(grobo_sim *sim, int index, unsigned error)
 static void act(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    if ((servo->status & GROBO_DXL2_VOLTAGE) == 0 && !grobo_i_dxl_fed(sim, servo, COUNT_MV)) {
-        fail(sim, index, GROBO_DXL2_VOLTAGE);
+    if ((servo->status & error_of(servo, GROBO_DXL2_VOLTAGE)) == 0 &&
+        !grobo_i_dxl_fed(sim, servo, COUNT_MV)) {
+        fail(sim, index, error_of(servo, GROBO_DXL2_VOLTAGE));
     } else if (overload_us(servo) <= sim->now_us) {
-        fail(sim, index, GROBO_DXL2_OVERLOAD);
+        fail(sim, index, error_of(servo, GROBO_DXL2_OVERLOAD));
     } else if (watchdog_us(servo) <= sim->now_us) {
         grobo_i_dxl_put(servo, GROBO_ROLE_WATCHDOG, -1);
         grobo_i_dxl_put(servo, GROBO_ROLE_ACCELERATION, 0);
@@ -234,7 +299,7 @@ static void restart(grobo_sim *sim, int index)
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
                     grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
-    grobo_i_dxl_one_turn(sim, servo, reverses(servo));
+    grobo_i_dxl_one_turn(sim, servo, grobo_i_dxl2_sim_reverses(servo));
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
     servo->heard_us = sim->now_us;
@@ -243,8 +308,13 @@ static void restart(grobo_sim *sim, int index)
 
 static bool has_mode(const grobo_sim_servo *servo, int32_t mode)
 {
+    grobo_i_dxl2_series series = grobo_i_dxl2_series_of(servo->model);
     bool by_current = mode == GROBO_DXL2_MODE_CURRENT || mode == GROBO_DXL2_MODE_GRIP;
-    return by_current
+    if (series != GROBO_I_DXL2_X && mode == GROBO_DXL2_MODE_GRIP) {
+        return false;
+    }
+    return series == GROBO_I_DXL2_XL320 ? true
+           : by_current
                ? grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT) != NULL
                : places(mode) || mode == GROBO_DXL2_MODE_VELOCITY || mode == GROBO_DXL2_MODE_PWM;
 }
@@ -255,7 +325,7 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
     if (!grobo_i_dxl_sell(sim, index, id, GROBO_DXL2_ID_MAX, baud_bps)) {
         return false;
     }
-    if (sim->config.mounted) {
+    if (sim->config.mounted && !is_xl320(servo)) {
         const grobo_joint *joint = grobo_i_joint(sim->config.model, index);
         bool grips = joint->torque_limit_pct > 0 && has_mode(servo, GROBO_DXL2_MODE_GRIP);
         grobo_i_dxl_put(servo, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
@@ -347,8 +417,8 @@ static uint8_t judge_registers(const grobo_sim_servo *servo, int address, const 
     return hit ? GROBO_DXL2_DONE : GROBO_DXL2_NO_ACCESS;
 }
 
-/* Whether all of a write can be done, its indirect part too. */
-static uint8_t judge(const grobo_sim_servo *servo, int address, const uint8_t *bytes, size_t n)
+uint8_t grobo_i_dxl2_sim_judge(const grobo_sim_servo *servo, int address, const uint8_t *bytes,
+                               size_t n)
 {
     uint8_t error = n == 0 ? GROBO_DXL2_BAD_LENGTH : GROBO_DXL2_DONE;
     for (size_t at = 0; at < n && error == GROBO_DXL2_DONE;) {
@@ -378,15 +448,17 @@ static void mode_written(grobo_sim *sim, int index)
     static const char *const gains[] = {"velocity_i", "velocity_p", "position_d", "position_i",
                                         "position_p"};
     for (size_t i = 0; i < sizeof gains / sizeof *gains; i++) {
-        const grobo_servo_register *reg = grobo_i_dxl_row(servo, gains[i]);
-        (void)grobo_servo_register_put(servo->model, reg, reg->factory, &servo->reg[reg->address]);
+        const grobo_servo_register *reg = grobo_servo_register_named(servo->model, gains[i]);
+        if (reg != NULL) {
+            grobo_i_dxl_hold(servo, reg, reg->factory);
+        }
     }
     grobo_i_dxl_put(servo, GROBO_ROLE_SPEED, 0);
     grobo_i_dxl_put(servo, GROBO_ROLE_ACCELERATION, 0);
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
                     grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
-    grobo_i_dxl_one_turn(sim, servo, reverses(servo));
+    grobo_i_dxl_one_turn(sim, servo, grobo_i_dxl2_sim_reverses(servo));
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
 }
@@ -423,10 +495,11 @@ static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, s
     return GROBO_OK;
 }
 
-static uint8_t write(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+uint8_t grobo_i_dxl2_sim_write(grobo_sim *sim, int index, int address, const uint8_t *bytes,
+                               size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    uint8_t error = judge(servo, address, bytes, n);
+    uint8_t error = grobo_i_dxl2_sim_judge(servo, address, bytes, n);
     if (error != GROBO_DXL2_DONE) {
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, address);
     }
@@ -442,392 +515,16 @@ static uint8_t write(grobo_sim *sim, int index, int address, const uint8_t *byte
     return error;
 }
 
-/* ---- answers ------------------------------------------------------------------------------- */
-
-static uint8_t with_alert(const grobo_sim_servo *servo, uint8_t error)
-{
-    return (uint8_t)(error | (servo->status != 0 ? GROBO_DXL2_ALERT : 0));
-}
-
-static void answer(grobo_sim *sim, int index, grobo_i_dxl_round *round, uint8_t error,
-                   const uint8_t *data, size_t n)
-{
-    uint8_t bytes[GROBO_SIM_TALK_BYTES];
-    const grobo_dxl2_packet status = {.id = sim->servo[index].plant.id,
-                                      .instruction = GROBO_DXL2_STATUS,
-                                      .error = with_alert(&sim->servo[index], error),
-                                      .data = data,
-                                      .data_bytes = n};
-    int size = grobo_dxl2_build(&status, bytes, sizeof bytes);
-    if (size > 0) {
-        grobo_i_dxl_answer(sim, index, round, bytes, (size_t)size);
-    }
-}
-
-static uint8_t judge_read(const grobo_sim_servo *servo, int address, int length)
-{
-    if (length == 0) {
-        return GROBO_DXL2_BAD_LENGTH;
-    }
-    return grobo_i_indirect_readable(servo, address, length) ? GROBO_DXL2_DONE
-                                                             : GROBO_DXL2_NO_ACCESS;
-}
-
-static void answer_read(grobo_sim *sim, int index, grobo_i_dxl_round *round, int address,
-                        int length)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    uint8_t bytes[GROBO_SIM_TALK_BYTES];
-    uint8_t error = judge_read(servo, address, length);
-    if (grobo_i_dxl_get(servo, GROBO_ROLE_REPLY_LEVEL) == 0 || length > (int)sizeof bytes) {
-        return;
-    }
-    refresh(sim, index);
-    if (error == GROBO_DXL2_DONE) {
-        grobo_i_indirect_read(servo, address, length, bytes);
-    }
-    answer(sim, index, round, error, bytes, error == GROBO_DXL2_DONE ? (size_t)length : 0);
-}
-
-/* ---- packets for one ----------------------------------------------------------------------- */
-
-static void ping(grobo_sim *sim, int index, grobo_i_dxl_round *round)
-{
-    const uint8_t *reg = sim->servo[index].reg;
-    const grobo_servo_register *firmware =
-        grobo_servo_register_of(sim->servo[index].model, GROBO_ROLE_FIRMWARE);
-    const uint8_t data[] = {reg[0], reg[1], reg[firmware->address]};
-    answer(sim, index, round, GROBO_DXL2_DONE, data, sizeof data);
-}
-
-static uint8_t keep(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    uint8_t error = judge(servo, packet->address, packet->data, packet->data_bytes);
-    if (error == GROBO_DXL2_DONE && packet->data_bytes > sizeof servo->kept) {
-        error = GROBO_DXL2_BAD_LENGTH;
-    }
-    if (error == GROBO_DXL2_DONE) {
-        memcpy(servo->kept, packet->data, packet->data_bytes);
-        servo->kept_bytes = (uint8_t)packet->data_bytes;
-        servo->kept_address = packet->address;
-    }
-    return error;
-}
-
-static uint8_t do_kept(grobo_sim *sim, int index)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    size_t n = servo->kept_bytes;
-    servo->kept_bytes = 0;
-    return n == 0 ? GROBO_DXL2_BAD_INSTRUCTION
-                  : write(sim, index, servo->kept_address, servo->kept, n);
-}
-
-static uint8_t forget_turns(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
-{
-    static const uint8_t key[] = {0x01, 0x44, 0x58, 0x4C, 0x22};
-    if (packet->data_bytes != sizeof key || memcmp(packet->data, key, sizeof key) != 0) {
-        return GROBO_DXL2_BAD_RANGE;
-    }
-    if (grobo_i_sim_moving(&sim->servo[index], sim->now_us)) {
-        return GROBO_DXL2_FAILED;
-    }
-    grobo_i_dxl_one_turn(sim, &sim->servo[index], reverses(&sim->servo[index]));
-    return GROBO_DXL2_DONE;
-}
-
-static uint8_t judge_reset(const grobo_dxl2_packet *packet)
-{
-    uint8_t what = packet->data_bytes == 1 ? packet->data[0] : 0;
-    bool all = what == GROBO_DXL2_RESET_ALL && packet->id != GROBO_DXL2_ID_ALL;
-    bool known = all || what == GROBO_DXL2_RESET_BUT_ID || what == GROBO_DXL2_RESET_BUT_ID_BAUD;
-    return known ? GROBO_DXL2_DONE : GROBO_DXL2_BAD_RANGE;
-}
-
-static void reset(grobo_sim *sim, int index, uint8_t what)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    int32_t id = servo->plant.id, rate = grobo_i_dxl_get(servo, GROBO_ROLE_BAUD);
-    grobo_i_dxl_factory(servo);
-    if (what != GROBO_DXL2_RESET_ALL) {
-        grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
-    }
-    if (what == GROBO_DXL2_RESET_BUT_ID_BAUD) {
-        grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, rate);
-    }
-    memcpy(servo->flash, servo->reg, sizeof servo->flash);
-    grobo_i_sim_reboot(sim, index);
-}
-
-static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
-{
-    uint8_t code = packet->instruction;
-    bool by_second = packet->id != sim->servo[index].plant.id && packet->id != GROBO_DXL2_ID_ALL;
-    bool writes = code == GROBO_DXL2_WRITE || code == GROBO_DXL2_REG_WRITE;
-    bool kept = code == GROBO_DXL2_FACTORY_RESET || (writes && packet->address < EEPROM_END);
-    if (by_second && kept) { /* not by the secondary id */
-        grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->address);
-        return GROBO_DXL2_NO_ACCESS;
-    }
-    if (code == GROBO_DXL2_WRITE) {
-        return write(sim, index, packet->address, packet->data, packet->data_bytes);
-    }
-    if (code == GROBO_DXL2_REG_WRITE) {
-        return keep(sim, index, packet);
-    }
-    if (code == GROBO_DXL2_ACTION) {
-        return do_kept(sim, index);
-    }
-    if (code == GROBO_DXL2_CLEAR) {
-        return forget_turns(sim, index, packet);
-    }
-    if (code == GROBO_DXL2_FACTORY_RESET) { /* when the answer is made, as a restart */
-        return judge_reset(packet);
-    }
-    return code == GROBO_DXL2_REBOOT ? GROBO_DXL2_DONE : GROBO_DXL2_BAD_INSTRUCTION;
-}
-
-static void for_one(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    grobo_i_dxl_round round = {0};
-    bool named = packet->id == servo->plant.id;
-    if (packet->instruction == GROBO_DXL2_READ) {
-        if (named) {
-            answer_read(sim, index, &round, packet->address, packet->length);
-        }
-        return;
-    }
-    uint8_t id = servo->plant.id;
-    uint8_t error = carry_out(sim, index, packet);
-    if (named && grobo_i_dxl_get(servo, GROBO_ROLE_REPLY_LEVEL) == 2) {
-        uint8_t now = servo->plant.id;
-        servo->plant.id = id; /* a new one is for what comes next */
-        answer(sim, index, &round, error, NULL, 0);
-        servo->plant.id = now;
-    }
-    if (packet->instruction == GROBO_DXL2_REBOOT) {
-        grobo_i_sim_reboot(sim, index);
-    } else if (packet->instruction == GROBO_DXL2_FACTORY_RESET && error == GROBO_DXL2_DONE) {
-        reset(sim, index, packet->data[0]);
-    }
-}
-
-/* ---- packets for several ------------------------------------------------------------------- */
-
-/* What a packet asks of the k-th of its list. */
-typedef struct item {
-    uint8_t id;
-    uint16_t address, length;
-    const uint8_t *data;
-} item;
-
-static bool is_bulk(const grobo_dxl2_packet *packet)
-{
-    return packet->instruction == GROBO_DXL2_BULK_READ ||
-           packet->instruction == GROBO_DXL2_FAST_BULK_READ ||
-           packet->instruction == GROBO_DXL2_BULK_WRITE;
-}
-
-static bool is_write(const grobo_dxl2_packet *packet)
-{
-    return packet->instruction == GROBO_DXL2_SYNC_WRITE ||
-           packet->instruction == GROBO_DXL2_BULK_WRITE;
-}
-
-/* The item that begins at *at; false where no whole one does. */
-static bool next_item(const grobo_dxl2_packet *packet, size_t *at, item *found)
-{
-    grobo_i_span span = {packet->data, packet->data_bytes};
-    const uint8_t *head = grobo_i_span_at(span, *at, is_bulk(packet) ? 5 : 1);
-    if (head == NULL) {
-        return false;
-    }
-    *found = (item){head[0], packet->address, packet->length, NULL};
-    *at += 1;
-    if (is_bulk(packet)) {
-        found->address = grobo_i_get_u16(head + 1);
-        found->length = grobo_i_get_u16(head + 3);
-        *at += 4;
-    }
-    if (is_write(packet)) {
-        found->data = grobo_i_span_at(span, *at, found->length);
-        *at += found->length;
-        return found->data != NULL;
-    }
-    return true;
-}
-
-static int hearer(grobo_sim *sim, uint8_t id, int before, const grobo_sim_event *raw)
-{
-    int index = grobo_i_dxl_hearer(sim, &grobo_i_sim_dxl2, id, before, raw);
-    if (index >= 0) {
-        sim->servo[index].heard_us = sim->now_us;
-    }
-    return index;
-}
-
-static void read_each(grobo_sim *sim, const grobo_dxl2_packet *packet, const grobo_sim_event *raw)
-{
-    grobo_i_dxl_round round = {0};
-    item one;
-    for (size_t at = 0; next_item(packet, &at, &one);) {
-        const grobo_i_dxl_round begin = round;
-        int index = hearer(sim, one.id, -1, raw);
-        if (index < 0) {
-            grobo_i_dxl_silence(sim, &round, GROBO_DXL2_STATUS_BYTES + (size_t)one.length);
-        }
-        for (; index >= 0; index = hearer(sim, one.id, index, raw)) {
-            grobo_i_dxl_round own = begin;
-            answer_read(sim, index, &own, one.address, one.length);
-            grobo_i_dxl_beside(&round, &own);
-        }
-    }
-}
-
-/* What one servo adds to a fast status, without its CRC. */
-static void fast_part(grobo_sim *sim, int index, const item *one, uint8_t *bytes)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    refresh(sim, index);
-    bytes[0] = with_alert(servo, GROBO_DXL2_DONE);
-    bytes[1] = one->id;
-    grobo_i_indirect_read(servo, one->address, one->length, bytes + 2);
-}
-
-/* Firmware that has no such instruction is silent (issue pollen-robotics/rustypot#122). */
-static bool answers_fast(const grobo_sim_servo *servo, const item *one)
-{
-    uint8_t from = servo->model->fast_firmware;
-    return from > 0 && grobo_i_dxl_get(servo, GROBO_ROLE_FIRMWARE) >= from &&
-           one->length <= GROBO_SIM_TALK_BYTES - 16 &&
-           judge_read(servo, one->address, one->length) == GROBO_DXL2_DONE;
-}
-
-/* One status that all of the list make together; whoever is silent ends it. */
-static void read_fast(grobo_sim *sim, const grobo_dxl2_packet *packet, const grobo_sim_event *raw)
-{
-    uint8_t bytes[GROBO_SIM_TALK_BYTES] = {
-        0xFF, 0xFF, 0xFD, 0x00, GROBO_DXL2_ID_ALL, 0, 0, GROBO_DXL2_STATUS};
-    size_t length = 1, n = 8;
-    uint16_t crc = 0;
-    int64_t at_ns = -1;
-    item one;
-    for (size_t at = 0; next_item(packet, &at, &one);) {
-        length += 4u + one.length;
-    }
-    grobo_i_put_u16(bytes + 5, (uint16_t)length);
-    for (size_t at = 0; next_item(packet, &at, &one); n = 0) {
-        int index = hearer(sim, one.id, -1, raw);
-        if (index < 0 || !answers_fast(&sim->servo[index], &one)) {
-            return;
-        }
-        if (at_ns < 0) {
-            at_ns = (int64_t)grobo_i_dxl_get(&sim->servo[index], GROBO_ROLE_RETURN_DELAY) * 2000;
-        }
-        const size_t end = n + 2u + one.length;
-        const uint16_t before = crc;
-        for (; index >= 0; index = hearer(sim, one.id, index, raw)) {
-            fast_part(sim, index, &one, bytes + n);
-            crc = grobo_dxl2_crc(before, bytes, end);
-            grobo_i_put_u16(bytes + end, crc);
-            crc = grobo_dxl2_crc(crc, bytes + end, 2);
-            grobo_i_sim_speak(sim, index, bytes, end + 2, at_ns);
-        }
-        at_ns += (int64_t)(end + 2) * sim->bus_byte_ns;
-    }
-}
-
-static void write_each(grobo_sim *sim, const grobo_dxl2_packet *packet, const grobo_sim_event *raw)
-{
-    item one;
-    for (size_t at = 0; next_item(packet, &at, &one);) {
-        for (int i = -1; (i = hearer(sim, one.id, i, raw)) >= 0;) {
-            (void)write(sim, i, one.address, one.data, one.length);
-        }
-    }
-}
-
-/* Everyone answers, in the order of ids. */
-static void ping_all(grobo_sim *sim, const grobo_sim_event *raw)
-{
-    grobo_i_dxl_round round = {0};
-    for (int id = 0; id <= GROBO_DXL2_ID_MAX; id++) {
-        const grobo_i_dxl_round begin = round;
-        for (int i = -1; (i = hearer(sim, (uint8_t)id, i, raw)) >= 0;) {
-            grobo_i_dxl_round own = begin;
-            ping(sim, i, &own);
-            grobo_i_dxl_beside(&round, &own);
-        }
-    }
-}
-
-/* ---- packets ------------------------------------------------------------------------------- */
-
-static bool is_for(const grobo_sim_servo *servo, uint8_t id)
-{
-    int second = servo->reg[12]; /* secondary_id; above the highest id: none */
-    return servo->plant.id == id || id == GROBO_DXL2_ID_ALL ||
-           (second == id && second <= GROBO_DXL2_ID_MAX);
-}
-
-static void spread(grobo_sim *sim, const grobo_dxl2_packet *packet, int result,
-                   const grobo_sim_event *raw)
-{
-    for (int i = 0; i < sim->n_servos; i++) {
-        grobo_sim_servo *servo = &sim->servo[i];
-        grobo_i_dxl_round round = {0};
-        if (servo->family != &grobo_i_sim_dxl2 || !is_for(servo, packet->id) ||
-            !grobo_i_sim_hears(sim, i, raw)) {
-            continue;
-        }
-        servo->heard_us = sim->now_us;
-        bool named = packet->id == servo->plant.id; /* to its second id it says nothing */
-        if (result >= 0 && packet->instruction != GROBO_DXL2_PING) {
-            for_one(sim, i, packet);
-        } else if (named && result >= 0) {
-            ping(sim, i, &round);
-        } else if (named) {
-            answer(sim, i, &round, GROBO_DXL2_BAD_LENGTH, NULL, 0);
-        }
-    }
-}
-
-static void packet(const grobo_sim_family *self, grobo_sim *sim, const grobo_sim_event *raw)
-{
-    (void)self;
-    uint8_t data[GROBO_DXL2_FRAME_MAX_BYTES];
-    grobo_dxl2_packet parts = {.id = raw->bytes[4], .instruction = raw->bytes[7]};
-    int result = grobo_dxl2_parse(raw->bytes, raw->n_bytes, data, sizeof data, &parts);
-    uint8_t code = parts.instruction;
-    if (code == GROBO_DXL2_SYNC_READ || code == GROBO_DXL2_BULK_READ) {
-        read_each(sim, &parts, raw);
-    } else if (code == GROBO_DXL2_FAST_SYNC_READ || code == GROBO_DXL2_FAST_BULK_READ) {
-        read_fast(sim, &parts, raw);
-    } else if (is_write(&parts)) {
-        write_each(sim, &parts, raw);
-    } else if (parts.id == GROBO_DXL2_ID_ALL && code == GROBO_DXL2_PING) {
-        ping_all(sim, raw);
-    } else {
-        spread(sim, &parts, result, raw);
-    }
-}
-
-static int measure(const uint8_t *bytes, size_t n, bool good)
-{
-    int size = grobo_dxl2_measure(bytes, n, GROBO_ACCEPT_COMMANDS);
-    return size == GROBO_ERR_CHECKSUM && !good ? 7 + grobo_i_get_u16(bytes + 5) : size;
-}
+/* ---- the family ---------------------------------------------------------------------------- */
 
 const grobo_sim_family grobo_i_sim_dxl2 = {.tables = {&grobo_i_dxl2_table},
-                                           .measure = measure,
-                                           .packet = packet,
+                                           .measure = grobo_i_dxl2_sim_measure,
+                                           .packet = grobo_i_dxl2_sim_packet,
                                            .factory = factory,
                                            .boot = restart,
                                            .cut = cut,
                                            .goal_mdeg = goal_mdeg,
-                                           .refresh = refresh,
+                                           .refresh = grobo_i_dxl2_sim_refresh,
                                            .bps = bps,
                                            .next_us = next_us,
                                            .act = act,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Robots of Feetech's STS, SMS and SCS servos, on one bus too. */
+/* Robots of Feetech's STS, SMS, HLS and SCS servos, on one bus too. */
 #include <grobo/core/feetech.h>
 
 #include "src/servo/dxl1/driver.h"
@@ -12,6 +12,13 @@
     (GROBO_STS_PHASE_REVERSE | GROBO_STS_PHASE_FEEDBACK | GROBO_STS_PHASE_FINE_SPEED |             \
      GROBO_STS_PHASE_TURNS)
 
+/* HLS have a current where the others have a PWM. Of their phase one bit says whether positions
+ * count turns, the rest is of their bridge (the maker's memory table of HLS). */
+static bool is_hls(const grobo_servo_model *servo)
+{
+    return grobo_servo_register_of(servo, GROBO_ROLE_GOAL_CURRENT) != NULL;
+}
+
 static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
                      grobo_register_role role, int32_t found)
 {
@@ -20,6 +27,10 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
     }
     if (grobo_servo_series(servo) != &grobo_i_sts_table) {
         return found & ~(int32_t)GROBO_STS_PHASE_REVERSE;
+    }
+    if (is_hls(servo)) {
+        unsigned turns = joint->turns ? GROBO_STS_PHASE_TURNS : 0;
+        return (found & ~(int32_t)GROBO_STS_PHASE_TURNS) | (int32_t)turns;
     }
     unsigned bits = GROBO_STS_PHASE_FINE_SPEED | (joint->turns ? GROBO_STS_PHASE_TURNS : 0);
     return (found & ~(int32_t)PHASE_BITS) | (int32_t)bits;

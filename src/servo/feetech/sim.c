@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Simulated STS, SMS and SCS of Feetech: what they have beside registers and packets of the
+/* Simulated STS, SMS, HLS and SCS of Feetech: what they have beside registers and packets of the
  * Protocol 1.0. */
+#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/core/feetech.h>
@@ -84,6 +85,21 @@ static bool sts_is_wheel(const grobo_sim_servo *servo, double *speed_mdeg_s)
     return mode == GROBO_STS_MODE_SPEED || mode == GROBO_STS_MODE_PWM;
 }
 
+/* HLS: a current in mode 2, the PWM of mode 3 in the same register. */
+static bool hls_is_wheel(const grobo_sim_servo *servo, double *speed_mdeg_s)
+{
+    enum { MODE_CURRENT = 2, MODE_PWM = 3, PWM_FULL = 1000 };
+    double top = servo->plant.speed_mdeg_s;
+    int32_t mode = grobo_i_dxl_get(servo, GROBO_ROLE_MODE);
+    int32_t counts = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT);
+    double part = mode == MODE_CURRENT ? (counts > 0) - (counts < 0)
+                                       : (double)grobo_i_dxl1_sim_bit10(counts) / PWM_FULL;
+    *speed_mdeg_s = mode == GROBO_STS_MODE_SPEED ? grobo_i_dxl1_sim_speed_mdeg_s(servo) *
+                                                       grobo_i_dxl_get(servo, GROBO_ROLE_SPEED)
+                                                 : top * part;
+    return mode != GROBO_STS_MODE_POSITION;
+}
+
 static bool scs_is_wheel(const grobo_sim_servo *servo, double *speed_mdeg_s)
 {
     int32_t counts = grobo_i_dxl1_sim_bit10(grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_TIME));
@@ -123,6 +139,15 @@ static int32_t sts_torque_limit(const grobo_sim_servo *servo)
     return left_of(servo, grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE_LIMIT));
 }
 
+/* By the lower of the limit and the current of the goal. */
+static int32_t hls_torque_limit(const grobo_sim_servo *servo)
+{
+    int32_t limit = grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE_LIMIT);
+    double most_ma = abs(grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT)) * STS_COUNT_MA;
+    double part = most_ma / servo->plant.stall_ma;
+    return part < 1 ? (int32_t)(limit * part) : limit;
+}
+
 static int32_t scs_torque_limit(const grobo_sim_servo *servo)
 {
     return left_of(servo, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
@@ -137,14 +162,20 @@ static grobo_i_dxl1_stall overload(const grobo_sim_servo *servo, int64_t unit_us
                : (grobo_i_dxl1_stall){0, 0};
 }
 
-static grobo_i_dxl1_stall sts_stall(const grobo_sim_servo *servo)
+static grobo_i_dxl1_stall overcurrent(const grobo_sim_servo *servo)
 {
     double most_ma = grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT) * STS_COUNT_MA;
     if (most_ma > 0 && grobo_i_sim_strain(servo) * servo->plant.stall_ma > most_ma) {
         return (grobo_i_dxl1_stall){GROBO_FEETECH_OVERCURRENT,
                                     grobo_i_dxl1_sim_named(servo, "overcurrent_time") * 10000LL};
     }
-    return overload(servo, 10000);
+    return (grobo_i_dxl1_stall){0, 0};
+}
+
+static grobo_i_dxl1_stall sts_stall(const grobo_sim_servo *servo)
+{
+    grobo_i_dxl1_stall found = overcurrent(servo);
+    return found.error != 0 ? found : overload(servo, 10000);
 }
 
 static grobo_i_dxl1_stall scs_stall(const grobo_sim_servo *servo)
@@ -213,6 +244,25 @@ static const grobo_i_dxl1_series sts = {.locks = true,
                                         .wrote = wrote,
                                         .extra = extra};
 
+/* What they have of STS; no overload. */
+static const grobo_i_dxl1_series hls = {.locks = true,
+                                        .sync_read = true,
+                                        .ping_turns = true,
+                                        .count_ma = STS_COUNT_MA,
+                                        .speed_mdeg_s = grobo_i_dxl1_sim_speed_mdeg_s,
+                                        .accel_mdeg_s2 = sts_accel_mdeg_s2,
+                                        .counts_turns = sts_counts_turns,
+                                        .offset = offset,
+                                        .is_wheel = hls_is_wheel,
+                                        .move_speed = sts_move_speed,
+                                        .torque_limit = hls_torque_limit,
+                                        .torque_full = TORQUE_FULL,
+                                        .shut_down = shut_down,
+                                        .stall = overcurrent,
+                                        .clears = clears,
+                                        .wrote = wrote,
+                                        .extra = extra};
+
 /* A count of speed is a step/s. They have no register for the acceleration. */
 static const grobo_i_dxl1_series scs = {.locks = true,
                                         .speed_mdeg_s = grobo_i_dxl_tick_mdeg,
@@ -231,7 +281,10 @@ static const grobo_i_dxl1_series scs = {.locks = true,
 
 static const grobo_i_dxl1_series *series_of(const grobo_sim_servo *servo)
 {
-    return grobo_servo_series(servo->model) == &grobo_i_sts_table ? &sts : &scs;
+    bool has_current = grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT) != NULL;
+    return grobo_servo_series(servo->model) != &grobo_i_sts_table ? &scs
+           : has_current                                          ? &hls
+                                                                  : &sts;
 }
 
 const grobo_sim_family grobo_i_sim_feetech = {

@@ -49,6 +49,12 @@ static const grobo_servo_model models[] = {
      &grobo_i_ics_table, NULL, 0, 0},
     {"KRS-4034HV", 4034, 8000, 270, 7500, 353, 4090, 4000, 11100, 35, GROBO_MODEL_NO_JOINT,
      &grobo_i_ics_table, NULL, 0, 0},
+    {"KRS-3304R2", 3305, 8000, 270, 7500, 462, 1360, 2000, 7400, 36, 0, &grobo_i_ics_table, NULL, 0,
+     0},
+    {"KRS-2552R2HV", 2553, 8000, 270, 7500, 429, 1370, 2000, 11100, 36, 0, &grobo_i_ics_table, NULL,
+     0, 0},
+    {"KRS-4034R2HV", 4035, 8000, 270, 7500, 353, 4090, 4000, 11100, 36, 0, &grobo_i_ics_table, NULL,
+     0, 0},
 };
 
 static const grobo_servo_rate rates[] = {
@@ -58,7 +64,7 @@ static const grobo_servo_rate rates[] = {
 };
 
 static const uint64_t sets[] = {
-    0x3F,
+    0x1FF,
 };
 
 const grobo_servo_table grobo_i_ics_table = {

@@ -80,7 +80,7 @@ static int torque(const grobo_driver *self, int joint, bool on, grobo_exchange *
 static int take_position(const grobo_joint *joint, const grobo_servo_model *servo, int32_t ticks,
                          grobo_joint_state *state)
 {
-    if (ticks < -OUTSIDE_TICKS || ticks > servo->span_ticks + OUTSIDE_TICKS) {
+    if (ticks < -OUTSIDE_TICKS || ticks > (int32_t)servo->span_ticks + OUTSIDE_TICKS) {
         return GROBO_ERR_MISMATCH;
     }
     state->angle_rad = grobo_i_table_angle(joint, servo, ticks);
@@ -92,7 +92,7 @@ static int take_goal(const grobo_joint *joint, const grobo_servo_model *servo, c
                      grobo_joint_state *state)
 {
     int32_t ticks = grobo_i_get_u16(data), ms = grobo_i_get_u16(data + 2);
-    if (ticks > servo->span_ticks || ms > TIME_MAX_MS) {
+    if (ticks > (int32_t)servo->span_ticks || ms > TIME_MAX_MS) {
         return GROBO_ERR_MISMATCH;
     }
     state->goal_rad = grobo_i_table_angle(joint, servo, ticks);

@@ -17,18 +17,23 @@ static const grobo_servo_register rows[] = {
     ROW("temperature_limit", 14, 2, 1, E, TEMPERATURE_LIMIT, "deg C", -32768, 32767, 80, 0),
     ROW("silence_torque", 22, 1, 0, EW, NONE, "", 0, 255, 0, 1),
     ROW("warm_up_time", 23, 1, 0, EW, NONE, "", 0, 255, 0, 1),
-    ROW("cw_margin", 24, 1, 0, EW, NONE, "0.1 deg", 0, 255, 2, 0),
-    ROW("ccw_margin", 25, 1, 0, EW, NONE, "0.1 deg", 0, 255, 2, 0),
-    ROW("cw_slope", 26, 1, 0, EW, NONE, "1 deg", 0, 255, 10, 2),
-    ROW("cw_slope", 26, 1, 0, EW, NONE, "1 deg", 0, 255, 15, 3),
-    ROW("ccw_slope", 27, 1, 0, EW, NONE, "1 deg", 0, 255, 10, 2),
-    ROW("ccw_slope", 27, 1, 0, EW, NONE, "1 deg", 0, 255, 15, 3),
-    ROW("punch", 28, 2, 0, EW, NONE, "0.01 %", 0, 10000, 180, 2),
-    ROW("punch", 28, 2, 0, EW, NONE, "0.01 %", 0, 10000, 200, 3),
+    ROW("cw_margin", 24, 1, 0, EW, NONE, "0.1 deg", 0, 255, 2, 2),
+    ROW("cw_margin", 24, 1, 0, EW, NONE, "0.1 deg", 0, 255, 1, 3),
+    ROW("ccw_margin", 25, 1, 0, EW, NONE, "0.1 deg", 0, 255, 2, 2),
+    ROW("ccw_margin", 25, 1, 0, EW, NONE, "0.1 deg", 0, 255, 1, 3),
+    ROW("cw_slope", 26, 1, 0, EW, NONE, "1 deg", 0, 255, 10, 4),
+    ROW("cw_slope", 26, 1, 0, EW, NONE, "1 deg", 0, 255, 15, 5),
+    ROW("cw_slope", 26, 1, 0, EW, NONE, "1 deg", 0, 255, 4, 3),
+    ROW("ccw_slope", 27, 1, 0, EW, NONE, "1 deg", 0, 255, 10, 4),
+    ROW("ccw_slope", 27, 1, 0, EW, NONE, "1 deg", 0, 255, 15, 5),
+    ROW("ccw_slope", 27, 1, 0, EW, NONE, "1 deg", 0, 255, 4, 3),
+    ROW("punch", 28, 2, 0, EW, NONE, "0.01 %", 0, 10000, 180, 4),
+    ROW("punch", 28, 2, 0, EW, NONE, "0.01 %", 0, 10000, 200, 5),
+    ROW("punch", 28, 2, 0, EW, NONE, "0.01 %", 0, 10000, 1300, 3),
     ROW("goal", 30, 2, 1, W, GOAL, "0.1 deg", -1500, 1500, 0, 0),
     ROW("goal_time", 32, 2, 0, W, GOAL_TIME, "10 ms", 0, 16383, 0, 0),
-    ROW("max_torque", 35, 1, 0, W, TORQUE_LIMIT, "1 %", 0, 100, 100, 2),
-    ROW("max_torque", 35, 1, 0, W, TORQUE_LIMIT, "1 %", 0, 100, 77, 3),
+    ROW("max_torque", 35, 1, 0, W, TORQUE_LIMIT, "1 %", 0, 100, 100, 6),
+    ROW("max_torque", 35, 1, 0, W, TORQUE_LIMIT, "1 %", 0, 100, 77, 5),
     ROW("torque", 36, 1, 0, W, TORQUE, "", 0, 2, 0, 0),
     ROW("position", 42, 2, 1, R, POSITION, "0.1 deg", -32768, 32767, 0, 0),
     ROW("time", 44, 2, 0, R, NONE, "10 ms", 0, 65535, 0, 0),
@@ -43,6 +48,10 @@ static const grobo_servo_model models[] = {
     {"RS302CD", 12320, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
     {"RS303MR", 12336, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
     {"RS304MD", 12352, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
+    {"RS405CB", 16464, 3000, 300, 0, 273, 4710, 3600, 11100, 1, 0, &grobo_i_rs30x_table, NULL, 0,
+     0},
+    {"RS406CB", 16480, 3000, 300, 0, 545, 2750, 1900, 11100, 1, 0, &grobo_i_rs30x_table, NULL, 0,
+     0},
 };
 
 static const grobo_servo_rate rates[] = {
@@ -51,10 +60,7 @@ static const grobo_servo_rate rates[] = {
 };
 
 static const uint64_t sets[] = {
-    0xF,
-    0xC,
-    0x5,
-    0xA,
+    0x3F, 0xC, 0xF, 0x30, 0x5, 0xA, 0x35,
 };
 
 const grobo_servo_table grobo_i_rs30x_table = {

@@ -5,6 +5,7 @@
 
 #include "src/model/joint.h"
 #include "src/servo/table/family.h"
+#include "src/servo/unit.h"
 
 /* A run of registers. */
 typedef struct span {
@@ -16,12 +17,14 @@ typedef struct span {
 #define RESTART_US 2000000
 /* A register this far from the goal is not written with it. */
 #define NEAR_BYTES 8
+/* Registers this far apart are read in two exchanges: those of DYNAMIXEL P begin anew at 512. */
+#define FAR_BYTES 256
 
 static const grobo_register_role motion[] = {GROBO_ROLE_ACCELERATION, GROBO_ROLE_SPEED,
                                              GROBO_ROLE_GOAL_TIME, GROBO_ROLE_GOAL};
 
 /* What each kind of sensing reads. The first reading of all looks at the setup, too. */
-static const grobo_register_role setup_roles[] = {GROBO_ROLE_MODEL};
+static const grobo_register_role setup_roles[] = {GROBO_ROLE_MODEL, GROBO_ROLE_SHUTDOWN};
 static const grobo_register_role goal_roles[] = {GROBO_ROLE_TORQUE, GROBO_ROLE_GOAL,
                                                  GROBO_ROLE_POSITION, GROBO_ROLE_PRESENT_SPEED};
 static const grobo_register_role full_roles[] = {
@@ -57,6 +60,24 @@ static void widen(span *s, const grobo_servo_model *servo, grobo_register_role r
     }
 }
 
+/* Whether what a servo keeps lies far before the rest. */
+static bool is_apart(const grobo_servo_model *servo)
+{
+    const grobo_servo_register *torque = grobo_servo_register_of(servo, GROBO_ROLE_TORQUE);
+    const grobo_servo_register *model = grobo_servo_register_of(servo, GROBO_ROLE_MODEL);
+    return torque != NULL && model != NULL && torque->address - model->address > FAR_BYTES;
+}
+
+static span setup_span(const grobo_servo_model *servo)
+{
+    span s = {0, 0};
+    for (size_t i = 0; i < sizeof setup_roles / sizeof setup_roles[0]; i++) {
+        widen(&s, servo, setup_roles[i]);
+    }
+    return s;
+}
+
+/* What an exchange of this kind reads: the only one, or, of registers apart, the last. */
 static span sense_span(const grobo_servo_model *servo, grobo_sense_kind kind)
 {
     span s = {0, 0};
@@ -71,10 +92,18 @@ static span sense_span(const grobo_servo_model *servo, grobo_sense_kind kind)
         widen(&s, servo, GROBO_ROLE_SHUTDOWN);
     }
     if (kind == GROBO_SENSE_ALL) {
-        widen(&s, servo, setup_roles[0]);
         widen(&s, servo, GROBO_ROLE_GOAL);
     }
+    if (kind == GROBO_SENSE_ALL && !is_apart(servo)) {
+        widen(&s, servo, GROBO_ROLE_MODEL);
+    }
     return s;
+}
+
+/* The first exchange of this kind. */
+static span first_span(const grobo_servo_model *servo, grobo_sense_kind kind)
+{
+    return kind == GROBO_SENSE_ALL && is_apart(servo) ? setup_span(servo) : sense_span(servo, kind);
 }
 
 static span goal_span(const grobo_servo_model *servo)
@@ -189,8 +218,19 @@ static void put_role(const grobo_servo_model *servo, grobo_register_role role, d
     }
 }
 
-static bool takes_time(const grobo_i_family *family, const grobo_servo_model *servo)
+/* A current that lies between a goal and its speed bounds the move, as from the factory: 0 would
+ * be no force. */
+static void put_between(const grobo_servo_model *servo, span s, uint8_t *to)
 {
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_GOAL_CURRENT);
+    if (reg != NULL) {
+        put_role(servo, GROBO_ROLE_GOAL_CURRENT, reg->factory, s, to);
+    }
+}
+
+static bool takes_time(const grobo_driver *self, const grobo_servo_model *servo)
+{
+    const grobo_i_family *family = grobo_i_table_family(self, servo);
     return family->pace == GROBO_I_PACE_PROFILE ||
            (family->pace == GROBO_I_PACE_TIME &&
             grobo_servo_register_of(servo, GROBO_ROLE_GOAL_TIME) != NULL);
@@ -207,9 +247,9 @@ static double least_accel(const grobo_driver *self)
         const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_ACCELERATION);
         span s = goal_span(servo);
         bool told = reg != NULL && reg->address >= s.from && reg->address < s.to &&
-                    !takes_time(self->family, servo);
+                    !takes_time(self, servo);
         double ratio = grobo_joint_from_servo(joint, 1) - grobo_joint_from_servo(joint, 0);
-        double own_dps2 = told ? reg->max * grobo_i_table_unit(reg) * fabs(ratio) : 0;
+        double own_dps2 = told ? reg->max * grobo_i_register_unit(reg) * fabs(ratio) : 0;
         least_dps2 = fmin(least_dps2, own_dps2);
     }
     return grobo_rad_from_deg(least_dps2);
@@ -218,20 +258,20 @@ static double least_accel(const grobo_driver *self)
 static void put_goal(const grobo_driver *self, int joint, const void *what, span s, uint8_t *to)
 {
     const grobo_target *target = what;
-    const grobo_i_family *family = self->family;
     const grobo_joint *moved = grobo_i_joint(self->model, joint);
     const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
     double angle_rad = target->posture.angle_rad[joint];
     int64_t time_us = target->joint_time_us[joint] > 0 ? target->joint_time_us[joint] : MS_US;
     double ms = (double)((time_us + MS_US / 2) / MS_US);
     put_role(servo, GROBO_ROLE_GOAL, grobo_i_table_ticks(moved, servo, angle_rad), s, to);
-    if (family->pace == GROBO_I_PACE_PROFILE) {
+    put_between(servo, s, to);
+    if (grobo_i_table_family(self, servo)->pace == GROBO_I_PACE_PROFILE) {
         put_role(servo, GROBO_ROLE_SPEED, fmax(ms, 1), s, to);
-    } else if (takes_time(family, servo)) {
+    } else if (takes_time(self, servo)) {
         put_role(servo, GROBO_ROLE_GOAL_TIME, fmax(ms, 1), s, to);
     } else {
         const grobo_servo_register *speed = grobo_servo_register_of(servo, GROBO_ROLE_SPEED);
-        double counts = grobo_i_table_speed_dps(self, target, joint) / grobo_i_table_unit(speed);
+        double counts = grobo_i_table_speed_dps(self, target, joint) / grobo_i_register_unit(speed);
         put_role(servo, GROBO_ROLE_SPEED, fmax(ceil(counts), 1), s, to); /* 0 is the fastest */
         put_role(servo, GROBO_ROLE_ACCELERATION, INT32_MAX, s, to);      /* the way is straight */
     }
@@ -334,12 +374,23 @@ static void put_watchdog(const grobo_driver *self, int joint, const void *what, 
     put_role(servo, GROBO_ROLE_WATCHDOG, fits ? counts : 0, s, to);
 }
 
+/* Joints whose servos have a watchdog. */
+static grobo_joint_mask watched(const grobo_driver *self)
+{
+    grobo_joint_mask joints = 0;
+    for (int j = 0; j < self->model->n_joints; j++) {
+        bool has = watchdog_span(grobo_i_table_servo(self, j)).to > 0;
+        joints |= has ? GROBO_JOINT_BIT(j) : 0;
+    }
+    return joints;
+}
+
 static int watchdog(const grobo_driver *self, void *ctx, grobo_joint_mask joints, int64_t time_us,
                     int part, grobo_exchange *exchange)
 {
     (void)ctx;
     span s = {0, 0};
-    joints = joints_of_part(self, joints, part, watchdog_span, &s);
+    joints = joints_of_part(self, joints & watched(self), part, watchdog_span, &s);
     return write_part(self, joints, s, &time_us, put_watchdog, exchange);
 }
 
@@ -361,8 +412,30 @@ static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kin
                  grobo_exchange *exchange)
 {
     (void)ctx;
-    span s = sense_span(grobo_i_table_servo(self, joint), kind);
+    span s = first_span(grobo_i_table_servo(self, joint), kind);
     return read_span(self, grobo_i_joint(self->model, joint)->motor, s, exchange);
+}
+
+static int sense_more(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                      int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
+    if (part > 1 || kind != GROBO_SENSE_ALL || !is_apart(servo)) {
+        return 0;
+    }
+    int result = read_span(self, grobo_i_joint(self->model, joint)->motor, sense_span(servo, kind),
+                           exchange);
+    return result < 0 ? result : 1;
+}
+
+static bool any_apart(const grobo_driver *self)
+{
+    bool any = false;
+    for (int j = 0; j < self->model->n_joints; j++) {
+        any = any || is_apart(grobo_i_table_servo(self, j));
+    }
+    return any;
 }
 
 static int ask_many(const grobo_driver *self, grobo_dxl2_code instruction, grobo_joint_mask joints,
@@ -373,7 +446,7 @@ static int ask_many(const grobo_driver *self, grobo_dxl2_code instruction, grobo
     span s = {0, 0};
     for (int j = 0; j < self->model->n_joints; j++) {
         if ((joints & GROBO_JOINT_BIT(j)) != 0) {
-            s = sense_span(grobo_i_table_servo(self, j), kind);
+            s = first_span(grobo_i_table_servo(self, j), kind);
             ids[n++] = grobo_i_joint(self->model, j)->motor;
         }
     }
@@ -444,9 +517,9 @@ static int command(const grobo_driver *self, void *ctx, int id, grobo_servo_comm
 static bool reads_alike(const grobo_driver *self)
 {
     for (int kind = GROBO_SENSE_FULL; kind <= GROBO_SENSE_ALL; kind++) {
-        span first = sense_span(grobo_i_table_servo(self, 0), (grobo_sense_kind)kind);
+        span first = first_span(grobo_i_table_servo(self, 0), (grobo_sense_kind)kind);
         for (int j = 1; j < self->model->n_joints; j++) {
-            span own = sense_span(grobo_i_table_servo(self, j), (grobo_sense_kind)kind);
+            span own = first_span(grobo_i_table_servo(self, j), (grobo_sense_kind)kind);
             if (!same(first, own)) {
                 return false;
             }
@@ -464,9 +537,10 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
                     .write_kind = grobo_i_table_write_kind, .registers = registers,
                     .command = command, .inspect = grobo_i_table_inspect);
     int result = grobo_i_table_make(&made, model, protocol, family);
-    made.watchdog = family->watchdog_us > 0 ? watchdog : NULL;
+    made.watchdog = result >= 0 && watched(&made) != 0 ? watchdog : NULL;
     made.accel_rad_s2 = result >= 0 ? least_accel(&made) : 0;
     made.sense_many = result >= 0 && reads_alike(&made) ? sense_many : NULL;
+    made.sense_more = result >= 0 && any_apart(&made) ? sense_more : NULL;
     made.sense_fast = made.sense_many != NULL && family->fast_part != NULL ? sense_fast : NULL;
     return grobo_i_table_give(driver, &made, result);
 }

@@ -29,12 +29,15 @@ typedef struct grobo_i_family {
      * will do. Asked of MODE and DIRECTION. */
     int32_t (*wants)(const grobo_joint *joint, const grobo_servo_model *servo,
                      grobo_register_role role, int32_t found);
+    /* The same for a servo of the family that differs from this one; NULL: there is none. */
+    const struct grobo_i_family *(*of)(const grobo_servo_model *servo);
     int32_t limits_mode;           /* the MODE in which a servo keeps within its limits */
     int32_t turns_limits;          /* there, both limits of a joint of several turns */
     bool offset_trims;             /* OFFSET is but a trim, whatever the joint */
     uint32_t watchdog_us;          /* a count of WATCHDOG; 0: it has none */
     uint16_t frame_max_bytes;      /* of one frame, any id */
     uint16_t time_max_ms;          /* longest time of a move */
+    bool numbers_errors;           /* a status tells why it refused; else bits of ERROR */
     uint8_t overheated;            /* bits of the register ERROR */
     uint8_t cuts;                  /* bits of it that come with no torque, as SHUTDOWN says */
     uint8_t reset[1], reset_bytes; /* data of FACTORY_RESET */
@@ -66,6 +69,10 @@ int grobo_i_table_finish(const grobo_driver *self, int size, grobo_exchange *exc
 /* The joint number `part` of a set, -1 behind the last: of families that tell one in a frame. */
 int grobo_i_table_joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part);
 
+/* What the family is for this servo. */
+const grobo_i_family *grobo_i_table_family(const grobo_driver *self,
+                                           const grobo_servo_model *servo);
+
 /* The servo of a joint, NULL: in no table. */
 const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint);
 
@@ -94,9 +101,6 @@ const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
 /* The least speed of a servo that leads its joint to a target in time, in deg/s. One that was told
  * this goal already may lag behind it: that of a first move, or it would crawl there. */
 double grobo_i_table_speed_dps(const grobo_driver *self, const grobo_target *target, int joint);
-
-/* What one count of a register is worth, in deg/s, mA, mV or whatever its unit says. */
-double grobo_i_table_unit(const grobo_servo_register *reg);
 
 /* Angle of a joint from counts of its servo, and back. */
 double grobo_i_table_angle(const grobo_joint *joint, const grobo_servo_model *servo, int32_t ticks);

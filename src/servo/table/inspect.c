@@ -5,6 +5,7 @@
 
 #include "src/model/joint.h"
 #include "src/servo/table/family.h"
+#include "src/servo/unit.h"
 
 /* ---- kinds of writes ------------------------------------------------------------------------- */
 
@@ -97,7 +98,6 @@ static bool value_of(const grobo_servo_model *servo, const share *s, grobo_regis
 static int64_t time_of(const grobo_driver *self, int joint, const share *s, double from_rad,
                        double to_rad)
 {
-    const grobo_i_family *family = self->family;
     const grobo_joint *moved = grobo_i_joint(self->model, joint);
     const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
     int32_t speed = 0, ms = 0;
@@ -108,10 +108,10 @@ static int64_t time_of(const grobo_driver *self, int joint, const share *s, doub
     if (!value_of(servo, s, GROBO_ROLE_SPEED, &speed) || speed <= 0) {
         return 0;
     }
-    if (family->pace == GROBO_I_PACE_PROFILE) {
+    if (grobo_i_table_family(self, servo)->pace == GROBO_I_PACE_PROFILE) {
         return (int64_t)speed * 1000;
     }
-    double dps = speed * grobo_i_table_unit(grobo_servo_register_of(servo, GROBO_ROLE_SPEED));
+    double dps = speed * grobo_i_register_unit(grobo_servo_register_of(servo, GROBO_ROLE_SPEED));
     double way_rad = grobo_joint_to_servo(moved, to_rad) - grobo_joint_to_servo(moved, from_rad);
     return (int64_t)(grobo_deg_from_rad(fabs(way_rad)) / dps * 1e6);
 }

@@ -4,6 +4,7 @@
 
 #include "src/model/joint.h"
 #include "src/servo/table/family.h"
+#include "src/servo/unit.h"
 
 #define MS_US 1000
 
@@ -13,7 +14,8 @@ static bool reaches(const grobo_joint *joint, const grobo_servo_model *servo, do
     int32_t ticks = grobo_i_table_ticks(joint, servo, angle_rad);
     const grobo_servo_register *goal = grobo_servo_register_of(servo, GROBO_ROLE_GOAL);
     bool around = servo->span_deg >= 360;
-    bool turn = !around || (ticks >= 0 && ticks < servo->span_ticks);
+    int32_t first = grobo_i_first_tick(servo);
+    bool turn = !around || (ticks >= first && ticks < first + (int32_t)servo->span_ticks);
     return ticks >= goal->min && ticks <= goal->max && (joint->turns ? around : turn);
 }
 

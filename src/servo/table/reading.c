@@ -6,9 +6,11 @@
 
 #include "src/model/joint.h"
 #include "src/servo/table/family.h"
+#include "src/servo/unit.h"
 
 /* What a servo may say. A shaft may stand a little outside of its turn. */
-enum { OUTSIDE_TICKS = 256, VOLTAGE_MAX_MV = 30000, HEAT_MAX_C = 120, TORQUE_MAX = 2 };
+enum { OUTSIDE_TICKS = 256, OUTSIDE_PART = 16, HEAT_MAX_C = 120, TORQUE_MAX = 2 };
+#define VOLTAGE_MAX_MV 30000.0
 
 static bool value_of(const grobo_i_block *b, grobo_register_role role, int32_t *value)
 {
@@ -22,14 +24,14 @@ static bool measure_of(const grobo_i_block *b, grobo_register_role role, double 
     if (!value_of(b, role, &counts)) {
         return false;
     }
-    *value = counts * grobo_i_table_unit(grobo_servo_register_of(b->servo, role));
+    *value = counts * grobo_i_register_unit(grobo_servo_register_of(b->servo, role));
     return true;
 }
 
 static void take_angles(const grobo_driver *self, int joint, const grobo_i_block *b,
                         grobo_joint_state *state)
 {
-    const grobo_i_family *family = self->family;
+    const grobo_i_family *family = grobo_i_table_family(self, b->servo);
     const grobo_joint *moved = grobo_i_joint(self->model, joint);
     int32_t ticks, ms;
     double dps;
@@ -75,7 +77,7 @@ static void take_torque(const grobo_i_family *family, const grobo_i_block *b,
 {
     int32_t torque, limit, error = 0, shutdown = 0;
     (void)value_of(b, GROBO_ROLE_ERROR, &error);
-    error |= family->pace == GROBO_I_PACE_PROFILE ? 0 : state->flags; /* there it is a number */
+    error |= family->numbers_errors ? 0 : state->flags;
     state->overheated = (error & family->overheated) != 0;
     if (!value_of(b, GROBO_ROLE_TORQUE, &torque)) {
         return;
@@ -109,6 +111,21 @@ static bool speed_fits(const grobo_i_block *b)
            (counts >= reg->min && counts <= reg->max);
 }
 
+static bool within_turn(const grobo_servo_model *servo, int32_t ticks)
+{
+    int32_t span = (int32_t)servo->span_ticks, first = grobo_i_first_tick(servo);
+    int32_t outside = span / OUTSIDE_PART > OUTSIDE_TICKS ? span / OUTSIDE_PART : OUTSIDE_TICKS;
+    return ticks >= first - outside && ticks < first + span + outside;
+}
+
+/* What a servo is made for is no lie. */
+static double most_mv(const grobo_servo_model *servo)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_MAX_VOLTAGE);
+    double own_mv = reg != NULL ? reg->max * grobo_i_register_unit(reg) : 0;
+    return fmax(own_mv, VOLTAGE_MAX_MV);
+}
+
 /* A sum of bytes does not notice what two faults make up for: what no servo says is not believed.
  * Where a status and a register tell the same errors, both must. */
 static bool plausible(const grobo_i_family *family, const grobo_joint *joint,
@@ -120,18 +137,16 @@ static bool plausible(const grobo_i_family *family, const grobo_joint *joint,
     (void)value_of(b, GROBO_ROLE_TEMPERATURE, &celsius);
     (void)value_of(b, GROBO_ROLE_TORQUE, &torque);
     (void)value_of(b, GROBO_ROLE_POSITION, &ticks);
-    bool told = family->pace == GROBO_I_PACE_PROFILE || !value_of(b, GROBO_ROLE_ERROR, &error) ||
-                error == flags;
-    bool turn = ticks >= -OUTSIDE_TICKS && ticks < b->servo->span_ticks + OUTSIDE_TICKS;
-    return told && (turn || joint->turns) && speed_fits(b) && mv <= VOLTAGE_MAX_MV &&
-           celsius <= HEAT_MAX_C && torque >= 0 && torque <= TORQUE_MAX;
+    bool told = family->numbers_errors || !value_of(b, GROBO_ROLE_ERROR, &error) || error == flags;
+    return told && (within_turn(b->servo, ticks) || joint->turns) && speed_fits(b) &&
+           mv <= most_mv(b->servo) && celsius <= HEAT_MAX_C && torque >= 0 && torque <= TORQUE_MAX;
 }
 
 int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                         grobo_joint_state *state)
 {
     (void)ctx;
-    const grobo_i_family *family = self->family;
+    const grobo_i_family *family = grobo_i_table_family(self, grobo_i_table_servo(self, joint));
     const grobo_joint *moved = grobo_i_joint(self->model, joint);
     grobo_packet part;
     if (reply->id != moved->motor && family->fast_part != NULL) {

@@ -19,6 +19,12 @@ const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint
     return found;
 }
 
+const grobo_i_family *grobo_i_table_family(const grobo_driver *self, const grobo_servo_model *servo)
+{
+    const grobo_i_family *family = self->family;
+    return family->of != NULL ? family->of(servo) : family;
+}
+
 int grobo_i_table_joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part)
 {
     for (int j = 0; j < self->model->n_joints; j++) {
@@ -65,26 +71,6 @@ const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
     }
     *counts = reg == NULL ? 0 : (int32_t)((int64_t)reg->max * joint->torque_limit_pct / 100);
     return reg;
-}
-
-/* The number, and what it is of: of "0.229 rpm" 6 * 0.229 deg/s, of "0.1 V" 100 mV. */
-double grobo_i_table_unit(const grobo_servo_register *reg)
-{
-    double value = 0;
-    double place = 0;
-    const char *at = reg->unit;
-    for (; (*at >= '0' && *at <= '9') || *at == '.'; at++) {
-        if (*at == '.') {
-            place = 1;
-        } else {
-            place /= 10;
-            value = place > 0 ? value + place * (*at - '0') : value * 10 + (*at - '0');
-        }
-    }
-    if (at[0] != ' ') {
-        return value;
-    }
-    return value * (at[1] == 'r' ? 6 : at[1] == 'V' ? 1000 : 1);
 }
 
 static double tick_rad(const grobo_servo_model *servo)

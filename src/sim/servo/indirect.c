@@ -4,8 +4,12 @@
 #include "src/sim/servo/indirect.h"
 #include "src/sim/servo/registers.h"
 
-/* Registers in RAM begin here, and an indirect address is one of them (emanual, XL430-W250). */
-#define RAM_BEGIN 64
+/* Registers in RAM begin with the switch of the torque, and an indirect address is one of them
+ * (emanual, XL430-W250 and PH54-200-S500-R). */
+static int ram_of(const grobo_sim_servo *servo)
+{
+    return grobo_servo_register_of(servo->model, GROBO_ROLE_TORQUE)->address;
+}
 
 /* Where a byte of a run is: its index among all of the model, -1: in none. */
 static int index_of(const grobo_sim_servo *servo, int address, bool data)
@@ -79,7 +83,7 @@ bool grobo_i_indirect_fits(const grobo_sim_servo *servo, const grobo_i_indirect_
     bool whole = index_of(servo, piece->address, false) % 2 == 0 && piece->n % 2 == 0;
     for (size_t i = 0; whole && i < piece->n; i += 2) {
         int target = grobo_i_get_u16(bytes + i);
-        whole = target >= RAM_BEGIN && target <= most_of(servo);
+        whole = target >= ram_of(servo) && target <= most_of(servo);
     }
     return whole;
 }

@@ -7,6 +7,7 @@
 
 #include "src/base/assert.h"
 #include "src/model/joint.h"
+#include "src/servo/unit.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/note.h"
 #include "src/sim/servo/registers.h"
@@ -108,7 +109,8 @@ void grobo_i_dxl_sold(grobo_sim *sim, int index, uint8_t id, int baud_code)
 bool grobo_i_dxl_sell(grobo_sim *sim, int index, uint8_t id, uint8_t id_max, uint32_t baud_bps)
 {
     int code = grobo_servo_baud_code(sim->servo[index].model, (int32_t)baud_bps);
-    bool has = code >= 0 && id <= id_max;
+    bool fits = grobo_i_dxl_end(&sim->servo[index]) <= GROBO_SIM_REGISTER_BYTES;
+    bool has = code >= 0 && id <= id_max && fits;
     if (has) {
         grobo_i_dxl_sold(sim, index, id, code);
     }
@@ -171,7 +173,7 @@ double grobo_i_dxl_tick_mdeg(const grobo_sim_servo *servo)
 
 int32_t grobo_i_dxl_turn(const grobo_sim_servo *servo)
 {
-    return servo->model->span_deg == 360 ? servo->model->span_ticks : 0;
+    return servo->model->span_deg == 360 ? (int32_t)servo->model->span_ticks : 0;
 }
 
 int32_t grobo_i_dxl_wrap(int32_t x, int32_t turn)
@@ -344,7 +346,8 @@ void grobo_i_dxl_one_turn(const grobo_sim *sim, grobo_sim_servo *servo, bool rev
 {
     int32_t turn = grobo_i_dxl_turn(servo);
     int32_t ticks = grobo_i_dxl_ticks(servo, reverse, grobo_i_sim_angle_mdeg(servo, sim->now_us));
-    servo->turns_ticks = turn > 0 ? ticks - grobo_i_dxl_wrap(ticks, turn) : 0;
+    int32_t way = ticks - grobo_i_first_tick(servo->model);
+    servo->turns_ticks = turn > 0 ? way - grobo_i_dxl_wrap(way, turn) : 0;
 }
 
 int32_t grobo_i_dxl_within(const grobo_sim_servo *servo, int32_t goal)

@@ -206,6 +206,14 @@ static int run_check(app *a, const char *path)
 
 /* ---- servos --------------------------------------------------------------------------------- */
 
+/* Of one whose positions are bare counts, nobody knows what they are worth. */
+static const char *why_no_joint(const grobo_servo_model *servo)
+{
+    const grobo_servo_register *position = grobo_servo_register_of(servo, GROBO_ROLE_POSITION);
+    return position->unit[0] == '\0' ? _("  cannot be a joint: its scale is not known")
+                                     : _("  cannot be a joint: it does not tell its position");
+}
+
 static void list_servos(const app *a, const grobo_robot_family *family, json_t *list)
 {
     const grobo_servo_table *table;
@@ -214,9 +222,9 @@ static void list_servos(const app *a, const grobo_robot_family *family, json_t *
             const grobo_servo_model *servo = &table->models[m];
             bool joint = (servo->flags & GROBO_MODEL_NO_JOINT) == 0;
             if (!a->json) {
-                app_print("%-12s %-13s %4d deg  %4d deg/s  %.1f V%s\n", family->name, servo->name,
+                app_print("%-12s %-15s %4d deg  %4d deg/s  %.1f V%s\n", family->name, servo->name,
                           servo->span_deg, servo->speed_dps, servo->voltage_mv / 1e3,
-                          joint ? "" : _("  cannot be a joint: it does not tell its position"));
+                          joint ? "" : why_no_joint(servo));
             }
             json_array_append_new(list, json_pack("{s:s,s:s,s:i,s:i,s:i,s:b}", "family",
                                                   family->name, "model", servo->name, "span_deg",

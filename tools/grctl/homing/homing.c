@@ -206,12 +206,13 @@ static void widen(calibration *k, const int32_t *last)
     for (int j = 0; j < app_model(k->a)->n_joints; j++) {
         homing *h = &k->wanted[j];
         homing before = *h;
-        int32_t span = servo_of(k->a, j)->span_ticks;
+        int32_t span = (int32_t)servo_of(k->a, j)->span_ticks;
+        int32_t first = servo_of(k->a, j)->middle - span / 2;
         h->min = k->now[j] < h->min ? k->now[j] : h->min;
         h->max = k->now[j] > h->max ? k->now[j] : h->max;
         if (k->now[j] - last[j] > span / 2 || last[j] - k->now[j] > span / 2) {
-            h->min = 0;
-            h->max = span - 1;
+            h->min = first;
+            h->max = first + span - 1;
         }
         if (h->min != before.min || h->max != before.max) {
             app_detail(k->a, "%s: %d to %d", grobo_model_joint(app_model(k->a), j)->name,
@@ -273,7 +274,7 @@ static int home_joint(calibration *k, int j)
     int sign = sign_of_offset(joint, servo);
     /* DYNAMIXEL X within one turn take no more than a quarter (emanual homing_offset). */
     int32_t most = grobo_servo_series(servo) == grobo_dxl2_table() && !joint->turns
-                       ? servo->span_ticks / 4
+                       ? (int32_t)servo->span_ticks / 4
                        : grobo_servo_register_of(servo, GROBO_ROLE_OFFSET)->max;
     int status = read_here(k, j, write_role(k, j, GROBO_ROLE_OFFSET, 0));
     if (status) {
@@ -317,7 +318,7 @@ static int check_ranges(calibration *k)
 {
     for (int j = 0; j < app_model(k->a)->n_joints; j++) {
         const homing *h = &k->wanted[j];
-        if (h->max - h->min < servo_of(k->a, j)->span_ticks / 36) {
+        if (h->max - h->min < (int32_t)servo_of(k->a, j)->span_ticks / 36) {
             return app_fail(k->a, EXIT_USAGE, "EMPTY", "calibrate: %s was not moved",
                             grobo_model_joint(app_model(k->a), j)->name);
         }

@@ -30,7 +30,7 @@ scan_identity scan_identity_of(const grobo_driver *driver, const uint8_t *bytes)
             snprintf(is.model, sizeof is.model, "unknown model %d", number);
         }
     }
-    reg = grobo_servo_register_of(any, GROBO_ROLE_FIRMWARE);
+    reg = grobo_servo_register_of(is.servo ? is.servo : any, GROBO_ROLE_FIRMWARE);
     if (reg) {
         is.firmware = grobo_servo_register_get(any, reg, bytes + (reg->address - from));
     }

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* Between packets of Protocol 2.0 (sim_packets.c) and the servos that carry them out (sim.c). */
+#ifndef GROBO_SERVO_DXL2_SIM_PACKETS_H
+#define GROBO_SERVO_DXL2_SIM_PACKETS_H
+
+#include <grobo/core/sim_static.h>
+
+/* Of grobo_sim_family. */
+int grobo_i_dxl2_sim_measure(const uint8_t *bytes, size_t n, bool good);
+void grobo_i_dxl2_sim_packet(const grobo_sim_family *self, grobo_sim *sim,
+                             const grobo_sim_event *raw);
+
+/* Whether all of a write can be done, its indirect part too: GROBO_DXL2_DONE, or why not. */
+uint8_t grobo_i_dxl2_sim_judge(const grobo_sim_servo *servo, int address, const uint8_t *bytes,
+                               size_t n);
+/* Judges a write and does it. */
+uint8_t grobo_i_dxl2_sim_write(grobo_sim *sim, int servo, int address, const uint8_t *bytes,
+                               size_t n);
+/* Fills in the present values. */
+void grobo_i_dxl2_sim_refresh(grobo_sim *sim, int servo);
+/* Its drive mode turns it the other way round. */
+bool grobo_i_dxl2_sim_reverses(const grobo_sim_servo *servo);
+
+#endif
