@@ -316,6 +316,8 @@ check-physics: all $(PLANT_PIPE) ## simulated servos in front of bodies of MuJoC
 	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
 	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
 	    $(BUILD)/physics/bin/python tests/physics/mujoco_plant.py $(PLANT_PIPE) && \
+	    $(BUILD)/physics/bin/python tests/physics/exported.py "$(call whole,$(GRCTL_RUN))" \
+	        $(PLANT_PIPE) gr001 so101 ./tests/physics/hexapod.yaml && \
 	    GRCTL="$(call whole,$(GRCTL_RUN))" PYTHONPATH="$(abspath $(PYTHON_DIR))" \
 	    $(BUILD)/physics/bin/python tests/package/python/test_physics.py; \
 	else echo 'check-physics: skipped: MuJoCo cannot be had for this python3'; fi

@@ -3,6 +3,9 @@
  * A simulated robot whose links are in another process: mujoco_plant.py fills grobo_sim_plant.
  *
  * usage: plant_pipe --mjcf    prints the links of an SO-101 as MuJoCo wants them
+ *        plant_pipe --dynamics ROBOT N
+ *                             prints N poses of a robot (a name, or a file with a slash): angles,
+ *                             torques of gravity, mass matrix, as our own dynamics have them
  *        plant_pipe           for each step, torque, damping, friction, armature, angle, speed
  *                             of each joint go to standard output; angle, speed and load come from
  *                             standard input, as doubles of this machine. The arm holds, moves,
@@ -11,12 +14,15 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/core/sim.h>
 #include <grobo/core/sim_static.h>
 #include <grobo/posture.h>
 #include <grobo/robot_file.h>
+
+#include "src/sim/physics/physics.h"
 
 enum { LIFT = 1, ELBOW = 2, SECOND_US = 1000000 };
 
@@ -59,6 +65,49 @@ static void print_mjcf(void)
            "<worldbody><geom type=\"plane\" size=\"1 1 0.1\"/>\n");
     print_body(0);
     printf("</worldbody></mujoco>\n");
+}
+
+/* ---- dynamics -------------------------------------------------------------------------------- */
+
+static void print_numbers(const double *numbers, int n)
+{
+    for (int i = 0; i < n; i++) {
+        printf("%.12g ", numbers[i]);
+    }
+}
+
+static int print_dynamics(const char *name, int poses)
+{
+    grobo_robot_def *read = NULL;
+    grobo_sim_physics *physics = NULL;
+    uint32_t random = 1;
+    int error = strchr(name, '/') ? grobo_robot_def_read_file(name, NULL, NULL, &read) : 0;
+    const grobo_robot_def *of = read != NULL ? read : grobo_robot_def_find(name);
+    if (error < 0 || of == NULL || grobo_robot_def_physics(of, false, NULL, &physics) < 0) {
+        return 2;
+    }
+    grobo_i_tree *tree = &((grobo_i_world *)physics)->tree;
+    int n = of->model->n_joints;
+    for (int pose = 0; pose < poses; pose++) {
+        double q_rad[GROBO_JOINTS_MAX], torque_nm[GROBO_JOINTS_MAX];
+        const double still[GROBO_JOINTS_MAX] = {0};
+        for (int j = 0; j < n; j++) {
+            const grobo_joint *joint = &of->model->joints[j];
+            random = random * 1664525u + 1013904223u;
+            q_rad[j] =
+                joint->min_rad + (joint->max_rad - joint->min_rad) * (random >> 8) / 16777216;
+        }
+        grobo_i_tree_place(tree, q_rad);
+        grobo_i_tree_torques(tree, still, NULL, torque_nm);
+        grobo_i_tree_masses(tree);
+        print_numbers(q_rad, n);
+        print_numbers(torque_nm, n);
+        print_numbers(tree->mass, n * n);
+        printf("\n");
+    }
+    grobo_sim_physics_free(physics);
+    grobo_robot_def_free(read);
+    return 0;
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
@@ -121,6 +170,9 @@ int main(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "--mjcf") == 0) {
         print_mjcf();
         return 0;
+    }
+    if (argc > 3 && strcmp(argv[1], "--dynamics") == 0) {
+        return print_dynamics(argv[2], (int)strtol(argv[3], NULL, 10));
     }
     n = def->model->n_joints;
     const grobo_sim_plant plant = {step, &n};

@@ -210,6 +210,59 @@ class InRealTime(Heads):
         self.assertIn("nowhere.xml: no such file", done.stderr)
 
 
+GRCTL = os.environ.get("GRCTL", "")
+HEXAPOD = "tests/physics/hexapod.yaml"
+
+
+@needs_mujoco
+@unittest.skipUnless(GRCTL, "no GRCTL")
+class Exported(Heads):
+    def stand(self, robot, *options):
+        path = self.folder / "robot.xml"
+        subprocess.run([GRCTL, "robot", "export", robot, "--mjcf", "-o", str(path), *options],
+                       check=True)
+        made = Virtual(Body(path, Description(robot)))
+        self.addCleanup(made.close)
+        made.init()
+        made.run(1)
+        return made
+
+    def test_gr001_stands_on_its_feet(self):
+        robot = self.stand("gr001")
+        self.assertFalse(robot.body.held)
+        self.assertLess(math.degrees(robot.body.tilt().angle), 3)
+        self.assertGreater(robot.body.tilt().height, 0.14)
+        self.assertEqual(robot.trips, [])
+
+    def test_gr001_steps_in_place(self):
+        robot = self.stand("gr001")
+        feet, lifted = [robot.body.data.body(n) for n in ("R_ANKLE_R", "L_ANKLE_R")], [0.0, 0.0]
+        ground = [float(foot.xpos[2]) for foot in feet]
+
+        def look(_body):
+            for n, foot in enumerate(feet):
+                lifted[n] = max(lifted[n], float(foot.xpos[2]) - ground[n])
+
+        robot.body.on_step = look
+        robot.play("motions/step.pseq")
+        robot.run(1)
+        self.assertFalse(robot.body.fallen)
+        self.assertGreater(min(lifted), 0.004)
+
+    def test_gr001_falls_when_it_is_pushed(self):
+        robot = self.stand("gr001")
+        robot.body.push([-6.0, 0, 0], 0.2)
+        robot.run(2)
+        self.assertTrue(robot.body.fallen)
+
+    def test_a_hexapod_stands(self):
+        robot = self.stand("./" + HEXAPOD, "--free")
+        self.assertFalse(robot.body.held)
+        self.assertFalse(robot.body.fallen)
+        self.assertLess(math.degrees(robot.body.tilt().angle), 3)
+        self.assertGreater(robot.body.tilt().height, 0.05)
+
+
 @unittest.skipUnless(HERE, "no numpy")
 class Films(unittest.TestCase):
     def test_a_picture_is_a_png(self):

@@ -11,7 +11,7 @@
 #include "tools/grctl/setup/ask.h"
 #include "tools/grctl/setup/found.h"
 
-enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_ORDER, OPT_NAME, OPT_OUT };
+enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_ORDER, OPT_NAME, OPT_OUT, OPT_MJCF, OPT_URDF, OPT_FREE };
 
 static const cli_option options[] = {
     [OPT_FAMILY] = OPTION_CHOICE("family", 0, family_names,
@@ -23,7 +23,11 @@ static const cli_option options[] = {
     [OPT_ORDER] = OPTION_CHOICE("order", 0, "chain|file",
                                 "import: joints along the chain, or as a URDF lists them (chain)"),
     [OPT_NAME] = OPTION_TEXT("name", 0, "NAME", "import, new: name of the robot"),
-    [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE", "import, new: the robot's file (standard output)"),
+    [OPT_OUT] =
+        OPTION_TEXT("out", 'o', "FILE", "import, new, export: the file to write (standard output)"),
+    [OPT_MJCF] = OPTION_FLAG("mjcf", 0, "export: as MuJoCo's MJCF"),
+    [OPT_URDF] = OPTION_FLAG("urdf", 0, "export: as URDF"),
+    [OPT_FREE] = OPTION_FLAG("free", 0, "export: an MJCF whose base is free, as with feet"),
 };
 
 static int run_list(const app *a)
@@ -253,6 +257,27 @@ static int run_servos(app *a, const char *name)
                             "no family '%s'; 'grctl robot servos' has them", name);
 }
 
+/* ---- for simulators of bodies ---------------------------------------------------------------- */
+
+static int run_export(app *a, const char *name)
+{
+    char complaint[APP_LINE_BYTES];
+    bool urdf = app_option(a, OPT_URDF)->given > 0;
+    if (urdf == (app_option(a, OPT_MJCF)->given > 0)) {
+        return app_fail(a, EXIT_USAGE, "ARG", "robot export: one of --mjcf and --urdf is wanted");
+    }
+    if (urdf && app_option(a, OPT_FREE)->given) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "robot export: a URDF does not say whether its base is free");
+    }
+    const grobo_robot_def *def = name ? robot_find(name, complaint, sizeof complaint) : robot_of(a);
+    if (!def) {
+        return app_fail(a, EXIT_FILE, "NOTFOUND", "%s", complaint);
+    }
+    return sketch_export(a, def, urdf, app_option(a, OPT_FREE)->given > 0,
+                         app_option(a, OPT_OUT)->text);
+}
+
 static int run(app *a)
 {
     const char *what = a->line.argument[0];
@@ -285,14 +310,17 @@ static int run(app *a)
         return found_new(a, app_option(a, OPT_FAMILY)->text, app_option(a, OPT_NAME)->text,
                          app_option(a, OPT_OUT)->text);
     }
+    if (strcmp(what, "export") == 0) {
+        return run_export(a, name);
+    }
     return app_fail(a, EXIT_USAGE, "ARG",
                     "robot takes list, show [NAME|FILE], check FILE, servos [FAMILY], import "
-                    "FILE or new; see 'grctl help robot'");
+                    "FILE, export [NAME|FILE] or new; see 'grctl help robot'");
 }
 
 const cli_command cmd_robot = {
     .name = "robot",
-    COMMAND_ARGUMENTS("list|show|check|servos|import|new [NAME|FILE]", 1, 2, CLI_ARG_ROBOT),
+    COMMAND_ARGUMENTS("list|show|check|servos|import|export|new [ROBOT]", 1, 2, CLI_ARG_ROBOT),
     .summary = "list known robots, write and check files of others",
     .details =
         "list: the robots that come with grctl. show: the contents of one of them, of a file, or\n"
@@ -317,6 +345,11 @@ const cli_command cmd_robot = {
         "limits are those stored in the servos. A robot that comes with grctl and has these ids\n"
         "and servos is named.\n"
         "\n"
+        "export: its links and joints for simulators of bodies, as MJCF (MuJoCo) or URDF:\n"
+        "frames, masses, inertias, limits, soles. A robot with feet stands on a floor. What its\n"
+        "file does not know is guessed, and a comment of the file says so. It is for\n"
+        "python -m grobo.physics, see docs/guide/body.md.\n"
+        "\n"
         "A robot is a YAML file: its joints with id, servo and limits, its line, its safety\n"
         "limits. docs/guide/own-robot.md describes the file, docs/robot.schema.json gives an\n"
         "editor its keys. Every command takes --robot NAME or --robot FILE; GRCTL_ROBOT and the\n"
@@ -324,7 +357,8 @@ const cli_command cmd_robot = {
     .example = "  grctl robot list\n  grctl robot check ./arm.yaml\n"
                "  grctl --robot ./arm.yaml -d sim init\n"
                "  grctl robot import arm.urdf --family feetech --servo STS3215 -o arm.yaml\n"
-               "  grctl -d /dev/ttyACM0 robot new -o arm.yaml\n",
+               "  grctl -d /dev/ttyACM0 robot new -o arm.yaml\n"
+               "  grctl robot export gr001 --mjcf -o gr001.xml\n",
     COMMAND_OPTIONS(options),
     .run = run,
 };

@@ -87,7 +87,7 @@ static int check_text(app *a, const char *text)
     return error;
 }
 
-static int save(app *a, const char *out, const char *text)
+int sketch_save(app *a, const char *out, const char *text)
 {
     if (file_is_there(out) && !app_global(a, GLOBAL_YES)->given) {
         return app_fail(a, EXIT_USAGE, "EXISTS", "%s is there already; --yes replaces it", out);
@@ -106,7 +106,7 @@ int sketch_write(app *a, sketch *s, const char *out, json_t *fits)
     }
     int status = check_text(a, text);
     if (!status && out) {
-        status = save(a, out, text);
+        status = sketch_save(a, out, text);
     }
     if (!status && a->json) {
         app_print_json(json_pack("{s:s,s:o?,s:i,s:o?,s:O*}", "name", s->name, "file",

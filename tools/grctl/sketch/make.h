@@ -39,4 +39,10 @@ const grobo_robot_def *sketch_namesake(const grobo_model *model);
  * or NULL. Returns the exit status. */
 int sketch_write(app *a, sketch *s, const char *out, json_t *fits);
 
+/* Writes a text to a file, unless it is there already. Returns 0, or the exit status. */
+int sketch_save(app *a, const char *out, const char *text);
+
+/* Writes a robot's links and joints as MJCF or URDF, to a file or (out NULL) to standard output. */
+int sketch_export(app *a, const grobo_robot_def *def, bool urdf, bool free_base, const char *out);
+
 #endif
