@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* doctor: from the port to the last servo, what is wrong and what mends it. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,6 +28,8 @@ typedef struct patient {
     const grobo_model *model;
     int answered; /* servos */
     int32_t low_mv, high_mv;
+    int32_t over_mv, most_mv; /* at the servo that is furthest above what it is made for */
+    int over_id;              /* which that is; 0 mV: none is */
     int hottest_c;
     int delay_us, delayed;             /* the longest delay before a reply; its servo */
     const grobo_servo_register *delay; /* which says so */
@@ -318,6 +321,22 @@ static void look_at_delay(patient *p, int id, const grobo_servo_model *servo)
     }
 }
 
+/* The maker sets it for the supply that this variant of a model is made for. */
+static void look_at_supply(patient *p, int id, const grobo_servo_model *servo, int32_t mv)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_MAX_VOLTAGE);
+    int32_t counts = 0;
+    if (!reg || mv <= p->over_mv || servos_get(&p->c, id, servo, reg, &counts)) {
+        return;
+    }
+    int32_t most_mv = (int32_t)lround(counts * strtod(reg->unit, NULL) * 1000);
+    if (most_mv > 0 && mv > most_mv) {
+        p->over_mv = mv;
+        p->most_mv = most_mv;
+        p->over_id = id;
+    }
+}
+
 static void check_servo(patient *p, int joint)
 {
     const grobo_joint *j = grobo_model_joint(p->model, joint);
@@ -350,6 +369,8 @@ static void check_servo(patient *p, int joint)
         return;
     }
     keep_extremes(p, &i.state);
+    look_at_supply(p, j->motor, servo,
+                   (i.state.valid & GROBO_FIELD_VOLTAGE) ? i.state.voltage_mv : 0);
     if (check_state(p, name, joint, &i.state)) {
         return;
     }
@@ -369,6 +390,10 @@ static void check_servos(patient *p)
     int32_t least_mv = grobo_robot_driver(p->c.robot)->limits.voltage_mv * 11 / 10;
     if (p->high_mv == 0) {
         checkup_found(&p->k, "voltage", "", "these servos do not report their voltage");
+    } else if (p->over_mv > 0) {
+        checkup_found(&p->k, "voltage", "switch it off: is this the supply of another variant?",
+                      "%.2f V at the servos: servo %d is made for %.1f V at most", p->high_mv / 1e3,
+                      p->over_id, p->most_mv / 1e3);
     } else if (p->low_mv < least_mv) {
         checkup_found(&p->k, "voltage", "charge the battery",
                       "%.2f V at the servos: low; at %.1f V every motion is stopped",
