@@ -141,6 +141,18 @@ int SerialRobot_setMotionCount(SerialRobot *robot, int count)
     return grobo_classic_end(robot, play(robot, robot->repeatCount, count < 0), robot->repeatCount);
 }
 
+/* Postures of the present pass that have not left, and those of the passes after it. */
+static int frames_left(const grobo_play_progress *progress)
+{
+    if (progress->steps >= INT_MAX) {
+        return INT_MAX;
+    }
+    uint64_t left = progress->steps - progress->step +
+                    progress->steps * (uint64_t)(progress->passes - progress->pass);
+
+    return left < INT_MAX ? (int)left : INT_MAX;
+}
+
 int SerialRobot_isMoving(SerialRobot *robot)
 {
     grobo_play_progress progress;
@@ -154,9 +166,7 @@ int SerialRobot_isMoving(SerialRobot *robot)
 
     robot->executeMotion = plays(robot);
     grobo_robot_progress(engine, &progress);
-    robot->commandCount = robot->executeMotion && progress.steps < INT_MAX
-                              ? (int)(progress.steps - progress.step)
-                              : moving;
+    robot->commandCount = robot->executeMotion ? frames_left(&progress) : moving;
     return moving || robot->executeMotion;
 }
 

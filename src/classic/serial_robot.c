@@ -185,6 +185,7 @@ int SerialRobot_init(SerialRobot *robot, const char *devname, int n, const grobo
     robot->inside->driver.size = sizeof robot->inside->driver;
     if (grobo_driver_copy(&robot->inside->driver, driver) < 0) {
         free(robot->inside);
+        robot->inside = NULL;
         return -1;
     }
     robot->inside->driver.stabilize = call_stabilizer;
