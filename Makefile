@@ -470,6 +470,7 @@ soak: $(SOAKS) ## all stops, and half an hour of virtual time on each bad line, 
 # Sabotages, each of which a test should notice (tests/mutants/). The folder is its own.
 SEED ?= 1
 COUNT ?=
+CAP_S ?= 0
 MUTANT_DIR := $(BUILD)/mutants
 MUTANT_TESTS := $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/engine/%,$(TEST_SRCS)) \
     $(filter-out tests/unit/test_body% tests/unit/test_motion% tests/unit/test_pcapng%,$(filter \
@@ -479,7 +480,7 @@ check-mutants: ## sabotage the core in COUNT=300 ways that SEED=1 chooses: a tes
 	-@tools/setup.sh --mutants
 	@$(MAKE) --no-print-directory BUILD=$(MUTANT_DIR) CFLAGS=-O2 WALKS=-DGROBO_WALKS \
 	    $(MUTANT_TESTS) $(MUTANT_LIBS)
-	@nice python3 tests/mutants/run.py --seed $(SEED) --count $(or $(COUNT),300) $(if $(ONLY),--only $(ONLY)) \
+	@nice python3 tests/mutants/run.py --seed $(SEED) --count $(or $(COUNT),300) $(if $(ONLY),--only $(ONLY)) --cap-s $(CAP_S) \
 	    --work $(MUTANT_DIR)/work --sources "$(CORE_SRCS)" --tests "$(MUTANT_TESTS)" \
 	    --compile '$(CC) $(ALL_CPPFLAGS) -DGROBO_WALKS $(SRC_INCLUDE) -std=c11 -fPIC -O2' --link '$(CC)' \
 	    --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \

@@ -28,6 +28,7 @@ class Mutant:
         self.start, self.end = span
         self.line = function.text.count("\n", 0, self.start) + 1
         self.statement = function.statement(self.start, self.end, new)
+        self.lines, self.whole = function.lines(self.start, self.end)
         self.name(1)
 
     def name(self, nth):
@@ -120,13 +121,27 @@ class Function:
             t.statement = len(self.spans)
         self.spans.append((first, last))
 
+    def around(self, start, end):
+        """Where the statement begins and ends that text[start:end] is in."""
+        inside = [t for t in self.tokens if t.start < end and t.end > start]
+        first, last = self.spans[inside[0].statement][0], self.spans[inside[-1].statement][1]
+        return self.tokens[first].start, self.tokens[last].end
+
+    def lines(self, start, end):
+        """The first and the last line of that statement; True where it may be reached without
+        them: what is the function itself, or tells where a switch goes."""
+        if start <= self.start:
+            return (0, 0), True
+        a, z = self.around(start, end)
+        text = self.clean[a:z]
+        return tuple(self.text.count("\n", 0, at) + 1 for at in (a, z)), (
+            re.search(r"\b(case|default|goto|static)\b|^\s*\w+\s*:[^:]", text) is not None)
+
     def statement(self, start, end, new):
         """The statement around text[start:end] with the change marked."""
         if start <= self.start:
             return f"{self.name}(): " + "{" + f"{squeeze(self.signature)} =>{new[1:]}" + "}"
-        inside = [t for t in self.tokens if t.start < end and t.end > start]
-        first, last = self.spans[inside[0].statement][0], self.spans[inside[-1].statement][1]
-        a, z = self.tokens[first].start, self.tokens[last].end
+        a, z = self.around(start, end)
         old = self.clean[start:end]
         return squeeze(f"{self.clean[a:start]}{{{old} => {new}}}{self.clean[end:z]}")
 

@@ -15,9 +15,11 @@ usage: run.py [option]...
   --choose PATTERN      tests to run; default all
   --only ID             this mutant alone; `named`: all by hand
   --jobs N              how many at a time
+  --cap-s N             give a mutant up after tests of N seconds of a processor (0: after all)
 
 Compiled into the same object as the original is no mutant; like one that does not compile it does
-not count. Noticed is what fails a test, crashes (what looks past the end of an array does), or
+not count. Of the tests those run that reach the sabotaged line (reach.py), the quick ones first.
+Noticed is what fails a test, crashes (what looks past the end of an array does), or
 takes five times the processor time of the original. The last line is: N passed (noticed), N failed
 (not noticed, or wrong anchors), N skipped (not noticed, with a reason in the file of survivors).
 Exit status 0 if none failed and 95 % of all were noticed.
@@ -35,20 +37,24 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 sys.dont_write_bytecode = True
 import mutate  # noqa: E402
+import reach  # noqa: E402
 
 WANTED_PCT = 95
 MEMORY_BYTES = 2 << 30
 QUIET = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
 # What a file of tests has in common with others, and the program of all of them: it runs the tests
-# of the file that its argument names (tests/support/test.h).
+# of the file that its first argument names, or the one that the second names (tests/support/test.h).
+# "--list" prints both of each; a file with a main of its own runs as a whole.
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 REGISTERS = ("main", "test_i_add", "test_i_around")
 MAIN_BEGINS = """
+#include <stdio.h>
 #include <string.h>
 #include "tests/support/test.h"
 #define REGISTER(name) \\
@@ -69,13 +75,31 @@ static const struct {
     int (*own_main)(int argc, char **argv);
 } files[] = {
 %s};
+static void list(void)
+{
+    for (unsigned i = 0; i < sizeof files / sizeof files[0]; i++) {
+        if (files[i].own_main != NULL) {
+            printf("%%s\\n", files[i].name);
+            continue;
+        }
+        for (const test_i_entry *test = *files[i].tests; test != NULL; test = test->next) {
+            printf("%%s %%s\\n", files[i].name, test->name);
+        }
+    }
+}
 int main(int argc, char **argv)
 {
-    for (unsigned i = 0; argc == 2 && i < sizeof files / sizeof files[0]; i++) {
+    if (argc == 2 && strcmp(argv[1], "--list") == 0) {
+        list();
+        return 0;
+    }
+    for (unsigned i = 0; argc >= 2 && i < sizeof files / sizeof files[0]; i++) {
         if (strcmp(argv[1], files[i].name) == 0) {
             for (test_i_entry *test = *files[i].tests, *next; test != NULL; test = next) {
                 next = test->next;
-                test_i_add(test);
+                if (argc == 2 || strcmp(argv[2], test->name) == 0) {
+                    test_i_add(test);
+                }
             }
             test_i_around = *files[i].around;
             return (files[i].own_main != NULL ? files[i].own_main : test_main)(1, argv) != 0;
@@ -286,45 +310,85 @@ class Bench(Builder):
         self.call(shlex.split(self.options.link) + ["-o", out, self.main] + self.objects +
                    objects + shlex.split(self.options.libs))
 
-    def run(self, program, test, cpu_s):
-        """True if the test passes."""
+    def run(self, program, test, cpu_s, marks=None):
+        """True if the test passes, and the seconds of a processor that it took."""
         env = dict(os.environ, CMOCKA_TEST_ABORT="1", CMOCKA_MESSAGE_OUTPUT="TAP")
-        try:
-            done = subprocess.run([program, test], env=env, cwd=self.options.root, check=False,
-                                  preexec_fn=limit(cpu_s), timeout=20 * cpu_s + 60, **QUIET)
-        except subprocess.TimeoutExpired:
-            return False
-        return done.returncode == 0
+        if marks is not None:
+            env["GROBO_REACH"] = marks
+        process = subprocess.Popen([program, *test.split()], env=env, cwd=self.options.root,
+                                   preexec_fn=limit(cpu_s), **QUIET)
+        timer = threading.Timer(20 * cpu_s + 60, process.kill)
+        timer.start()
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        timer.cancel()
+        return process.returncode == 0, used.ru_utime + used.ru_stime
 
-    def measure(self):
-        """How long each test takes when nothing is sabotaged; the quick ones come first."""
+    def recorder(self, mutants):
+        """The objects that mark what is reached of the files of these mutants; none where the
+        compiler cannot."""
+        objects = [os.path.join(self.work, f"reach{i}.o") for i in range(1 + len(self.texts))]
+        if not self.compile(".", reach.RECORDER, objects[0]):
+            return []
+        paths = sorted({m.path for m in mutants})
+        for path, out in zip(paths, objects[1:]):
+            if not self.compile(path, f'#line 1 "{path}"\n' + self.texts[path], out, reach.FLAGS):
+                return []
+        return objects[:1 + len(paths)]
+
+    def measure(self, pool, mutants):
+        """How long each test takes when nothing is sabotaged, by its name behind that of its file;
+        and what they reach of the files of these mutants, None if that cannot be had."""
         program = os.path.join(self.work, "original")
-        self.link([], program)
-        took = {}
-        for test in self.tests:
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            if not self.run(program, test, 300):
-                raise Problem(f"{test} fails though nothing is sabotaged")
-            after = resource.getrusage(resource.RUSAGE_CHILDREN)
-            took[test] = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
-        return sorted((s, test) for test, s in took.items())
+        recorder = self.recorder(mutants)
+        self.link(recorder, program)
+        listed = subprocess.run([program, "--list"], text=True, capture_output=True, check=True)
+        tests = sorted(set(listed.stdout.splitlines()))
 
-    def noticed_by(self, mutant, obj, times):
-        """The test that notices this object, or None. First what noticed it before, then what
-        noticed others of its function and of its file."""
-        program = obj[:-2]
+        def one(test):
+            path = os.path.join(self.work, test.replace(" ", "."))
+            passed, took_s = self.run(program, test, 300, path)
+            marks = reach.marks_of(path) if recorder else []
+            return (took_s, marks) if passed else None
+
+        measured = dict(zip(tests, pool.map(one, tests)))
+        # What judges other tests of its file runs with them.
+        for whole in sorted({t.split()[0] for t, result in measured.items() if result is None}):
+            measured[whole] = one(whole)
+            if measured[whole] is None:
+                raise Problem(f"{whole} fails though nothing is sabotaged")
+        measured = {test: result for test, result in measured.items() if result is not None}
+        times = {test: took_s for test, (took_s, _) in measured.items()}
+        if not recorder:
+            return times, None
+        return times, reach.Reach(program, {test: marks for test, (_, marks) in measured.items()})
+
+    def order(self, mutant, times, reached):
+        """The tests that may notice it: first what noticed it before, then what noticed others of
+        its function and of its file, and what is quick."""
         hits = self.hits.setdefault(mutant.path, {})
         near = [t for a, t in list(self.killers.items()) if a.startswith(mutant.function + " |")]
         before = self.killers.get(mutant.anchor)
-        order = sorted(times, key=lambda x: (x[1] != before, (x[0] + 0.02) / (
-            1 + hits.get(x[1], 0) + 8 * near.count(x[1]))))
+        tests = times if reached is None else reached.tests_of(mutant)
+        return sorted(tests, key=lambda t: (t != before, (times[t] + 0.02) / (
+            1 + hits.get(t, 0) + 8 * near.count(t)), t))
+
+    def noticed_by(self, mutant, obj, times, reached):
+        """The test that notices this object, or None."""
+        program = obj[:-2]
+        hits = self.hits.setdefault(mutant.path, {})
+        spent_s = 0
         try:
             self.link([obj], program)
-            for took_s, test in order:
-                if not self.run(program, test, 2 + int(5 * took_s)):
+            for test in self.order(mutant, times, reached):
+                passed, took_s = self.run(program, test, 2 + int(5 * times[test]))
+                if not passed:
                     hits[test] = hits.get(test, 0) + 1
                     self.killers[mutant.anchor] = test
                     return test
+                spent_s += took_s
+                if 0 < self.options.cap_s < spent_s:
+                    break
         finally:
             for path in (program, obj):
                 if os.path.exists(path):
@@ -390,7 +454,8 @@ def judge(results, reasons, options):
     for mutant, test in results:
         if test is not None:
             noticed += 1
-            by[test] = by.get(test, 0) + 1
+            file = test.split()[0]
+            by[file] = by.get(file, 0) + 1
             if mutant.anchor in reasons:
                 failed += 1
                 noticed -= 1
@@ -412,10 +477,11 @@ def run_all(options, work):
     mutants, wanted = choose(options, functions, by_file, reasons)
     begun_s = time.monotonic()
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        times = bench.measure()
         made, left_out = build(bench, pool, mutants, wanted)
-        print(f"{len(made)} to try, {left_out} that do not compile or change nothing", flush=True)
-        tests = pool.map(lambda pair: bench.noticed_by(*pair, times), made)
+        times, reached = bench.measure(pool, [mutant for mutant, _ in made])
+        print(f"{len(made)} to try, {left_out} that do not compile or change nothing; "
+              f"{len(times)} tests, {time.monotonic() - begun_s:.0f} s so far", flush=True)
+        tests = pool.map(lambda pair: bench.noticed_by(*pair, times, reached), made)
         results = []
         for (mutant, _), test in zip(made, tests):
             results.append((mutant, test))
@@ -457,6 +523,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
+    parser.add_argument("--cap-s", type=float, default=0)
     parser.add_argument("--choose", default=".*")
     return in_work_folder(parser.parse_args(), run_all)
 
