@@ -55,7 +55,9 @@ TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))
 REGISTERS = ("main", "test_i_add", "test_i_around")
 MAIN_BEGINS = """
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include "tests/support/test.h"
 #define REGISTER(name) \\
     int main_of_##name(int argc, char **argv) __attribute__((weak)); \\
@@ -87,8 +89,23 @@ static void list(void)
         }
     }
 }
+/* Limits are set here, since Python begins a process much quicker where it has none to set. */
+static void limit(void)
+{
+    const char *text = getenv("GROBO_CPU_S");
+    if (text == NULL) {
+        return; /* whoever began it has set them */
+    }
+    const rlim_t cpu_s = strtoul(text, NULL, 10);
+    const struct rlimit cpu = {cpu_s, cpu_s + 1}, core = {0, 0};
+    const struct rlimit bytes = {(rlim_t)MEMORY_BYTES, (rlim_t)MEMORY_BYTES};
+    (void)setrlimit(RLIMIT_CPU, &cpu);
+    (void)setrlimit(RLIMIT_CORE, &core);
+    (void)setrlimit(RLIMIT_AS, &bytes);
+}
 int main(int argc, char **argv)
 {
+    limit();
     if (argc == 2 && strcmp(argv[1], "--list") == 0) {
         list();
         return 0;
@@ -271,6 +288,7 @@ class Bench(Builder):
         self.killers_path = os.path.join(options.work, "killers.json")
         self.tests, self.killers, self.hits = [], self._killers(), {}
         self.main = os.path.join(work, "main.o")
+        self.linker = self._linker()
         self.objects = self._tests_of(options.tests.split())
 
     def _killers(self):
@@ -280,6 +298,14 @@ class Bench(Builder):
                 return dict(json.load(file))
         except (OSError, ValueError):
             return {}
+
+    def _linker(self):
+        """gold where there is one: it links these objects twenty times as quickly."""
+        out = os.path.join(self.work, "try")
+        self.compile(".", "int main(void) { return 0; }", out + ".o")
+        command = shlex.split(self.options.link) + ["-fuse-ld=gold", "-o", out, out + ".o"]
+        done = subprocess.run(command, check=False, **QUIET)
+        return ["-fuse-ld=gold"] if done.returncode == 0 else []
 
     def keep_killers(self):
         with open(self.killers_path, "w", encoding="utf-8") as file:
@@ -300,23 +326,24 @@ class Bench(Builder):
             copies.append(copy)
         rows = "".join(f'    {{"{n}", &tests_of_{n}, &test_i_around_of_{n}, main_of_{n}}},\n'
                        for n in names)
-        source = MAIN_BEGINS + "".join(f"REGISTER({n})\n" for n in names) + MAIN_ENDS % rows
+        source = f"#define MEMORY_BYTES {MEMORY_BYTES}LL\n" + MAIN_BEGINS + "".join(f"REGISTER({n})\n" for n in names) + MAIN_ENDS % rows
         self.call(shlex.split(self.options.compile) + ["-w", "-iquote", TOP, "-x", "c", "-", "-c",
                                                        "-o", self.main], source)
         self.tests = names
         return copies
 
     def link(self, objects, out):
-        self.call(shlex.split(self.options.link) + ["-o", out, self.main] + self.objects +
-                   objects + shlex.split(self.options.libs))
+        self.call(shlex.split(self.options.link) + self.linker + ["-o", out, self.main] +
+                  self.objects + objects + shlex.split(self.options.libs))
 
     def run(self, program, test, cpu_s, marks=None):
         """True if the test passes, and the seconds of a processor that it took."""
-        env = dict(os.environ, CMOCKA_TEST_ABORT="1", CMOCKA_MESSAGE_OUTPUT="TAP")
+        env = dict(os.environ, CMOCKA_TEST_ABORT="1", CMOCKA_MESSAGE_OUTPUT="TAP",
+                   GROBO_CPU_S=str(cpu_s))
         if marks is not None:
             env["GROBO_REACH"] = marks
         process = subprocess.Popen([program, *test.split()], env=env, cwd=self.options.root,
-                                   preexec_fn=limit(cpu_s), **QUIET)
+                                   **QUIET)
         timer = threading.Timer(20 * cpu_s + 60, process.kill)
         timer.start()
         _, status, used = os.wait4(process.pid, 0)
