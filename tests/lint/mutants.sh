@@ -89,6 +89,32 @@ TESTS='test_core.o test_sum.o'
 test_that 'a test of it notices, also what never ends' says 0 ' failed, 0 skipped' mutants --count 0
 TESTS=
 
+# A test that counts how often it runs, and reaches core_sum alone.
+cat >test_other.c <<'C'
+#include <stdio.h>
+#include "tests/support/test.h"
+int core_sum(int n);
+TEST(it_is_counted)
+{
+    FILE *file = fopen("ran", "a");
+    assert_non_null(file);
+    assert_true(fputs("once\n", file) >= 0 && fclose(file) == 0 && core_sum(0) == 0);
+}
+C
+$cc -iquote "$top" -c test_other.c || exit 1
+TESTS='test_other.o test_core.o'
+runs_seldom() {
+    printf 'core_limit\n- tripped = 0;\n+ ;\n' >named
+    : >ran
+    says 0 '1 passed, 0 failed' mutants --only named && [ "$(wc -l <ran)" -eq 1 ] || return 1
+    printf 'core_sum\n- sum = 0;\n+ sum = n == 0 ? 0 : 1;\n' >named
+    : >ran
+    says 1 '0 passed, 1 failed' mutants --only named && [ "$(wc -l <ran)" -eq 2 ]
+}
+test_that 'tests run that reach the line' runs_seldom
+: >named
+TESTS=
+
 cat >survivors <<'S'
 core_sum | statement | {sum += i + 1; => ;}
     Nobody needs the sum.
