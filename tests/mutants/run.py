@@ -13,7 +13,7 @@ usage: run.py [option]...
   --work DIR            a folder for what is built; nothing else is written
   --seed N --count N    which mutants, and how many that compile (0: all of them)
   --choose PATTERN      tests to run; default all
-  --only ID             this mutant alone; `named`: all by hand
+  --only ID[,ID...]     these mutants alone; `named`: all by hand
   --jobs N              how many at a time
   --cap-s N             give a mutant up after tests of N seconds of a processor (0: after all)
 
@@ -455,8 +455,9 @@ def choose(options, functions, by_file, reasons):
     if options.only == "named":
         return named, len(named)
     if options.only:
-        found = [m for m in mutants + named if m.id == options.only]
-        if not found:
+        wanted = options.only.split(",")
+        found = [m for m in mutants + named if m.id in wanted]
+        if len(found) != len(wanted):
             raise Problem(f"no mutant {options.only}")
         return found, len(found)
     wanted = options.count + len(named) if options.count > 0 else len(mutants) + len(named)
