@@ -26,9 +26,9 @@ Exit status 0 if none failed and 95 % of all were noticed.
 """
 import argparse
 import concurrent.futures
+import hashlib
 import json
 import os
-import random
 import re
 import resource
 import shlex
@@ -426,19 +426,16 @@ class Bench(Builder):
 # ---- the whole -----------------------------------------------------------------------------------
 
 def sample(mutants, seed):
-    """All of them in a random order: first one of each line, then a second of each, ..."""
-    chance = random.Random(seed)
+    """All of them in an order by lot: first one of each line, then a second of each, ... The lot of
+    a mutant is in its name and the seed, so that a change elsewhere draws no others."""
     lines = {}
     for mutant in mutants:
-        lines.setdefault((mutant.path, mutant.line), []).append(mutant)
-    for of_line in lines.values():
-        chance.shuffle(of_line)
-    order = list(lines.values())
-    while order:
-        chance.shuffle(order)
-        for of_line in order:
-            yield of_line.pop()
-        order = [of_line for of_line in order if of_line]
+        lot = hashlib.sha1(f"{seed} {mutant.anchor}".encode()).digest()
+        lines.setdefault((mutant.path, mutant.line), []).append((lot, mutant.start, mutant))
+    rounds = [sorted(of_line, key=lambda x: x[:2]) for of_line in lines.values()]
+    for i in range(max(map(len, rounds), default=0)):
+        of_round = [of_line[i] for of_line in rounds if len(of_line) > i]
+        yield from (mutant for _, _, mutant in sorted(of_round, key=lambda x: x[:2]))
 
 
 def choose(options, functions, by_file, reasons):
