@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The only way to motors. A frame that moves a joint, switches torque, or leaves unknown what a
- * servo does carries an order. Whatever its origin, the order is judged and its frame is built at
- * the moment it leaves, at each attempt: against what has left before, and what was read last.
- * What is noted of it is noted then as well, not when it was asked for.
+ * The only way to motors. A frame that moves a joint, switches torque, or has an unknown effect on
+ * a servo carries an order. Whatever its origin, the order is judged and its frame is built at the
+ * moment the frame leaves, at each attempt, by the frames that have left before and by the latest
+ * readings. The engine updates what it knows of the joints at that moment too, not at the request.
  *
  *   judge()                the one judgement of all orders
  *   make_frame()           the only caller of the driver's functions that build motor frames
- *   note()                 what is known of joints once the frame has left
- *   grobo_i_gate_leave()   the bus is about to give the frame out: judged, built, noted
- *   grobo_i_gate_judge(), grobo_i_gate_build()   judged when it is asked for, to refuse at once
+ *   note()                 updates what is known of the joints once the frame has left
+ *   grobo_i_gate_leave()   called by the bus just before a frame leaves: judges, builds, notes
+ *   grobo_i_gate_judge(), grobo_i_gate_build()   judge a request, so that it is refused at once
  */
 #include <math.h>
 #include <string.h>
@@ -20,15 +20,15 @@
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
 
-/* What the frame of an order says. */
+/* The contents of an order's frame. */
 typedef struct saying {
     grobo_target target;                              /* where to, for orders that move */
     grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1]; /* what it switches, by mode */
     bool as_asked; /* a goal of all its joints, to where each was asked to go, in that time */
 } saying;
 
-/* When an order is judged: its frame is built when it is asked for, and leaves, more than once if
- * it is not answered. */
+/* When an order is judged: at the request, when its first frame is built, and each time that the
+ * frame leaves. */
 typedef enum moment { ASKED, BUILT, LEAVES, LEAVES_AGAIN } moment;
 
 /* ---- judging --------------------------------------------------------------------------------- */
@@ -43,7 +43,8 @@ static bool all_limited(const grobo_robot *robot, grobo_joint_mask joints)
     return true;
 }
 
-/* May these joints be sent anywhere? */
+/* Refuses joints that must not move: unread, without torque, in free mode, externally moved, or
+ * without their torque limit. */
 static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
 {
     if (!grobo_i_all_sensed(robot, joints, &robot->fault_joint)) {
@@ -52,15 +53,15 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
     if (GROBO_I_EXTRA(robot->driver, goal_energises) && !grobo_i_all_on(robot, joints)) {
         return GROBO_ERR_STATE;
     }
-    /* A joint in free mode is moved by a person; one externally moved by another program. */
+    /* A person moves a joint in free mode; another program moves one that is externally moved. */
     bool moved = grobo_i_externally_moved(robot, joints, &robot->fault_joint);
     bool others = moved || (joints & robot->free_joints) != 0;
     return others || !all_limited(robot, joints) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
-/* Where the end of a motion brings a joint to rest: between where it is and where it comes to rest
- * that slows down evenly in that time. A joint that is behind, or that a raw frame moves, is not
- * where the clip is. */
+/* The goal that ends a motion for a joint: between its place and the point where it comes to rest
+ * under even deceleration in that time. A joint that lags, or that a raw frame moves, is not where
+ * the clip is. */
 static double rest_of(const grobo_robot *robot, int joint, bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
@@ -74,8 +75,8 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
                   : grobo_i_goal_near(axis, axis->next_rad, here_rad, most_rad);
 }
 
-/* Where the joints of an order are to go by now, but for those that it would wake. @return whether
- * there are such. */
+/* Fills in the goals of an order, except for joints that a goal would energise. @return true if
+ * there are such joints. */
 static bool aim_goal(const grobo_robot *robot, const grobo_robot_order *order, bool soft,
                      grobo_target *target)
 {
@@ -97,7 +98,7 @@ static bool aim_goal(const grobo_robot *robot, const grobo_robot_order *order, b
     return sleeps;
 }
 
-/* True if no joint is left out, drawn in or given more time than it was asked to take. */
+/* True if no joint is skipped, clamped, or given more time than was asked for. */
 static bool goes_as_asked(const grobo_robot *robot, const grobo_robot_order *order,
                           const grobo_target *target)
 {
@@ -109,8 +110,8 @@ static bool goes_as_asked(const grobo_robot *robot, const grobo_robot_order *ord
     return same;
 }
 
-/* The angles and times of a goal: drawn in to its limits, and slow enough from where its joints are
- * by now. */
+/* Clamps the angles of a goal to the limits, and lengthens its times to what the joints need from
+ * where they are now. */
 static int judge_trajectory(grobo_robot *robot, const grobo_robot_order *order, saying *says)
 {
     int clamped = grobo_i_target_clamp(robot, &says->target.posture); /* one may rest outside */
@@ -119,7 +120,7 @@ static int judge_trajectory(grobo_robot *robot, const grobo_robot_order *order, 
     return result;
 }
 
-/* Says the same with that judgement as without it: of what was just judged so. */
+/* True if another judgement of a trajectory that was just judged changes nothing. */
 static bool is_judged(grobo_robot *robot, const grobo_robot_order *order, const saying *says)
 {
     saying again = *says;
@@ -127,9 +128,9 @@ static bool is_judged(grobo_robot *robot, const grobo_robot_order *order, const 
            again.as_asked == goes_as_asked(robot, order, &says->target);
 }
 
-/* To its target, as far as no later one has taken its place; in more time where it leaves late.
- * When its frame is built the call that asked for it has drawn in and timed it already, from the
- * same joints, limits and instant (grobo_i_gate_send()). One that rests is aimed elsewhere. */
+/* A goal goes to its target unless a later target supersedes it, and gets more time where it leaves
+ * late. When its frame is built, the request has clamped and timed it already, from the same
+ * joints, limits and instant (grobo_i_gate_send()). An order that rests has another goal. */
 static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment when, saying *says)
 {
     grobo_target *target = &says->target;
@@ -153,7 +154,8 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment
     return result;
 }
 
-/* One that is outside its limits is drawn in softly, once it has torque or is halted there. */
+/* The time in which a joint outside its limits is moved to them, at the approach speed: once its
+ * torque comes on, or a halt finds it there. */
 static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad, double to_rad)
 {
     int64_t step_us = robot->driver->time_step_us;
@@ -163,7 +165,8 @@ static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad
     return (int64_t)fmin(fmax(steps, 1), most) * step_us;
 }
 
-/* Of one that was read once, and tells no speed, nobody knows whether it moves. */
+/* True if the engine cannot know whether the joint moves: its servo reports no speed, and it was
+ * read once. */
 static bool is_mute(const grobo_robot *robot, int joint)
 {
     return GROBO_I_EXTRA(robot->driver, tells_no_speed) && !grobo_i_has_target(&robot->axes[joint]);
@@ -181,7 +184,7 @@ static grobo_joint_mask may_be_told(const grobo_robot *robot)
     return may & ~robot->halts_owed;
 }
 
-/* What still moves stops ahead of where it is by now, however long this had to wait. */
+/* Joints that move stop ahead of where they are now, however long the order had to wait. */
 static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
     if (!grobo_i_may_halt(robot) && !order->owed) {
@@ -213,7 +216,8 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     return grobo_i_gate_time(robot, order, target);
 }
 
-/* The goal of joints without torque to where each was seen last; not of one too far outside. */
+/* Sets the goal of each joint without torque to its latest reading; skips joints too far outside
+ * their limits. */
 static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
                       grobo_target *target)
 {
@@ -242,10 +246,10 @@ bool grobo_i_goal_holds(const grobo_robot *robot, int joint)
     return fabs(goal_rad - grobo_i_hold_rad(robot, joint)) <= near_rad; /* not of NaN */
 }
 
-/* Who had to wait longer for the line knows nothing of where a hand has the joint by now. */
+/* After a longer wait for the line a hand may have moved the joint since it was read. */
 #define ON_WAITS_US 2000000
 
-/* Torque comes on only where the last goal given is where the joint was seen last. */
+/* Torque comes on only where the goal of the servo is the latest reading of the joint. */
 static int judge_torque(const grobo_robot *robot, const grobo_robot_order *order, saying *says)
 {
     bool on = order->torque == GROBO_TORQUE_ON;
@@ -266,8 +270,8 @@ static int judge_torque(const grobo_robot *robot, const grobo_robot_order *order
     return may == 0 ? GROBO_ERR_STATE : GROBO_OK;
 }
 
-/* A raw frame that switches on what holds already changes nothing: what was read to hold just now.
- * Everything else is a torque job's. */
+/* A raw frame may switch torque on only for joints that were just read to have torque: that changes
+ * nothing. Any other joint needs a torque job. */
 static int judge_raw_torque(const grobo_robot *robot, grobo_joint_mask on)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
@@ -282,7 +286,7 @@ static int judge_raw_torque(const grobo_robot *robot, grobo_joint_mask on)
     return GROBO_OK;
 }
 
-/* A caller who times his own targets may be early or late by a little. */
+/* Tolerance for the timing of targets that a caller sends as raw frames. */
 #define RAW_TOLERANCE 1.02
 
 static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying *says)
@@ -333,7 +337,7 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
     return GROBO_OK;
 }
 
-/* Further along the trajectories that its joints are on; another one may have taken their place. */
+/* Continues the trajectories of the joints; one that was superseded is skipped. */
 static int judge_segment(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
     if (robot->trip.latched) {
@@ -347,8 +351,8 @@ static int judge_segment(grobo_robot *robot, const grobo_robot_order *order, gro
     return target->posture.set == 0 ? GROBO_ERR_EMPTY : judge_joints(robot, target->posture.set);
 }
 
-/* Afterwards a goal means something else: a servo that holds would jump. Its own first attempt is
- * why nothing is known at the second. */
+/* A setting changes what a goal means: a servo that holds would jump. At the second attempt the
+ * torque is unknown because of the first. */
 static int judge_setting(const grobo_robot *robot, grobo_joint_mask joints, bool again)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
@@ -361,16 +365,15 @@ static int judge_setting(const grobo_robot *robot, grobo_joint_mask joints, bool
     return GROBO_OK;
 }
 
-/* A command needs silence, and the others would go on without it. Of an unknown frame nobody here
- * knows what it makes joints do. */
+/* A command needs a silent line, so that nothing may move; the effect of an unknown frame on moving
+ * joints cannot be known. */
 static int judge_alone(const grobo_robot *robot)
 {
     bool moves = grobo_i_is_playing(robot) || grobo_i_moving(robot, robot->now_us);
     return moves ? GROBO_ERR_STATE : GROBO_OK;
 }
 
-/* Joints that the model has not got are looked at by nobody: a microcontroller clears bytes one by
- * one. */
+/* Clears the joints of the model alone: a microcontroller clears byte by byte. */
 static void say_nothing(const grobo_robot *robot, saying *says)
 {
     grobo_target *target = &says->target;
@@ -446,9 +449,8 @@ int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_r
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* Where a trajectory begins, which is gone at a speed by servos that are told no time. One that
- * is behind comes to rest no later for that: a halt counts the trajectory from where it was
- * read. */
+/* The begin of a halt for servos that take a speed and no time. A halt counts the distance from
+ * where the joint was read, so that a joint that lags comes to rest no later. */
 static double begin_of_halt(const grobo_robot *robot, const grobo_target *target, int joint)
 {
     double to_rad = target->posture.angle_rad[joint];
@@ -462,7 +464,7 @@ static double begin_of_halt(const grobo_robot *robot, const grobo_target *target
                : to_rad + copysign(fmin(fabs(behind_rad), fmax(most_rad, way_rad)), behind_rad);
 }
 
-/* A trajectory that leads nowhere is gone at the approach speed. */
+/* A trajectory of no length uses the approach speed. */
 static double begin_of_rest(const grobo_robot *robot, const grobo_target *target, int joint)
 {
     double to_rad = target->posture.angle_rad[joint];
@@ -474,13 +476,13 @@ static double begin_of_rest(const grobo_robot *robot, const grobo_target *target
                : to_rad + copysign(fmax(fabs(way_rad), least_rad), way_rad);
 }
 
-/* True if the driver looks at angles and times alone. */
+/* True if the driver uses angles and times only. */
 static bool is_timed(const grobo_driver *driver)
 {
     return driver->posture == GROBO_I_MEMBER(driver, driver->size, timed_posture);
 }
 
-/* What the frames of an order ask for: what it says, or the part of it that goes first. */
+/* The target of an order's frames: all of it, or its first segment. */
 static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order *order,
                                saying *says, grobo_target *part)
 {
@@ -500,7 +502,7 @@ static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order
     return target;
 }
 
-/* Part `part` of it; the only calls of these two functions of a driver. */
+/* Builds part `part` of the frames; the only calls of these two functions of a driver. */
 static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, const saying *says,
                       const grobo_target *target, int part, grobo_exchange *exchange)
 {
@@ -512,8 +514,8 @@ static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, 
                : driver->posture(driver, robot->driver_ctx, target, part, exchange);
 }
 
-/* What waits takes the room of all its joints: one that has no part in it yet may have one by the
- * time it leaves. */
+/* A waiting frame reserves room for all joints of its order: a joint that it skips now may be in it
+ * when it leaves. */
 static void says_all(const grobo_robot *robot, const grobo_robot_order *order, saying *says)
 {
     if (order->kind == GROBO_I_ORDER_TORQUE) {
@@ -528,8 +530,8 @@ static void says_all(const grobo_robot *robot, const grobo_robot_order *order, s
     says->target.posture.set = order->joints;
 }
 
-/* True of what the driver makes the same frame of, whenever that is: angles and times as they were
- * asked for. A frame that waits needs not be built anew then. */
+/* True if the driver would build the same frame at any time, from angles and times as requested: a
+ * waiting frame need not be rebuilt. */
 static bool stands(const grobo_robot *robot, const saying *says, const grobo_target *target)
 {
     return is_timed(robot->driver) && says->as_asked && target == &says->target;
@@ -579,7 +581,7 @@ static void forget(grobo_robot *robot, grobo_joint_mask joints, bool torque_too)
     grobo_i_gate_soften(robot);
 }
 
-/* Where joints are on their trajectory to from now on. */
+/* The trajectories that joints follow from now on. */
 static void note_trajectory(grobo_robot *robot, const grobo_robot_order *order,
                             const grobo_target *target)
 {
@@ -614,7 +616,7 @@ static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
     }
 }
 
-/* What it was told of its trajectory until now ends with that. */
+/* Torque goes off: a trajectory in segments ends where the servo was told to go. */
 static void let_go(grobo_robot_axis *axis)
 {
     if (grobo_i_is_in_segments(axis)) {
@@ -624,7 +626,7 @@ static void let_go(grobo_robot_axis *axis)
     axis->wants_torque = axis->torque_known = false;
 }
 
-/* The switch is taken for done; a later reading shows. */
+/* Assumes that the switch succeeds; a later reading shows it. */
 static void note_torque(grobo_robot *robot, const saying *says)
 {
     grobo_joint_mask on = says->torqued[GROBO_TORQUE_ON];
@@ -716,7 +718,7 @@ void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order)
     }
 }
 
-/* Joints whose target it is yet, and of which nobody knows where they are. */
+/* Joints of an order that wait for it, and whose place is unknown. */
 static grobo_joint_mask unknown_of(const grobo_robot *robot, const grobo_robot_order *order)
 {
     grobo_joint_mask joints = 0;
@@ -727,7 +729,7 @@ static grobo_joint_mask unknown_of(const grobo_robot *robot, const grobo_robot_o
     return joints;
 }
 
-/* A frame tried again has been passed by where another one told its joints something since. */
+/* True if a retry is superseded: another frame has left for one of its joints since. */
 static bool is_passed(const grobo_robot *robot, const grobo_robot_slot *slot)
 {
     for (int j = 0; slot->txn.sent_us >= 0 && j < robot->driver->model->n_joints; j++) {
@@ -738,7 +740,7 @@ static bool is_passed(const grobo_robot *robot, const grobo_robot_slot *slot)
     return false;
 }
 
-/* Whatever was judged above: what no frame that leaves may do. */
+/* What no frame may do, whatever the judgement was. */
 static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
 {
     const grobo_robot *robot = slot->robot;
@@ -759,7 +761,7 @@ static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
     }
 }
 
-/* The frame of a slot, where the judgement needs it. */
+/* The frame of a slot, where the judgement reads it. */
 static const grobo_exchange *waiting(const grobo_robot_slot *slot)
 {
     grobo_exchange *frame = &slot->robot->built;
@@ -770,7 +772,7 @@ static const grobo_exchange *waiting(const grobo_robot_slot *slot)
     return frame;
 }
 
-/* The frame that waits is the one that would be built. */
+/* True if the waiting frame equals the one that would be built now. */
 static bool is_same_frame(const grobo_robot_slot *slot, const saying *says)
 {
     grobo_exchange fresh;
@@ -780,7 +782,7 @@ static bool is_same_frame(const grobo_robot_slot *slot, const saying *says)
            memcmp(fresh.frame, slot->txn.frame, fresh.frame_bytes) == 0;
 }
 
-/* Builds the frame of a slot from what it says now. */
+/* Builds the frame of a slot from the judged contents. */
 static int build_anew(grobo_robot_slot *slot, saying *says)
 {
     grobo_robot *robot = slot->robot;
