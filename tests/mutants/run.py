@@ -15,7 +15,8 @@ usage: run.py [option]...
   --choose PATTERN      tests to run; default all
   --only ID[,ID...]     these mutants alone; `named`: all by hand
   --jobs N              how many at a time
-  --cap-s N             give a mutant up after tests of N seconds of a processor (0: after all)
+  --cap-s N             give a mutant up after tests of N seconds of a processor, and try none of
+                        the survivors (0: after all tests, also these)
 
 Compiled into the same object as the original is no mutant; like one that does not compile it does
 not count. Of the tests those run that reach the sabotaged line (reach.py), the quick ones first.
@@ -506,7 +507,13 @@ def run_all(options, work):
         times, reached = bench.measure(pool, [mutant for mutant, _ in made])
         print(f"{len(made)} to try, {left_out} that do not compile or change nothing; "
               f"{len(times)} tests, {time.monotonic() - begun_s:.0f} s so far", flush=True)
-        tests = pool.map(lambda pair: bench.noticed_by(*pair, times, reached), made)
+
+        def test_of(pair):
+            if options.cap_s > 0 and pair[0].anchor in reasons:
+                return None  # it would take all tests; a run without a cap tries it
+            return bench.noticed_by(*pair, times, reached)
+
+        tests = pool.map(test_of, made)
         results = []
         for (mutant, _), test in zip(made, tests):
             results.append((mutant, test))
