@@ -487,7 +487,7 @@ check-mutants: ## sabotage the core in COUNT=300 ways that SEED=1 chooses: a tes
 	    --scope tests/mutants/scope --survivors tests/mutants/survivors --named tests/mutants/named
 
 ASSERT_TESTS := $(MUTANT_TESTS) $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/link/test_runner% \
-    tests/link/test_session% tests/link/test_serial%,$(TEST_SRCS)))
+    tests/link/test_session% tests/link/test_serial% tests/link/test_virtual%,$(TEST_SRCS)))
 check-asserts: ## sabotage what the assertions of bus, sequencer, engine and loop state: each must end a test
 	-@tools/setup.sh --mutants
 	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 WALKS=-DGROBO_WALKS $(ASSERT_TESTS) $(MUTANT_LIBS)
