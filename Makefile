@@ -208,7 +208,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-physics check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
+.PHONY: check-physics balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -321,6 +321,16 @@ check-physics: all $(PLANT_PIPE) ## simulated servos in front of bodies of MuJoC
 	    GRCTL="$(call whole,$(GRCTL_RUN))" PYTHONPATH="$(abspath $(PYTHON_DIR))" \
 	    $(BUILD)/physics/bin/python tests/package/python/test_physics.py; \
 	else echo 'check-physics: skipped: MuJoCo cannot be had for this python3'; fi
+
+balance-table: all ## the table of docs/guide/whole-body.md: COUNT=300 variants, SEED=1; in build/balance.md
+	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
+	    --disable-pip-version-check mujoco numpy cffi || true
+	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
+	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	    PYTHONPATH="$(abspath $(PYTHON_DIR))" $(BUILD)/physics/bin/python tests/physics/balance.py \
+	        "$(call whole,$(GRCTL_RUN))" motions/*.pseq --count $(or $(COUNT),300) --seed $(or $(SEED),1) \
+	        --table $(BUILD)/balance.md; \
+	else echo 'balance-table: skipped: MuJoCo cannot be had for this python3'; fi
 
 check-families: all ## clients of other servos (from PyPI) against the simulator
 	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q --disable-pip-version-check $(FAMILY_CLIENTS)

@@ -56,19 +56,21 @@ def animated(frames: List[Any], rate_hz: int) -> bytes:
 class Film:
     """What a camera that follows the base has seen, RATE_HZ frames a second of its time."""
 
-    def __init__(self, body: Any, width: int = 320, height: int = 240) -> None:
+    def __init__(self, body: Any, width: int = 240, height: int = 240) -> None:
         mujoco = body.mujoco
         self.frames: List[Any] = []
         self._next = 0.0
         try:
+            body.model.vis.headlight.ambient[:] = 0.35
+            body.model.vis.headlight.diffuse[:] = 0.6
             self._renderer = mujoco.Renderer(body.model, height, width)
         except Exception as bad:  # of OpenGL, whatever it is called there
             raise RuntimeError(f"no pictures: {bad}; try MUJOCO_GL=egl or MUJOCO_GL=osmesa") from bad
         self._camera = mujoco.MjvCamera()
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FREE
         size = float(body.model.stat.extent)
-        self._camera.distance = 0.75 if body.base >= 0 else 1.5 * size
-        self._camera.azimuth, self._camera.elevation = 150, -12
+        self._camera.distance = 0.6 if body.base >= 0 else 1.5 * size
+        self._camera.azimuth, self._camera.elevation = 150, -18
 
     def look(self, body: Any) -> None:
         """Takes a frame where one is due."""
