@@ -39,6 +39,7 @@ typedef struct grobo_joint {
     /** Its servo: of a table of its family, or of a user's file. NULL: the first of the family
      *  whose number is servo_model. grobo_robot_def_read() sets it, as two may have one number. */
     const struct grobo_servo_model *servo;
+#if !GROBO_DRIVERS_PLAIN
     /** A joint with a ratio follows another one: whatever moves, stops, switches or frees one of
      *  the two does so with both, in one frame where the family can, and it goes to `ratio` times
      *  the other's angle. It cannot be sent anywhere else. 0: it follows none. */
@@ -47,6 +48,7 @@ typedef struct grobo_joint {
      *  (GROBO_TRIP_APART), and a stop sends both to one place. 0: each has a shaft of its own. */
     double apart_rad;
     uint8_t follows; /**< the joint that it follows, which follows none itself */
+#endif
 } grobo_joint;
 
 /** The angle of a joint's servo, from the middle of its range, where the joint is at an angle. */

@@ -3,6 +3,8 @@
 #ifndef GROBO_MODEL_JOINT_H
 #define GROBO_MODEL_JOINT_H
 
+#include <stddef.h>
+
 #include <grobo/model.h>
 
 /* joint is 0..n-1. */
@@ -16,19 +18,57 @@ static inline const grobo_joint *grobo_i_joint(const grobo_model *model, int joi
 #endif
 }
 
-/* Whether joints of this size have `ratio`, `apart_rad` and `follows`. */
-#if GROBO_TABLES_FIXED
-#define GROBO_I_HAS_FOLLOWS(model, joint) true
+/* What a joint has of the one that it follows (grobo_joint.ratio, .apart_rad, .follows); a build
+ * for plain drivers has no joints that follow. */
+#if GROBO_DRIVERS_PLAIN
+static inline double grobo_i_ratio(const grobo_joint *joint)
+{
+    (void)joint;
+    return 0;
+}
+static inline double grobo_i_apart(const grobo_joint *joint)
+{
+    (void)joint;
+    return 0;
+}
+static inline int grobo_i_first(const grobo_joint *joint)
+{
+    (void)joint;
+    return 0;
+}
 #else
-#define GROBO_I_HAS_FOLLOWS(model, joint)                                                          \
-    ((size_t)((const char *)(&(joint)->follows + 1) - (const char *)(joint)) <= (model)->joint_size)
+static inline double grobo_i_ratio(const grobo_joint *joint)
+{
+    return joint->ratio;
+}
+static inline double grobo_i_apart(const grobo_joint *joint)
+{
+    return joint->apart_rad;
+}
+static inline int grobo_i_first(const grobo_joint *joint)
+{
+    return joint->follows;
+}
 #endif
 
-/* True of one that follows another one: then it has these three members. */
+/* Whether joints of this size have these three members. */
+static inline bool grobo_i_may_follow(const grobo_model *model)
+{
+#if GROBO_DRIVERS_PLAIN
+    (void)model;
+    return false;
+#elif GROBO_TABLES_FIXED
+    (void)model;
+    return true;
+#else
+    return model->joint_size >= offsetof(grobo_joint, follows) + sizeof(uint8_t);
+#endif
+}
+
+/* True of one that follows another one. */
 static inline bool grobo_i_joint_follows(const grobo_model *model, int joint)
 {
-    const grobo_joint *of = grobo_i_joint(model, joint);
-    return GROBO_I_HAS_FOLLOWS(model, of) && of->ratio != 0;
+    return grobo_i_may_follow(model) && grobo_i_ratio(grobo_i_joint(model, joint)) != 0;
 }
 
 #endif

@@ -80,23 +80,23 @@ static bool is_same(double a_rad, double b_rad)
 /* A joint that follows another one can go where that one sends it, and nowhere else. */
 static bool is_follower_good(const grobo_model *model, const grobo_joint *joint)
 {
-    if (!GROBO_I_HAS_FOLLOWS(model, joint)) {
+    double ratio = grobo_i_ratio(joint), apart_rad = grobo_i_apart(joint);
+    if (!grobo_i_may_follow(model)) {
         return true;
     }
-    bool alone = grobo_i_bits(joint->ratio) << 1 == 0;
-    if (GROBO_DRIVERS_PLAIN || alone) { /* a build for plain drivers has none that follow */
-        return alone && joint->follows == 0 && grobo_i_bits(joint->apart_rad) << 1 == 0;
+    if (ratio == 0) {
+        return grobo_i_first(joint) == 0 && apart_rad == 0;
     }
-    if (joint->follows >= model->n_joints || !isfinite(joint->ratio) ||
-        !isfinite(joint->apart_rad) || joint->apart_rad < 0) {
+    if (grobo_i_first(joint) >= model->n_joints || !isfinite(ratio) || !isfinite(apart_rad) ||
+        apart_rad < 0) {
         return false;
     }
-    const grobo_joint *first = grobo_i_joint(model, joint->follows);
-    double low_rad = first->min_rad * joint->ratio, high_rad = first->max_rad * joint->ratio;
-    return first != joint && first->ratio == 0 &&
+    const grobo_joint *first = grobo_i_joint(model, grobo_i_first(joint));
+    double low_rad = first->min_rad * ratio, high_rad = first->max_rad * ratio;
+    return first != joint && grobo_i_ratio(first) == 0 &&
            is_same(joint->min_rad, fmin(low_rad, high_rad)) &&
            is_same(joint->max_rad, fmax(low_rad, high_rad)) &&
-           is_same(joint->init_rad, first->init_rad * joint->ratio);
+           is_same(joint->init_rad, first->init_rad * ratio);
 }
 
 static bool is_mirror_good(const grobo_model *model, int j)

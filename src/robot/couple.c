@@ -43,10 +43,10 @@ static int n_joints(const grobo_robot *robot)
 grobo_joint_mask grobo_i_find_coupled(const grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int f = first_follower(robot); f < n_joints(robot); f = next_follower(robot, f)) {
-        joints |= grobo_i_has(joints, f) ? GROBO_JOINT_BIT(joint_of(robot, f)->follows) : 0;
+        joints |= grobo_i_has(joints, f) ? GROBO_JOINT_BIT(grobo_i_first(joint_of(robot, f))) : 0;
     }
     for (int f = first_follower(robot); f < n_joints(robot); f = next_follower(robot, f)) {
-        joints |= grobo_i_has(joints, joint_of(robot, f)->follows) ? GROBO_JOINT_BIT(f) : 0;
+        joints |= grobo_i_has(joints, grobo_i_first(joint_of(robot, f))) ? GROBO_JOINT_BIT(f) : 0;
     }
     return joints;
 }
@@ -54,7 +54,7 @@ grobo_joint_mask grobo_i_find_coupled(const grobo_robot *robot, grobo_joint_mask
 bool grobo_i_find_alone(const grobo_robot *robot, grobo_joint_mask joints, int *joint)
 {
     for (int f = first_follower(robot); f < n_joints(robot); f = next_follower(robot, f)) {
-        if (grobo_i_has(joints, f) && !grobo_i_has(joints, joint_of(robot, f)->follows)) {
+        if (grobo_i_has(joints, f) && !grobo_i_has(joints, grobo_i_first(joint_of(robot, f)))) {
             *joint = f;
             return true;
         }
@@ -67,8 +67,8 @@ void grobo_i_set_coupled(const grobo_robot *robot, grobo_posture *target)
     for (int f = first_follower(robot); f < n_joints(robot); f = next_follower(robot, f)) {
         const grobo_joint *joint = joint_of(robot, f);
         target->set &= ~GROBO_JOINT_BIT(f);
-        if (grobo_i_has(target->set, joint->follows)) {
-            target->angle_rad[f] = target->angle_rad[joint->follows] * joint->ratio;
+        if (grobo_i_has(target->set, grobo_i_first(joint))) {
+            target->angle_rad[f] = target->angle_rad[grobo_i_first(joint)] * grobo_i_ratio(joint);
             target->set |= GROBO_JOINT_BIT(f);
         }
     }
@@ -77,7 +77,7 @@ void grobo_i_set_coupled(const grobo_robot *robot, grobo_posture *target)
 void grobo_i_join_times(const grobo_robot *robot, grobo_target *target)
 {
     for (int f = first_follower(robot); f < n_joints(robot); f = next_follower(robot, f)) {
-        int first = joint_of(robot, f)->follows;
+        int first = grobo_i_first(joint_of(robot, f));
         if (grobo_i_has(target->posture.set, f) && grobo_i_has(target->posture.set, first)) {
             int64_t *time_us = target->joint_time_us;
             time_us[first] = time_us[f] = grobo_i_later(time_us[first], time_us[f]);
@@ -91,10 +91,10 @@ static void rest_beside(const grobo_robot *robot, int joint, int other, const gr
                         grobo_posture *to)
 {
     const grobo_robot_axis *beside = &robot->axes[other];
-    double scale = joint == pair->follows ? 1 / pair->ratio : pair->ratio;
+    double scale = joint == grobo_i_first(pair) ? 1 / grobo_i_ratio(pair) : grobo_i_ratio(pair);
     double rest_rad = beside->trajectory.to_rad * scale;
     bool rests = grobo_i_has(robot->halted_all, other) && !grobo_i_is_stray(beside);
-    if (rests && fabs(rest_rad - to->angle_rad[joint]) <= pair->apart_rad) {
+    if (rests && fabs(rest_rad - to->angle_rad[joint]) <= grobo_i_apart(pair)) {
         to->angle_rad[joint] = rest_rad;
     }
 }
@@ -103,24 +103,24 @@ void grobo_i_join_rest(const grobo_robot *robot, grobo_joint_mask may, grobo_tar
 {
     for (int f = first_follower(robot); f < n_joints(robot); f = next_follower(robot, f)) {
         const grobo_joint *joint = joint_of(robot, f);
-        grobo_joint_mask pair = GROBO_JOINT_BIT(f) | GROBO_JOINT_BIT(joint->follows);
+        grobo_joint_mask pair = GROBO_JOINT_BIT(f) | GROBO_JOINT_BIT(grobo_i_first(joint));
         grobo_posture *to = &target->posture;
-        if (!(joint->apart_rad > 0) || (to->set & pair) == 0) {
+        if (!(grobo_i_apart(joint) > 0) || (to->set & pair) == 0) {
             continue;
         }
         if ((may & pair) != pair) {
-            bool first = grobo_i_has(to->set, joint->follows);
-            int one = first ? joint->follows : f, other = first ? f : joint->follows;
+            bool first = grobo_i_has(to->set, grobo_i_first(joint));
+            int one = first ? grobo_i_first(joint) : f, other = first ? f : grobo_i_first(joint);
             rest_beside(robot, one, other, joint, to);
             continue;
         }
-        if (!grobo_i_has(to->set, joint->follows)) {
-            to->angle_rad[joint->follows] = to->angle_rad[f] / joint->ratio;
-            target->joint_time_us[joint->follows] = target->joint_time_us[f];
+        if (!grobo_i_has(to->set, grobo_i_first(joint))) {
+            to->angle_rad[grobo_i_first(joint)] = to->angle_rad[f] / grobo_i_ratio(joint);
+            target->joint_time_us[grobo_i_first(joint)] = target->joint_time_us[f];
         } else if (!grobo_i_has(to->set, f)) {
-            target->joint_time_us[f] = target->joint_time_us[joint->follows];
+            target->joint_time_us[f] = target->joint_time_us[grobo_i_first(joint)];
         }
-        to->angle_rad[f] = to->angle_rad[joint->follows] * joint->ratio;
+        to->angle_rad[f] = to->angle_rad[grobo_i_first(joint)] * grobo_i_ratio(joint);
         to->set |= pair;
     }
     grobo_i_join_times(robot, target);
@@ -142,14 +142,15 @@ void grobo_i_couple_limits(const grobo_robot *robot, int joint, double *min_rad,
 {
     const grobo_joint *own = joint_of(robot, joint);
     bool follows = grobo_i_has(grobo_i_followers(robot), joint);
-    int first = follows ? own->follows : joint;
-    double to_first = follows ? 1 / own->ratio : 1; /* from its angle to that of the first one */
+    int first = follows ? grobo_i_first(own) : joint;
+    double to_first =
+        follows ? 1 / grobo_i_ratio(own) : 1; /* from its angle to that of the first one */
     if (follows) {
         narrow(robot, first, to_first, min_rad, max_rad);
     }
     for (int f = first_follower(robot); f < n_joints(robot); f = next_follower(robot, f)) {
-        if (f != joint && joint_of(robot, f)->follows == first) {
-            narrow(robot, f, joint_of(robot, f)->ratio * to_first, min_rad, max_rad);
+        if (f != joint && grobo_i_first(joint_of(robot, f)) == first) {
+            narrow(robot, f, grobo_i_ratio(joint_of(robot, f)) * to_first, min_rad, max_rad);
         }
     }
 }
@@ -160,18 +161,18 @@ void grobo_i_couple_limits(const grobo_robot *robot, int joint, double *min_rad,
 double grobo_i_apart_rad(const grobo_robot *robot, int follower, int read)
 {
     const grobo_joint *joint = joint_of(robot, follower);
-    int other = read == follower ? joint->follows : follower;
+    int other = read == follower ? grobo_i_first(joint) : follower;
     const grobo_robot_axis *axis = &robot->axes[read], *beside = &robot->axes[other];
     bool told =
         beside->angle_us != GROBO_NEVER_US && (beside->state.valid & GROBO_FIELD_ANGLE) != 0;
     bool between = told && axis->before_us <= beside->angle_us;
     bool at_once = told && robot->now_us - beside->angle_us <= AT_ONCE_US;
-    if ((read != follower && read != joint->follows) || (!between && !at_once)) {
+    if ((read != follower && read != grobo_i_first(joint)) || (!between && !at_once)) {
         return NAN;
     }
     /* In angles of the one that follows: where the one just read was between its two readings. */
-    double scale = read == follower ? 1 : joint->ratio;
-    double beside_rad = beside->state.angle_rad * (read == follower ? joint->ratio : 1);
+    double scale = read == follower ? 1 : grobo_i_ratio(joint);
+    double beside_rad = beside->state.angle_rad * (read == follower ? grobo_i_ratio(joint) : 1);
     double b_rad = axis->state.angle_rad * scale;
     double a_rad = between ? axis->before_rad * scale : b_rad;
     return fmax(fmax(fmin(a_rad, b_rad) - beside_rad, beside_rad - fmax(a_rad, b_rad)), 0);
@@ -181,9 +182,12 @@ bool grobo_i_find_torn(const grobo_robot *robot, const grobo_posture *target, in
 {
     for (int f = first_follower(robot); f < n_joints(robot); f = next_follower(robot, f)) {
         const grobo_joint *own = joint_of(robot, f);
-        bool first = grobo_i_has(target->set, own->follows), second = grobo_i_has(target->set, f);
-        double off_rad = target->angle_rad[f] - target->angle_rad[own->follows] * own->ratio;
-        if (own->apart_rad > 0 && (first != second || (first && fabs(off_rad) > own->apart_rad))) {
+        bool first = grobo_i_has(target->set, grobo_i_first(own)),
+             second = grobo_i_has(target->set, f);
+        double off_rad =
+            target->angle_rad[f] - target->angle_rad[grobo_i_first(own)] * grobo_i_ratio(own);
+        if (grobo_i_apart(own) > 0 &&
+            (first != second || (first && fabs(off_rad) > grobo_i_apart(own)))) {
             *joint = f;
             return true;
         }

@@ -72,11 +72,11 @@ static void watch_apart(grobo_robot *robot, int joint, const grobo_joint_state *
         if (!grobo_i_has(grobo_i_followers(robot), f)) {
             continue;
         }
-        bool watched = own->apart_rad > 0, told = (got->valid & GROBO_FIELD_ANGLE) != 0;
+        bool watched = grobo_i_apart(own) > 0, told = (got->valid & GROBO_FIELD_ANGLE) != 0;
         double apart_rad = watched && told ? grobo_i_apart_rad(robot, f, joint) : NAN;
-        if (apart_rad <= own->apart_rad) {
+        if (apart_rad <= grobo_i_apart(own)) {
             robot->axes[f].n_apart = 0;
-        } else if (apart_rad > own->apart_rad && ++robot->axes[f].n_apart >= APART_READINGS) {
+        } else if (apart_rad > grobo_i_apart(own) && ++robot->axes[f].n_apart >= APART_READINGS) {
             robot->axes[f].n_apart = 0;
             grobo_i_trip(robot, GROBO_TRIP_APART, f, grobo_deg_from_rad(apart_rad), true);
         }
