@@ -108,7 +108,7 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
 }
 
 /* The shaft's angle at the goal: as far from here as the goal is from the present position. */
-static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
+int32_t grobo_i_dxl2_sim_goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
 {
     int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     int32_t way = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL) - position_at(servo, here_mdeg);
@@ -185,7 +185,7 @@ static void follow(grobo_sim *sim, int index)
     }
 }
 
-static void cut(grobo_sim *sim, int index, bool hot)
+void grobo_i_dxl2_sim_cut(grobo_sim *sim, int index, bool hot)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 0);
@@ -238,7 +238,7 @@ static int64_t watchdog_us(const grobo_sim_servo *servo)
                : GROBO_NEVER_US;
 }
 
-static int64_t next_us(const grobo_sim *sim, int index)
+int64_t grobo_i_dxl2_sim_next_us(const grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
     if (!servo->powered) {
@@ -259,12 +259,12 @@ static void fail(grobo_sim *sim, int index, unsigned error)
     grobo_torque before = (grobo_torque)servo->plant.torque;
     servo->status |= (uint8_t)error;
     if ((grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN) & (int)error) != 0) {
-        cut(sim, index, false);
+        grobo_i_dxl2_sim_cut(sim, index, false);
         grobo_i_sim_torque(sim, index, before);
     }
 }
 
-static void act(grobo_sim *sim, int index)
+void grobo_i_dxl2_sim_act(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     if ((servo->status & error_of(servo, GROBO_DXL2_VOLTAGE)) == 0 &&
@@ -285,13 +285,13 @@ static void act(grobo_sim *sim, int index)
 
 /* ---- restart ------------------------------------------------------------------------------- */
 
-static int32_t bps(const grobo_sim *sim, int index)
+int32_t grobo_i_dxl2_sim_bps(const grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
     return grobo_servo_baud_bps(servo->model, grobo_i_dxl_get(servo, GROBO_ROLE_BAUD));
 }
 
-static void restart(grobo_sim *sim, int index)
+void grobo_i_dxl2_sim_restart(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_dxl_boot(sim, index);
@@ -319,7 +319,7 @@ static bool has_mode(const grobo_sim_servo *servo, int32_t mode)
                : places(mode) || mode == GROBO_DXL2_MODE_VELOCITY || mode == GROBO_DXL2_MODE_PWM;
 }
 
-static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
+bool grobo_i_dxl2_sim_factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     if (!grobo_i_dxl_sell(sim, index, id, GROBO_DXL2_ID_MAX, baud_bps)) {
@@ -482,7 +482,7 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
     grobo_i_dxl_tell(sim, index, reg, value);
 }
 
-static int store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+int grobo_i_dxl2_sim_store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_register *reg;
@@ -506,31 +506,11 @@ uint8_t grobo_i_dxl2_sim_write(grobo_sim *sim, int index, int address, const uin
     for (size_t at = 0; at < n && error == GROBO_DXL2_DONE;) {
         grobo_i_indirect_piece piece = grobo_i_indirect_piece_at(servo, address + (int)at, n - at);
         if (piece.kind == GROBO_I_INDIRECT_REGISTERS) {
-            (void)store(sim, index, piece.address, bytes + at, piece.n);
+            (void)grobo_i_dxl2_sim_store(sim, index, piece.address, bytes + at, piece.n);
         } else {
             grobo_i_indirect_write(servo, &piece, bytes + at);
         }
         at += piece.n;
     }
     return error;
-}
-
-/* ---- the family ---------------------------------------------------------------------------- */
-
-const grobo_sim_family grobo_i_sim_dxl2 = {.tables = {&grobo_i_dxl2_table},
-                                           .measure = grobo_i_dxl2_sim_measure,
-                                           .packet = grobo_i_dxl2_sim_packet,
-                                           .factory = factory,
-                                           .boot = restart,
-                                           .cut = cut,
-                                           .goal_mdeg = goal_mdeg,
-                                           .refresh = grobo_i_dxl2_sim_refresh,
-                                           .bps = bps,
-                                           .next_us = next_us,
-                                           .act = act,
-                                           .store = store};
-
-const grobo_sim_family *grobo_sim_dxl2(void)
-{
-    return &grobo_i_sim_dxl2;
 }

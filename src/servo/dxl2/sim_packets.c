@@ -9,6 +9,7 @@
 #include "src/base/bytes.h"
 #include "src/servo/dxl2/sim_packets.h"
 #include "src/servo/families.h"
+#include "src/servo/tables.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/indirect.h"
 #include "src/sim/servo/note.h"
@@ -379,8 +380,7 @@ static void spread(grobo_sim *sim, const grobo_dxl2_packet *packet, int result,
     }
 }
 
-void grobo_i_dxl2_sim_packet(const grobo_sim_family *self, grobo_sim *sim,
-                             const grobo_sim_event *raw)
+static void packet(const grobo_sim_family *self, grobo_sim *sim, const grobo_sim_event *raw)
 {
     (void)self;
     uint8_t data[GROBO_DXL2_FRAME_MAX_BYTES];
@@ -400,8 +400,28 @@ void grobo_i_dxl2_sim_packet(const grobo_sim_family *self, grobo_sim *sim,
     }
 }
 
-int grobo_i_dxl2_sim_measure(const uint8_t *bytes, size_t n, bool good)
+static int measure(const uint8_t *bytes, size_t n, bool good)
 {
     int size = grobo_dxl2_measure(bytes, n, GROBO_ACCEPT_COMMANDS);
     return size == GROBO_ERR_CHECKSUM && !good ? 7 + grobo_i_get_u16(bytes + 5) : size;
+}
+
+/* ---- the family ---------------------------------------------------------------------------- */
+
+const grobo_sim_family grobo_i_sim_dxl2 = {.tables = {&grobo_i_dxl2_table},
+                                           .measure = measure,
+                                           .packet = packet,
+                                           .factory = grobo_i_dxl2_sim_factory,
+                                           .boot = grobo_i_dxl2_sim_restart,
+                                           .cut = grobo_i_dxl2_sim_cut,
+                                           .goal_mdeg = grobo_i_dxl2_sim_goal_mdeg,
+                                           .refresh = grobo_i_dxl2_sim_refresh,
+                                           .bps = grobo_i_dxl2_sim_bps,
+                                           .next_us = grobo_i_dxl2_sim_next_us,
+                                           .act = grobo_i_dxl2_sim_act,
+                                           .store = grobo_i_dxl2_sim_store};
+
+const grobo_sim_family *grobo_sim_dxl2(void)
+{
+    return &grobo_i_sim_dxl2;
 }

@@ -1,14 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* Between packets of Protocol 2.0 (sim_packets.c) and the servos that carry them out (sim.c). */
+/* What packets of Protocol 2.0 (sim_packets.c) ask of the servos that carry them out (sim.c). */
 #ifndef GROBO_SERVO_DXL2_SIM_PACKETS_H
 #define GROBO_SERVO_DXL2_SIM_PACKETS_H
 
 #include <grobo/core/sim_static.h>
 
 /* Of grobo_sim_family. */
-int grobo_i_dxl2_sim_measure(const uint8_t *bytes, size_t n, bool good);
-void grobo_i_dxl2_sim_packet(const grobo_sim_family *self, grobo_sim *sim,
-                             const grobo_sim_event *raw);
+bool grobo_i_dxl2_sim_factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps);
+void grobo_i_dxl2_sim_restart(grobo_sim *sim, int index);
+void grobo_i_dxl2_sim_cut(grobo_sim *sim, int index, bool hot);
+int32_t grobo_i_dxl2_sim_goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo);
+int32_t grobo_i_dxl2_sim_bps(const grobo_sim *sim, int index);
+int64_t grobo_i_dxl2_sim_next_us(const grobo_sim *sim, int index);
+void grobo_i_dxl2_sim_act(grobo_sim *sim, int index);
+int grobo_i_dxl2_sim_store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n);
 
 /* Whether all of a write can be done, its indirect part too: GROBO_DXL2_DONE, or why not. */
 uint8_t grobo_i_dxl2_sim_judge(const grobo_sim_servo *servo, int address, const uint8_t *bytes,
