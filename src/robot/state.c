@@ -24,6 +24,7 @@ enum {
 };
 #define N NEVER
 
+/* Without assertions a transition that the table lacks leaves the joint unknown. */
 static const uint8_t next_of[GROBO_I_JOINT_STATES][GROBO_I_JOINT_EVENTS] = {
     /* forget, read, turns, strays, holds, loose, goal, segment, hold, off, on, rest */
     [U] = {U, I, X, U, U, U, N, N, N, U, U, U}, [I] = {U, I, X, S, R, I, T, N, I, I, T, I},
@@ -36,5 +37,5 @@ void grobo_i_joint_to(grobo_robot_axis *axis, grobo_i_joint_event event)
 {
     uint8_t next = next_of[axis->phase][event];
     GROBO_ASSERT(next != NEVER);
-    axis->phase = next;
+    axis->phase = next != NEVER ? next : GROBO_I_JOINT_UNKNOWN; /* it is read before it moves */
 }
