@@ -99,10 +99,11 @@ TEST(one_old_servo_among_them_is_enough)
 }
 
 /* The firmware from which the maker says that a model answers so, 0: never (ROBOTIS e-manual,
- * Protocol 2.0, Fast Sync Read: X430 and X540 from 45 but for 2X, X330 from 46; no MX). */
+ * Protocol 2.0, Fast Sync Read: X430 and X540 from 45 but for 2X, X330 from 46; no MX, and no XL-320,
+ * whose joints are read one by one, each seldom). */
 static uint8_t first_of(const char *name)
 {
-    if (strncmp(name, "2X", 2) == 0 || name[0] != 'X') {
+    if (strncmp(name, "2X", 2) == 0 || name[0] != 'X' || strcmp(name, "XL-320") == 0) {
         return 0;
     }
     return strncmp(name + 2, "330", 3) == 0 ? 46 : 45;
@@ -133,7 +134,9 @@ TEST(each_model_is_asked_so_from_its_firmware_on)
             run(300 * MS);
             bool expected = first > 0 && versions[v] >= first;
             assert_true(expected ? fast > 20 && plain <= 2 : fast == 0 && plain > 20);
-            assert_read();
+            if (strcmp(model->name, "XL-320") != 0) {
+                assert_read();
+            }
         }
     }
     assert_true(models >= 35);
