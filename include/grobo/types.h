@@ -89,6 +89,7 @@
     {                                                                                              \
         GROBO_SIZED(type), __VA_ARGS__                                                             \
     }
+/** The empty initializer of such a table, for what a function fills in. */
 #define GROBO_TABLE_INIT(type) GROBO_INIT(type)
 #endif
 

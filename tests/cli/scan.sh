@@ -104,7 +104,8 @@ start_sim --servo 1=STS3215 || { echo "Bail out! the simulator did not start"; e
 # Only the five silent ids of the arm need patience.
 check_json "all ids are asked" 'len(lines[0]["servos"]) == 1 and lines[0]["sure"] and
     lines[0]["silent"] == 253' "$GRCTL" -d "$robot" --robot so101 --trace "$work/arm" --json scan
-# In the same run, what is waited behind the last request for each id: half of it for most.
+# In the same run, what is waited behind the last request for each id: half of it for most. Where
+# the machine makes the line slow all get patience, in three rounds: their number is bounded.
 waits_for_the_arm() {
     "$GRCTL" decode --json "$work/arm" >"$work/out" && python3 - "$work/out" <<'PY'
 import json, statistics, sys
@@ -115,7 +116,7 @@ for request, later in zip(sent, sent[1:]):
 arm = statistics.median(waited[i] for i in range(2, 7))
 others = statistics.median(ms for i, ms in waited.items() if i > 6)
 print(f"{len(sent)} requests, {others:.1f} ms for most, {arm:.1f} ms for the arm")
-sys.exit(not (250 <= len(sent) <= 3 * 254 + 15 and 2 * others < arm))
+sys.exit(not (250 <= len(sent) <= 3 * 254 + 15 and (len(sent) > 400 or 2 * others < arm)))
 PY
 }
 if have_json; then

@@ -71,14 +71,14 @@ typedef enum grobo_dxl2_error {
 } grobo_dxl2_error;
 
 /** Bits of the registers shutdown and hardware_error. */
-#define GROBO_DXL2_VOLTAGE 0x01u        /**< outside its limits */
-#define GROBO_DXL2_OVERHEATED 0x04u     /**< above its limit */
-#define GROBO_DXL2_ENCODER 0x08u        /**< the encoder of the motor fails */
-#define GROBO_DXL2_SHOCK 0x10u          /**< an electrical shock, or too little power */
-#define GROBO_DXL2_OVERLOAD 0x20u       /**< a load that lasts */
-#define GROBO_DXL2_XL320_OVERLOAD 0x01u /**< those of XL-320 (emanual xl320) */
-#define GROBO_DXL2_XL320_OVERHEATED 0x02u
-#define GROBO_DXL2_XL320_VOLTAGE 0x04u
+#define GROBO_DXL2_VOLTAGE 0x01u          /**< outside its limits */
+#define GROBO_DXL2_OVERHEATED 0x04u       /**< above its limit */
+#define GROBO_DXL2_ENCODER 0x08u          /**< the encoder of the motor fails */
+#define GROBO_DXL2_SHOCK 0x10u            /**< an electrical shock, or too little power */
+#define GROBO_DXL2_OVERLOAD 0x20u         /**< a load that lasts */
+#define GROBO_DXL2_XL320_OVERLOAD 0x01u   /**< those of XL-320 (emanual xl320) */
+#define GROBO_DXL2_XL320_OVERHEATED 0x02u /**< above its limit */
+#define GROBO_DXL2_XL320_VOLTAGE 0x04u    /**< outside its limits */
 
 /** Operating modes. */
 typedef enum grobo_dxl2_mode {
