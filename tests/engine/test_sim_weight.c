@@ -385,7 +385,8 @@ static void hold_lever(const grobo_robot_family *family, const grobo_servo_model
                   servo->name, stall_nm, held_deg, current_a * 1000, angle_deg(0));
     assert_true(fabs(held_deg) < 10); /* the small ones have soft loops */
     assert_true(fabs(speed_rad_s) < 0.02);
-    assert_true(fabs(angle_deg(0)) > 60);
+    /* The friction that was identified of an XL-320 carries this lever from 52 degrees on. */
+    assert_true(fabs(angle_deg(0)) > 50);
 }
 
 static const grobo_robot_family *next_family(const grobo_robot_family *before)
