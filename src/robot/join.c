@@ -116,7 +116,9 @@ int grobo_i_join_waiting(grobo_robot *robot, const grobo_robot_request *request)
                       (other->target.time_us == request->target.time_us || may_differ(robot));
         if (alike && (!moves || singly)) {
             other->joints |= request->joints;
-            merge(&other->target, other->joint_time_us, request);
+            if (moves) { /* other kinds have no target */
+                merge(&other->target, other->joint_time_us, request);
+            }
             return other->number;
         }
         if (overlaps) {

@@ -64,6 +64,7 @@ int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_k
     request.joints = joints;
     request.sense = kind;
     request.begin_by_us = 0;
+    request.target.n_joints = 0;
     request.target.set = 0;
     request.target.time_us = 0;
     request.singly = false;

@@ -432,6 +432,29 @@ TEST_WITH(rig_wirings, what_waits_is_joined)
 }
 
 /* Torque on waits for other torque, and is refused where its joint does something else. */
+/* What lies on the stack where a request is made next is no small number. */
+static __attribute__((noinline)) void dirty_stack(void)
+{
+    volatile unsigned char below[8192];
+    for (size_t i = 0; i < sizeof below; i++) {
+        below[i] = 0x7f;
+    }
+}
+
+TEST_WITH(rig_wirings, a_reading_that_waits_is_joined_by_what_it_sets_alone)
+{
+    start_idle();
+    run_job(0, GROBO_JOB_EXIT, GROBO_JOINTS_ALL(N));
+    dirty_stack();
+    int first = grobo_robot_sense(&robot, GROBO_JOINT_BIT(0), GROBO_SENSE_FULL);
+    assert_true(first > 0);
+    dirty_stack();
+    assert_int_equal(grobo_robot_sense(&robot, GROBO_JOINT_BIT(1), GROBO_SENSE_FULL), first);
+    assert_int_equal(robot.queued, 1);
+    assert_true(robot.queue[0].joints == (GROBO_JOINT_BIT(0) | GROBO_JOINT_BIT(1)));
+    assert_int_equal(robot.queue[0].target.set, 0);
+}
+
 TEST_WITH(rig_wirings, torque_on_waits_for_torque_alone)
 {
     for (int running = GROBO_JOB_NONE + 1; running < GROBO_JOB_SETTLE; running++) {
