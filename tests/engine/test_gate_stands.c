@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* A goal's frame that leaves as it was asked for, or is built anew: its bytes are the same. */
+/*
+ * A goal's frame that leaves as it was asked for, or is built anew: its bytes are the same. When a
+ * halt that is owed leaves.
+ */
 #include <stdint.h>
 #include <string.h>
 
@@ -217,4 +220,22 @@ TEST_WITH(rig_wirings, the_time_is_the_one_that_doubles_find)
         stretched += target.joint_time_us[j] > asked_us;
     }
     assert_in_range(stretched, 2000, 18000);
+}
+
+/* A joint of an arm that was told something after it was read: its halt waits for a reading, which
+ * has come since, or for as long as a servo takes to restart. */
+TEST_WITH(rig_wirings, a_halt_that_is_owed_leaves_once_its_joint_was_read_since)
+{
+    for (int j = 0; j < N; j++) {
+        start();
+        driver.arm = true;
+        grobo_robot_axis *axis = &robot.axes[j];
+        axis->angle_us = NOW - S;
+        axis->told_us = NOW - S / 2;
+        robot.halts_owed = GROBO_JOINT_BIT(j);
+        robot.halt_us = axis->angle_us;
+        assert_true(grobo_i_gate_halt_at(&robot) == NOW);
+        robot.halt_us = axis->angle_us + 1;
+        assert_true(grobo_i_gate_halt_at(&robot) == robot.halt_us + 3 * GROBO_I_RESTART_US);
+    }
 }
