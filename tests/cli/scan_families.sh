@@ -26,7 +26,7 @@ check "one family" both exits 0 on_line --family dynamixel2 -b 1000000 --last 3 
     said '^1 servo; 3 silent; '
 check "nobody there" exits 1 on_line --family rs30x --last 3
 check_json "in JSON" '[(s["id"], s["family"], s["joint"]) for s in lines[0]["servos"]] ==
-    [(1, "dynamixel2", None)]' on_line --json --family dynamixel2 --last 2
+    [(1, "dynamixel2", None)]' on_line --timeout 500 --json --family dynamixel2 -b 1000000 --last 2
 check "without a line" fails 2 '--family needs a line' \
     "$GRCTL" -d sim scan --family dynamixel2 --last 2
 stop_sim
