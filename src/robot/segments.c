@@ -75,7 +75,6 @@ static void give_up(grobo_robot *robot)
     robot->counters.stalls++;
     grobo_i_trip(robot, GROBO_TRIP_HOST_STALL, -1, late_ms, false);
     grobo_i_jobs_end(robot, goes_on, GROBO_ERR_CANCELED);
-    grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
 }
 
 /* True if a joint that had missed its part of the trajectory is to get it before the others. */
