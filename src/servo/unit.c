@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Reads the unit of a register, a text of its table, as a number. */
 #include "src/servo/unit.h"
 
 /* The number, and what it is of: of "0.229 rpm" 6 * 0.229 deg/s, of "0.1 V" 100 mV. */

@@ -66,8 +66,7 @@ static void refuse(guest *g, struct evbuffer *input, wall_answer no)
     guests_end(g);
 }
 
-/* How large the body of a request to this port may be. */
-static size_t body_max(const port *p)
+size_t early_body_max(const port *p)
 {
     return p == &p->of->first ? HTTP_UPLOAD_BYTES : HTTP_BODY_BYTES;
 }
@@ -101,7 +100,7 @@ void early_hear(guest *g, struct evbuffer *input, size_t added)
     if (!g->judged) {
         return;
     }
-    wall_answer no = head_judge(text, whole ? size : g->head_bytes, body_max(g->at));
+    wall_answer no = head_judge(text, whole ? size : g->head_bytes, early_body_max(g->at));
     if (whole && h->config.early) {
         hear_stop(g, text, g->got - size);
     }

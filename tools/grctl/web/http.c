@@ -17,6 +17,7 @@
 #include "tools/grctl/os/net.h"
 #include "tools/grctl/web/head.h"
 #include "tools/grctl/web/http_own.h"
+
 enum {
     IDLE_S = 5, /* a silent connection, or half a request */
     SWEEP_US = 100000
@@ -276,7 +277,7 @@ static bool open_port(http *h, port *p, uint16_t number)
     evhttp_set_gencb(p->server, on_request, p);
     evhttp_set_allowed_methods(p->server, 0xffff); /* the wall has its own answer to others */
     evhttp_set_max_headers_size(p->server, HTTP_HEADER_BYTES);
-    evhttp_set_max_body_size(p->server, p == &h->first ? HTTP_UPLOAD_BYTES : HTTP_BODY_BYTES);
+    evhttp_set_max_body_size(p->server, (ev_ssize_t)early_body_max(p));
     evhttp_set_timeout(p->server, IDLE_S);
     evhttp_set_default_content_type(p->server, NULL);
     if (h->config.address) {

@@ -98,6 +98,8 @@ void guests_end(guest *g);
  * connection.
  */
 void early_hear(guest *g, struct evbuffer *input, size_t added);
+/* How large the body of a request to this port may be. */
+size_t early_body_max(const port *p);
 
 /* ---- streams (streams.c) --------------------------------------------------------------------- */
 
