@@ -128,10 +128,12 @@ WORDS := src/servo/words/%.c $(wildcard src/servo/*/words.c src/servo/*/words_*.
 CORE_SRCS := $(filter-out $(HEAP) $(WORDS),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
 OTHER_SRCS := $(sort $(HEAP) $(filter-out src/servo/words/%,$(WORDS)) $(wildcard src/servo/words/*.c) $(wildcard src/team/*.c src/sim/physics/*.c) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))
-CHOSEN := tools/grctl/edit/% tools/grctl/screen/% tools/grctl/xml/% tools/grctl/web/% $(patsubst %,tools/grctl/mqtt/%.c,mosquitto none)
+CHOSEN := $(patsubst %,tools/grctl/%.c,term/libedit term/plain term/ncurses term/no_screen robot/expat robot/no_xml \
+    fleet/mosquitto fleet/no_mqtt) tools/grctl/web/%
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out $(CHOSEN),\
-    $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
-    tools/grctl/screen/$(SCREEN).c tools/grctl/xml/$(XML).c tools/grctl/mqtt/$(MQTT).c \
+    $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/term/$(EDIT).c \
+    tools/grctl/term/$(SCREEN:none=no_screen).c tools/grctl/robot/$(XML:none=no_xml).c \
+    tools/grctl/fleet/$(MQTT:none=no_mqtt).c \
     $(if $(filter none,$(WEB)),tools/grctl/web/none.c tools/grctl/web/run.c,\
     $(filter-out tools/grctl/web/none.c,$(wildcard tools/grctl/web/*.c)))))
 # LEFT_OUT, of a target: tests that its system cannot run, and what only they use. WITHOUT: tests that
@@ -790,7 +792,7 @@ $(ROBOTS) $(SERVOS) $(PICTURE):
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 # With none of the libraries that it can do without: tests/export/optional.sh.
-$(BARE): $(BESIDE_OBJS) $(call objects,$(patsubst %,tools/grctl/%.c,edit/plain screen/none xml/none mqtt/none web/none)) \
+$(BARE): $(BESIDE_OBJS) $(call objects,$(patsubst %,tools/grctl/%.c,term/plain term/no_screen robot/no_xml fleet/no_mqtt web/none)) \
     $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	@mkdir -p $(@D)

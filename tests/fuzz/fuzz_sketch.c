@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "tests/fuzz/target.h"
-#include "tools/grctl/servo/family.h"
-#include "tools/grctl/sketch/sketch.h"
+#include "tools/grctl/conn/family.h"
+#include "tools/grctl/robot/sketch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

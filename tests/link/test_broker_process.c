@@ -19,9 +19,9 @@
 
 #include "tests/support/next_random.h"
 #include "tests/support/test.h"
-#include "tools/grctl/mqtt/host.h"
-#include "tools/grctl/mqtt/mqtt.h"
-#include "tools/grctl/mqtt/note.h"
+#include "tools/grctl/fleet/mqtt.h"
+#include "tools/grctl/fleet/mqtt_host.h"
+#include "tools/grctl/fleet/mqtt_note.h"
 #include "tools/grctl/os/child.h"
 
 enum { SESSIONS = 90, PATIENCE_S = 60 };

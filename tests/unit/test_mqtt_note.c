@@ -8,7 +8,7 @@
 
 #include "tests/support/next_random.h"
 #include "tests/support/test.h"
-#include "tools/grctl/mqtt/note.h"
+#include "tools/grctl/fleet/mqtt_note.h"
 
 enum { MUTATIONS = 200000 };
 

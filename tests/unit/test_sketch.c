@@ -7,9 +7,9 @@
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"
-#include "tools/grctl/servo/family.h"
-#include "tools/grctl/sketch/sketch.h"
-#include "tools/grctl/xml/xml.h"
+#include "tools/grctl/conn/family.h"
+#include "tools/grctl/robot/sketch.h"
+#include "tools/grctl/robot/xml.h"
 
 static sketch s;
 static char said[1024];

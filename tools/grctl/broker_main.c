@@ -2,8 +2,8 @@
 /* grctl-serve and grctl-fleet: they differ in what they are linked with, and have brokers. */
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/start.h"
-#include "tools/grctl/mqtt/host.h"
-#include "tools/grctl/mqtt/mqtt.h"
+#include "tools/grctl/fleet/mqtt.h"
+#include "tools/grctl/fleet/mqtt_host.h"
 
 #define POINTER(name) &cmd_##name,
 static const cli_command *const commands[] = {GRCTL_COMMANDS(POINTER)};

@@ -5,8 +5,8 @@
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/wire.h"
-#include "tools/grctl/servo/family.h"
 
 enum { OPT_RATE };
 

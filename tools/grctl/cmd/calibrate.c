@@ -5,12 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "tools/grctl/bringup/homing.h"
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
-#include "tools/grctl/homing/homing.h"
 #include "tools/grctl/lang/lang.h"
 
 enum { OPT_DRY_RUN, OPT_FROM, OPT_RESTORE, OPT_OUT };

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "tools/grctl/body/check.h"
-#include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/play/check.h"
+#include "tools/grctl/play/options.h"
 
 enum { OPT_FORCE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 

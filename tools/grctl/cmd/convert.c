@@ -4,11 +4,11 @@
 
 #include <grobo/core/motion.h>
 
-#include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/heap.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/play/options.h"
 
 enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGERS, OPT_BODY };
 

@@ -4,9 +4,9 @@
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/decode/decoder.h"
 #include "tools/grctl/decode/hextext.h"
-#include "tools/grctl/servo/family.h"
 
 enum { HEX_BYTES = 65536 };
 enum { OPT_FAMILY };

@@ -6,14 +6,14 @@
 
 #include <grobo/estop.h>
 
+#include "tools/grctl/bringup/checkup.h"
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/auto_ports.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
-#include "tools/grctl/doctor/checkup.h"
 #include "tools/grctl/lang/lang.h"
-#include "tools/grctl/servo/family.h"
 
 enum { READ_BYTES = 30 /* the longest */, NAME_BYTES = 16, FIX_BYTES = 512 };
 /* How often a servo is asked again whose reply came broken, and how many of those show two. */

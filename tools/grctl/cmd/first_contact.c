@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "tools/grctl/bringup/contact.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cmd/commands.h"
-#include "tools/grctl/setup/contact.h"
 
 enum { OPT_OUT };
 

@@ -8,9 +8,9 @@
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/lang/lang.h"
-#include "tools/grctl/monitor/monitor.h"
 #include "tools/grctl/os/os.h"
-#include "tools/grctl/screen/screen.h"
+#include "tools/grctl/term/screen.h"
+#include "tools/grctl/view/monitor.h"
 
 enum {
     DRAW_US = 50000,

@@ -9,7 +9,7 @@
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/keys.h"
 #include "tools/grctl/play/troupe.h"
-#include "tools/grctl/show/render.h"
+#include "tools/grctl/view/render.h"
 
 enum { RETRY_US = 5000000, KEY_ESTOP = 'e', KEY_QUIT = 'q' };
 

@@ -6,7 +6,7 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cmd/commands.h"
-#include "tools/grctl/show/render.h"
+#include "tools/grctl/view/render.h"
 
 enum { OPT_TIME };
 enum { MOVE_MS = 1000, INIT_MS = 2000, LONGEST_MS = 163830 };

@@ -13,7 +13,7 @@
 #include "tools/grctl/play/frames.h"
 #include "tools/grctl/play/keys.h"
 #include "tools/grctl/play/play.h"
-#include "tools/grctl/show/render.h"
+#include "tools/grctl/view/render.h"
 
 static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_REPEAT] = OPTION_WHOLE("repeat", 'n', "N", 1, 1000000, "play N times"),

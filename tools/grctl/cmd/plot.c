@@ -3,13 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tools/grctl/body/options.h"
-#include "tools/grctl/body/whole.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cmd/commands.h"
-#include "tools/grctl/plot/picture.h"
-#include "tools/grctl/plot/plot.h"
+#include "tools/grctl/play/options.h"
+#include "tools/grctl/play/whole.h"
+#include "tools/grctl/view/picture.h"
+#include "tools/grctl/view/plot.h"
 
 enum { OPT_OUT, OPT_JOINTS, OPT_RATE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 

@@ -7,10 +7,10 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/change.h"
 #include "tools/grctl/conn/eeprom.h"
+#include "tools/grctl/conn/family.h"
+#include "tools/grctl/conn/registers.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/lang/lang.h"
-#include "tools/grctl/servo/family.h"
-#include "tools/grctl/servo/registers.h"
 
 enum { OPT_FLASH, OPT_RESTORE };
 

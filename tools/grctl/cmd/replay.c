@@ -4,9 +4,9 @@
 #include <grobo/session.h>
 
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/decode/replay.h"
-#include "tools/grctl/servo/family.h"
 
 /* Line and clock of the trace, as its first chunk has them; options go before. */
 static void take_line(replay *r, const pcapng_chunk *chunk)

@@ -2,14 +2,14 @@
 /* robot: the robots there are, and what is wrong with a file of one. Offline. */
 #include <string.h>
 
+#include "tools/grctl/bringup/ask.h"
+#include "tools/grctl/bringup/found.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
-#include "tools/grctl/servo/family.h"
-#include "tools/grctl/setup/ask.h"
-#include "tools/grctl/setup/found.h"
 
 enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_ORDER, OPT_NAME, OPT_OUT, OPT_MJCF, OPT_URDF, OPT_FREE };
 

@@ -3,11 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "tools/grctl/bringup/scan.h"
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/lang/lang.h"
-#include "tools/grctl/scan/scan.h"
 
 enum { OPT_ALL_BAUD, OPT_FAMILY, OPT_FIRST, OPT_LAST };
 

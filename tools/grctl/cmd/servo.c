@@ -7,7 +7,7 @@
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/fall.h"
-#include "tools/grctl/show/render.h"
+#include "tools/grctl/view/render.h"
 
 enum { OPT_LOWER };
 static const cli_option options[] = {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include "tools/grctl/bringup/setup.h"
 #include "tools/grctl/cmd/commands.h"
-#include "tools/grctl/setup/setup.h"
 
 enum { OPT_UNDO };
 

@@ -2,11 +2,11 @@
 
 #include <grobo/core/motion.h>
 
-#include "tools/grctl/body/options.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cmd/commands.h"
-#include "tools/grctl/show/show.h"
+#include "tools/grctl/play/options.h"
+#include "tools/grctl/view/show.h"
 
 enum { OPT_JOINTS, OPT_RATE, OPT_BODY };
 

@@ -2,7 +2,7 @@
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
-#include "tools/grctl/show/render.h"
+#include "tools/grctl/view/render.h"
 
 enum { OPT_WATCH, OPT_INTERVAL };
 

@@ -7,9 +7,9 @@
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
-#include "tools/grctl/servo/family.h"
 
 enum { HEX_BYTES = 1024 };
 

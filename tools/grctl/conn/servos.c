@@ -2,9 +2,9 @@
 #include <string.h>
 
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
-#include "tools/grctl/servo/family.h"
 
 /* Behind a network a reply may take as long as it likes. */
 enum { TCP_MARGIN_US = 50000 };

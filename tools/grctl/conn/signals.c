@@ -4,7 +4,7 @@
 
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/os/keys.h"
-#include "tools/grctl/screen/screen.h"
+#include "tools/grctl/term/screen.h"
 
 static void note(conn_link *link, int number)
 {

@@ -7,11 +7,11 @@
 
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/run.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/conn/start.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
-#include "tools/grctl/servo/family.h"
 
 char *const *start_words;
 

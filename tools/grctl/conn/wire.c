@@ -3,9 +3,9 @@
 #include <stdio.h>
 
 #include "tools/grctl/cli/app.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
-#include "tools/grctl/servo/family.h"
 
 static void measure(const grobo_bus *bus, const grobo_exchange *exchange, wire_cost *to)
 {

@@ -5,9 +5,9 @@
 #include <grobo/core/serial.h>
 
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/decode/decoder.h"
 #include "tools/grctl/decode/words.h"
-#include "tools/grctl/servo/family.h"
 
 static double ms_of(const decoder *d, int64_t time_us)
 {

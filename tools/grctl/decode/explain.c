@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "tools/grctl/conn/registers.h"
 #include "tools/grctl/decode/explain.h"
-#include "tools/grctl/servo/registers.h"
 
 /* Fewer registers are named, more are told by their addresses. */
 enum { NAMES_MAX = 4 };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/decode/replay.h"
 #include "tools/grctl/decode/words.h"
-#include "tools/grctl/servo/family.h"
 
 /* Differences shown as text, unless -v asks for all. */
 enum { SHOWN = 5 };

@@ -11,7 +11,7 @@
 #define GRCTL_FLEET_AGENT_H
 
 #include "tools/grctl/fleet/message.h"
-#include "tools/grctl/mqtt/mqtt.h"
+#include "tools/grctl/fleet/mqtt.h"
 #include "tools/grctl/play/troupe.h"
 
 enum {

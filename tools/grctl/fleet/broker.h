@@ -4,7 +4,7 @@
 #define GRCTL_FLEET_BROKER_H
 
 #include "tools/grctl/cli/app.h"
-#include "tools/grctl/mqtt/mqtt.h"
+#include "tools/grctl/fleet/mqtt.h"
 
 enum { BROKER_URL, BROKER_CA, BROKER_CERT, BROKER_KEY, BROKER_OPTIONS };
 

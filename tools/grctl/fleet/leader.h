@@ -5,7 +5,7 @@
 
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/fleet/message.h"
-#include "tools/grctl/mqtt/mqtt.h"
+#include "tools/grctl/fleet/mqtt.h"
 
 enum { LEADER_PEERS = 1024, LEADER_ROBOTS = 64, LEADER_PERMIT_US = 200000 };
 

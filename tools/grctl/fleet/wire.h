@@ -4,7 +4,7 @@
 #define GRCTL_FLEET_WIRE_H
 
 #include "tools/grctl/fleet/message.h"
-#include "tools/grctl/mqtt/mqtt.h"
+#include "tools/grctl/fleet/mqtt.h"
 
 typedef enum wire_how {
     WIRE_ONCE = 0, /* QoS 0 */

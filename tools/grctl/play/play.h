@@ -6,8 +6,8 @@
 #include <grobo/core/motion_io.h>
 #include <grobo/core/sequencer.h>
 
-#include "tools/grctl/body/options.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/play/options.h"
 
 enum { PLAY_FILES_MAX = 1 + GROBO_QUEUE_MAX };
 

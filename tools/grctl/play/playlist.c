@@ -3,12 +3,12 @@
 
 #include <grobo/core/motion.h>
 
-#include "tools/grctl/body/check.h"
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
+#include "tools/grctl/play/check.h"
 #include "tools/grctl/play/play.h"
 
 /* Legs given by ikLinks are no matter for a warning where they are solved. */

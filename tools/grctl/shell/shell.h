@@ -8,7 +8,7 @@
 #include <grobo/core/motion.h>
 
 #include "tools/grctl/conn/conn.h"
-#include "tools/grctl/edit/edit.h"
+#include "tools/grctl/term/edit.h"
 
 enum {
     SHELL_LINE_BYTES = 4096,         /* typed */

@@ -4,9 +4,9 @@
 
 #include <grobo/core/motion.h>
 
-#include "tools/grctl/body/check.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/play/check.h"
 #include "tools/grctl/web/analyse.h"
 #include "tools/grctl/web/pose.h"
 

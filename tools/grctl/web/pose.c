@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "tools/grctl/body/whole.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/robot.h"
+#include "tools/grctl/play/whole.h"
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 

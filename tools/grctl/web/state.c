@@ -7,7 +7,7 @@
 #include <grobo/version.h>
 
 #include "tools/grctl/cli/joints.h"
-#include "tools/grctl/show/render.h"
+#include "tools/grctl/view/render.h"
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include "tools/grctl/view/render.h"
+
+static const grobo_model *model_of(const conn *c)
+{
+    return grobo_robot_driver(c->robot)->model;
+}
+
+static bool has(const grobo_joint_info *info, grobo_field field)
+{
+    return (info->state.valid & field) != 0;
+}
+
+const char *render_torque(const grobo_joint_info *info)
+{
+    if (!info->torque_known) {
+        return "?";
+    }
+    switch (info->state.torque) {
+    case GROBO_TORQUE_OFF:
+        return "off";
+    case GROBO_TORQUE_ON:
+        return "on";
+    case GROBO_TORQUE_BRAKE:
+        return "brake";
+    }
+    return "?";
+}
+
+bool render_target(const grobo_joint_info *info, double *target_rad)
+{
+    bool told =
+        has(info, GROBO_FIELD_GOAL) && info->torque_known && info->state.torque == GROBO_TORQUE_ON;
+    *target_rad = info->has_target ? info->target_rad : info->state.goal_rad;
+    return info->has_target || told;
+}
+
+/* NULL is null. */
+static json_t *integer_or_null(bool known, long value)
+{
+    return known ? json_integer(value) : NULL;
+}
+
+json_t *render_setup_json(const conn *c, int joint)
+{
+    conn_setup why;
+    return conn_setup_of(c, joint, &why)
+               ? json_pack("{s:o,s:o}", "message", app_json_text(why.fact), "fix",
+                           app_json_text(why.fix))
+               : NULL;
+}
+
+static json_t *joint_json(const conn *c, int joint)
+{
+    const grobo_joint *j = grobo_model_joint(model_of(c), joint);
+    grobo_joint_info i;
+    double target_rad;
+    if (grobo_robot_joint(c->robot, joint, &i) < 0) {
+        return json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
+    }
+    bool fresh = i.angle_age_us != GROBO_NEVER_US, targeted = render_target(&i, &target_rad);
+    return json_pack(
+        "{s:i,s:i,s:s,s:o,s:o,s:s?,s:o?,s:o?,s:o?,s:o,s:o?,s:o,s:o*}", "joint", joint, "motor",
+        j->motor, "name", j->name, "angle_deg",
+        app_json_number(fresh ? grobo_deg_from_rad(i.state.angle_rad) : NAN, 1), "target_deg",
+        app_json_number(targeted ? grobo_deg_from_rad(target_rad) : NAN, 1), "torque",
+        i.torque_known ? render_torque(&i) : NULL, "speed_dps",
+        integer_or_null(has(&i, GROBO_FIELD_SPEED), i.state.speed_dps), "current_ma",
+        integer_or_null(has(&i, GROBO_FIELD_CURRENT), i.state.current_ma), "temperature_c",
+        integer_or_null(has(&i, GROBO_FIELD_TEMPERATURE), i.state.temperature_c), "voltage_v",
+        app_json_number(has(&i, GROBO_FIELD_VOLTAGE) ? i.state.voltage_mv / 1e3 : NAN, 2), "age_ms",
+        integer_or_null(fresh, fresh ? (long)(i.angle_age_us / 1000) : 0), "status",
+        app_json_code(grobo_error_name(i.status)), "setup", render_setup_json(c, joint));
+}
+
+json_t *render_joints_json(const conn *c, grobo_joint_mask joints)
+{
+    json_t *list = json_array();
+    for (int j = 0; j < model_of(c)->n_joints; j++) {
+        if (joints & GROBO_JOINT_BIT(j)) {
+            json_array_append_new(list, joint_json(c, j));
+        }
+    }
+    return list;
+}
+
+static void cell(bool known, int width, int decimals, double value)
+{
+    double unit = pow(10, -decimals);
+    if (known) {
+        app_print("  %*.*f", width, decimals, fabs(value) < unit / 2 ? 0.0 : value); /* no -0.0 */
+    } else {
+        app_print("  %*s", width, "-");
+    }
+}
+
+/* Of the column of names: a longer one would shift its row. */
+static int name_width(const grobo_model *model)
+{
+    int width = 12;
+    for (int k = 0; k < model->n_joints; k++) {
+        int length = (int)strlen(grobo_model_joint(model, k)->name);
+        width = length > width ? length : width;
+    }
+    return width;
+}
+
+void render_status(const conn *c, grobo_joint_mask joints)
+{
+    const grobo_model *model = model_of(c);
+    bool color = c->a->color_out;
+    int width = name_width(model);
+    app_print("motor  %-*s  angle  target  torque  speed  current  temp  volts  age ms\n", width,
+              "joint");
+    for (int k = 0; k < model->n_joints; k++) {
+        grobo_joint_info i;
+        double target_rad;
+        if (!(joints & GROBO_JOINT_BIT(k)) || grobo_robot_joint(c->robot, k, &i) < 0) {
+            continue;
+        }
+        bool known = i.angle_age_us != GROBO_NEVER_US;
+        app_print("%5d  %-*s", grobo_model_joint(model, k)->motor, width,
+                  grobo_model_joint(model, k)->name);
+        cell(known, 5, 1, grobo_deg_from_rad(i.state.angle_rad));
+        bool targeted = render_target(&i, &target_rad);
+        cell(targeted, 6, 1, grobo_deg_from_rad(target_rad));
+        app_print("  %-6s", render_torque(&i));
+        cell(has(&i, GROBO_FIELD_SPEED), 5, 0, i.state.speed_dps);
+        cell(has(&i, GROBO_FIELD_CURRENT), 7, 0, i.state.current_ma);
+        cell(has(&i, GROBO_FIELD_TEMPERATURE), 4, 0, i.state.temperature_c);
+        cell(has(&i, GROBO_FIELD_VOLTAGE), 5, 2, i.state.voltage_mv / 1e3);
+        cell(known, 6, 0, known ? (double)(i.angle_age_us / 1000) : 0);
+        if (i.status != GROBO_OK) {
+            app_print("  %s%s%s", color ? "\033[31m" : "", grobo_error_text(i.status),
+                      color ? "\033[0m" : "");
+        } else if (i.state.overheated) {
+            app_print("  %scut its torque for heat: see 'grctl doctor'%s", color ? "\033[31m" : "",
+                      color ? "\033[0m" : "");
+        }
+        app_print("\n");
+    }
+}
+
+double render_worst_error(const conn *c, int *joint)
+{
+    double worst = 0;
+    *joint = -1;
+    for (int k = 0; k < model_of(c)->n_joints; k++) {
+        grobo_joint_info i;
+        if (grobo_robot_joint(c->robot, k, &i) < 0 || !i.has_target ||
+            i.angle_age_us == GROBO_NEVER_US || i.status != GROBO_OK) {
+            continue;
+        }
+        double error = fabs(grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
+        if (*joint < 0 || error > worst) {
+            worst = error;
+            *joint = k;
+        }
+    }
+    return worst;
+}
+
+void render_reached(const conn *c)
+{
+    const grobo_model *model = model_of(c);
+    int width = name_width(model);
+    app_print("motor  %-*s  target  reached  error deg\n", width, "joint");
+    for (int k = 0; k < model->n_joints; k++) {
+        grobo_joint_info i;
+        if (grobo_robot_joint(c->robot, k, &i) < 0) {
+            continue;
+        }
+        bool both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
+        app_print("%5d  %-*s", grobo_model_joint(model, k)->motor, width,
+                  grobo_model_joint(model, k)->name);
+        cell(i.has_target, 6, 1, grobo_deg_from_rad(i.target_rad));
+        cell(i.angle_age_us != GROBO_NEVER_US, 7, 1, grobo_deg_from_rad(i.state.angle_rad));
+        cell(both, 9, 2, grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
+        if (i.status != GROBO_OK) {
+            app_print("  %s", grobo_error_text(i.status));
+        }
+        app_print("\n");
+    }
+}
