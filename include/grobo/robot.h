@@ -98,8 +98,9 @@ GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, gr
  * there. Errors at once: GROBO_ERR_LIMIT, GROBO_ERR_NAN (see
  * grobo_robot_fault()), GROBO_ERR_ARG; later GROBO_ERR_SPEED: the wire has no time that is long
  * enough; also GROBO_ERR_STATE for a joint that the motion being played sets, and, of an arm,
- * GROBO_ERR_UNWATCHED: the line is too slow to tell all these joints their ways in time and to read
- * them (grobo_budget.pace_us); at once where the time asked for is longer than GROBO_SEGMENT_US.
+ * GROBO_ERR_UNWATCHED: the line is too slow to tell all these joints their trajectories in time and
+ * to read them (grobo_budget.pace_us); at once where the time asked for is longer than
+ * GROBO_SEGMENT_US.
  */
 GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target);
 

@@ -105,7 +105,8 @@ typedef struct grobo_budget {
     uint16_t watched_hz; /**< largest such rate; 0: on so slow a line there is none */
     uint16_t default_hz; /**< what grobo_play_options.rate_hz 0 stands for: watched_hz, but at most
                               GROBO_PLAY_RATE_HZ */
-    uint32_t pace_us;    /**< how often all joints can be told more of their ways in segments, each
+    uint32_t
+        pace_us; /**< how often all joints can be told more of their trajectories in segments, each
                               read in time: GROBO_SEGMENT_RENEW_US at least; 0: the line is too slow
                               for that, an arm's moves of all joints are refused */
 } grobo_budget;

@@ -93,7 +93,8 @@ check_json "budget has it, too" 'lines[0]["pace_us"] == 0' \
     "$GRCTL" --json --robot "$work/slow.yaml" budget
 budgets() {
     exits 0 "$GRCTL" --robot "$work/slow.yaml" budget && says "^$raise" &&
-        exits 0 "$GRCTL" --robot so101 budget && says '^ways in segments *renewed every 100 ms$'
+        exits 0 "$GRCTL" --robot so101 budget &&
+            says '^trajectories in segments *renewed every 100 ms$'
 }
 check "and in words" budgets
 robot_of fast dynamixel2 XL430-W250 64 1 1000000

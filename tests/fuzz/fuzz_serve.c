@@ -2,7 +2,7 @@
 /*
  * Any bytes from a client of `serve`, over a connection of this machine: the request is refused or
  * answered once, what a handler sees is within its bounds, and the connection ends. Where the bytes
- * say PORT! there stands the number of the port, so that a request can pass the wall.
+ * say PORT! there stands the number of the port, so that a request can pass the access rules.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,18 +26,18 @@ static grobo_motion *drawn; /* what keys may be taken from */
 static http *server;
 static bool closed;
 
-static bool rule_of(void *ctx, const http_request *r, wall_rule *rule)
+static bool rule_of(void *ctx, const http_request *r, access_rule *rule)
 {
     static const char *const paths[] = {"/", "/read", "/stop", "/plain", "/act", "/save", "/draft"};
     (void)ctx;
     MUST(r->path[0] == '/' && strlen(r->path) < HTTP_PATH_BYTES);
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
         if (strcmp(r->path, paths[i]) == 0) {
-            *rule = (wall_rule)i;
+            *rule = (access_rule)i;
             return true;
         }
     }
-    *rule = WALL_READ;
+    *rule = ACCESS_READ;
     return strcmp(r->path, "/stream") == 0;
 }
 
@@ -57,7 +57,7 @@ static grobo_motion *edited(const json_t *body, const grobo_motion *from)
     return made.motion;
 }
 
-/* What passed the wall: as much as the interface reads of any body. */
+/* What passed the access rules: as much as the interface reads of any body. */
 static void answer(void *ctx, http_request *r)
 {
     size_t size;

@@ -9,7 +9,7 @@
 #define SECOND INT64_C(1000000)
 
 static lease l;
-static char anna[WALL_SECRET_BYTES], ben[WALL_SECRET_BYTES];
+static char anna[ACCESS_SECRET_BYTES], ben[ACCESS_SECRET_BYTES];
 
 static int anna_drives(void)
 {

@@ -32,7 +32,7 @@ typedef struct grobo_i_dxl1_series {
     bool (*counts_turns)(const grobo_sim_servo *servo);
     /* What the offset adds to a position. */
     int32_t (*offset)(const grobo_sim_servo *servo);
-    /* Goals are ways from here on; NULL: never. */
+    /* Goals are trajectories from here on; NULL: never. */
     bool (*steps)(const grobo_sim_servo *servo);
     /* Whether it turns on and on, and the part of its top speed at which it then does. */
     bool (*is_wheel)(const grobo_sim_servo *servo, double *speed_mdeg_s);

@@ -47,12 +47,12 @@ static void print_delay(const grobo_driver *driver)
     }
 }
 
-/* How often an arm is told more of its ways. */
+/* How often an arm is told more of its trajectories. */
 static void print_pace(const grobo_driver *driver, const grobo_budget *line, int baud_bps)
 {
     int rate_bps;
     if (driver->arm && line->pace_us > 0) {
-        app_print("ways in segments          renewed every %.0f ms\n", line->pace_us / 1e3);
+        app_print("trajectories in segments  renewed every %.0f ms\n", line->pace_us / 1e3);
     } else if (wire_is_slow(driver, baud_bps, &rate_bps)) {
         app_print("%s\n", wire_slow_text(driver, baud_bps, rate_bps));
     }

@@ -8,13 +8,13 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/keys.h"
-#include "tools/grctl/play/troupe.h"
+#include "tools/grctl/play/robot_group.h"
 #include "tools/grctl/view/render.h"
 
 enum { RETRY_US = 5000000, KEY_ESTOP = 'e', KEY_QUIT = 'q' };
 
 typedef struct view {
-    troupe all;
+    robot_group all;
     keys input;
     bool over, estopped;
     int64_t retry_us;
@@ -179,7 +179,7 @@ int monitor_group(app *a, int64_t interval_us)
 {
     view v = {.over = false};
     config_group group = *a->group;
-    int status = troupe_begin(&v.all, a, group.robot, group.n);
+    int status = robot_group_begin(&v.all, a, group.robot, group.n);
     if (!status) {
         a->reconnects = true;
         open_all(&v, true);
@@ -189,6 +189,6 @@ int monitor_group(app *a, int64_t interval_us)
         status = signal && !status ? EXIT_SIGNAL + signal : status;
         a->reconnects = false;
     }
-    troupe_end(&v.all);
+    robot_group_end(&v.all);
     return status;
 }

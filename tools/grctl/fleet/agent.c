@@ -29,7 +29,7 @@ static void stop_now(agent *g, bool brakes)
             (void)grobo_robot_stop(s->c.robot, false);
         }
     }
-    troupe_look(&g->all);
+    robot_group_look(&g->all);
 }
 
 /* The broker keeps something else than the stop that stands: who comes later would not hear of it,
@@ -145,7 +145,7 @@ static void let_go(agent *g)
             (void)grobo_robot_exit(s->c.robot, GROBO_EXIT_DEFAULT);
         }
     }
-    troupe_look(&g->all);
+    robot_group_look(&g->all);
 }
 
 /* ---- what comes ------------------------------------------------------------------------------ */
@@ -339,7 +339,7 @@ int agent_begin(agent *g, app *a, const mqtt_config *with)
         one.n = 1;
         snprintf(one.robot[0], sizeof one.robot[0], "%s", a->robot->name);
     }
-    int status = troupe_begin(&g->all, a, one.robot, one.n);
+    int status = robot_group_begin(&g->all, a, one.robot, one.n);
     if (status) {
         return status;
     }
@@ -396,7 +396,7 @@ int agent_end(agent *g, int status)
         json_decref(g->groups[i].latch);
     }
     if (g->all.seats) {
-        troupe_end(&g->all);
+        robot_group_end(&g->all);
     }
     return status;
 }

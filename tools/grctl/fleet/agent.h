@@ -12,7 +12,7 @@
 
 #include "tools/grctl/fleet/message.h"
 #include "tools/grctl/fleet/mqtt.h"
-#include "tools/grctl/play/troupe.h"
+#include "tools/grctl/play/robot_group.h"
 
 enum {
     AGENT_PENDING = 16,       /* orders that wait for the clock of their sender, or their turn */
@@ -53,7 +53,7 @@ typedef struct agent_order {
 
 typedef struct agent {
     app *a;
-    troupe all;
+    robot_group all;
     mqtt *m;
     const char *motions; /* the folder of motion files */
     const char *cockpit; /* a page of each robot, % for its name; or NULL */

@@ -339,7 +339,7 @@ static int begin(agent *g, const json_t *body)
     }
     grobo_play_options options = first->list.options[0];
     options.start_us = GROBO_START_LATER;
-    return troupe_play(&g->all, policy_of(body), &options);
+    return robot_group_play(&g->all, policy_of(body), &options);
 }
 
 /* It came to nothing, or is over. */
@@ -348,7 +348,7 @@ static void forget_play(agent *g)
     json_decref(g->play.is.body);
     memset(&g->play, 0, sizeof g->play);
     g->plays = g->started = false;
-    troupe_disband(&g->all);
+    robot_group_disband(&g->all);
 }
 
 /* NULL: every robot that is wanted is prepared; their number. */
@@ -429,7 +429,7 @@ static void start(agent *g, agent_order *order)
     }
     g->start_us = at_us - offset_us;
     int error = grobo_team_start_at(g->all.team, g->start_us, grobo_now_us());
-    troupe_look(&g->all);
+    robot_group_look(&g->all);
     if (error < 0) {
         answer(g, order, grobo_error_name(error),
                error == GROBO_ERR_STALE ? "that time is over" : grobo_error_text(error));
@@ -450,7 +450,7 @@ static void cancel(agent *g, agent_order *order)
     }
     if (g->all.team) {
         (void)grobo_team_stop(g->all.team, false);
-        troupe_look(&g->all);
+        robot_group_look(&g->all);
     }
     answer(g, order, NULL, NULL);
 }

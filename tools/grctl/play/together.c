@@ -4,12 +4,12 @@
 
 #include "tools/grctl/os/keys.h"
 #include "tools/grctl/play/frames.h"
-#include "tools/grctl/play/troupe.h"
+#include "tools/grctl/play/robot_group.h"
 
 enum { KEY_ESTOP = 'e', KEY_STOP = 's', KEY_PAUSE = ' ' };
 
 typedef struct act {
-    troupe all;
+    robot_group all;
     keys input;
     bool paused, estopped;
 } act;
@@ -60,11 +60,11 @@ static void on_key(void *ctx, int key)
         (void)(c->paused ? grobo_team_pause(team) : grobo_team_resume(team));
         break;
     }
-    troupe_look(&c->all);
+    robot_group_look(&c->all);
 }
 
 /* Over when the last posture of each has been read back too. */
-static bool is_over(const troupe *t)
+static bool is_over(const robot_group *t)
 {
     for (int i = 0; i < t->n; i++) {
         const conn *c = &t->seats[i].c;
@@ -76,7 +76,7 @@ static bool is_over(const troupe *t)
 }
 
 /* A signal is told to all: it ends the motion smoothly, and conn_close() leaves each robot. */
-static int watch(troupe *t)
+static int watch(robot_group *t)
 {
     while (!is_over(t) && !t->host.signal) {
         if (event_base_loop(t->host.base, EVLOOP_ONCE) != 0) {
@@ -92,7 +92,7 @@ static int watch(troupe *t)
 /* ---- before ---------------------------------------------------------------------------------- */
 
 /* Every file is checked for every robot before the first line is opened. */
-static int prepare(troupe *t)
+static int prepare(robot_group *t)
 {
     int status = EXIT_DONE;
     for (int i = 0; i < t->n && !status; i++) {
@@ -113,12 +113,13 @@ static int play(act *c)
 {
     static const grobo_team_policy policies[] = {GROBO_TEAM_STOP_ALL, GROBO_TEAM_PAUSE_ALL,
                                                  GROBO_TEAM_CONTINUE};
-    troupe *t = &c->all;
+    robot_group *t = &c->all;
     const cli_value *lost = app_option(t->a, PLAY_IF_LOST);
     for (int i = 0; i < t->n; i++) {
         t->seats[i].c.moving = true;
     }
-    (void)troupe_play(t, policies[lost->given ? lost->choice : 0], &t->seats[0].list.options[0]);
+    (void)robot_group_play(t, policies[lost->given ? lost->choice : 0],
+                           &t->seats[0].list.options[0]);
     if (keys_start(&c->input, t->host.base, false, on_key, c) && t->a->tty_err) {
         app_note(t->a, "space: pause   s: stop   e: EMERGENCY STOP");
     }
@@ -171,7 +172,7 @@ static int seat_result(const act *c, seat *s)
 
 static int finish(act *c, int status, bool played)
 {
-    troupe *t = &c->all;
+    robot_group *t = &c->all;
     for (int i = 0; played && i < t->n; i++) {
         t->seats[i].status = seat_result(c, &t->seats[i]);
     }
@@ -180,7 +181,7 @@ static int finish(act *c, int status, bool played)
         int left = seat_close(s, s->status ? s->status : status);
         status = left > status ? left : status;
     }
-    troupe_end(t);
+    robot_group_end(t);
     return status;
 }
 
@@ -196,7 +197,7 @@ int play_together(app *a)
                         "--dry-run: %s is a group of robots; try one of them, such as -d %s",
                         group.name, group.robot[0]);
     }
-    int status = troupe_begin(&c.all, a, group.robot, group.n);
+    int status = robot_group_begin(&c.all, a, group.robot, group.n);
     bool plays = false;
     c.all.on_team = on_team;
     c.all.ctx = &c;

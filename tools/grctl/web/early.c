@@ -17,38 +17,38 @@
 /* A stop that comes from where it may come. */
 static bool may_stop(const port *p, http_request *r, const char *uri, struct evkeyvalq *headers)
 {
-    const wall *w = &p->wall;
-    wall_request q = {.method = "POST", .uri = uri, .headers = headers};
-    wall_rule rule = WALL_PAGE;
-    return wall_check_source(w, &q).status == 0 && head_split(uri, r->path, r->query) &&
-           r->server->config.rule(r->server->config.ctx, r, &rule) && rule == WALL_STOP &&
+    const access_rules *w = &p->access;
+    access_request q = {.method = "POST", .uri = uri, .headers = headers};
+    access_rule rule = ACCESS_PAGE;
+    return access_check_source(w, &q).status == 0 && head_split(uri, r->path, r->query) &&
+           r->server->config.rule(r->server->config.ctx, r, &rule) && rule == ACCESS_STOP &&
            (!w->open ||
-            wall_check_token(w, evhttp_find_header(headers, "X-Grobo-Token")).status == 0);
+            access_check_token(w, evhttp_find_header(headers, "X-Grobo-Token")).status == 0);
 }
 
 /* Cuts the text to pieces. */
-static void hear_stop(const guest *g, char *text, size_t body_bytes)
+static void hear_stop(const client *c, char *text, size_t body_bytes)
 {
-    http *h = g->at->of;
+    http *h = c->at->of;
     struct evkeyvalq headers = {.tqh_first = NULL};
-    http_request r = {.server = h, .second = g->at == &h->second, .method = "POST"};
+    http_request r = {.server = h, .second = c->at == &h->second, .method = "POST"};
     char *uri = NULL;
     headers.tqh_last = &headers.tqh_first;
     if (head_read(text, &uri, &headers) && !head_has_body(&headers, body_bytes) &&
-        may_stop(g->at, &r, uri, &headers)) {
+        may_stop(c->at, &r, uri, &headers)) {
         h->config.early(h->config.ctx, &r);
     }
     evhttp_clear_headers(&headers);
 }
 
 /* Past libevent, which has not seen the head: the reply is the connection's last. */
-static void refuse(guest *g, struct evbuffer *input, wall_answer no)
+static void refuse(client *c, struct evbuffer *input, access_answer no)
 {
     heap body = {0};
     heap_json(&body, json_pack("{s:{s:s,s:s}}", "error", "code", no.code, "message", no.message));
     struct evbuffer *reply = evbuffer_new();
     bool idle =
-        evbuffer_get_length(bufferevent_get_output(g->bev)) == 0; /* no reply is before it */
+        evbuffer_get_length(bufferevent_get_output(c->bev)) == 0; /* no reply is before it */
     if (reply && body.bytes && idle &&
         evbuffer_add_printf(reply,
                             "HTTP/1.1 %d %s\r\nContent-Type: application/json\r\n"
@@ -56,14 +56,14 @@ static void refuse(guest *g, struct evbuffer *input, wall_answer no)
                             "Connection: close\r\nContent-Length: %zu\r\n\r\n",
                             no.status, head_reason(no.status), body.size) > 0 &&
         evbuffer_add(reply, body.bytes, body.size) == 0) {
-        (void)evbuffer_write(reply, g->fd); /* a few hundred bytes: they fit, or nobody reads */
+        (void)evbuffer_write(reply, c->fd); /* a few hundred bytes: they fit, or nobody reads */
     }
     if (reply) {
         evbuffer_free(reply);
     }
     free(body.bytes);
     evbuffer_drain(input, evbuffer_get_length(input));
-    guests_end(g);
+    clients_end(c);
 }
 
 size_t early_body_max(const port *p)
@@ -72,39 +72,39 @@ size_t early_body_max(const port *p)
 }
 
 /* Keeps what came behind what is kept of the head; false: it cannot be had. */
-static bool keep(guest *g, struct evbuffer *input, size_t added, char *text)
+static bool keep(client *c, struct evbuffer *input, size_t added, char *text)
 {
-    size_t take = HTTP_HEADER_BYTES - g->head_bytes, length = evbuffer_get_length(input);
+    size_t take = HTTP_HEADER_BYTES - c->head_bytes, length = evbuffer_get_length(input);
     struct evbuffer_ptr at;
     take = take < added ? take : added;
     if (added > length || evbuffer_ptr_set(input, &at, length - added, EVBUFFER_PTR_SET) < 0 ||
-        evbuffer_copyout_from(input, &at, text + g->head_bytes, take) < 0) {
+        evbuffer_copyout_from(input, &at, text + c->head_bytes, take) < 0) {
         return false;
     }
-    g->head_bytes += take;
-    text[g->head_bytes] = '\0';
+    c->head_bytes += take;
+    text[c->head_bytes] = '\0';
     return true;
 }
 
-void early_hear(guest *g, struct evbuffer *input, size_t added)
+void early_hear(client *c, struct evbuffer *input, size_t added)
 {
-    http *h = g->at->of;
-    char *text = h->heads[g - h->guests];
-    g->got += added;
-    if (g->judged || !keep(g, input, added, text)) {
+    http *h = c->at->of;
+    char *text = h->heads[c - h->clients];
+    c->got += added;
+    if (c->judged || !keep(c, input, added, text)) {
         return;
     }
     size_t size = head_end(text);
     bool whole = size > 0;
-    g->judged = whole || g->head_bytes == HTTP_HEADER_BYTES || strlen(text) < g->head_bytes;
-    if (!g->judged) {
+    c->judged = whole || c->head_bytes == HTTP_HEADER_BYTES || strlen(text) < c->head_bytes;
+    if (!c->judged) {
         return;
     }
-    wall_answer no = head_judge(text, whole ? size : g->head_bytes, early_body_max(g->at));
+    access_answer no = head_judge(text, whole ? size : c->head_bytes, early_body_max(c->at));
     if (whole && h->config.early) {
-        hear_stop(g, text, g->got - size);
+        hear_stop(c, text, c->got - size);
     }
     if (no.status) {
-        refuse(g, input, no);
+        refuse(c, input, no);
     }
 }

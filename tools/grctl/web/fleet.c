@@ -10,8 +10,8 @@
 
 #include "tools/grctl/fleet/leader.h"
 #include "tools/grctl/web/based.h"
-#include "tools/grctl/web/door.h"
 #include "tools/grctl/web/fields.h"
+#include "tools/grctl/web/listener.h"
 #include "tools/grctl/web/page.h"
 
 enum { STATE_HZ = 5, JOINTS_MAX = 64, TEXT_BYTES = 128 };
@@ -304,10 +304,10 @@ static void stop_early(void *ctx, const http_request *r)
 static void serve_stop(view *v, http_request *r, const json_t *body)
 {
     bool estop = strstr(r->path, "estop") != NULL;
-    if (http_is_open(r->server) && !door_has_token(r, body)) {
+    if (http_is_open(r->server) && !listener_has_token(r, body)) {
         return;
     }
-    want_stop(v, estop ? "estop" : "stop", door_name(body).name);
+    want_stop(v, estop ? "estop" : "stop", requester_of(body).name);
     if (!v->l.up) {
         http_refuse(r, 503, "unreachable",
                     "the broker is away: the stop goes out when it is back; use the switches");
@@ -346,7 +346,7 @@ static void serve_reset(view *v, http_request *r, const json_t *body)
         (void)leader_latch(&v->l, NULL);
         v->release_us = grobo_now_us() + RELEASE_US;
         events_tell(&v->events, "stop", "info", NULL, "the stop is released by %s",
-                    door_name(body).name);
+                    requester_of(body).name);
         http_reply_json(
             r, 200,
             json_pack("{s:b,s:I}", "done", false, "sequence", (json_int_t)v->based.sequence));
@@ -442,19 +442,19 @@ static const field reset_fields[] = {
 
 static const struct path {
     const char *path;
-    wall_rule rule;
+    access_rule rule;
     bool second; /* on the second port */
     void (*run)(view *v, http_request *r, const json_t *body);
     const field *fields; /* NULL: whatever its body has, it is carried out */
 } paths[] = {
-    {"/api/fleet", WALL_READ, false, serve_fleet, no_fields},
-    {"/api/state", WALL_READ, false, serve_state, no_fields},
-    {"/api/events", WALL_READ, false, serve_events, no_fields},
-    {"/api/stop", WALL_STOP, false, serve_stop, NULL},
-    {"/api/estop", WALL_STOP, false, serve_stop, NULL},
-    {"/stop", WALL_STOP, true, serve_stop, NULL},
-    {"/estop", WALL_STOP, true, serve_stop, NULL},
-    {"/api/reset", WALL_ACT, false, serve_reset, reset_fields},
+    {"/api/fleet", ACCESS_READ, false, serve_fleet, no_fields},
+    {"/api/state", ACCESS_READ, false, serve_state, no_fields},
+    {"/api/events", ACCESS_READ, false, serve_events, no_fields},
+    {"/api/stop", ACCESS_STOP, false, serve_stop, NULL},
+    {"/api/estop", ACCESS_STOP, false, serve_stop, NULL},
+    {"/stop", ACCESS_STOP, true, serve_stop, NULL},
+    {"/estop", ACCESS_STOP, true, serve_stop, NULL},
+    {"/api/reset", ACCESS_ACT, false, serve_reset, reset_fields},
 };
 
 static const struct path *find_path(const http_request *r)
@@ -467,11 +467,11 @@ static const struct path *find_path(const http_request *r)
     return NULL;
 }
 
-static bool rule_of(void *ctx, const http_request *r, wall_rule *rule)
+static bool rule_of(void *ctx, const http_request *r, access_rule *rule)
 {
     const struct path *p = find_path(r);
     (void)ctx;
-    *rule = p ? p->rule : WALL_PAGE;
+    *rule = p ? p->rule : ACCESS_PAGE;
     return p || (!r->second && page_has(r->path));
 }
 
@@ -554,7 +554,7 @@ static int run(view *v, app *a)
 {
     http_config config = {
         .base = v->l.link.base, .rule = rule_of, .serve = answer, .early = stop_early, .ctx = v};
-    int status = door_open(a, v->options, &config, &v->events);
+    int status = listener_open(a, v->options, &config, &v->events);
     if (status) {
         return status;
     }
@@ -566,7 +566,7 @@ static int run(view *v, app *a)
     on_tick(-1, 0, v);
     v->l.on_event = on_fleet_event;
     leader_listen(&v->l, "state");
-    door_announce(a, v->http);
+    listener_announce(a, v->http);
     while (!v->l.link.signal) {
         (void)leader_wait(&v->l, INT64_C(3600000000), NULL);
     }

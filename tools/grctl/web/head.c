@@ -74,9 +74,9 @@ static bool is_word(const char *text, size_t size, const char *word)
 }
 
 /* "METHOD /target HTTP/1.1" (RFC 9112, 3). */
-static wall_answer judge_line(const char *line, size_t size)
+static access_answer judge_line(const char *line, size_t size)
 {
-    const wall_answer bad = {400, "syntax", "the request line is malformed"};
+    const access_answer bad = {400, "syntax", "the request line is malformed"};
     size_t method = token(line), target = strcspn(line + (method < size ? method + 1 : 0), " \r\n");
     const char *version = line + method + 1 + target + 1;
     if (method == 0 || method > METHOD_BYTES_MAX || method >= size || line[method] != ' ' ||
@@ -91,8 +91,8 @@ static wall_answer judge_line(const char *line, size_t size)
         }
     }
     bool known = strncmp(version, "HTTP/1.1", 8) == 0 || strncmp(version, "HTTP/1.0", 8) == 0;
-    return known ? (wall_answer){0}
-                 : (wall_answer){505, "syntax", "the version is not HTTP/1.1 or HTTP/1.0"};
+    return known ? (access_answer){0}
+                 : (access_answer){505, "syntax", "the version is not HTTP/1.1 or HTTP/1.0"};
 }
 
 static piece trim(const char *text, size_t size)
@@ -138,35 +138,35 @@ static bool take_field(const char *line, size_t size, framing *f)
 }
 
 /* Where the body ends is said once, in one way, and by digits (RFC 9112, 6). */
-static wall_answer judge_framing(const framing *f, size_t body_max)
+static access_answer judge_framing(const framing *f, size_t body_max)
 {
     if (f->lengths > 1 || f->codings > 1 || (f->lengths && f->codings)) {
-        return (wall_answer){400, "syntax", "the length of the body is given twice"};
+        return (access_answer){400, "syntax", "the length of the body is given twice"};
     }
     if (f->codings && !is_word(f->coding.text, f->coding.size, "chunked")) {
-        return (wall_answer){501, "syntax", "the transfer coding is not chunked"};
+        return (access_answer){501, "syntax", "the transfer coding is not chunked"};
     }
     if (f->lengths) {
         size_t digits = strspn(f->length.text, "0123456789");
         if (digits == 0 || digits != f->length.size) {
-            return (wall_answer){400, "syntax", "the header Content-Length is no number"};
+            return (access_answer){400, "syntax", "the header Content-Length is no number"};
         }
         if (digits > 9 || strtoul(f->length.text, NULL, 10) > body_max) {
-            return (wall_answer){413, "too_large", "the body is too large"};
+            return (access_answer){413, "too_large", "the body is too large"};
         }
     }
     if (f->expect.text && !is_word(f->expect.text, f->expect.size, "100-continue")) {
-        return (wall_answer){417, "syntax", "the header Expect is not 100-continue"};
+        return (access_answer){417, "syntax", "the header Expect is not 100-continue"};
     }
-    return (wall_answer){0};
+    return (access_answer){0};
 }
 
-wall_answer head_judge(const char *text, size_t size, size_t body_max)
+access_answer head_judge(const char *text, size_t size, size_t body_max)
 {
     framing f = {0};
     const char *line = text, *end;
     if (memchr(text, '\0', size)) {
-        return (wall_answer){400, "syntax", "the head of the request has a zero byte"};
+        return (access_answer){400, "syntax", "the head of the request has a zero byte"};
     }
     while ((end = memchr(line, '\n', size - (size_t)(line - text))) != NULL) {
         size_t length = (size_t)(end - line);
@@ -175,16 +175,16 @@ wall_answer head_judge(const char *text, size_t size, size_t body_max)
             return judge_framing(&f, body_max);
         }
         if (line == text) {
-            wall_answer no = judge_line(line, length);
+            access_answer no = judge_line(line, length);
             if (no.status) {
                 return no;
             }
         } else if (!take_field(line, length, &f)) {
-            return (wall_answer){400, "syntax", "a header of the request is malformed"};
+            return (access_answer){400, "syntax", "a header of the request is malformed"};
         }
         line = end + 1;
     }
-    return (wall_answer){431, "too_large", "the head of the request is larger than 8 kB"};
+    return (access_answer){431, "too_large", "the head of the request is larger than 8 kB"};
 }
 
 /* ---- the head of a stop ---------------------------------------------------------------------- */

@@ -17,7 +17,7 @@ size_t head_end(const char *text);
  * `body_max` bytes. libevent reads two lengths, unknown codings and folded headers in its own way,
  * and refuses the rest by a page of HTML.
  */
-wall_answer head_judge(const char *text, size_t size, size_t body_max);
+access_answer head_judge(const char *text, size_t size, size_t body_max);
 /*
  * Of a whole head, "POST /stop HTTP/1.1" and headers, its URI and headers; false: it is something
  * else. The text is cut to pieces. `headers` is empty before, and the caller's in either case.

@@ -30,18 +30,18 @@ static port *port_of(const http_request *r)
     return r->second ? &r->server->second : &r->server->first;
 }
 
-static wall_request as_wall(const http_request *r)
+static access_request as_wall(const http_request *r)
 {
-    return (wall_request){.method = *r->method ? r->method : NULL,
-                          .uri = evhttp_request_get_uri(r->raw),
-                          .headers = evhttp_request_get_input_headers(r->raw)};
+    return (access_request){.method = *r->method ? r->method : NULL,
+                            .uri = evhttp_request_get_uri(r->raw),
+                            .headers = evhttp_request_get_input_headers(r->raw)};
 }
 
 static void add_policy(const http_request *r)
 {
     char text[640];
-    wall_request q = as_wall(r);
-    const char *host = wall_host(&port_of(r)->wall, &q);
+    access_request q = as_wall(r);
+    const char *host = access_host(&port_of(r)->access, &q);
     snprintf(text, sizeof text,
              "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
              "connect-src 'self' http://%s:%u; worker-src 'self'; manifest-src 'self'; "
@@ -119,9 +119,9 @@ json_t *http_object_if_any(http_request *r)
     return size <= HTTP_BODY_BYTES ? read_object(r) : NULL;
 }
 
-wall_answer http_check_token(const http_request *r, const char *token)
+access_answer http_check_token(const http_request *r, const char *token)
 {
-    return wall_check_token(&port_of(r)->wall, token);
+    return access_check_token(&port_of(r)->access, token);
 }
 
 /* One that changes something, and is one too many in this second? */
@@ -142,10 +142,10 @@ static void add_methods(const http_request *r)
     char text[32] = "";
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         http_request other = *r;
-        wall_rule rule = WALL_PAGE;
+        access_rule rule = ACCESS_PAGE;
         snprintf(other.method, sizeof other.method, "%s", methods[i]);
         if (r->server->config.rule(r->server->config.ctx, &other, &rule) &&
-            strcmp(wall_method(rule), methods[i]) == 0) {
+            strcmp(access_method(rule), methods[i]) == 0) {
             size_t n = strlen(text);
             snprintf(text + n, sizeof text - n, "%s%s", n ? ", " : "", methods[i]);
         }
@@ -153,7 +153,7 @@ static void add_methods(const http_request *r)
     http_add(r, "Allow", text);
 }
 
-static void refuse(http_request *r, wall_answer no)
+static void refuse(http_request *r, access_answer no)
 {
     if (no.status == 405) {
         add_methods(r);
@@ -162,32 +162,34 @@ static void refuse(http_request *r, wall_answer no)
 }
 
 /* What is wrong with it by where it comes from, its path and what it may. */
-static wall_answer judge(http_request *r, wall_rule *rule)
+static access_answer judge(http_request *r, access_rule *rule)
 {
-    const wall *w = &port_of(r)->wall;
-    wall_request q = as_wall(r);
-    wall_answer no = head_is_framed(q.headers)
-                         ? wall_check_source(w, &q)
-                         : (wall_answer){400, "syntax", "the length of the body is not clear"};
+    const access_rules *w = &port_of(r)->access;
+    access_request q = as_wall(r);
+    access_answer no = head_is_framed(q.headers)
+                           ? access_check_source(w, &q)
+                           : (access_answer){400, "syntax", "the length of the body is not clear"};
     if (!no.status && (!head_split(q.uri, r->path, r->query) ||
                        !r->server->config.rule(r->server->config.ctx, r, rule))) {
-        no = (wall_answer){404, "notfound", "there is no such path"};
+        no = (access_answer){404, "notfound", "there is no such path"};
     }
-    return no.status ? no : wall_check_right(w, &q, *rule);
+    return no.status ? no : access_check_right(w, &q, *rule);
 }
 
 /* By how much there is of it. */
-static wall_answer judge_amount(http_request *r, wall_rule rule)
+static access_answer judge_amount(http_request *r, access_rule rule)
 {
     size_t size;
     http_body(r, &size);
-    if (size > HTTP_BODY_BYTES && rule != WALL_SAVE && rule != WALL_DRAFT && rule != WALL_STOP) {
-        return (wall_answer){413, "too_large", "the body is larger than 64 kB"};
+    if (size > HTTP_BODY_BYTES && rule != ACCESS_SAVE && rule != ACCESS_DRAFT &&
+        rule != ACCESS_STOP) {
+        return (access_answer){413, "too_large", "the body is larger than 64 kB"};
     }
-    if ((rule == WALL_ACT || rule == WALL_SAVE || rule == WALL_DRAFT) && is_flood(r->server)) {
-        return (wall_answer){429, "too_many", "more than 100 requests a second"};
+    if ((rule == ACCESS_ACT || rule == ACCESS_SAVE || rule == ACCESS_DRAFT) &&
+        is_flood(r->server)) {
+        return (access_answer){429, "too_many", "more than 100 requests a second"};
     }
-    return (wall_answer){0};
+    return (access_answer){0};
 }
 
 /* ---- whole requests -------------------------------------------------------------------------- */
@@ -195,8 +197,8 @@ static wall_answer judge_amount(http_request *r, wall_rule rule)
 static void serve_or_refuse(http_request *r)
 {
     http *h = r->server;
-    wall_rule rule = WALL_PAGE;
-    wall_answer no = judge(r, &rule);
+    access_rule rule = ACCESS_PAGE;
+    access_answer no = judge(r, &rule);
     if (!no.status) {
         no = judge_amount(r, rule);
     }
@@ -213,7 +215,7 @@ static void serve_or_refuse(http_request *r)
 static void on_request(struct evhttp_request *raw, void *ctx)
 {
     port *p = ctx;
-    guests_know(p, evhttp_request_get_connection(raw));
+    clients_know(p, evhttp_request_get_connection(raw));
     http_request *r = calloc(1, sizeof *r);
     if (!r) {
         evhttp_send_reply(raw, 503, NULL, NULL);
@@ -252,7 +254,7 @@ static void on_sweep(evutil_socket_t fd, short what, void *ctx)
     (void)fd;
     (void)what;
     answer_late(ctx);
-    guests_sweep(ctx);
+    clients_sweep(ctx);
 }
 
 static bool listen_at(port *p, const char *address, uint16_t number)
@@ -261,7 +263,7 @@ static bool listen_at(port *p, const char *address, uint16_t number)
     if (!bound) {
         return false;
     }
-    p->wall.port = net_port(evhttp_bound_socket_get_fd(bound));
+    p->access.port = net_port(evhttp_bound_socket_get_fd(bound));
     p->listeners[p->n_listeners++] = evhttp_bound_socket_get_listener(bound);
     return true;
 }
@@ -273,9 +275,10 @@ static bool open_port(http *h, port *p, uint16_t number)
     if (!p->server) {
         return false;
     }
-    evhttp_set_bevcb(p->server, guests_accept, p);
+    evhttp_set_bevcb(p->server, clients_accept, p);
     evhttp_set_gencb(p->server, on_request, p);
-    evhttp_set_allowed_methods(p->server, 0xffff); /* the wall has its own answer to others */
+    evhttp_set_allowed_methods(p->server,
+                               0xffff); /* the access rules have their own answer to others */
     evhttp_set_max_headers_size(p->server, HTTP_HEADER_BYTES);
     evhttp_set_max_body_size(p->server, (ev_ssize_t)early_body_max(p));
     evhttp_set_timeout(p->server, IDLE_S);
@@ -285,43 +288,43 @@ static bool open_port(http *h, port *p, uint16_t number)
     }
     bool open = listen_at(p, "127.0.0.1", number);
     if (open) {
-        (void)listen_at(p, "::1", p->wall.port); /* where there is IPv6 */
+        (void)listen_at(p, "::1", p->access.port); /* where there is IPv6 */
     }
     return open;
 }
 
 /* The address where it listens as a link has it; NULL: loopback or every one. */
-static const char *own_address(const http *h, char text[WALL_NAME_BYTES])
+static const char *own_address(const http *h, char text[ACCESS_NAME_BYTES])
 {
     const char *address = h->config.address;
     if (!address || address[strspn(address, "0.:")] == '\0') {
         return NULL;
     }
     bool six = strchr(address, ':') != NULL;
-    snprintf(text, WALL_NAME_BYTES, "%s%s%s", six ? "[" : "", address, six ? "]" : "");
+    snprintf(text, ACCESS_NAME_BYTES, "%s%s%s", six ? "[" : "", address, six ? "]" : "");
     return text;
 }
 
 static void set_walls(http *h)
 {
-    char text[WALL_NAME_BYTES];
+    char text[ACCESS_NAME_BYTES];
     const char *address = own_address(h, text), *name = h->config.name ? h->config.name : address;
-    const char *names[WALL_HOSTS] = {name ? name : "127.0.0.1", "127.0.0.1", "[::1]", "localhost",
-                                     address};
-    wall *w = &h->first.wall;
+    const char *names[ACCESS_HOSTS] = {name ? name : "127.0.0.1", "127.0.0.1", "[::1]", "localhost",
+                                       address};
+    access_rules *w = &h->first.access;
     w->open = h->config.address && !net_is_loopback(h->config.address);
     w->page_port = w->port;
-    for (int i = 0; i < WALL_HOSTS && names[i]; i++) {
-        snprintf(w->hosts[w->n_hosts++], WALL_NAME_BYTES, "%s", names[i]);
+    for (int i = 0; i < ACCESS_HOSTS && names[i]; i++) {
+        snprintf(w->hosts[w->n_hosts++], ACCESS_NAME_BYTES, "%s", names[i]);
     }
     if (h->config.token) {
         snprintf(w->token, sizeof w->token, "%s", h->config.token);
     } else {
-        wall_make_secret(w->token);
+        access_make_secret(w->token);
     }
-    uint16_t number = h->second.wall.port;
-    h->second.wall = *w;
-    h->second.wall.port = number;
+    uint16_t number = h->second.access.port;
+    h->second.access = *w;
+    h->second.access.port = number;
 }
 
 int http_new(const http_config *config, http **server, const char **complaint)
@@ -336,7 +339,7 @@ int http_new(const http_config *config, http **server, const char **complaint)
     h->hear = early_hear;
     h->sweep = event_new(config->base, -1, EV_PERSIST, on_sweep, h);
     h->reap = event_new(config->base, -1, 0, streams_on_reap, h);
-    h->greet = event_new(config->base, -1, 0, guests_name, h);
+    h->greet = event_new(config->base, -1, 0, clients_name, h);
     if (!h->sweep || !h->reap || !h->greet || event_add(h->sweep, &period) != 0) {
         http_free(h);
         return GROBO_ERR_NOMEM;
@@ -383,25 +386,25 @@ void http_free(http *server)
 
 const char *http_host(const http *server)
 {
-    return server->first.wall.hosts[0];
+    return server->first.access.hosts[0];
 }
 
 uint16_t http_port(const http *server)
 {
-    return server->first.wall.port;
+    return server->first.access.port;
 }
 
 uint16_t http_stop_port(const http *server)
 {
-    return server->second.wall.port;
+    return server->second.access.port;
 }
 
 const char *http_token(const http *server)
 {
-    return server->first.wall.token;
+    return server->first.access.token;
 }
 
 bool http_is_open(const http *server)
 {
-    return server->first.wall.open;
+    return server->first.access.open;
 }

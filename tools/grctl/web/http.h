@@ -12,7 +12,7 @@
 
 #include <jansson.h>
 
-#include "tools/grctl/web/wall.h"
+#include "tools/grctl/web/access.h"
 
 struct event_base;
 struct evhttp_request;
@@ -42,11 +42,12 @@ typedef struct http_request {
     char query[HTTP_PATH_BYTES];
     /* private */
     int64_t refused_us; /* 0: it is not refused */
-    wall_answer refusal;
+    access_answer refusal;
 } http_request;
 
-/* What a path is, for the wall: false where there is no such path. Called before http_serve_fn. */
-typedef bool (*http_rule_fn)(void *ctx, const http_request *r, wall_rule *rule);
+/* What a path is, for the access rules: false where there is no such path. Called before
+ * http_serve_fn. */
+typedef bool (*http_rule_fn)(void *ctx, const http_request *r, access_rule *rule);
 /* Answers it by one of the replies, now or later. */
 typedef void (*http_serve_fn)(void *ctx, http_request *r);
 /*
@@ -91,8 +92,8 @@ const char *http_body(const http_request *r, size_t *size);
 json_t *http_object(http_request *r);
 /* The same of a request that needs none: NULL where it cannot be read. */
 json_t *http_object_if_any(http_request *r);
-/* The wall's judgement of a token that stood in the body. */
-wall_answer http_check_token(const http_request *r, const char *token);
+/* The access rules' judgement of a token that stood in the body. */
+access_answer http_check_token(const http_request *r, const char *token);
 
 /* ---- replies: each ends the request ---------------------------------------------------------- */
 

@@ -22,7 +22,7 @@ struct evhttp_connection;
 enum {
     LISTENERS = 2,
     SPARE = 8, /* accepted while others that were ended are going */
-    GUESTS = 2 * (HTTP_CONNECTIONS_MAX + SPARE)
+    CLIENTS = 2 * (HTTP_CONNECTIONS_MAX + SPARE)
 };
 
 /* One of the two ports. */
@@ -31,14 +31,14 @@ typedef struct port {
     struct evhttp *server;
     struct evconnlistener *listeners[LISTENERS];
     int n_listeners;
-    wall wall;
+    access_rules access;
 } port;
 
 /*
  * A connection. libevent does not tell when one ends that never made a request: such a one is gone
  * when its socket is, or is that of another connection.
  */
-typedef struct guest {
+typedef struct client {
     port *at;                /* NULL: this place is free */
     struct bufferevent *bev; /* for when it is heard or was just accepted, as it is there then */
     const struct evbuffer *input;
@@ -50,7 +50,7 @@ typedef struct guest {
     int64_t began_us;                     /* a request that is not whole, 0: none */
     size_t head_bytes, got;               /* of the request that is not whole: kept, and came */
     bool ended, judged;                   /* judged: its head is whole, and was looked at */
-} guest;
+} client;
 
 typedef struct stream {
     struct stream *next;
@@ -65,10 +65,10 @@ typedef struct stream {
 struct http {
     http_config config;
     /* What came of a request: early_hear(), which the connections know by this alone. */
-    void (*hear)(guest *g, struct evbuffer *input, size_t added);
+    void (*hear)(client *c, struct evbuffer *input, size_t added);
     port first, second;
-    guest guests[GUESTS];
-    char heads[GUESTS][HTTP_HEADER_BYTES + 1]; /* of requests that are not whole */
+    client clients[CLIENTS];
+    char heads[CLIENTS][HTTP_HEADER_BYTES + 1]; /* of requests that are not whole */
     stream *streams;
     http_request *waiting;
     struct event *sweep, *reap, *greet;
@@ -76,19 +76,19 @@ struct http {
     int changes;
 };
 
-/* ---- connections (guests.c) ------------------------------------------------------------------ */
+/* ---- connections (clients.c) ----------------------------------------------------------------- */
 
 /* At each connection that is accepted, for evhttp_set_bevcb(). Who comes when all places are taken
  * waits in the system. */
-struct bufferevent *guests_accept(struct event_base *base, void *port_of_it);
+struct bufferevent *clients_accept(struct event_base *base, void *port_of_it);
 /* An event's callback right behind the accepting of connections: none has been read or freed. */
-void guests_name(evutil_socket_t fd, short what, void *server);
+void clients_name(evutil_socket_t fd, short what, void *server);
 /* The connection has a whole request; from now on libevent tells when it ends. */
-void guests_know(port *p, struct evhttp_connection *connection);
+void clients_know(port *p, struct evhttp_connection *connection);
 /* Forgets those that have gone without a word, and makes room. */
-void guests_sweep(http *h);
+void clients_sweep(http *h);
 /* Ends a connection; libevent sees that, and frees it. */
-void guests_end(guest *g);
+void clients_end(client *c);
 
 /* ---- heads (early.c) ------------------------------------------------------------------------- */
 
@@ -97,7 +97,7 @@ void guests_end(guest *g);
  * stop needs no body: it is carried out. A head that is malformed is refused here, with its
  * connection.
  */
-void early_hear(guest *g, struct evbuffer *input, size_t added);
+void early_hear(client *c, struct evbuffer *input, size_t added);
 /* How large the body of a request to this port may be. */
 size_t early_body_max(const port *p);
 

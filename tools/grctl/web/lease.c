@@ -6,10 +6,10 @@
 
 static void make_page(lease_page *page, const char *name, int64_t now_us)
 {
-    char id[WALL_SECRET_BYTES];
+    char id[ACCESS_SECRET_BYTES];
     memset(page, 0, sizeof *page);
-    wall_make_secret(page->secret);
-    wall_make_secret(id); /* its own: it tells nothing of the secret */
+    access_make_secret(page->secret);
+    access_make_secret(id); /* its own: it tells nothing of the secret */
     memcpy(page->id, id, sizeof page->id - 1);
     snprintf(page->name, sizeof page->name, "%s", name);
     page->since_us = now_us;
@@ -22,12 +22,12 @@ bool lease_is_held(const lease *l)
 
 bool lease_is_holder(const lease *l, const char *secret)
 {
-    return lease_is_held(l) && secret && wall_equal(secret, l->holder.secret);
+    return lease_is_held(l) && secret && access_equal(secret, l->holder.secret);
 }
 
 static bool has_waited(const lease *l, const char *secret, int64_t now_us)
 {
-    return *l->asker.secret && secret && wall_equal(secret, l->asker.secret) &&
+    return *l->asker.secret && secret && access_equal(secret, l->asker.secret) &&
            now_us - l->asker.since_us >= LEASE_ASK_US;
 }
 

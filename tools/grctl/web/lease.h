@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "tools/grctl/web/wall.h"
+#include "tools/grctl/web/access.h"
 
 enum { LEASE_NAME_BYTES = 128, LEASE_ID_BYTES = 8 + 1 };
 /* Who was asked has this time to answer. */
@@ -17,8 +17,8 @@ enum { LEASE_NAME_BYTES = 128, LEASE_ID_BYTES = 8 + 1 };
 
 /* A page that drives, or asks to. */
 typedef struct lease_page {
-    char secret[WALL_SECRET_BYTES]; /* "": there is none */
-    char id[LEASE_ID_BYTES];        /* of it, for everybody */
+    char secret[ACCESS_SECRET_BYTES]; /* "": there is none */
+    char id[LEASE_ID_BYTES];          /* of it, for everybody */
     char name[LEASE_NAME_BYTES];
     int64_t since_us;
 } lease_page;

@@ -28,7 +28,7 @@ typedef struct load {
     int status;
     unsigned epoch;
     uint64_t sequence;
-    char secret[WALL_SECRET_BYTES];
+    char secret[ACCESS_SECRET_BYTES];
     player_lost on_lost;
     bool queued;
 } load;

@@ -4,8 +4,8 @@
 
 #include <grobo/core/port.h>
 
-#include "tools/grctl/web/door.h"
 #include "tools/grctl/web/fields.h"
+#include "tools/grctl/web/listener.h"
 #include "tools/grctl/web/page.h"
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
@@ -168,9 +168,9 @@ static json_t *lease_answer(const lease_page *page, bool held)
 
 static void take(serve *s, http_request *r, const json_t *body)
 {
-    const char *secret = door_header_or_body(r, body, "X-Grobo-Lease", "lease");
+    const char *secret = header_or_body(r, body, "X-Grobo-Lease", "lease");
     bool was_held = lease_is_held(&s->lease);
-    if (!lease_take(&s->lease, door_name(body).name, secret, s->options->takes_over,
+    if (!lease_take(&s->lease, requester_of(body).name, secret, s->options->takes_over,
                     grobo_now_us())) {
         refuse_lease(s, r);
         return;
@@ -186,7 +186,7 @@ static void take(serve *s, http_request *r, const json_t *body)
 
 static void ask(serve *s, http_request *r, const json_t *body)
 {
-    if (!lease_ask(&s->lease, door_name(body).name, grobo_now_us())) {
+    if (!lease_ask(&s->lease, requester_of(body).name, grobo_now_us())) {
         http_refuse(r, 409, "state", "nobody drives: take it");
         return;
     }
@@ -199,9 +199,9 @@ static void ask(serve *s, http_request *r, const json_t *body)
 
 static void serve_lease(serve *s, http_request *r, const json_t *body)
 {
-    const char *action = door_text(body, "action");
-    const char *secret = door_header_or_body(r, body, "X-Grobo-Lease", "lease");
-    if (!door_has_token(r, body)) {
+    const char *action = body_text(body, "action");
+    const char *secret = header_or_body(r, body, "X-Grobo-Lease", "lease");
+    if (!listener_has_token(r, body)) {
         return;
     }
     if (strcmp(action, "take") == 0) {
@@ -236,10 +236,10 @@ void serve_early(void *ctx, const http_request *r)
 static void serve_stop(serve *s, http_request *r, const json_t *body)
 {
     bool estop = strstr(r->path, "estop") != NULL;
-    if (http_is_open(r->server) && !door_has_token(r, body)) {
+    if (http_is_open(r->server) && !listener_has_token(r, body)) {
         return;
     }
-    int result = stops_ask(s, door_name(body).name, estop);
+    int result = stops_ask(s, requester_of(body).name, estop);
     if (result < 0 && result != GROBO_ERR_CLOSED) {
         serve_refuse(s, r, result, estop ? "estop" : "stop");
     } else if (r->second) {
@@ -251,10 +251,10 @@ static void serve_stop(serve *s, http_request *r, const json_t *body)
 
 static void serve_heartbeat(serve *s, http_request *r, const json_t *body)
 {
-    if (http_is_open(r->server) && !door_has_token(r, body)) {
+    if (http_is_open(r->server) && !listener_has_token(r, body)) {
         return;
     }
-    const char *secret = door_text(body, "lease");
+    const char *secret = body_text(body, "lease");
     if (!lease_is_holder(&s->lease, secret)) {
         refuse_lease(s, r);
     } else if (!based_is_fresh(&s->based, json_object_get(body, "drawn"), grobo_now_us())) {
@@ -269,7 +269,7 @@ static void serve_heartbeat(serve *s, http_request *r, const json_t *body)
 
 typedef struct plain {
     const char *path;
-    wall_rule rule;
+    access_rule rule;
     bool second; /* on the second port */
     void (*run)(serve *s, http_request *r, const json_t *body);
     const field *fields; /* NULL: whatever its body has, it is carried out */
@@ -300,18 +300,18 @@ static void serve_motions(serve *s, http_request *r, const json_t *body)
 }
 
 static const plain plains[] = {
-    {"/api/motions", WALL_READ, false, serve_motions, no_fields},
-    {"/api/preview", WALL_DRAFT, false, NULL, NULL}, /* its body is read by the worker */
-    {"/api/ik", WALL_ACT, false, pose_ik, ik_fields},
-    {"/api/robot", WALL_READ, false, serve_robot, no_fields},
-    {"/api/state", WALL_READ, false, serve_state, no_fields},
-    {"/api/events", WALL_READ, false, serve_events, no_fields},
-    {"/api/lease", WALL_PLAIN, false, serve_lease, lease_fields},
-    {"/api/stop", WALL_STOP, false, serve_stop, NULL},
-    {"/api/estop", WALL_STOP, false, serve_stop, NULL},
-    {"/stop", WALL_STOP, true, serve_stop, NULL},
-    {"/estop", WALL_STOP, true, serve_stop, NULL},
-    {"/heartbeat", WALL_PLAIN, true, serve_heartbeat, heartbeat_fields},
+    {"/api/motions", ACCESS_READ, false, serve_motions, no_fields},
+    {"/api/preview", ACCESS_DRAFT, false, NULL, NULL}, /* its body is read by the worker */
+    {"/api/ik", ACCESS_ACT, false, pose_ik, ik_fields},
+    {"/api/robot", ACCESS_READ, false, serve_robot, no_fields},
+    {"/api/state", ACCESS_READ, false, serve_state, no_fields},
+    {"/api/events", ACCESS_READ, false, serve_events, no_fields},
+    {"/api/lease", ACCESS_PLAIN, false, serve_lease, lease_fields},
+    {"/api/stop", ACCESS_STOP, false, serve_stop, NULL},
+    {"/api/estop", ACCESS_STOP, false, serve_stop, NULL},
+    {"/stop", ACCESS_STOP, true, serve_stop, NULL},
+    {"/estop", ACCESS_STOP, true, serve_stop, NULL},
+    {"/heartbeat", ACCESS_PLAIN, true, serve_heartbeat, heartbeat_fields},
 };
 
 static const plain *find_plain(const http_request *r)
@@ -379,22 +379,22 @@ static void serve_motion(serve *s, http_request *r, const char *name, bool file)
     }
 }
 
-bool serve_rule(void *ctx, const http_request *r, wall_rule *rule)
+bool serve_rule(void *ctx, const http_request *r, access_rule *rule)
 {
     const plain *p = find_plain(r);
     char name[LIBRARY_NAME_BYTES];
     bool file;
     (void)ctx;
     if (find_motion(r, name, &file)) {
-        *rule = strcmp(r->method, "PUT") == 0 ? WALL_SAVE : WALL_READ;
+        *rule = strcmp(r->method, "PUT") == 0 ? ACCESS_SAVE : ACCESS_READ;
         return true;
     }
     if (p) {
         *rule = p->rule;
         return true;
     }
-    *rule = find_verb(r) ? WALL_ACT : WALL_PAGE;
-    return *rule == WALL_ACT || (!r->second && page_has(r->path));
+    *rule = find_verb(r) ? ACCESS_ACT : ACCESS_PAGE;
+    return *rule == ACCESS_ACT || (!r->second && page_has(r->path));
 }
 
 /* Its body is whole and as it should be: it is carried out. */
@@ -433,7 +433,7 @@ void serve_request(void *ctx, http_request *r)
     const verb *v = find_verb(r);
     char name[LIBRARY_NAME_BYTES];
     bool file, motion = find_motion(r, name, &file);
-    if (!s->ready && (motion || v || (p && p->rule != WALL_STOP))) {
+    if (!s->ready && (motion || v || (p && p->rule != ACCESS_STOP))) {
         http_refuse(r, 503, "closed", "serve: the robot is being opened; a stop is heard already");
         return;
     }

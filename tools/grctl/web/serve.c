@@ -8,7 +8,7 @@
 
 #include <grobo/core/port.h>
 
-#include "tools/grctl/web/door.h"
+#include "tools/grctl/web/listener.h"
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 
@@ -250,7 +250,7 @@ static int open_ports(serve *s)
                           .serve = serve_request,
                           .early = serve_early,
                           .ctx = s};
-    int status = door_open(s->a, s->options, &config, &s->events);
+    int status = listener_open(s->a, s->options, &config, &s->events);
     s->http = s->events.to;
     return status;
 }
@@ -293,7 +293,7 @@ static int run(serve *s)
     s->ready = true;
     stops_begin(s);
     on_tick(-1, 0, s); /* there is a state from the first request on */
-    door_announce(s->a, s->http);
+    listener_announce(s->a, s->http);
     error = conn_wait_until(c, NULL);
     c->moving = c->up && serve_is_moving(s);
     c->on_event = NULL; /* nobody is told any more */

@@ -85,7 +85,7 @@ bool serve_is_based(serve *s, http_request *r, const json_t *body, const char *d
 
 /* ---- requests: by path ----------------------------------------------------------------------- */
 
-bool serve_rule(void *ctx, const http_request *r, wall_rule *rule);
+bool serve_rule(void *ctx, const http_request *r, access_rule *rule);
 void serve_request(void *ctx, http_request *r);
 void serve_early(void *ctx, const http_request *r);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Robots of the configuration on one loop, and a team of those that play a motion. */
-#ifndef GRCTL_TROUPE_H
-#define GRCTL_TROUPE_H
+#ifndef GRCTL_ROBOT_GROUP_H
+#define GRCTL_ROBOT_GROUP_H
 
 #include <grobo/core/team.h>
 
@@ -11,7 +11,7 @@
 
 /* One robot. What it says stands behind its name. */
 typedef struct seat {
-    struct troupe *all;
+    struct robot_group *all;
     const char *name;
     app a;
     config_robot robot;
@@ -24,7 +24,7 @@ typedef struct seat {
     int status;       /* the exit status so far */
 } seat;
 
-typedef struct troupe {
+typedef struct robot_group {
     app *a;
     conn_link host; /* whose loop and signals all use */
     seat *seats;
@@ -35,14 +35,14 @@ typedef struct troupe {
     void *ctx;                                           /* of on_team */
     /* private */
     struct event *timer;
-} troupe;
+} robot_group;
 
 /* Seats for these robots, none open. names: borrowed. 0 or the exit status. */
-int troupe_begin(troupe *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n);
+int robot_group_begin(robot_group *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n);
 /* Connects with one robot, which may be moved then. seat_close() in either case. */
-int seat_open(troupe *t, int i);
+int seat_open(robot_group *t, int i);
 /* The same with one that may not be there: then it is closed again, and why says it. */
-int seat_try(troupe *t, int i, char why[APP_LINE_BYTES]);
+int seat_try(robot_group *t, int i, char why[APP_LINE_BYTES]);
 /* Reads and checks the files of seat.a.line. 0 or the exit status. */
 int seat_load(seat *s);
 /* Makes the clips, from where the robot is. 0 or the exit status. */
@@ -54,13 +54,13 @@ typedef struct seat_worst {
 } seat_worst;
 seat_worst seat_get_worst(const seat *s);
 /* Plays the first clip of every chosen seat. 0, or an error: see grobo_team_play(). */
-int troupe_play(troupe *t, grobo_team_policy policy, const grobo_play_options *options);
+int robot_group_play(robot_group *t, grobo_team_policy policy, const grobo_play_options *options);
 /* Lets the team look at the time; after any request of it. */
-void troupe_look(troupe *t);
+void robot_group_look(robot_group *t);
 /* Ends the team; what it played must be over, or be stopped by who asks. */
-void troupe_disband(troupe *t);
+void robot_group_disband(robot_group *t);
 /* As conn_close(). */
 int seat_close(seat *s, int status);
-void troupe_end(troupe *t);
+void robot_group_end(robot_group *t);
 
 #endif

@@ -5,11 +5,11 @@
 #include <grobo/error.h>
 
 #include "tools/grctl/cli/output.h"
-#include "tools/grctl/web/door.h"
+#include "tools/grctl/web/listener.h"
 
 enum { TOKEN_LEAST = 16, WRONG_US = 300000 };
 
-int door_open(app *a, const web_options *options, http_config *config, events *e)
+int listener_open(app *a, const web_options *options, http_config *config, events *e)
 {
     const char *complaint = NULL, *token = getenv("GRCTL_TOKEN");
     config->address = options->listen;
@@ -17,9 +17,9 @@ int door_open(app *a, const web_options *options, http_config *config, events *e
     config->name = options->name;
     config->token = token && *token ? token : NULL;
     config->wrong_us = WRONG_US;
-    if (config->token && (strlen(token) < TOKEN_LEAST || strlen(token) >= WALL_TOKEN_BYTES)) {
+    if (config->token && (strlen(token) < TOKEN_LEAST || strlen(token) >= ACCESS_TOKEN_BYTES)) {
         return app_fail(a, EXIT_USAGE, "ARG", "serve: GRCTL_TOKEN has %d to %d characters",
-                        TOKEN_LEAST, WALL_TOKEN_BYTES - 1);
+                        TOKEN_LEAST, ACCESS_TOKEN_BYTES - 1);
     }
     int error = http_new(config, &e->to, &complaint);
     if (error) {
@@ -29,7 +29,7 @@ int door_open(app *a, const web_options *options, http_config *config, events *e
     return EXIT_DONE;
 }
 
-void door_announce(const app *a, const http *h)
+void listener_announce(const app *a, const http *h)
 {
     const char *host = http_host(h);
     char url[256], stop_url[256];
@@ -48,33 +48,33 @@ void door_announce(const app *a, const http *h)
     output_flush();
 }
 
-const char *door_text(const json_t *body, const char *key)
+const char *body_text(const json_t *body, const char *key)
 {
     const char *text = json_string_value(json_object_get(body, key));
     return text ? text : "";
 }
 
-const char *door_header_or_body(const http_request *r, const json_t *body, const char *header,
-                                const char *key)
+const char *header_or_body(const http_request *r, const json_t *body, const char *header,
+                           const char *key)
 {
     const char *value = http_header(r, header);
-    return value ? value : door_text(body, key);
+    return value ? value : body_text(body, key);
 }
 
-bool door_has_token(http_request *r, const json_t *body)
+bool listener_has_token(http_request *r, const json_t *body)
 {
-    wall_answer no = http_check_token(r, door_header_or_body(r, body, "X-Grobo-Token", "token"));
+    access_answer no = http_check_token(r, header_or_body(r, body, "X-Grobo-Token", "token"));
     if (no.status) {
         http_refuse(r, no.status, no.code, "%s", no.message);
     }
     return !no.status;
 }
 
-door_who door_name(const json_t *body)
+requester requester_of(const json_t *body)
 {
-    const char *given = door_text(body, "name");
+    const char *given = body_text(body, "name");
     size_t n = strlen(given);
-    door_who who = {"a script"};
+    requester who = {"a script"};
     if (n >= sizeof who.name) {
         n = sizeof who.name - 1;
         while (((unsigned char)given[n] & 0xC0) == 0x80) { /* JSON has whole characters */

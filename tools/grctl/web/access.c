@@ -7,17 +7,17 @@
 #include <event2/keyvalq_struct.h>
 #include <event2/util.h>
 
-#include "tools/grctl/web/wall.h"
+#include "tools/grctl/web/access.h"
 
-static const wall_answer fine = {0};
+static const access_answer fine = {0};
 
-static wall_answer refuse(int status, const char *code, const char *message)
+static access_answer refuse(int status, const char *code, const char *message)
 {
-    return (wall_answer){.status = status, .code = code, .message = message};
+    return (access_answer){.status = status, .code = code, .message = message};
 }
 
 /* The one value of a header; NULL: none. *n: how often it is there. */
-static const char *header(const wall_request *r, const char *name, int *n)
+static const char *header(const access_request *r, const char *name, int *n)
 {
     const char *found = NULL;
     const struct evkeyval *h;
@@ -35,9 +35,9 @@ static const char *header(const wall_request *r, const char *name, int *n)
 }
 
 /* Which of our hosts stands before :port, in any case; NULL: none. */
-static const char *own_host(const wall *w, const char *text, uint16_t port)
+static const char *own_host(const access_rules *w, const char *text, uint16_t port)
 {
-    char whole[WALL_NAME_BYTES + 8];
+    char whole[ACCESS_NAME_BYTES + 8];
     for (int i = 0; i < w->n_hosts; i++) {
         snprintf(whole, sizeof whole, "%s:%u", w->hosts[i], port);
         /* A browser leaves the port of http away. */
@@ -48,13 +48,13 @@ static const char *own_host(const wall *w, const char *text, uint16_t port)
     return NULL;
 }
 
-const char *wall_host(const wall *w, const wall_request *r)
+const char *access_host(const access_rules *w, const access_request *r)
 {
     const char *host = header(r, "Host", NULL);
     return host ? own_host(w, host, w->port) : NULL;
 }
 
-static bool is_own_origin(const wall *w, const char *origin)
+static bool is_own_origin(const access_rules *w, const char *origin)
 {
     static const char scheme[] = "http://";
     return strncasecmp(origin, scheme, sizeof scheme - 1) == 0 &&
@@ -62,7 +62,7 @@ static bool is_own_origin(const wall *w, const char *origin)
 }
 
 /* A browser says where a request comes from; what says nothing is no browser. */
-static wall_answer check_origin(const wall *w, const wall_request *r)
+static access_answer check_origin(const access_rules *w, const access_request *r)
 {
     int n_origins, n_sites;
     const char *origin = header(r, "Origin", &n_origins);
@@ -86,7 +86,7 @@ static wall_answer check_origin(const wall *w, const wall_request *r)
     return refuse(403, "forbidden", "the request comes from another site");
 }
 
-wall_answer wall_check_source(const wall *w, const wall_request *r)
+access_answer access_check_source(const access_rules *w, const access_request *r)
 {
     int n_hosts;
     const char *host = header(r, "Host", &n_hosts);
@@ -100,7 +100,7 @@ wall_answer wall_check_source(const wall *w, const wall_request *r)
     return check_origin(w, r);
 }
 
-bool wall_equal(const char *a, const char *b)
+bool access_equal(const char *a, const char *b)
 {
     size_t n = strlen(a), m = strlen(b);
     unsigned differ = n != m;
@@ -110,9 +110,9 @@ bool wall_equal(const char *a, const char *b)
     return differ == 0 && n > 0;
 }
 
-wall_answer wall_check_token(const wall *w, const char *token)
+access_answer access_check_token(const access_rules *w, const char *token)
 {
-    if (token && wall_equal(token, w->token)) {
+    if (token && access_equal(token, w->token)) {
         return fine;
     }
     return refuse(401, "token",
@@ -127,50 +127,52 @@ static bool is_type(const char *type, const char *wanted)
 }
 
 /* A foreign form or no-cors fetch cannot send JSON: a browser asks first, and is refused. */
-static bool is_type_allowed(const wall_request *r, wall_rule rule)
+static bool is_type_allowed(const access_request *r, access_rule rule)
 {
     const char *type = header(r, "Content-Type", NULL);
     if (is_type(type, "application/json")) {
         return true;
     }
     switch (rule) {
-    case WALL_PAGE:
-    case WALL_READ:
+    case ACCESS_PAGE:
+    case ACCESS_READ:
         return true;
-    case WALL_STOP:
+    case ACCESS_STOP:
         return true; /* a stop needs no body: what kind it is of does not matter */
-    case WALL_PLAIN:
+    case ACCESS_PLAIN:
         return is_type(type, "text/plain");
-    case WALL_ACT:
-    case WALL_DRAFT:
+    case ACCESS_ACT:
+    case ACCESS_DRAFT:
         return false;
-    case WALL_SAVE:
+    case ACCESS_SAVE:
         return is_type(type, "application/octet-stream");
     }
     return false;
 }
 
-const char *wall_method(wall_rule rule)
+const char *access_method(access_rule rule)
 {
-    return rule == WALL_PAGE || rule == WALL_READ ? "GET" : rule == WALL_SAVE ? "PUT" : "POST";
+    return rule == ACCESS_PAGE || rule == ACCESS_READ ? "GET"
+           : rule == ACCESS_SAVE                      ? "PUT"
+                                                      : "POST";
 }
 
-wall_answer wall_check_right(const wall *w, const wall_request *r, wall_rule rule)
+access_answer access_check_right(const access_rules *w, const access_request *r, access_rule rule)
 {
-    if (!r->method || strcmp(r->method, wall_method(rule)) != 0) {
+    if (!r->method || strcmp(r->method, access_method(rule)) != 0) {
         return refuse(405, "method", "this method is not for this path");
     }
     if (!is_type_allowed(r, rule)) {
         return refuse(415, "forbidden", "the header Content-Type is not application/json");
     }
-    if (rule == WALL_PAGE || rule == WALL_STOP || rule == WALL_PLAIN ||
-        (rule == WALL_READ && !w->open)) {
+    if (rule == ACCESS_PAGE || rule == ACCESS_STOP || rule == ACCESS_PLAIN ||
+        (rule == ACCESS_READ && !w->open)) {
         return fine;
     }
-    return wall_check_token(w, header(r, "X-Grobo-Token", NULL));
+    return access_check_token(w, header(r, "X-Grobo-Token", NULL));
 }
 
-void wall_make_secret(char secret[WALL_SECRET_BYTES])
+void access_make_secret(char secret[ACCESS_SECRET_BYTES])
 {
     unsigned char bits[16];
     evutil_secure_rng_get_bytes(bits, sizeof bits);

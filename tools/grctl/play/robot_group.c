@@ -5,12 +5,12 @@
 
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/os/alarm.h"
-#include "tools/grctl/play/troupe.h"
+#include "tools/grctl/play/robot_group.h"
 
 /* A team is looked at at least so often while it plays. */
 #define LOOK_MAX_US INT64_C(3600000000)
 
-void troupe_look(troupe *t)
+void robot_group_look(robot_group *t)
 {
     int64_t now_us = grobo_now_us();
     int64_t at_us = t->team ? grobo_team_step(t->team, now_us) : GROBO_NEVER_US;
@@ -22,17 +22,17 @@ void troupe_look(troupe *t)
 
 static void on_timer(evutil_socket_t fd, short what, void *ctx)
 {
-    troupe *t = ctx;
+    robot_group *t = ctx;
     (void)fd;
     (void)what;
     alarm_clear(t->timer);
-    troupe_look(t);
+    robot_group_look(t);
 }
 
 static void on_robot(conn *c, const grobo_event *event)
 {
     seat *s = c->ctx;
-    troupe *t = s->all;
+    robot_group *t = s->all;
     bool begins = event->kind == GROBO_EVENT_PLAY && event->u.play.to == GROBO_SEQUENCER_PLAYING;
     if (begins && s->began_us == 0) {
         s->began_us = grobo_now_us();
@@ -44,11 +44,11 @@ static void on_robot(conn *c, const grobo_event *event)
         t->on_robot(s, event);
     }
     if (event->kind != GROBO_EVENT_JOINT) {
-        troupe_look(t);
+        robot_group_look(t);
     }
 }
 
-int troupe_begin(troupe *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n)
+int robot_group_begin(robot_group *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n)
 {
     memset(t, 0, sizeof *t);
     t->a = a;
@@ -74,7 +74,7 @@ int troupe_begin(troupe *t, app *a, char (*names)[CONFIG_NAME_BYTES], int n)
     return EXIT_DONE;
 }
 
-int seat_open(troupe *t, int i)
+int seat_open(robot_group *t, int i)
 {
     seat *s = &t->seats[i];
     s->a = *t->a;
@@ -93,7 +93,7 @@ int seat_open(troupe *t, int i)
     return status;
 }
 
-int seat_try(troupe *t, int i, char why[APP_LINE_BYTES])
+int seat_try(robot_group *t, int i, char why[APP_LINE_BYTES])
 {
     seat *s = &t->seats[i];
     *why = '\0';
@@ -139,7 +139,7 @@ seat_worst seat_get_worst(const seat *s)
     return w;
 }
 
-static int make_team(troupe *t, grobo_team_policy policy, const grobo_clip **clips)
+static int make_team(robot_group *t, grobo_team_policy policy, const grobo_clip **clips)
 {
     const grobo_team_config config = {GROBO_TEAM_CONFIG_INIT, .policy = policy,
                                       .on_event = t->on_team, .ctx = t->ctx};
@@ -157,18 +157,18 @@ static int make_team(troupe *t, grobo_team_policy policy, const grobo_clip **cli
     return error;
 }
 
-int troupe_play(troupe *t, grobo_team_policy policy, const grobo_play_options *options)
+int robot_group_play(robot_group *t, grobo_team_policy policy, const grobo_play_options *options)
 {
     const grobo_clip *clips[CONFIG_GROUP_MAX];
     int error = make_team(t, policy, clips);
     if (!error) {
         error = grobo_team_play(t->team, clips, false, options, grobo_now_us());
     }
-    troupe_look(t);
+    robot_group_look(t);
     return error;
 }
 
-void troupe_disband(troupe *t)
+void robot_group_disband(robot_group *t)
 {
     grobo_team_free(t->team);
     t->team = NULL;
@@ -189,9 +189,9 @@ int seat_close(seat *s, int status)
     return status;
 }
 
-void troupe_end(troupe *t)
+void robot_group_end(robot_group *t)
 {
-    troupe_disband(t);
+    robot_group_disband(t);
     conn_forget(t->timer);
     conn_link_deinit(&t->host);
     free(t->seats);
