@@ -306,6 +306,7 @@ static int ask_some_of(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_k
                        uint32_t most_us)
 {
     const grobo_driver *driver = robot->driver;
+    slot->kind = (uint8_t)kind;
     grobo_joint_mask left = robot->round != 0 ? robot->round : grobo_i_all_joints(robot);
     int result = driver->sense_many(driver, robot->driver_ctx, left, kind, &robot->built);
     uint32_t us = result >= 0 ? grobo_i_line_us(&robot->bus, &robot->built) : 0;
@@ -317,9 +318,8 @@ static int ask_some_of(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_k
         left &= ~next;
     } while (left != 0 && --most > 0);
     robot->round = left;
-    return left == 0 && slot->unread == grobo_i_all_joints(robot)
-               ? result
-               : driver->sense_many(driver, robot->driver_ctx, slot->unread, kind, &robot->built);
+    return left == 0 && slot->unread == grobo_i_all_joints(robot) ? result
+                                                                    : grobo_i_slot_ask_unread(slot);
 }
 
 /* All of them in one frame; while joints are told more of their trajectories, as many as have
@@ -328,6 +328,7 @@ static int ask_each(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind
 {
     const grobo_driver *driver = robot->driver;
     slot->unread = grobo_i_all_joints(robot);
+    slot->kind = (uint8_t)kind;
     slot->fast = robot->round == 0 && are_fast(robot) &&
                  driver->sense_fast(driver, robot->driver_ctx, kind, &robot->built) >= 0 &&
                  (!robot->in_segments ||
@@ -339,7 +340,7 @@ static int ask_each(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind
         return ask_some_of(robot, slot, kind, (uint32_t)robot->read_us);
     }
     robot->round = 0;
-    return driver->sense_many(driver, robot->driver_ctx, slot->unread, kind, &robot->built);
+    return grobo_i_slot_ask_unread(slot);
 }
 
 /* Any that nothing is known of is asked where it is going, too. */
@@ -388,8 +389,7 @@ static int ask_halted(grobo_robot *robot, grobo_robot_slot *slot)
     if (GROBO_I_EXTRA(driver, sense_many) != NULL) {
         slot->many = true;
         slot->unread = grobo_i_halted_ask(robot);
-        return driver->sense_many(driver, robot->driver_ctx, slot->unread, GROBO_SENSE_GOAL,
-                                  &robot->built);
+        return grobo_i_slot_ask_unread(slot);
     }
     slot->joint = (uint8_t)grobo_i_halted_next(robot);
     slot->reads = true;

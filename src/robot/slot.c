@@ -143,10 +143,28 @@ static uint32_t margin_of(const grobo_robot_slot *slot)
     return margin_us == 0 && quick ? QUICK_MARGIN_US : margin_us;
 }
 
+int grobo_i_slot_ask_unread(grobo_robot_slot *slot)
+{
+    grobo_robot *robot = slot->robot;
+    memset(&robot->built, 0, offsetof(grobo_exchange, frame));
+    return robot->driver->sense_many(robot->driver, robot->driver_ctx, slot->unread,
+                                     (grobo_sense_kind)slot->kind, &robot->built);
+}
+
+/* Those that have answered are not asked again: a stop may wait for the others. */
+static int ask_again(grobo_robot_slot *slot)
+{
+    int result = grobo_i_slot_ask_unread(slot);
+    return result < 0 ? result : grobo_i_slot_renew(slot);
+}
+
 static int on_leave(void *ctx, grobo_txn *txn)
 {
     grobo_robot_slot *slot = ctx;
     int result = slot->robot->leave(slot);
+    if (!GROBO_DRIVERS_PLAIN && result >= 0 && txn->sent_us >= 0 && slot->many && !slot->fast) {
+        result = ask_again(slot);
+    }
     slot->refused = result < 0;
     if (result >= 0) {
         slot->robot->bus.config.margin_us = margin_of(slot); /* of this frame: it leaves now */
