@@ -239,7 +239,9 @@ static bool is_beside(const grobo_robot_axis *axis)
 }
 
 /* Of a servo that tells the time of its trajectory: there, but for one beside it, which goes on
- * to its goal at the speed that it told, and one that cannot have come there since it was read. */
+ * to its goal at the speed that it told, and one that cannot have come there since it was read. One
+ * beside it may have missed the frame and come to the end of the trajectory before: none is taken
+ * to be further than it is by now. */
 static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
@@ -251,6 +253,7 @@ static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
     bool beside = is_beside(axis);
     if (beside) {
         rad_s = fmin(grobo_rad_from_deg(abs(axis->state.speed_dps)), rad_s);
+        now_us = grobo_i_sooner(now_us, robot->now_us);
     }
     double left_rad = (beside ? axis->trajectory.to_rad : way_rad) - axis->seen_rad;
     double most_rad = rad_s * seconds(axis->seen_us, now_us);

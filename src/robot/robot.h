@@ -336,8 +336,8 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
 /* Puts grobo_robot.built in the place of the frame that waits. @return GROBO_OK, or GROBO_ERR_SPACE
  * where it is longer than that was at first. */
 int grobo_i_slot_renew(grobo_robot_slot *slot);
-/* Makes grobo_robot.built ask all of slot->unread, by the driver's sense_many(). @return GROBO_OK or
- * an error of the driver. */
+/* Makes grobo_robot.built ask all of slot->unread, by the driver's sense_many(). @return GROBO_OK
+ * or an error of the driver. */
 int grobo_i_slot_ask_unread(grobo_robot_slot *slot);
 /* Gives a slot back that was not sent. */
 void grobo_i_slot_drop(grobo_robot_slot *slot);

@@ -319,7 +319,7 @@ static int ask_some_of(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_k
     } while (left != 0 && --most > 0);
     robot->round = left;
     return left == 0 && slot->unread == grobo_i_all_joints(robot) ? result
-                                                                    : grobo_i_slot_ask_unread(slot);
+                                                                  : grobo_i_slot_ask_unread(slot);
 }
 
 /* All of them in one frame; while joints are told more of their trajectories, as many as have

@@ -391,51 +391,9 @@ static bool stop_and_judge(const cell *c)
     return halt.fault[0] == '\0';
 }
 
-/* ---- what is known to break a rule ----------------------------------------------------------- */
-
-/* Each with its reason, and no more than today (docs/guide/safety.md). */
-typedef struct excuse {
-    const char *family, *stop, *loss, *rule; /* the rule's first words; NULL: any */
-    const char *why;
-    unsigned long most, cells; /* of the whole matrix; counted */
-} excuse;
-
-static excuse excuses[] = {
-    {"bus-57600", "trip", "lost", "a halt throws", "both ways were one until it was read", 1, 0},
-    {NULL, NULL, NULL, NULL, NULL, 0, 0},
-};
-
-static bool fits(const char *wanted, const char *is)
-{
-    return wanted == NULL || strncmp(wanted, is, strlen(wanted)) == 0;
-}
-
-static bool is_excused(const cell *c)
-{
-    for (excuse *e = excuses; e->why != NULL; e++) {
-        if (strcmp(e->family, halt.of->name) == 0 && fits(e->stop, stop_names[c->stop]) &&
-            fits(e->loss, loss_names[c->loss]) && fits(e->rule, halt.fault)) {
-            e->cells++;
-            return true;
-        }
-    }
-    return false;
-}
-
-static void tell_excuses(bool all)
-{
-    for (const excuse *e = excuses; e->why != NULL; e++) {
-        if (e->cells > 0 || all) {
-            print_message("%lu known: %s %s, %s\n", e->cells, e->family,
-                          e->stop != NULL ? e->stop : "all stops", e->why);
-        }
-        assert_true(e->cells <= e->most);
-    }
-}
-
 /* ---- cells ----------------------------------------------------------------------------------- */
 
-enum { TOLD = 40 }; /* of the cells that fail; GROBO_HALT_TOLD=1: all, the known too */
+enum { TOLD = 40 }; /* of the cells that fail; GROBO_HALT_TOLD=1: all */
 
 static void judge_cell(const cell *c)
 {
@@ -444,13 +402,12 @@ static void judge_cell(const cell *c)
     if (stop_and_judge(c)) {
         return;
     }
-    bool known = is_excused(c);
-    sum.failed += !known;
-    if (told || (!known && sum.told++ < TOLD)) {
-        print_message("%sGROBO_HALT_CELL=\"%s %s %s %d %s %s\""
+    sum.failed++;
+    if (told || sum.told++ < TOLD) {
+        print_message("GROBO_HALT_CELL=\"%s %s %s %d %s %s\""
                       " build/tests/engine/test_halt_matrix # %s\n",
-                      known ? "known: " : "", halt.of->name, way_names[c->way], stop_names[c->stop],
-                      c->moment_ms, shape_names[c->shape], loss_names[c->loss], halt.fault);
+                      halt.of->name, way_names[c->way], stop_names[c->stop], c->moment_ms,
+                      shape_names[c->shape], loss_names[c->loss], halt.fault);
     }
 }
 
@@ -627,7 +584,6 @@ TEST(stops_throw_no_joint)
             run_robot(i, all, &seed);
         }
     }
-    tell_excuses(all && !is_set(family));
     print_message("%lu stops, %lu refused, %lu excused, %lu broke a rule\n", sum.cells, sum.refused,
                   sum.excused, sum.failed);
     assert_int_equal(sum.failed, 0);

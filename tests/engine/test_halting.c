@@ -296,3 +296,34 @@ TEST_FOR(family, family_next, a_limp_joint_holds_up_no_emergency_stop)
     assert_true(kit.now_us - from_us < 3 * (int64_t)S);
     expect_rest(1, 0.5);
 }
+
+/* ---- a reading that a halt waits for --------------------------------------------------------- */
+
+/* How many servos a frame behind the first `from` asks at once; 0: none. */
+static int asked_by(unsigned from)
+{
+    enum { SYNC_READ = 0x82, HEAD = 6 };
+    const uint8_t *frame = kit.sent[from % FAMILY_SENT];
+    size_t n = kit.sent_bytes[from % FAMILY_SENT];
+    bool is_one = n > HEAD && frame[2] == 0xFE && frame[4] == SYNC_READ;
+    return is_one ? frame[3] - 4 : 0;
+}
+
+/* Who has answered is not asked again: the one that is missing alone. */
+TEST(a_reading_is_asked_again_of_those_that_are_missing)
+{
+    static const grobo_robot_config silent = {GROBO_ROBOT_CONFIG_INIT,
+                                              .sense_interval_us = GROBO_SENSE_NEVER};
+    int all = 0, again = 0;
+    family_start(&kit, family_named("sts"), &silent, NULL);
+    assert_int_equal(grobo_sim_set_id(&kit.sim, 1, 40), GROBO_OK);
+    unsigned n_sent = kit.n_sent;
+    assert_int_equal(grobo_robot_stop(&kit.robot, false), GROBO_OK);
+    family_run(&kit, 100 * MS);
+    for (unsigned i = n_sent; i < kit.n_sent; i++) {
+        all += asked_by(i) == JOINTS;
+        again += asked_by(i) == 1;
+    }
+    assert_int_equal(all, 1);
+    assert_true(again >= 2);
+}

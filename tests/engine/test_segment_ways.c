@@ -93,6 +93,31 @@ TEST_WITH(rig_wirings, a_joint_is_on_its_way_but_where_it_is_weak)
     }
 }
 
+/* One that is beside its way may come to the end of the way before it: it is not taken to go on
+ * until its halt ends, as one on its way is. */
+TEST_WITH(rig_wirings, a_joint_beside_its_way_is_no_further_than_by_now)
+{
+    static const struct {
+        double seen_deg, deg; /* at 50 degrees a second, 100 ms ago; in another 50 ms */
+    } rows[] = {{20, 25}, {41, 55}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start();
+            grobo_robot_axis *axis = &robot.axes[j];
+            axis->trajectory = (grobo_robot_trajectory){0, RAD(100), NOW - S / 2, NOW + S / 2};
+            axis->phase = GROBO_I_JOINT_SENT;
+            axis->seen_rad = RAD(rows[i].seen_deg);
+            axis->seen_us = axis->angle_us = NOW - S / 10;
+            axis->told_us = NOW - S / 2;
+            axis->state.speed_dps = 50;
+            double deg = grobo_i_axis_reached(&robot, j, NOW + S / 20) / RAD(1);
+            if (fabs(deg - rows[i].deg) > 0.01) {
+                fail_msg("joint %d, row %zu: at %.2f deg", j, i, deg);
+            }
+        }
+    }
+}
+
 /* At 1000 deg/s^2: it speeds up to what its way takes unless it had twice the time for that, and
  * brakes before the end. */
 TEST_WITH(rig_wirings, a_servo_with_ramps_is_where_these_bring_it)
