@@ -22,8 +22,12 @@ int main(int argc, char **argv)
     const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
     int result = grobo_runner_new(&config, &runner);
     result = result < 0 ? result : grobo_runner_connect(runner, 0);
-    result = result < 0 ? result : grobo_runner_init_position(runner);
-    result = result < 0 ? result : grobo_runner_wait(runner, GROBO_NEVER_US);
+    if (result >= 0) {
+        grobo_posture pose;
+        grobo_posture_init_pose(&pose, def->model);
+        int job = grobo_robot_move(grobo_runner_robot(runner), &pose);
+        result = grobo_runner_wait_job(runner, job, GROBO_NEVER_US);
+    }
     printf("%s: %s\n", def->title, grobo_error_text(result));
     (void)grobo_runner_free(runner);
     grobo_robot_def_free(def);

@@ -16,9 +16,8 @@ static void on_robot(void *ctx, const grobo_event *event)
 
 static void on_line(void *ctx, grobo_session *session, grobo_session_event event, int error)
 {
-    (void)ctx;
-    printf("line %s: %s%s\n", grobo_session_device(session),
-           event == GROBO_SESSION_EVENT_UP ? "up, " : "", grobo_error_text(error));
+    (void)ctx, (void)event;
+    printf("line %s: %s\n", grobo_session_device(session), grobo_error_text(error));
 }
 
 int main(void)
@@ -26,14 +25,14 @@ int main(void)
     const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = "sim",
                                           .on_robot = on_robot, .on_event = on_line};
     const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session};
-    grobo_runner *runner;
-    if (grobo_runner_new(&config, &runner) < 0) {
-        return 1;
-    }
-    if (grobo_runner_connect(runner, 0) >= 0 && grobo_runner_init_position(runner) >= 0) {
-        (void)grobo_runner_wait(runner, 0);
+    grobo_runner *runner = NULL;
+    grobo_posture pose;
+    grobo_posture_init_pose(&pose, grobo_gr001_model());
+    if (grobo_runner_new(&config, &runner) >= 0 && grobo_runner_connect(runner, 0) >= 0) {
+        int job = grobo_robot_move(grobo_runner_robot(runner), &pose);
+        (void)grobo_runner_wait_job(runner, job, 0);
         (void)grobo_runner_estop(runner);
         (void)grobo_runner_wait(runner, 0);
     }
-    return grobo_runner_free(runner) < 0;
+    return runner == NULL || grobo_runner_free(runner) < 0;
 }

@@ -3,13 +3,13 @@
  * @file runner.h
  * @brief A runner: a robot with a session of its own that any thread may call.
  *
- * A grobo_runner owns a session and the event_base it runs on, and beside them what a program
- * wants kept for it: the current motion, the target and initial postures, a command buffer, how
- * to play. grobo_runner_start() starts a thread that runs the loop; until then, and after
- * grobo_runner_stop(), a call that needs the loop runs it itself for as long as it waits.
- * So everything works with and without the thread; only what happens between calls (background
- * reading, playing, coming back after a loss) needs it, or the caller's own rounds of
- * grobo_runner_svc().
+ * A grobo_runner owns a session and the event_base it runs on, and beside them the motion that is
+ * to be played. Moves, torque and readings are requests to its robot (grobo_runner_robot(),
+ * robot.h), whose end grobo_runner_wait_job() waits for. grobo_runner_start() starts a thread that
+ * runs the loop; until then, and after grobo_runner_stop(), a call that needs the loop runs it
+ * itself for as long as it waits. So everything works with and without the thread; only what
+ * happens between calls (background reading, playing, coming back after a loss) needs it, or the
+ * caller's own rounds of grobo_runner_svc().
  *
  * Every function may be called from any thread at any time, grobo_runner_free() being the
  * exception. Each is of one of three kinds:
@@ -69,10 +69,6 @@ GROBO_BEGIN_DECLS
 #define GROBO_RUNNER_PERIOD_US 10000
 /** Events that a runner keeps at most. */
 #define GROBO_RUNNER_EVENTS_MAX 4096
-/** Bytes of the command buffer. */
-#define GROBO_RUNNER_COMMAND_BYTES GROBO_FRAME_MAX_BYTES
-/** Bytes of the buffer of received bytes. */
-#define GROBO_RUNNER_RECEIVE_BYTES 512
 
 /** A robot that any thread may call. */
 typedef struct grobo_runner grobo_runner;
@@ -271,10 +267,8 @@ GROBO_API bool grobo_runner_is_connected(grobo_runner *runner);
 GROBO_API int grobo_runner_read_posture(grobo_runner *runner, grobo_posture *posture,
                                         int64_t timeout_us);
 
-/** Makes the initial posture the target, and grobo_runner_start_motion(). At once. */
-GROBO_API int grobo_runner_init_position(grobo_runner *runner);
 /** Waits until nothing moves, nothing is asked of the robot, and the last posture of a motion has
- *  been read back. @return how the last motion or target ended: GROBO_OK, GROBO_ERR_CANCELED
+ *  been read back. @return how the last move or motion ended: GROBO_OK, GROBO_ERR_CANCELED
  *  (stopped), or why it failed; GROBO_ERR_PENDING: it has not ended in the time given. */
 GROBO_API int grobo_runner_wait(grobo_runner *runner, int64_t timeout_us);
 
@@ -299,9 +293,10 @@ GROBO_API int grobo_runner_set_motion(grobo_runner *runner, const grobo_motion *
 GROBO_API int grobo_runner_load_motion(grobo_runner *runner, const char *name,
                                        grobo_diagnostics *list);
 /**
- * Has the motion as it is now played, with the count, direction and default time that are set. How
- * it ends is returned by grobo_runner_wait() and reported by events. At once.
- * @param options the rest (mode, rate, speed, mirror, ...), copied; NULL: by keys, as it is.
+ * Has the motion as it is now played. How it ends is returned by grobo_runner_wait() and reported
+ * by events. At once.
+ * @param options mode, rate, speed, repeat, direction, ..., copied; NULL: by keys, once, as it is.
+ *   Where `default_time_us` is 0 it is that of the robot's configuration.
  * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no posture), GROBO_ERR_NOMEM, or as
  *   grobo_motion_clip() and grobo_robot_play(): GROBO_ERR_STATE where a motion is played or a move
  *   under way (grobo_runner_wait() before), GROBO_ERR_UNWATCHED.

@@ -6,6 +6,8 @@
 
 #include <grobo/classic/classic.h>
 
+#include "src/classic/view.h"
+
 /* To whom a posture belongs. */
 typedef enum posture_home {
     POSTURE_CALLERS = 0, /* storage of the caller's */
@@ -18,7 +20,7 @@ struct serial_robot_inside {
     grobo_driver driver; /* a copy, with the stabilizer; self of its functions */
     SerialRobot *robot;
     grobo_runner *runner;
-    grobo_hrpsys hrpsys;
+    classic_view view;
     SerialCom com;
     char device[GROBO_PATH_MAX_BYTES];
     RobotPosture init, current, target;

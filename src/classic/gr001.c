@@ -77,9 +77,9 @@ int GR001_printVolts(GR001 *robot, int flag)
         return -1;
     }
     if (flag != 0) {
-        (void)grobo_gr001_print_voltages(grobo_classic_engine(robot), stderr);
+        (void)grobo_classic_print_voltages(grobo_classic_engine(robot), stderr);
     }
-    int mean_mv = grobo_gr001_mean_voltage_mv(grobo_classic_engine(robot), GROBO_NEVER_US);
+    int mean_mv = grobo_classic_mean_mv(grobo_classic_engine(robot));
     (void)grobo_classic_refresh(robot);
     return mean_mv < 0 ? 0 : (mean_mv + 5) / 10;
 }
@@ -88,7 +88,7 @@ void GR001_printCurrents(GR001 *robot, int flag)
 {
     (void)flag;
     if (SerialRobot_runner(robot) != NULL) {
-        (void)grobo_gr001_print_currents(grobo_classic_engine(robot), stderr);
+        (void)grobo_classic_print_currents(grobo_classic_engine(robot), stderr);
     }
 }
 
@@ -99,7 +99,7 @@ void GR001_printPosture(GR001 *robot)
     if (SerialRobot_runner(robot) != NULL) {
         (void)grobo_classic_refresh(robot);
         grobo_classic_to_joints(robot, robot->currentPosture, &posture);
-        (void)grobo_gr001_print_posture(&posture, stderr);
+        (void)grobo_classic_print_posture(&posture, stderr);
     }
 }
 
@@ -140,10 +140,37 @@ short GR001_getAngle(GR001 *robot, unsigned char id)
     return SerialRobot_getAngle(robot, id);
 }
 
+/* Of a goal: 10 ms, as the servos count. */
+static bool is_time(unsigned cs)
+{
+    return cs <= GROBO_PLAY_TIME_MAX_US / GROBO_PLAY_TIME_UNIT_US;
+}
+
+/* Goal and time as they stand in a packet: registers No.30-33, little endian. */
 int GR001_setDegMs(const GR001 *robot, char *data, short deg, unsigned short cs)
 {
     (void)robot;
-    return data != NULL && grobo_gr001_pack_goal(deg, cs, (uint8_t *)data, 4) > 0 ? 1 : -1;
+    if (data == NULL || deg < -1500 || deg > 1500 || !is_time(cs)) {
+        return -1;
+    }
+    const uint8_t goal[] = {(uint8_t)(deg & 0xFF), (uint8_t)((unsigned)deg >> 8 & 0xFF),
+                            (uint8_t)(cs & 0xFF), (uint8_t)(cs >> 8)};
+    memcpy(data, goal, sizeof goal);
+    return 1;
+}
+
+/* Moves one joint at once; 0 is one unit of time, which the engine stretches to what it can do. */
+static int move_joint(GR001 *robot, int joint, int ddeg, unsigned cs)
+{
+    grobo_posture target;
+
+    if (joint < 0 || !is_time(cs)) {
+        return joint < 0 ? joint : GROBO_ERR_ARG;
+    }
+    (void)grobo_posture_init(&target, robot->joints);
+    (void)grobo_posture_set_rad(&target, joint, grobo_rad_from_ddeg(ddeg));
+    target.time_us = (cs == 0 ? 1 : cs) * (int64_t)GROBO_PLAY_TIME_UNIT_US;
+    return grobo_robot_move(grobo_classic_engine(robot), &target);
 }
 
 int GR001_moveJoint(GR001 *robot, unsigned char id, short deg, unsigned short cs)
@@ -151,12 +178,8 @@ int GR001_moveJoint(GR001 *robot, unsigned char id, short deg, unsigned short cs
     if (SerialRobot_runner(robot) == NULL) {
         return -1;
     }
-    int joint = grobo_classic_joint(robot, id);
-    int job = joint < 0
-                  ? joint
-                  : grobo_gr001_move(grobo_classic_engine(robot),
-                                     grobo_model_joint(grobo_classic_model(robot), joint)->motor,
-                                     deg, cs);
+    int job = move_joint(robot, grobo_classic_joint(robot, id), deg, cs);
+
     robot->inside->job = job > 0 ? job : robot->inside->job;
     return grobo_classic_end(robot, job, 0);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* GR001 of the classic shelf in the manner of hrpsys, on a grobo_hrpsys, in motor order. */
+/* GR001 of the classic shelf in the manner of hrpsys, in motor order. */
 #include <math.h>
 #include <string.h>
 
@@ -16,9 +16,9 @@ bool GR001_servo_name(GR001 *robot, const char *jname, bool turnon)
     if (SerialRobot_runner(robot) == NULL || jname == NULL) {
         return false;
     }
-    int job = grobo_hrpsys_servo_name(&robot->inside->hrpsys, jname, turnon);
+    int job = grobo_classic_servo_name(&robot->inside->view, jname, turnon);
     if (job == GROBO_ERR_STATE && SerialRobot_wait(robot, 0) == 0) { /* it moved */
-        job = grobo_hrpsys_servo_name(&robot->inside->hrpsys, jname, turnon);
+        job = grobo_classic_servo_name(&robot->inside->view, jname, turnon);
     }
     return grobo_classic_await(robot, job) == 0;
 }
@@ -31,8 +31,8 @@ void GR001_readJointAngles(GR001 *robot, double *o_angles)
         return;
     }
     (void)grobo_classic_refresh(robot);
-    (void)grobo_hrpsys_read_joint_angles(&robot->inside->hrpsys, GROBO_NEVER_US, angle_rad,
-                                         GROBO_JOINTS_MAX);
+    (void)grobo_classic_read_angles(&robot->inside->view, GROBO_NEVER_US, angle_rad,
+                                    GROBO_JOINTS_MAX);
     for (int id = 1; id <= robot->joints; id++) {
         o_angles[id - 1] = angle_rad[grobo_classic_joint(robot, id)];
     }
@@ -47,11 +47,11 @@ void GR001_writeJointCommands(GR001 *robot, const double *i_commands)
 
 bool GR001_checkEmergency(GR001 *robot, char *o_reason, size_t room, int *o_id)
 {
-    char reason[GROBO_HRPSYS_REASON_MAX_BYTES];
+    char reason[VIEW_REASON_MAX_BYTES];
     int joint = -1;
 
     if (SerialRobot_runner(robot) == NULL ||
-        grobo_hrpsys_check_emergency(&robot->inside->hrpsys, reason, sizeof reason, &joint) != 1) {
+        grobo_classic_emergency(&robot->inside->view, reason, sizeof reason, &joint) != 1) {
         return false;
     }
     if (o_reason != NULL && room > 0) {
@@ -73,8 +73,7 @@ int GR001_oneStep(GR001 *robot)
 bool GR001_addJointGroup(GR001 *robot, const char *gname, const char *const *jnames, size_t n)
 {
     return SerialRobot_runner(robot) != NULL &&
-           grobo_classic_end(robot,
-                             grobo_hrpsys_add_joint_group(&robot->inside->hrpsys, gname, jnames, n),
+           grobo_classic_end(robot, grobo_classic_add_group(&robot->inside->view, gname, jnames, n),
                              0) == 0;
 }
 
@@ -82,6 +81,5 @@ bool GR001_names2ids(GR001 *robot, const char *const *i_names, size_t n, int *o_
 {
     return SerialRobot_runner(robot) != NULL &&
            grobo_classic_end(
-               robot, grobo_hrpsys_names_to_motors(&robot->inside->hrpsys, i_names, n, o_ids), 0) ==
-               0;
+               robot, grobo_classic_motors_of(&robot->inside->view, i_names, n, o_ids), 0) == 0;
 }

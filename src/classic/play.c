@@ -108,8 +108,13 @@ static int play(SerialRobot *robot, int count, bool reverse)
     int job = prepare(robot, reverse, &motion);
 
     if (job >= 0) {
-        job = grobo_gr001_play_record(motion, grobo_classic_engine(robot), &options,
-                                      &robot->inside->clip);
+        job = grobo_motion_clip(motion, NULL, &robot->inside->clip);
+    }
+    if (job >= 0) {
+        job = grobo_robot_play(grobo_classic_engine(robot), &robot->inside->clip, &options);
+        if (job < 0) {
+            grobo_motion_clip_free(&robot->inside->clip);
+        }
     }
     if (job < 0) {
         grobo_motion_free(motion);

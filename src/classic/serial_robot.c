@@ -198,7 +198,7 @@ int SerialRobot_init(SerialRobot *robot, const char *devname, int n, const grobo
     }
     memcpy(robot->inside->device, devname != NULL ? devname : "",
            devname != NULL ? strlen(devname) + 1 : 1);
-    grobo_hrpsys_init(&robot->inside->hrpsys, grobo_classic_engine(robot));
+    grobo_classic_view_init(&robot->inside->view, grobo_classic_engine(robot));
     return 0;
 }
 

@@ -34,7 +34,6 @@
  *   request.c    the public requests: checks, then starts a script
  *   control.c    the public controls of a motion
  *   robot.c      life, pump, link
- *   hrpsys.c     another view of it all
  */
 #ifndef GROBO_ROBOT_ROBOT_I_H
 #define GROBO_ROBOT_ROBOT_I_H

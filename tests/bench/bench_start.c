@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 
-#include <grobo/core/gr001.h>
 #include <grobo/core/port.h>
 #include <grobo/core/robot.h>
 #include <grobo/core/static.h>

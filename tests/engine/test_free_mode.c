@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdint.h>
 
-#include <grobo/core/gr001.h>
-
 #include "tests/support/rig.h"
 #include "tests/support/tables.h"
 #include "tests/support/test.h"

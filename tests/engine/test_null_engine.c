@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include <grobo/core/board.h>
-#include <grobo/core/hrpsys.h>
 #include <grobo/core/robot.h>
 #include <grobo/core/sim.h>
 #include <grobo/core/sim_physics.h>
@@ -21,7 +20,6 @@
 static uint8_t bytes[256];
 static char text[] = "CHEST";
 static double reals[64];
-static int ints[64];
 static int32_t wides[64];
 static grobo_clip clip;
 static grobo_bus bus;
@@ -32,9 +30,6 @@ static const grobo_driver *driver;
 static grobo_robot robot;
 static grobo_posture posture;
 static grobo_play_options play_options = {GROBO_PLAY_OPTIONS_INIT};
-static grobo_hrpsys hrpsys;
-static grobo_joint_mask joints;
-static const char *const names[] = {"CHEST", NULL};
 static grobo_robot_config robot_config = {GROBO_ROBOT_CONFIG_INIT};
 static grobo_register_io io;
 static grobo_joint_info joint_info;
@@ -63,7 +58,6 @@ static int set_up(void)
     assert_int_equal(grobo_txn_init(&txn, driver->protocol, bytes, 2), GROBO_OK);
     assert_int_equal(grobo_robot_init(&robot, driver, NULL, NULL, 0), GROBO_OK);
     grobo_robot_link_up(&robot, 0);
-    grobo_hrpsys_init(&hrpsys, &robot);
     grobo_sequencer_init(&seq, driver->model);
     assert_int_equal(grobo_sim_init(&sim, NULL, 0), GROBO_OK);
     grobo_posture_init_pose(&posture, driver->model);
@@ -105,35 +99,6 @@ TEST(bus_refuses_null)
     grobo_bus_cost_of(NULL, &txn, &cost);
     grobo_bus_cost_of(&bus, NULL, &cost);
     grobo_bus_cost_of(&bus, &txn, NULL);
-}
-
-TEST(hrpsys_refuses_null)
-{
-    grobo_hrpsys_init(NULL, &robot);
-    grobo_hrpsys_init(&hrpsys, NULL);
-    REFUSES(grobo_hrpsys_find(NULL, text, &joints));
-    REFUSES(grobo_hrpsys_find(&hrpsys, NULL, &joints));
-    REFUSES(grobo_hrpsys_find(&hrpsys, text, NULL));
-    REFUSES(grobo_hrpsys_add_joint_group(NULL, text, names, 1));
-    REFUSES(grobo_hrpsys_add_joint_group(&hrpsys, NULL, names, 1));
-    REFUSES(grobo_hrpsys_add_joint_group(&hrpsys, text, NULL, 1));
-    REFUSES(grobo_hrpsys_names_to_ids(NULL, names, 1, ints));
-    REFUSES(grobo_hrpsys_names_to_ids(&hrpsys, NULL, 1, ints));
-    REFUSES(grobo_hrpsys_names_to_ids(&hrpsys, names, 1, NULL));
-    REFUSES(grobo_hrpsys_names_to_motors(NULL, names, 1, ints));
-    REFUSES(grobo_hrpsys_names_to_motors(&hrpsys, NULL, 1, ints));
-    REFUSES(grobo_hrpsys_names_to_motors(&hrpsys, names, 1, NULL));
-    REFUSES(grobo_hrpsys_servo(NULL, 1, true));
-    REFUSES(grobo_hrpsys_servo_name(NULL, text, true));
-    REFUSES(grobo_hrpsys_servo_name(&hrpsys, NULL, true));
-    REFUSES(grobo_hrpsys_read_joint_angles(NULL, 0, reals, sizeof bytes));
-    REFUSES(grobo_hrpsys_read_joint_angles(&hrpsys, 0, NULL, sizeof bytes));
-    REFUSES(grobo_hrpsys_write_joint_commands(NULL, reals, 1));
-    REFUSES(grobo_hrpsys_write_joint_commands(&hrpsys, NULL, 1));
-    REFUSES(grobo_hrpsys_set_period_us(NULL, 10000));
-    REFUSES(grobo_hrpsys_one_step(NULL));
-    REFUSES(grobo_hrpsys_check_emergency(NULL, text, sizeof bytes, ints));
-    REFUSES(grobo_hrpsys_check_emergency(&hrpsys, NULL, sizeof bytes, ints));
 }
 
 TEST(robot_refuses_null_in_its_first_functions)

@@ -4,8 +4,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <grobo/core/gr001.h>
-#include <grobo/core/hrpsys.h>
 #include <grobo/core/robot.h>
 
 #include "tests/support/rig.h"
@@ -23,7 +21,6 @@ static rig_clip clip, other;
 static const rig_key beyond[] = {{0, {{NECK, 0}}}, {1000, {{NECK, TOO_FAR_DEG}}}};
 static const rig_key below[] = {{0, {{NECK, 0}}}, {1000, {{NECK, -TOO_FAR_DEG}}}};
 static const rig_key within[] = {{0, {{NECK, 0}}}, {300, {{NECK, 10}}}};
-static grobo_hrpsys hrpsys;
 
 static int by_move(void)
 {
@@ -35,33 +32,6 @@ static int by_send(void)
 {
     grobo_posture target = rig_posture(&rig, NECK, TOO_FAR_DEG, 3000);
     return grobo_robot_send(&rig.robot, &target);
-}
-
-static int by_motor(void)
-{
-    return grobo_gr001_move(&rig.robot, NECK_ID, 502, 300);
-}
-
-static int by_motors(void)
-{
-    double angle_rad[20];
-    grobo_posture target;
-    grobo_posture_init_pose(&target, &grobo_i_gr001_model);
-    for (int j = 0; j < 20; j++) {
-        angle_rad[grobo_i_gr001_model.joints[j].motor - 1] = target.angle_rad[j];
-    }
-    angle_rad[NECK_ID - 1] = grobo_rad_from_deg(TOO_FAR_DEG);
-    return grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 3000000);
-}
-
-static int by_hrpsys(void)
-{
-    grobo_posture target;
-    grobo_posture_init_pose(&target, &grobo_i_gr001_model);
-    target.angle_rad[NECK] = grobo_rad_from_deg(TOO_FAR_DEG);
-    grobo_hrpsys_init(&hrpsys, &rig.robot);
-    assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, target.angle_rad, 20), 0);
-    return grobo_hrpsys_one_step(&hrpsys);
 }
 
 static int play(const rig_key *keys, const grobo_play_options *options)
@@ -122,9 +92,8 @@ static int by_the_stabilizer(void)
 /* All but the raw frame, which is as it is: refused or clamped as configured, and counted. */
 TEST_WITH(rig_wirings, every_way_in_is_held_to_the_limits)
 {
-    static int (*const ways[])(void) = {by_move,   by_send,       by_motor,         by_motors,
-                                        by_hrpsys, by_keys,       at_a_rate,        backwards,
-                                        mirrored,  as_the_second, by_the_stabilizer};
+    static int (*const ways[])(void) = {by_move,   by_send,  by_keys,       at_a_rate,
+                                        backwards, mirrored, as_the_second, by_the_stabilizer};
     for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
         for (int clamps = 0; clamps < 2; clamps++) {
             grobo_robot_config config = quiet;

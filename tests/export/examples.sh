@@ -22,7 +22,7 @@ idea() {
 idea read_joints 'R_ELBOW_P *-20\.0 deg' 'R_SHOULDER_P *20\.0 deg'
 idea move_two 'move: success'
 idea play '10 postures' 'play: success'
-idea watch_events 'line sim: up, success' 'job [0-9]*: success' 'safety stop: emergency stop'
+idea watch_events 'line sim: success' 'job [0-9]*: success' 'safety stop: emergency stop'
 idea two_robots 'robot 1: success' 'robot 2: success'
 idea own_loop 'torque of joint 0: success'
 idea threads 'move: success' 'looked 5 times'

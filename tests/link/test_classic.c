@@ -242,7 +242,7 @@ TEST_WITH(alone, voltages_are_read_and_meant)
 
 TEST_WITH(threaded, an_emergency_is_told_and_ends)
 {
-    char reason[GROBO_HRPSYS_REASON_MAX_BYTES] = "none";
+    char reason[128] = "none";
     int id = 7;
 
     assert_false(GR001_checkEmergency(g, reason, sizeof reason, &id));

@@ -211,10 +211,10 @@ static int threaded(void)
         assert_int_equal(grobo_posture_init(&target, 20), GROBO_OK);
         assert_int_equal(grobo_posture_set_deg(&target, ELBOW, 1), GROBO_OK);
         target.time_us = 20000;
-        r = grobo_runner_set_target_posture(runner, &target);
-        r = r < 0 ? r : grobo_runner_start_motion(runner);
+        int job = grobo_robot_move(grobo_runner_robot(runner), &target);
+        r = grobo_runner_wait_job(runner, job, BOUND_US);
         r = r < 0 ? r : grobo_runner_wait(runner, BOUND_US);
-        assert_false(grobo_runner_is_moving(runner));
+        assert_false(grobo_robot_moving(grobo_runner_robot(runner)));
     }
     assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     return r;

@@ -7,7 +7,6 @@
 
 #include <event2/event.h>
 
-#include <grobo/core/gr001.h>
 #include <grobo/core/loop.h>
 #include <grobo/core/robot.h>
 #include <grobo/core/runner.h>
@@ -26,12 +25,8 @@
 static uint8_t bytes[256];
 static char text[] = "CHEST";
 static double reals[64];
-static int ints[64];
-static int32_t wides[64];
-static int16_t shorts[4];
 static uint64_t counts[2];
 static grobo_motion *motion;
-static grobo_motion *made_motion;
 static grobo_clip clip;
 static grobo_estop mark;
 static grobo_os_cause cause;
@@ -118,40 +113,6 @@ TEST(estop_refuses_null)
     REFUSES(grobo_estop_force(NULL, GROBO_ESTOP_BY_GUARD));
     REFUSES(grobo_estop_ask(NULL, &mark, &holder));
     REFUSES(grobo_estop_ask(text, &mark, NULL));
-}
-
-TEST(gr001_refuses_null)
-{
-    REFUSES(grobo_gr001_torque(NULL, 1, 0));
-    REFUSES(grobo_gr001_servo(NULL, 0, 0));
-    REFUSES(grobo_gr001_move(NULL, 1, 0, 0));
-    REFUSES(grobo_gr001_sense(NULL, 1));
-    REFUSES(grobo_gr001_angle(NULL, 1, 0, ints));
-    REFUSES(grobo_gr001_angle(&robot, 1, 0, NULL));
-    REFUSES(grobo_gr001_pack_goal(0, 0, NULL, sizeof bytes));
-    REFUSES(grobo_gr001_posture(NULL, shorts, 1, 0, &posture));
-    REFUSES(grobo_gr001_posture(&grobo_i_gr001_model, NULL, 1, 0, &posture));
-    REFUSES(grobo_gr001_posture(&grobo_i_gr001_model, shorts, 1, 0, NULL));
-    REFUSES(grobo_gr001_set_angles(NULL, reals, 1, 1000));
-    REFUSES(grobo_gr001_set_angles(&robot, NULL, 1, 1000));
-    REFUSES(grobo_gr001_get_angles(NULL, 0, reals, sizeof bytes));
-    REFUSES(grobo_gr001_get_angles(&robot, 0, NULL, sizeof bytes));
-    REFUSES(grobo_gr001_voltages(NULL, 0, wides, sizeof bytes));
-    REFUSES(grobo_gr001_voltages(&robot, 0, NULL, sizeof bytes));
-    REFUSES(grobo_gr001_currents(NULL, 0, wides, sizeof bytes));
-    REFUSES(grobo_gr001_currents(&robot, 0, NULL, sizeof bytes));
-    REFUSES(grobo_gr001_mean_voltage_mv(NULL, 0));
-    REFUSES(grobo_gr001_print_voltages(NULL, stream));
-    REFUSES(grobo_gr001_print_voltages(&robot, NULL));
-    REFUSES(grobo_gr001_print_currents(NULL, stream));
-    REFUSES(grobo_gr001_print_currents(&robot, NULL));
-    REFUSES(grobo_gr001_print_posture(NULL, stream));
-    REFUSES(grobo_gr001_print_posture(&posture, NULL));
-    REFUSES(grobo_gr001_record(NULL, &robot, 1000));
-    REFUSES(grobo_gr001_record(motion, NULL, 1000));
-    REFUSES(grobo_gr001_play_record(NULL, &robot, &play_options, &clip));
-    REFUSES(grobo_gr001_play_record(motion, NULL, &play_options, &clip));
-    REFUSES(grobo_gr001_play_record(motion, &robot, &play_options, NULL));
 }
 
 TEST(guard_refuses_null)
@@ -305,26 +266,12 @@ TEST(thread_refuses_null_in_its_first_functions)
     REFUSES(grobo_runner_post(NULL, on_runner, NULL));
     REFUSES(grobo_runner_post(runner, NULL, NULL));
     assert_null(grobo_runner_session(NULL));
-    assert_null(grobo_runner_serial(NULL));
     assert_null(grobo_runner_name(NULL));
     REFUSES(grobo_runner_joints(NULL));
-    REFUSES(grobo_runner_set_motion_dir(NULL, text));
-    REFUSES(grobo_runner_set_motion_dir(runner, NULL));
-    REFUSES(grobo_runner_get_motion_dir(NULL, text, sizeof bytes));
-    REFUSES(grobo_runner_get_motion_dir(runner, NULL, sizeof bytes));
-    REFUSES(grobo_runner_set_default_time_us(NULL, 1000));
-    assert_true(grobo_runner_get_default_time_us(NULL) == 0);
-    REFUSES(grobo_runner_set_sense_interval_us(NULL, 0));
-    assert_true(grobo_runner_get_sense_interval_us(NULL) == 0);
-    REFUSES(grobo_runner_set_period_us(NULL, 10000));
 }
 
 TEST(thread_refuses_null_in_its_second_functions)
 {
-    assert_true(grobo_runner_get_period_us(NULL) == 0);
-    REFUSES(grobo_runner_set_motion_count(NULL, 1));
-    grobo_runner_set_reverse(NULL, true);
-    assert_false(grobo_runner_is_reverse(NULL));
     REFUSES(grobo_runner_set_device(NULL, text));
     REFUSES(grobo_runner_set_device(runner, NULL));
     REFUSES(grobo_runner_get_device(NULL, text, sizeof bytes));
@@ -332,17 +279,9 @@ TEST(thread_refuses_null_in_its_second_functions)
     REFUSES(grobo_runner_open(NULL));
     REFUSES(grobo_runner_close(NULL, 1000));
     REFUSES(grobo_runner_connect(NULL, 1000));
-    REFUSES(grobo_runner_check_connection(NULL, 1000));
     assert_false(grobo_runner_is_connected(NULL));
     REFUSES(grobo_runner_get_cause(NULL, &cause));
     REFUSES(grobo_runner_get_cause(runner, NULL));
-    REFUSES(grobo_runner_get_servo_state(NULL, 1));
-    REFUSES(grobo_runner_get_servo_states(NULL, ints, sizeof bytes));
-    REFUSES(grobo_runner_get_servo_states(runner, NULL, sizeof bytes));
-    REFUSES(grobo_runner_set_servo_state(NULL, 1, 0, 1000));
-    REFUSES(grobo_runner_set_servo_states(NULL, 1, 0, 1000));
-    REFUSES(grobo_runner_get_current_posture(NULL, &posture));
-    REFUSES(grobo_runner_get_current_posture(runner, NULL));
     REFUSES(grobo_runner_read_posture(NULL, &posture, 1000));
     REFUSES(grobo_runner_read_posture(runner, NULL, 1000));
     REFUSES(grobo_runner_read_angle(NULL, 1, reals, 1000));
@@ -351,28 +290,11 @@ TEST(thread_refuses_null_in_its_second_functions)
 
 TEST(thread_refuses_null_in_its_third_functions)
 {
-    REFUSES(grobo_runner_set_init_posture(NULL, &posture));
-    REFUSES(grobo_runner_set_init_posture(runner, NULL));
-    grobo_runner_get_init_posture(NULL, &posture);
-    grobo_runner_get_init_posture(runner, NULL);
-    REFUSES(grobo_runner_set_target_posture(NULL, &posture));
-    REFUSES(grobo_runner_set_target_posture(runner, NULL));
-    grobo_runner_get_target_posture(NULL, &posture);
-    grobo_runner_get_target_posture(runner, NULL);
-    REFUSES(grobo_runner_set_joint(NULL, 1, 0));
-    REFUSES(grobo_runner_set_motion_time_us(NULL, 1000));
-    REFUSES(grobo_runner_start_motion(NULL));
-    REFUSES(grobo_runner_init_position(NULL));
-    REFUSES(grobo_runner_command_count(NULL));
-    REFUSES(grobo_runner_is_moving(NULL));
     REFUSES(grobo_runner_wait_job(NULL, 1, 0));
     assert_null(grobo_runner_robot(NULL));
     REFUSES(grobo_runner_wait(NULL, 1000));
     REFUSES(grobo_runner_set_motion(NULL, motion));
     REFUSES(grobo_runner_set_motion(runner, NULL));
-    REFUSES(grobo_runner_get_motion(NULL, &made_motion));
-    REFUSES(grobo_runner_get_motion(runner, NULL));
-    grobo_runner_clear_motion(NULL);
     REFUSES(grobo_runner_load_motion(NULL, text, list));
     REFUSES(grobo_runner_load_motion(runner, NULL, list));
 }
@@ -380,14 +302,6 @@ TEST(thread_refuses_null_in_its_third_functions)
 TEST(thread_refuses_null_in_its_fourth_functions)
 {
     REFUSES(grobo_runner_play_motion(NULL, &play_options));
-    assert_false(grobo_runner_is_playing(NULL));
-    REFUSES(grobo_runner_set_command(NULL, bytes, 1));
-    REFUSES(grobo_runner_set_command(runner, NULL, 1));
-    REFUSES(grobo_runner_get_command(NULL, bytes, sizeof bytes));
-    REFUSES(grobo_runner_get_command(runner, NULL, sizeof bytes));
-    REFUSES(grobo_runner_send_command(NULL, bytes, 1, 1000));
-    REFUSES(grobo_runner_receive(NULL, bytes, 1));
-    REFUSES(grobo_runner_receive(runner, NULL, 1));
     REFUSES(grobo_runner_estop(NULL));
     assert_false(grobo_runner_is_latched(NULL));
     REFUSES(grobo_runner_reset(NULL));

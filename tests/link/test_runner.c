@@ -10,6 +10,7 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/robot.h>
 #include <grobo/core/sim.h>
 
 #include "tests/support/counted_mem.h"
@@ -46,49 +47,6 @@ TEST_WITH(with_and_without_thread, name_and_joints)
     assert_int_equal(grobo_runner_free(leg), GROBO_OK);
 }
 
-TEST_WITH(with_and_without_thread, settings_are_kept)
-{
-    char dir[sizeof folder];
-    char longer[GROBO_PATH_MAX_BYTES + 1];
-
-    assert_int_equal(grobo_runner_get_motion_dir(runner, dir, sizeof dir), (int)strlen(folder));
-    assert_string_equal(dir, folder);
-    assert_int_equal(grobo_runner_get_motion_dir(runner, dir, strlen(folder)), GROBO_ERR_SPACE);
-    memset(longer, 'x', sizeof longer - 1);
-    longer[sizeof longer - 1] = '\0';
-    assert_int_equal(grobo_runner_set_motion_dir(runner, longer), GROBO_ERR_CAP);
-    assert_int_equal(grobo_runner_set_motion_dir(runner, NULL), GROBO_ERR_ARG);
-
-    assert_int_equal(grobo_runner_get_default_time_us(runner), 100000);
-    assert_int_equal(grobo_runner_set_default_time_us(runner, 250000), GROBO_OK);
-    assert_int_equal(grobo_runner_get_default_time_us(runner), 250000);
-    assert_int_equal(grobo_runner_set_default_time_us(runner, 0), GROBO_ERR_ARG);
-
-    assert_int_equal(grobo_runner_get_sense_interval_us(runner), 1000000);
-    assert_int_equal(grobo_runner_set_sense_interval_us(runner, 50000), GROBO_OK);
-    assert_int_equal(grobo_runner_get_sense_interval_us(runner), 50000);
-    assert_int_equal(grobo_runner_get_default_time_us(runner), 250000);
-    assert_int_equal(grobo_runner_set_sense_interval_us(runner, 0), GROBO_ERR_ARG);
-    assert_int_equal(grobo_runner_set_sense_interval_us(runner, GROBO_SENSE_NEVER), GROBO_OK);
-
-    assert_int_equal(grobo_runner_get_period_us(runner), GROBO_RUNNER_PERIOD_US);
-    assert_int_equal(grobo_runner_set_period_us(runner, 20000), GROBO_OK);
-    assert_int_equal(grobo_runner_get_period_us(runner), 20000);
-    assert_int_equal(grobo_runner_set_period_us(runner, 500000), GROBO_OK);
-    assert_int_equal(grobo_runner_get_period_us(runner), 500000);
-    assert_int_equal(grobo_runner_set_period_us(runner, 999), GROBO_ERR_ARG);
-
-    assert_int_equal(grobo_runner_set_motion_count(runner, 3), GROBO_OK);
-    assert_false(grobo_runner_is_reverse(runner));
-    assert_int_equal(grobo_runner_set_motion_count(runner, -3), GROBO_OK);
-    assert_true(grobo_runner_is_reverse(runner));
-    assert_int_equal(grobo_runner_set_motion_count(runner, 1), GROBO_OK);
-    grobo_runner_set_reverse(runner, true);
-    assert_true(grobo_runner_is_reverse(runner));
-    grobo_runner_set_reverse(runner, false);
-    assert_false(grobo_runner_is_reverse(runner));
-}
-
 static int rx_bytes(void *arg, grobo_runner *from)
 {
     uint64_t tx;
@@ -97,16 +55,6 @@ static int rx_bytes(void *arg, grobo_runner *from)
     (void)arg;
     grobo_session_bytes(grobo_runner_session(from), &tx, &rx);
     return (int)rx;
-}
-
-static int goal_time_cs(void *arg, grobo_runner *from)
-{
-    int32_t value = -1;
-
-    (void)arg;
-    (void)grobo_sim_get_register(grobo_session_sim(grobo_runner_session(from)), ELBOW,
-                                 GROBO_RS30X_GOAL_TIME, &value);
-    return (int)value;
 }
 
 /* Lets the loop run for a while, whoever runs it; the bytes that came. */
@@ -121,95 +69,7 @@ static int bytes_in(int64_t span_us)
     return grobo_runner_call(runner, rx_bytes, NULL) - before;
 }
 
-TEST_WITH(with_and_without_thread, settings_take_effect)
-{
-    grobo_posture posture;
-
-    runner_come_up();
-    assert_int_equal(grobo_runner_set_sense_interval_us(runner, GROBO_SENSE_NEVER), GROBO_OK);
-    assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20); /* what was under way */
-    assert_int_equal(bytes_in(100000), 0);
-    assert_int_equal(grobo_runner_set_sense_interval_us(runner, 20000), GROBO_OK);
-    assert_true(bytes_in(100000) >= 26);
-
-    assert_int_equal(grobo_runner_set_default_time_us(runner, 340000), GROBO_OK);
-    assert_int_equal(grobo_runner_set_motion_time_us(runner, 0), GROBO_OK);
-    for (int i = 1; i <= 2; i++) { /* the way to the first is longer */
-        assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(2 * i)),
-                         GROBO_OK);
-        assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
-        assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    }
-    assert_int_equal(grobo_runner_call(runner, goal_time_cs, NULL), 34);
-}
-
-TEST_WITH(with_and_without_thread, postures_are_kept)
-{
-    grobo_posture posture;
-    grobo_posture got;
-
-    grobo_runner_get_init_posture(runner, &got);
-    assert_int_equal(got.n_joints, 20);
-    assert_true(got.set == EVERY_JOINT);
-    for (int j = 0; j < 20; j++) {
-        assert_true(got.angle_rad[j] == 0);
-    }
-    grobo_posture_init_pose(&got, &grobo_i_gr001_model);
-    assert_true(got.set == EVERY_JOINT);
-    for (int j = 0; j < 20; j++) {
-        assert_true(got.angle_rad[j] == grobo_i_gr001_model.joints[j].init_rad);
-    }
-    assert_int_equal(grobo_runner_set_init_posture(runner, &got), GROBO_OK);
-    grobo_runner_get_init_posture(runner, &posture);
-    assert_true(grobo_posture_equal(&posture, &got));
-    assert_int_equal(grobo_posture_set_deg(&got, 0, 0), GROBO_OK);
-    assert_int_equal(grobo_posture_set_deg(&got, ELBOW, 1000), GROBO_OK);
-    assert_int_equal(grobo_runner_set_init_posture(runner, &got), GROBO_ERR_LIMIT);
-    assert_int_equal(grobo_posture_set_deg(&got, ELBOW, 7), GROBO_OK);
-    assert_int_equal(grobo_runner_set_init_posture(runner, &got), GROBO_OK);
-    grobo_runner_get_init_posture(runner, &posture);
-    assert_true(grobo_posture_equal(&posture, &got));
-
-    grobo_runner_get_target_posture(runner, &posture);
-    assert_true(posture.set == 0);
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(8)), GROBO_OK);
-    assert_int_equal(grobo_runner_set_joint(runner, 20, 0), GROBO_ERR_ARG);
-    assert_int_equal(grobo_runner_set_joint(runner, -1, 0), GROBO_ERR_ARG);
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, 99), GROBO_ERR_LIMIT);
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, 0.0 / (double)(runner == NULL)),
-                     GROBO_ERR_NAN);
-    assert_int_equal(grobo_runner_set_motion_time_us(runner, 300000), GROBO_OK);
-    assert_int_equal(grobo_runner_set_motion_time_us(runner, -1), GROBO_ERR_ARG);
-    grobo_runner_get_target_posture(runner, &posture);
-    assert_true(posture.set == GROBO_JOINT_BIT(ELBOW));
-    assert_true(posture.angle_rad[ELBOW] == grobo_rad_from_deg(8));
-    assert_int_equal(posture.time_us, 300000);
-    got.time_us = 650000;
-    assert_int_equal(grobo_posture_set_deg(&got, 0, 3), GROBO_OK);
-    assert_int_equal(grobo_runner_set_target_posture(runner, &got), GROBO_OK);
-    grobo_posture kept = got;
-    got.n_joints = 3;
-    assert_int_equal(grobo_runner_set_target_posture(runner, &got), GROBO_ERR_ARG);
-    grobo_runner_get_target_posture(runner, &posture);
-    assert_true(grobo_posture_equal(&posture, &kept));
-    assert_int_equal(posture.time_us, 650000);
-    grobo_runner_get_init_posture(runner, &posture); /* is another one */
-    assert_true(posture.angle_rad[0] == 0 && posture.angle_rad[ELBOW] == kept.angle_rad[ELBOW]);
-}
-
 /* ---- the line ----------------------------------------------------------------------------- */
-
-/* Asserts nothing itself: it may run on another thread than the test. */
-static int serial_is_closed(void *arg, grobo_runner *from)
-{
-    grobo_serial *serial = grobo_runner_serial(from);
-
-    return from == runner && arg == NULL &&
-                   serial == grobo_session_serial(grobo_runner_session(from)) &&
-                   !grobo_serial_is_open(serial)
-               ? 77
-               : 0;
-}
 
 TEST_WITH(with_and_without_thread, the_line_opens_and_closes)
 {
@@ -218,8 +78,8 @@ TEST_WITH(with_and_without_thread, the_line_opens_and_closes)
     grobo_os_cause cause;
 
     assert_false(grobo_runner_is_connected(runner));
-    assert_int_equal(grobo_runner_check_connection(runner, 0), GROBO_ERR_CLOSED);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_ERR_CLOSED);
+    assert_int_equal(runner_check(runner, 0), GROBO_ERR_CLOSED);
+    assert_int_equal(runner_go_to_zero(runner), GROBO_ERR_CLOSED);
 
     assert_int_equal(grobo_runner_set_device(runner, "/nowhere/tty"), GROBO_OK);
     assert_int_equal(grobo_runner_get_device(runner, device, sizeof device), 12);
@@ -240,40 +100,33 @@ TEST_WITH(with_and_without_thread, the_line_opens_and_closes)
     assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
     assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
     assert_int_equal(grobo_runner_set_device(runner, "/nowhere/tty"), GROBO_ERR_STATE);
-    assert_int_equal(grobo_runner_check_connection(runner, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_call(runner, serial_is_closed, NULL), 77);
+    assert_int_equal(runner_check(runner, 0), GROBO_OK);
 
     assert_int_equal(grobo_runner_close(runner, 0), GROBO_OK);
     assert_false(grobo_runner_is_connected(runner));
     assert_int_equal(grobo_runner_close(runner, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_check_connection(runner, 0), GROBO_ERR_CLOSED);
+    assert_int_equal(runner_check(runner, 0), GROBO_ERR_CLOSED);
     runner_come_up();
 }
 
-/* ---- servos, postures --------------------------------------------------------------------- */
+/* ---- torque, readings --------------------------------------------------------------------- */
 
-TEST_WITH(with_and_without_thread, servo_states)
+TEST_WITH(with_and_without_thread, torque_is_switched)
 {
-    int states[20];
+    grobo_joint_mask elbow = GROBO_JOINT_BIT(ELBOW);
 
-    assert_int_equal(grobo_runner_set_servo_state(runner, ELBOW, GROBO_TORQUE_ON, 0),
-                     GROBO_ERR_CLOSED);
+    assert_int_equal(runner_torque(runner, elbow, GROBO_TORQUE_ON, 0), GROBO_ERR_CLOSED);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_ERR_EMPTY);
     runner_come_up();
-    assert_int_equal(grobo_runner_get_servo_states(runner, states, 19), GROBO_ERR_SPACE);
-    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_BRAKE, 0),
-                     GROBO_OK);
-    assert_int_equal(grobo_runner_set_servo_state(runner, ELBOW, GROBO_TORQUE_ON, 0),
-                     GROBO_TORQUE_ON);
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_ON);
-    assert_int_equal(grobo_runner_get_servo_states(runner, states, 20), 20);
+    assert_int_equal(runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_BRAKE, 0), GROBO_OK);
+    assert_int_equal(runner_torque(runner, elbow, GROBO_TORQUE_ON, 0), GROBO_OK);
     for (int j = 0; j < 20; j++) {
-        assert_int_equal(states[j], j == ELBOW ? GROBO_TORQUE_ON : GROBO_TORQUE_BRAKE);
+        assert_int_equal(runner_torque_of(runner, j),
+                         j == ELBOW ? GROBO_TORQUE_ON : GROBO_TORQUE_BRAKE);
     }
-    assert_int_equal(grobo_runner_set_servo_state(runner, ELBOW, GROBO_TORQUE_OFF, 0),
-                     GROBO_TORQUE_OFF);
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
-    assert_int_equal(grobo_runner_set_servo_state(runner, 20, GROBO_TORQUE_ON, 0), GROBO_ERR_ARG);
-    assert_int_equal(grobo_runner_get_servo_state(runner, 20), GROBO_ERR_ARG);
+    assert_int_equal(runner_torque(runner, elbow, GROBO_TORQUE_OFF, 0), GROBO_OK);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(runner_torque(runner, GROBO_JOINT_BIT(20), GROBO_TORQUE_ON, 0), GROBO_ERR_ARG);
 }
 
 static int turn_elbow(void *arg, grobo_runner *from)
@@ -299,12 +152,11 @@ TEST_WITH(with_and_without_thread, readings)
     int32_t angle_mdeg = 12000;
 
     assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), GROBO_ERR_CLOSED);
-    assert_int_equal(grobo_runner_get_current_posture(runner, &posture), 0);
     runner_come_up();
     assert_int_equal(grobo_runner_call(runner, turn_elbow, &angle_mdeg), GROBO_OK);
     assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
     assert_true(grobo_deg_from_rad(posture.angle_rad[ELBOW]) > 11.9);
-    assert_int_equal(grobo_runner_get_current_posture(runner, &current), 20);
+    assert_int_equal(grobo_robot_posture(grobo_runner_robot(runner), GROBO_NEVER_US, &current), 20);
     assert_true(grobo_posture_near(&current, &posture, grobo_rad_from_deg(0.2)));
     assert_true(grobo_deg_from_rad(current.angle_rad[ELBOW]) > 11.9);
     runner_assert_elbow_at(12);
@@ -318,44 +170,9 @@ TEST_WITH(with_and_without_thread, readings)
     assert_true(posture.set == (EVERY_JOINT & ~GROBO_JOINT_BIT(ELBOW)));
 }
 
-/* ---- raw commands ------------------------------------------------------------------------- */
+/* ---- raw frames --------------------------------------------------------------------------- */
 
-TEST_WITH(with_and_without_thread, raw_commands)
-{
-    static const uint8_t check[] = {0x41, 0x00};
-    uint8_t longer[GROBO_RUNNER_COMMAND_BYTES + 1] = {0};
-    uint8_t got[GROBO_RUNNER_RECEIVE_BYTES + 1];
-
-    assert_int_equal(grobo_runner_get_command(runner, NULL, 0), 0);
-    assert_int_equal(grobo_runner_set_command(runner, NULL, 0), 0);
-    assert_int_equal(grobo_runner_send_command(runner, NULL, 0, 0), GROBO_ERR_EMPTY);
-    assert_int_equal(grobo_runner_set_command(runner, check, sizeof check), 2);
-    assert_int_equal(grobo_runner_set_command(runner, longer, sizeof longer), GROBO_ERR_CAP);
-    assert_int_equal(grobo_runner_get_command(runner, got, 1), GROBO_ERR_SPACE);
-    assert_int_equal(grobo_runner_get_command(runner, got, sizeof got), 2);
-    assert_memory_equal(got, check, 2);
-    for (size_t i = 0; i < sizeof longer; i++) {
-        longer[i] = (uint8_t)(i + 1);
-    }
-    assert_int_equal(grobo_runner_set_command(runner, longer, 256), 256);
-    assert_int_equal(grobo_runner_get_command(runner, got, sizeof got), 256);
-    assert_memory_equal(got, longer, 256);
-    assert_int_equal(grobo_runner_set_command(runner, check, sizeof check), 2);
-
-    /* The port is opened where it is not; the answer of the board is 07. */
-    assert_int_equal(grobo_runner_send_command(runner, NULL, 0, 0), 2);
-    assert_true(grobo_runner_is_connected(runner));
-    assert_int_equal(grobo_runner_receive(runner, got, 1), 1);
-    assert_int_equal(got[0], 0x07);
-    assert_int_equal(grobo_runner_send_command(runner, check, 2, 0), 2);
-    assert_int_equal(grobo_runner_receive(runner, got, 2), GROBO_ERR_SHORT);
-    assert_int_equal(grobo_runner_receive(runner, got, 2), GROBO_ERR_TIMEOUT);
-    assert_int_equal(grobo_runner_receive(runner, got, sizeof got), GROBO_ERR_CAP);
-    assert_int_equal(grobo_runner_send_command(runner, longer, sizeof longer, 0), GROBO_ERR_CAP);
-    assert_true(grobo_runner_send_command(runner, "rubbish", 7, 0) < 0);
-}
-
-/* Of what was only sent nobody waits for the end, but it can be stopped. */
+/* The job of a raw frame ends when it was sent, but what it moves can be stopped. */
 TEST_WITH(with_and_without_thread, a_raw_move_is_stopped_like_any_other)
 {
     /* Motor 5 to -90.0 degrees in 60 s. */
@@ -365,13 +182,15 @@ TEST_WITH(with_and_without_thread, a_raw_move_is_stopped_like_any_other)
     double angle_rad;
 
     runner_come_up();
-    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
+    assert_int_equal(runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
     assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), false), GROBO_ERR_STATE);
-    assert_int_equal(grobo_runner_send_command(runner, slow, sizeof slow, 0), sizeof slow);
-    assert_int_equal(grobo_runner_is_moving(runner), 1);
+    assert_int_equal(grobo_runner_wait_job(
+                         runner, grobo_robot_raw(grobo_runner_robot(runner), slow, sizeof slow), 0),
+                     GROBO_OK);
+    assert_true(runner_moves(runner));
     assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), false), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_is_moving(runner), 0);
+    assert_false(runner_moves(runner));
     assert_int_equal(grobo_runner_read_angle(runner, ELBOW, &stood_rad, 0), GROBO_OK);
     assert_true(bytes_in(300000) >= 0);
     assert_int_equal(grobo_runner_read_angle(runner, ELBOW, &angle_rad, 0), GROBO_OK);
@@ -384,19 +203,17 @@ TEST_WITH(with_and_without_thread, stops_are_latched_until_reset)
 {
     assert_int_equal(grobo_runner_exit(runner, GROBO_EXIT_OFF, 0), GROBO_ERR_CLOSED);
     runner_come_up();
-    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0),
-                     GROBO_OK);
+    assert_int_equal(runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0), GROBO_OK);
     assert_int_equal(grobo_runner_estop(runner), GROBO_OK);
     (void)grobo_runner_wait(runner, 0);
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_BRAKE);
-    assert_int_equal(grobo_runner_set_servo_state(runner, ELBOW, GROBO_TORQUE_ON, 0),
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_BRAKE);
+    assert_int_equal(runner_torque(runner, GROBO_JOINT_BIT(ELBOW), GROBO_TORQUE_ON, 0),
                      GROBO_ERR_LATCHED);
-    assert_int_equal(grobo_runner_init_position(runner), GROBO_ERR_LATCHED);
+    assert_int_equal(runner_go_to_zero(runner), GROBO_ERR_LATCHED);
     assert_int_equal(grobo_runner_reset(runner), GROBO_OK);
-    assert_int_equal(grobo_runner_set_servo_state(runner, ELBOW, GROBO_TORQUE_ON, 0),
-                     GROBO_TORQUE_ON);
+    assert_int_equal(runner_torque(runner, GROBO_JOINT_BIT(ELBOW), GROBO_TORQUE_ON, 0), GROBO_OK);
     assert_int_equal(grobo_runner_exit(runner, GROBO_EXIT_OFF, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_OFF);
 }
 
 /* ---- making ------------------------------------------------------------------------------- */
@@ -442,7 +259,6 @@ TEST(bad_configurations_and_lack_of_memory)
     assert_int_equal(r, GROBO_OK);
     assert_string_equal(grobo_runner_name(made), "Robin");
     assert_int_equal(grobo_runner_joints(made), 20);
-    assert_int_equal(grobo_runner_get_period_us(made), 3000);
     assert_int_equal(grobo_runner_get_device(made, longer, sizeof longer), 3);
     assert_string_equal(longer, GROBO_DEVICE_SIM);
     assert_int_equal(grobo_runner_free(made), GROBO_OK);

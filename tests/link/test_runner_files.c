@@ -16,10 +16,8 @@ static void put_motion(const char *name, grobo_motion_format format, int n)
 {
     const grobo_write_options options = {GROBO_WRITE_OPTIONS_INIT, .format = format,
                                          .model = &grobo_i_gr001_model};
-    grobo_motion *motion = NULL;
-
     runner_have_motion(n);
-    assert_int_equal(grobo_runner_get_motion(runner, &motion), n);
+    grobo_motion *motion = runner_motion(runner);
     assert_int_equal(grobo_motion_save(motion, grobo_files_os(), in_folder(name), &options, NULL),
                      GROBO_OK);
     grobo_motion_free(motion);

@@ -136,8 +136,8 @@ TEST(calls_wake_a_loop_that_is_closed)
 {
     int64_t end_us;
 
-    stop_kit_make((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT, .skip_exit = true});
-    assert_int_equal(grobo_runner_set_period_us(runner, 1000000), GROBO_OK);
+    stop_kit_make(
+        (grobo_runner_config){GROBO_RUNNER_CONFIG_INIT, .skip_exit = true, .period_us = 1000000});
     assert_int_equal(grobo_runner_start(runner), GROBO_OK);
     runner_come_up();
     assert_int_equal(grobo_runner_close(runner, 0), GROBO_OK);
@@ -160,7 +160,7 @@ TEST(an_exit_that_nobody_awaits_is_carried_out)
     assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
     assert_int_equal(told.exits, 1);
     assert_int_equal(told.exit_result, GROBO_OK);
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_OFF);
     stop_kit_end();
 }
 
@@ -195,7 +195,7 @@ TEST(no_table_is_too_full_for_a_stop)
     assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
     assert_int_equal(told.estops, 1);
     assert_in_range(told.exits, 1, 2); /* one of them may come when it has ended */
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_OFF);
     stop_kit_end();
 }
 
@@ -218,26 +218,25 @@ TEST(a_callback_may_stop_and_leave)
         assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
     } while (told.exits == 0);
     assert_int_equal(callback_result, 1);
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_OFF);
     stop_kit_end();
 }
 
 TEST(a_posted_stop_ends_what_is_asked_for_before_its_turn)
 {
     stop_kit_start((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT, .skip_exit = true});
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(6)), GROBO_OK);
     hold_begin(&gate);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
+    assert_true(runner_move_elbow(runner, 6, 0) > 0);
     assert_int_equal(grobo_runner_post_stop(runner, false), GROBO_OK);
     hold_end(&gate);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);
     runner_assert_elbow_at(0);
     hold_begin(&gate);
     assert_int_equal(grobo_runner_post_stop(runner, false), GROBO_OK);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
+    assert_true(runner_move_elbow(runner, 6, 0) > 0);
     hold_end(&gate);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
+    assert_true(runner_move_elbow(runner, 6, 0) > 0);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     runner_assert_elbow_at(6);
 
@@ -247,7 +246,7 @@ TEST(a_posted_stop_ends_what_is_asked_for_before_its_turn)
     assert_int_equal(grobo_runner_post_stop(runner, false), GROBO_OK);
     hold_end(&gate);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);
-    assert_false(grobo_runner_is_playing(runner));
+    assert_false(runner_plays(runner));
     hold_begin(&gate);
     assert_int_equal(grobo_runner_post_exit(runner, GROBO_EXIT_HOLD), GROBO_OK);
     assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
@@ -272,7 +271,7 @@ TEST(the_last_policy_prevails)
     (void)grobo_runner_wait(runner, 0);
     assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
     assert_int_equal(told.exits, 1);
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_ON);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_ON);
     stop_kit_end();
 }
 
@@ -292,6 +291,6 @@ TEST(a_port_is_not_closed_before_the_robot_is_left)
     assert_true(grobo_runner_is_connected(runner));
     assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
     assert_int_equal(told.exits, 1);
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_OFF);
     stop_kit_end();
 }

@@ -2,13 +2,10 @@
 /* The life of a runner: its thread or the caller's, its rounds, its end; one caller at a time. */
 #include <stdint.h>
 
-#include <grobo/core/runner.h>
-
+#include "tests/support/runner_kit.h"
 #include "tests/support/test.h"
 
 enum { CALLS = 100 };
-
-static grobo_runner *runner;
 
 /* Under `runner`'s exclusion, or asked for when nothing runs. */
 static int rounds; /* of on_svc */
@@ -32,7 +29,7 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-static void make(void)
+static void make_with(int64_t period_us)
 {
     static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .on_exit = GROBO_EXIT_OFF};
     const grobo_runner_config config = {
@@ -40,9 +37,14 @@ static void make(void)
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
                                            .baud_bps = 1000000, .robot = &robot,
                                            .on_robot = on_robot, .ctx = &rounds},
-        .period_us = 2000, .on_svc = on_svc};
+        .period_us = period_us, .on_svc = on_svc};
     rounds = exits = inside = together = calls = 0;
     assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
+}
+
+static void make(void)
+{
+    make_with(2000);
 }
 
 static int rounds_so_far(void *arg, grobo_runner *from)
@@ -63,7 +65,7 @@ static void await_rounds(int n)
 
 static int torque_on(void)
 {
-    return grobo_runner_set_servo_states(runner, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON, 0);
+    return runner_torque(runner, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON, 0);
 }
 
 /* On the loop: whether its thread is this one. */
@@ -96,7 +98,7 @@ TEST(the_thread_runs_until_it_is_told_to_stop)
     assert_int_equal(grobo_runner_stop(runner), GROBO_OK);
     assert_false(grobo_runner_is_active(runner));
     assert_int_equal(exits, 1); /* and the port stayed open */
-    assert_int_equal(grobo_runner_get_servo_state(runner, 0), GROBO_TORQUE_OFF);
+    assert_int_equal(runner_torque_of(runner, 0), GROBO_TORQUE_OFF);
     assert_true(grobo_runner_is_connected(runner));
     assert_int_equal(grobo_runner_start(runner), GROBO_OK); /* again */
     assert_int_equal(grobo_runner_free(runner), GROBO_OK);
@@ -173,11 +175,12 @@ static int64_t time_of_rounds(int n)
 
 TEST(rounds_keep_the_period_that_is_set)
 {
+    make_with(100000);
+    assert_int_equal(grobo_runner_start(runner), GROBO_OK);
+    assert_true(time_of_rounds(4) > 250000); /* the first is under way already */
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     make();
     assert_int_equal(grobo_runner_start(runner), GROBO_OK);
-    assert_int_equal(grobo_runner_set_period_us(runner, 100000), GROBO_OK);
-    assert_true(time_of_rounds(4) > 250000); /* the first is under way already */
-    assert_int_equal(grobo_runner_set_period_us(runner, 2000), GROBO_OK);
     int64_t end_us = grobo_now_us() + 5000000;
     while (time_of_rounds(4) > 100000) { /* on a busy machine another time */
         assert_true(grobo_now_us() < end_us);

@@ -60,10 +60,11 @@ static void make(grobo_runner_config config, bool threaded)
     runner_come_up();
 }
 
+static const grobo_play_options for_long = {GROBO_PLAY_OPTIONS_INIT, .repeat = 1000000};
+
 static void have_torque(void)
 {
-    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 20000000),
-                     GROBO_OK);
+    assert_int_equal(runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, 20000000), GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 20);
 }
 
@@ -85,7 +86,7 @@ static void be_a_program(int until)
     bool well = read(until, &go, 1) == 1 && atexit(free_it) == 0 &&
                 grobo_runner_new(&config, &runner) >= 0 && grobo_runner_start(runner) >= 0 &&
                 grobo_runner_connect(runner, 0) >= 0 &&
-                grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0) >= 0;
+                runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0) >= 0;
 
     exit(well ? 0 : 1);
 }
@@ -136,7 +137,7 @@ static int wait_once(int number)
     case 2:
         return grobo_runner_read_angle(runner, ELBOW, &angle_rad, GROBO_NEVER_US);
     default:
-        return grobo_runner_check_connection(runner, GROBO_NEVER_US);
+        return runner_check(runner, GROBO_NEVER_US);
     }
 }
 
@@ -162,8 +163,7 @@ TEST_WITH(on_line, nobody_waits_for_a_robot_that_is_gone)
 
         make((grobo_runner_config){GROBO_RUNNER_CONFIG_INIT, .skip_exit = false}, threaded != 0);
         runner_have_motion(4);
-        (void)grobo_runner_set_motion_count(runner, 1000000);
-        assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
+        assert_int_equal(grobo_runner_play_motion(runner, &for_long), GROBO_OK);
         for (int i = 0; i < 4; i++) {
             waiters[i].number = i;
             assert_int_equal(grobo_thread_start(&waiters[i].thread, wait_for_loss, &waiters[i]),
@@ -184,8 +184,8 @@ TEST_WITH(on_line, nobody_waits_for_a_robot_that_is_gone)
         }
         assert_true(grobo_now_us() - begin_us < 2000000);
         assert_false(grobo_runner_is_connected(runner));
-        assert_false(grobo_runner_is_playing(runner));
-        assert_int_equal(grobo_runner_start_motion(runner), GROBO_ERR_CLOSED);
+        assert_false(runner_plays(runner));
+        assert_int_equal(runner_go_to_zero(runner), GROBO_ERR_CLOSED);
         assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_UNPLUGGED);
         assert_int_equal(grobo_runner_free(runner), GROBO_OK);
         far_robot_plug(&robot, true);
@@ -217,7 +217,7 @@ TEST_WITH(on_line, who_waits_for_its_return_is_told)
     far_robot_plug(&robot, true);
     assert_int_equal(grobo_thread_join(self.thread), GROBO_OK);
     assert_int_equal(self.result, GROBO_OK);
-    assert_int_equal(grobo_runner_check_connection(runner, 0), GROBO_OK);
+    assert_int_equal(runner_check(runner, 0), GROBO_OK);
     assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }
 
@@ -281,16 +281,15 @@ TEST_WITH(on_line, a_robot_whose_owner_is_gone_is_left_well)
     have_torque();
     /* Whoever waits is there. */
     runner_have_motion(1);
-    (void)grobo_runner_set_motion_count(runner, 1000000);
-    assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
+    assert_int_equal(grobo_runner_play_motion(runner, &for_long), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 600000), GROBO_ERR_PENDING);
     assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 0), 0);
-    assert_true(grobo_runner_is_playing(runner));
+    assert_true(runner_plays(runner));
     /* And now nobody. */
     assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 20000000), GROBO_PORT_READABLE);
     assert_int_equal(read(pair[0], &told, 1), 1);
     assert_int_equal(far_robot_torqued(&robot), 0);
-    assert_false(grobo_runner_is_playing(runner));
+    assert_false(runner_plays(runner));
     /* It comes back, and is gone again. */
     have_torque();
     assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 20000000), GROBO_PORT_READABLE);

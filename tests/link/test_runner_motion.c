@@ -15,125 +15,49 @@
 #include "tests/support/runner_kit.h"
 #include "tests/support/test.h"
 
-/* ---- the target --------------------------------------------------------------------------- */
+/* ---- moves -------------------------------------------------------------------------------- */
 
-static int engine_target(void *arg, grobo_runner *from)
-{
-    return grobo_robot_target(grobo_session_robot(grobo_runner_session(from)), arg);
-}
-
-TEST_WITH(with_and_without_thread, a_target_is_sent_once)
+TEST_WITH(with_and_without_thread, a_wait_is_for_the_last_move)
 {
     grobo_posture sent;
+    grobo_robot *robot = grobo_runner_robot(runner);
 
     runner_come_up();
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_ERR_EMPTY);
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
-    assert_int_equal(grobo_runner_is_moving(runner), 1);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_is_moving(runner), 0);
-    assert_int_equal(grobo_runner_command_count(runner), 0);
+    assert_true(runner_move_elbow(runner, 10, 0) > 0);
+    assert_true(runner_moves(runner));
+    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
+    assert_false(runner_moves(runner));
     runner_assert_elbow_at(10);
-    assert_true(grobo_runner_call(runner, engine_target, &sent) > 0);
-    assert_int_equal(sent.n_joints, 20);
+    assert_true(grobo_robot_target(robot, &sent) > 0);
     assert_true((sent.set & GROBO_JOINT_BIT(ELBOW)) != 0);
     assert_true(fabs(grobo_deg_from_rad(sent.angle_rad[ELBOW]) - 10) < 1e-9);
 
-    assert_int_equal(grobo_runner_init_position(runner), GROBO_OK);
+    assert_true(runner_go_to_zero(runner) > 0);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     runner_assert_elbow_at(0);
-
-    grobo_posture init;
-    grobo_posture posture;
-    grobo_runner_get_init_posture(runner, &init);
-    assert_int_equal(grobo_posture_set_deg(&init, ELBOW, -6), GROBO_OK);
-    assert_int_equal(grobo_posture_set_deg(&init, ELBOW + 1, 12), GROBO_OK);
-    init.time_us = 200000;
-    assert_int_equal(grobo_runner_set_init_posture(runner, &init), GROBO_OK);
-    assert_int_equal(grobo_runner_init_position(runner), GROBO_OK);
-    grobo_runner_get_target_posture(runner, &posture);
-    assert_true(grobo_posture_equal(&posture, &init));
-    assert_int_equal(posture.time_us, 200000);
-    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
-    assert_true(grobo_posture_near(&posture, &init, grobo_rad_from_deg(0.6)));
 }
 
-static int frames_sent(void *arg, grobo_runner *from)
-{
-    grobo_robot *robot = grobo_session_robot(grobo_runner_session(from));
-
-    (void)arg;
-    return (int)grobo_robot_get_counters(robot)->motion_frames;
-}
-
-/* Targets of a program's own rate: each leaves while the one before is on its way. */
-TEST_WITH(with_and_without_thread, each_target_of_a_stream_is_sent)
-{
-    int frames;
-
-    runner_come_up();
-    assert_int_equal(grobo_runner_init_position(runner), GROBO_OK);
-    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    frames = grobo_runner_call(runner, frames_sent, NULL);
-    /* A minute each: a target that waits for the one before to be reached is not sent in time. */
-    assert_int_equal(grobo_runner_set_motion_time_us(runner, 60000000), GROBO_OK);
-    for (int i = 1; i <= 10; i++) {
-        assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(i)), 0);
-        assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
-        for (int rounds = 0; grobo_runner_call(runner, frames_sent, NULL) < frames + i; rounds++) {
-            assert_in_range(rounds, 0, 1000); /* 10 s */
-            (void)grobo_runner_svc(runner);
-        }
-        assert_int_equal(grobo_runner_command_count(runner), 1);
-        assert_int_equal(grobo_runner_is_moving(runner), 1);
-    }
-    assert_int_equal(grobo_runner_set_motion_time_us(runner, 100000), GROBO_OK);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
-    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_call(runner, frames_sent, NULL) - frames, 11);
-    runner_assert_elbow_at(10);
-}
-
-/* Asks for a move behind a reading that is under way: it has to wait for its turn. */
-static int ask_behind_a_reading(void *arg, grobo_runner *from)
-{
-    int r = grobo_robot_sense(grobo_session_robot(grobo_runner_session(from)), EVERY_JOINT,
-                              GROBO_SENSE_FULL);
-
-    (void)arg;
-    for (int i = 0; i < 2 && r >= 0; i++) {
-        r = grobo_runner_start_motion(from);
-    }
-    return r < 0 ? r : grobo_runner_command_count(from);
-}
-
-TEST_WITH(with_and_without_thread, a_target_that_waits_is_counted)
+/* How it ended is known, also where nobody waits for its job. */
+TEST_WITH(with_and_without_thread, a_wait_tells_that_a_move_was_stopped)
 {
     runner_come_up();
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(5)), GROBO_OK);
-    assert_int_equal(grobo_runner_call(runner, ask_behind_a_reading, NULL), 1);
-    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_command_count(runner), 0);
-    runner_assert_elbow_at(5);
-
-    /* And may be taken back before it is sent. */
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(9)), GROBO_OK);
-    assert_int_equal(grobo_runner_call(runner, ask_behind_a_reading, NULL), 1);
+    assert_true(runner_move_elbow(runner, 10, 20000000) > 0);
+    assert_int_equal(grobo_runner_wait(runner, 100000), GROBO_ERR_PENDING);
     assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), false), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);
     assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), false), GROBO_ERR_STATE);
+    assert_true(runner_move_elbow(runner, 1, 0) > 0);
+    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
 }
 
 /* ---- the motion --------------------------------------------------------------------------- */
 
 static grobo_posture nth(size_t n)
 {
-    grobo_motion *motion = NULL;
+    grobo_motion *motion = runner_motion(runner);
     grobo_posture posture;
 
-    assert_true(grobo_runner_get_motion(runner, &motion) > (int)n);
     assert_int_equal(grobo_motion_get(motion, n, &posture), GROBO_OK);
     grobo_motion_free(motion);
     return posture;
@@ -141,23 +65,15 @@ static grobo_posture nth(size_t n)
 
 TEST_WITH(with_and_without_thread, the_motion_is_kept)
 {
-    grobo_motion *copy = NULL;
-
     assert_int_equal(runner_motion_size(runner), 0);
     runner_have_motion(3);
-    assert_int_equal(grobo_runner_get_motion(runner, &copy), 3);
+    grobo_motion *copy = runner_motion(runner);
+    assert_int_equal(grobo_motion_size(copy), 3);
     for (size_t n = 0; n < 3; n++) {
-        grobo_posture same;
         grobo_posture posture = nth(n);
         assert_true(posture.set == EVERY_JOINT);
         assert_int_equal(lround(grobo_deg_from_rad(posture.angle_rad[ELBOW])), 2 * (n + 1));
-        assert_int_equal(grobo_motion_get(copy, n, &same), 0);
-        assert_true(grobo_posture_equal(&posture, &same));
-        assert_int_equal(same.time_us, posture.time_us);
     }
-    grobo_runner_clear_motion(runner);
-    assert_int_equal(runner_motion_size(runner), 0);
-    assert_int_equal(grobo_motion_size(copy), 3);
     assert_int_equal(grobo_runner_set_motion(runner, copy), 3);
     assert_int_equal(grobo_motion_delete(copy, 0), 0); /* the runner's own stays whole */
     assert_int_equal(nth(2).time_us, 40000);
@@ -188,8 +104,7 @@ TEST_WITH(with_and_without_thread, increments_become_postures)
     grobo_posture posture;
 
     runner_come_up();
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
+    assert_true(runner_move_elbow(runner, 10, 0) > 0);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
     have_increments();
@@ -201,22 +116,16 @@ TEST_WITH(with_and_without_thread, increments_become_postures)
     runner_assert_elbow_at(16);
 }
 
-/* An emptied motion holds absolute postures, whatever it was. */
+/* A motion that could not be loaded leaves an empty one of postures, whatever it was. */
 TEST_WITH(with_and_without_thread, an_emptied_motion_takes_postures)
 {
     runner_come_up();
-    for (int i = 0; i < 2; i++) {
-        grobo_motion *motion = NULL;
-        have_increments();
-        if (i == 0) {
-            grobo_runner_clear_motion(runner);
-        } else {
-            assert_true(grobo_runner_load_motion(runner, "nowhere", NULL) < 0);
-        }
-        assert_int_equal(grobo_runner_get_motion(runner, &motion), 0);
-        assert_int_equal(grobo_motion_get_kind(motion), GROBO_MOTION_POSTURES);
-        grobo_motion_free(motion);
-    }
+    have_increments();
+    assert_true(grobo_runner_load_motion(runner, "nowhere", NULL) < 0);
+    grobo_motion *motion = runner_motion(runner);
+    assert_int_equal(grobo_motion_size(motion), 0);
+    assert_int_equal(grobo_motion_get_kind(motion), GROBO_MOTION_POSTURES);
+    grobo_motion_free(motion);
 }
 
 static int total_ms(void *arg, grobo_runner *from)
@@ -228,14 +137,13 @@ static int total_ms(void *arg, grobo_runner *from)
     return (int)(progress.total_us / 1000);
 }
 
-/* Postures without a time take the time that is reported, also where none was set. */
+/* Postures without a time take the default time, or that of the options. */
 TEST_WITH(with_and_without_thread, the_default_time_is_what_is_played)
 {
     grobo_posture posture;
     grobo_motion *motion = NULL;
-    int64_t default_us = grobo_runner_get_default_time_us(runner);
+    const grobo_play_options slower = {GROBO_PLAY_OPTIONS_INIT, .default_time_us = 150000};
 
-    assert_int_equal(default_us, GROBO_POSTURE_TIME_US);
     assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, 20, NULL, &motion), 0);
     (void)grobo_posture_init(&posture, 20);
     (void)grobo_posture_set_deg(&posture, ELBOW, 0);
@@ -249,7 +157,10 @@ TEST_WITH(with_and_without_thread, the_default_time_is_what_is_played)
     assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     /* The way to the first is the approach. */
-    assert_int_equal(grobo_runner_call(runner, total_ms, NULL), 2 * default_us / 1000);
+    assert_int_equal(grobo_runner_call(runner, total_ms, NULL), 2 * GROBO_POSTURE_TIME_US / 1000);
+    assert_int_equal(grobo_runner_play_motion(runner, &slower), GROBO_OK);
+    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_call(runner, total_ms, NULL), 2 * 150);
 }
 
 /* ---- playing ------------------------------------------------------------------------------ */
@@ -277,59 +188,23 @@ TEST_WITH(with_and_without_thread, the_motion_is_played)
     runner_have_motion(4);
     assert_int_equal(grobo_runner_call(runner, play_state, NULL), GROBO_SEQUENCER_IDLE);
     assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
-    assert_true(grobo_runner_is_playing(runner));
-    assert_int_equal(grobo_runner_is_moving(runner), 1);
-    assert_true(grobo_runner_is_playing(runner)); /* begun by now */
+    assert_true(runner_plays(runner));
+    assert_true(runner_moves(runner));
+    assert_true(runner_plays(runner)); /* begun by now */
     assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_ERR_STATE);
-    int left = grobo_runner_command_count(runner);
-    assert_in_range(left, 1, 4);
-    grobo_runner_clear_motion(runner); /* what is played is not touched */
-    assert_in_range(grobo_runner_command_count(runner), 0, left); /* one after the other goes */
+    runner_have_motion(1); /* what is played is not touched */
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    assert_false(grobo_runner_is_playing(runner));
+    assert_false(runner_plays(runner));
     assert_int_equal(grobo_runner_call(runner, play_state, NULL), GROBO_SEQUENCER_FINISHED);
-    assert_int_equal(grobo_runner_command_count(runner), 0);
     runner_assert_elbow_at(8);
 }
 
-/* On the loop, where nothing has begun yet. */
-static int ask_to_play(void *arg, grobo_runner *from)
+static const grobo_play_options *times(int32_t repeat)
 {
-    int r = grobo_runner_play_motion(from, arg);
+    static grobo_play_options options;
 
-    return r < 0 ? r : grobo_runner_command_count(from);
-}
-
-TEST_WITH(with_and_without_thread, every_repetition_is_counted)
-{
-    const grobo_play_options at_a_rate = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
-                                          .rate_hz = 20};
-    int most = 3 * 4;
-    int left;
-
-    runner_come_up();
-    runner_have_motion(4);
-    assert_int_equal(grobo_runner_set_motion_count(runner, -3), GROBO_OK);
-    assert_int_equal(grobo_runner_call(runner, ask_to_play, NULL), most);
-    left = grobo_runner_command_count(runner);
-    assert_in_range(left, 5, most); /* not only the first pass, which has 4 */
-    while (grobo_runner_is_playing(runner)) {
-        left = grobo_runner_command_count(runner);
-        assert_in_range(left, 0, most);
-        most = left;
-        (void)grobo_runner_svc(runner);
-    }
-    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_command_count(runner), 0);
-
-    /* More than there are numbers for. */
-    assert_int_equal(grobo_runner_set_motion_count(runner, INT_MIN), GROBO_OK);
-    assert_int_equal(grobo_runner_play_motion(runner, &at_a_rate), GROBO_OK);
-    assert_int_equal(grobo_runner_command_count(runner), INT_MAX);
-    assert_int_equal(grobo_runner_wait(runner, 300000), GROBO_ERR_PENDING);
-    assert_int_equal(grobo_runner_command_count(runner), INT_MAX);
-    assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), true), GROBO_OK);
-    assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);
+    options = (grobo_play_options){GROBO_PLAY_OPTIONS_INIT, .repeat = repeat};
+    return &options;
 }
 
 TEST_WITH(with_and_without_thread, a_negative_count_plays_in_reverse)
@@ -340,30 +215,23 @@ TEST_WITH(with_and_without_thread, a_negative_count_plays_in_reverse)
 
     runner_come_up();
     runner_have_motion(4);
-    assert_int_equal(grobo_runner_set_motion_count(runner, 3), GROBO_OK);
-    assert_false(grobo_runner_is_reverse(runner));
-    assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
+    assert_int_equal(grobo_runner_play_motion(runner, times(3)), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     assert_int_equal(grobo_runner_call(runner, passes_of, NULL), 3);
     runner_assert_elbow_at(8);
-    assert_int_equal(grobo_runner_set_motion_count(runner, -2), GROBO_OK);
-    assert_true(grobo_runner_is_reverse(runner));
-    assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
+    assert_int_equal(grobo_runner_play_motion(runner, times(-2)), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     assert_int_equal(grobo_runner_call(runner, passes_of, NULL), 2);
     runner_assert_elbow_at(2);
-    assert_int_equal(grobo_runner_set_motion_count(runner, 1), GROBO_OK);
     assert_int_equal(grobo_runner_play_motion(runner, &too_fast), GROBO_ERR_UNWATCHED);
-    assert_false(grobo_runner_is_playing(runner));
+    assert_false(runner_plays(runner));
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_UNWATCHED);
     runner_assert_elbow_at(2);
     assert_int_equal(grobo_runner_play_motion(runner, &at_a_rate), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     runner_assert_elbow_at(8);
-    assert_false(grobo_runner_is_reverse(runner));
-    grobo_runner_set_reverse(runner, true);
-    assert_true(grobo_runner_is_reverse(runner));
-    assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
+    const grobo_play_options back = {GROBO_PLAY_OPTIONS_INIT, .reverse = true};
+    assert_int_equal(grobo_runner_play_motion(runner, &back), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     runner_assert_elbow_at(2);
 }
@@ -372,11 +240,9 @@ TEST_WITH(with_and_without_thread, playing_is_stopped)
 {
     runner_come_up();
     runner_have_motion(4);
-    assert_int_equal(grobo_runner_set_motion_count(runner, 10000), GROBO_OK);
     for (int at_once = 0; at_once < 2; at_once++) {
-        assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
+        assert_int_equal(grobo_runner_play_motion(runner, times(10000)), GROBO_OK);
         assert_int_equal(grobo_runner_wait(runner, 400000), GROBO_ERR_PENDING);
-        assert_true(grobo_runner_command_count(runner) >= 0);
         assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), at_once != 0), GROBO_OK);
         assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);
     }
@@ -384,7 +250,7 @@ TEST_WITH(with_and_without_thread, playing_is_stopped)
     assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
     assert_int_equal(grobo_runner_estop(runner), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);
-    assert_false(grobo_runner_is_playing(runner));
+    assert_false(runner_plays(runner));
 }
 
 /* What cannot be done now is refused now, and changes nothing. */
@@ -392,19 +258,18 @@ TEST_WITH(with_and_without_thread, what_the_engine_refuses_is_told_at_once)
 {
     runner_come_up();
     runner_have_motion(4);
-    assert_int_equal(grobo_runner_set_motion_count(runner, 10000), GROBO_OK);
-    assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);
+    assert_int_equal(grobo_runner_play_motion(runner, times(10000)), GROBO_OK);
     assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_ERR_STATE);
     const grobo_robot *robot = grobo_runner_robot(runner);
     for (int rounds = 0; grobo_robot_job(robot) != GROBO_JOB_NONE; rounds++) {
         assert_in_range(rounds, 0, 1000); /* 10 s of preparing */
         (void)grobo_runner_svc(runner);
     }
-    assert_int_equal(grobo_runner_init_position(runner), GROBO_ERR_STATE); /* it sets them all */
-    assert_int_equal(grobo_runner_is_playing(runner), 1);
+    assert_int_equal(runner_go_to_zero(runner), GROBO_ERR_STATE); /* it sets them all */
+    assert_true(runner_plays(runner));
     assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), true), GROBO_OK);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_ERR_CANCELED);
-    assert_int_equal(grobo_runner_init_position(runner), GROBO_OK);
+    assert_true(runner_go_to_zero(runner) > 0);
     assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_ERR_STATE); /* it moves */
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     assert_int_equal(grobo_runner_play_motion(runner, NULL), GROBO_OK);

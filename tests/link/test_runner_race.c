@@ -42,42 +42,34 @@ static void run_together(grobo_thread_fn fn, worker *workers, int n)
 
 static void ask(worker *self)
 {
+    grobo_robot *robot = grobo_runner_robot(self->runner);
     grobo_posture posture;
+    grobo_snapshot snapshot = {GROBO_SNAPSHOT_INIT};
     double angle_rad;
-    int states[GROBO_JOINTS_MAX];
     int r = grobo_runner_read_angle(self->runner, self->number, &angle_rad, 0);
 
     expect(self, r == GROBO_OK, r);
-    r = grobo_runner_get_current_posture(self->runner, &posture);
+    r = grobo_robot_posture(robot, GROBO_NEVER_US, &posture);
     expect(self, r > 0, r);
-    r = grobo_runner_get_servo_states(self->runner, states, GROBO_JOINTS_MAX);
+    r = grobo_runner_snapshot(self->runner, &snapshot);
     expect(self, r == 20, r);
-    r = grobo_runner_check_connection(self->runner, 0);
+    r = runner_check(self->runner, 0);
     expect(self, r == GROBO_OK, r);
-    r = grobo_runner_command_count(self->runner);
-    expect(self, r >= 0, r);
-    r = grobo_runner_send_command(self->runner, "\x41\x00", 2, 0);
-    expect(self, r == 2, r);
 }
 
 static void change(worker *self, int i)
 {
-    int r = grobo_runner_set_joint(self->runner, ELBOW, grobo_rad_from_deg(i % 5));
+    int r;
 
-    expect(self, r == GROBO_OK, r);
-    r = grobo_runner_set_default_time_us(self->runner, 20000 + 10000 * (i % 3));
-    expect(self, r == GROBO_OK, r);
-    grobo_motion *motion = NULL;
-    r = grobo_runner_get_motion(self->runner, &motion);
-    expect(self, r >= 0, r);
-    grobo_motion_free(motion);
     if (i % 4 == 3) {
-        grobo_runner_clear_motion(self->runner);
+        grobo_motion *motion = runner_motion(self->runner);
+        r = grobo_runner_set_motion(self->runner, motion);
+        expect(self, r >= 0, r);
+        grobo_motion_free(motion);
     }
-    r = grobo_runner_set_command(self->runner, "\x41\x00", 2);
-    expect(self, r == 2, r);
-    r = grobo_runner_start_motion(self->runner);
-    expect(self, r == GROBO_OK || r == GROBO_ERR_FULL, r);
+    r = runner_move_elbow(self->runner, i % 5, 20000 + 10000 * (i % 3));
+    /* Another thread has moved it, or moves it now. */
+    expect(self, r > 0 || r == GROBO_ERR_FULL || r == GROBO_ERR_STATE, r);
 }
 
 static GROBO_THREAD_FUNC hammer(void *arg)
@@ -112,7 +104,7 @@ static GROBO_THREAD_FUNC cycle(void *arg)
             self->number == 0 ? grobo_runner_start(self->runner) : grobo_runner_stop(self->runner);
 
         expect(self, r == GROBO_OK || r == GROBO_ERR_STATE, r);
-        r = grobo_runner_check_connection(self->runner, 0);
+        r = runner_check(self->runner, 0);
         expect(self, r == GROBO_OK || r == GROBO_ERR_CANCELED, r);
     }
     GROBO_THREAD_RETURN;
@@ -338,14 +330,14 @@ static void check(int number, bool as_it_should)
 
 static void call_back(grobo_runner *from, int at)
 {
+    grobo_robot *robot = grobo_runner_robot(from);
+    grobo_snapshot snapshot = {GROBO_SNAPSHOT_INIT};
     grobo_posture posture;
     double angle_rad;
     int n = 0;
-    int states[20];
 
-    check(at + 1, grobo_runner_set_joint(from, ELBOW, 0.01) == GROBO_OK);
-    check(at + 2, grobo_runner_get_current_posture(from, &posture) >= 0);
-    check(at + 3, grobo_runner_get_servo_states(from, states, 20) == 20);
+    check(at + 1, grobo_runner_snapshot(from, &snapshot) == 20);
+    check(at + 2, grobo_robot_posture(robot, GROBO_NEVER_US, &posture) >= 0);
     check(at + 4, grobo_runner_call(from, count, &n) == 1);
     check(at + 5, grobo_runner_read_angle(from, ELBOW, &angle_rad, 0) == GROBO_ERR_STATE);
     check(at + 6, grobo_runner_connect(from, 0) == GROBO_ERR_STATE);
@@ -354,8 +346,6 @@ static void call_back(grobo_runner *from, int at)
     check(at + 9, grobo_runner_free(from) == GROBO_ERR_STATE);
     check(at + 10, grobo_runner_svc(from) == GROBO_ERR_STATE);
     check(at + 11, grobo_runner_run(from) == GROBO_ERR_STATE);
-    check(at + 12, grobo_runner_receive(from, states, 1) == GROBO_ERR_STATE);
-    check(at + 13, grobo_runner_set_default_time_us(from, 50000) == GROBO_OK);
 }
 
 static int on_svc(void *ctx, grobo_runner *from)
@@ -493,8 +483,8 @@ static int follow(const grobo_driver *self, void *ctx, const grobo_posture *sens
 
     (void)self;
     (void)sensed;
-    check(14, grobo_runner_get_current_posture(ctx, &leader) > 0);
-    check(15, grobo_runner_is_moving(ctx) == 0);
+    check(14, grobo_robot_posture(grobo_runner_robot(ctx), GROBO_NEVER_US, &leader) > 0);
+    check(15, !grobo_robot_moving(grobo_runner_robot(ctx)));
     check(16, grobo_posture_get_rad(&leader, ELBOW, &angle_rad) == GROBO_OK &&
                   grobo_posture_set_rad(target, ELBOW, angle_rad) == GROBO_OK);
     seen.events++;
@@ -512,16 +502,14 @@ TEST_WITH(with_and_without_thread, a_stabilizer_may_ask_another_robot)
     double angle_rad;
 
     runner_come_up();
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
+    assert_true(runner_move_elbow(runner, 10, 0) > 0);
     assert_int_equal(grobo_runner_wait(runner, 0), GROBO_OK);
     assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 20);
     driver.stabilize = follow;
     memset(&seen, 0, sizeof seen);
     assert_int_equal(grobo_runner_new(&config, &follower), GROBO_OK);
     assert_int_equal(grobo_runner_connect(follower, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_set_joint(follower, ELBOW, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_start_motion(follower), GROBO_OK);
+    assert_true(runner_move_elbow(follower, 0, 0) > 0);
     assert_int_equal(grobo_runner_wait(follower, 0), GROBO_OK);
     assert_int_equal(grobo_runner_read_angle(follower, ELBOW, &angle_rad, 0), GROBO_OK);
     assert_true(fabs(grobo_deg_from_rad(angle_rad) - 10) < 1);

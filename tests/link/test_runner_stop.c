@@ -21,12 +21,11 @@ TEST(an_emergency_stop_stands_while_a_callback_blocks)
     hold_end(&gate);
     assert_int_equal(grobo_runner_call(runner, tripped, NULL), 1);
     assert_stopped(1);
-    assert_int_equal(grobo_runner_set_servo_state(runner, ELBOW, GROBO_TORQUE_ON, 0),
+    assert_int_equal(runner_torque(runner, GROBO_JOINT_BIT(ELBOW), GROBO_TORQUE_ON, 0),
                      GROBO_ERR_LATCHED);
     assert_int_equal(grobo_runner_reset(runner), GROBO_OK);
     assert_false(grobo_runner_is_latched(runner));
-    assert_int_equal(grobo_runner_set_servo_state(runner, ELBOW, GROBO_TORQUE_ON, 0),
-                     GROBO_TORQUE_ON);
+    assert_int_equal(runner_torque(runner, GROBO_JOINT_BIT(ELBOW), GROBO_TORQUE_ON, 0), GROBO_OK);
     stop_kit_end();
 }
 
@@ -147,7 +146,7 @@ TEST(without_a_thread_the_next_call_stops_first)
     assert_stopped(1);
     assert_int_equal(grobo_runner_reset(runner), GROBO_OK);
 
-    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
+    assert_int_equal(runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
     move_for_long();
     assert_int_equal(grobo_runner_call(runner, begin_to_listen, NULL), 0);
     assert_int_equal(grobo_runner_estop(runner), GROBO_OK);

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* One set of verbs: the engine of a runner, used by any thread. */
 
-#include <grobo/core/gr001.h>
-
 #include "tests/support/runner_kit.h"
 #include "tests/support/test.h"
 

@@ -122,7 +122,7 @@ static void start(bool threaded)
         assert_int_equal(grobo_runner_start(runner), GROBO_OK);
     }
     runner_come_up();
-    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
+    assert_int_equal(runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
     have_handlers();
 }
 
@@ -136,7 +136,7 @@ static void assert_braked(void)
 {
     (void)grobo_runner_wait(runner, 0);
     for (int j = 0; j < 20; j++) {
-        assert_int_equal(grobo_runner_get_servo_state(runner, j), GROBO_TORQUE_BRAKE);
+        assert_int_equal(runner_torque_of(runner, j), GROBO_TORQUE_BRAKE);
     }
 }
 
@@ -154,7 +154,7 @@ TEST(a_handler_needs_no_lock)
     hold_end(&gate);
     (void)grobo_runner_wait(runner, 0);
     assert_true(grobo_runner_is_latched(runner));
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_OFF);
     end();
 }
 
@@ -236,12 +236,10 @@ TEST(nothing_takes_a_descriptor)
     int result = 1;
 
     start(true);
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
-    assert_int_equal(grobo_runner_set_motion_time_us(runner, 60000000), GROBO_OK);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
+    assert_true(runner_move_elbow(runner, 45, 60000000) > 0);
     have_descriptors(false);
     assert_int_equal(grobo_thread_start(&other, wait_for_rest, &result), GROBO_OK);
-    assert_int_equal(grobo_runner_is_moving(runner), 1);
+    assert_true(runner_moves(runner));
     assert_int_equal(grobo_robot_stop(grobo_runner_robot(runner), true), GROBO_OK);
     assert_int_equal(grobo_thread_join(other), GROBO_OK);
     assert_int_equal(result, GROBO_ERR_CANCELED);
@@ -250,7 +248,7 @@ TEST(nothing_takes_a_descriptor)
     assert_braked();
     assert_int_equal(grobo_runner_reset(runner), GROBO_OK);
     assert_int_equal(grobo_runner_exit(runner, GROBO_EXIT_OFF, 0), GROBO_OK);
-    assert_int_equal(grobo_runner_get_servo_state(runner, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(runner_torque_of(runner, ELBOW), GROBO_TORQUE_OFF);
     assert_int_equal(grobo_runner_stop(runner), GROBO_OK);
     assert_int_equal(grobo_runner_close(runner, 0), GROBO_OK);
     have_descriptors(true);

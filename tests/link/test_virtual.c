@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* An engine and a simulator in virtual time. */
-#include <grobo/core/gr001.h>
 #include <grobo/core/loop.h>
 #include <grobo/core/port.h>
 #include <grobo/core/virtual.h>
+#include <grobo/model.h>
 #include <grobo/posture.h>
 #include <grobo/robot_file.h>
 

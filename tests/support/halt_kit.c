@@ -6,7 +6,6 @@
 #include <grobo/core/dxl1.h>
 #include <grobo/core/dxl2.h>
 #include <grobo/core/feetech.h>
-#include <grobo/core/gr001.h>
 #include <grobo/core/ics.h>
 #include <grobo/core/lx16a.h>
 

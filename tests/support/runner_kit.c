@@ -2,6 +2,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <grobo/core/robot.h>
+
+#include "src/link/runner/runner.h"
 #include "tests/support/folder.h"
 #include "tests/support/runner_kit.h"
 
@@ -20,11 +23,10 @@ static void make(grobo_runner_config config)
 
 int runner_set_up(void)
 {
-    grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .motion_dir = "/nowhere"};
+    grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .motion_dir = folder};
 
     (void)folder_set_up();
     make(config);
-    assert_int_equal(grobo_runner_set_motion_dir(runner, folder), GROBO_OK);
     return 0;
 }
 
@@ -72,13 +74,78 @@ void runner_have_motion(int n)
     grobo_motion_free(motion);
 }
 
-int runner_motion_size(grobo_runner *of)
+grobo_motion *runner_motion(grobo_runner *of)
 {
     grobo_motion *motion = NULL;
-    int n = grobo_runner_get_motion(of, &motion);
+
+    grobo_i_runner_lock(of);
+    int r = grobo_motion_dup(of->motion, &motion);
+    grobo_i_runner_unlock(of);
+    assert_int_equal(r, GROBO_OK);
+    return motion;
+}
+
+int runner_motion_size(grobo_runner *of)
+{
+    grobo_motion *motion = runner_motion(of);
+    int n = (int)grobo_motion_size(motion);
 
     grobo_motion_free(motion);
     return n;
+}
+
+bool runner_plays(grobo_runner *of)
+{
+    grobo_i_runner_lock(of);
+    bool plays = of->play != PLAY_NONE;
+    grobo_i_runner_unlock(of);
+    return plays;
+}
+
+bool runner_moves(grobo_runner *of)
+{
+    const grobo_robot *robot = grobo_runner_robot(of);
+
+    return runner_plays(of) || grobo_robot_moving(robot) ||
+           grobo_robot_job(robot) == GROBO_JOB_MOVE;
+}
+
+int runner_torque(grobo_runner *of, grobo_joint_mask joints, grobo_torque mode, int64_t timeout_us)
+{
+    return grobo_runner_wait_job(of, grobo_robot_torque(grobo_runner_robot(of), joints, mode),
+                                 timeout_us);
+}
+
+int runner_check(grobo_runner *of, int64_t timeout_us)
+{
+    return grobo_runner_wait_job(of, grobo_robot_check(grobo_runner_robot(of)), timeout_us);
+}
+
+int runner_torque_of(grobo_runner *of, int joint)
+{
+    grobo_joint_info info;
+
+    assert_int_equal(grobo_robot_joint(grobo_runner_robot(of), joint, &info), GROBO_OK);
+    return info.torque_known ? (int)info.state.torque : GROBO_ERR_EMPTY;
+}
+
+int runner_move_elbow(grobo_runner *of, double angle_deg, int64_t time_us)
+{
+    grobo_posture target;
+
+    (void)grobo_posture_init(&target, 20);
+    (void)grobo_posture_set_deg(&target, ELBOW, angle_deg);
+    target.time_us = time_us;
+    return grobo_robot_move(grobo_runner_robot(of), &target);
+}
+
+int runner_go_to_zero(grobo_runner *of)
+{
+    grobo_posture target;
+
+    (void)grobo_posture_init(&target, 20);
+    target.set = EVERY_JOINT;
+    return grobo_robot_move(grobo_runner_robot(of), &target);
 }
 
 void runner_assert_elbow_at(double angle_deg)

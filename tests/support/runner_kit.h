@@ -26,8 +26,26 @@ void runner_come_up(void);
 /* A motion of .m's kind: the elbow at 2, 4, 6... degrees, each 40 ms after the one before. */
 void runner_have_motion(int n);
 
-/* Postures of the current motion. */
+/* Postures of the current motion; a copy of it, freed by the caller; whether it is played. */
 int runner_motion_size(grobo_runner *of);
+grobo_motion *runner_motion(grobo_runner *of);
+bool runner_plays(grobo_runner *of);
+
+/* Whether anything moves or is about to. */
+bool runner_moves(grobo_runner *of);
+
+/* Requests to the robot, and their end. */
+int runner_torque(grobo_runner *of, grobo_joint_mask joints, grobo_torque mode, int64_t timeout_us);
+int runner_check(grobo_runner *of, int64_t timeout_us);
+
+/* Torque of a joint as last known, or GROBO_ERR_EMPTY. */
+int runner_torque_of(grobo_runner *of, int joint);
+
+/* Has the elbow move; time_us 0: the default time. Nobody waits for it. @return a job's number. */
+int runner_move_elbow(grobo_runner *of, double angle_deg, int64_t time_us);
+
+/* Has all joints move to 0. */
+int runner_go_to_zero(grobo_runner *of);
 
 /* Reads the elbow's angle and compares. */
 void runner_assert_elbow_at(double angle_deg);

@@ -78,7 +78,7 @@ void stop_kit_make(grobo_runner_config config)
     session.baud_bps = 1000000;
     session.on_robot = on_robot;
     session.on_tap = on_tap;
-    config.period_us = 1000;
+    config.period_us = config.period_us > 0 ? config.period_us : 1000;
     config.on_svc = on_svc;
     memset(&saw, 0, sizeof saw);
     in_callback = NULL;
@@ -100,17 +100,14 @@ void stop_kit_start(grobo_runner_config config)
     stop_kit_make(config);
     assert_int_equal(grobo_runner_start(runner), GROBO_OK);
     assert_int_equal(grobo_runner_connect(runner, LONG_US), GROBO_OK);
-    assert_int_equal(grobo_runner_set_servo_states(runner, EVERY_JOINT, GROBO_TORQUE_ON, LONG_US),
-                     GROBO_OK);
+    assert_int_equal(runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, LONG_US), GROBO_OK);
 }
 
 void move_for_long(void)
 {
-    assert_int_equal(grobo_runner_set_joint(runner, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
-    assert_int_equal(grobo_runner_set_motion_time_us(runner, LONG_US), GROBO_OK);
-    assert_int_equal(grobo_runner_start_motion(runner), GROBO_OK);
+    assert_true(runner_move_elbow(runner, 45, LONG_US) > 0);
     assert_int_equal(grobo_runner_wait(runner, 300000), GROBO_ERR_PENDING);
-    assert_int_equal(grobo_runner_is_moving(runner), 1);
+    assert_true(runner_moves(runner));
 }
 
 int copy_seen(void *arg, grobo_runner *from)
@@ -143,26 +140,26 @@ void assert_stopped(int estops)
     (void)grobo_runner_wait(runner, 0);
     assert_int_equal(grobo_runner_call(runner, tripped, NULL), 1);
     assert_true(grobo_runner_is_latched(runner));
-    assert_int_equal(grobo_runner_is_moving(runner), 0);
+    assert_false(runner_moves(runner));
     assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
     assert_int_equal(told.estops, estops);
     assert_int_equal(told.estop_result, GROBO_OK);
     for (int j = 0; j < 20; j++) {
-        assert_int_equal(grobo_runner_get_servo_state(runner, j), GROBO_TORQUE_BRAKE);
+        assert_int_equal(runner_torque_of(runner, j), GROBO_TORQUE_BRAKE);
     }
 }
 
 void play_for_long(void)
 {
     const grobo_play_options fast = {GROBO_PLAY_OPTIONS_INIT, .mode = GROBO_PLAY_RATE,
-                                     .rate_hz = 100, .unwatched = true, .stop_us = STOP_US};
+                                     .rate_hz = 100,          .unwatched = true,
+                                     .stop_us = STOP_US,      .repeat = 1000000};
     int64_t end_us = grobo_now_us() + LONG_US / 2;
     int before;
 
     assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);
     before = told.goals;
     runner_have_motion(4);
-    (void)grobo_runner_set_motion_count(runner, 1000000);
     assert_int_equal(grobo_runner_play_motion(runner, &fast), GROBO_OK);
     do {
         assert_int_equal(grobo_runner_call(runner, copy_seen, &told), 0);

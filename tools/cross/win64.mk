@@ -48,7 +48,7 @@ TEST_END = ; status=$$?; $(EMULATOR) --end; exit $$status
 # Tests are written for a pseudo-terminal, and for processes and files as POSIX has them; these are
 # not: of the ring link, and of the command's (what they cannot check is in tests/wine/left_out).
 PORTABLE := $(patsubst %,tests/link/test_%.c,runner_life loop session_joints runner runner_motion \
-    runner_leave runner_race runner_stop views) $(patsubst %,tests/cli/%.sh,check completion config \
+    runner_leave runner_race runner_stop) $(patsubst %,tests/cli/%.sh,check completion config \
     convert decode doctor estop guide help input json leaving play play_keys plot readme record replay robot ser2net servos \
     shell show sim sim_console stranger teach trace wireshark)
 LEFT_OUT_WHY := Windows has no pseudo-terminals, signals, file modes or links as it wants them

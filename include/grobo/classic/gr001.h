@@ -10,7 +10,7 @@
 #define GROBO_CLASSIC_GR001_H
 
 #include <grobo/classic/serial_robot.h>
-#include <grobo/core/gr001.h>
+#include <grobo/motion.h>
 
 GROBO_BEGIN_DECLS
 

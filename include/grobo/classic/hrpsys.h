@@ -13,7 +13,6 @@
 #define GROBO_CLASSIC_HRPSYS_H
 
 #include <grobo/classic/gr001.h>
-#include <grobo/core/hrpsys.h>
 
 GROBO_BEGIN_DECLS
 

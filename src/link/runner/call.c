@@ -143,11 +143,6 @@ static void serve(grobo_runner *runner)
 
 /* ---- a round ------------------------------------------------------------------------------ */
 
-int64_t grobo_runner_get_period_us(grobo_runner *runner)
-{
-    RETURN_LOCKED(runner, int64_t, 0, runner->period_us);
-}
-
 /* When to look though nothing has come: each period for the service and for calls that are not
  * over, else when the owner may be lost. */
 static int64_t next_look(grobo_runner *runner)
@@ -156,7 +151,7 @@ static int64_t next_look(grobo_runner *runner)
 
     if (runner->on_svc != NULL || runner->asked) {
         if (runner->tick_us == GROBO_NEVER_US) {
-            runner->tick_us = grobo_now_us() + grobo_runner_get_period_us(runner);
+            runner->tick_us = grobo_now_us() + runner->period_us;
         }
         next_us = runner->tick_us;
     } else {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* What the loop of a runner is told by its session, and hands on to the user's callbacks. */
-#include <string.h>
-
 #include <grobo/core/robot.h>
 
 #include "src/link/runner/runner.h"
@@ -12,7 +10,6 @@
 void grobo_i_runner_down(grobo_runner *runner, int error)
 {
     runner->line_error = error;
-    runner->recording = false;
     grobo_i_runner_lock(runner);
     runner->up = false;
     runner->losses++;
@@ -61,11 +58,6 @@ static void on_job(grobo_runner *runner, const grobo_event_job *ended)
 {
     runner->exited = ended->kind == GROBO_JOB_EXIT && ended->result >= 0;
     runner->exit_frames = frames_sent(runner);
-    if (ended->kind == GROBO_JOB_RAW) {
-        runner->recording = false;
-        runner->raw_bytes = 0;
-        grobo_i_runner_tap(runner);
-    }
     grobo_i_runner_lock(runner);
     bool awaited = grobo_i_runner_end_job(runner, ended);
     grobo_i_runner_unlock(runner);
@@ -92,31 +84,10 @@ void grobo_i_runner_on_robot(void *ctx, const grobo_event *event)
 
 /* ---- the bytes ---------------------------------------------------------------------------- */
 
-void grobo_i_runner_tap(grobo_runner *runner)
-{
-    bool looks = runner->raw_bytes > 0 || runner->recording || runner->user.on_tap != NULL;
-
-    runner->session->config.on_tap = looks ? grobo_i_runner_on_tap : NULL;
-}
-
-/* What comes between a raw command's leaving and its job's end is its reply. */
 void grobo_i_runner_on_tap(void *ctx, grobo_direction direction, int64_t now_us,
                            const uint8_t *bytes, size_t size)
 {
-    grobo_runner *runner = ctx;
+    const grobo_runner *runner = ctx;
 
-    if (direction == GROBO_DIR_TX && runner->raw_bytes > 0) {
-        size_t same = size < runner->raw_bytes ? size : runner->raw_bytes;
-
-        runner->recording = runner->recording || memcmp(bytes, runner->raw, same) == 0;
-    } else if (direction == GROBO_DIR_RX && runner->recording) {
-        size_t room = sizeof runner->received - runner->received_bytes;
-        size_t taken = size < room ? size : room;
-
-        memcpy(runner->received + runner->received_bytes, bytes, taken);
-        runner->received_bytes += taken;
-    }
-    if (runner->user.on_tap != NULL) {
-        runner->user.on_tap(runner->user.ctx, direction, now_us, bytes, size);
-    }
+    runner->user.on_tap(runner->user.ctx, direction, now_us, bytes, size);
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A runner's line, servos, readings, raw commands and safety: the session's, for every thread. */
-#include <stddef.h>
+/* A runner's line, readings and safety: the session's, for every thread. */
 #include <string.h>
 
 #include <grobo/core/robot.h>
@@ -16,11 +15,6 @@ grobo_session *grobo_runner_session(grobo_runner *runner)
 grobo_robot *grobo_runner_robot(grobo_runner *runner)
 {
     return runner == NULL ? NULL : runner_robot(runner);
-}
-
-grobo_serial *grobo_runner_serial(grobo_runner *runner)
-{
-    return runner == NULL ? NULL : grobo_session_serial(runner->session);
 }
 
 /* ---- the line ----------------------------------------------------------------------------- */
@@ -41,7 +35,6 @@ int grobo_runner_set_device(grobo_runner *runner, const char *device)
 typedef struct storage {
     void *bytes;
     size_t size;
-    int64_t end_us;
 } storage;
 
 static int get_device(void *arg, grobo_runner *runner)
@@ -178,74 +171,7 @@ int grobo_runner_get_cause(grobo_runner *runner, grobo_os_cause *cause)
     return cause == NULL ? GROBO_ERR_ARG : grobo_i_runner_call(runner, get_cause, cause);
 }
 
-static int check_job(grobo_runner *runner, runner_job *job)
-{
-    (void)job;
-    return grobo_robot_check(runner_robot(runner));
-}
-
-int grobo_runner_check_connection(grobo_runner *runner, int64_t timeout_us)
-{
-    runner_job job = {.start = check_job};
-
-    return grobo_i_runner_job(runner, &job, timeout_us);
-}
-
-/* ---- servos ------------------------------------------------------------------------------- */
-
-int grobo_runner_get_servo_state(grobo_runner *runner, int joint)
-{
-    grobo_joint_info info;
-    int r = grobo_robot_joint(grobo_runner_robot(runner), joint, &info);
-
-    return r < 0 ? r : info.torque_known ? (int)info.state.torque : GROBO_ERR_EMPTY;
-}
-
-int grobo_runner_get_servo_states(grobo_runner *runner, int *states, size_t capacity)
-{
-    if (runner == NULL || states == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    int n_joints = grobo_runner_joints(runner);
-
-    if (capacity < (size_t)n_joints) {
-        return GROBO_ERR_SPACE;
-    }
-    for (int j = 0; j < n_joints; j++) {
-        states[j] = grobo_runner_get_servo_state(runner, j);
-    }
-    return n_joints;
-}
-
-static int torque_job(grobo_runner *runner, runner_job *job)
-{
-    return grobo_robot_torque(runner_robot(runner), job->joints, job->torque);
-}
-
-int grobo_runner_set_servo_states(grobo_runner *runner, grobo_joint_mask joints, grobo_torque state,
-                                  int64_t timeout_us)
-{
-    runner_job job = {.start = torque_job, .joints = joints, .torque = state};
-
-    return grobo_i_runner_job(runner, &job, timeout_us);
-}
-
-int grobo_runner_set_servo_state(grobo_runner *runner, int joint, grobo_torque state,
-                                 int64_t timeout_us)
-{
-    if (runner == NULL || joint < 0 || joint >= grobo_runner_joints(runner)) {
-        return GROBO_ERR_ARG;
-    }
-    int r = grobo_runner_set_servo_states(runner, GROBO_JOINT_BIT(joint), state, timeout_us);
-    return r < 0 ? r : (int)state;
-}
-
 /* ---- readings ----------------------------------------------------------------------------- */
-
-int grobo_runner_get_current_posture(grobo_runner *runner, grobo_posture *posture)
-{
-    return grobo_robot_posture(grobo_runner_robot(runner), GROBO_NEVER_US, posture);
-}
 
 static int sense_job(grobo_runner *runner, runner_job *job)
 {
@@ -258,23 +184,11 @@ static bool was_read(const runner_job *job, int result)
     return job->ended && result != GROBO_ERR_UNPLUGGED && result != GROBO_ERR_CANCELED;
 }
 
-/* Without clearing the bytes of a frame, of which it has none. */
-static void fill_sense(runner_job *job, grobo_joint_mask joints, grobo_sense_kind kind)
-{
-    memset(job, 0, offsetof(runner_job, frame));
-    job->start = sense_job;
-    job->joints = joints;
-    job->sense = kind;
-    job->direct = true;
-}
-
 /* Reads, and gives the joints that have been read since it began. @return their number, or why. */
 static int sense(grobo_runner *runner, grobo_joint_mask joints, grobo_sense_kind kind,
                  grobo_posture *posture, int64_t timeout_us)
 {
-    runner_job job;
-
-    fill_sense(&job, joints, kind);
+    runner_job job = {.start = sense_job, .joints = joints, .sense = kind, .direct = true};
     int r = grobo_i_runner_job(runner, &job, timeout_us);
     grobo_posture sensed;
 
@@ -306,9 +220,10 @@ int grobo_runner_read_angle(grobo_runner *runner, int joint, double *angle_rad, 
     if (angle_rad == NULL || runner == NULL || joint < 0 || joint >= grobo_runner_joints(runner)) {
         return GROBO_ERR_ARG;
     }
-    runner_job job;
-
-    fill_sense(&job, GROBO_JOINT_BIT(joint), GROBO_SENSE_POSITION);
+    runner_job job = {.start = sense_job,
+                      .joints = GROBO_JOINT_BIT(joint),
+                      .sense = GROBO_SENSE_POSITION,
+                      .direct = true};
     int r = grobo_i_runner_job(runner, &job, timeout_us);
 
     if (was_read(&job, r) && grobo_robot_joint(runner_robot(runner), joint, &info) >= 0 &&
@@ -317,119 +232,6 @@ int grobo_runner_read_angle(grobo_runner *runner, int joint, double *angle_rad, 
         r = GROBO_OK;
     }
     return r;
-}
-
-/* ---- raw commands ------------------------------------------------------------------------- */
-
-int grobo_runner_set_command(grobo_runner *runner, const void *packet, size_t size)
-{
-    if ((packet == NULL && size > 0) || runner == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    if (size > sizeof runner->command) {
-        return GROBO_ERR_CAP;
-    }
-    grobo_i_runner_lock(runner);
-    if (size > 0) {
-        memcpy(runner->command, packet, size);
-    }
-    runner->command_bytes = size;
-    grobo_i_runner_unlock(runner);
-    return (int)size;
-}
-
-int grobo_runner_get_command(grobo_runner *runner, void *packet, size_t capacity)
-{
-    if (runner == NULL || (packet == NULL && capacity > 0)) {
-        return GROBO_ERR_ARG;
-    }
-    int r = GROBO_ERR_SPACE;
-
-    grobo_i_runner_lock(runner);
-    if (runner->command_bytes <= capacity) {
-        r = (int)runner->command_bytes;
-    }
-    if (r > 0) {
-        memcpy(packet, runner->command, (size_t)r);
-    }
-    grobo_i_runner_unlock(runner);
-    return r;
-}
-
-static int raw_job(grobo_runner *runner, runner_job *job)
-{
-    if (grobo_robot_job(runner_robot(runner)) != GROBO_JOB_NONE) {
-        return GROBO_ERR_STATE;
-    }
-    /* It may leave, and even be answered, before the request returns. */
-    memcpy(runner->raw, job->frame, job->size);
-    runner->raw_bytes = job->size;
-    grobo_i_runner_tap(runner);
-    /* Who is told that it took too long is not to see it leave afterwards. */
-    int r = grobo_robot_raw_until(runner_robot(runner), job->frame, job->size, job->end_us - 1);
-    if (r < 0) {
-        runner->raw_bytes = 0;
-        grobo_i_runner_tap(runner);
-    }
-    return r;
-}
-
-int grobo_runner_send_command(grobo_runner *runner, const void *packet, size_t size,
-                              int64_t timeout_us)
-{
-    runner_job job = {.start = raw_job, .size = size};
-    int r;
-
-    if (packet == NULL) {
-        r = grobo_runner_get_command(runner, job.frame, sizeof job.frame);
-        job.size = (size_t)r;
-    } else if (size > sizeof job.frame) {
-        return GROBO_ERR_CAP;
-    } else {
-        memcpy(job.frame, packet, size);
-    }
-    if (job.size == 0) {
-        return GROBO_ERR_EMPTY;
-    }
-    r = grobo_runner_connect(runner, timeout_us);
-    if (r >= 0) {
-        r = grobo_i_runner_job(runner, &job, timeout_us);
-        r = r == GROBO_ERR_STALE && grobo_now_us() >= job.end_us - 1 ? GROBO_ERR_TIMEOUT : r;
-    }
-    return r < 0 ? r : (int)job.size;
-}
-
-static int receive(void *arg, grobo_runner *runner)
-{
-    const storage *to = arg;
-    bool over = grobo_now_us() >= to->end_us;
-
-    if (runner->received_bytes < to->size && over) {
-        grobo_i_session_look(runner->session); /* somebody held us up, maybe */
-    }
-    size_t had = runner->received_bytes;
-    if (had >= to->size) {
-        memcpy(to->bytes, runner->received, to->size);
-        runner->received_bytes -= to->size;
-        memmove(runner->received, runner->received + to->size, runner->received_bytes);
-        return (int)to->size;
-    }
-    if (!over) {
-        return CALL_PENDING;
-    }
-    runner->received_bytes = 0;
-    return had > 0 ? GROBO_ERR_SHORT : GROBO_ERR_TIMEOUT;
-}
-
-int grobo_runner_receive(grobo_runner *runner, void *bytes, size_t size)
-{
-    if (bytes == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    storage to = {bytes, size, grobo_now_us() + INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS};
-
-    return size <= GROBO_RUNNER_RECEIVE_BYTES ? grobo_i_runner_wait(runner, receive, &to, 0)
-                                              : GROBO_ERR_CAP;
 }
 
 /* ---- safety ------------------------------------------------------------------------------- */

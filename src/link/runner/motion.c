@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A runner's target and current motion: sent and played, its postures, its files. */
+/* A runner's current motion: played, waited for, read of files. */
 #include <grobo/core/robot.h>
 
 #include "src/base/sized.h"
@@ -18,7 +18,7 @@ static int resolve(grobo_runner *runner, grobo_motion *motion)
         return GROBO_OK;
     }
     grobo_posture_init_pose(&start, runner->driver->model);
-    if (grobo_runner_get_current_posture(runner, &sensed) > 0) {
+    if (grobo_robot_posture(runner_robot(runner), GROBO_NEVER_US, &sensed) > 0) {
         for (int j = 0; j < start.n_joints; j++) {
             if ((sensed.set & GROBO_JOINT_BIT(j)) != 0) {
                 start.angle_rad[j] = sensed.angle_rad[j];
@@ -63,57 +63,7 @@ int grobo_runner_set_motion(grobo_runner *runner, const grobo_motion *motion)
     return r < 0 ? r : adopt(runner, copy);
 }
 
-int grobo_runner_get_motion(grobo_runner *runner, grobo_motion **motion)
-{
-    if (runner == NULL || motion == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    grobo_i_runner_lock(runner);
-    int r = grobo_motion_dup(runner->motion, motion);
-    grobo_i_runner_unlock(runner);
-    return r < 0 ? r : (int)grobo_motion_size(*motion);
-}
-
-void grobo_runner_clear_motion(grobo_runner *runner)
-{
-    if (runner != NULL) {
-        grobo_i_runner_lock(runner);
-        grobo_motion_renew(runner->motion, GROBO_MOTION_POSTURES);
-        grobo_i_runner_unlock(runner);
-    }
-}
-
-/* ---- sent and played ---------------------------------------------------------------------- */
-
-/* Sends the target, which may have been replaced before: by `instead`. */
-static int send_target(grobo_runner *runner, const grobo_posture *instead)
-{
-    grobo_i_runner_lock(runner);
-    runner->target = instead != NULL ? *instead : runner->target;
-    grobo_posture target = runner->target;
-    bool up = runner->up;
-    grobo_i_runner_unlock(runner);
-    if (!up) {
-        return GROBO_ERR_CLOSED;
-    }
-    return target.set == 0 ? GROBO_ERR_EMPTY : grobo_i_runner_move(runner, &target);
-}
-
-int grobo_runner_start_motion(grobo_runner *runner)
-{
-    return runner == NULL ? GROBO_ERR_ARG : send_target(runner, NULL);
-}
-
-int grobo_runner_init_position(grobo_runner *runner)
-{
-    grobo_posture init;
-
-    if (runner == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    grobo_runner_get_init_posture(runner, &init);
-    return send_target(runner, &init);
-}
+/* ---- played ------------------------------------------------------------------------------ */
 
 /* With the lock: a copy of the motion, and how it shall be played. */
 static int prepare_play(grobo_runner *runner, grobo_play_options *options)
@@ -127,15 +77,13 @@ static int prepare_play(grobo_runner *runner, grobo_play_options *options)
     if (runner->play != PLAY_NONE) {
         return GROBO_ERR_STATE;
     }
-    options->repeat = runner->motion_count;
-    options->reverse = runner->reverse;
-    options->default_time_us = grobo_i_runner_default_us(runner);
+    if (options->default_time_us == 0) {
+        options->default_time_us = grobo_i_runner_default_us(runner);
+    }
     int r = grobo_motion_dup(runner->motion, &runner->playing);
     if (r >= 0) {
         runner->play = PLAY_ASKED;
         runner->play_error = GROBO_OK;
-        runner->play_postures =
-            grobo_motion_size(runner->playing) * (uint64_t)grobo_play_passes(options->repeat);
     }
     return r;
 }
@@ -153,11 +101,6 @@ int grobo_runner_play_motion(grobo_runner *runner, const grobo_play_options *opt
     return r < 0 ? r : grobo_i_runner_play(runner, &wanted);
 }
 
-bool grobo_runner_is_playing(grobo_runner *runner)
-{
-    RETURN_LOCKED(runner, bool, false, runner->play != PLAY_NONE);
-}
-
 /* ---- stopping, waiting -------------------------------------------------------------------- */
 
 int grobo_runner_post_stop(grobo_runner *runner, bool at_once)
@@ -165,74 +108,40 @@ int grobo_runner_post_stop(grobo_runner *runner, bool at_once)
     return runner != NULL ? grobo_session_post_stop(runner->session, at_once) : GROBO_ERR_ARG;
 }
 
-/* Frames of the present pass and of those after it. */
-static uint64_t frames_left(grobo_runner *runner)
+/* Whether postures are still to be sent or under way. */
+static bool is_moving(grobo_runner *runner)
 {
-    grobo_play_progress progress;
-
-    grobo_robot_progress(runner_robot(runner), &progress);
-    if (progress.steps > INT_MAX) {
-        return INT_MAX;
-    }
-    return progress.steps - progress.step +
-           progress.steps * (uint64_t)(progress.passes - progress.pass);
-}
-
-int grobo_runner_command_count(grobo_runner *runner)
-{
-    if (runner == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    bool sequencing = grobo_robot_is_playing(runner_robot(runner));
-    uint64_t count = sequencing ? frames_left(runner) : 0;
-
     grobo_i_runner_lock(runner);
-    count += runner->move_job != 0;
-    count += !sequencing && runner->play_job != 0 ? runner->play_postures : 0;
-    grobo_i_runner_unlock(runner);
-    return count < INT_MAX ? (int)count : INT_MAX;
-}
-
-int grobo_runner_is_moving(grobo_runner *runner)
-{
-    if (runner == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    grobo_i_runner_lock(runner);
-    bool asked = runner->play != PLAY_NONE || runner->move_job != 0;
+    bool asked = runner->play != PLAY_NONE;
     grobo_i_runner_unlock(runner);
     return asked || grobo_robot_moving(runner_robot(runner));
 }
 
+/* How the last move ended may be told behind the look that finds it at rest: it looks again. */
 static int await_rest(void *arg, grobo_runner *runner)
 {
-    bool *at_rest = arg;
+    int *looks = arg;
 
-    if (grobo_runner_is_moving(runner) || grobo_robot_settling(runner_robot(runner)) ||
+    if (is_moving(runner) || grobo_robot_settling(runner_robot(runner)) ||
         grobo_robot_job(runner_robot(runner)) != GROBO_JOB_NONE) {
+        *looks = 0;
         return CALL_PENDING;
     }
-    *at_rest = true;
+    if (++*looks < 2) {
+        return CALL_PENDING;
+    }
     RETURN_LOCKED(runner, int, GROBO_ERR_ARG, runner->motion_result);
 }
 
 int grobo_runner_wait(grobo_runner *runner, int64_t timeout_us)
 {
-    bool at_rest = false;
-    int r = grobo_i_runner_wait(runner, await_rest, &at_rest, timeout_us);
+    int looks = 0;
+    int r = grobo_i_runner_wait(runner, await_rest, &looks, timeout_us);
 
-    return r == GROBO_ERR_TIMEOUT && !at_rest ? GROBO_ERR_PENDING : r;
+    return r == GROBO_ERR_TIMEOUT && looks < 2 ? GROBO_ERR_PENDING : r;
 }
 
 /* ---- reading files ------------------------------------------------------------------------ */
-
-static int find(grobo_runner *runner, const char *name, char *path, size_t path_bytes)
-{
-    char dir[GROBO_PATH_MAX_BYTES];
-    int r = grobo_runner_get_motion_dir(runner, dir, sizeof dir);
-
-    return r < 0 ? r : grobo_motion_find(grobo_files_os(), dir, name, path, path_bytes);
-}
 
 int grobo_runner_load_motion(grobo_runner *runner, const char *name, grobo_diagnostics *list)
 {
@@ -243,7 +152,9 @@ int grobo_runner_load_motion(grobo_runner *runner, const char *name, grobo_diagn
     const grobo_read_options options = {GROBO_READ_OPTIONS_INIT, .model = runner->driver->model,
                                         .mem = runner->mem};
     grobo_motion *motion = NULL;
-    int r = name != NULL ? find(runner, name, path, sizeof path) : GROBO_ERR_ARG;
+    int r = name != NULL
+                ? grobo_motion_find(grobo_files_os(), runner->motion_dir, name, path, sizeof path)
+                : GROBO_ERR_ARG;
 
     if (r >= 0) {
         r = grobo_motion_read_file(path, &options, list, &motion);
@@ -252,7 +163,9 @@ int grobo_runner_load_motion(grobo_runner *runner, const char *name, grobo_diagn
         r = adopt(runner, motion);
     }
     if (r < 0) {
-        grobo_runner_clear_motion(runner);
+        grobo_i_runner_lock(runner);
+        grobo_motion_renew(runner->motion, GROBO_MOTION_POSTURES);
+        grobo_i_runner_unlock(runner);
     }
     return r;
 }

@@ -26,13 +26,9 @@ int grobo_i_runner_end_of_job(const grobo_runner *runner, int number, grobo_join
     return CALL_PENDING;
 }
 
-/* With the lock: a job that may be the target's or the motion's has ended. */
+/* With the lock: a job that may be the motion's has ended. */
 static void take_end(grobo_runner *runner, int number, int result)
 {
-    if (runner->move_job == number) {
-        runner->move_job = 0;
-        runner->motion_result = result;
-    }
     if (runner->play_job == number) {
         runner->play_job = 0;
         runner->play_error = result;
@@ -44,6 +40,9 @@ bool grobo_i_runner_end_job(grobo_runner *runner, const grobo_event_job *ended)
     bool awaited = false;
 
     runner->job_ends[runner->next_end++ % GROBO_RUNNER_ENDS] = *ended;
+    if (ended->kind == GROBO_JOB_MOVE) {
+        runner->motion_result = ended->result;
+    }
     take_end(runner, ended->number, ended->result);
     for (runner_job *job = runner->waiting; job != NULL; job = job->next) {
         if (job->number == ended->number) {
@@ -54,33 +53,16 @@ bool grobo_i_runner_end_job(grobo_runner *runner, const grobo_event_job *ended)
     return awaited;
 }
 
-/* Notes the number of a request in one of the two places. */
-static void note(grobo_runner *runner, int *place, int number)
+/* Notes the number of the request that plays. */
+static void note(grobo_runner *runner, int number)
 {
     grobo_i_runner_lock(runner);
-    *place = number;
+    runner->play_job = number;
     int r = grobo_i_runner_end_of_job(runner, number, 0);
     if (r != CALL_PENDING) {
         take_end(runner, number, r);
     }
     grobo_i_runner_unlock(runner);
-}
-
-/* ---- the target --------------------------------------------------------------------------- */
-
-int grobo_i_runner_move(grobo_runner *runner, const grobo_posture *target)
-{
-    grobo_robot *robot = runner_robot(runner);
-    int number = grobo_robot_retarget(robot, target);
-
-    if (number < 0) { /* no move is under way, or it has other joints */
-        number = grobo_robot_move(robot, target);
-    }
-    if (number < 0) {
-        return number;
-    }
-    note(runner, &runner->move_job, number);
-    return GROBO_OK;
 }
 
 /* ---- the motion --------------------------------------------------------------------------- */
@@ -123,7 +105,7 @@ int grobo_i_runner_play(grobo_runner *runner, const grobo_play_options *options)
         end_play(runner, number);
         return number;
     }
-    note(runner, &runner->play_job, number);
+    note(runner, number);
     grobo_i_runner_lock(runner);
     runner->play = PLAY_BEGUN;
     grobo_i_runner_unlock(runner);

@@ -52,10 +52,10 @@ static void on_time(void *ctx, grobo_timer *timer, int64_t late_us)
     if (now_us < runner->tick_us) {
         return; /* the end of somebody's patience */
     }
-    runner->tick_us += grobo_runner_get_period_us(runner);
+    runner->tick_us += runner->period_us;
     if (runner->tick_us <= now_us) {
         /* Late: skipped, not made up for. */
-        runner->tick_us = now_us + grobo_runner_get_period_us(runner);
+        runner->tick_us = now_us + runner->period_us;
     }
     if (runner->on_svc != NULL) {
         int64_t since_us = grobo_i_session_enter_callback(runner->session);
@@ -231,7 +231,7 @@ int grobo_runner_svc(grobo_runner *runner)
     if (runner == NULL) {
         return GROBO_ERR_ARG;
     }
-    int64_t end_us = grobo_now_us() + grobo_runner_get_period_us(runner);
+    int64_t end_us = grobo_now_us() + runner->period_us;
     int r = 0;
 
     if (grobo_i_runner_inside(runner)) {
@@ -264,19 +264,6 @@ static int copy_names(grobo_runner *runner, const grobo_runner_config *config)
     return GROBO_OK;
 }
 
-/* The initial posture: all joints at 0, or at the limit that is nearest. */
-static void set_postures(grobo_runner *runner)
-{
-    const grobo_model *model = runner->driver->model;
-
-    /* Cannot fail: the model's number of joints was checked with the driver. */
-    (void)grobo_posture_init(&runner->target, model->n_joints);
-    runner->target.time_us = 0;
-    runner->init = runner->target;
-    runner->init.set = GROBO_JOINTS_ALL(model->n_joints);
-    (void)grobo_posture_clamp(&runner->init, model);
-}
-
 static int make_loop(grobo_runner *runner)
 {
     runner->base = grobo_loop_new();
@@ -295,11 +282,10 @@ static int make_session(grobo_runner *runner)
     config.robot = &runner->robot_config;
     config.on_event = grobo_i_runner_on_event;
     config.on_robot = grobo_i_runner_on_robot;
-    config.on_tap = grobo_i_runner_on_tap;
+    config.on_tap = runner->user.on_tap != NULL ? grobo_i_runner_on_tap : NULL;
     config.ctx = runner;
     r = grobo_session_new(&config, &runner->session);
     if (r >= 0) {
-        grobo_i_runner_tap(runner);
         grobo_i_runner_share(runner);
     }
     return r < 0 ? r : grobo_i_session_listen(runner->session, true);
@@ -319,7 +305,6 @@ static int make_parts(grobo_runner *runner, const grobo_runner_config *config)
         r = grobo_i_runner_ring_new(runner, config->events);
     }
     if (r >= 0) {
-        set_postures(runner);
         r = grobo_motion_new(GROBO_MOTION_POSTURES, runner->driver->model->n_joints, runner->mem,
                              &runner->motion);
     }
@@ -439,14 +424,5 @@ int grobo_runner_free(grobo_runner *runner)
     (void)grobo_i_runner_leave(runner, exit_timeout(runner), &looked);
     grobo_i_runner_end_calls(runner);
     destroy(runner);
-    return GROBO_OK;
-}
-
-int grobo_runner_set_period_us(grobo_runner *runner, int64_t period_us)
-{
-    if (runner == NULL || !is_period(period_us)) {
-        return GROBO_ERR_ARG;
-    }
-    grobo_i_runner_copy(runner, &runner->period_us, &period_us, sizeof period_us);
     return GROBO_OK;
 }

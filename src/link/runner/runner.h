@@ -47,10 +47,7 @@ typedef struct runner_job {
     int64_t end_us;          /* when its caller stops waiting */
     grobo_joint_mask joints; /* what `start` needs */
     grobo_sense_kind sense;
-    grobo_torque torque;
     grobo_exit_policy policy;
-    size_t size;
-    uint8_t frame[GROBO_RUNNER_COMMAND_BYTES]; /* the last member: fill_sense() in line.c */
 } runner_job;
 
 /* A thread that waits for the loop, or something posted. */
@@ -111,29 +108,22 @@ struct grobo_runner {
     _Atomic(int64_t) called_us; /* when another thread called last, where that counts */
     atomic_bool owner_lost;
 
-    /* under lock: settings and postures */
+    /* under lock: settings and the motion */
     char motion_dir[GROBO_PATH_MAX_BYTES];
     grobo_robot_config robot_config;
     int64_t period_us;
-    int motion_count;
-    bool reverse;
-    grobo_posture init, target;
     grobo_motion *motion;
-    uint8_t command[GROBO_RUNNER_COMMAND_BYTES];
-    size_t command_bytes;
 
     /* under lock, written on the loop or by who asks */
     bool up;
     uint64_t losses;                             /* times the line was lost or closed */
     grobo_event_job job_ends[GROBO_RUNNER_ENDS]; /* a ring */
     unsigned next_end;
-    int move_job;             /* number, 0 none */
     _Atomic(play_stage) play; /* the loop looks at it without */
     int play_job, play_error;
     grobo_motion *playing; /* what the clip reads */
     grobo_clip clip;
-    uint64_t play_postures; /* of all its passes */
-    int motion_result;      /* of the last target or motion */
+    int motion_result; /* of the last move or motion */
 
     /* under lock: what is kept for who looks on */
     size_t capacity;            /* of each ring; 0: nothing is kept */
@@ -152,11 +142,6 @@ struct grobo_runner {
     int line_error;         /* of the last event of the line */
     bool exited;            /* the exit policy is carried out */
     uint64_t exit_frames;   /* and nothing was sent since these */
-    uint8_t raw[GROBO_RUNNER_COMMAND_BYTES]; /* the command that is under way */
-    size_t raw_bytes;                        /* 0: none */
-    bool recording;                          /* it is on the wire: what comes is its reply */
-    uint8_t received[GROBO_RUNNER_RECEIVE_BYTES];
-    size_t received_bytes;
 };
 
 static inline grobo_robot *runner_robot(const grobo_runner *runner)
@@ -229,9 +214,6 @@ void grobo_i_runner_on_robot(void *ctx, const grobo_event *event);
 void grobo_i_runner_on_tap(void *ctx, grobo_direction direction, int64_t now_us,
                            const uint8_t *bytes, size_t size);
 
-/* On the loop: bytes are looked at while a raw command is under way, or where the user does. */
-void grobo_i_runner_tap(grobo_runner *runner);
-
 /* On the loop: the line is down. */
 void grobo_i_runner_down(grobo_runner *runner, int error);
 
@@ -247,8 +229,7 @@ int grobo_i_runner_end_of_job(const grobo_runner *runner, int number, grobo_join
 /* With the lock: a job has ended. @return true if its caller sleeps until then. */
 bool grobo_i_runner_end_job(grobo_runner *runner, const grobo_event_job *ended);
 
-/* Has the engine move to a posture, or play the motion that is `playing`. */
-int grobo_i_runner_move(grobo_runner *runner, const grobo_posture *target);
+/* Has the engine play the motion that is `playing`. */
 int grobo_i_runner_play(grobo_runner *runner, const grobo_play_options *options);
 
 /* On the loop: looks whether what is played is over. */

@@ -6,10 +6,10 @@
  */
 #include <string.h>
 
-#include <grobo/core/gr001.h>
 #include <grobo/core/sim_static.h>
 #include <grobo/core/static.h>
 #include <grobo/core/virtual.h>
+#include <grobo/model.h>
 
 #include "src/base/assert.h"
 #include "src/base/memory.h"

@@ -7,6 +7,7 @@ import logging
 import math
 import os
 import threading
+import time
 import warnings
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -24,6 +25,7 @@ from grobo.motion import Motion, Posture, init_pose, posture
 log = logging.getLogger("grobo")
 
 SLICE = 0.1  # seconds of one wait in C, so that Ctrl-C is heard
+TURN = 5.0  # seconds that a request waits for its turn
 Angles = Union[Mapping[str, float], Sequence[float]]
 
 
@@ -437,13 +439,13 @@ class Robot:
         options = new("grobo_play_options")
         options.speed_pct = _within(round(speed * 100), lib.GROBO_PLAY_SPEED_MAX_PCT, "speed")
         options.mirror = mirror
+        options.repeat = repeat
+        options.reverse = reverse
         if rate is not None:
             options.mode = lib.GROBO_PLAY_RATE
             options.rate_hz = _within(rate, lib.GROBO_PLAY_RATE_MAX_HZ, "rate")
         with self._runner.use() as runner:
             self._check(lib.grobo_runner_set_motion(runner, motion._c), "play")
-            lib.grobo_runner_set_motion_count(runner, repeat)
-            lib.grobo_runner_set_reverse(runner, reverse)
             self._check(lib.grobo_runner_play_motion(runner, options), "play")
 
     def _check_joints(self, motion: Motion) -> None:
@@ -479,8 +481,17 @@ class Robot:
                 f"torque {state!r}: True, False, Torque.ON, Torque.OFF or Torque.BRAKE"
             )
         with self._runner.use() as runner:
-            result = lib.grobo_runner_set_servo_states(runner, mask, int(state), 0)
-            self._check(result, "torque")
+            robot = lib.grobo_runner_robot(runner)
+            until = time.monotonic() + TURN
+            while True:
+                job = lib.grobo_robot_torque(robot, mask, int(state))
+                busy = lib.grobo_robot_job(robot) != lib.GROBO_JOB_NONE
+                if job not in (lib.GROBO_ERR_FULL, lib.GROBO_ERR_STATE) or not busy:
+                    break
+                if time.monotonic() > until:
+                    break
+                time.sleep(0.01)  # behind what another thread asked for
+            self._check(lib.grobo_runner_wait_job(runner, job, 0), "torque")
 
     # ---- stopping --------------------------------------------------------------------------
 
