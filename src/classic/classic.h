@@ -77,8 +77,21 @@ void grobo_classic_to_motors(const SerialRobot *robot, const grobo_posture *from
 /* Time of a posture, 0: the default time. */
 int64_t grobo_classic_time_us(double time_ms);
 
-/* Waits for a job, or hands on the error in its place. */
-int grobo_classic_await(SerialRobot *robot, int job);
+/* What a function that waits asks of the engine. */
+typedef struct classic_request {
+    SerialRobot *robot;
+    int (*start)(struct classic_request *request, grobo_robot *engine); /* @return a job number */
+    grobo_joint_mask joints;
+    grobo_torque torque;
+    grobo_stored_kind stored;
+    int number;
+    const char *text; /* a name, or the `size` bytes of a command */
+    size_t size;
+    int64_t end_us; /* when nobody waits any more */
+} classic_request;
+
+/* Makes a request behind those of other threads, and waits for its end. @return 0, -1 */
+int grobo_classic_ask(SerialRobot *robot, classic_request request);
 
 /* Switches torque, and waits. @return 0, -1 */
 int grobo_classic_torque(SerialRobot *robot, grobo_joint_mask joints, char mode);

@@ -106,16 +106,19 @@ void GR001_printPosture(GR001 *robot)
 /* ---- motors ------------------------------------------------------------------------------- */
 
 /* Torque comes on where a motor stands: while one moves, its end is waited for. */
+static int ask_torque(classic_request *request, grobo_robot *engine)
+{
+    return grobo_robot_torque(engine, request->joints, request->torque);
+}
+
 int grobo_classic_torque(SerialRobot *robot, grobo_joint_mask joints, char mode)
 {
     if (mode < 0 || mode > 2) {
         return grobo_classic_end(robot, GROBO_ERR_ARG, 0);
     }
-    int job = grobo_robot_torque(grobo_classic_engine(robot), joints, (grobo_torque)mode);
-    if (job == GROBO_ERR_STATE && SerialRobot_wait(robot, 0) == 0) {
-        job = grobo_robot_torque(grobo_classic_engine(robot), joints, (grobo_torque)mode);
-    }
-    return grobo_classic_await(robot, job);
+    return grobo_classic_ask(
+        robot,
+        (classic_request){.start = ask_torque, .joints = joints, .torque = (grobo_torque)mode});
 }
 
 int GR001_setTorque(GR001 *robot, unsigned char id, char val)
@@ -261,13 +264,19 @@ int GR001_stabilizer(GR001 *robot)
 
 /* ---- kept in the board -------------------------------------------------------------------- */
 
+static int ask_stored(classic_request *request, grobo_robot *engine)
+{
+    return grobo_robot_stored(engine, request->stored, request->number);
+}
+
 static int stored(GR001 *robot, grobo_stored_kind kind, int number)
 {
     if (SerialRobot_runner(robot) == NULL) {
         return -1;
     }
-    int job = grobo_robot_stored(grobo_classic_engine(robot), kind, number);
-    return grobo_classic_await(robot, job) < 0 ? -1 : 1;
+    const classic_request request = {.start = ask_stored, .stored = kind, .number = number};
+
+    return grobo_classic_ask(robot, request) < 0 ? -1 : 1;
 }
 
 int GR001_activateMotionSlot(GR001 *robot, unsigned char id)

@@ -11,16 +11,23 @@ bool GR001_servo(GR001 *robot, int jid, bool turnon)
            grobo_classic_torque(robot, GROBO_JOINT_BIT(jid), turnon) == 0;
 }
 
+static int ask_servo_name(classic_request *request, grobo_robot *engine)
+{
+    (void)engine;
+    return grobo_classic_servo_name(&request->robot->inside->view, request->text,
+                                    request->torque == GROBO_TORQUE_ON);
+}
+
 bool GR001_servo_name(GR001 *robot, const char *jname, bool turnon)
 {
     if (SerialRobot_runner(robot) == NULL || jname == NULL) {
         return false;
     }
-    int job = grobo_classic_servo_name(&robot->inside->view, jname, turnon);
-    if (job == GROBO_ERR_STATE && SerialRobot_wait(robot, 0) == 0) { /* it moved */
-        job = grobo_classic_servo_name(&robot->inside->view, jname, turnon);
-    }
-    return grobo_classic_await(robot, job) == 0;
+    const classic_request request = {.start = ask_servo_name,
+                                     .text = jname,
+                                     .torque = turnon ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF};
+
+    return grobo_classic_ask(robot, request) == 0;
 }
 
 void GR001_readJointAngles(GR001 *robot, double *o_angles)

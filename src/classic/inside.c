@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include <grobo/core/runner.h>
+
 #include "src/classic/classic.h"
 
 /* ---- the runner --------------------------------------------------------------------------- */
@@ -72,10 +74,20 @@ int64_t grobo_classic_time_us(double time_ms)
 
 /* ---- waiting, reading --------------------------------------------------------------------- */
 
-int grobo_classic_await(SerialRobot *robot, int job)
+static int start(void *arg, grobo_runner *runner)
 {
+    classic_request *request = arg;
+
+    return request->start(request, grobo_runner_robot(runner));
+}
+
+int grobo_classic_ask(SerialRobot *robot, classic_request request)
+{
+    request.robot = robot;
+    request.end_us = grobo_now_us() + GROBO_RUNNER_TIMEOUT_US;
     return grobo_classic_end(
-        robot, job > 0 ? grobo_runner_wait_job(robot->inside->runner, job, 0) : job, 0);
+        robot,
+        grobo_runner_request(robot->inside->runner, start, &request, GROBO_RUNNER_TIMEOUT_US), 0);
 }
 
 static unsigned short bounded(int32_t value)

@@ -32,16 +32,22 @@ int SerialRobot_numJoints(const SerialRobot *robot)
 
 /* ---- reading ------------------------------------------------------------------------------ */
 
+static int ask_full(classic_request *request, grobo_robot *engine)
+{
+    return grobo_robot_sense(engine, request->joints, GROBO_SENSE_FULL);
+}
+
 short SerialRobot_getAngle(SerialRobot *robot, unsigned char id)
 {
     if (SerialRobot_runner(robot) == NULL) {
         return ROBOT_POSTURE_NO_ANGLE;
     }
     int joint = grobo_classic_joint(robot, id);
-    int job = joint < 0 ? joint
-                        : grobo_robot_sense(grobo_classic_engine(robot), GROBO_JOINT_BIT(joint),
-                                            GROBO_SENSE_FULL);
-    if (grobo_classic_await(robot, job) < 0) {
+    int r = joint < 0
+                ? grobo_classic_end(robot, joint, 0)
+                : grobo_classic_ask(robot, (classic_request){.start = ask_full,
+                                                             .joints = GROBO_JOINT_BIT(joint)});
+    if (r < 0) {
         return ROBOT_POSTURE_NO_ANGLE;
     }
     (void)grobo_classic_refresh(robot);
@@ -53,12 +59,12 @@ int SerialRobot_getPosture(SerialRobot *robot)
     if (SerialRobot_runner(robot) == NULL) {
         return -1;
     }
-    int job = grobo_robot_sense(grobo_classic_engine(robot), GROBO_JOINTS_ALL(robot->joints),
-                                GROBO_SENSE_FULL);
-    int r = grobo_classic_await(robot, job);
-
+    grobo_posture sensed;
     /* Nineteen angles are read where the twentieth motor is silent. */
-    return job > 0 && grobo_classic_refresh(robot) > 0 ? 0 : r;
+    int r = grobo_runner_read_posture(robot->inside->runner, &sensed, 0);
+
+    (void)grobo_classic_refresh(robot);
+    return grobo_classic_end(robot, r, 0);
 }
 
 RobotPosture *SerialRobot_getCurrentPosture(SerialRobot *robot)

@@ -272,11 +272,17 @@ int SerialRobot_connect(SerialRobot *robot)
                : grobo_classic_end(robot, grobo_runner_connect(robot->inside->runner, 0), 1);
 }
 
+static int ask_check(classic_request *request, grobo_robot *engine)
+{
+    (void)request;
+    return grobo_robot_check(engine);
+}
+
 int SerialRobot_checkConnection(SerialRobot *robot)
 {
     return SerialRobot_runner(robot) == NULL
                ? -1
-               : grobo_classic_await(robot, grobo_robot_check(grobo_classic_engine(robot)));
+               : grobo_classic_ask(robot, (classic_request){.start = ask_check});
 }
 
 /* ---- the thread --------------------------------------------------------------------------- */
@@ -348,35 +354,20 @@ int SerialRobot_setCommand(SerialRobot *robot, const char *packet, int len)
     return grobo_classic_end(robot, GROBO_OK, len);
 }
 
-/* A frame that goes out, or bytes that are taken. */
-typedef struct taken {
-    struct serial_robot_inside *inside;
-    char *data;
-    size_t size;
-} taken;
-
-/* On the loop: keeps a command as what is sent next. */
-static int keep_sending(void *arg)
+/* Sends alone, as its reply is told from others by the time: behind what runs. One that is late is
+ * not sent: nobody waits for it any more. */
+static int ask_raw(classic_request *request, grobo_robot *engine)
 {
-    const taken *command = arg;
-    struct serial_robot_inside *inside = command->inside;
+    struct serial_robot_inside *inside = request->robot->inside;
 
-    if (command->size > sizeof inside->sending) {
-        return GROBO_ERR_CAP;
+    if (grobo_robot_job(engine) != GROBO_JOB_NONE) {
+        return GROBO_ERR_STATE;
     }
-    memcpy(inside->sending, command->data, command->size);
-    inside->n_sending = command->size;
-    return GROBO_OK;
-}
-
-/* On the loop: has the engine send what is in `sending`, unless it is late by then: nobody
- * waits for it any more. @return a job, or an error */
-static int send_raw(void *arg)
-{
-    SerialRobot *robot = arg;
-    struct serial_robot_inside *inside = robot->inside;
-    int job = grobo_robot_raw_until(grobo_classic_engine(robot), inside->sending, inside->n_sending,
-                                    grobo_now_us() + GROBO_RUNNER_TIMEOUT_US);
+    /* It may leave, and even be answered, before the request returns. */
+    memcpy(inside->sending, request->text, request->size);
+    inside->n_sending = request->size;
+    int job =
+        grobo_robot_raw_until(engine, inside->sending, inside->n_sending, request->end_us - 1);
 
     inside->n_sending = job > 0 ? inside->n_sending : 0;
     return job;
@@ -387,13 +378,23 @@ int SerialRobot_sendCommand(SerialRobot *robot, const char *data, int len)
     if (SerialRobot_runner(robot) == NULL || data == NULL || len < 0) {
         return -1;
     }
-    taken command = {robot->inside, (char *)data, (size_t)len};
-    int r = grobo_runner_connect(robot->inside->runner, 0);
-    r = r >= 0 ? SerialRobot_locked(robot, keep_sending, &command) : r;
-    r = r >= 0 ? SerialRobot_locked(robot, send_raw, robot) : r;
-    r = r > 0 ? grobo_runner_wait_job(robot->inside->runner, r, 0) : r;
-    return grobo_classic_end(robot, r, len);
+    int r = (size_t)len <= sizeof robot->inside->sending
+                ? grobo_runner_connect(robot->inside->runner, 0)
+                : GROBO_ERR_CAP;
+    if (r < 0) {
+        return grobo_classic_end(robot, r, 0);
+    }
+    r = grobo_classic_ask(robot,
+                          (classic_request){.start = ask_raw, .text = data, .size = (size_t)len});
+    return r < 0 ? r : len;
 }
+
+/* Where received bytes go. */
+typedef struct taken {
+    struct serial_robot_inside *inside;
+    char *data;
+    size_t size;
+} taken;
 
 static int take_received(void *arg)
 {

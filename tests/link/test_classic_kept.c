@@ -343,3 +343,28 @@ TEST(a_driver_without_a_size_is_refused)
     SerialRobot_deinit(&robot);
     assert_null(SerialRobot_new("sim", 0, &driver));
 }
+
+/* ---- beside another thread's requests ------------------------------------------------------ */
+
+/* Another thread may use the runner below: what waits here waits behind what it asked for. */
+TEST_WITH(alone, a_function_that_waits_is_not_refused_beside_a_move_of_another)
+{
+    grobo_robot *robot = grobo_runner_robot(SerialRobot_runner(g));
+    grobo_posture target;
+    int joint = SerialRobot_motorIdToJointId(g, 2);
+
+    assert_int_equal(grobo_posture_init(&target, 20), GROBO_OK);
+    target.time_us = 150000;
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(grobo_posture_set_deg(&target, joint, 2.0 * (i + 1)), GROBO_OK);
+        int move = grobo_robot_move(robot, &target);
+        assert_true(move > 0);
+        int r = i == 0   ? GR001_setTorque(g, 2, 1)
+                : i == 1 ? SerialRobot_sendCommand(g, "\x41\x00", 2) - 2
+                : i == 2 ? (int)GR001_servo_name(g, "NECK_Y", true) - 1
+                         : SerialRobot_checkConnection(g);
+        assert_int_equal(r, 0);
+        assert_false(grobo_robot_is_pending(robot, move) && i < 3);
+        assert_int_equal(grobo_runner_wait_job(SerialRobot_runner(g), move, 0), GROBO_OK);
+    }
+}

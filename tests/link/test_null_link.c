@@ -291,6 +291,9 @@ TEST(thread_refuses_null_in_its_second_functions)
 TEST(thread_refuses_null_in_its_third_functions)
 {
     REFUSES(grobo_runner_wait_job(NULL, 1, 0));
+    REFUSES(grobo_runner_request(NULL, on_runner, NULL, 0));
+    REFUSES(grobo_runner_request(runner, NULL, NULL, 0));
+    REFUSES(grobo_runner_torque(NULL, 1, GROBO_TORQUE_ON, 0));
     assert_null(grobo_runner_robot(NULL));
     REFUSES(grobo_runner_wait(NULL, 1000));
     REFUSES(grobo_runner_set_motion(NULL, motion));

@@ -112,13 +112,18 @@ bool runner_moves(grobo_runner *of)
 
 int runner_torque(grobo_runner *of, grobo_joint_mask joints, grobo_torque mode, int64_t timeout_us)
 {
-    return grobo_runner_wait_job(of, grobo_robot_torque(grobo_runner_robot(of), joints, mode),
-                                 timeout_us);
+    return grobo_runner_torque(of, joints, mode, timeout_us);
+}
+
+static int ask_check(void *arg, grobo_runner *of)
+{
+    (void)arg;
+    return grobo_robot_check(grobo_runner_robot(of));
 }
 
 int runner_check(grobo_runner *of, int64_t timeout_us)
 {
-    return grobo_runner_wait_job(of, grobo_robot_check(grobo_runner_robot(of)), timeout_us);
+    return grobo_runner_request(of, ask_check, NULL, timeout_us);
 }
 
 int runner_torque_of(grobo_runner *of, int joint)

@@ -50,6 +50,27 @@ GROBO_API int grobo_runner_get_cause(grobo_runner *runner, grobo_os_cause *cause
 /** Reads one joint. Waits. @return GROBO_OK, or an error and *angle_rad is as it was. */
 GROBO_API int grobo_runner_read_angle(grobo_runner *runner, int joint, double *angle_rad,
                                       int64_t timeout_us);
+
+/* ---- requests of several threads ------------------------------------------------------------ */
+
+/**
+ * Makes a request of the robot behind those of other threads, and waits for its end. A request of
+ * robot.h that is made beside another one may be refused (GROBO_ERR_STATE, GROBO_ERR_FULL); this
+ * one is made again when that has ended, in the order of the calls. Waits.
+ * @param fn makes the request, of grobo_runner_robot(), and returns its job number or its error;
+ *   other results end the call with that result. Called on the loop, as often as it is refused
+ *   beside what runs; it must not wait.
+ * @return the job's result, or the error of the request; GROBO_ERR_TIMEOUT: it has not ended in the
+ *   time given, and continues where it has begun.
+ */
+GROBO_API int grobo_runner_request(grobo_runner *runner, grobo_runner_fn fn, void *arg,
+                                   int64_t timeout_us);
+
+/** Switches torque as grobo_robot_torque() does, by grobo_runner_request(). Waits.
+ *  @return GROBO_OK, or as these. */
+GROBO_API int grobo_runner_torque(grobo_runner *runner, grobo_joint_mask joints,
+                                  grobo_torque torque, int64_t timeout_us);
+
 GROBO_END_DECLS
 
 #endif

@@ -411,6 +411,38 @@ int grobo_i_runner_job(grobo_runner *runner, runner_job *job, int64_t timeout_us
     return wait_outside(runner, &request);
 }
 
+static int start_request(grobo_runner *runner, runner_job *job)
+{
+    return call_user(runner, job->request, job->request_arg);
+}
+
+int grobo_runner_request(grobo_runner *runner, grobo_runner_fn fn, void *arg, int64_t timeout_us)
+{
+    runner_job job = {.start = start_request, .request = fn, .request_arg = arg};
+
+    return fn != NULL ? grobo_i_runner_job(runner, &job, timeout_us) : GROBO_ERR_ARG;
+}
+
+typedef struct torque_request {
+    grobo_joint_mask joints;
+    grobo_torque torque;
+} torque_request;
+
+static int request_torque(void *arg, grobo_runner *runner)
+{
+    const torque_request *wanted = arg;
+
+    return grobo_robot_torque(runner_robot(runner), wanted->joints, wanted->torque);
+}
+
+int grobo_runner_torque(grobo_runner *runner, grobo_joint_mask joints, grobo_torque torque,
+                        int64_t timeout_us)
+{
+    torque_request wanted = {joints, torque};
+
+    return grobo_runner_request(runner, request_torque, &wanted, timeout_us);
+}
+
 int grobo_runner_wait_job(grobo_runner *runner, int job, int64_t timeout_us)
 {
     runner_job known = {.number = job};

@@ -48,6 +48,8 @@ typedef struct runner_job {
     grobo_joint_mask joints; /* what `start` needs */
     grobo_sense_kind sense;
     grobo_exit_policy policy;
+    grobo_runner_fn request; /* of the user, where start calls it */
+    void *request_arg;
 } runner_job;
 
 /* A thread that waits for the loop, or something posted. */

@@ -7,7 +7,6 @@ import logging
 import math
 import os
 import threading
-import time
 import warnings
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,7 +24,6 @@ from grobo.motion import Motion, Posture, init_pose, posture
 log = logging.getLogger("grobo")
 
 SLICE = 0.1  # seconds of one wait in C, so that Ctrl-C is heard
-TURN = 5.0  # seconds that a request waits for its turn
 Angles = Union[Mapping[str, float], Sequence[float]]
 
 
@@ -481,17 +479,8 @@ class Robot:
                 f"torque {state!r}: True, False, Torque.ON, Torque.OFF or Torque.BRAKE"
             )
         with self._runner.use() as runner:
-            robot = lib.grobo_runner_robot(runner)
-            until = time.monotonic() + TURN
-            while True:
-                job = lib.grobo_robot_torque(robot, mask, int(state))
-                busy = lib.grobo_robot_job(robot) != lib.GROBO_JOB_NONE
-                if job not in (lib.GROBO_ERR_FULL, lib.GROBO_ERR_STATE) or not busy:
-                    break
-                if time.monotonic() > until:
-                    break
-                time.sleep(0.01)  # behind what another thread asked for
-            self._check(lib.grobo_runner_wait_job(runner, job, 0), "torque")
+            result = lib.grobo_runner_torque(runner, mask, int(state), 0)
+            self._check(result, "torque")
 
     # ---- stopping --------------------------------------------------------------------------
 
