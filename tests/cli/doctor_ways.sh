@@ -66,4 +66,14 @@ for bus in so101 "$work/krs.yaml"; do
     check "and beside it nothing" [ "$(grep -c '^BAD' "$work/out")" -eq 1 ]
     stop_sim
 done
+# Servos that tell no voltage, and servos in the cold.
+test_case "the warmest servo"
+robot=sim
+check "of KRS" both exits 0 doctor --robot "$work/krs.yaml" --- says 'the warmest has 27 C$'
+start_told_sim
+for motor in $(seq 1 20); do
+    tell temperature "$motor" $((-4 - motor))
+done
+check "below zero" both exits 0 doctor --- says 'the warmest has -5 C$'
+stop_sim
 done_testing

@@ -2,6 +2,7 @@
 /* Simulated DYNAMIXEL of the X series: answers, times, registers, modes, shutdowns. */
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/core/dxl2.h>
@@ -181,6 +182,58 @@ TEST(indirect_data_stand_for_other_registers)
         simkit_run(&chain.kit, 3000000);
         assert_int_equal(read_block(1, runs[r].address, 4) & 0xFFFF, runs[r].data);
     }
+}
+
+/* Those of P and PRO(A) are in the EEPROM (emanual, PH54-200-S500-R, M54-60-S250-RA): locked by
+ * torque, and there after a reboot; new from the factory. */
+TEST(indirect_addresses_of_the_eeprom_last)
+{
+    static const char *const names[] = {"PH54-200-S500-R", "M54-60-S250-RA"};
+    const uint8_t present[] = {0x44, 2, 0x45, 2, 0x46, 2, 0x47, 2}; /* 580 to 583 */
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        chain_start(&chain, model(names[i]), 1, NULL);
+        assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), GROBO_DXL2_DONE);
+        write_block(1, 168, present, sizeof present);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_NO_ACCESS);
+        assert_int_equal(read_block(1, 168, 4), 634 | 635 << 16);
+        assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 5000), GROBO_DXL2_DONE);
+        simkit_run(&chain.kit, 2000000);
+        assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 0), GROBO_DXL2_DONE);
+        write_block(1, 168, present, sizeof present);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_DONE);
+        write_block(1, 640, (const uint8_t[]){7}, 1);
+        chain_send(&chain, 1, GROBO_DXL2_REBOOT, 0, 0, NULL, 0);
+        simkit_run(&chain.kit, 3000000);
+        assert_int_equal(read_block(1, 168, 4), 580 | 581 << 16);
+        assert_true(abs(read_block(1, 634, 4) - 5000) <= 3);
+        assert_int_equal(read_block(1, 640, 4), 0); /* data are RAM */
+        chain_send(&chain, 1, GROBO_DXL2_FACTORY_RESET, 0, 0, (const uint8_t[]){2}, 1);
+        simkit_run(&chain.kit, 3000000);
+        assert_int_equal(read_block(1, 168, 4), 634 | 635 << 16);
+    }
+}
+
+/* A servo says why it does not answer with so much: silence would be a broken cable to its host. */
+TEST(a_read_of_too_much_is_refused)
+{
+    static const int lengths[] = {0, 241, 255, 256, 300, 512, 65535};
+    chain_start(&chain, model("PH54-200-S500-R"), 1, NULL);
+    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+        chain_send(&chain, 1, GROBO_DXL2_READ, 168, (uint16_t)lengths[i], NULL, 0);
+        assert_int_equal(chain.kit.n_got, 11);
+        assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_LENGTH);
+    }
+    /* Stuffed, FF FF FD of each three bytes would be longer than a packet may be. */
+    uint8_t pattern[90];
+    for (size_t i = 0; i < sizeof pattern; i++) {
+        pattern[i] = i % 3 == 2 ? 0xFD : 0xFF;
+    }
+    write_block(1, 634, pattern, sizeof pattern);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_DONE);
+    chain_send(&chain, 1, GROBO_DXL2_READ, 634, sizeof pattern, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 11 + sizeof pattern / 3 * 4);
+    chain_send(&chain, 1, GROBO_DXL2_READ, 168, 240, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 11 + 240);
 }
 
 /* Position, speed and current in one reading of each, as the maker's ROS driver asks. */

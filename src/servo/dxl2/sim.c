@@ -295,7 +295,7 @@ void grobo_i_dxl2_sim_restart(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_dxl_boot(sim, index);
-    grobo_i_indirect_reset(servo);
+    grobo_i_indirect_restart(servo);
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
     grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
                     grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
@@ -325,6 +325,7 @@ bool grobo_i_dxl2_sim_factory(grobo_sim *sim, int index, uint8_t id, uint32_t ba
     if (!grobo_i_dxl_sell(sim, index, id, GROBO_DXL2_ID_MAX, baud_bps)) {
         return false;
     }
+    grobo_i_indirect_factory(servo);
     if (sim->config.mounted && !is_xl320(servo)) {
         const grobo_joint *joint = grobo_i_joint(sim->config.model, index);
         bool grips = joint->torque_limit_pct > 0 && has_mode(servo, GROBO_DXL2_MODE_GRIP);
@@ -425,9 +426,12 @@ uint8_t grobo_i_dxl2_sim_judge(const grobo_sim_servo *servo, int address, const 
         grobo_i_indirect_piece piece = grobo_i_indirect_piece_at(servo, address + (int)at, n - at);
         if (piece.kind == GROBO_I_INDIRECT_REGISTERS) {
             error = judge_registers(servo, piece.address, bytes + at, piece.n);
-        } else if (piece.kind == GROBO_I_INDIRECT_ADDRESS &&
-                   !grobo_i_indirect_fits(servo, &piece, bytes + at)) {
-            error = GROBO_DXL2_BAD_RANGE;
+        } else if (piece.kind == GROBO_I_INDIRECT_ADDRESS) {
+            bool locked =
+                grobo_i_indirect_kept(servo) && grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE) != 0;
+            error = locked                                             ? GROBO_DXL2_NO_ACCESS
+                    : grobo_i_indirect_fits(servo, &piece, bytes + at) ? GROBO_DXL2_DONE
+                                                                       : GROBO_DXL2_BAD_RANGE;
         }
         at += piece.n;
     }

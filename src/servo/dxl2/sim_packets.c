@@ -6,6 +6,7 @@
 #include <grobo/core/protocol.h>
 #include <grobo/core/sim.h>
 
+#include "src/base/assert.h"
 #include "src/base/bytes.h"
 #include "src/servo/dxl2/sim_packets.h"
 #include "src/servo/families.h"
@@ -18,6 +19,9 @@
 #include "src/sim/servo/servo.h"
 #include "src/sim/servo/shaft.h"
 
+/* Data that a status or a part of a fast one has room for. */
+enum { MOST_BYTES = GROBO_SIM_TALK_BYTES - 16 };
+
 /* ---- answers ------------------------------------------------------------------------------- */
 
 static uint8_t with_alert(const grobo_sim_servo *servo, uint8_t error)
@@ -29,20 +33,24 @@ static void answer(grobo_sim *sim, int index, grobo_i_dxl_round *round, uint8_t 
                    const uint8_t *data, size_t n)
 {
     uint8_t bytes[GROBO_SIM_TALK_BYTES];
-    const grobo_dxl2_packet status = {.id = sim->servo[index].plant.id,
-                                      .instruction = GROBO_DXL2_STATUS,
-                                      .error = with_alert(&sim->servo[index], error),
-                                      .data = data,
-                                      .data_bytes = n};
+    grobo_dxl2_packet status = {.id = sim->servo[index].plant.id,
+                                .instruction = GROBO_DXL2_STATUS,
+                                .error = with_alert(&sim->servo[index], error),
+                                .data = data,
+                                .data_bytes = n};
     int size = grobo_dxl2_build(&status, bytes, sizeof bytes);
-    if (size > 0) {
-        grobo_i_dxl_answer(sim, index, round, bytes, (size_t)size);
+    if (size < 0) { /* too much of it is stuffed */
+        status.error = with_alert(&sim->servo[index], GROBO_DXL2_BAD_LENGTH);
+        status.data_bytes = 0;
+        size = grobo_dxl2_build(&status, bytes, sizeof bytes);
     }
+    GROBO_ASSERT(size > 0);
+    grobo_i_dxl_answer(sim, index, round, bytes, (size_t)size);
 }
 
 static uint8_t judge_read(const grobo_sim_servo *servo, int address, int length)
 {
-    if (length == 0) {
+    if (length == 0 || length > MOST_BYTES) {
         return GROBO_DXL2_BAD_LENGTH;
     }
     return grobo_i_indirect_readable(servo, address, length) ? GROBO_DXL2_DONE
@@ -55,7 +63,7 @@ static void answer_read(grobo_sim *sim, int index, grobo_i_dxl_round *round, int
     grobo_sim_servo *servo = &sim->servo[index];
     uint8_t bytes[GROBO_SIM_TALK_BYTES];
     uint8_t error = judge_read(servo, address, length);
-    if (grobo_i_dxl_get(servo, GROBO_ROLE_REPLY_LEVEL) == 0 || length > (int)sizeof bytes) {
+    if (grobo_i_dxl_get(servo, GROBO_ROLE_REPLY_LEVEL) == 0) {
         return;
     }
     grobo_i_dxl2_sim_refresh(sim, index);
@@ -127,6 +135,7 @@ static void reset(grobo_sim *sim, int index, uint8_t what)
     grobo_sim_servo *servo = &sim->servo[index];
     int32_t id = servo->plant.id, rate = grobo_i_dxl_get(servo, GROBO_ROLE_BAUD);
     grobo_i_dxl_factory(servo);
+    grobo_i_indirect_factory(servo);
     if (what != GROBO_DXL2_RESET_ALL) {
         grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
     }
@@ -286,7 +295,6 @@ static bool answers_fast(const grobo_sim_servo *servo, const item *one)
 {
     uint8_t from = servo->model->fast_firmware;
     return from > 0 && grobo_i_dxl_get(servo, GROBO_ROLE_FIRMWARE) >= from &&
-           one->length <= GROBO_SIM_TALK_BYTES - 16 &&
            judge_read(servo, one->address, one->length) == GROBO_DXL2_DONE;
 }
 

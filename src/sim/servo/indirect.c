@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Indirect addresses of simulated DYNAMIXEL: each lends its register to another address. */
+#include <string.h>
+
 #include "src/base/bytes.h"
 #include "src/sim/servo/indirect.h"
 #include "src/sim/servo/registers.h"
@@ -38,16 +40,35 @@ static int most_of(const grobo_sim_servo *servo)
     return most;
 }
 
-void grobo_i_indirect_reset(grobo_sim_servo *servo)
+/* Of P and PRO(A) they are in the EEPROM (emanual, PH54-200-S500-R), of all others in RAM. */
+bool grobo_i_indirect_kept(const grobo_sim_servo *servo)
+{
+    return servo->model->indirect_count > 0 && servo->model->indirect[0].address < ram_of(servo);
+}
+
+/* Each address is that of its own data. */
+static void own_addresses(grobo_sim_servo *servo)
 {
     int k = 0;
     for (int i = 0; i < servo->model->indirect_count; i++) {
         const grobo_servo_indirect *run = &servo->model->indirect[i];
         for (int j = 0; j < run->count && k < GROBO_SIM_INDIRECTS; j++, k++) {
             servo->indirect[k] = (uint16_t)(run->data + j);
-            servo->indirect_data[k] = 0;
         }
     }
+}
+
+void grobo_i_indirect_factory(grobo_sim_servo *servo)
+{
+    own_addresses(servo);
+}
+
+void grobo_i_indirect_restart(grobo_sim_servo *servo)
+{
+    if (!grobo_i_indirect_kept(servo)) {
+        own_addresses(servo);
+    }
+    memset(servo->indirect_data, 0, sizeof servo->indirect_data);
 }
 
 /* Where a byte of the block really is: an address of the table, or of indirect data for STORE. */

@@ -20,8 +20,12 @@ typedef struct grobo_i_indirect_piece {
     size_t n;    /* bytes of the block */
 } grobo_i_indirect_piece;
 
-/* Indirect addresses as after power-on. */
-void grobo_i_indirect_reset(grobo_sim_servo *servo);
+/* Indirect addresses as from the factory, and both as after power-on. */
+void grobo_i_indirect_factory(grobo_sim_servo *servo);
+void grobo_i_indirect_restart(grobo_sim_servo *servo);
+
+/* Whether its indirect addresses last, and are locked by torque. */
+bool grobo_i_indirect_kept(const grobo_sim_servo *servo);
 
 /* The first piece of n > 0 bytes at an address. */
 grobo_i_indirect_piece grobo_i_indirect_piece_at(const grobo_sim_servo *servo, int address,

@@ -269,19 +269,17 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
 
 static void keep_extremes(patient *p, const grobo_joint_state *s)
 {
-    p->answered++;
-    if (!(s->valid & GROBO_FIELD_VOLTAGE)) {
-        return; /* it tells none */
-    }
-    if (p->low_mv == 0 || s->voltage_mv < p->low_mv) {
+    bool volts = (s->valid & GROBO_FIELD_VOLTAGE) != 0;
+    if (volts && (p->low_mv == 0 || s->voltage_mv < p->low_mv)) {
         p->low_mv = s->voltage_mv;
     }
-    if (s->voltage_mv > p->high_mv) {
+    if (volts && s->voltage_mv > p->high_mv) {
         p->high_mv = s->voltage_mv;
     }
-    if (s->temperature_c > p->hottest_c) {
+    if (p->answered == 0 || s->temperature_c > p->hottest_c) { /* below zero in the cold */
         p->hottest_c = s->temperature_c;
     }
+    p->answered++;
 }
 
 /* type NULL: a servo that is not known. */
