@@ -139,8 +139,9 @@ GROBO_API int grobo_motion_get(const grobo_motion *motion, size_t n, grobo_postu
 GROBO_API int grobo_motion_time_s(const grobo_motion *motion, size_t n, double *time_s);
 /**
  * When the last posture is reached, with default_us for each step that gives no time (negative:
- * GROBO_MOTION_DEFAULT_US); an .m that begins at 0 begins with its first posture. For key poses
- * and frames the time of the last. 0 for an empty motion, INT64_MAX for one that would be longer.
+ * GROBO_MOTION_DEFAULT_US); a motion that begins at 0 begins with its first posture. For key
+ * poses and frames the time of the last. 0 for an empty motion, INT64_MAX for one that would be
+ * longer.
  */
 GROBO_API int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t default_us);
 

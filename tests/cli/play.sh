@@ -219,7 +219,7 @@ for format in m mseq yaml; do
 done
 check "play .m" plays 10 4300 "$work/greet.m"
 check "its last posture is the initial one" angle 10 12 -400
-check "play .mseq" plays 10 4450 "$work/greet.mseq"
+check "play .mseq" plays 10 4300 "$work/greet.mseq"
 check "increments lead to the initial posture" angle 10 12 -400
 check "play .yaml" plays 151 5000 --rate 30 "$work/greet.yaml"
 check "one after the other" plays 40 19600 --key "$greet" "$work/greet.m" "$greet" "$work/greet.m"

@@ -48,7 +48,7 @@ between() {
 check "--rate interpolates" between
 added_up() {
     exits 0 "$GRCTL" show --rate 20 -j R_SHOULDER_R motions/greet.mseq || return 1
-    says '^ *1050  *-120.0$'
+    says '^ *800  *-120.0$'
 }
 check "and adds increments up" added_up
 solved() {
@@ -59,6 +59,19 @@ solved() {
     says '^legs by inverse kinematics$' && [ -s "$work/listed" ] &&
         grep '^ *[0-9.]*  *[-0-9.]*$' "$work/out" | diff "$work/listed" -
 }
+# A step without a time takes the default time: the length above is the time of the last row below.
+one_length() {
+    for times in '0 0 500' '500 500 1000 200' '0 10000 10500' '250 500'; do
+        for t in $times; do echo "$t 0 0"; done >"$work/times.m"
+        exits 0 "$GRCTL" show "$work/times.m" || return 1
+        awk -v times="$times" 'NR == 1 { sub(/.*postures, /, ""); length_ms = $1 * 1000 }
+            NR > 2 { last = $1 } END { if (length_ms != last) {
+                print times ": " length_ms " above, " last " below"; exit 1 } }' \
+            "$work/out" || return 1
+    done
+    exits 0 "$GRCTL" show --json "$work/times.m" && says '"length_ms":500.0.*"time_ms":500.0'
+}
+check "the length is the time of the last row" one_length
 check "--ik exact gives the angles that our own poses carry" solved
 aeon_pose='refer: { type: Pose, name: "", joints: [ 0 ], q: [ 0 ] }'
 printf 'type: PoseSeq\nname: aeon\nrefs:\n  - time: 0\n    %s\n  - time: 1e6\n    %s\n' \

@@ -92,19 +92,6 @@ static grobo_motion *through(grobo_motion *motion, grobo_motion_format format, b
     return copy;
 }
 
-/* A posture at 0 takes the default time there: it is an increment. */
-static bool has_steps_to(grobo_motion_format format)
-{
-    return format == GROBO_FORMAT_MSEQ;
-}
-
-/* True for frames that reach the format by way of a posture at 0, which takes the default time:
- * then keys lie between frames. */
-static bool lie_between(grobo_motion_kind kind, grobo_motion_format by, grobo_motion_format to)
-{
-    return kind == GROBO_MOTION_FRAMES && has_steps_to(by) && to == GROBO_FORMAT_YAML;
-}
-
 /* To each format, and from there to each. */
 static void expect_lossless(grobo_motion *motion, grobo_joint_mask joints, bool exact,
                             double wanted[KEYS][GROBO_JOINTS_MAX])
@@ -114,15 +101,11 @@ static void expect_lossless(grobo_motion *motion, grobo_joint_mask joints, bool 
 
     for (grobo_motion_format by = GROBO_FORMAT_M; by <= GROBO_FORMAT_YAML; by++) {
         grobo_motion *copy = through(motion, by, exact);
-        bool frames = kind == GROBO_MOTION_FRAMES || (by == GROBO_FORMAT_YAML && !exact);
         for (grobo_motion_format to = GROBO_FORMAT_M; to <= GROBO_FORMAT_YAML; to++) {
             grobo_motion *second = through(copy, to, exact);
-            bool between = !exact && lie_between(kind, by, to);
-            bool waits = between || (frames && has_steps_to(to));
-            double first_s = begin_s + (waits ? GROBO_MOTION_DEFAULT_US / 1e6 : 0);
-            double rad = difference(second, joints, wanted, first_s);
+            double rad = difference(second, joints, wanted, begin_s);
             /* Angles are multiples of 0.1 degrees, which all formats have. */
-            assert_true(rad <= grobo_rad_from_deg(between ? 2 : 1e-7));
+            assert_true(rad <= grobo_rad_from_deg(1e-7));
             worst_rad[kind][by][to] = fmax(worst_rad[kind][by][to], rad);
             grobo_motion_free(second);
         }

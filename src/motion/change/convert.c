@@ -113,22 +113,6 @@ static void note_steps(const conversion *conv)
     }
 }
 
-/* Notes a first posture at 0 that takes the default time in one of the two alone: an increment
- * needs time, and any other motion begins with its first posture. */
-static void note_first(const conversion *conv)
-{
-    if (conv->from->size == 0 || conv->to->size == 0) {
-        return;
-    }
-    bool before = grobo_i_takes_default(conv->from, 0), after = grobo_i_takes_default(conv->to, 0);
-    if (before != after && grobo_i_time_s(conv->to, 0) == 0) {
-        note(conv, "first-step", grobo_motion_line(conv->from, 0),
-             after ? "the first posture, at 0, takes the default time in the copy"
-                   : "the first posture, which takes the default time, is at 0 in the copy",
-             1);
-    }
-}
-
 /* Notes joints that no posture sets. */
 static void note_unset(const conversion *conv)
 {
@@ -457,7 +441,6 @@ static int run(conversion *conv, grobo_motion_kind kind)
     if (kind == GROBO_MOTION_POSTURES || kind == GROBO_MOTION_STEPS) {
         note_steps(conv);
     }
-    note_first(conv);
     return 0;
 }
 

@@ -233,10 +233,15 @@ static int fill_spline(grobo_i_clip *clip)
     return 0;
 }
 
+/* Increments begin at the start posture, but for joints that have their first one at 0. */
 static void fill_straight(grobo_i_clip *clip, const grobo_posture *start)
 {
+    grobo_i_row first;
+    (void)grobo_i_row_at(clip->motion, grobo_i_clip_row(clip, 0), &first);
+    grobo_joint_mask begun = grobo_i_clip_at_s(clip, 0) == 0 ? *first.set : 0;
+
     for (int j = 0; clip->sums != NULL && j < clip->motion->n_joints; j++) {
-        if (clip->tracks[j].keys.capacity > 0) {
+        if (clip->tracks[j].keys.capacity > 0 && (begun & GROBO_JOINT_BIT(j)) == 0) {
             (void)grobo_spline_append(&clip->tracks[j].keys, 0, start->angle_rad[j], 0, false);
         }
     }

@@ -94,7 +94,7 @@ double grobo_i_time_s(const grobo_motion *motion, size_t n);
 bool grobo_i_at_rate(const grobo_motion *motion);
 /* The step that a difference of times means, 0 for the default. */
 int64_t grobo_i_step_us(grobo_motion_kind kind, double from_s, double to_s);
-/* True if posture n takes the default time; the first posture of an .m at 0 takes none. */
+/* True if posture n takes the default time; a first one at 0 takes none. */
 bool grobo_i_takes_default(const grobo_motion *motion, size_t n);
 int64_t grobo_i_us_from_s(double time_s);
 /* Adds shift_s to the times of rows first.. */

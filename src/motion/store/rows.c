@@ -336,7 +336,7 @@ bool grobo_i_takes_default(const grobo_motion *motion, size_t n)
         return false;
     }
     double from_s = n > 0 ? grobo_i_time_s(motion, n - 1) : 0, to_s = grobo_i_time_s(motion, n);
-    bool begins = n == 0 && to_s == 0 && motion->kind == GROBO_MOTION_POSTURES;
+    bool begins = n == 0 && to_s == 0;
     return !begins && grobo_i_step_us(motion->kind, from_s, to_s) == 0;
 }
 

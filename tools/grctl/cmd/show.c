@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 
+#include <stdlib.h>
+
 #include <grobo/core/motion.h>
 
 #include "tools/grctl/cli/file.h"
@@ -17,6 +19,30 @@ static const cli_option options[] = {
 
 /* ---- what is shown -------------------------------------------------------------------------- */
 
+/* Steps that give no time take the default time: from there on a posture is reached at another time
+ * than the file has. */
+static int find_times(app *a, show_rows *rows)
+{
+    grobo_motion_kind kind = grobo_motion_get_kind(rows->motion);
+    double before_s = 0, offset_s = 0, time_s = 0;
+    if ((kind != GROBO_MOTION_POSTURES && kind != GROBO_MOTION_STEPS) || !rows->n) {
+        return 0;
+    }
+    rows->reached_s = malloc(rows->n * sizeof *rows->reached_s);
+    if (!rows->reached_s) {
+        return app_fail(a, EXIT_FILE, "NOMEM", "%s: %s", a->line.argument[0],
+                        file_error_text(GROBO_ERR_NOMEM));
+    }
+    for (size_t i = 0; i < rows->n && grobo_motion_time_s(rows->motion, i, &time_s) == 0; i++) {
+        bool begins = i == 0 && time_s == 0;
+        if (!begins && grobo_motion_step_us(rows->motion, i) == 0) {
+            offset_s = before_s + GROBO_MOTION_DEFAULT_US / 1e6 - time_s;
+        }
+        before_s = rows->reached_s[i] = time_s + offset_s;
+    }
+    return 0;
+}
+
 /* With --rate or a body option the motion as it is played, otherwise as the file has it. */
 static int choose_rows(app *a, show_rows *rows)
 {
@@ -31,7 +57,7 @@ static int choose_rows(app *a, show_rows *rows)
     }
     rows->as_played = rows->rate_hz > 0 || body_options_given(a, OPT_BODY);
     if (!rows->as_played) {
-        return 0;
+        return find_times(a, rows);
     }
     grobo_motion_start(rows->motion, rows->model, &start);
     error = whole_open(a, &rows->played, rows->motion, &plain, &body);
@@ -194,6 +220,7 @@ static int run(app *a)
     rows = (show_rows){.motion = motion, .model = file_model(a, motion)};
     status = show(a, &rows);
     whole_close(&rows.played);
+    free(rows.reached_s);
     grobo_motion_free(motion);
     return status;
 }

@@ -11,7 +11,8 @@ typedef struct show_rows {
     const grobo_model *model; /* NULL: the motion is none of its */
     whole played;             /* meaningful with as_played */
     bool as_played;
-    double rate_hz; /* of as_played: rows a second; 0: at key poses */
+    double rate_hz;    /* of as_played: rows a second; 0: at key poses */
+    double *reached_s; /* when posture i is reached; NULL: the motion's own times say so */
     size_t n;
     int joint[GROBO_JOINTS_MAX];
     int n_joints; /* that are shown */

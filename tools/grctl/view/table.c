@@ -34,6 +34,10 @@ int show_row(const show_rows *rows, size_t i, grobo_posture *posture, double *ti
     int error;
     if (!rows->as_played) {
         error = grobo_motion_get(rows->motion, i, posture);
+        if (!error && rows->reached_s) {
+            *time_s = rows->reached_s[i];
+            return 0;
+        }
         return error ? error : grobo_motion_time_s(rows->motion, i, time_s);
     }
     if (rows->rate_hz > 0) {

@@ -128,7 +128,7 @@ def _check_steps(times: Sequence[float], kind: str) -> None:
     """Any other step would be taken for the default time."""
     before = 0.0
     for n, time in enumerate(map(float, times)):
-        if (n > 0 or kind == "steps" or time != 0) and not 0 < time - before < MOST_STEP:
+        if (n > 0 or time != 0) and not 0 < time - before < MOST_STEP:
             raise ValueError(
                 f"times[{n}] is {time:g} after {before:g}; {kind} rise by more than 0 and less "
                 f"than {MOST_STEP:g} s (kind='keys' takes any)"
@@ -185,7 +185,7 @@ class Motion:
         row of angles in radians by joint order (NaN: this posture does not set the joint).
 
         Postures and steps rise from time to time by less than 10 s, as their files have no other
-        steps; the first of `steps` is above 0.
+        steps.
 
         All rows have as many angles as `robot` has joints, or without one as each other.
         """
