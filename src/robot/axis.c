@@ -389,8 +389,17 @@ bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
            robot->now_us - robot->axes[joint].heard_us > GROBO_I_RESTART_US;
 }
 
-/* What was read of a joint that goes where nobody knows is too old by then. */
+/* What was read of a joint that goes where nobody knows is too old by then; of one that was never
+ * sent anywhere here, when it is not believed to go on. */
 #define ASTRAY_OLD_US 20000
+#define EXTERNAL_OLD_US 200000
+
+/* Read, but not whether it turns: nobody here has sent it anywhere, its servo may be on a way. */
+static bool is_read_in_part(const grobo_robot *robot, const grobo_robot_axis *axis)
+{
+    return !grobo_i_has_target(axis) && !tells_speed(axis) &&
+           !GROBO_I_EXTRA(robot->driver, tells_no_speed) && !grobo_i_axis_is_limp(axis);
+}
 
 bool grobo_i_axis_is_unknown(const grobo_robot *robot, int joint)
 {
@@ -398,7 +407,9 @@ bool grobo_i_axis_is_unknown(const grobo_robot *robot, int joint)
     bool astray = grobo_i_is_stray(axis) && axis->own_until_us <= robot->now_us &&
                   abs(axis->state.speed_dps) >= GROBO_I_SLOW_DPS &&
                   robot->now_us - axis->angle_us > ASTRAY_OLD_US;
-    return !grobo_i_is_sensed(axis) || astray || grobo_i_may_sleep(robot, joint);
+    bool external = grobo_i_is_external(axis) && robot->now_us - axis->angle_us > EXTERNAL_OLD_US;
+    return !grobo_i_is_sensed(axis) || astray || external || is_read_in_part(robot, axis) ||
+           grobo_i_may_sleep(robot, joint);
 }
 
 bool grobo_i_may_halt(const grobo_robot *robot)

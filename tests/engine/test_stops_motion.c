@@ -334,6 +334,31 @@ TEST_WITH(rig_wirings, a_stop_moves_no_joint_that_lost_its_frame)
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 45) < 0.1);
 }
 
+/* The line was away while a joint moved, and it was read once on its way: long after that it is
+ * where its servo has come by itself, and a stop does not send it back. */
+TEST_WITH(rig_wirings, a_stop_believes_no_old_reading_of_a_joint_that_turns)
+{
+    static const grobo_sense_kind kinds[] = {GROBO_SENSE_POSITION, GROBO_SENSE_GOAL,
+                                             GROBO_SENSE_FULL, GROBO_SENSE_ALL};
+    for (int i = 0; i < 8; i++) {
+        rig_start_at(&rig, -45, &quiet);
+        grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+        rig_run(&rig, 1000000);
+        grobo_robot_link_down(&rig.robot, rig.now_us);
+        grobo_robot_link_up(&rig.robot, rig.now_us);
+        assert_true(grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), kinds[i % 4]) > 0);
+        rig_run(&rig, i < 4 ? 4000000 : 500000);
+        double asked_deg = rig_angle_deg(&rig, NECK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, i % 2 == 0), GROBO_OK);
+        rig_run(&rig, 1000000);
+        if (fabs(rig_angle_deg(&rig, NECK) - asked_deg) > 5) {
+            fail_msg("row %d: stopped at %.1f, and stands at %.1f deg", i, asked_deg,
+                     rig_angle_deg(&rig, NECK));
+        }
+    }
+}
+
 /* It creeps on, where an earlier target has sent it: the stop is for that way. */
 TEST_WITH(rig_wirings, a_stop_ends_the_way_of_a_joint_that_lost_its_frame)
 {
