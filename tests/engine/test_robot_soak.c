@@ -71,7 +71,7 @@ static uint32_t minutes = 1;
 /* What all runs together came to. */
 static struct {
     unsigned runs, torque_on, ruined, excused, rests, estops, exits, jobs, raws_void;
-    unsigned made_up_commands, made_up_replies, made_up_believed, doubled;
+    unsigned made_up_commands, made_up_replies, made_up_believed, doubled, late;
     uint64_t frames, believed, injected[GROBO_SIM_FAULTS];
     int64_t virtual_us, estop_us, exit_us; /* the longest */
 } total;
@@ -92,6 +92,7 @@ static void add_up(void)
     total.made_up_replies += rig.witness.made_up_replies;
     total.made_up_believed += rig.witness.made_up_believed;
     total.doubled += rig.witness.doubled;
+    total.late += rig.witness.late;
     total.excused += rig.excused + w->excused;
     total.rests += w->rests;
     total.estops += w->estops;
@@ -222,10 +223,10 @@ static void report(void)
                   total.rests, total.raws_void, total.estops, (double)total.estop_us / 1e6,
                   total.exits, (double)total.exit_us / 1e6);
     print_message("# made up by the line with a sum that is right: %u commands, %u replies (%u "
-                  "believed); %u replies believed twice; %u goals and torques excused by lost or "
-                  "made-up frames\n",
+                  "believed); %u replies believed twice, %u later than is told apart; %u goals and "
+                  "torques excused by lost or made-up frames\n",
                   total.made_up_commands, total.made_up_replies, total.made_up_believed,
-                  total.doubled, total.excused);
+                  total.doubled, total.late, total.excused);
 }
 
 /* It was a soak and not a stall. */

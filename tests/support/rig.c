@@ -306,7 +306,7 @@ void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
     rig->driver = driver;
     rig->now_us = rig->wake_us = rig_epoch_us;
     rig->asked = true;
-    witness_init(&rig->witness, driver->model, &rig->sim);
+    witness_init(&rig->witness, driver->model, &rig->sim, &rig->robot.bus);
     assert_int_equal(grobo_sim_init(&rig->sim, &sim_config, rig->now_us), 0);
     assert_int_equal(grobo_robot_init(&rig->robot, driver, NULL, config, rig->now_us), 0);
     rig_host(rig);

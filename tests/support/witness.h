@@ -39,12 +39,15 @@ typedef struct witness_packet {
 typedef struct witness_question {
     const grobo_txn *txn;
     int64_t since_us;               /* when its first attempt left */
+    int64_t silence_us;             /* how long the one before that asks the same was over, */
+    int64_t span_us;                /* and twice the worst lateness that the host had learnt */
     uint8_t motor, address, length; /* what it asks for */
 } witness_question;
 
 typedef struct witness {
     const grobo_model *model;
     const grobo_sim *sim;
+    const grobo_bus *bus;
     witness_packet sent[WITNESS_SENT], said[WITNESS_SAID], seen[WITNESS_SEEN]; /* rings */
     unsigned n_sent, n_said, n_seen;
     uint8_t tail[WITNESS_BYTES]; /* the bytes that arrived last, ring */
@@ -61,11 +64,12 @@ typedef struct witness {
     grobo_joint_mask misled;              /* the line made something up about these */
     bool settings_hit;                    /* a made-up command changed what flash keeps */
     unsigned believed;                    /* readings that were believed, and were true */
+    unsigned late;                        /* that came later than a reply is told apart */
     unsigned doubled;                     /* that the line said twice, or because of one */
     unsigned made_up_commands, made_up_replies, made_up_believed;
 } witness;
 
-void witness_init(witness *w, const grobo_model *model, const grobo_sim *sim);
+void witness_init(witness *w, const grobo_model *model, const grobo_sim *sim, const grobo_bus *bus);
 /* The host sends a packet, an attempt of this transaction. */
 void witness_sent(witness *w, const uint8_t *packet, size_t n, const grobo_txn *txn,
                   int64_t now_us);
