@@ -132,6 +132,7 @@ TEST_WITH(rig_wirings, a_servo_with_ramps_is_where_these_bring_it)
         {250000, 400000, 10, 50, 18.75},  /* too weak to be faster: at 17.5, and 1.25 degrees */
         {1000000, 1000001, 99, 100, 100}, /* too fast to end there, and it ends there */
         {1000000, 1000001, 90, 100, 95},  /* it would need 5 degrees */
+        {-100000, 400000, 0, 0, 40},      /* it stood until it was sent: at 35 */
     };
     for (int j = 0; j < N; j++) {
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

@@ -844,6 +844,48 @@ TEST_WITH(rig_wirings, a_halt_of_what_stands_is_not_sent)
 }
 
 /* Frames that move joints count, readings and the like do not. */
+/* A stop waits for the reply that is under way no longer than that needs, and where none is under
+ * way it changes nothing. */
+TEST_WITH(rig_wirings, a_stop_hurries_the_reply_that_is_under_way)
+{
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+    start();
+    robot.bus.limit_us = GROBO_NEVER_US;
+    grobo_i_slots_hurry(&robot);
+    assert_true(robot.bus.limit_us == GROBO_NEVER_US);
+    (void)submit(0, GROBO_I_USE_SENSE, (grobo_robot_order){.kind = GROBO_I_ORDER_NONE});
+    assert_true(grobo_bus_tx(&robot.bus, frame, sizeof frame, NOW) > 0);
+    int64_t over_us = robot.bus.over_us;
+    assert_true(over_us > NOW && robot.bus.limit_us > over_us + GROBO_BUS_MARGIN_MIN_US);
+    grobo_i_slots_hurry(&robot);
+    assert_true(robot.bus.limit_us == over_us + GROBO_BUS_MARGIN_MIN_US);
+    robot.bus.limit_us = GROBO_NEVER_US;
+    robot.now_us = over_us + 1000; /* it is late: a moment from now */
+    grobo_i_slots_hurry(&robot);
+    assert_true(robot.bus.limit_us == over_us + 1000 + GROBO_BUS_MARGIN_MIN_US);
+    robot.bus.limit_us = over_us + 1; /* it had less time than that already */
+    grobo_i_slots_hurry(&robot);
+    assert_true(robot.bus.limit_us == over_us + 1);
+}
+
+/* Of two frames to a joint the first is lost: what would follow a goal is not sent, what a job asks
+ * is. */
+TEST_WITH(rig_wirings, a_lost_frame_of_a_job_takes_no_other_back)
+{
+    static const grobo_i_use of[] = {GROBO_I_USE_JOB, GROBO_I_USE_MOTION};
+    for (size_t i = 0; i < sizeof of / sizeof of[0]; i++) {
+        start();
+        grobo_robot_order order = {.kind = GROBO_I_ORDER_GOAL, .joints = GROBO_JOINT_BIT(3)};
+        (void)submit(0, of[i], order);
+        order.part = 1;
+        (void)submit(1, of[i], order);
+        grobo_robot_slot first = robot.slots[0];
+        first.txn.sent_us = NOW;
+        grobo_i_frame_over(&first, GROBO_ERR_TIMEOUT, NULL);
+        assert_int_equal(robot.slots[1].use, i == 0 ? GROBO_I_USE_JOB : GROBO_I_USE_FREE);
+    }
+}
+
 TEST_WITH(rig_wirings, what_a_frame_was_for_decides_what_its_end_counts)
 {
     for (int i = 0; i < USES; i++) {
