@@ -16,10 +16,11 @@ raised() {
 angle() {
     exits 0 of so101 status && sed -n "s/^ *[0-9]*  $1  *\([-0-9.]*\) .*/\1/p" "$work/out"
 }
-rests() {
-    rests_at=$(angle "$1")
-    sleep 0.2
-    [ -n "$rests_at" ] && [ "$rests_at" = "$(angle "$1")" ]
+# fallen JOINT DEG: its servo reads that it has left DEG, and that it turns no more.
+fallen() {
+    exits 0 of so101 status && awk -v joint="$1" -v from="$2" '
+        $2 == joint { off = $3 > from ? $3 - from : from - $3; found = off > 5 && $6 == 0 }
+        END { exit !found }' "$work/out"
 }
 
 # The judge is the simulator's own robot: it falls as far as was said, but for its backlash.
@@ -28,7 +29,7 @@ falls_as_said() {
     before=$(angle shoulder_lift)
     exits 0 of so101 servo off || return 1
     said_deg=$(sed -n 's/.*joints drop:.*shoulder_lift \([0-9]*\) deg.*/\1/p' "$work/err")
-    wait_for rests shoulder_lift || return 1
+    wait_for fallen shoulder_lift "$before" || return 1
     now=$(angle shoulder_lift)
     echo "shoulder_lift from $before to $now deg, said: ${said_deg:-nothing}"
     awk -v a="$before" -v b="$now" -v s="${said_deg:--1}" \

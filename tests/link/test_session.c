@@ -133,13 +133,16 @@ TEST_WITH(on_loop, a_simulator_keeps_its_state_while_closed)
     assert_int_equal(view.torque, GROBO_TORQUE_ON);
 }
 
+/* Of a machine that is busy a reply may be late by any time: none is lost. */
+static const grobo_robot_config patient = {GROBO_ROBOT_CONFIG_INIT, .timeout_us = 5000000};
+
 TEST_WITH(on_loop, a_pseudo_terminal)
 {
     grobo_sim_server *server =
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
 
-    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT,
-                                            .device = grobo_sim_server_device(server)});
+    session_kit_make((grobo_session_config){
+        GROBO_SESSION_CONFIG_INIT, .device = grobo_sim_server_device(server), .robot = &patient});
     come_up();
     assert_string_equal(grobo_session_device(session), grobo_sim_server_device(server));
     assert_it_works();
@@ -152,8 +155,8 @@ TEST_WITH(on_loop, a_connection)
         loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .no_pty = true,
                                                    .tcp = "tcp:127.0.0.1:0"});
 
-    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT,
-                                            .device = grobo_sim_server_device(server)});
+    session_kit_make((grobo_session_config){
+        GROBO_SESSION_CONFIG_INIT, .device = grobo_sim_server_device(server), .robot = &patient});
     come_up();
     assert_it_works();
     grobo_sim_server_free(server);
