@@ -110,6 +110,10 @@ void grobo_i_solve(grobo_body *body, double time_s, const double shift_m[2],
 /* Adds the keys of the stealthy step to the tracks of the feet. */
 void grobo_i_stealthy_step(grobo_body *body);
 
+/* Plays the motion on a body that can fall. True: it falls; then *fall is the finding. */
+bool grobo_i_falls(grobo_body *body, const grobo_body_check_options *options,
+                   grobo_body_finding *fall);
+
 /* Adds ZMP keys and moments of rest of the feet. */
 void grobo_i_zmp_auto(grobo_body *body);
 

@@ -254,6 +254,18 @@ static void check_frame(struct checking *now, const struct moment *at, const str
     }
 }
 
+static void check_fall(struct checking *now)
+{
+    grobo_body_finding fall;
+
+    if (grobo_i_falls(now->body, now->options, &fall)) {
+        now->n_findings++;
+        if (now->options->finding != NULL) {
+            now->options->finding(now->options->ctx, &fall);
+        }
+    }
+}
+
 int grobo_body_check(grobo_body *body, const grobo_body_check_options *options)
 {
     if (body == NULL || options == NULL) {
@@ -273,6 +285,9 @@ int grobo_body_check(grobo_body *body, const grobo_body_check_options *options)
         return GROBO_ERR_ARG;
     }
     now.rate_hz = body->options.rate_hz * speed;
+    if (how.falls) {
+        check_fall(&now);
+    }
     take_moment(&now, 0, &moment[0]);
     check_reach(&now, &moment[0].report);
     check_joints(&now, &moment[0], NULL);
@@ -308,6 +323,8 @@ const char *grobo_body_problem_name(grobo_body_problem problem)
         return "joint-limit";
     case GROBO_BODY_JOINT_SPEED:
         return "joint-speed";
+    case GROBO_BODY_FALL:
+        return "fall";
     }
     return "unknown";
 }

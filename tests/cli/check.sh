@@ -128,6 +128,31 @@ printf '%s\n' 'warn_fall: maybe' >"$XDG_CONFIG_HOME/grctl/config.yaml"
 check "a configuration that cannot be read says nothing" \
     found 0 'the robot would fall' "$work/falls.pseq"
 rm "$XDG_CONFIG_HOME/grctl/config.yaml"
+# One knee bends by angles alone: both feet are said to stand, and one leg is shorter.
+tips() {
+    {
+        pose 0 "$all" "$stand"
+        pose 0.6 "2, 3, 4" "$1"
+        pose 2.5 "2, 3, 4" "$1"
+    } | motion tips >"$work/tips.pseq"
+}
+tips_over() {
+    tips '0.95, -1.9, -0.95' && exits 3 "$GRCTL" check --balance "$work/tips.pseq" &&
+        says 'tips.pseq:[0-9]*: the robot falls to its right, at [0-9.]* s .*\[fall\]'
+}
+check "a leg that is shorter" tips_over
+leans_a_little() {
+    tips '0.5, -1, -0.5' && exits 0 "$GRCTL" check --balance "$work/tips.pseq" &&
+        ! says '\[fall\]'
+}
+check "a leg that is a little shorter" leans_a_little
+doubtful() {
+    { pose 0 "$all" "$stand" && pose 1 '4, 10' '-0.09, 0.09' && pose 3 '4, 10' '-0.09, 0.09'; } |
+        motion leans >"$work/leans.pseq"
+    exits 0 "$GRCTL" check --balance "$work/leans.pseq" && says \
+        'warning: the robot falls on its back on a floor that slopes by 1.5 degrees, .*\[fall\]'
+}
+check "a fall that a slope decides" doubtful
 # With the chest where its file has it, 0.9 degrees beyond, the ZMP is where it is at its limit.
 margin() {
     "$GRCTL" check --balance "$1" | sed -n 's/.*the ZMP is \([0-9.]*\) mm.*/\1/p'

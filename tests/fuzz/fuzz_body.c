@@ -111,7 +111,7 @@ static void play(grobo_body *body)
     int frames = grobo_body_frame_count(body);
     const grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
                                              .robot = &grobo_i_gr001_model, .finding = see_finding,
-                                             .ctx = &frames};
+                                             .ctx = &frames, .falls = frames < 100};
 
     for (int i = 0; i < frames; i++) {
         double q_rad[GROBO_JOINTS_MAX];

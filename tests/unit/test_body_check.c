@@ -11,8 +11,8 @@
 
 struct watch {
     int frames;
-    int findings[6];
-    grobo_body_finding last[6];
+    int findings[GROBO_BODY_FALL + 1];
+    grobo_body_finding last[GROBO_BODY_FALL + 1];
     double worst_error_m; /* ZMP less desired ZMP, away from both ends */
     double least_margin_m;
     double end_s;

@@ -27,7 +27,7 @@ static void stands(const char *path)
     };
     const grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT,
                                              .robot = &grobo_i_gr001_model, .margin_m = MARGIN_M,
-                                             .finding = say};
+                                             .finding = say, .falls = true};
     grobo_motion *motion = NULL;
 
     assert_int_equal(grobo_motion_read_file(path, NULL, NULL, &motion), 0);

@@ -311,8 +311,17 @@ typedef enum grobo_body_problem {
     GROBO_BODY_NO_SUPPORT = 2,  /**< no foot stands */
     GROBO_BODY_FOOT_SLIP = 3,   /**< a standing foot moves; index: its link */
     GROBO_BODY_JOINT_LIMIT = 4, /**< an angle beyond its limit after IK; index: the joint */
-    GROBO_BODY_JOINT_SPEED = 5  /**< faster than the servo after IK; index: the joint */
+    GROBO_BODY_JOINT_SPEED = 5, /**< faster than the servo after IK; index: the joint */
+    GROBO_BODY_FALL = 6         /**< the body falls; index: a grobo_body_side */
 } grobo_body_problem;
+
+/** To which side a body falls. */
+typedef enum grobo_body_side {
+    GROBO_BODY_AHEAD = 0,
+    GROBO_BODY_BACK = 1,
+    GROBO_BODY_LEFT = 2,
+    GROBO_BODY_RIGHT = 3
+} grobo_body_side;
 
 /** A problem that lasts from one frame to another. */
 typedef struct grobo_body_finding {
@@ -324,7 +333,7 @@ typedef struct grobo_body_finding {
     /**
      * How bad it is there: ZMP_MARGIN: metres inside the edge, negative outside; FOOT_SLIP: metres
      * from where the sole came to stand; JOINT_LIMIT: radians beyond; JOINT_SPEED: radians a
-     * second; otherwise 0.
+     * second; FALL: radians by which the floor slopes, 0: level; otherwise 0.
      */
     double worst;
 } grobo_body_finding;
@@ -358,6 +367,16 @@ typedef struct grobo_body_check_options {
     /** Told of each problem when it has ended; may be NULL. Valid during the call. */
     void (*finding)(void *ctx, const grobo_body_finding *finding);
     void *ctx; /**< handed back */
+    /**
+     * Also plays the motion on a body that can fall, for GROBO_BODY_FALL, before all else. The body
+     * is free and begins on its feet, in the initial posture of `robot` where there is one; its
+     * servos lag, give way to loads and are no faster than they can; the corners of the soles bear
+     * what they can bear, whatever the motion says of them. If it stands on level floor it is
+     * tried on floors that slope by 1.5 degrees to each side. A fall begins when a sole was last
+     * tilted by less than 10 degrees and is worst where both pass 30. At most the first 600 s are
+     * played; a second of them takes about 40 ms.
+     */
+    bool falls;
 } grobo_body_check_options;
 /** Begins an initializer of one. */
 #define GROBO_BODY_CHECK_OPTIONS_INIT GROBO_SIZED(grobo_body_check_options)

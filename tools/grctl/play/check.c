@@ -17,6 +17,7 @@ typedef struct finder {
     const grobo_motion *motion;
     grobo_diagnostics *list;
     bool standing; /* the feet are taken to stand: joints were checked as they are */
+    bool lies;     /* a body that can fall does, or may */
     /* for CHECK_FALL */
     bool falls, stood, steps, too_fast;
     grobo_body_finding fall; /* the worst */
@@ -34,6 +35,13 @@ static uint32_t line_at(const grobo_motion *motion, double at_s)
         }
     }
     return line;
+}
+
+static const char *side_name(int side)
+{
+    static const char *const names[] = {"on its face", "on its back", "to its left",
+                                        "to its right"};
+    return names[side];
 }
 
 /* What it is and how bad, without its time. */
@@ -64,12 +72,19 @@ static void describe(const whole_robot *robot, const grobo_body_finding *f, char
         snprintf(text, capacity, "%s: %.0f degrees a second, the servo does %.0f", joint->name,
                  grobo_deg_from_rad(f->worst), grobo_deg_from_rad(joint->max_speed_rad_s));
         return;
+    case GROBO_BODY_FALL:
+        snprintf(text, capacity,
+                 f->worst > 0 ? "the robot falls %s on a floor that slopes by %.1f degrees"
+                              : "the robot falls %s",
+                 side_name(f->index), grobo_deg_from_rad(f->worst));
+        return;
     }
 }
 
 static grobo_severity severity_of(const grobo_body_finding *f)
 {
-    bool warns = f->problem == GROBO_BODY_ZMP_MARGIN && f->worst >= 0;
+    bool warns = (f->problem == GROBO_BODY_ZMP_MARGIN && f->worst >= 0) ||
+                 (f->problem == GROBO_BODY_FALL && f->worst > 0);
     return warns || f->problem == GROBO_BODY_FOOT_SLIP || f->problem == GROBO_BODY_JOINT_SPEED
                ? GROBO_SEVERITY_WARNING
                : GROBO_SEVERITY_ERROR;
@@ -87,7 +102,9 @@ static bool is_wanted(const finder *f, const grobo_body_finding *finding)
         return (f->how->what & CHECK_LEGS) != 0;
     case GROBO_BODY_ZMP_MARGIN:
     case GROBO_BODY_NO_SUPPORT:
+        return (f->how->what & CHECK_BALANCE) != 0 && (!f->standing || f->lies);
     case GROBO_BODY_FOOT_SLIP:
+    case GROBO_BODY_FALL:
         return (f->how->what & CHECK_BALANCE) != 0;
     }
     return false;
@@ -134,6 +151,7 @@ static void add(void *ctx, const grobo_body_finding *finding)
     finder *f = ctx;
     grobo_diagnostic d = {.code = grobo_body_problem_name(finding->problem),
                           .severity = severity_of(finding)};
+    f->lies = f->lies || finding->problem == GROBO_BODY_FALL;
     note_fall(f, finding);
     if (!is_wanted(f, finding)) {
         return;
@@ -230,6 +248,7 @@ static int look_at(finder *f, grobo_body *body)
         .frame = see_frame,
         .finding = add,
         .ctx = f,
+        .falls = (f->how->what & CHECK_BALANCE) != 0,
     };
     int error = grobo_body_check(body, &look);
     if (error < 0 || f->how->what != CHECK_FALL || !f->falls || !f->too_fast ||
