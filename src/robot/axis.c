@@ -253,7 +253,7 @@ static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
     bool beside = is_beside(axis);
     if (beside) {
         rad_s = fmin(grobo_rad_from_deg(abs(axis->state.speed_dps)), rad_s);
-        now_us = grobo_i_sooner(now_us, robot->now_us);
+        now_us = robot->now_us;
     }
     double left_rad = (beside ? axis->trajectory.to_rad : way_rad) - axis->seen_rad;
     double most_rad = rad_s * seconds(axis->seen_us, now_us);
@@ -389,27 +389,24 @@ bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
            robot->now_us - robot->axes[joint].heard_us > GROBO_I_RESTART_US;
 }
 
-/* What was read of a joint that goes where nobody knows is too old by then; of one that was never
- * sent anywhere here, when it is not believed to go on. */
+/* What was read of a joint that goes where nobody knows is too old by then. */
 #define ASTRAY_OLD_US 20000
-#define EXTERNAL_OLD_US 200000
 
-/* Read, but not whether it turns: nobody here has sent it anywhere, its servo may be on a way. */
-static bool is_read_in_part(const grobo_robot *robot, const grobo_robot_axis *axis)
-{
-    return !grobo_i_has_target(axis) && !tells_speed(axis) &&
-           !GROBO_I_EXTRA(robot->driver, tells_no_speed) && !grobo_i_axis_is_limp(axis);
-}
-
+/* One that is sent, or read to be still, is known. Read, but not whether it turns: nobody here has
+ * sent it anywhere, its servo may be on a way. */
 bool grobo_i_axis_is_unknown(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool astray = grobo_i_is_stray(axis) && axis->own_until_us <= robot->now_us &&
+    bool turns = grobo_i_is_stray(axis) || grobo_i_is_external(axis);
+    bool unknown = !grobo_i_is_sensed(axis);
+    if (turns) {
+        unknown = axis->own_until_us <= robot->now_us &&
                   abs(axis->state.speed_dps) >= GROBO_I_SLOW_DPS &&
                   robot->now_us - axis->angle_us > ASTRAY_OLD_US;
-    bool external = grobo_i_is_external(axis) && robot->now_us - axis->angle_us > EXTERNAL_OLD_US;
-    return !grobo_i_is_sensed(axis) || astray || external || is_read_in_part(robot, axis) ||
-           grobo_i_may_sleep(robot, joint);
+    } else if (!grobo_i_has_target(axis) && !tells_speed(axis)) {
+        unknown = unknown || !GROBO_I_EXTRA(robot->driver, tells_no_speed);
+    }
+    return unknown || grobo_i_may_sleep(robot, joint);
 }
 
 bool grobo_i_may_halt(const grobo_robot *robot)
