@@ -184,32 +184,41 @@ TEST(indirect_data_stand_for_other_registers)
     }
 }
 
-/* Those of P and PRO(A) are in the EEPROM (emanual, PH54-200-S500-R, M54-60-S250-RA): locked by
- * torque, and there after a reboot; new from the factory. */
+/* Those of P and PRO are in the EEPROM (emanual, PH54-200-S500-R, M54-60-S250-RA, M54-60-S250-R):
+ * locked by torque, and there after a reboot; new from the factory. */
 TEST(indirect_addresses_of_the_eeprom_last)
 {
-    static const char *const names[] = {"PH54-200-S500-R", "M54-60-S250-RA"};
-    const uint8_t present[] = {0x44, 2, 0x45, 2, 0x46, 2, 0x47, 2}; /* 580 to 583 */
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        chain_start(&chain, model(names[i]), 1, NULL);
+    static const struct {
+        const char *name;
+        int first, position;
+    } rows[] = {
+        {"PH54-200-S500-R", 168, 580}, {"M54-60-S250-RA", 168, 580}, {"M54-60-S250-R", 49, 611}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const int first = rows[i].first, position = rows[i].position;
+        uint8_t present[8];
+        for (int k = 0; k < 4; k++) {
+            present[2 * k] = (uint8_t)(position + k);
+            present[2 * k + 1] = (uint8_t)((position + k) >> 8);
+        }
+        chain_start(&chain, model(rows[i].name), 1, NULL);
         assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), GROBO_DXL2_DONE);
-        write_block(1, 168, present, sizeof present);
+        write_block(1, first, present, sizeof present);
         assert_int_equal(chain.kit.got[8], GROBO_DXL2_NO_ACCESS);
-        assert_int_equal(read_block(1, 168, 4), 634 | 635 << 16);
+        assert_int_equal(read_block(1, first, 4), 634 | 635 << 16);
         assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 5000), GROBO_DXL2_DONE);
         simkit_run(&chain.kit, 2000000);
         assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 0), GROBO_DXL2_DONE);
-        write_block(1, 168, present, sizeof present);
+        write_block(1, first, present, sizeof present);
         assert_int_equal(chain.kit.got[8], GROBO_DXL2_DONE);
         write_block(1, 640, (const uint8_t[]){7}, 1);
         chain_send(&chain, 1, GROBO_DXL2_REBOOT, 0, 0, NULL, 0);
         simkit_run(&chain.kit, 3000000);
-        assert_int_equal(read_block(1, 168, 4), 580 | 581 << 16);
+        assert_int_equal(read_block(1, first, 4), position | (position + 1) << 16);
         assert_true(abs(read_block(1, 634, 4) - 5000) <= 3);
         assert_int_equal(read_block(1, 640, 4), 0); /* data are RAM */
         chain_send(&chain, 1, GROBO_DXL2_FACTORY_RESET, 0, 0, (const uint8_t[]){2}, 1);
         simkit_run(&chain.kit, 3000000);
-        assert_int_equal(read_block(1, 168, 4), 634 | 635 << 16);
+        assert_int_equal(read_block(1, first, 4), 634 | 635 << 16);
     }
 }
 
@@ -367,6 +376,42 @@ TEST(a_stream_of_goals_flows)
     assert_in_range(chain_register(&chain, 0, GROBO_ROLE_PRESENT_SPEED), 90, 180);
     simkit_run(&chain.kit, 1000000);
     assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_POSITION), 3048);
+}
+
+/* PRO before (A): registers from 562 on, a goal with a speed, a torque of 0 that does not bound
+ * (emanual H54-100-S500-R, goal_velocity, goal_torque). */
+TEST(pro_moves_at_the_speed_of_its_goal)
+{
+    enum { GOAL = 596, VELOCITY = 600, TORQUE = 604 };
+    chain_start(&chain, model("H54-100-S500-R"), 1, NULL);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    /* 10000 of 1/501.923 rpm are 119.54 degrees a second: 166667 counts, while torque is 0. */
+    const uint8_t goal[] = {0x20, 0xA1, 0x07, 0, 0x10, 0x27, 0, 0}; /* 500000, beyond its limit */
+    write_block(1, GOAL, goal, sizeof goal);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_LIMIT);
+    const uint8_t inside[] = {0x40, 0x0D, 0x03, 0, 0x10, 0x27, 0, 0}; /* 200000 */
+    write_block(1, GOAL, inside, sizeof inside);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_DONE);
+    simkit_run(&chain.kit, 1000000);
+    assert_in_range(chain_register(&chain, 0, GROBO_ROLE_POSITION), 166000, 167400);
+    assert_in_range(chain_register(&chain, 0, GROBO_ROLE_PRESENT_SPEED), 9995, 10005);
+    simkit_run(&chain.kit, 1000000);
+    assert_in_range(chain_register(&chain, 0, GROBO_ROLE_POSITION), 199998, 200002);
+    assert_int_equal(read_block(1, TORQUE, 4) & 0xFFFF, 0);
+    /* Faster than its limit, either way round. */
+    write_block(1, VELOCITY, (const uint8_t[]){0x69, 0x42, 0, 0}, 4); /* 17001 */
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_LIMIT);
+    write_block(1, VELOCITY, (const uint8_t[]){0x97, 0xBD, 0xFF, 0xFF}, 4);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_LIMIT);
+    /* As a wheel it turns at this speed, and backwards. */
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 0), 0);
+    write_block(1, 11, (const uint8_t[]){16}, 1);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_RANGE);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 1), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    write_block(1, VELOCITY, (const uint8_t[]){0x18, 0xFC, 0xFF, 0xFF}, 4); /* -1000 */
+    simkit_run(&chain.kit, 100000);
+    assert_in_range(chain_register(&chain, 0, GROBO_ROLE_PRESENT_SPEED), -1002, -998);
 }
 
 TEST(modes_have_their_own_goals)

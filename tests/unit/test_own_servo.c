@@ -227,7 +227,7 @@ static const mistake mistakes[] = {
     {WITH("id: {default: 254}"), 4, 3, "register id: its default is outside its range"},
     {WITH("mine: {at: 90, role: goal}"), 4, 3, "register mine: its role is that of another one"},
     {WITH("mine: {at: 90, role: goal_current}"), 4, 3, "can have no role"},
-    {WITH("mine: {at: 607, bytes: 2}"), 4, 3, "register mine: its address is too high"},
+    {WITH("mine: {at: 895, bytes: 2}"), 4, 3, "register mine: its address is too high"},
     {WITH("mine: {at: 90, access: kept rw}"), 4, 3, "is too high for one that is kept"},
     {WITH("mine: {at: 1024}"), 4, 14, "at"},
     {WITH("mine: {at: 43}"), 4, 3, "register mine: it shares a byte with the one before"},

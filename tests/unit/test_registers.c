@@ -137,6 +137,21 @@ static const struct {
     {"M54-60-S250-RA", "temperature", 594, 0},
     {"M54-40-S250-RA", "current_limit", 38, 4470},
     {"M42-10-S260-RA", "goal_position", 564, 0},
+    {"H54-200-S500-R", "torque", 562, 0},
+    {"H54-200-S500-R", "torque_limit", 30, 620},
+    {"H54-200-S500-R", "velocity_p", 588, 399},
+    {"H54-200-S500-R", "hardware_error", 892, 0},
+    {"H54-100-S500-R", "torque_limit", 30, 310},
+    {"H42-20-S300-R", "velocity_limit", 32, 10300},
+    {"M54-60-S250-R", "max_position", 36, 125708},
+    {"M54-40-S250-R", "torque_limit", 30, 120},
+    {"M42-10-S260-R", "velocity_p", 588, 520},
+    {"L54-50-S500-R", "goal_position", 596, 0},
+    {"L54-50-S290-R", "position_p", 594, 250},
+    {"L54-30-S500-R", "max_position", 36, 180692},
+    {"L54-30-S400-R", "velocity_limit", 32, 9000},
+    {"L42-10-S300-R", "min_position", 40, -2047},
+    {"L42-10-S300-R", "shutdown", 48, 30},
 };
 
 TEST(models_have_their_own_rows)

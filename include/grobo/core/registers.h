@@ -107,7 +107,7 @@ typedef struct grobo_servo_indirect {
     uint16_t address; /**< of the first address, of 2 bytes each; each holds that of its data at
                            power-on */
     uint16_t data;    /**< address of the first byte of data */
-    uint8_t count;    /**< of both */
+    uint16_t count;   /**< of both */
 } grobo_servo_indirect;
 
 /** It cannot be a joint: it does not tell its position (grobo_servo_model.flags). */

@@ -16,7 +16,7 @@ GROBO_BEGIN_DECLS
 
 /** Bytes of registers of a servo; one that has more cannot be simulated. Private. */
 #ifndef GROBO_SIM_REGISTER_BYTES
-#define GROBO_SIM_REGISTER_BYTES 608
+#define GROBO_SIM_REGISTER_BYTES 896
 #endif
 /** Those of them that survive power-off. Private. */
 #define GROBO_SIM_KEPT_BYTES 64
@@ -24,7 +24,7 @@ GROBO_BEGIN_DECLS
 #define GROBO_SIM_WRITE_BYTES 32
 /** Indirect registers of a servo. Private. */
 #ifndef GROBO_SIM_INDIRECTS
-#define GROBO_SIM_INDIRECTS 128
+#define GROBO_SIM_INDIRECTS 256
 #endif
 /** Families on one line. Private. */
 #define GROBO_SIM_FAMILIES_MAX 4

@@ -474,7 +474,7 @@ static int read_run(grobo_i_events *events, void *target)
         return result;
     }
     bool fits = found[0] >= 0 && found[0] <= ADDRESS_MAX && found[1] >= 0 &&
-                found[1] <= ADDRESS_MAX && found[2] >= 1 && found[2] <= UINT8_MAX;
+                found[1] <= ADDRESS_MAX && found[2] >= 1 && found[2] <= ADDRESS_MAX;
     if (!fits || draft->n_indirect == GROBO_I_SERVO_INDIRECTS) {
         return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "range", place,
                                 "indirect: at most %d runs of an address, a place of data and a "
@@ -482,7 +482,7 @@ static int read_run(grobo_i_events *events, void *target)
                                 GROBO_I_SERVO_INDIRECTS);
     }
     draft->indirect[draft->n_indirect++] =
-        (grobo_servo_indirect){(uint16_t)found[0], (uint16_t)found[1], (uint8_t)found[2]};
+        (grobo_servo_indirect){(uint16_t)found[0], (uint16_t)found[1], (uint16_t)found[2]};
     return 0;
 }
 

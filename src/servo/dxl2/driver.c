@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Robots of DYNAMIXEL servos with Protocol 2.0: X, MX, P, PRO(A) and XL-320. */
+/* Robots of DYNAMIXEL servos with Protocol 2.0: X, MX, P, PRO and XL-320. */
 #include "src/servo/dxl2/series.h"
 #include "src/servo/table/family.h"
 #include "src/servo/tables.h"
@@ -60,12 +60,12 @@ static int32_t xl320_wants(const grobo_joint *joint, const grobo_servo_model *se
     return role == GROBO_ROLE_MODE ? GROBO_DXL2_MODE_XL320_JOINT : found;
 }
 
-static const grobo_i_family xl320;
-static const grobo_i_family family;
+static const grobo_i_family xl320, pro, family;
 
 static const grobo_i_family *of(const grobo_servo_model *servo)
 {
-    return grobo_i_dxl2_series_of(servo) == GROBO_I_DXL2_XL320 ? &xl320 : &family;
+    grobo_i_dxl2_series series = grobo_i_dxl2_series_of(servo);
+    return series == GROBO_I_DXL2_XL320 ? &xl320 : series == GROBO_I_DXL2_PRO ? &pro : &family;
 }
 
 /*
@@ -100,6 +100,17 @@ static const grobo_i_family xl320 = {
     .wants = xl320_wants,
     .limits_mode = GROBO_DXL2_MODE_XL320_JOINT,
     .overheated = GROBO_DXL2_XL320_OVERHEATED,
+    .cuts = 0xFF,
+    .fast_part = fast_part,
+    .pace = GROBO_I_PACE_SPEED,
+};
+
+/* As P, but that a goal has a speed (emanual pro, goal_velocity). */
+static const grobo_i_family pro = {
+    .numbers_errors = true,
+    .wants = wants,
+    .limits_mode = GROBO_DXL2_MODE_POSITION,
+    .overheated = GROBO_DXL2_OVERHEATED,
     .cuts = 0xFF,
     .fast_part = fast_part,
     .pace = GROBO_I_PACE_SPEED,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Simulated DYNAMIXEL X, MX(2.0), P, PRO(A) and XL-320: what their registers mean for the shaft,
+ * Simulated DYNAMIXEL X, MX(2.0), P, PRO and XL-320: what their registers mean for the shaft,
  * and which writes they take. Their units are those of their tables.
  */
 #include <math.h>
@@ -40,6 +40,11 @@
 static bool is_xl320(const grobo_sim_servo *servo)
 {
     return grobo_i_dxl2_series_of(servo->model) == GROBO_I_DXL2_XL320;
+}
+
+static bool is_pro(const grobo_sim_servo *servo)
+{
+    return grobo_i_dxl2_series_of(servo->model) == GROBO_I_DXL2_PRO;
 }
 
 /* XL-320 have two modes, with numbers of their own. */
@@ -131,12 +136,18 @@ static double output_of(const grobo_sim_servo *servo)
     return (double)grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_PWM) / pwm->max;
 }
 
+/* The register of a wheel's speed: of PRO the one that a goal's speed is in. */
+static grobo_register_role speed_role(const grobo_sim_servo *servo)
+{
+    return is_pro(servo) ? GROBO_ROLE_SPEED : GROBO_ROLE_GOAL_SPEED;
+}
+
 static void follow_wheel(grobo_sim_servo *servo, int mode)
 {
     grobo_sim_wants *plant = &servo->plant;
     double speed = plant->speed_mdeg_s;
     if (mode == GROBO_DXL2_MODE_VELOCITY) {
-        speed = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_SPEED) * speed_mdeg_s(servo);
+        speed = grobo_i_dxl_get(servo, speed_role(servo)) * speed_mdeg_s(servo);
     } else if (mode == GROBO_DXL2_MODE_PWM) {
         speed *= output_of(servo);
     } else { /* a current without a load: as fast as it can */
@@ -152,11 +163,15 @@ static void follow_wheel(grobo_sim_servo *servo, int mode)
 static const grobo_servo_register *bound_of(const grobo_sim_servo *servo, int mode)
 {
     grobo_i_dxl2_series series = grobo_i_dxl2_series_of(servo->model);
-    bool current = series == GROBO_I_DXL2_P || mode == GROBO_DXL2_MODE_GRIP;
-    return series == GROBO_I_DXL2_XL320
-               ? grobo_servo_register_of(servo->model, GROBO_ROLE_TORQUE_LIMIT)
-           : current ? grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT)
-                     : NULL;
+    grobo_register_role role = GROBO_ROLE_GOAL_CURRENT;
+    if (series == GROBO_I_DXL2_XL320) {
+        role = GROBO_ROLE_TORQUE_LIMIT;
+    } else if (series == GROBO_I_DXL2_X && mode != GROBO_DXL2_MODE_GRIP) {
+        return NULL;
+    } else if (series == GROBO_I_DXL2_PRO && grobo_i_dxl_get(servo, role) == 0) {
+        role = GROBO_ROLE_CURRENT_LIMIT; /* 0: no bound but this (emanual goal_torque) */
+    }
+    return grobo_servo_register_of(servo->model, role);
 }
 
 static void follow(grobo_sim *sim, int index)
@@ -179,7 +194,7 @@ static void follow(grobo_sim *sim, int index)
         plant->ramp_us =
             acceleration * 1000 < plant->time_us / 2 ? acceleration * 1000 : plant->time_us / 2;
     } else {
-        plant->cap_mdeg_s = (int32_t)lround(velocity * speed_mdeg_s(servo));
+        plant->cap_mdeg_s = (int32_t)lround(fmin(fabs(velocity * speed_mdeg_s(servo)), INT32_MAX));
         plant->accel_mdeg_s2 =
             (int32_t)lround(fmin(acceleration * accel_mdeg_s2(servo), INT32_MAX));
     }
@@ -291,17 +306,23 @@ int32_t grobo_i_dxl2_sim_bps(const grobo_sim *sim, int index)
     return grobo_servo_baud_bps(servo->model, grobo_i_dxl_get(servo, GROBO_ROLE_BAUD));
 }
 
+/* Output and current as far as their limits (of PRO 0 says so), the goal where it is. */
+static void goals_anew(const grobo_sim *sim, grobo_sim_servo *servo)
+{
+    int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
+                    is_pro(servo) ? 0 : grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
+    grobo_i_dxl_one_turn(sim, servo, grobo_i_dxl2_sim_reverses(servo));
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
+}
+
 void grobo_i_dxl2_sim_restart(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_dxl_boot(sim, index);
     grobo_i_indirect_restart(servo);
-    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
-    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
-                    grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
-    grobo_i_dxl_one_turn(sim, servo, grobo_i_dxl2_sim_reverses(servo));
-    int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
-    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
+    goals_anew(sim, servo);
     servo->heard_us = sim->now_us;
     follow(sim, index);
 }
@@ -348,7 +369,7 @@ static uint8_t outside_limits(const grobo_sim_servo *servo, const grobo_servo_re
     if (reg->role == GROBO_ROLE_GOAL && mode_of(servo) == GROBO_DXL2_MODE_POSITION) {
         least = grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION);
         most = grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
-    } else if (reg->role == GROBO_ROLE_GOAL_SPEED) {
+    } else if (reg->role == speed_role(servo)) {
         most = grobo_i_dxl_get(servo, GROBO_ROLE_SPEED_LIMIT);
         least = -most;
     } else if (reg->role == GROBO_ROLE_GOAL_CURRENT) {
@@ -361,9 +382,9 @@ static uint8_t outside_limits(const grobo_sim_servo *servo, const grobo_servo_re
     return value < least || value > most ? GROBO_DXL2_BAD_LIMIT : GROBO_DXL2_DONE;
 }
 
-static bool is_goal(const grobo_servo_register *reg)
+static bool is_goal(const grobo_sim_servo *servo, const grobo_servo_register *reg)
 {
-    return reg->role == GROBO_ROLE_GOAL || reg->role == GROBO_ROLE_GOAL_SPEED ||
+    return reg->role == GROBO_ROLE_GOAL || reg->role == speed_role(servo) ||
            reg->role == GROBO_ROLE_GOAL_CURRENT || reg->role == GROBO_ROLE_GOAL_PWM;
 }
 
@@ -376,7 +397,7 @@ static bool is_shut_down(const grobo_sim_servo *servo)
 static uint8_t judge_value(const grobo_sim_servo *servo, const grobo_servo_register *reg,
                            int32_t value)
 {
-    bool stopped = is_goal(reg) && grobo_i_dxl_get(servo, GROBO_ROLE_WATCHDOG) < 0;
+    bool stopped = is_goal(servo, reg) && grobo_i_dxl_get(servo, GROBO_ROLE_WATCHDOG) < 0;
     if (value < reg->min || value > reg->max || stopped) {
         return GROBO_DXL2_BAD_RANGE;
     }
@@ -459,12 +480,7 @@ static void mode_written(grobo_sim *sim, int index)
     }
     grobo_i_dxl_put(servo, GROBO_ROLE_SPEED, 0);
     grobo_i_dxl_put(servo, GROBO_ROLE_ACCELERATION, 0);
-    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
-    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
-                    grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
-    grobo_i_dxl_one_turn(sim, servo, grobo_i_dxl2_sim_reverses(servo));
-    int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
-    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
+    goals_anew(sim, servo);
 }
 
 static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *reg)
@@ -474,12 +490,12 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
     int32_t value = grobo_servo_register_get(servo->model, reg, &servo->reg[reg->address]);
     if (reg->role == GROBO_ROLE_MODE) {
         mode_written(sim, index);
-    } else if (is_goal(reg) && wakes(servo)) {
+    } else if (is_goal(servo, reg) && wakes(servo)) {
         grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 1);
     }
     follow(sim, index);
     grobo_i_sim_torque(sim, index, before);
-    if (servo->plant.torque == GROBO_TORQUE_ON && is_goal(reg) &&
+    if (servo->plant.torque == GROBO_TORQUE_ON && is_goal(servo, reg) &&
         (reg->role == GROBO_ROLE_GOAL || servo->plant.wheel)) {
         grobo_i_sim_set_out(sim, index);
     }

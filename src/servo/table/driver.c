@@ -52,8 +52,9 @@ static const grobo_i_family *family_of(const grobo_driver *self)
 static void widen(span *s, const grobo_servo_model *servo, grobo_register_role role)
 {
     const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
+    /* Behind all others they are not worth the time: an error that counts cuts the torque. */
     bool far = reg != NULL && s->to > 0 && reg->address > s->to + NEAR_BYTES &&
-               role == GROBO_ROLE_CURRENT; /* behind all others: it is not worth the time */
+               (role == GROBO_ROLE_CURRENT || role == GROBO_ROLE_ERROR);
     if (reg != NULL && !far) {
         s->from = s->to == 0 || reg->address < s->from ? reg->address : s->from;
         s->to = reg->address + reg->bytes > s->to ? reg->address + reg->bytes : s->to;

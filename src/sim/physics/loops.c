@@ -20,7 +20,7 @@
 #define X_I 65536.0
 #define X_D 16.0
 #define X_RATE_HZ 1000.0 /* of its loop. An assumption */
-#define X_P_CHOSEN 800.0 /* that of most X, for P and PRO(A): their manuals have no factory gain */
+#define X_P_CHOSEN 800.0 /* of most X: for P and PRO(A) without a factory gain, for PRO at theirs */
 /* MX with Protocol 1.0: P / 8, I * 1000 / 2048, D * 4 / 1000 (manual). */
 #define MX_P 8.0
 #define MX_I (1000.0 / 2048)
@@ -87,7 +87,11 @@ static void x_series(const grobo_sim_servo *servo, const grobo_sim_motor *motor,
 {
     double counts = X_TURN / (2 * PI) / X_PWM, gain = value(servo, "position_p", 0);
     double duty = motor->duty_per_rad > 0 ? motor->duty_per_rad : counts / X_P;
-    bool untold = gain == 0 && row(servo, "position_p")->factory == 0;
+    int32_t factory = row(servo, "position_p")->factory;
+    bool untold = gain == 0 && factory == 0;
+    if (factory > 0 && row(servo, "position_i") == NULL) { /* PRO: a unit that nobody tells */
+        gain *= X_P_CHOSEN / factory;
+    }
     loop->kp = (untold ? X_P_CHOSEN : gain) * duty;
     loop->ki = value(servo, "position_i", 0) / X_I * counts * X_RATE_HZ;
     loop->kd = value(servo, "position_d", 0) / X_D * counts / X_RATE_HZ;

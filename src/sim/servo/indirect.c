@@ -31,7 +31,7 @@ static int index_of(const grobo_sim_servo *servo, int address, bool data)
 
 static int most_of(const grobo_sim_servo *servo)
 {
-    int most = 0;
+    int most = grobo_i_dxl_end(servo) - 1;
     for (int i = 0; i < servo->model->indirect_count; i++) {
         const grobo_servo_indirect *run = &servo->model->indirect[i];
         int end = run->data + run->count - 1;
@@ -40,7 +40,7 @@ static int most_of(const grobo_sim_servo *servo)
     return most;
 }
 
-/* Of P and PRO(A) they are in the EEPROM (emanual, PH54-200-S500-R), of all others in RAM. */
+/* Of P and PRO they are in the EEPROM (emanual, PH54-200-S500-R), of all others in RAM. */
 bool grobo_i_indirect_kept(const grobo_sim_servo *servo)
 {
     return servo->model->indirect_count > 0 && servo->model->indirect[0].address < ram_of(servo);
