@@ -48,6 +48,11 @@ typedef struct grobo_joint {
      *  (GROBO_TRIP_APART), and a stop sends both to one place. 0: each has a shaft of its own. */
     double apart_rad;
     uint8_t follows; /**< the joint that it follows, which follows none itself */
+    /** What people give and read the joint in, a grobo_unit (core/unit.h): the library's own angles
+     *  stay radians. 0: degrees. */
+    uint8_t unit;
+    double unit_zero_rad; /**< its angle where its value is 0 */
+    double unit_rad;      /**< how much the angle grows for 1 of the unit, not 0; of degrees 0 */
 #endif
 } grobo_joint;
 
@@ -112,7 +117,7 @@ GROBO_API const grobo_joint *grobo_model_joint(const grobo_model *model, int joi
  * finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs, a finite zero, a
  * gear that is not negative, a torque limit of at most 100, a slack within its range, joints that
  * follow one that follows none, with limits and an initial angle that are that one's times the
- * ratio.
+ * ratio, a unit with its scale.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
 GROBO_API int grobo_model_check(const grobo_model *model);

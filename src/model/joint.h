@@ -51,7 +51,54 @@ static inline int grobo_i_first(const grobo_joint *joint)
 }
 #endif
 
-/* Whether joints of this size have these three members. */
+/* What people give the joint in (grobo_joint.unit, .unit_zero_rad, .unit_rad); in a build for plain
+ * drivers all are given in degrees. */
+#if GROBO_DRIVERS_PLAIN
+static inline int grobo_i_unit(const grobo_joint *joint)
+{
+    (void)joint;
+    return 0;
+}
+static inline double grobo_i_unit_zero(const grobo_joint *joint)
+{
+    (void)joint;
+    return 0;
+}
+static inline double grobo_i_unit_rad(const grobo_joint *joint)
+{
+    (void)joint;
+    return 0;
+}
+#else
+static inline int grobo_i_unit(const grobo_joint *joint)
+{
+    return joint->unit;
+}
+static inline double grobo_i_unit_zero(const grobo_joint *joint)
+{
+    return joint->unit_zero_rad;
+}
+static inline double grobo_i_unit_rad(const grobo_joint *joint)
+{
+    return joint->unit_rad;
+}
+#endif
+
+/* Whether joints of this size have a unit. */
+static inline bool grobo_i_may_have_unit(const grobo_model *model)
+{
+#if GROBO_DRIVERS_PLAIN
+    (void)model;
+    return false;
+#elif GROBO_TABLES_FIXED
+    (void)model;
+    return true;
+#else
+    return model->joint_size >= offsetof(grobo_joint, unit_rad) + sizeof(double);
+#endif
+}
+
+/* Whether joints of this size have what one that follows has. */
 static inline bool grobo_i_may_follow(const grobo_model *model)
 {
 #if GROBO_DRIVERS_PLAIN

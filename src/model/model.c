@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/unit.h>
 #include <grobo/posture.h>
 
 #include "src/base/angle.h"
@@ -99,6 +100,19 @@ static bool is_follower_good(const grobo_model *model, const grobo_joint *joint)
            is_same(joint->init_rad, first->init_rad * ratio);
 }
 
+/* Degrees have no scale of their own; a unit has one. */
+static bool is_unit_good(const grobo_model *model, const grobo_joint *joint)
+{
+    if (!grobo_i_may_have_unit(model)) {
+        return true;
+    }
+    double unit_rad = grobo_i_unit_rad(joint), zero_rad = grobo_i_unit_zero(joint);
+    return grobo_i_unit(joint) == GROBO_UNIT_DEG
+               ? unit_rad == 0 && zero_rad == 0
+               : grobo_i_unit(joint) <= GROBO_UNIT_PCT && unit_rad != 0 && isfinite(unit_rad) &&
+                     isfinite(zero_rad);
+}
+
 static bool is_mirror_good(const grobo_model *model, int j)
 {
     const grobo_joint *joint = grobo_i_joint(model, j);
@@ -118,7 +132,8 @@ static bool is_joint_good(const grobo_model *model, int j)
         !(joint->max_speed_rad_s > 0.0 && isfinite(joint->max_speed_rad_s))) {
         return false;
     }
-    return is_mount_good(joint) && is_mirror_good(model, j) && is_follower_good(model, joint);
+    return is_mount_good(joint) && is_mirror_good(model, j) && is_follower_good(model, joint) &&
+           is_unit_good(model, joint);
 }
 
 static bool is_joint_unique(const grobo_model *model, int j)

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/unit.h>
 #include <grobo/posture.h>
 
 #include "tests/support/tables.h"
@@ -304,6 +305,76 @@ TEST(a_joint_follows_one_that_follows_none)
 }
 
 /* Turned round, geared down by 2, and 0.5 away where the joint is at 0. */
+/* A rack of 90 mm a turn, and a gripper that is open at -20 degrees. */
+TEST(a_joint_may_be_given_in_its_own_unit)
+{
+    grobo_joint joints[3];
+    grobo_model model = *gr001;
+    for (int j = 0; j < 3; j++) {
+        joints[j] = gr001->joints[j];
+        joints[j].mirror = (uint8_t)j;
+        joints[j].min_rad = grobo_rad_from_deg(-20);
+        joints[j].max_rad = grobo_rad_from_deg(60);
+    }
+    joints[1].unit = GROBO_UNIT_MM;
+    joints[1].unit_rad = grobo_rad_from_deg(360) / 90;
+    joints[2].unit = GROBO_UNIT_PCT;
+    joints[2].unit_zero_rad = grobo_rad_from_deg(60);
+    joints[2].unit_rad = grobo_rad_from_deg(-80) / 100;
+    model.joints = joints;
+    model.n_joints = 3;
+    model.n_groups = 0;
+    assert_int_equal(grobo_model_check(&model), 0);
+    static const double at_deg[] = {60, 30, -20},
+                        value[][3] = {{60, 30, -20}, {15, 7.5, -5}, {0, 37.5, 100}};
+    for (int j = 0; j < 3; j++) {
+        for (int k = 0; k < 3; k++) {
+            double rad = grobo_rad_from_deg(at_deg[k]);
+            assert_true(fabs(grobo_model_value(&model, j, rad) - value[j][k]) < 1e-9);
+            assert_true(fabs(grobo_model_angle(&model, j, value[j][k]) - rad) < 1e-12);
+        }
+        /* A limit is not exceeded by the last bits. */
+        assert_true(grobo_model_angle(&model, j, value[j][0]) <= joints[j].max_rad);
+        assert_true(grobo_model_angle(&model, j, value[j][2]) >= joints[j].min_rad);
+    }
+    assert_true(fabs(grobo_model_change(&model, 0, grobo_rad_from_deg(8)) - 8) < 1e-9);
+    assert_true(fabs(grobo_model_change(&model, 1, grobo_rad_from_deg(8)) - 2) < 1e-9);
+    assert_true(fabs(grobo_model_change(&model, 2, grobo_rad_from_deg(8)) + 10) < 1e-9);
+    assert_string_equal(grobo_unit_name(grobo_model_unit(&model, 0)), "deg");
+    assert_string_equal(grobo_unit_name(grobo_model_unit(&model, 1)), "mm");
+    assert_string_equal(grobo_unit_name(grobo_model_unit(&model, 2)), "%");
+    assert_true(isnan(grobo_model_value(&model, 3, 0)) && isnan(grobo_model_angle(&model, -1, 0)));
+    /* Of a program whose joints had no unit yet all are degrees. */
+    grobo_model yesterday = model;
+    yesterday.joint_size = offsetof(grobo_joint, unit);
+    assert_int_equal(grobo_model_unit(&yesterday, 0), GROBO_UNIT_DEG);
+}
+
+TEST(a_unit_needs_its_scale)
+{
+    static const grobo_joint faults[] = {
+        {.unit = GROBO_UNIT_MM},
+        {.unit = GROBO_UNIT_PCT},
+        {.unit = GROBO_UNIT_PCT + 1, .unit_rad = 1},
+        {.unit_rad = 1},
+        {.unit_zero_rad = 1},
+        {.unit = GROBO_UNIT_MM, .unit_rad = INFINITY},
+        {.unit = GROBO_UNIT_MM, .unit_rad = 1, .unit_zero_rad = NAN}};
+    for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+        grobo_joint joint = gr001->joints[0];
+        grobo_model model = *gr001;
+        model.joints = &joint;
+        model.n_joints = 1;
+        model.n_groups = 0;
+        joint.mirror = 0;
+        assert_int_equal(grobo_model_check(&model), 0);
+        joint.unit = faults[i].unit;
+        joint.unit_rad = faults[i].unit_rad;
+        joint.unit_zero_rad = faults[i].unit_zero_rad;
+        assert_int_equal(grobo_model_check(&model), GROBO_ERR_ARG);
+    }
+}
+
 TEST(a_servo_may_be_mounted_any_way)
 {
     make_two();

@@ -17,6 +17,7 @@
 #include <grobo/core/motion_io.h>
 #include <grobo/core/robot_plant.h>
 #include <grobo/core/rs30x.h>
+#include <grobo/core/unit.h>
 #include <grobo/robot_file.h>
 
 #include "tests/support/tables.h"
@@ -311,6 +312,10 @@ TEST(model_refuses_null)
 {
     REFUSES(grobo_model_check(NULL));
     assert_true(grobo_model_take_slack(NULL, 1, 0) == 0);
+    assert_int_equal(grobo_model_unit(NULL, 0), GROBO_UNIT_DEG);
+    assert_true(isnan(grobo_model_value(NULL, 0, 1)));
+    assert_true(isnan(grobo_model_angle(NULL, 0, 1)));
+    assert_true(isnan(grobo_model_change(NULL, 0, 1)));
     REFUSES(grobo_model_joint_of_motor(NULL, 1));
     REFUSES(grobo_model_motor_of_joint(NULL, 1));
     REFUSES(grobo_model_find_joint(NULL, text, 4));

@@ -6,6 +6,7 @@
 
 #include <jansson.h>
 
+#include <grobo/core/unit.h>
 #include <grobo/posture.h>
 #include <grobo/robot_file.h>
 
@@ -201,6 +202,9 @@ typedef struct mistake {
     HEAD "  - {name: x, servos: [1, 2], servo: STS3215, limits_deg: [-9, 9]" more "}\n"
 #define AFTER(more) HEAD JOINT "  - {name: y, id: 2, servo: STS3215, " more "}\n"
 
+#define LINEAR(range)                                                                              \
+    HEAD "  - {name: x, id: 1, servo: STS3215, mm_per_turn: 36, limits_mm: " range "}\n"
+
 static const mistake mistakes[] = {
     {TWO(", id: 3"), 4, 5, "cannot have 'servos' and 'id' together", 0},
     {TWO(", follows: x"), 4, 5, "cannot have 'follows' and 'servos' together", 0},
@@ -220,6 +224,17 @@ static const mistake mistakes[] = {
     {WITH("apart_deg: 3"), 4, 70, "'apart_deg' needs 'servos' or 'follows'", 0},
     {WITH("signs: [1, 1]"), 4, 66, "'signs' needs 'servos' or 'follows'", 0},
     {WITH("ratio: 2"), 4, 66, "'ratio' needs 'servos' or 'follows'", 0},
+    {WITH("limits_mm: [0, 9]"), 4, 70, "x: 'limits_mm' needs 'mm_per_turn'", 0},
+    {WITH("mm_per_turn: 36, limits_mm: [0, 9]"), 4, 87,
+     "x: 'limits_mm' and 'limits_deg' cannot be used together", 0},
+    {WITH("mm_per_turn: 36, percent_deg: [0, 9]"), 4, 5,
+     "x: 'percent_deg' and 'mm_per_turn' cannot be used together", 0},
+    {WITH("percent_deg: [3, 3]"), 4, 72, "x: 0 and 100 % cannot be one angle", 0},
+    {LINEAR("[9, 0]"), 4, 66, "x: the lower limit comes first", 0},
+    {LINEAR("[0, 30]"), 4, 66, "x: its servo does not reach these limits", 0},
+    {LINEAR("[0, 9]") "links:\n  - {name: a}\n"
+                      "  - {name: b, parent: a, joint: x, axis: [0, 0, 1]}\n",
+     7, 5, "link b: a linear joint turns no link; leave 'joint' and 'axis' out", 0},
     {AFTER("follows: z"), 5, 47, "no joint called 'z'", 0},
     {AFTER("follows: y"), 5, 47, "y: a joint cannot follow itself", 0},
     {AFTER("follows: x, ratio: 0"), 5, 57, "y: a ratio is not 0", 0},
@@ -427,6 +442,36 @@ TEST(two_servos_make_a_joint_and_one_that_follows)
     assert_true(fabs(grobo_deg_from_rad(j[0].max_rad) - 10) < 1e-9);
     assert_true(fabs(grobo_deg_from_rad(j[0].init_rad) + 5) < 1e-9);
     assert_int_equal(def->model->groups[0].joints, 6);
+    grobo_robot_def_free(def);
+}
+
+/* ---- units ---------------------------------------------------------------------------------- */
+
+TEST(a_joint_may_be_linear_or_a_gripper)
+{
+    grobo_robot_def *def = NULL;
+    assert_int_equal(
+        read_def("name: a\nfamily: feetech\njoints:\n"
+                 "  - {name: x, id: 1, servo: STS3215, limits_mm: [-4, 10], mm_per_turn: 36,"
+                 " init_mm: 2, rest_mm: 1, speed_mm_s: 3}\n"
+                 "  - {name: y, id: 2, servo: STS3215, limits_deg: [-10, 90],"
+                 " percent_deg: [90, -10]}\n"
+                 "  - {name: z, id: 3, servo: STS3215, limits_deg: [-10, 90]}\n",
+                 NULL, &def),
+        0);
+    const grobo_joint *j = def->model->joints;
+    assert_int_equal(j[0].unit, GROBO_UNIT_MM);
+    assert_true(fabs(grobo_deg_from_rad(j[0].min_rad) + 40) < 1e-9);
+    assert_true(fabs(grobo_deg_from_rad(j[0].max_rad) - 100) < 1e-9);
+    assert_true(fabs(grobo_deg_from_rad(j[0].init_rad) - 20) < 1e-9);
+    assert_true(fabs(grobo_deg_from_rad(def->rest_rad[0]) - 10) < 1e-9);
+    assert_true(fabs(grobo_deg_from_rad(j[0].max_speed_rad_s) - 30) < 1e-9);
+    assert_true(fabs(grobo_deg_from_rad(j[0].unit_rad) - 10) < 1e-9 && j[0].unit_zero_rad == 0);
+    assert_int_equal(j[1].unit, GROBO_UNIT_PCT);
+    assert_true(fabs(grobo_deg_from_rad(j[1].unit_zero_rad) - 90) < 1e-9);
+    assert_true(fabs(grobo_deg_from_rad(j[1].unit_rad) + 1) < 1e-9);
+    assert_int_equal(j[2].unit, GROBO_UNIT_DEG);
+    assert_true(j[2].unit_rad == 0);
     grobo_robot_def_free(def);
 }
 

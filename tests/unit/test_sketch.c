@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/unit.h>
+
 #include "tests/support/tables.h"
 #include "tests/support/test.h"
 #include "tools/grctl/conn/family.h"
@@ -201,6 +203,26 @@ TEST(what_a_file_cannot_have_is_left_out)
     grobo_robot_def *def =
         arm("<robot name='r'>" LINKS ONE("revolute", "<mimic joint='two'/>") TWO "</robot>");
     assert_int_equal(def->model->n_joints, 1);
+    grobo_robot_def_free(def);
+}
+
+/* A rack of 20 mm: half a turn of the servo, as nobody knows better. */
+TEST(a_joint_that_slides_is_linear)
+{
+    need_xml();
+    grobo_robot_def *def =
+        arm("<robot name='r'>" LINKS ONE("prismatic", "<limit lower='-0.005' upper='0.015' "
+                                                      "velocity='0.01'/>") TWO "</robot>");
+    const grobo_joint *joint = &def->model->joints[0];
+    assert_int_equal(def->model->n_joints, 2);
+    assert_string_equal(joint->name, "joint_j3");
+    assert_int_equal(joint->unit, GROBO_UNIT_MM);
+    near(grobo_model_value(def->model, 0, joint->min_rad), -5, 1e-4);
+    near(grobo_model_value(def->model, 0, joint->max_rad), 15, 1e-4);
+    near(grobo_model_change(def->model, 0, joint->max_speed_rad_s), 10, 1e-3);
+    near(joint->max_rad - joint->min_rad, grobo_rad_from_deg(180), 1e-4);
+    assert_int_equal(def->links[1].joint, -1); /* drawn fixed */
+    assert_int_equal(def->links[2].joint, 1);
     grobo_robot_def_free(def);
 }
 

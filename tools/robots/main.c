@@ -72,6 +72,10 @@ static void print_joints(const grobo_model *model)
             printf(", .follows = %u, .ratio = %.17g, .apart_rad = %s", j->follows, j->ratio,
                    rad(j->apart_rad));
         }
+        if (j->unit != 0) {
+            printf(", .unit = %u, .unit_zero_rad = %s, .unit_rad = %.17g", j->unit,
+                   rad(j->unit_zero_rad), j->unit_rad);
+        }
         printf("},\n");
     }
     printf("};\n\n");

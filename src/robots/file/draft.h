@@ -6,7 +6,7 @@
 #include "src/motion/format/fields.h"
 #include "src/robots/robots.h"
 
-enum { GROBO_I_KEYS_MAX = 24 };
+enum { GROBO_I_KEYS_MAX = 32 };
 
 typedef char grobo_i_name[GROBO_NAME_MAX_BYTES];
 
@@ -42,6 +42,9 @@ typedef struct grobo_i_joint_draft {
     int twin; /* of its second servo, which is a joint of its own: the first one; else -1 */
     double id, limits_deg[2], init_deg, rest_deg, speed_deg_s, torque_limit_pct, free_ma, sign,
         zero_deg, gear, mirror_sign, readback_deg;
+    /* Of a linear joint, which have degrees in their place when the joint is read; and angles of a
+     * gripper that is closed and open. */
+    double limits_mm[2], init_mm, rest_mm, speed_mm_s, mm_per_turn, percent_deg[2];
     bool turns;
     grobo_i_motor_draft motor;
 } grobo_i_joint_draft;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <grobo/core/unit.h>
 #include <grobo/posture.h>
 
 #include "src/model/joint.h"
@@ -305,6 +306,25 @@ static void check_unique(const maker *m, int j)
     }
 }
 
+/* What people give the joint in. */
+static void make_unit(const maker *m, int j, grobo_joint *joint)
+{
+    const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    if (joint_has(m, j, "mm_per_turn")) {
+        joint->unit = GROBO_UNIT_MM;
+        joint->unit_rad = grobo_rad_from_deg(360) / draft->mm_per_turn;
+    }
+    if (joint_has(m, j, "percent_deg")) {
+        joint->unit = GROBO_UNIT_PCT;
+        joint->unit_zero_rad = grobo_rad_from_deg(draft->percent_deg[0]);
+        joint->unit_rad = grobo_rad_from_deg(draft->percent_deg[1] - draft->percent_deg[0]) / 100;
+        if (joint->unit_rad == 0) {
+            (void)complain(m, joint_place(m, j, "percent_deg"), "range",
+                           "%s: 0 and 100 %% cannot be one angle", draft->name);
+        }
+    }
+}
+
 /* What the file says of a joint's motor; a key that is missing is 0, the servo's own. */
 static void make_motor(const maker *m, int j)
 {
@@ -349,6 +369,7 @@ static void make_joint(const maker *m, int j)
         check_coupling(m, j);
     }
     make_limits(m, j, joint);
+    make_unit(m, j, joint);
     find_servo(m, j, joint);
     check_unique(m, j);
     if (*draft->mirror != '\0') {
@@ -552,6 +573,11 @@ static void make_link(const maker *m, int index)
         link->joint = (int8_t)find_joint(
             m, draft->joint,
             grobo_i_place_of(GROBO_I_BLOCK_LINK, draft->at, draft->place, "joint"));
+        if (link->joint >= 0 && m->file->joints[link->joint].unit == GROBO_UNIT_MM) {
+            (void)complain(m, draft->place, "joint",
+                           "link %s: a linear joint turns no link; leave 'joint' and 'axis' out",
+                           draft->name);
+        }
         if (fabs(length - 1) > 1e-6) {
             (void)complain(m, draft->place, "axis", "link %s: its 'axis' must be of length 1",
                            draft->name);

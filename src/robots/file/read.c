@@ -134,6 +134,22 @@ static const key_row joint_keys[] = {
      .offset = offsetof(JOINT, limits_deg),
      .low = -360000,
      .high = 360000},
+    {.name = "limits_mm",
+     .kind = KEY_NUMBER,
+     .count = 2,
+     .offset = offsetof(JOINT, limits_mm),
+     .low = -100000,
+     .high = 100000},
+    NUMBER("mm_per_turn", JOINT, mm_per_turn, 0.01, 100000),
+    NUMBER("init_mm", JOINT, init_mm, -100000, 100000),
+    NUMBER("rest_mm", JOINT, rest_mm, -100000, 100000),
+    NUMBER("speed_mm_s", JOINT, speed_mm_s, 0.01, 100000),
+    {.name = "percent_deg",
+     .kind = KEY_NUMBER,
+     .count = 2,
+     .offset = offsetof(JOINT, percent_deg),
+     .low = -360000,
+     .high = 360000},
     NUMBER("init_deg", JOINT, init_deg, -360000, 360000),
     NUMBER("rest_deg", JOINT, rest_deg, -360000, 360000),
     NUMBER("speed_deg_s", JOINT, speed_deg_s, 1, 10000),
@@ -428,6 +444,49 @@ static int missing(grobo_i_events *events, const grobo_i_joint_draft *joint, con
                             "a joint has no '%s'", key);
 }
 
+/* Keys of a linear joint, and the keys in whose place they stand. */
+static const char *const in_mm[][2] = {{"limits_mm", "limits_deg"},
+                                       {"init_mm", "init_deg"},
+                                       {"rest_mm", "rest_deg"},
+                                       {"speed_mm_s", "speed_deg_s"}};
+enum { N_IN_MM = sizeof in_mm / sizeof in_mm[0] };
+
+/* A linear joint is an angle like any other from here on; what it says in millimetres takes the
+ * place of what it would say in degrees. */
+static int take_mm(grobo_i_events *events, grobo_i_joint_draft *joint)
+{
+    bool linear = grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "mm_per_turn");
+    const double *from[N_IN_MM] = {joint->limits_mm, &joint->init_mm, &joint->rest_mm,
+                                   &joint->speed_mm_s};
+    double *to[N_IN_MM] = {joint->limits_deg, &joint->init_deg, &joint->rest_deg,
+                           &joint->speed_deg_s};
+    int result = 0;
+    for (int i = 0; i < N_IN_MM && result == 0; i++) {
+        const grobo_i_place place = joint->at[index_of(GROBO_I_BLOCK_JOINT, in_mm[i][0])];
+        grobo_i_place *other = &joint->at[index_of(GROBO_I_BLOCK_JOINT, in_mm[i][1])];
+        if (place.line == 0) {
+            continue;
+        }
+        if (!linear || other->line > 0) {
+            result = grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "keys", place,
+                                      linear ? "%s: '%s' and '%s' cannot be used together"
+                                             : "%s: '%s' needs 'mm_per_turn'",
+                                      joint->name, in_mm[i][0], in_mm[i][1]);
+            continue;
+        }
+        for (int k = 0; k < (i == 0 ? 2 : 1); k++) {
+            to[i][k] = from[i][k] * 360 / joint->mm_per_turn;
+        }
+        *other = place;
+    }
+    if (result == 0 && linear && grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "percent_deg")) {
+        result = grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "keys", joint->place,
+                                  "%s: 'percent_deg' and 'mm_per_turn' cannot be used together",
+                                  joint->name);
+    }
+    return result;
+}
+
 /* Keys of a joint of which one makes another needless. */
 static int check_joint(grobo_i_events *events, const grobo_i_joint_draft *joint)
 {
@@ -491,6 +550,7 @@ static int read_joint(grobo_i_events *events, void *target)
     joint->sign = joint->mirror_sign = joint->ratio = 1;
     joint->twin = -1;
     result = read_block(events, GROBO_I_BLOCK_JOINT, joint, joint->at, &joint->place);
+    result = result == 0 ? take_mm(events, joint) : result;
     result = result == 0 ? check_joint(events, joint) : result;
     bool two = result == 0 && grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "servos");
     return two ? add_twin(events, draft) : result;

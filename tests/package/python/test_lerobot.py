@@ -154,6 +154,22 @@ class Plugin(unittest.TestCase):
         self.assertEqual(set(seen), set(robot.observation_features))
         self.drive(robot, target, lambda s: abs(s["gripper.pos"] - 20) < 0.5)
 
+    def test_units_of_the_robots_file_hold(self):
+        file = self.folder / "lift.yaml"
+        file.write_text(
+            "name: lift\nfamily: feetech\nexit: off\njoints:\n"
+            "  - {name: turn, id: 1, servo: STS3215, limits_deg: [-110, 110]}\n"
+            "  - {name: height, id: 2, servo: STS3215, limits_mm: [0, 60], mm_per_turn: 180}\n"
+            "  - {name: gripper, id: 3, servo: STS3215, limits_deg: [-20, 90],"
+            " percent_deg: [90, -10]}\n"
+        )
+        scale = Scale(grobo.Description(str(file)), ("gripper",), {})
+        joint = mock.Mock()
+        for name, shown, deg in ("turn", 30, 30), ("height", 30, 60), ("gripper", 75, 15):
+            joint.name = name
+            self.assertAlmostEqual(math.degrees(scale.angle(joint, shown)), deg)
+            self.assertAlmostEqual(scale.shown(joint, math.radians(deg)), shown)
+
     def test_a_gripper_is_a_part_of_its_range(self):
         """As LeRobot has it: 0 closed, 100 open; degrees where that is asked for."""
         robot = self.make(max_relative_target=None)

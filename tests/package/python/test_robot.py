@@ -31,6 +31,41 @@ def until(condition):
         time.sleep(0.005)
 
 
+LIFT = """
+name: lift
+family: feetech
+exit: off
+joints:
+  - {name: turn, id: 1, servo: STS3215, limits_deg: [-110, 110]}
+  - {name: height, id: 2, servo: STS3215, limits_mm: [0, 60], mm_per_turn: 180}
+  - {name: grip, id: 3, servo: STS3215, limits_deg: [-10, 90], percent_deg: [90, -10]}
+"""
+
+
+class Units(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.file = Path(folder.name, "lift.yaml")
+        self.file.write_text(LIFT)
+
+    def test_a_joint_is_given_in_its_unit(self):
+        with grobo.connect("sim", robot=self.file) as robot:
+            self.assertEqual(robot.description.units, {"turn": "deg", "height": "mm", "grip": "%"})
+            for name, value, deg in ("turn", -20, -20), ("height", 30, 60), ("grip", 75, 15):
+                joint = robot[name]
+                joint.move(value=value, time=0.3)
+                self.assertAlmostEqual(joint.value, value, delta=0.3)
+                self.assertAlmostEqual(joint.deg, deg, delta=0.3)
+                self.assertEqual(joint.unit, robot.description.units[name])
+                self.assertAlmostEqual(joint.status.value, value, delta=0.3)
+                self.assertEqual(joint.status.unit, joint.unit)
+            with self.assertRaises(errors.Limit):
+                robot["height"].move(value=61)
+            with self.assertRaises(TypeError):
+                robot["height"].move(value=1, deg=1)
+
+
 class Moving(unittest.TestCase):
     def setUp(self):
         self.robot = grobo.connect("sim")

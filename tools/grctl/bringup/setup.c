@@ -2,6 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <grobo/core/unit.h>
+
 #include "tools/grctl/bringup/ask.h"
 #include "tools/grctl/bringup/checkup.h"
 #include "tools/grctl/bringup/found.h"
@@ -402,8 +404,9 @@ static int read_joints(guide *g)
             g->n_setup++;
             app_note(a, "  %-16s %s; %s", grobo_model_joint(model, j)->name, why.fact, why.fix);
         } else if (read) {
-            app_note(a, "  %-16s %7.1f deg", grobo_model_joint(model, j)->name,
-                     grobo_deg_from_rad(i.state.angle_rad));
+            app_note(a, "  %-16s %7.1f %s", grobo_model_joint(model, j)->name,
+                     grobo_model_value(model, j, i.state.angle_rad),
+                     grobo_unit_name(grobo_model_unit(model, j)));
         } else {
             app_note(a, "  %-16s does not answer as it should; see 'grctl -d %s doctor'",
                      grobo_model_joint(model, j)->name, g->name);

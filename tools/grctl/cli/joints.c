@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <string.h>
 
 #include "tools/grctl/cli/joints.h"
@@ -116,6 +117,85 @@ int joints_parse_one(app *a, const char *name, size_t length, int *status)
     return -1;
 }
 
+bool joints_read_angle(const grobo_model *model, int joint, const char *text, double *angle_rad)
+{
+    char number[64];
+    size_t length = strspn(text, "0123456789+-.eE");
+    /* The e of "5e1", and not that of "deg". */
+    const char *unit = text + length;
+    double value;
+    if (length >= sizeof number) {
+        return false;
+    }
+    memcpy(number, text, length);
+    number[length] = '\0';
+    if (!cli_read_number(number, &value)) {
+        return false;
+    }
+    if (strcmp(unit, "deg") == 0) {
+        *angle_rad = grobo_rad_from_deg(value);
+        return true;
+    }
+    *angle_rad = grobo_model_angle(model, joint, value);
+    return *unit == '\0' || strcmp(unit, grobo_unit_name(grobo_model_unit(model, joint))) == 0;
+}
+
+static const char *value_text(double value, const char *unit, int decimals, char *buffer)
+{
+    double least = pow(10, -decimals) / 2;
+    snprintf(buffer, JOINTS_TEXT_BYTES, "%.*f %s", decimals, fabs(value) < least ? 0.0 : value,
+             unit); /* no -0.0 */
+    return buffer;
+}
+
+const char *joints_text(const grobo_model *model, int joint, double angle_rad, int decimals,
+                        char *buffer)
+{
+    return value_text(grobo_model_value(model, joint, angle_rad),
+                      grobo_unit_name(grobo_model_unit(model, joint)), decimals, buffer);
+}
+
+const char *joints_error_text(const grobo_model *model, int joint, double deg, char *buffer)
+{
+    return value_text(fabs(grobo_model_change(model, joint, grobo_rad_from_deg(deg))),
+                      grobo_unit_name(grobo_model_unit(model, joint)), 1, buffer);
+}
+
+const char *joints_mark(const grobo_model *model, int joint)
+{
+    grobo_unit unit = grobo_model_unit(model, joint);
+    return unit == GROBO_UNIT_DEG ? "  " : unit == GROBO_UNIT_MM ? "mm" : "% ";
+}
+
+void joints_add_unit(json_t *object, const grobo_model *model, int joint)
+{
+    grobo_unit unit = grobo_model_unit(model, joint);
+    if (unit != GROBO_UNIT_DEG) {
+        json_object_set_new(object, "unit", json_string(grobo_unit_name(unit)));
+    }
+}
+
+void joints_add_scale(json_t *object, const grobo_model *model, int joint)
+{
+    const grobo_joint *j = grobo_model_joint(model, joint);
+    if (grobo_model_unit(model, joint) != GROBO_UNIT_DEG) {
+        joints_add_unit(object, model, joint);
+        json_object_set_new(object, "unit_zero_deg",
+                            app_json_number(grobo_deg_from_rad(j->unit_zero_rad), 6));
+        json_object_set_new(object, "unit_deg",
+                            app_json_number(grobo_deg_from_rad(j->unit_rad), 9));
+    }
+}
+
+void joints_add_value(json_t *object, const char *key, const grobo_model *model, int joint,
+                      double angle_rad)
+{
+    if (grobo_model_unit(model, joint) != GROBO_UNIT_DEG) {
+        json_object_set_new(object, key,
+                            app_json_number(grobo_model_value(model, joint, angle_rad), 2));
+    }
+}
+
 int joints_check_limits(app *a, const grobo_posture *posture, const char *doing)
 {
     int joint = 0;
@@ -123,11 +203,15 @@ int joints_check_limits(app *a, const grobo_posture *posture, const char *doing)
     if (!error) {
         return 0;
     }
-    const grobo_joint *j = grobo_model_joint(app_model(a), joint);
+    const grobo_model *model = app_model(a);
+    const grobo_joint *j = grobo_model_joint(model, joint);
+    double low = grobo_model_value(model, joint, j->min_rad);
+    double high = grobo_model_value(model, joint, j->max_rad);
+    char text[JOINTS_TEXT_BYTES];
     return app_fail(a, EXIT_SAFETY, grobo_error_name(error),
-                    "%s: %s (motor %d) to %.1f deg is outside its limits %.0f to %.0f", doing,
-                    j->name, j->motor, grobo_deg_from_rad(posture->angle_rad[joint]),
-                    grobo_deg_from_rad(j->min_rad), grobo_deg_from_rad(j->max_rad));
+                    "%s: %s (motor %d) to %s is outside its limits %.0f to %.0f", doing, j->name,
+                    j->motor, joints_text(model, joint, posture->angle_rad[joint], 1, text),
+                    fmin(low, high), fmax(low, high));
 }
 
 json_t *joints_json(grobo_joint_mask joints)

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* joints: the robot's table of joints. Offline. */
+#include <math.h>
 #include <string.h>
 
-#include <grobo/model.h>
+#include <grobo/core/unit.h>
 
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cmd/commands.h"
@@ -36,9 +37,11 @@ static void print_joint(const grobo_model *model, int joint)
         snprintf(names + at, sizeof names - at, "%s(follows %s)", at ? " " : "",
                  grobo_model_joint(model, j->follows)->name);
     }
-    app_print("%-12s  %5s  %5s  %6d  %4.0f  %4.0f  %4.0f  %s\n", j->name, number, motor, j->motor,
-              grobo_deg_from_rad(j->min_rad), grobo_deg_from_rad(j->max_rad),
-              grobo_deg_from_rad(j->init_rad), names);
+    double low = grobo_model_value(model, joint, j->min_rad);
+    double high = grobo_model_value(model, joint, j->max_rad);
+    app_print("%-12s  %5s  %5s  %6d  %4.0f  %4.0f  %4.0f%s%s\n", j->name, number, motor, j->motor,
+              fmin(low, high), fmax(low, high), grobo_model_value(model, joint, j->init_rad),
+              joints_mark(model, joint), names);
 }
 
 static json_t *joint_json(const grobo_model *model, int joint)
@@ -54,6 +57,10 @@ static json_t *joint_json(const grobo_model *model, int joint)
         json_object_set_new(row, "follows", json_integer(j->follows));
         json_object_set_new(row, "ratio", app_json_number(j->ratio, 6));
     }
+    joints_add_unit(row, model, joint);
+    joints_add_value(row, "at_min", model, joint, j->min_rad);
+    joints_add_value(row, "at_max", model, joint, j->max_rad);
+    joints_add_value(row, "init", model, joint, j->init_rad);
     return row;
 }
 
@@ -91,9 +98,9 @@ const cli_command cmd_joints = {
     .summary = "list joints: names, motors, servo ids, limits, groups",
     .details = "Prints the robot's joints, or those named: the three names that a command takes\n"
                "(R_KNEE_P, j3, m9), the servo's id on the bus, the limits and the initial posture\n"
-               "in degrees, and the groups. Every joint is also in the group all. The table is\n"
-               "that of the robot's model: no robot is asked, and trims of a configured robot are\n"
-               "not in it.\n",
+               "in degrees (of linear joints in mm, of grippers with a range in percent), and the\n"
+               "groups. Every joint is also in the group all. The table is that of the robot's\n"
+               "model: no robot is asked, and trims of a configured robot are not in it.\n",
     .example = "  grctl joints\n  grctl joints right_arm --json\n",
     .run = run,
 };

@@ -5,6 +5,7 @@
 
 #include <grobo/estop.h>
 
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/lang/lang.h"
@@ -120,17 +121,19 @@ static void toggle_torque(monitor *m)
 }
 
 /* Would the way lead out of the limits, from where the joint already stands? */
-static bool is_at_limit(const grobo_joint *j, double from_rad, double by_deg)
+static bool is_at_limit(const grobo_joint *j, double from_rad, double by_rad)
 {
     double near_rad = grobo_rad_from_deg(0.05);
-    return by_deg > 0 ? from_rad > j->max_rad - near_rad : from_rad < j->min_rad + near_rad;
+    return by_rad > 0 ? from_rad > j->max_rad - near_rad : from_rad < j->min_rad + near_rad;
 }
 
-/* Only what holds is nudged: a limp joint may stand where its weight took it. */
-static void nudge(monitor *m, double by_deg)
+/* Only what holds is nudged: a limp joint may stand where its weight took it. By so many degrees,
+ * or what else the joint is given in. */
+static void nudge(monitor *m, double by)
 {
     grobo_posture target;
-    const grobo_joint *at_limit = NULL;
+    int at_limit = -1;
+    double limit_rad = 0;
     if (!may_move(m)) {
         return;
     }
@@ -142,15 +145,19 @@ static void nudge(monitor *m, double by_deg)
             continue;
         }
         double from_rad = i.has_target ? i.target_rad : i.state.angle_rad;
-        if (is_at_limit(grobo_model_joint(m->model, j), from_rad, by_deg)) {
-            at_limit = grobo_model_joint(m->model, j);
+        const grobo_joint *joint = grobo_model_joint(m->model, j);
+        double by_rad = grobo_model_angle(m->model, j, by) - grobo_model_angle(m->model, j, 0);
+        if (is_at_limit(joint, from_rad, by_rad)) {
+            at_limit = j;
+            limit_rad = by_rad > 0 ? joint->max_rad : joint->min_rad;
             continue;
         }
-        grobo_posture_set_rad(&target, j, from_rad + grobo_rad_from_deg(by_deg));
+        grobo_posture_set_rad(&target, j, from_rad + by_rad);
     }
-    if (!target.set && at_limit) {
-        say(m, true, "%s is at its limit: %.0f deg", at_limit->name,
-            grobo_deg_from_rad(by_deg > 0 ? at_limit->max_rad : at_limit->min_rad));
+    if (!target.set && at_limit >= 0) {
+        char text[JOINTS_TEXT_BYTES];
+        say(m, true, "%s is at its limit: %s", grobo_model_joint(m->model, at_limit)->name,
+            joints_text(m->model, at_limit, limit_rad, 0, text));
         return;
     }
     if (!target.set) {
@@ -220,10 +227,10 @@ static bool take_choice(monitor *m, int key)
 static bool take_nudge(monitor *m, int key)
 {
     static const char nudges[] = "[]{}";
-    static const double by_deg[] = {-1, 1, -5, 5};
+    static const double by[] = {-1, 1, -5, 5};
     const char *found = key > 0 && key < 128 ? strchr(nudges, key) : NULL;
     if (found) {
-        nudge(m, by_deg[found - nudges]);
+        nudge(m, by[found - nudges]);
     }
     return found != NULL;
 }

@@ -31,11 +31,14 @@ static void report(const conn *c, const grobo_posture *target)
         app_print_json(json_pack("{s:o,s:o}", "joints", render_joints_json(c, target->set),
                                  "max_error_deg", app_json_number(joint < 0 ? NAN : worst, 2)));
     } else if (joint >= 0) {
-        const char *name = grobo_model_joint(conn_model(c), joint)->name;
+        const grobo_model *model = conn_model(c);
+        const char *name = grobo_model_joint(model, joint)->name;
+        char text[JOINTS_TEXT_BYTES];
+        joints_error_text(model, joint, worst, text);
         if (worst < there_deg) {
-            app_note(c->a, "done; largest error %.1f deg (%s)", worst, name);
+            app_note(c->a, "done; largest error %s (%s)", text, name);
         } else {
-            app_note(c->a, "not reached: largest error %.1f deg (%s); is it blocked?", worst, name);
+            app_note(c->a, "not reached: largest error %s (%s); is it blocked?", text, name);
         }
     }
 }
@@ -100,27 +103,40 @@ static int run_init(app *a)
     return go(a, &target, "init");
 }
 
+static int fail_angle(app *a, const char *doing, int joint, const char *text)
+{
+    switch (grobo_model_unit(app_model(a), joint)) {
+    case GROBO_UNIT_DEG:
+        return app_fail(a, EXIT_USAGE, "ARG", "%s: '%s' is not an angle in degrees", doing, text);
+    case GROBO_UNIT_MM:
+        return app_fail(a, EXIT_USAGE, "ARG", "%s: '%s' is not a place in mm", doing, text);
+    case GROBO_UNIT_PCT:
+        return app_fail(a, EXIT_USAGE, "ARG", "%s: '%s' is not a number of percent", doing, text);
+    }
+    return EXIT_USAGE;
+}
+
 static int run_move(app *a)
 {
     const char *name = a->line.argument[0];
     const char *angle = a->line.argument[1];
     const char *time = a->line.n_arguments > 2 ? a->line.argument[2] : NULL;
     grobo_posture target;
-    double deg, ms = MOVE_MS;
+    double angle_rad, ms = MOVE_MS;
     int status = 0;
     int joint = joints_parse_one(a, name, strlen(name), &status);
     if (joint < 0) {
         return status;
     }
-    if (!cli_read_number(angle, &deg)) {
-        return app_fail(a, EXIT_USAGE, "ARG", "move: '%s' is not an angle in degrees", angle);
+    if (!joints_read_angle(app_model(a), joint, angle, &angle_rad)) {
+        return fail_angle(a, "move", joint, angle);
     }
     if (time && (!cli_read_number(time, &ms) || ms < 0 || ms > LONGEST_MS)) {
         return app_fail(a, EXIT_USAGE, "ARG", "move: '%s' is not a time of 0 to %d ms", time,
                         LONGEST_MS);
     }
     grobo_posture_init(&target, app_model(a)->n_joints);
-    grobo_posture_set_deg(&target, joint, deg);
+    grobo_posture_set_rad(&target, joint, angle_rad);
     grobo_posture_set_time_ms(&target, ms);
     status = joints_check_limits(a, &target, "move");
     return status ? status : go(a, &target, "move");
@@ -164,20 +180,21 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
 static int pose_of_joint(app *a, const char *text, grobo_posture *target)
 {
     size_t length = strcspn(text, "=");
-    double deg;
+    double angle_rad;
     int status = 0;
     int joint = joints_parse_one(a, text, length, &status);
     if (joint < 0) {
         return status;
     }
-    if (text[length] != '=' || !cli_read_number(text + length + 1, &deg)) {
+    if (text[length] != '=' ||
+        !joints_read_angle(app_model(a), joint, text + length + 1, &angle_rad)) {
         return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not JOINT=DEG", text);
     }
     if (target->set & GROBO_JOINT_BIT(joint)) {
         return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s': %s is there twice", text,
                         grobo_model_joint(app_model(a), joint)->name);
     }
-    grobo_posture_set_deg(target, joint, deg);
+    grobo_posture_set_rad(target, joint, angle_rad);
     return 0;
 }
 
@@ -208,13 +225,12 @@ static int joint_in_order(const grobo_model *model, int i)
 static int pose_of_motors(app *a, grobo_posture *target)
 {
     for (int i = 0; i < a->line.n_arguments; i++) {
-        double deg;
+        double angle_rad;
         int joint = joint_in_order(app_model(a), i);
-        if (joint < 0 || !cli_read_number(a->line.argument[i], &deg)) {
-            return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not an angle in degrees",
-                            a->line.argument[i]);
+        if (joint < 0 || !joints_read_angle(app_model(a), joint, a->line.argument[i], &angle_rad)) {
+            return fail_angle(a, "pose", joint, a->line.argument[i]);
         }
-        grobo_posture_set_deg(target, joint, deg);
+        grobo_posture_set_rad(target, joint, angle_rad);
     }
     return 0;
 }
@@ -253,7 +269,8 @@ const cli_command cmd_pose = {
         "Moves all joints (an angle each in the order of the motors, as a line of a .m file\n"
         "has them), those named, or to posture N of a motion file (the first). All\n"
         "start and arrive together. An angle outside a joint's limits is refused with\n"
-        "exit status 4, and nothing moves.\n",
+        "exit status 4, and nothing moves. Linear joints and grippers with a range are given\n"
+        "in mm and percent, as 'grctl joints' lists them.\n",
     .example = "  grctl pose R_ELBOW_P=-45 L_ELBOW_P=45\n"
                "  grctl pose --time 3000 @motions/greet.pseq:2\n",
     COMMAND_OPTIONS(pose_options),
@@ -276,9 +293,14 @@ const cli_command cmd_move = {
     .name = "move",
     COMMAND_ARGUMENTS("JOINT DEG [MS]", 2, 3, CLI_ARG_JOINT),
     .summary = "move one joint",
-    .details = "Moves one joint to an angle, in the time given (1000 ms) or as much longer as the\n"
-               "servo needs, and reads back where it is. Torque comes on where it is off. An\n"
-               "angle outside the joint's limits is refused with exit status 4.\n",
-    .example = "  grctl move R_KNEE_P -40\n  grctl move m2 15 500\n",
+    .details =
+        "Moves one joint to an angle, in the time given (1000 ms) or as much longer as the\n"
+        "servo needs, and reads back where it is. Torque comes on where it is off. An\n"
+        "angle outside the joint's limits is refused with exit status 4. A linear joint is\n"
+        "given in mm, a gripper with a range in percent; a unit may stand behind the number\n"
+        "(50%, 120mm, -40deg).\n",
+    .example = "  grctl move R_KNEE_P -40\n"
+               "  grctl move m2 15 500\n"
+               "  grctl move gripper 50%\n",
     .run = run_move,
 };

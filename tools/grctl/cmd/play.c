@@ -6,6 +6,7 @@
 
 #include <grobo/core/robot.h>
 
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/lang/lang.h"
@@ -177,8 +178,9 @@ static json_t *summary_json(const conn *c, deviation following, deviation end)
 
 static void print_deviation(const conn *c, const char *what, deviation d)
 {
+    char text[JOINTS_TEXT_BYTES];
     if (d.joint >= 0) {
-        app_print("%s %.1f deg (%s)\n", what, d.deg,
+        app_print("%s %s (%s)\n", what, joints_error_text(conn_model(c), d.joint, d.deg, text),
                   grobo_model_joint(conn_model(c), d.joint)->name);
     }
 }

@@ -114,6 +114,15 @@ static json_t *joint_json(const plot_curve *curve)
                              "beyond_limits", plot_beyond(curve), "too_fast_ms", spans_json(curve));
     json_object_update(o, limited);
     json_object_update(o, seen);
+    if (curve->model) {
+        joints_add_unit(o, curve->model, curve->joint);
+    }
+    if (curve->model && curve->set) {
+        joints_add_value(o, "at_min", curve->model, curve->joint,
+                         grobo_rad_from_deg(curve->min_deg));
+        joints_add_value(o, "at_max", curve->model, curve->joint,
+                         grobo_rad_from_deg(curve->max_deg));
+    }
     json_decref(limited);
     json_decref(seen);
     return o;

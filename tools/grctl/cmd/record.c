@@ -163,8 +163,10 @@ static size_t add_angle(const recorder *r, const grobo_posture *now, int joint, 
                         size_t capacity)
 {
     const grobo_model *model = conn_model(&r->c);
-    int n = snprintf(text, capacity, "  %s %.1f", grobo_model_joint(model, joint)->name,
-                     grobo_deg_from_rad(now->angle_rad[joint]));
+    grobo_unit unit = grobo_model_unit(model, joint);
+    int n = snprintf(text, capacity, "  %s %.1f%s", grobo_model_joint(model, joint)->name,
+                     grobo_model_value(model, joint, now->angle_rad[joint]),
+                     unit == GROBO_UNIT_DEG ? "" : grobo_unit_name(unit));
     return n > 0 && (size_t)n < capacity ? (size_t)n : 0;
 }
 

@@ -164,6 +164,24 @@ static size_t count_linked(const grobo_motion *motion)
     return n;
 }
 
+/* "degrees", or of which joints not: "degrees, gripper in %". */
+static const char *units_of(const show_rows *rows, char *text, size_t capacity)
+{
+    size_t used = (size_t)snprintf(text, capacity, "degrees");
+    for (int c = 0; c < rows->n_joints && used < capacity; c++) {
+        int joint = rows->joint[c];
+        grobo_unit unit = rows->model && joint < rows->model->n_joints && !show_is_steps(rows)
+                              ? grobo_model_unit(rows->model, joint)
+                              : GROBO_UNIT_DEG;
+        if (unit != GROBO_UNIT_DEG) {
+            used += (size_t)snprintf(text + used, capacity - used, ", %s in %s",
+                                     grobo_model_joint(rows->model, joint)->name,
+                                     grobo_unit_name(unit));
+        }
+    }
+    return text;
+}
+
 static void print_head(const app *a, const show_rows *rows, const char *path, const char *format)
 {
     const grobo_motion *motion = rows->motion;
@@ -171,13 +189,13 @@ static void print_head(const app *a, const show_rows *rows, const char *path, co
                                        : (double)grobo_motion_length_us(motion, -1);
     size_t linked = count_linked(motion);
     const char *name = grobo_motion_name(motion), *body = grobo_motion_target_body(motion);
-    char rate[32] = "";
+    char rate[32] = "", units[APP_LINE_BYTES];
     if (grobo_motion_frame_rate(motion) > 0 && !grobo_motion_has_frame_times(motion)) {
         snprintf(rate, sizeof rate, " at %.5g Hz", grobo_motion_frame_rate(motion));
     }
-    app_print_line("%s: %s%s%s%s%s%s, %zu %s%s, %.3f s, angles in degrees", path, format,
+    app_print_line("%s: %s%s%s%s%s%s, %zu %s%s, %.3f s, angles in %s", path, format,
                    *name ? " \"" : "", name, *name ? "\"" : "", *body ? " for " : "", body, rows->n,
-                   row_word(rows), rate, length_us / 1e6);
+                   row_word(rows), rate, length_us / 1e6, units_of(rows, units, sizeof units));
     if (rows->played.body) {
         app_print("legs by inverse kinematics\n");
     } else if (linked) {

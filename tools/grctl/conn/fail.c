@@ -5,6 +5,8 @@
  */
 #include <string.h>
 
+#include <grobo/core/unit.h>
+
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/family.h"
@@ -250,9 +252,11 @@ static int fail_limit(conn *c, int joint, const char *prefix, const char *who)
                               conn_device(c), prefix, who);
     }
     return app_fail(c->a, app_status_of(GROBO_ERR_LIMIT), grobo_error_name(GROBO_ERR_LIMIT),
-                    "%s: %s%s: outside its limits; it was calibrated to go from %.0f to %.0f deg",
-                    conn_device(c), prefix, who, grobo_deg_from_rad(info.state.low_rad),
-                    grobo_deg_from_rad(info.state.high_rad));
+                    "%s: %s%s: outside its limits; it was calibrated to go from %.0f to %.0f %s",
+                    conn_device(c), prefix, who,
+                    grobo_model_value(conn_model(c), joint, info.state.low_rad),
+                    grobo_model_value(conn_model(c), joint, info.state.high_rad),
+                    grobo_unit_name(grobo_model_unit(conn_model(c), joint)));
 }
 
 /* It goes where another program has sent it, or falls. */

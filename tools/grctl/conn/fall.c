@@ -10,6 +10,7 @@
 
 #include <grobo/core/sim_physics.h>
 #include <grobo/core/sim_static.h>
+#include <grobo/core/unit.h>
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/robot.h"
@@ -105,8 +106,9 @@ bool fall_note(conn *c, grobo_joint_mask joints)
     for (int j = 0; j < model->n_joints; j++) {
         size_t used = strlen(names);
         if ((f.joints & GROBO_JOINT_BIT(j)) != 0) {
-            (void)snprintf(names + used, sizeof names - used, "%s%s %.0f deg", used ? ", " : "",
-                           model->joints[j].name, grobo_deg_from_rad(f.by_rad[j]));
+            (void)snprintf(names + used, sizeof names - used, "%s%s %.0f %s", used ? ", " : "",
+                           model->joints[j].name, fabs(grobo_model_change(model, j, f.by_rad[j])),
+                           grobo_unit_name(grobo_model_unit(model, j)));
         }
     }
     if (f.joints != 0) {

@@ -4,6 +4,7 @@
 
 #include <grobo/core/robot.h>
 
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/fleet/say.h"
 #include "tools/grctl/fleet/spool.h"
 #include "tools/grctl/fleet/wire.h"
@@ -102,10 +103,11 @@ static json_t *joints_of(const seat *s)
     json_t *list = json_array();
     for (int j = 0; j < model->n_joints; j++) {
         const grobo_joint *joint = grobo_model_joint(model, j);
-        json_array_append_new(list,
-                              json_pack("{s:s,s:[o,o]}", "name", joint->name, "limits_deg",
-                                        app_json_number(grobo_deg_from_rad(joint->min_rad), 2),
-                                        app_json_number(grobo_deg_from_rad(joint->max_rad), 2)));
+        json_t *row = json_pack("{s:s,s:[o,o]}", "name", joint->name, "limits_deg",
+                                app_json_number(grobo_deg_from_rad(joint->min_rad), 2),
+                                app_json_number(grobo_deg_from_rad(joint->max_rad), 2));
+        joints_add_scale(row, model, j);
+        json_array_append_new(list, row);
     }
     return list;
 }

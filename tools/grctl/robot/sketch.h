@@ -33,6 +33,7 @@ typedef struct sketch_part {
     int order; /* of joints: the smaller first; equal: as they were added */
     bool limited;
     double limits_rad[2];
+    double mm_per_turn; /* a guess, of a joint that slides; else 0. Its angles are its servo's */
     double speed_rad_s; /* at most; 0: not told */
     double gear;        /* turns of the servo for one of the joint, below 0: the other way; 0: 1 */
     double origin_m[3], origin_rad[3], axis[3], mass_kg;

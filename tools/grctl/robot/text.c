@@ -56,13 +56,31 @@ static void put_mirror(heap *to, const sketch *s, const sketch_part *part)
     }
 }
 
+/* Limits, initial posture and speed, in degrees or millimetres. */
+static void put_range(heap *to, const sketch_part *part)
+{
+    double speed_dps = grobo_deg_from_rad(part->speed_rad_s);
+    double gear = part->gear != 0 ? fabs(part->gear) : 1;
+    bool slides = part->mm_per_turn > 0;
+    double one = slides ? part->mm_per_turn / 360 : 1; /* of the unit in a degree */
+    const char *unit = slides ? "mm" : "deg";
+    heap_print(to, ", limits_%s: [%.6g, %.6g]", unit, limit(part->limits_rad[0]) * one,
+               limit(part->limits_rad[1]) * one);
+    if (slides) {
+        heap_print(to, ", mm_per_turn: %.6g", part->mm_per_turn);
+    }
+    if (part->init_rad != 0) {
+        heap_print(to, ", init_%s: %.6g", unit, limit(part->init_rad) * one);
+    }
+    if (speed_dps >= 1 && speed_dps < 0.8 * part->servo->speed_dps / gear) {
+        heap_print(to, ", speed_%s_s: %.6g", unit, speed_dps * one);
+    }
+}
+
 static void put_joint(heap *to, const sketch *s, const sketch_part *part)
 {
-    heap_print(to, "  - {name: %s, id: %d, servo: %s, limits_deg: [%.6g, %.6g]", part->called,
-               part->id, part->servo->name, limit(part->limits_rad[0]), limit(part->limits_rad[1]));
-    if (part->init_rad != 0) {
-        heap_print(to, ", init_deg: %.6g", limit(part->init_rad));
-    }
+    heap_print(to, "  - {name: %s, id: %d, servo: %s", part->called, part->id, part->servo->name);
+    put_range(to, part);
     if (part->zero_rad != 0) {
         heap_print(to, ", zero_deg: %.6g", limit(part->zero_rad));
     }
@@ -73,15 +91,14 @@ static void put_joint(heap *to, const sketch *s, const sketch_part *part)
     if (gear != 1) {
         heap_print(to, ", gear: %.6g", gear);
     }
-    double speed_dps = grobo_deg_from_rad(part->speed_rad_s);
-    if (speed_dps >= 1 && speed_dps < 0.8 * part->servo->speed_dps / gear) {
-        heap_print(to, ", speed_deg_s: %.6g", speed_dps);
-    }
     put_mirror(to, s, part);
     heap_print(to, part->turns ? ", turns: true}" : "}");
     const char *name = *part->joint ? part->joint : part->name;
     if (strcmp(name, part->called) != 0) {
         heap_print(to, " # '%s'", plain(name));
+    }
+    if (part->mm_per_turn > 0) {
+        heap_print(to, " # it slides; mm_per_turn is a guess: measure it");
     }
     if (*part->note) {
         heap_print(to, "%s %s", strcmp(name, part->called) != 0 ? ";" : " #", plain(part->note));
@@ -127,7 +144,7 @@ static void put_link(heap *to, const sketch *s, const sketch_part *part)
     if (part->above >= 0) {
         heap_print(to, ", parent: %s", s->part[part->above].shown);
     }
-    if (part->motion == SKETCH_TURNS) {
+    if (part->motion == SKETCH_TURNS && part->mm_per_turn == 0) {
         heap_print(to, ", joint: %s", part->called);
         put_vector(to, "axis", axis);
     }
@@ -140,6 +157,8 @@ static void put_link(heap *to, const sketch *s, const sketch_part *part)
     heap_print(to, "}");
     if (part->motion == SKETCH_WITHOUT) {
         heap_print(to, " # taken as fixed: %s", plain(part->note));
+    } else if (part->mm_per_turn > 0) {
+        heap_print(to, " # slides by %s; drawn where that is 0", part->called);
     }
     heap_print(to, "\n");
 }

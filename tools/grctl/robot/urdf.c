@@ -43,7 +43,8 @@ typedef struct reader {
     size_t capacity;
     const char *path;
     double soft_rad[2];
-    bool soft;
+    bool soft, slides;
+    char type[24];        /* of the joint that is being read */
     double turned_rad[3]; /* of the inertia that is being read */
     transmission *now, *transmissions;
     int n_transmissions;
@@ -116,7 +117,7 @@ static void begin_joint(reader *r, const char *const *all)
 {
     const char *type = attribute(all, "type");
     r->part = sketch_add(r->joints);
-    r->soft = false;
+    r->soft = r->slides = false;
     if (!r->part) {
         complain(r, "more than %d joints", SKETCH_PARTS_MAX);
         return;
@@ -127,10 +128,14 @@ static void begin_joint(reader *r, const char *const *all)
         complain(r, "joint '%s' has no type", r->part->joint);
     } else if (strcmp(type, "revolute") == 0 || strcmp(type, "continuous") == 0) {
         r->part->motion = SKETCH_TURNS;
+    } else if (strcmp(type, "prismatic") == 0) {
+        r->slides = true;
+        r->part->motion = SKETCH_TURNS;
     } else if (strcmp(type, "fixed") != 0) {
         r->part->motion = SKETCH_WITHOUT;
         snprintf(r->part->note, sizeof r->part->note, "joint %.40s is %.20s", r->part->joint, type);
     }
+    snprintf(r->type, sizeof r->type, "%.20s", type ? type : "");
     r->part->limited = false;
     r->part->limits_rad[0] = type && strcmp(type, "continuous") == 0 ? NAN : 0;
 }
@@ -178,6 +183,23 @@ static void take_joint(reader *r, const char *name, const char *const *all)
     }
 }
 
+/* A joint that slides is in metres. How far it goes with a turn of its servo no URDF says: such a
+ * guess that half a turn is the whole way. One without limits is left out. */
+static void take_slide(const reader *r, sketch_part *part)
+{
+    double way_mm = (part->limits_rad[1] - part->limits_rad[0]) * 1e3;
+    if (!part->limited || !(way_mm >= 0.01 && way_mm < 1e5)) {
+        part->motion = SKETCH_WITHOUT;
+        snprintf(part->note, sizeof part->note, "joint %.40s is %.20s", part->joint, r->type);
+        return;
+    }
+    part->mm_per_turn = 2 * way_mm;
+    double rad_m = grobo_rad_from_deg(360) * 1e3 / part->mm_per_turn;
+    part->limits_rad[0] *= rad_m;
+    part->limits_rad[1] *= rad_m;
+    part->speed_rad_s *= rad_m;
+}
+
 /* Softer limits hold where there are some. */
 static void end_joint(reader *r)
 {
@@ -185,6 +207,9 @@ static void end_joint(reader *r)
     if (part && part->limited && r->soft) {
         part->limits_rad[0] = fmax(part->limits_rad[0], r->soft_rad[0]);
         part->limits_rad[1] = fmin(part->limits_rad[1], r->soft_rad[1]);
+    }
+    if (part && r->slides && part->motion == SKETCH_TURNS) {
+        take_slide(r, part);
     }
     if (part && !part->limited) {
         part->limits_rad[0] = part->limits_rad[1] = 0;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include <grobo/core/robot.h>
+#include <grobo/core/unit.h>
 
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/term/screen.h"
@@ -160,8 +161,12 @@ static void draw_joint(const monitor *m, const frame *f, const monitor_cell *cel
         put_absence(f, &i, row, angle);
         return;
     }
-    double deg = grobo_deg_from_rad(i.state.angle_rad) + 0.0;
-    snprintf(text, sizeof text, "%6.*f", fabs(deg) < 9999.5 ? 1 : 0, deg);
+    double value = grobo_model_value(m->model, cell->joint, i.state.angle_rad);
+    grobo_unit unit = grobo_model_unit(m->model, cell->joint);
+    int width = unit == GROBO_UNIT_DEG ? 6 : unit == GROBO_UNIT_MM ? 5 : 6;
+    bool tenths = fabs(value) < (unit == GROBO_UNIT_MM ? 99.95 : 9999.5);
+    snprintf(text, sizeof text, "%*.*f%s", width, tenths ? 1 : 0, value,
+             unit == GROBO_UNIT_DEG ? "" : grobo_unit_name(unit));
     screen_put(row, angle, SCREEN_PLAIN, text);
     draw_bar(m, j, &i, row, bar, f->bar);
     draw_values(m, &i, row, bar + f->bar);

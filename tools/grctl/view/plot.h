@@ -20,6 +20,7 @@ typedef struct plot_span {
 typedef struct plot_curve {
     int joint;
     const grobo_joint *limits; /* NULL: no model knows the joint */
+    const grobo_model *model;  /* the same */
     char name[GROBO_NAME_MAX_BYTES];
     bool set; /* false: no posture of the motion gives it; the rest means nothing then */
     double min_deg, max_deg, peak_speed_dps;
@@ -62,6 +63,9 @@ int plot_key(const plot_data *data, size_t i, grobo_posture *posture, double *t_
 
 /* True if the angle is outside the joint's limits when it is rounded to the wire's 0.1 degree. */
 bool plot_beyond(const plot_curve *curve);
+/* An angle as people read it, in degrees or the joint's unit; and what stands behind the number. */
+double plot_value(const plot_curve *curve, double angle_deg);
+const char *plot_unit(const plot_curve *curve);
 /* How many places along the time a picture of these joints can tell apart. */
 int plot_columns(grobo_joint_mask joints);
 

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/unit.h>
+
 #include "tools/grctl/view/plot.h"
 
 /* Curves are sampled so often that speed peaks show, but only so many times. */
@@ -195,6 +197,26 @@ static void joint_name(const grobo_model *model, int joint, char *name, size_t c
     }
 }
 
+double plot_value(const plot_curve *curve, double angle_deg)
+{
+    return curve->model
+               ? grobo_model_value(curve->model, curve->joint, grobo_rad_from_deg(angle_deg))
+               : angle_deg;
+}
+
+const char *plot_unit(const plot_curve *curve)
+{
+    switch (curve->model ? grobo_model_unit(curve->model, curve->joint) : GROBO_UNIT_DEG) {
+    case GROBO_UNIT_DEG:
+        return "°";
+    case GROBO_UNIT_MM:
+        return " mm";
+    case GROBO_UNIT_PCT:
+        return " %";
+    }
+    return "";
+}
+
 bool plot_beyond(const plot_curve *curve)
 {
     return curve->set && curve->limits &&
@@ -211,6 +233,7 @@ static int add_curve(plot_data *data, int joint, int columns)
     joint_name(data->of.model, joint, curve->name, sizeof curve->name);
     if (data->of.model && joint < data->of.model->n_joints) {
         curve->limits = grobo_model_joint(data->of.model, joint);
+        curve->model = data->of.model;
     }
     curve->points = calloc((size_t)(columns + 1) * POINTS_A_COLUMN, sizeof *curve->points);
     curve->fast = calloc((size_t)columns + 2, sizeof *curve->fast);

@@ -57,7 +57,8 @@ static double x_at(const pen *p, const plot_panel *panel, double t_s)
 
 static double y_at(const plot_panel *panel, const plot_scale *angle, double angle_deg)
 {
-    return panel->box.y + panel->box.height - plot_scale_at(angle, angle_deg);
+    return panel->box.y + panel->box.height -
+           plot_scale_at(angle, plot_value(panel->curve, angle_deg));
 }
 
 /* The part of the panel beyond a limit, and the limit's line. */
@@ -128,11 +129,21 @@ static void draw_marks(const pen *p, const plot_panel *panel, const plot_scale *
             grobo_posture_get_deg(&posture, panel->curve->joint, &deg) < 0) {
             continue;
         }
-        plot_degrees(deg, "°", angle_text, sizeof angle_text);
+        plot_degrees(plot_value(panel->curve, deg), plot_unit(panel->curve), angle_text,
+                     sizeof angle_text);
         snprintf(tip, sizeof tip, "%s %s at %.3f s", panel->curve->name, angle_text, t_s);
         svg_circle(p->s, style_class, x_at(p, panel, t_s), y_at(panel, angle, deg), radius,
                    n <= TIPS_MOST ? tip : NULL);
     }
+}
+
+/* Two angles in the joint's unit, the lower value first. */
+static void range_text(const plot_curve *c, double a_deg, double b_deg, char *low, char *high,
+                       size_t capacity)
+{
+    double a = plot_value(c, a_deg), b = plot_value(c, b_deg);
+    plot_degrees(fmin(a, b), "", low, capacity);
+    plot_degrees(fmax(a, b), plot_unit(c), high, capacity);
 }
 
 /* Range, limits and speed of a joint in words, at the right above its panel. */
@@ -140,24 +151,25 @@ static void write_facts(const pen *p, const plot_panel *panel)
 {
     const plot_curve *c = panel->curve;
     const svg_box *box = &panel->box;
+    const char *unit = plot_unit(c);
+    double one = fabs(plot_value(c, 1) - plot_value(c, 0)); /* of the unit in a degree */
     char text[TEXT_BYTES] = "no posture gives it", low[64], high[64];
     int n = 0;
-    plot_degrees(c->min_deg, "°", low, sizeof low);
+    range_text(c, c->min_deg, c->max_deg, low, high, sizeof low);
     if (c->set && plot_is_still(c)) {
+        plot_degrees(plot_value(c, c->min_deg), unit, low, sizeof low);
         n = snprintf(text, sizeof text, "stays at %s", low);
     } else if (c->set) {
-        plot_degrees(c->min_deg, "", low, sizeof low);
-        plot_degrees(c->max_deg, "°", high, sizeof high);
-        n = snprintf(text, sizeof text, "%s to %s, %.*f°/s", low, high, c->peak_speed_dps < 9.95,
-                     c->peak_speed_dps);
+        n = snprintf(text, sizeof text, "%s to %s, %.*f%s/s", low, high,
+                     c->peak_speed_dps * one < 9.95, c->peak_speed_dps * one, unit);
     }
     if (n > 0 && c->limits) {
-        plot_degrees(grobo_deg_from_rad(c->limits->min_rad), "", low, sizeof low);
-        plot_degrees(grobo_deg_from_rad(c->limits->max_rad), "°", high, sizeof high);
+        range_text(c, grobo_deg_from_rad(c->limits->min_rad),
+                   grobo_deg_from_rad(c->limits->max_rad), low, high, sizeof low);
         n += snprintf(text + n, sizeof text - (size_t)n, "  (limits %s to %s", low, high);
         if (!plot_is_still(c)) {
-            n += snprintf(text + n, sizeof text - (size_t)n, ", %.0f°/s",
-                          grobo_deg_from_rad(c->limits->max_speed_rad_s));
+            n += snprintf(text + n, sizeof text - (size_t)n, ", %.0f%s/s",
+                          grobo_deg_from_rad(c->limits->max_speed_rad_s) * one, unit);
         }
         snprintf(text + n, sizeof text - (size_t)n, ")");
     }
@@ -187,10 +199,11 @@ static void draw_panel(const pen *p, const plot_panel *panel)
     write_facts(p, panel);
     svg_rect(p->s, "area", &panel->box);
     draw_hurry(p, panel);
-    plot_grid(p->s, &panel->box, &p->time, &angle, "°", "zero");
+    plot_grid(p->s, &panel->box, &p->time, &angle, plot_unit(c), "zero");
     if (c->limits && !panel->slim) {
-        draw_limit(p, panel, &angle, grobo_deg_from_rad(c->limits->min_rad), false);
-        draw_limit(p, panel, &angle, grobo_deg_from_rad(c->limits->max_rad), true);
+        bool turned = plot_value(c, 1) < plot_value(c, 0);
+        draw_limit(p, panel, &angle, grobo_deg_from_rad(c->limits->min_rad), turned);
+        draw_limit(p, panel, &angle, grobo_deg_from_rad(c->limits->max_rad), !turned);
     }
     svg_rect(p->s, "frame", &panel->box);
     snprintf(style_class, sizeof style_class, "curve %s", panel->side);

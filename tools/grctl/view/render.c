@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/view/render.h"
 
 static const grobo_model *model_of(const conn *c)
@@ -62,7 +63,7 @@ static json_t *joint_json(const conn *c, int joint)
         return json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
     }
     bool fresh = i.angle_age_us != GROBO_NEVER_US, targeted = render_target(&i, &target_rad);
-    return json_pack(
+    json_t *row = json_pack(
         "{s:i,s:i,s:s,s:o,s:o,s:s?,s:o?,s:o?,s:o?,s:o,s:o?,s:o,s:o*}", "joint", joint, "motor",
         j->motor, "name", j->name, "angle_deg",
         app_json_number(fresh ? grobo_deg_from_rad(i.state.angle_rad) : NAN, 1), "target_deg",
@@ -74,6 +75,10 @@ static json_t *joint_json(const conn *c, int joint)
         app_json_number(has(&i, GROBO_FIELD_VOLTAGE) ? i.state.voltage_mv / 1e3 : NAN, 2), "age_ms",
         integer_or_null(fresh, fresh ? (long)(i.angle_age_us / 1000) : 0), "status",
         app_json_code(grobo_error_name(i.status)), "setup", render_setup_json(c, joint));
+    joints_add_unit(row, model_of(c), joint);
+    joints_add_value(row, "value", model_of(c), joint, fresh ? i.state.angle_rad : NAN);
+    joints_add_value(row, "target", model_of(c), joint, targeted ? target_rad : NAN);
+    return row;
 }
 
 json_t *render_joints_json(const conn *c, grobo_joint_mask joints)
@@ -94,6 +99,17 @@ static void cell(bool known, int width, int decimals, double value)
         app_print("  %*.*f", width, decimals, fabs(value) < unit / 2 ? 0.0 : value); /* no -0.0 */
     } else {
         app_print("  %*s", width, "-");
+    }
+}
+
+/* An angle in the joint's unit, which takes the gap behind the column. */
+static void angle_cell(const grobo_model *model, int joint, bool known, int width, double angle_rad)
+{
+    if (known) {
+        double value = grobo_model_value(model, joint, angle_rad);
+        app_print("%*.1f%s", width, fabs(value) < 0.05 ? 0.0 : value, joints_mark(model, joint));
+    } else {
+        app_print("%*s  ", width, "-");
     }
 }
 
@@ -122,12 +138,12 @@ void render_status(const conn *c, grobo_joint_mask joints)
             continue;
         }
         bool known = i.angle_age_us != GROBO_NEVER_US;
-        app_print("%5d  %-*s", grobo_model_joint(model, k)->motor, width,
+        app_print("%5d  %-*s  ", grobo_model_joint(model, k)->motor, width,
                   grobo_model_joint(model, k)->name);
-        cell(known, 5, 1, grobo_deg_from_rad(i.state.angle_rad));
+        angle_cell(model, k, known, 5, i.state.angle_rad);
         bool targeted = render_target(&i, &target_rad);
-        cell(targeted, 6, 1, grobo_deg_from_rad(target_rad));
-        app_print("  %-6s", render_torque(&i));
+        angle_cell(model, k, targeted, 6, target_rad);
+        app_print("%-6s", render_torque(&i));
         cell(has(&i, GROBO_FIELD_SPEED), 5, 0, i.state.speed_dps);
         cell(has(&i, GROBO_FIELD_CURRENT), 7, 0, i.state.current_ma);
         cell(has(&i, GROBO_FIELD_TEMPERATURE), 4, 0, i.state.temperature_c);
@@ -163,6 +179,19 @@ double render_worst_error(const conn *c, int *joint)
     return worst;
 }
 
+/* The last column: its unit follows. */
+static void error_cell(const grobo_model *model, int joint, bool known, double error_rad)
+{
+    double error = grobo_model_change(model, joint, error_rad);
+    bool in_deg = grobo_model_unit(model, joint) == GROBO_UNIT_DEG;
+    if (known) {
+        app_print("%9.2f%s", fabs(error) < 0.005 ? 0.0 : error,
+                  in_deg ? "" : joints_mark(model, joint));
+    } else {
+        app_print("%9s", "-");
+    }
+}
+
 void render_reached(const conn *c)
 {
     const grobo_model *model = model_of(c);
@@ -174,11 +203,11 @@ void render_reached(const conn *c)
             continue;
         }
         bool both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
-        app_print("%5d  %-*s", grobo_model_joint(model, k)->motor, width,
+        app_print("%5d  %-*s  ", grobo_model_joint(model, k)->motor, width,
                   grobo_model_joint(model, k)->name);
-        cell(i.has_target, 6, 1, grobo_deg_from_rad(i.target_rad));
-        cell(i.angle_age_us != GROBO_NEVER_US, 7, 1, grobo_deg_from_rad(i.state.angle_rad));
-        cell(both, 9, 2, grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
+        angle_cell(model, k, i.has_target, 6, i.target_rad);
+        angle_cell(model, k, i.angle_age_us != GROBO_NEVER_US, 7, i.state.angle_rad);
+        error_cell(model, k, both, i.state.angle_rad - i.target_rad);
         if (i.status != GROBO_OK) {
             app_print("  %s", grobo_error_text(i.status));
         }

@@ -2,6 +2,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include <grobo/core/unit.h>
+
 #include "tools/grctl/view/scale.h"
 
 /* A line may pass so far from a point it leaves out. */
@@ -51,19 +53,22 @@ static void take_limit(plot_scale *scale, double limit_deg, double span_deg)
 
 plot_scale plot_angle_scale(const plot_curve *curve, double pixels, bool slim)
 {
-    enum { LEAST_DEG = 20 };
-    double span = fmax(curve->max_deg - curve->min_deg, LEAST_DEG);
-    double middle = (curve->max_deg + curve->min_deg) / 2;
+    enum { LEAST = 20 }; /* degrees, mm or percent */
+    double first = plot_value(curve, curve->min_deg), last = plot_value(curve, curve->max_deg);
+    double span = fmax(fabs(last - first), LEAST), middle = (first + last) / 2;
     plot_scale scale = {middle - span / 2, middle + span / 2, pixels, 0};
     if (curve->limits && !slim) {
-        take_limit(&scale, grobo_deg_from_rad(curve->limits->min_rad), span);
-        take_limit(&scale, grobo_deg_from_rad(curve->limits->max_rad), span);
+        take_limit(&scale, plot_value(curve, grobo_deg_from_rad(curve->limits->min_rad)), span);
+        take_limit(&scale, plot_value(curve, grobo_deg_from_rad(curve->limits->max_rad)), span);
     }
     span = scale.high - scale.low;
     scale.low -= span * 0.08;
     scale.high += span * 0.08;
     if (!slim) {
-        scale.step = angle_step((scale.high - scale.low) * 20 / pixels);
+        double least = (scale.high - scale.low) * 20 / pixels;
+        bool in_deg =
+            !curve->model || grobo_model_unit(curve->model, curve->joint) == GROBO_UNIT_DEG;
+        scale.step = in_deg ? angle_step(least) : round_step(least);
     }
     return scale;
 }

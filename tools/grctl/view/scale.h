@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* From seconds and degrees to pixels, round numbers along axes, and thinning of lines. */
+/* From seconds and values of joints to pixels, round numbers along axes, and thinning of lines. */
 #ifndef GRCTL_PLOT_SCALE_H
 #define GRCTL_PLOT_SCALE_H
 

@@ -23,6 +23,9 @@ int show_row(const show_rows *rows, size_t i, grobo_posture *posture, double *ti
 /* The name of column c's joint. */
 const char *show_joint_name(const show_rows *rows, int c, char *buffer, size_t capacity);
 
+/* True of increments, which have no place. */
+bool show_is_steps(const show_rows *rows);
+
 /* Prints the rows; in columns that fit the terminal, or one line a row where there is none. */
 void show_table(const app *a, const show_rows *rows);
 

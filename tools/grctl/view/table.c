@@ -2,6 +2,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/unit.h>
+
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/view/show.h"
 
@@ -27,6 +29,11 @@ const char *show_joint_name(const show_rows *rows, int c, char *buffer, size_t c
     return buffer;
 }
 
+bool show_is_steps(const show_rows *rows)
+{
+    return grobo_motion_get_kind(rows->motion) == GROBO_MOTION_STEPS && !rows->as_played;
+}
+
 int show_row(const show_rows *rows, size_t i, grobo_posture *posture, double *time_s)
 {
     const grobo_clip *clip = &rows->played.clip;
@@ -48,6 +55,19 @@ int show_row(const show_rows *rows, size_t i, grobo_posture *posture, double *ti
     }
     *time_s = (double)at_us / 1e6;
     return error;
+}
+
+/* A joint's value in its unit; of a body that nobody knows degrees. */
+static bool value_of(const show_rows *rows, int c, const grobo_posture *posture, double *value)
+{
+    double deg;
+    int joint = rows->joint[c];
+    bool known = rows->model && joint < rows->model->n_joints && !show_is_steps(rows);
+    if (grobo_posture_get_deg(posture, joint, &deg) < 0) {
+        return false;
+    }
+    *value = known ? grobo_model_value(rows->model, joint, posture->angle_rad[joint]) : deg;
+    return true;
 }
 
 /* ---- names ---------------------------------------------------------------------------------- */
@@ -105,7 +125,7 @@ static void widen(int *width, int least)
 static void measure(table *t)
 {
     grobo_posture posture;
-    double time_s = 0, deg;
+    double time_s = 0, value;
     t->time_width = (int)strlen("time_ms") + 2;
     for (int c = 0; c < t->rows->n_joints; c++) {
         t->width[c] = NARROWEST;
@@ -117,8 +137,8 @@ static void measure(table *t)
         }
         widen(&t->time_width, snprintf(NULL, 0, "%.*f", t->decimals, time_s * 1e3) + 1);
         for (int c = 0; c < t->rows->n_joints; c++) {
-            if (grobo_posture_get_deg(&posture, t->rows->joint[c], &deg) == 0) {
-                widen(&t->width[c], snprintf(NULL, 0, "%.1f", tenths(deg)) + 2);
+            if (value_of(t->rows, c, &posture, &value)) {
+                widen(&t->width[c], snprintf(NULL, 0, "%.1f", tenths(value)) + 2);
             }
         }
     }
@@ -191,7 +211,7 @@ static bool is_outside(const table *t, int c, double deg)
     if (!t->rows->model || t->rows->joint[c] >= t->rows->model->n_joints) {
         return false;
     }
-    if (grobo_motion_get_kind(t->rows->motion) == GROBO_MOTION_STEPS && !t->rows->as_played) {
+    if (show_is_steps(t->rows)) {
         return false;
     }
     joint = grobo_model_joint(t->rows->model, t->rows->joint[c]);
@@ -200,13 +220,14 @@ static bool is_outside(const table *t, int c, double deg)
 
 static void print_angle(const table *t, int c, const grobo_posture *posture)
 {
-    double deg;
-    if (grobo_posture_get_deg(posture, t->rows->joint[c], &deg) < 0) {
+    double deg, value;
+    if (grobo_posture_get_deg(posture, t->rows->joint[c], &deg) < 0 ||
+        !value_of(t->rows, c, posture, &value)) {
         app_print("%*s", t->width[c], ".");
         return;
     }
     bool red = t->a->color_out && is_outside(t, c, deg);
-    app_print("%s%*.1f%s", red ? "\033[31m" : "", t->width[c], tenths(deg), red ? "\033[0m" : "");
+    app_print("%s%*.1f%s", red ? "\033[31m" : "", t->width[c], tenths(value), red ? "\033[0m" : "");
 }
 
 static void print_rows(const table *t, size_t first, size_t last, int from, int to)

@@ -219,8 +219,11 @@ static json_t *joints_json(const json_t *robot)
     {
         if (i < JOINTS_MAX) {
             json_array_append_new(
-                list, json_pack("{s:o,s:o}", "name", copy_text(joint, "name"), "limits_deg",
-                                copy_numbers(json_object_get(joint, "limits_deg"), 2)));
+                list, json_pack("{s:o,s:o,s:o,s:o,s:o}", "name", copy_text(joint, "name"),
+                                "limits_deg", copy_numbers(json_object_get(joint, "limits_deg"), 2),
+                                "unit", copy_text(joint, "unit"), "unit_zero_deg",
+                                copy_number(joint, "unit_zero_deg"), "unit_deg",
+                                copy_number(joint, "unit_deg")));
         }
     }
     return list;

@@ -190,6 +190,7 @@ static json_t *joint_json(const grobo_model *model, int j)
         json_object_set_new(row, "follows", json_integer(joint->follows));
         json_object_set_new(row, "ratio", number(joint->ratio));
     }
+    joints_add_scale(row, model, j);
     return row;
 }
 

@@ -43,6 +43,14 @@ class Description:
         return [ffi.string(joint.name).decode() for joint in joints_of(self.model)]
 
     @property
+    def units(self) -> Dict[str, str]:
+        """What each joint is given in: "deg", "mm" of a linear one, "%" of a gripper with a range."""
+        return {
+            name: ffi.string(lib.grobo_unit_name(lib.grobo_model_unit(self.model, j))).decode()
+            for j, name in enumerate(self.joints)
+        }
+
+    @property
     def limits(self) -> Dict[str, Tuple[float, float]]:
         """The range of each joint in radians."""
         return {

@@ -58,6 +58,10 @@ class JointStatus:
     """False: its servo is not set up as its joint needs it, or was never calibrated."""
     range: Optional[Tuple[float, float]] = None
     """How far a calibrated joint goes, as its servo keeps it, in radians."""
+    value: Optional[float] = None
+    """Where it is in its unit."""
+    unit: str = "deg"
+    """What it is given in: "deg", "mm" of a linear joint, "%" of a gripper with a range."""
 
     @property
     def degrees(self) -> Optional[float]:
@@ -205,12 +209,27 @@ class Joint:
     def deg(self) -> float:
         return math.degrees(self.angle)
 
+    @property
+    def unit(self) -> str:
+        """What its values are: "deg", "mm" or "%"."""
+        return self._robot.description.units[self.name]
+
+    @property
+    def value(self) -> float:
+        """Read now, in its unit."""
+        number = self._robot._number(self.name)
+        return float(lib.grobo_model_value(self._robot._model, number, self.angle))
+
     def move(
         self, angle: Optional[float] = None, *, deg: Optional[float] = None,
-        time: Optional[float] = None
+        value: Optional[float] = None, time: Optional[float] = None
     ) -> None:
-        if (angle is None) == (deg is None):
-            raise TypeError("move() takes an angle, or deg=")
+        """To an angle in radians, to one in degrees, or to a value in its unit."""
+        if (angle is None) + (deg is None) + (value is None) != 2:
+            raise TypeError("move() takes an angle, deg= or value=")
+        if value is not None:
+            number = self._robot._number(self.name)
+            angle = float(lib.grobo_model_angle(self._robot._model, number, value))
         target = {self.name: angle if angle is not None else math.radians(deg or 0.0)}
         with _told_in_degrees(deg is not None):
             self._robot.move(target, time=time)
@@ -336,7 +355,7 @@ class Robot:
             robot = self._runner.robot
             for j, name in enumerate(self.joints):
                 errors.check(quick("grobo_robot_joint", robot, j, info), name)
-                joints[name] = _joint_status(name, info)
+                joints[name] = _joint_status(name, info, self._model, j)
             quick("grobo_robot_tripped", robot, trip)
             return Status(
                 connected=bool(quick("grobo_runner_is_connected", runner) & 1),
@@ -588,8 +607,9 @@ def _trip_name(trip: Any) -> Optional[str]:
     return text
 
 
-def _joint_status(name: str, info: Any) -> JointStatus:
+def _joint_status(name: str, info: Any, model: Any, joint: int) -> JointStatus:
     state = info.state
+    unit = ffi.string(lib.grobo_unit_name(lib.grobo_model_unit(model, joint))).decode()
 
     def known(bit: int, value: Any) -> Any:
         return value if state.valid & bit else None
@@ -606,6 +626,8 @@ def _joint_status(name: str, info: Any) -> JointStatus:
         voltage_mv=known(lib.GROBO_FIELD_VOLTAGE, state.voltage_mv),
         ready=False if info.status == lib.GROBO_ERR_SETUP else None if never else True,
         range=known(lib.GROBO_FIELD_RANGE, (state.low_rad, state.high_rad)),
+        value=None if never else lib.grobo_model_value(model, joint, state.angle_rad),
+        unit=unit,
     )
 
 

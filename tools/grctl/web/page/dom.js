@@ -96,3 +96,30 @@ export function translatePage(lang, t) {
         node.title = node.matches('button') ? t(node.dataset.tLabel) : '';
     }
 }
+
+/** An angle in what people give the joint in: degrees, mm, percent of a gripper's range. */
+export function valueOf(joint, deg) {
+    return joint.unit ? (deg - joint.unit_zero_deg) / joint.unit_deg : deg;
+}
+
+/** The angle at which a joint has a value. */
+export function degreesOf(joint, value) {
+    return joint.unit ? joint.unit_zero_deg + value * joint.unit_deg : value;
+}
+
+/** What stands behind the number: "°", " mm", " %". */
+export function unitOf(joint) {
+    return joint.unit ? ` ${joint.unit}` : '°';
+}
+
+/** The value of a joint in words: "12.0°". */
+export function valueText(joint, deg, digits = 1) {
+    const text = valueOf(joint, deg).toFixed(digits);
+    return `${Number(text) === 0 ? (0).toFixed(digits) : text}${unitOf(joint)}`;
+}
+
+/** The limits of a joint in its unit, the lower value first. */
+export function limitValues(joint) {
+    const [a, b] = joint.limits_deg.map((deg) => valueOf(joint, deg));
+    return a < b ? [a, b] : [b, a];
+}

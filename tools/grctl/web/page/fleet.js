@@ -2,7 +2,7 @@
 // The view of a fleet (docs/serve.md): a card for each robot, a stop for all of them, one robot in
 // full. It moves none. Drawn from the newest state, as the cockpit is.
 
-import { element, replace, setText, setting } from './dom.js';
+import { element, limitValues, replace, setText, setting, unitOf, valueOf } from './dom.js';
 import { NEAR_DEG, fleetStopWords, howIs, isWanted, nearest } from './fleet_words.js';
 import { api, id, lang, stopper, t } from './start.js';
 import { count } from './stop.js';
@@ -291,8 +291,9 @@ class View {
             const left = Math.min(angle - min, max - angle);
             return element('tr', {}, element('th', { scope: 'row' }, joint.name || ''),
                 element('td', { className: `num${typeof angle === 'number' && left < NEAR_DEG ? ' warn' : ''}` },
-                    typeof angle === 'number' ? `${degrees(angle, 1)}°` : '–'),
-                element('td', { className: 'quiet' }, `${degrees(min)} … ${degrees(max)}°`));
+                    typeof angle === 'number' ? `${degrees(valueOf(joint, angle), 1)}${unitOf(joint)}` : '–'),
+                element('td', { className: 'quiet' },
+                        `${limitValues(joint).map((v) => degrees(v)).join(' … ')}${unitOf(joint)}`));
         }));
         replace(id('log'), ...this.log.filter((e) => e.host === robot.host && (!e.robot || e.robot === robot.robot))
             .slice(0, 30).map((event) => element('li', { className: event.level },

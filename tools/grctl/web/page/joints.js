@@ -3,7 +3,8 @@
 // follows while it is dragged, if this page drives.
 
 import { Newest } from './api.js';
-import { ask, element, replace, setText, stepByKeys, tremble } from './dom.js';
+import { ask, degreesOf, element, limitValues, replace, setText, stepByKeys, tremble, unitOf, valueOf,
+         valueText } from './dom.js';
 
 /** Joints that do not move as their servos are set up: a line for each reason, with its joints. */
 export function setupLines(setup, name, t) {
@@ -90,12 +91,12 @@ export class Joints {
             this.slot.remove();
             return;
         }
-        const { name, limits_deg: limits } = this.rows[joint].joint;
+        const of = this.rows[joint].joint, { name } = of, limits = limitValues(of);
         this.slider.min = limits[0];
         this.slider.max = limits[1];
-        this.slider.setAttribute('aria-label', this.app.t('{0}, degrees', name));
+        this.slider.setAttribute('aria-label', of.unit ? `${name}, ${of.unit}` : this.app.t('{0}, degrees', name));
         this.plot.checked = this.app.see.plots.chosen.includes(joint);
-        limits.forEach((v, n) => setText(this.ends[n], `${Math.round(v)}°`));
+        limits.forEach((v, n) => setText(this.ends[n], `${Math.round(v)}${unitOf(of)}`));
         this.follow(this.app.state); // a key may come before the next picture
         this.rows[joint].line.after(this.slot);
         this.drawnAt = 0;
@@ -110,7 +111,8 @@ export class Joints {
         this.atEdge = edge;
         this.dragged = { joint, value, at: performance.now() };
         this.show(value, edge);
-        this.newest.push({ angle_deg: { [this.app.name(joint)]: value }, sequence: this.app.drawn });
+        const deg = degreesOf(this.rows[joint].joint, value);
+        this.newest.push({ angle_deg: { [this.app.name(joint)]: deg }, sequence: this.app.drawn });
     }
 
     release() {
@@ -120,7 +122,8 @@ export class Joints {
     }
 
     show(value, edge) {
-        const words = `${value.toFixed(1)}°` + (edge ? ` ${this.app.t('at its limit')}` : '');
+        const of = this.rows[this.app.selected];
+        const words = `${value.toFixed(1)}${of ? unitOf(of.joint) : '°'}` + (edge ? ` ${this.app.t('at its limit')}` : '');
         setText(this.out, words);
         this.out.classList.toggle('warn', edge);
         this.slider.setAttribute('aria-valuetext', words);
@@ -137,7 +140,8 @@ export class Joints {
     /** Puts the slider where its joint is. Where that is not known, nothing can be dragged. */
     follow(state) {
         const joint = this.app.selected;
-        const angle = state ? state.target_deg[joint] ?? state.angle_deg[joint] : null;
+        const deg = state ? state.target_deg[joint] ?? state.angle_deg[joint] ?? null : null;
+        const angle = deg === null ? null : valueOf(this.rows[joint].joint, deg);
         if (angle !== null && Number(this.slider.value) !== angle) {
             this.slider.value = angle;
         }
@@ -172,13 +176,14 @@ export class Joints {
         }
     }
 
-    write({ cells, line }, state, n) {
+    write({ joint, cells, line }, state, n) {
         const t = this.app.t, number = (v, digits) => v === null ? '–' : v.toFixed(digits);
         const look = this.app.heatLevel(state.temperature_c[n]);
         const old = state.age_ms[n] === null || state.age_ms[n] > 500 || state.status[n] !== 'ok';
         line.classList.toggle('old', old);
-        setText(cells.angle, number(state.angle_deg[n], 1));
-        setText(cells.target, number(state.target_deg[n], 1));
+        const value = (deg) => deg === null ? '–' : joint.unit ? valueText(joint, deg) : deg.toFixed(1);
+        setText(cells.angle, value(state.angle_deg[n]));
+        setText(cells.target, value(state.target_deg[n]));
         setText(cells.current, number(state.current_ma[n], 0));
         setText(cells.heat, number(state.temperature_c[n], 0) + (look ? ' ▲' : ''));
         cells.heat.className = `num ${look}`;

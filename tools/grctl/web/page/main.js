@@ -3,7 +3,7 @@
 // newest state, in animation frames that are asked for when a state or a hand has come.
 
 import { makeBody } from './body.js';
-import { element, replace, setText, setting } from './dom.js';
+import { element, replace, setText, setting, valueText } from './dom.js';
 import { Figure, fromHex, mix } from './figure.js';
 import { Joints } from './joints.js';
 import { Lease } from './lease.js';
@@ -441,7 +441,7 @@ class App {
         const { state } = this, theme = this.figure.theme, angle = state.angle_deg[n];
         const base = { name: joint.name, limits: joint.limits_deg, target: state.target_deg[n],
                        shape: state.torque[n], level: '', note: '', tint: 0, colour: theme.faded,
-                       text: angle === null ? '–' : `${angle.toFixed(1)}°`,
+                       text: angle === null ? '–' : valueText(joint, angle),
                        unknown: angle === null || state.age_ms[n] > 2 * OLD_MS };
         const heat = state.temperature_c[n], hot = this.heatLevel(heat);
         if (hot) {

@@ -5,7 +5,7 @@
 
 import { Newest } from './api.js';
 import { forward, stand } from './body.js';
-import { ask, element, replace, seconds, setText } from './dom.js';
+import { ask, element, replace, seconds, setText, valueText } from './dom.js';
 import { Draft, compare, keysOfFrames } from './make_draft.js';
 import { Hands } from './make_hands.js';
 import { Line } from './make_line.js';
@@ -723,7 +723,7 @@ export class Make {
                 return { name: joint.name, limits: joint.limits_deg, target: app.state.angle_deg[j],
                          shape: set ? 'on' : 'off', level: edge ? 'warn' : '',
                          note: '', tint: edge ? 0.5 : 0,
-                         colour: edge ? theme.warn : theme.accent, text: `${deg.toFixed(1)}°${edge ? ` ${app.t('at its limit')}` : ''}`, unknown: false };
+                         colour: edge ? theme.warn : theme.accent, text: `${valueText(joint, deg)}${edge ? ` ${app.t('at its limit')}` : ''}`, unknown: false };
             }),
             balance: stance && { com: stance.com_m, zmp: null, support: stance.support_m,
                                  inside: stance.margin_m === null || stance.margin_m >= 0,

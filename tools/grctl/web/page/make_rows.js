@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A row a joint of the draft: slider between its limits, number, and whether the key pose sets it.
 
-import { element, stepByKeys, tremble } from './dom.js';
+import { degreesOf, element, limitValues, stepByKeys, tremble, valueOf, valueText } from './dom.js';
 
 export class Rows {
     /** @param make { turnJoint(joint, deg, tag), unset(joint), rest(), app } */
@@ -19,31 +19,32 @@ export class Rows {
 
     row(joint) {
         const { make } = this, { t } = make.app, j = joint.joint;
-        const slider = element('input', { type: 'range', step: 0.1, min: joint.limits_deg[0],
-                                          max: joint.limits_deg[1] });
+        const [min, max] = limitValues(joint);
+        const slider = element('input', { type: 'range', step: 0.1, min, max });
         const number = element('input', { type: 'text', inputMode: 'decimal', autocomplete: 'off' });
         const pick = element('button', { type: 'button', className: 'joint',
                                          onclick: () => make.app.select(j) }, joint.name);
         const unset = element('button', { type: 'button', className: 'unset',
                                           onclick: () => make.unset(j) }, '×');
-        slider.setAttribute('aria-label', t('{0}, degrees', joint.name));
-        number.setAttribute('aria-label', t('{0}, degrees', joint.name));
+        const called = joint.unit ? `${joint.name}, ${joint.unit}` : t('{0}, degrees', joint.name);
+        slider.setAttribute('aria-label', called);
+        number.setAttribute('aria-label', called);
         unset.setAttribute('aria-label', t('{0} is not set by this key pose', joint.name));
         unset.title = t('{0} is not set by this key pose', joint.name);
         const turn = () => {
             if (make.app.selected !== j) {
                 make.app.select(j);
             }
-            make.turnJoint(j, Number(slider.value), `slide ${j}`);
+            make.turnJoint(j, degreesOf(joint, Number(slider.value)), `slide ${j}`);
         };
         slider.addEventListener('input', turn);
         slider.addEventListener('change', () => make.rest());
         stepByKeys(slider, turn);
         slider.addEventListener('keyup', () => make.rest());
         number.addEventListener('change', () => {
-            const deg = Number(number.value.replace(/[°\s]/g, '').replace(',', '.'));
-            if (Number.isFinite(deg) && number.value.trim()) {
-                make.turnJoint(j, deg, null);
+            const value = Number(number.value.replace(/°|mm|%|\s/g, '').replace(',', '.'));
+            if (Number.isFinite(value) && number.value.trim()) {
+                make.turnJoint(j, degreesOf(joint, value), null);
                 make.rest();
             }
             this.drawn = null;
@@ -67,9 +68,9 @@ export class Rows {
         this.rows.forEach(({ joint, line, slider, number, pick }, j) => {
             const deg = degrees[j], set = Boolean(key) && key.angle_deg[j] !== null;
             const edge = set && (deg <= joint.limits_deg[0] || deg >= joint.limits_deg[1]);
-            const words = `${deg.toFixed(1)}°`;
-            if (Number(slider.value) !== deg) {
-                slider.value = deg;
+            const words = valueText(joint, deg), value = valueOf(joint, deg);
+            if (Number(slider.value) !== value) {
+                slider.value = value;
             }
             if (document.activeElement !== number || number.value === '') {
                 number.value = words;

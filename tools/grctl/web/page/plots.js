@@ -2,6 +2,8 @@
 // The last minute of some joints: rings of numbers, and curves on canvases. A column of pixels is
 // drawn from the least to the largest of its numbers, so that no peak is lost.
 
+import { unitOf, valueOf } from './dom.js';
+
 const SPAN_MS = 60000;
 const SIZE = 4096; // a minute at 60 Hz, and some
 
@@ -106,10 +108,10 @@ export class Plots {
         }
     }
 
-    setJoints(names, limits) {
-        this.names = names;
-        this.limits = limits;
-        this.rings = names.map(() => new Ring(KEYS.length));
+    setJoints(joints) {
+        this.joints = joints;
+        this.names = joints.map((joint) => joint.name);
+        this.rings = joints.map(() => new Ring(KEYS.length));
         this.chosen = [];
     }
 
@@ -119,7 +121,8 @@ export class Plots {
             if (ring.count && state.time_ms < ring.time[(ring.count - 1) % ring.size]) {
                 ring.clear(); // another server: its clock began anew
             }
-            ring.push(state.time_ms, KEYS.map((key) => state[key][n]));
+            const shown = (key, v) => v !== null && key.endsWith('_deg') ? valueOf(this.joints[n], v) : v;
+            ring.push(state.time_ms, KEYS.map((key) => shown(key, state[key][n])));
         });
         this.dirty = true;
     }
@@ -165,7 +168,9 @@ export class Plots {
         }
         this.ends(pen, chart, series, area, y);
         const now = series.map((s) => `${this.names[s.joint]} ${this.value(chart, s, 1)}`).join(', ');
-        chart.title.textContent = `${this.t(chart.words)} (${chart.unit})`;
+        const units = chart.key === 'angle_deg'
+            ? [...new Set(this.chosen.map((joint) => unitOf(this.joints[joint]).trim()))] : [];
+        chart.title.textContent = `${this.t(chart.words)} (${units.join(', ') || chart.unit})`;
         canvas.setAttribute('aria-label', `${this.t(chart.words)}: ${now || this.t('no joint chosen')}`);
     }
 
@@ -246,7 +251,8 @@ export class Plots {
         const end = Math.round((one.low.length - 1) * part);
         for (let x = end; x >= 0 && x > end - one.low.length / 20; x--) {
             if (one.high[x] === one.high[x]) {
-                return `${one.high[x].toFixed(chart.digits)} ${chart.unit}`;
+                const unit = chart.key === 'angle_deg' ? unitOf(this.joints[one.joint]).trim() : chart.unit;
+                return `${one.high[x].toFixed(chart.digits)} ${unit}`;
             }
         }
         return '–';

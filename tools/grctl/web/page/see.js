@@ -21,7 +21,7 @@ export class See {
     }
 
     setRobot(robot) {
-        this.plots.setJoints(robot.joints.map((j) => j.name), robot.joints.map((j) => j.limits_deg));
+        this.plots.setJoints(robot.joints);
         this.write();
     }
 

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Angles as LeRobot has them: degrees, and 0..100 over its range where a joint is a gripper."""
+"""Angles as LeRobot has them: degrees, mm of linear joints, and 0..100 over its range where a joint
+is a gripper."""
 
 import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 import grobo
+from grobo._lib import lib
 
 TICKS = 4096  # of a turn, of the servos of LeRobot's arms; their middle is 2048
 
@@ -17,7 +19,12 @@ class Scale:
     def __init__(
         self, robot: grobo.Description, percent: Iterable[str], calibration: Mapping[str, Any]
     ) -> None:
-        self._percent = set(percent) & set(robot.joints)
+        # What a robot's file gives a unit keeps that; percent of a file is percent here.
+        self._number = {
+            name: j for j, name in enumerate(robot.joints) if robot.units[name] != "deg"
+        }
+        self._model = robot.model
+        self._percent = (set(percent) & set(robot.joints)) - set(self._number)
         self._limits = robot.limits
         mounted = dict(zip(robot.joints, grobo.description.joints_of(robot.model)))
         self._of_file = {
@@ -46,12 +53,17 @@ class Scale:
         return low, high
 
     def shown(self, joint: grobo.JointStatus, angle: float) -> float:
+        if joint.name in self._number:
+            number = self._number[joint.name]
+            return float(lib.grobo_model_value(self._model, number, angle))
         if joint.name not in self._percent:
             return math.degrees(angle)
         low, high = self.ends(joint)
         return min(max((angle - low) / (high - low), 0.0), 1.0) * 100
 
     def angle(self, joint: grobo.JointStatus, shown: float) -> float:
+        if joint.name in self._number:
+            return float(lib.grobo_model_angle(self._model, self._number[joint.name], shown))
         if joint.name not in self._percent:
             return math.radians(shown)
         low, high = self.ends(joint)
