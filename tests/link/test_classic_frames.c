@@ -1,38 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 /* What a GR001 of the classic shelf sends and returns, beside the original: classic_kit.h. */
-#include <pthread.h>
-#include <stdatomic.h>
 #include <string.h>
 
-#include <event2/event.h>
-
+#include "src/link/session/session.h"
 #include "tests/support/classic_kit.h"
-#include "tests/support/loop.h"
+#include "tests/support/virtual_clock.h"
 
-/* ---- a simulated robot behind a pty, on a thread of its own ---------------------------------- */
+/* ---- a simulated robot in virtual time ----------------------------------------------------- */
 
-static struct event_base *base;
-static grobo_sim_server *server;
-static pthread_t far_thread;
-static atomic_bool over;
+static void (*theirs)(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                      size_t size);
 
+/* What leaves, beside what the shelf looks at. */
 static void note(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
                  size_t size)
 {
-    (void)ctx;
-    (void)now_us;
-    if (direction == GROBO_DIR_RX) {
+    if (direction == GROBO_DIR_TX) {
         words_bytes(bytes, size);
     }
-}
-
-static void *serve(void *arg)
-{
-    (void)arg;
-    while (!atomic_load(&over)) {
-        loop_run_for(base, 20000);
-    }
-    return NULL;
+    theirs(ctx, direction, now_us, bytes, size);
 }
 
 static void go(void)
@@ -54,19 +40,14 @@ static void sent(void)
 
 static int set_up(void)
 {
-    static const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_ZERO,
-                                         .unpaced = true};
-
     classic_make_files();
-    base = event_base_new();
-    server = loop_serve(
-        base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .sim = &sim, .on_tap = note});
     words_begin();
-    assert_int_equal(pthread_create(&far_thread, NULL, serve, NULL), 0);
-    g = GR001_new(grobo_sim_server_device(server));
+    g = GR001_new("sim");
     assert_non_null(g);
+    grobo_session *session = grobo_runner_session(SerialRobot_runner(g));
+    theirs = session->config.on_tap;
+    session->config.on_tap = note;
     assert_int_equal(SerialRobot_connect(g), 1);
-    assert_int_equal(SerialRobot_startThread(g), 1);
     assert_int_equal(SerialRobot_setMotionDir(g, folder), 0);
     assert_int_equal(GR001_setServo(g, 1, 0), 0);
     assert_int_equal(SerialRobot_startMotion(g), 0);
@@ -77,10 +58,6 @@ static int set_up(void)
 static int tear_down(void)
 {
     GR001_delete(g);
-    atomic_store(&over, true);
-    (void)pthread_join(far_thread, NULL);
-    grobo_sim_server_free(server);
-    event_base_free(base);
     classic_remove_files();
     return 0;
 }

@@ -10,6 +10,7 @@
 #include <grobo/classic/classic.h>
 
 #include "tests/support/test.h"
+#include "tests/support/virtual_clock.h"
 
 static GR001 *g;
 

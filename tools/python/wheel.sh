@@ -34,7 +34,7 @@ zig_libraries "$processor-linux-gnu.2.17" Linux
 unset MAKEFLAGS MAKELEVEL MFLAGS BUILD CC CFLAGS CPPFLAGS LDFLAGS
 make --no-print-directory -j2 "$build/wheel/$processor/libgrobo.so.1" \
     BUILD="$build/wheel/$processor" CC="$work/bin/cc" AR="$work/bin/ar" WERROR= \
-    CFLAGS="-O2 -ffile-prefix-map=$top=." LDFLAGS=-s \
+    CFLAGS="-O2 -ffile-prefix-map=$top=." LDFLAGS=-s SYMBOLIC=-Wl,-Bsymbolic \
     PKG_CONFIG="PKG_CONFIG_LIBDIR=$work/root/lib/pkgconfig pkg-config"
 make --no-print-directory python BUILD="$build"
 
