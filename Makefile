@@ -212,7 +212,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-physics balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
+.PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -335,6 +335,31 @@ balance-table: all ## the table of docs/guide/whole-body.md: COUNT=300 variants,
 	        "$(call whole,$(GRCTL_RUN))" motions/*.pseq --count $(or $(COUNT),300) --seed $(or $(SEED),1) \
 	        --table $(BUILD)/balance.md; \
 	else echo 'balance-table: skipped: MuJoCo cannot be had for this python3'; fi
+
+# For programs that drive bodies: two Pythons, one with MuJoCo, one with the clients.
+check-bodies: all ## programs of others drive bodies of MuJoCo, and what these cost (from PyPI)
+	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
+	    --disable-pip-version-check mujoco numpy cffi || true
+	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q \
+	    --disable-pip-version-check $(FAMILY_CLIENTS) pylx16a==1.1.1 dicot==0.1.0 || true
+	@$(BUILD)/families/bin/pip install -q --disable-pip-version-check --no-deps $(FAMILY_LEROBOT) || true
+	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
+	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	    export PYTHONPATH="$(abspath $(PYTHON_DIR))" && \
+	    $(BUILD)/physics/bin/python tests/physics/clients.py "$(call whole,$(GRCTL_RUN))" \
+	        $(BUILD)/families/bin/python && \
+	    $(BUILD)/physics/bin/python tests/physics/cost.py "$(call whole,$(GRCTL_RUN))"; \
+	else echo 'check-bodies: skipped: MuJoCo cannot be had for this python3'; fi
+
+bodies-soak: all ## GR001 on a body that is pushed and falls, in virtual time: MINUTES=60, SEED=1
+	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
+	    --disable-pip-version-check mujoco numpy cffi || true
+	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
+	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	    PYTHONPATH="$(abspath $(PYTHON_DIR))" $(BUILD)/physics/bin/python tests/physics/soak.py \
+	        "$(call whole,$(GRCTL_RUN))" motions/*.pseq --minutes $(or $(MINUTES),60) \
+	        --seed $(or $(SEED),1); \
+	else echo 'bodies-soak: skipped: MuJoCo cannot be had for this python3'; fi
 
 check-families: all ## clients of other servos (from PyPI) against the simulator
 	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q --disable-pip-version-check $(FAMILY_CLIENTS)
