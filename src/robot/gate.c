@@ -608,6 +608,10 @@ static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(joints, j)) {
+            if (GROBO_I_EXTRA(robot->driver, goal_energises) &&
+                !grobo_i_axis_is_on(&robot->axes[j])) {
+                grobo_i_gate_soften(robot); /* it has torque by this */
+            }
             grobo_i_axis_rest(&robot->axes[j], robot->now_us);
             robot->axes[j].own_until_us = 0;
             grobo_i_joint_to(&robot->axes[j], GROBO_I_JOINT_HOLD);
@@ -668,8 +672,23 @@ static void note_goals(grobo_robot *robot, const grobo_robot_slot *slot, const s
     robot->played_joints |= slot->due_us != GROBO_NEVER_US ? target->posture.set : 0;
 }
 
+/* A driver that needs several frames for one joint has the goal in the last of them: until that has
+ * left, the joint is on the trajectory of before. */
+static bool is_before_goal(grobo_robot *robot, const grobo_robot_slot *slot, const saying *says)
+{
+    const grobo_robot_order *order = &slot->order;
+    grobo_exchange next;
+    return GROBO_I_EXTRA(robot->driver, tells_no_speed) && order->kind == GROBO_I_ORDER_GOAL &&
+           grobo_joints_count(order->joints) == 1 &&
+           make_frame(robot, order, says, &says->target, order->part + 1, &next) > 0;
+}
+
 static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying *says)
 {
+    if (is_before_goal(robot, slot, says)) {
+        robot->axes[grobo_i_lowest(slot->order.joints)].told_us = robot->now_us;
+        return;
+    }
     switch ((grobo_i_order_kind)slot->order.kind) {
     case GROBO_I_ORDER_NONE:
     case GROBO_I_ORDER_GOAL:

@@ -34,7 +34,7 @@ static bool has_lost_it(const grobo_robot *robot, int joint)
         return !grobo_i_goal_is_taken(robot, joint);
     }
     return GROBO_I_EXTRA(robot->driver, tells_no_speed) &&
-           robot->now_us > axis->trajectory.to_us + LATE_US &&
+           axis->seen_us > axis->trajectory.to_us + LATE_US &&
            fabs(axis->state.angle_rad + grobo_i_load(axis) - axis->trajectory.to_rad) > BESIDE_RAD;
 }
 

@@ -74,7 +74,7 @@ static bool take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
         int64_t left_us = got->goal_time_us - got->time_us;
         bool creeps = on && got->speed_dps != 0 && left_us > 0;
         left_us = left_us > least_us ? left_us : least_us;
-        axis->own_until_us = robot->now_us + (moves || creeps ? left_us : 0);
+        axis->own_until_us = axis->angle_us + (moves || creeps ? left_us : 0);
     }
     return moves && !grobo_i_has_target(axis) && axis->own_until_us <= robot->now_us &&
            !grobo_i_swings(robot, joint);
@@ -185,15 +185,18 @@ static void take_no_angles(grobo_robot *robot, int joint, int64_t asked_us, grob
     }
 }
 
+/* An answer that came so late was on its way when the host was away: it is of then. */
+#define LATE_ANSWER_US 100000
+
 /* Between angles so far apart lies a speed. */
 #define SPEED_LEAST_US 10000
 #define SPEED_MOST_US 500000
 
 /* The mean speed since the angle before, of a servo that tells none. */
-static void take_speed(const grobo_robot *robot, int joint, grobo_joint_state *got)
+static void take_speed(const grobo_robot *robot, int joint, int64_t read_us, grobo_joint_state *got)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    int64_t us = axis->angle_us == GROBO_NEVER_US ? 0 : robot->now_us - axis->angle_us;
+    int64_t us = axis->angle_us == GROBO_NEVER_US ? 0 : read_us - axis->angle_us;
     const unsigned both = GROBO_FIELD_ANGLE | GROBO_FIELD_SPEED;
     if (GROBO_I_EXTRA(robot->driver, tells_no_speed) && (got->valid & both) == GROBO_FIELD_ANGLE &&
         us >= SPEED_LEAST_US && us <= SPEED_MOST_US) {
@@ -220,7 +223,9 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
         got->angle_rad += correction(robot, joint);
     }
-    take_speed(robot, joint, got);
+    bool late = robot->now_us - asked_us > LATE_ANSWER_US;
+    int64_t read_us = late ? asked_us : robot->now_us;
+    take_speed(robot, joint, read_us, got);
     bool one_trajectory = is_of_one_trajectory(robot, axis);
     if (grobo_i_followers(robot) != 0 && (got->valid & GROBO_FIELD_ANGLE) != 0) {
         axis->before_rad = axis->state.angle_rad;
@@ -230,7 +235,7 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
     axis->status = GROBO_OK;
     axis->lost = 0;
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
-        axis->angle_us = robot->now_us;
+        axis->angle_us = read_us;
     }
     if ((got->valid & GROBO_FIELD_TEMPERATURE) != 0) { /* not every family measures a current */
         axis->full_us = robot->now_us;

@@ -196,14 +196,14 @@ static int step_read_twice(grobo_robot *robot)
     return GROBO_I_READ;
 }
 
-/* Motions begin where the joints were just seen, not where they were told to be; those that are on
- * the trajectory that they were told, where they are on it by now. */
+/* Motions begin where the joints were just seen, not where they were told to be; those that were
+ * seen on the trajectory that they were told, where they are on it by now, or at its end. */
 static int step_from_here(grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         bool on_trajectory = grobo_i_has_target(axis) && !grobo_i_is_stray(axis) &&
-                             axis->trajectory.to_us > robot->now_us;
+                             axis->trajectory.to_us > axis->angle_us;
         if (grobo_i_has(robot->job->joints & ~robot->job->failed, j) && !on_trajectory) {
             grobo_i_axis_here(axis, robot->now_us);
         }
@@ -848,8 +848,9 @@ static int step_moved(grobo_robot *robot)
     grobo_joint_mask doubt = job->pending & doubtful(robot), lost = job->pending & job->failed;
     grobo_joint_mask moved = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        bool sags = grobo_i_swings(robot, j) || grobo_i_may_sag(robot, j, job->begun_us);
         if (grobo_i_has(doubt, j) && grobo_i_stand_left(&robot->axes[j]) &&
-            !grobo_i_swings(robot, j) && !grobo_i_may_sag(robot, j, job->begun_us)) {
+            (!sags || creeps_to_its_goal(robot, j))) {
             grobo_i_astray(robot, j);
             moved |= GROBO_JOINT_BIT(j);
         }
