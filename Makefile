@@ -212,7 +212,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-map check-asserts install-lib FORCE
+.PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -524,6 +524,18 @@ check-mutants: ## sabotage the core in COUNT=300 ways that SEED=1 chooses: a tes
 	    --compile '$(CC) $(ALL_CPPFLAGS) -DGROBO_WALKS $(SRC_INCLUDE) -std=c11 -fPIC -O2' --link '$(CC)' \
 	    --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
 	    --scope tests/mutants/scope --survivors tests/mutants/survivors --named tests/mutants/named
+
+# Each sabotage of tests/mutants/sequences by the sequences of three events, then all of DEPTH.
+SEQUENCES := $(MUTANT_DIR)/tests/engine/test_sequences.o
+check-sequences: $(BUILD)/tests/engine/test_sequences ## all sequences of DEPTH=3 requests and line events, each family; sabotages first
+	-@tools/setup.sh --mutants
+	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 WALKS=-DGROBO_WALKS $(SEQUENCES) $(MUTANT_LIBS)
+	@GROBO_SEQUENCES=3 nice python3 tests/mutants/run.py --only $(or $(ONLY),named) \
+	    --work $(MUTANT_DIR)/sequences --sources "$(CORE_SRCS)" --tests "$(SEQUENCES)" \
+	    --compile '$(CC) $(ALL_CPPFLAGS) -DGROBO_WALKS $(SRC_INCLUDE) -std=c11 -fPIC -O2' --link '$(CC)' \
+	    --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
+	    --scope tests/mutants/scope --named tests/mutants/sequences
+	@GROBO_SEQUENCES=$(or $(DEPTH),3) $(BUILD)/tests/engine/test_sequences
 
 ASSERT_TESTS := $(MUTANT_TESTS) $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/link/test_runner% \
     tests/link/test_session% tests/link/test_serial% tests/link/test_virtual%,$(TEST_SRCS)))

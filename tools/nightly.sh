@@ -24,6 +24,7 @@ stage_of() {
     map) echo "check-map COUNT=0 SEED=$seed" ;;
     mutants) echo "check-mutants COUNT=300 SEED=$seed" ;;
     asserts) echo check-asserts ;;
+    sequences) echo check-sequences ;;
     soak) echo "soak SEEDS=6 FROM=$((seed % 100000 * 6))" ;;
     abi) echo check-abi ;;
     ports) echo check-ports ;;
@@ -43,8 +44,8 @@ stage_of() {
     esac
 }
 
-[ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts soak abi ports deb wheel roots \
-    analyse cockpit api families physics fleet scan stops matrix
+[ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts sequences soak abi ports deb wheel \
+    roots analyse cockpit api families physics fleet scan stops matrix
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done

@@ -42,6 +42,7 @@ void far_begin(far_side *far, const far_family *family, int n_joints, int64_t no
         joint->top_dps = family->top_dps;
         joint->celsius = 35;
         joint->at_us = now_us;
+        far->told_us[i] = FAR_NEVER;
         family->begin(joint);
     }
 }
@@ -84,6 +85,7 @@ void far_goal(far_side *far, far_joint *joint)
         return;
     }
     joint->waits = true;
+    joint->leaps = false; /* it has a way to go by */
     joint->wakes_us = far->now_us + far->family->dead_us;
     joint->family->plan(joint, &news.goal_deg, &news.ask_dps, &accel_dps2);
     report(far, joint, &news);
@@ -203,7 +205,8 @@ void far_answer(far_side *far, far_joint *told, const uint8_t *bytes, int n)
     for (int i = 0; i < far->n_replies; i++) {
         due_us = far->reply[i].due_us > due_us ? far->reply[i].due_us : due_us;
     }
-    due_us += far->family->think_us + far_wire_us(far, n);
+    due_us += far->family->think_us + far_wire_us(far, n) + far->late_us;
+    far->late_us = 0;
     if (far->lose_reply != FAR_NEVER && far->lose_reply-- == 0) {
         far->lost_frames++;
         far->lost_us = far->now_us;
@@ -211,6 +214,9 @@ void far_answer(far_side *far, far_joint *told, const uint8_t *bytes, int n)
     }
     if (told != NULL && due_us > far->lost_us + FAR_TELLS_US) {
         told->missed = false;
+    }
+    if (told != NULL && far->told_us[told - far->joint] == FAR_NEVER) {
+        far->told_us[told - far->joint] = due_us;
     }
     add_reply(far, bytes, n, due_us);
 }

@@ -122,9 +122,12 @@ struct far_side {
     uint64_t missed;   /* by these joints */
     far_reply reply[FAR_REPLIES];
     int n_replies;
-    int lose_motor; /* motor frames until one is lost; FAR_NEVER */
-    int lose_reply; /* replies until one is lost; FAR_NEVER */
-    bool mute;      /* nobody answers */
+    int lose_motor;  /* motor frames until one is lost; FAR_NEVER */
+    int lose_reply;  /* replies until one is lost; FAR_NEVER */
+    int64_t late_us; /* the next reply is so much later */
+    /* When the servo of a joint told where it is for the first time since this was FAR_NEVER. */
+    int64_t told_us[FAR_JOINTS];
+    bool mute; /* nobody answers */
     int frames, motor_frames, broken_frames, lost_frames;
     int64_t lost_us; /* when the last frame or reply was lost */
     /* When the first frame, and the first motor frame, left since these were FAR_NEVER. */
