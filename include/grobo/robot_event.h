@@ -47,8 +47,12 @@ typedef enum grobo_trip {
     GROBO_TRIP_NUMBER,       /**< a played target not finite. Not latched */
     GROBO_TRIP_HOST_STALL,   /**< value: ms late. Not latched */
     GROBO_TRIP_ESTOP,        /**< grobo_robot_estop() */
-    GROBO_TRIP_APART /**< a joint is not where the one that it follows has it; value: degrees
+    GROBO_TRIP_APART,   /**< a joint is not where the one that it follows has it; value: degrees
                                   that it is off (grobo_joint.apart_rad) */
+    GROBO_TRIP_BLOCKED, /**< a joint stands on its way: a wall, a hand, something that is stuck;
+                              value: degrees that its goal is ahead of where its load has it */
+    GROBO_TRIP_OVERLOAD /**< a joint sinks or is pushed further from its goal than any weight that
+                              it carries has it; value: degrees */
 } grobo_trip;
 
 /** Short lower-case name of a trip: "over-temperature". @return static string. Thread safe. */

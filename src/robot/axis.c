@@ -142,6 +142,9 @@ static double told_speed(const grobo_robot *robot, int joint)
                : trajectory_speed(trajectory);
 }
 
+/* The loop of a servo that carries an arm is so late behind its ramp. */
+#define LOOP_S 0.15
+
 /* Of a servo with ramps that tells its speed: from there and then to the speed of its
  * trajectory, and to rest at its end. */
 static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
@@ -156,7 +159,7 @@ static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
                          ? grobo_i_trajectory_at(trajectory, axis->told_to_us)
                          : trajectory->to_rad;
     end_rad -= grobo_i_load(axis);
-    if (seconds(trajectory->from_us, seen_us) * accel_rad_s2 > 2 * wanted_rad_s) {
+    if ((seconds(trajectory->from_us, seen_us) - LOOP_S) * accel_rad_s2 > 2 * wanted_rad_s) {
         wanted_rad_s = fmin(wanted_rad_s, fabs(c.rad_s)); /* too weak to be as fast by then */
     }
     c = go_on(c, fmin(seconds(seen_us, trajectory->from_us), GOES_ON_S));

@@ -17,6 +17,7 @@
 #include "src/base/angle.h"
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/robot/often.h"
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
 
@@ -722,6 +723,9 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
         }
     }
     grobo_i_halt_left(robot, told, halts || slot->order.rests);
+    if (slot->order.kind == GROBO_I_ORDER_GOAL && !slot->order.stops) {
+        grobo_i_often_soon(robot);
+    }
     grobo_i_gate_unwait(robot, &slot->order);
 }
 

@@ -7,6 +7,7 @@
 
 #include "src/base/instant.h"
 #include "src/base/sized.h"
+#include "src/robot/blocked.h"
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
 
@@ -109,6 +110,7 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
         axis->seen_dps = GROBO_I_NO_SPEED;
         grobo_i_stand_forget(axis);
         axis->current_since_us = axis->before_us = GROBO_NEVER_US;
+        grobo_i_blocked_forget(robot, j);
         axis->status = GROBO_ERR_EMPTY;
         if (!GROBO_DRIVERS_PLAIN && grobo_i_joint_follows(driver->model, j)) {
             robot->followers |= GROBO_JOINT_BIT(j);
@@ -309,6 +311,7 @@ static void forget(grobo_robot *robot)
         axis->seen_dps = GROBO_I_NO_SPEED;
         grobo_i_stand_forget(axis);
         axis->current_since_us = GROBO_NEVER_US;
+        grobo_i_blocked_forget(robot, j);
         axis->trajectory.to_us = robot->now_us;
     }
     robot->free_joints = robot->played_joints = robot->halts_owed = robot->renews_owed = 0;

@@ -12,6 +12,7 @@
  *   slot.c       frames under way: from an exchange to a transaction and back
  *   budget.c     how many motion frames a second leave time to read
  *   pace.c       how often the line carries more of the trajectories of joints, and readings beside
+ *   often.c      how often joints are read while one moves or is strained
  *   stand.c      whether a joint stands
  *   weight.c     the error that carries a joint, and goals that keep it
  *   reading.c    what a reading tells of a joint
@@ -23,6 +24,7 @@
  *   job.c        runs the script of a job, step by step
  *   stop.c       what ends the engine's own work and stops joints that move
  *   trip.c       stops for safety
+ *   blocked.c    judges angles: joints that are held up or overloaded
  *   watch.c      judges readings
  *   play.c       the sequencer's frames, on time
  *   segments.c   long moves told in parts, in time
@@ -428,6 +430,9 @@ void grobo_i_halt_owe(grobo_robot *robot, grobo_joint_mask joints);
 
 /* A reading of a joint: the load that it stands in, where it stands and its goal is known. */
 void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *got);
+/* A trajectory that begins where a joint is begins at the goal that its servo holds it by: one that
+ * begins at the joint, and a load that was another one when it stood, would have it dip. */
+void grobo_i_begin_at_goal(grobo_robot *robot, int joint);
 /* The goal that has a joint rest where it can by then: it keeps the load. */
 double grobo_i_goal_to_rest(const grobo_robot *robot, int joint, int64_t rest_us);
 /* This goal, drawn in so that its joint rests no further than that from here. */

@@ -6,6 +6,8 @@
 #include "src/base/instant.h"
 #include "src/bus/time.h"
 #include "src/model/joint.h"
+#include "src/robot/blocked.h"
+#include "src/robot/often.h"
 #include "src/robot/robot.h"
 
 /* In free mode a hand has so long to get a joint going, or to turn it back, before it holds. */
@@ -130,14 +132,14 @@ static bool background_wanted(const grobo_robot *robot)
 }
 
 /* How often each joint is to be read. */
-static int64_t interval_of(const grobo_robot *robot)
+static int64_t interval_of(grobo_robot *robot)
 {
     int64_t interval_us = robot->config.sense_interval_us;
     if (interval_us == GROBO_SENSE_NEVER) {
         return WATCH_INTERVAL_US; /* of those that are not free */
     }
-    return grobo_i_is_playing(robot) && interval_us > WATCH_INTERVAL_US ? WATCH_INTERVAL_US
-                                                                        : interval_us;
+    bool plays = grobo_i_is_playing(robot) && interval_us > WATCH_INTERVAL_US;
+    return grobo_i_often_interval(robot, plays ? WATCH_INTERVAL_US : interval_us);
 }
 
 /* Takes the next joint of a round through `all`, which begins again at its end. */
@@ -191,6 +193,19 @@ static int find_waiting(const grobo_robot *robot)
     return -1;
 }
 
+/* When what it reads will be as old as it may be; readings may be asked for long before that. */
+static int64_t is_old_at(const grobo_robot *robot, const grobo_robot_slot *slot)
+{
+    grobo_joint_mask asked = slot->many ? slot->unread : GROBO_JOINT_BIT(slot->joint);
+    int64_t old_us = GROBO_NEVER_US;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        int64_t read_us = robot->axes[j].angle_us;
+        int64_t at_us = read_us == GROBO_NEVER_US ? 0 : read_us + WATCH_INTERVAL_US;
+        old_us = grobo_i_has(asked, j) ? grobo_i_sooner(old_us, at_us) : old_us;
+    }
+    return old_us == GROBO_NEVER_US ? 0 : old_us;
+}
+
 /*
  * When the waiting reading goes before the next motion frame; GROBO_NEVER_US: not at all. It does
  * not while it could not leave anyway, since a lost reply may yet come: in the queue of the motion
@@ -208,10 +223,13 @@ static int64_t hurry_at(const grobo_robot *robot)
     first.priority = GROBO_PRIORITY_MOTION;
     int64_t since_us = slot->txn.sent_us > slot->given_us ? slot->txn.sent_us : slot->given_us;
     int readings = slot->many ? 1 : robot->driver->model->n_joints;
-    int64_t watch_us = unheard(robot) != 0 ? GROBO_I_RESTART_US : GROBO_WATCH_US;
+    bool quiet = unheard(robot) != 0;
+    int64_t watch_us = quiet ? GROBO_I_RESTART_US : GROBO_WATCH_US;
     int64_t late_us = since_us + watch_us / HURRY_PART / readings;
     int64_t free_us = grobo_bus_free_at(&robot->bus, robot->now_us);
     int64_t may_us = grobo_i_bus_start_at(&robot->bus, &first, robot->now_us);
+    bool needed = quiet || !grobo_i_often(robot);
+    late_us = needed ? late_us : grobo_i_later(late_us, is_old_at(robot, slot));
     return may_us > free_us && may_us > late_us ? may_us : late_us;
 }
 
@@ -249,7 +267,9 @@ static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
     if (robot->free_joints == 0 && robot->config.sense_position_only && !first) {
         return GROBO_SENSE_POSITION;
     }
-    return grobo_i_is_sensed(&robot->axes[joint]) ? GROBO_SENSE_FULL : GROBO_SENSE_ALL;
+    bool whole =
+        !grobo_i_is_sensed(&robot->axes[joint]) || grobo_i_blocked_wants_goal(robot, joint);
+    return whole ? GROBO_SENSE_ALL : GROBO_SENSE_FULL;
 }
 
 /* Which joint is read next; in turn with the others one that was not heard for long. */
@@ -297,9 +317,8 @@ static void note_fast(grobo_robot *robot, int result)
     }
 }
 
-/* A first reading, the longest, has the line for no longer than this where it can be parted:
- * a stop may wait for it. */
-#define FIRST_US 10000
+/* A reading has the line for no longer than this where it can be parted: a stop may wait for it. */
+#define PART_US 10000
 
 /* The next joints of a round, as many as have the time. */
 static int ask_some_of(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind kind,
@@ -339,8 +358,7 @@ static int ask_each(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind
     if (robot->in_segments) {
         return ask_some_of(robot, slot, kind, (uint32_t)robot->read_us);
     }
-    robot->round = 0;
-    return grobo_i_slot_ask_unread(slot);
+    return ask_some_of(robot, slot, kind, PART_US);
 }
 
 /* Any that nothing is known of is asked where it is going, too. */
@@ -353,7 +371,7 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
         robot->config.sense_position_only && !(first && GROBO_I_EXTRA(robot->driver, keeps_setup));
     slot->many = true;
     int result = first && !angles
-                     ? ask_some_of(robot, slot, GROBO_SENSE_ALL, FIRST_US)
+                     ? ask_some_of(robot, slot, GROBO_SENSE_ALL, PART_US)
                      : ask_each(robot, slot, angles ? GROBO_SENSE_POSITION : GROBO_SENSE_FULL);
     if (robot->round == 0) {
         robot->fast_forgotten = false;

@@ -206,6 +206,7 @@ static int step_from_here(grobo_robot *robot)
                              axis->trajectory.to_us > axis->angle_us;
         if (grobo_i_has(robot->job->joints & ~robot->job->failed, j) && !on_trajectory) {
             grobo_i_axis_here(axis, robot->now_us);
+            grobo_i_begin_at_goal(robot, j);
         }
     }
     return GROBO_I_NEXT;

@@ -16,6 +16,8 @@ static const char *const trip_names[] = {
     [GROBO_TRIP_HOST_STALL] = "host stalled",
     [GROBO_TRIP_ESTOP] = "emergency stop",
     [GROBO_TRIP_APART] = "servos apart",
+    [GROBO_TRIP_BLOCKED] = "joint blocked",
+    [GROBO_TRIP_OVERLOAD] = "joint overloaded",
 };
 
 const char *grobo_trip_name(grobo_trip trip)

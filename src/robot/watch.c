@@ -2,6 +2,7 @@
 /* Judges what is read, and stops for safety. */
 #include <math.h>
 
+#include "src/robot/blocked.h"
 #include "src/robot/robot.h"
 
 /* So many readings of a low voltage in a row, of whatever joints: they share a battery. */
@@ -90,6 +91,7 @@ void grobo_i_watch_reading(grobo_robot *robot, int joint, const grobo_joint_stat
     watch_voltage(robot, joint, got);
     watch_torque(robot, joint, got);
     watch_apart(robot, joint, got);
+    grobo_i_blocked_look(robot, joint, got);
 }
 
 void grobo_i_watch_lost(grobo_robot *robot, int joint)

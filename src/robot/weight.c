@@ -30,6 +30,8 @@
 /* A joint slower than this hangs in its load; one that was sent somewhere not before that time. */
 #define CALM_DPS 3
 #define RESTS_US 300000
+/* A joint that carries and is no faster begins its way at the goal that it has. */
+#define BEGINS_DPS 40
 /* Another program may have given it another goal by then, where nobody looks. */
 #define LATER_US 3000000
 
@@ -48,8 +50,8 @@ static bool hangs(const grobo_robot *robot, int joint, const grobo_joint_state *
     }
     int64_t since_us = robot->now_us - axis->trajectory.to_us;
     bool settled = since_us >= RESTS_US && since_us <= LATER_US;
-    return (settled || (stands && tells)) && grobo_i_goal_is_told(axis) &&
-           grobo_i_goal_is_taken(robot, joint);
+    bool there = since_us >= 0 && stands && tells; /* one that begins stands as well */
+    return (settled || there) && grobo_i_goal_is_told(axis) && grobo_i_goal_is_taken(robot, joint);
 }
 
 void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *got)
@@ -72,6 +74,19 @@ void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *g
     bool same = fabs(load_rad - axis->load_rad) <= least_rad;
     axis->load_is_sure = sent || grobo_i_stands(robot, joint) || (axis->load_is_sure && same);
     axis->load_rad = load_rad;
+}
+
+void grobo_i_begin_at_goal(grobo_robot *robot, int joint)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    double goal_rad = axis->state.goal_rad;
+    bool slow = axis->seen_dps != GROBO_I_NO_SPEED && abs(axis->seen_dps) <= BEGINS_DPS;
+    bool stands = axis->trajectory.from_us == axis->trajectory.to_us;
+    if (!grobo_i_axis_is_counted(axis) && grobo_i_axis_is_on(axis) && slow && stands &&
+        grobo_i_goal_is_told(axis) &&
+        fabs(goal_rad - axis->state.angle_rad) <= grobo_i_load_most(robot, joint)) {
+        axis->trajectory.from_rad = axis->trajectory.to_rad = goal_rad;
+    }
 }
 
 double grobo_i_goal_near(const grobo_robot_axis *axis, double goal_rad, double here_rad,

@@ -252,10 +252,11 @@ TEST_WITH(rig_wirings, a_trip_takes_back_targets_that_wait)
 
 TEST_WITH(rig_wirings, each_reason_has_a_name_of_its_own)
 {
-    static const char *const names[] = {
-        "none",           "over-temperature", "servo overheated", "over-current", "low voltage",
-        "lost replies",   "torque lost",      "outside limits",   "not a number", "host stalled",
-        "emergency stop", "servos apart",     "unknown"};
+    static const char *const names[] = {"none",          "over-temperature", "servo overheated",
+                                        "over-current",  "low voltage",      "lost replies",
+                                        "torque lost",   "outside limits",   "not a number",
+                                        "host stalled",  "emergency stop",   "servos apart",
+                                        "joint blocked", "joint overloaded", "unknown"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         assert_string_equal(grobo_trip_name((grobo_trip)i), names[i]);
     }

@@ -24,6 +24,8 @@ static void on_event(void *ctx, const grobo_event *event)
         weight.ended_us = weight.now_us;
     } else if (event->kind == GROBO_EVENT_TRIP) {
         weight.tripped = event->u.trip.trip;
+        weight.tripped_joint = event->u.trip.joint;
+        weight.tripped_us = event->u.trip.at_us;
     }
 }
 

@@ -23,7 +23,9 @@ typedef struct weight_world {
     int ended, result; /* the job that ended last */
     int64_t ended_us;
     grobo_trip tripped; /* since weight_new_engine() */
-    unsigned lose;      /* so many of the next frames do not arrive */
+    int tripped_joint;
+    int64_t tripped_us;
+    unsigned lose; /* so many of the next frames do not arrive */
 } weight_world;
 
 extern weight_world weight;

@@ -37,7 +37,8 @@ engine='robot/robot robot/turn robot/job robot/play robot/control robot/query ro
     robot/gate robot/couple
     robot/event robot/reading robot/orders robot/watch robot/trip robot/stop robot/segments
     robot/sense robot/cost robot/budget robot/holds robot/join robot/pace robot/queue
-    robot/halted robot/stand robot/weight robot/state robot/speed base/sized'
+    robot/halted robot/blocked robot/often robot/stand robot/weight robot/state robot/speed
+    base/sized'
 simulator='servo/gr001/parser sim/board sim/bus sim/inspect sim/sim sim/wire servo/rs30x/sim
     sim/servo/fault sim/servo/indirect sim/servo/note sim/servo/power sim/servo/registers
     sim/servo/servo sim/servo/shaft sim/servo/talk'

@@ -149,6 +149,15 @@ typedef struct grobo_robot_axis {
     uint8_t n_apart;   /* of one that follows: so often in a row it was read to be elsewhere */
     double before_rad; /* the angle read before, of a robot with joints that follow others */
     int64_t before_us; /* and when; GROBO_NEVER_US: there is none */
+#if !GROBO_DRIVERS_PLAIN
+    double block_rad, block_set_rad; /* where it was found to stand, and its set point then; */
+    double block_load_rad;           /* its error, where that set point stood */
+    int64_t block_us;  /* when that was there last; GROBO_NEVER_US: nothing is known of it */
+    double over_rad;   /* nearest to its set point since it is further away than weight has it, */
+    int64_t over_us;   /* and when; GROBO_NEVER_US: it is not */
+    int64_t looked_us; /* when it was judged last */
+    bool was_near;     /* it was seen nearer than that since it is */
+#endif
 } grobo_robot_axis;
 
 /** A job that runs. Private. */
@@ -264,6 +273,10 @@ struct grobo_robot {
     int64_t halted_us;              /* they are not asked before */
     int64_t halted_by_us;           /* nor after that */
     bool halted_read;               /* the last reading was for that */
+#if !GROBO_DRIVERS_PLAIN
+    grobo_joint_mask strained; /* further from their set point than their load explains */
+    int64_t line_us; /* in which all joints are read with half of the line's time; 0: not found */
+#endif
     int64_t stop_us; /* when the last exit or emergency stop was asked for; 0: none was */
     uint8_t reply[GROBO_FRAME_MAX_BYTES];
     grobo_exchange built;                     /* the frame that is being made */

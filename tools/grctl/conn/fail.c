@@ -82,6 +82,8 @@ static const char *trip_unit(grobo_trip trip)
         return _(" in a row");
     case GROBO_TRIP_LIMIT:
     case GROBO_TRIP_APART:
+    case GROBO_TRIP_BLOCKED:
+    case GROBO_TRIP_OVERLOAD:
         return " deg";
     case GROBO_TRIP_HOST_STALL:
         return _(" ms late");
@@ -133,6 +135,22 @@ static int fail_trip(conn *c, const char *doing)
             "check horns and gears, and calibrate both",
             doing, _(grobo_trip_name(t->trip)), value, first->motor, first->name, joint->motor,
             joint->name);
+    }
+    if (t->joint >= 0 && t->joint < model->n_joints && t->trip == GROBO_TRIP_BLOCKED) {
+        return app_fail_trip(
+            c->a, t->trip,
+            "%s: stopped for safety: %s%s at motor %d (%s): it stands on its way; free it, and "
+            "check that its payload is not too heavy",
+            doing, _(grobo_trip_name(t->trip)), value, grobo_model_joint(model, t->joint)->motor,
+            grobo_model_joint(model, t->joint)->name);
+    }
+    if (t->joint >= 0 && t->joint < model->n_joints && t->trip == GROBO_TRIP_OVERLOAD) {
+        return app_fail_trip(
+            c->a, t->trip,
+            "%s: stopped for safety: %s%s at motor %d (%s): it sinks or was pushed away; take the "
+            "payload or the hand away",
+            doing, _(grobo_trip_name(t->trip)), value, grobo_model_joint(model, t->joint)->motor,
+            grobo_model_joint(model, t->joint)->name);
     }
     if (t->joint >= 0 && t->joint < model->n_joints) {
         return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s at motor %d (%s)", doing,

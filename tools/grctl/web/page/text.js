@@ -74,7 +74,8 @@ export const JA = {
     sent: '送信済み', over_temperature: '過熱', servo_overheated: 'サーボ過熱', over_current: '過電流',
     low_voltage: '電圧低下', lost_replies: '応答なし', torque_lost: 'トルク喪失',
     outside_limits: '可動範囲外', not_a_number: '不正な値', host_stalled: 'ホスト停止',
-    emergency_stop: '非常停止', servos_apart: 'サーボの不一致', stop: '停止',
+    emergency_stop: '非常停止', servos_apart: 'サーボの不一致',
+    joint_blocked: '関節の拘束', joint_overloaded: '関節の過負荷', stop: '停止',
     // the fleet
     Fleet: 'フリート', Robots: 'ロボット', 'Name, host, model or motion': '名前、ホスト、機種、モーション',
     Group: 'グループ', 'Trouble only': '異常のみ', Close: '閉じる', 'Open its cockpit': 'コックピットを開く',
@@ -98,7 +99,8 @@ const EN = {
     over_temperature: 'too hot', servo_overheated: 'servo overheated', over_current: 'current too high',
     low_voltage: 'voltage too low', lost_replies: 'servo silent', torque_lost: 'torque lost',
     outside_limits: 'outside its limits', not_a_number: 'not a number', host_stalled: 'host stalled',
-    emergency_stop: 'emergency stop', servos_apart: 'servos of a joint disagree', sent: 'not read yet', moving: 'moves', right: 'right foot',
+    emergency_stop: 'emergency stop', servos_apart: 'servos of a joint disagree',
+    joint_blocked: 'joint blocked', joint_overloaded: 'joint overloaded', sent: 'not read yet', moving: 'moves', right: 'right foot',
     left: 'left foot',
 };
 
