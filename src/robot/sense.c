@@ -317,8 +317,10 @@ static void note_fast(grobo_robot *robot, int result)
     }
 }
 
-/* A reading has the line for no longer than this where it can be parted: a stop may wait for it. */
+/* A reading has the line for no longer than this where it can be parted: a stop may wait for it. A
+ * slow line has no time for more than a few parts; a first reading, the longest, takes it. */
 #define PART_US 10000
+#define PARTS_MOST 4
 
 /* The next joints of a round, as many as have the time. */
 static int ask_some_of(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind kind,
@@ -329,6 +331,8 @@ static int ask_some_of(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_k
     grobo_joint_mask left = robot->round != 0 ? robot->round : grobo_i_all_joints(robot);
     int result = driver->sense_many(driver, robot->driver_ctx, left, kind, &robot->built);
     uint32_t us = result >= 0 ? grobo_i_line_us(&robot->bus, &robot->built) : 0;
+    most_us =
+        most_us == PART_US && kind != GROBO_SENSE_ALL && us > PARTS_MOST * PART_US ? us : most_us;
     int n = grobo_joints_count(left), most = us > most_us ? (int)(most_us * (uint32_t)n / us) : n;
     slot->unread = 0;
     do {
