@@ -669,6 +669,53 @@ for line in '    int64_t delay;' '    double goal_angles[20];' 'void f(int timeo
     check "units: $line" refuses 'a.h:1: units' scan units a.h
 done
 
+test_case "names and counts of one robot"
+
+fresh
+mkdir -p src/robots src/link tools/grctl/cmd
+cat >one.yaml <<'Y'
+name: gr001
+joints:
+  - name: R_KNEE_P
+  - name: CHEST_P
+groups:
+  - {name: all, joints: [R_KNEE_P]}
+Y
+echo 'src/link/known.c a default' >list
+# one_robot WHOLE FILE...
+one_robot() {
+    whole=$1
+    shift
+    awk -v robot=one.yaml -v list=list -v whole="$whole" -f "$gates/strip.awk" \
+        -f "$gates/gr001.awk" "$@"
+}
+cat >src/link/a.c <<'C'
+/* GR001 has 20 joints: R_KNEE_P is one. */
+static const char *const words = "as R_KNEE_P of GR001";
+const int n = model->n_joints + 120 + joint->motor[2];
+double table[200], at = joints[1] * 20.5;
+C
+check 'gr001: comments, sentences and other numbers' one_robot '' src/link/a.c
+for line in 'x = grobo_gr001_driver(w);' 'x = &grobo_i_gr001_model;' \
+    'if (strcmp(name, "gr001") == 0) {' 'if (strcmp(name, "GR001") == 0) {' 'double q_rad[20];' \
+    'if (model->n_joints == 20) {' 'for (int j = 0; j < n_servos && n_joints >= 21; j++) {' \
+    'if (20 < n_motors) {' 'const char *knee = "R_KNEE_P";' 'x = find(model, "CHEST_P");'; do
+    echo "$line" >src/link/b.c
+    check "gr001: $line" refuses 'src/link/b.c:1: gr001' one_robot '' src/link/b.c
+    cp src/link/b.c src/robots/b.c
+    check "gr001: its own: $line" one_robot '' src/robots/b.c
+done
+echo 'x = grobo_gr001_driver(w);' >src/link/known.c
+check 'gr001: what is listed' one_robot 1 src/link/known.c
+echo 'x = 1;' >src/link/known.c
+check 'gr001: what is listed for nothing' refuses 'list:1: gr001: src/link/known.c' \
+    one_robot 1 src/link/known.c
+echo '.example = "  grctl move R_KNEE_P -40\n",' >tools/grctl/cmd/c.c
+check 'gr001: help has examples' one_robot '' tools/grctl/cmd/c.c
+echo 'if (strcmp(name, "R_KNEE_P") == 0) {' >tools/grctl/cmd/c.c
+check 'gr001: a command that decides by a name' refuses 'tools/grctl/cmd/c.c:1: gr001' \
+    one_robot '' tools/grctl/cmd/c.c
+
 test_case "text, format, help, tree"
 
 fresh

@@ -46,6 +46,12 @@ named_tests() {
     awk -f "$gates/strip.awk" -f "$gates/named_tests.awk" -f "$gates/$rules.awk" "$@"
 }
 
+# Code for every robot does not know one of them.
+gr001() {
+    awk -v robot=src/robots/gr001.yaml -v list="$gates/gr001.txt" -v whole=1 \
+        -f "$gates/strip.awk" -f "$gates/gr001.awk" "$@"
+}
+
 # beside NAME COMMAND...: a gate that takes long, while the others run; see gather().
 beside() {
     slow="$slow $1"
@@ -97,6 +103,7 @@ fi
     gate braces scan braces $all
     gate switch scan switch $library $library
     gate units scan units $headers
+    gate gr001 gr001 $(printf '%s\n' "$all" | grep -E '^(include|src|ports|tools/grctl)/')
     gate help sh "$gates/help.sh"
     gate lang sh "$gates/lang.sh"
     gate tree sh "$gates/tree.sh"

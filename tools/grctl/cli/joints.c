@@ -140,25 +140,26 @@ bool joints_read_angle(const grobo_model *model, int joint, const char *text, do
     return *unit == '\0' || strcmp(unit, grobo_unit_name(grobo_model_unit(model, joint))) == 0;
 }
 
-static const char *value_text(double value, const char *unit, int decimals, char *buffer)
+static const char *value_text(double value, grobo_unit unit, int decimals, char *buffer)
 {
     double least = pow(10, -decimals) / 2;
+    const char *name = unit == GROBO_UNIT_DEG ? _("deg") : grobo_unit_name(unit);
     snprintf(buffer, JOINTS_TEXT_BYTES, "%.*f %s", decimals, fabs(value) < least ? 0.0 : value,
-             unit); /* no -0.0 */
+             name); /* no -0.0 */
     return buffer;
 }
 
 const char *joints_text(const grobo_model *model, int joint, double angle_rad, int decimals,
                         char *buffer)
 {
-    return value_text(grobo_model_value(model, joint, angle_rad),
-                      grobo_unit_name(grobo_model_unit(model, joint)), decimals, buffer);
+    return value_text(grobo_model_value(model, joint, angle_rad), grobo_model_unit(model, joint),
+                      decimals, buffer);
 }
 
 const char *joints_error_text(const grobo_model *model, int joint, double deg, char *buffer)
 {
     return value_text(fabs(grobo_model_change(model, joint, grobo_rad_from_deg(deg))),
-                      grobo_unit_name(grobo_model_unit(model, joint)), 1, buffer);
+                      grobo_model_unit(model, joint), 1, buffer);
 }
 
 const char *joints_mark(const grobo_model *model, int joint)
