@@ -39,13 +39,14 @@ stage_of() {
     fleet) echo check-fleet ;;
     scan) echo check-scan ;;
     stops) echo "test ONLY=serve_stop STOPS=16" ;;
+    memory) echo "test ONLY=memory.sh ALLOCATIONS=all" ;;
     matrix) echo "test ONLY=matrix RING=cli MATRIX=all" ;;
     *) return 1 ;;
     esac
 }
 
 [ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts sequences soak abi ports deb wheel \
-    roots analyse cockpit api families physics fleet scan stops matrix
+    roots analyse cockpit api families physics fleet scan stops memory matrix
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done

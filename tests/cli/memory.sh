@@ -1,8 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Whichever one allocation of a command fails: it ends in time, by itself, with a status that says
-# so, and a stop says of no joint that goes on that it stands.
+# Whichever one allocation of a command fails, in its own code or in that of a library: it ends in
+# time, by itself, with a status and a reason that say so, a stop says of no joint that goes on that
+# it stands, and the robot that was driven stands a moment later.
+#
+# Environment: ALLOCATIONS=all fails each allocation of the commands that drive a robot (make
+# nightly); without it some, spread over all of them.
 . tests/support/cli.sh
+. tests/support/registers.sh
 
 all_skipped() {
     echo "1..0 # SKIP $1"
@@ -41,7 +46,91 @@ each_fails() {
     done
     [ $failed -gt 5 ]
 }
-test_that 'status' each_fails 90 status
-test_that 'a move' each_fails 110 move elbow_flex 10 50
-test_that 'an emergency stop' each_fails 60 estop
+test_case "each allocation of a short command"
+check 'status' each_fails 90 status
+check 'a move' each_fails 110 move elbow_flex 10 50
+check 'an emergency stop' each_fails 60 estop
+
+test_case "allocations of commands that drive a robot"
+start_sim --robot so101 || { echo "Bail out! the simulator did not start"; exit 1; }
+cat >"$work/two.pseq" <<'PSEQ'
+type: PoseSeq
+name: "two"
+refs:
+  - time: 0
+    refer: { type: Pose, name: "", joints: [ 2, 3 ], q: [ 0, 0 ] }
+  - time: 0.3
+    refer: { type: Pose, name: "", joints: [ 2, 3 ], q: [ 0.3, -0.3 ] }
+PSEQ
+
+# Each runs the command with what is loaded first, and prints what a person would read.
+plays() {
+    LD_PRELOAD=$work/nth.so timeout 60 "$GRCTL" --robot so101 -d "$robot" play "$work/two.pseq" \
+        </dev/null 2>&1
+}
+records() {
+    rm -f "$work/kept.yaml"
+    printf ' q' | LD_PRELOAD=$work/nth.so timeout 60 "$GRCTL" --robot so101 -d "$robot" \
+        record -o "$work/kept.yaml" -k 2>&1
+}
+# Its screen is drawn on a terminal of its own. Where that cannot be set up it is `status --watch`,
+# which Ctrl-C ends.
+monitors() {
+    monitors_env="LD_PRELOAD=$work/nth.so FAIL_AT=$FAIL_AT COUNT_TO=$work/count"
+    { printf q; sleep 0.5; printf '\003'; } | timeout 60 script -qec \
+        "env $monitors_env '$GRCTL' --robot so101 -d $robot monitor" /dev/null
+}
+
+# stands: none of its joints turns.
+stands() {
+    "$GRCTL" --robot so101 -d "$robot" --timeout 2000 status >"$work/status" 2>&1 &&
+        awk '$1 ~ /^[0-9]+$/ { joints++; turning += $6 != 0 } END { exit joints != 6 || turning }' \
+            "$work/status"
+}
+
+# point_fails N RUN: the N-th allocation fails.
+point_fails() {
+    export FAIL_AT="$1"
+    "$2" >"$work/out"
+    status=$?
+    failed=$((failed + (status != 0)))
+    [ $status -ne 130 ] || status=0 # it was interrupted, and ended
+    if [ $status -ge 124 ] ||
+        { [ $status -ne 0 ] && ! grep -qi "grctl\|memory" "$work/out"; }; then
+        echo "allocation $1 of $2: status $status"
+        sed -n '1,5p' "$work/out"
+        return 1
+    fi
+    wait_for stands || {
+        echo "allocation $1 of $2: the robot does not stand"
+        return 1
+    }
+}
+
+# points_fail RUN: so many of all that it makes without a failure, the first and the last too.
+points_fail() {
+    export FAIL_AT=0 COUNT_TO="$work/count"
+    "$1" >"$work/out" || {
+        cat "$work/out"
+        return 1
+    }
+    total=$(cat "$work/count")
+    points=8
+    [ "${ALLOCATIONS:-}" = all ] && points=$total
+    failed=0
+    point=0
+    while [ $point -lt "$points" ]; do
+        point_fails $((1 + point * (total - 1) / (points - 1))) "$1" || return 1
+        point=$((point + 1))
+    done
+    echo "$points of $total allocations failed: $failed ended the command"
+    [ $failed -gt 0 ]
+}
+check 'a motion' points_fail plays
+check 'a recording' points_fail records
+if script -qec true /dev/null </dev/null >/dev/null 2>&1; then
+    check 'the monitor' points_fail monitors
+else
+    skip 'the monitor' 'no script(1)'
+fi
 done_testing
