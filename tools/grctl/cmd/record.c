@@ -466,7 +466,12 @@ static int teach(recorder *r)
         error = take(r, true);
     }
     bool hears = keys_start(&r->input, c->base, true, on_key, r);
-    say_how(r, hears);
+    if (!hears && r->by_key && !error) { /* keys could come, and nothing else would end it well */
+        error = GROBO_ERR_NOMEM;
+    }
+    if (!error) {
+        say_how(r, hears);
+    }
     progress_start(&r->line, c->a);
     if (!r->by_key) {
         double rate_hz = app_number(c->a, OPT_RATE, seed_rate_hz);
@@ -480,8 +485,9 @@ static int teach(recorder *r)
     progress_clear(&r->line);
     conn_forget(r->look);
     conn_forget(r->live);
-    if (!error && r->held) { /* out of the hands: they hold where they are */
-        error = conn_wait(c, grobo_robot_free(c->robot, r->held, false));
+    if (r->held) { /* out of the hands, whatever ended it: they hold where they are */
+        int held = conn_wait(c, grobo_robot_free(c->robot, r->held, false));
+        error = error ? error : held;
     }
     return error;
 }
