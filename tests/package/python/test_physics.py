@@ -12,7 +12,7 @@ import unittest
 from pathlib import Path
 
 import grobo
-from grobo import Description, errors
+from grobo import Description, Motion, errors
 
 HERE = all(importlib.util.find_spec(name) for name in ("mujoco", "numpy"))
 if HERE:
@@ -254,6 +254,52 @@ class Exported(Heads):
         robot.body.push([-6.0, 0, 0], 0.2)
         robot.run(2)
         self.assertTrue(robot.body.fallen)
+
+    def pushed(self, stabilizer):
+        path = self.folder / "robot.xml"
+        subprocess.run([GRCTL, "robot", "export", "gr001", "--mjcf", "-o", str(path), "--yes"],
+                       check=True)
+        gr001 = Description("gr001")
+        initial = [float(gr001.model.joints[j].init_rad) for j in range(20)]
+        robot = Virtual(Body(path, gr001), stabilizer=stabilizer)
+        self.addCleanup(robot.close)
+        robot.init()
+        robot.run(0.6)
+        self.upright = robot.body.tilt().pitch
+        robot.body.push([-1.5, 0, 0], 1.0, after=1.0)
+        robot.play(Motion.of([0.5, 4], [initial, initial], kind="keys", robot=gr001))
+        return robot
+
+    def test_a_stabilizer_stands_against_a_push(self):
+        right, left = (Description("gr001").joints.index(n) for n in ("R_ANKLE_P", "L_ANKLE_P"))
+        self.upright, seen = 0.0, []
+
+        def lean(tilt, sensed, target):
+            turn = max(-0.3, min(0.3, tilt.pitch - self.upright + 0.1 * tilt.rates[1]))
+            target[right] += turn
+            target[left] -= turn
+            seen.append((sensed[right], target[right]))
+
+        self.assertTrue(self.pushed(None).body.fallen)
+        robot = self.pushed(lean)
+        self.assertFalse(robot.body.fallen)
+        self.assertLess(math.degrees(robot.body.tilt().angle), 5)
+        self.assertEqual(robot.trips, [])
+        # What it gave is what the servos were told: read again it is there, by and by.
+        self.assertGreater(len(seen), 100)
+        self.assertLess(sum(abs(was - goal) for was, goal in seen) / len(seen), 0.1)
+
+    def test_a_stabilizer_is_judged_and_its_errors_are_told(self):
+        def far(tilt, sensed, target):
+            target[:] = 9.0
+
+        def wrong(tilt, sensed, target):
+            raise ZeroDivisionError("of the stabilizer")
+
+        with self.assertRaisesRegex(errors.Error, "limits"):
+            self.pushed(far)
+        with self.assertRaisesRegex(Exception, "canceled|of the stabilizer"):
+            self.pushed(wrong)
 
     def test_a_hexapod_stands(self):
         robot = self.stand("./" + HEXAPOD, "--free")

@@ -60,6 +60,12 @@ class Tilt(NamedTuple):
     """m"""
 
 
+Stabilizer = Callable[[Tilt, Any, Any], None]
+"""Corrects a target before the engine judges and sends it: tilt and rates of the base, the angles read
+last and the target's, arrays in radians in the order of the joints (NaN: not read, not asked for).
+It changes the target's in place."""
+
+
 class Body:
     """A body of MuJoCo, for one simulator.
 
@@ -93,7 +99,7 @@ class Body:
         self._held_at: Any = None
         self._base_armature: Any = None
         self._begun = False
-        self._pushes: List[Tuple[float, int]] = []  # until when, at which body
+        self._pushes: List[Tuple[float, float, int, Tuple[float, ...]]] = []  # from, until, body, N
         self.on_step: Optional[Callable[["Body"], None]] = None
         self._callback = ffi.callback(
             "int(void *, const grobo_sim_drive *, double, grobo_sim_state *)", self._step)
@@ -218,7 +224,7 @@ class Body:
         data.qvel[dof] = state[:, 1]
         model.dof_frictionloss[dof] = drive[:, 2]
         model.dof_armature[dof] = drive[:, 3]
-        self._forget_pushes()
+        self._apply_pushes()
         begin = data.time, data.qpos.copy(), data.qvel.copy(), data.qacc_warmstart.copy()
         stopped = self._numpy.zeros(self.n, dtype=bool)
         low, high = drive[:, 4], drive[:, 5]
@@ -254,16 +260,23 @@ class Body:
 
     # ---- what is done to it ------------------------------------------------------------------
 
-    def push(self, force: Sequence[float], time: float, link: Optional[str] = None) -> None:
-        """Pushes a link's centre of mass with a force in N, in world axes; without a link the base."""
-        at = self._body(link)
-        self.data.xfrc_applied[at, :3] = force
-        self._pushes.append((self.data.time + time, at))
+    def push(
+        self, force: Sequence[float], time: float, link: Optional[str] = None, *, after: float = 0.0,
+    ) -> None:
+        """Pushes a link's centre of mass for a time, with a force in N, in world axes; without a link
+        the base. It begins `after` seconds from now."""
+        begin = self.data.time + after
+        self._pushes.append((begin, begin + time, self._body(link), tuple(force)))
 
-    def _forget_pushes(self) -> None:
-        for end, at in [one for one in self._pushes if one[0] <= self.data.time]:
+    def _apply_pushes(self) -> None:
+        """The pushes that go on; several at one link add up."""
+        now = self.data.time
+        for _begin, _end, at, _force in self._pushes:
             self.data.xfrc_applied[at, :3] = 0
-            self._pushes.remove((end, at))
+        for begin, end, at, force in self._pushes:
+            if begin <= now < end:
+                self.data.xfrc_applied[at, :3] += force
+        self._pushes = [one for one in self._pushes if now < one[1]]
 
     def _body(self, link: Optional[str]) -> int:
         mujoco = self.mujoco
@@ -467,16 +480,20 @@ class Served(_Simulated):
 
 
 class Virtual(_Simulated):
-    """The library's engine with a body, in virtual time: as fast as the machine can."""
+    """The library's engine with a body, in virtual time: as fast as the machine can.
 
-    def __init__(self, body: Body, *, seed: int = 0) -> None:
+    `stabilizer`: sees each target of a move or a motion, with what an IMU in the base would tell.
+    """
+
+    def __init__(self, body: Body, *, seed: int = 0, stabilizer: Optional[Stabilizer] = None) -> None:
         self.body = body
         self._handle: Any = ffi.NULL
+        self._stabilizer = stabilizer
         self._ended: Dict[int, int] = {}
         self._played: Optional[int] = None
         self.trips: List[str] = []
         config = new("grobo_virtual_config")
-        config.driver = body.robot._driver
+        config.driver = self._driver() if stabilizer else body.robot._driver
         config.sim = self._config(False, seed)
         made = ffi.new("grobo_virtual **")
         result = lib.grobo_virtual_new(config, made)
@@ -488,6 +505,33 @@ class Virtual(_Simulated):
         self._sim = lib.grobo_virtual_sim(self._handle)
         self._on_event = ffi.callback("void(void *, const grobo_event *)", self._event)
         lib.grobo_robot_on_event(self.robot, self._on_event, ffi.NULL)
+
+    def _driver(self) -> Any:
+        """The robot's driver with the stabilizer in it."""
+        self._stabilized = ffi.new("grobo_driver *")  # as long as the engine uses it
+        self._stabilized.size = ffi.sizeof("grobo_driver")
+        lib.grobo_driver_copy(self._stabilized, self.body.robot._driver)
+        self._stabilize_c = ffi.callback(ffi.typeof(self._stabilized.stabilize), self._stabilize)
+        self._stabilized.stabilize = self._stabilize_c
+        return self._stabilized
+
+    def _stabilize(self, _driver: Any, _ctx: Any, sensed: Any, target: Any) -> int:
+        """Hands a target to the stabilizer before it is judged and sent."""
+        numpy, n = self.body._numpy, self.body.n
+        try:
+            now = numpy.array([sensed.angle_rad[j] if sensed.set >> j & 1 else math.nan
+                               for j in range(n)])
+            goal = numpy.array([target.angle_rad[j] if target.set >> j & 1 else math.nan
+                                for j in range(n)])
+            assert self._stabilizer is not None
+            self._stabilizer(self.body.tilt(), now, goal)
+            for j in range(n):
+                if target.set >> j & 1:
+                    target.angle_rad[j] = goal[j]
+            return 0
+        except Exception:  # nothing may leave a callback
+            self.body.problem = self.body.problem or traceback.format_exc()
+            return int(lib.GROBO_ERR_CANCELED)
 
     def _event(self, _ctx: Any, event: Any) -> None:
         if event.kind == lib.GROBO_EVENT_JOB:
