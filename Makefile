@@ -598,7 +598,7 @@ wrap: ## build/subprojects, for the Meson projects that take TARBALL=build/libgr
 	@sed -e 's|@VERSION@|$(VERSION)|' -e "s|@SHA256@|$$(sha256sum <$(TARBALL) | cut -d ' ' -f 1)|" \
 	    tools/package/meson/grobo.wrap.in >$(BUILD)/subprojects/grobo.wrap
 
-.PHONY: sources wrap python wheel check-wheel deb check-deb check-roots release
+.PHONY: sources wrap python wheel check-wheel deb deb-source check-deb check-roots release
 # The Python package as it is used from here (PYTHONPATH=build/python) and packed.
 PYTHON ?= python3
 PYTHON_DIR := $(BUILD)/python
@@ -622,6 +622,9 @@ ARCH ?=
 deb: ## Debian packages in build/deb, for this machine or ARCH=arm64
 	@tools/setup.sh --packages
 	@tools/package/deb.sh "$(BUILD)" $(ARCH)
+
+deb-source: ## the Debian source package of the last commit, in build/deb/source
+	@tools/package/deb_source.sh "$(BUILD)"
 
 check-deb: ## these for amd64 and arm64: lintian, and installed and purged in fresh Debian and Ubuntu roots
 	-@tools/setup.sh --packages
@@ -680,6 +683,14 @@ install-lib: lib ## headers, libraries and what finds them: pkg-config, CMake
 	install -m 644 $(PC_FILES) "$(DESTDIR)$(LIBDIR)/pkgconfig"
 	install -m 644 $(CMAKE_FILES) "$(DESTDIR)$(LIBDIR)/cmake/grobo"
 
+# Guides and examples; those of firmware need a board, and are in the sources.
+DOCDIR ?= $(DATADIR)/doc/grobo
+DOC_FOLDERS := docs docs/guide docs/examples docs/examples/classic docs/examples/robots motions/plots
+define install_documents
+install -m 644 $(wildcard $(folder)/*.*) "$(DESTDIR)$(DOCDIR)/$(folder)"
+
+endef
+
 install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -d "$(DESTDIR)$(BINDIR)"
 	$(if $(GRCTL),install -m 755 $(GRCTL) "$(DESTDIR)$(BINDIR)")
@@ -693,6 +704,10 @@ install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -m 644 tools/systemd/grctl-agent@.service "$(DESTDIR)$(DATADIR)/grobo/systemd"
 	install -m 644 tools/udev/60-grobo.rules "$(DESTDIR)$(DATADIR)/grobo/udev"
 	install -m 644 tools/wireshark/grobo.lua "$(DESTDIR)$(DATADIR)/grobo/wireshark"
+	install -d $(foreach folder,$(DOC_FOLDERS),"$(DESTDIR)$(DOCDIR)/$(folder)") "$(DESTDIR)$(DATADIR)/grobo/motions"
+	install -m 644 $(filter-out %/README.md,$(wildcard motions/*.*)) "$(DESTDIR)$(DATADIR)/grobo/motions"
+	$(foreach folder,$(DOC_FOLDERS),$(install_documents))
+	install -m 644 README.md CHANGELOG.md LICENSE "$(DESTDIR)$(DOCDIR)"
 
 uninstall: ## take out what install put in
 	rm -rf "$(DESTDIR)$(INCLUDEDIR)/grobo" "$(DESTDIR)$(LIBDIR)/cmake/grobo" "$(DESTDIR)$(LIBDIR)/grobo"
@@ -702,7 +717,7 @@ uninstall: ## take out what install put in
 	rm -f $(foreach file,grctl$(EXE) $(if $(IMPORT_LIB),$(SONAME)),"$(DESTDIR)$(BINDIR)/$(file)")
 	rm -f $(foreach page,$(PAGES),"$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page)))")
 	rm -f "$(DESTDIR)$(DATADIR)/man/man5/grctl-json.5"
-	rm -rf "$(DESTDIR)$(DATADIR)/grobo"
+	rm -rf "$(DESTDIR)$(DATADIR)/grobo" "$(DESTDIR)$(DOCDIR)"
 
 # tools/package has build files for programs that take the source along; this is what they ask for.
 sources: ## version, flags and files of the libraries, for other build systems

@@ -127,7 +127,9 @@ C
 # The shortest program of README.md, which is C and C++.
 readme_program() {
     awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' README.md >"$work/readme.c"
-    grep -q 'int main' "$work/readme.c" && quietly builds "$@" &&
+    grep -q 'int main' "$work/readme.c" && quietly builds "$@" || return 1
+    # A machine that is away for 250 ms ends a motion, as it has to: then once more.
+    LD_LIBRARY_PATH=$library $emulator "$work/program" ||
         LD_LIBRARY_PATH=$library $emulator "$work/program"
 }
 
@@ -269,6 +271,25 @@ check 'that of what --json prints too' grep -q '^\.Dt GRCTL-JSON 5' "$share/man/
 check 'its schema' grep -q '"title": "What grctl --json prints' "$share/grobo/grctl.schema.json"
 check 'the dissector for Wireshark' grep -q '^local grobo = Proto(' \
     "$share/grobo/wireshark/grobo.lua"
+# What help names, and what the documents show: a play of each motion, an example that builds.
+motions_are_there() {
+    for motion in $("$tree/opt/grobo/bin/grctl" help play | grep -o 'motions/[a-z0-9_-]*\.[a-z]*') \
+        motions/greet.m motions/so101-wave.yaml; do
+        [ -s "$share/grobo/$motion" ] || { echo "no $motion"; return 1; }
+    done
+    for motion in "$share"/grobo/motions/*.*; do
+        "$tree/opt/grobo/bin/grctl" show "$motion" >"$work/shown" || { echo "$motion"; return 1; }
+    done
+}
+documents_are_there() {
+    docs=$share/doc/grobo/docs
+    cmp docs/guide/safety.md "$docs/guide/safety.md" && [ -s "$docs/design.md" ] &&
+        [ -s "$docs/examples/classic/nod.c" ] && [ -s "$docs/examples/robots/hexapod.yaml" ]
+}
+check 'guides and examples' documents_are_there
+if [ -z "${CROSS:-}${EMULATOR:-}" ]; then
+    check 'the motions that help names' motions_are_there
+fi
 # By what is installed beside it alone.
 fleet_is_beside() {
     ! "$tree/opt/grobo/bin/grctl" fleet list --broker mqtt://127.0.0.1:1 >"$work/said" 2>&1 &&
@@ -294,5 +315,15 @@ rm -f "$library"/libgrobo*.so*
 check 'another GROBO_JOINTS_MAX fails to link statically' other_cap --static
 test_case "it is uninstalled"
 check 'uninstall' make_target uninstall
+# Where a motion of the documents is not, the message names the one that is installed.
+says_where() {
+    env -u MAKEFLAGS -u MAKELEVEL -u PKG_CONFIG_SYSROOT_DIR -u PKG_CONFIG_PATH \
+        -u PKG_CONFIG_LIBDIR make --no-print-directory -C "$here" install BUILD="$work/built" \
+        PREFIX="$work/prefix" >"$work/installed" 2>&1 || { cat "$work/installed"; return 1; }
+    (cd / && "$work/prefix/bin/grctl" show motions/greet.pseq) >"$work/said" 2>&1
+    [ $? -eq 3 ] && grep -q -F "motions/greet.pseq: no such file; see $work/prefix/share" \
+        "$work/said"
+}
 check 'uninstall leaves no file' test -z "$(find "$tree" -type f -o -type l ! -path "$tree/usr")"
+[ -n "${CROSS:-}${EMULATOR:-}" ] || check 'a motion that is only installed is named' says_where
 done_testing

@@ -96,7 +96,40 @@ purges() {
     diff "$work/before" "$work/after"
 }
 
+# What `make deb-source` makes: the same twice, and nothing of it to complain of.
+source_same() {
+    tools/package/deb_source.sh "$build" >"$work/source" || return 1
+    rm -rf "$work/first" && cp -R "$build/deb/source" "$work/first" &&
+        tools/package/deb_source.sh "$build" >"$work/source" &&
+        diff -r "$work/first" "$build/deb/source" &&
+        lintian --allow-root --fail-on error,warning "$build"/deb/source/*.dsc
+}
+
+# Twice in folders of its own, without a network, and the packages are equal byte by byte.
+source_builds() {
+    for n in 1 2; do
+        rm -rf "$work/built-$n" && mkdir "$work/built-$n" &&
+            dpkg-source -x "$build"/deb/source/*.dsc "$work/built-$n/tree" >"$work/source" &&
+            (cd "$work/built-$n/tree" && env -u MAKEFLAGS -u MAKELEVEL \
+                DEB_BUILD_OPTIONS='nocheck parallel=2' unshare -n dpkg-buildpackage -b -us -uc) \
+                >"$work/source" 2>&1 || { tail -n 20 "$work/source"; return 1; }
+        (cd "$work/built-$n" && sha256sum ./*.deb) >"$work/sums-$n"
+    done
+    diff "$work/sums-1" "$work/sums-2"
+}
+
 packages=$(sed -n 's/^Package: //p' tools/package/debian/control)
+test_case 'the source package'
+if git rev-parse -q --verify HEAD >/dev/null 2>&1; then
+    check 'the same twice, and lintian finds nothing' source_same
+    if unshare -n true 2>/dev/null; then
+        check 'builds the same twice, without a network' source_builds
+    else
+        skip 'builds without a network' 'no namespaces of a network'
+    fi
+else
+    skip 'the source package' 'no git checkout'
+fi
 for arch in ${ARCHS:-amd64 arm64}; do
     test_case "a package for $arch"
     check "$arch: built" tools/package/deb.sh "$build" "$arch"

@@ -33,20 +33,7 @@ else
 fi
 export SOURCE_DATE_EPOCH
 tar -cf - -T "$out/files" | tar -xf - -C "$tree"
-cp -R tools/package/debian "$tree/debian"
-if [ -n "${DEBEMAIL:-}" ]; then
-    awk -v who="${DEBFULLNAME:-libgrobo developers} <$DEBEMAIL>" \
-        '/^Maintainer:/ { $0 = "Maintainer: " who } { print }' \
-        tools/package/debian/control >"$tree/debian/control"
-fi
-maintainer=$(sed -n 's/^Maintainer: //p' "$tree/debian/control")
-cat >"$tree/debian/changelog" <<C
-libgrobo ($version-0upstream1) unstable; urgency=medium
-
-  * Version $version; changelog.gz of each package lists what changed.
-
- -- $maintainer  $(date -R -u -d "@$SOURCE_DATE_EPOCH")
-C
+tools/package/debianize.sh "$tree" "$version"
 
 # dpkg-shlibdeps knows the packages of this machine only: the others have the same names.
 if [ "$arch" != "$here" ]; then

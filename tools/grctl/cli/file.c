@@ -8,6 +8,7 @@
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/lang/lang.h"
+#include "tools/grctl/os/node.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/os/pipe.h"
 
@@ -151,6 +152,11 @@ static int complain(app *a, const char *path, int error, const grobo_diagnostics
         }
         file_format(&d, false, text, sizeof text);
         return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s", text);
+    }
+    if (error == GROBO_ERR_NOENT &&
+        node_installed_motion(file_last_part(path), text, sizeof text)) {
+        return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: no such file; see %s", path,
+                        text);
     }
     return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path, file_error_text(error));
 }

@@ -16,6 +16,8 @@ bool node_look(const char *device, node_found_fn found, void *ctx);
 bool node_true_path(const char *device, char *path, size_t capacity);
 /* How to end the program that has the port. */
 void node_end_program(char *fix, size_t capacity, int pid);
+/* The motion of this name that is installed with the command. False: there is none. */
+bool node_installed_motion(const char *name, char *path, size_t capacity);
 /* The line that makes an adapter's latency timer short. */
 void node_quicken(char *fix, size_t capacity, const char *path);
 

@@ -13,6 +13,7 @@
 
 /* The Makefile says where `make install` puts it. */
 static const char rules[] = GRCTL_DATADIR "/grobo/udev/60-grobo.rules";
+static const char motions[] = GRCTL_DATADIR "/grobo/motions";
 
 enum { FIX_BYTES = 512 };
 
@@ -77,6 +78,12 @@ bool node_true_path(const char *device, char *path, size_t capacity)
     int n = real ? snprintf(path, capacity, "%s", real) : -1;
     free(real);
     return n >= 0 && (size_t)n < capacity;
+}
+
+bool node_installed_motion(const char *name, char *path, size_t capacity)
+{
+    int n = snprintf(path, capacity, "%s/%s", motions, name);
+    return *name && !strchr(name, '/') && n >= 0 && (size_t)n < capacity && access(path, R_OK) == 0;
 }
 
 void node_end_program(char *fix, size_t capacity, int pid)

@@ -45,6 +45,14 @@ void node_end_program(char *fix, size_t capacity, int pid)
     snprintf(fix, capacity, _("end that program; if nothing else helps: taskkill /f /pid %d"), pid);
 }
 
+bool node_installed_motion(const char *name, char *path, size_t capacity)
+{
+    (void)name;
+    (void)path;
+    (void)capacity;
+    return false;
+}
+
 void node_quicken(char *fix, size_t capacity, const char *path)
 {
     snprintf(fix, capacity,
