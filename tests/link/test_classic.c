@@ -10,7 +10,6 @@
 #include "tests/support/folder.h"
 #include "tests/support/tables.h"
 #include "tests/support/test.h"
-#include "tests/support/virtual_clock.h"
 
 static GR001 *g;
 
