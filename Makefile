@@ -210,6 +210,9 @@ include tools/baremetal/baremetal.mk
 
 # ---- targets -------------------------------------------------------------------------------
 
+# Simulated robots of the tests have no weight, but where a test says so.
+export GRCTL_PHYSICS ?= off
+
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-map check-asserts install-lib FORCE

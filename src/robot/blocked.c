@@ -76,12 +76,12 @@ typedef struct set_point {
 } set_point;
 
 /* One that was never sent anywhere holds the goal that it was found with, if this reading shows it
- * to be still that one. */
+ * to be still that one. It is judged where this program holds it, or moves others. */
 static set_point found_goal(const grobo_robot *robot, const grobo_robot_axis *axis)
 {
     double moved_rad = fabs(axis->state.goal_rad - axis->block_set_rad);
     bool same = moved_rad <= grobo_i_same_goal_rad(robot) || axis->block_us == GROBO_NEVER_US;
-    bool held = axis->wants_torque && axis->goal_us == robot->now_us && same;
+    bool held = axis->goal_us == robot->now_us && same;
     return (set_point){held ? axis->state.goal_rad : (double)NAN, held};
 }
 
@@ -97,7 +97,7 @@ static set_point set_of(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool sent = grobo_i_has_target(axis);
-    if (!(sent || axis->wants_torque) || !grobo_i_axis_is_on(axis) ||
+    if (!(sent || axis->wants_torque || grobo_i_in_motion(robot)) || !grobo_i_axis_is_on(axis) ||
         (sent && axis->trajectory.from_us > axis->told_us) ||
         grobo_i_joint(robot->driver->model, joint)->torque_limit_pct > 0 ||
         grobo_i_has(robot->free_joints, joint)) {

@@ -49,7 +49,7 @@ check "it strikes" exits 1 on_robot status m1
 
 test_case "words that are none"
 check "no such command" answers "'dance'? say: robot fault" dance
-check "no weight, no push" answers "this robot has no weight: start it with --physics on" push 5 1
+check "no weight, no push" answers "this robot has no weight" push 5 1
 check "no such servo" answers "'turn 21 0'? say: turn SERVO DEG" turn 21 0
 check "no angle" answers "'turn 5 up'? say: turn SERVO DEG" turn 5 up
 check "no switch" answers "'silent 5 maybe'? say: silent SERVO on|off" silent 5 maybe

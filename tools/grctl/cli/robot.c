@@ -191,17 +191,31 @@ void robot_sim(const app *a, grobo_robot_sim *sim)
     }
 }
 
+/* True if a simulated robot has weight: as asked for, else by its environment or its file. */
+static bool wants_physics(const app *a, bool has_weight)
+{
+    enum { AUTO, OFF };
+    const cli_value *asked = app_global(a, GLOBAL_PHYSICS);
+    const char *set = getenv("GRCTL_PHYSICS");
+    if (asked->choice != AUTO) {
+        return asked->choice != OFF;
+    }
+    return set && *set ? strcmp(set, "off") != 0 && (has_weight || strcmp(set, "on") == 0)
+                       : has_weight;
+}
+
 int robot_physics(const app *a, grobo_sim_config *config, grobo_sim_physics **physics)
 {
     const grobo_robot_def *def = robot_of(a);
     *physics = NULL;
-    if (app_global(a, GLOBAL_PHYSICS)->choice == 0) {
+    bool whole = config->model == def->model; /* else servos alone */
+    if (!wants_physics(a, whole && grobo_robot_def_has_weight(def))) {
         return GROBO_OK;
     }
     int result;
-    if (config->model == def->model) {
+    if (whole) {
         result = grobo_robot_def_physics(def, true, NULL, physics);
-    } else { /* servos alone */
+    } else {
         const grobo_sim_physics_config alone = {GROBO_SIM_PHYSICS_CONFIG_INIT,
                                                 .model = config->model, .real_time = true};
         result = grobo_sim_physics_new(&alone, NULL, physics);

@@ -17,9 +17,10 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
                                     "through GR001's board, or servos straight on a bus"),
     [GLOBAL_ECHO] =
         OPTION_FLAG("echo", 0, "the bus's adapter returns what is sent: one wire both ways"),
-    [GLOBAL_PHYSICS] = OPTION_CHOICE("physics", 0, "off|on",
-                                     "of a simulated robot: weight, friction and motors, or shafts "
-                                     "that are where they are told (off)"),
+    [GLOBAL_PHYSICS] = OPTION_CHOICE("physics", 0, "auto|off|on",
+                                     "weight, friction and motors of a simulated robot, or shafts "
+                                     "that are where they are told; auto: as $GRCTL_PHYSICS says, "
+                                     "else weight where the robot's file has masses"),
     [GLOBAL_JSON] = OPTION_FLAG("json", 0, "results as JSON, one object a line"),
     [GLOBAL_QUIET] = OPTION_FLAG("quiet", 'q', "errors only"),
     [GLOBAL_VERBOSE] =

@@ -273,7 +273,7 @@ static bool lacks_weight(const sim_console *console)
 static const char *carry_out(sim_console *console)
 {
     if (lacks_weight(console)) {
-        return _("this robot has no weight: start it with --physics on");
+        return _("this robot has no weight: its file has no masses, or --physics off");
     }
     for (size_t i = 0; i < sizeof servo_commands / sizeof servo_commands[0]; i++) {
         if (is_word(console, 0, servo_commands[i].name)) {

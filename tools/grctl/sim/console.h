@@ -39,10 +39,10 @@ typedef struct sim_console {
     "  block SERVO on|off          its shaft is held fast\n"                                       \
     "  turn SERVO DEG [MS]         a hand turns its shaft\n"                                       \
     "  load SERVO MA               extra current, as of a weight\n"                                \
-    "  push SERVO NM               a hand pushes the joint (--physics on)\n"                       \
-    "  wall SERVO MIN MAX|off      walls on its shaft's way (--physics on)\n"                      \
-    "  payload KG [LINK]           a mass in the hand; 0: none (--physics on)\n"                   \
-    "  supply MOHM                 resistance of battery and wires (--physics on)\n"               \
+    "  push SERVO NM               a hand pushes the joint (with weight)\n"                        \
+    "  wall SERVO MIN MAX|off      walls on its shaft's way (with weight)\n"                       \
+    "  payload KG [LINK]           a mass in the hand; 0: none (with weight)\n"                    \
+    "  supply MOHM                 resistance of battery and wires (with weight)\n"                \
     "  temperature SERVO C         of its case\n"                                                  \
     "  id SERVO ID                 another id, also one in use\n"                                  \
     "  voltage V                   of the battery\n"                                               \
