@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Reads a servo model's file: numbers of the model, rates of its line, registers. */
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -203,23 +204,37 @@ static int read_unit(grobo_i_events *events, void *target)
     return read_text(events, "unit", ((grobo_i_servo_row *)target)->unit, &place);
 }
 
+/* A list of n numbers. @return 1, 0: another list was complained of, or an error */
+static int read_few(grobo_i_events *events, const char *what, double *found, int n,
+                    grobo_i_place *place)
+{
+    const grobo_i_event *event;
+    int result = grobo_i_peek(events, &event);
+    if (result < 0) {
+        return result;
+    }
+    *place = event->place;
+    found[0] = NAN; /* as it stays where the list was complained of */
+    result = grobo_i_read_doubles(events, what, found, n);
+    return result < 0 ? result : !isnan(found[0]);
+}
+
 static int read_range(grobo_i_events *events, void *target)
 {
     grobo_i_servo_row *row = target;
-    const grobo_i_event *event;
-    double found[2] = {row->reg.min, row->reg.max};
-    int result = grobo_i_peek(events, &event);
-    const grobo_i_place place = event->place;
-    result = result < 0 ? result : grobo_i_read_doubles(events, "range", found, 2);
-    if (result == 0 && (found[0] < INT32_MIN || found[1] > INT32_MAX || found[0] > found[1])) {
+    double found[2];
+    grobo_i_place place;
+    int result = read_few(events, "range", found, 2, &place);
+    if (result <= 0) {
+        return result;
+    }
+    if (found[0] < INT32_MIN || found[1] > INT32_MAX || found[0] > found[1]) {
         return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "range", place,
                                 "range: two whole numbers of 32 bits, the lower one first");
     }
-    if (result == 0) {
-        row->reg.min = (int32_t)found[0];
-        row->reg.max = (int32_t)found[1];
-    }
-    return result;
+    row->reg.min = (int32_t)found[0];
+    row->reg.max = (int32_t)found[1];
+    return 0;
 }
 
 static int read_default(grobo_i_events *events, void *target)
@@ -357,18 +372,18 @@ static int read_like(grobo_i_events *events, void *target)
 static int read_scale(grobo_i_events *events, void *target)
 {
     grobo_i_servo_draft *draft = target;
-    double found[3] = {0, 0, 0};
-    const grobo_i_event *event;
-    int result = grobo_i_peek(events, &event);
-    const grobo_i_place place = event->place;
-    result = result < 0 ? result : grobo_i_read_doubles(events, "scale", found, 3);
-    if (result < 0) {
+    double found[3];
+    grobo_i_place place;
+    int result = read_few(events, "scale", found, 3, &place);
+    if (result <= 0) {
         return result;
     }
     for (int i = 0; i < 3; i++) {
         if (found[i] < (i < 2 ? 1 : 0) || found[i] > (i == 0 ? SPAN_MAX : UINT16_MAX)) {
-            return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "range", place,
-                                    "scale: counts, the degrees that they are, the middle count");
+            return grobo_i_complain(
+                events->reader, GROBO_ERR_SYNTAX, "range", place,
+                "scale: at least 1 count, the degrees that they are (1 or more), "
+                "and the count in the middle are wanted");
         }
     }
     draft->model.span_ticks = (uint32_t)found[0];
@@ -438,18 +453,19 @@ static int read_joint(grobo_i_events *events, void *target)
 static int read_rate(grobo_i_events *events, void *target)
 {
     grobo_i_servo_draft *draft = target;
-    const grobo_i_event *event;
-    double found[2] = {-1, 0};
-    int result = grobo_i_peek(events, &event);
-    const grobo_i_place place = event->place;
-    result = result < 0 ? result : grobo_i_read_doubles(events, "a rate", found, 2);
-    if (result < 0) {
+    double found[2];
+    grobo_i_place place;
+    int result = read_few(events, "a rate", found, 2, &place);
+    if (result <= 0) {
         return result;
     }
     if (draft->n_rates == GROBO_I_SERVO_RATES || found[0] < 0 || found[0] > UINT8_MAX ||
         found[1] < 300 || found[1] > 20000000) {
-        return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "range", place,
-                                "rates: at most %d pairs of a code and bps", GROBO_I_SERVO_RATES);
+        return grobo_i_complain(
+            events->reader, GROBO_ERR_SYNTAX, "range", place,
+            "rates: a code up to 255 and its bps from 300 to 20000000 are wanted, "
+            "at most %d times",
+            GROBO_I_SERVO_RATES);
     }
     draft->rates[draft->n_rates++] =
         (grobo_servo_rate){.code = (uint8_t)found[0], .bps = (int32_t)found[1]};
@@ -465,12 +481,10 @@ static int read_rates(grobo_i_events *events, void *target)
 static int read_run(grobo_i_events *events, void *target)
 {
     grobo_i_servo_draft *draft = target;
-    const grobo_i_event *event;
-    double found[3] = {0, 0, 0};
-    int result = grobo_i_peek(events, &event);
-    const grobo_i_place place = event->place;
-    result = result < 0 ? result : grobo_i_read_doubles(events, "indirect", found, 3);
-    if (result < 0) {
+    double found[3];
+    grobo_i_place place;
+    int result = read_few(events, "indirect", found, 3, &place);
+    if (result <= 0) {
         return result;
     }
     bool fits = found[0] >= 0 && found[0] <= ADDRESS_MAX && found[1] >= 0 &&
