@@ -215,7 +215,7 @@ export GRCTL_PHYSICS ?= off
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-map check-asserts install-lib FORCE
+.PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-model check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -539,6 +539,9 @@ check-sequences: $(BUILD)/tests/engine/test_sequences ## all sequences of DEPTH=
 	    --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
 	    --scope tests/mutants/scope --named tests/mutants/sequences
 	@GROBO_SEQUENCES=$(or $(DEPTH),3) $(BUILD)/tests/engine/test_sequences
+
+check-model: ## search the model of stops between programs with Spin, and its sabotages
+	@CC="$(CC)" TEST_LOGS="$(BUILD)/logs/model" tests/run.sh tests/model/model.sh
 
 ASSERT_TESTS := $(MUTANT_TESTS) $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/link/test_runner% \
     tests/link/test_session% tests/link/test_serial% tests/link/test_virtual%,$(TEST_SRCS)))

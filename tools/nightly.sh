@@ -25,6 +25,7 @@ stage_of() {
     mutants) echo "check-mutants COUNT=300 SEED=$seed" ;;
     asserts) echo check-asserts ;;
     sequences) echo check-sequences ;;
+    model) echo check-model ;;
     soak) echo "soak SEEDS=6 FROM=$((seed % 100000 * 6))" ;;
     abi) echo check-abi ;;
     ports) echo check-ports ;;
@@ -45,8 +46,8 @@ stage_of() {
     esac
 }
 
-[ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts sequences soak abi ports deb wheel \
-    roots analyse cockpit api families physics fleet scan stops memory matrix
+[ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts sequences model soak abi ports deb \
+    wheel roots analyse cockpit api families physics fleet scan stops memory matrix
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done

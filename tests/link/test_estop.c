@@ -221,6 +221,27 @@ TEST_WITH(fixture, a_reset_obeys_a_mark_that_was_just_set)
     grobo_session_free(session);
 }
 
+/* Between the look of a reset and its end another program may set one. */
+TEST_WITH(fixture, one_that_was_not_heard_is_not_cleared)
+{
+    static grobo_i_estop_watch watch;
+    grobo_os_cause cause;
+    bool pending = false;
+
+    memset(&watch, 0, sizeof watch);
+    grobo_i_estop_watch_begin(&watch, device);
+    assert_int_equal(grobo_estop_set(device, NULL, &cause), GROBO_OK);
+    assert_true(grobo_i_estop_watch_look(&watch, &pending));
+    assert_int_equal(grobo_estop_set(device, NULL, &cause), GROBO_OK);
+    assert_int_equal(grobo_i_estop_watch_clear(&watch, &cause), GROBO_ERR_STATE);
+    assert_true(grobo_estop_stands(device));
+    assert_true(grobo_i_estop_watch_look(&watch, &pending));
+    assert_true(pending);
+    assert_int_equal(grobo_i_estop_watch_clear(&watch, &cause), GROBO_OK);
+    assert_false(grobo_estop_stands(device));
+    grobo_i_estop_watch_end(&watch);
+}
+
 TEST_WITH(fixture, a_runner_obeys_it_too)
 {
     /* The simulator runs on this thread's loop, not while this thread waits. */

@@ -307,6 +307,26 @@ static void judge_standing(const char *rule)
     }
 }
 
+static void judge_stop(const grobo_event_job *job)
+{
+    if (job->result == GROBO_OK && job->kind == GROBO_JOB_ESTOP) {
+        judge_standing("an emergency stop is done, and a joint turns");
+    }
+    if (job->kind == GROBO_JOB_ESTOP && job->result != GROBO_ERR_UNPLUGGED) {
+        sequence.owed = false;
+    }
+    if (job->result == GROBO_OK && job->kind == GROBO_JOB_EXIT) {
+        judge_standing("an exit is done, and a joint turns");
+    }
+    for (int i = 0;
+         job->result == GROBO_OK && job->number == sequence.exits_off && i < halt.far.n_joints;
+         i++) {
+        if (halt.far.joint[i].torque == 1 && !is_excused(i)) {
+            sequence_blame("an exit without torque is done, and a joint has it", i, 1, 0);
+        }
+    }
+}
+
 static void hear_job(const grobo_event_job *job)
 {
     const char *name = grobo_error_name(job->result);
@@ -320,20 +340,7 @@ static void hear_job(const grobo_event_job *job)
     if (name == NULL || *name == '\0') {
         sequence_blame("an error without a name", -1, job->result, 0);
     }
-    if (job->result == GROBO_OK && job->kind == GROBO_JOB_ESTOP) {
-        judge_standing("an emergency stop is done, and a joint turns");
-        sequence.owed = false;
-    }
-    if (job->result == GROBO_OK && job->kind == GROBO_JOB_EXIT) {
-        judge_standing("an exit is done, and a joint turns");
-    }
-    for (int i = 0;
-         job->result == GROBO_OK && job->number == sequence.exits_off && i < halt.far.n_joints;
-         i++) {
-        if (halt.far.joint[i].torque == 1 && !is_excused(i)) {
-            sequence_blame("an exit without torque is done, and a joint has it", i, 1, 0);
-        }
-    }
+    judge_stop(job);
 }
 
 static void on_event(void *ctx, const grobo_event *event)
@@ -583,6 +590,9 @@ void sequence_verdict(void)
         if (sequence.asked[n] != sequence.ended[n] && sequence.asked[n] != 0) {
             sequence_blame("a job that never ends", -1, n, 0);
         }
+    }
+    if (sequence.owed) {
+        sequence_blame("an emergency stop that was never carried out", -1, 1, 0);
     }
     if (grobo_robot_job(&halt.robot) != GROBO_JOB_NONE) {
         sequence_blame("a job is left", -1, grobo_robot_job(&halt.robot), 0);

@@ -309,24 +309,48 @@ static int clear_group(const char *text, grobo_os_cause *cause)
     return r;
 }
 
-int grobo_i_estop_clear(const grobo_i_device_names *names, grobo_os_cause *cause)
+static bool has(char list[][sizeof((grobo_estop *)0)->id], int n, const char *id)
+{
+    int at = 0;
+
+    while (at < n && strcmp(list[at], id) != 0) {
+        at++;
+    }
+    return at < n;
+}
+
+/* Those that a watch has heard, or all (NULL). GROBO_ERR_STATE: one stands that it has not. */
+static int clear_marks(const grobo_i_device_names *names, grobo_i_estop_watch *of,
+                       grobo_os_cause *cause)
 {
     note_walk marks;
+    char id[sizeof((grobo_estop *)0)->id];
+    bool fresh = false;
     int r = GROBO_OK;
 
     walk_notes(&marks, "estop", names);
     while (next_note(&marks)) {
+        take_id(marks.text, id);
+        if (of != NULL && !has(of->heard, of->n_heard, id)) {
+            fresh = true;
+            continue;
+        }
         int error = clear_group(marks.text, cause);
 
         r = error < 0 ? error : r;
     }
-    for (int i = 0; i < names->n; i++) { /* one that is empty, or cannot be read */
+    for (int i = 0; !fresh && i < names->n; i++) { /* one that is empty, or cannot be read */
         note_of("estop", names->name[i], marks.note);
         int error = grobo_i_note_remove(marks.note, cause);
 
         r = error < 0 ? error : r;
     }
-    return r;
+    return fresh ? GROBO_ERR_STATE : r;
+}
+
+int grobo_i_estop_watch_clear(grobo_i_estop_watch *watch, grobo_os_cause *cause)
+{
+    return clear_marks(&watch->names, watch, cause);
 }
 
 int grobo_estop_clear(const char *device, grobo_os_cause *cause)
@@ -341,7 +365,7 @@ int grobo_estop_clear(const char *device, grobo_os_cause *cause)
         return GROBO_OK;
     }
     grobo_i_device_names_find(device, &names);
-    return grobo_i_estop_clear(&names, cause != NULL ? cause : &why);
+    return clear_marks(&names, NULL, cause != NULL ? cause : &why);
 }
 
 bool grobo_estop_stands(const char *device)
@@ -575,16 +599,6 @@ uint64_t grobo_i_estop_holder_stamp(const grobo_i_device_names *names)
         }
     }
     return sum;
-}
-
-static bool has(char list[][sizeof((grobo_estop *)0)->id], int n, const char *id)
-{
-    int at = 0;
-
-    while (at < n && strcmp(list[at], id) != 0) {
-        at++;
-    }
-    return at < n;
 }
 
 bool grobo_i_estop_watch_look(grobo_i_estop_watch *watch, bool *pending)

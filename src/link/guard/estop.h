@@ -43,7 +43,8 @@ uint64_t grobo_i_estop_holder_stamp(const grobo_i_device_names *names);
 /* Writes what is to be said. */
 void grobo_i_estop_watch_answer(grobo_i_estop_watch *watch);
 
-/* Clears the marks under all these names. */
-int grobo_i_estop_clear(const grobo_i_device_names *names, grobo_os_cause *cause);
+/* Clears the marks of its device that it has heard. GROBO_ERR_STATE where one stands that it has
+ * not: it was set since the last look, and is to be obeyed. */
+int grobo_i_estop_watch_clear(grobo_i_estop_watch *watch, grobo_os_cause *cause);
 
 #endif

@@ -317,7 +317,7 @@ static int on_reset(void *ctx)
     if (grobo_robot_job(&session->robot) == GROBO_JOB_ESTOP) {
         r = GROBO_ERR_STATE;
     } else if (session->estop.on && trip.trip == GROBO_TRIP_ESTOP) {
-        r = grobo_i_estop_clear(&session->estop.names, &session->cause);
+        r = grobo_i_estop_watch_clear(&session->estop, &session->cause);
     }
     session->depth--; /* the request itself pumps */
     return r;
