@@ -46,6 +46,8 @@ check "with its unit behind it" fails 0 'largest error 0\.. %' on_robot move gri
 check "100 % is the other end" sim_shows 3 ' 15\.'
 check "in degrees all the same" exits 0 on_robot move grip 40deg 500
 check "so it is half open" both exits 0 on_robot status --- says '^ *3  *grip .* 50\.[01]%'
+check 'and what it is told stands apart from its torque' both exits 0 on_robot status --- \
+    says '^ *3  *grip *[0-9.]*% *[0-9.]*%  *on '
 check "and the lift is at 40 mm" says '^ *2  *height .* \(39\.9\|40\.[01]\)mm'
 check "and the other in degrees" says '^ *1  *turn *-*0\.0  '
 check "each in its own" exits 0 on_robot pose turn=10 height=20 grip=100

@@ -102,7 +102,17 @@ static void cell(bool known, int width, int decimals, double value)
     }
 }
 
-/* An angle in the joint's unit, which takes the gap behind the column. */
+/* What a column of angles has more where a joint of the robot has a unit of its own. */
+static const char *unit_gap(const grobo_model *model)
+{
+    bool own = false;
+    for (int k = 0; k < model->n_joints; k++) {
+        own = own || grobo_model_unit(model, k) != GROBO_UNIT_DEG;
+    }
+    return own ? "  " : "";
+}
+
+/* An angle in the joint's unit, and the gap behind its column. */
 static void angle_cell(const grobo_model *model, int joint, bool known, int width, double angle_rad)
 {
     if (known) {
@@ -111,6 +121,7 @@ static void angle_cell(const grobo_model *model, int joint, bool known, int widt
     } else {
         app_print("%*s  ", width, "-");
     }
+    app_print("%s", unit_gap(model));
 }
 
 /* Of the column of names: a longer one would shift its row. */
@@ -129,8 +140,9 @@ void render_status(const conn *c, grobo_joint_mask joints)
     const grobo_model *model = model_of(c);
     bool color = c->a->color_out;
     int width = name_width(model);
-    app_print("motor  %-*s  angle  target  torque  speed  current  temp  volts  age ms\n", width,
-              "joint");
+    const char *gap = unit_gap(model);
+    app_print("motor  %-*s  angle%s  target%s  torque  speed  current  temp  volts  age ms\n",
+              width, "joint", gap, gap);
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
         double target_rad;
@@ -196,7 +208,9 @@ void render_reached(const conn *c)
 {
     const grobo_model *model = model_of(c);
     int width = name_width(model);
-    app_print("motor  %-*s  target  reached  error deg\n", width, "joint");
+    const char *gap = unit_gap(model);
+    app_print("motor  %-*s  target%s  reached%s  error%s\n", width, "joint", gap, gap,
+              *gap ? "" : " deg");
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
         if (grobo_robot_joint(c->robot, k, &i) < 0) {
