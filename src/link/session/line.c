@@ -132,7 +132,8 @@ static int sim_take(grobo_session *session, int64_t *until_us)
     size_t got;
 
     do {
-        int64_t now_us = grobo_now_us();
+        /* What comes later was not taken: the engine may not be told of a later time. */
+        int64_t now_us = *until_us = grobo_now_us();
 
         got = grobo_sim_tx(session->sim, buf, sizeof buf, now_us);
         if (got > 0) {
@@ -141,13 +142,12 @@ static int sim_take(grobo_session *session, int64_t *until_us)
             grobo_robot_rx(&session->robot, buf, got, now_us);
         }
     } while (got == sizeof buf);
-    *until_us = grobo_now_us();
     return grobo_sim_hung_up(session->sim) ? GROBO_ERR_UNPLUGGED : GROBO_OK;
 }
 
 static void sim_give(grobo_session *session, const uint8_t *frame, size_t size)
 {
-    int64_t now_us = grobo_now_us();
+    int64_t now_us = grobo_i_session_now(session); /* when it left, by its engine */
     size_t taken = grobo_sim_rx(session->sim, frame, size, now_us);
 
     session->sim_tx_bytes += taken;
