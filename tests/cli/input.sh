@@ -185,6 +185,21 @@ check "no robot on it" fails 1 "$robot: no robot answers; is the robot switched 
     grctl -d "$robot" play "$greet"
 stop_sim
 
+test_case "numbers"
+
+# A number has nothing behind it, and a number of times has no part.
+no_number() {
+    for number_text in 1.5 2x 0 -1 1000001 nan inf '' ' ' 1e; do
+        fails 2 "^grctl: --repeat: '$number_text' is not a whole number from 1 to 1000000" \
+            grctl -d sim play --repeat "$number_text" "$greet" || return 1
+    done
+    for number_text in 5x 0x1F nan inf '' 1,5 1e; do
+        fails 2 "^grctl: move: '$number_text' is not an angle" \
+            grctl -d sim move R_ELBOW_P "$number_text" || return 1
+    done
+}
+check "what is none is refused" no_number
+
 test_case "standard streams"
 
 if [ -c /dev/full ]; then
