@@ -57,6 +57,17 @@ class Motions(unittest.TestCase):
         self.assertEqual(grobo.Motion.of([0, 1, 2], rows, "steps").length, 2.0)
         self.assertEqual(grobo.Motion.of([0, 12, 13], rows, "keys").length, 13.0)
 
+    def test_a_notebook_shows_what_moves(self):
+        rows = [[0.1 * i if j == 16 else 0.0 for j in range(20)] for i in range(3)]
+        shown = grobo.Motion.of([0, 1, 2], rows)._repr_html_()
+        self.assertEqual(shown.count("<polyline"), 1)
+        self.assertIn("R_ELBOW_P", shown)
+        self.assertIn("0.0 to 11.5 deg in 2 s", shown)
+        self.assertIn("0.0,240.0", shown)
+        self.assertIn("640.0,0.0", shown)
+        self.assertIn("no joint moves", grobo.Motion.of([0, 1], rows[:1] * 2)._repr_html_())
+        self.assertIn("no joint moves", grobo.Motion()._repr_html_())
+
     def test_rows_have_an_angle_for_each_joint(self):
         with self.assertRaisesRegex(ValueError, "^1 angles for 2 joints"):
             grobo.Motion.of([0.5, 1.0], [[0.0, 0.5], [0.1]])

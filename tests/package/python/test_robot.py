@@ -255,6 +255,24 @@ class Nothing(unittest.TestCase):
                              ".mseq, .yaml, .yml, .seq")
             self.assertFalse(os.path.exists(wrong))
 
+    def test_an_empty_motion_is_called_so(self):
+        with grobo.connect("sim") as robot, self.assertRaises(errors.Empty) as caught:
+            robot.play(grobo.Motion())
+        self.assertIn("the motion has no posture", str(caught.exception))
+
+    def test_rows_by_name_are_refused(self):
+        with self.assertRaisesRegex(TypeError, "append.. takes angles by name"):
+            grobo.Motion.of([0], [{"R_ELBOW_P": 0.1}])
+
+    def test_a_notebook_shows_the_joints(self):
+        with grobo.connect("sim") as robot:
+            robot.init()
+            shown = robot._repr_html_()
+            self.assertEqual(shown.count("<tr>"), 21)
+            self.assertIn("<td>R_KNEE_P</td><td>-40.0</td><td>on</td>", shown)
+            self.assertIn("sim, 20 joints", repr(robot))
+        self.assertEqual(robot._repr_html_(), "<p>&lt;Robot on sim, closed&gt;</p>")
+
     def test_names_of_errors_are_words(self):
         self.assertTrue(issubclass(errors.NoSuchFile, FileNotFoundError))
         with self.assertRaises(errors.NoSuchFile):

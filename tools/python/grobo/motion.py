@@ -4,7 +4,8 @@
 import importlib
 import math
 import os
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+from html import escape
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from grobo._lib import ffi, lib, new, us
 from grobo.description import Description, first_error
@@ -18,6 +19,7 @@ except ImportError:
 
 KINDS = ("postures", "keys", "steps", "frames")
 EXTENSIONS = (".m", ".pseq", ".mseq", ".yaml", ".yml", ".seq")
+DEFAULT_STEP = 0.25  # GROBO_MOTION_DEFAULT_US
 MOST_STEP = 10.0  # GROBO_MOTION_STEP_MAX_US
 
 
@@ -136,6 +138,36 @@ def _check_steps(times: Sequence[float], kind: str) -> None:
         before = time
 
 
+STILL_RAD = 1e-3  # a joint that moves less is not drawn
+MOST_ROWS = 400  # points of a line that is drawn: more are not seen
+
+
+def _plot(lines: Sequence[Tuple[str, Sequence[Tuple[float, float]]]], length: float) -> str:
+    """Lines over time in one picture, SVG; degrees, as people read them."""
+    if not lines or length <= 0:
+        return "<p>no joint moves</p>"
+    width, height = 640, 240
+    angles = [math.degrees(a) for _, points in lines for _, a in points]
+    low, high = min(angles), max(angles)
+    drawn = []
+    for n, (name, points) in enumerate(lines):
+        color = f"hsl({360 * n // len(lines)}, 70%, 40%)"
+        step = -(-len(points) // MOST_ROWS)
+        path = " ".join(
+            f"{t / length * width:.1f},{(high - math.degrees(a)) / (high - low) * height:.1f}"
+            for t, a in [*points[::step], points[-1]]
+        )
+        drawn.append(
+            f'<polyline fill="none" stroke="{color}" points="{path}">'
+            f"<title>{escape(name)}</title></polyline>"
+        )
+    names = ", ".join(escape(name) for name, _ in lines)
+    return (
+        f'<svg width="{width}" height="{height}" viewBox="0 -4 {width} {height + 8}">'
+        f"{''.join(drawn)}</svg><p>{low:.1f} to {high:.1f} deg in {length:g} s: {names}</p>"
+    )
+
+
 class Motion:
     """A motion in memory: postures, each reached some time after the one before."""
 
@@ -191,6 +223,8 @@ class Motion:
         """
         if len(times) != len(angles):
             raise ValueError(f"{len(times)} times for {len(angles)} postures")
+        if any(isinstance(row, Mapping) for row in angles):
+            raise TypeError("rows are angles by joint order; append() takes angles by name")
         if kind in ("postures", "steps"):
             _check_steps(times, kind)
         if robot:
@@ -240,8 +274,12 @@ class Motion:
     def times(self) -> Any:
         """When each posture is reached, in seconds from the beginning."""
         reached, now = [], 0.0
-        for one in self:
-            now += one.time
+        steps = self.kind in ("postures", "steps")
+        at = ffi.new("double *")
+        for n, one in enumerate(self):
+            begins = n == 0 and lib.grobo_motion_time_s(self._c, 0, at) == 0 and at[0] == 0
+            waits = steps and not begins and one.time == 0  # a step without a time: the default
+            now += DEFAULT_STEP if waits else one.time
             reached.append(now)
         return _array(reached)
 
@@ -290,3 +328,14 @@ class Motion:
 
     def __repr__(self) -> str:
         return f"<Motion of {len(self)} {self.kind}, {self.length:g} s>"
+
+    def _repr_html_(self) -> str:
+        """A notebook shows what moves: a line for each joint that changes its angle."""
+        rows = [list(one.angles) for one in self]
+        times = [float(time) for time in self.times]
+        lines = []
+        for j, name in enumerate(joint_names(self._model)[: self.joints]):
+            points = [(t, row[j]) for t, row in zip(times, rows) if row[j] == row[j]]
+            if points and max(a for _, a in points) - min(a for _, a in points) > STILL_RAD:
+                lines.append((name, points))
+        return f"<p>{escape(repr(self))}</p>" + _plot(lines, self.length)

@@ -10,6 +10,7 @@ import threading
 import warnings
 from contextlib import contextmanager
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from types import TracebackType
 from typing import (
@@ -319,6 +320,32 @@ class Robot:
             log.info("%s: closed", self.device)
         errors.check(result, f"{self.device}: exit policy")
 
+    def __repr__(self) -> str:
+        state = "closed" if self._runner.closing else f"{len(self.joints)} joints"
+        return f"<Robot on {self.device}, {state}>"
+
+    def _repr_html_(self) -> str:
+        """A notebook shows what is known of each joint; the robot is not asked."""
+        head = f"<p>{escape(repr(self))}</p>"
+        if self._runner.closing:
+            return head
+        try:
+            status = self.status()
+        except errors.Error as error:
+            return f"{head}<p>{escape(str(error))}</p>"
+        rows = []
+        for name, one in status.joints.items():
+            angle = "" if one.degrees is None else f"{one.degrees:.1f}"
+            torque = "" if one.torque is None else one.torque.name.lower()
+            heat = "" if one.temperature_c is None else f"{one.temperature_c}"
+            cells = "".join(f"<td>{escape(cell)}</td>" for cell in (name, angle, torque, heat))
+            rows.append(f"<tr>{cells}</tr>")
+        stopped = f"<p>stopped: {escape(status.trip)}</p>" if status.trip else ""
+        return (
+            f"{head}{stopped}<table><tr><th>joint</th><th>deg</th><th>torque</th><th>\u00b0C</th>"
+            f"</tr>{''.join(rows)}</table>"
+        )
+
     def __enter__(self) -> "Robot":
         return self
 
@@ -461,6 +488,9 @@ class Robot:
         if rate is not None:
             options.mode = lib.GROBO_PLAY_RATE
             options.rate_hz = _within(rate, lib.GROBO_PLAY_RATE_MAX_HZ, "rate")
+        if len(motion) == 0:
+            reason = "the motion has no posture"
+            raise errors.error(lib.GROBO_ERR_EMPTY, "play", reason=reason)
         with self._runner.use() as runner:
             self._check(lib.grobo_runner_set_motion(runner, motion._c), "play")
             self._check(lib.grobo_runner_play_motion(runner, options), "play")
