@@ -215,7 +215,7 @@ export GRCTL_PHYSICS ?= off
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-model check-map check-asserts install-lib FORCE
+.PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-model check-areas check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -539,6 +539,16 @@ check-sequences: $(BUILD)/tests/engine/test_sequences ## all sequences of DEPTH=
 	    --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
 	    --scope tests/mutants/scope --named tests/mutants/sequences
 	@GROBO_SEQUENCES=$(or $(DEPTH),3) $(BUILD)/tests/engine/test_sequences
+
+# Areas outside the core, by the tests that tests/mutants/areas names.
+check-areas: ## sabotage each area outside the core in COUNT=300 ways: AREA="link motion"; a table in build/mutants/areas.md
+	-@tools/setup.sh --mutants
+	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 WALKS=-DGROBO_WALKS $(MAP_TESTS) $(MUTANT_LIBS)
+	@nice python3 tests/mutants/areas.py --seed $(SEED) --count $(or $(COUNT),300) $(if $(ONLY),--only $(ONLY)) \
+	    --cap-s $(CAP_S) --areas tests/mutants/areas --objects $(MUTANT_DIR) --work $(MUTANT_DIR)/areas \
+	    --report $(MUTANT_DIR)/areas.md --link '$(CC)' --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
+	    --compile '$(CC) $(ALL_CPPFLAGS) -DGROBO_WALKS $(SRC_INCLUDE) $(TOOL_INCLUDE) $(OS_FLAGS) $(EVENT_CFLAGS) $(YAML_CFLAGS) -std=c11 -fPIC -O2' \
+	    $(AREA)
 
 check-model: ## search the model of stops between programs with Spin, and its sabotages
 	@CC="$(CC)" TEST_LOGS="$(BUILD)/logs/model" tests/run.sh tests/model/model.sh

@@ -26,6 +26,7 @@ stage_of() {
     asserts) echo check-asserts ;;
     sequences) echo check-sequences ;;
     model) echo check-model ;;
+    areas) echo "check-areas COUNT=60 CAP_S=60 SEED=$seed" ;;
     soak) echo "soak SEEDS=6 FROM=$((seed % 100000 * 6))" ;;
     abi) echo check-abi ;;
     ports) echo check-ports ;;
@@ -47,7 +48,7 @@ stage_of() {
 }
 
 [ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts sequences model soak abi ports deb \
-    wheel roots analyse cockpit api families physics fleet scan stops memory matrix
+    wheel roots analyse cockpit api families physics fleet scan stops memory matrix areas
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done

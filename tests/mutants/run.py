@@ -7,7 +7,7 @@ usage: run.py [option]...
   --libs "WORD..."      what they are linked with, the library last; a sabotaged object goes before it
   --compile "WORD..."   compiler and flags
   --link "WORD..."      compiler and flags to link with
-  --scope FILE          patterns of function names: `unit PATTERN`, `function PATTERN`
+  --scope FILE          patterns of function names: `unit PATTERN`, `function PATTERN`; default all
   --survivors FILE      mutants that no test can notice, each with its reason
   --named FILE          sabotages that are always tried
   --work DIR            a folder for what is built; nothing else is written
@@ -441,7 +441,8 @@ def sample(mutants, seed):
 
 def choose(options, functions, by_file, reasons):
     """The mutants to try, and how many of them that compile are wanted."""
-    scope = read_scope(options.scope, by_file)
+    scope = (read_scope(options.scope, by_file) if options.scope else
+             {f for of_file in by_file.values() for f in of_file})
     order = [f for functions_of in by_file.values() for f in functions_of if f in scope]
     mutants = [m for f in order for m in mutate.mutants_of(f, f.path)]
     named = list(read_named(options.named, functions)) if options.named else []
@@ -521,8 +522,9 @@ def run_all(options, work):
                 bench.keep_killers()
             if test is None and mutant.anchor not in reasons:
                 print(f"not noticed: {mutant.anchor}\n    {mutant.path}:{mutant.line}; again: "
-                      f"make check-mutants ONLY={mutant.id}", flush=True)
+                      f"{options.again} ONLY={mutant.id}", flush=True)
     noticed, failed, skipped = judge(results, reasons, options)
+    options.tally = (noticed, len(results))
     share_pct = 100 * noticed / max(1, len(results))
     print(f"{noticed} of {len(results)} noticed, {share_pct:.1f} %, "
           f"in {time.monotonic() - begun_s:.0f} s")
@@ -548,15 +550,16 @@ def in_work_folder(options, run):
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    for name in ("sources", "tests", "libs", "compile", "link", "scope", "work"):
+    for name in ("sources", "tests", "libs", "compile", "link", "work"):
         parser.add_argument("--" + name, required=True)
-    for name in ("survivors", "named", "only"):
+    for name in ("scope", "survivors", "named", "only"):
         parser.add_argument("--" + name)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--cap-s", type=float, default=0)
     parser.add_argument("--choose", default=".*")
+    parser.add_argument("--again", default="make check-mutants", help=argparse.SUPPRESS)
     return in_work_folder(parser.parse_args(), run_all)
 
 
