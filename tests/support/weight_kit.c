@@ -119,8 +119,13 @@ static void set_register(int joint, const grobo_servo_register *reg, int32_t val
 
 void weight_begin(const char *robot, int gain)
 {
+    weight_begin_def(robot_named(robot), gain);
+}
+
+void weight_begin_def(const grobo_robot_def *def, int gain)
+{
     weight_finish();
-    weight.def = robot_named(robot);
+    weight.def = def;
     const grobo_wiring wiring = weight.def->wiring;
     weight.driver.size = sizeof weight.driver;
     assert_int_equal(grobo_robot_def_driver(weight.def, wiring, &weight.driver), 0);

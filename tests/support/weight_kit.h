@@ -34,6 +34,8 @@ extern weight_world weight;
  * `gain` where they have such a register, 0: what they come with. An engine that knows nothing of
  * it is linked. */
 void weight_begin(const char *robot, int gain);
+/* The same of a robot of a file, borrowed. */
+void weight_begin_def(const grobo_robot_def *def, int gain);
 void weight_finish(void);
 /* Lets time pass. */
 void weight_run(int64_t us);
