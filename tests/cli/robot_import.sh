@@ -14,7 +14,10 @@ only_lx() {
 check "of one" only_lx
 check "those that cannot be joints" both exits 0 "$GRCTL" robot servos ics --- \
     says '^ics  *KRS-2552RHV .* V  cannot be a joint: it does not tell its position$'
-check "and no other" both exits 0 "$GRCTL" robot servos ics --- says '^ics  *KRS-3301 .* V$'
+check "and no other" both exits 0 "$GRCTL" robot servos ics --- \
+    says '^ics  *KRS-3301 .* V  speed, torque or current unverified$'
+check "nor those whose figures have a source" both exits 0 "$GRCTL" robot servos --- \
+    says '^feetech  *STS3215 .* V$'
 printf '%s\n' 'name: two' 'family: dynamixel2' 'joints:' \
     '  - {name: a, id: 1, servo: 2XL430-W250, limits_deg: [-90, 90]}' >"$work/two.yaml"
 check "one whose name begins with a digit may be a joint's" exits 0 \

@@ -340,6 +340,14 @@ static void print_indirect(const table *t)
     }
 }
 
+static const char *flags_of(const grobo_i_servo_draft *model)
+{
+    return model->no_joint && model->unverified ? "GROBO_MODEL_NO_JOINT | GROBO_MODEL_UNVERIFIED"
+           : model->no_joint                    ? "GROBO_MODEL_NO_JOINT"
+           : model->unverified                  ? "GROBO_MODEL_UNVERIFIED"
+                                                : "0";
+}
+
 static void print_models(const table *t)
 {
     print_indirect(t);
@@ -348,8 +356,8 @@ static void print_models(const table *t)
         const grobo_servo_model *m = &t->models[i].model;
         printf("    {\"%s\", %u, %u, %u, %u, %u, %u, %u, %u, %u, %s, &grobo_i_%s",
                t->models[i].name, m->number, m->span_ticks, m->span_deg, m->middle, m->speed_dps,
-               m->torque_mnm, m->current_ma, m->voltage_mv, m->firmware,
-               t->models[i].no_joint ? "GROBO_MODEL_NO_JOINT" : "0", own_part(t));
+               m->torque_mnm, m->current_ma, m->voltage_mv, m->firmware, flags_of(&t->models[i]),
+               own_part(t));
         if (t->models[i].n_indirect > 0) {
             printf(", indirect_%d, %d", first_alike(t, i), t->models[i].n_indirect);
         } else {

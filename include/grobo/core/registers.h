@@ -112,6 +112,8 @@ typedef struct grobo_servo_indirect {
 
 /** It cannot be a joint: it does not tell its position (grobo_servo_model.flags). */
 #define GROBO_MODEL_NO_JOINT 0x1u
+/** Of its speed, torque and current one at least has no source but memory. */
+#define GROBO_MODEL_UNVERIFIED 0x2u
 
 /** One model of a series. */
 typedef struct grobo_servo_model {

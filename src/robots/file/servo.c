@@ -450,6 +450,15 @@ static int read_joint(grobo_i_events *events, void *target)
     return result;
 }
 
+static int read_verified(grobo_i_events *events, void *target)
+{
+    grobo_i_servo_draft *draft = target;
+    bool verified = !draft->unverified;
+    int result = grobo_i_read_bool(events, "verified", &verified);
+    draft->unverified = !verified;
+    return result;
+}
+
 static int read_rate(grobo_i_events *events, void *target)
 {
     grobo_i_servo_draft *draft = target;
@@ -593,6 +602,7 @@ static const grobo_i_field model_fields[] = {{"name", NULL, read_name},
                                              {"firmware", NULL, read_firmware},
                                              {"fast_read", NULL, read_fast},
                                              {"joint", NULL, read_joint},
+                                             {"verified", NULL, read_verified},
                                              {"keeps", NULL, read_keeps},
                                              {"big_endian", NULL, read_order},
                                              {"rates", NULL, read_rates},

@@ -35,7 +35,8 @@ struct grobo_i_servo_draft {
     grobo_servo_model model;
     uint8_t keeps;
     bool big_endian;
-    bool no_joint; /* it cannot tell its position, or not hold one */
+    bool no_joint;   /* it cannot tell its position, or not hold one */
+    bool unverified; /* its speed, torque or current is from memory */
     int n_rows, n_rates, n_sources, n_indirect;
     grobo_i_servo_row rows[GROBO_I_SERVO_ROWS];
     grobo_servo_rate rates[GROBO_I_SERVO_RATES];

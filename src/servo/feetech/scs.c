@@ -57,12 +57,14 @@ static const grobo_servo_register rows[] = {
 
 static const grobo_servo_model models[] = {
     {"SCS0009", 1284, 1024, 300, 512, 600, 230, 1000, 6000, 3, 0, &grobo_i_scs_table, NULL, 0, 0},
-    {"SCS15", 3845, 1024, 300, 512, 330, 1470, 1500, 7400, 3, GROBO_MODEL_NO_JOINT,
+    {"SCS15", 3845, 1024, 300, 512, 330, 1470, 1500, 7400, 3,
+     GROBO_MODEL_NO_JOINT | GROBO_MODEL_UNVERIFIED, &grobo_i_scs_table, NULL, 0, 0},
+    {"SCS115", 6405, 1024, 300, 512, 330, 1470, 1500, 7400, 3,
+     GROBO_MODEL_NO_JOINT | GROBO_MODEL_UNVERIFIED, &grobo_i_scs_table, NULL, 0, 0},
+    {"SCS215", 8965, 1024, 300, 512, 330, 1860, 2000, 7400, 3, GROBO_MODEL_UNVERIFIED,
      &grobo_i_scs_table, NULL, 0, 0},
-    {"SCS115", 6405, 1024, 300, 512, 330, 1470, 1500, 7400, 3, GROBO_MODEL_NO_JOINT,
+    {"SCS225", 8969, 1024, 300, 512, 330, 2450, 2400, 7400, 3, GROBO_MODEL_UNVERIFIED,
      &grobo_i_scs_table, NULL, 0, 0},
-    {"SCS215", 8965, 1024, 300, 512, 330, 1860, 2000, 7400, 3, 0, &grobo_i_scs_table, NULL, 0, 0},
-    {"SCS225", 8969, 1024, 300, 512, 330, 2450, 2400, 7400, 3, 0, &grobo_i_scs_table, NULL, 0, 0},
 };
 
 static const grobo_servo_rate rates[] = {

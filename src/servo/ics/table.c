@@ -37,24 +37,24 @@ static const grobo_servo_register rows[] = {
 };
 
 static const grobo_servo_model models[] = {
-    {"KRS-3301", 3301, 8000, 270, 7500, 500, 600, 1200, 7400, 36, 0, &grobo_i_ics_table, NULL, 0,
-     0},
-    {"KRS-6003R2HV", 6003, 8000, 270, 7500, 273, 6500, 5000, 11100, 36, 0, &grobo_i_ics_table, NULL,
-     0, 0},
-    {"KRS-2552RHV", 2552, 8000, 270, 7500, 429, 1370, 2000, 11100, 35, GROBO_MODEL_NO_JOINT,
+    {"KRS-3301", 3301, 8000, 270, 7500, 500, 600, 1200, 7400, 36, GROBO_MODEL_UNVERIFIED,
      &grobo_i_ics_table, NULL, 0, 0},
-    {"KRS-2572HV", 2572, 8000, 270, 7500, 462, 2450, 2500, 11100, 35, GROBO_MODEL_NO_JOINT,
+    {"KRS-6003R2HV", 6003, 8000, 270, 7500, 273, 6500, 5000, 11100, 36, GROBO_MODEL_UNVERIFIED,
      &grobo_i_ics_table, NULL, 0, 0},
-    {"KRS-3304", 3304, 8000, 270, 7500, 462, 1370, 1800, 7400, 35, GROBO_MODEL_NO_JOINT,
+    {"KRS-2552RHV", 2552, 8000, 270, 7500, 429, 1370, 2000, 11100, 35,
+     GROBO_MODEL_NO_JOINT | GROBO_MODEL_UNVERIFIED, &grobo_i_ics_table, NULL, 0, 0},
+    {"KRS-2572HV", 2572, 8000, 270, 7500, 462, 2450, 2500, 11100, 35,
+     GROBO_MODEL_NO_JOINT | GROBO_MODEL_UNVERIFIED, &grobo_i_ics_table, NULL, 0, 0},
+    {"KRS-3304", 3304, 8000, 270, 7500, 462, 1370, 1800, 7400, 35,
+     GROBO_MODEL_NO_JOINT | GROBO_MODEL_UNVERIFIED, &grobo_i_ics_table, NULL, 0, 0},
+    {"KRS-4034HV", 4034, 8000, 270, 7500, 353, 4090, 4000, 11100, 35,
+     GROBO_MODEL_NO_JOINT | GROBO_MODEL_UNVERIFIED, &grobo_i_ics_table, NULL, 0, 0},
+    {"KRS-3304R2", 3305, 8000, 270, 7500, 462, 1360, 2000, 7400, 36, GROBO_MODEL_UNVERIFIED,
      &grobo_i_ics_table, NULL, 0, 0},
-    {"KRS-4034HV", 4034, 8000, 270, 7500, 353, 4090, 4000, 11100, 35, GROBO_MODEL_NO_JOINT,
+    {"KRS-2552R2HV", 2553, 8000, 270, 7500, 429, 1370, 2000, 11100, 36, GROBO_MODEL_UNVERIFIED,
      &grobo_i_ics_table, NULL, 0, 0},
-    {"KRS-3304R2", 3305, 8000, 270, 7500, 462, 1360, 2000, 7400, 36, 0, &grobo_i_ics_table, NULL, 0,
-     0},
-    {"KRS-2552R2HV", 2553, 8000, 270, 7500, 429, 1370, 2000, 11100, 36, 0, &grobo_i_ics_table, NULL,
-     0, 0},
-    {"KRS-4034R2HV", 4035, 8000, 270, 7500, 353, 4090, 4000, 11100, 36, 0, &grobo_i_ics_table, NULL,
-     0, 0},
+    {"KRS-4034R2HV", 4035, 8000, 270, 7500, 353, 4090, 4000, 11100, 36, GROBO_MODEL_UNVERIFIED,
+     &grobo_i_ics_table, NULL, 0, 0},
 };
 
 static const grobo_servo_rate rates[] = {

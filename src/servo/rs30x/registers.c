@@ -48,8 +48,8 @@ static const grobo_servo_model models[] = {
     {"RS302CD", 12320, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
     {"RS303MR", 12336, 3000, 300, 0, 545, 0, 1200, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
     {"RS304MD", 12352, 3000, 300, 0, 375, 0, 900, 7400, 1, 0, &grobo_i_rs30x_table, NULL, 0, 0},
-    {"RS405CB", 16464, 3000, 300, 0, 273, 4710, 3600, 11100, 1, 0, &grobo_i_rs30x_table, NULL, 0,
-     0},
+    {"RS405CB", 16464, 3000, 300, 0, 273, 4710, 3600, 11100, 1, GROBO_MODEL_UNVERIFIED,
+     &grobo_i_rs30x_table, NULL, 0, 0},
     {"RS406CB", 16480, 3000, 300, 0, 545, 2750, 1900, 11100, 1, 0, &grobo_i_rs30x_table, NULL, 0,
      0},
 };

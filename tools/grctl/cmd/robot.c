@@ -218,6 +218,15 @@ static const char *why_no_joint(const grobo_servo_model *servo)
                                      : _("  cannot be a joint: it does not tell its position");
 }
 
+/* What a user should know of a model before it becomes a joint. */
+static const char *note_of(const grobo_servo_model *servo)
+{
+    return (servo->flags & GROBO_MODEL_NO_JOINT) != 0 ? why_no_joint(servo)
+           : (servo->flags & GROBO_MODEL_UNVERIFIED) != 0
+               ? _("  speed, torque or current unverified")
+               : "";
+}
+
 static void list_servos(const app *a, const grobo_robot_family *family, json_t *list)
 {
     const grobo_servo_table *table;
@@ -225,15 +234,17 @@ static void list_servos(const app *a, const grobo_robot_family *family, json_t *
         for (int m = 0; m < table->model_count; m++) {
             const grobo_servo_model *servo = &table->models[m];
             bool joint = (servo->flags & GROBO_MODEL_NO_JOINT) == 0;
+            bool verified = (servo->flags & GROBO_MODEL_UNVERIFIED) == 0;
             if (!a->json) {
                 app_print("%-12s %-15s %4d deg  %4d deg/s  %.1f V%s\n", family->name, servo->name,
                           servo->span_deg, servo->speed_dps, servo->voltage_mv / 1e3,
-                          joint ? "" : why_no_joint(servo));
+                          note_of(servo));
             }
-            json_array_append_new(list, json_pack("{s:s,s:s,s:i,s:i,s:i,s:b}", "family",
+            json_array_append_new(list, json_pack("{s:s,s:s,s:i,s:i,s:i,s:b,s:b}", "family",
                                                   family->name, "model", servo->name, "span_deg",
                                                   servo->span_deg, "speed_dps", servo->speed_dps,
-                                                  "voltage_mv", servo->voltage_mv, "joint", joint));
+                                                  "voltage_mv", servo->voltage_mv, "joint", joint,
+                                                  "verified", verified));
         }
     }
 }
