@@ -262,3 +262,23 @@ TEST(margins_of_a_hull)
     assert_true(fabs(grobo_i_polygon_margin(hull, n, outside) + sqrt(2)) < 1e-15);
     assert_true(fabs(grobo_i_polygon_margin(hull, n, beside) + 0.25) < 1e-15);
 }
+
+/* The robot whose speeds count is that of the body. */
+TEST(another_robot_is_refused)
+{
+    grobo_model other = grobo_i_gr001_model;
+    grobo_body_check_options checks = {GROBO_BODY_CHECK_OPTIONS_INIT, .robot = &other};
+    const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT};
+    struct script script;
+    struct run run;
+
+    memset(&script, 0, sizeof script);
+    script_key(&script, 0);
+    script_stand(&script, 0, 0, 0.145);
+    run_start(&run, &grobo_i_gr001_body, &script, &options);
+    other.n_joints--;
+    assert_int_equal(grobo_body_check(run.body, &checks), GROBO_ERR_ARG);
+    assert_int_equal(grobo_body_check(NULL, &checks), GROBO_ERR_ARG);
+    assert_int_equal(grobo_body_check(run.body, NULL), GROBO_ERR_ARG);
+    run_finish(&run);
+}

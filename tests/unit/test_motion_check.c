@@ -206,7 +206,8 @@ TEST(test_warnings)
         TOP "- { time: 1, refer: { type: Pose, joints: [ 13, 25, 26 ], q: [ 0, 0, 0 ] } }\n"
             "- { time: 0, refer: { type: Pose, ikLinks: [ { name: NOPE, index: 99, " LINK ",\n"
             "  { name: L_ANKLE_R, index: 6, " LINK ", { name: WAIST, index: 0, " LINK ",\n"
-            "  { index: 6, " LINK ", { name: R_ANKLE_R, index: 6, " LINK " ] } }\n",
+            "  { index: 6, " LINK ", { name: R_ANKLE_R, index: 6, " LINK ",\n"
+            "  { name: R_HIP_Y, " LINK " ] } }\n",
         true);
 #undef LINK
 
@@ -260,7 +261,7 @@ TEST(test_unknown_once)
     assert_int_equal(found.errors, 0);
     assert_true(has_diagnostic(found.list, "joint-unknown", 5, 67));
     assert_true(has_diagnostic(found.list, "joint-unknown", 8, 60));
-    assert_true(says(&found, "joint 30 and others"));
+    assert_true(says(&found, "joint 30 and others: GR001 has joints 0 to 19"));
     assert_true(says(&found, "joint 25: "));
     assert_true(says(&found, "link 'TAIL' with index 40"));
     assert_true(says(&found, "link 'FIN' with index 41"));

@@ -442,6 +442,18 @@ TEST(test_unusable_links_are_skipped)
     grobo_motion_free(motion);
 }
 
+TEST(test_who_is_no_mapping)
+{
+    grobo_diagnostics *list = NULL;
+    grobo_diagnostic said;
+
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
+    assert_int_equal(read_result("[ 1 ]\n", NULL, list), GROBO_ERR_TYPE);
+    assert_int_equal(grobo_diagnostics_get(list, 0, &said), 0);
+    assert_string_equal(said.message, "not a motion file: no mapping at the top");
+    grobo_diagnostics_free(list);
+}
+
 /* Choreonoid does not look at the type: the refs say what the file is. */
 TEST(test_key_poses_of_another_type)
 {
