@@ -351,6 +351,7 @@ check-bodies: all ## programs of others drive bodies of MuJoCo, and what these c
 	    export PYTHONPATH="$(abspath $(PYTHON_DIR))" && \
 	    $(BUILD)/physics/bin/python tests/physics/clients.py "$(call whole,$(GRCTL_RUN))" \
 	        $(BUILD)/families/bin/python && \
+	    $(BUILD)/physics/bin/python tests/physics/cube.py "$(call whole,$(GRCTL_RUN))" && \
 	    $(BUILD)/physics/bin/python tests/physics/cost.py "$(call whole,$(GRCTL_RUN))"; \
 	else echo 'check-bodies: skipped: MuJoCo cannot be had for this python3'; fi
 
