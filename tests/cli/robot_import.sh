@@ -226,7 +226,7 @@ END
 test_case "gears and offsets"
 check "gears of transmissions" both exits 0 take "$work/geared.urdf" --ids turn=1,lift=2 \
     -o "$work/geared.yaml" --family feetech --servo STS3215 --- grep -q \
-    'turn, .* sign: -1, gear: 2.5, speed_deg_s: 57.2958} # gear: 1 if' "$work/geared.yaml"
+    'turn, .* speed_deg_s: 57.2958, sign: -1, gear: 2.5} # gear: 1 if' "$work/geared.yaml"
 check "those of ros2_control, with the servo's middle where it reaches" grep -q \
     'lift, .* init_deg: 51.5662, zero_deg: -206.265, gear: 4} ' "$work/geared.yaml"
 check "move in their simulator" both exits 0 \
