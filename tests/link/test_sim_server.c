@@ -196,14 +196,16 @@ TEST_WITH(on_loop, many_robots_live_in_one_process)
     grobo_sim_server_free(two);
 }
 
-/* What was sent has come, however long that takes. */
+/* What was sent to a servo has come, however long that takes. */
 static void await_torque(grobo_sim_server *server)
 {
+    grobo_sim *sim = grobo_sim_server_sim(server);
+    int joint = grobo_model_joint_of_motor(grobo_gr001_model(), 1);
     grobo_sim_view view = {.torque = GROBO_TORQUE_OFF};
     for (int i = 0; i < 20000 && view.torque != GROBO_TORQUE_ON; i++) {
         loop_run_for(base, 1000);
-        grobo_sim_step(grobo_sim_server_sim(server), grobo_now_us());
-        assert_int_equal(grobo_sim_look(grobo_sim_server_sim(server), 0, &view), GROBO_OK);
+        grobo_sim_step(sim, grobo_now_us());
+        assert_int_equal(grobo_sim_look(sim, joint, &view), GROBO_OK);
     }
     assert_int_equal(view.torque, GROBO_TORQUE_ON);
 }
