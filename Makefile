@@ -885,14 +885,19 @@ $(sort $(TEST_PROGRAMS) $(DRIVER_PROGRAMS)): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SU
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)
 
+# One looks at an engine in front of the far side of tests/support.
+FUZZ_ENGINE := $(BUILD)/tests/fuzz/fuzz_replies$(EXE) $(BUILD)/tests/fuzz/fuzz_replies.fuzzer
+$(FUZZ_ENGINE): $(SUPPORT_LIB)
+$(FUZZ_ENGINE): FUZZ_LIBS = $(SUPPORT_LIB) $(STATIC_LIB) $(CMOCKA_LIBS)
+
 $(FUZZ_REPLAYS): $(BUILD)/%$(EXE): $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(TOOL_LIB) \
     $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(TOOL_LIBS) $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $(filter-out $(SUPPORT_LIB),$^) $(FUZZ_LIBS) $(TOOL_LIBS) $(LIBS)
 
 $(FUZZERS): %.fuzzer: %.o $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(TOOL_LIBS) $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -fsanitize=fuzzer -o $@ $(filter-out $(SUPPORT_LIB),$^) $(FUZZ_LIBS) $(TOOL_LIBS) $(LIBS)
 
 $(EXAMPLES): $(BUILD)/%$(EXE): $(BUILD)/%.o $(CLASSIC_LIB) $(STATIC_LIB)
 $(BENCHES): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(STATIC_LIB)
