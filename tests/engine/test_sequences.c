@@ -284,7 +284,7 @@ static void raw(void)
         }
         if (asked(grobo_robot_raw(&halt.robot, exchange.frame, exchange.frame_bytes)) > 0) {
             sequence.joint[servo_of(halt.of->moved)].soft = false;
-            sequence_license(moved(), -5, -5);
+            sequence_license_raw(moved(), -5);
         }
     }
 }

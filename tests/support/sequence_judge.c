@@ -24,6 +24,7 @@
 /* A joint that others turn is read every 100 ms, twice where its servo tells no speed. */
 #define FOREIGN_US 400000
 #define FOREIGN_DPS 60
+#define FOREIGN_READ_S 0.1
 /* One that is slower may sink to the goal that carries its weight. */
 #define CREEP_DPS 8
 /* A joint's torque is read as often as that, at least. */
@@ -157,7 +158,8 @@ static void judge_first(const far_joint *joint, const far_news *news)
     const sequence_joint *its = &sequence.joint[news->joint];
     double slow_dps = DEG(halt.of->driver.limits.approach_rad_s) * 1.05 + COUNT_DPS;
     double lag_deg = fabs(joint->at_deg - news->left_deg) + SLACK_DEG;
-    if (!its->soft || !its->licensed || fabs(news->goal_deg - joint->at_deg) <= lag_deg) {
+    if (!its->soft || !its->licensed || its->foreign ||
+        fabs(news->goal_deg - joint->at_deg) <= lag_deg) {
         return;
     }
     for (int i = 0; i < halt.far.n_joints; i++) {
@@ -180,7 +182,7 @@ static void judge_place(const far_joint *joint, const far_news *news)
         hi_deg = fmax(hi_deg, joint->goal_deg);
     }
     if (its->foreign) { /* nobody knows which way it goes by now */
-        slack += FOREIGN_DPS * BRAKE_S;
+        slack += FOREIGN_DPS * (BRAKE_S + FOREIGN_READ_S);
     }
     if (news->goal_deg < lo_deg - slack || news->goal_deg > hi_deg + slack) {
         sequence_blame(its->licensed ? "a goal that nobody asked for" : "a halt throws a joint",
@@ -343,6 +345,16 @@ static void hear_job(const grobo_event_job *job)
     judge_stop(job);
 }
 
+/* Joints that move by what is no motion. */
+static grobo_joint_mask raw_joints(void)
+{
+    grobo_joint_mask joints = 0;
+    for (int j = 0; j < halt.of->n_joints; j++) {
+        joints |= sequence.joint[servo_of(j)].raw ? GROBO_JOINT_BIT(j) : 0;
+    }
+    return joints;
+}
+
 static void on_event(void *ctx, const grobo_event *event)
 {
     grobo_joint_mask all = GROBO_JOINTS_ALL(halt.of->n_joints);
@@ -355,7 +367,7 @@ static void on_event(void *ctx, const grobo_event *event)
         }
     } else if (event->kind == GROBO_EVENT_TRIP) {
         bool wakes = sequence.wakes && !event->u.trip.latched;
-        sequence_halt(all, GROBO_PLAY_STOP_US, false);
+        sequence_halt(event->u.trip.latched ? all : all & ~raw_joints(), GROBO_PLAY_STOP_US, false);
         sequence.wakes = wakes;
         sequence.latched = sequence.latched || event->u.trip.latched;
         sequence.latched_us = event->u.trip.latched ? halt.now_us + 1 : sequence.latched_us;
@@ -408,6 +420,15 @@ void sequence_license(grobo_joint_mask joints, double lo_deg, double hi_deg)
     license(joints, &lo_deg, &hi_deg);
 }
 
+void sequence_license_raw(grobo_joint_mask joints, double deg)
+{
+    license(joints, &deg, &deg);
+    for (int j = 0; j < halt.of->n_joints; j++) {
+        sequence_joint *its = &sequence.joint[servo_of(j)];
+        its->raw = its->raw || (joints & GROBO_JOINT_BIT(j)) != 0;
+    }
+}
+
 void sequence_license_here(grobo_joint_mask joints)
 {
     license(joints, NULL, NULL);
@@ -451,7 +472,7 @@ void sequence_halt(grobo_joint_mask joints, int64_t soft_us, bool at_once)
         if (its->licensed) {
             its->lo_deg = its->hi_deg = at_deg;
         }
-        its->licensed = its->free = false;
+        its->licensed = its->free = its->raw = false;
         widen(its, at_deg);
         widen(its, rest_deg(joint, sequence.soft_s));
         if (joint->waits) { /* its goal came just now */
