@@ -155,3 +155,35 @@ TEST(it_stands)
     assert_int_equal(fall_of(none, 1, 100), 0);
     assert_int_equal(fall_of(none, 8, 100), 0);
 }
+
+/* What the constants of servos and floor come to, so that none changes unseen: how far it may lean
+ * to each side, within half a degree, and when it lies. */
+TEST(how_far_it_may_lean)
+{
+    static const struct {
+        int joint[2];
+        double sign[2];
+        double stands_deg, doubt_deg, falls_deg; /* the next half degree up is another answer */
+        double lies_s;                           /* at falls_deg */
+    } sides[] = {
+        {{R_ANKLE_P, L_ANKLE_P}, {1, -1}, 12, 12.5, 14, 1.04},
+        {{R_ANKLE_P, L_ANKLE_P}, {-1, 1}, 12.5, 13, 14, 1.615},
+        {{R_ANKLE_R, L_ANKLE_R}, {1, 1}, 17, 17.5, 18.5, 1.165},
+    };
+
+    for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
+        const double deg[] = {sides[i].stands_deg, sides[i].doubt_deg, sides[i].falls_deg - 0.5,
+                              sides[i].falls_deg};
+
+        for (int k = 0; k < 4; k++) {
+            const struct away away[4] = {{sides[i].joint[0], sides[i].sign[0] * deg[k]},
+                                         {sides[i].joint[1], sides[i].sign[1] * deg[k]},
+                                         {-1, 0},
+                                         {-1, 0}};
+
+            assert_int_equal(fall_of(away, 0.5, 100), k > 0);
+            assert_int_equal(seen.worst > 0, k == 1 || k == 2);
+        }
+        assert_true(fabs(seen.worst_s - sides[i].lies_s) < 0.004);
+    }
+}
