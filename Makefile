@@ -549,7 +549,7 @@ check-areas: ## sabotage each area outside the core in COUNT=300 ways: AREA="lin
 	@nice python3 tests/mutants/areas.py --seed $(SEED) --count $(or $(COUNT),300) $(if $(ONLY),--only $(ONLY)) \
 	    --cap-s $(CAP_S) --areas tests/mutants/areas --objects $(MUTANT_DIR) --work $(MUTANT_DIR)/areas \
 	    --report $(MUTANT_DIR)/areas.md --link '$(CC)' --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
-	    --compile '$(CC) $(ALL_CPPFLAGS) -DGROBO_WALKS $(SRC_INCLUDE) $(TOOL_INCLUDE) $(OS_FLAGS) $(EVENT_CFLAGS) $(YAML_CFLAGS) -std=c11 -fPIC -O2' \
+	    --compile '$(CC) $(ALL_CPPFLAGS) -DGROBO_WALKS $(SRC_INCLUDE) $(TOOL_INCLUDE) $(OS_FLAGS) $(EVENT_CFLAGS) $(YAML_CFLAGS) -DGROBO_GUARD_PROGRAM=\"grctl\" -std=c11 -fPIC -O2' \
 	    $(AREA)
 
 check-model: ## search the model of stops between programs with Spin, and its sabotages

@@ -79,13 +79,15 @@ def run_area(options, area):
     print(f"== {name}", flush=True)
     run.in_work_folder(options, run.run_all)
     noticed, tried = options.tally
+    if tried == 0:
+        return False
     low, high = wilson(noticed, tried)
     rows = rows_of(options.report)
     rows[name] = (f"| {name} | {tried} | {noticed} | {100 * noticed / max(1, tried):.1f} % | "
                   f"{low:.1f} to {high:.1f} % | {wanted} % | {options.seed} |")
     print(rows[name], flush=True)
     write_table(options.report, rows)
-    return tried > 0 and high >= wanted
+    return high >= wanted
 
 
 def main():
