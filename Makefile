@@ -616,7 +616,7 @@ wrap: ## build/subprojects, for the Meson projects that take TARBALL=build/libgr
 	@sed -e 's|@VERSION@|$(VERSION)|' -e "s|@SHA256@|$$(sha256sum <$(TARBALL) | cut -d ' ' -f 1)|" \
 	    tools/package/meson/grobo.wrap.in >$(BUILD)/subprojects/grobo.wrap
 
-.PHONY: sources wrap python wheel check-wheel deb deb-source check-deb check-roots release
+.PHONY: sbom sources wrap python wheel check-wheel deb deb-source check-deb check-roots release
 # The Python package as it is used from here (PYTHONPATH=build/python) and packed.
 PYTHON ?= python3
 PYTHON_DIR := $(BUILD)/python
@@ -651,6 +651,10 @@ check-deb: ## these for amd64 and arm64: lintian, and installed and purged in fr
 check-roots: ## README's commands, packages, CMake, Meson and pip in fresh Debian and Ubuntu roots
 	-@tools/setup.sh --packages
 	@BUILD="$(BUILD)" TEST_TIMEOUT_S=10800 TEST_LOGS="$(BUILD)/logs/roots" tests/run.sh tests/package/roots.sh
+
+sbom: dist ## the bill of materials of the last commit's tarball, SPDX 2.3
+	@tools/package/sbom.sh $(BUILD)/$(DIST).tar.gz >$(BUILD)/$(DIST).spdx.json
+	@echo $(BUILD)/$(DIST).spdx.json
 
 release: ## refuse where a step of a release is missing, else make the tarball
 	@GRCTL="$(GRCTL)" BUILD="$(BUILD)" tools/package/release.sh

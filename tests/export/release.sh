@@ -83,4 +83,28 @@ test_that 'released' released
 rm -rf "$work/build"
 test_that 'refused: a version that is released' tagged
 test_that 'refused: a function that is gone' gone
+# What it is linked with is in it: each pkg-config name that the Makefile asks for has a package.
+bill() {
+    tar -czf "$work/some.tar.gz" CHANGELOG.md
+    sh tools/package/sbom.sh "$work/some.tar.gz" >"$work/bill" || return 1
+    sum=$(sha256sum <"$work/some.tar.gz" | cut -d ' ' -f 1)
+    python3 - "$work/bill" "$sum" <<'P'
+import json, sys
+bill = json.load(open(sys.argv[1]))
+ours, *others = bill["packages"]
+assert ours["checksums"][0]["checksumValue"] == sys.argv[2], ours
+named = {p["SPDXID"] for p in others}
+assert named == {r["relatedSpdxElement"] for r in bill["relationships"]}, bill["relationships"]
+wanted = "libevent libyaml jansson expat libedit ncurses mosquitto".split()
+assert named == {"SPDXRef-" + name for name in wanted}, named
+text = open("Makefile").read()
+for name in wanted:
+    assert name.replace("lib", "") in text, name
+P
+}
+if command -v python3 >/dev/null; then
+    test_that 'the bill of materials' bill
+else
+    skip 'the bill of materials' 'no python3'
+fi
 done_testing

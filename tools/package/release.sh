@@ -77,5 +77,7 @@ done
 # shellcheck disable=SC2086
 [ "$(printf '%s\n' $sums | sort -u | wc -l)" -eq 1 ] || misses "two tarballs differ:$sums"
 refuse_if_missing
+tools/package/sbom.sh "$build/libgrobo-$version.tar.gz" >"$build/libgrobo-$version.spdx.json"
+echo "release: $build/libgrobo-$version.spdx.json is its bill of materials"
 echo "release: $build/libgrobo-$version.tar.gz, sha256 ${sums##* }"
 echo "release: now git tag -a v$version -m \"libgrobo $version\""
