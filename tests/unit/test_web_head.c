@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The head of a stop whose body may never come. */
+#include <stdio.h>
 #include <string.h>
 
 #include <event2/http.h>
@@ -79,6 +80,8 @@ TEST_WITH(fixture, a_body_is_there_or_not)
     assert_true(has_body("Content-Length: 0\r\n", 0));
     assert_true(has_body("Content-Length: 2\r\n", 2));
     assert_false(has_body("Content-Length: 2\r\n", 1));
+    assert_true(has_body("Content-Length: 010\r\n", 10));
+    assert_false(has_body("Content-Length: 010\r\n", 9));
     assert_false(has_body("Content-Length: none\r\n", 99));
     assert_false(has_body("Content-Length: -1\r\n", 99));
     assert_false(has_body("Content-Length: 99999999\r\n", 99));
@@ -99,4 +102,43 @@ TEST(a_uri_has_path_and_query)
     memset(longer, '/', sizeof longer - 1);
     longer[sizeof longer - 1] = '\0';
     assert_false(head_split(longer, path, query));
+}
+
+/* Where a body ends is told once and in one way, or nobody knows which request comes next. */
+TEST(what_is_malformed_has_its_status)
+{
+    static const struct {
+        const char *line, *fields;
+        int status;
+    } heads[] = {
+        {"GET / HTTP/1.1", "", 0},
+        {"GET / HTTP/1.0", "Host: a\r\n", 0},
+        {"GET / HTTP/1.2", "", 505},
+        {"GET / HTTP/2.0", "", 505},
+        {"GET /", "", 400},
+        {"GET  / HTTP/1.1", "", 400},
+        {"G(T / HTTP/1.1", "", 400},
+        {"POST / HTTP/1.1", "Content-Length: 100\r\n", 0},
+        {"POST / HTTP/1.1", "Content-Length: 101\r\n", 413},
+        {"POST / HTTP/1.1", "Content-Length: 0000000099\r\n", 413},
+        {"POST / HTTP/1.1", "Content-Length: 9a\r\n", 400},
+        {"POST / HTTP/1.1", "Content-Length:\r\n", 400},
+        {"POST / HTTP/1.1", "Content-Length: 2\r\nContent-Length: 2\r\n", 400},
+        {"POST / HTTP/1.1", "Transfer-Encoding: chunked\r\n", 0},
+        {"POST / HTTP/1.1", "Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked\r\n", 400},
+        {"POST / HTTP/1.1", "Content-Length: 2\r\nTransfer-Encoding: chunked\r\n", 400},
+        {"POST / HTTP/1.1", "Transfer-Encoding: gzip\r\n", 501},
+        {"POST / HTTP/1.1", "Expect: 100-continue\r\n", 0},
+        {"POST / HTTP/1.1", "Expect: more\r\n", 417},
+        {"POST / HTTP/1.1", "A: b\r\n c\r\n", 400},
+        {"POST / HTTP/1.1", "A : b\r\n", 400},
+    };
+    for (size_t i = 0; i < sizeof heads / sizeof heads[0]; i++) {
+        char head[256];
+        int n = snprintf(head, sizeof head, "%s\r\n%s\r\n", heads[i].line, heads[i].fields);
+        int status = head_judge(head, (size_t)n, 100).status;
+        if (status != heads[i].status) {
+            fail_msg("%s, %s: %d", heads[i].line, heads[i].fields, status);
+        }
+    }
 }
