@@ -15,6 +15,7 @@
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/os/keys.h"
 
+enum { LOST_LOOKS = 10 };
 enum { PATH_BYTES = 1024, LOOK_US = 50000, NEAR_TICKS = 12 };
 
 typedef struct calibration {
@@ -25,7 +26,8 @@ typedef struct calibration {
     progress line;
     struct event *look;
     homing before[GROBO_JOINTS_MAX], wanted[GROBO_JOINTS_MAX];
-    int32_t now[GROBO_JOINTS_MAX]; /* positions read last */
+    int32_t now[GROBO_JOINTS_MAX];  /* positions read last */
+    uint8_t lost[GROBO_JOINTS_MAX]; /* looks in a row without an answer */
     bool is_due, pressed, has_ended, listens;
     char kept[PATH_BYTES], saved[PATH_BYTES];
 } calibration;
@@ -188,12 +190,15 @@ static bool is_due(conn *c)
     return k->is_due || k->pressed || k->has_ended;
 }
 
+/* A hand that moves an arm moves its cables: a joint that misses a look has not moved in it, and
+ * one that misses many in a row ends the calibration. */
 static int look(calibration *k)
 {
     k->is_due = false;
     for (int j = 0; j < app_model(k->a)->n_joints; j++) {
         int error = read_role(k, j, GROBO_ROLE_POSITION, &k->now[j]);
-        if (error) {
+        k->lost[j] = error ? (uint8_t)(k->lost[j] + 1) : 0;
+        if (error && (!conn_is_of_reply(error) || k->lost[j] >= LOST_LOOKS)) {
             return fail(k, error, j);
         }
     }
