@@ -266,8 +266,31 @@ TEST(test_mirror)
     assert_int_equal(grobo_motion_set_ik_links(motion, 0, links, 2), 0);
     assert_int_equal(grobo_motion_mirror(motion, &grobo_i_gr001_model), GROBO_ERR_NOTFOUND);
     assert_true(angle_of(motion, 0, right) == -0.5); /* untouched */
+    /* The link of the last joint, and the first that there is not. */
+    for (int behind = 0; behind < 2; behind++) {
+        links[0] = (grobo_ik_link){.index = 20 + behind};
+        assert_int_equal(grobo_motion_set_ik_links(motion, 0, links, 1), 0);
+        assert_int_equal(grobo_motion_mirror(motion, &grobo_i_gr001_model),
+                         behind ? GROBO_ERR_NOTFOUND : 0);
+    }
     grobo_motion_free(motion);
     grobo_motion_free(back);
+}
+
+/* Of a motion that has no length but its begin, too. */
+TEST(no_time_is_scaled_without_bound)
+{
+    grobo_motion *motion = NULL;
+    grobo_posture posture;
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_KEYS, 20, NULL, &motion), 0);
+    assert_int_equal(grobo_posture_init(&posture, 20), 0);
+    assert_int_equal(grobo_posture_set_rad(&posture, 3, 0.1), 0);
+    assert_int_equal(grobo_motion_append_at(motion, 0, &posture), 0);
+    assert_int_equal(grobo_motion_scale_time(motion, (double)INFINITY), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_scale_time(motion, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_scale_time(motion, -1), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_scale_time(motion, 2), 0);
+    grobo_motion_free(motion);
 }
 
 /* Backwards the same curve is run, waits included, and twice backwards is the same again. */
