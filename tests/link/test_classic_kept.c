@@ -369,3 +369,28 @@ TEST_WITH(alone, a_function_that_waits_is_not_refused_beside_a_move_of_another)
         assert_int_equal(grobo_runner_wait_job(SerialRobot_runner(g), move, 0), GROBO_OK);
     }
 }
+
+/* ---- errors -------------------------------------------------------------------------------- */
+
+TEST_WITH(alone, an_error_has_motor_joint_value_and_range_in_degrees)
+{
+    const grobo_joint *neck = grobo_model_joint(grobo_gr001_model(), 13);
+    char text[160], wanted[160], small[8];
+
+    assert_int_equal(SerialRobot_setJoint(g, 2, 1790), 0);
+    assert_int_equal(SerialRobot_startMotion(g), -1);
+    int n = snprintf(wanted, sizeof wanted,
+                     "%s: motor 2 (NECK_Y), 179.0 deg is not within %.1f to %.1f deg",
+                     grobo_error_text(GROBO_ERR_LIMIT), grobo_deg_from_rad(neck->min_rad),
+                     grobo_deg_from_rad(neck->max_rad));
+    assert_int_equal(SerialRobot_errorText(g, text, sizeof text), n);
+    assert_string_equal(text, wanted);
+    assert_int_equal(SerialRobot_errorText(g, small, sizeof small), (int)sizeof small - 1);
+    assert_memory_equal(small, wanted, sizeof small - 1);
+    assert_int_equal(SerialRobot_sendCommand(g, text, 10000), -1);
+    assert_true(SerialRobot_errorText(g, text, sizeof text) > 0);
+    assert_string_equal(text, grobo_error_text(GROBO_ERR_CAP));
+    assert_int_equal(SerialRobot_errorText(g, NULL, 10), -1);
+    assert_int_equal(SerialRobot_errorText(g, text, 0), -1);
+    assert_int_equal(SerialRobot_errorText(NULL, text, sizeof text), -1);
+}

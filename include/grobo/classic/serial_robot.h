@@ -79,6 +79,9 @@ typedef struct SerialRobot {
 
 /** Why the last call failed: an error of error.h; 0 where it did not. */
 GROBO_CLASSIC_API int SerialRobot_error(const SerialRobot *robot);
+/** The same for people; of an angle that is refused with its motor, its joint and the limits, in
+ *  degrees. @return length, cut to fit; -1 @param room of text, with its NUL */
+GROBO_CLASSIC_API int SerialRobot_errorText(const SerialRobot *robot, char *text, size_t room);
 /** The runner below: everything of runner.h, session.h and robot.h. */
 GROBO_CLASSIC_API grobo_runner *SerialRobot_runner(const SerialRobot *robot);
 /** Waits until nothing moves. @param timeout_ms 0: 5 s @return 0, -1 */
