@@ -85,6 +85,7 @@ rest() {
 }
 test_case "a joint that was not moved ends it"
 check "so do others" rest
+check "the gripper by less than 10 degrees" turned gripper 4
 echo >&7
 ended
 check "but the gripper was not moved" with_status 2

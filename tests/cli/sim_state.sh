@@ -74,6 +74,7 @@ check "an id that no servo can have" refused
 check "which line" complains 'line 2: a register has a value'
 sed '2s/^3040 09/3040 zz/' "$work/good" >"$work/bad"
 check "no hexadecimal" refused
+check "it is that which is wrong" complains 'line 2: no registers in hexadecimal'
 sed '2s/ /\t/' "$work/good" >"$work/bad"
 check "another space" refused
 cat "$work/good" "$work/good" >"$work/bad"
