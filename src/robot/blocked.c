@@ -17,7 +17,7 @@
  * ends with its error, and is no reason to stop all others. Nor is a joint in free mode judged.
  *
  * The joint is stopped where it is, so that it presses no more. It takes two readings to show that
- * it stands; they come often meanwhile (often.c). /
+ * it stands; they come often meanwhile (often.c).
  */
 #include <math.h>
 

@@ -747,6 +747,9 @@ static bool arrives(grobo_robot *robot, int joint)
 
 static bool creeps_to_its_goal(const grobo_robot *robot, int joint)
 {
+    if (GROBO_DRIVERS_PLAIN) {
+        return false; /* none of them tells that it turns (grobo_i_axis_tells_turn()) */
+    }
     const grobo_robot_axis *axis = &robot->axes[joint];
     double left_rad = axis->state.goal_rad - grobo_i_load(axis) - axis->seen_rad;
     int64_t begun_us = robot->job->begun_us;
