@@ -223,7 +223,7 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
         got->angle_rad += correction(robot, joint);
     }
-    bool late = robot->now_us - asked_us > LATE_ANSWER_US;
+    bool late = !GROBO_DRIVERS_PLAIN && robot->now_us - asked_us > LATE_ANSWER_US;
     int64_t read_us = late ? asked_us : robot->now_us;
     take_speed(robot, joint, read_us, got);
     bool one_trajectory = is_of_one_trajectory(robot, axis);
