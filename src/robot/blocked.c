@@ -31,9 +31,12 @@
 #define DEG 0.017453292519943295
 /* A set point that goes on by so much, and is so far from the joint, would move it: one that lay on
  * a stop or a table stands until its servo has the error that lifts it. */
-#define AHEAD_RAD (10 * DEG)
+#define AHEAD_RAD (12 * DEG)
 #define AWAY_RAD (4 * DEG)
-#define END_RAD (1 * DEG)
+#define END_RAD (2 * DEG)
+/* In a longer time other joints may have moved what it carries: then nothing less than an overload
+ * shows it. */
+#define SLOW_US 1000000
 /* Gears have more friction under load: one that carries and turns back stands for as long as its
  * error goes from what sinks it to what lifts it, which is this part of it and that of its friction
  * alone. The worst that is known is that of an XL330. */
@@ -49,6 +52,8 @@
 /* A joint that goes on by less stands; so long at least. */
 #define STANDS_RAD (0.6 * DEG)
 #define STANDS_US 100000
+/* A loop that carries an arm is so late behind a way that begins, where others pull back. */
+#define STARTS_US 150000
 /* What was seen longer ago than that is no beginning of anything: the host may have stalled, and
  * servos that watch it have stopped by themselves. */
 #define UNSEEN_US 1500000
@@ -151,7 +156,7 @@ static bool is_at_end(const grobo_robot *robot, int joint)
 static double least_ahead_rad(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    if (is_at_end(robot, joint)) {
+    if (is_at_end(robot, joint) || robot->now_us - axis->block_us > SLOW_US) {
         return OVERLOADED_RAD;
     }
     double load_rad = fmax(fabs(grobo_i_load(axis)), axis->block_load_rad);
@@ -178,7 +183,8 @@ static bool is_blocked(grobo_robot *robot, int joint, double set_rad)
         return false;
     }
     bool at_once = way->to_us - way->from_us < stands_us(robot); /* one of many frames */
-    int64_t since_us = at_once ? axis->block_us : grobo_i_later(axis->block_us, way->from_us);
+    int64_t since_us =
+        at_once ? axis->block_us : grobo_i_later(axis->block_us, way->from_us + STARTS_US);
     return fabs(away_rad) >= AWAY_RAD && ahead_rad >= least_ahead_rad(robot, joint) &&
            robot->now_us - since_us >= stands_us(robot);
 }
