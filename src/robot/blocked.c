@@ -209,7 +209,9 @@ static bool is_overloaded(grobo_robot *robot, int joint, double set_rad)
 void grobo_i_blocked_look(grobo_robot *robot, int joint, const grobo_joint_state *got)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
-    if ((got->valid & GROBO_FIELD_ANGLE) == 0) {
+    bool judged = grobo_i_has_target(axis) || axis->wants_torque || axis->looked_us != 0 ||
+                  grobo_i_in_motion(robot); /* most joints of a robot that is watched are not */
+    if (!judged || (got->valid & GROBO_FIELD_ANGLE) == 0) {
         return;
     }
     const set_point set = set_of(robot, joint);
