@@ -142,7 +142,7 @@ static double told_speed(const grobo_robot *robot, int joint)
                : trajectory_speed(trajectory);
 }
 
-/* The loop of a servo that carries an arm is so late behind its ramp. */
+/* The loop of a servo that carries a load is so late behind its ramp. */
 #define LOOP_S 0.15
 
 /* Of a servo with ramps that tells its speed: from there and then to the speed of its
@@ -159,7 +159,8 @@ static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
                          ? grobo_i_trajectory_at(trajectory, axis->told_to_us)
                          : trajectory->to_rad;
     end_rad -= grobo_i_load(axis);
-    if ((seconds(trajectory->from_us, seen_us) - LOOP_S) * accel_rad_s2 > 2 * wanted_rad_s) {
+    double loop_s = grobo_i_load(axis) != 0 ? LOOP_S : 0;
+    if ((seconds(trajectory->from_us, seen_us) - loop_s) * accel_rad_s2 > 2 * wanted_rad_s) {
         wanted_rad_s = fmin(wanted_rad_s, fabs(c.rad_s)); /* too weak to be as fast by then */
     }
     c = go_on(c, fmin(seconds(seen_us, trajectory->from_us), GOES_ON_S));
