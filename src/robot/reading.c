@@ -109,12 +109,30 @@ static bool is_fast(const grobo_robot_trajectory *trajectory, int64_t then_us)
            way_rad * 1e6 > BEGUN_RAD_S * (double)(trajectory->to_us - trajectory->from_us);
 }
 
+/* True of one whose servo has ramps, and that was read last to turn the other way: it stands for a
+ * moment where its trajectory begins. What was read last is in `axis` yet. */
+static bool may_turn_back(const grobo_robot *robot, int joint, int64_t asked_us,
+                          const grobo_joint_state *got)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    const grobo_robot_trajectory *trajectory = &axis->trajectory;
+    bool ramps = GROBO_I_EXTRA(robot->driver, accel_rad_s2) > 0;
+    if (!ramps || !grobo_i_has_target(axis) || axis->seen_dps == GROBO_I_NO_SPEED) {
+        return false;
+    }
+    bool otherwise = abs(axis->seen_dps) >= GROBO_I_SLOW_DPS &&
+                     axis->seen_dps * (trajectory->to_rad - trajectory->from_rad) < 0;
+    return otherwise && asked_us - axis->told_us <= TURNED_US &&
+           axis->told_us - axis->seen_us <= TURNED_US &&
+           fabs(got->angle_rad - trajectory->from_rad) <= GROBO_I_OFF_TRAJECTORY_RAD;
+}
+
 /* A joint that stands still, or creeps, beside its trajectory has lost the frame, and so has one
  * that is ahead of it, or before it for long, or whose goal is another. Until the next one it is
  * where it was read, or on the trajectory that its servo told of: a stop would throw it to where
  * it should be by then. The angle alone tells nothing of it. */
 static bool is_off_trajectory(const grobo_robot *robot, int joint, int64_t asked_us,
-                              const grobo_joint_state *got)
+                              const grobo_joint_state *got, bool turns_back)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     if ((got->valid & GROBO_FIELD_SPEED) == 0) {
@@ -132,7 +150,7 @@ static bool is_off_trajectory(const grobo_robot *robot, int joint, int64_t asked
     double beside_rad = fmin(fabs(set_rad - then_rad), fabs(set_rad - now_rad));
     bool between = (set_rad - axis->trajectory.from_rad) * (now_rad - set_rad) >= 0;
     bool elsewhere = !between && asked_us - axis->told_us > TURNED_US;
-    bool stands = abs(got->speed_dps) < GROBO_I_SLOW_DPS;
+    bool stands = abs(got->speed_dps) < GROBO_I_SLOW_DPS && !turns_back;
     bool never_began = stands && is_fast(&axis->trajectory, asked_us) && beside_rad > BESIDE_RAD &&
                        asked_us - axis->told_us > GROBO_I_BEGUN_US;
     return never_began || (beside_rad > GROBO_I_OFF_TRAJECTORY_RAD && (elsewhere || stands));
@@ -157,10 +175,11 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
         axis->torque_us = robot->now_us;
     }
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
+        bool turns_back = may_turn_back(robot, joint, asked_us, got);
         grobo_i_stand_seen(robot, joint, asked_us, axis->state.angle_rad);
         grobo_i_axis_seen(axis, asked_us, got);
         bool external = take_move(robot, joint, got);
-        bool stray = is_astray(axis) || is_off_trajectory(robot, joint, asked_us, got);
+        bool stray = is_astray(axis) || is_off_trajectory(robot, joint, asked_us, got, turns_back);
         grobo_i_joint_to(axis, stray      ? GROBO_I_JOINT_STRAYS
                                : external ? GROBO_I_JOINT_TURNS
                                           : GROBO_I_JOINT_READ);
