@@ -62,9 +62,14 @@ static void make(grobo_runner_config config, bool threaded)
 
 static const grobo_play_options for_long = {GROBO_PLAY_OPTIONS_INIT, .repeat = 1000000};
 
+/* Asked again where the machine was too busy for the far side to answer in time. */
 static void have_torque(void)
 {
-    assert_int_equal(runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, 20000000), GROBO_OK);
+    int result = GROBO_ERR_TIMEOUT;
+    for (int i = 0; i < 5 && result == GROBO_ERR_TIMEOUT; i++) {
+        result = runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, 20000000);
+    }
+    assert_int_equal(result, GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 20);
 }
 

@@ -102,7 +102,9 @@ static void answer_read(far_side *far, far_joint *joint, int command)
     int position = (int)lround(joint->at_deg / STEP_DEG) + MIDDLE;
     const struct {
         int command, value, n;
-    } values[] = {{MOVE_READ, far_get16(joint->reg) | far_get16(joint->reg + AT_TIME) << 16, 4},
+    } values[] = {{MOVE_READ,
+                   far_get16(joint->reg) | (int)((unsigned)far_get16(joint->reg + AT_TIME) << 16),
+                   4},
                   {ID_READ, joint->id, 1},
                   {OFFSET_READ, 0, 1},
                   {LIMITS_READ, 1000 << 16, 4},
