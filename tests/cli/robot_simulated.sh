@@ -33,7 +33,7 @@ check "it is free" wait_for sim_shows 6 ' 5[45]\.[0-9] deg .* mA .* C$'
 check "and gets back" fails 0 'done; largest error 0\.[0-4]' on_robot --robot so101 move gripper 40
 tell block shoulder_pan on
 check "a joint that is blocked ends its move" \
-    fails 4 'stopped for safety: over-current ([0-9]* mA) at motor 1 (shoulder_pan)' \
+    fails 4 'stopped for safety: joint blocked ([0-9.]* deg) at motor 1 (shoulder_pan)' \
     on_robot --robot so101 move shoulder_pan 60 4000
 check "and pushes no more" wait_for sim_shows 1 ' [0-9][0-9] mA .* C$'
 tell block shoulder_pan off

@@ -164,7 +164,12 @@ TEST_WITH(with_and_without_thread, readings)
 
     /* A servo that does not answer: nobody takes anything for its angle, the others are read. */
     assert_int_equal(grobo_runner_call(runner, cut_elbow, NULL), GROBO_OK);
-    assert_int_equal(grobo_runner_read_angle(runner, ELBOW, &angle_rad, 0), GROBO_ERR_TIMEOUT);
+    int result = GROBO_OK; /* a reading that was on its way may have been answered yet */
+    for (int i = 0; i < 3 && result == GROBO_OK; i++) {
+        angle_rad = -99;
+        result = grobo_runner_read_angle(runner, ELBOW, &angle_rad, 0);
+    }
+    assert_int_equal(result, GROBO_ERR_TIMEOUT);
     assert_true(angle_rad == -99);
     assert_int_equal(grobo_runner_read_posture(runner, &posture, 0), 19);
     assert_true(posture.set == (EVERY_JOINT & ~GROBO_JOINT_BIT(ELBOW)));

@@ -211,6 +211,19 @@ static json_t *state_json(const view *v)
                      "clients", http_streams(v->http));
 }
 
+/* A unit of its own, where the joint has one and tells how much it is. */
+static void copy_unit(json_t *one, const json_t *joint)
+{
+    const json_t *zero = json_object_get(joint, "unit_zero_deg");
+    const json_t *scale = json_object_get(joint, "unit_deg");
+    if (json_is_string(json_object_get(joint, "unit")) && json_is_number(zero) &&
+        json_is_number(scale) && json_number_value(scale) != 0) {
+        json_object_set_new(one, "unit", copy_text(joint, "unit"));
+        json_object_set_new(one, "unit_zero_deg", copy_number(joint, "unit_zero_deg"));
+        json_object_set_new(one, "unit_deg", copy_number(joint, "unit_deg"));
+    }
+}
+
 static json_t *joints_json(const json_t *robot)
 {
     size_t i;
@@ -218,12 +231,10 @@ static json_t *joints_json(const json_t *robot)
     json_array_foreach(json_object_get(robot, "joints"), i, joint)
     {
         if (i < JOINTS_MAX) {
-            json_array_append_new(
-                list, json_pack("{s:o,s:o,s:o,s:o,s:o}", "name", copy_text(joint, "name"),
-                                "limits_deg", copy_numbers(json_object_get(joint, "limits_deg"), 2),
-                                "unit", copy_text(joint, "unit"), "unit_zero_deg",
-                                copy_number(joint, "unit_zero_deg"), "unit_deg",
-                                copy_number(joint, "unit_deg")));
+            json_t *one = json_pack("{s:o,s:o}", "name", copy_text(joint, "name"), "limits_deg",
+                                    copy_numbers(json_object_get(joint, "limits_deg"), 2));
+            copy_unit(one, joint);
+            json_array_append_new(list, one);
         }
     }
     return list;
