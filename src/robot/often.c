@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * How often joints are read while one moves, or is strained: further from its set point than its
- * load explains (blocked.c). A line that has no time for that is read as at rest. /
+ * load explains (blocked.c). A line that has no time for that is read as at rest.
  */
 #include "src/base/instant.h"
 #include "src/robot/often.h"

@@ -854,7 +854,7 @@ static int step_moved(grobo_robot *robot)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         bool sags = grobo_i_swings(robot, j) || grobo_i_may_sag(robot, j, job->begun_us);
         if (grobo_i_has(doubt, j) && grobo_i_stand_left(&robot->axes[j]) &&
-            (!sags || (!GROBO_DRIVERS_PLAIN && creeps_to_its_goal(robot, j)))) {
+            (!sags || creeps_to_its_goal(robot, j))) {
             grobo_i_astray(robot, j);
             moved |= GROBO_JOINT_BIT(j);
         }
