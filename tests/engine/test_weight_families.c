@@ -108,13 +108,6 @@ static double part_deg(int joint, double part)
     return grobo_deg_from_rad(j->min_rad + part * (j->max_rad - j->min_rad));
 }
 
-static void wait_for(int job)
-{
-    if (job > 0) {
-        (void)weight_wait(job);
-    }
-}
-
 /* ---- at rest --------------------------------------------------------------------------------- */
 
 static const char *act(uint32_t *seed)
@@ -129,17 +122,17 @@ static const char *act(uint32_t *seed)
         return "torque on";
     case 2:
         assert_true(grobo_robot_move(&weight.robot, &far_away) < 0);
-        wait_for(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
+        weight_wait_if(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
         weight_new_engine();
         return "a refused move";
     case 3:
         (void)grobo_robot_stop(&weight.robot, true);
         return "stop";
     case 4:
-        wait_for(grobo_robot_cancel(&weight.robot));
+        weight_wait_if(grobo_robot_cancel(&weight.robot));
         return "cancel";
     default:
-        wait_for(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
+        weight_wait_if(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
         weight_new_engine();
         return "exit";
     }

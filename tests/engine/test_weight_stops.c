@@ -170,13 +170,6 @@ TEST_EACH(arm, arms, a_stop_in_motion_neither_dips_nor_throws)
 
 enum { DEEDS = 100 };
 
-static void ask_and_wait(int job)
-{
-    if (job > 0) {
-        (void)weight_wait(job);
-    }
-}
-
 /* What leaves the arm where it is, whatever comes of it. */
 static const char *do_nothing_much(uint32_t *seed)
 {
@@ -190,14 +183,14 @@ static const char *do_nothing_much(uint32_t *seed)
         return "torque on";
     case 2: /* a command that fails */
         assert_true(grobo_robot_move(&weight.robot, &far_away) < 0);
-        ask_and_wait(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
+        weight_wait_if(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
         weight_new_engine();
         return "a refused move";
     case 3: /* one that nobody answers for a while */
         weight.lose = 12;
-        ask_and_wait(grobo_robot_sense(&weight.robot, GROBO_JOINTS_ALL(2), GROBO_SENSE_FULL));
+        weight_wait_if(grobo_robot_sense(&weight.robot, GROBO_JOINTS_ALL(2), GROBO_SENSE_FULL));
         weight.lose = 0;
-        ask_and_wait(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
+        weight_wait_if(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
         weight_new_engine();
         return "lost replies";
     default:
@@ -206,7 +199,7 @@ static const char *do_nothing_much(uint32_t *seed)
     way_to_stop way = (way_to_stop)(next_random(seed) % WAYS);
     way = falls(way) ? STOP : way;
     lead_up_to(way);
-    ask_and_wait(stop_by(way));
+    weight_wait_if(stop_by(way));
     weight_run((int)(next_random(seed) % 300) * WEIGHT_MS);
     if (way == ESTOP || way == EXIT || way == TRIP || way == GUARD) {
         weight_new_engine();
@@ -263,7 +256,7 @@ static double rest_behind_move(const arm *row, int joint, double to_deg, int wai
     if (way < WAYS) {
         lead_up_to(way);
         *at_deg = weight_angle_deg(joint);
-        ask_and_wait(stop_by(way));
+        weight_wait_if(stop_by(way));
     }
     weight_run(2 * WEIGHT_S);
     return weight_angle_deg(joint);
@@ -364,7 +357,7 @@ TEST_EACH(arm, arms, no_goal_leaves_the_limits)
             grobo_posture target = weight_target(joint, end_deg, 200);
             assert_true(grobo_robot_move(&weight.robot, &target) > 0);
             weight_run((40 + 40 * k) * WEIGHT_MS);
-            ask_and_wait(grobo_robot_stop(&weight.robot, true));
+            weight_wait_if(grobo_robot_stop(&weight.robot, true));
             weight_run(WEIGHT_S);
             assert_true(weight_goal_deg(joint) >= grobo_deg_from_rad(model->min_rad) - 0.1);
             assert_true(weight_goal_deg(joint) <= grobo_deg_from_rad(model->max_rad) + 0.1);

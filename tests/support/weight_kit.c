@@ -68,6 +68,13 @@ int weight_wait(int job)
     return weight.result;
 }
 
+void weight_wait_if(int job)
+{
+    if (job > 0) {
+        (void)weight_wait(job);
+    }
+}
+
 double weight_angle_deg(int joint)
 {
     grobo_sim_view view;

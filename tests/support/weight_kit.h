@@ -41,6 +41,8 @@ void weight_finish(void);
 void weight_run(int64_t us);
 /* Lets time pass until a job ends, 60 s at most. @return its result */
 int weight_wait(int job);
+/* The same of one that may have been refused, or be none: then no time passes. */
+void weight_wait_if(int job);
 /* As a new command meets the robot: an engine that knows nothing of it. */
 void weight_new_engine(void);
 /* Where the joint's servo is, as the simulator has it. */
