@@ -11,9 +11,9 @@
 /* The goals of a trajectory are on the wire's grid: this part of its step is no other goal. */
 #define SAME_GOAL_STEPS 0.6
 
-double grobo_i_same_goal_rad(const grobo_robot *robot)
+double grobo_i_same_goal_rad(const grobo_robot *robot, int joint)
 {
-    return SAME_GOAL_STEPS * robot->driver->angle_step_rad;
+    return SAME_GOAL_STEPS * grobo_i_driver_of(robot, joint)->angle_step_rad;
 }
 
 double grobo_i_trajectory_at(const grobo_robot_trajectory *trajectory, int64_t now_us)
@@ -137,8 +137,9 @@ bool grobo_i_axis_tells_turn(const grobo_robot *robot, int joint)
 static double told_speed(const grobo_robot *robot, int joint)
 {
     const grobo_robot_trajectory *trajectory = &robot->axes[joint].trajectory;
-    return fabs(trajectory->to_rad - trajectory->from_rad) < robot->driver->angle_step_rad
-               ? robot->driver->limits.approach_rad_s
+    return fabs(trajectory->to_rad - trajectory->from_rad) <
+                   grobo_i_driver_of(robot, joint)->angle_step_rad
+               ? grobo_i_driver_of(robot, joint)->limits.approach_rad_s
                : trajectory_speed(trajectory);
 }
 
@@ -151,7 +152,7 @@ static course on_ramps(const grobo_robot *robot, int joint, int64_t now_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_robot_trajectory *trajectory = &axis->trajectory;
-    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
+    double accel_rad_s2 = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2);
     double wanted_rad_s = told_speed(robot, joint);
     course c = seen(robot, joint);
     int64_t seen_us = axis->seen_us;
@@ -226,8 +227,9 @@ static course turning(const grobo_robot *robot, int joint, int64_t now_us)
 static bool has_course(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool known = !is_guided(axis) ||
-                 (!grobo_i_is_stray(axis) && GROBO_I_EXTRA(robot->driver, accel_rad_s2) > 0);
+    bool known =
+        !is_guided(axis) || (!grobo_i_is_stray(axis) &&
+                             GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2) > 0);
     return grobo_i_axis_tells_turn(robot, joint) && known;
 }
 
@@ -299,14 +301,14 @@ double grobo_i_axis_speed(const grobo_robot *robot, int joint)
 
 double grobo_i_axis_brake_us(const grobo_robot *robot, int joint)
 {
-    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
+    double accel_rad_s2 = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2);
     return accel_rad_s2 > 0 ? grobo_i_axis_speed(robot, joint) / accel_rad_s2 * 1e6 : 0;
 }
 
 double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
+    double accel_rad_s2 = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2);
     if (!has_course(robot, joint)) {
         return on_trajectory_at(robot, joint, rest_us);
     }
@@ -325,7 +327,8 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
 void grobo_i_axis_told(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
-    if (GROBO_I_EXTRA(robot->driver, accel_rad_s2) > 0 && has_course(robot, joint)) {
+    if (GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2) > 0 &&
+        has_course(robot, joint)) {
         const course c = turning(robot, joint, robot->now_us);
         axis->seen_rad = c.at_rad;
         axis->seen_us = robot->now_us;
@@ -389,7 +392,7 @@ bool grobo_i_axis_is_limp(const grobo_robot_axis *axis)
 
 bool grobo_i_may_sleep(const grobo_robot *robot, int joint)
 {
-    return GROBO_I_EXTRA(robot->driver, goal_energises) &&
+    return GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), goal_energises) &&
            robot->now_us - robot->axes[joint].heard_us > GROBO_I_RESTART_US;
 }
 
@@ -408,7 +411,7 @@ bool grobo_i_axis_is_unknown(const grobo_robot *robot, int joint)
                   abs(axis->state.speed_dps) >= GROBO_I_SLOW_DPS &&
                   robot->now_us - axis->angle_us > ASTRAY_OLD_US;
     } else if (!grobo_i_has_target(axis) && !tells_speed(axis)) {
-        unknown = unknown || !GROBO_I_EXTRA(robot->driver, tells_no_speed);
+        unknown = unknown || !GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed);
     }
     return unknown || grobo_i_may_sleep(robot, joint);
 }
@@ -459,9 +462,11 @@ double grobo_i_load_most(const grobo_robot *robot, int joint)
 }
 
 /* True of one that is not, and tells how it turns. */
-static bool shows_swing(const grobo_robot *robot, const grobo_robot_axis *axis)
+static bool shows_swing(const grobo_robot *robot, int joint)
 {
-    return !grobo_i_axis_is_counted(axis) && !GROBO_I_EXTRA(robot->driver, tells_no_speed) &&
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    return !grobo_i_axis_is_counted(axis) &&
+           !GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
            axis->seen_dps != GROBO_I_NO_SPEED;
 }
 
@@ -486,7 +491,7 @@ bool grobo_i_swings(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double goal_rad, load_rad = grobo_i_load_kept(axis);
-    if (!shows_swing(robot, axis) || !grobo_i_axis_goal(robot, joint, &goal_rad)) {
+    if (!shows_swing(robot, joint) || !grobo_i_axis_goal(robot, joint, &goal_rad)) {
         return false;
     }
     double left_rad = goal_rad - load_rad - axis->seen_rad;
@@ -500,7 +505,7 @@ bool grobo_i_may_sag(const grobo_robot *robot, int joint, int64_t since_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double goal_rad;
-    return shows_swing(robot, axis) && grobo_i_axis_goal(robot, joint, &goal_rad) &&
+    return shows_swing(robot, joint) && grobo_i_axis_goal(robot, joint, &goal_rad) &&
            grobo_i_goal_is_told(axis) &&
            fabs(goal_rad - axis->seen_rad) <= grobo_i_load_most(robot, joint) &&
            settles(robot, axis, since_us);
@@ -525,7 +530,7 @@ bool grobo_i_axis_is_late(const grobo_robot_axis *axis)
 /* It comes back with its ramps, and no faster than it was sent. */
 static double way_back_s(const grobo_robot *robot, int joint, double way_rad)
 {
-    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
+    double accel_rad_s2 = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2);
     double sent_rad_s = fmax(told_speed(robot, joint), GROBO_I_REST_RAD_S);
     double rad_s = fmin(sqrt(way_rad * accel_rad_s2), sent_rad_s);
     return rad_s > 0 ? way_rad / rad_s + rad_s / accel_rad_s2 : 0;
@@ -536,7 +541,7 @@ static double way_back_s(const grobo_robot *robot, int joint, double way_rad)
 static bool is_on_ramp(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double accel_rad_s2 = GROBO_I_EXTRA(robot->driver, accel_rad_s2);
+    double accel_rad_s2 = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2);
     bool stood = !turns(axis) && axis->seen_us >= axis->trajectory.to_us;
     if (accel_rad_s2 <= 0 || stood || !grobo_i_is_sensed(axis) || !has_course(robot, joint) ||
         !is_guided(axis) || !grobo_i_axis_is_on(axis)) {

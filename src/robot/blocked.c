@@ -60,16 +60,16 @@
 
 /* ---- judgement ------------------------------------------------------------------------------- */
 
-static double stands_rad(const grobo_robot *robot)
+static double stands_rad(const grobo_robot *robot, int joint)
 {
-    return fmax(STANDS_RAD, 2 * robot->driver->angle_step_rad);
+    return fmax(STANDS_RAD, 2 * grobo_i_driver_of(robot, joint)->angle_step_rad);
 }
 
 /* A joint that turns back or sets out with a ramp stands that long. */
-static int64_t stands_us(const grobo_robot *robot)
+static int64_t stands_us(const grobo_robot *robot, int joint)
 {
-    double accel_rad_s2 = robot->driver->accel_rad_s2;
-    double ramp_s = accel_rad_s2 > 0 ? 2 * sqrt(2 * stands_rad(robot) / accel_rad_s2) : 0;
+    double accel_rad_s2 = grobo_i_driver_of(robot, joint)->accel_rad_s2;
+    double ramp_s = accel_rad_s2 > 0 ? 2 * sqrt(2 * stands_rad(robot, joint) / accel_rad_s2) : 0;
     return STANDS_US + (int64_t)(ramp_s * 1e6);
 }
 
@@ -82,10 +82,12 @@ typedef struct set_point {
 
 /* One that was never sent anywhere holds the goal that it was found with, if this reading shows it
  * to be still that one. It is judged where this program holds it, or moves others. */
-static set_point found_goal(const grobo_robot *robot, const grobo_robot_axis *axis)
+static set_point found_goal(const grobo_robot *robot, int joint)
 {
+    const grobo_robot_axis *axis = &robot->axes[joint];
     double moved_rad = fabs(axis->state.goal_rad - axis->block_set_rad);
-    bool same = moved_rad <= grobo_i_same_goal_rad(robot) || axis->block_us == GROBO_NEVER_US;
+    bool same =
+        moved_rad <= grobo_i_same_goal_rad(robot, joint) || axis->block_us == GROBO_NEVER_US;
     bool held = axis->goal_us == robot->now_us && same;
     return (set_point){held ? axis->state.goal_rad : (double)NAN, held};
 }
@@ -93,7 +95,8 @@ static set_point found_goal(const grobo_robot *robot, const grobo_robot_axis *ax
 /* By this reading; servos that a goal wakes do not tell it but in their answer to it. */
 static bool goal_is_known(const grobo_robot *robot, int joint)
 {
-    bool fresh = robot->axes[joint].goal_us == robot->now_us || robot->driver->goal_energises;
+    bool fresh = robot->axes[joint].goal_us == robot->now_us ||
+                 grobo_i_driver_of(robot, joint)->goal_energises;
     return fresh && grobo_i_goal_is_told(&robot->axes[joint]) &&
            grobo_i_goal_is_taken(robot, joint);
 }
@@ -109,7 +112,7 @@ static set_point set_of(const grobo_robot *robot, int joint)
         return (set_point){(double)NAN, false};
     }
     if (!sent) {
-        return found_goal(robot, axis);
+        return found_goal(robot, joint);
     }
     int64_t asked_us = grobo_i_later(axis->seen_us, axis->trajectory.from_us);
     return (set_point){grobo_i_trajectory_at(&axis->trajectory, asked_us),
@@ -172,7 +175,7 @@ static bool is_blocked(grobo_robot *robot, int joint, double set_rad)
     double away_rad = set_rad - axis->state.angle_rad;
     double ahead_rad = copysign(1, away_rad) * (set_rad - axis->block_set_rad);
     bool moved = axis->block_us == GROBO_NEVER_US || ahead_rad < -BEGINS_RAD ||
-                 fabs(axis->state.angle_rad - axis->block_rad) > stands_rad(robot);
+                 fabs(axis->state.angle_rad - axis->block_rad) > stands_rad(robot, joint);
     axis->block_set_rad = moved ? set_rad : axis->block_set_rad;
     if (moved || robot->now_us >= way->to_us) { /* on its way it lags besides */
         axis->block_load_rad = robot->now_us >= way->to_us ? fabs(away_rad) : 0;
@@ -182,11 +185,11 @@ static bool is_blocked(grobo_robot *robot, int joint, double set_rad)
         axis->block_us = robot->now_us;
         return false;
     }
-    bool at_once = way->to_us - way->from_us < stands_us(robot); /* one of many frames */
+    bool at_once = way->to_us - way->from_us < stands_us(robot, joint); /* one of many frames */
     int64_t since_us =
         at_once ? axis->block_us : grobo_i_later(axis->block_us, way->from_us + STARTS_US);
     return fabs(away_rad) >= AWAY_RAD && ahead_rad >= least_ahead_rad(robot, joint) &&
-           robot->now_us - since_us >= stands_us(robot);
+           robot->now_us - since_us >= stands_us(robot, joint);
 }
 
 /* Whether it is further away than weight has it, and does not come nearer. */
@@ -196,14 +199,14 @@ static bool is_overloaded(grobo_robot *robot, int joint, double set_rad)
     double over_rad = excess_rad(axis, set_rad);
     bool near = fabs(over_rad) <= OVERLOADED_RAD;
     double on_rad = copysign(1, over_rad) * (axis->state.angle_rad - axis->over_rad);
-    if (near || axis->over_us == GROBO_NEVER_US || on_rad > stands_rad(robot)) {
+    if (near || axis->over_us == GROBO_NEVER_US || on_rad > stands_rad(robot, joint)) {
         axis->was_near = near || axis->was_near;
         bool found_so = !axis->was_near; /* nobody has seen it go there */
         axis->over_us = near || found_so ? GROBO_NEVER_US : robot->now_us;
         axis->over_rad = axis->state.angle_rad;
         return false;
     }
-    return robot->now_us - axis->over_us >= stands_us(robot);
+    return robot->now_us - axis->over_us >= stands_us(robot, joint);
 }
 
 void grobo_i_blocked_look(grobo_robot *robot, int joint, const grobo_joint_state *got)

@@ -51,7 +51,7 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
     if (!grobo_i_all_sensed(robot, joints, &robot->fault_joint)) {
         return GROBO_ERR_STALE;
     }
-    if (GROBO_I_EXTRA(robot->driver, goal_energises) && !grobo_i_all_on(robot, joints)) {
+    if (!grobo_i_all_on(robot, grobo_i_woken(robot, joints))) {
         return GROBO_ERR_STATE;
     }
     /* A person moves a joint in free mode; another program moves one that is externally moved. */
@@ -159,10 +159,10 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, moment
  * torque comes on, or a halt finds it there. */
 static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad, double to_rad)
 {
-    int64_t step_us = robot->driver->time_step_us;
+    int64_t step_us = grobo_i_driver_of(robot, joint)->time_step_us;
     double way_rad = fabs(to_rad - from_rad);
     double steps = ceil(way_rad / grobo_i_speed_limit(robot, joint, true) * 1e6 / (double)step_us);
-    double most = (double)(robot->driver->time_max_us / step_us);
+    double most = (double)(grobo_i_driver_of(robot, joint)->time_max_us / step_us);
     return (int64_t)fmin(fmax(steps, 1), most) * step_us;
 }
 
@@ -170,7 +170,8 @@ static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad
  * read once. */
 static bool is_mute(const grobo_robot *robot, int joint)
 {
-    return GROBO_I_EXTRA(robot->driver, tells_no_speed) && !grobo_i_has_target(&robot->axes[joint]);
+    return GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
+           !grobo_i_has_target(&robot->axes[joint]);
 }
 
 /* Joints that a halt may name though they do not move: a goal would not wake them. */
@@ -179,7 +180,8 @@ static grobo_joint_mask may_be_told(const grobo_robot *robot)
     grobo_joint_mask may = 0;
     for (int j = 0; grobo_i_followers(robot) != 0 && j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool on = grobo_i_axis_is_on(axis) || !GROBO_I_EXTRA(robot->driver, goal_energises);
+        bool on =
+            grobo_i_axis_is_on(axis) || !GROBO_I_EXTRA(grobo_i_driver_of(robot, j), goal_energises);
         may |= grobo_i_is_sensed(axis) && on ? GROBO_JOINT_BIT(j) : 0;
     }
     return may & ~robot->halts_owed;
@@ -198,8 +200,8 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
         bool goes_on = grobo_i_axis_moves(axis, robot->now_us) || grobo_i_axis_lags(robot, j) ||
                        grobo_i_is_external(axis) || (order->owed && is_mute(robot, j));
         bool moves = grobo_i_is_sensed(axis) && goes_on &&
-                     (!GROBO_I_EXTRA(robot->driver, goal_energises) || axis->wants_torque ||
-                      grobo_i_axis_is_on(axis));
+                     (!GROBO_I_EXTRA(grobo_i_driver_of(robot, j), goal_energises) ||
+                      axis->wants_torque || grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints & ~robot->halts_owed, j) && moves) {
             const grobo_i_limits limits = grobo_i_joint_limits(robot, j);
             double goal_rad = grobo_i_goal_to_rest(robot, j, rest_us);
@@ -228,8 +230,8 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         double hold_rad = grobo_i_hold_rad(robot, j);
-        bool limited =
-            !GROBO_I_EXTRA(robot->driver, goal_energises) || grobo_i_torque_is_limited(robot, j);
+        bool limited = !GROBO_I_EXTRA(grobo_i_driver_of(robot, j), goal_energises) ||
+                       grobo_i_torque_is_limited(robot, j);
         if (grobo_i_has(order->joints, j) && grobo_i_is_sensed(axis) && !isnan(hold_rad) &&
             limited && !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
@@ -472,7 +474,7 @@ static double begin_of_rest(const grobo_robot *robot, const grobo_target *target
     double way_rad = target->from_rad[joint] - to_rad;
     double rad_s = fmin(grobo_i_speed_limit(robot, joint, true), GROBO_I_REST_RAD_S);
     double least_rad = rad_s * (double)target->joint_time_us[joint] / 1e6;
-    return fabs(way_rad) < robot->driver->angle_step_rad
+    return fabs(way_rad) < grobo_i_driver_of(robot, joint)->angle_step_rad
                ? target->from_rad[joint]
                : to_rad + copysign(fmax(fabs(way_rad), least_rad), way_rad);
 }
@@ -525,7 +527,7 @@ static void says_all(const grobo_robot *robot, const grobo_robot_order *order, s
     }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(order->joints & ~says->target.posture.set, j)) {
-            says->target.joint_time_us[j] = robot->driver->time_step_us;
+            says->target.joint_time_us[j] = grobo_i_driver_of(robot, j)->time_step_us;
         }
     }
     says->target.posture.set = order->joints;
@@ -598,7 +600,7 @@ static void note_trajectory(grobo_robot *robot, const grobo_robot_order *order,
             axis->own_until_us = 0;
             robot->halts_owed &= ~GROBO_JOINT_BIT(j);
             grobo_i_joint_to(axis, GROBO_I_JOINT_GOAL);
-            if (parts && grobo_i_segments_wanted(robot, target->joint_time_us[j])) {
+            if (parts && grobo_i_segments_wanted(robot, j, target->joint_time_us[j])) {
                 grobo_i_segments_begin(robot, j);
             }
         }
@@ -609,7 +611,7 @@ static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(joints, j)) {
-            if (GROBO_I_EXTRA(robot->driver, goal_energises) &&
+            if (GROBO_I_EXTRA(grobo_i_driver_of(robot, j), goal_energises) &&
                 !grobo_i_axis_is_on(&robot->axes[j])) {
                 grobo_i_gate_soften(robot); /* it has torque by this */
             }
@@ -681,6 +683,7 @@ static bool is_before_goal(grobo_robot *robot, const grobo_robot_slot *slot, con
     grobo_exchange next;
     return GROBO_I_EXTRA(robot->driver, tells_no_speed) && order->kind == GROBO_I_ORDER_GOAL &&
            grobo_joints_count(order->joints) == 1 &&
+           grobo_i_driver_of(robot, grobo_i_lowest(order->joints))->tells_no_speed &&
            make_frame(robot, order, says, &says->target, order->part + 1, &next) > 0;
 }
 

@@ -33,7 +33,7 @@ static bool has_lost_it(const grobo_robot *robot, int joint)
     if (grobo_i_goal_is_told(axis)) {
         return !grobo_i_goal_is_taken(robot, joint);
     }
-    return GROBO_I_EXTRA(robot->driver, tells_no_speed) &&
+    return GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
            axis->seen_us > axis->trajectory.to_us + LATE_US &&
            fabs(axis->state.angle_rad + grobo_i_load(axis) - axis->trajectory.to_rad) > BESIDE_RAD;
 }

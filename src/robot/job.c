@@ -243,8 +243,8 @@ static int keep_reading(grobo_robot *robot)
     }
     slot->joint = (uint8_t)grobo_i_lowest(job->todo);
     slot->reads = true;
-    bool first =
-        GROBO_I_EXTRA(driver, keeps_setup) && !grobo_i_is_sensed(&robot->axes[slot->joint]);
+    bool first = GROBO_I_EXTRA(grobo_i_driver_of(robot, slot->joint), keeps_setup) &&
+                 !grobo_i_is_sensed(&robot->axes[slot->joint]);
     grobo_sense_kind kind = first ? GROBO_SENSE_ALL : job->sense;
     slot->kind = (uint8_t)kind;
     int result = driver->sense(driver, robot->driver_ctx, slot->joint, kind, &robot->built);

@@ -104,11 +104,12 @@ grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chun
 
 /* ---- targets --------------------------------------------------------------------------------- */
 
-static int64_t time_asked(const grobo_robot *robot, int64_t time_us)
+static int64_t time_asked(const grobo_robot *robot, int joint, int64_t time_us)
 {
-    int64_t step_us = robot->driver->time_step_us;
+    const grobo_driver *driver = grobo_i_driver_of(robot, joint);
+    int64_t step_us = driver->time_step_us;
     time_us = time_us > 0 ? time_us : robot->config.default_time_us;
-    time_us = grobo_i_sooner(time_us, robot->driver->time_max_us);
+    time_us = grobo_i_sooner(time_us, driver->time_max_us);
     return grobo_i_later((time_us + step_us / 2) / step_us, 1) * step_us;
 }
 
@@ -128,12 +129,12 @@ static int stabilize(grobo_robot *robot, grobo_posture *target)
 static int await_line(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target,
                       const int32_t *joint_time_us)
 {
-    int64_t asked_us = time_asked(robot, target->posture.time_us);
+    int64_t asked_us = time_asked(robot, 0, target->posture.time_us);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         target->joint_time_us[j] = asked_us;
     }
     for (int j = 0; joint_time_us != NULL && j < robot->driver->model->n_joints; j++) {
-        target->joint_time_us[j] = time_asked(robot, joint_time_us[j]);
+        target->joint_time_us[j] = time_asked(robot, j, joint_time_us[j]);
     }
     int result = grobo_i_gate_time(robot, order, target);
     for (int j = 0; result >= 0 && j < robot->driver->model->n_joints; j++) {
@@ -155,7 +156,7 @@ static bool is_long(const grobo_robot *robot, const grobo_robot_order *order,
     bool parts = grobo_i_goes_in_parts(robot, order);
     for (int j = 0; parts && !is && j < robot->driver->model->n_joints; j++) {
         is = grobo_i_has(order->joints, j) &&
-             grobo_i_segments_wanted(robot, target->joint_time_us[j]);
+             grobo_i_segments_wanted(robot, j, target->joint_time_us[j]);
     }
     return is;
 }

@@ -82,14 +82,14 @@ static bool take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
 
 /* True if the servo has told since the last frame that its goal is another one; or did so before
  * this reading, and does not move but on the trajectory it told of then. */
-static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis,
-                          const grobo_joint_state *got)
+static bool has_not_taken(const grobo_robot *robot, int joint, const grobo_joint_state *got)
 {
+    const grobo_robot_axis *axis = &robot->axes[joint];
     bool as_told = abs(got->speed_dps) < GROBO_I_SLOW_DPS || axis->own_until_us > robot->now_us;
     bool before = grobo_i_goal_is_told(axis) && as_told;
     bool told = (got->valid & GROBO_FIELD_GOAL) != 0 || before;
-    return told &&
-           fabs(axis->state.goal_rad - axis->trajectory.to_rad) > grobo_i_same_goal_rad(robot);
+    return told && fabs(axis->state.goal_rad - axis->trajectory.to_rad) >
+                       grobo_i_same_goal_rad(robot, joint);
 }
 
 /* So long after its frame left a joint that is no place between the begin of its trajectory and
@@ -116,7 +116,7 @@ static bool may_turn_back(const grobo_robot *robot, int joint, int64_t asked_us,
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_robot_trajectory *trajectory = &axis->trajectory;
-    bool ramps = GROBO_I_EXTRA(robot->driver, accel_rad_s2) > 0;
+    bool ramps = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2) > 0;
     if (!ramps || !grobo_i_has_target(axis) || axis->seen_dps == GROBO_I_NO_SPEED) {
         return false;
     }
@@ -141,7 +141,7 @@ static bool is_off_trajectory(const grobo_robot *robot, int joint, int64_t asked
     if (!grobo_i_has_target(axis) || grobo_i_is_in_segments(axis)) {
         return false;
     }
-    if (has_not_taken(robot, axis, got)) {
+    if (has_not_taken(robot, joint, got)) {
         return true;
     }
     double then_rad = grobo_i_trajectory_at(&axis->trajectory, asked_us);
@@ -217,8 +217,8 @@ static void take_speed(const grobo_robot *robot, int joint, int64_t read_us, gro
     const grobo_robot_axis *axis = &robot->axes[joint];
     int64_t us = axis->angle_us == GROBO_NEVER_US ? 0 : read_us - axis->angle_us;
     const unsigned both = GROBO_FIELD_ANGLE | GROBO_FIELD_SPEED;
-    if (GROBO_I_EXTRA(robot->driver, tells_no_speed) && (got->valid & both) == GROBO_FIELD_ANGLE &&
-        us >= SPEED_LEAST_US && us <= SPEED_MOST_US) {
+    if (GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
+        (got->valid & both) == GROBO_FIELD_ANGLE && us >= SPEED_LEAST_US && us <= SPEED_MOST_US) {
         double way_deg = grobo_deg_from_rad(got->angle_rad - axis->state.angle_rad);
         got->speed_dps = (int32_t)(way_deg * 1e6 / (double)us);
         got->valid |= GROBO_FIELD_SPEED;
@@ -228,9 +228,10 @@ static void take_speed(const grobo_robot *robot, int joint, int64_t read_us, gro
 /* Between an angle from before it was told to go elsewhere and one since then lies the speed of
  * neither trajectory; between one from before a stop and one since then, that of a joint that
  * another program may have set going meanwhile. */
-static bool is_of_one_trajectory(const grobo_robot *robot, const grobo_robot_axis *axis)
+static bool is_of_one_trajectory(const grobo_robot *robot, int joint)
 {
-    return !GROBO_I_EXTRA(robot->driver, tells_no_speed) ||
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    return !GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) ||
            axis->angle_us >= grobo_i_later(axis->told_us, robot->stop_us);
 }
 
@@ -245,7 +246,7 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
     bool late = !GROBO_DRIVERS_PLAIN && robot->now_us - asked_us > LATE_ANSWER_US;
     int64_t read_us = late ? asked_us : robot->now_us;
     take_speed(robot, joint, read_us, got);
-    bool one_trajectory = is_of_one_trajectory(robot, axis);
+    bool one_trajectory = is_of_one_trajectory(robot, joint);
     if (grobo_i_followers(robot) != 0 && (got->valid & GROBO_FIELD_ANGLE) != 0) {
         axis->before_rad = axis->state.angle_rad;
         axis->before_us = axis->angle_us;
@@ -337,7 +338,7 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
             axis->seen_us = grobo_i_later(axis->seen_us, slot->txn.sent_us);
         }
         note_goal(slot, got);
-        if (GROBO_I_EXTRA(robot->driver, goal_energises)) {
+        if (GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), goal_energises)) {
             note_heard(slot, got);
         }
     } else {

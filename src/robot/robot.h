@@ -59,6 +59,20 @@ void grobo_i_tell(grobo_robot *robot, const grobo_event *event);
  * is missing: the compiler leaves out what follows from it. */
 #define GROBO_I_EXTRA(driver, member) (GROBO_DRIVERS_PLAIN ? 0 : (driver)->member)
 
+/* The driver of a joint's servo, for what families differ in. Its functions are asked by way of
+ * grobo_robot.driver, which knows the joints of all. */
+static inline const grobo_driver *grobo_i_driver_of(const grobo_robot *robot, int joint)
+{
+    (void)joint;
+    return robot->driver;
+}
+
+/* Of these joints, those that a goal gives torque. */
+static inline grobo_joint_mask grobo_i_woken(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    return GROBO_I_EXTRA(robot->driver, goal_energises) ? joints : 0;
+}
+
 /* True if the joint is one of these. */
 static inline bool grobo_i_has(grobo_joint_mask joints, int joint)
 {
@@ -104,7 +118,7 @@ grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot);
 /* The first of these joints, of which there is one at least. */
 int grobo_i_lowest(grobo_joint_mask joints);
 /* Goals that differ by no more are the same on the wire. */
-double grobo_i_same_goal_rad(const grobo_robot *robot);
+double grobo_i_same_goal_rad(const grobo_robot *robot, int joint);
 /* Where a trajectory is by then. */
 double grobo_i_trajectory_at(const grobo_robot_trajectory *trajectory, int64_t now_us);
 /* Where a joint is by now on the move it was sent on. */
@@ -404,7 +418,7 @@ bool grobo_i_pace(grobo_robot *robot, grobo_joint_mask joints);
 /* ---- stand.c --------------------------------------------------------------------------------- */
 
 /* Two positions show that a joint stands where they are so far apart: 0.5 s and more. */
-int64_t grobo_i_stand_us(const grobo_robot *robot);
+int64_t grobo_i_stand_us(const grobo_robot *robot, int joint);
 
 /* A frame tells the joint something: what was read before shows nothing of it. */
 void grobo_i_stand_forget(grobo_robot_axis *axis);
@@ -458,7 +472,7 @@ double grobo_i_hold_rad(const grobo_robot *robot, int joint);
 
 /* True if this order's joints are told their trajectories in parts, those that get so much time. */
 bool grobo_i_goes_in_parts(const grobo_robot *robot, const grobo_robot_order *order);
-bool grobo_i_segments_wanted(const grobo_robot *robot, int64_t time_us);
+bool grobo_i_segments_wanted(const grobo_robot *robot, int joint, int64_t time_us);
 /* The part of a target that its frame asks for. @return false, and nothing in *part, where that is
  * all of it. */
 bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,

@@ -103,7 +103,7 @@ static grobo_joint_mask unheard(const grobo_robot *robot)
     }
     bool wakes = GROBO_I_EXTRA(robot->driver, goal_energises);
     return robot->halts_owed != 0 ? robot->halts_owed
-           : wakes                ? grobo_i_joints_that(robot, is_unheard)
+           : wakes                ? grobo_i_woken(robot, grobo_i_joints_that(robot, is_unheard))
                                   : 0;
 }
 
@@ -114,7 +114,8 @@ static int64_t unheard_at(const grobo_robot *robot)
     for (int j = 0;
          GROBO_I_EXTRA(robot->driver, goal_energises) && j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        at_us = grobo_i_axis_is_on(axis) ? grobo_i_sooner(at_us, axis->heard_us + HEAR_US) : at_us;
+        bool waits = grobo_i_axis_is_on(axis) && grobo_i_driver_of(robot, j)->goal_energises;
+        at_us = waits ? grobo_i_sooner(at_us, axis->heard_us + HEAR_US) : at_us;
     }
     return grobo_i_later(at_us, robot->hear_us);
 }
@@ -262,8 +263,8 @@ static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
     if (grobo_i_has(robot->free_joints, joint)) {
         return GROBO_SENSE_ALL;
     }
-    bool first =
-        GROBO_I_EXTRA(robot->driver, keeps_setup) && !grobo_i_is_sensed(&robot->axes[joint]);
+    bool first = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), keeps_setup) &&
+                 !grobo_i_is_sensed(&robot->axes[joint]);
     if (robot->free_joints == 0 && robot->config.sense_position_only && !first) {
         return GROBO_SENSE_POSITION;
     }

@@ -109,7 +109,8 @@ double grobo_i_trajectory_us(const grobo_robot *robot, int joint, double from_ra
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     /* Angles are rounded on the wire: that much further is not faster. */
-    double way_rad = fmax(fabs(to_rad - from_rad) - robot->driver->angle_step_rad, 0);
+    double way_rad =
+        fmax(fabs(to_rad - from_rad) - grobo_i_driver_of(robot, joint)->angle_step_rad, 0);
     double time_us = way_rad / grobo_i_speed_limit(robot, joint, soft) * 1e6;
     /* One that moves goes on until the frame is there. */
     return soft && axis->trajectory.to_us > robot->now_us ? fmax(time_us, GROBO_I_HALT_TIME_US)
@@ -117,11 +118,11 @@ double grobo_i_trajectory_us(const grobo_robot *robot, int joint, double from_ra
 }
 
 /* In the wire's unit; GROBO_NEVER_US where the wire has no time that is long enough. */
-static int64_t on_time_grid(const grobo_robot *robot, double needed_us)
+static int64_t on_time_grid(const grobo_robot *robot, int joint, double needed_us)
 {
-    int64_t step_us = robot->driver->time_step_us;
+    int64_t step_us = grobo_i_driver_of(robot, joint)->time_step_us;
     double steps = fmax(ceil(needed_us / (double)step_us), 1);
-    double most = (double)(robot->driver->time_max_us / step_us);
+    double most = (double)(grobo_i_driver_of(robot, joint)->time_max_us / step_us);
     return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
 }
 
@@ -129,7 +130,7 @@ static int64_t on_time_grid(const grobo_robot *robot, double needed_us)
 static int64_t time_needed(const grobo_robot *robot, int joint, double from_rad, double to_rad,
                            bool soft)
 {
-    return on_time_grid(robot, grobo_i_trajectory_us(robot, joint, from_rad, to_rad, soft));
+    return on_time_grid(robot, joint, grobo_i_trajectory_us(robot, joint, from_rad, to_rad, soft));
 }
 
 int64_t grobo_i_gate_soft_us(const grobo_robot *robot, const grobo_posture *target)
@@ -166,9 +167,9 @@ static int64_t time_of_order(const grobo_robot *robot, const grobo_robot_order *
         needed_us = grobo_i_later(needed_us, unsure_us);
     }
     double brake_us = order->rests ? grobo_i_axis_brake_us(robot, joint) : 0;
-    return brake_us > 0
-               ? grobo_i_later(needed_us, on_time_grid(robot, brake_us + GROBO_I_HALT_LEAST_US))
-               : needed_us;
+    return brake_us > 0 ? grobo_i_later(needed_us, on_time_grid(robot, joint,
+                                                                brake_us + GROBO_I_HALT_LEAST_US))
+                        : needed_us;
 }
 
 /* True where this time, a multiple of the wire's unit, is surely enough at full speed: without the
@@ -198,7 +199,7 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
         if (*time_us != asked_us) {
             asked_us = *time_us;
             longest_us = grobo_i_later(longest_us, asked_us);
-            bool may = on_grid && !soft && asked_us <= robot->driver->time_max_us;
+            bool may = on_grid && !soft && asked_us <= grobo_i_driver_of(robot, j)->time_max_us;
             asked = may ? grobo_i_span_of(asked_us, robot->config.speed_limit_pct) : 0;
         }
         if (asked > 0 && is_ample(robot, j, to_rad, asked)) {

@@ -16,14 +16,14 @@
 /* Of servos that are coarser than any that is known. */
 #define STANDS_MOST_US 1000000
 
-static double still_rad(const grobo_robot *robot)
+static double still_rad(const grobo_robot *robot, int joint)
 {
-    return fmax(STANDS_RAD, 2 * robot->driver->angle_step_rad);
+    return fmax(STANDS_RAD, 2 * grobo_i_driver_of(robot, joint)->angle_step_rad);
 }
 
-int64_t grobo_i_stand_us(const grobo_robot *robot)
+int64_t grobo_i_stand_us(const grobo_robot *robot, int joint)
 {
-    double apart_rad = still_rad(robot) + robot->driver->angle_step_rad;
+    double apart_rad = still_rad(robot, joint) + grobo_i_driver_of(robot, joint)->angle_step_rad;
     return (int64_t)fmin(apart_rad / CREEPS_RAD_S * 1e6, STANDS_MOST_US);
 }
 
@@ -47,7 +47,7 @@ void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double 
     }
     bool known = is_since_stop(robot, axis->still_us) && grobo_i_is_sensed(axis) &&
                  asked_us - axis->stood_us <= GROBO_WATCH_US;
-    if (!known || fabs(angle_rad - axis->still_rad) > still_rad(robot)) {
+    if (!known || fabs(angle_rad - axis->still_rad) > still_rad(robot, joint)) {
         axis->still_rad = angle_rad;
         axis->still_us = robot->now_us;
     }
@@ -64,15 +64,15 @@ bool grobo_i_stands(const grobo_robot *robot, int joint)
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool known = grobo_i_is_sensed(axis) && is_since_stop(robot, axis->still_us);
     bool there = axis->goal_is_read && is_since_stop(robot, axis->goal_us) &&
-                 fabs(axis->state.goal_rad - axis->state.angle_rad) <= still_rad(robot);
-    return known && (there || axis->stood_us - axis->still_us >= grobo_i_stand_us(robot));
+                 fabs(axis->state.goal_rad - axis->state.angle_rad) <= still_rad(robot, joint);
+    return known && (there || axis->stood_us - axis->still_us >= grobo_i_stand_us(robot, joint));
 }
 
 bool grobo_i_goal_is_taken(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_robot_trajectory *trajectory = &axis->trajectory;
-    double same_rad = grobo_i_same_goal_rad(robot);
+    double same_rad = grobo_i_same_goal_rad(robot, joint);
     double goal_rad = axis->state.goal_rad;
     if (!grobo_i_is_in_segments(axis) || axis->goal_us >= trajectory->to_us) {
         return fabs(goal_rad - trajectory->to_rad) <= same_rad;
@@ -93,10 +93,11 @@ bool grobo_i_rests(const grobo_robot *robot, int joint)
     const grobo_robot_axis *axis = &robot->axes[joint];
     double off_rad = axis->state.angle_rad + grobo_i_load(axis) - axis->trajectory.to_rad;
     bool told = axis->seen_us >= axis->trajectory.to_us && axis->seen_dps != GROBO_I_NO_SPEED &&
-                !GROBO_I_EXTRA(robot->driver, tells_no_speed);
+                !GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed);
     bool slow = told && abs(axis->seen_dps) < GROBO_I_SLOW_DPS;
     bool again = axis->still_us != GROBO_NEVER_US && axis->stood_us - axis->still_us >= RESTS_US;
-    return fabs(off_rad) <= still_rad(robot) ? slow || !told || again : again && (slow || !told);
+    return fabs(off_rad) <= still_rad(robot, joint) ? slow || !told || again
+                                                    : again && (slow || !told);
 }
 
 void grobo_i_halt_left(grobo_robot *robot, grobo_joint_mask joints, bool halts)

@@ -176,7 +176,8 @@ static grobo_joint_mask of_unknown_speed(const grobo_robot *robot)
     bool stand = robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
     for (int j = 0;
          GROBO_I_EXTRA(robot->driver, tells_no_speed) && j < robot->driver->model->n_joints; j++) {
-        bool is = grobo_i_has(robot->job->joints & ~robot->job->failed, j);
+        bool is = grobo_i_has(robot->job->joints & ~robot->job->failed, j) &&
+                  grobo_i_driver_of(robot, j)->tells_no_speed;
         bool known = stand ? robot->axes[j].seen_dps != GROBO_I_NO_SPEED
                            : (robot->axes[j].state.valid & GROBO_FIELD_SPEED) != 0;
         found |= is && !known ? GROBO_JOINT_BIT(j) : 0;
@@ -530,7 +531,8 @@ static int step_read_back(grobo_robot *robot)
 static bool is_unsent(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return GROBO_I_EXTRA(robot->driver, goal_energises) && robot->job->sent_us > 0 &&
+    return GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), goal_energises) &&
+           robot->job->sent_us > 0 &&
            (!grobo_i_has_target(axis) || axis->trajectory.from_us < robot->job->sent_us ||
             axis->trajectory.to_us <= axis->trajectory.from_us);
 }
@@ -837,7 +839,7 @@ static int step_doubt(grobo_robot *robot)
         int64_t since_us = robot->axes[j].still_us;
         since_us = since_us == GROBO_NEVER_US ? robot->now_us : since_us;
         if (grobo_i_has(job->pending, j)) {
-            job->until_us = grobo_i_later(job->until_us, since_us + grobo_i_stand_us(robot));
+            job->until_us = grobo_i_later(job->until_us, since_us + grobo_i_stand_us(robot, j));
         }
     }
     job->until_us = grobo_i_sooner(job->until_us, robot->now_us + DOUBT_US);

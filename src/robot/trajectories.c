@@ -13,9 +13,9 @@
 #include "src/robot/robot.h"
 
 /* A whole segment: a multiple of the wire's unit. */
-static int64_t most_us(const grobo_robot *robot)
+static int64_t most_us(const grobo_robot *robot, int joint)
 {
-    int64_t step_us = robot->driver->time_step_us;
+    int64_t step_us = grobo_i_driver_of(robot, joint)->time_step_us;
     return GROBO_SEGMENT_US < step_us ? step_us : GROBO_SEGMENT_US / step_us * step_us;
 }
 
@@ -32,8 +32,8 @@ static double place(const grobo_robot *robot, int joint, const grobo_robot_traje
 static int64_t part_us(const grobo_robot *robot, int joint,
                        const grobo_robot_trajectory *trajectory, int64_t now_us)
 {
-    int64_t step_us = robot->driver->time_step_us;
-    int64_t end_us = grobo_i_sooner(trajectory->to_us, now_us + most_us(robot));
+    int64_t step_us = grobo_i_driver_of(robot, joint)->time_step_us;
+    int64_t end_us = grobo_i_sooner(trajectory->to_us, now_us + most_us(robot, joint));
     double way_rad = trajectory->to_rad - trajectory->from_rad;
     double left_rad = place(robot, joint, trajectory, end_us) - trajectory->from_rad;
     double way_us = (double)(trajectory->to_us - trajectory->from_us);
@@ -60,9 +60,9 @@ bool grobo_i_goes_in_parts(const grobo_robot *robot, const grobo_robot_order *or
     return parts && !order->stops;
 }
 
-bool grobo_i_segments_wanted(const grobo_robot *robot, int64_t time_us)
+bool grobo_i_segments_wanted(const grobo_robot *robot, int joint, int64_t time_us)
 {
-    return time_us > most_us(robot);
+    return time_us > most_us(robot, joint);
 }
 
 bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
@@ -71,7 +71,7 @@ bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *ord
     bool cut = false, parts = grobo_i_goes_in_parts(robot, order);
     for (int j = 0; parts && j < robot->driver->model->n_joints; j++) {
         int64_t time_us = whole->joint_time_us[j];
-        if (!grobo_i_has(whole->posture.set, j) || !grobo_i_segments_wanted(robot, time_us)) {
+        if (!grobo_i_has(whole->posture.set, j) || !grobo_i_segments_wanted(robot, j, time_us)) {
             continue;
         }
         if (!cut) {

@@ -34,7 +34,8 @@ static void watch_current(grobo_robot *robot, int joint, const grobo_joint_state
     if (axis->current_since_us == GROBO_NEVER_US) {
         axis->current_since_us = robot->now_us;
     }
-    if (robot->now_us - axis->current_since_us >= robot->driver->limits.current_us) {
+    if (robot->now_us - axis->current_since_us >=
+        grobo_i_driver_of(robot, joint)->limits.current_us) {
         grobo_i_trip(robot, GROBO_TRIP_CURRENT, joint, got->current_ma, true);
     }
 }

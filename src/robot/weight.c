@@ -41,7 +41,7 @@ static bool hangs(const grobo_robot *robot, int joint, const grobo_joint_state *
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool tells = (got->valid & GROBO_FIELD_GOAL) != 0, stands = grobo_i_stands(robot, joint);
-    if (GROBO_I_EXTRA(robot->driver, tells_no_speed) && !stands) {
+    if (GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) && !stands) {
         return false;
     }
     if (!grobo_i_has_target(axis) || grobo_i_is_stray(axis)) {
@@ -67,7 +67,7 @@ void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *g
         return;
     }
     double load_rad = goal_rad - axis->state.angle_rad;
-    double least_rad = fmax(LEAST_RAD, 2 * robot->driver->angle_step_rad);
+    double least_rad = fmax(LEAST_RAD, 2 * grobo_i_driver_of(robot, joint)->angle_step_rad);
     bool carries = fabs(load_rad) >= least_rad && fabs(load_rad) <= grobo_i_load_most(robot, joint);
     load_rad = carries ? load_rad : 0;
     bool sent = grobo_i_has_target(axis) && !grobo_i_is_stray(axis);

@@ -331,7 +331,7 @@ TEST_WITH(rig_wirings, a_way_is_told_in_parts_where_that_is_wanted)
         driver.arm = rows[i].arm;
         driver.time_step_us = rows[i].step_us;
         bool wanted = grobo_i_goes_in_parts(&robot, &order) &&
-                      grobo_i_segments_wanted(&robot, rows[i].time_us);
+                      grobo_i_segments_wanted(&robot, 0, rows[i].time_us);
         if (wanted != rows[i].wanted) {
             fail_msg("row %zu", i);
         }
