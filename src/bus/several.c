@@ -7,6 +7,9 @@
 #include "src/bus/queue.h"
 #include "src/bus/time.h"
 
+/* Whom a frame asks that several answer. */
+#define ID_ALL 0xFE
+
 static bool has_come(const grobo_bus *bus, unsigned k)
 {
     return (bus->came >> k & 1u) != 0;
@@ -39,17 +42,35 @@ static uint64_t all_of(const grobo_txn *txn)
     return UINT64_MAX >> (GROBO_REPLIES_MAX - txn->reply.count);
 }
 
-/* Those that did not come may come late: nothing that they would answer is asked meanwhile. */
+/* Those that did not come may come late: nothing that they would answer is asked meanwhile. To the
+ * whole frame as many are owed; its last one is counted by grobo_i_bus_fail(). */
 static void hold_missing(grobo_bus *bus, grobo_txn *txn)
 {
     grobo_reply whole = txn->reply;
+    unsigned missing = 0;
     for (unsigned k = 0; k < whole.count; k++) {
         if (!has_come(bus, k)) {
             txn->reply = reply_of(bus, txn, k);
             grobo_i_bus_hold(bus, txn, bus->now_us);
+            missing++;
         }
     }
     txn->reply = whole;
+    for (; missing > 1; missing--) {
+        grobo_i_bus_hold(bus, txn, bus->now_us);
+    }
+}
+
+/* A late reply that is owed is one less that the whole frame waits for. */
+static void settle_whole(grobo_bus *bus, const grobo_packet *packet)
+{
+    grobo_packet whole = *packet;
+    whole.id = ID_ALL;
+    grobo_bus_hold *hold = grobo_i_bus_owed(bus, grobo_i_bus_packet_key(&whole));
+    if (hold != NULL && packet->id != ID_ALL &&
+        grobo_i_bus_owed(bus, grobo_i_bus_packet_key(packet)) != NULL) {
+        hold->owed--;
+    }
 }
 
 /* Who is there may take longer than a frame that does not say whom it asks: not where something
@@ -99,21 +120,32 @@ static bool take(grobo_bus *bus, grobo_txn *txn, const grobo_packet *packet)
     return true;
 }
 
+/* True if the frame on the wire has several replies. */
+static bool awaits_several(const grobo_bus *bus)
+{
+    return bus->phase == GROBO_BUS_AWAITING &&
+           (bus->active->reply.kind == GROBO_REPLY_ANY || bus->active->reply.count > 1);
+}
+
 bool grobo_bus_several(grobo_bus *bus, const grobo_packet *packet)
 {
-    if (bus == NULL || bus->phase != GROBO_BUS_AWAITING ||
-        (bus->active->reply.kind != GROBO_REPLY_ANY && bus->active->reply.count <= 1)) {
+    if (bus == NULL) {
         return false;
     }
-    if (bus->came_to != bus->stats.tx_frames) {
+    bool asked = awaits_several(bus);
+    if (asked && bus->came_to != bus->stats.tx_frames) {
         bus->came_to = bus->stats.tx_frames;
         bus->came = 0;
     }
     if (packet != NULL) {
-        return take(bus, bus->active, packet);
+        bool taken = asked && take(bus, bus->active, packet);
+        if (!taken) {
+            settle_whole(bus, packet);
+        }
+        return taken;
     }
-    if (!goes_on(bus, bus->active)) {
+    if (asked && !goes_on(bus, bus->active)) {
         end(bus, bus->active);
     }
-    return true;
+    return asked;
 }

@@ -217,7 +217,8 @@ static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
     if (hold == NULL || hold->owed == 0 || (hold->owner == txn && txn->attempts_ != 0)) {
         return 0;
     }
-    return txn->priority == GROBO_PRIORITY_STOP ? hold->due_us + STOP_HOLD_US : hold->until_us;
+    return txn->priority == GROBO_PRIORITY_STOP || txn->urgent ? hold->due_us + STOP_HOLD_US
+                                                               : hold->until_us;
 }
 
 bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)

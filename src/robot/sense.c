@@ -323,17 +323,17 @@ static void note_fast(grobo_robot *robot, int result)
 #define PART_US 10000
 #define PARTS_MOST 4
 
-/* The next joints of a round, as many as have the time. */
+/* The next joints of a round, as many as have the time. `stretch`: all of them, in place of too
+ * many parts. */
 static int ask_some_of(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind kind,
-                       uint32_t most_us)
+                       uint32_t most_us, bool stretch)
 {
     const grobo_driver *driver = robot->driver;
     slot->kind = (uint8_t)kind;
     grobo_joint_mask left = robot->round != 0 ? robot->round : grobo_i_all_joints(robot);
     int result = driver->sense_many(driver, robot->driver_ctx, left, kind, &robot->built);
     uint32_t us = result >= 0 ? grobo_i_line_us(&robot->bus, &robot->built) : 0;
-    most_us =
-        most_us == PART_US && kind != GROBO_SENSE_ALL && us > PARTS_MOST * PART_US ? us : most_us;
+    most_us = stretch && us > PARTS_MOST * PART_US ? us : most_us;
     int n = grobo_joints_count(left), most = us > most_us ? (int)(most_us * (uint32_t)n / us) : n;
     slot->unread = 0;
     do {
@@ -361,9 +361,9 @@ static int ask_each(grobo_robot *robot, grobo_robot_slot *slot, grobo_sense_kind
         return GROBO_OK;
     }
     if (robot->in_segments) {
-        return ask_some_of(robot, slot, kind, (uint32_t)robot->read_us);
+        return ask_some_of(robot, slot, kind, (uint32_t)robot->read_us, false);
     }
-    return ask_some_of(robot, slot, kind, PART_US);
+    return ask_some_of(robot, slot, kind, PART_US, true);
 }
 
 /* Any that nothing is known of is asked where it is going, too. */
@@ -376,7 +376,7 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
         robot->config.sense_position_only && !(first && GROBO_I_EXTRA(robot->driver, keeps_setup));
     slot->many = true;
     int result = first && !angles
-                     ? ask_some_of(robot, slot, GROBO_SENSE_ALL, PART_US)
+                     ? ask_some_of(robot, slot, GROBO_SENSE_ALL, PART_US, false)
                      : ask_each(robot, slot, angles ? GROBO_SENSE_POSITION : GROBO_SENSE_FULL);
     if (robot->round == 0) {
         robot->fast_forgotten = false;
@@ -467,6 +467,7 @@ static void give_way(grobo_robot *robot, grobo_robot_slot *waiting)
 {
     grobo_joint_mask asked = waiting->many ? waiting->unread : GROBO_JOINT_BIT(waiting->joint);
     if ((asked & robot->halts_owed) != 0) {
+        waiting->txn.urgent = true;
         (void)grobo_bus_raise(&robot->bus, &waiting->txn, GROBO_PRIORITY_MOTION);
     } else {
         (void)grobo_bus_cancel(&robot->bus, &waiting->txn);

@@ -225,6 +225,7 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
     }
     take_bytes(slot, exchange);
     slot->txn.priority = priority;
+    slot->txn.urgent = slot->use == GROBO_I_USE_SENSE && priority == GROBO_PRIORITY_MOTION;
     slot->txn.retries = once ? 0 : (uint8_t)config->retries;
     slot->txn.patient = slot->txn.retries > 0 && !had_its_chance;
     slot->txn.timeout_us = config->timeout_us;

@@ -230,13 +230,15 @@ TEST(a_canceled_goal_keeps_no_other_waiting)
 }
 
 /* Makes a question, takes it back while it is on the wire, and asks the same again. */
-static void ask_again_after_a_cancel(peer *p, request *a, request *b, grobo_priority priority)
+static void ask_again_after_a_cancel(peer *p, request *a, request *b, grobo_priority priority,
+                                     bool urgent)
 {
     peer_submit_read(p, a, 1, 0);
     peer_run(p, 300);
     assert_int_equal(grobo_bus_cancel(&p->bus, &a->txn), GROBO_OK);
     peer_read(p, b, 1, 2, priority);
     b->txn.retries = 0;
+    b->txn.urgent = urgent;
     assert_int_equal(grobo_bus_submit(&p->bus, &b->txn), GROBO_OK);
 }
 
@@ -250,7 +252,7 @@ TEST(a_reply_that_comes_soon_is_owed_no_more)
     peer p;
     request a, b;
     peer_init(&p, &config);
-    ask_again_after_a_cancel(&p, &a, &b, GROBO_PRIORITY_USER);
+    ask_again_after_a_cancel(&p, &a, &b, GROBO_PRIORITY_USER, false);
     peer_position_at(&p, OVER_US - DELAY_US + 100, 1, 11);
     peer_position_at(&p, 2 * OVER_US + GROBO_BUS_QUIET_US, 1, 22);
     peer_run(&p, S);
@@ -259,15 +261,23 @@ TEST(a_reply_that_comes_soon_is_owed_no_more)
     assert_int_equal(p.ended[1].value, 22);
 }
 
-/* Anything else would wait for what may come yet, 100 ms here. */
+/* Nor does what a stop waits for. Anything else would wait for what may come yet, 100 ms here. */
 TEST(a_stop_waits_for_no_reply_that_is_late)
 {
+    static const struct {
+        grobo_priority priority;
+        bool urgent;
+    } rows[] = {{GROBO_PRIORITY_STOP, false},
+                {GROBO_PRIORITY_MOTION, true},
+                {GROBO_PRIORITY_MOTION, false},
+                {GROBO_PRIORITY_USER, false}};
     const grobo_bus_config config = {.protocol = &grobo_i_rs30x_protocol};
-    for (int stop = 0; stop < 2; stop++) {
+    for (int i = 0; i < 4; i++) {
+        bool stop = i < 2;
         peer p;
         request a, b;
         peer_init(&p, &config);
-        ask_again_after_a_cancel(&p, &a, &b, stop ? GROBO_PRIORITY_STOP : GROBO_PRIORITY_USER);
+        ask_again_after_a_cancel(&p, &a, &b, rows[i].priority, rows[i].urgent);
         peer_run(&p, S);
         assert_int_equal(p.sent_count, 2);
         int64_t least_us = BUS_READ_US + (stop ? 0 : GROBO_BUS_HOLD_US / 2);

@@ -388,6 +388,54 @@ TEST(feetech_answers_a_sync_read_one_by_one)
     assert_false(got[2].refused);
 }
 
+/* Sends a sync read that two of three answer too late, and tells when they do; then another one. */
+static int64_t late_status(const uint8_t *late, int n_late)
+{
+    const grobo_bus_config config = {
+        .protocol = &grobo_i_feetech_protocol, .baud_bps = BAUD, .margin_us = MS};
+    const grobo_dxl1_packet packet = {.id = GROBO_DXL1_ID_ALL,
+                                      .instruction = GROBO_DXL1_SYNC_READ,
+                                      .address = 56,
+                                      .length = 2,
+                                      .data = ids,
+                                      .data_bytes = sizeof ids};
+    static request again;
+    int64_t last_us = 0;
+    peer_init(&p, &config);
+    for (int k = 0; k < 2; k++) {
+        request *which = k == 0 ? &r : &again;
+        int n = grobo_dxl1_build(&packet, which->frame, sizeof which->frame);
+        peer_txn(&p, &which->txn, which->frame, n, GROBO_PRIORITY_SENSE);
+        which->txn.retries = 0;
+        n_got = 0;
+        assert_int_equal(grobo_bus_submit(&p.bus, &which->txn), GROBO_OK);
+    }
+    for (int i = 0; i < n_late; i++) {
+        uint8_t b[16];
+        int n = grobo_dxl1_build(&(grobo_dxl1_packet){.status = true,
+                                                      .id = late[i],
+                                                      .data = (const uint8_t *)"\x00\x08",
+                                                      .data_bytes = 2},
+                                 b, sizeof b);
+        last_us = 5 * MS + 100 * (i + 1);
+        peer_bytes_at(&p, last_us, b, (size_t)n);
+    }
+    peer_run(&p, S);
+    assert_int_equal(p.sent_count, 2);
+    return p.sent[1].at_us - last_us;
+}
+
+/* Once all that were owed have come, however late, nothing keeps the next one waiting; before that
+ * it would take them for its own. */
+TEST(late_replies_of_several_hold_the_next_until_the_last)
+{
+    static const uint8_t two[] = {3, 1}, other[] = {3, 1, 9}, twice[] = {3, 1, 3};
+    assert_in_range(late_status(ids, 3), 0, 2 * MS);
+    assert_in_range(late_status(two, 2), 50 * MS, GROBO_BUS_HOLD_US);
+    assert_in_range(late_status(other, 3), 50 * MS, GROBO_BUS_HOLD_US);
+    assert_in_range(late_status(twice, 3), 50 * MS, GROBO_BUS_HOLD_US);
+}
+
 /* Of DYNAMIXEL's errors some tell how the servo is, and some what became of the request. */
 TEST(errors_of_old_dynamixels_are_told_apart)
 {

@@ -116,6 +116,8 @@ struct grobo_txn {
     uint32_t timeout_us;     /**< time from the first byte sent to the reply; 0: computed */
     uint8_t attempts_;       /**< private: begun */
     bool pending_;           /**< private: belongs to a bus */
+    bool urgent;             /**< a stop waits for it: it is held for a reply that is owed no
+                                  longer than a stop is, whatever its priority */
     int64_t start_by_us;     /**< not worth sending after this time; 0: always */
     grobo_txn_leave leave;   /**< NULL: every attempt leaves */
     grobo_txn_each each;     /**< gets the replies where there are several; may be NULL */
