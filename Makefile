@@ -214,7 +214,7 @@ include tools/baremetal/baremetal.mk
 export GRCTL_PHYSICS ?= off
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
+.PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-realtime bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-model check-areas check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
@@ -454,6 +454,9 @@ bench: $(BENCHES) $(GRCTL) ## speed beside peers and floors, in build/bench.json
 
 bench-peers: ## bring libmodbus, rustypot, dynamixel-sdk, pyserial and yaml-cpp into build/peers
 	@tests/bench/peers.sh $(BUILD)/peers
+
+bench-realtime: $(BUILD)/tests/bench/bench_play ## lateness at 50 to 1000 Hz with every core busy, with and without a priority
+	@$< realtime
 
 # Work whose instructions are counted is compiled as everybody does it.
 bench-count: $(BUILD)/tests/bench/bench_work $(BUILD)/tests/bench/bench_line ## instructions against tests/bench/instructions; UPDATE=1 keeps them

@@ -95,6 +95,8 @@ typedef struct grobo_runner_config {
                                     GROBO_RUNNER_TIMEOUT_US */
     size_t events;            /**< events kept for grobo_runner_next_event(), at most
                                     GROBO_RUNNER_EVENTS_MAX; each takes some 2.5 kB; 0: none */
+    grobo_realtime realtime;  /**< of the thread that runs the loop for good: the runner's, or
+                                    the one in grobo_runner_run(), which keeps it (port.h) */
 } grobo_runner_config;
 /** Begins an initializer of one. */
 #define GROBO_RUNNER_CONFIG_INIT GROBO_SIZED(grobo_runner_config)
@@ -120,8 +122,10 @@ GROBO_API int grobo_runner_free(grobo_runner *runner);
 /* ---- the runner's thread ------------------------------------------------------------------- */
 
 /**
- * Starts the runner's thread: grobo_runner_run() on a thread of the port layer. At once.
- * @return GROBO_OK, GROBO_ERR_STATE (there is one), GROBO_ERR_NOMEM.
+ * Starts the runner's thread: grobo_runner_run() on a thread of the port layer. At once, but for
+ * a `realtime` that is configured: then it has been granted when this returns.
+ * @return GROBO_OK, GROBO_ERR_STATE (there is one), GROBO_ERR_NOMEM, or as grobo_thread_realtime():
+ *   then no thread runs.
  */
 GROBO_API int grobo_runner_start(grobo_runner *runner);
 
@@ -135,7 +139,8 @@ GROBO_API int grobo_runner_stop(grobo_runner *runner);
 /**
  * Rounds until grobo_runner_stop() is called: the body of the runner's thread, for a
  * program that makes its threads itself. Carries out the exit policy at the end.
- * @return GROBO_OK, GROBO_ERR_STATE (a runner's thread runs; in a callback).
+ * @return GROBO_OK, GROBO_ERR_STATE (a runner's thread runs; in a callback), or as
+ *   grobo_thread_realtime(): then nothing has run.
  */
 GROBO_API int grobo_runner_run(grobo_runner *runner);
 

@@ -332,6 +332,7 @@ int grobo_i_guard_begin(grobo_i_guard_watch *watch)
     }
     grobo_i_posix_close_from(STDERR_FILENO + 1);
     grobo_i_posix_call_it(GROBO_GUARD_NAME);
+    grobo_i_posix_take_every_cpu(); /* the program's may be the one of a thread that spins */
     *watch = (grobo_i_guard_watch){.socket = STDIN_FILENO, .parent = (int)parent};
     watch->death = grobo_i_posix_watch_death(parent);
     watch->state = grobo_i_posix_watch_state(parent);

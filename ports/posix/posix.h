@@ -123,6 +123,9 @@ void grobo_i_posix_close_from(int first);
 /* Has the system call this process so, where it can. */
 void grobo_i_posix_call_it(const char *name);
 
+/* realtime_linux.c: has the calling thread run on every CPU (the first 64) again. */
+void grobo_i_posix_take_every_cpu(void);
+
 /* A descriptor that becomes readable when the process dies, or -1. */
 int grobo_i_posix_watch_death(pid_t pid);
 

@@ -72,6 +72,28 @@ bool grobo_thread_is_self(grobo_thread thread)
     return GetThreadId(thread) == GetCurrentThreadId();
 }
 
+/* Windows has one priority above all others, and no such lock of a process's memory. */
+int grobo_thread_realtime(const grobo_realtime *how)
+{
+    enum { PRIORITY_MAX = 99 };
+    bool prior = how != NULL && how->policy != GROBO_REALTIME_NONE;
+
+    if (how == NULL || how->policy > GROBO_REALTIME_RR ||
+        (prior ? how->priority < 1 || how->priority > PRIORITY_MAX : how->priority != 0)) {
+        return GROBO_ERR_ARG;
+    }
+    if (how->mlock) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    if (how->cpus != 0 && SetThreadAffinityMask(GetCurrentThread(), (DWORD_PTR)how->cpus) == 0) {
+        return GROBO_ERR_NOTFOUND;
+    }
+    if (prior && !SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_TIME_CRITICAL)) {
+        return GROBO_ERR_PERM;
+    }
+    return GROBO_OK;
+}
+
 /* ---- locks -------------------------------------------------------------------------------- */
 
 _Static_assert(sizeof(grobo_mutex) == sizeof(SRWLOCK), "port_os.h has room for an SRWLOCK");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The life of a runner: its thread or the caller's, its rounds, its end; one caller at a time. */
 #include <stdint.h>
+#include <stdio.h>
 
 #include "tests/support/runner_kit.h"
 #include "tests/support/test.h"
@@ -260,4 +261,68 @@ TEST(callers_are_kept_apart)
         assert_int_equal(together, 0);
         assert_int_equal(grobo_runner_free(runner), GROBO_OK);
     }
+}
+
+/* A thread that cannot be what it asked for is none; the runner works on as without one. */
+TEST(a_realtime_that_is_refused)
+{
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM};
+    grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session,
+                                  .realtime = {.policy = GROBO_REALTIME_FIFO}};
+    int torque = 0;
+
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(grobo_runner_start(runner), GROBO_ERR_ARG);
+        assert_false(grobo_runner_is_active(runner));
+        assert_int_equal(grobo_runner_run(runner), GROBO_ERR_ARG);
+        assert_false(grobo_runner_is_active(runner));
+    }
+    assert_int_equal(grobo_runner_stop(runner), GROBO_ERR_STATE);
+    assert_int_equal(grobo_runner_connect(runner, 0), GROBO_OK);
+    torque = grobo_robot_torque(grobo_runner_robot(runner), GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON);
+    assert_int_equal(grobo_runner_wait_job(runner, torque, 0), GROBO_OK);
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
+}
+
+static int keeps_to_a_cpu(void *arg, grobo_runner *from)
+{
+    char line[256];
+    unsigned long long mask = 0;
+    FILE *file = fopen("/proc/thread-self/status", "r");
+
+    (void)from;
+    while (file != NULL && fgets(line, sizeof line, file) != NULL) {
+        (void)sscanf(line, "Cpus_allowed: %llx", &mask);
+    }
+    if (file != NULL) {
+        (void)fclose(file);
+    }
+    *(bool *)arg = mask == 1;
+    return GROBO_OK;
+}
+
+/* Granted when the start returns, to that thread alone; and again after a stop. */
+TEST(a_realtime_that_is_granted)
+{
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM};
+    const grobo_runner_config config = {GROBO_RUNNER_CONFIG_INIT, .session = &session,
+                                        .realtime = {.cpus = 1}};
+
+    assert_int_equal(grobo_runner_new(&config, &runner), GROBO_OK);
+    for (int i = 0; i < 2; i++) {
+        bool kept = false;
+        int r = grobo_runner_start(runner);
+
+        if (r == GROBO_ERR_NOTFOUND || r == GROBO_ERR_UNSUPPORTED) {
+            assert_int_equal(grobo_runner_free(runner), GROBO_OK);
+            skip();
+        }
+        assert_int_equal(r, GROBO_OK);
+        assert_int_equal(grobo_runner_call(runner, keeps_to_a_cpu, &kept), GROBO_OK);
+        assert_true(kept);
+        assert_int_equal(grobo_runner_start(runner), GROBO_ERR_STATE);
+        assert_int_equal(grobo_runner_stop(runner), GROBO_OK);
+    }
+    assert_int_equal(grobo_runner_free(runner), GROBO_OK);
 }

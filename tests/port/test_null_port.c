@@ -47,6 +47,7 @@ TEST(port_refuses_null)
 {
     REFUSES(grobo_thread_start(NULL, thread_main, NULL));
     REFUSES(grobo_thread_start(&thread, NULL, NULL));
+    REFUSES(grobo_thread_realtime(NULL));
     REFUSES(grobo_mutex_init(NULL));
     grobo_mutex_lock(NULL);
     grobo_mutex_unlock(NULL);

@@ -73,6 +73,31 @@ GROBO_API int grobo_thread_join(grobo_thread thread);
 /** True when the calling thread is `thread`. */
 GROBO_API bool grobo_thread_is_self(grobo_thread thread);
 
+/** How the system chooses among the threads that can run. */
+typedef enum grobo_realtime_policy {
+    GROBO_REALTIME_NONE = 0, /**< as it was */
+    GROBO_REALTIME_FIFO,     /**< before every thread of less priority, until it waits */
+    GROBO_REALTIME_RR        /**< the same, in turns with those of its own priority */
+} grobo_realtime_policy;
+
+/** How a thread shall run. Zeros change nothing. Gets no more fields. */
+typedef struct grobo_realtime {
+    grobo_realtime_policy policy; /**< Windows has one: time critical, for both */
+    int priority;  /**< 1..99, higher before lower; 0 where policy is GROBO_REALTIME_NONE */
+    uint64_t cpus; /**< bit k: CPU k may run it; 0: as it was. Linux and Windows */
+    bool mlock;    /**< the whole process stays in memory, what it allocates later too */
+} grobo_realtime;
+
+/**
+ * Has the calling thread run so. Processes that it starts get neither its priority nor its memory's
+ * lock (Linux; elsewhere they may), but its CPUs. What was changed before an error stays changed:
+ * memory, then CPUs, then priority; who wants to say which was refused asks for one at a time.
+ * @return GROBO_OK; GROBO_ERR_ARG; GROBO_ERR_PERM (the limits `ulimit -r` and `ulimit -l` of the
+ *   user, or the groups that the process is in); GROBO_ERR_NOTFOUND (none of those CPUs);
+ *   GROBO_ERR_UNSUPPORTED (not known on this system).
+ */
+GROBO_API int grobo_thread_realtime(const grobo_realtime *how);
+
 /** Makes a lock in caller's storage, with priority inheritance where the system has it.
  *  @return GROBO_OK, GROBO_ERR_NOMEM. */
 GROBO_API int grobo_mutex_init(grobo_mutex *mutex);

@@ -110,8 +110,31 @@ static void run(grobo_runner *runner)
 
 static GROBO_THREAD_FUNC thread_execution(void *arg)
 {
-    run(arg);
+    grobo_runner *runner = arg;
+    int granted = grobo_thread_realtime(&runner->realtime);
+
+    grobo_mutex_lock(&runner->lock);
+    runner->granted = granted;
+    grobo_i_runner_wake_all(runner);
+    grobo_mutex_unlock(&runner->lock);
+    if (granted >= 0) {
+        run(runner);
+    }
     GROBO_THREAD_RETURN;
+}
+
+/* With the lock, which is given back meanwhile: what the system says to the thread's wish. */
+static int await_grant(grobo_runner *runner)
+{
+    const grobo_realtime *how = &runner->realtime;
+
+    if (how->policy == GROBO_REALTIME_NONE && how->cpus == 0 && !how->mlock) {
+        return GROBO_OK; /* it asks for nothing */
+    }
+    while (runner->granted == CALL_PENDING) {
+        grobo_cond_wait(&runner->changed, &runner->lock, GROBO_NEVER_US);
+    }
+    return runner->granted;
 }
 
 /* With the lock, which is given back meanwhile: joins a thread that has ended. */
@@ -139,11 +162,14 @@ int grobo_runner_start(grobo_runner *runner)
         runner->running = true;
         runner->stopping = false;
         join(runner); /* one that was stopped in a callback */
+        runner->granted = CALL_PENDING;
         r = grobo_thread_start(&runner->thread, thread_execution, runner);
         runner->has_thread = r >= 0;
-        runner->running = r >= 0;
+        r = r < 0 ? r : await_grant(runner);
         if (r < 0) {
+            runner->running = false;
             grobo_i_runner_wake_all(runner); /* whoever waits for its end already */
+            join(runner);
         }
     }
     grobo_i_runner_unlock(runner);
@@ -165,10 +191,20 @@ int grobo_runner_run(grobo_runner *runner)
         runner->stopping = false;
     }
     grobo_i_runner_unlock(runner);
-    if (mine) {
-        run(runner);
+    if (!mine) {
+        return GROBO_ERR_STATE;
     }
-    return mine ? GROBO_OK : GROBO_ERR_STATE;
+    int r = grobo_thread_realtime(&runner->realtime);
+
+    if (r >= 0) {
+        run(runner);
+        return GROBO_OK;
+    }
+    grobo_i_runner_lock(runner);
+    runner->running = false;
+    grobo_i_runner_wake_all(runner);
+    grobo_i_runner_unlock(runner);
+    return r;
 }
 
 /* With the lock: waits until the thread has ended; another may have been started by then. */
@@ -319,6 +355,7 @@ static void fill(grobo_runner *runner, const grobo_runner_config *config)
     runner->on_svc = config->on_svc;
     runner->owner_timeout_us = config->owner_timeout_us;
     runner->skip_exit = config->skip_exit;
+    runner->realtime = config->realtime;
     runner->timeout_us = config->timeout_us > 0 ? config->timeout_us : GROBO_RUNNER_TIMEOUT_US;
     runner->period_us = config->period_us != 0 ? config->period_us : GROBO_RUNNER_PERIOD_US;
     runner->tick_us = GROBO_NEVER_US;

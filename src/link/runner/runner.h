@@ -86,6 +86,7 @@ struct grobo_runner {
     int64_t owner_timeout_us;
     int64_t timeout_us; /* where a call is given none */
     bool skip_exit;
+    grobo_realtime realtime; /* of the thread that runs the loop for good */
     char name[GROBO_NAME_MAX_BYTES];
 
     /* under lock: whose turn it is */
@@ -101,6 +102,7 @@ struct grobo_runner {
     bool freeing;    /* what is posted has its last turn */
     uint64_t ends;   /* how often it has ended */
     bool has_thread; /* to be joined */
+    int granted;     /* what it asked of the system; CALL_PENDING: not answered */
     grobo_thread thread;
 
     /* by any thread */

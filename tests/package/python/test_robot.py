@@ -241,6 +241,24 @@ class Nothing(unittest.TestCase):
     """What is asked for where there is nothing."""
 
     @unittest.skipIf(glob.glob("/dev/ttyUSB*") + glob.glob("/dev/ttyACM*"), "there is an adapter")
+    def test_a_priority_or_a_cpu_that_nobody_has(self):
+        for wrong in ({"realtime": 0}, {"realtime": 100}, {"cpus": [64]}, {"cpus": [-1]}):
+            with self.assertRaises(ValueError):
+                grobo.connect("sim", **wrong)
+        if (os.cpu_count() or 64) < 64 and sys.platform == "linux":
+            with self.assertRaises(grobo.Error):
+                grobo.connect("sim", cpus=[63])
+
+    def test_the_robots_thread_keeps_to_its_cpu(self):
+        mine = getattr(os, "sched_getaffinity", lambda pid: set())(0)
+        if 0 not in mine or len(mine) < 2:
+            self.skipTest("no CPU 0, or no other")
+        with grobo.connect("sim", cpus=[0]):
+            threads = [int(name) for name in os.listdir("/proc/self/task")]
+            kept = [t for t in threads if os.sched_getaffinity(t) == {0}]
+            self.assertTrue(kept)
+            self.assertNotIn(threading.get_native_id(), kept)
+
     def test_auto_says_what_to_do(self):
         with self.assertRaises(errors.NoSuchName) as caught:
             grobo.connect()

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What `grctl agent` is told; it runs in a program of its own (beside.h). */
+#include "tools/grctl/cli/realtime.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/fleet/run.h"
 
@@ -13,6 +14,7 @@ static const cli_option options[AGENT_OPTIONS] = {
     [AGENT_COCKPIT] = OPTION_TEXT("cockpit", 0, "URL",
                                   "a page of each robot, its name for %: a link "
                                   "in the view of the fleet"),
+    [AGENT_REALTIME] = REALTIME_OPTION,
 };
 
 const cli_command cmd_agent = {

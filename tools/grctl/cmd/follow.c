@@ -10,11 +10,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "tools/grctl/cli/realtime.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/lang/lang.h"
 
-enum { OPT_RATE, OPT_FOR };
+enum { OPT_RATE, OPT_FOR, OPT_REALTIME };
 enum {
     LOST_US = 200000,
     ALL_US = 1000000,
@@ -30,6 +31,7 @@ static const double there_deg = 1.5, behind_deg = 20;
 static const cli_option options[] = {
     [OPT_RATE] = OPTION_WHOLE("rate", 'r', "HZ", 5, MAX_HZ, "targets a second (100)"),
     [OPT_FOR] = OPTION_REAL("for", 0, "S", 0.1, 86400, "end after this time"),
+    [OPT_REALTIME] = REALTIME_OPTION,
 };
 
 typedef enum following {
@@ -414,7 +416,10 @@ static int run(app *a)
         return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
                         "follow: a shell has one robot; use 'grctl follow' by itself");
     }
-    int status = choose(&p.leader, a, a->line.argument[0]);
+    int status = realtime_begin(a, OPT_REALTIME);
+    if (!status) {
+        status = choose(&p.leader, a, a->line.argument[0]);
+    }
     if (!status) {
         status = choose(&p.follower, a, a->line.argument[1]);
     }

@@ -8,6 +8,7 @@
 
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/progress.h"
+#include "tools/grctl/cli/realtime.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/keys.h"
@@ -35,6 +36,7 @@ static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_TABLE] = OPTION_FLAG("table", 0, "at the end, target, reached and error of every joint"),
     [PLAY_IF_LOST] = OPTION_CHOICE("if-lost", 0, "stop|pause|continue",
                                    "what the others of a group do when a robot falls out (stop)"),
+    [PLAY_REALTIME] = REALTIME_OPTION,
     BODY_OPTION_ROWS(PLAY_BODY),
 };
 
@@ -299,12 +301,13 @@ static int run(app *a)
 {
     static show s;
     conn c;
-    if (a->group) {
-        return play_together(a);
+    int status = realtime_begin(a, PLAY_REALTIME);
+    if (status || a->group) {
+        return status ? status : play_together(a);
     }
     memset(&s, 0, sizeof s);
     a->clamps = app_option(a, PLAY_CLAMP)->given > 0;
-    int status = playlist_load(&s.list, a);
+    status = playlist_load(&s.list, a);
     if (!status && app_option(a, PLAY_DRY_RUN)->given) {
         status = play_dry_run(&s.list, a);
     } else if (!status) {

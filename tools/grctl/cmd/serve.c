@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What `grctl serve` is told; it runs in a program of its own (beside.h). */
+#include "tools/grctl/cli/realtime.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/web/run.h"
 
@@ -13,6 +14,7 @@ static const cli_option options[SERVE_OPTIONS] = {
     [SERVE_NAME] = OPTION_TEXT("name", 0, "HOST", "a name that browsers may use for this machine"),
     [SERVE_OPERATOR] = OPTION_FLAG("operator", 0, "a page that asks for control gets it at once"),
     [SERVE_GROUP] = OPTION_TEXT("group", 0, "NAME", "of a fleet: the robots of this group (all)"),
+    [SERVE_REALTIME] = REALTIME_OPTION,
 };
 
 const cli_command cmd_serve = {

@@ -2,6 +2,7 @@
 /* `grctl agent`: the robots of this machine, until a signal. */
 #include <string.h>
 
+#include "tools/grctl/cli/realtime.h"
 #include "tools/grctl/fleet/agent.h"
 #include "tools/grctl/fleet/run.h"
 
@@ -85,7 +86,10 @@ int agent_run(app *a)
     memset(&g, 0, sizeof g);
     g.motions = motions->given ? motions->text : "motions";
     fleet_host_name(own);
-    int status = broker_read(&b, a);
+    int status = realtime_begin(a, AGENT_REALTIME);
+    if (!status) {
+        status = broker_read(&b, a);
+    }
     if (!status) {
         status = check_robots(a);
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* `grctl serve`: which page is served of what. */
+#include "tools/grctl/cli/realtime.h"
 #include "tools/grctl/fleet/message.h"
 #include "tools/grctl/web/run.h"
 #include "tools/grctl/web/web.h"
@@ -26,5 +27,9 @@ int serve_run(app *a)
                      .name = app_option(a, SERVE_NAME)->text,
                      .port = (uint16_t)app_number(a, SERVE_PORT, WEB_PORT),
                      .takes_over = app_option(a, SERVE_OPERATOR)->given > 0};
+    int status = realtime_begin(a, SERVE_REALTIME);
+    if (status) {
+        return status;
+    }
     return app_option(a, BROKER_URL)->given ? run_fleet(a, &o) : web_run(a, &o);
 }

@@ -11,6 +11,7 @@ enum {
     SERVE_NAME,
     SERVE_OPERATOR,
     SERVE_GROUP,
+    SERVE_REALTIME,
     SERVE_OPTIONS
 };
 

@@ -239,6 +239,25 @@ class Joint:
         self._robot.torque(state, [self.name])
 
 
+def _ask_for_realtime(config: Any, priority: Optional[int], cpus: Iterable[int]) -> None:
+    """Fills the configuration's wish for the thread that talks to the robot."""
+    mask = 0
+    for cpu in cpus:
+        if not 0 <= cpu < 64:
+            raise ValueError(f"cpus: {cpu} is none of 0 to 63")
+        mask |= 1 << cpu
+    if priority is not None and not 1 <= priority <= 99:
+        raise ValueError(f"realtime: {priority} is no priority of 1 to 99")
+    if priority is None and not mask:
+        return
+    if not hasattr(config, "realtime"):
+        raise errors.error(lib.GROBO_ERR_UNSUPPORTED, "realtime")
+    config.realtime.cpus = mask
+    if priority is not None:
+        config.realtime.policy = lib.GROBO_REALTIME_FIFO
+        config.realtime.priority = priority
+
+
 class Robot:
     """A robot that is connected; close it, or use it in a `with` statement.
 
@@ -247,7 +266,9 @@ class Robot:
     what the servos do when it is closed; None leaves them as they are. `owner_timeout`: after so
     many seconds without a call of this program the exit policy is carried out; 0: never. `events`:
     how many events are kept, see grobo.aio. `guard`: a process beside this one (the installed
-    grctl, or $GRCTL_GUARD) that stops the joints when Python is killed or stopped.
+    grctl, or $GRCTL_GUARD) that stops the joints when Python is killed or stopped. `realtime`: the
+    priority, 1 to 99, of the thread that talks to the robot, before other programs, and `cpus` the
+    CPUs that it may run on; `Error` where the system refuses (docs/guide/realtime.md).
     """
 
     def __init__(
@@ -262,6 +283,8 @@ class Robot:
         robot: Union[str, "os.PathLike[str]", Description] = "gr001",
         sense_interval: Optional[float] = None,
         guard: bool = True,
+        realtime: Optional[int] = None,
+        cpus: Iterable[int] = (),
     ) -> None:
         _close_all(dropped=True)  # one of them may have the device
         if not isinstance(robot, Description):
@@ -283,6 +306,7 @@ class Robot:
         config.skip_exit = exit is None
         config.timeout_us = us(timeout)
         config.owner_timeout_us = us(owner_timeout)
+        _ask_for_realtime(config, realtime, cpus)
         if events:
             if not has("grobo_runner_next_event"):
                 raise errors.error(lib.GROBO_ERR_UNSUPPORTED, "events")
