@@ -53,6 +53,12 @@ typedef struct grobo_joint {
     uint8_t unit;
     double unit_zero_rad; /**< its angle where its value is 0 */
     double unit_rad;      /**< how much the angle grows for 1 of the unit, not 0; of degrees 0 */
+    /** A wheel has speeds (core/wheel.h) and no angle to go to: its limits and initial angle are 0,
+     *  the angle read is that of its servo's shaft within one turn, whatever its gear, and what
+     *  moves joints to angles leaves it out or refuses it. max_speed_rad_s is the most that it may
+     *  be asked for. */
+    bool wheel;
+    double accel_rad_s2; /**< how fast a wheel's speed may change, > 0; of other joints 0 */
 #endif
 } grobo_joint;
 
@@ -117,7 +123,7 @@ GROBO_API const grobo_joint *grobo_model_joint(const grobo_model *model, int joi
  * finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs, a finite zero, a
  * gear that is not negative, a torque limit of at most 100, a slack within its range, joints that
  * follow one that follows none, with limits and an initial angle that are that one's times the
- * ratio, a unit with its scale.
+ * ratio, a unit with its scale, wheels without limits, ratio or unit and with an acceleration.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
 GROBO_API int grobo_model_check(const grobo_model *model);

@@ -45,7 +45,7 @@ GROBO_API double grobo_rad_from_ddeg(int angle_ddeg);
  */
 GROBO_API int grobo_posture_init(grobo_posture *posture, int n_joints);
 
-/** The model's initial posture, every joint set, time as grobo_posture_init() gives. */
+/** The model's initial posture, every joint set but wheels, time as grobo_posture_init() gives. */
 GROBO_API void grobo_posture_init_pose(grobo_posture *posture, const grobo_model *model);
 
 /** Sets one joint. @return 0, GROBO_ERR_ARG (no such joint) or GROBO_ERR_NAN. */

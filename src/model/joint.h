@@ -112,6 +112,32 @@ static inline bool grobo_i_may_follow(const grobo_model *model)
 #endif
 }
 
+/* Whether joints of this size may be wheels. */
+static inline bool grobo_i_may_be_wheel(const grobo_model *model)
+{
+#if GROBO_DRIVERS_PLAIN
+    (void)model;
+    return false;
+#elif GROBO_TABLES_FIXED
+    (void)model;
+    return true;
+#else
+    return model->joint_size >= offsetof(grobo_joint, accel_rad_s2) + sizeof(double);
+#endif
+}
+
+/* True of a wheel (grobo_joint.wheel); a build for plain drivers has none. */
+static inline bool grobo_i_joint_is_wheel(const grobo_model *model, int joint)
+{
+#if GROBO_DRIVERS_PLAIN
+    (void)model;
+    (void)joint;
+    return false;
+#else
+    return grobo_i_may_be_wheel(model) && grobo_i_joint(model, joint)->wheel;
+#endif
+}
+
 /* True of one that follows another one. */
 static inline bool grobo_i_joint_follows(const grobo_model *model, int joint)
 {

@@ -113,6 +113,25 @@ static bool is_unit_good(const grobo_model *model, const grobo_joint *joint)
                      isfinite(zero_rad);
 }
 
+/* A wheel goes to no angle; nothing else has an acceleration. */
+static bool is_wheel_good(const grobo_model *model, int j)
+{
+#if GROBO_DRIVERS_PLAIN
+    (void)model;
+    (void)j;
+    return true;
+#else
+    const grobo_joint *joint = grobo_i_joint(model, j);
+    if (!grobo_i_may_be_wheel(model)) {
+        return true;
+    }
+    return joint->wheel ? joint->min_rad == 0 && joint->max_rad == 0 && joint->ratio == 0 &&
+                              joint->unit == GROBO_UNIT_DEG && joint->accel_rad_s2 > 0 &&
+                              isfinite(joint->accel_rad_s2)
+                        : joint->accel_rad_s2 == 0;
+#endif
+}
+
 static bool is_mirror_good(const grobo_model *model, int j)
 {
     const grobo_joint *joint = grobo_i_joint(model, j);
@@ -133,7 +152,7 @@ static bool is_joint_good(const grobo_model *model, int j)
         return false;
     }
     return is_mount_good(joint) && is_mirror_good(model, j) && is_follower_good(model, joint) &&
-           is_unit_good(model, joint);
+           is_unit_good(model, joint) && is_wheel_good(model, j);
 }
 
 static bool is_joint_unique(const grobo_model *model, int j)

@@ -65,8 +65,8 @@ void grobo_posture_init_pose(grobo_posture *posture, const grobo_model *model)
     (void)grobo_posture_init(posture, model->n_joints);
     for (int j = 0; j < model->n_joints; j++) {
         posture->angle_rad[j] = grobo_i_joint(model, j)->init_rad;
+        posture->set |= grobo_i_joint_is_wheel(model, j) ? 0 : GROBO_JOINT_BIT(j);
     }
-    posture->set = GROBO_JOINTS_ALL(model->n_joints);
 }
 
 static bool has_joint(const grobo_posture *posture, int joint)

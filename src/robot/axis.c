@@ -7,6 +7,7 @@
 #include "src/base/instant.h"
 #include "src/model/joint.h"
 #include "src/robot/robot.h"
+#include "src/robot/wheel.h"
 
 /* The goals of a trajectory are on the wire's grid: this part of its step is no other goal. */
 #define SAME_GOAL_STEPS 0.6
@@ -406,6 +407,9 @@ bool grobo_i_axis_is_unknown(const grobo_robot *robot, int joint)
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool turns = grobo_i_is_stray(axis) || grobo_i_is_external(axis);
     bool unknown = !grobo_i_is_sensed(axis);
+    if (grobo_i_is_wheel(robot, joint)) {
+        return unknown; /* speed 0 stops it wherever it is */
+    }
     if (turns) {
         unknown = axis->own_until_us <= robot->now_us &&
                   abs(axis->state.speed_dps) >= GROBO_I_SLOW_DPS &&
@@ -465,7 +469,7 @@ double grobo_i_load_most(const grobo_robot *robot, int joint)
 static bool shows_swing(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    return !grobo_i_axis_is_counted(axis) &&
+    return !grobo_i_axis_is_counted(axis) && !grobo_i_is_wheel(robot, joint) &&
            !GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
            axis->seen_dps != GROBO_I_NO_SPEED;
 }
@@ -581,7 +585,8 @@ bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         if (axis->next != 0 || (grobo_i_is_sensed(axis) && grobo_i_axis_moves(axis, now_us)) ||
-            (turns(axis) && grobo_i_axis_lags(robot, j)) || is_on_ramp(robot, j)) {
+            (turns(axis) && grobo_i_axis_lags(robot, j)) || is_on_ramp(robot, j) ||
+            (grobo_i_is_wheel(robot, j) && grobo_i_wheel_moves(axis))) {
             return true;
         }
     }

@@ -20,11 +20,13 @@
 #include "src/robot/often.h"
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
+#include "src/robot/wheel.h"
 
 /* The contents of an order's frame. */
 typedef struct saying {
     grobo_target target;                              /* where to, for orders that move */
     grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1]; /* what it switches, by mode */
+    grobo_i_speeds speeds;                            /* of an order for wheels */
     bool as_asked; /* a goal of all its joints, to where each was asked to go, in that time */
 } saying;
 
@@ -244,6 +246,10 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
 
 bool grobo_i_goal_holds(const grobo_robot *robot, int joint)
 {
+    if (grobo_i_is_wheel(robot, joint)) {
+        return (robot->axes[joint].state.valid & GROBO_FIELD_GOAL) != 0 &&
+               grobo_i_wheel_goal(&robot->axes[joint]) == 0;
+    }
     double near_rad = grobo_rad_from_deg(GROBO_I_HOLD_NEAR_DEG);
     double goal_rad = robot->axes[joint].state.goal_rad;
     return fabs(goal_rad - grobo_i_hold_rad(robot, joint)) <= near_rad; /* not of NaN */
@@ -385,6 +391,7 @@ static void say_nothing(const grobo_robot *robot, saying *says)
     memset(target->joint_time_us, 0, n * sizeof target->joint_time_us[0]);
     memset(target->from_rad, 0, n * sizeof target->from_rad[0]);
     memset(says->torqued, 0, sizeof says->torqued);
+    says->speeds.joints = 0;
     says->as_asked = false;
 }
 
@@ -392,6 +399,9 @@ static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo
                  moment when, saying *says)
 {
     say_nothing(robot, says);
+    if (grobo_i_is_of_wheels(robot, order)) {
+        return grobo_i_wheel_judge(robot, order, &says->speeds);
+    }
     switch ((grobo_i_order_kind)order->kind) {
     case GROBO_I_ORDER_NONE:
         return GROBO_OK;
@@ -413,6 +423,8 @@ static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo
         return judge_setting(robot, order->joints, when == LEAVES_AGAIN);
     case GROBO_I_ORDER_COMMAND:
         return judge_alone(robot);
+    case GROBO_I_ORDER_SPEED:
+        break; /* for wheels alone */
     }
     GROBO_ASSERT(false); /* each kind returns above */
     return GROBO_ERR_ARG;
@@ -505,12 +517,18 @@ static const grobo_target *aim(const grobo_robot *robot, const grobo_robot_order
     return target;
 }
 
-/* Builds part `part` of the frames; the only calls of these two functions of a driver. */
+/* Builds part `part` of the frames; the only calls of these functions of a driver. */
 static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, const saying *says,
                       const grobo_target *target, int part, grobo_exchange *exchange)
 {
     const grobo_driver *driver = robot->driver;
     memset(exchange, 0, offsetof(grobo_exchange, frame));
+#if !GROBO_DRIVERS_PLAIN
+    if (grobo_i_is_of_wheels(robot, order)) {
+        return driver->speed(driver, robot->driver_ctx, says->speeds.joints, says->speeds.rad_s,
+                             part, exchange);
+    }
+#endif
     return order->kind == GROBO_I_ORDER_TORQUE
                ? driver->torque(driver, robot->driver_ctx, says->torqued[order->torque],
                                 (grobo_torque)order->torque, part, exchange)
@@ -523,6 +541,10 @@ static void says_all(const grobo_robot *robot, const grobo_robot_order *order, s
 {
     if (order->kind == GROBO_I_ORDER_TORQUE) {
         says->torqued[order->torque] = order->joints;
+        return;
+    }
+    if (grobo_i_is_of_wheels(robot, order)) {
+        says->speeds.joints = order->joints;
         return;
     }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
@@ -564,7 +586,8 @@ static bool is_built(const grobo_robot_order *order)
 {
     return order->kind == GROBO_I_ORDER_GOAL || order->kind == GROBO_I_ORDER_SEGMENT ||
            order->kind == GROBO_I_ORDER_HALT || order->kind == GROBO_I_ORDER_HOLD ||
-           order->kind == GROBO_I_ORDER_TORQUE;
+           order->kind == GROBO_I_ORDER_TORQUE ||
+           (!GROBO_DRIVERS_PLAIN && order->kind == GROBO_I_ORDER_SPEED);
 }
 
 /* ---- noting ---------------------------------------------------------------------------------- */
@@ -693,8 +716,10 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
         robot->axes[grobo_i_lowest(slot->order.joints)].told_us = robot->now_us;
         return;
     }
+    grobo_joint_mask stopped = grobo_i_wheel_note(robot, &says->speeds);
     switch ((grobo_i_order_kind)slot->order.kind) {
     case GROBO_I_ORDER_NONE:
+    case GROBO_I_ORDER_SPEED:
     case GROBO_I_ORDER_GOAL:
     case GROBO_I_ORDER_HALT:
     case GROBO_I_ORDER_TORQUE:
@@ -717,7 +742,8 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
         break;
     }
     bool halts = slot->order.kind == GROBO_I_ORDER_HALT; /* of its joints those that move */
-    grobo_joint_mask told = halts ? says->target.posture.set : slot->order.joints;
+    grobo_joint_mask told =
+        halts ? says->target.posture.set | says->speeds.joints : slot->order.joints;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(told, j)) {
             robot->axes[j].told_us = robot->now_us;
@@ -725,7 +751,10 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
             robot->axes[j].last = slot->order.number;
         }
     }
-    grobo_i_halt_left(robot, told, halts || slot->order.rests);
+    grobo_i_halt_left(robot, told & ~stopped, halts || slot->order.rests);
+    if (stopped != 0) {
+        grobo_i_halt_left(robot, stopped, true);
+    }
     if (slot->order.kind == GROBO_I_ORDER_GOAL && !slot->order.stops) {
         grobo_i_often_soon(robot);
     }

@@ -10,6 +10,7 @@
 
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
+#include "src/robot/wheel.h"
 
 /* Where the last reading showed nothing the next one waits so long. */
 #define AGAIN_US 40000
@@ -63,9 +64,28 @@ static bool was_elsewhere(const grobo_robot *robot, int joint)
 void grobo_i_astray(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
+    if (grobo_i_is_wheel(robot, joint)) {
+        return; /* its speed shows that it moves */
+    }
     grobo_i_axis_here(axis, robot->now_us);
     axis->trajectory.to_us = grobo_i_later(axis->trajectory.to_us, robot->now_us + ASTRAY_US);
     grobo_i_joint_to(axis, GROBO_I_JOINT_STRAYS);
+}
+
+/* A wheel comes to rest by then where its servo has taken speed 0. */
+#define WHEEL_RESTS_US 300000
+
+/* A wheel stands by two positions alone. */
+static void look_wheel(grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool lost = grobo_i_goal_is_told(axis) && grobo_i_wheel_goal(axis) != 0;
+    bool turns = robot->now_us - axis->told_us > WHEEL_RESTS_US && grobo_i_wheel_is_seen(axis);
+    if (grobo_i_axis_is_limp(axis) || grobo_i_stands(robot, joint)) {
+        robot->halted &= ~GROBO_JOINT_BIT(joint);
+    } else if ((lost || turns) && !is_read_by_a_job(robot)) {
+        grobo_i_gate_halt_again(robot, GROBO_JOINT_BIT(joint));
+    }
 }
 
 void grobo_i_halted_look(grobo_robot *robot, int joint)
@@ -73,6 +93,10 @@ void grobo_i_halted_look(grobo_robot *robot, int joint)
     const grobo_robot_axis *axis = &robot->axes[joint];
     if (!grobo_i_has(robot->halted, joint) || axis->still_us == GROBO_NEVER_US) {
         return; /* this was asked for before */
+    }
+    if (grobo_i_is_wheel(robot, joint)) {
+        look_wheel(robot, joint);
+        return;
     }
     bool taken = grobo_i_goal_is_told(axis) && grobo_i_goal_is_taken(robot, joint);
     bool again = has_lost_it(robot, joint) || was_elsewhere(robot, joint);

@@ -6,6 +6,7 @@
 #include "src/base/instant.h"
 #include "src/robot/often.h"
 #include "src/robot/robot.h"
+#include "src/robot/wheel.h"
 
 #if !GROBO_DRIVERS_PLAIN
 
@@ -13,6 +14,9 @@
 #define MOVES_US 100000
 #define STRAINED_US 50000
 #define LINE_PART 2
+/* Servos of wheels that have a watchdog are heard so often in its time: it may be as short as it
+ * should be, and does not go off where wheels stand. */
+#define WHEELS_PART 3
 
 /* In which all joints are read with half of the line's time. */
 static int64_t line_us(grobo_robot *robot)
@@ -27,15 +31,34 @@ static int64_t line_us(grobo_robot *robot)
     return robot->line_us;
 }
 
+static bool wheels_move(const grobo_robot *robot)
+{
+    bool move = false;
+    for (int j = 0; robot->wheels != 0 && j < robot->driver->model->n_joints; j++) {
+        move = move || (grobo_i_is_wheel(robot, j) && grobo_i_wheel_moves(&robot->axes[j]));
+    }
+    return move;
+}
+
 bool grobo_i_often(const grobo_robot *robot)
 {
     bool moves = grobo_i_in_motion(robot) && grobo_i_moving(robot, robot->now_us);
+    moves = moves || wheels_move(robot);
     bool full = grobo_i_is_playing(robot) && robot->line_us > MOVES_US;
     return (robot->strained != 0 || moves) && !full && !robot->trip.latched;
 }
 
+int64_t grobo_i_often_rest(grobo_robot *robot, int64_t rest_us)
+{
+    int64_t most_us = grobo_i_later(robot->driver->watchdog_us / WHEELS_PART, line_us(robot));
+    bool watched = robot->wheels != 0 && robot->driver->watchdog != NULL &&
+                   robot->driver->watchdog_us > 0 && rest_us != GROBO_SENSE_NEVER;
+    return watched ? grobo_i_sooner(rest_us, most_us) : rest_us;
+}
+
 int64_t grobo_i_often_interval(grobo_robot *robot, int64_t rest_us)
 {
+    rest_us = grobo_i_often_rest(robot, rest_us);
     if (!grobo_i_often(robot)) {
         return rest_us;
     }

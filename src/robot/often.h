@@ -17,6 +17,10 @@ static inline int64_t grobo_i_often_interval(const grobo_robot *robot, int64_t r
     (void)robot;
     return rest_us;
 }
+static inline int64_t grobo_i_often_rest(const grobo_robot *robot, int64_t rest_us)
+{
+    return grobo_i_often_interval(robot, rest_us);
+}
 static inline void grobo_i_often_soon(const grobo_robot *robot)
 {
     (void)robot;
@@ -24,6 +28,8 @@ static inline void grobo_i_often_soon(const grobo_robot *robot)
 #else
 /* True while joints are read more often than they have to be. */
 bool grobo_i_often(const grobo_robot *robot);
+/* How often all joints are read at rest: rest_us, or what the watchdog of wheels needs. */
+int64_t grobo_i_often_rest(grobo_robot *robot, int64_t rest_us);
 /* How often all joints are read; rest_us: at rest. */
 int64_t grobo_i_often_interval(grobo_robot *robot, int64_t rest_us);
 /* A joint is sent somewhere: the next reading is that near. */

@@ -4,6 +4,7 @@
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
+#include "src/robot/wheel.h"
 
 /* How the frames of an order go. */
 typedef struct way_out {
@@ -165,6 +166,7 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
 {
     grobo_target target;
     target.posture = *wanted;
+    target.posture.set &= ~grobo_i_wheels(robot); /* a motion has a column for each joint */
     int result = how->as_is ? GROBO_OK : stabilize(robot, &target.posture);
     if (result >= 0) {
         result = grobo_i_gate_target(robot, &target.posture);
@@ -209,18 +211,28 @@ void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints)
                      &(way_out){GROBO_I_USE_SEGMENT, GROBO_PRIORITY_MOTION, GROBO_NEVER_US});
 }
 
+void grobo_i_gate_speeds(grobo_robot *robot, grobo_joint_mask wheels)
+{
+    grobo_robot_order order = {
+        .joints = wheels, .kind = GROBO_I_ORDER_SPEED, .each = true, .moves = true};
+    (void)send_order(robot, order,
+                     &(way_out){GROBO_I_USE_SPEED, GROBO_PRIORITY_MOTION, GROBO_NEVER_US});
+}
+
 /* ---- halting --------------------------------------------------------------------------------- */
 
 static void send_halt(grobo_robot *robot, grobo_joint_mask joints, bool owed)
 {
-    grobo_robot_order order = {.joints = joints,
-                               .asked_us = robot->now_us,
+    grobo_robot_order order = {.asked_us = robot->now_us,
                                .kind = GROBO_I_ORDER_HALT,
                                .each = true,
                                .stops = true,
                                .owed = owed};
-    (void)send_order(robot, order,
-                     &(way_out){GROBO_I_USE_HALT, GROBO_PRIORITY_STOP, GROBO_NEVER_US});
+    const way_out out = {GROBO_I_USE_HALT, GROBO_PRIORITY_STOP, GROBO_NEVER_US};
+    order.joints = joints & grobo_i_wheels(robot); /* they turn on, others come to their goals */
+    (void)send_order(robot, order, &out);
+    order.joints = joints & ~grobo_i_wheels(robot);
+    (void)send_order(robot, order, &out);
 }
 
 grobo_joint_mask grobo_i_unknown(const grobo_robot *robot)
@@ -259,6 +271,8 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
 {
     grobo_i_slots_cancel(robot, GROBO_I_USE_MOTION);
     grobo_i_slots_cancel(robot, GROBO_I_USE_SEGMENT);
+    grobo_i_slots_cancel(robot, GROBO_I_USE_SPEED);
+    grobo_i_wheels_forget(robot, joints);
     if (!grobo_i_may_halt(robot) || !robot->link) {
         return;
     }
@@ -267,7 +281,7 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         unread |= is_unread(robot, j) ? GROBO_JOINT_BIT(j) : 0;
     }
-    grobo_i_halt_owe(robot, joints & unread);
+    grobo_i_halt_owe(robot, joints & unread & ~grobo_i_wheels(robot));
     joints &= ~robot->halts_owed;
     if (joints != 0) {
         send_halt(robot, joints, false);
@@ -312,9 +326,11 @@ static grobo_priority priority_of_job(const grobo_robot *robot)
 int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk chunk)
 {
     grobo_robot_order order = {.kind = GROBO_I_ORDER_HOLD, .each = true};
+    grobo_joint_mask wheels = joints & grobo_i_wheels(robot);
     int result = GROBO_OK;
-    while (joints != 0 && result >= 0) {
-        order.joints = take_together(robot, &joints, chunk);
+    joints &= ~wheels;
+    while ((joints | wheels) != 0 && result >= 0) {
+        order.joints = take_together(robot, joints != 0 ? &joints : &wheels, chunk);
         result = send_order(robot, order,
                             &(way_out){GROBO_I_USE_PLAIN, GROBO_PRIORITY_USER, GROBO_NEVER_US});
     }

@@ -7,6 +7,7 @@
 
 #include "src/base/sized.h"
 #include "src/robot/robot.h"
+#include "src/robot/wheel.h"
 
 void grobo_i_play_tell(grobo_robot *robot)
 {
@@ -67,7 +68,7 @@ int grobo_i_play_joints(const grobo_robot *robot, const grobo_clip *clip,
     for (int joint; grobo_i_follows_alone(robot, *joints, &joint);) {
         *joints &= ~GROBO_JOINT_BIT(joint);
     }
-    *joints = grobo_i_coupled(robot, *joints);
+    *joints = grobo_i_coupled(robot, *joints) & ~grobo_i_wheels(robot);
     return result;
 }
 

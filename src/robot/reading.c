@@ -6,6 +6,7 @@
 #include "src/base/instant.h"
 #include "src/model/joint.h"
 #include "src/robot/robot.h"
+#include "src/robot/wheel.h"
 
 static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
 {
@@ -31,6 +32,9 @@ static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
     KEEP(GROBO_FIELD_FAST, fast)
     KEEP(GROBO_FIELD_RANGE, low_rad)
     KEEP(GROBO_FIELD_RANGE, high_rad)
+#if !GROBO_DRIVERS_PLAIN
+    KEEP(GROBO_FIELD_GOAL, goal_rad_s)
+#endif
 #undef KEEP
 }
 
@@ -49,6 +53,9 @@ double grobo_i_hold_rad(const grobo_robot *robot, int joint)
     const grobo_i_limits limits = grobo_i_joint_limits(robot, joint);
     double angle_rad = robot->axes[joint].state.angle_rad - correction(robot, joint);
     double outside_rad = grobo_rad_from_deg(GROBO_I_HOLD_OUTSIDE_DEG);
+    if (grobo_i_is_wheel(robot, joint)) {
+        return angle_rad;
+    }
     bool near =
         angle_rad >= limits.min_rad - outside_rad && angle_rad <= limits.max_rad + outside_rad;
     return near ? fmin(fmax(angle_rad, limits.min_rad), limits.max_rad) : (double)NAN;
@@ -77,7 +84,7 @@ static bool take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
         axis->own_until_us = axis->angle_us + (moves || creeps ? left_us : 0);
     }
     return moves && !grobo_i_has_target(axis) && axis->own_until_us <= robot->now_us &&
-           !grobo_i_swings(robot, joint);
+           !grobo_i_swings(robot, joint) && !grobo_i_is_wheel(robot, joint);
 }
 
 /* True if the servo has told since the last frame that its goal is another one; or did so before
@@ -183,7 +190,7 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
         grobo_i_joint_to(axis, stray      ? GROBO_I_JOINT_STRAYS
                                : external ? GROBO_I_JOINT_TURNS
                                           : GROBO_I_JOINT_READ);
-        if (!grobo_i_axis_is_counted(axis)) {
+        if (!grobo_i_axis_is_counted(axis) && !grobo_i_is_wheel(robot, joint)) {
             grobo_i_load_take(robot, joint, got);
         }
         if (!grobo_i_has_target(axis)) {
@@ -219,7 +226,8 @@ static void take_speed(const grobo_robot *robot, int joint, int64_t read_us, gro
     const unsigned both = GROBO_FIELD_ANGLE | GROBO_FIELD_SPEED;
     if (GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
         (got->valid & both) == GROBO_FIELD_ANGLE && us >= SPEED_LEAST_US && us <= SPEED_MOST_US) {
-        double way_deg = grobo_deg_from_rad(got->angle_rad - axis->state.angle_rad);
+        double way_rad = got->angle_rad - axis->state.angle_rad;
+        double way_deg = grobo_deg_from_rad(grobo_i_wheel_apart(robot, joint, way_rad));
         got->speed_dps = (int32_t)(way_deg * 1e6 / (double)us);
         got->valid |= GROBO_FIELD_SPEED;
     }

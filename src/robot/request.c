@@ -8,6 +8,7 @@
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
+#include "src/robot/wheel.h"
 
 /* May a job of this kind begin now? */
 static int admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask joints, bool moves)
@@ -182,9 +183,13 @@ static void singly(grobo_robot_request *request)
     }
 }
 
-/* True of a target for a joint that follows another one, and not for that. */
+/* True of a target for a joint that follows another one, and not for that; and for a wheel. */
 static bool follows_alone(grobo_robot *robot, const grobo_posture *target)
 {
+    if ((target->set & grobo_i_wheels(robot)) != 0) {
+        robot->fault_joint = grobo_i_lowest(target->set & grobo_i_wheels(robot));
+        return true;
+    }
     return grobo_i_follows_alone(robot, target->set, &robot->fault_joint);
 }
 
@@ -704,7 +709,7 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on)
         return grobo_robot_torque(robot, joints, GROBO_TORQUE_ON);
     }
     grobo_i_begin(robot);
-    joints = grobo_i_coupled(robot, joints);
+    joints = grobo_i_coupled(robot, joints) & ~grobo_i_wheels(robot); /* a wheel without torque */
     /* Beside no job: one that is under way may still send joints to where they were. */
     int result = admit(robot, GROBO_JOB_PLAY, 0, true);
     if (result >= 0 && grobo_i_is_playing(robot)) {

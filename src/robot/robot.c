@@ -10,6 +10,7 @@
 #include "src/robot/blocked.h"
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
+#include "src/robot/wheel.h"
 
 #define STALL_US 250000
 #define EXIT_BOUND_US 10000000
@@ -115,6 +116,10 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
         if (!GROBO_DRIVERS_PLAIN && grobo_i_joint_follows(driver->model, j)) {
             robot->followers |= GROBO_JOINT_BIT(j);
         }
+#if !GROBO_DRIVERS_PLAIN
+        robot->wheels |= grobo_i_joint_is_wheel(driver->model, j) ? GROBO_JOINT_BIT(j) : 0;
+        axis->stalled_us = GROBO_NEVER_US;
+#endif
     }
     robot->trip.joint = robot->fault_joint = -1;
     robot->now_us = robot->sense_us = now_us;
@@ -215,6 +220,7 @@ static void step(grobo_robot *robot)
 {
     grobo_bus_step(&robot->bus, robot->now_us);
     grobo_i_segments_step(robot);
+    grobo_i_wheels_step(robot);
     grobo_i_play_step(robot);
     grobo_i_play_reserve(robot);
     grobo_i_job_run(robot);
@@ -259,6 +265,9 @@ static int64_t deadline(const grobo_robot *robot, int64_t now_us)
     int64_t at_us = grobo_bus_deadline(&robot->bus, now_us);
     at_us = grobo_i_sooner(at_us, grobo_sequencer_deadline(&robot->sequencer));
     at_us = grobo_i_sooner(at_us, grobo_i_segments_deadline(robot));
+    if (grobo_i_wheels(robot) != 0) {
+        at_us = grobo_i_sooner(at_us, grobo_i_wheels_deadline(robot));
+    }
     at_us = grobo_i_sooner(at_us, grobo_i_job_deadline(robot));
     at_us = grobo_i_sooner(at_us, grobo_i_queue_deadline(robot));
     at_us = grobo_i_sooner(at_us, grobo_i_halted_deadline(robot));
@@ -291,6 +300,7 @@ void grobo_robot_link_up(grobo_robot *robot, int64_t now_us)
         robot->sense_us = robot->now_us;
         robot->round = grobo_i_all_joints(robot);
         tell_kind(robot, GROBO_EVENT_LINK_UP);
+        grobo_i_wheels_link(robot, true);
         if (robot->stop_owed) {
             (void)grobo_i_estop_start(robot);
         }
@@ -301,6 +311,7 @@ void grobo_robot_link_up(grobo_robot *robot, int64_t now_us)
 /* What was known of the servos before the line went may be wrong when it comes back. */
 static void forget(grobo_robot *robot)
 {
+    grobo_i_wheels_link(robot, false);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         grobo_i_joint_to(axis, GROBO_I_JOINT_FORGET);

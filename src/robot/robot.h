@@ -18,6 +18,7 @@
  *   reading.c    what a reading tells of a joint
  *   trajectories.c       trajectories that are told in segments
  *   speed.c      where targets may be, and how fast joints may go there
+ *   wheel.c      speeds of wheels: judged and noted
  *   gate.c       the only way to motors: judges and notes each order as its frame leaves
  *   orders.c     orders to motors: into frames that wait for the line
  *   halted.c     reads back what was halted, and repeats what was lost
@@ -27,6 +28,7 @@
  *   blocked.c    judges angles: joints that are held up or overloaded
  *   watch.c      judges readings
  *   play.c       the sequencer's frames, on time
+ *   drive.c      wheels that turn: asked for, told again in time, ended
  *   segments.c   long moves told in parts, in time
  *   sense.c      when the background reads which joint, free mode
  *   steps.c      the steps that scripts are made of
@@ -324,6 +326,7 @@ typedef enum grobo_i_use {
     GROBO_I_USE_MOTION,  /* a target; a played one if it has a due time */
     GROBO_I_USE_SEGMENT, /* further on the trajectories of targets that have left */
     GROBO_I_USE_HALT,    /* what moves is to stop */
+    GROBO_I_USE_SPEED,   /* wheels turn on */
     GROBO_I_USE_PLAIN    /* sent for its effect; a later reading shows whether it took */
 } grobo_i_use;
 
@@ -338,7 +341,8 @@ typedef enum grobo_i_order_kind {
     GROBO_I_ORDER_RAW,      /* what the driver reads in a frame of the user's */
     GROBO_I_ORDER_UNKNOWN,  /* nobody can read what: a raw frame, a motion of the robot's own */
     GROBO_I_ORDER_SETTING,  /* a goal means something else to these afterwards */
-    GROBO_I_ORDER_COMMAND   /* a servo is busy with itself; `joints` restart without torque */
+    GROBO_I_ORDER_COMMAND,  /* a servo is busy with itself; `joints` restart without torque */
+    GROBO_I_ORDER_SPEED     /* wheels go on to the speeds that they were asked for */
 } grobo_i_order_kind;
 
 /* The index of a free slot, or -1; there is always one for a halt. */
@@ -559,6 +563,9 @@ int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torqu
                         grobo_i_chunk chunk);
 /* True if all of these were sensed and hold. */
 bool grobo_i_gate_ready(const grobo_robot *robot, grobo_joint_mask joints);
+
+/* Tells these wheels the speeds that they were asked for. */
+void grobo_i_gate_speeds(grobo_robot *robot, grobo_joint_mask wheels);
 
 /* ---- halted.c -------------------------------------------------------------------------------- */
 

@@ -447,10 +447,20 @@ static int ask_sleeper(grobo_robot *robot, grobo_robot_slot *slot)
                                 &robot->built);
 }
 
+/* True while joints whose first reading takes several exchanges wait for it: asked all at once,
+ * they would be asked for the first part alone. */
+static bool is_apart(const grobo_robot *robot)
+{
+    int unknown;
+    return GROBO_I_EXTRA(robot->driver, sense_more) != NULL &&
+           !grobo_i_all_sensed(robot, grobo_i_all_joints(robot), &unknown);
+}
+
 /* Joints that were halted in turn with all others: one that is silent hides none. */
 static int ask_some(grobo_robot *robot, grobo_robot_slot *slot)
 {
-    bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL && robot->free_joints == 0;
+    bool many = GROBO_I_EXTRA(robot->driver, sense_many) != NULL && robot->free_joints == 0 &&
+                !is_apart(robot);
     robot->halted_read =
         !is_urgent(robot) && grobo_i_halted_due(robot) && !(robot->halted_read && is_due(robot));
     if (robot->halted_read) {

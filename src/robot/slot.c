@@ -338,7 +338,8 @@ void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, boo
 {
     for (int i = 0; i < robot->slots_end; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
-        bool goal = slot->use == GROBO_I_USE_MOTION || slot->use == GROBO_I_USE_SEGMENT;
+        bool goal = slot->use == GROBO_I_USE_MOTION || slot->use == GROBO_I_USE_SEGMENT ||
+                    (!GROBO_DRIVERS_PLAIN && slot->use == GROBO_I_USE_SPEED);
         bool meant =
             (slot->order.joints & joints) != 0 || (played && slot->due_us != GROBO_NEVER_US);
         if (goal && meant && waits(slot) && !brings_rest(slot)) {

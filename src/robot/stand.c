@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "src/robot/robot.h"
+#include "src/robot/wheel.h"
 
 #define STANDS_RAD (0.5 * 0.017453292519943295)
 #define CREEPS_RAD_S (0.9 * 0.017453292519943295)
@@ -47,7 +48,8 @@ void grobo_i_stand_seen(grobo_robot *robot, int joint, int64_t asked_us, double 
     }
     bool known = is_since_stop(robot, axis->still_us) && grobo_i_is_sensed(axis) &&
                  asked_us - axis->stood_us <= GROBO_WATCH_US;
-    if (!known || fabs(angle_rad - axis->still_rad) > still_rad(robot, joint)) {
+    double by_rad = grobo_i_wheel_apart(robot, joint, angle_rad - axis->still_rad);
+    if (!known || fabs(by_rad) > still_rad(robot, joint)) {
         axis->still_rad = angle_rad;
         axis->still_us = robot->now_us;
     }
@@ -65,6 +67,10 @@ bool grobo_i_stands(const grobo_robot *robot, int joint)
     bool known = grobo_i_is_sensed(axis) && is_since_stop(robot, axis->still_us);
     bool there = axis->goal_is_read && is_since_stop(robot, axis->goal_us) &&
                  fabs(axis->state.goal_rad - axis->state.angle_rad) <= still_rad(robot, joint);
+    if (grobo_i_is_wheel(robot, joint)) { /* it may come by the same place again */
+        there = false;
+        known = known && !grobo_i_wheel_turns(axis);
+    }
     return known && (there || axis->stood_us - axis->still_us >= grobo_i_stand_us(robot, joint));
 }
 

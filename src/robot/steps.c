@@ -11,8 +11,10 @@
 #include <grobo/core/robot.h>
 
 #include "src/base/instant.h"
+#include "src/robot/often.h"
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
+#include "src/robot/wheel.h"
 
 /* Rounds of writing again; a line that loses a byte in a hundred needs some. */
 #define ROUNDS 10
@@ -329,7 +331,7 @@ static int step_watchdog_clear(grobo_robot *robot)
 /* It must not go off between two readings: a whole goal is followed by nothing else. */
 static int step_watchdog_set(grobo_robot *robot)
 {
-    int64_t interval_us = robot->config.sense_interval_us;
+    int64_t interval_us = grobo_i_often_rest(robot, robot->config.sense_interval_us);
     if (interval_us == GROBO_SENSE_NEVER) {
         return GROBO_I_NEXT;
     }
@@ -433,7 +435,8 @@ static int step_torque_check(grobo_robot *robot)
                 !grobo_i_has_target(axis)) { /* or it was sent on its trajectory since it holds */
                 grobo_i_axis_rest(axis, robot->now_us);
             }
-            grobo_i_joint_to(axis, on ? GROBO_I_JOINT_ON : GROBO_I_JOINT_OFF);
+            bool holds = on && !grobo_i_is_wheel(robot, j); /* a wheel is sent nowhere */
+            grobo_i_joint_to(axis, holds ? GROBO_I_JOINT_ON : GROBO_I_JOINT_OFF);
         }
     }
     job->pending = bad;
@@ -749,8 +752,8 @@ static bool arrives(grobo_robot *robot, int joint)
 
 static bool creeps_to_its_goal(const grobo_robot *robot, int joint)
 {
-    if (GROBO_DRIVERS_PLAIN) {
-        return false; /* none of them tells that it turns (grobo_i_axis_tells_turn()) */
+    if (GROBO_DRIVERS_PLAIN || grobo_i_is_wheel(robot, joint)) {
+        return false; /* plain ones do not tell that they turn (grobo_i_axis_tells_turn()) */
     }
     const grobo_robot_axis *axis = &robot->axes[joint];
     double left_rad = axis->state.goal_rad - grobo_i_load(axis) - axis->seen_rad;
@@ -879,7 +882,7 @@ static int step_aim_rest(grobo_robot *robot)
     for (int j = 0; driver->rest_rad != NULL && j < driver->model->n_joints; j++) {
         job->target.angle_rad[j] = driver->rest_rad[j];
     }
-    job->target.set = joints_with(robot, job->joints, GROBO_TORQUE_ON);
+    job->target.set = joints_with(robot, job->joints & ~grobo_i_wheels(robot), GROBO_TORQUE_ON);
     int64_t takes_us = grobo_i_gate_soft_us(robot, &job->target);
     if (takes_us != GROBO_NEVER_US && takes_us > job->bound_us - robot->now_us) {
         return GROBO_ERR_TIMEOUT;

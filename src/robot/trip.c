@@ -2,6 +2,7 @@
 /* Stops for safety. */
 #include "src/base/assert.h"
 #include "src/robot/robot.h"
+#include "src/robot/wheel.h"
 
 static const char *const trip_names[] = {
     [GROBO_TRIP_NONE] = "none",
@@ -62,6 +63,7 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
         robot->trip = event.u.trip;
         robot->free_joints = 0;
     }
+    grobo_i_wheels_forget(robot, latched ? grobo_i_all_joints(robot) : 0);
     grobo_i_slots_cancel_goals(robot, grobo_i_all_joints(robot), true);
     robot->counters.trips++;
     grobo_i_tell(robot, &event);

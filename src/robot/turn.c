@@ -133,6 +133,7 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
         }
         break;
     case GROBO_I_USE_SEGMENT:
+    case GROBO_I_USE_SPEED:
         slot->robot->counters.motion_frames += result >= 0;
         break;
     case GROBO_I_USE_MOTION:

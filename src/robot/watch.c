@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Judges what is read, and stops for safety. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "src/robot/blocked.h"
 #include "src/robot/robot.h"
+#include "src/robot/wheel.h"
 
 /* So many readings of a low voltage in a row, of whatever joints: they share a battery. */
 #define LOW_READINGS 3
@@ -85,6 +87,43 @@ static void watch_apart(grobo_robot *robot, int joint, const grobo_joint_state *
     }
 }
 
+#if !GROBO_DRIVERS_PLAIN
+/* A wheel that was told at least so much, and turns at less than that part of it for so long, is
+ * held fast. */
+#define BLOCKED_RAD_S (20 * 0.017453292519943295)
+#define BLOCKED_PART 8
+#define BLOCKED_US 1000000
+
+static void look_at_wheel(grobo_robot *robot, int joint)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    const unsigned speed = GROBO_FIELD_SPEED;
+    double told_rad_s = fabs(axis->told_rad_s);
+    double seen_rad_s = grobo_rad_from_deg(abs(axis->state.speed_dps));
+    bool slow = (axis->state.valid & speed) != 0 && told_rad_s >= BLOCKED_RAD_S &&
+                !grobo_i_axis_is_limp(axis) && seen_rad_s * BLOCKED_PART < told_rad_s;
+    if (!slow) {
+        axis->stalled_us = GROBO_NEVER_US;
+    } else if (axis->stalled_us == GROBO_NEVER_US) {
+        axis->stalled_us = robot->now_us;
+    } else if (robot->now_us - axis->stalled_us >= BLOCKED_US) {
+        axis->stalled_us = GROBO_NEVER_US;
+        grobo_i_trip(robot, GROBO_TRIP_BLOCKED, joint, axis->state.speed_dps, true);
+    }
+}
+#endif
+
+static void watch_way(grobo_robot *robot, int joint, const grobo_joint_state *got)
+{
+#if !GROBO_DRIVERS_PLAIN
+    if (grobo_i_is_wheel(robot, joint)) {
+        look_at_wheel(robot, joint);
+        return;
+    }
+#endif
+    grobo_i_blocked_look(robot, joint, got);
+}
+
 void grobo_i_watch_reading(grobo_robot *robot, int joint, const grobo_joint_state *got)
 {
     watch_heat(robot, joint, got);
@@ -92,7 +131,7 @@ void grobo_i_watch_reading(grobo_robot *robot, int joint, const grobo_joint_stat
     watch_voltage(robot, joint, got);
     watch_torque(robot, joint, got);
     watch_apart(robot, joint, got);
-    grobo_i_blocked_look(robot, joint, got);
+    watch_way(robot, joint, got);
 }
 
 void grobo_i_watch_lost(grobo_robot *robot, int joint)

@@ -57,12 +57,23 @@ static bool times_sound(const grobo_driver *driver)
            driver->accel_rad_s2 >= 0;
 }
 
+static bool has_speed(const grobo_driver *driver)
+{
+#if GROBO_DRIVERS_PLAIN
+    (void)driver;
+    return false;
+#else
+    return GROBO_I_MEMBER(driver, driver->size, speed) != NULL;
+#endif
+}
+
 static bool joints_sound(const grobo_driver *driver)
 {
     for (int j = 0; j < driver->model->n_joints; j++) {
         uint8_t id = grobo_i_joint(driver->model, j)->motor;
         bool limits = grobo_i_joint(driver->model, j)->torque_limit_pct > 0;
-        if ((limits && driver->torque_limit == NULL) || id < driver->protocol->id_min ||
+        bool turns = !grobo_i_joint_is_wheel(driver->model, j) || has_speed(driver);
+        if (!turns || (limits && driver->torque_limit == NULL) || id < driver->protocol->id_min ||
             id > driver->protocol->id_max) {
             return false;
         }

@@ -447,7 +447,7 @@ static int init_servo(grobo_sim *sim, int index)
     servo->stop_min_mdeg = shaft_mdeg(joint, reversed ? joint->max_rad : joint->min_rad);
     servo->stop_max_mdeg = shaft_mdeg(joint, reversed ? joint->min_rad : joint->max_rad);
     servo->from_mdeg = servo->to_mdeg = start_mdeg(sim, servo, joint);
-    if (sim->config.no_stops) {
+    if (sim->config.no_stops || grobo_i_joint_is_wheel(sim->config.model, index)) {
         servo->stop_max_mdeg =
             servo->family->turns_mdeg != 0 ? servo->family->turns_mdeg : WHEEL_MDEG;
         servo->stop_min_mdeg = -servo->stop_max_mdeg;

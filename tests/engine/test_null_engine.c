@@ -11,6 +11,7 @@
 #include <grobo/core/sim_static.h>
 #include <grobo/core/static.h>
 #include <grobo/core/team.h>
+#include <grobo/core/wheel.h>
 
 #include "tests/support/tables.h"
 #include "tests/support/test.h"
@@ -145,6 +146,8 @@ TEST(robot_refuses_null_in_its_second_functions)
     REFUSES(grobo_robot_exit(NULL, 0));
     REFUSES(grobo_robot_estop(NULL));
     REFUSES(grobo_robot_latch(NULL));
+    REFUSES(grobo_robot_drive(NULL, 1, (const double[1]){0}));
+    REFUSES(grobo_robot_wheel(NULL, 0, &(grobo_wheel_info){.asked_rad_s = 0}));
     REFUSES(grobo_robot_reset(NULL));
     REFUSES(grobo_robot_cancel(NULL));
     REFUSES(grobo_robot_play(NULL, &clip, &play_options));

@@ -18,6 +18,7 @@
 #include <grobo/core/robot_plant.h>
 #include <grobo/core/rs30x.h>
 #include <grobo/core/unit.h>
+#include <grobo/core/wheel.h>
 #include <grobo/robot_file.h>
 
 #include "tests/support/tables.h"
@@ -313,6 +314,7 @@ TEST(model_refuses_null)
     REFUSES(grobo_model_check(NULL));
     assert_true(grobo_model_take_slack(NULL, 1, 0) == 0);
     assert_int_equal(grobo_model_unit(NULL, 0), GROBO_UNIT_DEG);
+    assert_int_equal(grobo_model_wheels(NULL), 0);
     assert_true(isnan(grobo_model_value(NULL, 0, 1)));
     assert_true(isnan(grobo_model_angle(NULL, 0, 1)));
     assert_true(isnan(grobo_model_change(NULL, 0, 1)));

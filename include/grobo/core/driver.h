@@ -85,6 +85,9 @@ typedef struct grobo_joint_state {
     double low_rad;        /**< range of a calibrated joint, by the limits that its servo keeps */
     double high_rad;
     grobo_setup_fault setup; /**< of a joint that was read with GROBO_ERR_SETUP */
+#if !GROBO_DRIVERS_PLAIN
+    double goal_rad_s; /**< of a wheel, in place of goal_rad: the speed that the servo was told */
+#endif
 } grobo_joint_state;
 
 /* ---- the table ----------------------------------------------------------------------------- */
@@ -266,6 +269,15 @@ struct grobo_driver {
      */
     int (*timed_posture)(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
                          grobo_exchange *exchange);
+#if !GROBO_DRIVERS_PLAIN
+    /**
+     * Has wheels turn at these speeds, in rad/s by joint, from now on; 0: they stand. Switches no
+     * torque on. parse() has read that their servos are wheels, see grobo_joint.wheel. NULL: a
+     * model with a wheel is refused.
+     */
+    int (*speed)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, const double *rad_s,
+                 int part, grobo_exchange *exchange);
+#endif
 };
 
 /**

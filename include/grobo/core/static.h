@@ -152,11 +152,16 @@ typedef struct grobo_robot_axis {
 #if !GROBO_DRIVERS_PLAIN
     double block_rad, block_set_rad; /* where it was found to stand, and its set point then; */
     double block_load_rad;           /* its error, where that set point stood */
-    int64_t block_us;  /* when that was there last; GROBO_NEVER_US: nothing is known of it */
-    double over_rad;   /* nearest to its set point since it is further away than weight has it, */
-    int64_t over_us;   /* and when; GROBO_NEVER_US: it is not */
-    int64_t looked_us; /* when it was judged last */
-    bool was_near;     /* it was seen nearer than that since it is */
+    int64_t block_us;   /* when that was there last; GROBO_NEVER_US: nothing is known of it */
+    double over_rad;    /* nearest to its set point since it is further away than weight has it, */
+    int64_t over_us;    /* and when; GROBO_NEVER_US: it is not */
+    int64_t looked_us;  /* when it was judged last */
+    bool was_near;      /* it was seen nearer than that since it is */
+    double asked_rad_s; /* of a wheel: the speed asked for, */
+    int64_t asked_until_us; /* and until when that holds */
+    double told_rad_s;      /* the speed that a frame told it last, */
+    int64_t told_speed_us;  /* and when that left */
+    int64_t stalled_us;     /* it turns far too slowly since then; GROBO_NEVER_US: it does not */
 #endif
 } grobo_robot_axis;
 
@@ -276,6 +281,10 @@ struct grobo_robot {
 #if !GROBO_DRIVERS_PLAIN
     grobo_joint_mask strained; /* further from their set point than their load explains */
     int64_t line_us; /* in which all joints are read with half of the line's time; 0: not found */
+    grobo_joint_mask wheels;
+    grobo_joint_mask wheels_owed; /* turned when the line was lost */
+    int64_t wheels_us;            /* when wheels that turn are told their speeds next, */
+    int64_t wheels_told_us;       /* and were last */
 #endif
     int64_t stop_us; /* when the last exit or emergency stop was asked for; 0: none was */
     uint8_t reply[GROBO_FRAME_MAX_BYTES];

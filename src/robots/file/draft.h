@@ -37,7 +37,7 @@ typedef struct grobo_i_motor_draft {
 
 typedef struct grobo_i_joint_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
-    grobo_i_name name, servo, mirror, follows;
+    grobo_i_name name, type, servo, mirror, follows;
     double servos[2], signs[2], apart_deg, ratio;
     int twin; /* of its second servo, which is a joint of its own: the first one; else -1 */
     double id, limits_deg[2], init_deg, rest_deg, speed_deg_s, torque_limit_pct, free_ma, sign,
@@ -45,6 +45,7 @@ typedef struct grobo_i_joint_draft {
     /* Of a linear joint, which have degrees in their place when the joint is read; and angles of a
      * gripper that is closed and open. */
     double limits_mm[2], init_mm, rest_mm, speed_mm_s, mm_per_turn, percent_deg[2];
+    double accel_deg_s2; /* of a wheel */
     bool turns;
     grobo_i_motor_draft motor;
 } grobo_i_joint_draft;

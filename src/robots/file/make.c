@@ -158,6 +158,14 @@ static const grobo_servo_model *servo_called(const maker *m, const char *name, g
     return NULL;
 }
 
+static bool is_wheel(const maker *m, int j)
+{
+    return strcmp(m->draft->joint[j].type, "wheel") == 0;
+}
+
+/* A wheel comes to its full speed in this time where the file says nothing. */
+#define WHEEL_RAMP_S 0.5
+
 /* The joint's servo, and its speed where the file says none. */
 static void find_servo(const maker *m, int j, grobo_joint *joint)
 {
@@ -169,6 +177,10 @@ static void find_servo(const maker *m, int j, grobo_joint *joint)
         joint->servo_model = joint->servo->number;
         joint->max_speed_rad_s =
             grobo_rad_from_deg(joint_has(m, j, "speed_deg_s") ? draft->speed_deg_s : own_deg_s);
+        joint->accel_rad_s2 = !is_wheel(m, j) ? 0
+                              : joint_has(m, j, "accel_deg_s2")
+                                  ? grobo_rad_from_deg(draft->accel_deg_s2)
+                                  : joint->max_speed_rad_s / WHEEL_RAMP_S;
     }
 }
 
@@ -267,6 +279,10 @@ static void check_coupling(const maker *m, int j)
 static void make_limits(const maker *m, int j, grobo_joint *joint)
 {
     const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    if (is_wheel(m, j)) {
+        joint->wheel = true;
+        return; /* it goes to no angle */
+    }
     if (follows(m, j)) {
         return; /* they are those of the joint that it follows */
     }
@@ -400,6 +416,20 @@ static void check_mirrors(const maker *m)
     }
 }
 
+/* A servo can do nothing that its joint asks for. */
+static void refuse_servo(const maker *m, int j)
+{
+    const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    if (m->file->joints[j].wheel) {
+        (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "wheel", joint_place(m, j, "type"),
+                               "%s: a %s cannot be a wheel: it has no mode for speeds", draft->name,
+                               draft->servo);
+        return;
+    }
+    (void)complain(m, joint_place(m, j, "limits_deg"), "limits",
+                   "%s: its servo does not reach these limits", draft->name);
+}
+
 /* The family takes joints one by one here, to find the one that it refuses. */
 static void check_servos(maker *m)
 {
@@ -447,8 +477,7 @@ static void check_servos(maker *m)
                                       "%s: an id from %d to %d is wanted", joint.name,
                                       protocol->id_min, protocol->id_max);
         } else if (result < 0) {
-            (void)complain(m, joint_place(m, j, "limits_deg"), "limits",
-                           "%s: its servo does not reach these limits", joint.name);
+            refuse_servo(m, j);
         }
     }
 }

@@ -117,6 +117,7 @@ static const key_row safety_keys[] = {
 
 static const key_row joint_keys[] = {
     NEEDED("name", JOINT, name),
+    NAME("type", JOINT, type),
     {.name = "id",
      .kind = KEY_WHOLE,
      .count = 1,
@@ -153,6 +154,7 @@ static const key_row joint_keys[] = {
     NUMBER("init_deg", JOINT, init_deg, -360000, 360000),
     NUMBER("rest_deg", JOINT, rest_deg, -360000, 360000),
     NUMBER("speed_deg_s", JOINT, speed_deg_s, 1, 10000),
+    NUMBER("accel_deg_s2", JOINT, accel_deg_s2, 1, 1000000),
     WHOLE("torque_limit_pct", JOINT, torque_limit_pct, 1, 100),
     WHOLE("free_ma", JOINT, free_ma, 0, 60000),
     WHOLE("sign", JOINT, sign, -1, 1),
@@ -487,6 +489,43 @@ static int take_mm(grobo_i_events *events, grobo_i_joint_draft *joint)
     return result;
 }
 
+/* What a joint that turns on and on cannot have: it goes to no angle. */
+static const char *const not_of_wheels[] = {
+    "servos",      "limits_deg", "limits_mm", "mm_per_turn", "init_mm",   "rest_mm",
+    "percent_deg", "init_deg",   "rest_deg",  "signs",       "apart_deg", "follows",
+    "ratio",       "zero_deg",   "turns",     "readback_deg"};
+
+static int check_type(grobo_i_events *events, const grobo_i_joint_draft *joint, bool *wheel)
+{
+    const size_t n = sizeof not_of_wheels / sizeof not_of_wheels[0];
+    const grobo_i_place accel = joint->at[index_of(GROBO_I_BLOCK_JOINT, "accel_deg_s2")];
+    bool typed = grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "type");
+    int result = 0;
+    *wheel = typed && strcmp(joint->type, "wheel") == 0;
+    if (typed && !*wheel && *joint->type != '\0') {
+        return grobo_i_complain_word(events->reader,
+                                     joint->at[index_of(GROBO_I_BLOCK_JOINT, "type")],
+                                     "type of joint called", joint->type, "wheel");
+    }
+    for (size_t i = 0; *wheel && i < n && result == 0; i++) {
+        const grobo_i_place at = joint->at[index_of(GROBO_I_BLOCK_JOINT, not_of_wheels[i])];
+        result = at.line == 0
+                     ? 0
+                     : grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "keys", at,
+                                        "%s: a wheel has no '%s'", joint->name, not_of_wheels[i]);
+    }
+    return *wheel || accel.line == 0 || result < 0
+               ? result
+               : grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "keys", accel,
+                                  "%s: 'accel_deg_s2' needs 'type: wheel'", joint->name);
+}
+
+static int check_wheel(grobo_i_events *events, const grobo_i_joint_draft *joint)
+{
+    bool id = grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "id");
+    return id ? 0 : missing(events, joint, "id");
+}
+
 /* Keys of a joint of which one makes another needless. */
 static int check_joint(grobo_i_events *events, const grobo_i_joint_draft *joint)
 {
@@ -551,7 +590,9 @@ static int read_joint(grobo_i_events *events, void *target)
     joint->twin = -1;
     result = read_block(events, GROBO_I_BLOCK_JOINT, joint, joint->at, &joint->place);
     result = result == 0 ? take_mm(events, joint) : result;
-    result = result == 0 ? check_joint(events, joint) : result;
+    bool wheel = false;
+    result = result == 0 ? check_type(events, joint, &wheel) : result;
+    result = result != 0 ? result : wheel ? check_wheel(events, joint) : check_joint(events, joint);
     bool two = result == 0 && grobo_i_has_key(GROBO_I_BLOCK_JOINT, joint->at, "servos");
     return two ? add_twin(events, draft) : result;
 }

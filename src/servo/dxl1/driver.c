@@ -4,6 +4,7 @@
 
 #include "src/servo/dxl1/driver.h"
 #include "src/servo/tables.h"
+#include "src/servo/unit.h"
 
 /* MX count turns with both limits there; both 0 make a wheel (emanual mx_angle_limit). */
 #define TURNS_LIMITS 4095
@@ -54,6 +55,21 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
     return role == GROBO_ROLE_MODE ? 0 : found & ~DRIVE_REVERSE;
 }
 
+/* Both limits 0 make a wheel. The speed of AX is then an output, that of MX a speed; its sense is
+ * in bit 10 (emanual ax-12a and mx-64, moving_speed). */
+static bool wheel(const grobo_servo_model *servo, grobo_i_wheel *to)
+{
+    enum { SPEED_MOST = 1023, SPEED_BACK = 1024, TURN_DEG = 360 };
+    double unit = grobo_i_register_unit(grobo_servo_register_of(servo, GROBO_ROLE_SPEED));
+    *to = (grobo_i_wheel){
+        .role = GROBO_ROLE_SPEED,
+        .dps = servo->span_deg == TURN_DEG ? unit : (double)servo->speed_dps / SPEED_MOST,
+        .most = SPEED_MOST,
+        .sign = SPEED_BACK,
+        .by_limits = true};
+    return true;
+}
+
 static bool sync_read(const grobo_servo_model *servo)
 {
     (void)servo;
@@ -67,6 +83,7 @@ static const grobo_i_family family = {
     .build = grobo_i_dxl1_build_as,
     .parse = grobo_i_dxl1_parse_as,
     .wants = wants,
+    .wheel = wheel,
     .turns_limits = TURNS_LIMITS,
     .frame_max_bytes = GROBO_DXL1_FRAME_MAX_BYTES,
     .time_max_ms = 65535,

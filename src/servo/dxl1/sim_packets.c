@@ -9,6 +9,7 @@
 #include <grobo/core/protocol.h>
 
 #include "src/base/bytes.h"
+#include "src/model/joint.h"
 #include "src/servo/dxl1/sim_packets.h"
 #include "src/servo/unit.h"
 #include "src/sim/servo/family.h"
@@ -247,7 +248,17 @@ void grobo_i_dxl1_sim_restart(grobo_sim *sim, int index)
 
 bool grobo_i_dxl1_sim_factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
-    return grobo_i_dxl_sell(sim, index, id, GROBO_DXL1_ID_MAX, baud_bps);
+    grobo_sim_servo *servo = &sim->servo[index];
+    bool sold = grobo_i_dxl_sell(sim, index, id, GROBO_DXL1_ID_MAX, baud_bps);
+    bool wheel = sim->config.mounted && grobo_i_joint_is_wheel(sim->config.model, index);
+    if (sold && wheel && series_of(servo)->wheel_mode) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_MODE, 1);
+    } else if (sold && wheel) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_MIN_POSITION, 0);
+        grobo_i_dxl_put(servo, GROBO_ROLE_MAX_POSITION, 0);
+    }
+    memcpy(servo->flash, servo->reg, sizeof servo->flash);
+    return sold;
 }
 
 /* ---- writing ------------------------------------------------------------------------------- */

@@ -24,6 +24,7 @@ typedef struct grobo_i_dxl1_series {
     bool sync_read;  /* answers a sync read */
     bool bulk_read;  /* answers a bulk read */
     bool ping_turns; /* a ping of all is answered by one after the other */
+    bool wheel_mode; /* MODE 1 makes a wheel of it; else both limits at 0 do */
     double count_ma; /* a count of the present current; 0: it has no such register */
     /* What a count of speed, and of acceleration, is worth. */
     double (*speed_mdeg_s)(const grobo_sim_servo *servo);

@@ -3,6 +3,7 @@
 #include "src/servo/dxl2/series.h"
 #include "src/servo/table/family.h"
 #include "src/servo/tables.h"
+#include "src/servo/unit.h"
 
 /* Bits of the drive mode that say what a goal means: its sense, that it comes with a time, and that
  * it switches torque on, which would wake limp joints. */
@@ -25,6 +26,22 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
     return grips || found == GROBO_DXL2_MODE_GRIP ? GROBO_DXL2_MODE_GRIP
            : joint->turns                         ? GROBO_DXL2_MODE_EXTENDED
                                                   : GROBO_DXL2_MODE_POSITION;
+}
+
+/* Velocity control: a speed of its own, of PRO where that of a goal is (emanual, goal_velocity). */
+static bool wheel(const grobo_servo_model *servo, grobo_i_wheel *to)
+{
+    bool pro = grobo_i_dxl2_series_of(servo) == GROBO_I_DXL2_PRO;
+    grobo_register_role role = pro ? GROBO_ROLE_SPEED : GROBO_ROLE_GOAL_SPEED;
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
+    if (reg == NULL) {
+        return false;
+    }
+    *to = (grobo_i_wheel){.role = role,
+                          .dps = grobo_i_register_unit(reg),
+                          .most = reg->max,
+                          .mode = GROBO_DXL2_MODE_VELOCITY};
+    return true;
 }
 
 static bool sync_read(const grobo_servo_model *servo)
@@ -60,6 +77,18 @@ static int32_t xl320_wants(const grobo_joint *joint, const grobo_servo_model *se
     return role == GROBO_ROLE_MODE ? GROBO_DXL2_MODE_XL320_JOINT : found;
 }
 
+/* An output, its sense in bit 10 (emanual xl320, goal_velocity). */
+static bool xl320_wheel(const grobo_servo_model *servo, grobo_i_wheel *to)
+{
+    enum { OUTPUT_MOST = 1023, OUTPUT_BACK = 1024 };
+    *to = (grobo_i_wheel){.role = GROBO_ROLE_SPEED,
+                          .dps = (double)servo->speed_dps / OUTPUT_MOST,
+                          .most = OUTPUT_MOST,
+                          .sign = OUTPUT_BACK,
+                          .mode = GROBO_DXL2_MODE_XL320_WHEEL};
+    return true;
+}
+
 static const grobo_i_family xl320, pro, family;
 
 static const grobo_i_family *of(const grobo_servo_model *servo)
@@ -79,6 +108,7 @@ static const grobo_i_family family = {
     .build = grobo_dxl2_build,
     .parse = grobo_dxl2_parse,
     .wants = wants,
+    .wheel = wheel,
     .limits_mode = GROBO_DXL2_MODE_POSITION,
     .watchdog_us = 20000,
     .frame_max_bytes = GROBO_DXL2_FRAME_MAX_BYTES,
@@ -98,6 +128,7 @@ static const grobo_i_family family = {
 static const grobo_i_family xl320 = {
     .numbers_errors = true,
     .wants = xl320_wants,
+    .wheel = xl320_wheel,
     .limits_mode = GROBO_DXL2_MODE_XL320_JOINT,
     .overheated = GROBO_DXL2_XL320_OVERHEATED,
     .cuts = 0xFF,
@@ -109,6 +140,7 @@ static const grobo_i_family xl320 = {
 static const grobo_i_family pro = {
     .numbers_errors = true,
     .wants = wants,
+    .wheel = wheel,
     .limits_mode = GROBO_DXL2_MODE_POSITION,
     .overheated = GROBO_DXL2_OVERHEATED,
     .cuts = 0xFF,

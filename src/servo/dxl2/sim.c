@@ -347,7 +347,10 @@ bool grobo_i_dxl2_sim_factory(grobo_sim *sim, int index, uint8_t id, uint32_t ba
         return false;
     }
     grobo_i_indirect_factory(servo);
-    if (sim->config.mounted && !is_xl320(servo)) {
+    bool wheel = sim->config.mounted && grobo_i_joint_is_wheel(sim->config.model, index);
+    if (wheel) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_MODE, 1); /* of XL-320 too */
+    } else if (sim->config.mounted && !is_xl320(servo)) {
         const grobo_joint *joint = grobo_i_joint(sim->config.model, index);
         bool grips = joint->torque_limit_pct > 0 && has_mode(servo, GROBO_DXL2_MODE_GRIP);
         grobo_i_dxl_put(servo, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
@@ -384,7 +387,8 @@ static uint8_t outside_limits(const grobo_sim_servo *servo, const grobo_servo_re
 
 static bool is_goal(const grobo_sim_servo *servo, const grobo_servo_register *reg)
 {
-    return reg->role == GROBO_ROLE_GOAL || reg->role == speed_role(servo) ||
+    bool output = is_xl320(servo) && reg->role == GROBO_ROLE_SPEED; /* of a wheel */
+    return output || reg->role == GROBO_ROLE_GOAL || reg->role == speed_role(servo) ||
            reg->role == GROBO_ROLE_GOAL_CURRENT || reg->role == GROBO_ROLE_GOAL_PWM;
 }
 

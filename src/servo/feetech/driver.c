@@ -4,6 +4,7 @@
 
 #include "src/servo/dxl1/driver.h"
 #include "src/servo/tables.h"
+#include "src/servo/unit.h"
 
 /* The phase says what a count of speed is, and whether positions count turns; only STS and SMS have
  * these bits (FTServo's tables). A servo is turned round by the senses of motor and sensor together
@@ -36,6 +37,26 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
     return (found & ~(int32_t)PHASE_BITS) | (int32_t)bits;
 }
 
+/* STS and HLS have a mode for speeds (FTServo's tables, register 33); SCS are wheels where both
+ * limits are 0, and then take an output of 1023 at most, its sense in bit 10, where a goal's time
+ * is (FTServo's SCSCL::WritePWM). */
+static bool wheel(const grobo_servo_model *servo, grobo_i_wheel *to)
+{
+    enum { OUTPUT_MOST = 1023, OUTPUT_BACK = 1024 };
+    const grobo_servo_register *speed = grobo_servo_register_of(servo, GROBO_ROLE_SPEED);
+    *to = grobo_servo_series(servo) == &grobo_i_sts_table
+              ? (grobo_i_wheel){.role = GROBO_ROLE_SPEED,
+                                .dps = grobo_i_register_unit(speed),
+                                .most = speed->max,
+                                .mode = GROBO_STS_MODE_SPEED}
+              : (grobo_i_wheel){.role = GROBO_ROLE_GOAL_TIME,
+                                .dps = (double)servo->speed_dps / OUTPUT_MOST,
+                                .most = OUTPUT_MOST,
+                                .sign = OUTPUT_BACK,
+                                .by_limits = true};
+    return true;
+}
+
 /* SCS stay silent (LeRobot). */
 static bool sync_read(const grobo_servo_model *servo)
 {
@@ -52,6 +73,7 @@ static const grobo_i_family family = {
     .build = grobo_i_dxl1_build_as,
     .parse = grobo_i_dxl1_parse_as,
     .wants = wants,
+    .wheel = wheel,
     .limits_mode = GROBO_STS_MODE_POSITION,
     .frame_max_bytes = GROBO_DXL1_FRAME_MAX_BYTES,
     .time_max_ms = 32767,

@@ -108,7 +108,7 @@ static int take_eeprom(const grobo_i_family *family, const grobo_joint *joint,
     if (data[0] != GROBO_I_ICS_FIXED || data[GROBO_I_ICS_AT_ID] != joint->motor) {
         return GROBO_ERR_MISMATCH;
     }
-    int result = grobo_i_table_setup(family, joint, &block, state);
+    int result = grobo_i_table_setup(family, joint, NULL, &block, state);
     state->torque = (flags & GROBO_I_ICS_FREE) != 0 ? GROBO_TORQUE_OFF : GROBO_TORQUE_ON;
     state->valid |= GROBO_FIELD_TORQUE;
     return result;

@@ -27,6 +27,19 @@ static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
     return 0;
 }
 
+/* Motor mode: an output of 1000 at most, signed (Bus Servo Communication Protocol,
+ * SERVO_OR_MOTOR_MODE_WRITE). Mode and speed are one frame, and neither is kept: whatever mode the
+ * servo is in, the first speed makes a wheel of it. */
+static bool wheel(const grobo_servo_model *servo, grobo_i_wheel *to)
+{
+    enum { OUTPUT_MOST = 1000 };
+    *to = (grobo_i_wheel){.role = GROBO_ROLE_GOAL_SPEED,
+                          .dps = (double)servo->speed_dps / OUTPUT_MOST,
+                          .most = OUTPUT_MOST,
+                          .mode = 1};
+    return true;
+}
+
 /* ---- frames ---------------------------------------------------------------------------------- */
 
 static int finish(const grobo_driver *self, uint8_t id, uint8_t command, const uint8_t *data,
@@ -67,6 +80,22 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
     return result < 0 ? result : 1;
 }
 
+static int speed(const grobo_driver *self, void *ctx, grobo_joint_mask joints, const double *rad_s,
+                 int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    grobo_i_wheel how;
+    int j = grobo_i_table_joint_of_part(self, joints, part);
+    if (j < 0 || !grobo_i_table_wheel(self, j, &how)) {
+        return j < 0 ? 0 : GROBO_ERR_ARG;
+    }
+    const grobo_joint *joint = grobo_i_joint(self->model, j);
+    uint8_t data[4] = {(uint8_t)how.mode};
+    grobo_i_put_u16(data + 2, (uint16_t)grobo_i_wheel_counts(joint, &how, rad_s[j]));
+    int result = finish(self, joint->motor, GROBO_LX16A_MODE, data, sizeof data, exchange);
+    return result < 0 ? result : 1;
+}
+
 static int torque(const grobo_driver *self, int joint, bool on, grobo_exchange *exchange)
 {
     const uint8_t load = on;
@@ -101,6 +130,36 @@ static int take_goal(const grobo_joint *joint, const grobo_servo_model *servo, c
     return GROBO_OK;
 }
 
+/* The shaft's place of a wheel within one turn: outside of its range a servo tells what it
+ * likes. */
+static int take_wheel_position(const grobo_joint *joint, const grobo_servo_model *servo,
+                               int32_t ticks, grobo_joint_state *state)
+{
+    const grobo_joint shaft = {.sign = joint->sign};
+    state->angle_rad =
+        remainder(grobo_i_table_angle(&shaft, servo, ticks), grobo_rad_from_deg(360));
+    state->valid |= GROBO_FIELD_ANGLE;
+    return GROBO_OK;
+}
+
+/* What a wheel was told; in the other mode it was told nothing. */
+static int take_mode(const grobo_joint *joint, const grobo_i_wheel *how, const uint8_t *data,
+                     grobo_joint_state *state)
+{
+#if GROBO_DRIVERS_PLAIN
+    (void)joint;
+    (void)how;
+    (void)data;
+    (void)state;
+#else
+    if (data[0] == how->mode) {
+        state->goal_rad_s = grobo_i_wheel_rad_s(joint, how, grobo_i_get_i16(data + 2));
+        state->valid |= GROBO_FIELD_GOAL;
+    }
+#endif
+    return data[0] <= 1 ? GROBO_OK : GROBO_ERR_MISMATCH;
+}
+
 static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                  grobo_joint_state *state)
 {
@@ -111,15 +170,25 @@ static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_pac
         grobo_i_item_at(grobo_i_lx16a_items, reply->address, (unsigned)reply->data_bytes);
     const uint8_t *data = reply->data;
     const uint16_t code = item == NULL ? 0 : item->read;
+    grobo_i_wheel how;
+    bool is_wheel = grobo_i_table_wheel(self, joint, &how);
+    if (is_wheel && (code == GROBO_LX16A_MODE_READ || code == GROBO_LX16A_POSITION_READ)) {
+        return code == GROBO_LX16A_MODE_READ
+                   ? take_mode(moved, &how, data, state)
+                   : take_wheel_position(moved, servo, grobo_i_get_i16(data), state);
+    }
     switch (code) {
     case GROBO_LX16A_MODE_READ:
     case GROBO_LX16A_LIMITS_READ:
-        return grobo_i_table_setup(self->family, moved,
+        return grobo_i_table_setup(self->family, moved, is_wheel ? &how : NULL,
                                    &(grobo_i_block){servo, reply->address, data, reply->data_bytes},
                                    state);
     case GROBO_LX16A_POSITION_READ:
         return take_position(moved, servo, grobo_i_get_i16(data), state);
     case GROBO_LX16A_MOVE_READ:
+        if (is_wheel) {
+            return GROBO_OK; /* it goes to no place */
+        }
         return take_goal(moved, servo, data, state);
     case GROBO_LX16A_LOAD_READ:
         state->torque = data[0] == 1 ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF;
@@ -182,7 +251,8 @@ static int inspect_joint(const grobo_driver *self, const grobo_lx16a_packet *pac
         torqued[packet->data[0] == 1 ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF] |= bit;
         return GROBO_OK;
     }
-    if (packet->command != GROBO_LX16A_MOVE || packet->data_bytes != 4 ||
+    if (grobo_i_joint_is_wheel(self->model, joint) || packet->command != GROBO_LX16A_MOVE ||
+        packet->data_bytes != 4 ||
         take_goal(grobo_i_joint(self->model, joint), grobo_i_table_servo(self, joint), packet->data,
                   &state) < 0) {
         return GROBO_ERR_UNSUPPORTED;
@@ -228,9 +298,13 @@ static const uint16_t all[] = {GROBO_LX16A_LOAD_READ,    GROBO_LX16A_MODE_READ,
                                GROBO_LX16A_LIMITS_READ,  GROBO_LX16A_POSITION_READ,
                                GROBO_LX16A_VOLTAGE_READ, GROBO_LX16A_TEMPERATURE_READ,
                                GROBO_LX16A_MOVE_READ,    0};
+/* What a wheel was told stands with its mode. */
+static const uint16_t wheel_goal[] = {GROBO_LX16A_LOAD_READ, GROBO_LX16A_MODE_READ,
+                                      GROBO_LX16A_POSITION_READ, 0};
 
 static const grobo_i_items items = {.family = {.tables = {&grobo_i_lx16a_table},
                                                .wants = wants,
+                                               .wheel = wheel,
                                                .offset_trims = true,
                                                .time_max_ms = TIME_MAX_MS},
                                     .items = grobo_i_lx16a_items,
@@ -238,6 +312,7 @@ static const grobo_i_items items = {.family = {.tables = {&grobo_i_lx16a_table},
                                                [GROBO_SENSE_POSITION] = position,
                                                [GROBO_SENSE_GOAL] = goal,
                                                [GROBO_SENSE_ALL] = all},
+                                    .wheel_goal = wheel_goal,
                                     .check = GROBO_LX16A_ID_READ,
                                     .read = read,
                                     .write = write,
@@ -249,6 +324,9 @@ int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model)
     grobo_driver made =
         GROBO_TABLE(grobo_driver, .goal_energises = true, .tells_no_speed = true,
                     .posture = posture, .parse = parse, .command = command, .inspect = inspect);
+#if !GROBO_DRIVERS_PLAIN
+    made.speed = speed;
+#endif
     int result = grobo_i_items_make(&made, model, &grobo_i_lx16a_protocol, &items);
     return grobo_i_table_give(driver, &made, result);
 }

@@ -31,7 +31,10 @@ static const grobo_i_item *item(uint8_t command)
 /* The offset moves the position that is read against the shaft. */
 static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
 {
-    return grobo_i_dxl_ticks(servo, false, angle_mdeg) - grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
+    enum { TURN_TICKS = 1500 };
+    int32_t ticks =
+        grobo_i_dxl_ticks(servo, false, angle_mdeg) - grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
+    return servo->plant.wheel ? grobo_i_dxl_wrap(ticks, TURN_TICKS) : ticks;
 }
 
 static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)

@@ -452,8 +452,9 @@ int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
-        if (grobo_i_joint(model, j)->torque_limit_pct > 0 || grobo_i_joint(model, j)->calibrated) {
-            return GROBO_ERR_ARG; /* a reading does not show it */
+        if (grobo_i_joint(model, j)->torque_limit_pct > 0 || grobo_i_joint(model, j)->calibrated ||
+            grobo_i_joint_is_wheel(model, j)) {
+            return GROBO_ERR_ARG; /* a reading does not show it, and they have no mode for speeds */
         }
     }
     grobo_driver made =

@@ -107,8 +107,9 @@ static span first_span(const grobo_servo_model *servo, grobo_sense_kind kind)
     return kind == GROBO_SENSE_ALL && is_apart(servo) ? setup_span(servo) : sense_span(servo, kind);
 }
 
-static span goal_span(const grobo_servo_model *servo)
+static span goal_span(const grobo_driver *self, const grobo_servo_model *servo)
 {
+    (void)self;
     span s = {0, 0};
     const grobo_servo_register *goal = grobo_servo_register_of(servo, GROBO_ROLE_GOAL);
     for (size_t i = 0; i < sizeof motion / sizeof motion[0]; i++) {
@@ -155,7 +156,9 @@ static int servos_per_frame(const grobo_driver *self, int bytes)
 
 /* The joints of part `part`: those of a frame have the same registers. */
 static grobo_joint_mask joints_of_part(const grobo_driver *self, grobo_joint_mask joints, int part,
-                                       span (*span_of)(const grobo_servo_model *servo), span *s)
+                                       span (*span_of)(const grobo_driver *self,
+                                                       const grobo_servo_model *servo),
+                                       span *s)
 {
     grobo_joint_mask mine = 0;
     for (; part >= 0; part--) {
@@ -165,7 +168,7 @@ static grobo_joint_mask joints_of_part(const grobo_driver *self, grobo_joint_mas
             if ((joints & GROBO_JOINT_BIT(j)) == 0) {
                 continue;
             }
-            span own = span_of(grobo_i_table_servo(self, j));
+            span own = span_of(self, grobo_i_table_servo(self, j));
             *s = n == 0 ? own : *s;
             if (same(own, *s) && n < servos_per_frame(self, own.to - own.from)) {
                 mine |= GROBO_JOINT_BIT(j);
@@ -246,7 +249,7 @@ static double least_accel(const grobo_driver *self)
         const grobo_joint *joint = grobo_i_joint(self->model, j);
         const grobo_servo_model *servo = grobo_i_table_servo(self, j);
         const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_ACCELERATION);
-        span s = goal_span(servo);
+        span s = goal_span(self, servo);
         bool told = reg != NULL && reg->address >= s.from && reg->address < s.to &&
                     !takes_time(self, servo);
         double ratio = grobo_joint_from_servo(joint, 1) - grobo_joint_from_servo(joint, 0);
@@ -287,10 +290,48 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
     return write_part(self, joints, s, target, put_goal, exchange);
 }
 
+/* ---- wheels ---------------------------------------------------------------------------------- */
+
+/* The register of a wheel's speed; nothing of a servo that cannot be one. */
+static span speed_span(const grobo_driver *self, const grobo_servo_model *servo)
+{
+    const grobo_i_family *family = grobo_i_table_family(self, servo);
+    grobo_i_wheel wheel;
+    span s = {0, 0};
+    if (family->wheel != NULL && family->wheel(servo, &wheel)) {
+        widen(&s, servo, wheel.role);
+    }
+    return s;
+}
+
+static void put_speed(const grobo_driver *self, int joint, const void *what, span s, uint8_t *to)
+{
+    const double *rad_s = what;
+    const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
+    grobo_i_wheel wheel;
+    (void)s;
+    if (grobo_i_table_wheel(self, joint, &wheel)) {
+        int32_t counts =
+            grobo_i_wheel_counts(grobo_i_joint(self->model, joint), &wheel, rad_s[joint]);
+        (void)grobo_servo_register_put(servo, grobo_servo_register_of(servo, wheel.role), counts,
+                                       to);
+    }
+}
+
+static int speed(const grobo_driver *self, void *ctx, grobo_joint_mask joints, const double *rad_s,
+                 int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    span s = {0, 0};
+    joints = joints_of_part(self, joints, part, speed_span, &s);
+    return write_part(self, joints, s, rad_s, put_speed, exchange);
+}
+
 /* ---- torque ---------------------------------------------------------------------------------- */
 
-static span torque_span(const grobo_servo_model *servo)
+static span torque_span(const grobo_driver *self, const grobo_servo_model *servo)
 {
+    (void)self;
     span s = {0, 0};
     widen(&s, servo, GROBO_ROLE_TORQUE);
     return s;
@@ -321,8 +362,9 @@ static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, 
 /* ---- torque limits --------------------------------------------------------------------------- */
 
 /* Nothing of a servo that keeps its limit over power-off: that is its setup. */
-static span limit_span(const grobo_servo_model *servo)
+static span limit_span(const grobo_driver *self, const grobo_servo_model *servo)
 {
+    (void)self;
     int32_t counts;
     span s = {0, 0};
     const grobo_joint any = {.torque_limit_pct = 100};
@@ -349,7 +391,7 @@ static int torque_limit(const grobo_driver *self, void *ctx, grobo_joint_mask jo
     (void)ctx;
     span s = {0, 0};
     for (int j = 0; j < self->model->n_joints; j++) {
-        span own = limit_span(grobo_i_table_servo(self, j));
+        span own = limit_span(self, grobo_i_table_servo(self, j));
         joints &= own.to > 0 ? joints : ~GROBO_JOINT_BIT(j);
     }
     joints = joints_of_part(self, joints, part, limit_span, &s);
@@ -358,8 +400,9 @@ static int torque_limit(const grobo_driver *self, void *ctx, grobo_joint_mask jo
 
 /* ---- watchdog -------------------------------------------------------------------------------- */
 
-static span watchdog_span(const grobo_servo_model *servo)
+static span watchdog_span(const grobo_driver *self, const grobo_servo_model *servo)
 {
+    (void)self;
     span s = {0, 0};
     widen(&s, servo, GROBO_ROLE_WATCHDOG);
     return s;
@@ -380,7 +423,7 @@ static grobo_joint_mask watched(const grobo_driver *self)
 {
     grobo_joint_mask joints = 0;
     for (int j = 0; j < self->model->n_joints; j++) {
-        bool has = watchdog_span(grobo_i_table_servo(self, j)).to > 0;
+        bool has = watchdog_span(self, grobo_i_table_servo(self, j)).to > 0;
         joints |= has ? GROBO_JOINT_BIT(j) : 0;
     }
     return joints;
@@ -537,6 +580,9 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
                     .torque_limit = torque_limit, .sense = sense, .parse = grobo_i_table_parse,
                     .write_kind = grobo_i_table_write_kind, .registers = registers,
                     .command = command, .inspect = grobo_i_table_inspect);
+#if !GROBO_DRIVERS_PLAIN
+    made.speed = family->wheel != NULL || family->of != NULL ? speed : NULL;
+#endif
     int result = grobo_i_table_make(&made, model, protocol, family);
     made.watchdog = result >= 0 && watched(&made) != 0 ? watchdog : NULL;
     made.accel_rad_s2 = result >= 0 ? least_accel(&made) : 0;

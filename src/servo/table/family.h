@@ -18,6 +18,16 @@ typedef enum grobo_i_pace {
     GROBO_I_PACE_SPEED    /* SPEED is a speed: what leads there in this time */
 } grobo_i_pace;
 
+/* How a servo turns on and on. */
+typedef struct grobo_i_wheel {
+    grobo_register_role role; /* of the register that its speed is in */
+    double dps;               /* a count of it, at the servo's output */
+    int32_t most;             /* the largest count */
+    int32_t sign;             /* a bit that says that it turns back; 0: the register has a sign */
+    int32_t mode;             /* what MODE must hold */
+    bool by_limits;           /* both limits 0 make it a wheel, MODE does not */
+} grobo_i_wheel;
+
 typedef struct grobo_i_family {
     const grobo_servo_table *tables[GROBO_I_TABLES];
     /* Frames, as those of DYNAMIXEL 2.0: instructions have the same numbers. parse() is of frames
@@ -29,6 +39,8 @@ typedef struct grobo_i_family {
      * will do. Asked of MODE and DIRECTION. */
     int32_t (*wants)(const grobo_joint *joint, const grobo_servo_model *servo,
                      grobo_register_role role, int32_t found);
+    /* How this servo is a wheel. False: it cannot be one. NULL: none of the family can. */
+    bool (*wheel)(const grobo_servo_model *servo, grobo_i_wheel *wheel);
     /* The same for a servo of the family that differs from this one; NULL: there is none. */
     const struct grobo_i_family *(*of)(const grobo_servo_model *servo);
     int32_t limits_mode;           /* the MODE in which a servo keeps within its limits */
@@ -88,10 +100,12 @@ typedef struct grobo_i_block {
     size_t n;
 } grobo_i_block;
 
-/* Whether the servo is set up as the joint needs it, as far as these registers tell; the range of a
- * calibrated joint into state. @return 0, or GROBO_ERR_SETUP and the reason in state->setup. */
+/* Whether the servo is set up as the joint needs it, as far as these registers tell; wheel: NULL
+ * where the joint is none; the range of a calibrated joint into state. @return 0, or
+ * GROBO_ERR_SETUP and the reason in state->setup. */
 int grobo_i_table_setup(const grobo_i_family *family, const grobo_joint *joint,
-                        const grobo_i_block *block, grobo_joint_state *state);
+                        const grobo_i_wheel *wheel, const grobo_i_block *block,
+                        grobo_joint_state *state);
 
 /* The register that limits the torque of a joint, and its counts: of a servo that loses it at
  * power-off, else one that it keeps. NULL: it has none. */
@@ -101,6 +115,12 @@ const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
 /* The least speed of a servo that leads its joint to a target in time, in deg/s. One that was told
  * this goal already may lag behind it: that of a first move, or it would crawl there. */
 double grobo_i_table_speed_dps(const grobo_driver *self, const grobo_target *target, int joint);
+
+/* How the servo of a joint that is a wheel turns; false: the joint is none. */
+bool grobo_i_table_wheel(const grobo_driver *self, int joint, grobo_i_wheel *wheel);
+/* The counts of a register that tell a wheel this speed, and back. */
+int32_t grobo_i_wheel_counts(const grobo_joint *joint, const grobo_i_wheel *wheel, double rad_s);
+double grobo_i_wheel_rad_s(const grobo_joint *joint, const grobo_i_wheel *wheel, int32_t counts);
 
 /* Angle of a joint from counts of its servo, and back. */
 double grobo_i_table_angle(const grobo_joint *joint, const grobo_servo_model *servo, int32_t ticks);

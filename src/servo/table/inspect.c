@@ -118,14 +118,18 @@ static int64_t time_of(const grobo_driver *self, int joint, const share *s, doub
 
 /* Whether a frame may write all of this: no setting hides behind a goal, nor a register that no
  * table knows, nor the limit of a gripper's torque. */
-static bool may_write(const grobo_joint *joint, const grobo_servo_model *servo, const share *s)
+static bool may_write(const grobo_driver *self, int index, const share *s)
 {
     int32_t counts;
+    const grobo_joint *joint = grobo_i_joint(self->model, index);
+    const grobo_servo_model *servo = grobo_i_table_servo(self, index);
+    bool wheel = grobo_i_joint_is_wheel(self->model, index); /* it goes to no place */
     const grobo_servo_register *limit =
         joint->torque_limit_pct > 0 ? grobo_i_table_limit(joint, servo, &counts) : NULL;
     for (int at = s->address; at < s->address + (int)s->n; at++) {
         const grobo_servo_register *reg = grobo_servo_register_at(servo, (uint16_t)at);
-        if (reg == NULL || reg == limit || kind_of_register(reg) == GROBO_WRITE_SETTING) {
+        if (reg == NULL || reg == limit || kind_of_register(reg) == GROBO_WRITE_SETTING ||
+            (wheel && reg->role == GROBO_ROLE_GOAL)) {
             return false;
         }
     }
@@ -143,8 +147,7 @@ static int inspect_joint(const grobo_driver *self, const share *s, int joint, gr
     bool has_torque = value_of(servo, s, GROBO_ROLE_TORQUE, &torque);
     bool has_goal = value_of(servo, s, GROBO_ROLE_GOAL, &goal);
     grobo_write_kind kind = kind_of_run(servo, s->address, (int)s->n);
-    if (!may_write(grobo_i_joint(self->model, joint), servo, s) ||
-        (kind == GROBO_WRITE_MOTOR && !has_torque && !has_goal)) {
+    if (!may_write(self, joint, s) || (kind == GROBO_WRITE_MOTOR && !has_torque && !has_goal)) {
         return GROBO_ERR_UNSUPPORTED;
     }
     if (has_torque) {

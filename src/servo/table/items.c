@@ -21,7 +21,9 @@ static int sense_more(const grobo_driver *self, void *ctx, int joint, grobo_sens
 {
     (void)ctx;
     const grobo_i_items *items = self->family;
-    uint16_t code = items->senses[kind][part]; /* a part comes after the one before it */
+    bool of_wheel = kind == GROBO_SENSE_GOAL && grobo_i_joint_is_wheel(self->model, joint);
+    const uint16_t *codes = of_wheel ? items->wheel_goal : items->senses[kind];
+    uint16_t code = codes[part]; /* a part comes after the one before it */
     return code != 0 ? read_part(self, joint, code, exchange) : 0;
 }
 

@@ -12,7 +12,8 @@ typedef struct grobo_i_items {
     /* What each grobo_sense_kind reads, one after the other, 0 behind the last. The setup comes
      * before the angle, so that a joint whose servo is set up otherwise is never sensed. */
     const uint16_t *senses[GROBO_SENSE_ALL + 1];
-    uint16_t check; /* what every servo answers */
+    const uint16_t *wheel_goal; /* of a wheel, in place of GROBO_SENSE_GOAL */
+    uint16_t check;             /* what every servo answers */
     /* Fill a whole exchange. */
     int (*read)(const grobo_driver *self, uint8_t id, uint16_t code, grobo_exchange *exchange);
     int (*write)(const grobo_driver *self, const grobo_register_io *io, uint16_t code,

@@ -55,6 +55,11 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
         if (servo != NULL && (servo->flags & GROBO_MODEL_NO_JOINT) != 0) {
             return GROBO_ERR_UNSUPPORTED;
         }
+        grobo_i_wheel wheel;
+        if (grobo_i_joint_is_wheel(model, j) &&
+            (!talks(family, servo) || !grobo_i_table_wheel(made, j, &wheel))) {
+            return GROBO_ERR_ARG;
+        }
         bool kept = !joint->calibrated || !family->offset_trims; /* where its middle is */
         if (!talks(family, servo) || !kept || !reaches(joint, servo, joint->min_rad) ||
             !reaches(joint, servo, joint->max_rad)) {

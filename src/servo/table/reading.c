@@ -53,6 +53,37 @@ static void take_angles(const grobo_driver *self, int joint, const grobo_i_block
     }
 }
 
+/* A wheel's angle is that of the servo's shaft within one turn, whatever it is geared to. NULL:
+ * the joint is no wheel. */
+static void take_wheel(const grobo_joint *moved, const grobo_i_wheel *wheel, const grobo_i_block *b,
+                       grobo_joint_state *state)
+{
+#if GROBO_DRIVERS_PLAIN
+    (void)moved;
+    (void)wheel;
+    (void)b;
+    (void)state;
+#else
+    const grobo_joint shaft = {.sign = moved->sign};
+    int32_t counts;
+    if (wheel == NULL) {
+        return;
+    }
+    if (value_of(b, GROBO_ROLE_POSITION, &counts)) {
+        double angle_rad = grobo_i_table_angle(&shaft, b->servo, counts);
+        state->angle_rad = remainder(angle_rad, grobo_rad_from_deg(360));
+        state->valid |= GROBO_FIELD_ANGLE;
+    }
+    state->goal_rad = state->angle_rad;
+    state->goal_time_us = 0;
+    state->valid &= (uint16_t)~GROBO_FIELD_GOAL;
+    if (value_of(b, wheel->role, &counts)) {
+        state->goal_rad_s = grobo_i_wheel_rad_s(moved, wheel, counts);
+        state->valid |= GROBO_FIELD_GOAL;
+    }
+#endif
+}
+
 static void take_measures(const grobo_i_block *b, grobo_joint_state *state)
 {
     double value;
@@ -128,8 +159,8 @@ static double most_mv(const grobo_servo_model *servo)
 
 /* A sum of bytes does not notice what two faults make up for: what no servo says is not believed.
  * Where a status and a register tell the same errors, both must. */
-static bool plausible(const grobo_i_family *family, const grobo_joint *joint,
-                      const grobo_i_block *b, uint8_t flags)
+static bool plausible(const grobo_i_family *family, bool turns, const grobo_i_block *b,
+                      uint8_t flags)
 {
     int32_t ticks = b->servo->middle, torque = 0, error = 0, celsius = 0;
     double mv = 0;
@@ -138,7 +169,7 @@ static bool plausible(const grobo_i_family *family, const grobo_joint *joint,
     (void)value_of(b, GROBO_ROLE_TORQUE, &torque);
     (void)value_of(b, GROBO_ROLE_POSITION, &ticks);
     bool told = family->numbers_errors || !value_of(b, GROBO_ROLE_ERROR, &error) || error == flags;
-    return told && (within_turn(b->servo, ticks) || joint->turns) && speed_fits(b) &&
+    return told && (within_turn(b->servo, ticks) || turns) && speed_fits(b) &&
            mv <= most_mv(b->servo) && celsius <= HEAT_MAX_C && torque >= 0 && torque <= TORQUE_MAX;
 }
 
@@ -164,17 +195,20 @@ int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const gr
                              .data = reply->data,
                              .n = reply->data_bytes};
     int32_t model, firmware;
-    if (!plausible(family, moved, &b, reply->flags)) {
+    grobo_i_wheel how;
+    const grobo_i_wheel *wheel = grobo_i_table_wheel(self, joint, &how) ? &how : NULL;
+    if (!plausible(family, moved->turns || wheel != NULL, &b, reply->flags)) {
         return GROBO_ERR_MISMATCH;
     }
     bool whole = value_of(&b, GROBO_ROLE_MODEL, &model); /* the first reading of all */
-    int result = whole ? grobo_i_table_setup(family, moved, &b, state) : GROBO_OK;
+    int result = whole ? grobo_i_table_setup(family, moved, wheel, &b, state) : GROBO_OK;
     state->flags = reply->flags;
     if (family->fast_part != NULL && value_of(&b, GROBO_ROLE_FIRMWARE, &firmware)) {
         state->fast = b.servo->fast_firmware > 0 && firmware >= b.servo->fast_firmware;
         state->valid |= GROBO_FIELD_FAST;
     }
     take_angles(self, joint, &b, state);
+    take_wheel(moved, wheel, &b, state);
     take_measures(&b, state);
     take_torque(family, &b, state);
     take_limit(moved, &b, state);

@@ -31,8 +31,12 @@ static int refuse(const grobo_i_block *b, grobo_register_role role, int32_t foun
 }
 
 static int32_t wanted_of(const grobo_i_family *family, const grobo_joint *joint,
-                         const grobo_i_block *b, grobo_register_role role, int32_t found)
+                         const grobo_i_wheel *wheel, const grobo_i_block *b,
+                         grobo_register_role role, int32_t found)
 {
+    if (role == GROBO_ROLE_MODE && wheel != NULL) {
+        return wheel->mode;
+    }
     if (role == GROBO_ROLE_MODEL) {
         return b->servo->number;
     }
@@ -104,7 +108,8 @@ static int judge_kept_torque(const grobo_joint *joint, const grobo_i_block *b,
 
 /* Model, mode, sense and middle. The registers of another model are not looked at. */
 static int judge_values(const grobo_i_family *family, const grobo_joint *joint,
-                        const grobo_i_block *b, grobo_joint_state *state)
+                        const grobo_i_wheel *wheel, const grobo_i_block *b,
+                        grobo_joint_state *state)
 {
     static const grobo_register_role roles[] = {GROBO_ROLE_MODEL, GROBO_ROLE_MODE,
                                                 GROBO_ROLE_DIRECTION, GROBO_ROLE_OFFSET};
@@ -112,7 +117,7 @@ static int judge_values(const grobo_i_family *family, const grobo_joint *joint,
     for (size_t i = 0; i < sizeof roles / sizeof roles[0]; i++) {
         int32_t found;
         if (value_of(b, roles[i], &found)) {
-            int32_t wanted = wanted_of(family, joint, b, roles[i], found);
+            int32_t wanted = wanted_of(family, joint, wheel, b, roles[i], found);
             if (wanted != found) {
                 result = refuse(b, roles[i], found, wanted, wanted, state);
             }
@@ -124,7 +129,7 @@ static int judge_values(const grobo_i_family *family, const grobo_joint *joint,
     if (judge_kept_torque(joint, b, state) < 0) {
         result = GROBO_ERR_SETUP;
     }
-    if (joint->calibrated && is_new(b)) {
+    if (joint->calibrated && wheel == NULL && is_new(b)) {
         int32_t found = 0;
         bool offset = value_of(b, GROBO_ROLE_OFFSET, &found);
         bool min = !offset && value_of(b, GROBO_ROLE_MIN_POSITION, &found);
@@ -154,21 +159,22 @@ static int judge_scale(const grobo_joint *joint, const grobo_i_block *b, grobo_j
     return refuse_register(reg, found, reg->factory, reg->factory, state);
 }
 
-static int judge_turns(const grobo_i_family *family, const grobo_i_block *b, int32_t min,
-                       int32_t max, grobo_joint_state *state)
+/* Both limits must be the same value, which is no angle. */
+static int judge_both(const grobo_i_block *b, int32_t both, int32_t min, int32_t max,
+                      grobo_joint_state *state)
 {
-    int32_t both = family->turns_limits;
     return min != both   ? refuse(b, GROBO_ROLE_MIN_POSITION, min, both, both, state)
            : max != both ? refuse(b, GROBO_ROLE_MAX_POSITION, max, both, both, state)
                          : GROBO_OK;
 }
 
 int grobo_i_table_setup(const grobo_i_family *family, const grobo_joint *joint,
-                        const grobo_i_block *block, grobo_joint_state *state)
+                        const grobo_i_wheel *wheel, const grobo_i_block *block,
+                        grobo_joint_state *state)
 {
     int32_t min, max, mode = 0;
     state->setup = (grobo_setup_fault){NULL, 0, 0, 0, 0};
-    int result = judge_values(family, joint, block, state);
+    int result = judge_values(family, joint, wheel, block, state);
     if (result == GROBO_OK || state->setup.reg->role != GROBO_ROLE_MODEL) {
         int scale = judge_scale(joint, block, state);
         result = result < 0 ? result : scale;
@@ -177,9 +183,12 @@ int grobo_i_table_setup(const grobo_i_family *family, const grobo_joint *joint,
         !value_of(block, GROBO_ROLE_MAX_POSITION, &max)) {
         return result;
     }
+    if (wheel != NULL) {
+        return wheel->by_limits ? judge_both(block, 0, min, max, state) : result;
+    }
     (void)value_of(block, GROBO_ROLE_MODE, &mode);
     if (mode == family->limits_mode) {
-        result = joint->turns ? judge_turns(family, block, min, max, state)
+        result = joint->turns ? judge_both(block, family->turns_limits, min, max, state)
                               : judge_limits(joint, block, min, max, state);
     }
     if (result == GROBO_OK && joint->calibrated && min < max) {

@@ -73,6 +73,34 @@ const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
     return reg;
 }
 
+bool grobo_i_table_wheel(const grobo_driver *self, int joint, grobo_i_wheel *wheel)
+{
+    const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
+    const grobo_i_family *family = grobo_i_table_family(self, servo);
+    return grobo_i_joint_is_wheel(self->model, joint) && family->wheel != NULL &&
+           family->wheel(servo, wheel);
+}
+
+/* Turns of the servo for one of the joint, with the sense. */
+static double turns_of(const grobo_joint *joint)
+{
+    return grobo_joint_to_servo(joint, 1) - grobo_joint_to_servo(joint, 0);
+}
+
+int32_t grobo_i_wheel_counts(const grobo_joint *joint, const grobo_i_wheel *wheel, double rad_s)
+{
+    double counts = grobo_deg_from_rad(rad_s) * turns_of(joint) / wheel->dps;
+    int32_t size = (int32_t)lround(fmin(fabs(counts), wheel->most));
+    return counts >= 0 ? size : wheel->sign == 0 ? -size : size == 0 ? 0 : size | wheel->sign;
+}
+
+double grobo_i_wheel_rad_s(const grobo_joint *joint, const grobo_i_wheel *wheel, int32_t counts)
+{
+    bool back = wheel->sign != 0 && (counts & wheel->sign) != 0;
+    double size = wheel->sign != 0 ? counts & (wheel->sign - 1) : counts;
+    return grobo_rad_from_deg((back ? -size : size) * wheel->dps) / turns_of(joint);
+}
+
 static double tick_rad(const grobo_servo_model *servo)
 {
     return servo->span_deg * RAD_PER_DEG / servo->span_ticks;

@@ -5,6 +5,7 @@
  * (world.h) that is only the plan, which the position loop follows.
  */
 #include <math.h>
+#include <stdlib.h>
 
 #include "src/base/assert.h"
 #include "src/sim/servo/family.h"
@@ -21,6 +22,7 @@
 
 /* Further than anything turns. */
 #define SPIN_MDEG 500000000
+#define TURN_MDEG 360000
 
 #define MDEG_PER_RAD (180000.0 / 3.14159265358979323846)
 
@@ -200,6 +202,9 @@ int64_t grobo_i_sim_strained_us(const grobo_sim_servo *servo)
 static void spin(grobo_sim_servo *servo)
 {
     int64_t speed = servo->plant.wheel_mdeg_s;
+    if (abs(servo->from_mdeg) > SPIN_MDEG / 2 && servo->body == NULL) { /* the shaft has no end */
+        servo->from_mdeg = servo->to_mdeg = servo->from_mdeg % TURN_MDEG;
+    }
     if (servo->body != NULL) {
         return; /* its loop is one of speed: there is nothing to plan */
     }
