@@ -73,6 +73,11 @@
 #define GROBO_TABLES_FIXED 0
 #endif
 
+/** Lines (ports) of a robot: grobo/core/lines.h. Firmware has one. */
+#ifndef GROBO_LINES_MAX
+#define GROBO_LINES_MAX (GROBO_TABLES_FIXED || GROBO_DRIVERS_PLAIN ? 1 : 4)
+#endif
+
 /** Motions that may wait behind the one being played. */
 #ifndef GROBO_QUEUE_MAX
 #define GROBO_QUEUE_MAX 8

@@ -51,6 +51,7 @@ typedef struct grobo_joint {
     /** What people give and read the joint in, a grobo_unit (core/unit.h): the library's own angles
      *  stay radians. 0: degrees. */
     uint8_t unit;
+    uint8_t line;         /**< which line its servo is on, 0..GROBO_LINES_MAX-1 (core/lines.h) */
     double unit_zero_rad; /**< its angle where its value is 0 */
     double unit_rad;      /**< how much the angle grows for 1 of the unit, not 0; of degrees 0 */
     /** A wheel has speeds (core/wheel.h) and no angle to go to: its limits and initial angle are 0,
@@ -119,11 +120,12 @@ GROBO_API const grobo_joint *grobo_model_joint(const grobo_model *model, int joi
 
 /**
  * Checks a table: its sizes (GROBO_TABLE()), counts within caps, names present and unique, motors
- * unique and within 0..GROBO_SERVO_ID_MAX (its family may have fewer: grobo_driver_check()), limits
- * finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs, a finite zero, a
- * gear that is not negative, a torque limit of at most 100, a slack within its range, joints that
- * follow one that follows none, with limits and an initial angle that are that one's times the
- * ratio, a unit with its scale, wheels without limits, ratio or unit and with an acceleration.
+ * unique on their line and within 0..GROBO_SERVO_ID_MAX (its family may have fewer:
+ * grobo_driver_check()), limits finite with min <= init <= max, speed > 0, mirrors pairing up with
+ * equal signs, a finite zero, a gear that is not negative, a torque limit of at most 100, a slack
+ * within its range, joints that follow one that follows none, with limits and an initial angle that
+ * are that one's times the ratio, a unit with its scale, wheels without limits, ratio or unit and
+ * with an acceleration, a line within GROBO_LINES_MAX.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
 GROBO_API int grobo_model_check(const grobo_model *model);

@@ -98,6 +98,19 @@ static inline bool grobo_i_may_have_unit(const grobo_model *model)
 #endif
 }
 
+/* The line that a joint's servo is on (grobo_joint.line): the first one where joints of this size
+ * have none, and in a build for one line. */
+static inline int grobo_i_joint_line(const grobo_model *model, int joint)
+{
+#if GROBO_LINES_MAX > 1
+    return grobo_i_may_have_unit(model) ? grobo_i_joint(model, joint)->line : 0;
+#else
+    (void)model;
+    (void)joint;
+    return 0;
+#endif
+}
+
 /* Whether joints of this size have what one that follows has. */
 static inline bool grobo_i_may_follow(const grobo_model *model)
 {

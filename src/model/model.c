@@ -152,14 +152,16 @@ static bool is_joint_good(const grobo_model *model, int j)
         return false;
     }
     return is_mount_good(joint) && is_mirror_good(model, j) && is_follower_good(model, joint) &&
-           is_unit_good(model, joint) && is_wheel_good(model, j);
+           is_unit_good(model, joint) && is_wheel_good(model, j) &&
+           grobo_i_joint_line(model, j) < GROBO_LINES_MAX;
 }
 
 static bool is_joint_unique(const grobo_model *model, int j)
 {
     const grobo_joint *joint = grobo_i_joint(model, j);
     for (int i = 0; i < j; i++) {
-        if (grobo_i_joint(model, i)->motor == joint->motor ||
+        bool same_line = grobo_i_joint_line(model, i) == grobo_i_joint_line(model, j);
+        if ((grobo_i_joint(model, i)->motor == joint->motor && same_line) ||
             is_name(grobo_i_joint(model, i)->name, joint->name, strlen(joint->name))) {
             return false;
         }

@@ -328,8 +328,8 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
 void grobo_i_axis_told(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
-    if (GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2) > 0 &&
-        has_course(robot, joint)) {
+    if (GROBO_I_EXTRA(robot->driver, accel_rad_s2) > 0 &&
+        grobo_i_driver_of(robot, joint)->accel_rad_s2 > 0 && has_course(robot, joint)) {
         const course c = turning(robot, joint, robot->now_us);
         axis->seen_rad = c.at_rad;
         axis->seen_us = robot->now_us;
@@ -545,6 +545,9 @@ static double way_back_s(const grobo_robot *robot, int joint, double way_rad)
 static bool is_on_ramp(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
+    if (GROBO_I_EXTRA(robot->driver, accel_rad_s2) <= 0) {
+        return false; /* no joint has any */
+    }
     double accel_rad_s2 = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), accel_rad_s2);
     bool stood = !turns(axis) && axis->seen_us >= axis->trajectory.to_us;
     if (accel_rad_s2 <= 0 || stood || !grobo_i_is_sensed(axis) || !has_course(robot, joint) ||

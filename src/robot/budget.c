@@ -23,15 +23,15 @@ static uint16_t watched_rate(const grobo_budget *budget, uint32_t joints, uint32
     return 0;
 }
 
-static int budget_of(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
-                     grobo_budget *budget)
+static int budget_of(const grobo_i_line *line, grobo_budget *budget)
 {
+    const grobo_driver *driver = line->driver;
     grobo_budget found;
     bool answered = false;
-    int result = grobo_i_motion_cost(bus, driver, ctx, GROBO_JOINTS_ALL(driver->model->n_joints),
+    int result = grobo_i_motion_cost(line, GROBO_JOINTS_ALL(driver->model->n_joints),
                                      &found.motion_us, &answered);
     if (result >= 0) {
-        result = grobo_i_reading_cost(bus, driver, ctx, &found.reading_us);
+        result = grobo_i_reading_cost(line, &found.reading_us);
     }
     if (result < 0) {
         return result;
@@ -42,10 +42,32 @@ static int budget_of(const grobo_bus *bus, const grobo_driver *driver, void *ctx
     found.watched_hz = watched_rate(&found, readings, watch_us);
     found.default_hz =
         found.watched_hz < GROBO_PLAY_RATE_HZ ? found.watched_hz : GROBO_PLAY_RATE_HZ;
-    const grobo_i_line line = {.bus = bus, .driver = driver, .ctx = ctx};
-    found.pace_us = grobo_i_pace_of(&line, GROBO_JOINTS_ALL(driver->model->n_joints));
+    found.pace_us = grobo_i_pace_of(line, GROBO_JOINTS_ALL(driver->model->n_joints));
     *budget = found;
     return GROBO_OK;
+}
+
+/* With buses as an engine would have them. */
+static int budget_on(const grobo_driver *driver, void *ctx, const grobo_bus_config *config,
+                     grobo_budget *budget)
+{
+    grobo_bus bus;
+    grobo_i_line line = {.bus = &bus, .driver = driver, .ctx = ctx};
+    int result = GROBO_OK;
+#if GROBO_LINES_MAX > 1
+    grobo_robot_line more[GROBO_LINES_MAX - 1];
+    line.lines = grobo_driver_lines(driver);
+    line.more = more;
+    for (int i = 1; line.lines != NULL && i < line.lines->n_lines && result >= 0; i++) {
+        grobo_bus_config own = grobo_i_line_config(line.lines, i, config);
+        result = grobo_bus_init(&more[i - 1].bus, &own);
+    }
+    const grobo_bus_config first = grobo_i_line_config(line.lines, 0, config);
+#else
+    const grobo_bus_config first = *config;
+#endif
+    result = result < 0 ? result : grobo_bus_init(&bus, &first);
+    return result < 0 ? result : budget_of(&line, budget);
 }
 
 int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ctx,
@@ -54,7 +76,6 @@ int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ct
     if (budget == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_bus bus;
     grobo_bus_config config = {0};
     if (grobo_driver_check(driver) < 0) {
         return GROBO_ERR_ARG;
@@ -63,13 +84,14 @@ int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ct
         config = *line;
     }
     config.protocol = driver->protocol;
-    int result = grobo_bus_init(&bus, &config);
-    return result < 0 ? result : budget_of(&bus, driver, ctx, budget);
+    return budget_on(driver, ctx, &config, budget);
 }
 
 int grobo_robot_budget(const grobo_robot *robot, grobo_budget *budget)
 {
-    return robot == NULL || budget == NULL
-               ? GROBO_ERR_ARG
-               : budget_of(&robot->bus, robot->driver, robot->driver_ctx, budget);
+    if (robot == NULL || budget == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    const grobo_i_line line = grobo_i_line_of_robot(robot);
+    return budget_of(&line, budget);
 }

@@ -49,20 +49,31 @@ int grobo_robot_wheel(const grobo_robot *robot, int joint, grobo_wheel_info *inf
 #define LINE_PART 4
 #define HOLD_PART 4
 
-/* How long the frames for these wheels have the line. */
-static uint32_t frames_us(const grobo_robot *robot, grobo_joint_mask wheels)
+/* How long the frames for these wheels have their line. */
+static uint32_t frames_on(const grobo_robot *robot, int line, grobo_joint_mask wheels)
 {
     static const double still[GROBO_JOINTS_MAX];
     const grobo_driver *driver = robot->driver;
     uint32_t us = 0;
-    int more = 1;
+    int more = wheels != 0;
     for (int part = 0; more > 0 && part < GROBO_ROBOT_SLOTS; part++) {
         grobo_exchange exchange;
         memset(&exchange, 0, offsetof(grobo_exchange, frame));
         more = driver->speed(driver, robot->driver_ctx, wheels, still, part, &exchange);
-        us += more > 0 ? grobo_i_line_us(&robot->bus, &exchange) : 0;
+        us += more > 0 ? grobo_i_line_us(grobo_i_bus_read(robot, line), &exchange) : 0;
     }
     return us;
+}
+
+/* Of the line that has them for longest: lines have their frames at the same time. */
+static uint32_t frames_us(const grobo_robot *robot, grobo_joint_mask wheels)
+{
+    uint32_t most_us = 0;
+    for (int i = 0; i < grobo_i_lines(robot); i++) {
+        uint32_t us = frames_on(robot, i, wheels & grobo_i_joints_on(robot, i));
+        most_us = us > most_us ? us : most_us;
+    }
+    return most_us;
 }
 
 /* ---- the request ----------------------------------------------------------------------------- */
@@ -125,7 +136,8 @@ static int admit(grobo_robot *robot, grobo_joint_mask wheels)
 static bool line_fits(const grobo_robot *robot)
 {
     uint32_t reading_us = 0;
-    (void)grobo_i_reading_cost(&robot->bus, robot->driver, robot->driver_ctx, &reading_us);
+    const grobo_i_line line = grobo_i_line_of_robot(robot);
+    (void)grobo_i_reading_cost(&line, &reading_us);
     return (frames_us(robot, robot->wheels) + reading_us) * HOLD_PART <= GROBO_DRIVE_US;
 }
 

@@ -109,7 +109,10 @@ void grobo_i_robot_assert(const grobo_robot *robot)
         bytes += robot->slots[i].use != GROBO_I_USE_FREE ? robot->slots[i].room : 0;
         GROBO_ASSERT(robot->slots[i].use == GROBO_I_USE_FREE || i < robot->slots_end);
     }
-    GROBO_ASSERT(used == grobo_bus_pending(&robot->bus));
+    for (int i = 0; i < grobo_i_lines(robot); i++) {
+        used -= grobo_bus_pending(grobo_i_bus_read(robot, i));
+    }
+    GROBO_ASSERT(used == 0);
     GROBO_ASSERT(bytes == robot->frames_used && bytes <= sizeof robot->frames);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         assert_axis(robot, j);

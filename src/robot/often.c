@@ -24,7 +24,8 @@ static int64_t line_us(grobo_robot *robot)
     const grobo_driver *driver = robot->driver;
     if (robot->line_us == 0) {
         uint32_t one_us = 0;
-        (void)grobo_i_reading_cost(&robot->bus, driver, robot->driver_ctx, &one_us);
+        const grobo_i_line line = grobo_i_line_of_robot(robot);
+        (void)grobo_i_reading_cost(&line, &one_us);
         int readings = driver->sense_many != NULL ? 1 : driver->model->n_joints;
         robot->line_us = LINE_PART * (int64_t)one_us * readings;
     }

@@ -31,7 +31,7 @@ static int send_one(grobo_robot *robot, const grobo_robot_order *order, const wa
     result = grobo_i_slot_send(slot, &robot->built, out->priority);
     if (result >= 0 && out->use == GROBO_I_USE_MOTION) {
         grobo_bus_cost cost;
-        grobo_bus_cost_of(&robot->bus, &slot->txn, &cost);
+        grobo_bus_cost_of(grobo_i_bus_of(slot), &slot->txn, &cost);
         robot->motion_us += cost.total_us;
     }
     return result < 0 ? result : 1;
@@ -62,9 +62,9 @@ static grobo_joint_mask take_together(const grobo_robot *robot, grobo_joint_mask
     return taken;
 }
 
-/* Each frame has joints of its own, so that what is noted of it is about these: as few frames as
- * the driver can do with. */
-static int send_order(grobo_robot *robot, grobo_robot_order order, const way_out *out)
+/* To joints of one line. Each frame has joints of its own, so that what is noted of it is about
+ * these: as few frames as the driver can do with. */
+static int send_on_line(grobo_robot *robot, grobo_robot_order order, const way_out *out)
 {
     grobo_joint_mask left = order.joints;
     int count = grobo_joints_count(left);
@@ -87,6 +87,19 @@ static int send_order(grobo_robot *robot, grobo_robot_order order, const way_out
         }
     }
     return result < 0 ? result : GROBO_OK;
+}
+
+/* What one line does not take keeps no other line from stopping. */
+static int send_order(grobo_robot *robot, grobo_robot_order order, const way_out *out)
+{
+    grobo_joint_mask all = order.joints;
+    int result = GROBO_OK;
+    for (int i = 0; i < grobo_i_lines(robot); i++) {
+        order.joints = all & grobo_i_joints_on(robot, i);
+        int sent = order.joints != 0 ? send_on_line(robot, order, out) : GROBO_OK;
+        result = result < 0 ? result : sent;
+    }
+    return result;
 }
 
 grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chunk)
@@ -133,6 +146,9 @@ static int await_line(grobo_robot *robot, const grobo_robot_order *order, grobo_
     int64_t asked_us = time_asked(robot, 0, target->posture.time_us);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         target->joint_time_us[j] = asked_us;
+    }
+    for (int j = 0; grobo_i_lines(robot) > 1 && j < robot->driver->model->n_joints; j++) {
+        target->joint_time_us[j] = time_asked(robot, j, target->posture.time_us);
     }
     for (int j = 0; joint_time_us != NULL && j < robot->driver->model->n_joints; j++) {
         target->joint_time_us[j] = time_asked(robot, j, joint_time_us[j]);

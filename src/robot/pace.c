@@ -35,7 +35,7 @@ static void find_costs(const grobo_i_line *line, grobo_joint_mask joints, costs 
     const grobo_driver *driver = line->driver;
     bool answered = false;
     c->motion_us = c->one_us = c->all_us = 0;
-    (void)grobo_i_motion_cost(line->bus, driver, line->ctx, joints, &c->motion_us, &answered);
+    (void)grobo_i_motion_cost(line, joints, &c->motion_us, &answered);
     c->all = driver->model->n_joints;
     c->wakes = GROBO_I_EXTRA(driver, goal_energises) && !answered;
     c->n = line->unread && !c->wakes ? 0 : (uint32_t)grobo_joints_count(joints);
@@ -44,7 +44,7 @@ static void find_costs(const grobo_i_line *line, grobo_joint_mask joints, costs 
         c->one_us = cost_of_many(line, GROBO_JOINT_BIT(0));
         c->all_us = cost_of_many(line, GROBO_JOINTS_ALL(driver->model->n_joints));
     } else {
-        (void)grobo_i_reading_cost(line->bus, driver, line->ctx, &c->one_us);
+        (void)grobo_i_reading_cost(line, &c->one_us);
     }
 }
 
@@ -101,18 +101,22 @@ uint32_t grobo_i_pace_of(const grobo_i_line *line, grobo_joint_mask joints)
     return pace_of(&c);
 }
 
-static grobo_i_line line_of(const grobo_robot *robot)
+grobo_i_line grobo_i_line_of_robot(const grobo_robot *robot)
 {
-    return (grobo_i_line){.bus = &robot->bus,
-                          .driver = robot->driver,
-                          .ctx = robot->driver_ctx,
-                          .unread = robot->config.sense_interval_us == GROBO_SENSE_NEVER};
+    return (grobo_i_line)
+    {
+        .bus = &robot->bus, .driver = robot->driver, .ctx = robot->driver_ctx,
+#if GROBO_LINES_MAX > 1
+        .lines = robot->lines, .more = robot->more,
+#endif
+        .unread = robot->config.sense_interval_us == GROBO_SENSE_NEVER
+    };
 }
 
 bool grobo_i_pace_fits(const grobo_robot *robot, grobo_joint_mask joints)
 {
     const grobo_robot_order order = {.kind = GROBO_I_ORDER_GOAL};
-    grobo_i_line line = line_of(robot);
+    grobo_i_line line = grobo_i_line_of_robot(robot);
     return joints == 0 || !grobo_i_goes_in_parts(robot, &order) ||
            grobo_i_pace_of(&line, joints) > 0;
 }
@@ -120,7 +124,7 @@ bool grobo_i_pace_fits(const grobo_robot *robot, grobo_joint_mask joints)
 bool grobo_i_pace(grobo_robot *robot, grobo_joint_mask joints)
 {
     costs c;
-    grobo_i_line line = line_of(robot);
+    grobo_i_line line = grobo_i_line_of_robot(robot);
     if (joints == robot->paced) {
         return true;
     }

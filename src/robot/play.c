@@ -298,7 +298,9 @@ void grobo_i_play_reserve(grobo_robot *robot)
     int64_t due_us = grobo_sequencer_deadline(&robot->sequencer);
     int64_t renew_us = grobo_i_segments_due(robot);
     due_us = renew_us < due_us ? renew_us : due_us;
-    grobo_bus_reserve(&robot->bus, due_us, due_us == GROBO_NEVER_US ? 0 : robot->motion_us);
+    uint32_t motion_us = due_us == GROBO_NEVER_US ? 0 : robot->motion_us;
+    grobo_bus_reserve(&robot->bus, due_us, motion_us);
+    grobo_i_lines_reserve(robot, due_us, motion_us);
 }
 
 void grobo_i_play_step(grobo_robot *robot)

@@ -32,9 +32,9 @@ bool grobo_i_is_latched(const grobo_robot *robot)
     return robot->trip.latched || (host->is_stopped != NULL && host->is_stopped(host->ctx));
 }
 
-bool grobo_i_has_frame(const grobo_robot *robot, bool any, int64_t now_us)
+bool grobo_i_has_frame(const grobo_robot *robot, int line, bool any, int64_t now_us)
 {
-    const grobo_bus *bus = &robot->bus;
+    const grobo_bus *bus = grobo_i_bus_read(robot, line);
     grobo_i_lock(robot);
     bool has = bus->waiting > 0 && bus->active == NULL &&
                (any || grobo_bus_deadline(bus, now_us) <= now_us);
@@ -48,10 +48,11 @@ static bool stops(const grobo_robot_slot *slot)
            (slot->txn.priority == GROBO_PRIORITY_STOP && slot->order.kind != GROBO_I_ORDER_NONE);
 }
 
-bool grobo_i_frame_stops(const grobo_robot *robot)
+bool grobo_i_frame_stops(const grobo_robot *robot, int line)
 {
+    const grobo_bus *bus = grobo_i_bus_read(robot, line);
     grobo_i_lock(robot);
-    bool does = robot->bus.active != NULL && stops(robot->bus.active->ctx);
+    bool does = bus->active != NULL && stops(bus->active->ctx);
     grobo_i_unlock(robot);
     return does;
 }
@@ -142,22 +143,26 @@ bool grobo_robot_moving(const grobo_robot *robot)
     return moving;
 }
 
-bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
+bool grobo_i_stops(const grobo_robot *robot, int line, int64_t now_us)
 {
-    if (robot == NULL) {
-        return false;
-    }
+    const grobo_bus *bus = grobo_i_bus_read(robot, line);
     bool waits = false;
     grobo_i_lock(robot);
     for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
-        if (slot->use != GROBO_I_USE_FREE && grobo_txn_is_pending(&slot->txn)) {
+        if (slot->use != GROBO_I_USE_FREE && grobo_txn_is_pending(&slot->txn) &&
+            grobo_i_slot_line(slot) == line) {
             waits = waits || stops(slot);
         }
     }
-    waits = waits && robot->bus.active == NULL && grobo_bus_free_at(&robot->bus, now_us) <= now_us;
+    waits = waits && bus->active == NULL && grobo_bus_free_at(bus, now_us) <= now_us;
     grobo_i_unlock(robot);
     return waits;
+}
+
+bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
+{
+    return robot != NULL && grobo_i_stops(robot, 0, now_us);
 }
 
 bool grobo_robot_settling(const grobo_robot *robot)
@@ -264,7 +269,10 @@ bool grobo_robot_is_quiet(const grobo_robot *robot)
         return false;
     }
     grobo_i_lock(robot);
-    bool quiet = grobo_bus_pending(&robot->bus) == 0;
+    bool quiet = true;
+    for (int i = 0; i < grobo_i_lines(robot); i++) {
+        quiet = quiet && grobo_bus_pending(grobo_i_bus_read(robot, i)) == 0;
+    }
     grobo_i_unlock(robot);
     return quiet;
 }

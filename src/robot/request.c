@@ -392,9 +392,14 @@ static int start_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_r
     return number;
 }
 
-static int begin_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_order *order,
-                          const grobo_exchange *exchange)
+static int begin_exchange(grobo_robot *robot, int line, grobo_job_kind kind,
+                          const grobo_robot_order *order, const grobo_exchange *exchange)
 {
+#if GROBO_LINES_MAX > 1
+    robot->asked_line = (uint8_t)line;
+#else
+    (void)line;
+#endif
     return begin(robot, start_exchange(robot, kind, order, exchange));
 }
 
@@ -412,6 +417,9 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
     grobo_robot_order order;
     grobo_i_begin(robot);
     int result = admit(robot, GROBO_JOB_RAW, 0, false);
+    if (result >= 0 && grobo_i_lines(robot) > 1) {
+        result = GROBO_ERR_UNSUPPORTED; /* it does not say for which */
+    }
     if (size == 0 || size > sizeof exchange.frame) {
         result = GROBO_ERR_ARG;
     }
@@ -431,63 +439,84 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
     }
     /* A frame that asks for nothing that there is, is sent all the same. */
     (void)robot->driver->protocol->reply_to(frame, size, &exchange.reply);
+#if GROBO_LINES_MAX > 1
+    robot->asked_line = 0;
+#endif
     int number = start_exchange(robot, GROBO_JOB_RAW, &order, &exchange);
     robot->job->leave_by_us = until_us == GROBO_NEVER_US ? 0 : until_us;
     return begin(robot, number);
 }
 
-static bool is_servo(const grobo_robot *robot, int id)
+static bool is_servo(const grobo_robot *robot, int line, int id)
 {
-    const grobo_protocol *protocol = robot->driver->protocol;
+    if (line < 0 || line >= grobo_i_lines(robot)) {
+        return false;
+    }
+    const grobo_protocol *protocol = grobo_i_bus_read(robot, line)->config.protocol;
     return id >= protocol->id_min && id <= protocol->id_max;
 }
 
 /* The joint of a motor, none where it is not the model's. */
-static grobo_joint_mask joint_of(const grobo_robot *robot, int id)
+static grobo_joint_mask joint_of(const grobo_robot *robot, int line, int id)
 {
-    int joint = grobo_model_joint_of_motor(robot->driver->model, id);
+    int joint = grobo_i_joint_on(robot, line, id);
     return joint >= 0 ? GROBO_JOINT_BIT(joint) : 0;
 }
 
-static int admit_write(grobo_robot *robot, const grobo_register_io *io, grobo_robot_order *order)
+static int admit_write(grobo_robot *robot, int line, const grobo_register_io *io,
+                       grobo_robot_order *order)
 {
-    grobo_write_kind kind = robot->driver->write_kind(robot->driver, io);
+    const grobo_driver *driver = grobo_i_line_driver(robot, line, NULL);
+    grobo_write_kind kind = driver->write_kind(driver, io);
     if (kind == GROBO_WRITE_MOTOR) {
         return GROBO_ERR_UNSUPPORTED;
     }
     if (kind == GROBO_WRITE_SETTING) {
         order->kind = GROBO_I_ORDER_SETTING;
-        order->joints = joint_of(robot, io->id);
+        order->joints = joint_of(robot, line, io->id);
     }
     return grobo_i_gate_judge(robot, order, NULL);
 }
 
-int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io)
+static int registers(grobo_robot *robot, int line, const grobo_register_io *io)
 {
-    if (robot == NULL || io == NULL) {
-        return GROBO_ERR_ARG;
-    }
+    void *ctx;
     grobo_exchange exchange = {0};
     grobo_robot_order order = {.kind = GROBO_I_ORDER_NONE};
     grobo_i_begin(robot);
-    int result = admit(robot, GROBO_JOB_REGISTERS, joint_of(robot, io->id), false);
-    if (!is_servo(robot, io->id) || io->length < 1) {
+    const grobo_driver *driver = grobo_i_line_driver(robot, line, &ctx);
+    int result = admit(robot, GROBO_JOB_REGISTERS, joint_of(robot, line, io->id), false);
+    if (!is_servo(robot, line, io->id) || io->length < 1) {
         result = GROBO_ERR_ARG;
     }
-    if (result >= 0 && robot->driver->registers == NULL) {
+    if (result >= 0 && driver->registers == NULL) {
         result = GROBO_ERR_UNSUPPORTED;
     }
     if (result >= 0 && io->data != NULL) {
-        result = admit_write(robot, io, &order);
+        result = admit_write(robot, line, io, &order);
     }
     if (result >= 0) {
-        result = robot->driver->registers(robot->driver, robot->driver_ctx, io, &exchange);
+        result = driver->registers(driver, ctx, io, &exchange);
     }
     if (result < 0) {
         return refuse(robot, result);
     }
-    return begin_exchange(robot, GROBO_JOB_REGISTERS, &order, &exchange);
+    return begin_exchange(robot, line, GROBO_JOB_REGISTERS, &order, &exchange);
 }
+
+int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io)
+{
+    return robot == NULL || io == NULL ? GROBO_ERR_ARG : registers(robot, 0, io);
+}
+
+#if GROBO_LINES_MAX > 1
+int grobo_robot_line_registers(grobo_robot *robot, int line, const grobo_register_io *io)
+{
+    return robot == NULL || io == NULL || line < 0 || line >= grobo_i_lines(robot)
+               ? GROBO_ERR_ARG
+               : registers(robot, line, io);
+}
+#endif
 
 int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command)
 {
@@ -496,25 +525,27 @@ int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command)
     }
     grobo_exchange exchange = {0};
     grobo_robot_order order = {.kind = GROBO_I_ORDER_COMMAND};
+    void *ctx;
     grobo_i_begin(robot);
+    const grobo_driver *driver = grobo_i_line_driver(robot, id >> 8, &ctx);
     int result = admit(robot, GROBO_JOB_COMMAND, 0, false);
     if (result >= 0) {
         result = grobo_i_gate_judge(robot, &order, NULL);
     }
-    if (!is_servo(robot, id) || (unsigned)command > GROBO_SERVO_FACTORY_RESET) {
+    if (!is_servo(robot, id >> 8, id & 0xFF) || (unsigned)command > GROBO_SERVO_FACTORY_RESET) {
         result = GROBO_ERR_ARG;
     }
-    if (result >= 0 && robot->driver->command == NULL) {
+    if (result >= 0 && driver->command == NULL) {
         result = GROBO_ERR_UNSUPPORTED;
     }
     if (result >= 0) {
-        result = robot->driver->command(robot->driver, robot->driver_ctx, id, command, &exchange);
+        result = driver->command(driver, ctx, id & 0xFF, command, &exchange);
     }
     if (result < 0) {
         return refuse(robot, result);
     }
-    order.joints = command != GROBO_SERVO_FLASH ? joint_of(robot, id) : 0;
-    return begin_exchange(robot, GROBO_JOB_COMMAND, &order, &exchange);
+    order.joints = command != GROBO_SERVO_FLASH ? joint_of(robot, id >> 8, id & 0xFF) : 0;
+    return begin_exchange(robot, id >> 8, GROBO_JOB_COMMAND, &order, &exchange);
 }
 
 int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number)
@@ -540,7 +571,7 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number)
         return refuse(robot, result);
     }
     robot->free_joints = 0;
-    return begin_exchange(robot, GROBO_JOB_STORED, &order, &exchange);
+    return begin_exchange(robot, 0, GROBO_JOB_STORED, &order, &exchange);
 }
 
 /* ---- ends ------------------------------------------------------------------------------------ */
@@ -651,6 +682,7 @@ int grobo_robot_estop(grobo_robot *robot)
     grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
     grobo_sequencer_reset(&robot->sequencer);
     grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
+    grobo_i_lines_reserve(robot, GROBO_NEVER_US, 0);
     grobo_i_slots_cancel_all(robot);
     grobo_i_slots_hurry(robot);
     grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);

@@ -100,9 +100,15 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
     robot->each = grobo_i_reply_came;
     robot->config = taken;
     config_fill(&robot->config, driver);
+#if GROBO_LINES_MAX > 1
+    if (grobo_i_lines_init(robot) < 0) {
+        return GROBO_ERR_ARG;
+    }
+#else
     if (grobo_bus_init(&robot->bus, &robot->config.bus) < 0) {
         return GROBO_ERR_ARG;
     }
+#endif
     robot->renew_us = GROBO_SEGMENT_RENEW_US;
     grobo_sequencer_init(&robot->sequencer, driver->model);
     for (int j = 0; j < driver->model->n_joints; j++) {
@@ -181,33 +187,37 @@ static void tell_kind(grobo_robot *robot, grobo_event_kind kind)
 
 /* ---- pump ------------------------------------------------------------------------------------ */
 
-void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size, int64_t now_us)
+static inline void rx(grobo_robot *robot, int line, const uint8_t *bytes, size_t size,
+                      int64_t now_us)
 {
     if (robot == NULL || (bytes == NULL && size > 0)) {
         return;
     }
     grobo_i_enter(robot, now_us);
     if (robot->link) {
-        grobo_bus_rx(&robot->bus, bytes, size, robot->now_us);
+        grobo_bus_rx(grobo_i_bus(robot, line), bytes, size, robot->now_us);
     }
     grobo_i_leave(robot);
 }
 
+void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size, int64_t now_us)
+{
+    rx(robot, 0, bytes, size, now_us);
+}
+
 /* Frames are judged in here, and what is refused may end a job. Events of that wait for the next
  * step: a callback must not come between this frame and its trajectory to the line. */
-int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us)
+static inline int tx(grobo_robot *robot, int line, uint8_t *buf, size_t capacity, int64_t now_us)
 {
-    if (robot == NULL || buf == NULL) {
-        return GROBO_ERR_ARG;
-    }
     grobo_i_lock(robot);
     if (now_us > robot->now_us) {
         robot->now_us = now_us;
     }
-    int size = robot->link ? grobo_bus_tx(&robot->bus, buf, capacity, robot->now_us) : 0;
+    int size =
+        robot->link ? grobo_bus_tx(grobo_i_bus(robot, line), buf, capacity, robot->now_us) : 0;
     if (size > 0) {
-        robot->left_us = robot->now_us;
-        robot->answered = false;
+        *grobo_i_left_us(robot, line) = robot->now_us;
+        *grobo_i_answered(robot, line) = false;
     }
     if (robot->queue_may_go) { /* a job has ended, with what was refused */
         grobo_i_jobs_close_up(robot);
@@ -216,9 +226,43 @@ int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t no
     return size;
 }
 
+int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us)
+{
+    return robot == NULL || buf == NULL ? GROBO_ERR_ARG : tx(robot, 0, buf, capacity, now_us);
+}
+
+#if GROBO_LINES_MAX > 1
+static bool is_line(const grobo_robot *robot, int line)
+{
+    return robot != NULL && line >= 0 && line < grobo_i_lines(robot);
+}
+
+void grobo_robot_line_rx(grobo_robot *robot, int line, const uint8_t *bytes, size_t size,
+                         int64_t now_us)
+{
+    if (is_line(robot, line)) {
+        rx(robot, line, bytes, size, now_us);
+    }
+}
+
+int grobo_robot_line_tx(grobo_robot *robot, int line, uint8_t *buf, size_t capacity, int64_t now_us)
+{
+    if (buf == NULL || !is_line(robot, line)) {
+        return GROBO_ERR_ARG;
+    }
+    bool gone = (robot->lines_gone >> line & 1u) != 0;
+    return gone ? 0 : tx(robot, line, buf, capacity, now_us);
+}
+#endif
+
 static void step(grobo_robot *robot)
 {
     grobo_bus_step(&robot->bus, robot->now_us);
+#if GROBO_LINES_MAX > 1
+    if (robot->lines != NULL) {
+        grobo_i_lines_step(robot);
+    }
+#endif
     grobo_i_segments_step(robot);
     grobo_i_wheels_step(robot);
     grobo_i_play_step(robot);
@@ -263,6 +307,11 @@ static int64_t deadline(const grobo_robot *robot, int64_t now_us)
         return now_us; /* to be told by the next step */
     }
     int64_t at_us = grobo_bus_deadline(&robot->bus, now_us);
+#if GROBO_LINES_MAX > 1
+    if (robot->lines != NULL) {
+        at_us = grobo_i_sooner(at_us, grobo_i_lines_deadline(robot, now_us));
+    }
+#endif
     at_us = grobo_i_sooner(at_us, grobo_sequencer_deadline(&robot->sequencer));
     at_us = grobo_i_sooner(at_us, grobo_i_segments_deadline(robot));
     if (grobo_i_wheels(robot) != 0) {
@@ -295,7 +344,12 @@ void grobo_robot_link_up(grobo_robot *robot, int64_t now_us)
     grobo_i_enter(robot, now_us);
     if (!robot->link) {
         robot->link = true;
-        robot->answered = false;
+        for (int i = 0; i < grobo_i_lines(robot); i++) {
+            *grobo_i_answered(robot, i) = false;
+        }
+#if GROBO_LINES_MAX > 1
+        robot->lines_gone = 0;
+#endif
         grobo_i_gate_soften(robot);
         robot->sense_us = robot->now_us;
         robot->round = grobo_i_all_joints(robot);
@@ -309,11 +363,14 @@ void grobo_robot_link_up(grobo_robot *robot, int64_t now_us)
 }
 
 /* What was known of the servos before the line went may be wrong when it comes back. */
-static void forget(grobo_robot *robot)
+void grobo_i_forget_joints(grobo_robot *robot, grobo_joint_mask joints)
 {
     grobo_i_wheels_link(robot, false);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
+        if (!grobo_i_has(joints, j)) {
+            continue;
+        }
         grobo_i_joint_to(axis, GROBO_I_JOINT_FORGET);
         axis->torque_known = axis->wants_torque = axis->state.fast = false;
         axis->own_until_us = 0;
@@ -325,8 +382,12 @@ static void forget(grobo_robot *robot)
         grobo_i_blocked_forget(robot, j);
         axis->trajectory.to_us = robot->now_us;
     }
-    robot->free_joints = robot->played_joints = robot->halts_owed = robot->renews_owed = 0;
-    robot->halted = robot->halted_all = 0;
+    robot->free_joints &= ~joints;
+    robot->played_joints &= ~joints;
+    robot->halts_owed &= ~joints;
+    robot->renews_owed &= ~joints;
+    robot->halted &= ~joints;
+    robot->halted_all &= ~joints;
     robot->low_readings = robot->fast_lost = 0;
 }
 
@@ -347,9 +408,60 @@ void grobo_robot_link_down(grobo_robot *robot, int64_t now_us)
         }
         grobo_i_jobs_end(robot, NULL, GROBO_ERR_UNPLUGGED);
         grobo_i_queue_end(robot, GROBO_ERR_UNPLUGGED);
-        (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_UNPLUGGED);
-        grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
-        forget(robot);
+        for (int i = 0; i < grobo_i_lines(robot); i++) {
+            grobo_bus *bus = grobo_i_bus(robot, i);
+            (void)grobo_bus_cancel_all(bus, GROBO_PRIORITY_ALL, GROBO_ERR_UNPLUGGED);
+            grobo_bus_reserve(bus, GROBO_NEVER_US, 0);
+        }
+        grobo_i_forget_joints(robot, grobo_i_all_joints(robot));
     }
     grobo_i_leave(robot);
 }
+
+/* ---- one of several lines -------------------------------------------------------------------- */
+
+#if GROBO_LINES_MAX > 1
+
+/* What is known of the joints of a line that has gone, or that is there again, is void. */
+static void forget_line(grobo_robot *robot, int line)
+{
+    grobo_i_forget_joints(robot, grobo_i_joints_on(robot, line));
+}
+
+void grobo_robot_line_down(grobo_robot *robot, int line, int64_t now_us)
+{
+    if (!is_line(robot, line)) {
+        return;
+    }
+    grobo_i_enter(robot, now_us);
+    if (robot->link && (robot->lines_gone >> line & 1u) == 0) {
+        robot->lines_gone |= (uint8_t)(1u << line);
+        (void)grobo_bus_cancel_all(grobo_i_bus(robot, line), GROBO_PRIORITY_ALL,
+                                   GROBO_ERR_UNPLUGGED);
+        forget_line(robot, line);
+        grobo_i_trip(robot, GROBO_TRIP_LOST_REPLIES, grobo_i_lowest(grobo_i_joints_on(robot, line)),
+                     0, true);
+    }
+    grobo_i_leave(robot);
+}
+
+void grobo_robot_line_up(grobo_robot *robot, int line, int64_t now_us)
+{
+    if (!is_line(robot, line)) {
+        return;
+    }
+    grobo_i_enter(robot, now_us);
+    if (robot->link && (robot->lines_gone >> line & 1u) != 0) {
+        robot->lines_gone &= (uint8_t) ~(1u << line);
+        (void)grobo_bus_cancel_all(grobo_i_bus(robot, line), GROBO_PRIORITY_ALL,
+                                   GROBO_ERR_UNPLUGGED);
+        forget_line(robot, line);
+        *grobo_i_answered(robot, line) = false;
+        grobo_i_gate_soften(robot);
+        robot->sense_us = robot->now_us;
+        robot->round = grobo_i_all_joints(robot);
+    }
+    grobo_i_leave(robot);
+}
+
+#endif

@@ -9,6 +9,7 @@
  *   axis.c       where a joint is, by what it was sent to and what was read
  *   couple.c     joints that follow others
  *   query.c      what may be asked
+ *   lines.c      lines of a robot that has several: which frame and which joint is on which
  *   slot.c       frames under way: from an exchange to a transaction and back
  *   budget.c     how many motion frames a second leave time to read
  *   pace.c       how often the line carries more of the trajectories of joints, and readings beside
@@ -31,7 +32,8 @@
  *   drive.c      wheels that turn: asked for, told again in time, ended
  *   segments.c   long moves told in parts, in time
  *   sense.c      when the background reads which joint, free mode
- *   steps.c      the steps that scripts are made of
+ *   check.c      the script that asks whether the robot is there
+ *   steps.c      the steps that other scripts are made of
  *   turn.c       the end of a call and of a frame
  *   join.c       requests joint by joint, joined to what was asked for just before
  *   queue.c      which jobs run side by side, and what waits for its turn
@@ -44,6 +46,7 @@
 
 #include <stddef.h>
 
+#include <grobo/core/lines.h>
 #include <grobo/core/static.h>
 
 #include "src/base/sized.h"
@@ -63,16 +66,184 @@ void grobo_i_tell(grobo_robot *robot, const grobo_event *event);
 
 /* The driver of a joint's servo, for what families differ in. Its functions are asked by way of
  * grobo_robot.driver, which knows the joints of all. */
+#if GROBO_LINES_MAX > 1
+static inline const grobo_driver *grobo_i_driver_of(const grobo_robot *robot, int joint)
+{
+    const grobo_lines *lines = robot->lines;
+    return lines == NULL ? robot->driver : &lines->line[lines->line_of[joint]].driver;
+}
+#else
 static inline const grobo_driver *grobo_i_driver_of(const grobo_robot *robot, int joint)
 {
     (void)joint;
     return robot->driver;
 }
+#endif
 
+/* ---- lines.c --------------------------------------------------------------------------------- */
+
+#if GROBO_LINES_MAX > 1
+static inline int grobo_i_lines(const grobo_robot *robot)
+{
+    return robot->lines == NULL ? 1 : robot->lines->n_lines;
+}
+static inline grobo_bus *grobo_i_bus(grobo_robot *robot, int line)
+{
+    return line == 0 ? &robot->bus : &robot->more[line - 1].bus;
+}
+static inline const grobo_bus *grobo_i_bus_read(const grobo_robot *robot, int line)
+{
+    return line == 0 ? &robot->bus : &robot->more[line - 1].bus;
+}
+/* The line of a joint, and of a frame. */
+static inline int grobo_i_line_of(const grobo_robot *robot, int joint)
+{
+    return robot->lines == NULL ? 0 : robot->lines->line_of[joint];
+}
+static inline int grobo_i_slot_line(const grobo_robot_slot *slot)
+{
+    return slot->line;
+}
+/* Joints of a line. */
+static inline grobo_joint_mask grobo_i_joints_on(const grobo_robot *robot, int line)
+{
+    return robot->lines == NULL ? GROBO_JOINTS_ALL(robot->driver->model->n_joints)
+                                : robot->lines->on[line];
+}
+static inline void grobo_i_slot_on(grobo_robot_slot *slot, int line)
+{
+    slot->line = (uint8_t)line;
+}
+/* The driver of a line, its first one where there is no such, and what its functions get. */
+static inline const grobo_driver *grobo_i_line_driver(const grobo_robot *robot, int line,
+                                                      void **ctx)
+{
+    const grobo_lines *lines = robot->lines;
+    int i = lines != NULL && line > 0 && line < lines->n_lines ? line : 0;
+    if (ctx != NULL) {
+        *ctx = lines != NULL ? lines->line[i].ctx : robot->driver_ctx;
+    }
+    return lines != NULL ? &lines->line[i].driver : robot->driver;
+}
 /* Of these joints, those that a goal gives torque. */
+grobo_joint_mask grobo_i_woken(const grobo_robot *robot, grobo_joint_mask joints);
+/* Makes what a robot of several lines has, where its driver is of such. */
+int grobo_i_lines_init(grobo_robot *robot);
+/* What the bus of a line is made of, which `whole` has where the line does not say otherwise. */
+grobo_bus_config grobo_i_line_config(const grobo_lines *lines, int line,
+                                     const grobo_bus_config *whole);
+/* The line that a frame is for, by the joints that it is about. */
+void grobo_i_slot_aim(grobo_robot_slot *slot);
+/* The joint of a motor on a line, or an error. */
+int grobo_i_joint_on(const grobo_robot *robot, int line, int motor);
+/* Time passes for the lines behind the first one, and when it is to pass next. */
+void grobo_i_lines_step(grobo_robot *robot);
+int64_t grobo_i_lines_deadline(const grobo_robot *robot, int64_t now_us);
+/* grobo_bus_reserve() of these. */
+void grobo_i_reserve_more(grobo_robot *robot, int64_t at_us, uint32_t duration_us);
+static inline void grobo_i_lines_reserve(grobo_robot *robot, int64_t at_us, uint32_t duration_us)
+{
+    if (robot->lines != NULL) {
+        grobo_i_reserve_more(robot, at_us, duration_us);
+    }
+}
+/* grobo_driver.check() of the line that is asked whether its servos are there. */
+int grobo_i_lines_check(grobo_robot *robot, int part);
+/* When the last frame of a line was given out, and that it was answered. */
+static inline int64_t *grobo_i_left_us(grobo_robot *robot, int line)
+{
+    return line == 0 ? &robot->left_us : &robot->more[line - 1].left_us;
+}
+static inline bool *grobo_i_answered(grobo_robot *robot, int line)
+{
+    return line == 0 ? &robot->answered : &robot->more[line - 1].answered;
+}
+#else
+static inline int grobo_i_lines(const grobo_robot *robot)
+{
+    (void)robot;
+    return 1;
+}
+static inline void grobo_i_lines_reserve(const grobo_robot *robot, int64_t at_us,
+                                         uint32_t duration_us)
+{
+    (void)robot;
+    (void)at_us;
+    (void)duration_us;
+}
+static inline grobo_bus *grobo_i_bus(grobo_robot *robot, int line)
+{
+    (void)line;
+    return &robot->bus;
+}
+static inline const grobo_bus *grobo_i_bus_read(const grobo_robot *robot, int line)
+{
+    (void)line;
+    return &robot->bus;
+}
+static inline int grobo_i_line_of(const grobo_robot *robot, int joint)
+{
+    (void)robot;
+    (void)joint;
+    return 0;
+}
+static inline int grobo_i_slot_line(const grobo_robot_slot *slot)
+{
+    (void)slot;
+    return 0;
+}
+static inline grobo_joint_mask grobo_i_joints_on(const grobo_robot *robot, int line)
+{
+    (void)line;
+    return GROBO_JOINTS_ALL(robot->driver->model->n_joints);
+}
 static inline grobo_joint_mask grobo_i_woken(const grobo_robot *robot, grobo_joint_mask joints)
 {
     return GROBO_I_EXTRA(robot->driver, goal_energises) ? joints : 0;
+}
+static inline const grobo_driver *grobo_i_line_driver(const grobo_robot *robot, int line,
+                                                      void **ctx)
+{
+    (void)line;
+    if (ctx != NULL) {
+        *ctx = robot->driver_ctx;
+    }
+    return robot->driver;
+}
+static inline void grobo_i_slot_on(grobo_robot_slot *slot, int line)
+{
+    (void)slot;
+    (void)line;
+}
+static inline void grobo_i_slot_aim(grobo_robot_slot *slot)
+{
+    (void)slot;
+}
+static inline int grobo_i_joint_on(const grobo_robot *robot, int line, int motor)
+{
+    (void)line;
+    return grobo_model_joint_of_motor(robot->driver->model, motor);
+}
+static inline int64_t *grobo_i_left_us(grobo_robot *robot, int line)
+{
+    (void)line;
+    return &robot->left_us;
+}
+static inline bool *grobo_i_answered(grobo_robot *robot, int line)
+{
+    (void)line;
+    return &robot->answered;
+}
+#endif
+/* The bus of a frame. */
+static inline grobo_bus *grobo_i_bus_of(const grobo_robot_slot *slot)
+{
+    return grobo_i_bus(slot->robot, grobo_i_slot_line(slot));
+}
+/* True of a frame that is on its wire. */
+static inline bool grobo_i_is_active(const grobo_robot_slot *slot)
+{
+    return grobo_i_bus_of(slot)->active == &slot->txn;
 }
 
 /* True if the joint is one of these. */
@@ -258,7 +429,11 @@ void grobo_i_couple_limits(const grobo_robot *robot, int joint, double *min_rad,
 /* How far a joint that follows is from where it should be, by the reading of it or of the other one
  * that just came; NaN where they tell nothing of that. */
 double grobo_i_apart_rad(const grobo_robot *robot, int follower, int read);
+
 /* ---- robot.c --------------------------------------------------------------------------------- */
+
+/* What was known of these joints may be wrong: their line went. */
+void grobo_i_forget_joints(grobo_robot *robot, grobo_joint_mask joints);
 
 /* Bytes of an engine with no more axes than this robot has joints: what lies behind them of a
  * grobo_robot is not there. */
@@ -297,10 +472,12 @@ int64_t grobo_i_now(const grobo_robot *robot);
 bool grobo_i_is_latched(const grobo_robot *robot);
 
 /* True if a frame waits that the wire has time for now; `any`: or any, and the line is free. */
-bool grobo_i_has_frame(const grobo_robot *robot, bool any, int64_t now_us);
+bool grobo_i_has_frame(const grobo_robot *robot, int line, bool any, int64_t now_us);
 
 /* True if the frame that has just left stops joints. */
-bool grobo_i_frame_stops(const grobo_robot *robot);
+bool grobo_i_frame_stops(const grobo_robot *robot, int line);
+/* grobo_robot_stops() of a line. */
+bool grobo_i_stops(const grobo_robot *robot, int line, int64_t now_us);
 
 /* True if that is true of a job that runs; NULL: if one runs. */
 bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_task *job));
@@ -390,25 +567,32 @@ bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
 
 /* ---- budget.c -------------------------------------------------------------------------------- */
 
+/* A line, or all of a robot, and what drives servos on it. */
+typedef struct grobo_i_line {
+    const grobo_bus *bus;
+    const grobo_driver *driver;
+#if GROBO_LINES_MAX > 1
+    const grobo_lines *lines;     /* NULL: it is the only one */
+    const grobo_robot_line *more; /* the buses of the others */
+#endif
+    void *ctx;   /* the driver's */
+    bool unread; /* nothing is read in the background */
+} grobo_i_line;
+
+/* Of an engine. */
+grobo_i_line grobo_i_line_of_robot(const grobo_robot *robot);
+
 /* How long an exchange has the line, in microseconds. */
 uint32_t grobo_i_line_us(const grobo_bus *bus, const grobo_exchange *exchange);
 
 /* What a goal of all these joints costs, in as many frames as it takes. *answered: servos answer
  * their goals. @return 0, or an error of the driver. */
-int grobo_i_motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
-                        grobo_joint_mask joints, uint32_t *us, bool *answered);
+int grobo_i_motion_cost(const grobo_i_line *line, grobo_joint_mask joints, uint32_t *us,
+                        bool *answered);
 /* The costliest reading of one joint, or of all where one frame reads all. */
-int grobo_i_reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us);
+int grobo_i_reading_cost(const grobo_i_line *line, uint32_t *us);
 
 /* ---- pace.c ---------------------------------------------------------------------------------- */
-
-/* A line and what drives servos on it. */
-typedef struct grobo_i_line {
-    const grobo_bus *bus;
-    const grobo_driver *driver;
-    void *ctx;   /* the driver's */
-    bool unread; /* nothing is read in the background */
-} grobo_i_line;
 
 /* grobo_budget.pace_us for these joints. */
 uint32_t grobo_i_pace_of(const grobo_i_line *line, grobo_joint_mask joints);
@@ -703,9 +887,12 @@ int64_t grobo_i_sense_deadline(const grobo_robot *robot);
 /* A background reading is over, and taken. */
 void grobo_i_sense_done(const grobo_robot_slot *slot, int result);
 
-/* ---- steps.c --------------------------------------------------------------------------------- */
+/* ---- check.c -------------------------------------------------------------------------------- */
 
 extern const grobo_robot_step_fn grobo_i_script_check[];
+
+/* ---- steps.c --------------------------------------------------------------------------------- */
+
 extern const grobo_robot_step_fn grobo_i_script_sense[];
 extern const grobo_robot_step_fn grobo_i_script_torque_on[];
 extern const grobo_robot_step_fn grobo_i_script_torque_off[]; /* brake as well */

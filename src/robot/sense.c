@@ -182,12 +182,12 @@ static bool is_turn_of_the_others(const grobo_robot *robot)
 /* ---- a reading that waits -------------------------------------------------------------------- */
 
 /* The index of the slot of the background reading that waits for the line, or -1. */
-static int find_waiting(const grobo_robot *robot)
+static inline int find_waiting(const grobo_robot *robot)
 {
     for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
-        if (slot->use == GROBO_I_USE_SENSE && robot->bus.active != &slot->txn &&
-            slot->txn.priority == GROBO_PRIORITY_SENSE) {
+        if (slot->use == GROBO_I_USE_SENSE && slot->txn.priority == GROBO_PRIORITY_SENSE &&
+            !grobo_i_is_active(slot)) {
             return i;
         }
     }
@@ -220,6 +220,7 @@ static int64_t hurry_at(const grobo_robot *robot)
         return GROBO_NEVER_US;
     }
     const grobo_robot_slot *slot = &robot->slots[at];
+    const grobo_bus *bus = grobo_i_bus_of(slot);
     grobo_txn first = slot->txn;
     first.priority = GROBO_PRIORITY_MOTION;
     int64_t since_us = slot->txn.sent_us > slot->given_us ? slot->txn.sent_us : slot->given_us;
@@ -227,8 +228,8 @@ static int64_t hurry_at(const grobo_robot *robot)
     bool quiet = unheard(robot) != 0;
     int64_t watch_us = quiet ? GROBO_I_RESTART_US : GROBO_WATCH_US;
     int64_t late_us = since_us + watch_us / HURRY_PART / readings;
-    int64_t free_us = grobo_bus_free_at(&robot->bus, robot->now_us);
-    int64_t may_us = grobo_i_bus_start_at(&robot->bus, &first, robot->now_us);
+    int64_t free_us = grobo_bus_free_at(bus, robot->now_us);
+    int64_t may_us = grobo_i_bus_start_at(bus, &first, robot->now_us);
     bool needed = quiet || !grobo_i_often(robot);
     late_us = needed ? late_us : grobo_i_later(late_us, is_old_at(robot, slot));
     return may_us > free_us && may_us > late_us ? may_us : late_us;
@@ -241,14 +242,16 @@ static void hurry(grobo_robot *robot)
     if (hurry_at(robot) > robot->now_us) {
         return;
     }
-    grobo_txn *txn = &robot->slots[find_waiting(robot)].txn;
+    grobo_robot_slot *slot = &robot->slots[find_waiting(robot)];
+    grobo_bus *bus = grobo_i_bus_of(slot);
+    grobo_txn *txn = &slot->txn;
     if (txn->timeout_us == 0) {
         grobo_bus_cost cost;
-        grobo_bus_cost_of(&robot->bus, txn, &cost);
+        grobo_bus_cost_of(bus, txn, &cost);
         txn->timeout_us = cost.timeout_us + GROBO_BUS_MARGIN_MIN_US;
     }
     txn->retries = 0;
-    (void)grobo_bus_raise(&robot->bus, txn, GROBO_PRIORITY_MOTION);
+    (void)grobo_bus_raise(bus, txn, GROBO_PRIORITY_MOTION);
 }
 
 /* Of a joint in free mode everything, and of one that nothing is known of: it may be on a
@@ -478,9 +481,9 @@ static void give_way(grobo_robot *robot, grobo_robot_slot *waiting)
     grobo_joint_mask asked = waiting->many ? waiting->unread : GROBO_JOINT_BIT(waiting->joint);
     if ((asked & robot->halts_owed) != 0) {
         waiting->txn.urgent = true;
-        (void)grobo_bus_raise(&robot->bus, &waiting->txn, GROBO_PRIORITY_MOTION);
+        (void)grobo_bus_raise(grobo_i_bus_of(waiting), &waiting->txn, GROBO_PRIORITY_MOTION);
     } else {
-        (void)grobo_bus_cancel(&robot->bus, &waiting->txn);
+        (void)grobo_bus_cancel(grobo_i_bus_of(waiting), &waiting->txn);
     }
 }
 
@@ -490,15 +493,15 @@ static void ask_for_less(grobo_robot *robot)
 {
     for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
-        bool waits = slot->use == GROBO_I_USE_SENSE && robot->bus.active != &slot->txn;
+        bool waits = slot->use == GROBO_I_USE_SENSE && !grobo_i_is_active(slot);
         if (!waits || grobo_joints_count(slot->unread) < 2) {
             continue;
         }
         grobo_bus_cost cost;
-        grobo_bus_cost_of(&robot->bus, &slot->txn, &cost);
+        grobo_bus_cost_of(grobo_i_bus_of(slot), &slot->txn, &cost);
         if (cost.total_us > (uint32_t)robot->read_us) {
             robot->sense_us = robot->now_us;
-            (void)grobo_bus_cancel(&robot->bus, &robot->slots[i].txn);
+            (void)grobo_bus_cancel(grobo_i_bus_of(slot), &robot->slots[i].txn);
             return;
         }
     }

@@ -139,7 +139,7 @@ static uint32_t margin_of(const grobo_robot_slot *slot)
 {
     const grobo_robot *robot = slot->robot;
     uint32_t margin_us = robot->config.bus.margin_us;
-    bool quick = (slot->reads || slot->many) && robot->bus.worst_us < QUICK_LATENCY_US;
+    bool quick = (slot->reads || slot->many) && grobo_i_bus_of(slot)->worst_us < QUICK_LATENCY_US;
     return margin_us == 0 && quick ? QUICK_MARGIN_US : margin_us;
 }
 
@@ -167,26 +167,28 @@ static int on_leave(void *ctx, grobo_txn *txn)
     }
     slot->refused = result < 0;
     if (result >= 0) {
-        slot->robot->bus.config.margin_us = margin_of(slot); /* of this frame: it leaves now */
+        grobo_i_bus_of(slot)->config.margin_us = margin_of(slot); /* of this frame: it leaves now */
         slot->asked_us = txn->sent_us < 0 ? slot->robot->now_us : slot->asked_us;
     }
     return result;
 }
 
 /* A reply with a name, to the first attempt: not to one that may have been asked twice. */
-static void note_answer(grobo_robot *robot, const grobo_txn *txn, int result,
+static void note_answer(const grobo_robot_slot *slot, const grobo_txn *txn, int result,
                         const grobo_packet *reply)
 {
-    robot->answered =
-        robot->answered || (result >= 0 && reply != NULL && reply->kind == GROBO_PACKET_RETURN &&
-                            txn->attempts_ == 1 && txn->sent_us == robot->left_us);
+    int line = grobo_i_slot_line(slot);
+    bool *answered = grobo_i_answered(slot->robot, line);
+    *answered =
+        *answered || (result >= 0 && reply != NULL && reply->kind == GROBO_PACKET_RETURN &&
+                      txn->attempts_ == 1 && txn->sent_us == *grobo_i_left_us(slot->robot, line));
 }
 
 static void on_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
 {
     grobo_robot_slot *slot = ctx;
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && txn == &slot->txn);
-    note_answer(slot->robot, txn, reply->refused ? GROBO_ERR_NACK : GROBO_OK, reply);
+    note_answer(slot, txn, reply->refused ? GROBO_ERR_NACK : GROBO_OK, reply);
     slot->robot->each(slot, reply);
 }
 
@@ -195,7 +197,7 @@ static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *r
     grobo_robot_slot slot = *(const grobo_robot_slot *)ctx;
     GROBO_ASSERT(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);
     grobo_i_slot_drop(ctx);
-    note_answer(slot.robot, txn, result, reply);
+    note_answer(&slot, txn, result, reply);
     slot.robot->over(&slot, result, reply);
 }
 
@@ -206,7 +208,7 @@ static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *r
 static uint32_t time_of_several(const grobo_robot_slot *slot)
 {
     grobo_bus_cost cost;
-    grobo_bus_cost_of(&slot->robot->bus, &slot->txn, &cost);
+    grobo_bus_cost_of(grobo_i_bus_of(slot), &slot->txn, &cost);
     return cost.timeout_us + EACH_US * slot->txn.reply.count;
 }
 
@@ -223,6 +225,7 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
         grobo_i_slot_drop(slot);
         return GROBO_ERR_FULL;
     }
+    grobo_i_slot_aim(slot);
     take_bytes(slot, exchange);
     slot->txn.priority = priority;
     slot->txn.urgent = slot->use == GROBO_I_USE_SENSE && priority == GROBO_PRIORITY_MOTION;
@@ -238,7 +241,7 @@ int grobo_i_slot_send(grobo_robot_slot *slot, const grobo_exchange *exchange,
     slot->txn.each = on_each;
     slot->txn.done = on_done;
     slot->txn.ctx = slot;
-    int result = grobo_bus_submit(&slot->robot->bus, &slot->txn);
+    int result = grobo_bus_submit(grobo_i_bus_of(slot), &slot->txn);
     if (result < 0) {
         grobo_i_slot_drop(slot);
     }
@@ -254,9 +257,8 @@ static bool waits(const grobo_robot_slot *slot)
  * answered alike, a halt of the same servo too, for a reply that nobody awaits. */
 static void cancel(grobo_robot_slot *slot)
 {
-    grobo_robot *robot = slot->robot;
-    if (robot->bus.active != &slot->txn || slot->txn.reply.kind == GROBO_REPLY_NONE) {
-        (void)grobo_bus_cancel(&robot->bus, &slot->txn);
+    if (!grobo_i_is_active(slot) || slot->txn.reply.kind == GROBO_REPLY_NONE) {
+        (void)grobo_bus_cancel(grobo_i_bus_of(slot), &slot->txn);
         return;
     }
     slot->txn.retries = 0;
@@ -283,10 +285,12 @@ static bool brings_rest(const grobo_robot_slot *slot)
 
 void grobo_i_slots_hurry(grobo_robot *robot)
 {
-    grobo_bus *bus = &robot->bus;
-    if (bus->active != NULL) {
-        int64_t over_us = grobo_i_later(bus->over_us, robot->now_us);
-        bus->limit_us = grobo_i_sooner(bus->limit_us, over_us + GROBO_BUS_MARGIN_MIN_US);
+    for (int i = 0; i < grobo_i_lines(robot); i++) {
+        grobo_bus *bus = grobo_i_bus(robot, i);
+        if (bus->active != NULL) {
+            int64_t over_us = grobo_i_later(bus->over_us, robot->now_us);
+            bus->limit_us = grobo_i_sooner(bus->limit_us, over_us + GROBO_BUS_MARGIN_MIN_US);
+        }
     }
 }
 

@@ -182,6 +182,16 @@ static bool is_ample(const grobo_robot *robot, int joint, double to_rad, grobo_i
     return grobo_i_gets_there(from_rad, to_rad, most_rad_s, asked);
 }
 
+/* All joints get the longest time, each in the unit of its wire. */
+static void time_alike(const grobo_robot *robot, grobo_target *target, int64_t longest_us)
+{
+    bool one_unit = grobo_i_lines(robot) == 1;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        target->joint_time_us[j] =
+            one_unit ? longest_us : on_time_grid(robot, j, (double)longest_us);
+    }
+}
+
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
     bool soft = robot->soft || order->soft;
@@ -216,8 +226,8 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
     }
     robot->counters.stretched += stretched;
     grobo_i_couple_times(robot, target);
-    for (int j = 0; !order->each && j < robot->driver->model->n_joints; j++) {
-        target->joint_time_us[j] = longest_us;
+    if (!order->each) {
+        time_alike(robot, target, longest_us);
     }
     return GROBO_OK;
 }

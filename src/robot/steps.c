@@ -91,7 +91,13 @@ static int step_ask(grobo_robot *robot)
 {
     bool own = robot->asked_by == robot->job->number;
     grobo_robot_slot *slot = own ? grobo_i_slot_take(robot, GROBO_I_USE_JOB) : NULL;
-    return slot == NULL ? GROBO_ERR_FULL : ask(robot, slot, &robot->asked);
+    if (slot == NULL) {
+        return GROBO_ERR_FULL;
+    }
+#if GROBO_LINES_MAX > 1
+    grobo_i_slot_on(slot, robot->asked_line);
+#endif
+    return ask(robot, slot, &robot->asked);
 }
 
 /* Flash and reboot need silence after them. */
@@ -102,31 +108,6 @@ static int step_settle(grobo_robot *robot)
     }
     robot->job->until_us = robot->now_us + robot->job->settle_us;
     return GROBO_I_WAIT;
-}
-
-static int step_check(grobo_robot *robot)
-{
-    const grobo_driver *driver = robot->driver;
-    grobo_robot_task *job = robot->job;
-    grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_JOB);
-    if (slot == NULL) {
-        return GROBO_ERR_FULL;
-    }
-    int more = driver->check(driver, robot->driver_ctx, job->part, &robot->built);
-    if (more > 0) {
-        return ask(robot, slot, &robot->built);
-    }
-    grobo_i_slot_drop(slot);
-    return more < 0 ? more : job->part == 0 ? GROBO_ERR_UNSUPPORTED : job->result;
-}
-
-static int step_check_next(grobo_robot *robot)
-{
-    if (robot->job->result < 0) {
-        robot->job->part++;
-        grobo_i_job_goto(robot, step_check);
-    }
-    return GROBO_I_NEXT;
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */
@@ -229,10 +210,13 @@ static grobo_joint_mask joints_with(const grobo_robot *robot, grobo_joint_mask j
     return found;
 }
 
-/* Frames that move nothing, to these joints. One that finds no room is as one that is lost. */
-static void tell_plain(grobo_robot *robot, grobo_joint_mask joints, int64_t time_us,
-                       int (*build)(const grobo_driver *driver, void *ctx, grobo_joint_mask joints,
-                                    int64_t time_us, int part, grobo_exchange *exchange))
+/* Makes a frame that moves nothing. */
+typedef int (*plain_build)(const grobo_driver *driver, void *ctx, grobo_joint_mask joints,
+                           int64_t time_us, int part, grobo_exchange *exchange);
+
+/* To joints of one line. A frame that finds no room is as one that is lost. */
+static void tell_line(grobo_robot *robot, grobo_joint_mask joints, int64_t time_us,
+                      plain_build build)
 {
     int more = joints != 0;
     for (int part = 0; more > 0; part++) {
@@ -240,12 +224,22 @@ static void tell_plain(grobo_robot *robot, grobo_joint_mask joints, int64_t time
         if (slot == NULL) {
             break;
         }
+        grobo_i_slot_on(slot, grobo_i_line_of(robot, grobo_i_lowest(joints)));
         more = build(robot->driver, robot->driver_ctx, joints, time_us, part, &robot->built);
         if (more > 0) {
             more = grobo_i_slot_send(slot, &robot->built, robot->job->priority) < 0 ? 0 : 1;
         } else {
             grobo_i_slot_drop(slot);
         }
+    }
+}
+
+/* Frames that move nothing, to these joints. */
+static void tell_plain(grobo_robot *robot, grobo_joint_mask joints, int64_t time_us,
+                       plain_build build)
+{
+    for (int i = 0; i < grobo_i_lines(robot); i++) {
+        tell_line(robot, joints & grobo_i_joints_on(robot, i), time_us, build);
     }
 }
 
@@ -910,7 +904,6 @@ static int step_let_go(grobo_robot *robot)
 #define SWITCH step_pick_all, step_torque, step_read_pending, step_torque_check
 #define MOVE step_send, step_arrive, step_read_back, step_arrived
 
-const grobo_robot_step_fn grobo_i_script_check[] = {step_check, step_check_next, NULL};
 const grobo_robot_step_fn grobo_i_script_sense[] = {step_read, NULL};
 const grobo_robot_step_fn grobo_i_script_torque_on[] = {step_read, TWICE, SWITCH_ON, NULL};
 const grobo_robot_step_fn grobo_i_script_torque_off[] = {SWITCH, NULL};

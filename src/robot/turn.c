@@ -64,7 +64,7 @@ static int take_reading(const grobo_robot_slot *slot, int result, const grobo_pa
 
 void grobo_i_reply_came(grobo_robot_slot *slot, const grobo_packet *reply)
 {
-    int joint = grobo_model_joint_of_motor(slot->robot->driver->model, reply->id);
+    int joint = grobo_i_joint_on(slot->robot, grobo_i_slot_line(slot), reply->id);
     if (joint < 0 || !grobo_i_has(slot->unread, joint)) {
         return;
     }

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include <grobo/core/driver.h>
+#include <grobo/core/lines.h>
 #include <grobo/core/sequencer.h>
 
 #include "src/base/sized.h"
@@ -67,14 +68,34 @@ static bool has_speed(const grobo_driver *driver)
 #endif
 }
 
+#if GROBO_LINES_MAX > 1
+const grobo_lines *grobo_driver_lines(const grobo_driver *driver)
+{
+    return driver == NULL ? NULL : GROBO_I_MEMBER(driver, driver->size, lines);
+}
+#endif
+
+/* How the servo of a joint talks. */
+static const grobo_protocol *protocol_of(const grobo_driver *driver, int joint)
+{
+#if GROBO_LINES_MAX > 1
+    const grobo_lines *lines = grobo_driver_lines(driver);
+    return lines != NULL ? lines->line[lines->line_of[joint]].driver.protocol : driver->protocol;
+#else
+    (void)joint;
+    return driver->protocol;
+#endif
+}
+
 static bool joints_sound(const grobo_driver *driver)
 {
     for (int j = 0; j < driver->model->n_joints; j++) {
+        const grobo_protocol *protocol = protocol_of(driver, j);
         uint8_t id = grobo_i_joint(driver->model, j)->motor;
         bool limits = grobo_i_joint(driver->model, j)->torque_limit_pct > 0;
         bool turns = !grobo_i_joint_is_wheel(driver->model, j) || has_speed(driver);
-        if (!turns || (limits && driver->torque_limit == NULL) || id < driver->protocol->id_min ||
-            id > driver->protocol->id_max) {
+        if (!turns || (limits && driver->torque_limit == NULL) || id < protocol->id_min ||
+            id > protocol->id_max) {
             return false;
         }
     }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include <grobo/core/board.h>
+#include <grobo/core/lines.h>
 #include <grobo/core/robot.h>
 #include <grobo/core/sim.h>
 #include <grobo/core/sim_physics.h>
@@ -315,6 +316,28 @@ TEST(a_team_refuses_null)
     REFUSES(grobo_robot_start_at(NULL, 0));
     REFUSES(grobo_sequencer_start_at(NULL, 0, 0));
     assert_false(grobo_sequencer_is_ready(NULL));
+}
+
+TEST(lines_refuse_null)
+{
+    static grobo_lines lines;
+    static grobo_driver made = GROBO_TABLE_INIT(grobo_driver);
+    REFUSES(grobo_lines_split(NULL, driver->model));
+    REFUSES(grobo_lines_split(&lines, NULL));
+    REFUSES(grobo_lines_driver_init(NULL, &lines, driver->model));
+    REFUSES(grobo_lines_driver_init(&made, NULL, driver->model));
+    REFUSES(grobo_lines_driver_init(&made, &lines, NULL));
+    assert_null(grobo_driver_lines(NULL));
+    REFUSES(grobo_robot_lines(NULL));
+    grobo_robot_line_rx(NULL, 0, bytes, sizeof bytes, 0);
+    grobo_robot_line_rx(&robot, 0, NULL, 1, 0);
+    REFUSES(grobo_robot_line_tx(NULL, 0, bytes, sizeof bytes, 0));
+    REFUSES(grobo_robot_line_tx(&robot, 0, NULL, 1, 0));
+    grobo_robot_line_down(NULL, 0, 0);
+    grobo_robot_line_up(NULL, 0, 0);
+    REFUSES(grobo_robot_line_registers(NULL, 0, &io));
+    REFUSES(grobo_robot_line_registers(&robot, 0, NULL));
+    assert_null(grobo_robot_line_stats(NULL, 0));
 }
 
 TESTS_BETWEEN(set_up, tear_down)

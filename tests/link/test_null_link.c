@@ -323,6 +323,7 @@ TEST(a_virtual_robot_refuses_null)
     REFUSES(grobo_virtual_now_us(NULL));
     assert_null(grobo_virtual_robot(NULL));
     assert_null(grobo_virtual_sim(NULL));
+    assert_null(grobo_virtual_line_sim(NULL, 0));
     grobo_virtual_free(NULL);
     REFUSES(grobo_loop_run(NULL, 1000));
     grobo_loop_free(NULL);

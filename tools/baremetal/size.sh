@@ -34,13 +34,13 @@ postures='model/posture model/model model/interpolate model/unit'
 robot='servo/driver servo/rs30x/driver robots/gr001 robots/gr001_driver'
 engine='robot/robot robot/turn robot/job robot/play robot/control robot/query robot/request
     robot/slot robot/steps robot/axis robot/trajectories play/progress play/start robot/start
-    robot/gate robot/couple robot/wheel robot/drive
+    robot/gate robot/couple robot/wheel robot/drive robot/check robot/lines
     robot/event robot/reading robot/orders robot/watch robot/trip robot/stop robot/segments
     robot/sense robot/cost robot/budget robot/holds robot/join robot/pace robot/queue
     robot/halted robot/blocked robot/often robot/stand robot/weight robot/state robot/speed
     base/sized'
 simulator='servo/gr001/parser sim/board sim/bus sim/inspect sim/sim sim/wire servo/rs30x/sim
-    sim/servo/fault sim/servo/indirect sim/servo/note sim/servo/power sim/servo/registers
+    sim/lines sim/servo/fault sim/servo/indirect sim/servo/note sim/servo/power sim/servo/registers
     sim/servo/servo sim/servo/shaft sim/servo/talk'
 # All else of servos and robots, whatever family there is.
 families=bus/several

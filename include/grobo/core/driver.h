@@ -278,6 +278,9 @@ struct grobo_driver {
     int (*speed)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, const double *rad_s,
                  int part, grobo_exchange *exchange);
 #endif
+#if GROBO_LINES_MAX > 1
+    const struct grobo_lines *lines; /**< of a robot of several (lines.h); NULL: it has one */
+#endif
 };
 
 /**

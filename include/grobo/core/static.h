@@ -95,11 +95,14 @@ typedef struct grobo_robot_slot {
     int64_t given_us; /* when the bus got it */
     int64_t asked_us; /* when its first attempt left */
     int job;          /* number of the job whose step made it; 0: none */
-    bool refused;     /* at the moment it would have left */
-    bool reads;       /* it asks where this joint is */
-    bool many;        /* it asks where several are */
-    bool fast;        /* which answer with one packet */
-    uint8_t use;      /* 0: free */
+#if GROBO_LINES_MAX > 1
+    uint8_t line; /* that it is for */
+#endif
+    bool refused; /* at the moment it would have left */
+    bool reads;   /* it asks where this joint is */
+    bool many;    /* it asks where several are */
+    bool fast;    /* which answer with one packet */
+    uint8_t use;  /* 0: free */
     uint8_t joint;
     uint8_t kind, part;      /* of a reading: grobo_sense_kind, exchanges before this one */
     uint16_t room;           /* bytes of grobo_robot.frames that are its */
@@ -223,6 +226,16 @@ typedef struct grobo_robot_request {
     bool singly;                             /* it is of such */
 } grobo_robot_request;
 
+#if GROBO_LINES_MAX > 1
+/** A line of an engine behind the first one. Private. */
+typedef struct grobo_robot_line {
+    /* private */
+    grobo_bus bus;
+    int64_t left_us; /* when its last frame was given out */
+    bool answered;   /* that was */
+} grobo_robot_line;
+#endif
+
 /** A robot engine. Caller storage; read it through the functions below. */
 struct grobo_robot {
     /* private */
@@ -311,6 +324,13 @@ struct grobo_robot {
     bool stop_owed;     /* an emergency stop that no line has carried yet */
     bool holds_at_stop; /* the driver switches no torque: an emergency stop halts */
     bool in_segments;   /* a joint may be: whoever looks for one need not where none is */
+#if GROBO_LINES_MAX > 1
+    const struct grobo_lines *lines; /* NULL: there is one */
+    uint8_t lines_gone;              /* bits of those that are down while others are there */
+    uint8_t check_line;              /* that the check asks */
+    uint8_t asked_line;              /* of `asked` */
+    grobo_robot_line more[GROBO_LINES_MAX - 1];
+#endif
     /* The last member: where the library makes an engine there are as many as its robot has joints
      * (grobo_i_robot_bytes()). */
     grobo_robot_axis axes[GROBO_JOINTS_MAX];

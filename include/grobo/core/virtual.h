@@ -53,8 +53,11 @@ GROBO_API void grobo_virtual_free(grobo_virtual *robot);
 /** The engine: every request and question of robot.h, at the present virtual time. */
 GROBO_API grobo_robot *grobo_virtual_robot(grobo_virtual *robot);
 
-/** The simulator, for inspection and faults. */
+/** The simulator, for inspection and faults; of a robot of several lines that of the first one. */
 GROBO_API grobo_sim *grobo_virtual_sim(grobo_virtual *robot);
+
+/** The simulator of a line (lines.h), 0..n-1; NULL where there is none. */
+GROBO_API grobo_sim *grobo_virtual_line_sim(grobo_virtual *robot, int line);
 
 /** Virtual time since it was made; negative error code without a robot. */
 GROBO_API int64_t grobo_virtual_now_us(const grobo_virtual *robot);

@@ -85,7 +85,7 @@ static bool make_room(grobo_session *session, int64_t now_us)
  * room by a call of the system, the engine says by its frame whether there is one. */
 static bool has_frame(const grobo_session *session, int64_t now_us)
 {
-    return grobo_i_has_frame(&session->robot, session->robot.answered, now_us) &&
+    return grobo_i_has_frame(&session->robot, 0, session->robot.answered, now_us) &&
            !grobo_i_session_has_asked(session) && !grobo_i_session_estop_old(session, now_us);
 }
 
@@ -118,7 +118,7 @@ static int64_t give_next(grobo_session *session)
     if (has_frame(session, now_us)) {
         may = may_leave(session, now_us);
         size = may ? grobo_robot_tx(robot, frame, sizeof frame, now_us) : 0;
-        stops = grobo_i_frame_stops(robot);
+        stops = grobo_i_frame_stops(robot, 0);
     }
     if (may) {
         deadline_us = grobo_robot_deadline(robot, now_us);

@@ -14,15 +14,31 @@
 #include "src/base/assert.h"
 #include "src/base/memory.h"
 #include "src/base/sized.h"
+#include "src/sim/lines.h"
 #include "src/sim/servo/servo.h"
+
+/* A wire to simulated servos. */
+typedef struct virtual_wire {
+    grobo_sim *sim;
+    int64_t replug_us; /* of a cable that is out; GROBO_NEVER_US: it is in */
+    size_t n_rest;
+    uint8_t rest[GROBO_FRAME_MAX_BYTES]; /* of a frame that the wire took in part */
+} virtual_wire;
+
+/* The simulator of a line behind the first one. */
+typedef struct virtual_more {
+    grobo_i_sim_line made;
+    grobo_sim sim;
+} virtual_more;
 
 struct grobo_virtual {
     const grobo_mem *mem;
     size_t bytes;
     int64_t now_us;
-    int64_t replug_us; /* of a cable that is out; GROBO_NEVER_US: it is in */
-    size_t n_rest;
-    uint8_t rest[GROBO_FRAME_MAX_BYTES]; /* of a frame that the wire took in part */
+    int n_lines;
+    virtual_wire wire[GROBO_LINES_MAX];
+    virtual_more *more[GROBO_LINES_MAX]; /* NULL: the first one, or not there */
+    grobo_i_sim_line made;               /* of the first one, where there are several */
     grobo_robot robot;
     grobo_sim sim; /* the last member: grobo_i_sim_bytes() */
 };
@@ -30,24 +46,43 @@ struct grobo_virtual {
 /* ---- a round -------------------------------------------------------------------------------- */
 
 /* Bytes of a frame that go on the wire now. */
-static void give(grobo_virtual *robot, const uint8_t *frame, size_t size)
+static void give(virtual_wire *wire, const uint8_t *frame, size_t size, int64_t now_us)
 {
-    size_t taken = grobo_sim_rx(&robot->sim, frame, size, robot->now_us);
-    GROBO_ASSERT(taken <= size && size - taken <= sizeof robot->rest);
-    robot->n_rest = size - taken;
-    memmove(robot->rest, frame + taken, robot->n_rest);
+    size_t taken = grobo_sim_rx(wire->sim, frame, size, now_us);
+    GROBO_ASSERT(taken <= size && size - taken <= sizeof wire->rest);
+    wire->n_rest = size - taken;
+    memmove(wire->rest, frame + taken, wire->n_rest);
 }
 
-static void watch_cable(grobo_virtual *robot)
+static void cable_out(grobo_virtual *robot, int line)
 {
-    if (robot->replug_us == GROBO_NEVER_US && grobo_sim_hung_up(&robot->sim)) {
-        robot->replug_us = robot->now_us + GROBO_VIRTUAL_REPLUG_US;
-        robot->n_rest = 0;
+    if (robot->n_lines > 1) {
+        grobo_robot_line_down(&robot->robot, line, robot->now_us);
+    } else {
         grobo_robot_link_down(&robot->robot, robot->now_us);
-    } else if (robot->now_us >= robot->replug_us) {
-        robot->replug_us = GROBO_NEVER_US;
-        grobo_sim_plug(&robot->sim, true, robot->now_us);
+    }
+}
+
+static void cable_in(grobo_virtual *robot, int line)
+{
+    if (robot->n_lines > 1) {
+        grobo_robot_line_up(&robot->robot, line, robot->now_us);
+    } else {
         grobo_robot_link_up(&robot->robot, robot->now_us);
+    }
+}
+
+static void watch_cable(grobo_virtual *robot, int line)
+{
+    virtual_wire *wire = &robot->wire[line];
+    if (wire->replug_us == GROBO_NEVER_US && grobo_sim_hung_up(wire->sim)) {
+        wire->replug_us = robot->now_us + GROBO_VIRTUAL_REPLUG_US;
+        wire->n_rest = 0;
+        cable_out(robot, line);
+    } else if (robot->now_us >= wire->replug_us) {
+        wire->replug_us = GROBO_NEVER_US;
+        grobo_sim_plug(wire->sim, true, robot->now_us);
+        cable_in(robot, line);
     }
 }
 
@@ -60,20 +95,31 @@ static int64_t sooner(int64_t a, int64_t b)
 static int64_t turn(grobo_virtual *robot)
 {
     uint8_t bytes[GROBO_FRAME_MAX_BYTES];
-    size_t got = grobo_sim_tx(&robot->sim, bytes, sizeof bytes, robot->now_us);
-    grobo_robot_rx_step(&robot->robot, bytes, got, robot->now_us);
-    give(robot, robot->rest, robot->n_rest);
-    if (robot->n_rest == 0) {
-        int n = grobo_robot_tx(&robot->robot, bytes, sizeof bytes, robot->now_us);
-        if (n > 0) {
-            give(robot, bytes, (size_t)n);
+    int64_t next_us = GROBO_NEVER_US;
+    bool free = true;
+    for (int i = robot->n_lines - 1; i >= 0; i--) {
+        size_t got = grobo_sim_tx(robot->wire[i].sim, bytes, sizeof bytes, robot->now_us);
+        if (i > 0) {
+            grobo_robot_line_rx(&robot->robot, i, bytes, got, robot->now_us);
+        } else {
+            grobo_robot_rx_step(&robot->robot, bytes, got, robot->now_us);
         }
     }
-    watch_cable(robot);
-    int64_t sim_us = grobo_sim_packet_deadline(&robot->sim);
-    int64_t robot_us =
-        robot->n_rest > 0 ? GROBO_NEVER_US : grobo_robot_deadline(&robot->robot, robot->now_us);
-    return sooner(sooner(sim_us, robot_us), robot->replug_us);
+    for (int i = 0; i < robot->n_lines; i++) {
+        virtual_wire *wire = &robot->wire[i];
+        give(wire, wire->rest, wire->n_rest, robot->now_us);
+        int n = wire->n_rest > 0
+                    ? 0
+                    : grobo_robot_line_tx(&robot->robot, i, bytes, sizeof bytes, robot->now_us);
+        if (n > 0) {
+            give(wire, bytes, (size_t)n, robot->now_us);
+        }
+        watch_cable(robot, i);
+        free = free && wire->n_rest == 0;
+        next_us = sooner(next_us, grobo_sim_packet_deadline(wire->sim));
+        next_us = sooner(next_us, wire->replug_us);
+    }
+    return free ? sooner(next_us, grobo_robot_deadline(&robot->robot, robot->now_us)) : next_us;
 }
 
 int grobo_virtual_run(grobo_virtual *robot, int64_t for_us)
@@ -88,7 +134,9 @@ int grobo_virtual_run(grobo_virtual *robot, int64_t for_us)
         next_us = turn(robot);
     }
     robot->now_us = end_us;
-    grobo_sim_step(&robot->sim, end_us);
+    for (int i = 0; i < robot->n_lines; i++) {
+        grobo_sim_step(robot->wire[i].sim, end_us);
+    }
     return GROBO_OK;
 }
 
@@ -110,11 +158,34 @@ static void complete(const grobo_driver *driver, grobo_robot_config *robot, grob
     robot->bus.baud_bps = robot->bus.baud_bps != 0 ? robot->bus.baud_bps : sim->baud_bps;
 }
 
-static int start(grobo_virtual *robot, const grobo_driver *driver, void *driver_ctx,
-                 const grobo_robot_config *config, const grobo_sim_config *sim)
+static int start_line(grobo_virtual *robot, const grobo_lines *lines, int line,
+                      const grobo_sim_config *whole)
 {
-    robot->replug_us = GROBO_NEVER_US;
+    virtual_more *more = grobo_i_new(robot->mem, sizeof *more);
+    if (more == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    robot->more[line] = more;
+    grobo_i_sim_of_line(lines, line, whole, &more->made);
+    robot->wire[line] = (virtual_wire){.sim = &more->sim, .replug_us = GROBO_NEVER_US};
+    return grobo_sim_init_sized(&more->sim, sizeof more->sim, &more->made.config, 0);
+}
+
+static int start(grobo_virtual *robot, const grobo_driver *driver, void *driver_ctx,
+                 const grobo_robot_config *config, const grobo_sim_config *whole)
+{
+    const grobo_sim_config *sim = whole;
+    const grobo_lines *lines = grobo_driver_lines(driver);
+    robot->n_lines = lines == NULL ? 1 : lines->n_lines;
+    if (lines != NULL) {
+        grobo_i_sim_of_line(lines, 0, sim, &robot->made);
+        sim = &robot->made.config;
+    }
+    robot->wire[0] = (virtual_wire){.sim = &robot->sim, .replug_us = GROBO_NEVER_US};
     int result = grobo_sim_init_sized(&robot->sim, grobo_i_sim_bytes(sim->model), sim, 0);
+    for (int i = 1; i < robot->n_lines && result >= 0; i++) {
+        result = start_line(robot, lines, i, whole);
+    }
     if (result >= 0) {
         result = grobo_robot_init(&robot->robot, driver, driver_ctx, config, 0);
     }
@@ -162,6 +233,9 @@ int grobo_virtual_new(const grobo_virtual_config *config, grobo_virtual **made)
 void grobo_virtual_free(grobo_virtual *robot)
 {
     if (robot != NULL) {
+        for (int i = 0; i < GROBO_LINES_MAX; i++) {
+            grobo_i_free(robot->mem, robot->more[i], sizeof *robot->more[i]);
+        }
         grobo_i_free(robot->mem, robot, robot->bytes);
     }
 }
@@ -174,6 +248,11 @@ grobo_robot *grobo_virtual_robot(grobo_virtual *robot)
 grobo_sim *grobo_virtual_sim(grobo_virtual *robot)
 {
     return robot != NULL ? &robot->sim : NULL;
+}
+
+grobo_sim *grobo_virtual_line_sim(grobo_virtual *robot, int line)
+{
+    return robot != NULL && line >= 0 && line < robot->n_lines ? robot->wire[line].sim : NULL;
 }
 
 int64_t grobo_virtual_now_us(const grobo_virtual *robot)
