@@ -114,13 +114,35 @@ static int16_t dps_of(int32_t dps)
     return (int16_t)(dps < -INT16_MAX ? -INT16_MAX : dps > INT16_MAX ? INT16_MAX : dps);
 }
 
+/* Between angles so far apart lies a speed. */
+#define APART_S 0.01
+
+/* An angle alone would hide that a joint turns; but of one that nobody here has sent it shows where
+ * it does not go as it was read to. */
+static void see_angle(grobo_robot_axis *axis, int64_t asked_us, double angle_rad)
+{
+    double time_s = seconds(axis->seen_us, asked_us);
+    if (grobo_i_has_target(axis) || time_s < APART_S) {
+        return;
+    }
+    double mean_dps = grobo_deg_from_rad(angle_rad - axis->seen_rad) / time_s;
+    if (fabs(mean_dps - axis->seen_dps) > abs(axis->seen_dps) / 2.0) {
+        axis->seen_rad = angle_rad;
+        axis->seen_us = asked_us;
+        axis->seen_dps = dps_of((int32_t)lround(mean_dps));
+    }
+}
+
 void grobo_i_axis_seen(grobo_robot_axis *axis, int64_t asked_us, const grobo_joint_state *got)
 {
     bool told = (got->valid & GROBO_FIELD_SPEED) != 0;
     bool known = tells_speed(axis) && axis->seen_us >= axis->told_us &&
                  seconds(axis->seen_us, asked_us) < GOES_ON_S;
     if (known && !told) {
-        return; /* an angle alone would hide that it turns */
+        if (!GROBO_DRIVERS_PLAIN) {
+            see_angle(axis, asked_us, got->angle_rad);
+        }
+        return;
     }
     axis->seen_rad = got->angle_rad;
     axis->seen_us = asked_us;

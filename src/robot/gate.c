@@ -63,19 +63,25 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
 }
 
 /* The goal that ends a motion for a joint: between its place and the point where it comes to rest
- * under even deceleration in that time. A joint that lags, or that a raw frame moves, is not where
- * the clip is. */
+ * under even deceleration in that time: none is turned back. A joint that lags, or that a raw frame
+ * moves, is not where the clip is. */
 static double rest_of(const grobo_robot *robot, int joint, bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool halted = axis->last == 0; /* by what has no number: a raw frame, or a halt behind it */
-    int64_t rest_us = robot->now_us + (halted ? GROBO_I_HALT_AHEAD_US : 0);
-    double rest_rad = grobo_i_axis_reached(robot, joint, rest_us);
+    if (axis->last == 0) { /* told by what has no number: a raw frame, or a halt behind it */
+        return grobo_i_goal_to_rest(robot, joint, robot->now_us + GROBO_I_HALT_AHEAD_US);
+    }
     double here_rad = grobo_i_axis_place(robot, joint);
+    double to_rad = axis->trajectory.to_rad - grobo_i_load(axis); /* where it turns to */
     double rad_s = fmin(grobo_i_axis_speed(robot, joint), grobo_i_speed_limit(robot, joint, soft));
-    double most_rad = fmax(rad_s * (double)axis->next_time_us / 1e6 / 2, fabs(rest_rad - here_rad));
-    return halted ? grobo_i_goal_to_rest(robot, joint, rest_us)
-                  : grobo_i_goal_near(axis, axis->next_rad, here_rad, most_rad);
+    double most_rad = rad_s * (double)axis->next_time_us / 1e6 / 2;
+    if (!GROBO_DRIVERS_PLAIN) { /* a servo with ramps comes to rest no sooner */
+        double rest_rad = grobo_i_axis_reached(robot, joint, robot->now_us);
+        most_rad = fmax(most_rad, fabs(rest_rad - here_rad));
+        to_rad = rest_rad == here_rad ? to_rad : rest_rad;
+    }
+    int side = (to_rad > here_rad) - (to_rad < here_rad);
+    return grobo_i_goal_near(axis, axis->next_rad, here_rad, most_rad, side);
 }
 
 /* Fills in the goals of an order, except for joints that a goal would energise. @return true if

@@ -637,9 +637,10 @@ void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *g
 void grobo_i_begin_at_goal(grobo_robot *robot, int joint);
 /* The goal that has a joint rest where it can by then: it keeps the load. */
 double grobo_i_goal_to_rest(const grobo_robot *robot, int joint, int64_t rest_us);
-/* This goal, drawn in so that its joint rests no further than that from here. */
+/* This goal, drawn in so that its joint rests no further than that from here, and on this side: 1
+ * above, -1 below, 0 on either. */
 double grobo_i_goal_near(const grobo_robot_axis *axis, double goal_rad, double here_rad,
-                         double most_rad);
+                         double most_rad, int side);
 
 /* ---- reading.c ------------------------------------------------------------------------------- */
 

@@ -63,8 +63,8 @@ void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *g
     }
     if ((got->valid & GROBO_FIELD_SPEED) == 0 || abs(got->speed_dps) > CALM_DPS ||
         !grobo_i_axis_is_on(axis) || !grobo_i_axis_goal(robot, joint, &goal_rad) ||
-        !hangs(robot, joint, got)) {
-        return;
+        got->speed_dps * (goal_rad - axis->state.angle_rad) > 0 || !hangs(robot, joint, got)) {
+        return; /* one that turns to its goal creeps there, however late it is */
     }
     double load_rad = goal_rad - axis->state.angle_rad;
     double least_rad = fmax(LEAST_RAD, 2 * grobo_i_driver_of(robot, joint)->angle_step_rad);
@@ -90,10 +90,11 @@ void grobo_i_begin_at_goal(grobo_robot *robot, int joint)
 }
 
 double grobo_i_goal_near(const grobo_robot_axis *axis, double goal_rad, double here_rad,
-                         double most_rad)
+                         double most_rad, int side)
 {
-    double low_rad = here_rad - most_rad + fmin(grobo_i_load_kept(axis), 0);
-    double high_rad = here_rad + most_rad + fmax(grobo_i_load_kept(axis), 0);
+    double low_rad = (side > 0 ? here_rad : here_rad - most_rad) + fmin(grobo_i_load_kept(axis), 0);
+    double high_rad =
+        (side < 0 ? here_rad : here_rad + most_rad) + fmax(grobo_i_load_kept(axis), 0);
     return fmin(fmax(goal_rad, low_rad), high_rad);
 }
 

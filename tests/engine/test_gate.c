@@ -683,7 +683,7 @@ TEST_WITH(rig_wirings, a_target_of_no_joint_takes_no_time)
 }
 
 /* The end of a motion: at most half of the way that the joint would go in its time, from where it
- * is, and no faster than it may. */
+ * is, and no faster than it may; and not behind it. */
 TEST_WITH(rig_wirings, a_motion_rests_near_where_joints_are)
 {
     for (int j = 0; j < N; j++) {
@@ -705,8 +705,9 @@ TEST_WITH(rig_wirings, a_motion_rests_near_where_joints_are)
                                                            .soft = how / 2 == 2,
                                                            .rests = true}),
                                  GROBO_OK);
-                expect_equal(robot.axes[j].trajectory.to_rad,
-                             here_rad(j) + RAD(10 + (far ? side * most_deg : way_deg)), "its rest");
+                double on_deg = side < 0 ? 0 : far ? most_deg : way_deg;
+                expect_equal(robot.axes[j].trajectory.to_rad, here_rad(j) + RAD(10 + on_deg),
+                             "its rest");
                 drop();
             }
         }

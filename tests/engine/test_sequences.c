@@ -755,6 +755,12 @@ static void run_one(const char *text, bool traced)
 static const char *const mended[] = {
     "sts limp 25 move move reply-late stop",
     "sts limp 25 move sense reply-late estop",
+    "sts limp 25 play raw reply-late pause",
+    "sts holds 25 move stall play pause",
+    "mx holds 25 send stall play raw",
+    "sts limp 25 play others-move raw stall",
+    "sts holds 3 move-other frame-lost move-all frame-lost",
+    "scs limp 25 move-other link-down link-up reply-late",
 };
 
 TEST(sequences_that_broke_a_rule_break_none_any_more)
