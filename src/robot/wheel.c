@@ -5,6 +5,7 @@
  * between; what stops it leaves at once, behind a latch as well.
  */
 #include "src/base/instant.h"
+#include "src/robot/often.h"
 #include "src/robot/wheel.h"
 
 #if !GROBO_DRIVERS_PLAIN
@@ -73,14 +74,19 @@ int grobo_i_wheel_judge(grobo_robot *robot, const grobo_robot_order *order, grob
 grobo_joint_mask grobo_i_wheel_note(grobo_robot *robot, const grobo_i_speeds *speeds)
 {
     grobo_joint_mask stopped = 0;
+    bool begins = false;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_has(speeds->joints, j)) {
             bool turned = axis->told_rad_s != 0;
             stopped |= turned && speeds->rad_s[j] == 0 ? GROBO_JOINT_BIT(j) : 0;
+            begins = begins || (!turned && speeds->rad_s[j] != 0);
             axis->told_rad_s = speeds->rad_s[j];
             axis->told_speed_us = robot->now_us;
         }
+    }
+    if (begins) {
+        grobo_i_often_soon(robot);
     }
     return stopped;
 }

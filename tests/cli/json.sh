@@ -8,6 +8,7 @@ if ! have_json; then
     exit
 fi
 
+cp docs/examples/robots/rover.yaml "$work/"
 # Status, what the lines must be, the command line. A command has a row for each way it goes.
 cat >"$work/rows" <<'END'
 0|"ports" in lines[0]|ports
@@ -30,6 +31,7 @@ cat >"$work/rows" <<'END'
 0|lines[0]["max_error_deg"] <= 0.1|-d sim init --time 300
 0|lines[0]["joints"][0]["name"] == "R_ELBOW_P"|-d sim move m5 -30
 0|lines[0]["joints"][0]["motor"] == 5|-d sim pose m5=-30
+0|lines[0]["wheels"][0]["stands"]|--robot WORK/rover.yaml -d sim drive left=30 --for 0.2
 0|lines[-1]["done"] and lines[-1]["watched"]|-d sim play --speed 500 motions/greet.pseq
 0|lines[-1]["watched"] is False|-d sim play --rate 50 --unwatched --speed 500 motions/greet.pseq
 4|lines[0]["error"]["code"] == "unwatched"|-d sim play --rate 50 motions/greet.pseq

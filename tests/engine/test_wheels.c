@@ -10,6 +10,7 @@
 #include <grobo/core/rs30x.h>
 #include <grobo/core/sim.h>
 #include <grobo/core/wheel.h>
+#include <grobo/motion.h>
 
 #include "tests/support/family_kit.h"
 #include "tests/support/tables.h"
@@ -613,4 +614,41 @@ TEST(a_wheel_turns_on_and_on)
     turns_at(0, 290);
     turns_at(1, -290);
     assert_int_equal(kit.n_trips, 0);
+}
+
+/* ---- motions --------------------------------------------------------------------------------- */
+
+/* Its column counts for nothing, which is said once where it has anything. */
+TEST(a_motion_turns_no_wheel)
+{
+    grobo_motion *motion = NULL;
+    grobo_diagnostics *list = NULL;
+    grobo_diagnostic said;
+    const grobo_check_options how = {GROBO_CHECK_OPTIONS_INIT};
+    start(family_named("sts"), &defaults);
+    assert_int_equal(grobo_motion_new(GROBO_MOTION_POSTURES, FAMILY_JOINTS, NULL, &motion), 0);
+    for (int i = 0; i < 3; i++) {
+        grobo_posture pose = family_posture(&kit, 0, 1000);
+        pose.angle_rad[0] = 0;
+        pose.angle_rad[1] = RAD(90 * i);
+        pose.angle_rad[2] = RAD(10 * i);
+        pose.angle_rad[3] = 0;
+        assert_true(grobo_motion_append(motion, &pose) >= 0);
+    }
+    assert_int_equal(grobo_diagnostics_new(NULL, &list), 0);
+    assert_int_equal(grobo_motion_check(motion, &kit.model, &how, list), 0);
+    assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING), 1);
+    assert_int_equal(grobo_diagnostics_get(list, 0, &said), 0);
+    assert_non_null(strstr(said.message, "B: a wheel, which no motion turns"));
+    grobo_diagnostics_free(list);
+    grobo_clip clip;
+    const grobo_clip_options plain = {GROBO_CLIP_OPTIONS_INIT};
+    assert_int_equal(grobo_motion_clip(motion, &plain, &clip), 0);
+    double before_deg = family_angle_deg(&kit, 1);
+    assert_int_equal(family_wait(&kit, grobo_robot_play(&kit.robot, &clip, NULL)), GROBO_OK);
+    family_run(&kit, 5 * S);
+    assert_true(fabs(family_angle_deg(&kit, 2) - 20) < 1);
+    assert_true(fabs(family_angle_deg(&kit, 1) - before_deg) < 0.1);
+    grobo_motion_clip_free(&clip);
+    grobo_motion_free(motion);
 }

@@ -442,6 +442,19 @@ static void check_speed(check *c, size_t i, size_t row, int j, double angle_rad)
     c->fast |= bit;
 }
 
+/* A motion has angles, and a wheel none: said where its column has some. */
+static void note_wheel(check *c, size_t row, int j, double angle_rad)
+{
+    grobo_joint_mask bit = GROBO_JOINT_BIT(j);
+
+    if (angle_rad != 0 && (c->outside & bit) == 0) {
+        grobo_i_said said = at_joint(c, row, j, "wheel", GROBO_SEVERITY_WARNING);
+        grobo_i_say(c->list, &said, "%s: a wheel, which no motion turns: its column is not played",
+                    grobo_i_joint(c->model, j)->name);
+        c->outside |= bit;
+    }
+}
+
 static void check_keys(check *c)
 {
     for (size_t i = 0; i < c->motion->size; i++) {
@@ -454,6 +467,10 @@ static void check_keys(check *c)
                 continue;
             }
             double angle_rad = grobo_i_clip_angle(c->clip, i, &at, j);
+            if (grobo_i_joint_is_wheel(c->model, j)) {
+                note_wheel(c, row, j, angle_rad);
+                continue;
+            }
             check_limit(c, row, j, angle_rad);
             if ((c->listed & bit) != 0) {
                 check_speed(c, i, row, j, angle_rad);

@@ -2,6 +2,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/wheel.h>
+
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/lang/lang.h"
 
@@ -200,6 +202,15 @@ void joints_add_value(json_t *object, const char *key, const grobo_model *model,
 int joints_check_limits(app *a, const grobo_posture *posture, const char *doing)
 {
     int joint = 0;
+    grobo_joint_mask wheels = posture->set & grobo_model_wheels(app_model(a));
+    while (wheels && !(wheels & GROBO_JOINT_BIT(joint))) {
+        joint++;
+    }
+    if (wheels) {
+        const char *name = grobo_model_joint(app_model(a), joint)->name;
+        return app_fail(a, EXIT_USAGE, "ARG", "%s: %s is a wheel; use 'grctl drive %s=DEG/S'",
+                        doing, name, name);
+    }
     int error = grobo_posture_check(posture, app_model(a), &joint);
     if (!error) {
         return 0;

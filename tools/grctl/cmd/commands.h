@@ -28,6 +28,7 @@ int monitor_group(struct app *a, int64_t interval_us);
     X(init)                                                                                        \
     X(move)                                                                                        \
     X(pose)                                                                                        \
+    X(drive)                                                                                       \
     X(play)                                                                                        \
     X(stop)                                                                                        \
     X(estop)                                                                                       \

@@ -37,6 +37,12 @@ static void print_joint(const grobo_model *model, int joint)
         snprintf(names + at, sizeof names - at, "%s(follows %s)", at ? " " : "",
                  grobo_model_joint(model, j->follows)->name);
     }
+    if (j->wheel) {
+        app_print("%-12s  %5s  %5s  %6d     -     -     -  %s%s(wheel, %.0f deg/s)\n", j->name,
+                  number, motor, j->motor, names, *names ? " " : "",
+                  grobo_deg_from_rad(j->max_speed_rad_s));
+        return;
+    }
     double low = grobo_model_value(model, joint, j->min_rad);
     double high = grobo_model_value(model, joint, j->max_rad);
     app_print("%-12s  %5s  %5s  %6d  %4.0f  %4.0f  %4.0f%s%s\n", j->name, number, motor, j->motor,
@@ -56,6 +62,13 @@ static json_t *joint_json(const grobo_model *model, int joint)
     if (j->ratio != 0) {
         json_object_set_new(row, "follows", json_integer(j->follows));
         json_object_set_new(row, "ratio", app_json_number(j->ratio, 6));
+    }
+    if (j->wheel) {
+        json_object_set_new(row, "wheel", json_true());
+        json_object_set_new(row, "speed_deg_s",
+                            app_json_number(grobo_deg_from_rad(j->max_speed_rad_s), 1));
+        json_object_set_new(row, "accel_deg_s2",
+                            app_json_number(grobo_deg_from_rad(j->accel_rad_s2), 1));
     }
     joints_add_unit(row, model, joint);
     joints_add_value(row, "at_min", model, joint, j->min_rad);

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/wheel.h>
+
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cmd/commands.h"
@@ -172,6 +174,7 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
                           grobo_motion_size(motion), number);
     }
     target->n_joints = app_model(a)->n_joints;
+    target->set &= ~grobo_model_wheels(app_model(a)); /* their columns count for nothing */
     grobo_motion_free(motion);
     return status;
 }

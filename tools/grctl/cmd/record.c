@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include <grobo/core/motion_io.h>
+#include <grobo/core/wheel.h>
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
@@ -585,6 +586,10 @@ static int prepare(recorder *r, app *a)
     }
     if (status) {
         return status;
+    }
+    if (r->joints & grobo_model_wheels(app_model(a))) {
+        app_note(a, "wheels are left out: a motion has angles, and a wheel has none");
+        r->joints &= ~grobo_model_wheels(app_model(a));
     }
     if (grobo_motion_new(GROBO_MOTION_POSTURES, app_model(a)->n_joints, NULL, &r->motion) < 0) {
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "%s", name_of(r));

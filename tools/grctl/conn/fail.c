@@ -199,6 +199,7 @@ static void setup_of_value(const grobo_driver *driver, int joint, const grobo_se
     const bool calibrates = grobo_model_joint(driver->model, joint)->calibrated;
     const bool is_min = fault->reg->role == GROBO_ROLE_MIN_POSITION;
     const bool is_max = fault->reg->role == GROBO_ROLE_MAX_POSITION;
+    const bool wheel = grobo_model_joint(driver->model, joint)->wheel;
     const int wanted = (int)(is_min ? fault->high : fault->low);
     snprintf(s->fact, sizeof s->fact, _("%s is %d, %d%s is wanted"), name, (int)fault->found,
              wanted,
@@ -208,7 +209,7 @@ static void setup_of_value(const grobo_driver *driver, int joint, const grobo_se
     snprintf(s->fix, sizeof s->fix, _("'grctl servo-set %d %s %d%s'%s"), id, name, wanted,
              family_servo(driver, id)->table->keeps == GROBO_KEEPS_LIMP ? "" : " --flash",
              calibrates && (is_min || is_max) ? _(" or 'grctl calibrate' sets it")
-             : is_min || is_max               ? _(" sets it, or narrow limits_deg")
+             : (is_min || is_max) && !wheel   ? _(" sets it, or narrow limits_deg")
              : fault->reg->role == GROBO_ROLE_OFFSET
                  ? _(" sets it, or say 'calibrated: true' in the robot file")
                  : _(" sets it"));
