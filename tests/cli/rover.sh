@@ -135,6 +135,11 @@ check "a servo in the other mode is refused with what fixes it" says 1 \
         exec "$0" --robot "$1" -d "$2" drive left=9' "$GRCTL" $rover "$work/port"
 check "which does" exits 0 "$GRCTL" --robot $rover -d "$work/port" servo-set 1 mode 1 --flash
 check "and it turns" exits 0 "$GRCTL" --robot $rover -d "$work/port" drive left=9 --for 0.2
+if have_json && ! "$GRCTL" -d sim serve nowhere 2>&1 | grep -q 'without evhttp'; then
+    check "in the cockpit" python3 tests/support/cockpit.py wheels
+else
+    skip "in the cockpit" "no python3, or no evhttp"
+fi
 kill $simulator
 wait $simulator 2>/dev/null
 

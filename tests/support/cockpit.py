@@ -811,6 +811,42 @@ def driving():
         page.fall_silent()
 
 
+def wheels():
+    """Wheels turn while the page asks for it, and no longer."""
+    rover = os.path.abspath("docs/examples/robots/rover.yaml")
+    with Server(env={"GRCTL_ROBOT": rover}) as server:
+        page = Page(server).take().keep_beating()
+        same([j.get("wheel", False) for j in page.get("/api/robot")["joints"]],
+             [True, True, False, False])
+
+        def turn(**speeds):
+            try:
+                page.target("drive", speed_dps=speeds)
+            except Refused as no:
+                if no.code not in ("state", "full", "stale"):  # their torque comes on
+                    raise
+            return page.state()["speed_dps"]
+
+        end = time.time() + PATIENCE_S
+        while abs(turn(left=90, right=-45)[0] - 90) > 3:
+            assert time.time() < end, page.state()
+            time.sleep(0.1)
+        assert abs(page.state()["speed_dps"][1] + 45) < 3, page.state()
+        page.wait("nobody asks: they stand", lambda s: s["speed_dps"][:2] == [0, 0])
+        expect(422, "limit", page.target, "drive", speed_dps={"left": 300})
+        expect(422, "unsupported", page.target, "drive", speed_dps={"pan": 3})
+        expect(404, "notfound", page.target, "drive", speed_dps={"nobody": 3})
+        expect(400, "arg", page.target, "drive", speed_dps={})
+        expect(400, "arg", page.target, "drive", speed_dps={"left": "fast"})
+        expect(400, "arg", page.post, "drive", speed_dps={"left": 3})
+        expect(422, "arg", page.target, "move", angle_deg={"left": 3})
+        turn(left=90)
+        page.wait("it turns", lambda s: s["speed_dps"][0] > 20)
+        page.post("halt")
+        page.wait("it is halted", lambda s: s["speed_dps"][0] == 0 and not s["moving"])
+        page.fall_silent()
+
+
 def stale():
     with Server() as server:
         page = Page(server).take().keep_beating()

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* monitor: everything at a glance, and the keys to act on it. */
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
+#include <grobo/core/wheel.h>
 #include <grobo/estop.h>
 
 #include "tools/grctl/cli/joints.h"
@@ -127,6 +129,25 @@ static bool is_at_limit(const grobo_joint *j, double from_rad, double by_rad)
     return by_rad > 0 ? from_rad > j->max_rad - near_rad : from_rad < j->min_rad + near_rad;
 }
 
+/* Of wheels' most, by one key and by the other. */
+static const double gentle_part = 0.2, brisk_part = 0.5;
+
+/* A wheel turns for as long as a speed holds; a key that is held repeats. */
+static void nudge_wheels(monitor *m, grobo_joint_mask wheels, double by)
+{
+    double rad_s[GROBO_JOINTS_MAX] = {0};
+    for (int j = 0; j < m->model->n_joints; j++) {
+        double most_rad_s = grobo_model_joint(m->model, j)->max_speed_rad_s;
+        rad_s[j] = copysign((fabs(by) > 1 ? brisk_part : gentle_part) * most_rad_s, by);
+    }
+    int result = grobo_robot_drive(m->c.robot, wheels, rad_s);
+    if (result == GROBO_ERR_STATE) {
+        say(m, true, "no torque there: t switches it on");
+    } else {
+        say_request(m, result, "drive");
+    }
+}
+
 /* Only what holds is nudged: a limp joint may stand where its weight took it. By so many degrees,
  * or what else the joint is given in. */
 static void nudge(monitor *m, double by)
@@ -137,10 +158,17 @@ static void nudge(monitor *m, double by)
     if (!may_move(m)) {
         return;
     }
+    grobo_joint_mask wheels = m->chosen & grobo_model_wheels(m->model);
+    if (wheels) {
+        nudge_wheels(m, wheels, by);
+    }
+    if (m->chosen && !(m->chosen & ~wheels)) {
+        return;
+    }
     grobo_posture_init(&target, m->model->n_joints);
     for (int j = 0; j < m->model->n_joints; j++) {
         grobo_joint_info i;
-        if (!(m->chosen & GROBO_JOINT_BIT(j)) || !torque_is_on(m, j) ||
+        if (!(m->chosen & ~wheels & GROBO_JOINT_BIT(j)) || !torque_is_on(m, j) ||
             grobo_robot_joint(m->c.robot, j, &i) < 0) {
             continue;
         }
@@ -483,7 +511,7 @@ const cli_command cmd_monitor = {
         "\n"
         "  arrows   choose a joint; 0 to 7: a group (all, body, right_arm, ...)\n"
         "  t, b     torque on or off; brake\n"
-        "  [ ]      one degree down, up; { } five\n"
+        "  [ ]      one degree down, up; { } five; a wheel turns for half a second\n"
         "  i        to the initial posture\n"
         "  p        play the files\n" PLAY_KEYS_HELP "  R        release a stop\n"
         "  q        quit; what moves is stopped first\n"

@@ -81,6 +81,12 @@ static void draw_bar(const monitor *m, const grobo_joint *j, const grobo_joint_i
         screen_put(row, column + place_in_bar(j, i->target_rad, width), SCREEN_BOLD,
                    m->blocks ? "│" : "|");
     }
+    if (j->wheel) { /* its speed, backwards on the left */
+        double part = grobo_rad_from_deg(i->state.speed_dps) / j->max_speed_rad_s / 2 + 0.5;
+        int place = (int)lround(fmin(fmax(part, 0), 1) * (width - 1));
+        screen_put(row, column + place, torque_style(i), m->blocks ? "█" : "#");
+        return;
+    }
     screen_put(row, column + place_in_bar(j, i->state.angle_rad, width),
                beyond ? SCREEN_BAD : torque_style(i), m->blocks ? "█" : "#");
 }
@@ -167,6 +173,9 @@ static void draw_joint(const monitor *m, const frame *f, const monitor_cell *cel
     bool tenths = fabs(value) < (unit == GROBO_UNIT_MM ? 99.95 : 9999.5);
     snprintf(text, sizeof text, "%*.*f%s", width, tenths ? 1 : 0, value,
              unit == GROBO_UNIT_DEG ? "" : grobo_unit_name(unit));
+    if (j->wheel) {
+        snprintf(text, sizeof text, "%4d/s", (int)i.state.speed_dps);
+    }
     screen_put(row, angle, SCREEN_PLAIN, text);
     draw_bar(m, j, &i, row, bar, f->bar);
     draw_values(m, &i, row, bar + f->bar);

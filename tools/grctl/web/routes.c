@@ -64,6 +64,8 @@ static const field jog_fields[] = {{.name = "angle_deg", .kind = FIELD_ANGLES, .
                                    FIELD_TIME,
                                    FIELD_SEQUENCE,
                                    {.name = NULL}};
+static const field drive_fields[] = {
+    {.name = "speed_dps", .kind = FIELD_ANGLES, .needed = true}, FIELD_SEQUENCE, {.name = NULL}};
 static const field torque_fields[] = {
     {.name = "joints", .kind = FIELD_JOINTS, .needed = true},
     {.name = "mode", .kind = FIELD_WORD, .needed = true, .words = "on, off, brake, limp, hold"},
@@ -121,6 +123,7 @@ static const verb verbs[] = {
     {"/api/halt", verb_halt, NEEDS_LEASE | NEEDS_LINE, no_fields},
     {"/api/move", verb_move, NEEDS_LEASE | NEEDS_LINE | MOVES, move_fields},
     {"/api/jog", verb_jog, NEEDS_LEASE | NEEDS_LINE | MOVES, jog_fields},
+    {"/api/drive", verb_drive, NEEDS_LEASE | NEEDS_LINE | MOVES, drive_fields},
     {"/api/torque", verb_torque, NEEDS_LEASE | NEEDS_LINE | BASED, torque_fields},
     {"/api/capture", verb_capture, NEEDS_LINE, capture_fields},
     {"/api/reset", verb_reset, BASED, sequence_fields},

@@ -116,6 +116,7 @@ void verb_speed(serve *s, http_request *r, json_t *body);
 void verb_halt(serve *s, http_request *r, json_t *body);
 void verb_move(serve *s, http_request *r, json_t *body);
 void verb_jog(serve *s, http_request *r, json_t *body);
+void verb_drive(serve *s, http_request *r, json_t *body);
 void verb_torque(serve *s, http_request *r, json_t *body);
 void verb_capture(serve *s, http_request *r, json_t *body);
 void verb_reset(serve *s, http_request *r, json_t *body);

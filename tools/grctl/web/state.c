@@ -190,6 +190,9 @@ static json_t *joint_json(const grobo_model *model, int j)
         json_object_set_new(row, "follows", json_integer(joint->follows));
         json_object_set_new(row, "ratio", number(joint->ratio));
     }
+    if (joint->wheel) {
+        json_object_set_new(row, "wheel", json_true());
+    }
     joints_add_scale(row, model, j);
     return row;
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include <grobo/core/port.h>
+#include <grobo/core/wheel.h>
 
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/web/serve.h"
@@ -197,6 +198,62 @@ void verb_jog(serve *s, http_request *r, json_t *body)
         return;
     }
     serve_accept(s, r, GROBO_OK, "jog");
+}
+
+/* {"left": 90}, degrees a second; false: refused. */
+static bool read_speeds(serve *s, http_request *r, const json_t *speeds, grobo_joint_mask *wheels,
+                        double *rad_s)
+{
+    char said[APP_LINE_BYTES];
+    const char *name;
+    json_t *value;
+    app quiet = *s->a;
+    app_hush(&quiet, said);
+    *wheels = 0;
+    json_object_foreach((json_t *)speeds, name, value)
+    {
+        int status = 0, joint = joints_parse_one(&quiet, name, strlen(name), &status);
+        if (joint < 0) {
+            serve_refuse_said(r, status, &quiet);
+            return false;
+        }
+        if (!(grobo_model_wheels(s->model) & GROBO_JOINT_BIT(joint))) {
+            http_refuse(r, 422, "unsupported", "drive: %s is not a wheel",
+                        grobo_model_joint(s->model, joint)->name);
+            return false;
+        }
+        *wheels |= GROBO_JOINT_BIT(joint);
+        rad_s[joint] = grobo_rad_from_deg(json_number_value(value));
+    }
+    return true;
+}
+
+static bool all_on(serve *s, grobo_joint_mask joints)
+{
+    bool on = true;
+    for (int j = 0; j < s->model->n_joints; j++) {
+        grobo_joint_info info;
+        on = on && (!(joints & GROBO_JOINT_BIT(j)) ||
+                    (grobo_robot_joint(s->c.robot, j, &info) >= 0 && info.torque_known &&
+                     info.state.torque == GROBO_TORQUE_ON));
+    }
+    return on;
+}
+
+/* A speed holds for 0.5 s: the page asks again while a finger holds the slider. Wheels without
+ * torque get it first, and turn by the next request. */
+void verb_drive(serve *s, http_request *r, json_t *body)
+{
+    double rad_s[GROBO_JOINTS_MAX] = {0};
+    grobo_joint_mask wheels;
+    if (!read_speeds(s, r, json_object_get(body, "speed_dps"), &wheels, rad_s)) {
+        return;
+    }
+    int result = grobo_robot_drive(s->c.robot, wheels, rad_s);
+    if ((result == GROBO_ERR_STATE || result == GROBO_ERR_STALE) && !all_on(s, wheels)) {
+        result = serve_note_job(s, grobo_robot_torque(s->c.robot, wheels, GROBO_TORQUE_ON), NULL);
+    }
+    serve_accept(s, r, result, "drive");
 }
 
 /* Less torque does not wait for a move to end: it ends the move. */

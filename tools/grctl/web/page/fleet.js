@@ -288,7 +288,7 @@ class View {
             ...line(t('Supply'), robot.voltage_v === null ? '–' : `${robot.voltage_v.toFixed(2)} V`));
         replace(id('one-joints').tBodies[0], ...facts.joints.map((joint, n) => {
             const angle = robot.angle_deg[n], [min, max] = joint.limits_deg;
-            const left = Math.min(angle - min, max - angle);
+            const left = min < max ? Math.min(angle - min, max - angle) : Infinity; // else a wheel
             return element('tr', {}, element('th', { scope: 'row' }, joint.name || ''),
                 element('td', { className: `num${typeof angle === 'number' && left < NEAR_DEG ? ' warn' : ''}` },
                     typeof angle === 'number' ? `${degrees(valueOf(joint, angle), 1)}${unitOf(joint)}` : '–'),

@@ -22,7 +22,7 @@ export function nearest(angles, joints) {
     let found = null;
     joints.forEach((joint, n) => {
         const [min, max] = joint.limits_deg, angle = angles[n];
-        if (typeof angle === 'number' && typeof min === 'number' && typeof max === 'number') {
+        if (typeof angle === 'number' && typeof min === 'number' && typeof max === 'number' && min < max) {
             const left = Math.min(angle - min, max - angle);
             found = !found || left < found.left ? { name: joint.name, left } : found;
         }

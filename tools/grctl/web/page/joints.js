@@ -24,6 +24,8 @@ export class Joints {
         this.body = document.querySelector('#joints tbody');
         this.drawnAt = 0;
         this.newest = new Newest((target) => app.command('/api/jog', target));
+        this.speeds = new Newest((speed) => app.command('/api/drive',
+                                                        { ...speed, sequence: app.drawn }));
         const all = (id, what) => document.getElementById(id).addEventListener('click', what);
         all('stand', () => app.command('/api/move', { pose: 'init', time_ms: 3000 }, true));
         all('torque-on', () => app.command('/api/torque', { joints: ['all'], mode: 'on' }, true));
@@ -70,8 +72,13 @@ export class Joints {
         this.slider.addEventListener('change', () => this.release());
         stepByKeys(this.slider, () => {
             this.drag();
-            this.release();
+            if (!this.isWheel()) {
+                this.release();
+            }
         });
+        for (const end of ['keyup', 'blur', 'pointerup', 'pointercancel']) {
+            this.slider.addEventListener(end, () => this.rest());
+        }
         const box = element('div', { className: 'jog' },
             element('div', { className: 'line' }, this.ends[0], this.slider, this.ends[1], this.out),
             element('div', { className: 'line buttons' }, ...this.buttons,
@@ -91,12 +98,15 @@ export class Joints {
             this.slot.remove();
             return;
         }
-        const of = this.rows[joint].joint, { name } = of, limits = limitValues(of);
+        const of = this.rows[joint].joint, { name } = of, most = of.max_speed_dps;
+        const limits = of.wheel ? [-most, most] : limitValues(of), unit = of.wheel ? '°/s' : unitOf(of);
+        this.rest();
         this.slider.min = limits[0];
         this.slider.max = limits[1];
-        this.slider.setAttribute('aria-label', of.unit ? `${name}, ${of.unit}` : this.app.t('{0}, degrees', name));
+        this.slider.setAttribute('aria-label', of.unit ? `${name}, ${of.unit}`
+            : this.app.t(of.wheel ? '{0}, degrees a second' : '{0}, degrees', name));
         this.plot.checked = this.app.see.plots.chosen.includes(joint);
-        limits.forEach((v, n) => setText(this.ends[n], `${Math.round(v)}${unitOf(of)}`));
+        limits.forEach((v, n) => setText(this.ends[n], `${Math.round(v)}${unit}`));
         this.follow(this.app.state); // a key may come before the next picture
         this.rows[joint].line.after(this.slot);
         this.drawnAt = 0;
@@ -111,11 +121,42 @@ export class Joints {
         this.atEdge = edge;
         this.dragged = { joint, value, at: performance.now() };
         this.show(value, edge);
+        if (this.isWheel()) {
+            this.turn(joint, value);
+            return;
+        }
         const deg = degreesOf(this.rows[joint].joint, value);
         this.newest.push({ angle_deg: { [this.app.name(joint)]: deg }, sequence: this.app.drawn });
     }
 
+    isWheel() {
+        return this.app.selected >= 0 && this.rows[this.app.selected].joint.wheel === true;
+    }
+
+    /** A wheel turns while its slider is held: its speed is asked for again and again. */
+    turn(joint, dps) {
+        const say = () => this.speeds.push({ speed_dps: { [this.app.name(joint)]: this.turning.dps } });
+        const begins = !this.turning;
+        this.turning = { joint, dps, timer: begins ? setInterval(say, 150) : this.turning.timer };
+        if (begins) {
+            say();
+        }
+    }
+
+    /** The slider springs back, and the wheel comes to rest. */
+    rest() {
+        if (!this.turning) {
+            return;
+        }
+        clearInterval(this.turning.timer);
+        this.speeds.push({ speed_dps: { [this.app.name(this.turning.joint)]: 0 } });
+        this.turning = this.dragged = null;
+        this.slider.value = 0;
+        this.show(0, false);
+    }
+
     release() {
+        this.rest();
         if (this.dragged) {
             this.dragged.until = performance.now() + 1500;
         }
@@ -123,7 +164,8 @@ export class Joints {
 
     show(value, edge) {
         const of = this.rows[this.app.selected];
-        const words = `${value.toFixed(1)}${of ? unitOf(of.joint) : '°'}` + (edge ? ` ${this.app.t('at its limit')}` : '');
+        const unit = !of ? '°' : of.joint.wheel ? '°/s' : unitOf(of.joint);
+        const words = `${value.toFixed(1)}${unit}` + (edge ? ` ${this.app.t('at its limit')}` : '');
         setText(this.out, words);
         this.out.classList.toggle('warn', edge);
         this.slider.setAttribute('aria-valuetext', words);
@@ -131,6 +173,7 @@ export class Joints {
 
     /** Ends a drag softly: the page is hidden, or the pointer was taken away. */
     cancel() {
+        this.rest();
         if (this.dragged && !this.dragged.until) {
             this.dragged = null;
             this.app.command('/api/halt');
@@ -140,6 +183,13 @@ export class Joints {
     /** Puts the slider where its joint is. Where that is not known, nothing can be dragged. */
     follow(state) {
         const joint = this.app.selected;
+        if (this.isWheel()) {
+            this.slider.value = 0;
+            this.known = state !== null;
+            this.slider.disabled = !this.known || !this.app.mayMove();
+            this.show(0, false);
+            return;
+        }
         const deg = state ? state.target_deg[joint] ?? state.angle_deg[joint] ?? null : null;
         const angle = deg === null ? null : valueOf(this.rows[joint].joint, deg);
         if (angle !== null && Number(this.slider.value) !== angle) {
@@ -182,7 +232,8 @@ export class Joints {
         const old = state.age_ms[n] === null || state.age_ms[n] > 500 || state.status[n] !== 'ok';
         line.classList.toggle('old', old);
         const value = (deg) => deg === null ? '–' : joint.unit ? valueText(joint, deg) : deg.toFixed(1);
-        setText(cells.angle, value(state.angle_deg[n]));
+        const dps = state.speed_dps[n];
+        setText(cells.angle, !joint.wheel ? value(state.angle_deg[n]) : dps === null ? '–' : `${dps}°/s`);
         setText(cells.target, value(state.target_deg[n]));
         setText(cells.current, number(state.current_ma[n], 0));
         setText(cells.heat, number(state.temperature_c[n], 0) + (look ? ' ▲' : ''));

@@ -473,7 +473,7 @@ class App {
     }
 
     limitLook(base, joint, angle, theme) {
-        const left = Math.min(angle - joint.limits_deg[0], joint.limits_deg[1] - angle);
+        const left = joint.wheel ? Infinity : Math.min(angle - joint.limits_deg[0], joint.limits_deg[1] - angle);
         base.colour = left < 3 ? theme.danger : left < 12 ? theme.warn : theme.good;
         base.tint = left < 12 ? 0.6 : 0.25;
         if (left < 12) {

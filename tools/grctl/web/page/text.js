@@ -38,7 +38,7 @@ export const JA = {
     'Bad checksums': 'チェックサム誤り', Pages: 'ページ',
     'Without torque the robot sinks or falls. Hold it. Switch torque off?':
         'トルクを切るとロボットは崩れるか倒れます。手で支えてください。トルクを切りますか?',
-    Limp: '脱力', Hold: '保持', Plot: 'グラフ', '{0}, degrees': '{0} (度)', 'at its limit': '限界',
+    Limp: '脱力', Hold: '保持', Plot: 'グラフ', '{0}, degrees': '{0} (度)', '{0}, degrees a second': '{0} (度/秒)', 'at its limit': '限界',
     'not set up': '未設定', '{0}: not set up: {1}': '{0}: 未設定: {1}',
     limp: '脱力', on: '入', off: '切', brake: 'ブレーキ', 'No motions in {0}.': '{0} にモーションがありません。',
     '… being checked': '… 検査中', '✕ not readable': '✕ 読めません',
