@@ -89,11 +89,21 @@ typedef struct grobo_robot_motor {
     double backlash_rad;
 } grobo_robot_motor;
 
+/** A line of a robot that has several. */
+typedef struct grobo_robot_file_line {
+    const char *name;                 /**< "left": what joints and commands call it */
+    const grobo_robot_family *family; /**< of the servos on it */
+    grobo_wiring wiring;
+    uint32_t baud_bps;
+    const char *port; /**< the device that it usually is; NULL: not told */
+    bool echo;        /**< its adapter returns what is sent */
+} grobo_robot_file_line;
+
 /** A robot. Plain data; all that it points to lives as long as it. */
 typedef struct grobo_robot_def {
     const char *name;                 /**< "so101": what it is called on a command line */
     const char *title;                /**< "SO-101 (follower)": for people */
-    const grobo_robot_family *family; /**< of all of its servos */
+    const grobo_robot_family *family; /**< of all of its servos; of several lines the first one's */
     const grobo_model *model;         /**< joints, groups; its name is `name`, but "GR001" */
     grobo_wiring wiring;              /**< how it usually is connected */
     uint32_t baud_bps;                /**< of its line, with 8 data bits and a stop bit; the parity
@@ -108,9 +118,12 @@ typedef struct grobo_robot_def {
     bool arm;            /**< it may stop anywhere: see grobo_driver */
     int8_t payload_link; /**< the part that holds what the robot carries; -1: not told */
     double payload_kg;   /**< the heaviest that its maker names; 0: not told */
-    const grobo_robot_motor *motors; /**< by joint; NULL: as the servos' models have them */
-    uint8_t n_feet;                  /**< 2, or 0: they are not told */
-    grobo_robot_foot feet[2];        /**< in either order */
+    const grobo_robot_motor *motors;    /**< by joint; NULL: as the servos' models have them */
+    uint8_t n_feet;                     /**< 2, or 0: they are not told */
+    grobo_robot_foot feet[2];           /**< in either order */
+    uint8_t n_lines;                    /**< 2 and more, or 0: one, as above */
+    const grobo_robot_file_line *lines; /**< n_lines; grobo_joint.line counts them */
+    const struct grobo_lines *on_lines; /**< what a driver of these is made of (core/lines.h) */
 } grobo_robot_def;
 
 /** Robot i of those that come with the library, counted from 0. @return NULL behind the last. */
@@ -161,8 +174,9 @@ typedef struct grobo_robot_body {
 GROBO_API int grobo_robot_def_body(const grobo_robot_def *def, grobo_robot_body *body);
 
 /**
- * Fills a driver for a robot.
+ * Fills a driver for a robot, of several lines too (core/lines.h).
  * @param def borrowed by the driver
+ * @param wiring of a robot of several lines that of its def
  * @param[in,out] driver GROBO_TABLE_INIT(grobo_driver)
  * @return 0, GROBO_ERR_ARG, or GROBO_ERR_UNSUPPORTED: its servos cannot be wired so
  */

@@ -39,7 +39,8 @@ GROBO_BEGIN_DECLS
 
 /** The device that is a simulator in the same process, in real time. */
 #define GROBO_DEVICE_SIM "sim"
-/** The device that is the first serial port on which a robot answers. */
+/** The device that is the first serial port on which a robot answers; of a robot of several lines
+ *  (core/lines.h) the ports that its lines name. */
 #define GROBO_DEVICE_AUTO "auto"
 
 /** Serial ports that GROBO_DEVICE_AUTO tries at most; USB adapters come first, ttyUSB2
@@ -86,7 +87,9 @@ typedef struct grobo_session_config {
     size_t size;                     /**< GROBO_SESSION_CONFIG_INIT */
     struct event_base *base;         /**< borrowed; needed */
     const char *device;              /**< copied; needed: a serial port, "tcp:HOST:PORT",
-                                          GROBO_DEVICE_SIM or GROBO_DEVICE_AUTO */
+                                          GROBO_DEVICE_SIM or GROBO_DEVICE_AUTO; of a robot of
+                                          several lines "NAME=PORT,NAME=PORT": lines that are left
+                                          out have the port that they name themselves */
     int baud_bps;                    /**< 0: GROBO_BAUD_DEFAULT_BPS */
     grobo_line_format format;        /**< stop bits, RS-485; the parity is the driver's */
     const grobo_driver *driver;      /**< borrowed; NULL: GR001 through its board */

@@ -106,6 +106,7 @@ int grobo_i_reading_cost(const grobo_i_line *line, uint32_t *us)
     const grobo_driver *driver = line->driver;
     void *ctx = line->ctx;
     int result = GROBO_OK;
+    uint32_t all_us = 0;
     *us = 0;
     if (GROBO_I_EXTRA(driver, sense_many) != NULL) {
         grobo_exchange exchange = {0};
@@ -128,6 +129,10 @@ int grobo_i_reading_cost(const grobo_i_line *line, uint32_t *us)
             one_us += result < 0 ? 0 : grobo_i_line_us(bus, &exchange);
         }
         *us = one_us > *us ? one_us : *us;
+        all_us += one_us;
+    }
+    if (count(line) > 1) { /* one after the other, of lines that are not alike */
+        *us = (all_us + driver->model->n_joints - 1) / driver->model->n_joints;
     }
     return result;
 }

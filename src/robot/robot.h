@@ -589,7 +589,8 @@ uint32_t grobo_i_line_us(const grobo_bus *bus, const grobo_exchange *exchange);
  * their goals. @return 0, or an error of the driver. */
 int grobo_i_motion_cost(const grobo_i_line *line, grobo_joint_mask joints, uint32_t *us,
                         bool *answered);
-/* The costliest reading of one joint, or of all where one frame reads all. */
+/* The costliest reading of one joint, or of all where one frame reads all; of several lines the
+ * mean of one joint. */
 int grobo_i_reading_cost(const grobo_i_line *line, uint32_t *us);
 
 /* ---- pace.c ---------------------------------------------------------------------------------- */

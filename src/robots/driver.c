@@ -1,5 +1,19 @@
 /* SPDX-License-Identifier: MIT */
+#include <grobo/core/lines.h>
+
 #include "src/robots/robots.h"
+
+static int init(const grobo_robot_def *def, grobo_wiring wiring, grobo_driver *made)
+{
+#if GROBO_LINES_MAX > 1
+    if (def->on_lines != NULL) {
+        return wiring == def->wiring ? grobo_lines_driver_init(made, def->on_lines, def->model)
+                                     : GROBO_ERR_UNSUPPORTED;
+    }
+#endif
+    return def->family->init[wiring] == NULL ? GROBO_ERR_UNSUPPORTED
+                                             : def->family->init[wiring](made, def->model);
+}
 
 int grobo_robot_def_driver(const grobo_robot_def *def, grobo_wiring wiring, grobo_driver *driver)
 {
@@ -7,10 +21,7 @@ int grobo_robot_def_driver(const grobo_robot_def *def, grobo_wiring wiring, grob
     if (def == NULL || driver == NULL || (unsigned)wiring > GROBO_WIRING_BUS) {
         return GROBO_ERR_ARG;
     }
-    if (def->family->init[wiring] == NULL) {
-        return GROBO_ERR_UNSUPPORTED;
-    }
-    int result = def->family->init[wiring](&made, def->model);
+    int result = init(def, wiring, &made);
     if (result < 0) {
         return result;
     }

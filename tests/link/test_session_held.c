@@ -79,11 +79,11 @@ static int set_up(void)
     assert_int_equal(
         session_kit_await(grobo_robot_torque(grobo_session_robot(session), all, GROBO_TORQUE_ON)),
         GROBO_OK);
-    true_ops = session->serial->ops;
+    true_ops = session->wire[0].serial->ops;
     slow_ops = *true_ops;
     slow_ops.write = write_slowly;
     slow_ops.unsent = say_unsent;
-    session->serial->ops = &slow_ops;
+    session->wire[0].serial->ops = &slow_ops;
     budget_bytes = UNLIMITED;
     unsent_bytes = 0;
     n_written = 0;
@@ -278,7 +278,7 @@ TEST_WITH(on_sim, what_the_simulator_has_not_taken_by_a_stop_moves_nothing)
     int n = 0;
 
     delay_line(sim, hour_ns);
-    while (session->backlog_bytes == 0 && n < FRAMES_MAX) {
+    while (session->wire[0].backlog_bytes == 0 && n < FRAMES_MAX) {
         grobo_posture target;
 
         grobo_posture_init_pose(&target, &grobo_i_gr001_model);
@@ -287,12 +287,12 @@ TEST_WITH(on_sim, what_the_simulator_has_not_taken_by_a_stop_moves_nothing)
         assert_int_equal(grobo_robot_send(robot(), &target), GROBO_OK);
         assert_true(loop_run(base, 12000));
     }
-    assert_in_range(session->backlog_bytes, 3, GOALS - 1);
+    assert_in_range(session->wire[0].backlog_bytes, 3, GOALS - 1);
     assert_true(grobo_robot_estop(robot()) > 0);
     assert_true(loop_run(base, 20000)); /* what it holds is taken back */
-    assert_int_equal(session->given_bytes, 0);
+    assert_int_equal(session->wire[0].given_bytes, 0);
     delay_line(sim, -hour_ns);
-    while (session->backlog_bytes > 0 || grobo_sim_rx_room(sim) < GROBO_SIM_WIRE_BYTES) {
+    while (session->wire[0].backlog_bytes > 0 || grobo_sim_rx_room(sim) < GROBO_SIM_WIRE_BYTES) {
         (void)loop_run(base, 20000);
     }
     int servo = grobo_sim_find(sim, grobo_i_gr001_model.joints[NECK].motor);

@@ -6,6 +6,7 @@
 
 #include <jansson.h>
 
+#include <grobo/core/lines.h>
 #include <grobo/core/unit.h>
 #include <grobo/posture.h>
 #include <grobo/robot_file.h>
@@ -205,7 +206,42 @@ typedef struct mistake {
 #define LINEAR(range)                                                                              \
     HEAD "  - {name: x, id: 1, servo: STS3215, mm_per_turn: 36, limits_mm: " range "}\n"
 
+/* Two lines on lines 2 to 4; line 6 is the first joint, on `l`. */
+#define LINES(one, two) "name: a\nlines:\n  - {" one "}\n  - {" two "}\njoints:\n"
+#define BOTH LINES("name: l, family: feetech", "name: r, family: dynamixel2")
+#define ON_L "  - {name: x, id: 1, servo: STS3215, limits_deg: [-9, 9], line: l}\n"
+#define ON_R "  - {name: y, id: 1, servo: XL430-W250, limits_deg: [-9, 9], line: r}\n"
+
 static const mistake mistakes[] = {
+    {BOTH ON_L "  - {name: y, id: 1, servo: XL430-W250, limits_deg: [-9, 9], line: right}\n", 7, 68,
+     "no line called 'right'", 0},
+    {BOTH ON_L ON_R "  - {name: z, id: 2, servo: STS3215, limits_deg: [-9, 9]}\n", 8, 5,
+     "z has no 'line': the robot has several", 0},
+    {BOTH ON_L ON_R "  - {name: z, id: 1, servo: STS3215, limits_deg: [-9, 9], line: l}\n", 8, 19,
+     "z has the id of another joint", 0},
+    {BOTH ON_L "  - {name: y, id: 1, servo: STS3215, limits_deg: [-9, 9], line: r}\n", 7, 29,
+     "no servo of family dynamixel2 called 'STS3215'", 0},
+    {BOTH ON_L, 4, 5, "line r has no joints", 0},
+    {BOTH ON_L ON_R "  - {name: z, id: 2, servo: XL430-W250, follows: x, line: r}\n", 8, 50,
+     "z: the joint that it follows must be on the same line", 0},
+    {LINES("name: l, family: feetech", "name: l, family: feetech") ON_L, 4, 5,
+     "two lines are called 'l'", 0},
+    {LINES("name: l, family: feetech, port: /dev/a", "name: r, family: feetech, port: /dev/a") ON_L,
+     4, 5, "two lines have the port '/dev/a'", 0},
+    {LINES("name: l, family: feetech", "name: r, family: dynamite") ON_L, 4, 23,
+     "no family called 'dynamite'", 0},
+    {LINES("name: l, family: feetech", "name: r, family: feetech, wiring: board") ON_L, 4, 5,
+     "servos of line r cannot be wired so", 0},
+    {LINES("name: l, family: feetech", "name: r, family: feetech, baud: 1") ON_L, 4, 38,
+     "baud: a whole number from 300", 0},
+    {LINES("name: l, family: feetech", "name: r") ON_L, 4, 5, "a line has no 'family'", 0},
+    {"name: a\nlines:\n  - {name: l, family: feetech}\njoints:\n" ON_L, 3, 3,
+     "two lines or more are wanted", 0},
+    {"name: a\nfamily: feetech\nlines:\n  - {name: l, family: feetech}\n"
+     "  - {name: r, family: feetech}\njoints:\n" ON_L,
+     2, 9, "'family' and 'lines' cannot be used together", 0},
+    {HEAD "  - {name: x, id: 1, servo: STS3215, limits_deg: [-9, 9], line: l}\n", 4, 65,
+     "x: 'line' of a joint needs 'lines' of the robot", 0},
     {TWO(", id: 3"), 4, 5, "cannot have 'servos' and 'id' together", 0},
     {TWO(", follows: x"), 4, 5, "cannot have 'follows' and 'servos' together", 0},
     {TWO(", signs: [1, 0]"), 4, 75, "signs: 1 or -1 is wanted", 0},
@@ -445,6 +481,48 @@ TEST(two_servos_make_a_joint_and_one_that_follows)
     grobo_robot_def_free(def);
 }
 
+/* ---- several lines --------------------------------------------------------------------------- */
+
+TEST(a_robot_may_have_several_lines)
+{
+    grobo_robot_def *def = NULL;
+    assert_int_equal(
+        read_def(
+            "name: a\nlines:\n"
+            "  - {name: l, family: feetech, baud: 500000, port: /dev/a}\n"
+            "  - {name: r, family: dynamixel2, echo: true}\n"
+            "safety: {temperature_c: 50}\nexit: off\narm: false\njoints:\n"
+            "  - {name: y, id: 1, servo: XL430-W250, limits_deg: [-9, 9], line: r, mirror: x}\n"
+            "  - {name: x, id: 1, servo: STS3215, limits_deg: [-9, 9], line: l, mirror: y}\n"
+            "  - {name: w, servos: [2, 3], servo: STS3215, limits_deg: [-9, 9], line: l}\n",
+            NULL, &def),
+        0);
+    assert_int_equal(def->n_lines, 2);
+    assert_string_equal(def->lines[0].name, "l");
+    assert_string_equal(def->lines[0].port, "/dev/a");
+    assert_null(def->lines[1].port);
+    assert_int_equal(def->lines[0].baud_bps, 500000);
+    assert_int_equal(def->lines[1].baud_bps, def->lines[1].family->baud_bps);
+    assert_string_equal(def->lines[1].family->name, "dynamixel2");
+    assert_true(def->lines[1].echo && !def->lines[0].echo);
+    assert_int_equal(def->model->joints[0].line, 1);
+    assert_int_equal(def->model->joints[3].line, 0);
+    grobo_driver driver = GROBO_TABLE_INIT(grobo_driver);
+    assert_int_equal(grobo_robot_def_driver(def, GROBO_WIRING_BUS, &driver), 0);
+    assert_int_equal(driver.on_exit, GROBO_EXIT_OFF);
+    assert_false(driver.arm);
+    const grobo_lines *lines = grobo_driver_lines(&driver);
+    assert_non_null(lines);
+    assert_int_equal(lines->on[0], 2 + 4 + 8);
+    assert_int_equal(lines->line[0].baud_bps, 500000);
+    assert_int_equal(lines->line[1].driver.limits.temperature_c, 50);
+    assert_string_equal(lines->line[0].port, "/dev/a");
+    assert_int_equal(lines->line[0].model.joints[2].follows, 1);
+    assert_int_equal(grobo_robot_def_driver(def, GROBO_WIRING_BOARD, &driver),
+                     GROBO_ERR_UNSUPPORTED);
+    grobo_robot_def_free(def);
+}
+
 /* ---- units ---------------------------------------------------------------------------------- */
 
 TEST(a_joint_may_be_linear_or_a_gripper)
@@ -484,6 +562,7 @@ TEST(the_schema_has_the_same_keys)
         [GROBO_I_BLOCK_JOINT] = "joint", [GROBO_I_BLOCK_GROUP] = "group",
         [GROBO_I_BLOCK_LINK] = "link",   [GROBO_I_BLOCK_PAYLOAD] = "payload",
         [GROBO_I_BLOCK_MOTOR] = "motor", [GROBO_I_BLOCK_FOOT] = "foot",
+        [GROBO_I_BLOCK_LINES] = "lines",
     };
     json_error_t error;
     json_t *schema = json_load_file("docs/robot.schema.json", 0, &error);

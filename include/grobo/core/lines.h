@@ -36,6 +36,8 @@ GROBO_BEGIN_DECLS
 typedef struct grobo_lines_line {
     grobo_model model;   /**< the joints of this line, in the robot's order; grobo_lines_split() */
     grobo_driver driver; /**< the caller's: of that model, GROBO_TABLE_INIT(grobo_driver) before */
+    const char *name;    /**< what a session's device calls it; may be NULL, as `port` */
+    const char *port;    /**< the device that it usually is */
     void *ctx;           /**< handed to its functions; may be NULL */
     uint32_t baud_bps;   /**< 0: as the engine's configuration has it */
     bool echo;           /**< the adapter returns what is sent */

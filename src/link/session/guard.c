@@ -75,37 +75,41 @@ void grobo_i_session_guard_take(grobo_session *session)
     guard_message message;
 
     /* A port that has just been lost is told of soon. */
-    if (session->guard_news == NULL || !grobo_serial_is_open(session->serial)) {
+    if (session->guard_news == NULL || !grobo_serial_is_open(session->wire[0].serial)) {
+        return;
+    }
+    if (session->n_wires > 1) { /* a guard has one port */
+        say_unguarded(session, GROBO_ERR_UNSUPPORTED);
         return;
     }
     memset(&message, 0, sizeof message); /* what lies between its fields goes too */
     message.magic = GUARD_MAGIC;
     message.kind = GUARD_TAKE;
     message.policy = (uint32_t)policy_of(session);
-    message.connection = strcmp(session->serial->ops->name, "tcp") == 0;
+    message.connection = strcmp(session->wire[0].serial->ops->name, "tcp") == 0;
     message.data_bytes = (uint32_t)config->guard_bytes;
     message.wiring = grobo_driver_wiring(driver);
     message.robot = session->robot.config;
     (void)snprintf(message.driver, sizeof message.driver, "%s", driver->name);
-    (void)snprintf(message.device, sizeof message.device, "%s", session->used);
+    (void)snprintf(message.device, sizeof message.device, "%s", session->wire[0].used);
     grobo_i_guard_take(config->guard, &message, config->guard_data,
-                       grobo_serial_handle(session->serial));
+                       grobo_serial_handle(session->wire[0].serial));
     if (config->guard->ended) {
         event_active(session->guard_news, EV_READ, 0);
     } else {
-        session->serial->barred = &config->guard->shared->line;
+        session->wire[0].serial->barred = &config->guard->shared->line;
     }
 }
 
 void grobo_i_session_guard_release(grobo_session *session)
 {
-    if (session->guard_news == NULL) {
+    if (session->guard_news == NULL || session->n_wires > 1) {
         return;
     }
     grobo_i_guard_release(session->config.guard);
-    session->serial->barred = NULL;
-    if (session->config.guard->taken && grobo_serial_is_open(session->serial)) {
-        grobo_i_port_abandon(session->serial->port);
+    session->wire[0].serial->barred = NULL;
+    if (session->config.guard->taken && grobo_serial_is_open(session->wire[0].serial)) {
+        grobo_i_port_abandon(session->wire[0].serial->port);
     }
 }
 
@@ -113,7 +117,8 @@ bool grobo_i_session_guard_has_it(grobo_session *session)
 {
     grobo_guard *guard = session->config.guard;
 
-    if (session->guard_news == NULL || !grobo_serial_is_open(session->serial)) {
+    if (session->guard_news == NULL || session->n_wires > 1 ||
+        !grobo_serial_is_open(session->wire[0].serial)) {
         return false;
     }
     grobo_i_guard_hear(guard);
@@ -133,7 +138,7 @@ int64_t grobo_i_session_guard_deadline(const grobo_session *session)
 
 void grobo_i_session_guard_tell(grobo_session *session)
 {
-    if (session->guard_news != NULL) {
+    if (session->guard_news != NULL && session->n_wires == 1) {
         grobo_i_guard_tell(session->config.guard, policy_of(session),
                            grobo_robot_moving(&session->robot));
     }

@@ -8,6 +8,8 @@
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
+#include "src/robot/robot.h"
+#include "src/sim/lines.h"
 #include "src/sim/servo/servo.h"
 
 /* How often one call reads at most: a line that never pauses must not keep us. */
@@ -15,22 +17,22 @@
 
 /* ---- a serial port ------------------------------------------------------------------------ */
 
-static int port_open(grobo_session *session, const char *path)
+static int port_open(session_wire *wire, const char *path)
 {
-    int r = grobo_serial_set_device(session->serial, path);
+    int r = grobo_serial_set_device(wire->serial, path);
 
     if (r >= 0) {
-        r = grobo_serial_open(session->serial);
-        session->cause = *grobo_serial_cause(session->serial);
+        r = grobo_serial_open(wire->serial);
+        wire->session->cause = *grobo_serial_cause(wire->serial);
     }
     if (r >= 0) {
-        memmove(session->used, path, strlen(path) + 1);
-        grobo_i_session_estop_begin(session, path);
+        memmove(wire->used, path, strlen(path) + 1);
+        grobo_i_session_estop_begin(wire, path);
     }
     return r;
 }
 
-static int port_take(grobo_session *session, int64_t *until_us)
+static int port_take(session_wire *wire, int64_t *until_us)
 {
     uint8_t buf[256];
     int got = 1;
@@ -39,37 +41,39 @@ static int port_take(grobo_session *session, int64_t *until_us)
         /* The time before the read that finds nothing: what had come until then has been read. */
         *until_us = grobo_now_us();
         /* A failure closes the port, and it tells that from the loop. */
-        got = grobo_serial_read(session->serial, buf, sizeof buf);
+        got = grobo_serial_read(wire->serial, buf, sizeof buf);
         if (got > 0) {
-            grobo_robot_rx(&session->robot, buf, (size_t)got, grobo_now_us());
+            grobo_robot_line_rx(&wire->session->robot, wire->line, buf, (size_t)got,
+                                grobo_now_us());
         }
     }
     return GROBO_OK;
 }
 
-static bool port_has_room(grobo_session *session)
+static bool port_has_room(session_wire *wire)
 {
     /* What was answered has left; only of other frames the system must be asked. */
-    size_t unsent = session->robot.answered ? grobo_serial_pending(session->serial)
-                                            : grobo_serial_unsent(session->serial);
+    size_t unsent = *grobo_i_answered(&wire->session->robot, wire->line)
+                        ? grobo_serial_pending(wire->serial)
+                        : grobo_serial_unsent(wire->serial);
 
-    return grobo_serial_is_open(session->serial) && unsent == 0;
+    return grobo_serial_is_open(wire->serial) && unsent == 0;
 }
 
-static void port_give(grobo_session *session, const uint8_t *frame, size_t size)
+static void port_give(session_wire *wire, const uint8_t *frame, size_t size)
 {
     /* A failure closes the port, and it tells that from the loop. */
-    (void)grobo_serial_send(session->serial, frame, size);
+    (void)grobo_serial_send(wire->serial, frame, size);
 }
 
-static void port_take_back(grobo_session *session, size_t size, size_t behind)
+static void port_take_back(session_wire *wire, size_t size, size_t behind)
 {
-    grobo_i_serial_take_back(session->serial, size, behind);
+    grobo_i_serial_take_back(wire->serial, size, behind);
 }
 
-static int64_t port_deadline(const grobo_session *session)
+static int64_t port_deadline(const session_wire *wire)
 {
-    (void)session;
+    (void)wire;
     return GROBO_NEVER_US; /* it tells by the loop */
 }
 
@@ -85,48 +89,68 @@ const session_line grobo_i_session_port = {
 /* ---- the simulator ------------------------------------------------------------------------ */
 
 struct session_sim {
+    grobo_i_sim_line own;                   /* of one of several lines */
     uint8_t backlog[GROBO_FRAME_MAX_BYTES]; /* of a frame that it took in part */
     grobo_sim sim;                          /* the last member: grobo_i_sim_bytes() */
 };
 
-static size_t simulated_bytes(const grobo_session *session)
+/* Of a robot of several lines, what is on this one. */
+static const grobo_sim_config *config_of(const session_wire *wire, grobo_i_sim_line *own)
 {
-    return offsetof(struct session_sim, sim) + grobo_i_sim_bytes(session->sim_config.model);
+    const grobo_session *session = wire->session;
+    const grobo_lines *lines = grobo_driver_lines(session->robot.driver);
+
+    if (lines == NULL) {
+        return &session->sim_config;
+    }
+    grobo_i_sim_of_line(lines, wire->line, &session->sim_config, own);
+    return &own->config;
 }
 
-void grobo_i_session_sim_free(grobo_session *session)
+static const grobo_model *model_of(const session_wire *wire)
 {
-    grobo_i_free(session->config.mem, session->simulated, simulated_bytes(session));
-    session->simulated = NULL;
-    session->sim = NULL;
+    const grobo_lines *lines = grobo_driver_lines(wire->session->robot.driver);
+
+    return lines == NULL ? wire->session->sim_config.model : &lines->line[wire->line].model;
 }
 
-static int sim_open(grobo_session *session, const char *name)
+static size_t simulated_bytes(const session_wire *wire)
+{
+    return offsetof(struct session_sim, sim) + grobo_i_sim_bytes(model_of(wire));
+}
+
+void grobo_i_session_sim_free(session_wire *wire)
+{
+    grobo_i_free(wire->session->config.mem, wire->simulated, simulated_bytes(wire));
+    wire->simulated = NULL;
+    wire->sim = NULL;
+}
+
+static int sim_open(session_wire *wire, const char *name)
 {
     int64_t now_us = grobo_now_us();
 
     (void)name;
-    if (session->sim == NULL) {
-        session->simulated = grobo_i_new(session->config.mem, simulated_bytes(session));
-        int r = session->simulated != NULL
-                    ? grobo_sim_init_sized(&session->simulated->sim,
-                                           grobo_i_sim_bytes(session->sim_config.model),
-                                           &session->sim_config, now_us)
+    if (wire->sim == NULL) {
+        wire->simulated = grobo_i_new(wire->session->config.mem, simulated_bytes(wire));
+        int r = wire->simulated != NULL
+                    ? grobo_sim_init_sized(&wire->simulated->sim, grobo_i_sim_bytes(model_of(wire)),
+                                           config_of(wire, &wire->simulated->own), now_us)
                     : GROBO_ERR_NOMEM;
 
         if (r < 0) {
-            grobo_i_session_sim_free(session);
+            grobo_i_session_sim_free(wire);
             return r;
         }
-        session->sim = &session->simulated->sim;
+        wire->sim = &wire->simulated->sim;
     }
-    if (grobo_sim_hung_up(session->sim)) {
-        grobo_sim_plug(session->sim, true, now_us);
+    if (grobo_sim_hung_up(wire->sim)) {
+        grobo_sim_plug(wire->sim, true, now_us);
     }
     return GROBO_OK;
 }
 
-static int sim_take(grobo_session *session, int64_t *until_us)
+static int sim_take(session_wire *wire, int64_t *until_us)
 {
     uint8_t buf[256];
     size_t got;
@@ -135,52 +159,52 @@ static int sim_take(grobo_session *session, int64_t *until_us)
         /* What comes later was not taken: the engine may not be told of a later time. */
         int64_t now_us = *until_us = grobo_now_us();
 
-        got = grobo_sim_tx(session->sim, buf, sizeof buf, now_us);
+        got = grobo_sim_tx(wire->sim, buf, sizeof buf, now_us);
         if (got > 0) {
-            session->sim_rx_bytes += got;
-            grobo_i_session_tell_tap(session, GROBO_DIR_RX, now_us, buf, got);
-            grobo_robot_rx(&session->robot, buf, got, now_us);
+            wire->session->sim_rx_bytes += got;
+            grobo_i_session_tell_tap(wire->session, GROBO_DIR_RX, now_us, buf, got);
+            grobo_robot_line_rx(&wire->session->robot, wire->line, buf, got, now_us);
         }
     } while (got == sizeof buf);
-    return grobo_sim_hung_up(session->sim) ? GROBO_ERR_UNPLUGGED : GROBO_OK;
+    return grobo_sim_hung_up(wire->sim) ? GROBO_ERR_UNPLUGGED : GROBO_OK;
 }
 
-static void sim_give(grobo_session *session, const uint8_t *frame, size_t size)
+static void sim_give(session_wire *wire, const uint8_t *frame, size_t size)
 {
-    int64_t now_us = grobo_i_session_now(session); /* when it left, by its engine */
-    size_t taken = grobo_sim_rx(session->sim, frame, size, now_us);
+    int64_t now_us = grobo_i_session_now(wire->session); /* when it left, by its engine */
+    size_t taken = grobo_sim_rx(wire->sim, frame, size, now_us);
 
-    session->sim_tx_bytes += taken;
+    wire->session->sim_tx_bytes += taken;
     if (taken > 0) {
-        grobo_i_session_tell_tap(session, GROBO_DIR_TX, now_us, frame, taken);
+        grobo_i_session_tell_tap(wire->session, GROBO_DIR_TX, now_us, frame, taken);
     }
-    GROBO_ASSERT(taken <= size && size - taken <= sizeof session->simulated->backlog);
-    session->backlog_bytes = size - taken;
-    memmove(session->simulated->backlog, frame + taken, session->backlog_bytes);
+    GROBO_ASSERT(taken <= size && size - taken <= sizeof wire->simulated->backlog);
+    wire->backlog_bytes = size - taken;
+    memmove(wire->simulated->backlog, frame + taken, wire->backlog_bytes);
 }
 
-static bool sim_has_room(grobo_session *session)
+static bool sim_has_room(session_wire *wire)
 {
-    if (session->backlog_bytes > 0) {
-        sim_give(session, session->simulated->backlog, session->backlog_bytes);
+    if (wire->backlog_bytes > 0) {
+        sim_give(wire, wire->simulated->backlog, wire->backlog_bytes);
     }
-    return session->backlog_bytes == 0;
+    return wire->backlog_bytes == 0;
 }
 
-static void sim_take_back(grobo_session *session, size_t size, size_t behind)
+static void sim_take_back(session_wire *wire, size_t size, size_t behind)
 {
-    GROBO_ASSERT(session->backlog_bytes <= size);
-    if (session->backlog_bytes == size) {
-        session->backlog_bytes = 0;
-    } else if (session->backlog_bytes > behind) {
-        session->simulated->backlog[session->backlog_bytes - 1 - behind] ^= 0xFF;
+    GROBO_ASSERT(wire->backlog_bytes <= size);
+    if (wire->backlog_bytes == size) {
+        wire->backlog_bytes = 0;
+    } else if (wire->backlog_bytes > behind) {
+        wire->simulated->backlog[wire->backlog_bytes - 1 - behind] ^= 0xFF;
     }
 }
 
-static int64_t sim_deadline(const grobo_session *session)
+static int64_t sim_deadline(const session_wire *wire)
 {
-    return session->state == GROBO_SESSION_OPENING ? grobo_now_us()
-                                                   : grobo_sim_packet_deadline(session->sim);
+    return wire->session->state == GROBO_SESSION_OPENING ? grobo_now_us()
+                                                         : grobo_sim_packet_deadline(wire->sim);
 }
 
 const session_line grobo_i_session_sim = {
@@ -248,4 +272,70 @@ void grobo_i_session_scan_end(grobo_session *session)
 {
     grobo_i_free(session->config.mem, session->scan, sizeof *session->scan);
     session->scan = NULL;
+}
+
+/* ---- the ports of several lines ------------------------------------------------------------ */
+
+static int set_path(session_wire *wire, const char *port, size_t size)
+{
+    if (size >= sizeof wire->path) {
+        return GROBO_ERR_CAP;
+    }
+    memcpy(wire->path, port, size);
+    wire->path[size] = '\0';
+    memcpy(wire->used, wire->path, size + 1);
+    return GROBO_OK;
+}
+
+/* NAME=PORT, as far as `end`. */
+static int take_port(grobo_session *session, const char *item, const char *end)
+{
+    const grobo_lines *lines = grobo_driver_lines(session->robot.driver);
+    const char *equals = memchr(item, '=', (size_t)(end - item));
+
+    for (int i = 0; equals != NULL && equals + 1 < end && i < session->n_wires; i++) {
+        const char *name = lines->line[i].name;
+        size_t size = (size_t)(equals - item);
+
+        if (name != NULL && strlen(name) == size && memcmp(name, item, size) == 0) {
+            return set_path(&session->wire[i], equals + 1, (size_t)(end - equals - 1));
+        }
+    }
+    return GROBO_ERR_ARG;
+}
+
+int grobo_i_session_set_paths(grobo_session *session)
+{
+    const grobo_lines *lines = grobo_driver_lines(session->robot.driver);
+    const char *item = session->device;
+    bool sim = session->line == &grobo_i_session_sim;
+    int r = GROBO_OK;
+
+    for (int i = 0; i < session->n_wires && r >= 0; i++) {
+        const char *port = sim ? session->device : lines->line[i].port;
+
+        r = set_path(&session->wire[i], port != NULL ? port : "", port != NULL ? strlen(port) : 0);
+    }
+    if (sim || strcmp(item, GROBO_DEVICE_AUTO) == 0) {
+        return r;
+    }
+    while (r >= 0 && *item != '\0') {
+        const char *end = item + strcspn(item, ",");
+
+        r = take_port(session, item, end);
+        item = *end == ',' ? end + 1 : end;
+    }
+    return r;
+}
+
+const char *grobo_i_session_without_port(const grobo_session *session)
+{
+    const grobo_lines *lines = grobo_driver_lines(session->robot.driver);
+
+    for (int i = 0; i < session->n_wires && session->n_wires > 1; i++) {
+        if (session->wire[i].path[0] == '\0') {
+            return lines->line[i].name != NULL ? lines->line[i].name : "";
+        }
+    }
+    return NULL;
 }

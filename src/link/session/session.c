@@ -26,8 +26,12 @@ static void drop_line(grobo_session *session)
         configure(session, false);
     }
     grobo_i_session_guard_release(session);
-    grobo_serial_close(session->serial);
-    session->backlog_bytes = 0;
+    for (int i = 0; i < session->n_wires; i++) {
+        grobo_serial_close(session->wire[i].serial);
+        session->wire[i].backlog_bytes = 0;
+        session->wire[i].opened = false;
+    }
+    session->lost_error = 0;
     session->check_job = 0;
     session->check_ended = false;
 }
@@ -48,10 +52,14 @@ static void destroy(grobo_session *session)
     grobo_i_session_guard_free(session);
     grobo_i_session_wake_free(session);
     grobo_timer_free(session->timer);
-    grobo_serial_free(session->serial);
+    for (int i = 0; i < session->n_wires; i++) {
+        grobo_serial_free(session->wire[i].serial);
+    }
     grobo_i_session_estop_end(session);
     grobo_i_session_scan_end(session);
-    grobo_i_session_sim_free(session);
+    for (int i = 0; i < session->n_wires; i++) {
+        grobo_i_session_sim_free(&session->wire[i]);
+    }
     grobo_i_free(mem, session, session->bytes);
 }
 
@@ -59,7 +67,16 @@ static void destroy(grobo_session *session)
 
 static int open_device(grobo_session *session, const char *device)
 {
-    int r = session->line->open(session, device);
+    int r = session->line->open(&session->wire[0], device);
+
+    for (int i = 1; i < session->n_wires && r >= 0; i++) {
+        session_wire *wire = &session->wire[i];
+
+        r = session->line->open(wire, session->was_up ? wire->stable : wire->path);
+    }
+    for (int i = 0; i < session->n_wires && r < 0; i++) {
+        grobo_serial_close(session->wire[i].serial);
+    }
 
     session->turn_us = 0; /* that may take its time */
     if (r >= 0) {
@@ -149,8 +166,12 @@ static void be_up(grobo_session *session)
 {
     grobo_i_session_scan_end(session);
     /* By now the system has given it its names. The simulator goes by none. */
-    if (grobo_port_identity(session->used, session->stable, sizeof session->stable) < 0) {
-        memcpy(session->stable, session->used, sizeof session->stable);
+    for (int i = 0; i < session->n_wires; i++) {
+        session_wire *wire = &session->wire[i];
+
+        if (grobo_port_identity(wire->used, wire->stable, sizeof wire->stable) < 0) {
+            memcpy(wire->stable, wire->used, sizeof wire->stable);
+        }
     }
     session->state = GROBO_SESSION_UP;
     session->was_up = true;
@@ -311,13 +332,13 @@ static int on_reset(void *ctx)
     }
     grobo_i_session_enter(session);
     grobo_i_session_obey(session); /* what was posted came before */
-    session->estop.looked_us = 0;
+    grobo_i_session_estop_look_anew(session);
     grobo_i_session_estop_look(session);
     grobo_robot_tripped(&session->robot, &trip);
     if (grobo_robot_job(&session->robot) == GROBO_JOB_ESTOP) {
         r = GROBO_ERR_STATE;
-    } else if (session->estop.on && trip.trip == GROBO_TRIP_ESTOP) {
-        r = grobo_i_estop_watch_clear(&session->estop, &session->cause);
+    } else if (trip.trip == GROBO_TRIP_ESTOP) {
+        r = grobo_i_session_estop_clear(session);
     }
     session->depth--; /* the request itself pumps */
     return r;
@@ -361,6 +382,9 @@ static void on_leave(grobo_session *session)
     while (session->depth == 1 && session->check_ended && !session->closing) {
         end_check(session);
     }
+    if (session->depth == 1 && !session->closing && grobo_i_session_has_stopped(session)) {
+        lose(session, session->lost_error);
+    }
     if (session->depth == 1 && session->closing) {
         close_now(session);
     }
@@ -372,25 +396,43 @@ static void on_leave(grobo_session *session)
         destroy(session);
     } else {
         grobo_i_session_send(session);
-        grobo_i_estop_watch_answer(&session->estop);
+        grobo_i_session_estop_answer(session);
     }
+}
+
+static bool all_opened(const grobo_session *session)
+{
+    bool all = true;
+
+    for (int i = 0; i < session->n_wires; i++) {
+        all = all && session->wire[i].opened;
+    }
+    return all;
 }
 
 static void on_serial(void *ctx, grobo_serial *serial, grobo_serial_event event, int error)
 {
-    grobo_session *session = ctx;
+    session_wire *wire = ctx;
+    grobo_session *session = wire->session;
 
     grobo_i_session_enter(session);
     switch (event) {
     case GROBO_SERIAL_OPENED:
-        start_check(session);
+        wire->opened = true;
+        if (all_opened(session)) {
+            start_check(session);
+        }
         break;
     case GROBO_SERIAL_DRAINED:
         break;
     case GROBO_SERIAL_UNPLUGGED:
     case GROBO_SERIAL_FAILED:
         session->cause = *grobo_serial_cause(serial);
-        lose(session, error);
+        if (session->n_wires > 1 && session->state == GROBO_SESSION_UP) {
+            grobo_i_session_lose_wire(wire, error);
+        } else {
+            lose(session, error);
+        }
         break;
     }
     grobo_i_session_leave(session);
@@ -421,7 +463,7 @@ static void try_again(grobo_session *session)
 {
     if (grobo_now_us() >= session->retry_us) {
         /* By the name that stays: the old one may be another device's by now. */
-        int r = open_device(session, session->stable);
+        int r = open_device(session, session->wire[0].stable);
 
         if (r < 0) {
             lose(session, r);
@@ -478,16 +520,24 @@ static int set_device(grobo_session *session, const char *device)
         return GROBO_ERR_CAP;
     }
     memmove(session->device, device, strlen(device) + 1);
-    memcpy(session->used, session->device, sizeof session->used);
+    memcpy(session->wire[0].used, session->device, sizeof session->wire[0].used);
     session->line = strcmp(session->device, GROBO_DEVICE_SIM) == 0 ? &grobo_i_session_sim
                                                                    : &grobo_i_session_port;
-    return GROBO_OK;
+    return session->n_wires > 1 ? grobo_i_session_set_paths(session) : GROBO_OK;
 }
 
 static int fill(grobo_session *session, const grobo_session_config *config)
 {
     const grobo_driver *driver = config->driver;
     int baud_bps = config->baud_bps > 0 ? config->baud_bps : GROBO_BAUD_DEFAULT_BPS;
+    const grobo_lines *lines = grobo_driver_lines(driver);
+
+    session->n_wires = lines == NULL ? 1 : lines->n_lines;
+    for (int i = 0; i < session->n_wires; i++) {
+        session->wire[i].session = session;
+        session->wire[i].line = i;
+    }
+    session->robot.driver = driver; /* until the engine is made */
     int r = set_device(session, config->device);
 
     session->wake_socket[0] = session->wake_socket[1] = GROBO_SOCKET_NULL;
@@ -521,12 +571,24 @@ static int fill(grobo_session *session, const grobo_session_config *config)
     return r;
 }
 
-static int make_parts(grobo_session *session)
+static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                   size_t size)
 {
+    const session_wire *wire = ctx;
+
+    grobo_i_session_tell_tap(wire->session, direction, now_us, bytes, size);
+}
+
+static int make_serial(grobo_session *session, session_wire *wire)
+{
+    const grobo_lines *lines = grobo_driver_lines(session->robot.driver);
+    const grobo_driver *driver = grobo_i_line_driver(&session->robot, wire->line, NULL);
     const grobo_serial_config serial = {
         GROBO_SERIAL_CONFIG_INIT,
-        .baud_bps = session->config.baud_bps,
-        .format = {.parity = session->robot.driver->protocol->parity,
+        .baud_bps = lines != NULL && lines->line[wire->line].baud_bps > 0
+                        ? (int)lines->line[wire->line].baud_bps
+                        : session->config.baud_bps,
+        .format = {.parity = driver->protocol->parity,
                    .stop_bits = session->config.format.stop_bits,
                    .rs485 = session->config.format.rs485},
         .base = session->config.base,
@@ -534,12 +596,20 @@ static int make_parts(grobo_session *session)
         .tx_queue_bytes = GROBO_FRAME_MAX_BYTES, /* a frame is sent when nothing waits */
         .on_data = grobo_i_session_on_data,
         .on_event = on_serial,
-        .on_tap = session->config.on_tap != NULL ? grobo_i_session_tell_tap : NULL,
-        .ctx = session,
+        .on_tap = session->config.on_tap != NULL ? on_tap : NULL,
+        .ctx = wire,
         .mem = session->config.mem,
     };
-    int r = grobo_serial_new(&serial, &session->serial);
+    return grobo_serial_new(&serial, &wire->serial);
+}
 
+static int make_parts(grobo_session *session)
+{
+    int r = GROBO_OK;
+
+    for (int i = 0; i < session->n_wires && r >= 0; i++) {
+        r = make_serial(session, &session->wire[i]);
+    }
     if (r >= 0) {
         r = grobo_timer_new(session->config.base, on_time, session, session->config.mem,
                             &session->timer);
@@ -601,6 +671,19 @@ void grobo_session_free(grobo_session *session)
     grobo_i_session_leave(session);
 }
 
+/* Which port is which line, nobody can find out by asking: each must be told. */
+static int open_lines(grobo_session *session)
+{
+    const char *name = grobo_i_session_without_port(session);
+
+    if (name != NULL) {
+        session->cause.code = 0;
+        snprintf(session->cause.text, sizeof session->cause.text, "line '%.40s' has no port", name);
+        return GROBO_ERR_NOTFOUND;
+    }
+    return open_device(session, session->wire[0].path);
+}
+
 int grobo_session_open(grobo_session *session)
 {
     if (session == NULL) {
@@ -616,7 +699,9 @@ int grobo_session_open(grobo_session *session)
     if (r < 0) {
         return r;
     }
-    if (strcmp(session->device, GROBO_DEVICE_AUTO) != 0) {
+    if (session->n_wires > 1) {
+        r = open_lines(session);
+    } else if (strcmp(session->device, GROBO_DEVICE_AUTO) != 0) {
         r = open_device(session, session->device);
     } else {
         r = grobo_i_session_scan_begin(session);
@@ -673,7 +758,7 @@ grobo_session_state grobo_session_get_state(const grobo_session *session)
 
 const char *grobo_session_device(const grobo_session *session)
 {
-    return session == NULL ? NULL : session->used;
+    return session == NULL ? NULL : session->n_wires > 1 ? session->device : session->wire[0].used;
 }
 
 const grobo_os_cause *grobo_session_cause(const grobo_session *session)
@@ -688,12 +773,12 @@ grobo_robot *grobo_session_robot(grobo_session *session)
 
 grobo_sim *grobo_session_sim(grobo_session *session)
 {
-    return session == NULL ? NULL : session->sim;
+    return session == NULL ? NULL : session->wire[0].sim;
 }
 
 grobo_serial *grobo_session_serial(grobo_session *session)
 {
-    return session == NULL ? NULL : session->serial;
+    return session == NULL ? NULL : session->wire[0].serial;
 }
 
 void grobo_session_bytes(const grobo_session *session, uint64_t *tx_bytes, uint64_t *rx_bytes)
@@ -701,9 +786,13 @@ void grobo_session_bytes(const grobo_session *session, uint64_t *tx_bytes, uint6
     if (session == NULL || tx_bytes == NULL || rx_bytes == NULL) {
         return;
     }
-    grobo_serial_counters counters;
+    *tx_bytes = session->sim_tx_bytes;
+    *rx_bytes = session->sim_rx_bytes;
+    for (int i = 0; i < session->n_wires; i++) {
+        grobo_serial_counters counters;
 
-    grobo_serial_get_counters(session->serial, &counters);
-    *tx_bytes = counters.tx_bytes + session->sim_tx_bytes;
-    *rx_bytes = counters.rx_bytes + session->sim_rx_bytes;
+        grobo_serial_get_counters(session->wire[i].serial, &counters);
+        *tx_bytes += counters.tx_bytes;
+        *rx_bytes += counters.rx_bytes;
+    }
 }

@@ -11,6 +11,7 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/lines.h>
 #include <grobo/core/sim_static.h>
 #include <grobo/core/static.h>
 #include <grobo/session.h>
@@ -24,22 +25,39 @@ typedef struct session_scan {
     char path[GROBO_SCAN_PORTS_MAX][GROBO_DEVICE_MAX_BYTES];
 } session_scan;
 
+/* One line of the engine: its port or its simulator. */
+typedef struct session_wire {
+    grobo_session *session;
+    int line;
+    char path[GROBO_DEVICE_MAX_BYTES];   /* as configured, of a robot of several lines */
+    char used[GROBO_DEVICE_MAX_BYTES];   /* as opened */
+    char stable[GROBO_DEVICE_MAX_BYTES]; /* the name it will have when it comes back */
+    grobo_serial *serial;
+    struct session_sim *simulated; /* the simulator and what it did not take; NULL: none yet */
+    grobo_sim *sim;                /* the one in there */
+    size_t backlog_bytes;          /* of a frame that the simulator took in part, see line.c */
+    size_t given_bytes;  /* of the frame given to the line last; 0: it may not be taken back */
+    size_t given_behind; /* bytes of it behind its sum */
+    bool opened;         /* the connection is made */
+    grobo_i_estop_watch estop; /* the marks of the device */
+} session_wire;
+
 /* What a session speaks over: grobo_i_session_port or grobo_i_session_sim. */
 typedef struct session_line {
-    int (*open)(grobo_session *session, const char *device); /* < 0: `cause` says why */
+    int (*open)(session_wire *wire, const char *device); /* < 0: `cause` says why */
 
     /* Gives the engine what has come, all until *until_us. < 0: gone, where nothing else tells. */
-    int (*take)(grobo_session *session, int64_t *until_us);
+    int (*take)(session_wire *wire, int64_t *until_us);
 
     /* A frame is taken from the engine, which judges it, when nothing is left of the one before. */
-    bool (*has_room)(grobo_session *session);
-    void (*give)(grobo_session *session, const uint8_t *frame, size_t size);
+    bool (*has_room)(session_wire *wire);
+    void (*give)(session_wire *wire, const uint8_t *frame, size_t size);
 
     /* As grobo_i_serial_take_back(). */
-    void (*take_back)(grobo_session *session, size_t size, size_t behind);
+    void (*take_back)(session_wire *wire, size_t size, size_t behind);
 
     /* When to look at it, which tells nothing by the loop. */
-    int64_t (*deadline)(const grobo_session *session);
+    int64_t (*deadline)(const session_wire *wire);
 } session_line;
 
 extern const session_line grobo_i_session_port, grobo_i_session_sim;
@@ -55,26 +73,21 @@ typedef struct session_share {
 struct grobo_session {
     grobo_session_config config;         /* pointers to copied things are NULL */
     char device[GROBO_DEVICE_MAX_BYTES]; /* as configured */
-    char used[GROBO_DEVICE_MAX_BYTES];   /* as opened */
-    char stable[GROBO_DEVICE_MAX_BYTES]; /* the name it will have when it comes back */
     grobo_robot_config robot_config;     /* in effect while up */
     grobo_os_cause cause;
 
     grobo_session_state state;
     bool was_up; /* since open: then a failed attempt is not the end, if so configured */
-    grobo_serial *serial;
     grobo_timer *timer;
 
     grobo_sim_config sim_config;
-    struct session_sim *simulated; /* the simulator and what it did not take; NULL: none yet */
-    grobo_sim *sim;                /* the one in there */
     const session_line *line;
-    size_t backlog_bytes; /* of a frame that the simulator took in part, see line.c */
-    size_t given_bytes;   /* of the frame given to the line last; 0: it may not be taken back */
-    size_t given_behind;  /* bytes of it behind its sum */
     uint64_t sim_tx_bytes, sim_rx_bytes;
+    int n_wires;                        /* lines of the engine */
+    session_wire wire[GROBO_LINES_MAX]; /* the first n_wires of them */
+    int lost_error;                     /* of one that is lost while the others are stopped; 0 */
+    int64_t lost_by_us;                 /* they are closed by then */
 
-    grobo_i_estop_watch estop; /* the marks of the device */
     grobo_socket
         mark_socket; /* tells of marks; GROBO_SOCKET_NULL: they are looked at by the clock */
     struct event *mark_event;
@@ -177,7 +190,7 @@ void grobo_i_session_rest(grobo_session *session);
  */
 
 /* A port is open: the marks that stand are those of its device. */
-void grobo_i_session_estop_begin(grobo_session *session, const char *device);
+void grobo_i_session_estop_begin(session_wire *wire, const char *device);
 
 /* The session has the device no more. */
 void grobo_i_session_estop_end(grobo_session *session);
@@ -194,6 +207,12 @@ bool grobo_i_session_estop_old(const grobo_session *session, int64_t now_us);
 /* When the loop looks though no frame leaves; GROBO_NEVER_US without a device, and where the system
  * tells of marks. */
 int64_t grobo_i_session_estop_deadline(const grobo_session *session);
+
+/* The marks are looked at by the next look; what is to be said of stops is written; marks that were
+ * heard are cleared. */
+void grobo_i_session_estop_look_anew(grobo_session *session);
+void grobo_i_session_estop_answer(grobo_session *session);
+int grobo_i_session_estop_clear(grobo_session *session);
 
 /* An emergency stop has ended so. */
 void grobo_i_session_estop_ended(grobo_session *session, int result);
@@ -226,10 +245,16 @@ int64_t grobo_i_session_guard_deadline(const grobo_session *session);
 /* ---- line.c ---- */
 
 /* Frees the simulator, where there is one. */
-void grobo_i_session_sim_free(grobo_session *session);
+void grobo_i_session_sim_free(session_wire *wire);
 
 /* Lists the ports to try; GROBO_ERR_NOTFOUND where there are none. */
 int grobo_i_session_scan_begin(grobo_session *session);
+
+/* The port of each line, by the device "NAME=PORT,NAME=PORT" or by what the lines say themselves.
+ * GROBO_ERR_ARG: no such line, or no port; GROBO_ERR_CAP. */
+int grobo_i_session_set_paths(grobo_session *session);
+/* The first line without a port; NULL: each has one. */
+const char *grobo_i_session_without_port(const grobo_session *session);
 
 /* Forgets them. */
 void grobo_i_session_scan_end(grobo_session *session);
@@ -245,6 +270,12 @@ void grobo_i_session_send(grobo_session *session);
  * gone, and no time has passed.
  */
 int grobo_i_session_step(grobo_session *session);
+
+/* Of a robot of several lines: one is gone, and the others stop; whether it is, and whether they
+ * have stopped, so that the session may close them. */
+void grobo_i_session_lose_wire(session_wire *wire, int error);
+bool grobo_i_session_is_lost(const session_wire *wire);
+bool grobo_i_session_has_stopped(const grobo_session *session);
 
 /* Callback of the serial port. */
 void grobo_i_session_on_data(void *ctx, grobo_serial *serial, const uint8_t *bytes, size_t size);

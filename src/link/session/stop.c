@@ -215,7 +215,7 @@ static void on_marks(evutil_socket_t socket, short what, void *ctx)
     if (news == NOTE_NEWS_GONE) {
         watch(session);
     }
-    session->estop.looked_us = 0;
+    grobo_i_session_estop_look_anew(session);
     grobo_i_session_enter(session);
     grobo_i_session_leave(session); /* looks, and sets the timer */
 }
@@ -234,83 +234,143 @@ static void watch(grobo_session *session)
     }
 }
 
-void grobo_i_session_estop_begin(grobo_session *session, const char *device)
+void grobo_i_session_estop_begin(session_wire *wire, const char *device)
 {
-    if (session->estop.on && !session->was_up) { /* the port before it, of a scan */
-        grobo_i_estop_watch_end(&session->estop);
+    if (wire->estop.on && !wire->session->was_up) { /* the port before it, of a scan */
+        grobo_i_estop_watch_end(&wire->estop);
     }
-    grobo_i_estop_watch_begin(&session->estop, device);
-    watch(session); /* behind the first note, for which the directories are made */
+    grobo_i_estop_watch_begin(&wire->estop, device);
+    watch(wire->session); /* behind the first note, for which the directories are made */
 }
 
 void grobo_i_session_estop_end(grobo_session *session)
 {
     watch_no_more(session);
-    grobo_i_estop_watch_end(&session->estop);
+    for (int i = 0; i < session->n_wires; i++) {
+        grobo_i_estop_watch_end(&session->wire[i].estop);
+    }
 }
 
-static void obey_mark(grobo_session *session)
+static void obey_mark(session_wire *wire)
 {
-    int r = estop(session);
+    int r = estop(wire->session);
 
-    session->estop.say = GROBO_ESTOP_HEARD;
+    wire->estop.say = GROBO_ESTOP_HEARD;
     if (r < 0 && r != GROBO_ERR_CLOSED) { /* latched, but the driver has no way to stop */
-        session->estop.say = GROBO_ESTOP_FAILED;
-        session->estop.result = r;
+        wire->estop.say = GROBO_ESTOP_FAILED;
+        wire->estop.result = r;
+    }
+}
+
+static void arm(session_wire *wire)
+{
+    bool pending = false;
+
+    if (!wire->estop.on || wire->estop.armed) {
+        return;
+    }
+    wire->estop.armed = true;
+    if (!grobo_i_estop_watch_look(&wire->estop, &pending)) {
+        return;
+    }
+    if (pending) {
+        obey_mark(wire);
+    } else {
+        (void)grobo_robot_latch(&wire->session->robot);
     }
 }
 
 void grobo_i_session_estop_arm(grobo_session *session)
 {
-    bool pending = false;
+    for (int i = 0; i < session->n_wires; i++) {
+        arm(&session->wire[i]);
+    }
+}
 
-    if (!session->estop.on || session->estop.armed) {
-        return;
-    }
-    session->estop.armed = true;
-    if (!grobo_i_estop_watch_look(&session->estop, &pending)) {
-        return;
-    }
-    if (pending) {
-        obey_mark(session);
-    } else {
-        (void)grobo_robot_latch(&session->robot);
-    }
+static bool is_old(const session_wire *wire, int64_t now_us)
+{
+    return wire->estop.armed && now_us >= wire->estop.looked_us + GROBO_ESTOP_WATCH_US;
 }
 
 bool grobo_i_session_estop_old(const grobo_session *session, int64_t now_us)
 {
-    return session->estop.armed && now_us >= session->estop.looked_us + GROBO_ESTOP_WATCH_US;
+    bool old = false;
+
+    for (int i = 0; i < session->n_wires && !old; i++) {
+        old = is_old(&session->wire[i], now_us);
+    }
+    return old;
 }
 
 int64_t grobo_i_session_estop_deadline(const grobo_session *session)
 {
-    return session->estop.armed && session->mark_event == NULL
-               ? session->estop.looked_us + GROBO_ESTOP_WATCH_US
-               : GROBO_NEVER_US;
+    int64_t at_us = GROBO_NEVER_US;
+
+    for (int i = 0; i < session->n_wires && session->mark_event == NULL; i++) {
+        const grobo_i_estop_watch *own = &session->wire[i].estop;
+        int64_t own_us = own->looked_us + GROBO_ESTOP_WATCH_US;
+
+        at_us = own->armed && own_us < at_us ? own_us : at_us;
+    }
+    return at_us;
 }
 
+/* A mark of one line's device stops the whole robot. */
 void grobo_i_session_estop_look(grobo_session *session)
 {
-    bool pending = false;
+    for (int i = 0; i < session->n_wires; i++) {
+        session_wire *wire = &session->wire[i];
+        bool pending = false;
 
-    if (!grobo_i_session_estop_old(session, grobo_i_session_now(session))) {
-        return;
-    }
-    bool looked = grobo_i_estop_watch_look(&session->estop, &pending);
+        if (!is_old(wire, grobo_i_session_now(session))) {
+            continue;
+        }
+        bool looked = grobo_i_estop_watch_look(&wire->estop, &pending);
 
-    session->turn_us = 0; /* a file system may take its time */
-    if (looked) {
-        obey_mark(session);
+        session->turn_us = 0; /* a file system may take its time */
+        if (looked) {
+            obey_mark(wire);
+        }
     }
+}
+
+void grobo_i_session_estop_look_anew(grobo_session *session)
+{
+    for (int i = 0; i < session->n_wires; i++) {
+        session->wire[i].estop.looked_us = 0;
+    }
+}
+
+void grobo_i_session_estop_answer(grobo_session *session)
+{
+    for (int i = 0; i < session->n_wires; i++) {
+        grobo_i_estop_watch_answer(&session->wire[i].estop);
+    }
+}
+
+int grobo_i_session_estop_clear(grobo_session *session)
+{
+    int r = GROBO_OK;
+
+    for (int i = 0; i < session->n_wires && r >= 0; i++) {
+        grobo_i_estop_watch *own = &session->wire[i].estop;
+
+        r = own->on ? grobo_i_estop_watch_clear(own, &session->cause) : GROBO_OK;
+    }
+    return r;
 }
 
 void grobo_i_session_estop_ended(grobo_session *session, int result)
 {
     /* Another one took its place, or the line went: it is carried out later. */
-    if (result != GROBO_ERR_CANCELED && result != GROBO_ERR_UNPLUGGED) {
-        session->estop.say = result < 0 ? GROBO_ESTOP_FAILED : GROBO_ESTOP_DONE;
-        session->estop.result = result;
+    if (result == GROBO_ERR_CANCELED || result == GROBO_ERR_UNPLUGGED) {
+        return;
+    }
+    for (int i = 0; i < session->n_wires; i++) {
+        grobo_i_estop_watch *own = &session->wire[i].estop;
+
+        own->say = result < 0 ? GROBO_ESTOP_FAILED : GROBO_ESTOP_DONE;
+        own->result = result;
     }
 }
 

@@ -3,6 +3,8 @@
 #ifndef GROBO_ROBOTS_DRAFT_H
 #define GROBO_ROBOTS_DRAFT_H
 
+#include <grobo/core/lines.h>
+
 #include "src/motion/format/fields.h"
 #include "src/robots/robots.h"
 
@@ -21,6 +23,7 @@ typedef enum grobo_i_block {
     GROBO_I_BLOCK_PAYLOAD,
     GROBO_I_BLOCK_FOOT,
     GROBO_I_BLOCK_MOTOR,
+    GROBO_I_BLOCK_LINES,
     GROBO_I_BLOCKS
 } grobo_i_block;
 
@@ -37,7 +40,7 @@ typedef struct grobo_i_motor_draft {
 
 typedef struct grobo_i_joint_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
-    grobo_i_name name, type, servo, mirror, follows;
+    grobo_i_name name, type, servo, mirror, line, follows;
     double servos[2], signs[2], apart_deg, ratio;
     int twin; /* of its second servo, which is a joint of its own: the first one; else -1 */
     double id, limits_deg[2], init_deg, rest_deg, speed_deg_s, torque_limit_pct, free_ma, sign,
@@ -85,6 +88,14 @@ typedef struct grobo_i_line_draft {
     double baud_bps;
 } grobo_i_line_draft;
 
+/* One of several lines. */
+typedef struct grobo_i_lines_draft {
+    grobo_i_place place, at[GROBO_I_KEYS_MAX];
+    grobo_i_name name, family, wiring, port;
+    double baud_bps;
+    bool echo;
+} grobo_i_lines_draft;
+
 typedef struct grobo_i_draft {
     grobo_i_reader *reader;
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
@@ -100,6 +111,8 @@ typedef struct grobo_i_draft {
     grobo_i_link_draft link[GROBO_ROBOT_LINKS_MAX];
     grobo_usb_id usb[GROBO_ROBOT_USB_MAX];
     grobo_i_foot_draft foot[2];
+    int n_lines;
+    grobo_i_lines_draft lines[GROBO_LINES_MAX];
 } grobo_i_draft;
 
 /* The place of a key's value in a mapping that has it, else of the mapping. */
@@ -127,6 +140,9 @@ typedef struct grobo_i_robot_file {
     const char *alike[GROBO_I_ALIKE_MAX + 1];
     grobo_i_name name, title, model_name, joint_names[GROBO_JOINTS_MAX],
         group_names[GROBO_ROBOT_GROUPS_MAX], link_names[GROBO_ROBOT_LINKS_MAX];
+    grobo_robot_file_line lines[GROBO_LINES_MAX];
+    grobo_i_name line_names[GROBO_LINES_MAX], line_ports[GROBO_LINES_MAX];
+    grobo_lines on_lines;
 } grobo_i_robot_file;
 
 /* Reads the text; what is wrong is said. An error ends it, a complaint does not. */

@@ -49,7 +49,8 @@ static int complain(const maker *m, grobo_i_place place, const char *code, const
 }
 
 /* One of the words, by its index; -1 with a complaint. */
-static int word_of(const maker *m, const char *key, const char *given, const char *const *words)
+static int word_at(const maker *m, const char *key, grobo_i_place place, const char *given,
+                   const char *const *words)
 {
     grobo_i_nearest nearest = {NULL, 0};
     for (int i = 0; words[i] != NULL; i++) {
@@ -60,25 +61,160 @@ static int word_of(const maker *m, const char *key, const char *given, const cha
     }
     char what[64];
     snprintf(what, sizeof what, "%s called", key);
-    (void)grobo_i_complain_word(m->reader, place_of(m, key), what, given, nearest_of(&nearest));
+    (void)grobo_i_complain_word(m->reader, place, what, given, nearest_of(&nearest));
     return -1;
+}
+
+static int word_of(const maker *m, const char *key, const char *given, const char *const *words)
+{
+    return word_at(m, key, place_of(m, key), given, words);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-static void make_family(maker *m)
+/* The family of this name; NULL with a complaint. */
+static const grobo_robot_family *family_called(const maker *m, const char *name,
+                                               grobo_i_place place)
 {
-    static const char *const wirings[] = {"board", "bus", NULL};
     const char *names[8] = {NULL};
     for (int i = 0; grobo_i_robot_families[i] != NULL; i++) {
         names[i] = grobo_i_robot_families[i]->name;
     }
-    int family = word_of(m, "family", m->draft->family, names);
-    if (family < 0) {
+    int family = word_at(m, "family", place, name, names);
+    return family < 0 ? NULL : grobo_i_robot_families[family];
+}
+
+static const char *const wirings[] = {"board", "bus", NULL};
+
+/* Several lines, each with a family of its own. */
+static void make_line(maker *m, int i)
+{
+    const grobo_i_lines_draft *draft = &m->draft->lines[i];
+    grobo_i_robot_file *file = m->file;
+    grobo_robot_file_line *line = &file->lines[i];
+    memcpy(file->line_names[i], draft->name, sizeof draft->name);
+    memcpy(file->line_ports[i], draft->port, sizeof draft->port);
+    line->name = file->line_names[i];
+    line->port = *draft->port != '\0' ? file->line_ports[i] : NULL;
+    line->echo = draft->echo;
+    line->family = family_called(
+        m, draft->family, grobo_i_place_of(GROBO_I_BLOCK_LINES, draft->at, draft->place, "family"));
+    for (int k = 0; k < i; k++) {
+        if (strcmp(file->lines[k].name, line->name) == 0) {
+            (void)complain(m, draft->place, "twice", "two lines are called '%s'", line->name);
+        }
+        if (line->port != NULL && file->lines[k].port != NULL &&
+            strcmp(file->lines[k].port, line->port) == 0) {
+            (void)complain(m, draft->place, "twice", "two lines have the port '%s'", line->port);
+        }
+    }
+    if (line->family == NULL) {
+        return;
+    }
+    line->wiring = line->family->wiring;
+    if (*draft->wiring != '\0') {
+        int word = word_at(m, "wiring",
+                           grobo_i_place_of(GROBO_I_BLOCK_LINES, draft->at, draft->place, "wiring"),
+                           draft->wiring, wirings);
+        line->wiring = word == 0 ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS;
+    }
+    if (line->family->init[line->wiring] == NULL) {
+        (void)complain(m, draft->place, "wiring", "servos of line %s cannot be wired so",
+                       line->name);
+        line->family = NULL;
+    }
+    line->baud_bps = draft->baud_bps > 0                ? (uint32_t)draft->baud_bps
+                     : m->file->lines[i].family == NULL ? 0
+                                                        : line->family->baud_bps;
+}
+
+static void make_lines(maker *m)
+{
+    static const char *const alone[] = {"family", "wiring", "line", "usb"};
+    grobo_robot_def *def = &m->file->def;
+    for (size_t i = 0; i < sizeof alone / sizeof alone[0]; i++) {
+        if (grobo_i_has_key(GROBO_I_BLOCK_ROBOT, m->draft->at, alone[i])) {
+            (void)complain(m, place_of(m, alone[i]), "keys",
+                           "'%s' and 'lines' cannot be used together: each line has its own",
+                           alone[i]);
+        }
+    }
+    if (m->draft->n_lines < 2) {
+        (void)complain(m, place_of(m, "lines"), "lines",
+                       "%s: two lines or more are wanted; one is said by 'family' and 'line'",
+                       m->draft->name);
+        return;
+    }
+    bool good = true;
+    for (int i = 0; i < m->draft->n_lines; i++) {
+        make_line(m, i);
+        good = good && m->file->lines[i].family != NULL;
+    }
+    if (good) {
+        def->lines = m->file->lines;
+        def->n_lines = (uint8_t)m->draft->n_lines;
+        def->family = def->lines[0].family;
+        def->wiring = def->lines[0].wiring;
+        def->baud_bps = def->lines[0].baud_bps;
+    }
+}
+
+/* The line of a joint, with its complaints. */
+static uint8_t line_of(const maker *m, int j)
+{
+    const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    const grobo_robot_def *def = &m->file->def;
+    grobo_i_nearest nearest = {NULL, 0};
+    bool told = joint_has(m, j, "line");
+    if (told != (def->n_lines > 0)) {
+        (void)complain(m, joint_place(m, j, "line"), told ? "keys" : "missing",
+                       told ? "%s: 'line' of a joint needs 'lines' of the robot"
+                            : "%s has no 'line': the robot has several",
+                       draft->name);
+        return 0;
+    }
+    for (uint8_t i = 0; told && i < def->n_lines; i++) {
+        if (strcmp(def->lines[i].name, draft->line) == 0) {
+            return i;
+        }
+        grobo_i_nearest_try(&nearest, draft->line, def->lines[i].name);
+    }
+    if (told) {
+        (void)grobo_i_complain_word(m->reader, joint_place(m, j, "line"), "line called",
+                                    draft->line, nearest_of(&nearest));
+    }
+    return 0;
+}
+
+/* How the servo of a joint talks. */
+static const grobo_robot_family *family_of(const maker *m, int j)
+{
+    const grobo_robot_def *def = &m->file->def;
+    return def->n_lines > 0 ? def->lines[m->file->joints[j].line].family : def->family;
+}
+
+static grobo_wiring wiring_of(const maker *m, int j)
+{
+    const grobo_robot_def *def = &m->file->def;
+    return def->n_lines > 0 ? def->lines[m->file->joints[j].line].wiring : def->wiring;
+}
+
+static void make_family(maker *m)
+{
+    if (m->draft->n_lines > 0 || grobo_i_has_key(GROBO_I_BLOCK_ROBOT, m->draft->at, "lines")) {
+        make_lines(m);
+        return;
+    }
+    if (!grobo_i_has_key(GROBO_I_BLOCK_ROBOT, m->draft->at, "family")) {
+        (void)complain(m, m->draft->place, "missing", "%s has no 'family'", "the file");
+        return;
+    }
+    const grobo_robot_family *family = family_called(m, m->draft->family, place_of(m, "family"));
+    if (family == NULL) {
         return;
     }
     grobo_robot_def *def = &m->file->def;
-    def->family = grobo_i_robot_families[family];
+    def->family = family;
     def->wiring = def->family->wiring;
     def->baud_bps = def->family->baud_bps;
     if (*m->draft->wiring != '\0') {
@@ -139,21 +275,22 @@ static void make_safety(maker *m)
 #define OF_ITS_SPEED 0.8
 
 /* The servo of this name; NULL with a complaint. */
-static const grobo_servo_model *servo_called(const maker *m, const char *name, grobo_i_place place)
+static const grobo_servo_model *servo_called(const maker *m, const grobo_robot_family *family,
+                                             const char *name, grobo_i_place place)
 {
     grobo_i_nearest nearest = {NULL, 0};
     const grobo_servo_model *servo;
     if (grobo_i_is_own_servo(name)) {
-        return grobo_i_own_servo_find(m->reader, m->file, name, place);
+        return grobo_i_own_servo_find(m->reader, m->file, family, name, place);
     }
-    for (size_t i = 0; (servo = grobo_i_family_row(m->file->def.family, i)) != NULL; i++) {
+    for (size_t i = 0; (servo = grobo_i_family_row(family, i)) != NULL; i++) {
         if (strcmp(servo->name, name) == 0) {
             return servo;
         }
         grobo_i_nearest_try(&nearest, name, servo->name);
     }
     char what[96];
-    snprintf(what, sizeof what, "servo of family %s called", m->file->def.family->name);
+    snprintf(what, sizeof what, "servo of family %s called", family->name);
     (void)grobo_i_complain_word(m->reader, place, what, name, nearest_of(&nearest));
     return NULL;
 }
@@ -170,7 +307,7 @@ static bool is_wheel(const maker *m, int j)
 static void find_servo(const maker *m, int j, grobo_joint *joint)
 {
     const grobo_i_joint_draft *draft = &m->draft->joint[j];
-    joint->servo = servo_called(m, draft->servo, joint_place(m, j, "servo"));
+    joint->servo = servo_called(m, family_of(m, j), draft->servo, joint_place(m, j, "servo"));
     if (joint->servo != NULL) {
         double own_deg_s =
             OF_ITS_SPEED * joint->servo->speed_dps / (joint->gear > 0 ? joint->gear : 1);
@@ -235,6 +372,11 @@ static void make_follower(const maker *m, int j)
         return;
     }
     const grobo_joint *of = &m->file->joints[first];
+    if (of->line != joint->line) {
+        (void)complain(m, joint_place(m, j, "follows"), "follows",
+                       "%s: the joint that it follows must be on the same line", draft->name);
+        return;
+    }
     bool apart = joint_has(m, j, "apart_deg");
     joint->follows = (uint8_t)first;
     joint->ratio = draft->twin >= 0 ? 1 : draft->ratio;
@@ -315,7 +457,8 @@ static void check_unique(const maker *m, int j)
             (void)complain(m, joint_place(m, j, "name"), "twice", "two joints are called '%s'",
                            joint->name);
         }
-        if (m->draft->joint[i].id == joint->id) {
+        if (m->draft->joint[i].id == joint->id &&
+            m->file->joints[i].line == m->file->joints[j].line) {
             (void)complain(m, joint_place(m, j, "id"), "twice", "%s has the id of another joint",
                            joint->name);
         }
@@ -381,6 +524,7 @@ static void make_joint(const maker *m, int j)
         (void)complain(m, joint_place(m, j, joint_has(m, j, "signs") ? "signs" : key), "range",
                        "%s: 1 or -1 is wanted", joint_has(m, j, "signs") ? "signs" : key);
     }
+    joint->line = line_of(m, j);
     if (draft->twin < 0) {
         check_coupling(m, j);
     }
@@ -430,55 +574,117 @@ static void refuse_servo(const maker *m, int j)
                    "%s: its servo does not reach these limits", draft->name);
 }
 
+/* Whether its family takes a joint. False: nothing more is to be said of any. */
+static bool check_servo(maker *m, int j)
+{
+    const grobo_robot_family *family = family_of(m, j);
+    int (*init)(grobo_driver *, const grobo_model *) = family->init[wiring_of(m, j)];
+    grobo_joint joint = m->file->joints[j];
+    int id = joint.motor;
+    joint.line = 0;
+    joint.mirror = joint.follows = 0;
+    joint.ratio = joint.apart_rad = 0;
+    joint.motor = 1; /* which each family has: its own is judged below */
+    const grobo_model one = GROBO_TABLE(grobo_model, .name = m->file->model_name,
+                                        GROBO_MODEL_JOINTS(&joint), .n_joints = 1);
+    int result = init(&m->driver, &one);
+    if (result == GROBO_ERR_UNSUPPORTED) {
+        (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "servo", joint_place(m, j, "servo"),
+                               joint.servo->number != 0
+                                   ? "%s: a %s does not tell where it stands"
+                                   : "%s: %s stands for servos of which the scale is not known",
+                               joint.name, m->draft->joint[j].servo);
+        return true;
+    }
+    bool calibrated = joint.calibrated;
+    joint.calibrated = false;
+    if (result == GROBO_ERR_ARG && calibrated && init(&m->driver, &one) == GROBO_OK) {
+        (void)complain(m, place_of(m, "calibrated"), "calibrated",
+                       "servos of family %s keep no calibration", family->name);
+        return false;
+    }
+    bool limited = joint.torque_limit_pct > 0;
+    joint.torque_limit_pct = 0;
+    if (result == GROBO_ERR_ARG && limited && init(&m->driver, &one) == GROBO_OK) {
+        (void)complain(m, joint_place(m, j, "torque_limit_pct"), "range",
+                       "%s: its servo has no limit of torque", joint.name);
+        return true;
+    }
+    const grobo_protocol *protocol = m->driver.protocol;
+    if (result == GROBO_OK && (id < protocol->id_min || id > protocol->id_max)) {
+        result = grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "range", joint_place(m, j, "id"),
+                                  "%s: an id from %d to %d is wanted", joint.name, protocol->id_min,
+                                  protocol->id_max);
+    } else if (result < 0) {
+        refuse_servo(m, j);
+    }
+    return true;
+}
+
 /* The family takes joints one by one here, to find the one that it refuses. */
 static void check_servos(maker *m)
 {
     const grobo_robot_def *def = &m->file->def;
-    int (*init)(grobo_driver *, const grobo_model *) = def->family->init[def->wiring];
-    if (init == NULL) {
+    if (def->n_lines == 0 && def->family->init[def->wiring] == NULL) {
         (void)complain(m, place_of(m, "wiring"), "wiring", "servos of family %s cannot be wired so",
                        def->family->name);
         return;
     }
-    for (int j = 0; j < m->draft->n_joints; j++) {
-        grobo_joint joint = m->file->joints[j];
-        int id = joint.motor;
-        joint.mirror = joint.follows = 0;
-        joint.ratio = joint.apart_rad = 0;
-        joint.motor = 1; /* which each family has: its own is judged below */
-        const grobo_model one = GROBO_TABLE(grobo_model, .name = m->file->model_name,
-                                            GROBO_MODEL_JOINTS(&joint), .n_joints = 1);
-        int result = init(&m->driver, &one);
-        if (result == GROBO_ERR_UNSUPPORTED) {
-            (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "servo", joint_place(m, j, "servo"),
-                                   joint.servo->number != 0
-                                       ? "%s: a %s does not tell where it stands"
-                                       : "%s: %s stands for servos of which the scale is not known",
-                                   joint.name, m->draft->joint[j].servo);
-            continue;
+    int j = 0;
+    while (j < m->draft->n_joints && check_servo(m, j)) {
+        j++;
+    }
+}
+
+/* ---- several lines -------------------------------------------------------------------------- */
+
+static bool has_joint(const maker *m, int line)
+{
+    int j = 0;
+    while (j < m->draft->n_joints && m->file->joints[j].line != line) {
+        j++;
+    }
+    return j < m->draft->n_joints;
+}
+
+/* What the drivers of the lines are made of; the robot's own is in m->driver then. */
+static void make_drivers(maker *m)
+{
+    grobo_robot_def *def = &m->file->def;
+    grobo_lines *lines = &m->file->on_lines;
+    for (int i = 0; i < def->n_lines; i++) {
+        if (!has_joint(m, i)) {
+            (void)complain(m, m->draft->lines[i].place, "missing", "line %s has no joints",
+                           def->lines[i].name);
         }
-        bool calibrated = joint.calibrated;
-        joint.calibrated = false;
-        if (result == GROBO_ERR_ARG && calibrated && init(&m->driver, &one) == GROBO_OK) {
-            (void)complain(m, place_of(m, "calibrated"), "calibrated",
-                           "servos of family %s keep no calibration", def->family->name);
-            return;
-        }
-        bool limited = joint.torque_limit_pct > 0;
-        joint.torque_limit_pct = 0;
-        if (result == GROBO_ERR_ARG && limited && init(&m->driver, &one) == GROBO_OK) {
-            (void)complain(m, joint_place(m, j, "torque_limit_pct"), "range",
-                           "%s: its servo has no limit of torque", joint.name);
-            continue;
-        }
-        const grobo_protocol *protocol = m->driver.protocol;
-        if (result == GROBO_OK && (id < protocol->id_min || id > protocol->id_max)) {
-            result = grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "range", joint_place(m, j, "id"),
-                                      "%s: an id from %d to %d is wanted", joint.name,
-                                      protocol->id_min, protocol->id_max);
-        } else if (result < 0) {
-            refuse_servo(m, j);
-        }
+    }
+    if (def->n_lines == 0 || m->reader->result < 0) {
+        return;
+    }
+    int result = grobo_lines_split(lines, &m->file->model);
+    for (int i = 0; i < def->n_lines && result >= 0; i++) {
+        grobo_lines_line *line = &lines->line[i];
+        line->driver = (grobo_driver)GROBO_TABLE_INIT(grobo_driver);
+        line->baud_bps = def->lines[i].baud_bps;
+        line->echo = def->lines[i].echo;
+        line->name = def->lines[i].name;
+        line->port = def->lines[i].port;
+        result = def->lines[i].family->init[def->lines[i].wiring](&line->driver, &line->model);
+    }
+    result = result < 0 ? result : grobo_lines_driver_init(&m->driver, lines, &m->file->model);
+    if (result < 0) {
+        (void)complain(m, place_of(m, "lines"), "lines", "%s: the lines do not fit together",
+                       m->draft->name);
+        return;
+    }
+    def->on_lines = lines;
+}
+
+/* What is safe for the robot is safe for each of its lines. */
+static void share_limits(maker *m)
+{
+    for (int i = 0; i < m->file->def.n_lines; i++) {
+        m->file->on_lines.line[i].driver.limits = m->file->def.limits;
     }
 }
 
@@ -701,7 +907,9 @@ int grobo_i_robot_make(const grobo_i_draft *draft, grobo_i_robot_file *file)
     find_alike(&m);
     check_mirrors(&m);
     check_servos(&m);
+    make_drivers(&m);
     make_safety(&m);
+    share_limits(&m);
     make_groups(&m);
     for (int i = 0; i < draft->n_links; i++) {
         make_link(&m, i);

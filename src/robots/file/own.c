@@ -252,11 +252,12 @@ static const grobo_servo_model *model_of(const grobo_i_own_servo *own)
 }
 
 const grobo_servo_model *grobo_i_own_servo_find(grobo_i_reader *reader, grobo_i_robot_file *file,
-                                                const char *servo, grobo_i_place place)
+                                                const grobo_robot_family *family, const char *servo,
+                                                grobo_i_place place)
 {
     char path[PATH_BYTES];
     for (const grobo_i_own_servo *own = file->own; own != NULL; own = own->next) {
-        if (strcmp(own->servo, servo) == 0) {
+        if (strcmp(own->servo, servo) == 0 && own->family == family) {
             return model_of(own);
         }
     }
@@ -276,7 +277,7 @@ const grobo_servo_model *grobo_i_own_servo_find(grobo_i_reader *reader, grobo_i_
     own->next = file->own;
     file->own = own;
     snprintf(own->servo, sizeof own->servo, "%s", servo);
-    own->family = file->def.family;
+    own->family = family;
     own->draft.like = take_like;
     own->draft.ctx = own;
     if (read_file(reader, file->beside, path, place, own) >= 0 && own->good) {

@@ -28,7 +28,8 @@ bool grobo_i_is_own_servo(const char *servo);
  * @return NULL with a complaint
  */
 const grobo_servo_model *grobo_i_own_servo_find(grobo_i_reader *reader, grobo_i_robot_file *file,
-                                                const char *servo, grobo_i_place place);
+                                                const grobo_robot_family *family, const char *servo,
+                                                grobo_i_place place);
 
 void grobo_i_own_servos_free(const grobo_mem *mem, grobo_i_own_servo *list);
 

@@ -77,6 +77,7 @@ static int read_members(grobo_i_events *events, void *draft);
 static int read_payload(grobo_i_events *events, void *draft);
 static int read_feet(grobo_i_events *events, void *draft);
 static int read_motor(grobo_i_events *events, void *draft);
+static int read_lines(grobo_i_events *events, void *draft);
 
 #define ROBOT grobo_i_draft
 #define JOINT grobo_i_joint_draft
@@ -88,9 +89,10 @@ static const key_row robot_keys[] = {
     NEEDED("name", ROBOT, name),
     {.name = "title", .kind = KEY_TEXT, .offset = offsetof(ROBOT, title)},
     NAME("model", ROBOT, model),
-    NEEDED("family", ROBOT, family),
+    NAME("family", ROBOT, family),
     NAME("wiring", ROBOT, wiring),
     CALL("line", read_line),
+    CALL("lines", read_lines),
     CALL("usb", read_usb),
     CALL("safety", read_safety),
     NAME("exit", ROBOT, exit),
@@ -105,6 +107,16 @@ static const key_row robot_keys[] = {
 };
 
 static const key_row line_keys[] = {WHOLE("baud", grobo_i_line_draft, baud_bps, 300, 4000000)};
+
+#define LINES grobo_i_lines_draft
+static const key_row lines_keys[] = {
+    NEEDED("name", LINES, name),
+    NEEDED("family", LINES, family),
+    NAME("wiring", LINES, wiring),
+    WHOLE("baud", LINES, baud_bps, 300, 4000000),
+    {.name = "port", .kind = KEY_TEXT, .offset = offsetof(LINES, port)},
+    {.name = "echo", .kind = KEY_TRUTH, .offset = offsetof(LINES, echo)},
+};
 
 static const key_row safety_keys[] = {
     WHOLE("temperature_c", SAFETY, temperature_c, 0, 150),
@@ -165,6 +177,7 @@ static const key_row joint_keys[] = {
      .low = -1,
      .high = 1},
     NUMBER("apart_deg", JOINT, apart_deg, 0.5, 90),
+    NAME("line", JOINT, line),
     NAME("follows", JOINT, follows),
     NUMBER("ratio", JOINT, ratio, -100, 100),
     NUMBER("zero_deg", JOINT, zero_deg, -360, 360),
@@ -226,6 +239,7 @@ static const keys blocks[GROBO_I_BLOCKS] = {
     [GROBO_I_BLOCK_GROUP] = KEYS("a group", group_keys),
     [GROBO_I_BLOCK_LINK] = KEYS("a link", link_keys),
     [GROBO_I_BLOCK_MOTOR] = KEYS("'motor'", motor_keys),
+    [GROBO_I_BLOCK_LINES] = KEYS("a line", lines_keys),
     [GROBO_I_BLOCK_PAYLOAD] = KEYS("'payload'", payload_keys),
     [GROBO_I_BLOCK_FOOT] = KEYS("a foot", foot_keys),
 };
@@ -438,6 +452,22 @@ static int need_room(grobo_i_events *events, const char *what, int n, int most)
     return result < 0 || n < most ? result
                                   : grobo_i_refuse(events->reader, GROBO_ERR_CAP, "list-length",
                                                    event->place, "more than %d %s", most, what);
+}
+
+static int read_one_line(grobo_i_events *events, void *target)
+{
+    grobo_i_draft *draft = target;
+    int result = need_room(events, "lines", draft->n_lines, GROBO_LINES_MAX);
+    if (result < 0) {
+        return result;
+    }
+    grobo_i_lines_draft *line = &draft->lines[draft->n_lines++];
+    return read_block(events, GROBO_I_BLOCK_LINES, line, line->at, &line->place);
+}
+
+static int read_lines(grobo_i_events *events, void *draft)
+{
+    return grobo_i_read_list(events, "lines", read_one_line, draft);
 }
 
 static int missing(grobo_i_events *events, const grobo_i_joint_draft *joint, const char *key)
