@@ -31,7 +31,7 @@ NUMBER = re.compile(r"^#define (GROBO_\w+) \(?(-?(?:0x[0-9A-Fa-f]+|\d+))[uUlL]*\
 
 
 # What completes a type that others only point to.
-IN_STORAGE = {"core/static.h", "core/sim_static.h"}
+IN_STORAGE = {"core/lines.h", "core/static.h", "core/sim_static.h"}
 
 
 def headers(top):

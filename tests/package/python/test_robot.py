@@ -31,6 +31,47 @@ def until(condition):
         time.sleep(0.005)
 
 
+class Wheels(unittest.TestCase):
+    ROVER = "docs/examples/robots/rover.yaml"
+
+    def test_wheels_turn_for_a_time_and_stand(self):
+        with grobo.connect("sim", robot=self.ROVER) as robot:
+            self.assertEqual(robot.wheels, ["left", "right"])
+            seen = []
+            done = threading.Event()
+
+            def look():
+                while not done.wait(0.05):
+                    seen.append(robot.status().joints["left"].speed)
+
+            looker = threading.Thread(target=look)
+            looker.start()
+            robot.drive({"left": math.radians(90), "right": math.radians(-45)}, time=1.0)
+            done.set()
+            looker.join()
+            self.assertAlmostEqual(max(s for s in seen if s is not None), math.radians(90), delta=0.1)
+            self.assertAlmostEqual(robot.status().joints["left"].speed, 0, delta=0.02)
+            self.assertFalse(robot.status().moving)
+
+    def test_a_speed_ends_by_itself_and_is_checked(self):
+        with grobo.connect("sim", robot=self.ROVER) as robot:
+            with self.assertRaises(errors.Error):
+                robot.drive({"left": 1.0})  # no torque
+            robot.torque(True, ["left"])
+            robot.drive({"left": 1.0})
+            until(lambda: robot.status().moving)
+            until(lambda: not robot.status().moving)
+            with self.assertRaises(errors.Limit) as refused:
+                robot.drive({"left": 10.0})
+            self.assertEqual((refused.exception.joint, refused.exception.unit), ("left", "rad/s"))
+            self.assertAlmostEqual(refused.exception.value, 10.0)
+            self.assertAlmostEqual(refused.exception.limits[1], math.radians(180))
+            with self.assertRaises(errors.Error):
+                robot.drive({"pan": 1.0})
+            with self.assertRaises(errors.Error):
+                robot.move({"left": 0.1})
+
+
 LIFT = """
 name: lift
 family: feetech

@@ -13,7 +13,7 @@ that. A task that is cancelled while the robot moves for it stops the robot smoo
 import asyncio
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, AsyncIterator, Dict, Iterable, List, Optional, Type, Union
+from typing import Any, AsyncIterator, Dict, Iterable, List, Mapping, Optional, Type, Union
 
 from grobo import errors
 from grobo._lib import ffi, has, lib, new, quick, us
@@ -156,6 +156,13 @@ class Robot:
     def send(self, angles: Angles, *, time: float) -> None:
         """Sends a target of a control loop; does not wait: grobo.Robot.send()."""
         self._robot.send(angles, time=time)
+
+    async def drive(self, speeds: Mapping[str, float], *, time: Optional[float] = None) -> None:
+        """Has wheels turn: grobo.Robot.drive()."""
+        if time is None:
+            self._robot.drive(speeds)
+        else:
+            await self._moved_in_thread(self._robot.drive, speeds, time=time)
 
     async def _moved(self, target: Any) -> None:
         job = self._robot._move(target)

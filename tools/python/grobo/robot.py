@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
+from time import monotonic, sleep
 from types import TracebackType
 from typing import (
     Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple, Type, Union,
@@ -24,6 +25,7 @@ from grobo.motion import Motion, Posture, init_pose, posture
 
 log = logging.getLogger("grobo")
 
+_STAND_SECONDS = 5.0  # in which wheels that are led to rest were read to stand
 SLICE = 0.1  # seconds of one wait in C, so that Ctrl-C is heard
 Angles = Union[Mapping[str, float], Sequence[float]]
 
@@ -63,6 +65,8 @@ class JointStatus:
     """Where it is in its unit."""
     unit: str = "deg"
     """What it is given in: "deg", "mm" of a linear joint, "%" of a gripper with a range."""
+    speed: Optional[float] = None
+    """As its servo tells it, in radians a second."""
 
     @property
     def degrees(self) -> Optional[float]:
@@ -470,6 +474,57 @@ class Robot:
         with self._runner.use():
             self._check(quick("grobo_robot_send", self._runner.robot, target), "send")
 
+    @property
+    def wheels(self) -> List[str]:
+        """The joints that turn on and on: they have speeds, and go to no angle."""
+        mask = lib.grobo_model_wheels(self._model)
+        return [name for j, name in enumerate(self.joints) if mask >> j & 1]
+
+    def drive(self, speeds: Mapping[str, float], *, time: Optional[float] = None) -> None:
+        """Has wheels turn at speeds in radians a second, by name.
+
+        Without `time` it returns at once, and the speeds hold for 0.5 s: for a loop that calls this
+        several times a second. The wheels must have torque then, and have been read.
+        `time`: torque comes on, the wheels turn for so many seconds and are led to rest; returns
+        when they were read to stand.
+        """
+        mask, rad_s = 0, ffi.new("double[]", len(self.joints))
+        for name, speed in speeds.items():
+            number = self._number(name)
+            mask |= 1 << number
+            rad_s[number] = speed
+        if time is None:
+            self._drive(mask, rad_s)
+        else:
+            self.torque(True, list(speeds))
+            self._interruptible(lambda: self._drive_for(mask, rad_s, float(time)))
+
+    def _drive(self, mask: int, rad_s: Any) -> None:
+        with self._runner.use():
+            self._check(lib.grobo_robot_drive(self._runner.robot, mask, rad_s), "drive")
+
+    def _drive_for(self, mask: int, rad_s: Any, seconds: float) -> None:
+        end = monotonic() + seconds
+        while monotonic() < end:
+            self._drive(mask, rad_s)
+            sleep(min(SLICE, max(end - monotonic(), 0)))
+        still = ffi.new("double[]", len(self.joints))
+        while not self._stand(mask):
+            if monotonic() > end + _STAND_SECONDS:
+                raise errors.error(lib.GROBO_ERR_TIMEOUT, "drive")
+            self._drive(mask, still)
+            sleep(SLICE)
+
+    def _stand(self, mask: int) -> bool:
+        info = ffi.new("grobo_wheel_info *")
+        with self._runner.use():
+            for j in range(len(self.joints)):
+                if mask >> j & 1:
+                    self._check(lib.grobo_robot_wheel(self._runner.robot, j, info), "drive")
+                    if not info.stands:
+                        return False
+        return True
+
     def play(
         self,
         motion: Union[Motion, str, "os.PathLike[str]"],
@@ -629,7 +684,11 @@ class Robot:
         are given, with its limits."""
         if error.code in (lib.GROBO_ERR_LIMIT, lib.GROBO_ERR_NAN) and error.value is not None:
             error.value, error.unit = math.radians(error.value), "rad"
-            if error.code == lib.GROBO_ERR_LIMIT and error.joint in self.joints:
+            if error.joint in self.wheels:
+                joint = lib.grobo_model_joint(self._model, self.joints.index(error.joint))
+                error.unit = "rad/s"
+                error.limits = (-joint.max_speed_rad_s, joint.max_speed_rad_s)
+            elif error.code == lib.GROBO_ERR_LIMIT and error.joint in self.joints:
                 error.limits = self.description.limits[error.joint]
 
 
@@ -682,6 +741,7 @@ def _joint_status(name: str, info: Any, model: Any, joint: int) -> JointStatus:
         range=known(lib.GROBO_FIELD_RANGE, (state.low_rad, state.high_rad)),
         value=None if never else lib.grobo_model_value(model, joint, state.angle_rad),
         unit=unit,
+        speed=known(lib.GROBO_FIELD_SPEED, math.radians(state.speed_dps)),
     )
 
 
