@@ -271,12 +271,14 @@ static bool is_unread(const grobo_robot *robot, int joint)
 }
 
 /* Such a joint is halted once it was read. By then a servo that has restarted would have said so:
- * one that is still silent may hear what it does not answer. */
+ * one that is still silent may hear what it does not answer. Where a reading comes in parts, one
+ * that tells torque does not tell yet where the joint is. */
 static int64_t may_halt_at(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool read = grobo_i_is_sensed(axis) && axis->angle_us >= robot->halt_us;
-    if (read || (!grobo_i_axis_is_unknown(robot, joint) && !is_unread(robot, joint))) {
+    bool parts = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), sense_more) != NULL;
+    bool known = !parts && !grobo_i_axis_is_unknown(robot, joint) && !is_unread(robot, joint);
+    if (known || (grobo_i_is_sensed(axis) && axis->angle_us >= robot->halt_us)) {
         return robot->now_us;
     }
     bool sleeps = grobo_i_is_sensed(axis) && grobo_i_may_sleep(robot, joint);

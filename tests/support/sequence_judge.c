@@ -32,6 +32,9 @@
 /* Heat is read at least every 2 s, and trips in the reading that shows it. */
 #define HOT_US 2500000
 
+/* As far beyond where it ever was a joint may be halted that turns: so much it comes to rest in. */
+#define BEYOND_DEG 4.0
+
 sequence_judge sequence;
 
 void sequence_blame(const char *rule, int servo, double is, double may)
@@ -101,6 +104,13 @@ static bool is_unsure(int servo)
     bool twice = halt.of->driver.tells_no_speed;
     bool just_now = its->foreign_us > 0 && halt.now_us < its->foreign_us + 2 * FOREIGN_US;
     return its->unheard || (twice && just_now);
+}
+
+/* Where a joint is now, and may be sent. */
+static void note_place(const far_joint *joint, sequence_joint *its)
+{
+    its->least_deg = fmin(its->least_deg, fmin(its->lo_deg, joint->at_deg));
+    its->most_deg = fmax(its->most_deg, fmax(its->hi_deg, joint->at_deg));
 }
 
 /* ---- what the far side hears ----------------------------------------------------------------- */
@@ -203,29 +213,54 @@ static void note_on_the_line(const far_joint *joint, sequence_joint *its, double
     widen(its, joint->at_deg + copysign(on_deg, goal_deg - joint->at_deg));
 }
 
+/* What its engine cannot know of a joint, or SEQUENCE_EXCUSES. */
+static sequence_excuse excuse_of(int servo)
+{
+    bool wakes = halt.of->driver.goal_energises && is_restarted(servo);
+    return sequence.joint[servo].unheard ? SEQUENCE_UNHEARD
+           : is_unsure(servo)            ? SEQUENCE_DISTURBED
+           : wakes                       ? SEQUENCE_RESTARTED
+           : is_lost(servo)              ? SEQUENCE_LOST
+                                         : SEQUENCE_EXCUSES;
+}
+
+/* A goal that is excused leads to no place where the joint never was, nor was sent. */
+static void judge_excused(const far_joint *joint, const far_news *news, sequence_excuse excuse)
+{
+    const sequence_joint *its = &sequence.joint[news->joint];
+    double beyond_deg = its->foreign ? FOREIGN_DPS * (BRAKE_S + FOREIGN_READ_S) : BEYOND_DEG;
+    double slack = slack_deg(joint) + beyond_deg;
+    sequence.excused[excuse]++;
+    if (news->goal_deg < its->least_deg - slack || news->goal_deg > its->most_deg + slack) {
+        sequence_blame("a goal where the joint never was", news->joint, news->goal_deg,
+                       joint->at_deg);
+    }
+}
+
 static void hear_goal(const far_joint *joint, const far_news *news)
 {
     sequence_joint *its = &sequence.joint[news->joint];
     int64_t told_us = halt.far.told_us[news->joint];
     sequence.goals++;
+    note_place(joint, its);
     if (news->left_us < sequence.up_us) {
         return; /* it was on the line */
     }
+    judge_limits(news, slack_deg(joint));
     if (told_us == FAR_NEVER || told_us > news->left_us) {
-        sequence.excused += its->unheard;
         if (!its->unheard) {
             sequence_blame("a goal for a joint that was not read", news->joint, news->goal_deg,
                            joint->at_deg);
         }
+        judge_excused(joint, news, SEQUENCE_UNHEARD);
         return;
     }
-    judge_limits(news, slack_deg(joint));
     if (its->licensed && sequence.hot_us > 0 && news->left_us > sequence.hot_us + HOT_US) {
         sequence_blame("a goal for a hot robot", news->joint, news->goal_deg, joint->at_deg);
     }
-    bool wakes = halt.of->driver.goal_energises && is_restarted(news->joint);
-    if (is_unsure(news->joint) || wakes || is_lost(news->joint)) {
-        sequence.excused++;
+    sequence_excuse excuse = excuse_of(news->joint);
+    if (excuse != SEQUENCE_EXCUSES) {
+        judge_excused(joint, news, excuse);
         return;
     }
     if (news->left_us >= sequence.halted_us || its->licensed) {
@@ -242,13 +277,17 @@ static void hear_torque(const far_joint *joint, const far_news *news)
 {
     sequence_joint *its = &sequence.joint[news->joint];
     double goal_deg, ask_dps, accel_dps2;
+    note_place(joint, its);
     if (news->torque != 1 || !joint->leaps) {
         return;
     }
     its->soft = its->soft || (!is_restarted(news->joint) && !any_way());
     joint->family->plan(joint, &goal_deg, &ask_dps, &accel_dps2);
     if (is_unsure(news->joint) || is_restarted(news->joint) || is_lost(news->joint)) {
-        sequence.excused++;
+        judge_excused(joint, &(far_news){.joint = news->joint, .goal_deg = goal_deg},
+                      is_unsure(news->joint)      ? SEQUENCE_DISTURBED
+                      : is_restarted(news->joint) ? SEQUENCE_RESTARTED
+                                                  : SEQUENCE_LOST);
         return;
     }
     if (fabs(goal_deg - joint->at_deg) > slack_deg(joint)) {
@@ -392,6 +431,7 @@ void sequence_begin(void)
     for (int i = 0; i < halt.far.n_joints; i++) {
         sequence.joint[i].lo_deg = sequence.joint[i].hi_deg = halt.far.joint[i].at_deg;
         sequence.joint[i].missed_us = -FULL_READING_US;
+        sequence.joint[i].least_deg = sequence.joint[i].most_deg = halt.far.joint[i].at_deg;
     }
     sequence_listen();
 }
@@ -412,6 +452,7 @@ static void license(grobo_joint_mask joints, const double *lo_deg, const double 
         widen(its, rest_deg(&halt.far.joint[servo], 0));
         widen(its, lo_deg != NULL ? *lo_deg : its->lo_deg);
         widen(its, hi_deg != NULL ? *hi_deg : its->hi_deg);
+        note_place(&halt.far.joint[servo], its);
     }
 }
 
@@ -508,6 +549,11 @@ void sequence_disturbed(int servo, bool restarted, bool foreign)
     its->restarted = its->restarted || restarted;
     its->foreign = its->foreign || foreign;
     its->foreign_us = halt.now_us;
+    note_place(&halt.far.joint[servo], its);
+    if (foreign) { /* to where another program sends it */
+        its->least_deg = fmin(its->least_deg, halt.far.joint[servo].goal_deg);
+        its->most_deg = fmax(its->most_deg, halt.far.joint[servo].goal_deg);
+    }
     halt.far.told_us[servo] = FAR_NEVER;
 }
 

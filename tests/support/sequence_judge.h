@@ -25,10 +25,21 @@
 
 enum { SEQUENCE_NUMBERS = 256 };
 
+/* Why a goal may lead from where a joint is not. It leads to where the joint ever was, or was sent,
+ * all the same, and within its limits. */
+typedef enum sequence_excuse {
+    SEQUENCE_UNHEARD, /* a hand or another program turned it, or it restarted: no reply tells yet */
+    SEQUENCE_DISTURBED, /* that was just now, of a servo that tells no speed */
+    SEQUENCE_RESTARTED, /* its servo restarted, and has torque by a goal */
+    SEQUENCE_LOST,      /* it missed a frame */
+    SEQUENCE_EXCUSES
+} sequence_excuse;
+
 typedef struct sequence_joint {
-    bool licensed;         /* a request moves it */
-    bool soft;             /* its next move is the first, and slow */
-    double lo_deg, hi_deg; /* where it may be sent: by that request, or as a halt */
+    bool licensed;              /* a request moves it */
+    bool soft;                  /* its next move is the first, and slow */
+    double lo_deg, hi_deg;      /* where it may be sent: by that request, or as a halt */
+    double least_deg, most_deg; /* where it ever was, or was sent by a request */
     bool
         unheard; /* a hand or another program turned it, or it restarted, and it told nothing yet */
     bool raw;    /* that request is a raw frame's: what ends a motion does not end it */
@@ -50,7 +61,7 @@ typedef struct sequence_judge {
     double soft_s;
     int exits_off; /* number of the exit that takes torque away */
     uint8_t asked[SEQUENCE_NUMBERS], ended[SEQUENCE_NUMBERS];
-    int excused, goals;
+    int excused[SEQUENCE_EXCUSES], goals;
     char fault[200];
 } sequence_judge;
 
