@@ -626,8 +626,9 @@ static bool is_late(int servo)
 static void judge_stopped(int servo)
 {
     const sequence_joint *its = &sequence.joint[servo];
-    /* What a trip halts is what was read to turn by 8 deg/s; an exit has its own verdict. */
-    bool creeps = its->foreign && fabs(halt.far.joint[servo].dps) < CREEP_DPS;
+    /* What a trip halts is what was read to turn by 8 deg/s, or is not behind its trajectory, as one
+     * is that lost its torque on the way; an exit has its own verdict. */
+    bool creeps = (its->foreign || its->restarted) && fabs(halt.far.joint[servo].dps) < CREEP_DPS;
     bool began = creeps || (its->foreign && its->foreign_us >= sequence.halted_us);
     if (!its->licensed && !began && turns(servo) && !is_lost(servo) && is_late(servo)) {
         sequence_blame("turns though it was stopped", servo, halt.far.joint[servo].dps, 0);
