@@ -214,14 +214,13 @@ static void note_on_the_line(const far_joint *joint, sequence_joint *its, double
 }
 
 /* What its engine cannot know of a joint, or SEQUENCE_EXCUSES. */
-static sequence_excuse excuse_of(int servo)
+static sequence_excuse excuse_of(int servo, bool wakes)
 {
-    bool wakes = halt.of->driver.goal_energises && is_restarted(servo);
-    return sequence.joint[servo].unheard ? SEQUENCE_UNHEARD
-           : is_unsure(servo)            ? SEQUENCE_DISTURBED
-           : wakes                       ? SEQUENCE_RESTARTED
-           : is_lost(servo)              ? SEQUENCE_LOST
-                                         : SEQUENCE_EXCUSES;
+    return sequence.joint[servo].unheard  ? SEQUENCE_UNHEARD
+           : is_unsure(servo)             ? SEQUENCE_DISTURBED
+           : wakes && is_restarted(servo) ? SEQUENCE_RESTARTED
+           : is_lost(servo)               ? SEQUENCE_LOST
+                                          : SEQUENCE_EXCUSES;
 }
 
 /* A goal that is excused leads to no place where the joint never was, nor was sent. */
@@ -258,7 +257,7 @@ static void hear_goal(const far_joint *joint, const far_news *news)
     if (its->licensed && sequence.hot_us > 0 && news->left_us > sequence.hot_us + HOT_US) {
         sequence_blame("a goal for a hot robot", news->joint, news->goal_deg, joint->at_deg);
     }
-    sequence_excuse excuse = excuse_of(news->joint);
+    sequence_excuse excuse = excuse_of(news->joint, halt.of->driver.goal_energises);
     if (excuse != SEQUENCE_EXCUSES) {
         judge_excused(joint, news, excuse);
         return;
@@ -273,33 +272,33 @@ static void hear_goal(const far_joint *joint, const far_news *news)
 }
 
 /* A goal wakes servos of some families: it is one where the joint is, all the same. */
+static void judge_torque(const far_joint *joint, const far_news *news, double goal_deg)
+{
+    const sequence_joint *its = &sequence.joint[news->joint];
+    sequence_excuse excuse = excuse_of(news->joint, true);
+    if (excuse != SEQUENCE_EXCUSES) {
+        judge_excused(joint, &(far_news){.joint = news->joint, .goal_deg = goal_deg}, excuse);
+    } else if (fabs(goal_deg - joint->at_deg) > slack_deg(joint)) {
+        sequence_blame("torque comes on elsewhere", news->joint, goal_deg, joint->at_deg);
+    } else if (sequence.latched && news->left_us >= sequence.latched_us) {
+        sequence_blame("torque comes on behind a latched stop", news->joint, goal_deg,
+                       joint->at_deg);
+    } else if (!its->licensed && !its->free && !sequence.wakes &&
+               news->left_us >= sequence.halted_us) {
+        sequence_blame("torque comes on that nobody asked for", news->joint, goal_deg,
+                       joint->at_deg);
+    }
+}
+
 static void hear_torque(const far_joint *joint, const far_news *news)
 {
     sequence_joint *its = &sequence.joint[news->joint];
     double goal_deg, ask_dps, accel_dps2;
     note_place(joint, its);
-    if (news->torque != 1 || !joint->leaps) {
-        return;
-    }
-    its->soft = its->soft || (!is_restarted(news->joint) && !any_way());
-    joint->family->plan(joint, &goal_deg, &ask_dps, &accel_dps2);
-    if (is_unsure(news->joint) || is_restarted(news->joint) || is_lost(news->joint)) {
-        judge_excused(joint, &(far_news){.joint = news->joint, .goal_deg = goal_deg},
-                      is_unsure(news->joint)      ? SEQUENCE_DISTURBED
-                      : is_restarted(news->joint) ? SEQUENCE_RESTARTED
-                                                  : SEQUENCE_LOST);
-        return;
-    }
-    if (fabs(goal_deg - joint->at_deg) > slack_deg(joint)) {
-        sequence_blame("torque comes on elsewhere", news->joint, goal_deg, joint->at_deg);
-    }
-    if (sequence.latched && news->left_us >= sequence.latched_us) {
-        sequence_blame("torque comes on behind a latched stop", news->joint, goal_deg,
-                       joint->at_deg);
-    }
-    if (!its->licensed && !its->free && !sequence.wakes && news->left_us >= sequence.halted_us) {
-        sequence_blame("torque comes on that nobody asked for", news->joint, goal_deg,
-                       joint->at_deg);
+    if (news->torque == 1 && joint->leaps) {
+        its->soft = its->soft || (!is_restarted(news->joint) && !any_way());
+        joint->family->plan(joint, &goal_deg, &ask_dps, &accel_dps2);
+        judge_torque(joint, news, goal_deg);
     }
 }
 
@@ -626,8 +625,8 @@ static bool is_late(int servo)
 static void judge_stopped(int servo)
 {
     const sequence_joint *its = &sequence.joint[servo];
-    /* What a trip halts is what was read to turn by 8 deg/s, or is not behind its trajectory, as one
-     * is that lost its torque on the way; an exit has its own verdict. */
+    /* What a trip halts is what was read to turn by 8 deg/s, and not what lost its torque on its
+     * way; an exit has its own verdict. */
     bool creeps = (its->foreign || its->restarted) && fabs(halt.far.joint[servo].dps) < CREEP_DPS;
     bool began = creeps || (its->foreign && its->foreign_us >= sequence.halted_us);
     if (!its->licensed && !began && turns(servo) && !is_lost(servo) && is_late(servo)) {
