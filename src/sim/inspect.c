@@ -19,6 +19,7 @@ static grobo_sim_servo *servo_at(grobo_sim *sim, int index)
     }
     grobo_i_sim_settle(sim, index);
     grobo_i_world_touch(&sim->servo[index]);
+    grobo_i_world_wake(sim);
     return &sim->servo[index];
 }
 
@@ -205,6 +206,7 @@ void grobo_sim_set_supply(grobo_sim *sim, uint32_t supply_mv)
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_i_sim_settle(sim, i);
     }
+    grobo_i_world_wake(sim);
     sim->supply_mv = supply_mv;
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_i_sim_feed(sim, i);

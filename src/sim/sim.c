@@ -269,14 +269,9 @@ static int64_t burst_end_ns(const grobo_sim *sim)
     return end_ns;
 }
 
-/* How often a world in real time is to be looked after: its steps wait for nobody. */
-#define TEND_US 10000
-
 static int64_t deadline_us(const grobo_sim *sim, int64_t at_ns)
 {
-    const grobo_sim_physics *physics = sim->config.physics;
-    int64_t tend_us =
-        physics != NULL && physics->real_time ? physics->at_us + TEND_US : GROBO_NEVER_US;
+    int64_t tend_us = grobo_i_world_deadline(sim->config.physics);
     return at_ns == GROBO_NEVER_US ? tend_us : grobo_i_sooner(tend_us, grobo_i_sim_us(at_ns));
 }
 
@@ -316,6 +311,7 @@ size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_
     if (sim->gone) {
         return n;
     }
+    grobo_i_world_wake(sim);
     size_t room = grobo_sim_rx_room(sim);
     n = n < room ? n : room;
     int64_t at_ns = sim->in.free_ns > sim->now_ns ? sim->in.free_ns : sim->now_ns;

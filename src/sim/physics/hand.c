@@ -18,6 +18,7 @@ static int joint_at(const grobo_sim *sim, int servo, grobo_i_joint_world **joint
         return GROBO_ERR_UNSUPPORTED;
     }
     *joint = &w->joint[servo];
+    grobo_i_world_wake(sim);
     return GROBO_OK;
 }
 
@@ -71,6 +72,7 @@ int grobo_sim_set_payload(grobo_sim *sim, const char *link, double mass_kg)
     if (w->payload >= 0) {
         grobo_i_tree_load(&w->tree, w->payload, -w->payload_kg);
     }
+    grobo_i_world_wake(sim);
     w->payload = index;
     w->payload_kg = mass_kg;
     grobo_i_tree_load(&w->tree, index, mass_kg);
@@ -86,6 +88,7 @@ int grobo_sim_set_supply_mohm(grobo_sim *sim, uint32_t mohm)
     if (w == NULL) {
         return GROBO_ERR_UNSUPPORTED;
     }
+    grobo_i_world_wake(sim);
     w->supply_ohm = mohm / 1000.0;
     return GROBO_OK;
 }

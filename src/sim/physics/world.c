@@ -25,8 +25,10 @@
 /* Steps from one look at heat, supply and what servos do by themselves to the next. */
 #define CHORE_STEPS 10
 #define CHORE_US (CHORE_STEPS * GROBO_SIM_STEP_US)
-/* Further behind the clock than this, steps are skipped. */
+/* Further behind the clock than this, steps are skipped; one that rests may be so far behind. */
 #define LATE_US 200000
+/* Slower than this no joint of a world that rests may be. */
+#define REST_RAD_S 1e-4
 /* The supply's capacitors: this part of the way to its new voltage in a step. An assumption. */
 #define BUS_PART 0.2
 /* So long below GROBO_SIM_BROWN_OUT_MV resets the servos. An assumption. */
@@ -247,6 +249,18 @@ static void chores(grobo_i_world *w, grobo_sim *sim)
     }
 }
 
+/* Nothing turns, and nothing is about to; what another program's plant does is not known here. */
+static bool rests(const grobo_i_world *w, const grobo_sim *sim)
+{
+    bool still = w->plant.step == grobo_i_tree_step;
+    for (int i = 0; i < w->n && still; i++) {
+        const grobo_sim_servo *servo = &sim->servo[i];
+        still = fabs(w->state[i].speed_rad_s) < REST_RAD_S && !servo->by_hand &&
+                sim->now_us >= servo->start_us + servo->move_us;
+    }
+    return still;
+}
+
 static void step(grobo_i_world *w, grobo_sim *sim)
 {
     for (int i = 0; i < w->n; i++) {
@@ -274,13 +288,15 @@ static void step(grobo_i_world *w, grobo_sim *sim)
     feed(w, sim);
     if (++w->steps % CHORE_STEPS == 0) {
         chores(w, sim);
+        w->base.rests = rests(w, sim);
     }
 }
 
 static void advance(grobo_sim_physics *physics, grobo_sim *sim, int64_t t_us)
 {
     grobo_i_world *w = (grobo_i_world *)physics;
-    if (physics->real_time && t_us - physics->at_us > LATE_US) {
+    int64_t late_us = LATE_US + (physics->rests ? GROBO_I_WORLD_REST_US : 0);
+    if (physics->real_time && t_us - physics->at_us > late_us) {
         int64_t late = (t_us - physics->at_us - CHORE_US) / GROBO_SIM_STEP_US;
         w->skipped += (uint64_t)late;
         physics->at_us += late * GROBO_SIM_STEP_US;

@@ -37,6 +37,7 @@ struct grobo_sim_physics {
     int64_t at_us;  /* end of the latest step */
     double bus_mv;  /* what is left of the battery's voltage at the servos */
     bool real_time; /* steps are due as the clock runs: grobo_sim_deadline() names them */
+    bool rests;     /* nothing turned, and nothing came since: they may wait a while */
 };
 
 /* The registers of a servo may change now. */
@@ -45,6 +46,26 @@ static inline void grobo_i_world_touch(const grobo_sim_servo *servo)
     grobo_i_body *body = servo->body;
     if (body != NULL) {
         body->stale = true;
+    }
+}
+
+/* How far behind the clock a world in real time may be: a machine that has no time for it apart. */
+#define GROBO_I_WORLD_TEND_US 10000
+#define GROBO_I_WORLD_REST_US 500000
+
+static inline int64_t grobo_i_world_deadline(const grobo_sim_physics *physics)
+{
+    if (physics == NULL || !physics->real_time) {
+        return GROBO_NEVER_US;
+    }
+    return physics->at_us + (physics->rests ? GROBO_I_WORLD_REST_US : GROBO_I_WORLD_TEND_US);
+}
+
+/* Something may turn now. */
+static inline void grobo_i_world_wake(const grobo_sim *sim)
+{
+    if (sim->config.physics != NULL) {
+        sim->config.physics->rests = false;
     }
 }
 

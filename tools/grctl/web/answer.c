@@ -2,12 +2,15 @@
 /* What every part of `serve` says to a request, and asks of the robot. */
 #include <string.h>
 
+#include <event2/event.h>
+
 #include <grobo/core/port.h>
 
 #include "tools/grctl/web/serve.h"
 
-/* Each joint is read so often: what a picture needs that is drawn between two readings. */
-enum { SENSE_US = 200000 };
+/* Each joint is read so often: what a picture needs that is drawn between two readings; and while
+ * nobody looks and nothing has torque, for who asks once in a while. */
+enum { SENSE_US = 200000, LIMP_US = 30000000 };
 
 int64_t serve_ms(const serve *s, int64_t at_us)
 {
@@ -17,8 +20,17 @@ int64_t serve_ms(const serve *s, int64_t at_us)
 grobo_robot_config serve_config(const serve *s)
 {
     grobo_robot_config config = conn_robot_config(s->a);
-    config.sense_interval_us = SENSE_US;
+    config.sense_interval_us = !s->idle ? SENSE_US : s->warm ? 0 : LIMP_US;
     return config;
+}
+
+void serve_wake(serve *s)
+{
+    s->asked_us = grobo_now_us();
+    if (s->idle) { /* what is told now is no state of long ago */
+        based_tell(&s->based, s->asked_us);
+        event_active(s->tick, EV_TIMEOUT, 0);
+    }
 }
 
 bool serve_is_moving(const serve *s)

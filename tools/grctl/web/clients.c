@@ -16,6 +16,9 @@
 /* A whole request comes within this time, however slowly. */
 #define REQUEST_US INT64_C(20000000)
 
+/* How often is looked who has gone. */
+enum { SWEEP_US = 100000 };
+
 /* Who has made no whole request for so long may have to make room for who comes. */
 #define HALF_OPEN_US INT64_C(1000000)
 
@@ -172,12 +175,31 @@ static void make_room(port *p)
                          clients_of(p, NULL) < HTTP_CONNECTIONS_MAX + SPARE);
 }
 
+bool clients_are_there(const http *h)
+{
+    for (int i = 0; i < CLIENTS; i++) {
+        if (h->clients[i].at) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void clients_sweep(http *h)
 {
     forget_gone(&h->first);
     forget_gone(&h->second);
     make_room(&h->first);
     make_room(&h->second);
+}
+
+/* They are looked at from now on, until none is there. */
+static void begin_sweeps(http *h)
+{
+    const struct timeval period = {0, SWEEP_US};
+    if (!event_pending(h->sweep, EV_TIMEOUT, NULL)) {
+        (void)event_add(h->sweep, &period);
+    }
 }
 
 static client *take_place(port *p, const struct evbuffer *input)
@@ -266,6 +288,7 @@ struct bufferevent *clients_accept(struct event_base *base, void *ctx)
         c->bev = bev;
         evbuffer_add_cb(bufferevent_get_input(bev), on_input, p);
         event_active(p->of->greet, 0, 0);
+        begin_sweeps(p->of);
     }
     make_room(p);
     return bev;

@@ -20,7 +20,6 @@
 
 enum {
     IDLE_S = 5, /* a silent connection, or half a request */
-    SWEEP_US = 100000
 };
 
 /* ---- replies --------------------------------------------------------------------------------- */
@@ -253,8 +252,17 @@ static void on_sweep(evutil_socket_t fd, short what, void *ctx)
 {
     (void)fd;
     (void)what;
-    answer_late(ctx);
-    clients_sweep(ctx);
+    http *h = ctx;
+    answer_late(h);
+    clients_sweep(h);
+    if (!clients_are_there(h) && !h->waiting) {
+        event_del(h->sweep);
+    }
+}
+
+bool http_has_clients(const http *server)
+{
+    return clients_are_there(server);
 }
 
 static bool listen_at(port *p, const char *address, uint16_t number)
@@ -329,7 +337,6 @@ static void set_walls(http *h)
 
 int http_new(const http_config *config, http **server, const char **complaint)
 {
-    const struct timeval period = {0, SWEEP_US};
     http *h = calloc(1, sizeof *h);
     *complaint = "no memory";
     if (!h) {
@@ -340,7 +347,7 @@ int http_new(const http_config *config, http **server, const char **complaint)
     h->sweep = event_new(config->base, -1, EV_PERSIST, on_sweep, h);
     h->reap = event_new(config->base, -1, 0, streams_on_reap, h);
     h->greet = event_new(config->base, -1, 0, clients_name, h);
-    if (!h->sweep || !h->reap || !h->greet || event_add(h->sweep, &period) != 0) {
+    if (!h->sweep || !h->reap || !h->greet) {
         http_free(h);
         return GROBO_ERR_NOMEM;
     }

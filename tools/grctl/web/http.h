@@ -81,6 +81,8 @@ uint16_t http_stop_port(const http *server);
 const char *http_token(const http *server);
 bool http_is_open(const http *server);
 int http_streams(const http *server);
+/* Somebody is connected, whether a request came or not. */
+bool http_has_clients(const http *server);
 
 /* ---- what a request has ---------------------------------------------------------------------- */
 

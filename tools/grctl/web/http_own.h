@@ -71,8 +71,8 @@ struct http {
     char heads[CLIENTS][HTTP_HEADER_BYTES + 1]; /* of requests that are not whole */
     stream *streams;
     http_request *waiting;
-    struct event *sweep, *reap, *greet;
-    int64_t second_us; /* the second in which changes are counted */
+    struct event *sweep, *reap, *greet; /* sweep: while somebody is connected */
+    int64_t second_us;                  /* the second in which changes are counted */
     int changes;
 };
 
@@ -87,6 +87,8 @@ void clients_name(evutil_socket_t fd, short what, void *server);
 void clients_know(port *p, struct evhttp_connection *connection);
 /* Forgets those that have gone without a word, and makes room. */
 void clients_sweep(http *h);
+/* Whether there is a connection. */
+bool clients_are_there(const http *h);
 /* Ends a connection; libevent sees that, and frees it. */
 void clients_end(client *c);
 

@@ -232,6 +232,7 @@ static void serve_lease(serve *s, http_request *r, const json_t *body)
 
 void serve_early(void *ctx, const http_request *r)
 {
+    serve_wake(ctx);
     (void)stops_ask(ctx, NULL, strstr(r->path, "estop") != NULL);
 }
 
@@ -436,6 +437,7 @@ void serve_request(void *ctx, http_request *r)
     const verb *v = find_verb(r);
     char name[LIBRARY_NAME_BYTES];
     bool file, motion = find_motion(r, name, &file);
+    serve_wake(s);
     if (!s->ready && (motion || v || (p && p->rule != ACCESS_STOP))) {
         http_refuse(r, 503, "closed", "serve: the robot is being opened; a stop is heard already");
         return;

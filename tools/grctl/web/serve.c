@@ -222,12 +222,51 @@ static void measure_load(serve *s, int64_t now_us)
     s->readings = 0;
 }
 
+/* Torque is on somewhere, as far as is known: heat and current are watched as in any program. */
+static bool has_torque(serve *s)
+{
+    grobo_joint_info i;
+    for (int j = 0; j < s->model->n_joints; j++) {
+        if (grobo_robot_joint(s->c.robot, j, &i) < 0 || !i.torque_known ||
+            i.state.torque != GROBO_TORQUE_OFF) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* As often as somebody is there for it. */
+static void set_pace(serve *s, bool idle, bool warm)
+{
+    const struct timeval period = conn_timeval(idle ? SERVE_IDLE_US : SERVE_STATE_US);
+    if (idle == s->idle && warm == s->warm) {
+        return;
+    }
+    s->idle = idle;
+    s->warm = warm;
+    grobo_robot_config config = serve_config(s);
+    (void)grobo_session_configure(s->c.session, &config);
+    (void)event_add(s->tick, &period);
+}
+
+/* Nobody is connected, nothing is under way: a robot that is left alone costs nothing. */
+static void look_after_pace(serve *s, int64_t now_us)
+{
+    bool left = now_us - s->asked_us > SERVE_LEFT_US && !http_has_clients(s->http);
+    bool busy = lease_is_held(&s->lease) || s->left_us || s->jogs || s->jog_waits ||
+                serve_is_moving(s) || grobo_robot_job(s->c.robot) != GROBO_JOB_NONE ||
+                stops_are_busy(s);
+    bool idle = left && !busy;
+    set_pace(s, idle, idle && has_torque(s));
+}
+
 static void on_tick(evutil_socket_t fd, short what, void *ctx)
 {
     serve *s = ctx;
     int64_t now_us = grobo_now_us();
     (void)fd;
     (void)what;
+    look_after_pace(s, now_us);
     based_tell(&s->based, now_us);
     measure_load(s, now_us);
     stops_look(s);
@@ -291,6 +330,7 @@ static int run(serve *s)
         return status;
     }
     s->ready = true;
+    s->asked_us = grobo_now_us(); /* its link is opened by now */
     stops_begin(s);
     on_tick(-1, 0, s); /* there is a state from the first request on */
     listener_announce(s->a, s->http);

@@ -14,8 +14,11 @@
 #include "tools/grctl/web/web.h"
 #include "tools/grctl/web/worker.h"
 
-/* How often a state is told. */
+/* How often a state is told; and how often is looked while nobody is there to be told. */
 #define SERVE_STATE_US INT64_C(33333)
+#define SERVE_IDLE_US INT64_C(1000000)
+/* Nobody is there when the last request is so old, and no connection is left. */
+#define SERVE_LEFT_US INT64_C(5000000)
 /* Silence of who drives: jogging ends; a motion ends, and the lease. */
 #define SERVE_JOG_LOST_US INT64_C(1000000)
 #define SERVE_PLAY_LOST_US INT64_C(3000000)
@@ -42,6 +45,8 @@ struct serve {
     const grobo_model *model;
     http *http;
     struct event *tick;
+    bool idle, warm;  /* nobody is there; torque was on then */
+    int64_t asked_us; /* the last request */
     int64_t began_us;
     based based;     /* which state a request had seen */
     uint64_t paused; /* the state that the last pause made */
@@ -79,6 +84,9 @@ bool serve_is_moving(const serve *s);
 
 /* The engine's configuration while it serves. */
 grobo_robot_config serve_config(const serve *s);
+
+/* A request: from now on the state is fresh. */
+void serve_wake(serve *s);
 
 /* What a request is based on is still so; else it is refused. `doing`: "reset". */
 bool serve_is_based(serve *s, http_request *r, const json_t *body, const char *doing);

@@ -186,6 +186,11 @@ void stops_look(serve *s)
     }
 }
 
+bool stops_are_busy(const serve *s)
+{
+    return s->stops.untold || (is_stopped(s) && unconfirmed(s));
+}
+
 int stops_reset(serve *s)
 {
     int error = s->c.up ? grobo_robot_reset(s->c.robot) : GROBO_OK;

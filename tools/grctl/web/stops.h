@@ -41,6 +41,8 @@ void stops_begin(serve *s);
 /* From each reading, each end of a job, and 30 times a second: confirms, latches. */
 void stops_on_event(serve *s, const grobo_event *event);
 void stops_look(serve *s);
+/* Something of it is not over: it has to be looked at. */
+bool stops_are_busy(const serve *s);
 /* Takes it back. Returns 0 or an error. */
 int stops_reset(serve *s);
 /* Ours, an emergency stop of another program, or the engine's own. */
