@@ -22,6 +22,13 @@ int grobo_i_port_ready(grobo_port *port, grobo_os_cause *cause);
 /* Copies a text; GROBO_ERR_SPACE where it does not fit. */
 int grobo_i_port_copy(char *to, size_t size, const char *text);
 
+/* ---- files: files.c of each port ------------------------------------------------------------ */
+
+/* GROBO_OK where path leads to a regular file; else GROBO_ERR_NOENT, GROBO_ERR_PERM,
+ * GROBO_ERR_ISDIR, or GROBO_ERR_UNSUPPORTED of what may be waited for or has no end: a pipe, a
+ * socket, a device. */
+int grobo_i_port_regular(const char *path);
+
 /* ---- connections: tcp.c ------------------------------------------------------------------- */
 
 /* "tcp:HOST:PORT" taken apart. */

@@ -276,6 +276,18 @@ static bool holds(const char *path)
     return stat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0;
 }
 
+int grobo_i_port_regular(const char *path)
+{
+    struct stat status;
+
+    if (stat(path, &status) != 0) {
+        return grobo_i_posix_file_error(errno);
+    }
+    return S_ISREG(status.st_mode)   ? GROBO_OK
+           : S_ISDIR(status.st_mode) ? GROBO_ERR_ISDIR
+                                     : GROBO_ERR_UNSUPPORTED;
+}
+
 const grobo_files *grobo_files_os(void)
 {
     static const grobo_files files = {create, write_all, commit, discard, inside, holds};

@@ -270,6 +270,21 @@ static bool holds(const char *path)
     return full;
 }
 
+int grobo_i_port_regular(const char *path)
+{
+    BY_HANDLE_FILE_INFORMATION is;
+    HANDLE there = CreateFileA(path, 0, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
+                               NULL, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, NULL);
+
+    if (there == INVALID_HANDLE_VALUE) {
+        return GetLastError() == ERROR_ACCESS_DENIED ? GROBO_ERR_PERM : GROBO_ERR_NOENT;
+    }
+    bool on_disk = GetFileType(there) == FILE_TYPE_DISK && GetFileInformationByHandle(there, &is);
+    bool folder = on_disk && (is.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
+    CloseHandle(there);
+    return folder ? GROBO_ERR_ISDIR : on_disk ? GROBO_OK : GROBO_ERR_UNSUPPORTED;
+}
+
 const grobo_files *grobo_files_os(void)
 {
     static const grobo_files files = {create, write_all, commit, discard, inside, holds};

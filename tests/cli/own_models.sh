@@ -127,6 +127,17 @@ rm "$work/own.yaml"
 mkdir "$work/own.yaml"
 check "a folder" wrong 'own.yaml: is a directory'
 rmdir "$work/own.yaml"
+ln -s /dev/zero "$work/own.yaml"
+check "a device" wrong 'arm.yaml:4:32: .*own.yaml: is no regular file \[open\]$'
+rm "$work/own.yaml"
+if mkfifo "$work/own.yaml" 2>/dev/null; then # nobody writes into it
+    check "a pipe" wrong 'arm.yaml:4:32: .*own.yaml: is no regular file \[open\]$'
+    check "a pipe as the robot" exits 3 "$GRCTL" robot check "$work/own.yaml"
+    rm "$work/own.yaml"
+fi
+own 'name: M\nlike: STS3215\nregisters: {mine: {at: 90, range: [3, .nan]}}\n'
+check "a number that is none" wrong 'own.yaml:3:39: range: .nan is not a finite number'
+rm "$work/own.yaml"
 for path in ./../own.yaml ./sub/../../own.yaml ./; do
     sed "s|./own.yaml|$path|" "$work/arm.yaml" >"$work/beside.yaml"
     outside() {

@@ -239,6 +239,22 @@ static const mistake mistakes[] = {
     {LIKE "notes: &a x\nphysics: *a\n", 4, 10, "aliases are not known here"},
 };
 
+/* And not besides that its list is in no order. */
+TEST(a_number_that_is_none_is_told_once)
+{
+    static const char *const texts[] = {WITH("mine: {at: 90, range: [3, .nan]}"),
+                                        WITH("mine: {at: 90, range: [.inf, 3]}")};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        shelf s = {"arms/mine.yaml", texts[i], {0}, 0, 0};
+        grobo_robot_def *def = NULL;
+        grobo_diagnostic d;
+        assert_true(read_robot(BESIDE, &s, NULL, &def) < 0);
+        assert_int_equal(grobo_diagnostics_get(list, 0, &d), GROBO_OK);
+        assert_non_null(strstr(d.message, "is not a finite number"));
+        assert_true(grobo_diagnostics_get(list, 1, &d) < 0);
+    }
+}
+
 TEST(each_mistake_is_in_the_servos_file)
 {
     for (size_t i = 0; i < sizeof mistakes / sizeof mistakes[0]; i++) {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <string.h>
 
 #include "src/base/memory.h"
@@ -225,7 +226,7 @@ static int add_number(grobo_i_events *events, const char *what, grobo_i_numbers 
                               "more than %d numbers in %s", list->cap, what);
     }
     double *value = &list->values[list->count];
-    *value = 0;
+    *value = list->bad;
     if (list->places != NULL) {
         list->places[list->count] = event->place;
     }
@@ -265,7 +266,7 @@ int grobo_i_read_numbers(grobo_i_events *events, const char *what, grobo_i_numbe
 int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *values, int count)
 {
     double found[16];
-    grobo_i_numbers list = {found, NULL, 0, sizeof found / sizeof found[0]};
+    grobo_i_numbers list = {found, NULL, 0, sizeof found / sizeof found[0], NAN};
     const grobo_i_event *event;
     int result = grobo_i_peek(events, &event);
 

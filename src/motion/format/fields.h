@@ -43,9 +43,10 @@ typedef struct grobo_i_numbers {
     double *values;
     grobo_i_place *places; /* or NULL */
     int count, cap;        /* more than cap are refused */
+    double bad;            /* in the place of one that was complained of */
 } grobo_i_numbers;
 int grobo_i_read_numbers(grobo_i_events *events, const char *what, grobo_i_numbers *list);
-/* Exactly count numbers, at most 9. */
+/* Exactly count numbers, at most 9; NaN in the place of one that was complained of. */
 int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *values, int count);
 /* A copy of a scalar, null being ""; freed by grobo_i_free_text(). An old *value is freed. */
 int grobo_i_read_string(grobo_i_events *events, const char *what, char **value);

@@ -231,7 +231,7 @@ static int read_frame(grobo_i_events *events, void *target)
                                   "frames: a frame that is no list");
         return result < 0 ? result : grobo_i_skip(events);
     }
-    grobo_i_numbers numbers = {part->values, part->places, 0, 1 + GROBO_JOINTS_MAX};
+    grobo_i_numbers numbers = {part->values, part->places, 0, 1 + GROBO_JOINTS_MAX, 0};
     result = grobo_i_read_numbers(events, "frames", &numbers);
     part->count = numbers.count;
     return result < 0 ? result : add_frame(part);

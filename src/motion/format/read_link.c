@@ -73,7 +73,7 @@ static int read_matrix(grobo_i_events *events, const char *what, double *values,
                        bool *whole)
 {
     double found[16];
-    grobo_i_numbers list = {found, NULL, 0, sizeof found / sizeof found[0]};
+    grobo_i_numbers list = {found, NULL, 0, sizeof found / sizeof found[0], 0};
     int result = grobo_i_read_numbers(events, what, &list);
 
     *whole = result == 0 && list.count == count;

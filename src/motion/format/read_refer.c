@@ -7,7 +7,7 @@
 
 static int read_list(grobo_i_events *events, const char *what, grobo_i_pose_list *list)
 {
-    grobo_i_numbers numbers = {list->values, list->places, 0, GROBO_JOINTS_MAX};
+    grobo_i_numbers numbers = {list->values, list->places, 0, GROBO_JOINTS_MAX, 0};
     const grobo_i_event *event;
     int result = grobo_i_peek(events, &event);
 

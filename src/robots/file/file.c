@@ -2,6 +2,7 @@
 /* A robot's description from bytes, or from a file with servo models beside it. */
 #include <stdio.h>
 
+#include "ports/common/common.h"
 #include "src/base/memory.h"
 #include "src/motion/format/stream.h"
 #include "src/robots/file/own.h"
@@ -66,10 +67,12 @@ int grobo_robot_def_read(const grobo_source *source, const char *name, grobo_dia
     return grobo_i_robot_read(source, name, NULL, list, mem, def);
 }
 
+/* A pipe would be waited for. */
 static int open_beside(void *ctx, const char *path, grobo_source *source)
 {
     (void)ctx;
-    return grobo_i_stream_open(path, source);
+    int result = grobo_i_port_regular(path);
+    return result < 0 ? result : grobo_i_stream_open(path, source);
 }
 
 static void close_beside(void *ctx, const grobo_source *source)

@@ -229,8 +229,9 @@ static int read_file(grobo_i_reader *outer, const grobo_i_beside *beside, const 
     int result = beside->open(beside->ctx, path, &source);
     if (result < 0) {
         return grobo_i_complain(outer, result, "open", place, "%s: %s", path,
-                                result == GROBO_ERR_NOENT ? "no such file"
-                                                          : grobo_error_text(result));
+                                result == GROBO_ERR_NOENT         ? "no such file"
+                                : result == GROBO_ERR_UNSUPPORTED ? "is no regular file"
+                                                                  : grobo_error_text(result));
     }
     grobo_i_reader reader = {.options = outer->options,
                              .file = path,

@@ -214,9 +214,16 @@ static int read_few(grobo_i_events *events, const char *what, double *found, int
         return result;
     }
     *place = event->place;
-    found[0] = NAN; /* as it stays where the list was complained of */
+    for (int i = 0; i < n; i++) {
+        found[i] = NAN; /* as it stays where the list, or this number, was complained of */
+    }
     result = grobo_i_read_doubles(events, what, found, n);
-    return result < 0 ? result : !isnan(found[0]);
+    for (int i = 0; i < n && result >= 0; i++) {
+        if (!isfinite(found[i])) {
+            return 0;
+        }
+    }
+    return result < 0 ? result : 1;
 }
 
 static int read_range(grobo_i_events *events, void *target)

@@ -8,6 +8,7 @@
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"
 #include "tools/grctl/os/os.h"
+#include "tools/grctl/os/pipe.h"
 
 /* Read files; they live as long as the process. */
 typedef struct kept {
@@ -17,9 +18,12 @@ typedef struct kept {
 } kept;
 static kept *all;
 
+/* A pipe would be waited for. */
 int robot_read(const char *path, grobo_diagnostics *list, grobo_robot_def **def)
 {
-    return os_is_folder(path) ? GROBO_ERR_ISDIR : grobo_robot_def_read_file(path, list, NULL, def);
+    return os_is_folder(path) ? GROBO_ERR_ISDIR
+           : pipe_is(path)    ? GROBO_ERR_UNSUPPORTED
+                              : grobo_robot_def_read_file(path, list, NULL, def);
 }
 
 static bool is_path(const char *name)
