@@ -228,10 +228,17 @@ static double along(const grobo_robot *robot, int joint, int64_t now_us)
     return axis->seen_rad + copysign(fmin(fabs(left_rad), most_rad), left_rad);
 }
 
+/* Between two angles lies the speed of a servo that tells none: so long, at most. A goal that was
+ * read meanwhile is that of its way. */
+#define MEANWHILE_US 50000
+
 /* One that nobody here has sent goes no further than the goal that its servo told of with that. */
-static bool tells_end(const grobo_robot_axis *axis)
+static bool tells_end(const grobo_robot *robot, int joint)
 {
-    return axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->angle_us;
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool mean = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed);
+    int64_t before_us = mean ? MEANWHILE_US : 0;
+    return axis->goal_us != GROBO_NEVER_US && axis->goal_us + before_us >= axis->angle_us;
 }
 
 /* Of a servo that tells how it turns, and of which no trajectory or its ramps are known. */
@@ -243,7 +250,11 @@ static course turning(const grobo_robot *robot, int joint, int64_t now_us)
     }
     double end_rad = axis->state.goal_rad - grobo_i_load(axis);
     course c = go_on(seen(robot, joint), fmin(seconds(axis->seen_us, now_us), GOES_ON_S));
-    bool there = tells_end(axis) && (end_rad - axis->seen_rad) * (end_rad - c.at_rad) < 0;
+    bool mean = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed);
+    bool at_end = mean && /* its speed is of before that */
+                  fabs(end_rad - axis->seen_rad) <= grobo_i_same_goal_rad(robot, joint);
+    bool passes = (end_rad - axis->seen_rad) * (end_rad - c.at_rad) < 0;
+    bool there = tells_end(robot, joint) && (at_end || passes);
     return there ? (course){end_rad, 0} : c;
 }
 
@@ -343,7 +354,8 @@ double grobo_i_axis_reached(const grobo_robot *robot, int joint, int64_t rest_us
     bool guided = is_guided(axis) && !grobo_i_is_stray(axis);
     double end_rad = (guided ? axis->trajectory.to_rad : axis->state.goal_rad) - grobo_i_load(axis);
     double left_rad = end_rad - c.at_rad;
-    bool beyond = (guided || tells_end(axis)) && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
+    bool ends = guided || tells_end(robot, joint);
+    bool beyond = ends && c.rad_s * left_rad > 0 && on_rad > fabs(left_rad);
     return beyond ? end_rad : c.at_rad + copysign(on_rad, c.rad_s);
 }
 

@@ -174,14 +174,6 @@ static int64_t draw_time_us(const grobo_robot *robot, int joint, double from_rad
     return (int64_t)fmin(fmax(steps, 1), most) * step_us;
 }
 
-/* True if the engine cannot know whether the joint moves: its servo reports no speed, and it was
- * read once. */
-static bool is_mute(const grobo_robot *robot, int joint)
-{
-    return GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
-           !grobo_i_has_target(&robot->axes[joint]);
-}
-
 /* Joints that a halt may name though they do not move: a goal would not wake them. */
 static grobo_joint_mask may_be_told(const grobo_robot *robot)
 {
@@ -195,6 +187,12 @@ static grobo_joint_mask may_be_told(const grobo_robot *robot)
     return may & ~robot->halts_owed;
 }
 
+/* True of a joint that may move, though nobody has seen it: an owed halt is for that. */
+static bool may_go_on(const grobo_robot *robot, const grobo_robot_order *order, int joint)
+{
+    return grobo_i_is_mute(robot, joint) && order->owed && !grobo_i_stands(robot, joint);
+}
+
 /* Joints that move stop ahead of where they are now, however long the order had to wait. */
 static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
@@ -206,7 +204,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool goes_on = grobo_i_axis_moves(axis, robot->now_us) || grobo_i_axis_lags(robot, j) ||
-                       grobo_i_is_external(axis) || (order->owed && is_mute(robot, j));
+                       grobo_i_is_external(axis) || may_go_on(robot, order, j);
         bool moves = grobo_i_is_sensed(axis) && goes_on &&
                      (!GROBO_I_EXTRA(grobo_i_driver_of(robot, j), goal_energises) ||
                       axis->wants_torque || grobo_i_axis_is_on(axis));

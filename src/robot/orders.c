@@ -270,6 +270,18 @@ static bool is_unread(const grobo_robot *robot, int joint)
            (axis->angle_us < axis->told_us || grobo_i_axis_is_late(axis));
 }
 
+/* True of a joint with torque that was read, but neither to stand nor to leave its place, and whose
+ * servo tells no speed: where it stands in its load, a halt to the angle read would let it sink. */
+static bool may_stand(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    if (!grobo_i_is_mute(robot, joint) || !grobo_i_axis_is_on(axis)) {
+        return false;
+    }
+    bool leaves = axis->seen_dps != GROBO_I_NO_SPEED && grobo_i_stand_left(axis);
+    return !leaves && !grobo_i_stands(robot, joint);
+}
+
 /* Such a joint is halted once it was read. By then a servo that has restarted would have said so:
  * one that is still silent may hear what it does not answer. Where a reading comes in parts, one
  * that tells torque does not tell yet where the joint is. */
@@ -278,7 +290,8 @@ static int64_t may_halt_at(const grobo_robot *robot, int joint)
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool parts = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), sense_more) != NULL;
     bool known = !parts && !grobo_i_axis_is_unknown(robot, joint) && !is_unread(robot, joint);
-    if (known || (grobo_i_is_sensed(axis) && axis->angle_us >= robot->halt_us)) {
+    if (!may_stand(robot, joint) &&
+        (known || (grobo_i_is_sensed(axis) && axis->angle_us >= robot->halt_us))) {
         return robot->now_us;
     }
     bool sleeps = grobo_i_is_sensed(axis) && grobo_i_may_sleep(robot, joint);

@@ -700,6 +700,13 @@ int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_r
 int grobo_i_gate_build(grobo_robot *robot, grobo_robot_order *order, grobo_exchange *exchange);
 /* The targets of this order wait no more: they have left, or never will. */
 void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order);
+/* True if the engine cannot know whether the joint moves: its servo reports no speed, and it was
+ * not sent anywhere. */
+static inline bool grobo_i_is_mute(const grobo_robot *robot, int joint)
+{
+    return GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
+           !grobo_i_has_target(&robot->axes[joint]);
+}
 /* True if the goal read back is the one that holds. */
 bool grobo_i_goal_holds(const grobo_robot *robot, int joint);
 /* Holds a goal this far from the angle to be the angle, for switching torque on. */

@@ -89,6 +89,8 @@ static void free_joint(grobo_robot *robot, int joint)
 /* Who has not answered is asked again so late: some replies lost in a row are no short
  * disturbance. */
 #define HEAR_AGAIN_US 40000
+/* Of one that was heard and is to halt, two angles so far apart show whether it turns. */
+#define TURNS_US 20000
 
 static bool is_unheard(const grobo_robot_axis *axis, int64_t now_us)
 {
@@ -533,14 +535,22 @@ void grobo_i_sense_step(grobo_robot *robot)
                             is_urgent(robot) ? GROBO_PRIORITY_MOTION : GROBO_PRIORITY_SENSE);
 }
 
+/* When those that were asked in a round of their own are asked again. */
+static void hear_again(grobo_robot *robot, int result)
+{
+    bool last = robot->halts_owed == 0 || (robot->heard_round & robot->halts_owed) == 0;
+    bool turns = !GROBO_DRIVERS_PLAIN && robot->halts_owed != 0;
+    if (robot->heard_read && last && (result < 0 || turns)) {
+        robot->hear_us = robot->now_us + (result < 0 ? HEAR_AGAIN_US : TURNS_US);
+    }
+}
+
 void grobo_i_sense_done(const grobo_robot_slot *slot, int result)
 {
     grobo_robot *robot = slot->robot;
     int joint = slot->joint;
     bool is_free = !slot->many && grobo_i_has(robot->free_joints, joint);
-    bool last = robot->halts_owed == 0 || (robot->heard_round & robot->halts_owed) == 0;
-    robot->hear_us =
-        result < 0 && robot->heard_read && last ? robot->now_us + HEAR_AGAIN_US : robot->hear_us;
+    hear_again(robot, result);
     if (result >= 0 && is_free) {
         free_joint(robot, joint);
     }
