@@ -507,10 +507,11 @@ FROM ?= 0
 # All of them: RS30x by the one program, the other families by the other.
 SOAKS := $(filter-out $(if $(filter rs30x,$(FAMILY)),%_family_soak,$(if $(FAMILY),%_robot_soak)),\
     $(BUILD)/tests/engine/test_robot_soak $(BUILD)/tests/engine/test_family_soak) \
-    $(if $(FAMILY)$(LINE),,$(BUILD)/tests/engine/test_halt_matrix)
+    $(if $(FAMILY)$(LINE),,$(BUILD)/tests/engine/test_halt_matrix $(BUILD)/tests/engine/test_blocked)
 soak: $(SOAKS) ## all stops, and half an hour of virtual time on each bad line, SEEDS=6 FROM=0; FAMILY=, LINE=, MINUTES= choose
 	@for program in $(SOAKS); do \
-	    GROBO_HALT=all GROBO_SOAK=$(SEEDS) GROBO_SOAK_FROM=$(FROM) GROBO_SOAK_LINE=$(LINE) \
+	    GROBO_HALT=all GROBO_BLOCKED_MINUTES=60 GROBO_SOAK=$(SEEDS) \
+	    GROBO_SOAK_FROM=$(FROM) GROBO_SOAK_LINE=$(LINE) \
 	    GROBO_SOAK_MINUTES=$(MINUTES) GROBO_SOAK_FAMILY=$(FAMILY) $$program || exit 1; done
 
 # Sabotages, each of which a test should notice (tests/mutants/). The folder is its own.

@@ -34,7 +34,8 @@
 #define AHEAD_RAD (12 * DEG)
 #define AWAY_RAD (4 * DEG)
 #define END_RAD (2 * DEG)
-/* In a longer time other joints may have moved what it carries: then nothing less than an overload
+/* While other joints turn, what it carries changes, and by no more than the largest load that it
+ * was seen to carry for each radian of theirs. In a longer time nothing less than an overload
  * shows it. */
 #define SLOW_US 1000000
 /* Gears have more friction under load: one that carries and turns back stands for as long as its
@@ -45,6 +46,7 @@
 /* No servo that carries a weight is further from its set point: an XL330 at its softest has 25
  * degrees by the arm of a Koch and what that carries. */
 #define OVERLOADED_RAD (35 * DEG)
+#define CARRIED_RAD (25 * DEG)
 /* A set point that has moved by less has not begun to. */
 #define BEGINS_RAD (0.5 * DEG)
 /* From here on a joint is strained: it is read more often. */
@@ -155,6 +157,13 @@ static bool is_at_end(const grobo_robot *robot, int joint)
     return angle_rad < limits.min_rad + END_RAD || angle_rad > limits.max_rad - END_RAD;
 }
 
+/* The largest error that a joint was seen to stand with. */
+static double most_carried_rad(const grobo_robot_axis *axis)
+{
+    double now_rad = fmax(fabs(grobo_i_load(axis)), axis->block_load_rad);
+    return fmin(fmax(axis->carried_rad, now_rad), CARRIED_RAD);
+}
+
 /* How far the set point of a joint that stands must go on to show that something holds it. */
 static double least_ahead_rad(const grobo_robot *robot, int joint)
 {
@@ -163,7 +172,9 @@ static double least_ahead_rad(const grobo_robot *robot, int joint)
         return OVERLOADED_RAD;
     }
     double load_rad = fmax(fabs(grobo_i_load(axis)), axis->block_load_rad);
-    return fmax(AHEAD_RAD, FRICTION_RAD + FRICTION_PART * load_rad);
+    /* The torque of a weight is no more than that times the sine of an angle that they turn. */
+    load_rad += axis->carried_rad * (robot->turned_rad - axis->block_turned_rad);
+    return fmin(fmax(AHEAD_RAD, FRICTION_RAD + FRICTION_PART * load_rad), OVERLOADED_RAD);
 }
 
 /* Whether it stands while its set point moves on: from `axis->block_us` on, when that was where it
@@ -183,6 +194,8 @@ static bool is_blocked(grobo_robot *robot, int joint, double set_rad)
     if (moved || ahead_rad <= BEGINS_RAD) {
         axis->block_rad = axis->state.angle_rad;
         axis->block_us = robot->now_us;
+        axis->block_turned_rad = robot->turned_rad;
+        axis->carried_rad = most_carried_rad(axis);
         return false;
     }
     bool at_once = way->to_us - way->from_us < stands_us(robot, joint); /* one of many frames */
@@ -217,6 +230,8 @@ void grobo_i_blocked_look(grobo_robot *robot, int joint, const grobo_joint_state
     if (!judged || (got->valid & GROBO_FIELD_ANGLE) == 0) {
         return;
     }
+    robot->turned_rad += axis->looked_us != 0 ? fabs(axis->state.angle_rad - axis->looked_rad) : 0;
+    axis->looked_rad = axis->state.angle_rad;
     const set_point set = set_of(robot, joint);
     bool unseen = robot->now_us - axis->looked_us > UNSEEN_US;
     if (isnan(set.rad) || unseen) {

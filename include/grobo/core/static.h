@@ -155,6 +155,9 @@ typedef struct grobo_robot_axis {
 #if !GROBO_DRIVERS_PLAIN
     double block_rad, block_set_rad; /* where it was found to stand, and its set point then; */
     double block_load_rad;           /* its error, where that set point stood */
+    double block_turned_rad;         /* grobo_robot.turned_rad then */
+    double carried_rad;              /* the largest error that it was seen to stand with */
+    double looked_rad;               /* where it was judged last */
     int64_t block_us;   /* when that was there last; GROBO_NEVER_US: nothing is known of it */
     double over_rad;    /* nearest to its set point since it is further away than weight has it, */
     int64_t over_us;    /* and when; GROBO_NEVER_US: it is not */
@@ -293,6 +296,7 @@ struct grobo_robot {
     bool halted_read;               /* the last reading was for that */
 #if !GROBO_DRIVERS_PLAIN
     grobo_joint_mask strained; /* further from their set point than their load explains */
+    double turned_rad;         /* by all joints together, of those that are judged */
     int64_t line_us; /* in which all joints are read with half of the line's time; 0: not found */
     grobo_joint_mask wheels;
     grobo_joint_mask wheels_owed; /* turned when the line was lost */
