@@ -378,6 +378,7 @@ int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torqu
     }
     if (mode != GROBO_TORQUE_ON) {
         grobo_i_slots_keep_off(robot, joints);
+        grobo_i_wheels_forget(robot, joints);
     }
     int result = GROBO_OK;
     while (joints != 0 && result >= 0) {

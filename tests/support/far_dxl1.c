@@ -35,6 +35,9 @@ static void write(far_side *far, far_joint *joint, int at, const uint8_t *data, 
     far_turn_to(joint, far->now_us);
     memcpy(joint->reg + at, data, (size_t)n);
     bool goal = at <= where->goal && where->goal + 2 <= at + n;
+    if (where->spin != NULL) {
+        where->spin(joint);
+    }
     if (at <= where->torque && where->torque < at + n) {
         far_torque(far, joint, joint->reg[where->torque] == 1);
     } else if (goal && joint->torque != 1) {
@@ -88,7 +91,8 @@ bool far_dxl1_moves(const far_dxl1_layout *where, const uint8_t *frame, int n)
         return false;
     }
     int at = frame[5], bytes = frame[4] == WRITE ? n - 7 : frame[6];
-    return (at <= where->torque && where->torque < at + bytes) ||
+    return (where->speed_at > 0 && at <= where->speed_at && where->speed_at < at + bytes) ||
+           (at <= where->torque && where->torque < at + bytes) ||
            (at <= where->goal && where->goal < at + bytes);
 }
 

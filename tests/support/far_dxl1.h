@@ -9,6 +9,9 @@
 typedef struct far_dxl1_layout {
     int goal, torque; /* where they are */
     bool sync_read, bulk_read;
+    int speed_at; /* where a wheel's is; 0: no wheel is known */
+    /* Whether it is a wheel, and how fast, by its registers; NULL: it is none. */
+    void (*spin)(far_joint *joint);
     /* Writes what it measures into the registers. */
     void (*refresh)(far_joint *joint);
 } far_dxl1_layout;

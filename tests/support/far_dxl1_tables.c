@@ -91,7 +91,7 @@ static void refresh_ax(far_joint *joint)
     joint->reg[46] = joint->dps != 0;
 }
 
-static const far_dxl1_layout ax = {AX_GOAL, AX_TORQUE, false, false, refresh_ax};
+static const far_dxl1_layout ax = {.goal = AX_GOAL, .torque = AX_TORQUE, .refresh = refresh_ax};
 
 static bool moves_ax(const uint8_t *frame, int n)
 {
@@ -149,11 +149,12 @@ static void refresh_mx(far_joint *joint)
     joint->reg[46] = joint->dps != 0;
 }
 
-static const far_dxl1_layout mx = {AX_GOAL, AX_TORQUE, false, true, refresh_mx};
+static const far_dxl1_layout mx = {
+    .goal = AX_GOAL, .torque = AX_TORQUE, .bulk_read = true, .refresh = refresh_mx};
 
 /* ---- STS ------------------------------------------------------------------------------------- */
 
-enum { STS_TORQUE = 40, STS_GOAL = 42, STS_SPEED = 46 };
+enum { STS_MODE = 33, STS_TORQUE = 40, STS_GOAL = 42, STS_SPEED = 46, STS_TURN = 4096 };
 
 static void begin_sts(far_joint *joint)
 {
@@ -195,7 +196,11 @@ static void hold_sts(far_joint *joint, double deg, double dps, int64_t now_us)
 
 static void refresh_sts(far_joint *joint)
 {
-    far_put16(joint->reg + 56, with_sign((int)lround(joint->at_deg / STS_STEP_DEG) + STS_MIDDLE));
+    int steps = (int)lround(joint->at_deg / STS_STEP_DEG) + STS_MIDDLE;
+    if (joint->wheel) { /* within one turn */
+        steps = (steps % STS_TURN + STS_TURN) % STS_TURN;
+    }
+    far_put16(joint->reg + 56, with_sign(steps));
     far_put16(joint->reg + 58, with_sign((int)lround(joint->dps / STS_STEP_DEG)));
     far_put16(joint->reg + 60, 0);
     joint->reg[62] = 74;
@@ -205,7 +210,20 @@ static void refresh_sts(far_joint *joint)
     far_put16(joint->reg + 71, far_get16(joint->reg + STS_GOAL));
 }
 
-static const far_dxl1_layout sts = {STS_GOAL, STS_TORQUE, true, false, refresh_sts};
+/* Register 33 is the mode, 1 a constant speed: register 46 then, signed, in steps a second
+ * (reference feetech, 4 and 5). */
+static void spin_sts(far_joint *joint)
+{
+    joint->wheel = joint->reg[STS_MODE] == 1;
+    joint->wheel_dps = signed_of(far_get16(joint->reg + STS_SPEED)) * STS_STEP_DEG;
+}
+
+static const far_dxl1_layout sts = {.goal = STS_GOAL,
+                                    .torque = STS_TORQUE,
+                                    .sync_read = true,
+                                    .speed_at = STS_SPEED,
+                                    .spin = spin_sts,
+                                    .refresh = refresh_sts};
 
 static bool moves_sts(const uint8_t *frame, int n)
 {
@@ -274,7 +292,7 @@ static void refresh_scs(far_joint *joint)
     joint->reg[66] = joint->dps != 0;
 }
 
-static const far_dxl1_layout scs = {STS_GOAL, STS_TORQUE, false, false, refresh_scs};
+static const far_dxl1_layout scs = {.goal = STS_GOAL, .torque = STS_TORQUE, .refresh = refresh_scs};
 
 /* ---- families -------------------------------------------------------------------------------- */
 

@@ -15,6 +15,7 @@ enum {
     AT_MODE = 11,
     AT_TORQUE = 64,
     AT_WATCHDOG = 98,
+    AT_VELOCITY = 104,
     AT_RAMP = 108,
     AT_TIME = 112,
     AT_GOAL = 116,
@@ -111,6 +112,8 @@ static void watch(far_joint *joint, int64_t now_us)
         joint->goal_deg = joint->at_deg;
         put32(joint->reg + AT_RAMP, 0);
         put32(joint->reg + AT_TIME, 0);
+        put32(joint->reg + AT_VELOCITY, 0);
+        joint->wheel_dps = 0;
         joint->reg[AT_WATCHDOG] = WATCHDOG_OVER;
     }
 }
@@ -138,10 +141,13 @@ static int write(far_side *far, far_joint *joint, int at, const uint8_t *data, i
     if (joint->deaf) {
         return 0;
     }
-    if (goal && joint->reg[AT_WATCHDOG] == WATCHDOG_OVER) {
+    bool velocity = at <= AT_VELOCITY && AT_VELOCITY + 4 <= at + n;
+    if ((goal || velocity) && joint->reg[AT_WATCHDOG] == WATCHDOG_OVER) {
         return ERROR_RANGE;
     }
     memcpy(joint->reg + at, data, (size_t)n);
+    joint->wheel = joint->reg[AT_MODE] == 1; /* velocity control (emanual, operating_mode) */
+    joint->wheel_dps = get32(joint->reg + AT_VELOCITY) * SPEED_DPS;
     if (at <= AT_TORQUE && AT_TORQUE < at + n) {
         far_torque(far, joint, joint->reg[AT_TORQUE] != 0);
     }
@@ -218,7 +224,8 @@ static bool moves(const uint8_t *frame, int n)
         return false;
     }
     int bytes = frame[7] == WRITE ? size - 2 : far_get16(p + 2);
-    return (at <= AT_TORQUE && AT_TORQUE < at + bytes) || (at <= AT_GOAL && AT_GOAL < at + bytes);
+    return (at <= AT_VELOCITY && AT_VELOCITY < at + bytes) ||
+           (at <= AT_TORQUE && AT_TORQUE < at + bytes) || (at <= AT_GOAL && AT_GOAL < at + bytes);
 }
 
 static void obey_all(far_side *far, int instruction, const uint8_t *p, int n)

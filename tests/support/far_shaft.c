@@ -48,8 +48,22 @@ static void ramp(far_joint *joint, double seconds)
     joint->at_deg += joint->dps * seconds;
 }
 
+/* Its loop of speed is without a ramp of its own. */
+static void spin(far_joint *joint, int64_t until_us)
+{
+    joint->dps = joint->torque == 1 ? joint->wheel_dps : 0;
+    joint->dps = fmin(fmax(joint->dps, -joint->top_dps), joint->top_dps);
+    joint->at_deg += joint->dps * (double)(until_us - joint->at_us) / SECOND_US;
+    joint->goal_deg = joint->at_deg;
+    joint->at_us = until_us;
+}
+
 static void turn(far_joint *joint, int64_t until_us)
 {
+    if (joint->wheel) {
+        spin(joint, until_us > joint->at_us ? until_us : joint->at_us);
+        return;
+    }
     if (joint->torque != 1 || (joint->dps == 0 && joint->at_deg == joint->goal_deg)) {
         joint->dps = 0;
         joint->at_us = until_us;
@@ -91,6 +105,7 @@ void far_turn_to(far_joint *joint, int64_t now_us)
     if (joint->family->watch != NULL) {
         joint->family->watch(joint, now_us);
     }
+    joint->waits = joint->waits && !joint->wheel; /* of goals */
     if (joint->waits && joint->wakes_us <= now_us) {
         turn(joint, joint->wakes_us);
         set_out(joint);

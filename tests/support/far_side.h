@@ -48,6 +48,8 @@ typedef struct far_joint {
     bool deaf;        /* it answers, and obeys nothing */
     bool missed; /* a goal or torque for it was lost, and it told nothing since that shows it */
     int celsius;
+    bool wheel; /* it turns on and on with torque, so fast: STS and DYNAMIXEL X */
+    double wheel_dps;
     bool leaps; /* torque came on: it goes to its goal as fast as it can */
     uint8_t reg[FAR_REGISTERS];
 } far_joint;
