@@ -847,6 +847,23 @@ def wheels():
         page.fall_silent()
 
 
+def lines():
+    """Two arms on two lines are one robot: all move, and a stop reaches both."""
+    arms = os.path.abspath("docs/examples/robots/two-arms.yaml")
+    with Server(env={"GRCTL_ROBOT": arms}) as server:
+        page = Page(server).take().keep_beating()
+        same([j["motor"] for j in page.get("/api/robot")["joints"]], [1, 2, 3, 4, 1, 2, 3, 4])
+        page.target("move", angle_deg={"L_pan": 20, "R_pan": -20})
+        page.wait("both arms are there", lambda s: not s["moving"]
+                  and abs(s["angle_deg"][0] - 20) < 1 and abs(s["angle_deg"][4] + 20) < 1)
+        page.target("move", angle_deg={"L_pan": -60, "R_pan": 60}, time_ms=6000)
+        page.wait("both move", lambda s: s["angle_deg"][0] < 15 and s["angle_deg"][4] > -15)
+        page.post("halt")
+        halted = page.wait("both are halted", lambda s: not s["moving"])
+        assert halted["angle_deg"][0] > -55 and halted["angle_deg"][4] < 55, halted
+        page.fall_silent()
+
+
 def stale():
     with Server() as server:
         page = Page(server).take().keep_beating()

@@ -65,14 +65,29 @@ static void destroy(grobo_session *session)
 
 /* ---- opening ------------------------------------------------------------------------------ */
 
+/* Which of several could not be opened. */
+static void name_port(grobo_session *session, const session_wire *wire)
+{
+    const grobo_os_cause cause = session->cause;
+
+    (void)snprintf(session->cause.text, sizeof session->cause.text, "%.60s: %.60s", wire->path,
+                   cause.text);
+}
+
 static int open_device(grobo_session *session, const char *device)
 {
     int r = session->line->open(&session->wire[0], device);
 
+    if (r < 0 && session->n_wires > 1) {
+        name_port(session, &session->wire[0]);
+    }
     for (int i = 1; i < session->n_wires && r >= 0; i++) {
         session_wire *wire = &session->wire[i];
 
         r = session->line->open(wire, session->was_up ? wire->stable : wire->path);
+        if (r < 0) {
+            name_port(session, wire);
+        }
     }
     for (int i = 0; i < session->n_wires && r < 0; i++) {
         grobo_serial_close(session->wire[i].serial);

@@ -2,6 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/session.h>
+
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/robot.h"
@@ -208,11 +210,50 @@ static bool wants_physics(const app *a, bool has_weight)
                        : has_weight;
 }
 
+static bool has_line(const grobo_robot_def *def, const char *name, size_t size)
+{
+    int i = 0;
+    while (i < def->n_lines &&
+           (strncmp(def->lines[i].name, name, size) != 0 || def->lines[i].name[size] != '\0')) {
+        i++;
+    }
+    return i < def->n_lines;
+}
+
+const char *robot_lines_fault(const app *a, const char *device)
+{
+    static char text[APP_LINE_BYTES];
+    const grobo_robot_def *def = robot_of(a);
+    if (def->n_lines == 0 || strcmp(device, GROBO_DEVICE_SIM) == 0 ||
+        strcmp(device, GROBO_DEVICE_AUTO) == 0) {
+        return NULL;
+    }
+    for (const char *item = device; *item; item += strcspn(item, ","), item += *item == ',') {
+        size_t name = strcspn(item, "=,");
+        if (item[name] != '=') {
+            snprintf(text, sizeof text,
+                     _("%s has %d lines: a port is wanted for each, -d %s=PORT,%s=PORT"), def->name,
+                     def->n_lines, def->lines[0].name, def->lines[1].name);
+            return text;
+        }
+        if (!has_line(def, item, name)) {
+            snprintf(text, sizeof text, _("%s has no line '%.*s'; it has %s, %s%s"), def->name,
+                     (int)name, item, def->lines[0].name, def->lines[1].name,
+                     def->n_lines > 2 ? ", ..." : "");
+            return text;
+        }
+    }
+    return NULL;
+}
+
 int robot_physics(const app *a, grobo_sim_config *config, grobo_sim_physics **physics)
 {
     const grobo_robot_def *def = robot_of(a);
     *physics = NULL;
     bool whole = config->model == def->model; /* else servos alone */
+    if (def->n_lines > 0) {
+        return app_global(a, GLOBAL_PHYSICS)->choice > 1 ? GROBO_ERR_UNSUPPORTED : GROBO_OK;
+    }
     if (!wants_physics(a, whole && grobo_robot_def_has_weight(def))) {
         return GROBO_OK;
     }

@@ -33,6 +33,10 @@ void robot_sim(const app *a, grobo_robot_sim *sim);
 const char *robot_payload_link(const app *a);
 /* Gives it weight, if that is asked for: a world, freed with grobo_sim_physics_free() after the
  * simulator, else NULL. 0 or an error. */
+/* What is wrong with the device of a robot of several lines, "sim", "auto" or NAME=PORT,NAME=PORT;
+ * NULL: nothing, or it has one line. */
+const char *robot_lines_fault(const app *a, const char *device);
+
 int robot_physics(const app *a, grobo_sim_config *config, grobo_sim_physics **physics);
 
 /* What robot_find() found it by, in a form that holds in another folder; "" for GR001. */

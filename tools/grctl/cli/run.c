@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/session.h>
+
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/each.h"
 #include "tools/grctl/cli/output.h"
@@ -187,6 +189,56 @@ static int run_without_robot(app *a)
     return EXIT_USAGE;
 }
 
+/* What speaks to servos by their ids, or to one port, and does not know of lines. */
+static const char *const for_one_line[] = {
+    "budget", "calibrate", "decode",    "doctor",    "first-contact", "info", "replay",
+    "scan",   "scenario",  "servo-get", "servo-set", "setup",         "sim",  "slot"};
+
+static bool is_for_one_line(const char *name)
+{
+    size_t i = 0, n = sizeof for_one_line / sizeof for_one_line[0];
+    while (i < n && strcmp(for_one_line[i], name) != 0) {
+        i++;
+    }
+    return i < n;
+}
+
+static const char *device_of(const app *a)
+{
+    const char *fallback = getenv("GRCTL_DEVICE");
+    const cli_value *given = app_global(a, GLOBAL_DEVICE);
+    return given->given ? given->text : fallback && *fallback ? fallback : GROBO_DEVICE_AUTO;
+}
+
+/* A robot of several lines, where a command or an option would speak to one of them alone. */
+static int refuse_lines(app *a)
+{
+    const grobo_robot_def *def = robot_of(a);
+    if (def->n_lines == 0) {
+        return EXIT_DONE;
+    }
+    const char *fault = robot_lines_fault(a, device_of(a));
+    if (fault) {
+        return app_fail(a, EXIT_USAGE, "ARG", "%s", fault);
+    }
+    if (is_for_one_line(a->line.command->name)) {
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "%s: %s has %d lines, and this command is for one: describe each line in a "
+                        "file of its own for it",
+                        a->line.command->name, def->name, def->n_lines);
+    }
+    static const int one[] = {GLOBAL_BAUD, GLOBAL_TRACE, GLOBAL_ECHO};
+    for (size_t i = 0; i < sizeof one / sizeof one[0]; i++) {
+        if (app_global(a, one[i])->given) {
+            return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                            "%s has %d lines: --baud, --echo and --trace are for one; its file has "
+                            "the rate and echo of each",
+                            def->name, def->n_lines);
+        }
+    }
+    return EXIT_DONE;
+}
+
 static int run_command(app *a, int argc, char *const *argv, int (*prepare)(void *ctx, app *a),
                        void *ctx)
 {
@@ -195,6 +247,9 @@ static int run_command(app *a, int argc, char *const *argv, int (*prepare)(void 
         return status;
     }
     if (a->group && (status = refuse_group(a)) != 0) {
+        return status;
+    }
+    if (!a->group && (status = refuse_lines(a)) != 0) {
         return status;
     }
     if (!a->group && is_echo_alone(a)) {

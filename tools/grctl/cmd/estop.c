@@ -50,6 +50,7 @@ typedef struct target {
     bool guarded, ended;       /* its guard was asked last; it got SIGTERM */
     int64_t waited_us;         /* since it was asked */
     int64_t forced_until_us;   /* so long what was done last may take */
+    bool is_line;              /* of several: the device is as it was asked for */
     char said[APP_LINE_BYTES]; /* why the port cannot be had */
 } target;
 
@@ -247,7 +248,9 @@ static int stop_here(conn *c, const target *t)
 static int stop_marked(target *t)
 {
     conn c;
-    t->a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = t->device};
+    if (!t->is_line) {
+        t->a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = t->device};
+    }
     bool taken = take_port(&c, t);
     return conn_close(&c, taken ? stop_here(&c, t) : report_holder(t, c.open_error));
 }
@@ -401,6 +404,58 @@ static int reset(app *a, const char *device)
     return conn_close(&c, status);
 }
 
+/* ---- a robot of several lines ---------------------------------------------------------------- */
+
+/* The port of a line, by NAME=PORT of what was asked for, or as the robot's file has it. False: it
+ * has none. */
+static bool find_port(const app *a, int line, char *device)
+{
+    const grobo_robot_file_line *own = &robot_of(a)->lines[line];
+    const char *item = conn_requested(a), *port = own->port;
+    size_t size = port ? strlen(port) : 0, length = strlen(own->name);
+    for (; *item; item += strcspn(item, ","), item += *item == ',') {
+        if (strncmp(item, own->name, length) == 0 && item[length] == '=') {
+            port = item + length + 1;
+            size = strcspn(port, ",");
+        }
+    }
+    if (!size || size >= GROBO_DEVICE_MAX_BYTES) {
+        return false;
+    }
+    memcpy(device, port, size);
+    device[size] = '\0';
+    return true;
+}
+
+/* The devices of all lines are marked before one is waited for, and released together. */
+static int estop_lines(app *a, bool resets)
+{
+    static target targets[GROBO_LINES_MAX];
+    const grobo_robot_def *def = robot_of(a);
+    const char *fault = robot_lines_fault(a, conn_requested(a));
+    int error = GROBO_OK;
+    if (fault) {
+        return app_fail(a, EXIT_USAGE, "ARG", "%s; NOT stopped, nothing was sent", fault);
+    }
+    for (int i = 0; i < def->n_lines; i++) {
+        char device[GROBO_DEVICE_MAX_BYTES];
+        grobo_os_cause cause = {0};
+        if (!find_port(a, i, device)) {
+            return app_fail(a, EXIT_ROBOT, "NOENT",
+                            "line %s has no port: -d %s=PORT or 'port' in the robot's file",
+                            def->lines[i].name, def->lines[i].name);
+        }
+        if (resets && grobo_estop_stands(device)) {
+            int cleared = grobo_estop_clear(device, &cause);
+            error = error ? error : cleared;
+        } else if (!resets) {
+            mark(&targets[i], a, device);
+            targets[i].is_line = true;
+        }
+    }
+    return resets ? report_reset(a, conn_requested(a), error, NULL) : stop_marked(&targets[0]);
+}
+
 static int run_estop(app *a)
 {
     static target t;
@@ -408,6 +463,10 @@ static int run_estop(app *a)
     bool resets = app_option(a, OPT_RESET)->given > 0;
     if (resets && a->mistaken) {
         return EXIT_DONE; /* only a stop goes before what is wrong */
+    }
+    bool shell = a->link && a->link->session;
+    if (robot_of(a)->n_lines > 0 && !shell && strcmp(conn_requested(a), GROBO_DEVICE_SIM) != 0) {
+        return estop_lines(a, resets);
     }
     const char *why = find_device(a, device);
     if (why && resets) {

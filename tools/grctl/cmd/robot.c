@@ -87,7 +87,7 @@ static double mass_kg(const grobo_robot_def *def)
     return sum;
 }
 
-static json_t *robot_json(const grobo_robot_def *def)
+static json_t *whole_json(const grobo_robot_def *def)
 {
     const grobo_safety_limits *limits = &def->limits;
     return json_pack(
@@ -103,18 +103,77 @@ static json_t *robot_json(const grobo_robot_def *def)
         def->n_links, "mass_kg", app_json_number(mass_kg(def), 3));
 }
 
-static void print_robot(const grobo_robot_def *def)
+/* Each line with its joints. */
+static json_t *lines_json(const grobo_robot_def *def)
 {
-    const grobo_safety_limits *limits = &def->limits;
-    app_print_line("%s: %s", def->name, def->title);
+    json_t *list = json_array();
+    for (int i = 0; i < def->n_lines; i++) {
+        const grobo_robot_file_line *line = &def->lines[i];
+        json_t *joints = json_array();
+        for (int j = 0; j < def->model->n_joints; j++) {
+            const grobo_joint *joint = grobo_model_joint(def->model, j);
+            if (joint->line == i) {
+                json_array_append_new(joints, json_string(joint->name));
+            }
+        }
+        json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:I,s:s?,s:b,s:o}", "name", line->name,
+                                              "family", line->family->name, "wiring",
+                                              line->wiring == GROBO_WIRING_BOARD ? "board" : "bus",
+                                              "baud_bps", (json_int_t)line->baud_bps, "port",
+                                              line->port, "echo", line->echo, "joints", joints));
+    }
+    return list;
+}
+
+static json_t *robot_json(const grobo_robot_def *def)
+{
+    json_t *robot = whole_json(def);
+    if (def->n_lines > 0) {
+        json_object_set_new(robot, "lines", lines_json(def));
+    }
+    return robot;
+}
+
+static void print_line(const grobo_robot_def *def)
+{
     app_print("servos     %d of family %s\n", def->model->n_joints, def->family->name);
     app_print("line       %lu bps, %s", (unsigned long)def->baud_bps,
               def->wiring == GROBO_WIRING_BOARD ? "through its board" : "servos on a bus");
     for (int i = 0; i < def->n_usb; i++) {
         app_print("%s%04x:%04x", i ? " " : ", USB ", def->usb[i].vendor, def->usb[i].product);
     }
-    app_print("\nstops at   %d deg C, %d lost replies", limits->temperature_c,
-              limits->lost_replies);
+    app_print("\n");
+}
+
+static int joints_on(const grobo_robot_def *def, int line)
+{
+    int n = 0;
+    for (int j = 0; j < def->model->n_joints; j++) {
+        n += grobo_model_joint(def->model, j)->line == line;
+    }
+    return n;
+}
+
+static void print_lines(const grobo_robot_def *def)
+{
+    for (int i = 0; i < def->n_lines; i++) {
+        const grobo_robot_file_line *line = &def->lines[i];
+        app_print("line       %s: %d servos of family %s, %lu bps%s%s\n", line->name,
+                  joints_on(def, i), line->family->name, (unsigned long)line->baud_bps,
+                  line->port ? ", " : "", line->port ? line->port : "");
+    }
+}
+
+static void print_robot(const grobo_robot_def *def)
+{
+    const grobo_safety_limits *limits = &def->limits;
+    app_print_line("%s: %s", def->name, def->title);
+    if (def->n_lines > 0) {
+        print_lines(def);
+    } else {
+        print_line(def);
+    }
+    app_print("stops at   %d deg C, %d lost replies", limits->temperature_c, limits->lost_replies);
     if (limits->current_ma) {
         app_print(", %ld mA for %ld ms", (long)limits->current_ma,
                   (long)(limits->current_us / 1000));

@@ -49,7 +49,11 @@ static void on_session(void *ctx, grobo_session *session, grobo_session_event ev
         link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
         break;
     case GROBO_SESSION_EVENT_UNGUARDED:
-        if (link->user) {
+        if (link->user && error == GROBO_ERR_UNSUPPORTED && robot_of(link->user->a)->n_lines > 0) {
+            app_note(link->user->a,
+                     "no guard: it has one port, and the robot has several lines; if "
+                     "grctl is killed, joints continue to their goals");
+        } else if (link->user) {
             app_note(link->user->a,
                      "the guard has ended: if grctl is killed, joints continue to their goals");
         }
@@ -362,7 +366,8 @@ static int fail_closed(conn *c, int error)
     const grobo_os_cause *cause = grobo_session_cause(c->session);
     /* Of the others the system only says again what the error says. */
     bool tells = *cause->text && (error == GROBO_ERR_BUSY || error == GROBO_ERR_IO ||
-                                  error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED);
+                                  error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED ||
+                                  robot_of(c->a)->n_lines > 0);
     if (error == GROBO_ERR_TIMEOUT && is_tcp(conn_device(c)) && !bytes_passed(c, GROBO_DIR_TX)) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: %s; is the address right, and that machine on?", conn_device(c),

@@ -151,6 +151,13 @@ int play_dry_run(playlist *list, app *a)
     grobo_posture start;
     memset(&r, 0, sizeof r);
     r.a = a;
+    if (robot_of(a)->n_lines > 0) {
+        return app_fail(
+            a, EXIT_USAGE, "UNSUPPORTED",
+            "play --dry-run: %s has %d lines, and frames are shown of one; 'grctl -d sim "
+            "play' plays it on all",
+            robot_of(a)->name, robot_of(a)->n_lines);
+    }
     robot_sim(a, &sim);
     r.start_us = -1;
     grobo_posture_init_pose(&start, app_model(a));

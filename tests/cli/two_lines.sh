@@ -1,0 +1,152 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Two arms of two families on two ports (docs/examples/robots), from file to cockpit: in the
+# simulator, and against two simulators of one arm each, which know nothing of the other.
+. tests/support/cli.sh
+unset GRCTL_ROBOT
+arms=docs/examples/robots/two-arms.yaml
+head=docs/examples/robots/ax-body-xl330-head.yaml
+
+# prints STATUS TEXT COMMAND...: it ends so, and this is among its lines.
+prints() {
+    expected=$1 like=$2
+    shift 2
+    "$@" >"$work/said" 2>&1 </dev/null
+    status=$?
+    [ $status -eq "$expected" ] && grep -q -e "$like" "$work/said" && return
+    echo "status $status, and said:"
+    cat "$work/said"
+    return 1
+}
+
+test_case "its file"
+check "is right" prints 0 'two-arms: 8 joints, nothing wrong' "$GRCTL" robot check $arms
+check "sixteen AX-12A and two XL330, too" prints 0 '18 joints, nothing wrong' \
+    "$GRCTL" robot check $head
+check "names its lines" prints 0 'right: 4 servos of family dynamixel2, 1000000 bps' \
+    "$GRCTL" --robot $arms robot show
+check_json "in JSON, too" \
+    'lines[0]["lines"][1]["name"] == "right" and lines[0]["lines"][1]["joints"][0] == "R_pan"' \
+    "$GRCTL" --robot $arms --json robot show
+sed 's/line: right, id: 2/line: wrong, id: 2/' $arms >"$work/wrong.yaml"
+check "a line that is not there" prints 3 "no line called 'wrong'" \
+    "$GRCTL" robot check "$work/wrong.yaml"
+sed 's/line: right, id: 2/line: right, id: 1/' $arms >"$work/wrong.yaml"
+check "an id twice on a line" prints 3 'R_lift has the id of another joint' \
+    "$GRCTL" robot check "$work/wrong.yaml"
+
+test_case "in the simulator"
+on_sim() {
+    "$GRCTL" --robot $arms -d sim "$@"
+}
+check "it goes to its initial posture" exits 0 on_sim init
+check "joints of both move" exits 0 on_sim pose L_pan=20 R_pan=-20
+check "its state has all" prints 0 '1  R_pan' on_sim status
+check "an emergency stop" exits 0 on_sim estop
+check "the other robot, too" exits 0 "$GRCTL" --robot $head -d sim init
+printf 'type: BodyMotion\ncomponents:\n  - type: MultiValueSeq\n    content: JointPosition\n' \
+    >"$work/wave.yaml"
+printf '    frameRate: 4\n    numFrames: 3\n    numParts: 8\n    frames:\n' >>"$work/wave.yaml"
+for angle in 0 0.1 0; do
+    echo "      - [$angle, 0, 0, 0, $angle, 0, 0, 0]" >>"$work/wave.yaml"
+done
+check "a motion" exits 0 on_sim play "$work/wave.yaml"
+check "whose frames are not shown" prints 2 "frames are shown of one" \
+    on_sim play --dry-run "$work/wave.yaml"
+for command in scan info doctor budget setup calibrate 'servo-get 1' 'servo-set 1 led 1' \
+    'decode -' 'replay x'; do
+    # shellcheck disable=SC2086 # words
+    check "$command is for one line" prints 2 'has 2 lines, and this command is for one' \
+        on_sim $command
+done
+check "a rate is of one line" prints 2 'are for one; its file has' on_sim -b 57600 status
+
+# one_arm NAME LETTER FAMILY SERVO: a simulator of one arm, as its own robot.
+one_arm() {
+    {
+        printf 'name: %s\nfamily: %s\nline: {baud: 1000000}\njoints:\n' "$1" "$3"
+        for joint in 1 2 3 4; do
+            printf '  - {name: %s%d, id: %d, servo: %s, limits_deg: [-120, 120]}\n' "$2" $joint \
+                $joint "$4"
+        done
+    } >"$work/$1.yaml"
+    "$GRCTL" --robot "$work/$1.yaml" sim --link "$work/$1" >"$work/$1.out" 2>&1 &
+    echo $! >>"$work/pids"
+    echo $! >"$work/$1.pid"
+    wait_for test -e "$work/$1"
+}
+ports="left=$work/left,right=$work/right"
+on_ports() {
+    "$GRCTL" --robot $arms -d "$ports" --timeout 500 "$@"
+}
+# stands ARM: as its own robot, by another program: nothing turns, and it is short of its goal.
+stands() {
+    "$GRCTL" --robot "$work/$1.yaml" -d "$work/$1" --json status >"$work/a" &&
+        "$GRCTL" --robot "$work/$1.yaml" -d "$work/$1" --json status >"$work/b" &&
+        python3 -c 'import json, sys
+a, b = (json.load(open(f))["joints"] for f in sys.argv[1:3])
+sys.exit(any(abs(x["angle_deg"] - y["angle_deg"]) > 0.3 for x, y in zip(a, b))
+         or not 1 < abs(b[0]["angle_deg"]) < 55)' "$work/a" "$work/b"
+}
+moves() {
+    on_ports pose --time 9000 L_pan=60 R_pan=60 >"$work/moved" 2>&1 &
+    mover=$!
+    sleep 2
+}
+
+test_case "on two ports"
+check "the left arm is there" one_arm left L feetech STS3215
+check "and the right one" one_arm right R dynamixel2 XL430-W250
+check "its state has both" prints 0 '4  R_gripper' on_ports status
+check "both move" exits 0 on_ports pose L_pan=0 R_pan=0
+check "a port is missing" prints 1 'right-arm' "$GRCTL" --robot $arms -d "left=$work/left" status
+check "one port" prints 2 "-d left=PORT,right=PORT" "$GRCTL" --robot $arms -d "$work/left" status
+check "an emergency stop of a mistyped one" prints 2 "NOT stopped" \
+    "$GRCTL" --robot $arms -d "lft=$work/left" estop
+check "a line is mistyped" prints 2 "has no line 'lft'; it has left, right" \
+    "$GRCTL" --robot $arms -d "lft=$work/left" status
+if have_json; then
+    estops() {
+        moves
+        exits 0 on_ports estop || return 1
+        wait $mover && return 1
+        stands left && stands right
+    }
+    check "an emergency stop of both" estops
+    check "which latches" exits 4 on_ports pose L_pan=5
+    check "and is released" exits 0 on_ports estop --reset
+    check "they are back" exits 0 on_ports pose L_pan=0 R_pan=0
+    # The mark of one device is enough for whoever has both.
+    of_one() {
+        moves
+        "$GRCTL" --robot "$work/right.yaml" -d "$work/right" --timeout 300 estop >"$work/said" 2>&1
+        wait $mover && return 1
+        stands left && stands right
+    }
+    check "an emergency stop of one device stops both" of_one
+    check "it is released" exits 0 "$GRCTL" -d "$work/right" estop --reset
+    check "they are back again" exits 0 on_ports pose L_pan=0 R_pan=0
+    lost() {
+        moves
+        kill "$(cat "$work/right.pid")"
+        wait $mover && return 1
+        grep -q 'lost replies (no answer in time) at motor 1 (R_pan)' "$work/moved" || {
+            cat "$work/moved"
+            return 1
+        }
+        stands left
+    }
+    check "a line that is lost stops the other" lost
+    check "it is plugged in" one_arm right R dynamixel2 XL430-W250
+    check "and moves after it was read" exits 0 on_ports pose L_pan=0 R_pan=0
+else
+    skip "stops on two ports" "no python3"
+fi
+
+test_case "in the cockpit"
+if have_json && ! "$GRCTL" -d sim serve nowhere 2>&1 | grep -q 'without evhttp'; then
+    check "both arms move and stop" python3 tests/support/cockpit.py lines
+else
+    skip "both arms move and stop" "no python3, or no evhttp"
+fi
+done_testing
