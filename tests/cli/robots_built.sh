@@ -25,6 +25,7 @@ sways() {
 
 # in_cockpit FILE N MODEL: grctl serve tells of the robot with N joints.
 in_cockpit() {
+    rm -f "$work/link" # of the one before
     "$GRCTL" --robot "$1" -d sim serve --port 0 "$work" >"$work/link" 2>"$work/err" &
     cockpit=$!
     wait_for grep -q '^http://' "$work/link"
