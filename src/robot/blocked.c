@@ -43,6 +43,9 @@
  * alone. The worst that is known is that of an XL330. */
 #define FRICTION_PART 1.5
 #define FRICTION_RAD (5 * DEG)
+/* One that sets out from where it hung has friction on the other side first, which hid as much of
+ * its load as that: an XL-320 with a fifth of what it lifts stands for 15 degrees. */
+#define SETS_OUT_RAD (5 * DEG)
 /* No servo that carries a weight is further from its set point: an XL330 at its softest has 25
  * degrees by the arm of a Koch and what that carries. */
 #define OVERLOADED_RAD (35 * DEG)
@@ -174,7 +177,9 @@ static double least_ahead_rad(const grobo_robot *robot, int joint)
     double load_rad = fmax(fabs(grobo_i_load(axis)), axis->block_load_rad);
     /* The torque of a weight is no more than that times the sine of an angle that they turn. */
     load_rad += axis->carried_rad * (robot->turned_rad - axis->block_turned_rad);
-    return fmin(fmax(AHEAD_RAD, FRICTION_RAD + FRICTION_PART * load_rad), OVERLOADED_RAD);
+    double most_rad = fmax(AHEAD_RAD, FRICTION_RAD + FRICTION_PART * load_rad);
+    most_rad += axis->block_load_rad > 0 ? SETS_OUT_RAD : 0;
+    return fmin(most_rad, OVERLOADED_RAD);
 }
 
 /* Whether it stands while its set point moves on: from `axis->block_us` on, when that was where it
