@@ -173,28 +173,17 @@ enum { DEEDS = 100 };
 /* What leaves the arm where it is, whatever comes of it. */
 static const char *do_nothing_much(uint32_t *seed)
 {
-    grobo_posture far_away = weight_target(LIFT, 500, 500);
-    switch (next_random(seed) % 9) {
-    case 0:
-        weight_new_engine();
-        return "connect";
-    case 1:
-        (void)weight_torque(GROBO_TORQUE_ON);
-        return "torque on";
-    case 2: /* a command that fails */
-        assert_true(grobo_robot_move(&weight.robot, &far_away) < 0);
-        weight_wait_if(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
-        weight_new_engine();
-        return "a refused move";
-    case 3: /* one that nobody answers for a while */
+    unsigned which = next_random(seed) % 9;
+    if (which < WEIGHT_NOTHINGS) {
+        return weight_do_nothing(which);
+    }
+    if (which == WEIGHT_NOTHINGS) { /* one that nobody answers for a while */
         weight.lose = 12;
         weight_wait_if(grobo_robot_sense(&weight.robot, GROBO_JOINTS_ALL(2), GROBO_SENSE_FULL));
         weight.lose = 0;
         weight_wait_if(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
         weight_new_engine();
         return "lost replies";
-    default:
-        break;
     }
     way_to_stop way = (way_to_stop)(next_random(seed) % WAYS);
     way = falls(way) ? STOP : way;

@@ -183,3 +183,21 @@ int weight_torque(grobo_torque mode)
         grobo_robot_torque(&weight.robot, GROBO_JOINTS_ALL(weight.def->model->n_joints), mode);
     return job < 0 ? job : weight_wait(job);
 }
+
+const char *weight_do_nothing(unsigned which)
+{
+    const grobo_posture far_away = weight_target(0, 500, 500);
+    switch (which) {
+    case 0:
+        weight_new_engine();
+        return "connect";
+    case 1:
+        (void)weight_torque(GROBO_TORQUE_ON);
+        return "torque on";
+    default:
+        assert_true(grobo_robot_move(&weight.robot, &far_away) < 0);
+        weight_wait_if(grobo_robot_exit(&weight.robot, GROBO_EXIT_HOLD));
+        weight_new_engine();
+        return "a refused move";
+    }
+}

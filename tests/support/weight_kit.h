@@ -55,6 +55,10 @@ double weight_load_nm(int joint);
 grobo_posture weight_target(int joint, double deg, int ms);
 /* Moves it and waits for the end. @return the job's result, or why it was refused */
 int weight_move(int joint, double deg, int ms);
+/* What leaves an arm at rest where it is: a new engine, torque where it is on, a command that is
+ * refused and leaves. @return its name */
+enum { WEIGHT_NOTHINGS = 3 };
+const char *weight_do_nothing(unsigned which);
 /* The torque of all. @return the job's result */
 int weight_torque(grobo_torque mode);
 
