@@ -15,7 +15,7 @@ for shell in bash zsh fish; do
     check "completion $shell" exits 0 "$GRCTL" completion $shell
     cp "$work/out" "$work/complete.$shell"
 done
-sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p' "$work/help" >"$work/commands"
+sed -n '/^Global options/q;s/^  \([a-z-]*\) .*/\1/p' "$work/help" >"$work/commands"
 options_of "$work/help" 'Global options' >"$work/global"
 check "there are commands and global options" test -s "$work/commands" -a -s "$work/global"
 

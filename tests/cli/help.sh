@@ -13,7 +13,7 @@ check_json "help as JSON" 'any(c["name"] == "play" for c in lines[0]["commands"]
     "$GRCTL" --json help
 
 # Every command of the overview has a help page that names it.
-"$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p' >"$work/commands"
+"$GRCTL" help | sed -n '/^Global options/q;s/^  \([a-z-]*\) .*/\1/p' >"$work/commands"
 test_case "every command has a page that fits"
 check "there are commands" [ -s "$work/commands" ]
 while read -r command; do

@@ -59,9 +59,9 @@ is_japanese() {
 }
 ja "$GRCTL" help >"$work/out"
 check "the overview fits" eval '! too_wide'
-check "each summary is in Japanese" eval '! sed -n "/^コマンド:/,/^$/p" "$work/out" |
+check "each summary is in Japanese" eval '! sed -n "/^準備:/,/^共通/p" "$work/out" |
     LC_ALL=C grep -q "^[ -~][ -~]*$"'
-"$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p' >"$work/commands"
+"$GRCTL" help | sed -n '/^Global options/q;s/^  \([a-z-]*\) .*/\1/p' >"$work/commands"
 check "there are commands" [ "$(wc -l <"$work/commands")" -ge 30 ]
 while read -r command; do
     check "help $command" is_japanese "$command"

@@ -265,7 +265,7 @@ check "as the schema says" fits shell,version
 
 rows names | sort -u >"$work/names"
 every_command() {
-    for command in $("$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
+    for command in $("$GRCTL" help | sed -n '/^Global options/q;s/^  \([a-z-]*\) .*/\1/p'); do
         # shellcheck disable=SC2194 # the list is the constant
         case " sim shell monitor serve agent fleet record teach " in
         *" $command "*) ;; # above

@@ -100,6 +100,7 @@ typedef enum cli_group {
 
 typedef struct cli_command {
     const char *name;
+    const char *heading;       /* of the group that it begins in the overview, or NULL */
     const char *arguments;     /* "JOINT DEG [MS]" */
     const char *summary;       /* one line, no full stop */
     const char *details;       /* paragraphs for help and manual */

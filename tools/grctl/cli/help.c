@@ -78,12 +78,32 @@ static void print_global_options(FILE *to)
     }
 }
 
+/* Their names alone: the overview has the rest. */
+static void print_global_names(FILE *to)
+{
+    char names[512];
+    size_t n = 0;
+    for (size_t i = 0; i < GLOBAL_COUNT && n < sizeof names; i++) {
+        const cli_option *o = &cli_global_options[i];
+        int added = o->letter ? snprintf(names + n, sizeof names - n, " -%c", o->letter)
+                              : snprintf(names + n, sizeof names - n, " --%s", o->name);
+        n += added > 0 ? (size_t)added : 0;
+    }
+    putc('\n', to);
+    print_words(to, _("Global options ('grctl help' explains them):"), 0, 0);
+    fputs("  ", to);
+    print_words(to, names + 1, 2, 2);
+}
+
 void cli_print_overview(FILE *to)
 {
     fputs(_("grctl drives robots of serial command servos, such as GR001 or an SO-101 arm.\n\n"
-            "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n"),
+            "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n"),
           to);
     for (size_t i = 0; i < cli_n_commands; i++) {
+        if (cli_commands[i]->heading) {
+            fprintf(to, "\n%s:\n", _(cli_commands[i]->heading));
+        }
         fprintf(to, "  %-15s%s\n", cli_commands[i]->name, _(cli_commands[i]->summary));
     }
     print_global_options(to);
@@ -110,7 +130,7 @@ void cli_print_command(FILE *to, const cli_command *command)
             print_option(to, &command->options[i]);
         }
     }
-    print_global_options(to);
+    print_global_names(to);
     if (command->example) {
         fprintf(to, _("\nExamples:\n%s"), command->example);
     }

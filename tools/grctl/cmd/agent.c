@@ -19,6 +19,7 @@ static const cli_option options[AGENT_OPTIONS] = {
 
 const cli_command cmd_agent = {
     .name = "agent",
+    .heading = "Several robots, scripts, this command",
     .arguments = "",
     .summary = "lend the robots of this machine to a fleet",
     .details =

@@ -11,13 +11,14 @@ struct app;
 /* The robots of app.group, a line each, until a signal or q. The exit status. */
 int monitor_group(struct app *a, int64_t interval_us);
 
-/* In the order of the overview: finding a robot, its state, moving it, files, servos, the rest. */
+/* In the order of the overview; the first of each group has its heading. */
 #define GRCTL_COMMANDS(X)                                                                          \
     X(setup)                                                                                       \
     X(ports)                                                                                       \
     X(doctor)                                                                                      \
     X(first_contact)                                                                               \
     X(scan)                                                                                        \
+    X(calibrate)                                                                                   \
     X(info)                                                                                        \
     X(joints)                                                                                      \
     X(robot)                                                                                       \
@@ -29,25 +30,24 @@ int monitor_group(struct app *a, int64_t interval_us);
     X(move)                                                                                        \
     X(pose)                                                                                        \
     X(drive)                                                                                       \
-    X(play)                                                                                        \
+    X(follow)                                                                                      \
     X(stop)                                                                                        \
     X(estop)                                                                                       \
+    X(play)                                                                                        \
     X(record)                                                                                      \
     X(teach)                                                                                       \
-    X(follow)                                                                                      \
     X(check)                                                                                       \
     X(show)                                                                                        \
     X(plot)                                                                                        \
     X(convert)                                                                                     \
-    X(budget)                                                                                      \
     X(slot)                                                                                        \
     X(scenario)                                                                                    \
     X(servo_get)                                                                                   \
     X(servo_set)                                                                                   \
+    X(budget)                                                                                      \
     X(decode)                                                                                      \
     X(replay)                                                                                      \
     X(sim)                                                                                         \
-    X(calibrate)                                                                                   \
     X(agent)                                                                                       \
     X(fleet)                                                                                       \
     X(shell)                                                                                       \

@@ -330,6 +330,7 @@ static int run(app *a)
 
 const cli_command cmd_play = {
     .name = "play",
+    .heading = "Motions",
     COMMAND_ARGUMENTS("FILE...", 1, -1, CLI_ARG_FILE),
     .summary = "play motion files",
     .details =

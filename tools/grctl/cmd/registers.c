@@ -676,6 +676,7 @@ static int run_set(app *a)
 
 const cli_command cmd_servo_get = {
     .name = "servo-get",
+    .heading = "Servos, frames, the simulator",
     COMMAND_ARGUMENTS("ID [KEY]...", 1, CLI_ARGUMENTS_MAX, CLI_ARG_JOINT),
     .summary = "read a servo's registers by name",
     .details =

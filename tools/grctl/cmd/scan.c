@@ -363,6 +363,7 @@ const cli_command cmd_scan = {
 
 const cli_command cmd_info = {
     .name = "info",
+    .heading = "See",
     .arguments = "",
     .summary = "print models and firmware of the board and the servos",
     .details = "Prints how the robot is reached and what each of its servos is. A servo that does\n"

@@ -130,6 +130,7 @@ static int run(app *a)
 
 const cli_command cmd_servo = {
     .name = "servo",
+    .heading = "Move",
     COMMAND_ARGUMENTS("on|off|brake [JOINT|GROUP]...", 1, -1, CLI_ARG_JOINT),
     .summary = "switch torque",
     .details =

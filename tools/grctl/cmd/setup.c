@@ -15,6 +15,7 @@ static int run(app *a)
 
 const cli_command cmd_setup = {
     .name = "setup",
+    .heading = "Begin",
     .arguments = "",
     .summary = "find a robot, name it and read its joints",
     .details =
