@@ -100,11 +100,23 @@ static void end(grobo_bus *bus, grobo_txn *txn)
     grobo_i_bus_finish(bus, txn, GROBO_OK, NULL);
 }
 
+/* A reply that is owed to a question before, and comes sooner than the line can carry this frame
+ * and one of its replies, is that one. */
+static bool is_older(grobo_bus *bus, const grobo_txn *txn, const grobo_packet *packet)
+{
+    grobo_bus_cost cost;
+    grobo_bus_cost_of(bus, txn, &cost);
+    uint32_t delays_us = bus->config.return_delay_us * txn->reply.count;
+    uint32_t one_us = (cost.reply_us - delays_us) / txn->reply.count;
+    return bus->now_us < txn->sent_us + cost.request_us + one_us &&
+           grobo_i_bus_owed(bus, grobo_i_bus_packet_key(packet)) != NULL;
+}
+
 static bool take(grobo_bus *bus, grobo_txn *txn, const grobo_packet *packet)
 {
     bool any = txn->reply.kind == GROBO_REPLY_ANY;
     int place = any ? 0 : place_of(bus, txn, packet);
-    if (place < 0) {
+    if (place < 0 || (!any && is_older(bus, txn, packet))) {
         return false;
     }
     grobo_packet reply = *packet;

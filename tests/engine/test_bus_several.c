@@ -436,6 +436,45 @@ TEST(late_replies_of_several_hold_the_next_until_the_last)
     assert_in_range(late_status(twice, 3), 50 * MS, GROBO_BUS_HOLD_US);
 }
 
+/* One that is owed to a question before is no answer to a frame that has just left, so soon that
+ * the line cannot have carried it; where nothing is owed, a line may be faster than its rate. */
+TEST(a_late_reply_is_no_answer_to_a_frame_that_has_just_left)
+{
+    static request single;
+    const grobo_bus_config config = {
+        .protocol = &grobo_i_dxl2_protocol, .baud_bps = BAUD, .margin_us = MS};
+    for (int late = 0; late < 2; late++) {
+        peer_init(&p, &config);
+        if (late) { /* asked twice, answered late, and once more */
+            const grobo_dxl2_packet read = {
+                .id = 3, .instruction = GROBO_DXL2_READ, .address = POSITION, .length = BYTES};
+            int n = grobo_dxl2_build(&read, single.frame, sizeof single.frame);
+            assert_true(n > 0);
+            peer_txn(&p, &single.txn, single.frame, n, GROBO_PRIORITY_USER);
+            single.txn.retries = 1;
+            assert_int_equal(grobo_bus_submit(&p.bus, &single.txn), GROBO_OK);
+            position_at(3 * MS, 3);
+            peer_run(&p, 3 * MS + 10);
+            assert_int_equal(p.ended_count, 1);
+        }
+        int64_t from_us = 3 * MS + 10;
+        peer_run(&p, from_us);
+        submit(&(grobo_dxl2_packet){.id = GROBO_DXL2_ID_ALL,
+                                    .instruction = GROBO_DXL2_SYNC_READ,
+                                    .address = POSITION,
+                                    .length = BYTES,
+                                    .data = ids,
+                                    .data_bytes = sizeof ids});
+        while (p.sent_count < (late ? 3 : 1)) {
+            from_us += 10;
+            peer_run(&p, from_us);
+        }
+        position_at(from_us + 200, 3);
+        peer_run(&p, from_us + 250);
+        assert_int_equal(n_got, late ? 0 : 1);
+    }
+}
+
 /* Of DYNAMIXEL's errors some tell how the servo is, and some what became of the request. */
 TEST(errors_of_old_dynamixels_are_told_apart)
 {

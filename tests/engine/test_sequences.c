@@ -764,6 +764,7 @@ static const char *const mended[] = {
     "sts holds 3 move-other frame-lost move-all frame-lost",
     "scs limp 25 move-other link-down link-up reply-late",
     "lx16a holds 25 free torque-off others-move",
+    "xl320 holds 25 move-other reply-late move stop",
 };
 
 TEST(sequences_that_broke_a_rule_break_none_any_more)

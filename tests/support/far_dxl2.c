@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* DYNAMIXEL X, protocol 2: reference dynamixel2, 2 to 10. Time-based profiles (drive mode 4). */
+/*
+ * DYNAMIXEL X, protocol 2: reference dynamixel2, 2 to 10. Time-based profiles (drive mode 4). And
+ * XL-320: the same frames, the table of its page in ROBOTIS' e-manual (docs/en/dxl/x/xl320.md):
+ * 1024 steps over 300 degrees, a moving speed in units of 0.111 rpm, no profiles, no watchdog.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -35,6 +39,30 @@ enum {
     ALL = 254,
     ERROR_RANGE = 4
 };
+
+#define XL320_STEP_DEG (300.0 / 1024)
+#define XL320_SPEED_DPS (0.111 * 6)
+
+enum {
+    XL320_MIDDLE = 512,
+    XL320_TORQUE = 24,
+    XL320_GOAL = 30,
+    XL320_SPEED = 32,
+    XL320_POSITION = 37,
+    XL320_SENSE = 1024 /* of a speed that is read: clockwise */
+};
+
+/* Where a servo's torque and goal are. */
+typedef struct layout {
+    int torque, goal, goal_bytes;
+} layout;
+
+static const layout x_series = {AT_TORQUE, AT_GOAL, 4}, xl320 = {XL320_TORQUE, XL320_GOAL, 2};
+
+static const layout *layout_of(const far_family *family)
+{
+    return family == &far_xl320 ? &xl320 : &x_series;
+}
 
 static void put32(uint8_t *to, int32_t value)
 {
@@ -118,7 +146,57 @@ static void watch(far_joint *joint, int64_t now_us)
     }
 }
 
-static void refresh(far_joint *joint)
+static void begin_xl320(far_joint *joint)
+{
+    memset(joint->reg, 0, sizeof joint->reg);
+    far_put16(joint->reg, 350);
+    joint->reg[2] = 29;
+    joint->reg[3] = (uint8_t)joint->id;
+    joint->reg[4] = 3;
+    far_put16(joint->reg + 8, 1023);
+    joint->reg[11] = 2;
+    joint->reg[12] = 65;
+    joint->reg[13] = 60;
+    joint->reg[14] = 90;
+    far_put16(joint->reg + 15, 1023);
+    joint->reg[17] = 2;
+    joint->reg[18] = 3;
+    joint->reg[29] = 32;
+    far_put16(joint->reg + XL320_GOAL, XL320_MIDDLE);
+    far_put16(joint->reg + 35, 1023);
+    far_put16(joint->reg + 51, 32);
+}
+
+/* Speed 0 is as fast as it can. */
+static void plan_xl320(const far_joint *joint, double *goal_deg, double *cruise_dps,
+                       double *accel_dps2)
+{
+    *goal_deg = (far_get16(joint->reg + XL320_GOAL) - XL320_MIDDLE) * XL320_STEP_DEG;
+    *cruise_dps = far_get16(joint->reg + XL320_SPEED) * XL320_SPEED_DPS;
+    *accel_dps2 = 0;
+}
+
+static void hold_xl320(far_joint *joint, double deg, double dps, int64_t now_us)
+{
+    (void)now_us;
+    joint->reg[XL320_TORQUE] = (uint8_t)joint->torque;
+    far_put16(joint->reg + XL320_GOAL, (int)lround(deg / XL320_STEP_DEG) + XL320_MIDDLE);
+    far_put16(joint->reg + XL320_SPEED, (int)ceil(dps / XL320_SPEED_DPS));
+}
+
+static void refresh_xl320(far_joint *joint)
+{
+    int speed = (int)lround(fabs(joint->dps) / XL320_SPEED_DPS);
+    int position = (int)lround(joint->at_deg / XL320_STEP_DEG) + XL320_MIDDLE;
+    far_put16(joint->reg + XL320_POSITION, position);
+    far_put16(joint->reg + 39, joint->dps < 0 ? speed | XL320_SENSE : speed);
+    far_put16(joint->reg + 41, joint->dps != 0 ? 100 : 5);
+    joint->reg[45] = 74;
+    joint->reg[46] = (uint8_t)joint->celsius;
+    joint->reg[49] = joint->dps != 0;
+}
+
+static void refresh_x(far_joint *joint)
 {
     put32(joint->reg + AT_POSITION, (int32_t)lround(joint->at_deg / STEP_DEG) + MIDDLE);
     put32(joint->reg + 140, get32(joint->reg + AT_POSITION));
@@ -129,6 +207,15 @@ static void refresh(far_joint *joint)
     joint->reg[AT_HEAT] = (uint8_t)joint->celsius;
 }
 
+static void refresh(far_joint *joint)
+{
+    if (joint->family == &far_xl320) {
+        refresh_xl320(joint);
+    } else {
+        refresh_x(joint);
+    }
+}
+
 /* The error of the status. */
 static int write(far_side *far, far_joint *joint, int at, const uint8_t *data, int n)
 {
@@ -137,19 +224,20 @@ static int write(far_side *far, far_joint *joint, int at, const uint8_t *data, i
     }
     far_turn_to(joint, far->now_us);
     joint->heard_us = far->now_us;
-    bool goal = at <= AT_GOAL && AT_GOAL + 4 <= at + n;
+    const layout *its = layout_of(joint->family);
+    bool goal = at <= its->goal && its->goal + its->goal_bytes <= at + n;
     if (joint->deaf) {
         return 0;
     }
-    bool velocity = at <= AT_VELOCITY && AT_VELOCITY + 4 <= at + n;
-    if ((goal || velocity) && joint->reg[AT_WATCHDOG] == WATCHDOG_OVER) {
+    bool velocity = at <= AT_VELOCITY && AT_VELOCITY + 4 <= at + n, is_x = its == &x_series;
+    if (is_x && (goal || velocity) && joint->reg[AT_WATCHDOG] == WATCHDOG_OVER) {
         return ERROR_RANGE;
     }
     memcpy(joint->reg + at, data, (size_t)n);
-    joint->wheel = joint->reg[AT_MODE] == 1; /* velocity control (emanual, operating_mode) */
+    joint->wheel = is_x && joint->reg[AT_MODE] == 1; /* velocity control (emanual) */
     joint->wheel_dps = get32(joint->reg + AT_VELOCITY) * SPEED_DPS;
-    if (at <= AT_TORQUE && AT_TORQUE < at + n) {
-        far_torque(far, joint, joint->reg[AT_TORQUE] != 0);
+    if (at <= its->torque && its->torque < at + n) {
+        far_torque(far, joint, joint->reg[its->torque] != 0);
     }
     if (goal) {
         far_goal(far, joint);
@@ -216,7 +304,7 @@ static int take_out(const uint8_t *frame, int n, uint8_t *to)
     return k;
 }
 
-static bool moves(const uint8_t *frame, int n)
+static bool moves_by(const layout *its, const uint8_t *frame, int n)
 {
     uint8_t p[FAR_FRAME_BYTES];
     int size = take_out(frame, n, p), at = far_get16(p);
@@ -224,8 +312,19 @@ static bool moves(const uint8_t *frame, int n)
         return false;
     }
     int bytes = frame[7] == WRITE ? size - 2 : far_get16(p + 2);
-    return (at <= AT_VELOCITY && AT_VELOCITY < at + bytes) ||
-           (at <= AT_TORQUE && AT_TORQUE < at + bytes) || (at <= AT_GOAL && AT_GOAL < at + bytes);
+    return (its == &x_series && at <= AT_VELOCITY && AT_VELOCITY < at + bytes) ||
+           (at <= its->torque && its->torque < at + bytes) ||
+           (at <= its->goal && its->goal < at + bytes);
+}
+
+static bool moves(const uint8_t *frame, int n)
+{
+    return moves_by(&x_series, frame, n);
+}
+
+static bool moves_xl320(const uint8_t *frame, int n)
+{
+    return moves_by(&xl320, frame, n);
 }
 
 static void obey_all(far_side *far, int instruction, const uint8_t *p, int n)
@@ -273,3 +372,19 @@ const far_family far_dxl2 = {.name = "dxl2",
                              .plan = plan,
                              .hold = hold,
                              .watch = watch};
+
+const far_family far_xl320 = {.name = "xl320",
+                              .baud_bps = 1000000,
+                              .bits_a_byte = 10,
+                              .dead_us = 2000,
+                              .think_us = 60,
+                              .top_dps = 684,
+                              .step_deg = XL320_STEP_DEG,
+                              .count_dps = XL320_SPEED_DPS,
+                              .measure = measure,
+                              .sound = sound,
+                              .moves = moves_xl320,
+                              .obey = obey,
+                              .begin = begin_xl320,
+                              .plan = plan_xl320,
+                              .hold = hold_xl320};

@@ -3,7 +3,7 @@
  * The far side of a servo line, written from the protocols' texts, with no code of the library and
  * none of its simulator: what it says of a stop is a second opinion. It takes bytes and the time,
  * turns shafts and answers. Families: RS30x (on a bus, and behind GR001's board), DYNAMIXEL
- * protocol 2 and 1 (AX, MX), Feetech STS and SCS, KRS (ICS 3.6) and LX-16A.
+ * protocol 2 (X, XL-320) and 1 (AX, MX), Feetech STS and SCS, KRS (ICS 3.6) and LX-16A.
  *
  * A shaft goes straight to its goal in the time or at the speed that its registers hold, with the
  * ramps of servos that have them, after the dead time of its servo. Angles are the servo's, in
@@ -105,8 +105,8 @@ struct far_family {
     void (*watch)(far_joint *joint, int64_t now_us);
 };
 
-extern const far_family far_board, far_bus, far_dxl2, far_dxl1, far_mx, far_sts, far_scs, far_ics,
-    far_lx16a;
+extern const far_family far_board, far_bus, far_dxl2, far_xl320, far_dxl1, far_mx, far_sts, far_scs,
+    far_ics, far_lx16a;
 
 struct far_side {
     const far_family *family;

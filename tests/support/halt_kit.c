@@ -65,6 +65,7 @@ static const recipe recipes[] = {
     {"scs", &far_scs, SMALL_JOINTS, M1, 1500, 5000},
     {"ics", &far_ics, SMALL_JOINTS, 115200, 7500, 135000},
     {"lx16a", &far_lx16a, SMALL_JOINTS, 115200, 3000, 160000},
+    {"xl320", &far_xl320, SMALL_JOINTS, M1, 2500, 8000},
     {"bus-57600", &far_bus, 20, 57600, 19000, 220000},
     {"bus-460800", &far_bus, 20, 460800, 2500, 40000},
     {"dxl2-20", &far_dxl2, 20, M1, 15000, 20000},
@@ -99,6 +100,7 @@ static const struct kind {
     int (*init)(grobo_driver *driver, const grobo_model *model);
 } kinds[] = {
     {&far_dxl2, &grobo_i_dxl2_table, "XL430-W250", grobo_dxl2_driver_init},
+    {&far_xl320, &grobo_i_dxl2_table, "XL-320", grobo_dxl2_driver_init},
     {&far_dxl1, &grobo_i_dxl1_table, "AX-12A", grobo_dxl1_driver_init},
     {&far_mx, &grobo_i_dxl1_table, "MX-28", grobo_dxl1_driver_init},
     {&far_sts, &grobo_i_sts_table, "STS3215", grobo_feetech_driver_init},
