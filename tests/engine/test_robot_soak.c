@@ -13,6 +13,8 @@
  * line. Two like flips pass the sum of a packet: the witness knows of each such packet, and only
  * that one joint is excused, until it is read again.
  *
+ * Of the seeds and lines half have weight: the shafts sag, lag and swing.
+ *
  * Each seed and line is a test of its own, of four parts: both wirings, and servos that run to
  * their goal when torque comes on or stay where they are. A test that fails prints the command
  * that repeats it and the last frames.
@@ -25,6 +27,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <grobo/robot_file.h>
 
 #include "tests/support/restless.h"
 #include "tests/support/test.h"
@@ -63,6 +67,7 @@ typedef struct run {
 
 static grobo_test_rig rig;
 static restless user;
+static grobo_sim_physics *physics; /* of a seed with weight, else NULL */
 static run runs[SEEDS_MAX * LINES];
 static size_t n_runs;
 static bool is_one_line; /* of runs */
@@ -121,6 +126,13 @@ static void start(const run *r, int part, uint32_t random)
                                  .lost_replies = 30};
     grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = random, .start = GROBO_SIM_START_LIMP,
                             .jump_on_torque = part >= 2};
+    grobo_sim_physics_free(physics);
+    physics = NULL;
+    if (variant % 2 == 1) { /* half of the runs have weight */
+        assert_int_equal(
+            grobo_robot_def_physics(grobo_robot_def_find("gr001"), false, NULL, &physics), 0);
+        sim.physics = physics;
+    }
     rig_start_driver(&rig,
                      grobo_gr001_driver(part % 2 == 0 ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS),
                      &config, &sim);

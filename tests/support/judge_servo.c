@@ -4,6 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "src/sim/servo/shaft.h"
 #include "tests/support/judge.h"
 #include "tests/support/test.h"
 
@@ -30,10 +31,17 @@ const char *judge_name(const judge *w, int joint)
     return w->rig->driver->model->joints[joint].name;
 }
 
+/* In a world with weight the shaft sags and lags behind the place that a servo with torque has it
+ * at: what a goal may ask for counts from that place. */
 grobo_sim_view judge_view(judge *w, int joint)
 {
+    const grobo_sim *sim = &w->rig->sim;
     grobo_sim_view view;
     assert_int_equal(grobo_sim_look(&w->rig->sim, joint, &view), 0);
+    if (sim->config.physics != NULL && view.torque == GROBO_TORQUE_ON) {
+        view.angle_mdeg =
+            (int32_t)lround(grobo_i_sim_planned_mdeg(&sim->servo[joint], sim->now_us));
+    }
     return view;
 }
 
@@ -90,9 +98,10 @@ void judge_goal_left(judge *w, int joint, int32_t ddeg, int32_t time_cs)
         drop_flying(axis, 1);
     }
     double before_deg = along_deg(axis, w->rig->now_us);
-    axis->flying[axis->n_flying++] = (judge_goal){w->rig->now_us, ddeg,
-                                                  time_cs,        rig_angle_deg(w->rig, joint),
-                                                  before_deg,     w->rig->now_us + w->wire_us};
+    axis->flying[axis->n_flying++] =
+        (judge_goal){w->rig->now_us, ddeg,
+                     time_cs,        judge_view(w, joint).angle_mdeg / 1000.0,
+                     before_deg,     w->rig->now_us + w->wire_us};
     axis->from_deg = before_deg;
     axis->to_deg = ddeg / 10.0;
     axis->sent = true;
@@ -154,11 +163,13 @@ static bool is_turned(const judge *w, int joint)
     return w->rig->witness.said_us[joint] < w->axes[joint].turned_us;
 }
 
-/* What a hand did since the engine looked last, nobody can know. */
+/* What a hand did since the engine looked last, or a limp joint that its weight turns, nobody can
+ * know. */
 double judge_hold_deg(judge *w, int joint)
 {
     double gone_deg = fabs(rig_angle_deg(w->rig, joint) - w->axes[joint].read_deg);
-    return HOLD_DEG + (is_turned(w, joint) ? gone_deg : 0);
+    bool falls = w->rig->sim.config.physics != NULL;
+    return HOLD_DEG + (is_turned(w, joint) || falls ? gone_deg : 0);
 }
 
 static void take_torque(judge *w, const grobo_sim_event *event)
