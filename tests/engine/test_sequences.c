@@ -155,7 +155,7 @@ static void enqueue(void)
 static void pause_it(void)
 {
     if (grobo_robot_pause(&halt.robot) >= 0) {
-        sequence_halt(all(), GROBO_PLAY_STOP_US, false);
+        sequence_halt(all() & ~sequence_raw_waits(), GROBO_PLAY_STOP_US, false);
     }
 }
 

@@ -241,6 +241,7 @@ static void hear_goal(const far_joint *joint, const far_news *news)
     sequence_joint *its = &sequence.joint[news->joint];
     int64_t told_us = halt.far.told_us[news->joint];
     sequence.goals++;
+    its->raw_waits = its->raw_waits && fabs(news->goal_deg - its->raw_deg) > slack_deg(joint);
     note_place(joint, its);
     if (news->left_us < sequence.up_us) {
         return; /* it was on the line */
@@ -465,8 +466,20 @@ void sequence_license_raw(grobo_joint_mask joints, double deg)
     license(joints, &deg, &deg);
     for (int j = 0; j < halt.of->n_joints; j++) {
         sequence_joint *its = &sequence.joint[servo_of(j)];
-        its->raw = its->raw || (joints & GROBO_JOINT_BIT(j)) != 0;
+        if ((joints & GROBO_JOINT_BIT(j)) != 0) {
+            its->raw = its->raw_waits = true;
+            its->raw_deg = deg;
+        }
     }
+}
+
+grobo_joint_mask sequence_raw_waits(void)
+{
+    grobo_joint_mask joints = 0;
+    for (int j = 0; j < halt.of->n_joints; j++) {
+        joints |= sequence.joint[servo_of(j)].raw_waits ? GROBO_JOINT_BIT(j) : 0;
+    }
+    return joints;
 }
 
 void sequence_license_here(grobo_joint_mask joints)

@@ -43,6 +43,8 @@ typedef struct sequence_joint {
     bool
         unheard; /* a hand or another program turned it, or it restarted, and it told nothing yet */
     bool raw;    /* that request is a raw frame's: what ends a motion does not end it */
+    bool raw_waits; /* that frame has not come yet: a pause does not take it back */
+    double raw_deg;
     bool foreign, restarted;
     bool free;          /* a hand may move it: it brakes, and holds where it was left */
     int64_t missed_us;  /* until then it had missed a frame, and told nothing of that */
@@ -74,6 +76,8 @@ void sequence_listen(void);
 /* A request was accepted that moves these joints of the model anywhere between lo and hi. */
 void sequence_license(grobo_joint_mask joints, double lo_deg, double hi_deg);
 void sequence_license_raw(grobo_joint_mask joints, double deg);
+/* Those of which the raw frame has not come yet. */
+grobo_joint_mask sequence_raw_waits(void);
 /* The same, where they are: they get torque. */
 void sequence_license_here(grobo_joint_mask joints);
 /* From now on nothing but halts; soft_us: they may take so long. at_once: one must leave now. */
