@@ -146,13 +146,13 @@ class Binding(unittest.TestCase):
         self.assertEqual(str(errors.error(-13, "read", "HEAD")), "read: no reply in time (HEAD)")
 
     def test_every_exported_name_is_known(self):
-        """But for those that work in storage of a C program: static.h, sim_static.h, locks."""
+        """But for those that work in storage of a C program: lines.h, static.h, sim_static.h, locks."""
         def declared(*names):
             text = "".join(Path("include/grobo", name).read_text() for name in names)
             return re.findall(r"GROBO_API [^;]*?\b(grobo_\w+)\(", text)
 
         listed = re.findall(r"^\s*(grobo_\w+);", Path("src/libgrobo.map").read_text(), re.M)
-        in_storage = declared("core/static.h", "core/sim_static.h")
+        in_storage = declared("core/lines.h", "core/static.h", "core/sim_static.h")
         in_storage += [n for n in declared("core/port.h") if re.match("grobo_(mutex|cond)_", n)]
         self.assertGreater(len(listed), 500)
         self.assertEqual([n for n in listed if not hasattr(_lib.lib, n)], sorted(in_storage))
