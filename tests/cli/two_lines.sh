@@ -89,7 +89,8 @@ sys.exit(any(abs(x["angle_deg"] - y["angle_deg"]) > 0.3 for x, y in zip(a, b))
          or not 1 < abs(b[0]["angle_deg"]) < 55)' "$work/a" "$work/b"
 }
 moves() {
-    on_ports pose --time 9000 L_pan=60 R_pan=60 >"$work/moved" 2>&1 &
+    "$GRCTL" --robot $arms -d "$ports" --timeout 500 pose --time 9000 L_pan=60 R_pan=60 \
+        >"$work/moved" 2>&1 &
     mover=$!
     sleep 2
 }
@@ -116,6 +117,14 @@ if have_json; then
     check "which latches" exits 4 on_ports pose L_pan=5
     check "and is released" exits 0 on_ports estop --reset
     check "they are back" exits 0 on_ports pose L_pan=0 R_pan=0
+    killed() {
+        moves
+        kill -KILL $mover
+        wait $mover
+        wait_for stands left && wait_for stands right
+    }
+    check "a kill: the guard stops both" killed
+    check "and they are back" exits 0 on_ports pose L_pan=0 R_pan=0
     # The mark of one device is enough for whoever has both.
     of_one() {
         moves

@@ -192,6 +192,19 @@ void grobo_i_guard_take(grobo_guard *guard, const guard_message *message, const 
     send(guard, &all, sizeof all.message + message->data_bytes, handle);
 }
 
+void grobo_i_guard_more(grobo_guard *guard, bool connection, grobo_handle handle)
+{
+    guard_message message;
+
+    if (can_be_told(guard)) {
+        memset(&message, 0, sizeof message);
+        message.magic = GUARD_MAGIC;
+        message.kind = GUARD_MORE;
+        message.connection = connection;
+        send(guard, &message, sizeof message, handle);
+    }
+}
+
 void grobo_i_guard_tell(grobo_guard *guard, guard_policy policy, bool moves)
 {
     guard_message *told = &guard->message;

@@ -5,7 +5,8 @@
  *
  * What goes over the socket, between two builds of the same library:
  * - to the guard: messages of guard_message and its data. SHARE brings the memory that both have;
- *   TAKE the port, and how to speak on it; STATE what changed since; RELEASE takes the port back;
+ *   TAKE the port, and how to speak on it, behind MORE with the port of each other line of a robot
+ *   that has several; STATE what changed since; RELEASE takes the ports back;
  *   at the end of the stream the program has ended well where it had no port there, else it has
  *   died, or has closed its descriptors.
  * - to the program: guard_hello once, then a byte for each of guard_word.
@@ -30,9 +31,15 @@
 #include "ports/common/guard.h"
 
 /* Changes with the layout of guard_message. */
-#define GUARD_MAGIC UINT32_C(0x47524433)
+#define GUARD_MAGIC UINT32_C(0x47524434)
 
-typedef enum guard_kind { GUARD_TAKE = 1, GUARD_STATE, GUARD_RELEASE, GUARD_SHARE } guard_kind;
+typedef enum guard_kind {
+    GUARD_TAKE = 1,
+    GUARD_STATE,
+    GUARD_RELEASE,
+    GUARD_SHARE,
+    GUARD_MORE
+} guard_kind;
 
 /* Who has the line. */
 enum guard_line { GUARD_LINE_PROGRAM, GUARD_LINE_GUARD, GUARD_LINE_NOBODY };
@@ -64,7 +71,7 @@ typedef struct guard_message {
     uint32_t policy; /* guard_policy */
     uint32_t moves;  /* joints are on their way */
     /* of TAKE */
-    uint32_t connection; /* a TCP connection, not a serial port */
+    uint32_t connection; /* a TCP connection, not a serial port; of MORE too */
     uint32_t data_bytes; /* behind the message */
     grobo_wiring wiring;
     grobo_robot_config robot;
@@ -89,6 +96,9 @@ struct grobo_guard {
 /* Gives it a port; message->data_bytes of data go with it. */
 void grobo_i_guard_take(grobo_guard *guard, const guard_message *message, const void *data,
                         grobo_handle handle);
+
+/* Gives it the port of a line behind the first one, before that. */
+void grobo_i_guard_more(grobo_guard *guard, bool connection, grobo_handle handle);
 
 /* Says what has changed, if it has, and that the program lives. */
 void grobo_i_guard_tell(grobo_guard *guard, guard_policy policy, bool moves);

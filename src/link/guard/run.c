@@ -8,6 +8,7 @@
  */
 #include <string.h>
 
+#include <grobo/core/lines.h>
 #include <grobo/core/serial.h>
 #include <grobo/core/static.h>
 
@@ -55,8 +56,11 @@ typedef struct guard_run {
     guard_message how;
     const grobo_driver *driver;
     void *driver_ctx;
-    grobo_port *port;
-    const grobo_port_ops *ops;
+    int n_lines;                        /* of its ports, the first n_lines are there */
+    grobo_handle more[GROBO_LINES_MAX]; /* of the lines behind the first one */
+    grobo_port *port[GROBO_LINES_MAX];
+    const grobo_port_ops *ops[GROBO_LINES_MAX];
+    bool gone[GROBO_LINES_MAX]; /* while the robot is stopped */
     /* the engine, while it stops the robot */
     grobo_robot robot;
     int ended_job, result; /* the job that ended last */
@@ -68,6 +72,7 @@ static void forget(guard_run *run)
 {
     run->has_port = run->lent = false;
     run->line = GROBO_HANDLE_NULL;
+    run->n_lines = 1;
 }
 
 /* The program has released the device, or it is gone. */
@@ -76,7 +81,28 @@ static void drop(guard_run *run)
     if (run->has_port) {
         grobo_i_guard_drop(run->line);
     }
+    for (int i = 1; i < run->n_lines; i++) {
+        grobo_i_guard_drop(run->more[i]);
+    }
     forget(run);
+}
+
+static const grobo_port_ops *ops_of(const guard_message *message)
+{
+    return message->connection ? grobo_port_tcp_ops() : grobo_port_serial_ops();
+}
+
+/* The port of another line, which comes before that of the first one. */
+static void take_more(guard_run *run)
+{
+    if (run->has_port) {
+        drop(run);
+    }
+    if (run->came != GROBO_HANDLE_NULL && run->n_lines < GROBO_LINES_MAX) {
+        run->ops[run->n_lines] = ops_of(&run->in.message);
+        run->more[run->n_lines++] = run->came;
+        run->came = GROBO_HANDLE_NULL;
+    }
 }
 
 static void say(guard_run *run, char word)
@@ -131,9 +157,16 @@ static const grobo_driver *find_driver(guard_run *run)
 
 static void take(guard_run *run)
 {
-    drop(run);
+    const grobo_lines *lines;
+
+    if (run->has_port) {
+        drop(run);
+    }
     run->driver = find_driver(run);
-    if (run->came == GROBO_HANDLE_NULL || run->driver == NULL) {
+    lines = grobo_driver_lines(run->driver);
+    if (run->came == GROBO_HANDLE_NULL || run->driver == NULL ||
+        run->n_lines != (lines == NULL ? 1 : lines->n_lines)) {
+        drop(run);
         say(run, GUARD_REFUSED);
         return;
     }
@@ -141,7 +174,7 @@ static void take(guard_run *run)
     run->line = run->came;
     run->came = GROBO_HANDLE_NULL;
     run->how = run->in.message;
-    run->ops = run->how.connection ? grobo_port_tcp_ops() : grobo_port_serial_ops();
+    run->ops[0] = ops_of(&run->how);
     run->own.line = GUARD_LINE_PROGRAM;
     grobo_i_device_names_find(run->how.device, &run->names);
     run->holder = grobo_i_estop_holder_stamp(&run->names);
@@ -167,6 +200,9 @@ static bool obey(guard_run *run)
         break;
     case GUARD_SHARE:
         can = share(run);
+        break;
+    case GUARD_MORE:
+        take_more(run);
         break;
     }
     if (run->came != GROBO_HANDLE_NULL) {
@@ -216,19 +252,72 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-/* Reads what comes in the span; 0: nothing. */
-static int read_until(guard_run *run, uint8_t *bytes, size_t size, int64_t span_us)
+/* A line of several that is gone keeps the others from nothing. @return < 0: all are. */
+static int lose(guard_run *run, int line, int error)
 {
-    grobo_os_cause cause;
-    int got = grobo_port_wait(run->ops->socket(run->port), GROBO_PORT_READABLE, span_us);
+    bool any = false;
 
-    return got > 0 ? run->ops->read(run->port, bytes, size, &cause) : got;
+    run->gone[line] = true;
+    for (int i = 0; i < run->n_lines; i++) {
+        any = any || !run->gone[i];
+    }
+    grobo_robot_line_down(&run->robot, line, grobo_now_us());
+    return any ? GROBO_OK : error;
+}
+
+/* Reads what comes in the span; 0: nothing. */
+static int read_line(guard_run *run, int line, uint8_t *bytes, size_t size, int64_t span_us)
+{
+    const grobo_port_ops *ops = run->ops[line];
+    grobo_os_cause cause;
+    int got = grobo_port_wait(ops->socket(run->port[line]), GROBO_PORT_READABLE, span_us);
+
+    return got > 0 ? ops->read(run->port[line], bytes, size, &cause) : got;
+}
+
+/* The same of any line, which *line is then. Several are looked at in turn, for so long each. */
+#define TURN_US 500
+static int read_until(guard_run *run, int *line, uint8_t *bytes, size_t size, int64_t span_us)
+{
+    int64_t end_us = grobo_now_us() + span_us;
+    int got = 0;
+
+    if (run->n_lines == 1) {
+        *line = 0;
+        return read_line(run, 0, bytes, size, span_us);
+    }
+    do {
+        for (*line = 0; *line < run->n_lines; (*line)++) {
+            if (run->gone[*line]) {
+                continue;
+            }
+            got = read_line(run, *line, bytes, size, grobo_i_sooner(span_us, TURN_US));
+            got = got < 0 ? lose(run, *line, got) : got;
+            if (got != 0) {
+                return got;
+            }
+        }
+    } while (grobo_now_us() < end_us);
+    return 0;
+}
+
+static uint32_t slowest_bps(const guard_run *run)
+{
+    const grobo_lines *lines = grobo_driver_lines(run->driver);
+    uint32_t found_bps = run->how.robot.bus.baud_bps;
+
+    for (int i = 0; lines != NULL && i < lines->n_lines; i++) {
+        uint32_t own_bps = lines->line[i].baud_bps;
+
+        found_bps = own_bps > 0 && (i == 0 || own_bps < found_bps) ? own_bps : found_bps;
+    }
+    return found_bps;
 }
 
 /* What the program sent last leaves, and its replies come; < 0: the line is gone. */
 static int await_quiet(guard_run *run)
 {
-    uint32_t baud_bps = run->how.robot.bus.baud_bps;
+    uint32_t baud_bps = slowest_bps(run);
     int64_t quiet_us = QUIET_EXTRA_US + (int64_t)QUIET_BYTES * BITS_A_BYTE * 1000000 /
                                             (baud_bps > 0 ? baud_bps : GROBO_BAUD_DEFAULT_BPS);
     int64_t now_us = grobo_now_us();
@@ -238,8 +327,9 @@ static int await_quiet(guard_run *run)
 
     while (got >= 0 && now_us < quiet_until_us) {
         uint8_t dropped[256];
+        int line;
 
-        got = read_until(run, dropped, sizeof dropped, quiet_until_us - now_us);
+        got = read_until(run, &line, dropped, sizeof dropped, quiet_until_us - now_us);
         now_us = grobo_now_us();
         if (got > 0) {
             quiet_until_us = grobo_i_sooner(now_us + quiet_us, end_us);
@@ -249,18 +339,20 @@ static int await_quiet(guard_run *run)
 }
 
 /* Writes a whole frame; a line that takes nothing is as good as gone. */
-static int put(guard_run *run, const uint8_t *frame, size_t size, int64_t end_us)
+static int put(guard_run *run, int line, const uint8_t *frame, size_t size, int64_t end_us)
 {
+    const grobo_port_ops *ops = run->ops[line];
+    grobo_port *port = run->port[line];
+
     while (size > 0) {
         grobo_os_cause cause;
-        int done = run->ops->write(run->port, frame, size, &cause);
+        int done = ops->write(port, frame, size, &cause);
 
         if (done == 0) {
             int64_t left_us = end_us - grobo_now_us();
 
-            done = left_us > 0
-                       ? grobo_port_wait(run->ops->socket(run->port), GROBO_PORT_WRITABLE, left_us)
-                       : GROBO_ERR_TIMEOUT;
+            done = left_us > 0 ? grobo_port_wait(ops->socket(port), GROBO_PORT_WRITABLE, left_us)
+                               : GROBO_ERR_TIMEOUT;
             if (done >= 0) {
                 continue;
             }
@@ -274,15 +366,25 @@ static int put(guard_run *run, const uint8_t *frame, size_t size, int64_t end_us
     return GROBO_OK;
 }
 
-static int pump_out(guard_run *run, int64_t end_us)
+static int pump_line(guard_run *run, int line, int64_t end_us)
 {
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     int size;
     int r = GROBO_OK;
 
-    while (r >= 0 &&
-           (size = grobo_robot_tx(&run->robot, frame, sizeof frame, grobo_now_us())) > 0) {
-        r = put(run, frame, (size_t)size, end_us);
+    while (r >= 0 && (size = grobo_robot_line_tx(&run->robot, line, frame, sizeof frame,
+                                                 grobo_now_us())) > 0) {
+        r = put(run, line, frame, (size_t)size, end_us);
+    }
+    return r < 0 && run->n_lines > 1 ? lose(run, line, r) : r;
+}
+
+static int pump_out(guard_run *run, int64_t end_us)
+{
+    int r = GROBO_OK;
+
+    for (int i = 0; i < run->n_lines && r >= 0; i++) {
+        r = pump_line(run, i, end_us);
     }
     return r;
 }
@@ -292,10 +394,11 @@ static int pump_in(guard_run *run, int64_t end_us)
     int64_t now_us = grobo_now_us();
     int64_t until_us = grobo_i_sooner(grobo_robot_deadline(&run->robot, now_us), end_us);
     uint8_t bytes[256];
-    int got = read_until(run, bytes, sizeof bytes, until_us - now_us);
+    int line;
+    int got = read_until(run, &line, bytes, sizeof bytes, until_us - now_us);
 
     if (got > 0) {
-        grobo_robot_rx(&run->robot, bytes, (size_t)got, grobo_now_us());
+        grobo_robot_line_rx(&run->robot, line, bytes, (size_t)got, grobo_now_us());
     }
     if (got >= 0) {
         grobo_robot_step(&run->robot, grobo_now_us());
@@ -326,18 +429,22 @@ static int stop_robot(guard_run *run, guard_policy policy)
 {
     int64_t end_us = grobo_now_us() + STOP_US;
     grobo_robot_config config = run->how.robot;
-    int r = await_quiet(run);
 
     config.sense_interval_us = GROBO_SENSE_NEVER;
-    if (r >= 0) {
-        r = grobo_robot_init(&run->robot, run->driver, run->driver_ctx, &config, grobo_now_us());
-    }
+    memset(run->gone, 0, sizeof run->gone);
+    int r = grobo_robot_init(&run->robot, run->driver, run->driver_ctx, &config, grobo_now_us());
+    r = r < 0 ? r : await_quiet(run);
     if (r < 0) {
         return r;
     }
     run->ended_job = 0;
     grobo_robot_on_event(&run->robot, on_robot, run);
     grobo_robot_link_up(&run->robot, grobo_now_us());
+    for (int i = 0; i < run->n_lines; i++) {
+        if (run->gone[i]) { /* before the link was up */
+            grobo_robot_line_down(&run->robot, i, grobo_now_us());
+        }
+    }
     switch (policy) {
     case GUARD_ESTOP:
         return do_job(run, grobo_robot_estop(&run->robot), end_us);
@@ -361,8 +468,28 @@ static void report(const guard_run *run, grobo_guard_cause cause, int result)
  * to go off. */
 static void lend(guard_run *run)
 {
-    grobo_i_port_lend(run->port);
+    for (int i = 0; i < run->n_lines; i++) {
+        grobo_i_port_lend(run->port[i]);
+    }
     run->lent = true;
+}
+
+static void close_ports(guard_run *run)
+{
+    for (int i = 0; i < run->n_lines; i++) {
+        run->ops[i]->close(run->port[i]);
+    }
+    forget(run);
+}
+
+static bool reclaim_ports(guard_run *run)
+{
+    bool all = true;
+
+    for (int i = 0; i < run->n_lines && all; i++) {
+        all = grobo_i_port_reclaim(run->port[i]) == GROBO_OK;
+    }
+    return all;
 }
 
 static void stop(guard_run *run, grobo_guard_cause cause)
@@ -371,14 +498,16 @@ static void stop(guard_run *run, grobo_guard_cause cause)
     bool may_continue = cause != GROBO_GUARD_DIED;
     int result;
 
-    grobo_i_port_adopt(run->port, run->line);
+    grobo_i_port_adopt(run->port[0], run->line);
+    for (int i = 1; i < run->n_lines; i++) {
+        grobo_i_port_adopt(run->port[i], run->more[i]);
+    }
     /* A program may continue; a robot that fell does not. */
     result = stop_robot(run, may_continue && policy == GUARD_OFF ? GUARD_HOLD : policy);
     if (may_continue && policy == GUARD_OFF) {
         lend(run);
     } else {
-        run->ops->close(run->port);
-        forget(run);
+        close_ports(run);
     }
     report(run, cause, result);
 }
@@ -389,11 +518,10 @@ static void settle(guard_run *run)
 {
     bool is_its = run->holder == 0 || run->holder == grobo_i_estop_holder_stamp(&run->names);
 
-    if (run->how.policy == GUARD_OFF && is_its && grobo_i_port_reclaim(run->port) == GROBO_OK) {
+    if (run->how.policy == GUARD_OFF && is_its && reclaim_ports(run)) {
         int result = stop_robot(run, GUARD_OFF);
 
-        run->ops->close(run->port);
-        forget(run);
+        close_ports(run);
         report(run, GROBO_GUARD_DIED, result);
     }
     drop(run);
@@ -475,6 +603,17 @@ static size_t port_bytes(void)
     return serial_bytes > tcp_bytes ? serial_bytes : tcp_bytes;
 }
 
+static int make_ports(guard_run *run)
+{
+    int r = GROBO_OK;
+
+    for (int i = 0; i < GROBO_LINES_MAX && r >= 0; i++) {
+        run->port[i] = grobo_i_new(NULL, port_bytes());
+        r = run->port[i] == NULL ? GROBO_ERR_NOMEM : GROBO_OK;
+    }
+    return r;
+}
+
 int grobo_guard_run(const grobo_guard_program *program)
 {
     grobo_guard_program taken;
@@ -492,8 +631,8 @@ int grobo_guard_run(const grobo_guard_program *program)
     run->shared = &run->own;
     run->came = GROBO_HANDLE_NULL;
     forget(run);
-    run->port = grobo_i_new(NULL, port_bytes());
-    r = run->port != NULL ? grobo_i_guard_begin(&run->watch) : GROBO_ERR_NOMEM;
+    r = make_ports(run);
+    r = r < 0 ? r : grobo_i_guard_begin(&run->watch);
     if (r >= 0) {
         r = grobo_i_guard_send(run->watch.socket, &hello, sizeof hello, GROBO_HANDLE_NULL);
         while (r >= 0 && look(run)) {
@@ -502,7 +641,9 @@ int grobo_guard_run(const grobo_guard_program *program)
     }
     drop(run);
     unshare(run);
-    grobo_i_free(NULL, run->port, port_bytes());
+    for (int i = 0; i < GROBO_LINES_MAX; i++) {
+        grobo_i_free(NULL, run->port[i], port_bytes());
+    }
     grobo_i_free(NULL, run, sizeof *run);
     return r < 0 ? r : GROBO_OK;
 }

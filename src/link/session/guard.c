@@ -68,6 +68,26 @@ static guard_policy policy_of(const grobo_session *session)
     return session->robot.config.on_exit == GROBO_EXIT_OFF ? GUARD_OFF : GUARD_HOLD;
 }
 
+static int count_open(const grobo_session *session)
+{
+    int n = 0;
+
+    for (int i = 0; i < session->n_wires; i++) {
+        n += grobo_serial_is_open(session->wire[i].serial);
+    }
+    return n;
+}
+
+static bool all_open(const grobo_session *session)
+{
+    return count_open(session) == session->n_wires;
+}
+
+static bool any_open(const grobo_session *session)
+{
+    return count_open(session) > 0;
+}
+
 void grobo_i_session_guard_take(grobo_session *session)
 {
     const grobo_session_config *config = &session->config;
@@ -75,11 +95,7 @@ void grobo_i_session_guard_take(grobo_session *session)
     guard_message message;
 
     /* A port that has just been lost is told of soon. */
-    if (session->guard_news == NULL || !grobo_serial_is_open(session->wire[0].serial)) {
-        return;
-    }
-    if (session->n_wires > 1) { /* a guard has one port */
-        say_unguarded(session, GROBO_ERR_UNSUPPORTED);
+    if (session->guard_news == NULL || !all_open(session)) {
         return;
     }
     memset(&message, 0, sizeof message); /* what lies between its fields goes too */
@@ -92,24 +108,36 @@ void grobo_i_session_guard_take(grobo_session *session)
     message.robot = session->robot.config;
     (void)snprintf(message.driver, sizeof message.driver, "%s", driver->name);
     (void)snprintf(message.device, sizeof message.device, "%s", session->wire[0].used);
+    for (int i = 1; i < session->n_wires; i++) {
+        const grobo_serial *serial = session->wire[i].serial;
+
+        grobo_i_guard_more(config->guard, strcmp(serial->ops->name, "tcp") == 0,
+                           grobo_serial_handle(serial));
+    }
     grobo_i_guard_take(config->guard, &message, config->guard_data,
                        grobo_serial_handle(session->wire[0].serial));
     if (config->guard->ended) {
         event_active(session->guard_news, EV_READ, 0);
     } else {
-        session->wire[0].serial->barred = &config->guard->shared->line;
+        for (int i = 0; i < session->n_wires; i++) {
+            session->wire[i].serial->barred = &config->guard->shared->line;
+        }
     }
 }
 
 void grobo_i_session_guard_release(grobo_session *session)
 {
-    if (session->guard_news == NULL || session->n_wires > 1) {
+    if (session->guard_news == NULL) {
         return;
     }
     grobo_i_guard_release(session->config.guard);
-    session->wire[0].serial->barred = NULL;
-    if (session->config.guard->taken && grobo_serial_is_open(session->wire[0].serial)) {
-        grobo_i_port_abandon(session->wire[0].serial->port);
+    for (int i = 0; i < session->n_wires; i++) {
+        grobo_serial *serial = session->wire[i].serial;
+
+        serial->barred = NULL;
+        if (session->config.guard->taken && grobo_serial_is_open(serial)) {
+            grobo_i_port_abandon(serial->port);
+        }
     }
 }
 
@@ -117,8 +145,7 @@ bool grobo_i_session_guard_has_it(grobo_session *session)
 {
     grobo_guard *guard = session->config.guard;
 
-    if (session->guard_news == NULL || session->n_wires > 1 ||
-        !grobo_serial_is_open(session->wire[0].serial)) {
+    if (session->guard_news == NULL || !any_open(session)) {
         return false;
     }
     grobo_i_guard_hear(guard);
@@ -138,7 +165,7 @@ int64_t grobo_i_session_guard_deadline(const grobo_session *session)
 
 void grobo_i_session_guard_tell(grobo_session *session)
 {
-    if (session->guard_news != NULL && session->n_wires == 1) {
+    if (session->guard_news != NULL) {
         grobo_i_guard_tell(session->config.guard, policy_of(session),
                            grobo_robot_moving(&session->robot));
     }

@@ -49,11 +49,7 @@ static void on_session(void *ctx, grobo_session *session, grobo_session_event ev
         link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
         break;
     case GROBO_SESSION_EVENT_UNGUARDED:
-        if (link->user && error == GROBO_ERR_UNSUPPORTED && robot_of(link->user->a)->n_lines > 0) {
-            app_note(link->user->a,
-                     "no guard: it has one port, and the robot has several lines; if "
-                     "grctl is killed, joints continue to their goals");
-        } else if (link->user) {
+        if (link->user) {
             app_note(link->user->a,
                      "the guard has ended: if grctl is killed, joints continue to their goals");
         }
