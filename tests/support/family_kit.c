@@ -129,6 +129,7 @@ void family_start_as(family_kit *kit, const family *f, const grobo_robot_config 
         change(kit);
     }
     with.model = &kit->model;
+    with.physics = kit->physics;
     with.wiring = GROBO_WIRING_BUS;
     with.servos = kit->servos;
     with.families = grobo_i_sim_families;

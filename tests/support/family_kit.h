@@ -32,6 +32,7 @@ typedef struct family_kit {
     grobo_driver driver;
     grobo_robot robot;
     grobo_sim sim;
+    grobo_sim_physics *physics; /* set by `change` of family_start_as(); NULL: no weight */
     int64_t now_us;
     grobo_event_job done[FAMILY_EVENTS]; /* the last ones, as a ring */
     unsigned n_done;
