@@ -75,7 +75,11 @@
 
 /** Lines (ports) of a robot: grobo/core/lines.h. Firmware has one. */
 #ifndef GROBO_LINES_MAX
-#define GROBO_LINES_MAX (GROBO_TABLES_FIXED || GROBO_DRIVERS_PLAIN ? 1 : 4)
+#if GROBO_TABLES_FIXED || GROBO_DRIVERS_PLAIN
+#define GROBO_LINES_MAX 1
+#else
+#define GROBO_LINES_MAX 4
+#endif
 #endif
 
 /** Motions that may wait behind the one being played. */
