@@ -535,11 +535,13 @@ void grobo_i_sense_step(grobo_robot *robot)
                             is_urgent(robot) ? GROBO_PRIORITY_MOTION : GROBO_PRIORITY_SENSE);
 }
 
-/* When those that were asked in a round of their own are asked again. */
-static void hear_again(grobo_robot *robot, int result)
+/* When those that were asked in a round of their own are asked again. What had the line as a stop
+ * was asked for is no reading of what that halts. */
+static void hear_again(grobo_robot *robot, const grobo_robot_slot *slot, int result)
 {
     bool last = robot->halts_owed == 0 || (robot->heard_round & robot->halts_owed) == 0;
-    bool turns = !GROBO_DRIVERS_PLAIN && robot->halts_owed != 0;
+    bool turns = !GROBO_DRIVERS_PLAIN && robot->halts_owed != 0 &&
+                 (slot->many || grobo_i_has(robot->halts_owed, slot->joint));
     if (robot->heard_read && last && (result < 0 || turns)) {
         robot->hear_us = robot->now_us + (result < 0 ? HEAR_AGAIN_US : TURNS_US);
     }
@@ -550,7 +552,7 @@ void grobo_i_sense_done(const grobo_robot_slot *slot, int result)
     grobo_robot *robot = slot->robot;
     int joint = slot->joint;
     bool is_free = !slot->many && grobo_i_has(robot->free_joints, joint);
-    hear_again(robot, result);
+    hear_again(robot, slot, result);
     if (result >= 0 && is_free) {
         free_joint(robot, joint);
     }

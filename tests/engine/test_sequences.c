@@ -765,6 +765,7 @@ static const char *const mended[] = {
     "scs limp 25 move-other link-down link-up reply-late",
     "lx16a holds 25 free torque-off others-move",
     "xl320 holds 25 move-other reply-late move stop",
+    "ics limp 25 move-all hand later stop",
 };
 
 TEST(sequences_that_broke_a_rule_break_none_any_more)
