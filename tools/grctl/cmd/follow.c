@@ -10,6 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/wheel.h>
+
 #include "tools/grctl/cli/realtime.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
@@ -307,13 +309,17 @@ static int choose(side *s, const app *a, const char *word)
     return robot_choose(&s->a);
 }
 
-/* Joints that have the same name; the others stay as they are. */
+/* Joints that have the same name and are no wheels; the others stay as they are. */
 static int match(pair *p)
 {
     const grobo_model *leader = app_model(&p->leader.a), *follower = app_model(&p->follower.a);
     for (int j = 0; j < follower->n_joints; j++) {
         const char *name = follower->joints[j].name;
         int joint = grobo_model_find_joint(leader, name, strlen(name));
+        if ((grobo_model_wheels(follower) & GROBO_JOINT_BIT(j)) != 0 ||
+            (joint >= 0 && (grobo_model_wheels(leader) & GROBO_JOINT_BIT(joint)) != 0)) {
+            joint = -1;
+        }
         p->of[j] = joint >= 0 ? joint : -1;
         p->joints |= joint >= 0 ? GROBO_JOINT_BIT(j) : 0;
     }

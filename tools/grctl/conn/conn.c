@@ -822,13 +822,18 @@ static void give_back(conn *c)
 
 static bool is_quiet(conn *c)
 {
-    return grobo_robot_is_quiet(c->robot);
+    return grobo_robot_is_quiet(c->robot) || grobo_now_us() >= c->quiet_by_us;
 }
 
-/* The answer to a reading in the background is not left on the line for who comes next. */
+/*
+ * The answer to a reading in the background is not left on the line for who comes next; on a line
+ * that is too slow for its joints one reading follows the other for ever.
+ */
 static void await_quiet(conn *c)
 {
+    enum { QUIET_US = 1000000 };
     if (c->up && !c->link_error) {
+        c->quiet_by_us = grobo_now_us() + QUIET_US;
         (void)conn_wait_until(c, is_quiet);
     }
 }

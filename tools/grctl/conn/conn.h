@@ -65,6 +65,7 @@ struct conn {
     grobo_robot *robot;          /* the session's */
     trace trace;                 /* of --trace */
     last_frames last;            /* for -v */
+    int64_t quiet_by_us;         /* when the line is closed though a reading is under way */
     int64_t shown_us;            /* when -vv showed its first byte, 0: none yet */
     grobo_robot_counters before; /* the engine's, when the command began */
     conn_event_fn on_event;

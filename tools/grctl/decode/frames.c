@@ -156,7 +156,8 @@ void frames_init(frames *f, talk *t, frames_side side, unsigned wiring, frames_f
 
 void frames_pass(frames *f, int64_t now_us)
 {
-    if (f->used > 0 && now_us - f->time_us[f->used - 1] >= FRAMES_STALL_US) {
+    int64_t stall_us = f->wiring == GROBO_WORDS_BOARD ? FRAMES_STALL_US : FRAMES_BUS_STALL_US;
+    if (f->used > 0 && now_us - f->time_us[f->used - 1] >= stall_us) {
         frames_end(f);
     }
 }

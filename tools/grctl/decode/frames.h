@@ -58,6 +58,8 @@ typedef void (*frames_fn)(void *ctx, const frame *f);
 
 /* A pause inside a frame after which it is over, as the board has it. */
 #define FRAMES_STALL_US GROBO_BOARD_STALL_US
+/* On a bus an adapter may hand on 64 bytes at a time: 67 ms at 9600 bps. */
+#define FRAMES_BUS_STALL_US 100000
 
 /*
  * To look behind a packet with a wrong sum takes two packets; rubbish is handed out in pieces.
