@@ -230,7 +230,7 @@ static double along(const grobo_robot *robot, int joint, int64_t now_us)
 
 /* Between two angles lies the speed of a servo that tells none: so long, at most. A goal that was
  * read meanwhile is that of its way. */
-#define MEANWHILE_US 50000
+#define MEANWHILE_US 500000
 
 /* One that nobody here has sent goes no further than the goal that its servo told of with that. */
 static bool tells_end(const grobo_robot *robot, int joint)

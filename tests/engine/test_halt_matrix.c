@@ -517,7 +517,7 @@ static void run_one(const char *text)
     c.shape = (clip_shape)named(shape_names, SHAPES, shape_name);
     c.loss = (line_loss)named(loss_names, LOSSES, loss_name);
     cell wanted = c;
-    halt_traced = true;
+    halt_traced = getenv("GROBO_HALT_CELL") != NULL;
     run_moments(c, arrival_us(&c), same_cell, &wanted);
 }
 
@@ -586,5 +586,23 @@ TEST(stops_throw_no_joint)
     }
     print_message("%lu stops, %lu refused, %lu excused, %lu broke a rule\n", sum.cells, sum.refused,
                   sum.excused, sum.failed);
+    assert_int_equal(sum.failed, 0);
+}
+
+/* Stops that broke a rule once, and that the sample above does not have. */
+TEST(stops_that_broke_a_rule_break_none_any_more)
+{
+    /* A mean speed between two angles 0.2 s apart was taken for one of a joint that had arrived
+     * where its servo had said that it goes. */
+    static const char *const cells[] = {"lx16a-20 move guard -150 hold lost"};
+
+    if (getenv("GROBO_HALT_CELL") != NULL) {
+        skip();
+    }
+    memset(&sum, 0, sizeof sum);
+    for (size_t i = 0; i < sizeof cells / sizeof cells[0]; i++) {
+        run_one(cells[i]);
+    }
+    assert_int_equal(sum.cells, sizeof cells / sizeof cells[0]);
     assert_int_equal(sum.failed, 0);
 }
