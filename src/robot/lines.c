@@ -77,7 +77,7 @@ static void waste(grobo_robot *robot)
     for (int i = 0; i < grobo_i_lines(robot); i++) {
         grobo_bus *bus = grobo_i_bus(robot, i);
         uint8_t frame[GROBO_FRAME_MAX_BYTES];
-        if ((robot->lines_gone >> i & 1u) != 0) {
+        if ((robot->lines_gone & 1u << i) != 0) {
             (void)grobo_bus_tx(bus, frame, sizeof frame, robot->now_us);
         }
     }

@@ -250,7 +250,7 @@ int grobo_robot_line_tx(grobo_robot *robot, int line, uint8_t *buf, size_t capac
     if (buf == NULL || !is_line(robot, line)) {
         return GROBO_ERR_ARG;
     }
-    bool gone = (robot->lines_gone >> line & 1u) != 0;
+    bool gone = (robot->lines_gone & 1u << line) != 0;
     return gone ? 0 : tx(robot, line, buf, capacity, now_us);
 }
 #endif
@@ -434,7 +434,7 @@ void grobo_robot_line_down(grobo_robot *robot, int line, int64_t now_us)
         return;
     }
     grobo_i_enter(robot, now_us);
-    if (robot->link && (robot->lines_gone >> line & 1u) == 0) {
+    if (robot->link && (robot->lines_gone & 1u << line) == 0) {
         robot->lines_gone |= (uint8_t)(1u << line);
         (void)grobo_bus_cancel_all(grobo_i_bus(robot, line), GROBO_PRIORITY_ALL,
                                    GROBO_ERR_UNPLUGGED);
@@ -451,7 +451,7 @@ void grobo_robot_line_up(grobo_robot *robot, int line, int64_t now_us)
         return;
     }
     grobo_i_enter(robot, now_us);
-    if (robot->link && (robot->lines_gone >> line & 1u) != 0) {
+    if (robot->link && (robot->lines_gone & 1u << line) != 0) {
         robot->lines_gone &= (uint8_t) ~(1u << line);
         (void)grobo_bus_cancel_all(grobo_i_bus(robot, line), GROBO_PRIORITY_ALL,
                                    GROBO_ERR_UNPLUGGED);

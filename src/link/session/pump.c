@@ -41,7 +41,7 @@ int grobo_i_session_step(grobo_session *session)
 
 bool grobo_i_session_is_lost(const session_wire *wire)
 {
-    return (wire->session->robot.lines_gone >> wire->line & 1u) != 0;
+    return (wire->session->robot.lines_gone & 1u << wire->line) != 0;
 }
 
 void grobo_i_session_lose_wire(session_wire *wire, int error)

@@ -80,6 +80,7 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
     return result < 0 ? result : 1;
 }
 
+#if !GROBO_DRIVERS_PLAIN
 static int speed(const grobo_driver *self, void *ctx, grobo_joint_mask joints, const double *rad_s,
                  int part, grobo_exchange *exchange)
 {
@@ -95,6 +96,7 @@ static int speed(const grobo_driver *self, void *ctx, grobo_joint_mask joints, c
     int result = finish(self, joint->motor, GROBO_LX16A_MODE, data, sizeof data, exchange);
     return result < 0 ? result : 1;
 }
+#endif
 
 static int torque(const grobo_driver *self, int joint, bool on, grobo_exchange *exchange)
 {

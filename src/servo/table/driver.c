@@ -293,6 +293,7 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
 /* ---- wheels ---------------------------------------------------------------------------------- */
 
 /* The register of a wheel's speed; nothing of a servo that cannot be one. */
+#if !GROBO_DRIVERS_PLAIN
 static span speed_span(const grobo_driver *self, const grobo_servo_model *servo)
 {
     const grobo_i_family *family = grobo_i_table_family(self, servo);
@@ -326,6 +327,7 @@ static int speed(const grobo_driver *self, void *ctx, grobo_joint_mask joints, c
     joints = joints_of_part(self, joints, part, speed_span, &s);
     return write_part(self, joints, s, rad_s, put_speed, exchange);
 }
+#endif
 
 /* ---- torque ---------------------------------------------------------------------------------- */
 
