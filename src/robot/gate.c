@@ -190,7 +190,8 @@ static grobo_joint_mask may_be_told(const grobo_robot *robot)
 /* True of a joint that may move, though nobody has seen it: an owed halt is for that. */
 static bool may_go_on(const grobo_robot *robot, const grobo_robot_order *order, int joint)
 {
-    return grobo_i_is_mute(robot, joint) && order->owed && !grobo_i_stands(robot, joint);
+    bool may = grobo_i_is_mute(robot, joint) || grobo_i_may_creep(robot, joint);
+    return may && order->owed && !grobo_i_stands(robot, joint);
 }
 
 /* Joints that move stop ahead of where they are now, however long the order had to wait. */

@@ -271,11 +271,13 @@ static bool is_unread(const grobo_robot *robot, int joint)
 }
 
 /* True of a joint with torque that was read, but neither to stand nor to leave its place, and whose
- * servo tells no speed: where it stands in its load, a halt to the angle read would let it sink. */
+ * servo tells no speed, or so low a one that it may creep: where it stands in its load, a halt to
+ * the angle read would let it sink. */
 static bool may_stand(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    if (!grobo_i_is_mute(robot, joint) || !grobo_i_axis_is_on(axis)) {
+    bool may = grobo_i_is_mute(robot, joint) || grobo_i_may_creep(robot, joint);
+    if (!may || !grobo_i_axis_is_on(axis)) {
         return false;
     }
     bool leaves = axis->seen_dps != GROBO_I_NO_SPEED && grobo_i_stand_left(axis);

@@ -707,6 +707,14 @@ static inline bool grobo_i_is_mute(const grobo_robot *robot, int joint)
     return GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
            !grobo_i_has_target(&robot->axes[joint]);
 }
+/* True if it was read to turn so slowly that it may as well tremble, and was not sent anywhere. */
+static inline bool grobo_i_may_creep(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    return !GROBO_DRIVERS_PLAIN && !grobo_i_has_target(axis) && axis->seen_dps != 0 &&
+           axis->seen_dps != GROBO_I_NO_SPEED && axis->seen_dps < GROBO_I_SLOW_DPS &&
+           axis->seen_dps > -GROBO_I_SLOW_DPS;
+}
 /* True if the goal read back is the one that holds. */
 bool grobo_i_goal_holds(const grobo_robot *robot, int joint);
 /* Holds a goal this far from the angle to be the angle, for switching torque on. */

@@ -592,9 +592,12 @@ TEST(stops_throw_no_joint)
 /* Stops that broke a rule once, and that the sample above does not have. */
 TEST(stops_that_broke_a_rule_break_none_any_more)
 {
-    /* A mean speed between two angles 0.2 s apart was taken for one of a joint that had arrived
-     * where its servo had said that it goes. */
-    static const char *const cells[] = {"lx16a-20 move guard -150 hold lost"};
+    /* First: a mean speed between two angles 0.2 s apart was taken for one of a joint that had
+     * arrived where its servo had said that it goes. */
+    static const char *const cells[] = {
+        "lx16a-20 move guard -150 hold lost",
+        /* Read once, at 5 deg/s, a joint was neither taken to move nor looked at again. */
+        "sts-38400 send guard -100 hold clean", "sts-38400 send guard -100 hold missed"};
 
     if (getenv("GROBO_HALT_CELL") != NULL) {
         skip();
