@@ -55,6 +55,26 @@ check "without an id" says 3 "a joint has no 'id'" sh -c 'printf "name: w\nfamil
     "$work" "$GRCTL"
 
 test_case "it is driven"
+turns() {
+    wheel_file "$1" "$2" 'type: wheel'
+    says 0 'a: 30.0 deg/s' "$GRCTL" --robot "$work/w.yaml" -d sim drive a=30 --for 0.3
+}
+for servo in 'feetech STS3215' 'feetech SCS0009' 'feetech HLS3606' 'dynamixel1 AX-12A' \
+    'dynamixel1 MX-28' 'dynamixel2 XL330-M288' 'dynamixel2 XL430-W250' 'dynamixel2 XL-320' \
+    'dynamixel2 MX-28-2' 'dynamixel2 H42-20-S300-R' 'dynamixel2 PM42-010-S260-R' 'lx16a LX-16A'; do
+    # shellcheck disable=SC2086 # two words
+    check "a wheel of $servo turns" turns $servo
+done
+two_lines() {
+    printf '%s\n' 'name: w' 'lines:' '  - {name: l, family: feetech}' \
+        '  - {name: r, family: dynamixel2}' 'joints:' \
+        '  - {name: a, line: l, id: 1, servo: STS3215, type: wheel}' \
+        '  - {name: b, line: r, id: 1, servo: XL430-W250, type: wheel}' >"$work/w.yaml"
+    says 0 'a: 40.0 deg/s for 0.5 s, read at [34][0-9]; it stands' \
+        "$GRCTL" --robot "$work/w.yaml" -d sim drive a=40 b=-30 --for 0.5 &&
+        grep -q 'b: -30.0 deg/s .*; it stands' "$work/said"
+}
+check "two wheels of two families on two lines" two_lines
 check "for a time" says 0 'right: 90.0 deg/s for 0.8 s, read at 90; it stands' \
     "$GRCTL" --robot $rover -d sim drive left=90 right=90 --for 0.8
 check "backwards, by its group" says 0 'left: -45.0 deg/s' \

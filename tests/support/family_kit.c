@@ -141,7 +141,9 @@ void family_start_as(family_kit *kit, const family *f, const grobo_robot_config 
     assert_int_equal(grobo_sim_init(&kit->sim, &with, kit->now_us), GROBO_OK);
     bool profiled = grobo_servo_register_of(kit->servos[0], GROBO_ROLE_DIRECTION) != NULL;
     for (int j = 0; j < FAMILY_JOINTS && profiled && f->table == &grobo_i_dxl2_table; j++) {
-        family_set_up(kit, j, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
+        if (!kit->joints[j].wheel) { /* one as it is sold turns */
+            family_set_up(kit, j, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
+        }
     }
     kit->driver.size = sizeof kit->driver;
     assert_int_equal(f->init(&kit->driver, &kit->model), GROBO_OK);

@@ -40,7 +40,8 @@ static bool wheel(const grobo_servo_model *servo, grobo_i_wheel *to)
     *to = (grobo_i_wheel){.role = role,
                           .dps = grobo_i_register_unit(reg),
                           .most = reg->max,
-                          .mode = GROBO_DXL2_MODE_VELOCITY};
+                          .mode = GROBO_DXL2_MODE_VELOCITY,
+                          .any = (int32_t)GROBO_DXL2_DRIVE_TIME};
     return true;
 }
 

@@ -25,6 +25,7 @@ typedef struct grobo_i_wheel {
     int32_t most;             /* the largest count */
     int32_t sign;             /* a bit that says that it turns back; 0: the register has a sign */
     int32_t mode;             /* what MODE must hold */
+    int32_t any;              /* bits of DIRECTION that a wheel may have or not: of goals alone */
     bool by_limits;           /* both limits 0 make it a wheel, MODE does not */
 } grobo_i_wheel;
 

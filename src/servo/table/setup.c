@@ -44,7 +44,8 @@ static int32_t wanted_of(const grobo_i_family *family, const grobo_joint *joint,
         bool any = joint->calibrated || family->offset_trims;
         return any ? found : grobo_servo_register_of(b->servo, role)->factory;
     }
-    return family->wants(joint, b->servo, role, found);
+    int32_t any = wheel != NULL && role == GROBO_ROLE_DIRECTION ? wheel->any : 0;
+    return (family->wants(joint, b->servo, role, found) & ~any) | (found & any);
 }
 
 /* Nobody has told this servo where the middle of its joint is. */
