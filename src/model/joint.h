@@ -84,18 +84,21 @@ static inline double grobo_i_unit_rad(const grobo_joint *joint)
 }
 #endif
 
+/* Whether joints of this model are so large that they have a member; those of a build for plain
+ * drivers have none behind the first version's. */
+#if GROBO_DRIVERS_PLAIN
+#define GROBO_I_JOINTS_HAVE(model, member) ((void)(model), false)
+#elif GROBO_TABLES_FIXED
+#define GROBO_I_JOINTS_HAVE(model, member) ((void)(model), true)
+#else
+#define GROBO_I_JOINTS_HAVE(model, member)                                                         \
+    ((model)->joint_size >= offsetof(grobo_joint, member) + sizeof(((grobo_joint *)0)->member))
+#endif
+
 /* Whether joints of this size have a unit. */
 static inline bool grobo_i_may_have_unit(const grobo_model *model)
 {
-#if GROBO_DRIVERS_PLAIN
-    (void)model;
-    return false;
-#elif GROBO_TABLES_FIXED
-    (void)model;
-    return true;
-#else
-    return model->joint_size >= offsetof(grobo_joint, unit_rad) + sizeof(double);
-#endif
+    return GROBO_I_JOINTS_HAVE(model, unit_rad);
 }
 
 /* The line that a joint's servo is on (grobo_joint.line): the first one where joints of this size
@@ -114,29 +117,13 @@ static inline int grobo_i_joint_line(const grobo_model *model, int joint)
 /* Whether joints of this size have what one that follows has. */
 static inline bool grobo_i_may_follow(const grobo_model *model)
 {
-#if GROBO_DRIVERS_PLAIN
-    (void)model;
-    return false;
-#elif GROBO_TABLES_FIXED
-    (void)model;
-    return true;
-#else
-    return model->joint_size >= offsetof(grobo_joint, follows) + sizeof(uint8_t);
-#endif
+    return GROBO_I_JOINTS_HAVE(model, follows);
 }
 
 /* Whether joints of this size may be wheels. */
 static inline bool grobo_i_may_be_wheel(const grobo_model *model)
 {
-#if GROBO_DRIVERS_PLAIN
-    (void)model;
-    return false;
-#elif GROBO_TABLES_FIXED
-    (void)model;
-    return true;
-#else
-    return model->joint_size >= offsetof(grobo_joint, accel_rad_s2) + sizeof(double);
-#endif
+    return GROBO_I_JOINTS_HAVE(model, accel_rad_s2);
 }
 
 /* True of a wheel (grobo_joint.wheel); a build for plain drivers has none. */

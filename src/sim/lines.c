@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What a simulator of one line of a robot is made of. */
 #include "src/sim/lines.h"
 
 #if GROBO_LINES_MAX > 1

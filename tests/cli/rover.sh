@@ -6,21 +6,9 @@
 unset GRCTL_ROBOT
 rover=docs/examples/robots/rover.yaml
 
-# says STATUS TEXT COMMAND...: it ends so, and this is among its lines.
-says() {
-    expected=$1 like=$2
-    shift 2
-    "$@" >"$work/said" 2>&1
-    status=$?
-    [ $status -eq "$expected" ] && grep -q -e "$like" "$work/said" && return
-    echo "status $status, and said:"
-    cat "$work/said"
-    return 1
-}
-
 test_case "its file"
 check "is right" fails 0 'rover: 4 joints, nothing wrong' "$GRCTL" robot check $rover
-check "lists its wheels" says 0 'left .* - *- *-  wheels (wheel, 180 deg/s)' \
+check "lists its wheels" ends_with 0 'left .* - *- *-  wheels (wheel, 180 deg/s)' \
     "$GRCTL" --robot $rover joints
 wheel_file() {
     printf 'name: w\nfamily: %s\njoints:\n  - {name: a, id: 1, servo: %s, %s}\n' "$1" "$2" "$3" \
@@ -28,7 +16,7 @@ wheel_file() {
 }
 refuses() { # FAMILY SERVO KEYS TEXT
     wheel_file "$1" "$2" "$3"
-    says 3 "$4" "$GRCTL" robot check "$work/w.yaml"
+    ends_with 3 "$4" "$GRCTL" robot check "$work/w.yaml"
 }
 takes() {
     wheel_file "$1" "$2" 'type: wheel'
@@ -50,14 +38,15 @@ check "and has one servo" refuses feetech STS3215 'type: wheel, servos: [2, 3]' 
 check "others have no acceleration" refuses feetech STS3215 'limits_deg: [0, 1], accel_deg_s2: 9' \
     "'accel_deg_s2' needs 'type: wheel'"
 check "a mistyped type" refuses feetech STS3215 'type: whel' "no type of joint called 'whel'; did"
-check "without an id" says 3 "a joint has no 'id'" sh -c 'printf "name: w\nfamily: feetech\njoints:
+check "without an id" ends_with 3 "a joint has no 'id'" \
+    sh -c 'printf "name: w\nfamily: feetech\njoints:
   - {name: a, servo: STS3215, type: wheel}\n" >"$0/w.yaml"; exec "$1" robot check "$0/w.yaml"' \
     "$work" "$GRCTL"
 
 test_case "it is driven"
 turns() {
     wheel_file "$1" "$2" 'type: wheel'
-    says 0 'a: 30.0 deg/s' "$GRCTL" --robot "$work/w.yaml" -d sim drive a=30 --for 0.3
+    ends_with 0 'a: 30.0 deg/s' "$GRCTL" --robot "$work/w.yaml" -d sim drive a=30 --for 0.3
 }
 for servo in 'feetech STS3215' 'feetech SCS0009' 'feetech HLS3606' 'dynamixel1 AX-12A' \
     'dynamixel1 MX-28' 'dynamixel2 XL330-M288' 'dynamixel2 XL430-W250' 'dynamixel2 XL-320' \
@@ -70,14 +59,14 @@ two_lines() {
         '  - {name: r, family: dynamixel2}' 'joints:' \
         '  - {name: a, line: l, id: 1, servo: STS3215, type: wheel}' \
         '  - {name: b, line: r, id: 1, servo: XL430-W250, type: wheel}' >"$work/w.yaml"
-    says 0 'a: 40.0 deg/s for 0.5 s, read at [34][0-9]; it stands' \
+    ends_with 0 'a: 40.0 deg/s for 0.5 s, read at [34][0-9]; it stands' \
         "$GRCTL" --robot "$work/w.yaml" -d sim drive a=40 b=-30 --for 0.5 &&
         grep -q 'b: -30.0 deg/s .*; it stands' "$work/said"
 }
 check "two wheels of two families on two lines" two_lines
-check "for a time" says 0 'right: 90.0 deg/s for 0.8 s, read at 90; it stands' \
+check "for a time" ends_with 0 'right: 90.0 deg/s for 0.8 s, read at 90; it stands' \
     "$GRCTL" --robot $rover -d sim drive left=90 right=90 --for 0.8
-check "backwards, by its group" says 0 'left: -45.0 deg/s' \
+check "backwards, by its group" ends_with 0 'left: -45.0 deg/s' \
     "$GRCTL" --robot $rover -d sim drive wheels=-45 --for 0.3
 check "no faster than its limit" fails 4 'left at 300.0 deg/s is above its limit of 180.0 deg/s' \
     "$GRCTL" --robot $rover -d sim drive left=300
@@ -103,7 +92,7 @@ printf '      - [0, %s, 0, 0]\n      - [0, %s, 0.1, 0]\n      - [0, %s, 0, 0]\n'
     0 0 0 >>"$work/look.yaml"
 sed 's/\[0, 0, /[0, 1.5, /' "$work/look.yaml" >"$work/turns.yaml"
 check "a motion of its head" exits 0 "$GRCTL" --robot $rover -d sim play "$work/look.yaml"
-check "says that no motion turns a wheel" says 0 'right: a wheel, which no motion turns' \
+check "says that no motion turns a wheel" ends_with 0 'right: a wheel, which no motion turns' \
     "$GRCTL" --robot $rover check "$work/turns.yaml"
 check "and plays the rest" exits 0 "$GRCTL" --robot $rover -d sim play "$work/turns.yaml"
 
@@ -148,7 +137,7 @@ estops() {
 check "by an emergency stop" estops
 check "which latches" exits 4 "$GRCTL" --robot $rover -d "$work/port" drive left=9
 check "until it is released" exits 0 "$GRCTL" --robot $rover -d "$work/port" estop --reset
-check "a servo in the other mode is refused with what fixes it" says 1 \
+check "a servo in the other mode is refused with what fixes it" ends_with 1 \
     "mode is 0, 1 is wanted; 'grctl servo-set 1 mode 1 --flash' sets it" sh -c \
     '"$0" --robot "$1" -d "$2" servo off >/dev/null 2>&1
     "$0" --robot "$1" -d "$2" servo-set 1 mode 0 --flash >/dev/null &&

@@ -7,32 +7,20 @@ unset GRCTL_ROBOT
 arms=docs/examples/robots/two-arms.yaml
 head=docs/examples/robots/ax-body-xl330-head.yaml
 
-# prints STATUS TEXT COMMAND...: it ends so, and this is among its lines.
-prints() {
-    expected=$1 like=$2
-    shift 2
-    "$@" >"$work/said" 2>&1 </dev/null
-    status=$?
-    [ $status -eq "$expected" ] && grep -q -e "$like" "$work/said" && return
-    echo "status $status, and said:"
-    cat "$work/said"
-    return 1
-}
-
 test_case "its file"
-check "is right" prints 0 'two-arms: 8 joints, nothing wrong' "$GRCTL" robot check $arms
-check "sixteen AX-12A and two XL330, too" prints 0 '18 joints, nothing wrong' \
+check "is right" ends_with 0 'two-arms: 8 joints, nothing wrong' "$GRCTL" robot check $arms
+check "sixteen AX-12A and two XL330, too" ends_with 0 '18 joints, nothing wrong' \
     "$GRCTL" robot check $head
-check "names its lines" prints 0 'right: 4 servos of family dynamixel2, 1000000 bps' \
+check "names its lines" ends_with 0 'right: 4 servos of family dynamixel2, 1000000 bps' \
     "$GRCTL" --robot $arms robot show
 check_json "in JSON, too" \
     'lines[0]["lines"][1]["name"] == "right" and lines[0]["lines"][1]["joints"][0] == "R_pan"' \
     "$GRCTL" --robot $arms --json robot show
 sed 's/line: right, id: 2/line: wrong, id: 2/' $arms >"$work/wrong.yaml"
-check "a line that is not there" prints 3 "no line called 'wrong'" \
+check "a line that is not there" ends_with 3 "no line called 'wrong'" \
     "$GRCTL" robot check "$work/wrong.yaml"
 sed 's/line: right, id: 2/line: right, id: 1/' $arms >"$work/wrong.yaml"
-check "an id twice on a line" prints 3 'R_lift has the id of another joint' \
+check "an id twice on a line" ends_with 3 'R_lift has the id of another joint' \
     "$GRCTL" robot check "$work/wrong.yaml"
 
 test_case "in the simulator"
@@ -41,7 +29,7 @@ on_sim() {
 }
 check "it goes to its initial posture" exits 0 on_sim init
 check "joints of both move" exits 0 on_sim pose L_pan=20 R_pan=-20
-check "its state has all" prints 0 '1  R_pan' on_sim status
+check "its state has all" ends_with 0 '1  R_pan' on_sim status
 check "an emergency stop" exits 0 on_sim estop
 check "the other robot, too" exits 0 "$GRCTL" --robot $head -d sim init
 printf 'type: BodyMotion\ncomponents:\n  - type: MultiValueSeq\n    content: JointPosition\n' \
@@ -51,15 +39,15 @@ for angle in 0 0.1 0; do
     echo "      - [$angle, 0, 0, 0, $angle, 0, 0, 0]" >>"$work/wave.yaml"
 done
 check "a motion" exits 0 on_sim play "$work/wave.yaml"
-check "whose frames are not shown" prints 2 "frames are shown of one" \
+check "whose frames are not shown" ends_with 2 "frames are shown of one" \
     on_sim play --dry-run "$work/wave.yaml"
 for command in scan info doctor budget setup calibrate 'servo-get 1' 'servo-set 1 led 1' \
     'decode -' 'replay x'; do
     # shellcheck disable=SC2086 # words
-    check "$command is for one line" prints 2 'has 2 lines, and this command is for one' \
+    check "$command is for one line" ends_with 2 'has 2 lines, and this command is for one' \
         on_sim $command
 done
-check "a rate is of one line" prints 2 'are for one; its file has' on_sim -b 57600 status
+check "a rate is of one line" ends_with 2 'are for one; its file has' on_sim -b 57600 status
 
 # one_arm NAME LETTER FAMILY SERVO: a simulator of one arm, as its own robot.
 one_arm() {
@@ -98,13 +86,13 @@ moves() {
 test_case "on two ports"
 check "the left arm is there" one_arm left L feetech STS3215
 check "and the right one" one_arm right R dynamixel2 XL430-W250
-check "its state has both" prints 0 '4  R_gripper' on_ports status
+check "its state has both" ends_with 0 '4  R_gripper' on_ports status
 check "both move" exits 0 on_ports pose L_pan=0 R_pan=0
-check "a port is missing" prints 1 'right-arm' "$GRCTL" --robot $arms -d "left=$work/left" status
-check "one port" prints 2 "-d left=PORT,right=PORT" "$GRCTL" --robot $arms -d "$work/left" status
-check "an emergency stop of a mistyped one" prints 2 "NOT stopped" \
+check "a port is missing" ends_with 1 'right-arm' "$GRCTL" --robot $arms -d "left=$work/left" status
+check "one port" ends_with 2 "-d left=PORT,right=PORT" "$GRCTL" --robot $arms -d "$work/left" status
+check "an emergency stop of a mistyped one" ends_with 2 "NOT stopped" \
     "$GRCTL" --robot $arms -d "lft=$work/left" estop
-check "a line is mistyped" prints 2 "has no line 'lft'; it has left, right" \
+check "a line is mistyped" ends_with 2 "has no line 'lft'; it has left, right" \
     "$GRCTL" --robot $arms -d "lft=$work/left" status
 if have_json; then
     estops() {

@@ -196,6 +196,18 @@ says() {
     grep -q -e "$1" "$work/out" || { echo "no '$1' in:"; cat "$work/out"; return 1; }
 }
 
+# ends_with STATUS TEXT COMMAND...: it ends so, and this is among what it printed, on either.
+ends_with() {
+    expected=$1 like=$2
+    shift 2
+    "$@" >"$work/said" 2>&1 </dev/null
+    status=$?
+    [ $status -eq "$expected" ] && grep -q -e "$like" "$work/said" && return
+    echo "status $status, and said:"
+    cat "$work/said"
+    return 1
+}
+
 # complains PATTERN: exactly one line on standard error, and it is like that.
 complains() {
     [ "$(wc -l <"$work/err")" -eq 1 ] && grep -q -e "$1" "$work/err" && return
