@@ -23,6 +23,13 @@ check "set without flash" exits 0 servo servo-set 2 delay 5
 stop_sim
 chain
 check "is forgotten" delay_is 2 0
+# The robot's other servos are not there, and nobody waits for them.
+nobody_else_is_asked() {
+    "$GRCTL" decode "$work/asked" >"$work/out" && says 'host .*servo 2 ' &&
+        ! grep 'host .*servo' "$work/out" | grep -v 'servo 2 '
+}
+check "no other servo is asked" both servo --trace "$work/asked" servo-get 2 delay --- \
+    nobody_else_is_asked
 check "set with flash" exits 0 servo servo-set 2 delay 7 --flash
 check "and an id" exits 0 servo servo-set 1 id 9 --flash
 stop_sim

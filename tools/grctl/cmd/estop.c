@@ -396,7 +396,7 @@ static int reset(app *a, const char *device)
         }
         return cleared;
     }
-    int status = conn_is_auto(a) ? conn_open(&c, a) : conn_open_unchecked(&c, a);
+    int status = conn_open_named(&c, a);
     if (!status) {
         int error = grobo_robot_reset(c.robot);
         status = report_reset(a, conn_device(&c), error, NULL);

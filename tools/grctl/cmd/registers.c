@@ -185,7 +185,7 @@ static int run_get(app *a)
     if (status) {
         return status;
     }
-    status = conn_open(&c, a);
+    status = conn_open_named(&c, a);
     if (!status) {
         status = get(&c, id);
     }
@@ -572,7 +572,7 @@ static int run_restore(app *a, const char *path)
     conn c;
     const grobo_servo_model *servo;
     int id = find_servo(a, &servo);
-    int status = id < 0 ? -id : conn_open(&c, a);
+    int status = id < 0 ? -id : conn_open_named(&c, a);
     if (status) {
         return id < 0 ? status : conn_close(&c, status);
     }
@@ -660,7 +660,7 @@ static int run_set(app *a)
     if (status) {
         return status;
     }
-    status = conn_open(&c, a);
+    status = conn_open_named(&c, a);
     const grobo_servo_model *before = what.servo;
     int error = status ? 0 : servos_model(&c, what.id, &what.servo);
     if (error) {

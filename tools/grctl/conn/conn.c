@@ -653,6 +653,11 @@ int conn_open_unchecked(conn *c, app *a)
     return open_device(c, a, false);
 }
 
+int conn_open_named(conn *c, app *a)
+{
+    return open_device(c, a, conn_is_auto(a));
+}
+
 int conn_open_beside(conn *c, app *a, conn_link *first)
 {
     a->beside = first;

@@ -97,6 +97,9 @@ int conn_open(conn *c, app *a);
 /* The same, but nobody needs to answer: for scans. */
 int conn_open_unchecked(conn *c, app *a);
 
+/* The same where the device is named, else conn_open(): for what asks a servo by itself. */
+int conn_open_named(conn *c, app *a);
+
 /*
  * The same for a command that moves the robot: refused after an emergency stop. From then on the
  * joints are watched, see conn_watch().
