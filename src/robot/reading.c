@@ -322,6 +322,13 @@ static bool is_finite(const grobo_joint_state *got)
     return angle && goal;
 }
 
+/* A part of a reading whose first part has shown another setup: its angles mean as little. */
+static bool is_part_of_unfit(const grobo_robot_slot *slot)
+{
+    return GROBO_I_EXTRA(slot->robot->driver, sense_more) != NULL && slot->reads &&
+           slot->part > 0 && slot->robot->axes[slot->joint].status == GROBO_ERR_SETUP;
+}
+
 int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_packet *reply,
                          grobo_joint_state *got)
 {
@@ -337,6 +344,10 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
     }
     if (result >= 0 && !is_finite(got)) {
         result = GROBO_ERR_MISMATCH;
+    }
+    if (result >= 0 && is_part_of_unfit(slot)) {
+        got->setup = robot->axes[joint].state.setup;
+        result = GROBO_ERR_SETUP;
     }
     if (result >= 0) {
         result = GROBO_OK;

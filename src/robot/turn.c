@@ -36,7 +36,8 @@ static int read_on(const grobo_robot_slot *before)
     return more < 0 ? more : 1;
 }
 
-/* Takes what a slot has read of its joint, or the reason why there is nothing, and judges it.
+/* Takes what a slot has read of its joint, or the reason why there is nothing, and judges it. A
+ * servo that is not set up for its joint is read to the end: its torque may be in a later part.
  * @return 1 where the reading goes on. */
 static int take_reading(const grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
@@ -50,11 +51,11 @@ static int take_reading(const grobo_robot_slot *slot, int result, const grobo_pa
     } else if (grobo_i_is_loss(taken)) {
         grobo_i_watch_lost(robot, slot->joint);
     }
-    int more = taken >= 0 ? read_on(slot) : taken;
+    int more = taken >= 0 || taken == GROBO_ERR_SETUP ? read_on(slot) : taken;
     if (more > 0) {
         return more;
     }
-    taken = more;
+    taken = more < 0 ? more : taken;
     grobo_event event = {.kind = GROBO_EVENT_JOINT};
     event.u.joint.joint = slot->joint;
     event.u.joint.result = taken;

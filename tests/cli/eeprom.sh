@@ -68,7 +68,8 @@ for one in so101:4:return_delay:5 pan-tilt:1:temperature_limit:60 gr001:2:delay:
     stop_sim
 done
 
-# Families whose values are parts of frames, and one that only its EEPROM as a whole can be read of.
+# Families whose values are parts of frames, one that only its EEPROM as a whole can be read of, and
+# those where the change leaves a setup that the joint cannot be moved with.
 another_than() {
     [ "$(awk '{ print $3 }' "$work/out")" != "$1" ]
 }
@@ -96,7 +97,7 @@ while read -r family servo register value; do
     check "its other servo is another" \
         both exits 0 of "$work/two.yaml" servo-get 2 "$register" --- another_than "$value"
     check "two registers of a $servo at once" \
-        both exits 0 of "$work/two.yaml" servo-get 1 "$register" min_position --- \
+        both exits 0 of "$work/two.yaml" servo-get 1 "$register" id --- \
         two_lines
     stop_sim
 done <<'END'
@@ -106,6 +107,14 @@ ics KRS-3301 temperature_limit 60
 ics KRS-3301 punch 5
 dynamixel1 MX-28 return_delay 10
 feetech SCS0009 return_delay 10
+feetech HLS3930 secondary_id 9
+feetech SM40BL max_position 2100
+rs30x RS405CB delay 3
+dynamixel1 AX-12A max_position 600
+dynamixel2 XL-320 max_position 600
+dynamixel2 PH54-200-S500-R drive_mode 5
+dynamixel2 H54-200-S500-R max_position 1000
+dynamixel2 H54-200-S500-RA max_position 1000
 END
 
 test_case "several registers are read in one frame"

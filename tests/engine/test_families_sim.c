@@ -182,10 +182,20 @@ TEST(a_drive_mode_without_time_is_refused)
 /* What its angles mean is not known; its torque is. */
 TEST(a_servo_set_up_otherwise_is_made_limp)
 {
-    static const char *const names[] = {"dxl2", "dxl1", "sts", "scs"};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    /* What P and PRO keep lies far before their torque, LX and KRS tell one value a frame. */
+    static const family rows[] = {
+        {"dxl2", &grobo_i_dxl2_table, "XM430-W350", grobo_dxl2_driver_init, 0.5, 1000000, false},
+        {"p", &grobo_i_dxl2_table, "PH54-200-S500-R", grobo_dxl2_driver_init, 0.5, 1000000, false},
+        {"pro", &grobo_i_dxl2_table, "H54-200-S500-R", grobo_dxl2_driver_init, 0.5, 1000000, false},
+        {"dxl1", &grobo_i_dxl1_table, "AX-12A", grobo_dxl1_driver_init, 1, 1000000, false},
+        {"sts", &grobo_i_sts_table, "STS3215", grobo_feetech_driver_init, 0.5, 1000000, false},
+        {"scs", &grobo_i_scs_table, "SCS0009", grobo_feetech_driver_init, 1, 1000000, false},
+        {"lx16a", &grobo_i_lx16a_table, "LX-16A", grobo_lx16a_driver_init, 0.5, 115200, true},
+        {"ics", &grobo_i_ics_table, "KRS-3301", grobo_ics_driver_init, 0.5, 115200, true},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         grobo_sim_view view;
-        family_start(&kit, family_named(names[i]), &watched, NULL);
+        family_start(&kit, &rows[i], &watched, NULL);
         family_set_up(&kit, 2, GROBO_ROLE_MAX_POSITION, kit.servos[2]->middle);
         family_set_up(&kit, 2, GROBO_ROLE_TORQUE, 1);
         assert_int_equal(grobo_sim_look(&kit.sim, 2, &view), GROBO_OK);
