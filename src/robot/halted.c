@@ -88,6 +88,18 @@ static void look_wheel(grobo_robot *robot, int joint)
     }
 }
 
+/* The goal of a halt may be the one that the joint had before. It shows that the halt came where
+ * the joint is read to rest behind the end of its trajectory; before that it may pass its goal, and
+ * turn back. A servo that reports the time of its way shows the halt by that. */
+static bool is_on_its_halt(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool rests = GROBO_DRIVERS_PLAIN || grobo_i_axis_is_counted(axis) ||
+                 (axis->stood_us >= axis->trajectory.to_us && grobo_i_rests(robot, joint));
+    return rests && grobo_i_goal_is_told(axis) && grobo_i_goal_is_taken(robot, joint) &&
+           !is_beside(robot, joint);
+}
+
 void grobo_i_halted_look(grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
@@ -98,9 +110,8 @@ void grobo_i_halted_look(grobo_robot *robot, int joint)
         look_wheel(robot, joint);
         return;
     }
-    bool taken = grobo_i_goal_is_told(axis) && grobo_i_goal_is_taken(robot, joint);
     bool again = has_lost_it(robot, joint) || was_elsewhere(robot, joint);
-    if ((taken && !is_beside(robot, joint)) || grobo_i_axis_is_limp(axis) ||
+    if (is_on_its_halt(robot, joint) || grobo_i_axis_is_limp(axis) ||
         grobo_i_stands(robot, joint)) {
         robot->halted &= ~GROBO_JOINT_BIT(joint);
     } else if (again && !is_read_by_a_job(robot)) {

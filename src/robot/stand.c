@@ -4,7 +4,7 @@
  * the last exit or emergency stop was asked for. A speed that a servo reports is not believed:
  * below a few degrees a second many report none. Either two positions lie so far apart in time and
  * so near in place that a joint which creeps at CREEPS_RAD_S would show, or the servo's own goal
- * was read back and reached.
+ * was read back and reached; of one that says that it turns there, it is passed.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -61,12 +61,21 @@ bool grobo_i_stand_left(const grobo_robot_axis *axis)
     return axis->still_us > axis->stood_us;
 }
 
+/* By the speed that its servo reports: a joint may pass its goal before it comes to rest there. */
+static bool is_read_to_turn(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    return axis->seen_dps != GROBO_I_NO_SPEED && abs(axis->seen_dps) >= GROBO_I_SLOW_DPS &&
+           !GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed);
+}
+
 bool grobo_i_stands(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool known = grobo_i_is_sensed(axis) && is_since_stop(robot, axis->still_us);
     bool there = axis->goal_is_read && is_since_stop(robot, axis->goal_us) &&
-                 fabs(axis->state.goal_rad - axis->state.angle_rad) <= still_rad(robot, joint);
+                 fabs(axis->state.goal_rad - axis->state.angle_rad) <= still_rad(robot, joint) &&
+                 !is_read_to_turn(robot, joint);
     if (grobo_i_is_wheel(robot, joint)) { /* it may come by the same place again */
         there = false;
         known = known && !grobo_i_wheel_turns(axis);

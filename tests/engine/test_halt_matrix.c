@@ -597,7 +597,12 @@ TEST(stops_that_broke_a_rule_break_none_any_more)
     static const char *const cells[] = {
         "lx16a-20 move guard -150 hold lost",
         /* Read once, at 5 deg/s, a joint was neither taken to move nor looked at again. */
-        "sts-38400 send guard -100 hold clean", "sts-38400 send guard -100 hold missed"};
+        "sts-38400 send guard -100 hold clean", "sts-38400 send guard -100 hold missed",
+        /* Its halt was lost and had the goal of before, at which the joint crept on: to read that
+         * goal was taken for the halt. */
+        "sts-38400 send trip -125 hold lost",
+        /* It passed the goal of its halt, was read there, and turned back. */
+        "sts-38400 retarget stop -450 hold lost"};
 
     if (getenv("GROBO_HALT_CELL") != NULL) {
         skip();
