@@ -14,15 +14,13 @@ static bool touches(const struct grobo_i_track *track, int i)
     return (track->flags[i] & TRACK_TOUCH) != 0;
 }
 
-/* Speed of the cubic before key i + 1, so long before it. */
+/* Speed so long before key i + 1 of the cubic that is level at both keys, whatever is beside them. */
 static double speed_before(const struct grobo_i_track *track, int i, double before_s)
 {
     const double dt_s = track->t_s[i + 1] - track->t_s[i];
     const double s = 1 - before_s / dt_s;
-    const double rise = track->v[i + 1] - track->v[i];
 
-    return 6 * s * (1 - s) * rise / dt_s + (1 - s) * (1 - 3 * s) * track->slope[i] +
-           s * (3 * s - 2) * track->slope[i + 1];
+    return 6 * s * (1 - s) * (track->v[i + 1] - track->v[i]) / dt_s;
 }
 
 static void soften_landing(struct grobo_i_track *height, int i)
@@ -40,7 +38,6 @@ static void soften_landing(struct grobo_i_track *height, int i)
 
 static void stealthy_foot(struct grobo_i_track *foot, struct grobo_i_track *height)
 {
-    grobo_i_track_slopes(height, 1);
     for (int i = foot->n - 2; i >= 0; i--) {
         const double *from = grobo_i_track_row(foot, i);
         const double *to = grobo_i_track_row(foot, i + 1);
@@ -50,11 +47,9 @@ static void stealthy_foot(struct grobo_i_track *foot, struct grobo_i_track *heig
         if (touches(foot, i) && !touches(foot, i + 1) && rise >= 2 * STEALTH_M) {
             grobo_i_track_insert(foot, i + 1, foot->t_s[i] + STEALTH_M / rise * dt_s, from,
                                  foot->flags[i]);
-        } else if (!touches(foot, i) && touches(foot, i + 1)) {
-            if (-rise >= 2 * STEALTH_M) {
-                grobo_i_track_insert(foot, i + 1, foot->t_s[i + 1] + STEALTH_M / rise * dt_s, to,
-                                     foot->flags[i + 1] | TRACK_AUX);
-            }
+        } else if (!touches(foot, i) && touches(foot, i + 1) && -rise >= 2 * STEALTH_M) {
+            grobo_i_track_insert(foot, i + 1, foot->t_s[i + 1] + STEALTH_M / rise * dt_s, to,
+                                 foot->flags[i + 1] | TRACK_AUX);
             soften_landing(height, i);
         }
     }

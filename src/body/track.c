@@ -55,12 +55,12 @@ void grobo_i_track_hold(struct grobo_i_track *track, int at, double t_s, double 
                          track->flags[last]);
 }
 
-/* Slope of one component between two secants: their mean, 0 at a turning point or where level,
- * and beside a jump. */
+/* Slope of one component between two secants: their mean, 0 at a turning point or where level, and
+ * beside a jump. A key that stands behind a later one is reached in a negative time. */
 static double mean_slope(double before, double dt_before_s, double after, double dt_after_s)
 {
     if (fabs(before) < FLAT || fabs(after) < FLAT || before * after <= 0 ||
-        dt_before_s < SEGMENT_MIN_S || dt_after_s < SEGMENT_MIN_S) {
+        fabs(dt_before_s) < SEGMENT_MIN_S || fabs(dt_after_s) < SEGMENT_MIN_S) {
         return 0;
     }
     return 0.5 * (before / dt_before_s + after / dt_after_s);

@@ -84,6 +84,24 @@ TEST(close_keys_jump)
     assert_true(isfinite(at(&shelf, 1.5)) && at(&shelf, 1.5) > 0.7 && at(&shelf, 1.5) < 0.9);
 }
 
+/* The automatic ZMP inserts keys behind later ones: the time to such a one is negative. */
+TEST(a_key_behind_a_later_one_has_its_secant_too)
+{
+    struct shelf shelf;
+    const double t_s[4] = {0, 1, 0.98, 2}, v[4] = {0, 0.1, 0.04, 0.2};
+
+    open_shelf(&shelf, 1);
+    for (int i = 0; i < 4; i++) {
+        grobo_i_track_insert(&shelf.track, i, t_s[i], &v[i], 0);
+    }
+    grobo_i_track_slopes(&shelf.track, 1);
+    assert_true(fabs(shelf.slope[1]) < NEAR); /* it turns there */
+    shelf.v[2] = 0.16;
+    grobo_i_track_slopes(&shelf.track, 1);
+    assert_true(fabs(shelf.slope[1] - 0.5 * (0.1 - 0.06 / 0.02)) < NEAR);
+    assert_true(fabs(shelf.slope[2] - 0.5 * (-0.06 / 0.02 + 0.04 / 1.02)) < NEAR);
+}
+
 TEST(a_hold_repeats_a_key_and_levels_both)
 {
     struct shelf shelf;
@@ -230,6 +248,50 @@ TEST(slave_feet_are_blended)
     assert_true(fabs(own_weight(P_TOUCH | N_SLAVE, 0.25) - smooth(0.25)) < NEAR);
     /* who touches is no slave */
     assert_true(fabs(own_weight(P_SLAVE | P_TOUCH, 0.25)) < NEAR);
+}
+
+/* ---- stealthy step ---- */
+
+/* Whether a landing is fast is told by its own two keys, not by the curve that goes on. */
+TEST(a_landing_is_softened_by_its_own_two_keys)
+{
+    static const grobo_body_options options = {GROBO_BODY_OPTIONS_INIT,
+                                               .step = GROBO_BODY_STEP_STEALTHY, .rate_hz = 100};
+    static const struct {
+        double before_m, dt_s, at_m; /* height of the key before, way to the landing, from there */
+        bool softened;
+    } rows[] = {
+        {0.075, 0.13, 0.053, true}, /* 0.305 m/s, and slower where the way before goes on */
+        {0.053, 0.13, 0.053, true},
+        {0.075, 0.13, 0.046, false}, /* 0.236 m/s */
+        {0.075, 0.07, 0.053, false}, /* too short */
+    };
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        struct script script;
+        struct run run;
+        const double land_s = 1.04 + rows[i].dt_s;
+
+        memset(&script, 0, sizeof script);
+        script_key(&script, 0);
+        script_stand(&script, 0, 0, 0.145);
+        script_key(&script, 1);
+        script_target(&script, RIGHT, FOOT_X, -FOOT_Y, rows[i].before_m);
+        script_key(&script, 1.04);
+        script_target(&script, RIGHT, FOOT_X, -FOOT_Y, rows[i].at_m);
+        script_key(&script, land_s);
+        script_target(&script, RIGHT, FOOT_X, -FOOT_Y, 0.022)->touching = true;
+        run_start(&run, &grobo_i_gr001_body, &script, &options);
+        const struct grobo_i_track *height = &run.body->height[0];
+        assert_int_equal(height->n, rows[i].softened ? 5 : 4);
+        assert_true(fabs(height->t_s[height->n - 1] - land_s) < NEAR);
+        if (rows[i].softened) {
+            assert_true(fabs(height->t_s[3] - (land_s - 0.04)) < NEAR);
+            assert_true(fabs(height->v[3] - 0.027) < NEAR);
+            assert_true(fabs(height->slope[3] + 0.25) < NEAR);
+        }
+        run_finish(&run);
+    }
 }
 
 /* ---- automatic ZMP ---- */
