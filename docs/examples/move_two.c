@@ -24,7 +24,9 @@ int main(int argc, char **argv)
         int job = grobo_robot_move(grobo_runner_robot(runner), &target);
         result = grobo_runner_wait_job(runner, job, GROBO_NEVER_US);
     }
-    printf("move: %s\n", grobo_error_text(result));
+    char said[160]; /* with joint, angle and limits where the angle is refused */
+    (void)grobo_robot_error_text(grobo_runner_robot(runner), result, said, sizeof said);
+    printf("move: %s\n", said);
     grobo_runner_free(runner);
     return result < 0;
 }

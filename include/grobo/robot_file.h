@@ -198,9 +198,6 @@ typedef struct grobo_robot_sim {
 GROBO_API int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring,
                                   grobo_robot_sim *sim);
 
-/** Whether a world of it has weight: links with masses, some of which a joint moves. */
-GROBO_API bool grobo_robot_def_has_weight(const grobo_robot_def *def);
-
 /**
  * Makes a world in which the robot has weight, for grobo_robot_sim.config.physics. The base is
  * fixed: a robot with legs hangs by its first link.

@@ -2,7 +2,6 @@
 /* What the files of the classic shelf share: ids and orders, waiting, what was read. */
 #include <math.h>
 #include <stddef.h>
-#include <stdio.h>
 
 #include <grobo/core/runner.h>
 
@@ -17,25 +16,12 @@ int SerialRobot_error(const SerialRobot *robot)
 
 int SerialRobot_errorText(const SerialRobot *robot, char *text, size_t room)
 {
-    double value_deg = 0;
+    int n =
+        SerialRobot_runner(robot) != NULL
+            ? grobo_robot_error_text(grobo_classic_engine(robot), robot->inside->error, text, room)
+            : -1;
 
-    if (SerialRobot_runner(robot) == NULL || text == NULL || room == 0) {
-        return -1;
-    }
-    const char *why = grobo_error_text(robot->inside->error);
-    int joint = robot->inside->error == GROBO_ERR_LIMIT
-                    ? grobo_robot_fault(grobo_classic_engine(robot), &value_deg)
-                    : -1;
-    int n;
-    if (joint >= 0) {
-        const grobo_joint *of = grobo_model_joint(grobo_classic_model(robot), joint);
-        n = snprintf(text, room, "%s: motor %d (%s), %.1f deg is not within %.1f to %.1f deg", why,
-                     of->motor, of->name, value_deg, grobo_deg_from_rad(of->min_rad),
-                     grobo_deg_from_rad(of->max_rad));
-    } else {
-        n = snprintf(text, room, "%s", why);
-    }
-    return n < 0 ? -1 : n < (int)room ? n : (int)room - 1;
+    return n < 0 ? -1 : n;
 }
 
 grobo_runner *SerialRobot_runner(const SerialRobot *robot)

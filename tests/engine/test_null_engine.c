@@ -180,6 +180,8 @@ TEST(robot_refuses_null_in_its_third_functions)
     grobo_robot_tripped(NULL, &trip);
     grobo_robot_tripped(&robot, NULL);
     REFUSES(grobo_robot_fault(NULL, reals));
+    REFUSES(grobo_robot_error_text(NULL, GROBO_ERR_ARG, text, sizeof text));
+    REFUSES(grobo_robot_error_text(&robot, GROBO_ERR_ARG, NULL, sizeof text));
     assert_null(grobo_robot_get_counters(NULL));
     assert_null(grobo_robot_get_bus_stats(NULL));
     assert_int_equal(grobo_robot_play_state(NULL), GROBO_SEQUENCER_IDLE);

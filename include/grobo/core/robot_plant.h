@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * @file robot_plant.h
- * @brief A robot of a file whose body is a program's: its motors are here, its links are there.
+ * @brief The weight of a robot of a file: whether it has any, and a body that is a program's, whose
+ * motors are here and whose links are there.
  *
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
@@ -11,6 +12,9 @@
 #include <grobo/robot_file.h>
 
 GROBO_BEGIN_DECLS
+
+/** Whether a world of it has weight: links with masses, some of which a joint moves. */
+GROBO_API bool grobo_robot_def_has_weight(const grobo_robot_def *def);
 
 /**
  * As grobo_robot_def_physics(), but the plant moves the joints; the links of the file are not used.

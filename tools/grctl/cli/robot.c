@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/robot_plant.h>
 #include <grobo/session.h>
 
 #include "tools/grctl/cli/config.h"

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include <grobo/core/robot.h>
+#include <grobo/core/robot_plant.h>
 
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/robot.h"

@@ -3,6 +3,7 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/robot_plant.h>
 #include <grobo/sim_server.h>
 
 #include "tools/grctl/cli/app.h"

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <grobo/core/robot_plant.h>
 #include <grobo/core/sim_physics.h>
 #include <grobo/core/sim_static.h>
 #include <grobo/core/unit.h>
