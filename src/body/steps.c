@@ -14,7 +14,7 @@ static bool touches(const struct grobo_i_track *track, int i)
     return (track->flags[i] & TRACK_TOUCH) != 0;
 }
 
-/* Speed so long before key i + 1 of the cubic that is level at both keys, whatever is beside them. */
+/* Speed of the cubic that is level at keys i and i + 1, so long before the second. */
 static double speed_before(const struct grobo_i_track *track, int i, double before_s)
 {
     const double dt_s = track->t_s[i + 1] - track->t_s[i];

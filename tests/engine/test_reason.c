@@ -156,7 +156,7 @@ TEST_EACH(refusal, refusals, a_motion_says_which_joint_was_beyond_its_limits)
     }
 }
 
-/* ---- what else is said ------------------------------------------------------------------------ */
+/* ---- what else is said ----------------------------------------------------------------------- */
 
 TEST(a_number_that_is_none_names_its_joint_alone)
 {
