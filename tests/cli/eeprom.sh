@@ -8,7 +8,7 @@ saved=$XDG_STATE_HOME/grctl/eeprom
 of() {
     one=$1
     shift
-    "$GRCTL" --robot "$one" -d "$robot" --timeout 300 "$@"
+    "$GRCTL" --robot "$one" -d "$robot" --timeout 1000 "$@"
 }
 last_saved() {
     find "$saved" -name '*.json' | sort | tail -n 1

@@ -113,6 +113,15 @@ END
     check "${any#*:} is no joint" fails 3 "x: ${any#*:} stands for servos of which the scale" \
         "$GRCTL" --robot "$work/any.yaml" joints
 done
+while read -r family model why; do
+    printf 'name: a\nfamily: %s\njoints: [{name: x, id: 1, servo: %s, limits_deg: [-9, 9]}]\n' \
+        "$family" "$model" >"$work/no_joint.yaml"
+    check "$model is no joint" fails 3 "x: $why" "$GRCTL" --robot "$work/no_joint.yaml" joints
+done <<'END'
+feetech SCS15 the scale of a SCS15 is not known
+feetech SM85CL the scale of a SM85CL is not known
+ics KRS-2552RHV a KRS-2552RHV does not tell where it stands
+END
 drops() {
     "$GRCTL" -d "$robot" -b 1000000 robot new --family feetech -o "$work/new.yaml" 2>"$work/err" &&
         grep -q 'id 3 .* unknown model 4711; .* describe it in a file' "$work/err" &&

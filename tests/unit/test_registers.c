@@ -229,6 +229,8 @@ TEST(models_have_their_numbers_and_scales)
         {&grobo_i_dxl1_table, "MX-12W", 104, 4096, 360},
         {&grobo_i_sts_table, "STS3032", 521, 4096, 360},
         {&grobo_i_sts_table, "SM40BL", 10248, 4096, 360},
+        {&grobo_i_sts_table, "SM60CL", 6662, 4096, 360},
+        {&grobo_i_sts_table, "SM85CL", 6150, 4096, 360},
         {&grobo_i_sts_table, "HLS3930", 4106, 4096, 360},
         {&grobo_i_sts_table, "HLS3915", 5130, 4096, 360},
         {&grobo_i_scs_table, "SCS225", 8969, 1024, 300},
@@ -240,6 +242,29 @@ TEST(models_have_their_numbers_and_scales)
         assert_int_equal(model->number, rows[i].number);
         assert_int_equal(model->span_ticks, rows[i].ticks);
         assert_int_equal(model->span_deg, rows[i].deg);
+    }
+}
+
+/* Where the maker's header of SMCL has what differs from STS (SMSCL.h): the lock stands where STS
+ * has its limit of torque. */
+TEST(an_sm85cl_has_a_layout_of_its_own)
+{
+    static const struct {
+        grobo_register_role role;
+        int address;
+    } rows[] = {
+        {GROBO_ROLE_OFFSET, 33},    {GROBO_ROLE_MODE, 35},    {GROBO_ROLE_GOAL, 42},
+        {GROBO_ROLE_GOAL_TIME, 44}, {GROBO_ROLE_SPEED, 46},   {GROBO_ROLE_LOCK, 48},
+        {GROBO_ROLE_POSITION, 56},  {GROBO_ROLE_CURRENT, 69},
+    };
+    const grobo_servo_model *model = grobo_servo_model_named(&grobo_i_sts_table, "SM85CL");
+    assert_non_null(model);
+    assert_true((model->flags & GROBO_MODEL_NO_JOINT) != 0);
+    assert_null(grobo_servo_register_of(model, GROBO_ROLE_TORQUE_LIMIT));
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_servo_register *reg = grobo_servo_register_of(model, rows[i].role);
+        assert_non_null(reg);
+        assert_int_equal(reg->address, rows[i].address);
     }
 }
 

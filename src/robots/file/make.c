@@ -574,6 +574,15 @@ static void refuse_servo(const maker *m, int j)
                    "%s: its servo does not reach these limits", draft->name);
 }
 
+/* Of one whose positions are bare counts, the scale is not known. */
+static const char *why_no_joint(const grobo_servo_model *servo)
+{
+    const grobo_servo_register *position = grobo_servo_register_of(servo, GROBO_ROLE_POSITION);
+    return servo->number == 0          ? "%s: %s stands for servos of which the scale is not known"
+           : position->unit[0] == '\0' ? "%s: the scale of a %s is not known"
+                                       : "%s: a %s does not tell where it stands";
+}
+
 /* Whether its family takes a joint. False: nothing more is to be said of any. */
 static bool check_servo(maker *m, int j)
 {
@@ -590,10 +599,7 @@ static bool check_servo(maker *m, int j)
     int result = init(&m->driver, &one);
     if (result == GROBO_ERR_UNSUPPORTED) {
         (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "servo", joint_place(m, j, "servo"),
-                               joint.servo->number != 0
-                                   ? "%s: a %s does not tell where it stands"
-                                   : "%s: %s stands for servos of which the scale is not known",
-                               joint.name, m->draft->joint[j].servo);
+                               why_no_joint(joint.servo), joint.name, m->draft->joint[j].servo);
         return true;
     }
     bool calibrated = joint.calibrated;

@@ -134,9 +134,12 @@ static int32_t left_of(const grobo_sim_servo *servo, int32_t limit)
     return (servo->status & GROBO_FEETECH_OVERLOAD) != 0 && left < limit ? left : limit;
 }
 
-static int32_t sts_torque_limit(const grobo_sim_servo *servo)
+/* SCS and SM60CL have none but that which they keep. */
+static int32_t torque_limit(const grobo_sim_servo *servo)
 {
-    return left_of(servo, grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE_LIMIT));
+    bool own = grobo_servo_register_of(servo->model, GROBO_ROLE_TORQUE_LIMIT) != NULL;
+    return left_of(servo,
+                   grobo_i_dxl_get(servo, own ? GROBO_ROLE_TORQUE_LIMIT : GROBO_ROLE_MAX_TORQUE));
 }
 
 /* By the lower of the limit and the current of the goal. */
@@ -146,11 +149,6 @@ static int32_t hls_torque_limit(const grobo_sim_servo *servo)
     double most_ma = abs(grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT)) * STS_COUNT_MA;
     double part = most_ma / servo->plant.stall_ma;
     return part < 1 ? (int32_t)(limit * part) : limit;
-}
-
-static int32_t scs_torque_limit(const grobo_sim_servo *servo)
-{
-    return left_of(servo, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
 }
 
 static grobo_i_dxl1_stall overload(const grobo_sim_servo *servo, int64_t unit_us)
@@ -237,7 +235,7 @@ static const grobo_i_dxl1_series sts = {.locks = true,
                                         .steps = sts_steps,
                                         .is_wheel = sts_is_wheel,
                                         .move_speed = sts_move_speed,
-                                        .torque_limit = sts_torque_limit,
+                                        .torque_limit = torque_limit,
                                         .torque_full = TORQUE_FULL,
                                         .shut_down = shut_down,
                                         .stall = sts_stall,
@@ -273,7 +271,7 @@ static const grobo_i_dxl1_series scs = {.locks = true,
                                         .offset = offset,
                                         .is_wheel = scs_is_wheel,
                                         .move_speed = scs_move_speed,
-                                        .torque_limit = scs_torque_limit,
+                                        .torque_limit = torque_limit,
                                         .torque_full = TORQUE_FULL,
                                         .shut_down = shut_down,
                                         .stall = scs_stall,
