@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Registers of the servos with the frame of DYNAMIXEL protocol 1, as their makers' tables have
- * them: AX-12A and MX-28 (reference dynamixel1, 5 and 6), STS3215 and SCS0009 (reference feetech,
- * 4, 5 and 9). SCS put the high byte first. */
+ * them: AX-12A and MX-28 (reference dynamixel1, 5 and 6), STS3215, SM8512BL and SCS0009 (reference
+ * feetech, 4, 5 and 9), HLS3930 (the maker's HLSCL.h and memory table). SCS put the high byte
+ * first. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,7 @@ enum { AX_MIDDLE = 512, MX_MIDDLE = 2048, STS_MIDDLE = 2048, SCS_MIDDLE = 512, S
 #define MX_ACCEL_DPS2 8.583
 #define STS_STEP_DEG (360.0 / 4096)
 #define STS_ACCEL_DPS2 (100 * STS_STEP_DEG)
+#define HLS_COUNT_DPS (0.732 * 6)
 #define SCS_STEP_DEG (300.0 / 1024)
 
 /* Sign and magnitude. */
@@ -154,7 +156,15 @@ static const far_dxl1_layout mx = {
 
 /* ---- STS ------------------------------------------------------------------------------------- */
 
-enum { STS_MODE = 33, STS_TORQUE = 40, STS_GOAL = 42, STS_SPEED = 46, STS_TURN = 4096 };
+/* STS_VOLTS: where what is measured at 62 is kept; no register of theirs. */
+enum {
+    STS_MODE = 33,
+    STS_TORQUE = 40,
+    STS_GOAL = 42,
+    STS_SPEED = 46,
+    STS_TURN = 4096,
+    STS_VOLTS = 150
+};
 
 static void begin_sts(far_joint *joint)
 {
@@ -176,13 +186,39 @@ static void begin_sts(far_joint *joint)
     far_put16(joint->reg + STS_GOAL, STS_MIDDLE);
     far_put16(joint->reg + 48, 1000);
     joint->reg[55] = 1;
+    joint->reg[STS_VOLTS] = 74;
+}
+
+/* The registers of STS, at 12 V. */
+static void begin_sm(far_joint *joint)
+{
+    begin_sts(joint);
+    far_put16(joint->reg + 3, 11272);
+    joint->reg[7] = 250;
+    joint->reg[14] = 140;
+    joint->reg[STS_VOLTS] = 120;
+}
+
+/* Places of STS, but a second id at 7, a current at 44 and no overload; speeds count 0.732 rpm. */
+static void begin_hls(far_joint *joint)
+{
+    begin_sts(joint);
+    joint->reg[1] = 42;
+    far_put16(joint->reg + 3, 4106);
+    joint->reg[14] = 140;
+    far_put16(joint->reg + 16, 980);
+    joint->reg[18] = 0;
+    far_put16(joint->reg + 44, 500);
+    far_put16(joint->reg + STS_SPEED, 60);
+    far_put16(joint->reg + 48, 980);
+    joint->reg[STS_VOLTS] = 120;
 }
 
 static void plan_sts(const far_joint *joint, double *goal_deg, double *cruise_dps,
                      double *accel_dps2)
 {
     *goal_deg = (signed_of(far_get16(joint->reg + STS_GOAL)) - STS_MIDDLE) * STS_STEP_DEG;
-    *cruise_dps = abs(signed_of(far_get16(joint->reg + STS_SPEED))) * STS_STEP_DEG;
+    *cruise_dps = abs(signed_of(far_get16(joint->reg + STS_SPEED))) * joint->family->count_dps;
     *accel_dps2 = joint->reg[41] * STS_ACCEL_DPS2;
 }
 
@@ -191,7 +227,7 @@ static void hold_sts(far_joint *joint, double deg, double dps, int64_t now_us)
     (void)now_us;
     joint->reg[STS_TORQUE] = (uint8_t)joint->torque;
     far_put16(joint->reg + STS_GOAL, with_sign((int)lround(deg / STS_STEP_DEG) + STS_MIDDLE));
-    far_put16(joint->reg + STS_SPEED, (int)ceil(dps / STS_STEP_DEG));
+    far_put16(joint->reg + STS_SPEED, (int)ceil(dps / joint->family->count_dps));
 }
 
 static void refresh_sts(far_joint *joint)
@@ -201,13 +237,13 @@ static void refresh_sts(far_joint *joint)
         steps = (steps % STS_TURN + STS_TURN) % STS_TURN;
     }
     far_put16(joint->reg + 56, with_sign(steps));
-    far_put16(joint->reg + 58, with_sign((int)lround(joint->dps / STS_STEP_DEG)));
+    far_put16(joint->reg + 58, with_sign((int)lround(joint->dps / joint->family->count_dps)));
     far_put16(joint->reg + 60, 0);
-    joint->reg[62] = 74;
+    joint->reg[62] = joint->reg[STS_VOLTS];
     joint->reg[63] = (uint8_t)joint->celsius;
     joint->reg[66] = joint->dps != 0;
     far_put16(joint->reg + 69, joint->dps != 0 ? 20 : 2);
-    far_put16(joint->reg + 71, far_get16(joint->reg + STS_GOAL));
+    far_put16(joint->reg + (joint->family == &far_hls ? 67 : 71), far_get16(joint->reg + STS_GOAL));
 }
 
 /* Register 33 is the mode, 1 a constant speed: register 46 then, signed, in steps a second
@@ -215,7 +251,7 @@ static void refresh_sts(far_joint *joint)
 static void spin_sts(far_joint *joint)
 {
     joint->wheel = joint->reg[STS_MODE] == 1;
-    joint->wheel_dps = signed_of(far_get16(joint->reg + STS_SPEED)) * STS_STEP_DEG;
+    joint->wheel_dps = signed_of(far_get16(joint->reg + STS_SPEED)) * joint->family->count_dps;
 }
 
 static const far_dxl1_layout sts = {.goal = STS_GOAL,
@@ -298,7 +334,8 @@ static const far_dxl1_layout scs = {.goal = STS_GOAL, .torque = STS_TORQUE, .ref
 
 const far_dxl1_layout *far_dxl1_layout_of(const far_family *family)
 {
-    return family == &far_sts ? &sts : family == &far_scs ? &scs : family == &far_mx ? &mx : &ax;
+    bool is_sts = family == &far_sts || family == &far_sm || family == &far_hls;
+    return is_sts ? &sts : family == &far_scs ? &scs : family == &far_mx ? &mx : &ax;
 }
 
 #define COMMON                                                                                     \
@@ -321,6 +358,31 @@ const far_family far_sts = {COMMON,
                             .count_dps = STS_STEP_DEG,
                             .moves = moves_sts,
                             .begin = begin_sts,
+                            .plan = plan_sts,
+                            .hold = hold_sts};
+/* It waits for its return delay before it answers: 250 counts of 2 us. */
+const far_family far_sm = {.baud_bps = 1000000,
+                           .bits_a_byte = 10,
+                           .dead_us = 2000,
+                           .think_us = 560,
+                           .measure = far_dxl1_measure,
+                           .sound = far_dxl1_sound,
+                           .obey = far_dxl1_obey,
+                           .name = "sm",
+                           .top_dps = 270,
+                           .step_deg = STS_STEP_DEG,
+                           .count_dps = STS_STEP_DEG,
+                           .moves = moves_sts,
+                           .begin = begin_sm,
+                           .plan = plan_sts,
+                           .hold = hold_sts};
+const far_family far_hls = {COMMON,
+                            .name = "hls",
+                            .top_dps = 272,
+                            .step_deg = STS_STEP_DEG,
+                            .count_dps = HLS_COUNT_DPS,
+                            .moves = moves_sts,
+                            .begin = begin_hls,
                             .plan = plan_sts,
                             .hold = hold_sts};
 const far_family far_mx = {COMMON,

@@ -3,7 +3,8 @@
  * The far side of a servo line, written from the protocols' texts, with no code of the library and
  * none of its simulator: what it says of a stop is a second opinion. It takes bytes and the time,
  * turns shafts and answers. Families: RS30x (on a bus, and behind GR001's board), DYNAMIXEL
- * protocol 2 (X, XL-320) and 1 (AX, MX), Feetech STS and SCS, KRS (ICS 3.6) and LX-16A.
+ * protocol 2 (X, P, PRO, XL-320) and 1 (AX, MX), Feetech STS, SM, HLS and SCS, KRS (ICS 3.6) and
+ * LX-16A.
  *
  * A shaft goes straight to its goal in the time or at the speed that its registers hold, with the
  * ramps of servos that have them, after the dead time of its servo. Angles are the servo's, in
@@ -48,7 +49,7 @@ typedef struct far_joint {
     bool deaf;        /* it answers, and obeys nothing */
     bool missed; /* a goal or torque for it was lost, and it told nothing since that shows it */
     int celsius;
-    bool wheel; /* it turns on and on with torque, so fast: STS and DYNAMIXEL X */
+    bool wheel; /* it turns on and on with torque, so fast: Feetech and DYNAMIXEL X, P, PRO */
     double wheel_dps;
     bool leaps; /* torque came on: it goes to its goal as fast as it can */
     uint8_t reg[FAR_REGISTERS];
@@ -105,8 +106,8 @@ struct far_family {
     void (*watch)(far_joint *joint, int64_t now_us);
 };
 
-extern const far_family far_board, far_bus, far_dxl2, far_xl320, far_dxl1, far_mx, far_sts, far_scs,
-    far_ics, far_lx16a;
+extern const far_family far_board, far_bus, far_dxl2, far_p, far_pro, far_xl320, far_dxl1, far_mx,
+    far_sts, far_sm, far_hls, far_scs, far_ics, far_lx16a;
 
 struct far_side {
     const far_family *family;

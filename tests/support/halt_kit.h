@@ -13,7 +13,7 @@
 
 #include "tests/support/far_side.h"
 
-enum { HALT_MS = 1000, HALT_S = 1000000, HALT_KEYS = 3, HALT_FAMILIES = 10 };
+enum { HALT_MS = 1000, HALT_S = 1000000, HALT_KEYS = 3, HALT_FAMILIES = 14 };
 
 /* A robot of one family: its joint `moved` is the one that moves, `other` one beside it. */
 typedef struct halt_robot {
