@@ -60,9 +60,12 @@ in_root() {
     env -i $clean_environment chroot "$root" "$@"
 }
 
-# in_live_root COMMAND...: with the devices and processes of this machine, for pseudo-terminals.
+# in_live_root COMMAND...: with the devices and processes of this machine, for pseudo-terminals. Its
+# root is one that a process may have a user namespace in: a chroot() is none.
 in_live_root() {
+    mkdir -p "$root/before"
     # shellcheck disable=SC2016,SC2086
-    env -i $clean_environment unshare -m sh -c 'mount --rbind /dev "$0/dev" &&
-        mount -t proc proc "$0/proc" && exec chroot "$0" "$@"' "$root" "$@"
+    env -i $clean_environment unshare -m sh -c 'mount --bind "$0" "$0" &&
+        mount --rbind /dev "$0/dev" && mount -t proc proc "$0/proc" && cd "$0" &&
+        pivot_root . before && umount -l /before && exec "$@"' "$root" "$@"
 }
