@@ -128,7 +128,8 @@ static int equip(const giving *g, const found_servo *one, int joint)
     alone.line.global[GLOBAL_BAUD] = (cli_value){.given = 1, .number = one->baud_bps};
     int status = conn_open_unchecked(&c, &alone);
     if (!status) {
-        status = expect_limp(&c, one);
+        int error = servos_wait(&c, one->baud_bps, FAMILY_PIECE_BYTES, SERVOS_PATIENT_US, 0, NULL);
+        status = error ? conn_fail_servo(&c, error, one->id) : expect_limp(&c, one);
     }
     if (!status && differs) {
         status = eeprom_save(&c, one->id, one->servo, path, sizeof path);
