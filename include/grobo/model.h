@@ -146,8 +146,8 @@ GROBO_API int grobo_model_joint_of_motor(const grobo_model *model, int motor);
 GROBO_API int grobo_model_motor_of_joint(const grobo_model *model, int joint);
 
 /**
- * Joint called name[0..length-1]: its name in any case ("r_knee_p"), its motor ("m12") or its
- * joint id ("j3").
+ * Joint called name[0..length-1]: its name in any case ("r_knee_p"), its motor ("m12", where no
+ * other line has that id) or its joint id ("j3").
  * @return joint 0..n-1, or GROBO_ERR_NOTFOUND. The text is not changed. Thread safe.
  */
 GROBO_API int grobo_model_find_joint(const grobo_model *model, const char *name, size_t length);

@@ -266,6 +266,18 @@ int grobo_model_motor_of_joint(const grobo_model *model, int joint)
     return grobo_i_joint(model, joint)->motor;
 }
 
+/* Of a robot of several lines two servos may have the id: then it names neither. */
+static int only_joint_of_motor(const grobo_model *model, int motor)
+{
+    int joint = grobo_model_joint_of_motor(model, motor);
+    for (int j = joint + 1; joint >= 0 && j < model->n_joints; j++) {
+        if (grobo_i_joint(model, j)->motor == motor) {
+            return GROBO_ERR_NOTFOUND;
+        }
+    }
+    return joint;
+}
+
 int grobo_model_find_joint(const grobo_model *model, const char *name, size_t length)
 {
     if (model == NULL || (name == NULL && length > 0)) {
@@ -281,7 +293,7 @@ int grobo_model_find_joint(const grobo_model *model, const char *name, size_t le
     }
     int number = small_number(name + 1, length - 1);
     if (lower(name[0]) == 'm' && number >= 0) {
-        return grobo_model_joint_of_motor(model, number);
+        return only_joint_of_motor(model, number);
     }
     if (lower(name[0]) == 'j' && number >= 0 && number < model->n_joints) {
         return number;

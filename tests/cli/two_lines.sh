@@ -24,13 +24,13 @@ check "an id twice on a line" ends_with 3 'R_lift has the id of another joint' \
     "$GRCTL" robot check "$work/wrong.yaml"
 
 test_case "in the simulator"
-on_sim() {
+with_arms() {
     "$GRCTL" --robot $arms -d sim "$@"
 }
-check "it goes to its initial posture" exits 0 on_sim init
-check "joints of both move" exits 0 on_sim pose L_pan=20 R_pan=-20
-check "its state has all" ends_with 0 '1  R_pan' on_sim status
-check "an emergency stop" exits 0 on_sim estop
+check "it goes to its initial posture" exits 0 with_arms init
+check "joints of both move" exits 0 with_arms pose L_pan=20 R_pan=-20
+check "its state has all" ends_with 0 '1  R_pan' with_arms status
+check "an emergency stop" exits 0 with_arms estop
 check "the other robot, too" exits 0 "$GRCTL" --robot $head -d sim init
 printf 'type: BodyMotion\ncomponents:\n  - type: MultiValueSeq\n    content: JointPosition\n' \
     >"$work/wave.yaml"
@@ -38,16 +38,66 @@ printf '    frameRate: 4\n    numFrames: 3\n    numParts: 8\n    frames:\n' >>"$
 for angle in 0 0.1 0; do
     echo "      - [$angle, 0, 0, 0, $angle, 0, 0, 0]" >>"$work/wave.yaml"
 done
-check "a motion" exits 0 on_sim play "$work/wave.yaml"
+check "a motion" exits 0 with_arms play "$work/wave.yaml"
 check "whose frames are not shown" ends_with 2 "frames are shown of one" \
-    on_sim play --dry-run "$work/wave.yaml"
-for command in scan info doctor budget setup calibrate 'servo-get 1' 'servo-set 1 led 1' \
-    'decode -' 'replay x'; do
+    with_arms play --dry-run "$work/wave.yaml"
+check "a rate is of one line" ends_with 2 'are for one, as --line left names it' \
+    with_arms -b 57600 status
+
+test_case "line by line"
+each_line() { # PATTERN PATTERN COMMAND...: what is told of the left arm, and of the right one
+    left=$1 right=$2
+    shift 2
+    exits 0 with_arms "$@" || return 1
+    sed -n '/^left: feetech, 1000000 bps, sim/,/^right: /p' "$work/out" | grep -q "$left" &&
+        sed -n '/^right: dynamixel2, 1000000 bps, sim/,$p' "$work/out" | grep -q "$right" &&
+        return
+    cat "$work/out"
+    return 1
+}
+check "scan" each_line '4  STS3215 .* L_gripper' '4  XL430-W250 .* R_gripper' scan --last 9
+check "info" each_line '1  STS3215 .* L_pan' '1  XL430-W250 .* R_pan' info
+check "doctor" each_line ' 7.40 V at the servos' ' 12.00 V at the servos' doctor
+check "budget" each_line '^motion, 4 joints .* 40 B' '^motion, 4 joints .* B' budget
+check_json "in JSON each has its line" 'lines[0]["line"] == "left" and len(lines[1]["servos"]) == 4
+    and lines[1]["line"] == "right" and lines[1]["servos"][0]["name"] == "R_pan"' \
+    "$GRCTL" --robot $arms -d sim --json info
+check_json "and a joint" 'lines[0]["joints"][0]["line"] == "left"
+    and lines[0]["joints"][7]["line"] == "right"' "$GRCTL" --robot $arms -d sim --json status
+check_json "offline, too" 'lines[0]["joints"][7]["line"] == "right"' \
+    "$GRCTL" --robot $arms --json joints
+check "one line alone" ends_with 0 '4  R_gripper' with_arms --line right status
+check "which has no other joint" fails 2 "no joint called 'L_pan'" \
+    with_arms --line right move L_pan 3
+check "a register by its joint" ends_with 0 'XL430-W250' with_arms servo-get R_pan model
+check "by an id of its line" ends_with 0 'STS3215' with_arms --line left servo-get 1 model
+check "an id of both" ends_with 2 'has 2 servos of id 1: name the joint, or the line: --line left' \
+    with_arms servo-get 1
+check "an id of none" ends_with 2 'has 0 joints of id 9; name the line' with_arms servo-get 9
+check "nor a motor of both" ends_with 2 "no joint called 'm1'" with_arms move m1 3
+check "a register is set" ends_with 0 'led' with_arms servo-set R_lift led 1
+check "a line that is not there" ends_with 2 "has no line 'up'; it has left, right" \
+    with_arms --line up status
+check "a robot of one line" ends_with 2 '--line left: gr001 has one line' \
+    "$GRCTL" -d sim --line left status
+check "a line without a port" ends_with 2 'nothing says which port line r has: -d r=PORT' sh -c \
+    'sed "s/, port: [^}]*//; s/: right/: r/" "$1" >"$2/r.yaml"
+    exec "$0" --robot "$2/r.yaml" --line r info' "$GRCTL" $arms "$work"
+for command in 'slot 1' 'scenario 1' first-contact; do
     # shellcheck disable=SC2086 # words
-    check "$command is for one line" ends_with 2 'has 2 lines, and this command is for one' \
-        on_sim $command
+    check "$command is for one line" ends_with 2 'has 2 lines: choose one, as by --line left' \
+        with_arms $command
 done
-check "a rate is of one line" ends_with 2 'are for one; its file has' on_sim -b 57600 status
+check "a calibration is for each line" ends_with 2 "right: calibrate: the file of two-arms-right" \
+    with_arms calibrate
+check "a file of it for one" ends_with 2 'a file is of one line: choose it, as by --line left' \
+    with_arms calibrate --from x
+check "a shell has all" ends_with 2 "info: this shell has all lines of two-arms" \
+    sh -c 'echo info | "$0" --robot "$1" -d sim shell' "$GRCTL" $arms
+check "setup names the robot with all its ports" ends_with 0 'names it two-arms now' \
+    env XDG_CONFIG_HOME="$work/config" "$GRCTL" --robot $arms -d sim -y setup
+check "and it is that robot from then on" ends_with 0 '4  R_gripper' \
+    env -u GRCTL_ROBOT XDG_CONFIG_HOME="$work/config" "$GRCTL" -d two-arms status
 
 # one_arm NAME LETTER FAMILY SERVO: a simulator of one arm, as its own robot.
 one_arm() {
@@ -90,6 +140,15 @@ check "its state has both" ends_with 0 '4  R_gripper' on_ports status
 check "both move" exits 0 on_ports pose L_pan=0 R_pan=0
 check "a port is missing" ends_with 1 'right-arm' "$GRCTL" --robot $arms -d "left=$work/left" status
 check "one port" ends_with 2 "-d left=PORT,right=PORT" "$GRCTL" --robot $arms -d "$work/left" status
+check "each line is scanned at its port" ends_with 0 '4  XL430-W250 .* R_gripper' \
+    on_ports scan --last 9
+check "a register at its port" ends_with 0 'XL430-W250' on_ports servo-get R_pan model
+check "one line, by its port alone" ends_with 0 '4  R_gripper' \
+    "$GRCTL" --robot $arms -d "$work/right" --line right status
+check "setup" ends_with 0 'names it two-arms now' env XDG_CONFIG_HOME="$work/named" "$GRCTL" \
+    --robot $arms -d "$ports" -y setup
+check "keeps both ports" ends_with 0 '4  R_gripper' env XDG_CONFIG_HOME="$work/named" "$GRCTL" \
+    -d two-arms status
 check "an emergency stop of a mistyped one" ends_with 2 "NOT stopped" \
     "$GRCTL" --robot $arms -d "lft=$work/left" estop
 check "a line is mistyped" ends_with 2 "has no line 'lft'; it has left, right" \

@@ -529,6 +529,57 @@ static void report(const guide *g)
     }
 }
 
+/* ---- several lines --------------------------------------------------------------------------- */
+
+/* A step for each line alone. Of the first one its port goes to the device of the whole robot. */
+static int on_lines(guide *g, int (*const *steps)(guide *), char *device)
+{
+    app *a = g->a;
+    const app whole = *a;
+    const grobo_robot_def *def = robot_of(a);
+    size_t n = 0;
+    int status = 0;
+    for (int line = 0; line < def->n_lines && !status; line++) {
+        app_note(a, "line %s", def->lines[line].name);
+        *a = whole;
+        status = robot_on_line(a, line);
+        a->portless = NULL; /* it is asked for */
+        for (int i = 0; steps[i] && !status; i++) {
+            status = steps[i](g);
+        }
+        if (device && !status) {
+            n += (size_t)snprintf(device + n, GROBO_DEVICE_MAX_BYTES - n, "%s%s=%s",
+                                  line > 0 ? "," : "", def->lines[line].name, g->device);
+        }
+        if (n >= GROBO_DEVICE_MAX_BYTES) {
+            status = app_fail(a, EXIT_USAGE, "CAP", "setup: the names of the ports are too long");
+        }
+    }
+    *a = whole;
+    return status;
+}
+
+/* The robot is known: each line gets its port, and its servos their ids. */
+static int find_lines(guide *g)
+{
+    static int (*const steps[])(guide *) = {find_port, check_port, find_robot, NULL};
+    char device[GROBO_DEVICE_MAX_BYTES] = "";
+    const char *path = robot_path(g->a);
+    bool sim = app_global(g->a, GLOBAL_DEVICE)->given &&
+               strcmp(app_global(g->a, GLOBAL_DEVICE)->text, GROBO_DEVICE_SIM) == 0;
+    int status = on_lines(g, steps, device);
+    snprintf(g->device, sizeof g->device, "%s", sim ? GROBO_DEVICE_SIM : device);
+    snprintf(g->robot, sizeof g->robot, "%s", path);
+    set_global(g->a, GLOBAL_DEVICE, g->device);
+    return status;
+}
+
+static int calibrate_lines(guide *g)
+{
+    static int (*const steps[])(guide *) = {offer_calibration, NULL};
+    return on_lines(g, steps, NULL);
+}
+
 int setup_run(app *a)
 {
     static guide g;
@@ -541,10 +592,14 @@ int setup_run(app *a)
     if (!ask_can(a, "'grctl ports', 'grctl doctor', 'grctl robot new'", &status)) {
         return status;
     }
-    int (*const steps[])(guide *) = {find_port, check_port,  find_robot,        take_robot,
-                                     give_name, read_joints, offer_calibration, move_first};
-    for (size_t i = 0; i < sizeof steps / sizeof *steps && !status; i++) {
-        status = steps[i](&g);
+    static int (*const one[])(guide *) = {find_port, check_port,  find_robot,        take_robot,
+                                          give_name, read_joints, offer_calibration, move_first};
+    static int (*const several[])(guide *) = {find_lines,  take_robot,      give_name,
+                                              read_joints, calibrate_lines, move_first};
+    bool lines = robot_of(a)->n_lines > 0;
+    size_t n_steps = lines ? sizeof several / sizeof *several : sizeof one / sizeof *one;
+    for (size_t i = 0; i < n_steps && !status; i++) {
+        status = lines ? several[i](&g) : one[i](&g);
     }
     if (!status) {
         report(&g);

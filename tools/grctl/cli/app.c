@@ -317,8 +317,18 @@ static int print_part(const char *bytes, size_t size, void *ctx)
     return 0;
 }
 
+static const char *json_line;
+
+void app_json_line(const char *name)
+{
+    json_line = name;
+}
+
 void app_print_json(json_t *object)
 {
+    if (json_line) {
+        json_object_set_new(object, "line", json_string(json_line));
+    }
     json_dump_callback(object, print_part, NULL, JSON_COMPACT | JSON_REAL_PRECISION(12));
     app_print("\n");
     output_flush();

@@ -31,6 +31,7 @@ typedef struct app {
     const grobo_driver *driver;        /* its; NULL: GR001's */
     grobo_driver made;                 /* that of a robot that is not GR001 */
     const char *def_name;              /* what names it */
+    const char *portless;              /* line of --line whose port nobody names */
     const char *nearest_device;        /* to a name that no robot has: a robot or word, or NULL */
     char place[128];                   /* "FILE:LINE: " of a script, for messages */
     bool json;
@@ -120,6 +121,8 @@ void app_print_home(const app *a);
 void app_print_line(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* One JSON object on a line of its own; takes the reference. */
 void app_print_json(json_t *object);
+/* Every object gets a key "line" from here on, until NULL; the name is borrowed. */
+void app_json_line(const char *name);
 /* A JSON string of bytes that may be no UTF-8. */
 json_t *app_json_text(const char *text);
 /* A stable word, as every code is spelled: in small letters, with _ between words. */

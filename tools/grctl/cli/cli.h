@@ -98,6 +98,14 @@ typedef enum cli_group {
     CLI_GROUP_TOGETHER   /* it looks at app.group itself */
 } cli_group;
 
+/* What a command does where the robot has several lines, and --line names none of them. */
+typedef enum cli_lines {
+    CLI_LINES_WHOLE = 0, /* it has the whole robot */
+    CLI_LINES_EACH,      /* it runs for each line, one after the other */
+    CLI_LINES_SERVO,     /* its first argument is a servo: for the line of that */
+    CLI_LINES_ONE        /* it needs --line */
+} cli_lines;
+
 typedef struct cli_command {
     const char *name;
     const char *heading;       /* of the group that it begins in the overview, or NULL */
@@ -112,6 +120,7 @@ typedef struct cli_command {
     cli_argument argument;
     bool stops; /* it stops the robot: done first, and mistakes are reported after it */
     cli_group group;
+    cli_lines lines;
     /* CLI_GROUP_EACH: does this line go on until it is ended? Then it looks at app.group itself. */
     bool (*goes_on)(const struct app *app);
     int (*run)(struct app *app);
@@ -121,6 +130,7 @@ typedef struct cli_command {
 enum {
     GLOBAL_DEVICE,
     GLOBAL_ROBOT,
+    GLOBAL_LINE,
     GLOBAL_BAUD,
     GLOBAL_WIRING,
     GLOBAL_ECHO,

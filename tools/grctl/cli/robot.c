@@ -7,6 +7,7 @@
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/narrow.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/node.h"
@@ -119,6 +120,38 @@ static int make_driver(app *a, const char *name)
     return error ? app_fail_error(a, EXIT_FILE, error, "%s", name) : 0;
 }
 
+/* "has no line 'lft'; it has left, right": the text lives until the next call. */
+static const char *no_line_text(const grobo_robot_def *def, const char *name, size_t size)
+{
+    static char text[APP_LINE_BYTES];
+    snprintf(text, sizeof text, _("%s has no line '%.*s'; it has %s, %s%s"), def->name, (int)size,
+             name, def->lines[0].name, def->lines[1].name, def->n_lines > 2 ? ", ..." : "");
+    return text;
+}
+
+/* The line that the options name. A stop is for the whole robot. */
+static int take_line(app *a)
+{
+    const cli_value *line = app_global(a, GLOBAL_LINE);
+    const grobo_robot_def *def = a->def;
+    if (!line->given || (a->line.command && a->line.command->stops)) {
+        return EXIT_DONE;
+    }
+    if (def->n_lines == 0) {
+        return app_fail(a, EXIT_USAGE, "ARG", "--line %s: %s has one line", line->text, def->name);
+    }
+    int number = narrow_find(def, line->text);
+    return number < 0 ? app_fail(a, EXIT_USAGE, "NOTFOUND", "%s",
+                                 no_line_text(def, line->text, strlen(line->text)))
+                      : narrow_to(a, number);
+}
+
+int robot_on_line(app *a, int line)
+{
+    int status = narrow_to(a, line);
+    return status ? status : make_driver(a, a->def->name);
+}
+
 /* What the robot is called, and by whom: "" where that is said already. */
 static const char *name_of(const app *a, const char **whose)
 {
@@ -150,7 +183,8 @@ int robot_choose(app *a)
                         is_path(name) ? "SYNTAX" : "NOTFOUND", "%s%s", whose, complaint);
     }
     a->def_name = name;
-    int status = make_driver(a, name); /* which a stop needs in any case */
+    int status = take_line(a);
+    status = status ? status : make_driver(a, name); /* which a stop needs in any case */
     bool given = app_global(a, GLOBAL_ROBOT)->given > 0;
     if (!status && a->robot && (given || a->robot->trimmed || a->robot->offsets) &&
         strcmp(name, configured) != 0) { /* trims are of the joints of one robot */
@@ -238,10 +272,7 @@ const char *robot_lines_fault(const app *a, const char *device)
             return text;
         }
         if (!has_line(def, item, name)) {
-            snprintf(text, sizeof text, _("%s has no line '%.*s'; it has %s, %s%s"), def->name,
-                     (int)name, item, def->lines[0].name, def->lines[1].name,
-                     def->n_lines > 2 ? ", ..." : "");
-            return text;
+            return no_line_text(def, item, name);
         }
     }
     return NULL;

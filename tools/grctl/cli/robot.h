@@ -24,6 +24,9 @@ int robot_choose(app *a);
 /* For completion: the robot of a line that may have no end yet. Says nothing. */
 void robot_of_words(app *a, int n, char *const *words);
 
+/* Of a robot of several lines: this one alone from here on, as with --line. As robot_choose(). */
+int robot_on_line(app *a, int line);
+
 /* What robot_choose() has chosen. */
 const grobo_robot_def *robot_of(const app *a);
 

@@ -7,6 +7,7 @@
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/each.h"
+#include "tools/grctl/cli/each_line.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/run.h"
@@ -94,7 +95,7 @@ static int run_it(app *a, int argc, char *const *argv)
     const cli_command *command = a->line.command;
     bool each =
         a->group && command->group == CLI_GROUP_EACH && !(command->goes_on && command->goes_on(a));
-    return each ? each_run(a, argc, argv) : a->line.command->run(a);
+    return each ? each_run(a, argc, argv) : a->group ? command->run(a) : each_line_run(a);
 }
 
 /* The first signal to a command that stops the robot. */
@@ -189,20 +190,6 @@ static int run_without_robot(app *a)
     return EXIT_USAGE;
 }
 
-/* What speaks to servos by their ids, or to one port, and does not know of lines. */
-static const char *const for_one_line[] = {
-    "budget", "calibrate", "decode",    "doctor",    "first-contact", "info", "replay",
-    "scan",   "scenario",  "servo-get", "servo-set", "setup",         "sim",  "slot"};
-
-static bool is_for_one_line(const char *name)
-{
-    size_t i = 0, n = sizeof for_one_line / sizeof for_one_line[0];
-    while (i < n && strcmp(for_one_line[i], name) != 0) {
-        i++;
-    }
-    return i < n;
-}
-
 static const char *device_of(const app *a)
 {
     const char *fallback = getenv("GRCTL_DEVICE");
@@ -221,19 +208,13 @@ static int refuse_lines(app *a)
     if (fault) {
         return app_fail(a, EXIT_USAGE, "ARG", "%s", fault);
     }
-    if (is_for_one_line(a->line.command->name)) {
-        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
-                        "%s: %s has %d lines, and this command is for one: describe each line in a "
-                        "file of its own for it",
-                        a->line.command->name, def->name, def->n_lines);
-    }
     static const int one[] = {GLOBAL_BAUD, GLOBAL_TRACE, GLOBAL_ECHO};
     for (size_t i = 0; i < sizeof one / sizeof one[0]; i++) {
         if (app_global(a, one[i])->given) {
             return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
-                            "%s has %d lines: --baud, --echo and --trace are for one; its file has "
-                            "the rate and echo of each",
-                            def->name, def->n_lines);
+                            "%s has %d lines: --baud, --echo and --trace are for one, as --line %s "
+                            "names it; its file has the rate and echo of each",
+                            def->name, def->n_lines, def->lines[0].name);
         }
     }
     return EXIT_DONE;

@@ -11,6 +11,8 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
                     "a port, auto, sim, tcp:HOST:PORT or a configured name; else $GRCTL_DEVICE"),
     [GLOBAL_ROBOT] = OPTION_TEXT(
         "robot", 0, "ROBOT", "which robot, by its name or file (gr001); see 'grctl robot list'"),
+    [GLOBAL_LINE] = OPTION_TEXT("line", 0, "NAME",
+                                "one line of a robot that has several, as a robot of its own"),
     [GLOBAL_BAUD] =
         OPTION_WHOLE("baud", 'b', "N", 9600, 4000000, "bits per second of the line (the robot's)"),
     [GLOBAL_WIRING] = OPTION_CHOICE("wiring", 0, "board|bus",

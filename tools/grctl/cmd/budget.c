@@ -135,6 +135,7 @@ static int run(app *a)
 
 const cli_command cmd_budget = {
     .name = "budget",
+    .lines = CLI_LINES_EACH,
     .arguments = "",
     .summary = "compute how many frames per second the line can carry",
     .details =

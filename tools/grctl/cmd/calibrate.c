@@ -7,6 +7,7 @@
 
 #include "tools/grctl/bringup/homing.h"
 #include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/each_line.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
@@ -133,30 +134,20 @@ static int fail_unnamed(app *a)
                           robot_of(a)->name);
 }
 
-static int run(app *a)
+/* Servos of several lines: each line has ids of its own. */
+static int run_lines(app *a, bool files)
+{
+    return files ? app_fail(a, EXIT_USAGE, "ARG",
+                            "calibrate: a file is of one line: choose it, as by --line %s",
+                            robot_of(a)->lines[0].name)
+                 : each_line_all(a);
+}
+
+/* Trims of all joints, as they stand, or of the one that is named. */
+static int trim(app *a)
 {
     double deg;
     int status = 0;
-    const homing_orders orders = {.from = app_option(a, OPT_FROM)->text,
-                                  .restore = app_option(a, OPT_RESTORE)->text,
-                                  .out = app_option(a, OPT_OUT)->text,
-                                  .dry_run = app_option(a, OPT_DRY_RUN)->given > 0};
-    bool files = orders.from || orders.restore || orders.out;
-    bool has_trims = a->robot && !grobo_model_joint(app_model(a), 0)->calibrated;
-    if (a->line.n_arguments == 0 && homing_fits(a) && (files || !has_trims)) {
-        return homing_run(a, &orders);
-    }
-    if (files) {
-        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
-                        "calibrate: the servos of %s keep no calibration; it has trims",
-                        robot_of(a)->name);
-    }
-    if (!a->robot) {
-        return fail_unnamed(a);
-    }
-    if (a->line.n_arguments == 1) {
-        return app_fail(a, EXIT_USAGE, "ARG", "calibrate needs JOINT DEG, or neither");
-    }
     config_robot after = *a->robot;
     grobo_joint_mask joints = GROBO_JOINTS_ALL(app_model(a)->n_joints);
     if (a->line.n_arguments == 0) {
@@ -175,6 +166,34 @@ static int run(app *a)
         status = set_trim(a, &after, joint, deg);
     }
     return status ? status : finish(a, &after, joints);
+}
+
+static int run(app *a)
+{
+    const homing_orders orders = {.from = app_option(a, OPT_FROM)->text,
+                                  .restore = app_option(a, OPT_RESTORE)->text,
+                                  .out = app_option(a, OPT_OUT)->text,
+                                  .dry_run = app_option(a, OPT_DRY_RUN)->given > 0};
+    bool files = orders.from || orders.restore || orders.out;
+    bool has_trims = a->robot && !grobo_model_joint(app_model(a), 0)->calibrated;
+    if (a->line.n_arguments == 0 && robot_of(a)->n_lines > 0 && !has_trims) {
+        return run_lines(a, files);
+    }
+    if (a->line.n_arguments == 0 && homing_fits(a) && (files || !has_trims)) {
+        return homing_run(a, &orders);
+    }
+    if (files) {
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "calibrate: the servos of %s keep no calibration; it has trims",
+                        robot_of(a)->name);
+    }
+    if (!a->robot) {
+        return fail_unnamed(a);
+    }
+    if (a->line.n_arguments == 1) {
+        return app_fail(a, EXIT_USAGE, "ARG", "calibrate needs JOINT DEG, or neither");
+    }
+    return trim(a);
 }
 
 const cli_command cmd_calibrate = {

@@ -477,6 +477,10 @@ static int run(app *a)
     static patient p;
     int signal = 0;
     memset(&p, 0, sizeof p);
+    if (a->portless) {
+        return app_fail(a, EXIT_USAGE, "ARG", "nothing says which port line %s has: -d %s=PORT",
+                        a->portless, a->portless);
+    }
     checkup_start(&p.k, a);
     if (choose_device(&p.k, device) && (!is_path(device) || checkup_port(&p.k, device))) {
         check_latch(&p.k, device);
@@ -502,6 +506,7 @@ static int run(app *a)
 
 const cli_command cmd_doctor = {
     .name = "doctor",
+    .lines = CLI_LINES_EACH,
     .arguments = "",
     .summary = "find faults from the port to the last servo, suggest fixes",
     .details =

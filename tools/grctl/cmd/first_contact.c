@@ -28,6 +28,7 @@ static int run(app *a)
 
 const cli_command cmd_first_contact = {
     .name = "first-contact",
+    .lines = CLI_LINES_ONE,
     COMMAND_ARGUMENTS("[JOINT]", 0, 1, CLI_ARG_JOINT),
     .summary = "test what grctl assumes of a real robot, step by step",
     .details =

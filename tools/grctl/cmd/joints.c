@@ -6,15 +6,23 @@
 #include <grobo/core/unit.h>
 
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
 
 enum { NAMES_BYTES = 128 };
 
-/* The groups of a joint, split by blanks, without those of every joint. */
-static void group_names(const grobo_model *model, int joint, char *names)
+/* The line of a joint where there are several, and its groups, split by blanks, without those of
+ * every joint. */
+static void group_names(const app *a, int joint, char *names)
 {
+    const grobo_model *model = app_model(a);
+    const grobo_robot_def *def = robot_of(a);
     size_t at = 0;
     *names = '\0';
+    if (def->n_lines > 0) {
+        at = (size_t)snprintf(names, NAMES_BYTES, "(line %s)",
+                              def->lines[grobo_model_joint(model, joint)->line].name);
+    }
     for (int i = 0; i < model->n_groups && at < NAMES_BYTES; i++) {
         const grobo_group *group = &model->groups[i];
         bool has = (group->joints & GROBO_JOINT_BIT(joint)) != 0;
@@ -25,13 +33,14 @@ static void group_names(const grobo_model *model, int joint, char *names)
     }
 }
 
-static void print_joint(const grobo_model *model, int joint)
+static void print_joint(const app *a, int joint)
 {
+    const grobo_model *model = app_model(a);
     const grobo_joint *j = grobo_model_joint(model, joint);
     char number[8], motor[8], names[NAMES_BYTES];
     snprintf(number, sizeof number, "j%d", joint);
     snprintf(motor, sizeof motor, "m%d", j->motor);
-    group_names(model, joint, names);
+    group_names(a, joint, names);
     if (j->ratio != 0) {
         size_t at = strlen(names);
         snprintf(names + at, sizeof names - at, "%s(follows %s)", at ? " " : "",
@@ -50,8 +59,10 @@ static void print_joint(const grobo_model *model, int joint)
               joints_mark(model, joint), names);
 }
 
-static json_t *joint_json(const grobo_model *model, int joint)
+static json_t *joint_json(const app *a, int joint)
 {
+    const grobo_model *model = app_model(a);
+    const grobo_robot_def *def = robot_of(a);
     const grobo_joint *j = grobo_model_joint(model, joint);
     json_t *row = json_pack("{s:i,s:i,s:i,s:s,s:[o,o],s:o,s:o}", "joint", joint, "motor", j->motor,
                             "id", j->motor, "name", j->name, "limits_deg",
@@ -59,6 +70,9 @@ static json_t *joint_json(const grobo_model *model, int joint)
                             app_json_number(grobo_deg_from_rad(j->max_rad), 1), "init_deg",
                             app_json_number(grobo_deg_from_rad(j->init_rad), 1), "groups",
                             joints_groups_json(model, joint));
+    if (def->n_lines > 0) {
+        json_object_set_new(row, "line", json_string(def->lines[j->line].name));
+    }
     if (j->ratio != 0) {
         json_object_set_new(row, "follows", json_integer(j->follows));
         json_object_set_new(row, "ratio", app_json_number(j->ratio, 6));
@@ -94,9 +108,9 @@ static int run(app *a)
             continue;
         }
         if (list) {
-            json_array_append_new(list, joint_json(model, j));
+            json_array_append_new(list, joint_json(a, j));
         } else {
-            print_joint(model, j);
+            print_joint(a, j);
         }
     }
     if (list) {

@@ -676,6 +676,7 @@ static int run_set(app *a)
 
 const cli_command cmd_servo_get = {
     .name = "servo-get",
+    .lines = CLI_LINES_SERVO,
     .heading = "Servos, frames, the simulator",
     COMMAND_ARGUMENTS("ID [KEY]...", 1, CLI_ARGUMENTS_MAX, CLI_ARG_JOINT),
     .summary = "read a servo's registers by name",
@@ -689,6 +690,7 @@ const cli_command cmd_servo_get = {
 
 const cli_command cmd_servo_set = {
     .name = "servo-set",
+    .lines = CLI_LINES_SERVO,
     COMMAND_ARGUMENTS("ID [KEY VALUE]", 1, 3, CLI_ARG_JOINT),
     .summary = "write a servo's register by name",
     .details =

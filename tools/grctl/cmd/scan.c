@@ -344,6 +344,7 @@ static int run_info(app *a)
 
 const cli_command cmd_scan = {
     .name = "scan",
+    .lines = CLI_LINES_EACH,
     .arguments = "",
     .summary = "find the servo ids that answer",
     .details =
@@ -363,6 +364,7 @@ const cli_command cmd_scan = {
 
 const cli_command cmd_info = {
     .name = "info",
+    .lines = CLI_LINES_EACH,
     .heading = "See",
     .arguments = "",
     .summary = "print models and firmware of the board and the servos",

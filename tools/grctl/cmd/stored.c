@@ -46,6 +46,7 @@ static int run_scenario(app *a)
 
 const cli_command cmd_slot = {
     .name = "slot",
+    .lines = CLI_LINES_ONE,
     COMMAND_ARGUMENTS("N", 1, 1, CLI_ARG_WORD),
     .summary = "play a motion stored in the board",
     .details = "Asks the board to play motion N of its own memory. Its angles are the board's:\n"
@@ -55,6 +56,7 @@ const cli_command cmd_slot = {
 
 const cli_command cmd_scenario = {
     .name = "scenario",
+    .lines = CLI_LINES_ONE,
     COMMAND_ARGUMENTS("N", 1, 1, CLI_ARG_WORD),
     .summary = "play a scenario stored in the board",
     .details = "Asks the board to play scenario N of its own memory, a sequence of motions. Its\n"

@@ -605,6 +605,10 @@ static int open_device(conn *c, app *a, bool check)
     if (c->session) {
         return take_over(c, check);
     }
+    if (a->portless) {
+        return app_fail(a, EXIT_USAGE, "ARG", "nothing says which port line %s has: -d %s=PORT",
+                        a->portless, a->portless);
+    }
     if (!*asked) {
         return app_fail(a, EXIT_USAGE, "ARG", "--device: an empty name; see 'grctl ports'");
     }

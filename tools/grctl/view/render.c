@@ -2,6 +2,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/lines.h>
+
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/view/render.h"
 
@@ -39,6 +41,27 @@ bool render_target(const grobo_joint_info *info, double *target_rad)
     return info->has_target || told;
 }
 
+/* The name of a joint's line; NULL: the robot has one. */
+static const char *line_of(const conn *c, int joint)
+{
+    const grobo_lines *lines = grobo_driver_lines(grobo_robot_driver(c->robot));
+    return lines ? lines->line[lines->line_of[joint]].name : NULL;
+}
+
+/* The column of it, or nothing: a heading, where there is no joint. */
+static void line_cell(const conn *c, int joint)
+{
+    int width = (int)strlen("line");
+    for (int k = 0; k < model_of(c)->n_joints; k++) {
+        const char *name = line_of(c, k);
+        int length = name ? (int)strlen(name) : 0;
+        width = length > width ? length : width;
+    }
+    if (line_of(c, 0)) {
+        app_print("%-*s  ", width, joint < 0 ? "line" : line_of(c, joint));
+    }
+}
+
 /* NULL is null. */
 static json_t *integer_or_null(bool known, long value)
 {
@@ -62,9 +85,10 @@ static json_t *joint_json(const conn *c, int joint)
     if (grobo_robot_joint(c->robot, joint, &i) < 0) {
         return json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
     }
+    const char *line = line_of(c, joint);
     bool fresh = i.angle_age_us != GROBO_NEVER_US, targeted = render_target(&i, &target_rad);
     json_t *row = json_pack(
-        "{s:i,s:i,s:s,s:o,s:o,s:s?,s:o?,s:o?,s:o?,s:o,s:o?,s:o,s:o*}", "joint", joint, "motor",
+        "{s:i,s:i,s:s,s:o,s:o,s:s?,s:o?,s:o?,s:o?,s:o,s:o?,s:o,s:o*,s:s*}", "joint", joint, "motor",
         j->motor, "name", j->name, "angle_deg",
         app_json_number(fresh ? grobo_deg_from_rad(i.state.angle_rad) : NAN, 1), "target_deg",
         app_json_number(targeted ? grobo_deg_from_rad(target_rad) : NAN, 1), "torque",
@@ -74,7 +98,8 @@ static json_t *joint_json(const conn *c, int joint)
         integer_or_null(has(&i, GROBO_FIELD_TEMPERATURE), i.state.temperature_c), "voltage_v",
         app_json_number(has(&i, GROBO_FIELD_VOLTAGE) ? i.state.voltage_mv / 1e3 : NAN, 2), "age_ms",
         integer_or_null(fresh, fresh ? (long)(i.angle_age_us / 1000) : 0), "status",
-        app_json_code(grobo_error_name(i.status)), "setup", render_setup_json(c, joint));
+        app_json_code(grobo_error_name(i.status)), "setup", render_setup_json(c, joint), "line",
+        line);
     joints_add_unit(row, model_of(c), joint);
     joints_add_value(row, "value", model_of(c), joint, fresh ? i.state.angle_rad : NAN);
     joints_add_value(row, "target", model_of(c), joint, targeted ? target_rad : NAN);
@@ -141,6 +166,7 @@ void render_status(const conn *c, grobo_joint_mask joints)
     bool color = c->a->color_out;
     int width = name_width(model);
     const char *gap = unit_gap(model);
+    line_cell(c, -1);
     app_print("motor  %-*s  angle%s  target%s  torque  speed  current  temp  volts  age ms\n",
               width, "joint", gap, gap);
     for (int k = 0; k < model->n_joints; k++) {
@@ -150,6 +176,7 @@ void render_status(const conn *c, grobo_joint_mask joints)
             continue;
         }
         bool known = i.angle_age_us != GROBO_NEVER_US;
+        line_cell(c, k);
         app_print("%5d  %-*s  ", grobo_model_joint(model, k)->motor, width,
                   grobo_model_joint(model, k)->name);
         angle_cell(model, k, known, 5, i.state.angle_rad);
@@ -209,6 +236,7 @@ void render_reached(const conn *c)
     const grobo_model *model = model_of(c);
     int width = name_width(model);
     const char *gap = unit_gap(model);
+    line_cell(c, -1);
     app_print("motor  %-*s  target%s  reached%s  error%s\n", width, "joint", gap, gap,
               *gap ? "" : " deg");
     for (int k = 0; k < model->n_joints; k++) {
@@ -217,6 +245,7 @@ void render_reached(const conn *c)
             continue;
         }
         bool both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
+        line_cell(c, k);
         app_print("%5d  %-*s  ", grobo_model_joint(model, k)->motor, width,
                   grobo_model_joint(model, k)->name);
         angle_cell(model, k, i.has_target, 6, i.target_rad);
