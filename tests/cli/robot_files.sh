@@ -164,6 +164,25 @@ check "a humanoid's is refused" fails 3 'greet.pseq: has 20 joints, so101 has 6'
 check "motions of the board too" fails 2 'slot: so101 has no board here' arm slot 1
 check "torque by group" fails 0 'torque of 5 joints is on' arm servo on arm
 
+test_case "pipes and folders"
+
+mkfifo "$work/pipe"
+mkdir "$work/folder"
+while read -r what complaint; do
+    check "robot check of a $what" fails 3 "^grctl: .*/$what: $complaint" \
+        "$GRCTL" robot check "$work/$what"
+    check "--robot of a $what" fails 3 "^grctl: .*/$what: $complaint" \
+        "$GRCTL" --robot "$work/$what" joints
+done <<'END'
+pipe is a pipe; a robot's file must be a regular file$
+folder is a folder, not a robot's file$
+END
+for option in "calibrate --from" "calibrate --restore" "servo-set 1 --restore"; do
+    # shellcheck disable=SC2086 # words
+    check "$option of a pipe" fails 3 '/pipe: is a pipe; a regular file is needed$' \
+        arm $option "$work/pipe"
+done
+
 test_case "servos without registers"
 
 for family in lx16a:LX-16A ics:KRS-3301; do

@@ -92,6 +92,10 @@ static int read_all(app *a, const char *path, const json_t *file, bool any, homi
 int homing_read(app *a, const char *path, bool any, homing *all)
 {
     json_error_t error;
+    int status = file_refuse_pipe(a, path);
+    if (status) {
+        return status;
+    }
     json_t *file = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
     if (!file && (error.line < 1 || os_is_folder(path))) {
         return app_fail_cause(a, EXIT_FILE, os_is_folder(path) ? EISDIR : errno, "%s", path);
@@ -100,9 +104,8 @@ int homing_read(app *a, const char *path, bool any, homing *all)
         return app_fail(a, EXIT_FILE, "SYNTAX", "%s:%d:%d: %s", path, error.line, error.column,
                         error.text);
     }
-    int status = json_is_object(file)
-                     ? read_all(a, path, file, any, all)
-                     : complain(a, path, robot_of(a)->name, "is not a calibration");
+    status = json_is_object(file) ? read_all(a, path, file, any, all)
+                                  : complain(a, path, robot_of(a)->name, "is not a calibration");
     json_decref(file);
     return status;
 }

@@ -195,6 +195,13 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
     return grobo_motion_read(&source, &named, list, motion);
 }
 
+int file_refuse_pipe(app *a, const char *path)
+{
+    return pipe_is(path) ? app_fail(a, EXIT_FILE, grobo_error_name(GROBO_ERR_UNSUPPORTED), "%s: %s",
+                                    path, _("is a pipe; a regular file is needed"))
+                         : EXIT_DONE;
+}
+
 bool file_is_there(const char *path)
 {
     FILE *file = fopen(path, "rb");

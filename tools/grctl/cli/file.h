@@ -33,6 +33,10 @@ int file_fits(app *a, const char *path, const grobo_motion *motion, bool forced)
 /* Says a warning on standard error, a note only with -v. */
 void file_say_one(const app *a, const grobo_diagnostic *d);
 
+/* A file that is read in the middle of a command: of a pipe the writer would be waited for. 0, or
+ * the exit status of what was said. */
+int file_refuse_pipe(app *a, const char *path);
+
 /*
  * As grobo_motion_read_file(), but "-" is standard input, and a pipe that nobody writes to is
  * waited for a second only.

@@ -30,6 +30,13 @@ int robot_read(const char *path, grobo_diagnostics *list, grobo_robot_def **def)
                               : grobo_robot_def_read_file(path, list, NULL, def);
 }
 
+const char *robot_read_fault(int error)
+{
+    return error == GROBO_ERR_ISDIR         ? _("is a folder, not a robot's file")
+           : error == GROBO_ERR_UNSUPPORTED ? _("is a pipe; a robot's file must be a regular file")
+                                            : file_error_text(error);
+}
+
 static bool is_path(const char *name)
 {
     return strpbrk(name, "/\\.") != NULL;
@@ -57,9 +64,7 @@ static const grobo_robot_def *find_file(const char *path, char *complaint, size_
     } else if (list && grobo_diagnostics_get(list, 0, &d) == 0) {
         file_format(&d, false, complaint, capacity);
     } else {
-        snprintf(complaint, capacity, "%s: %s", path,
-                 error == GROBO_ERR_ISDIR ? _("is a folder, not a robot's file")
-                                          : file_error_text(error));
+        snprintf(complaint, capacity, "%s: %s", path, robot_read_fault(error));
     }
     grobo_diagnostics_free(list);
     if (error) {

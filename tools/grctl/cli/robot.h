@@ -47,5 +47,7 @@ const char *robot_path(const app *a);
 
 /* Reads a file and keeps nothing: all that is wrong goes to the list. def is the caller's. */
 int robot_read(const char *path, grobo_diagnostics *list, grobo_robot_def **def);
+/* Why robot_read() read nothing, where the list is empty. */
+const char *robot_read_fault(int error);
 
 #endif

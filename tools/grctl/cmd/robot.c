@@ -246,7 +246,7 @@ static int run_check(app *a, const char *path)
     if (error && grobo_diagnostics_get(list, 0, &d) < 0) {
         grobo_diagnostics_free(list);
         return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path,
-                        file_error_text(error));
+                        robot_read_fault(error));
     }
     for (size_t i = 0; !a->json && grobo_diagnostics_get(list, i, &d) == 0; i++) {
         file_print(a, &d, "");

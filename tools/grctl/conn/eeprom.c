@@ -113,6 +113,10 @@ static int check(app *a, const char *path, const grobo_servo_model *servo, json_
 int eeprom_load(app *a, const char *path, const grobo_servo_model *servo, json_t **registers)
 {
     json_error_t error;
+    int status = file_refuse_pipe(a, path);
+    if (status) {
+        return status;
+    }
     errno = 0;
     json_t *all = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
     if (!all && errno) {
@@ -120,7 +124,6 @@ int eeprom_load(app *a, const char *path, const grobo_servo_model *servo, json_t
     }
     const char *model = json_string_value(json_object_get(all, "model"));
     json_t *found = json_object_get(all, "registers");
-    int status = 0;
     if (!model || !json_is_object(found)) {
         status = complain(a, path, "registers", N_("it is no file of servo-set or calibrate"));
     } else if (strcmp(model, servo->name) != 0) {
