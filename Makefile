@@ -837,7 +837,7 @@ $(BUILD)/.bindir: FORCE
 # Tests whose time is virtual, where the C library lets them (tests/support/virtual_clock.h).
 HOST := $(if $(CROSS),,$(shell $(CC) -dumpmachine 2>/dev/null))
 ifneq ($(filter %linux-gnu,$(filter x86_64-% aarch64-% riscv64-%,$(HOST))),)
-$(patsubst %,$(BUILD)/tests/link/test_classic_%.o,frames kept null): override CPPFLAGS += -DGROBO_VIRTUAL_CLOCK
+$(patsubst %,$(BUILD)/tests/link/test_classic_%.o,frames kept null whole): override CPPFLAGS += -DGROBO_VIRTUAL_CLOCK
 endif
 
 # The command knows where its files are installed.

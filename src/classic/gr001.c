@@ -324,6 +324,24 @@ int GR001_doRecord(GR001 *robot)
                : -1;
 }
 
+/* ---- free mode ----------------------------------------------------------------------------- */
+
+static int ask_free(classic_request *request, grobo_robot *engine)
+{
+    return grobo_robot_free(engine, request->joints, request->number == 1);
+}
+
+int GR001_setFreeMotion(GR001 *robot, int x)
+{
+    if (SerialRobot_runner(robot) == NULL) {
+        return -1;
+    }
+    const classic_request request = {
+        .start = ask_free, .joints = GROBO_JOINTS_ALL(robot->joints), .number = x};
+
+    return grobo_classic_ask(robot, request) < 0 ? -1 : x;
+}
+
 /* ---- packets ------------------------------------------------------------------------------ */
 
 /* Copies a frame that was built. */

@@ -146,6 +146,13 @@ TEST(no_robot)
     REFUSES(SerialRobot_saveMotionToM(NULL, "x"));
     REFUSES(SerialRobot_saveMotionToYaml(NULL, "x"));
     REFUSES(SerialRobot_saveMotionToPseq(NULL, "x"));
+    IS(0, strcmp(text, "none"));
+}
+
+TEST(no_robot_of_which_more_is_asked)
+{
+    char text[8] = "none";
+
     REFUSES(SerialRobot_setJoint(NULL, 1, 1));
     REFUSES(SerialRobot_setMotionTime(NULL, 5));
     SerialRobot_clearMotion(NULL);
@@ -213,6 +220,7 @@ TEST(no_gr001)
     REFUSES(GR001_clearRecord(NULL));
     REFUSES(GR001_recordCurrentPosture(NULL));
     REFUSES(GR001_doRecord(NULL));
+    REFUSES(GR001_setFreeMotion(NULL, 1));
     REFUSES(GR001_MoveJointPacket(NULL, 1, 0, 10, text, 8));
     REFUSES(GR001_PosturePacket(NULL, NULL, text, 8));
     REFUSES(GR001_MotorInfoPacket(NULL, 1, text, 8));

@@ -89,6 +89,12 @@ GROBO_CLASSIC_API int GR001_clearRecord(GR001 *robot);
 GROBO_CLASSIC_API int GR001_recordCurrentPosture(GR001 *robot);
 /** Makes the record the motion, and plays it once. @return 0, -1 */
 GROBO_CLASSIC_API int GR001_doRecord(GR001 *robot);
+/**
+ * Free mode, which the original has and its document has not: 1 lets a person move all joints,
+ * which are braked where they are pushed and hold where they rest (grobo_robot_free()); another
+ * number ends it: they hold where they are. @return x, -1
+ */
+GROBO_CLASSIC_API int GR001_setFreeMotion(GR001 *robot, int x);
 
 /* ---- packets, which the document keeps as templates ---------------------------------------- */
 
