@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Every robot that is built in, and an own file of each kind of servo, starts monitor, status,
+# Every robot that is built in, an own file of each kind of servo, wheels and robots of several
+# lines, starts monitor, status,
 # doctor, info, joints, plot, show, check, budget and serve, on a terminal and piped: the documented
 # status, and no joint of another robot on the screen.
 . tests/support/cli.sh
@@ -24,9 +25,11 @@ python3 tests/support/robots_start.py "$GRCTL" "$work/robots" >"$work/said" 2>"$
 started() {
     grep -q -x -e "ok $1" "$work/said" || { cat "$work/said"; return 1; }
 }
-for name in $("$GRCTL" robot list | sed 's/ .*//') own-STS3215.yaml own-SCS0009.yaml \
-    own-XL430-W250.yaml own-AX-12A.yaml own-MX-28.yaml own-LX-16A.yaml own-KRS-3301.yaml \
-    own-RS304MD.yaml one.yaml all64.yaml; do
+for name in $("$GRCTL" robot list | sed 's/ .*//') own-STS3215.yaml own-SM8512BL.yaml \
+    own-HLS3930.yaml own-SCS0009.yaml own-XL430-W250.yaml own-XL-320.yaml \
+    own-PH42-020-S300-R.yaml own-H54-200-S500-R.yaml own-AX-12A.yaml own-MX-28.yaml \
+    own-LX-16A.yaml own-KRS-3301.yaml own-RS304MD.yaml one.yaml all64.yaml rover.yaml \
+    two-arms.yaml ax-body-xl330-head.yaml; do
     test_that "$name starts every command" started "$name"
 done
 done_testing

@@ -19,7 +19,9 @@ import time
 import urllib.request
 
 LIMIT_S = 60
-SERVOS = ["STS3215", "SCS0009", "XL430-W250", "AX-12A", "MX-28", "LX-16A", "KRS-3301", "RS304MD"]
+SERVOS = ["STS3215", "SM8512BL", "HLS3930", "SCS0009", "XL430-W250", "XL-320", "PH42-020-S300-R",
+          "H54-200-S500-R", "AX-12A", "MX-28", "LX-16A", "KRS-3301", "RS304MD"]
+EXAMPLES = ["rover", "two-arms", "ax-body-xl330-head"]  # wheels, several lines
 ESCAPES = re.compile(rb"\x1b(\[[0-9;?]*[A-Za-z]|[()][A-Z0-9]|[=>78])")
 grctl, folder = os.path.abspath(sys.argv[1]), sys.argv[2]
 environment = dict(os.environ, TERM="xterm", COLUMNS="80", LINES="24")
@@ -36,6 +38,16 @@ def own_file(name, servo, names, first=1, more=""):
         file.write(f"name: {name}\nfamily: {families[servo]}\n{more}joints:\n")
         for i, joint in enumerate(names):
             file.write(f"  - {{name: {joint}, id: {first + i}, servo: {servo}, limits_deg: [-50, 50]}}\n")
+    return path
+
+
+def example(name):
+    """Its copy; 'left' and 'right' of its joints are words of other robots too."""
+    path = os.path.join(folder, name + ".yaml")
+    with open(f"docs/examples/robots/{name}.yaml") as text, open(path, "w") as file:
+        for line in text:
+            is_joint = re.search(r"name: (left|right), id|mirror: |joints: \[left, right\]", line)
+            file.write(re.sub(r"\b(left|right)\b", r"\1_wheel", line) if is_joint else line)
     return path
 
 
@@ -205,6 +217,7 @@ for servo in SERVOS:
 robots.append(own_file("one", "STS3215", ["the_only_joint_of_a_robot_with_a_long_name_of_sixty_letters_abc"]))
 robots.append(own_file("all64", "XL430-W250", [f"part_with_a_long_name_number_{i}" for i in range(64)], 150,
                        "line: {baud: 4000000}\n"))
+robots += [example(name) for name in EXAMPLES]
 robots = [Robot(word) for word in robots]
 foreign = {known for robot in robots for name in robot.names for known in known_by(name)}
 with concurrent.futures.ThreadPoolExecutor(12) as pool:
