@@ -75,10 +75,11 @@ static const grobo_i_servo_row *row_named(const grobo_i_servo_draft *draft, cons
     return NULL;
 }
 
-static bool same_place(const grobo_servo_register *a, const grobo_servo_register *b)
+static bool same_place(const grobo_servo_register *a, const grobo_i_servo_row *row)
 {
+    const grobo_servo_register *b = &row->reg;
     return a->address == b->address && a->bytes == b->bytes && a->sign == b->sign &&
-           a->role == b->role && a->flags == b->flags && strcmp(a->unit, b->unit) == 0;
+           a->role == b->role && a->flags == b->flags && strcmp(a->unit, row->unit) == 0;
 }
 
 /* Registers of the series: each is there, and means the same. */
@@ -91,7 +92,7 @@ static void check_series(grobo_i_reader *reader, const grobo_i_own_servo *own)
             (void)grobo_i_complain(reader, GROBO_ERR_SYNTAX, "register", own->draft.place,
                                    "register %s: %s has it, so this model must have it too",
                                    reg->name, own->like->name);
-        } else if (!same_place(reg, &row->reg)) {
+        } else if (!same_place(reg, row)) {
             (void)grobo_i_complain(reader, GROBO_ERR_SYNTAX, "register", row->place,
                                    "register %s: only its range and default may differ from %s's",
                                    reg->name, own->like->name);
@@ -199,9 +200,14 @@ static int read_own(grobo_i_reader *reader, grobo_i_own_servo *own)
         result = grobo_i_refuse(reader, GROBO_ERR_SYNTAX, "missing", (grobo_i_place){1, 1},
                                 "it has no 'name'");
     }
-    if (result >= 0) {
-        (void)grobo_i_servo_finish(reader, &own->draft);
+    if (result >= 0) { /* a mistake is told once */
         check_series(reader, own);
+        result = reader->result;
+    }
+    if (result >= 0) {
+        result = grobo_i_servo_finish(reader, &own->draft);
+    }
+    if (result >= 0) {
         check_added(reader, own);
         check_whole(reader, own);
         result = reader->result;

@@ -96,10 +96,10 @@ static int read_whole(grobo_i_events *events, const char *what, long low, long h
     return grobo_i_read_long(events, what, low, high, value);
 }
 
-static int read_u16(grobo_i_events *events, const char *what, uint16_t *value)
+static int read_u16(grobo_i_events *events, const char *what, long low, uint16_t *value)
 {
     long found = *value;
-    int result = read_whole(events, what, 0, UINT16_MAX, &found);
+    int result = read_whole(events, what, low, UINT16_MAX, &found);
     *value = (uint16_t)found;
     return result;
 }
@@ -293,15 +293,16 @@ static grobo_i_servo_row *row_named(grobo_i_servo_draft *draft, const char *name
 }
 
 /* Bits of row_fields. */
-enum { LAYOUT = 1 << 0 | 1 << 1 | 1 << 2, VALUES = 1 << 6 | 1 << 7 };
+enum { HAS_AT = 1 << 0, LAYOUT = HAS_AT | 1 << 1 | 1 << 2, VALUES = 1 << 6 | 1 << 7 };
 
 static int read_row(grobo_i_events *events, void *target, const char *name)
 {
     grobo_i_servo_draft *draft = target;
     grobo_i_servo_row *row = row_named(draft, name);
     const grobo_i_place place = events->event.place;
+    const bool is_new = row == NULL;
     uint32_t seen = 0;
-    if (row == NULL) {
+    if (is_new) {
         if (draft->n_rows == GROBO_I_SERVO_ROWS || strlen(name) >= sizeof row->name) {
             return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "list-length", place,
                                   "more than %d registers, or a name of more than %d bytes",
@@ -316,6 +317,13 @@ static int read_row(grobo_i_events *events, void *target, const char *name)
     int result = grobo_i_read_map(events, &row_keys, row, &seen);
     row->layout = (seen & LAYOUT) != 0 ? draft->layout : row->layout;
     row->values = (seen & VALUES) != 0 ? draft->values : row->values;
+    if (result >= 0 && is_new && (seen & HAS_AT) == 0) {
+        draft->n_rows--; /* it may be there, misspelt, which was said then */
+        return events->reader->result < 0
+                   ? result
+                   : grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "missing", place,
+                                      "register %s: it has no 'at'", name);
+    }
     return result;
 }
 
@@ -396,19 +404,20 @@ static int read_scale(grobo_i_events *events, void *target)
     draft->model.span_ticks = (uint32_t)found[0];
     draft->model.span_deg = (uint16_t)found[1];
     draft->model.middle = (uint16_t)found[2];
+    draft->scale = place;
     return 0;
 }
 
-#define NUMBER(field, key)                                                                         \
+#define NUMBER(field, key, low)                                                                    \
     static int read_##field(grobo_i_events *events, void *target)                                  \
     {                                                                                              \
-        return read_u16(events, key, &((grobo_i_servo_draft *)target)->model.field);               \
+        return read_u16(events, key, low, &((grobo_i_servo_draft *)target)->model.field);          \
     }
-NUMBER(number, "number")
-NUMBER(speed_dps, "speed_dps")
-NUMBER(torque_mnm, "torque_mnm")
-NUMBER(current_ma, "current_ma")
-NUMBER(voltage_mv, "voltage_mv")
+NUMBER(number, "number", 0)
+NUMBER(speed_dps, "speed_dps", 1)
+NUMBER(torque_mnm, "torque_mnm", 0)
+NUMBER(current_ma, "current_ma", 1)
+NUMBER(voltage_mv, "voltage_mv", 1)
 
 static int read_version(grobo_i_events *events, const char *what, uint8_t *version)
 {
@@ -482,6 +491,12 @@ static int read_rate(grobo_i_events *events, void *target)
             "rates: a code up to 255 and its bps from 300 to 20000000 are wanted, "
             "at most %d times",
             GROBO_I_SERVO_RATES);
+    }
+    for (int i = 0; i < draft->n_rates; i++) {
+        if (draft->rates[i].code == found[0]) {
+            return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "range", place,
+                                    "rates: code %d is there twice", draft->rates[i].code);
+        }
     }
     draft->rates[draft->n_rates++] =
         (grobo_servo_rate){.code = (uint8_t)found[0], .bps = (int32_t)found[1]};
@@ -691,6 +706,32 @@ static bool fits(const grobo_servo_register *reg)
     return reg->min >= least && reg->max <= most;
 }
 
+/* Told of the one that the file speaks of. */
+static void overlap(grobo_i_reader *reader, const grobo_i_servo_row *a, const grobo_i_servo_row *b)
+{
+    const grobo_i_servo_row *told = b->place.line > 0 ? b : a, *other = told == b ? a : b;
+    (void)grobo_i_complain(reader, GROBO_ERR_SYNTAX, "register", told->place,
+                           "register %s: it shares a byte with %s", told->name, other->name);
+}
+
+/* A middle that no position is would turn each angle into a count that the servo does not have. */
+static void check_middle(grobo_i_reader *reader, const grobo_i_servo_draft *draft)
+{
+    const grobo_servo_register *goal = NULL, *most = NULL;
+    for (int i = 0; i < draft->n_rows; i++) {
+        const grobo_servo_register *reg = &draft->rows[i].reg;
+        goal = reg->role == GROBO_ROLE_GOAL ? reg : goal;
+        most = reg->role == GROBO_ROLE_MAX_POSITION ? reg : most;
+    }
+    const grobo_servo_register *range = most != NULL ? most : goal;
+    int32_t middle = draft->model.middle;
+    if (range != NULL && (middle < range->min || middle > range->max)) {
+        (void)grobo_i_complain(reader, GROBO_ERR_SYNTAX, "range", draft->scale,
+                               "scale: the middle %d is not within the range of %s", middle,
+                               range->name);
+    }
+}
+
 /* What a driver or a simulated servo divides by. */
 static void check_numbers(grobo_i_reader *reader, const grobo_i_servo_draft *draft)
 {
@@ -723,7 +764,7 @@ int grobo_i_servo_finish(grobo_i_reader *reader, grobo_i_servo_draft *draft)
         row->reg.unit = row->unit;
         had[row->reg.role] += row->reg.role != GROBO_ROLE_NONE;
         if (row->reg.address < end) {
-            (void)complain(reader, row, "it shares a byte with the one before");
+            overlap(reader, row - 1, row);
         }
         if (had[row->reg.role] > 1) {
             (void)complain(reader, row, "its role is that of another one too");
@@ -744,5 +785,6 @@ int grobo_i_servo_finish(grobo_i_reader *reader, grobo_i_servo_draft *draft)
         }
     }
     check_numbers(reader, draft);
+    check_middle(reader, draft);
     return reader->result;
 }

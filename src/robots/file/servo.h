@@ -44,6 +44,7 @@ struct grobo_i_servo_draft {
     grobo_i_servo_text source[GROBO_I_SERVO_SOURCES];
     uint32_t layout, values; /* sources of the file that is being read */
     grobo_i_place place;     /* of what concerns the whole; 0: the file */
+    grobo_i_place scale;
     int depth;
     /* Fills the draft with the model or file of this name; complains where there is none. */
     int (*like)(grobo_i_servo_draft *draft, grobo_i_reader *reader, const char *name,
