@@ -99,10 +99,13 @@ TEST(one_old_servo_among_them_is_enough)
 }
 
 /* The firmware from which the maker says that a model answers so, 0: never (ROBOTIS e-manual,
- * Protocol 2.0, Fast Sync Read: X430 and X540 from 45 but for 2X, X330 from 46; no MX, PRO, P nor
- * XL-320). */
+ * Protocol 2.0, Fast Sync Read: X430 and X540 from 45 but for 2X, X330 from 46, P from 12; no MX,
+ * PRO nor XL-320). */
 static uint8_t first_of(const char *name)
 {
+    if (strncmp(name, "PH", 2) == 0 || strncmp(name, "PM", 2) == 0) {
+        return 12;
+    }
     if (strncmp(name, "2X", 2) == 0 || name[0] != 'X' || strcmp(name, "XL-320") == 0) {
         return 0;
     }

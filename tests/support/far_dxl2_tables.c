@@ -104,7 +104,7 @@ static void begin_p(far_joint *joint)
 {
     memset(joint->reg, 0, sizeof joint->reg);
     far_put16(joint->reg, 2000); /* PH42-020-S300-R */
-    joint->reg[6] = 12;
+    joint->reg[6] = 11;          /* from 12 on it would answer fast reads */
     joint->reg[AT_ID] = (uint8_t)joint->id;
     joint->reg[8] = 3; /* as sold 1 */
     joint->reg[AT_DRIVE] = 4;
