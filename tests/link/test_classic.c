@@ -51,6 +51,7 @@ TEST(a_port_has_the_documents_defaults)
     assert_int_equal(SerialCom_isConnected(&com), -1);
     assert_int_equal(SerialCom_openPort(&com), -1);
     assert_int_equal(SerialCom_setDevPort(&com, "/nowhere/port"), 0);
+    assert_non_null(com.device);
     assert_string_equal(com.device, "/nowhere/port");
     assert_int_equal(SerialCom_openPort(&com), -1);
     assert_int_equal(SerialCom_setBaudrate(&com, 57600), 57600);
@@ -319,6 +320,22 @@ TEST_WITH(robots, the_loop_is_locked_for_a_function)
     int one = 41;
 
     assert_int_equal(SerialRobot_locked(g, add_one, &one), 42);
+}
+
+TEST(thread_execution_is_the_body_of_a_thread_of_ones_own)
+{
+    grobo_thread thread;
+
+    assert_int_equal(set_up(), 0);
+    assert_int_equal(grobo_thread_start(&thread, thread_execution, g), GROBO_OK);
+    for (int64_t end_us = grobo_now_us() + 5000000; SerialRobot_isActive(g) == 0;) {
+        assert_true(grobo_now_us() < end_us);
+    }
+    assert_true(SerialRobot_checkConnection(g) >= 0);
+    assert_int_equal(SerialRobot_stopThread(g), 0);
+    assert_int_equal(grobo_thread_join(thread), GROBO_OK);
+    assert_int_equal(SerialRobot_isActive(g), 0);
+    (void)tear_down();
 }
 
 TEST(the_thread_starts_and_stops)

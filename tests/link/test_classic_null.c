@@ -156,6 +156,7 @@ TEST(no_robot_of_which_more_is_asked)
     REFUSES(SerialRobot_setJoint(NULL, 1, 1));
     REFUSES(SerialRobot_setMotionTime(NULL, 5));
     SerialRobot_clearMotion(NULL);
+    REFUSES(SerialRobot_setDefaultMotionTime(NULL, 5));
     REFUSES(SerialRobot_getDefaultMotionTime(NULL));
     REFUSES(SerialRobot_getTimeout(NULL));
     REFUSES(SerialRobot_setCommand(NULL, text, 1));
