@@ -92,6 +92,44 @@ def dynamixel_sdk_indirect(port):
     arrives(positions, [2048, 2048])
 
 
+# A servo of each layout of protocol 2: number, firmware's place, torque, goal, position, its bytes,
+# whether a fast read is answered (e-manual, protocol2: X430 from 45, X330 from 46, P from 12).
+LAYOUTS = {
+    "XL-320": (350, 2, 24, 30, 37, 2, False),
+    "XM430-W350": (1020, 6, 64, 116, 132, 4, True),
+    "MX-28-2": (30, 6, 64, 116, 132, 4, False),
+    "PH54-200-S500-R": (2020, 6, 512, 564, 580, 4, True),
+    "H54-200-S500-RA": (54025, 6, 512, 564, 580, 4, False),
+    "H54-200-S500-R": (54024, 6, 562, 596, 611, 4, False),
+}
+
+
+def dynamixel_sdk_layouts(port):
+    import dynamixel_sdk as d
+
+    line, packets = patient(d.PortHandler(port)), d.PacketHandler(2.0)
+    assert line.openPort() and line.setBaudRate(1000000)
+    for i, (name, row) in enumerate(LAYOUTS.items(), 1):
+        number, firmware, torque, goal, position, size, fast = row
+        read = {2: packets.read2ByteTxRx, 4: packets.read4ByteTxRx}[size]
+        assert packets.ping(line, i)[:2] == (number, 0), name
+        assert packets.read1ByteTxRx(line, i, firmware)[1:] == (0, 0), name
+        group = d.GroupSyncRead(line, packets, position, size)
+        assert group.addParam(i) and group.txRxPacket() == 0, name
+        here = group.getData(i, position, size)
+        assert (group.fastSyncRead() == 0) == fast, name
+        assert packets.write1ByteTxRx(line, i, torque, 1) == (0, 0), name
+        there = here + (30 if size == 2 else 100)
+        data = list(there.to_bytes(size, "little"))
+        assert packets.regWriteTxRx(line, i, goal, size, data) == (0, 0), name
+        assert read(line, i, position)[0] == here, name
+        packets.action(line, d.BROADCAST_ID)
+        line.is_using = False
+        arrives(lambda: abs(read(line, i, position)[0] - there) <= 3, True)
+        assert packets.reboot(line, i) == (0, 0), name
+        arrives(lambda: packets.read1ByteTxRx(line, i, torque)[:2], (0, 0))
+
+
 def dynamixel_sdk_1(port):
     import dynamixel_sdk as d
 
@@ -136,6 +174,14 @@ def feetech(port, order=0, model=777, middle=2048, goal=3000):
     assert packets.write1ByteTxRx(line, 1, 40, 1) == (0, 0)
     assert packets.write2ByteTxRx(line, 1, 42, goal) == (0, 0)
     arrives(lambda: packets.read2ByteTxRx(line, 1, 56)[0], goal)
+
+
+def feetech_hls(port):
+    feetech(port, 0, 4106)
+
+
+def feetech_smcl(port):
+    feetech(port, 0, 6150)
 
 
 def feetech_scs(port):
