@@ -39,8 +39,13 @@ for angle in 0 0.1 0; do
     echo "      - [$angle, 0, 0, 0, $angle, 0, 0, 0]" >>"$work/wave.yaml"
 done
 check "a motion" exits 0 with_arms play "$work/wave.yaml"
-check "whose frames are not shown" ends_with 2 "frames are shown of one" \
+check "its frames are shown, each with its line" ends_with 0 '^[0-9]* right: ' \
     with_arms play --dry-run "$work/wave.yaml"
+check "those of the left arm too" grep -q '^0 left: FF FF FE ' "$work/said"
+check_json "in JSON, too" '{line["line"] for line in lines} == {"left", "right"}' \
+    "$GRCTL" --robot $arms -d sim --json play --dry-run "$work/wave.yaml"
+check "the ports of its file" ends_with 1 "^grctl: two-arms: no such file .*usb-left-arm" \
+    "$GRCTL" --robot $arms status
 check "a rate is of one line" ends_with 2 'are for one, as --line left names it' \
     with_arms -b 57600 status
 
@@ -198,6 +203,21 @@ if have_json; then
 else
     skip "stops on two ports" "no python3"
 fi
+
+test_case "one simulator of both"
+"$GRCTL" --robot $arms sim --link "$work/both" >"$work/both.out" 2>&1 &
+both_pid=$!
+wait_for test -e "$work/both-right"
+on_both() {
+    "$GRCTL" --robot $arms -d "left=$work/both-left,right=$work/both-right" "$@"
+}
+check "both arms move" exits 0 on_both pose L_pan=12 R_pan=-12
+check "the next program finds them" ends_with 0 '4  R_gripper' on_both status
+check "where they are" grep -q 'R_pan  *-12.0 ' "$work/said"
+check "it prints what -d takes" exits 0 \
+    sh -c '"$0" --robot "$1" -d "$(head -n 1 "$2")" status' "$GRCTL" $arms "$work/both.out"
+kill $both_pid
+wait $both_pid 2>/dev/null
 
 test_case "in the cockpit"
 if have_json && ! "$GRCTL" -d sim serve nowhere 2>&1 | grep -q 'without evhttp'; then

@@ -8,6 +8,7 @@
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/narrow.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
@@ -83,9 +84,10 @@ typedef struct farm {
     grobo_sim_physics *physics[ROBOTS_MAX];
     watched watched[ROBOTS_MAX];
     sim_console console;
-    sim_chain chain;       /* of --servo */
-    grobo_robot_sim robot; /* where it is no chain */
-    const grobo_model *model;
+    sim_chain chain; /* of --servo */
+    int n_lines;     /* of the robot: each is a server of its own, one robot after the other */
+    grobo_robot_sim robot[GROBO_LINES_MAX]; /* where it is no chain */
+    const grobo_model *model[ROBOTS_MAX];   /* of each server */
     int n;
     int signal;
 } farm;
@@ -136,15 +138,26 @@ static int watch_signals(farm *f)
     return GROBO_OK;
 }
 
+/* The line that a server is for; 0 of a robot that has one. */
+static int line_of(const farm *f, int server)
+{
+    return server % f->n_lines;
+}
+
+static const char *line_name(const farm *f, int server)
+{
+    return f->n_lines > 1 ? robot_of(f->a)->lines[line_of(f, server)].name : NULL;
+}
+
 static grobo_sim_config sim_config(const farm *f, int robot)
 {
     const app *a = f->a;
     const cli_value *baud = app_global(a, GLOBAL_BAUD), *wiring = app_global(a, GLOBAL_WIRING);
-    grobo_sim_config config = f->robot.config;
+    grobo_sim_config config = f->robot[line_of(f, robot)].config;
     if (app_option(a, OPT_SERVO)->given) {
         config = (grobo_sim_config){
             GROBO_SIM_CONFIG_INIT,
-            .model = f->model,
+            .model = &f->chain.model,
             .wiring = wiring->given ? (grobo_wiring)wiring->choice : GROBO_WIRING_BUS,
             .servos = f->chain.servos,
             .families = config.families,
@@ -153,7 +166,8 @@ static grobo_sim_config sim_config(const farm *f, int robot)
     }
     config.no_stops = app_option(a, OPT_NO_STOPS)->given > 0;
     config.latency_us = (uint32_t)app_number(a, OPT_LATENCY, 0) * 1000;
-    config.echo = app_global(a, GLOBAL_ECHO)->given > 0;
+    config.echo = app_global(a, GLOBAL_ECHO)->given > 0 ||
+                  (f->n_lines > 1 && robot_of(a)->lines[line_of(f, robot)].echo);
     config.unpaced = app_option(a, OPT_NO_PACING)->given > 0;
     config.seed = (uint32_t)app_number(a, OPT_SEED, 0) + (uint32_t)robot;
     config.baud_at_once = app_option(a, OPT_BAUD_AT_ONCE)->given > 0;
@@ -162,9 +176,9 @@ static grobo_sim_config sim_config(const farm *f, int robot)
 }
 
 /* The table of all servos; NULL: they are of several. */
-static const grobo_servo_table *table_of(const farm *f)
+static const grobo_servo_table *table_of(const farm *f, int server)
 {
-    const grobo_sim_config config = sim_config(f, 0);
+    const grobo_sim_config config = sim_config(f, server);
     for (int i = 1; i < config.model->n_joints; i++) {
         if (grobo_servo_series(config.servos[i]) != grobo_servo_series(config.servos[0])) {
             return NULL;
@@ -174,9 +188,9 @@ static const grobo_servo_table *table_of(const farm *f)
 }
 
 /* How the servos talk, where all are of one family; else NULL. */
-static const grobo_words *words_of(const farm *f)
+static const grobo_words *words_of(const farm *f, int server)
 {
-    const grobo_servo_table *table = table_of(f);
+    const grobo_servo_table *table = table_of(f, server);
     return table ? talk_of_servo(&table->models[0]) : NULL;
 }
 
@@ -190,11 +204,19 @@ static int open_trace(farm *f, int robot)
     return trace_open(&f->watched[robot].trace, f->a, &line, grobo_now_us());
 }
 
-/* PATH of the first robot, PATH2, PATH3... of more. False: too long. */
-static bool number_path(const char *path, int robot, char *numbered, size_t capacity)
+/* PATH of the first robot, PATH2, PATH3... of more; of several lines PATH-NAME, PATH2-NAME.
+ * False: too long. */
+static bool number_path(const farm *f, const char *path, int server, char *numbered,
+                        size_t capacity)
 {
-    int n = robot == 0 ? snprintf(numbered, capacity, "%s", path)
-                       : snprintf(numbered, capacity, "%s%d", path, robot + 1);
+    const char *line = line_name(f, server);
+    char number[16] = "";
+    int robot = server / f->n_lines;
+    if (robot > 0) {
+        snprintf(number, sizeof number, "%d", robot + 1);
+    }
+    int n =
+        snprintf(numbered, capacity, "%s%s%s%s", path, number, line ? "-" : "", line ? line : "");
     return n >= 0 && (size_t)n < capacity;
 }
 
@@ -205,8 +227,9 @@ typedef struct place {
 } place;
 
 /* Fills the place, and what leads to it in config. Returns 0, or the exit status. */
-static int find_place(app *a, int robot, place *at, grobo_sim_server_config *config)
+static int find_place(const farm *f, int robot, place *at, grobo_sim_server_config *config)
 {
+    app *a = f->a;
     const char *path = app_option(a, OPT_LINK)->text;
     int port = (int)app_number(a, OPT_TCP, 0);
     config->no_pty = grobo_port_pty_ops() == NULL;
@@ -216,7 +239,7 @@ static int find_place(app *a, int robot, place *at, grobo_sim_server_config *con
                         "sim: --link: there are no pseudo-terminals here; --tcp serves programs");
     }
     if (path) {
-        if (!number_path(path, robot, at->link, sizeof at->link)) {
+        if (!number_path(f, path, robot, at->link, sizeof at->link)) {
             return app_fail(a, EXIT_USAGE, "CAP", "sim: --link: the path is too long");
         }
         config->link = at->name = at->link;
@@ -244,7 +267,7 @@ static int open_state(farm *f, int robot)
     if (!path) {
         return 0;
     }
-    if (!number_path(path, robot, numbered, sizeof numbered)) {
+    if (!number_path(f, path, robot, numbered, sizeof numbered)) {
         return app_fail(f->a, EXIT_USAGE, "CAP", "sim: --state: the path is too long");
     }
     return sim_state_start(&f->watched[robot].state, f->a, f->base, f->server[robot], numbered);
@@ -258,14 +281,14 @@ static int add_robot(farm *f, int robot)
                                       .on_tap = on_tap, .ctx = &f->watched[robot]};
     grobo_os_cause cause = {0};
     place at;
-    int error = find_place(f->a, robot, &at, &config);
+    int error = find_place(f, robot, &at, &config);
     if (error) {
         return error;
     }
     sim.hook = on_sim;
     sim.hook_ctx = &f->watched[robot];
     if (app_option(f->a, OPT_STRICT)->given) {
-        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, &sim, words_of(f));
+        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, &sim, words_of(f, robot));
     }
     error = robot_physics(f->a, &sim, &f->physics[robot]);
     if (error) {
@@ -282,6 +305,7 @@ static int add_robot(farm *f, int robot)
                         cause.text);
     }
     f->n = robot + 1;
+    f->model[robot] = sim.model;
     if (faults &&
         grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0) {
         return app_fail(f->a, EXIT_USAGE, "ARG",
@@ -293,6 +317,37 @@ static int add_robot(farm *f, int robot)
     return error ? error : open_trace(f, robot);
 }
 
+/* The lines of a robot as -d takes them: NAME=DEVICE,NAME=DEVICE; of one line its device. */
+static void device_text(const farm *f, int robot, char *text, size_t capacity)
+{
+    size_t at = 0;
+    *text = '\0';
+    for (int i = robot * f->n_lines; i < (robot + 1) * f->n_lines && at < capacity; i++) {
+        const char *line = line_name(f, i);
+        at += (size_t)snprintf(text + at, capacity - at, "%s%s%s%s", i % f->n_lines > 0 ? "," : "",
+                               line ? line : "", line ? "=" : "",
+                               grobo_sim_server_device(f->server[i]));
+    }
+}
+
+static json_t *port_json(const farm *f, int server)
+{
+    int port = grobo_sim_server_tcp_port(f->server[server]);
+    return port > 0 ? json_integer(port) : NULL;
+}
+
+static json_t *robot_json(const farm *f, int robot, const char *device)
+{
+    json_t *lines = f->n_lines > 1 ? json_array() : NULL;
+    for (int i = robot * f->n_lines; i < (robot + 1) * f->n_lines && lines; i++) {
+        json_array_append_new(lines, json_pack("{s:s,s:s,s:o*}", "name", line_name(f, i), "device",
+                                               grobo_sim_server_device(f->server[i]), "tcp_port",
+                                               port_json(f, i)));
+    }
+    return json_pack("{s:s,s:o*,s:o*}", "device", device, "tcp_port",
+                     lines ? NULL : port_json(f, robot), "lines", lines);
+}
+
 /*
  * Standard output is data: the device alone, so that a script can read it. False when it cannot be
  * told: nobody would find the robot.
@@ -300,14 +355,16 @@ static int add_robot(farm *f, int robot)
 static bool announce(const farm *f)
 {
     json_t *list = json_array();
+    char device[GROBO_LINES_MAX * GROBO_DEVICE_MAX_BYTES];
+    for (int robot = 0; robot < f->n / f->n_lines; robot++) {
+        device_text(f, robot, device, sizeof device);
+        json_array_append_new(list, robot_json(f, robot, device));
+        if (!f->a->json) {
+            app_print("%s\n", device);
+        }
+    }
     for (int i = 0; i < f->n; i++) {
         int port = grobo_sim_server_tcp_port(f->server[i]);
-        json_array_append_new(list, json_pack("{s:s,s:o*}", "device",
-                                              grobo_sim_server_device(f->server[i]), "tcp_port",
-                                              port > 0 ? json_integer(port) : NULL));
-        if (!f->a->json) {
-            app_print("%s\n", grobo_sim_server_device(f->server[i]));
-        }
         if (port > 0 && grobo_port_pty_ops() != NULL) {
             output_flush();
             app_note(f->a, "also at tcp:127.0.0.1:%d", port);
@@ -322,7 +379,7 @@ static bool announce(const farm *f)
         return false;
     }
     app_note(f->a, "SIMULATED robot%s, no motor moves anywhere; Ctrl-C ends it",
-             f->n == 1 ? "" : "s");
+             f->n == f->n_lines ? "" : "s");
     return true;
 }
 
@@ -406,13 +463,13 @@ static int serve(farm *f)
 }
 
 /* What knows RS30x and GR001's board only. */
-static int check_families(const farm *f)
+static int check_families(const farm *f, int line)
 {
     const app *a = f->a;
-    if (table_of(f) == grobo_rs30x_table()) {
+    if (table_of(f, line) == grobo_rs30x_table()) {
         return 0;
     }
-    if (app_option(a, OPT_STRICT)->given && !words_of(f)) {
+    if (app_option(a, OPT_STRICT)->given && !words_of(f, line)) {
         return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",
                         "sim: --strict: knows one family on a line; use it with servos of one");
     }
@@ -428,6 +485,22 @@ static int check_families(const farm *f)
     return 0;
 }
 
+/* What is simulated behind each pty: the robot, or what of it is on a line. */
+static int take_lines(farm *f)
+{
+    const grobo_robot_def *def = robot_of(f->a);
+    f->n_lines = def->n_lines > 0 ? def->n_lines : 1;
+    robot_sim(f->a, &f->robot[0]);
+    for (int i = 0; i < def->n_lines; i++) {
+        const grobo_robot_def *line = narrow_def(def, i);
+        int error = line ? grobo_robot_def_sim(line, line->wiring, &f->robot[i]) : GROBO_ERR_NOMEM;
+        if (error) {
+            return app_fail_error(f->a, EXIT_ROBOT, error, "sim");
+        }
+    }
+    return EXIT_DONE;
+}
+
 static int run(app *a)
 {
     static farm f;
@@ -440,16 +513,21 @@ static int run(app *a)
     if (!f.base || watch_signals(&f) != GROBO_OK) {
         status = app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "sim");
     }
-    f.model = app_model(a);
-    robot_sim(a, &f.robot);
+    if (!status) {
+        status = take_lines(&f);
+    }
     if (app_option(a, OPT_SERVO)->given && !status) {
-        f.model = &f.chain.model;
+        f.n_lines = 1;
         status = sim_chain_read(a, &f.chain, app_option(a, OPT_SERVO)->text);
     }
-    if (!status) {
-        status = check_families(&f);
+    if (!status && robots * f.n_lines > ROBOTS_MAX) {
+        status = app_fail(a, EXIT_USAGE, "CAP", "sim: %d lines, at most %d are simulated",
+                          robots * f.n_lines, ROBOTS_MAX);
     }
-    for (int i = 0; i < robots && !status; i++) {
+    for (int i = 0; i < f.n_lines && !status; i++) {
+        status = check_families(&f, i);
+    }
+    for (int i = 0; i < robots * f.n_lines && !status; i++) {
         status = add_robot(&f, i);
     }
     if (!status && announce(&f)) {
@@ -466,7 +544,9 @@ const cli_command cmd_sim = {
     .details =
         "Runs a simulated robot (GR001, or that of --robot), or a chain of servos, until a\n"
         "signal. Prints the path of its pty, one line a robot, when it can be opened; where\n"
-        "there are no ptys (Windows) that of its TCP port. The robot is honest at register\n"
+        "there are no ptys (Windows) that of its TCP port. Of a robot of several lines each has\n"
+        "a pty: the line printed is for -d (left=PTY,right=PTY), the links are PATH-left and\n"
+        "PATH-right, and on standard input each line is a robot. The robot is honest at register\n"
         "level and bytes take their time on the wire; programs may come and go, it stays as\n"
         "they left it.\n"
         "\n"

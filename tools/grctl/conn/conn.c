@@ -356,6 +356,15 @@ static const char *near_device(const app *a, const char *name)
     return guess.best;
 }
 
+/* What could not be opened. The ports of several lines are in the robot's file. */
+static const char *name_of_closed(const conn *c, int error)
+{
+    const grobo_robot_def *def = robot_of(c->a);
+    return def->n_lines > 0 && conn_is_auto(c->a) ? def->name
+           : error == GROBO_ERR_NOTFOUND          ? GROBO_DEVICE_AUTO
+                                                  : conn_device(c);
+}
+
 /* Why the device that was asked for is not open. */
 static int fail_closed(conn *c, int error)
 {
@@ -376,9 +385,8 @@ static int fail_closed(conn *c, int error)
                         conn_device(c));
     }
     return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s%s%s%s%s",
-                    error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), open_trouble(c, error),
-                    tells ? " (" : "", tells ? cause->text : "", tells ? ")" : "",
-                    advice(c, error));
+                    name_of_closed(c, error), open_trouble(c, error), tells ? " (" : "",
+                    tells ? cause->text : "", tells ? ")" : "", advice(c, error));
 }
 
 static int fail_open(conn *c, int error)

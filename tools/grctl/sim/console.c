@@ -12,6 +12,11 @@ static grobo_sim *sim_of(const sim_console *console)
     return grobo_sim_server_sim(console->server[console->robot]);
 }
 
+static const grobo_model *model_of(const sim_console *console)
+{
+    return console->model[console->robot];
+}
+
 /* ---- words ----------------------------------------------------------------------------------- */
 
 static bool is_word(const sim_console *console, int i, const char *word)
@@ -33,10 +38,10 @@ static bool read_servos(const sim_console *console, grobo_joint_mask *joints)
         return false;
     }
     if (!cli_read_number(console->word[1], &motor)) {
-        return grobo_model_find_joints(console->model, console->word[1], strlen(console->word[1]),
-                                       joints) > 0;
+        return grobo_model_find_joints(model_of(console), console->word[1],
+                                       strlen(console->word[1]), joints) > 0;
     }
-    int joint = grobo_model_joint_of_motor(console->model, (int)motor);
+    int joint = grobo_model_joint_of_motor(model_of(console), (int)motor);
     if (joint < 0) {
         return false;
     }
@@ -150,7 +155,7 @@ static const char *act_on_servos(const sim_console *console, size_t i)
     if (!read_servos(console, &joints)) {
         return servo_commands[i].usage;
     }
-    for (int servo = 0; servo < console->model->n_joints; servo++) {
+    for (int servo = 0; servo < model_of(console)->n_joints; servo++) {
         if ((joints & GROBO_JOINT_BIT(servo)) && !servo_commands[i].act(console, servo)) {
             return servo_commands[i].usage;
         }
@@ -167,19 +172,19 @@ static void say_servo(const sim_console *console, int servo)
         return;
     }
     app_note(console->a, "%3d  %-12s  %7.1f deg  to %7.1f  torque %-5s  %4d mA  %5.1f C%s%s%s",
-             (int)v.id, grobo_model_joint(console->model, servo)->name, v.angle_mdeg / 1e3,
+             (int)v.id, grobo_model_joint(model_of(console), servo)->name, v.angle_mdeg / 1e3,
              v.target_mdeg / 1e3, torques[v.torque], (int)v.current_ma, v.temperature_c,
              _(cables[v.cable]), v.moving ? _(", moving") : "", v.stalled ? _(", stalled") : "");
 }
 
 static const char *look(sim_console *console)
 {
-    grobo_joint_mask joints = GROBO_JOINTS_ALL(console->model->n_joints);
+    grobo_joint_mask joints = GROBO_JOINTS_ALL(model_of(console)->n_joints);
     if (console->n_words > 1 && !read_servos(console, &joints)) {
         return "look [SERVO]";
     }
     grobo_sim_step(sim_of(console), grobo_now_us());
-    for (int servo = 0; servo < console->model->n_joints; servo++) {
+    for (int servo = 0; servo < model_of(console)->n_joints; servo++) {
         if (joints & GROBO_JOINT_BIT(servo)) {
             say_servo(console, servo);
         }

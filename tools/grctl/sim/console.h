@@ -16,7 +16,7 @@ enum { SIM_CONSOLE_BYTES = 256 };
 typedef struct sim_console {
     app *a;
     struct event_base *base;
-    const grobo_model *model;        /* of all robots, borrowed */
+    const grobo_model *const *model; /* of each robot, borrowed */
     grobo_sim_server *const *server; /* n of them, borrowed */
     int n;
     const char *payload_link; /* of the robot; NULL: the last one */
