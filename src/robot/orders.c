@@ -127,15 +127,52 @@ static int64_t time_asked(const grobo_robot *robot, int joint, int64_t time_us)
     return grobo_i_later((time_us + step_us / 2) / step_us, 1) * step_us;
 }
 
+#if GROBO_DRIVERS_PLAIN
+static bool has_stabilize_by(const grobo_driver *driver)
+{
+    (void)driver;
+    return false;
+}
+static int stabilize_by(const grobo_robot *robot, const grobo_posture *sensed,
+                        const grobo_posture *target)
+{
+    (void)robot;
+    (void)sensed;
+    (void)target;
+    return GROBO_OK;
+}
+#else
+static bool has_stabilize_by(const grobo_driver *driver)
+{
+    return GROBO_I_MEMBER(driver, driver->size, stabilize_by) != NULL;
+}
+
+static int stabilize_by(const grobo_robot *robot, const grobo_posture *sensed,
+                        grobo_posture *target)
+{
+    const grobo_driver *driver = robot->driver;
+    if (!has_stabilize_by(driver)) {
+        return GROBO_OK;
+    }
+    grobo_imu imu;
+    int64_t age_us = 0;
+    bool known = grobo_robot_imu(robot, &imu, &age_us) == GROBO_OK && age_us <= GROBO_IMU_AGE_US;
+    return driver->stabilize_by(driver, robot->driver_ctx, known ? &imu : NULL, sensed, target);
+}
+#endif
+
 static int stabilize(grobo_robot *robot, grobo_posture *target)
 {
     const grobo_driver *driver = robot->driver;
-    if (driver->stabilize == NULL) {
+    if (driver->stabilize == NULL && !has_stabilize_by(driver)) {
         return GROBO_OK;
     }
     grobo_posture sensed;
     (void)grobo_robot_posture(robot, GROBO_NEVER_US, &sensed);
-    return driver->stabilize(driver, robot->driver_ctx, &sensed, target);
+    int result = driver->stabilize == NULL
+                     ? GROBO_OK
+                     : driver->stabilize(driver, robot->driver_ctx, &sensed, target);
+    return result < 0 ? result : stabilize_by(robot, &sensed, target);
 }
 
 /* Times the target from where its joints are now, and has it wait. It is timed again when it

@@ -213,3 +213,12 @@ void grobo_sim_set_supply(grobo_sim *sim, uint32_t supply_mv)
         grobo_i_sim_go_on(sim, i);
     }
 }
+
+int grobo_sim_imu(const grobo_sim *sim, struct grobo_imu *imu)
+{
+    if (sim == NULL || imu == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    const grobo_sim_physics *physics = sim->config.physics;
+    return physics == NULL ? GROBO_ERR_UNSUPPORTED : physics->ops->imu(physics, imu);
+}

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include <grobo/core/board.h>
+#include <grobo/core/imu.h>
 #include <grobo/core/lines.h>
 #include <grobo/core/robot.h>
 #include <grobo/core/sim.h>
@@ -149,6 +150,12 @@ TEST(robot_refuses_null_in_its_second_functions)
     REFUSES(grobo_robot_latch(NULL));
     REFUSES(grobo_robot_drive(NULL, 1, (const double[1]){0}));
     REFUSES(grobo_robot_wheel(NULL, 0, &(grobo_wheel_info){.asked_rad_s = 0}));
+    REFUSES(grobo_robot_set_imu(NULL, &(grobo_imu){.roll_rad = 0}));
+    REFUSES(grobo_robot_set_imu(&robot, NULL));
+    REFUSES(grobo_robot_imu(NULL, &(grobo_imu){.roll_rad = 0}, NULL));
+    REFUSES(grobo_robot_imu(&robot, NULL, NULL));
+    assert_true(grobo_imu_tilt(NULL) == 0);
+    REFUSES(grobo_sim_imu(NULL, &(grobo_imu){.roll_rad = 0}));
     REFUSES(grobo_robot_reset(NULL));
     REFUSES(grobo_robot_cancel(NULL));
     REFUSES(grobo_robot_play(NULL, &clip, &play_options));

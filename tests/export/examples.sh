@@ -33,6 +33,17 @@ idea pump 'there after [0-9]* ms'
 test_that 'a stabilizer: it moves with the gripper level' short stabilizer \
     'wrist_flex -0\.5 rad: success'
 ideas="$ideas stabilizer"
+# Upright, then bent ahead by 6 degrees: the ankle is at -20 degrees, and turns with it.
+balances() {
+    output=$({ echo 0 0 0 0 0; i=0; while [ $i -lt 60 ]; do
+        echo 0 6 0 0 0
+        sleep 0.05
+        i=$((i + 1))
+    done; } | ${EMULATOR:-} "$BUILD/docs/examples/balance")
+    [ "$output" = 'R_ANKLE_P -14 deg: success' ] || { printf '%s\n' "$output"; return 1; }
+}
+test_that 'a stabilizer with an IMU: the ankles lean against it' balances
+ideas="$ideas balance"
 no_other() {
     for file in docs/examples/*.c; do
         case "$ideas " in

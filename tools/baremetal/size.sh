@@ -38,6 +38,7 @@ engine='robot/robot robot/turn robot/job robot/play robot/control robot/query ro
     robot/event robot/reading robot/orders robot/watch robot/trip robot/stop robot/segments
     robot/sense robot/cost robot/budget robot/holds robot/join robot/pace robot/queue
     robot/halted robot/blocked robot/often robot/stand robot/weight robot/state robot/speed
+    robot/imu robot/reason
     base/sized'
 simulator='servo/gr001/parser sim/board sim/bus sim/inspect sim/sim sim/wire servo/rs30x/sim
     sim/lines sim/servo/fault sim/servo/indirect sim/servo/note sim/servo/power sim/servo/registers

@@ -22,6 +22,8 @@
 
 GROBO_BEGIN_DECLS
 
+struct grobo_imu; /* imu.h */
+
 /* ---- what goes over the wire ------------------------------------------------------------- */
 
 /** What a read asks of a joint. */
@@ -281,6 +283,14 @@ struct grobo_driver {
 #if GROBO_LINES_MAX > 1
     const struct grobo_lines *lines; /**< of a robot of several (lines.h); NULL: it has one */
 #endif
+#if !GROBO_DRIVERS_PLAIN
+    /**
+     * A stabilizer that knows how the base stands, behind stabilize(): as that, with the reading
+     * of an IMU that was given last (imu.h); NULL where none was in the last GROBO_IMU_AGE_US.
+     */
+    int (*stabilize_by)(const grobo_driver *self, void *ctx, const struct grobo_imu *imu,
+                        const grobo_posture *sensed, grobo_posture *target);
+#endif
 };
 
 /**
@@ -304,7 +314,7 @@ GROBO_API int grobo_driver_check(const grobo_driver *driver);
 GROBO_API grobo_wiring grobo_driver_wiring(const grobo_driver *driver);
 
 /**
- * Fills a table for a robot of RS30x servos: every function but `stabilize`, and `stored` only
+ * Fills a table for RS30x servos: every function but `stabilize`, `stabilize_by`, and `stored` only
  * where a board is in between. Limits: 70 deg C, 5 lost replies, 60 deg/s for the first move, no
  * limit of current and voltage; exit policy hold.
  * @param[in,out] driver the caller's table, GROBO_TABLE_INIT(grobo_driver); change what is

@@ -13,6 +13,8 @@
 
 GROBO_BEGIN_DECLS
 
+struct grobo_imu; /* imu.h */
+
 /* ---- faults --------------------------------------------------------------------------------- */
 
 /** The fault called name[0..length-1], or GROBO_ERR_NOTFOUND. */
@@ -69,6 +71,13 @@ GROBO_API int64_t grobo_sim_packet_deadline(const grobo_sim *sim);
 
 /** Room for bytes of the host: what grobo_sim_rx would take now. */
 GROBO_API size_t grobo_sim_rx_room(const grobo_sim *sim);
+
+/**
+ * What the plant of the simulator's world reports of the base (grobo_sim_plant.imu).
+ * @return 0; GROBO_ERR_UNSUPPORTED: there is no world, or its plant reports none; what the plant
+ *         returned
+ */
+GROBO_API int grobo_sim_imu(const grobo_sim *sim, struct grobo_imu *imu);
 
 /** True from a hang-up to the next grobo_sim_plug(): the server of the port closes it. */
 GROBO_API bool grobo_sim_hung_up(const grobo_sim *sim);

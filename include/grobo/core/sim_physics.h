@@ -24,6 +24,8 @@
 
 GROBO_BEGIN_DECLS
 
+struct grobo_imu; /* imu.h */
+
 /** Length of a step. */
 #define GROBO_SIM_STEP_US 1000
 
@@ -108,6 +110,9 @@ typedef struct grobo_sim_plant {
      */
     int (*step)(void *ctx, const grobo_sim_drive *drive, double dt_s, grobo_sim_state *state);
     void *ctx;
+    /** How the base stands at the end of the latest step. NULL: it is not told. @return 0, or an
+     *  error: there is no reading. */
+    int (*imu)(void *ctx, struct grobo_imu *imu);
 } grobo_sim_plant;
 
 /** A rigid part. Its frame is that of its joint. */

@@ -21,6 +21,7 @@
 #define GROBO_CORE_STATIC_H
 
 #include <grobo/core/bus.h>
+#include <grobo/core/imu.h>
 #include <grobo/core/robot.h>
 #include <grobo/core/sequencer.h>
 
@@ -302,6 +303,9 @@ struct grobo_robot {
     grobo_joint_mask wheels_owed; /* turned when the line was lost */
     int64_t wheels_us;            /* when wheels that turn are told their speeds next, */
     int64_t wheels_told_us;       /* and were last */
+    grobo_imu imu;                /* the latest reading, */
+    int64_t imu_us;               /* when it was given */
+    bool has_imu;
 #endif
     int64_t stop_us; /* when the last exit or emergency stop was asked for; 0: none was */
     uint8_t reply[GROBO_FRAME_MAX_BYTES];

@@ -9,6 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/core/imu.h>
+
 #include "src/base/assert.h"
 #include "src/base/memory.h"
 #include "src/base/sized.h"
@@ -341,7 +343,13 @@ static int begin(grobo_sim_physics *physics, grobo_sim *sim)
     return GROBO_OK;
 }
 
-static const grobo_i_world_ops ops = {.begin = begin, .advance = advance};
+static int imu(const grobo_sim_physics *physics, grobo_imu *reading)
+{
+    const grobo_i_world *w = (const grobo_i_world *)physics;
+    return w->plant.imu == NULL ? GROBO_ERR_UNSUPPORTED : w->plant.imu(w->plant.ctx, reading);
+}
+
+static const grobo_i_world_ops ops = {.begin = begin, .advance = advance, .imu = imu};
 
 static bool motor_ok(const grobo_sim_motor *motor)
 {
@@ -375,8 +383,9 @@ static int fill(grobo_i_world *w, const grobo_sim_physics_config *config)
         return result;
     }
     memcpy(w->tree.gravity_m_s2, none ? down : g, sizeof down);
-    w->plant =
-        config->plant != NULL ? *config->plant : (grobo_sim_plant){grobo_i_tree_step, &w->tree};
+    w->plant = config->plant != NULL
+                   ? *config->plant
+                   : (grobo_sim_plant){.step = grobo_i_tree_step, .ctx = &w->tree};
     for (int i = 0; i < config->n_links; i++) {
         const char *name = config->links[i].name != NULL ? config->links[i].name : "";
         size_t length = strlen(name);

@@ -29,6 +29,8 @@ typedef struct grobo_i_world_ops {
     int (*begin)(grobo_sim_physics *physics, grobo_sim *sim);
     /* Lets whole steps happen up to t_us. */
     void (*advance)(grobo_sim_physics *physics, grobo_sim *sim, int64_t t_us);
+    /* How the base stands. */
+    int (*imu)(const grobo_sim_physics *physics, struct grobo_imu *imu);
 } grobo_i_world_ops;
 
 /* The part that the simulator knows; src/sim/physics has more behind it. */

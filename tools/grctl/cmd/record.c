@@ -19,14 +19,27 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/fall.h"
+#include "tools/grctl/conn/imu.h"
+#include "tools/grctl/conn/imu_rows.h"
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/keys.h"
 #include "tools/grctl/play/keys.h"
 
 /* The first ones are those of teach. */
-enum { OPT_OUT, OPT_TIME, TEACH_OPTIONS, OPT_RATE = TEACH_OPTIONS, OPT_KEY, OPT_MOVED, OPT_LIMP };
+enum {
+    OPT_OUT,
+    OPT_TIME,
+    OPT_IMU,
+    TEACH_OPTIONS,
+    OPT_RATE = TEACH_OPTIONS,
+    OPT_KEY,
+    OPT_MOVED,
+    OPT_LIMP
+};
 enum { KEY_MS = 1000, PAUSE_US = 1000000, LIVE_US = 100000, KEYS_MAX = 32 };
+/* An older reading of an IMU is not that of a posture. */
+enum { TILT_US = 500000 };
 
 /* The original's: a look each 250 ms, a posture when a joint moved by 10 degrees. */
 static const double seed_rate_hz = 4, seed_moved_deg = 10;
@@ -36,6 +49,7 @@ static const cli_option options[] = {
         OPTION_TEXT("out", 'o', "FILE", ".m, .pseq, .mseq or .yaml (the first free MotionN.m)"),
     [OPT_TIME] = OPTION_WHOLE("time", 't', "MS", 10, 9990,
                               "time to reach a posture kept by a key press (1000)"),
+    [OPT_IMU] = IMU_OPTION,
     [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 50, "checks per second (4)"),
     [OPT_KEY] = OPTION_FLAG("key", 'k', "keep a posture only at a key press: space"),
     [OPT_MOVED] = OPTION_REAL("moved", 'm', "DEG", 0, 180,
@@ -59,6 +73,8 @@ typedef struct recorder {
     int key[KEYS_MAX], n_keys;     /* that wait, the first one first */
     bool look_is_due, live_is_due; /* by the timers */
     progress line;
+    imu imu;
+    imu_rows tilts; /* one a posture, with --imu */
     double moved_deg;
     int last_moved; /* joint, -1 none */
     bool teaches, by_key, over;
@@ -86,6 +102,17 @@ static double furthest(const recorder *r, const grobo_posture *now, int *joint)
     return grobo_deg_from_rad(most_rad);
 }
 
+/* How the base stands now, where an IMU has said so of late. */
+static int keep_tilt(recorder *r, int64_t time_us)
+{
+    grobo_imu reading;
+    int64_t age_us;
+    bool known = grobo_robot_imu(r->c.robot, &reading, &age_us) == GROBO_OK && age_us <= TILT_US;
+    return app_option(r->c.a, OPT_IMU)->given
+               ? imu_rows_add(&r->tilts, time_us, known ? &reading : NULL)
+               : GROBO_OK;
+}
+
 static int keep(recorder *r, grobo_posture *now)
 {
     int64_t now_us = grobo_now_us();
@@ -99,7 +126,8 @@ static int keep(recorder *r, grobo_posture *now)
     grobo_posture_clamp(now, conn_model(&r->c));
     r->last = *now;
     r->last_us = now_us;
-    return grobo_motion_append(r->motion, now);
+    int error = keep_tilt(r, now->time_us);
+    return error < 0 ? error : grobo_motion_append(r->motion, now);
 }
 
 /* Limp joints are read now. A reply that was lost is no reason to end; *read is false then. */
@@ -151,6 +179,7 @@ static int drop_last(recorder *r)
     size_t n = grobo_motion_size(r->motion);
     if (n > 0) {
         grobo_motion_delete(r->motion, n - 1);
+        imu_rows_drop(&r->tilts);
     }
     if (n > 1) {
         grobo_motion_get(r->motion, n - 2, &r->last);
@@ -555,16 +584,23 @@ static int save(recorder *r)
         app_print("%s\n", out ? out : name);
     }
     app_note(a, "%zu posture%s, %.1f s", n, n == 1 ? "" : "s", length_s);
-    return EXIT_DONE;
+    return app_option(a, OPT_IMU)->given ? imu_rows_save(&r->tilts, a, out ? out : name)
+                                         : EXIT_DONE;
 }
 
 /* Whatever ended it, what was recorded is kept. */
 static int record(recorder *r)
 {
     conn *c = &r->c;
+    const cli_value *port = app_option(c->a, OPT_IMU);
     c->ctx = r;
+    int status = port->given ? imu_open(&r->imu, c, port->text) : EXIT_DONE;
+    if (status) {
+        return status;
+    }
     int error = teach(r);
-    int status = error ? conn_fail(c, error, name_of(r)) : EXIT_DONE;
+    status = error ? conn_fail(c, error, name_of(r)) : EXIT_DONE;
+    imu_close(&r->imu);
     int saved = save(r);
     return status ? status : saved;
 }
@@ -624,6 +660,8 @@ static int run(app *a, bool teaches)
         status = conn_close(&r.c, status);
     }
     free_played(&r);
+    imu_close(&r.imu);
+    imu_rows_free(&r.tilts);
     grobo_motion_free(r.motion);
     return status;
 }

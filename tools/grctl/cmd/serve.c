@@ -2,6 +2,7 @@
 /* What `grctl serve` is told; it runs in a program of its own (beside.h). */
 #include "tools/grctl/cli/realtime.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/imu.h"
 #include "tools/grctl/web/run.h"
 
 static const cli_option options[SERVE_OPTIONS] = {
@@ -15,6 +16,7 @@ static const cli_option options[SERVE_OPTIONS] = {
     [SERVE_OPERATOR] = OPTION_FLAG("operator", 0, "a page that asks for control gets it at once"),
     [SERVE_GROUP] = OPTION_TEXT("group", 0, "NAME", "of a fleet: the robots of this group (all)"),
     [SERVE_REALTIME] = REALTIME_OPTION,
+    [SERVE_IMU] = IMU_OPTION,
 };
 
 const cli_command cmd_serve = {

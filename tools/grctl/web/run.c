@@ -25,6 +25,7 @@ int serve_run(app *a)
     web_options o = {.folder = a->line.n_arguments ? a->line.argument[0] : ".",
                      .listen = app_option(a, SERVE_LISTEN)->text,
                      .name = app_option(a, SERVE_NAME)->text,
+                     .imu = app_option(a, SERVE_IMU)->text,
                      .port = (uint16_t)app_number(a, SERVE_PORT, WEB_PORT),
                      .takes_over = app_option(a, SERVE_OPERATOR)->given > 0};
     int status = realtime_begin(a, SERVE_REALTIME);

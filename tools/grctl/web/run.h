@@ -12,6 +12,7 @@ enum {
     SERVE_OPERATOR,
     SERVE_GROUP,
     SERVE_REALTIME,
+    SERVE_IMU,
     SERVE_OPTIONS
 };
 

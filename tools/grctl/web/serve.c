@@ -308,6 +308,7 @@ static int start(serve *s)
 static void finish(serve *s)
 {
     s->ending = true;
+    tilt_close(s);
     worker_free(s->worker);
     library_free(s->library);
     http_free(s->http);
@@ -332,6 +333,10 @@ static int run(serve *s)
     s->ready = true;
     s->asked_us = grobo_now_us(); /* its link is opened by now */
     stops_begin(s);
+    status = tilt_open(s);
+    if (status) {
+        return status;
+    }
     on_tick(-1, 0, s); /* there is a state from the first request on */
     listener_announce(s->a, s->http);
     error = conn_wait_until(c, NULL);

@@ -11,6 +11,7 @@
 #include "tools/grctl/web/library.h"
 #include "tools/grctl/web/player.h"
 #include "tools/grctl/web/stops.h"
+#include "tools/grctl/web/tilt.h"
 #include "tools/grctl/web/web.h"
 #include "tools/grctl/web/worker.h"
 
@@ -57,6 +58,7 @@ struct serve {
     worker *worker;
     library *library;
     player player;
+    tilt tilt;
     serve_job jobs[SERVE_JOBS];
     grobo_joint_mask limp; /* in free mode */
     /* jogging: the newest target */

@@ -127,7 +127,8 @@ static json_t *body_json(serve *s)
         !pose_stand(s->a, &posture, &stood)) {
         return json_null();
     }
-    return pose_stand_json(&stood, zmp_of_motion(s, &stood, zmp_m) ? zmp_m : NULL);
+    bool tilted = tilt_apply(s, &posture, &stood);
+    return pose_stand_json(&stood, !tilted && zmp_of_motion(s, &stood, zmp_m) ? zmp_m : NULL);
 }
 
 static json_t *page_json(serve *s, const lease_page *page)
@@ -158,12 +159,12 @@ json_t *serve_state_json(serve *s)
                               (json_int_t)serve_ms(s, grobo_now_us()), "link", link_word(s));
     const char *job = job_word(grobo_robot_job(s->c.robot));
     add_joints(s, state);
-    json_t *more = json_pack("{s:o,s:o,s:b,s:s?,s:o,s:o,s:o,s:o,s:{s:o,s:o},s:i}", "limp",
-                             joints_json(s->limp), "setup", setups_json(s), "moving",
-                             grobo_robot_moving(s->c.robot), "job", job, "play", player_json(s),
-                             "stop", stops_json(s), "line", line_json(s), "body", body_json(s),
-                             "lease", "holder", page_json(s, &s->lease.holder), "asked",
-                             page_json(s, &s->lease.asker), "clients", http_streams(s->http));
+    json_t *more = json_pack(
+        "{s:o,s:o,s:b,s:s?,s:o,s:o,s:o,s:o,s:o,s:{s:o,s:o},s:i}", "limp", joints_json(s->limp),
+        "setup", setups_json(s), "moving", grobo_robot_moving(s->c.robot), "job", job, "play",
+        player_json(s), "stop", stops_json(s), "line", line_json(s), "imu", tilt_json(s), "body",
+        body_json(s), "lease", "holder", page_json(s, &s->lease.holder), "asked",
+        page_json(s, &s->lease.asker), "clients", http_streams(s->http));
     json_object_update_new(state, more);
     return state;
 }

@@ -15,6 +15,7 @@ typedef struct web_options {
     const char *folder; /* of motions */
     const char *listen; /* address, NULL: loopback */
     const char *name;   /* what else a browser may call this machine, or NULL */
+    const char *imu;    /* a port, or NULL */
     uint16_t port;      /* 0: any */
     bool takes_over;    /* a page that asks for the lease gets it at once */
 } web_options;

@@ -105,6 +105,8 @@ class Body:
             "int(void *, const grobo_sim_drive *, double, grobo_sim_state *)", self._step)
         self._plant = ffi.new("grobo_sim_plant *")
         self._plant.step = self._callback
+        self._imu_callback = ffi.callback("int(void *, struct grobo_imu *)", self._imu)
+        self._plant.imu = self._imu_callback
 
     # ---- the file ----------------------------------------------------------------------------
 
@@ -333,6 +335,20 @@ class Body:
                     (float(rates[0]), float(rates[1]), float(rates[2])),
                     float(self.data.qpos[at + 2]))
 
+    def _imu(self, _ctx: Any, imu: Any) -> int:
+        """What the engine is told of the base."""
+        try:
+            if self.base < 0 or not self._begun:
+                return int(lib.GROBO_ERR_UNSUPPORTED)
+            tilt = self.tilt()
+            imu.roll_rad, imu.pitch_rad = tilt.roll, tilt.pitch
+            for i, rate in enumerate(tilt.rates):
+                imu.rate_rad_s[i] = rate
+            return 0
+        except Exception:  # nothing may leave a callback
+            self.problem = self.problem or traceback.format_exc()
+            return int(lib.GROBO_ERR_IO)
+
     @property
     def fallen(self) -> bool:
         """More than 45 degrees from upright, or lower than a third of its height at the begin."""
@@ -511,11 +527,12 @@ class Virtual(_Simulated):
         self._stabilized = ffi.new("grobo_driver *")  # as long as the engine uses it
         self._stabilized.size = ffi.sizeof("grobo_driver")
         lib.grobo_driver_copy(self._stabilized, self.body.robot._driver)
-        self._stabilize_c = ffi.callback(ffi.typeof(self._stabilized.stabilize), self._stabilize)
-        self._stabilized.stabilize = self._stabilize_c
+        self._stabilize_c = ffi.callback(
+            ffi.typeof(self._stabilized.stabilize_by), self._stabilize)
+        self._stabilized.stabilize_by = self._stabilize_c
         return self._stabilized
 
-    def _stabilize(self, _driver: Any, _ctx: Any, sensed: Any, target: Any) -> int:
+    def _stabilize(self, _driver: Any, _ctx: Any, imu: Any, sensed: Any, target: Any) -> int:
         """Hands a target to the stabilizer before it is judged and sent."""
         numpy, n = self.body._numpy, self.body.n
         try:
@@ -524,7 +541,7 @@ class Virtual(_Simulated):
             goal = numpy.array([target.angle_rad[j] if target.set >> j & 1 else math.nan
                                 for j in range(n)])
             assert self._stabilizer is not None
-            self._stabilizer(self.body.tilt(), now, goal)
+            self._stabilizer(self._seen(imu), now, goal)
             for j in range(n):
                 if target.set >> j & 1:
                     target.angle_rad[j] = goal[j]
@@ -532,6 +549,14 @@ class Virtual(_Simulated):
         except Exception:  # nothing may leave a callback
             self.body.problem = self.body.problem or traceback.format_exc()
             return int(lib.GROBO_ERR_CANCELED)
+
+    def _seen(self, imu: Any) -> Tilt:
+        """The reading that the engine hands over; upright where there is none."""
+        if imu == ffi.NULL:
+            return Tilt(0.0, 0.0, 0.0, (0.0, 0.0, 0.0), 0.0)
+        x, y, z = imu.rate_rad_s
+        return Tilt(imu.roll_rad, imu.pitch_rad, lib.grobo_imu_tilt(imu), (x, y, z),
+                    self.body.tilt().height)
 
     def _event(self, _ctx: Any, event: Any) -> None:
         if event.kind == lib.GROBO_EVENT_JOB:
@@ -645,6 +670,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--robot", default="gr001", metavar="NAME|FILE", help="as of grctl (gr001)")
     parser.add_argument("--link", metavar="PATH", help="keep a symbolic link to the pty")
     parser.add_argument("--tcp", type=int, metavar="PORT", help="listen on 127.0.0.1 too; 0: any")
+    parser.add_argument("--imu", metavar="PATH",
+                        help="keep a link to a second pty, with an IMU's lines: grctl serve --imu PATH")
     parser.add_argument("--no-pty", action="store_true", help="serve by TCP only")
     parser.add_argument("--free", action="store_true",
                         help="free a base that the file fixes, and add a floor")
@@ -727,7 +754,50 @@ class _Lines:
         return [line.decode(errors="replace") for line in lines]
 
 
+class ImuLines:
+    """An IMU behind a pseudo-terminal: 50 lines a second of roll, pitch (degrees) and three rates
+    (degrees a second), as a microcontroller prints them. Lines that nobody reads are dropped."""
+
+    def __init__(self, body: Body, link: str) -> None:
+        import termios
+        import tty
+
+        self.body, self.link, self._flush = body, link, termios.tcflush
+        self._own, self._other = os.openpty()
+        tty.setraw(self._other)
+        os.set_blocking(self._own, False)
+        path = Path(link)
+        if path.is_symlink():
+            path.unlink()
+        path.symlink_to(os.ttyname(self._other))
+
+    def tell(self) -> None:
+        tilt = self.body.tilt()
+        numbers = tilt.roll, tilt.pitch, *tilt.rates
+        line = " ".join(f"{math.degrees(n):.2f}" for n in numbers) + "\n"
+        try:
+            os.write(self._own, line.encode())
+        except BlockingIOError:
+            self._flush(self._other, 0)  # TCIFLUSH: what is old is dropped
+
+    def close(self) -> None:
+        path = Path(self.link)
+        if path.is_symlink():
+            path.unlink()
+        os.close(self._own)
+        os.close(self._other)
+
+
 def _serve(body: Body, args: argparse.Namespace) -> int:
+    imu = ImuLines(body, args.imu) if args.imu else None
+    try:
+        return _serve_lines(body, args, imu)
+    finally:
+        if imu is not None:
+            imu.close()
+
+
+def _serve_lines(body: Body, args: argparse.Namespace, imu: Optional[ImuLines]) -> int:
     stop: List[int] = []
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) is not signal.SIG_IGN:
@@ -745,6 +815,8 @@ def _serve(body: Body, args: argparse.Namespace) -> int:
         viewer = _viewer(body) if args.view else None
         while not stop and (viewer is None or viewer.is_running()):
             served.run(0.02)
+            if imu is not None:
+                imu.tell()
             if viewer is not None:
                 viewer.sync()
             if body.fallen != fell:

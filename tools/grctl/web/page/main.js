@@ -133,8 +133,8 @@ class App {
         if (event.kind !== 'stop' && (event.level === 'error' || event.level === 'warning')) {
             this.notice(event.message); // a stop is told beside STOP
         }
-        if (['stop', 'trip', 'link', 'lease', 'play'].includes(event.kind)) {
-            this.say(event.message, event.kind === 'stop' || event.kind === 'trip');
+        if (['stop', 'trip', 'link', 'lease', 'play', 'fall'].includes(event.kind)) {
+            this.say(event.message, ['stop', 'trip', 'fall'].includes(event.kind));
         }
     }
 

@@ -83,6 +83,11 @@ export class See {
                                                      : t('✓ {0} mm inside', mm));
             card('', t('Stands on'), feet.join(' + ') || t('nothing'));
         }
+        if (state.imu) {
+            const tilt = Math.round(state.imu.tilt_deg);
+            card(state.imu.fallen ? 'bad' : tilt > 20 ? 'warn' : 'ok', t('Tilt'),
+                 state.imu.fallen ? t('✕ {0}°, fallen', tilt) : `${tilt}°`);
+        }
         const hot = state.temperature_c.reduce((b, v, n) => v > (b ? b.v : -1) ? { v, n } : b, null);
         const limit = this.app.robot.safety.temperature_c;
         if (hot) {

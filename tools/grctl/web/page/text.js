@@ -31,7 +31,8 @@ export const JA = {
     'Angle and target': '角度と目標', Temperature: '温度', Voltage: '電圧', 'no joint chosen': '関節が未選択',
     now: '今', right: '右足', left: '左足', Balance: 'バランス', unknown: '不明',
     '✕ {0} mm outside': '✕ {0} mm 外側', '✓ {0} mm inside': '✓ {0} mm 内側', 'Stands on': '支持',
-    nothing: 'なし', Hottest: '最高温度', Supply: '電源電圧', '{0} ({1} in the last minute)': '{0} (直近 1 分 {1})',
+    nothing: 'なし', Hottest: '最高温度', Tilt: '傾き',
+    '✕ {0}°, fallen': '✕ {0}°、転倒', Supply: '電源電圧', '{0} ({1} in the last minute)': '{0} (直近 1 分 {1})',
     Load: '負荷', Readings: '読み取り', Budget: '上限', '{0} Hz watched, {1} Hz at most':
         '監視あり {0} Hz、最大 {1} Hz', Jitter: 'ゆらぎ', 'no motion yet': 'まだ再生なし',
     'Late frames': '遅れたフレーム', '{0} of {1}': '{1} 中 {0}', Timeouts: 'タイムアウト', Retries: '再試行',
