@@ -22,7 +22,7 @@ int grobo_robot_pause(grobo_robot *robot)
     int result = grobo_sequencer_pause(&robot->sequencer, robot->now_us);
     /* A clip before may have left joints on their trajectory that this one does not move; and the
      * frame of the pause leaves out those that it would wake. */
-    grobo_joint_mask own = robot->sequencer.to.set;
+    grobo_joint_mask own = grobo_i_coupled(robot, robot->sequencer.to.set);
     grobo_joint_mask left = (robot->played_joints | own) & (~own | grobo_i_unknown(robot));
     if (result >= 0 && left != 0) {
         grobo_i_gate_halt(robot, left);

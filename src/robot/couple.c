@@ -86,7 +86,7 @@ void grobo_i_join_times(const grobo_robot *robot, grobo_target *target)
 }
 
 /* A frame of one servo alone sends it where the other one was just told to rest, unless that is
- * further from its own place than servos on one shaft may be. */
+ * further from its own place, or where it would brake to, than servos on one shaft may be. */
 static void rest_beside(const grobo_robot *robot, int joint, int other, const grobo_joint *pair,
                         grobo_posture *to)
 {
@@ -94,7 +94,9 @@ static void rest_beside(const grobo_robot *robot, int joint, int other, const gr
     double scale = joint == grobo_i_first(pair) ? 1 / grobo_i_ratio(pair) : grobo_i_ratio(pair);
     double rest_rad = beside->trajectory.to_rad * scale;
     bool rests = grobo_i_has(robot->halted_all, other) && !grobo_i_is_stray(beside);
-    if (rests && fabs(rest_rad - to->angle_rad[joint]) <= grobo_i_apart(pair)) {
+    double off_rad = fmin(fabs(rest_rad - to->angle_rad[joint]),
+                          fabs(rest_rad - robot->axes[joint].state.angle_rad));
+    if (rests && off_rad <= grobo_i_apart(pair)) {
         to->angle_rad[joint] = rest_rad;
     }
 }

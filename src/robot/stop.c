@@ -19,7 +19,7 @@ static grobo_joint_mask joints_of_motion(const grobo_robot *robot)
         return 0;
     }
     return grobo_sequencer_get_state(sequencer) == GROBO_SEQUENCER_STOPPING
-               ? robot->played_joints & sequencer->to.set
+               ? robot->played_joints & grobo_i_coupled(robot, sequencer->to.set)
                : robot->played_joints;
 }
 

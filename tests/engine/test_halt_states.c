@@ -470,8 +470,9 @@ static void judge_all(double dps)
     memset(&sum, 0, sizeof sum);
     for (int i = 0; halt_robot_of(i) != NULL; i++) {
         sum.worst_ms = 0;
-        if (family != NULL && strcmp(family, halt_robot_of(i)->name) != 0) {
-            continue;
+        if (halt_is_paired(halt_robot_of(i)) ||
+            (family != NULL && strcmp(family, halt_robot_of(i)->name) != 0)) {
+            continue; /* others turn one servo of a shaft alone in these states */
         }
         for (size_t k = 0; k < sizeof states / sizeof states[0]; k++) {
             judge_state(halt_robot_of(i), &states[k]);

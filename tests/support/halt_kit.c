@@ -10,6 +10,7 @@
 #include <grobo/core/lx16a.h>
 
 #include "src/base/instant.h"
+#include "src/model/joint.h"
 #include "tests/support/halt_kit.h"
 #include "tests/support/many_joints.h"
 #include "tests/support/tables.h"
@@ -41,7 +42,10 @@ bool halt_traced;
 
 /* ---- robots ---------------------------------------------------------------------------------- */
 
-enum { SMALL_JOINTS = 3 };
+/* Of the coupled ones, two are servos on one shaft, and the last follows the one before it. */
+enum { SMALL_JOINTS = 3, PAIRS_JOINTS = 4, PAIR = 1, SECOND = 2, FOLLOWER = 3 };
+#define FOLLOWER_RATIO (-0.5)
+#define APART_DEG 5
 
 /* Where all joints are read in one exchange or written in one frame, frame_us grows with them; a
  * frame of protocol 1 has 259 bytes at the most. reading_us: twice where servos tell no speed. */
@@ -51,58 +55,69 @@ typedef struct recipe {
     int n_joints, baud_bps;
     int64_t frame_us;
     int64_t reading_us; /* all joints */
+    bool coupled;
 } recipe;
 
 enum { M1 = 1000000 };
 
 static const recipe recipes[] = {
-    {"board", &far_board, 20, 115200, 19000, 210000},
-    {"bus", &far_bus, 20, 115200, 9500, 110000},
-    {"dxl2", &far_dxl2, SMALL_JOINTS, M1, 2500, 8000},
-    {"dxl1", &far_dxl1, SMALL_JOINTS, M1, 1500, 5000},
-    {"mx", &far_mx, SMALL_JOINTS, M1, 1500, 5000},
-    {"sts", &far_sts, SMALL_JOINTS, M1, 1500, 5000},
-    {"scs", &far_scs, SMALL_JOINTS, M1, 1500, 5000},
-    {"ics", &far_ics, SMALL_JOINTS, 115200, 7500, 135000},
-    {"lx16a", &far_lx16a, SMALL_JOINTS, 115200, 3000, 160000},
-    {"xl320", &far_xl320, SMALL_JOINTS, M1, 2500, 8000},
-    {"p", &far_p, SMALL_JOINTS, M1, 2500, 8000},
-    {"pro", &far_pro, SMALL_JOINTS, M1, 2500, 8000},
-    {"hls", &far_hls, SMALL_JOINTS, M1, 1500, 5000},
-    {"sm", &far_sm, SMALL_JOINTS, M1, 2500, 8000},
-    {"bus-57600", &far_bus, 20, 57600, 19000, 220000},
-    {"bus-460800", &far_bus, 20, 460800, 2500, 40000},
-    {"dxl2-20", &far_dxl2, 20, M1, 15000, 20000},
-    {"dxl2-64", &far_dxl2, 64, M1, 66000, 140000},
-    {"dxl2-57600", &far_dxl2, SMALL_JOINTS, 57600, 53000, 110000},
-    {"dxl2-4000000", &far_dxl2, SMALL_JOINTS, 4 * M1, 2500, 8000},
-    {"xl320-20", &far_xl320, 20, M1, 15000, 20000},
-    {"xl320-64", &far_xl320, 64, M1, 66000, 140000},
-    {"xl320-57600", &far_xl320, SMALL_JOINTS, 57600, 53000, 110000},
-    {"p-20", &far_p, 20, M1, 15000, 20000},
-    {"p-57600", &far_p, SMALL_JOINTS, 57600, 53000, 110000},
-    {"pro-20", &far_pro, 20, M1, 15000, 20000},
-    {"pro-115200", &far_pro, SMALL_JOINTS, 115200, 27000, 55000},
-    {"dxl1-20", &far_dxl1, 20, M1, 3000, 20000},
-    {"dxl1-64", &far_dxl1, 64, M1, 3000, 60000},
-    {"dxl1-57600", &far_dxl1, SMALL_JOINTS, 57600, 10000, 50000},
-    {"mx-20", &far_mx, 20, M1, 3000, 20000},
-    {"mx-64", &far_mx, 64, M1, 3000, 60000},
-    {"mx-57600", &far_mx, SMALL_JOINTS, 57600, 10000, 50000},
-    {"mx-3000000", &far_mx, SMALL_JOINTS, 3 * M1, 1500, 5000},
-    {"sts-20", &far_sts, 20, M1, 7000, 20000},
-    {"sts-64", &far_sts, 64, M1, 21000, 60000},
-    {"sts-38400", &far_sts, SMALL_JOINTS, 38400, 30000, 80000},
-    {"hls-20", &far_hls, 20, M1, 7000, 20000},
-    {"hls-38400", &far_hls, SMALL_JOINTS, 38400, 30000, 80000},
-    {"sm-38400", &far_sm, SMALL_JOINTS, 38400, 30000, 80000},
-    {"scs-20", &far_scs, 20, M1, 3000, 20000},
-    {"scs-64", &far_scs, 64, M1, 3000, 60000},
-    {"scs-38400", &far_scs, SMALL_JOINTS, 38400, 15000, 80000},
-    {"ics-20", &far_ics, 20, 115200, 7500, 900000},
-    {"ics-20-1250000", &far_ics, 20, 1250000, 2000, 300000},
-    {"lx16a-20", &far_lx16a, 20, 115200, 3000, 500000},
-    {"lx16a-64", &far_lx16a, 64, 115200, 3000, 1500000},
+    {"board", &far_board, 20, 115200, 19000, 210000, false},
+    {"bus", &far_bus, 20, 115200, 9500, 110000, false},
+    {"dxl2", &far_dxl2, SMALL_JOINTS, M1, 2500, 8000, false},
+    {"dxl1", &far_dxl1, SMALL_JOINTS, M1, 1500, 5000, false},
+    {"mx", &far_mx, SMALL_JOINTS, M1, 1500, 5000, false},
+    {"sts", &far_sts, SMALL_JOINTS, M1, 1500, 5000, false},
+    {"scs", &far_scs, SMALL_JOINTS, M1, 1500, 5000, false},
+    {"ics", &far_ics, SMALL_JOINTS, 115200, 7500, 135000, false},
+    {"lx16a", &far_lx16a, SMALL_JOINTS, 115200, 3000, 160000, false},
+    {"xl320", &far_xl320, SMALL_JOINTS, M1, 2500, 8000, false},
+    {"p", &far_p, SMALL_JOINTS, M1, 2500, 8000, false},
+    {"pro", &far_pro, SMALL_JOINTS, M1, 2500, 8000, false},
+    {"hls", &far_hls, SMALL_JOINTS, M1, 1500, 5000, false},
+    {"sm", &far_sm, SMALL_JOINTS, M1, 2500, 8000, false},
+    {"bus-57600", &far_bus, 20, 57600, 19000, 220000, false},
+    {"bus-460800", &far_bus, 20, 460800, 2500, 40000, false},
+    {"dxl2-20", &far_dxl2, 20, M1, 15000, 20000, false},
+    {"dxl2-64", &far_dxl2, 64, M1, 66000, 140000, false},
+    {"dxl2-57600", &far_dxl2, SMALL_JOINTS, 57600, 53000, 110000, false},
+    {"dxl2-4000000", &far_dxl2, SMALL_JOINTS, 4 * M1, 2500, 8000, false},
+    {"xl320-20", &far_xl320, 20, M1, 15000, 20000, false},
+    {"xl320-64", &far_xl320, 64, M1, 66000, 140000, false},
+    {"xl320-57600", &far_xl320, SMALL_JOINTS, 57600, 53000, 110000, false},
+    {"p-20", &far_p, 20, M1, 15000, 20000, false},
+    {"p-57600", &far_p, SMALL_JOINTS, 57600, 53000, 110000, false},
+    {"pro-20", &far_pro, 20, M1, 15000, 20000, false},
+    {"pro-115200", &far_pro, SMALL_JOINTS, 115200, 27000, 55000, false},
+    {"dxl1-20", &far_dxl1, 20, M1, 3000, 20000, false},
+    {"dxl1-64", &far_dxl1, 64, M1, 3000, 60000, false},
+    {"dxl1-57600", &far_dxl1, SMALL_JOINTS, 57600, 10000, 50000, false},
+    {"mx-20", &far_mx, 20, M1, 3000, 20000, false},
+    {"mx-64", &far_mx, 64, M1, 3000, 60000, false},
+    {"mx-57600", &far_mx, SMALL_JOINTS, 57600, 10000, 50000, false},
+    {"mx-3000000", &far_mx, SMALL_JOINTS, 3 * M1, 1500, 5000, false},
+    {"sts-20", &far_sts, 20, M1, 7000, 20000, false},
+    {"sts-64", &far_sts, 64, M1, 21000, 60000, false},
+    {"sts-38400", &far_sts, SMALL_JOINTS, 38400, 30000, 80000, false},
+    {"hls-20", &far_hls, 20, M1, 7000, 20000, false},
+    {"hls-38400", &far_hls, SMALL_JOINTS, 38400, 30000, 80000, false},
+    {"sm-38400", &far_sm, SMALL_JOINTS, 38400, 30000, 80000, false},
+    {"scs-20", &far_scs, 20, M1, 3000, 20000, false},
+    {"scs-64", &far_scs, 64, M1, 3000, 60000, false},
+    {"scs-38400", &far_scs, SMALL_JOINTS, 38400, 15000, 80000, false},
+    {"ics-20", &far_ics, 20, 115200, 7500, 900000, false},
+    {"ics-20-1250000", &far_ics, 20, 1250000, 2000, 300000, false},
+    {"lx16a-20", &far_lx16a, 20, 115200, 3000, 500000, false},
+    {"lx16a-64", &far_lx16a, 64, 115200, 3000, 1500000, false},
+    {"dxl2-pairs", &far_dxl2, PAIRS_JOINTS, M1, 3000, 9000, true},
+    {"xl320-pairs", &far_xl320, PAIRS_JOINTS, M1, 3000, 9000, true},
+    {"p-pairs", &far_p, PAIRS_JOINTS, M1, 3000, 9000, true},
+    {"pro-pairs", &far_pro, PAIRS_JOINTS, M1, 3000, 9000, true},
+    {"mx-pairs", &far_mx, PAIRS_JOINTS, M1, 2000, 7000, true},
+    {"sts-pairs", &far_sts, PAIRS_JOINTS, M1, 2000, 7000, true},
+    {"sm-pairs", &far_sm, PAIRS_JOINTS, M1, 4000, 10000, true},
+    {"hls-pairs", &far_hls, PAIRS_JOINTS, M1, 2000, 7000, true},
+    {"scs-pairs", &far_scs, PAIRS_JOINTS, M1, 2000, 7000, true},
+    {"lx16a-pairs", &far_lx16a, PAIRS_JOINTS, 115200, 3000, 220000, true},
 };
 enum { ROBOTS = sizeof recipes / sizeof recipes[0] };
 
@@ -139,7 +154,7 @@ static void make_gr001(halt_robot *robot)
     robot->other = grobo_model_joint_of_motor(robot->driver.model, 6);
 }
 
-static void make_joints(halt_robot *robot, const struct kind *kind)
+static void make_joints(halt_robot *robot, const struct kind *kind, bool coupled)
 {
     const grobo_servo_model *servo = grobo_servo_model_named(kind->table, kind->servo);
     assert_non_null(servo);
@@ -155,6 +170,16 @@ static void make_joints(halt_robot *robot, const struct kind *kind)
                                          .mirror = (uint8_t)j,
                                          .mirror_sign = 1,
                                          .sign = 1};
+    }
+    if (coupled) {
+        robot->other = SECOND;
+        robot->joints[PAIR].follows = (uint8_t)robot->moved;
+        robot->joints[PAIR].ratio = 1;
+        robot->joints[PAIR].apart_rad = RAD(APART_DEG);
+        robot->joints[FOLLOWER].follows = SECOND;
+        robot->joints[FOLLOWER].ratio = FOLLOWER_RATIO;
+        robot->joints[FOLLOWER].min_rad = RAD(100 * FOLLOWER_RATIO);
+        robot->joints[FOLLOWER].max_rad = RAD(-100 * FOLLOWER_RATIO);
     }
     robot->model = (grobo_model)GROBO_TABLE(grobo_model, .name = kind->servo,
                                             GROBO_MODEL_JOINTS(robot->joints),
@@ -175,7 +200,7 @@ static void make(halt_robot *robot, const recipe *from)
     robot->no_rate = from->far == &far_lx16a && from->n_joints > 20; /* a frame a joint */
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         if (kinds[i].far == from->far) {
-            make_joints(robot, &kinds[i]);
+            make_joints(robot, &kinds[i], from->coupled);
             return;
         }
     }
@@ -228,6 +253,12 @@ void halt_robot_make(halt_robot *robot, const char *of, int n_joints, int baud_b
     }
 }
 
+bool halt_is_paired(const halt_robot *robot)
+{
+    return robot->driver.model->n_joints > PAIR &&
+           grobo_i_joint(robot->driver.model, PAIR)->apart_rad > 0;
+}
+
 static int far_of(int joint)
 {
     return halt.of->driver.model->joints[joint].motor - 1;
@@ -273,6 +304,9 @@ void halt_begin(const halt_robot *robot, double deg)
     halt.far.baud_bps = robot->baud_bps;
     halt.far.hear = hear;
     far_put(&halt.far, far_of(robot->moved), deg, false, halt.now_us);
+    if (halt_is_paired(robot)) {
+        far_put(&halt.far, far_of(PAIR), deg, false, halt.now_us);
+    }
     halt_new_engine(&config);
 }
 
@@ -585,6 +619,17 @@ static void judge_rest(int j, int64_t bound_us)
     }
 }
 
+/* Servos on one shaft come to rest at one place. */
+static void judge_pair(void)
+{
+    int a = far_of(halt.of->moved), b = far_of(PAIR);
+    double apart_deg =
+        fabs(far_angle(&halt.far, a, halt.now_us) - far_angle(&halt.far, b, halt.now_us));
+    if (apart_deg > APART_DEG) {
+        halt_blame("servos on one shaft rest apart", halt.of->moved, apart_deg, APART_DEG);
+    }
+}
+
 void halt_verdict(int64_t bound_us)
 {
     bool turned = false;
@@ -592,6 +637,9 @@ void halt_verdict(int64_t bound_us)
     for (int j = 0; j < halt.far.n_joints; j++) {
         turned = turned || (halt.base[j].left_us > bound_us && !halt.base[j].missed);
         judge_rest(j, bound_us);
+    }
+    if (halt_is_paired(halt.of)) {
+        judge_pair();
     }
     if (turned && (halt.far.motor_left_us == FAR_NEVER || waited_us > bound_us)) {
         halt_blame(halt.far.motor_left_us == FAR_NEVER ? "no frame left"

@@ -75,6 +75,8 @@ extern bool halt_traced; /* prints what is on the wire once a stop is judged */
  * of its far side; from HALT_FAMILIES on larger ones, and other rates. */
 const halt_robot *halt_robot_of(int number);
 const halt_robot *halt_robot_named(const char *name);
+/* Whether two of its servos share a shaft: `moved` and the joint behind it. */
+bool halt_is_paired(const halt_robot *robot);
 
 /* Makes a robot of a family, by the name of one of those above, with n joints on a line of that
  * rate; it must outlive its engine, and the next one made is in its place. */
