@@ -198,6 +198,7 @@ TEST_WITH(alone, what_moves_is_known_until_it_rests)
     assert_int_equal(SerialRobot_setMotionTime(g, 300), 0);
     assert_int_equal(SerialRobot_startMotion(g), 0);
     assert_int_equal(SerialRobot_isMoving(g), 1);
+    assert_false(g->executeMotion); /* a move is no motion */
     assert_int_equal(g->commandCount, 1);
     go();
     assert_int_equal(SerialRobot_isMoving(g), 0);
