@@ -158,7 +158,8 @@ measures() {
     for name in a.m a.mseq a.pseq a.yaml; do
         : >"$work/folder/$name."
     done
-    "$build/grctl" sim --link "$work/robot" --start zero --no-pacing </dev/null >/dev/null 2>&1 &
+    "$build/grctl" --physics off sim --link "$work/robot" --start zero --no-pacing \
+        </dev/null >/dev/null 2>&1 &
     sim=$!
     for _ in 1 2 3 4 5 6 7 8 9 10; do
         [ ! -e "$work/robot" ] || break
