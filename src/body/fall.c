@@ -25,7 +25,7 @@
 /* How far a servo gives way: its stiffness is so many times weight and height of the body's
  * centre, as RS30x servos have it in a GR001 (5 Nm/rad); friction and inertia delay it. */
 #define STIFFNESS 3.0
-#define YIELD_S 0.05
+#define YIELD_S 0.03
 /* What dry friction of its gear holds of a load, of weight and height. */
 #define HOLDS 0.016
 /* Servos give way under load and real floors are not level: a motion that falls on a floor which
