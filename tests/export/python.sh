@@ -31,11 +31,17 @@ PYTHONPATH=$work/built/python
 CC=${CC:-cc}
 export PYTHONPATH CC
 
+# all NAME...: they wait more than they work, and run side by side. (Not by &, which has them ignore
+# Ctrl-C.)
+# shellcheck disable=SC2016
+all() {
+    printf '%s\n' "$@" | xargs -P 8 -I NAME sh -c '"$0" -X dev "tests/package/python/$1.py" -v \
+        >"$2/$1" 2>&1 </dev/null; echo $? >"$2/$1.status"' "$python" NAME "$work"
+}
 # Each test is a line of its own.
-run() {
+tell() {
     name=$1
-    "$python" -X dev "tests/package/python/$name.py" -v >"$work/$name" 2>&1
-    status=$?
+    status=$(cat "$work/$name.status")
     awk -v name="$name" -v status=$status '
         /^test_.* \.\.\. / || /^test_[a-z_0-9]* \(/ { test = $1 }
         / \.\.\. (ok|FAIL|ERROR|skipped)/ || /^(ok|FAIL|ERROR|skipped .*)$/ {
@@ -67,9 +73,11 @@ shown() {
 }
 
 test_that 'the package is made' made
-for file in tests/package/python/test_*.py; do
-    name=${file##*/}
-    run "${name%.py}"
+names=$(cd tests/package/python && find . -name 'test_*.py' | sed 's/^..//; s/\.py$//' | sort)
+# shellcheck disable=SC2086 # a list of words
+all $names
+for name in $names; do
+    tell "$name"
 done
 played() {
     awk '/^```python/ { open = 1; next } /^```/ { open = 0 } open' README.md >"$work/played.py" &&
@@ -94,7 +102,8 @@ fi
 if "$python" -c 'import lerobot.robots' 2>/dev/null; then
     GROBO_LEROBOT=real
     export GROBO_LEROBOT
-    run test_lerobot
+    all test_lerobot
+    tell test_lerobot
 else
     test_case 'the plugin in LeRobot itself'
     skip 'the plugin in LeRobot itself' 'no lerobot'

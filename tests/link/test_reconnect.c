@@ -54,7 +54,8 @@ static void on_sim(void *ctx, const grobo_sim_event *event)
 
 static int set_up(void)
 {
-    static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 300000};
+    static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 300000,
+                                             .timeout_us = 300000, .stall_us = 30000000};
     grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .hook = on_sim};
     const char *link;
 

@@ -394,6 +394,7 @@ static void note_asked(grobo_session *from)
  * configuration that is refused changes nothing. */
 TEST_WITH(on_loop, who_is_checked_is_not_read)
 {
+    static const grobo_robot_config brisk = {GROBO_ROBOT_CONFIG_INIT};
     static const grobo_robot_config eager = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     static const grobo_robot_config bad = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = -2};
     const grobo_robot_def *const *arm = grobo_i_robot_defs;
@@ -408,7 +409,8 @@ TEST_WITH(on_loop, who_is_checked_is_not_read)
     size_t asked[2];
     for (int configures = 0; configures < 2; configures++) {
         session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim",
-                                                .driver = &driver, .sim = &sim.config});
+                                                .driver = &driver, .sim = &sim.config,
+                                                .robot = &brisk});
         seen.then_line = note_asked;
         assert_int_equal(grobo_session_open(session), GROBO_OK);
         for (int j = 0; j + 1 < driver.model->n_joints; j++) { /* one after the other is asked */

@@ -211,7 +211,9 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
 static int be_program(const char *self, const char *device)
 {
     struct timeval period = {0, TICK_US};
-    grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER};
+    /* On a busy machine a pseudo-terminal hands on what it was given 170 ms later. */
+    grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER,
+                                .timeout_us = 300000};
     grobo_session_config config = {GROBO_SESSION_CONFIG_INIT,
                                    .device = device,
                                    .baud_bps = GUARDED_BPS,

@@ -73,6 +73,12 @@ void session_kit_begin(void)
 
 void session_kit_make(grobo_session_config config)
 {
+    /* No test without a configuration of its own is of how late a reply is. On a busy machine the
+     * system hands on the bytes of a pseudo-terminal 170 ms later. */
+    static const grobo_robot_config patient = {GROBO_ROBOT_CONFIG_INIT, .timeout_us = 300000,
+                                               .stall_us = 30000000};
+
+    config.robot = config.robot != NULL ? config.robot : &patient;
     config.base = base;
     config.on_event = on_event;
     config.on_robot = on_robot;
