@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* GR001 leans against a push by its ankles, as an IMU has it: balance [DEVICE] <IMU */
-#include <math.h>
 #include <stdio.h>
 
 #include <grobo/core/imu.h>
@@ -12,7 +11,8 @@ enum { RIGHT = 4, LEFT = 10 }; /* R_ANKLE_P, L_ANKLE_P */
 static int lean(const grobo_driver *self, void *ctx, const grobo_imu *imu,
                 const grobo_posture *sensed, grobo_posture *target)
 {
-    double turn = imu ? fmax(-0.3, fmin(0.3, imu->pitch_rad + 0.1 * imu->rate_rad_s[1])) : 0;
+    double turn = imu ? imu->pitch_rad + 0.1 * imu->rate_rad_s[1] : 0;
+    turn = turn > 0.3 ? 0.3 : turn < -0.3 ? -0.3 : turn;
     (void)self, (void)ctx, (void)sensed;
     target->angle_rad[RIGHT] += turn;
     target->angle_rad[LEFT] -= turn;
