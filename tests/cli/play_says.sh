@@ -34,13 +34,18 @@ check "it ends where the motion ends" both exits 0 on_robot status m12 --- \
     says 'R_KNEE_P  *-40\.0  *-40\.0  *on '
 
 # On a terminal, which script makes: a bar that fits into the line and is cleared away.
+# on_screen COMMAND...: a machine that is away for 250 ms ends a motion, as it has to.
+on_screen() {
+    LC_ALL=C TERM=xterm script -qec "stty cols 60; '$GRCTL' -d '$robot' --timeout 500 $*" \
+        /dev/null </dev/null >"$work/screen"
+}
 # bar WORD PATTERN COMMAND...: lines with the word; one is like the pattern.
 bar() {
     bar_word=$1
     bar_like=$2
     shift 2
-    LC_ALL=C TERM=xterm script -qec "stty cols 60; '$GRCTL' -d '$robot' --timeout 500 $*" \
-        /dev/null </dev/null >"$work/screen" || return 1
+    on_screen "$@" || { grep -q 'host stalled' "$work/screen" && on_screen "$@"; } ||
+        { cat -v "$work/screen"; return 1; }
     tr '\r' '\n' <"$work/screen" | grep "$bar_word" >"$work/bars"
     grep -q "$bar_like" "$work/bars" || { echo "no '$bar_like'"; cat -v "$work/screen"; return 1; }
     awk '{ sub(/\033\[K$/, ""); if (length > 57) exit 1 }' "$work/bars" && return

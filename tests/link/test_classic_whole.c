@@ -429,7 +429,7 @@ TEST_WITH(alone, a_posture_without_a_time_takes_the_default_time)
     assert_true(n > 0);
     (void)RobotPosture_setMotionTime(&posture, 0);
     assert_int_equal(GR001_PosturePacket(g, &posture, without, sizeof without), n);
-    assert_memory_equal(with, without, n);
+    assert_memory_equal(with, without, (size_t)n);
     assert_int_equal(SerialRobot_setCommand(g, command, sizeof command), sizeof command);
     assert_int_equal(g->commandSize, sizeof command);
 }
@@ -593,5 +593,5 @@ TEST_WITH(alone, a_posture_becomes_the_command)
     assert_true(n > 0);
     assert_int_equal(SerialRobot_postureToCommand(g, &posture), 0);
     assert_int_equal(g->commandSize, n);
-    assert_memory_equal(g->commandBuf, packet, n);
+    assert_memory_equal(g->commandBuf, packet, (size_t)n);
 }

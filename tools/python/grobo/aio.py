@@ -12,6 +12,7 @@ that. A task that is cancelled while the robot moves for it stops the robot smoo
 
 import asyncio
 from dataclasses import dataclass
+from functools import partial
 from types import TracebackType
 from typing import Any, AsyncIterator, Dict, Iterable, List, Mapping, Optional, Type, Union
 
@@ -182,7 +183,7 @@ class Robot:
         return await self._loop.run_in_executor(None, function, *args)
 
     async def _moved_in_thread(self, function: Any, *args: Any, **options: Any) -> None:
-        call = self._loop.run_in_executor(None, lambda: function(*args, **options))
+        call = self._loop.run_in_executor(None, partial(function, *args, **options))
         try:
             await asyncio.shield(call)
         except asyncio.CancelledError:

@@ -496,8 +496,9 @@ class Robot:
         if time is None:
             self._drive(mask, rad_s)
         else:
+            time_s = float(time)
             self.torque(True, list(speeds))
-            self._interruptible(lambda: self._drive_for(mask, rad_s, float(time)))
+            self._interruptible(lambda: self._drive_for(mask, rad_s, time_s))
 
     def _drive(self, mask: int, rad_s: Any) -> None:
         with self._runner.use():
