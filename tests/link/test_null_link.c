@@ -7,6 +7,7 @@
 
 #include <event2/event.h>
 
+#include <grobo/core/lines.h>
 #include <grobo/core/loop.h>
 #include <grobo/core/robot.h>
 #include <grobo/core/runner.h>
@@ -190,6 +191,7 @@ TEST(session_refuses_null_in_its_first_functions)
     assert_null(grobo_session_robot(NULL));
     assert_null(grobo_session_sim(NULL));
     assert_null(grobo_session_serial(NULL));
+    REFUSES(grobo_session_tapped(NULL));
     grobo_session_bytes(NULL, counts, counts);
     grobo_session_bytes(session, NULL, counts);
     grobo_session_bytes(session, counts, NULL);

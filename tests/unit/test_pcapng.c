@@ -122,7 +122,7 @@ static void write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, c
                         size_t size)
 {
     uint8_t packet[PCAPNG_PACKET_BYTES];
-    size_t made = pcapng_make_chunk(packet, time_us, direction, bytes, size);
+    size_t made = pcapng_make_chunk(packet, 0, time_us, direction, bytes, size);
     assert_int_equal(fwrite(packet, 1, made, to), made);
 }
 
@@ -136,7 +136,7 @@ static void write_sample(image *i)
                                   .link_type = PCAPNG_LINK_USER0};
     FILE *to = os_temporary();
     assert_non_null(to);
-    assert_int_equal(pcapng_write_head(to, "test", "what was done", &interface), 0);
+    assert_int_equal(pcapng_write_head(to, "test", "what was done", &interface, 1), 0);
     write_chunk(to, 1700000000123456, PCAPNG_OUT, sent, 2);
     write_chunk(to, 1700000000123999, PCAPNG_IN, received, 5);
     take_file(i, to);
@@ -199,6 +199,35 @@ TEST(what_is_written_is_read)
     assert_int_equal(pcapng_read(&r, &chunk), 0);
 }
 
+TEST(packets_are_of_the_interface_that_they_name)
+{
+    static image i;
+    static pcapng_reader r;
+    static const pcapng_interface lines[] = {{.name = "left", .speed_bps = 1000000},
+                                             {.name = "right", .speed_bps = 57600}};
+    static const int order[] = {1, 0, 1};
+    pcapng_chunk chunk;
+    FILE *to = os_temporary();
+    assert_non_null(to);
+    assert_int_equal(pcapng_write_head(to, "test", NULL, lines, 2), 0);
+    for (int k = 0; k < 3; k++) {
+        uint8_t packet[PCAPNG_PACKET_BYTES];
+        const uint8_t byte = (uint8_t)k;
+        size_t made = pcapng_make_chunk(packet, order[k], 10 + k, PCAPNG_OUT, &byte, 1);
+        assert_int_equal(fwrite(packet, 1, made, to), made);
+    }
+    take_file(&i, to);
+    pcapng_reader_init(&r, read_image, &i);
+    for (int k = 0; k < 3; k++) {
+        assert_int_equal(pcapng_read(&r, &chunk), 1);
+        assert_int_equal(r.n_interfaces, 2);
+        assert_string_equal(chunk.interface->name, lines[order[k]].name);
+        assert_int_equal(chunk.interface->speed_bps, lines[order[k]].speed_bps);
+        assert_int_equal(chunk.bytes[0], k);
+    }
+    assert_int_equal(pcapng_read(&r, &chunk), 0);
+}
+
 /* Byte for byte what the format says: block type, length, interface, time, sizes, data, flags. */
 TEST(a_packet_block_is_as_the_format_has_it)
 {
@@ -227,7 +256,7 @@ TEST(texts_longer_than_kept_are_cut)
     text[sizeof text - 1] = '\0';
     memset(interface.name, 'y', sizeof interface.name - 1);
     memset(interface.description, 'z', sizeof interface.description - 1);
-    assert_int_equal(pcapng_write_head(to, text, text, &interface), 0);
+    assert_int_equal(pcapng_write_head(to, text, text, &interface, 1), 0);
     write_chunk(to, 0, PCAPNG_IN, &byte, 1);
     take_file(&i, to);
     pcapng_reader_init(&r, read_image, &i);

@@ -110,6 +110,17 @@ GROBO_API int grobo_robot_line_registers(grobo_robot *robot, int line, const gro
 /** Counters of a line. Borrowed, as grobo_robot_get_bus_stats(). @return NULL: no such line. */
 GROBO_API const grobo_bus_stats *grobo_robot_line_stats(const grobo_robot *robot, int line);
 
+/* ---- a session ------------------------------------------------------------------------------ */
+
+struct grobo_session;
+
+/**
+ * The line of the bytes that grobo_session_config.on_tap is being told, 0..n-1; of a robot of one
+ * line 0. Callable in it; outside of it the line of the last bytes.
+ * @return GROBO_ERR_ARG: NULL.
+ */
+GROBO_API int grobo_session_tapped(const struct grobo_session *session);
+
 #endif
 
 GROBO_END_DECLS

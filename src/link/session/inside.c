@@ -91,11 +91,13 @@ void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event
 void grobo_i_session_tell_tap(void *ctx, grobo_direction direction, int64_t now_us,
                               const uint8_t *bytes, size_t size)
 {
-    grobo_session *session = ctx;
+    const session_wire *wire = ctx;
+    grobo_session *session = wire->session;
 
     if (session->config.on_tap != NULL) {
         int64_t since_us = grobo_i_session_enter_callback(session);
 
+        session->tapped = wire->line;
         session->config.on_tap(session->config.ctx, direction, now_us, bytes, size);
         grobo_i_session_leave_callback(session, GROBO_CALLBACK_TAP, since_us);
     }

@@ -177,7 +177,7 @@ static int sim_take(session_wire *wire, int64_t *until_us)
         got = grobo_sim_tx(wire->sim, buf, sizeof buf, now_us);
         if (got > 0) {
             wire->session->sim_rx_bytes += got;
-            grobo_i_session_tell_tap(wire->session, GROBO_DIR_RX, now_us, buf, got);
+            grobo_i_session_tell_tap(wire, GROBO_DIR_RX, now_us, buf, got);
             grobo_robot_line_rx(&wire->session->robot, wire->line, buf, got, now_us);
         }
     } while (got == sizeof buf);
@@ -191,7 +191,7 @@ static void sim_give(session_wire *wire, const uint8_t *frame, size_t size)
 
     wire->session->sim_tx_bytes += taken;
     if (taken > 0) {
-        grobo_i_session_tell_tap(wire->session, GROBO_DIR_TX, now_us, frame, taken);
+        grobo_i_session_tell_tap(wire, GROBO_DIR_TX, now_us, frame, taken);
     }
     GROBO_ASSERT(taken <= size && size - taken <= sizeof wire->simulated->backlog);
     wire->backlog_bytes = size - taken;

@@ -586,14 +586,6 @@ static int fill(grobo_session *session, const grobo_session_config *config)
     return r;
 }
 
-static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                   size_t size)
-{
-    const session_wire *wire = ctx;
-
-    grobo_i_session_tell_tap(wire->session, direction, now_us, bytes, size);
-}
-
 static int make_serial(grobo_session *session, session_wire *wire)
 {
     const grobo_lines *lines = grobo_driver_lines(session->robot.driver);
@@ -611,7 +603,7 @@ static int make_serial(grobo_session *session, session_wire *wire)
         .tx_queue_bytes = GROBO_FRAME_MAX_BYTES, /* a frame is sent when nothing waits */
         .on_data = grobo_i_session_on_data,
         .on_event = on_serial,
-        .on_tap = session->config.on_tap != NULL ? on_tap : NULL,
+        .on_tap = session->config.on_tap != NULL ? grobo_i_session_tell_tap : NULL,
         .ctx = wire,
         .mem = session->config.mem,
     };
@@ -794,6 +786,11 @@ grobo_sim *grobo_session_sim(grobo_session *session)
 grobo_serial *grobo_session_serial(grobo_session *session)
 {
     return session == NULL ? NULL : session->wire[0].serial;
+}
+
+int grobo_session_tapped(const grobo_session *session)
+{
+    return session == NULL ? GROBO_ERR_ARG : session->tapped;
 }
 
 void grobo_session_bytes(const grobo_session *session, uint64_t *tx_bytes, uint64_t *rx_bytes)

@@ -83,6 +83,7 @@ struct grobo_session {
     grobo_sim_config sim_config;
     const session_line *line;
     uint64_t sim_tx_bytes, sim_rx_bytes;
+    int tapped;                         /* line of the bytes that on_tap was told last */
     int n_wires;                        /* lines of the engine */
     session_wire wire[GROBO_LINES_MAX]; /* the first n_wires of them */
     int lost_error;                     /* of one that is lost while the others are stopped; 0 */
@@ -151,6 +152,7 @@ void grobo_i_session_report_slow(grobo_session *session);
 /* The user's callbacks, where there are any. No event of the line while the session is closed. */
 void grobo_i_session_say(grobo_session *session, grobo_session_event event, int error);
 void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event);
+/* The bytes of a line: ctx is its session_wire. */
 void grobo_i_session_tell_tap(void *ctx, grobo_direction direction, int64_t now_us,
                               const uint8_t *bytes, size_t size);
 

@@ -11,6 +11,7 @@
 #include "tools/grctl/bringup/ids.h"
 #include "tools/grctl/bringup/setup.h"
 #include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/each_line.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/conn.h"
@@ -592,6 +593,7 @@ int setup_run(app *a)
     if (!ask_can(a, "'grctl ports', 'grctl doctor', 'grctl robot new'", &status)) {
         return status;
     }
+    status = each_line_refuse_trace(a);
     static int (*const one[])(guide *) = {find_port, check_port,  find_robot,        take_robot,
                                           give_name, read_joints, offer_calibration, move_first};
     static int (*const several[])(guide *) = {find_lines,  take_robot,      give_name,

@@ -31,6 +31,8 @@ typedef struct app {
     const grobo_driver *driver;        /* its; NULL: GR001's */
     grobo_driver made;                 /* that of a robot that is not GR001 */
     const char *def_name;              /* what names it */
+    const char *on_line;               /* the line of several that it has; NULL: the whole robot */
+    bool unasked;                      /* and nobody has asked for its device */
     const char *portless;              /* line of --line whose port nobody names */
     const char *nearest_device;        /* to a name that no robot has: a robot or word, or NULL */
     char place[128];                   /* "FILE:LINE: " of a script, for messages */

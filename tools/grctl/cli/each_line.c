@@ -30,9 +30,19 @@ static int run_on(app *a, int line, bool headed)
     return status;
 }
 
+int each_line_refuse_trace(app *a)
+{
+    if (robot_of(a)->n_lines == 0 || !app_global(a, GLOBAL_TRACE)->given) {
+        return EXIT_DONE;
+    }
+    return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                    "%s: --trace is for one line, as --line %s names it", a->line.command->name,
+                    robot_of(a)->lines[0].name);
+}
+
 int each_line_all(app *a)
 {
-    int status = EXIT_DONE, n_lines = robot_of(a)->n_lines;
+    int status = each_line_refuse_trace(a), n_lines = status ? 0 : robot_of(a)->n_lines;
     for (int line = 0; line < n_lines && status < EXIT_SIGNAL; line++) {
         int ended = run_on(a, line, true);
         status = ended > status ? ended : status;

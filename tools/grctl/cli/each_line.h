@@ -13,6 +13,10 @@
  */
 int each_line_run(app *a);
 
+/* Of a command that has a connection for each of several lines: one trace is not of all of them.
+ * Returns 0, or the exit status with the reason said. */
+int each_line_refuse_trace(app *a);
+
 /* Of a command that has the whole robot, but not for this: runs it for each line. */
 int each_line_all(app *a);
 

@@ -151,6 +151,8 @@ int narrow_to(app *a, int line)
                         : fallback && *fallback ? fallback
                                                 : GROBO_DEVICE_AUTO;
     a->portless = NULL;
+    a->on_line = def->lines[line].name;
+    a->unasked = !device->given;
     if (narrow_device(def, line, asked, n->device, sizeof n->device)) {
         a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = n->device};
     } else {

@@ -208,12 +208,12 @@ static int refuse_lines(app *a)
     if (fault) {
         return app_fail(a, EXIT_USAGE, "ARG", "%s", fault);
     }
-    static const int one[] = {GLOBAL_BAUD, GLOBAL_TRACE, GLOBAL_ECHO};
+    static const int one[] = {GLOBAL_BAUD, GLOBAL_ECHO};
     for (size_t i = 0; i < sizeof one / sizeof one[0]; i++) {
         if (app_global(a, one[i])->given) {
             return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
-                            "%s has %d lines: --baud, --echo and --trace are for one, as --line %s "
-                            "names it; its file has the rate and echo of each",
+                            "%s has %d lines: --baud and --echo are for one, as --line %s names "
+                            "it; its file has the rate and echo of each",
                             def->name, def->n_lines, def->lines[0].name);
         }
     }

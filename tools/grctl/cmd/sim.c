@@ -7,6 +7,7 @@
 #include <grobo/sim_server.h>
 
 #include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/each_line.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/narrow.h"
 #include "tools/grctl/cli/output.h"
@@ -100,8 +101,8 @@ static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const u
     if (direction == GROBO_DIR_RX) {
         sim_strict_bytes(&w->strict, now_us, bytes, size);
     }
-    trace_bytes(&w->trace, direction == GROBO_DIR_RX ? GROBO_DIR_TX : GROBO_DIR_RX, now_us, bytes,
-                size);
+    trace_bytes(&w->trace, 0, direction == GROBO_DIR_RX ? GROBO_DIR_TX : GROBO_DIR_RX, now_us,
+                bytes, size);
 }
 
 static void on_sim(void *ctx, const grobo_sim_event *event)
@@ -201,7 +202,7 @@ static int open_trace(farm *f, int robot)
                        .wiring = sim.wiring,
                        .baud_bps = (int)sim.baud_bps,
                        .number = robot + 1};
-    return trace_open(&f->watched[robot].trace, f->a, &line, grobo_now_us());
+    return trace_open(&f->watched[robot].trace, f->a, &line, 1, grobo_now_us());
 }
 
 /* PATH of the first robot, PATH2, PATH3... of more; of several lines PATH-NAME, PATH2-NAME.
@@ -498,7 +499,7 @@ static int take_lines(farm *f)
             return app_fail_error(f->a, EXIT_ROBOT, error, "sim");
         }
     }
-    return EXIT_DONE;
+    return each_line_refuse_trace(f->a);
 }
 
 static int run(app *a)

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/core/lines.h>
 #include <grobo/core/port.h>
 #include <grobo/core/robot.h>
 #include <grobo/estop.h>
@@ -111,11 +112,12 @@ static void on_tap(void *ctx, grobo_direction direction, int64_t now_us, const u
 {
     conn_link *link = ctx;
     conn *c = link->user;
-    trace_bytes(&link->trace, direction, now_us, bytes, size);
+    int line = grobo_session_tapped(link->session);
+    trace_bytes(&link->trace, line, direction, now_us, bytes, size);
     if (!c) {
         return;
     }
-    trace_bytes(&c->trace, direction, now_us, bytes, size);
+    trace_bytes(&c->trace, line, direction, now_us, bytes, size);
     conn_note_bytes(c, direction, now_us, bytes, size);
     if (c->on_bytes) {
         c->on_bytes(c, direction, now_us, bytes, size);
@@ -485,7 +487,7 @@ static int open_trace(conn *c, app *a, trace *t, const char *device)
     trace_line line = {.device = device,
                        .wiring = (grobo_wiring)app_global(c->a, GLOBAL_WIRING)->choice,
                        .baud_bps = (int)conn_baud(c->a)};
-    return trace_open(t, a, &line, grobo_now_us());
+    return trace_open_robot(t, a, &line, grobo_now_us());
 }
 
 /* That of the command, and that of the shell it runs in. */

@@ -110,21 +110,10 @@ static int write_all(FILE *to, const uint8_t *bytes, size_t size)
     return fwrite(bytes, 1, size, to) == size ? GROBO_OK : GROBO_ERR_IO;
 }
 
-int pcapng_write_head(FILE *to, const char *program, const char *comment,
-                      const pcapng_interface *interface)
+static int write_interface(FILE *to, const pcapng_interface *interface)
 {
     uint8_t bytes[HEAD_BYTES];
-    block b = begin(bytes, BLOCK_SECTION);
-    add(&b, BYTE_ORDER_MAGIC, 4);
-    add(&b, 1, 2); /* version 1.0 */
-    add(&b, 0, 2);
-    add(&b, UINT64_MAX, 8); /* the section's length is not known */
-    add_text(&b, OPTION_COMMENT, comment);
-    add_text(&b, OPTION_PROGRAM, program);
-    if (write_all(to, bytes, finish(&b)) < 0) {
-        return GROBO_ERR_IO;
-    }
-    b = begin(bytes, BLOCK_INTERFACE);
+    block b = begin(bytes, BLOCK_INTERFACE);
     add(&b, PCAPNG_LINK_USER0, 2);
     add(&b, 0, 2);
     add(&b, 0, 4); /* no limit to a packet's length */
@@ -137,11 +126,29 @@ int pcapng_write_head(FILE *to, const char *program, const char *comment,
     return write_all(to, bytes, finish(&b));
 }
 
-size_t pcapng_make_chunk(uint8_t *packet, int64_t time_us, pcapng_direction direction,
-                         const uint8_t *bytes, size_t size)
+int pcapng_write_head(FILE *to, const char *program, const char *comment,
+                      const pcapng_interface *interfaces, int n)
+{
+    uint8_t bytes[HEAD_BYTES];
+    block b = begin(bytes, BLOCK_SECTION);
+    add(&b, BYTE_ORDER_MAGIC, 4);
+    add(&b, 1, 2); /* version 1.0 */
+    add(&b, 0, 2);
+    add(&b, UINT64_MAX, 8); /* the section's length is not known */
+    add_text(&b, OPTION_COMMENT, comment);
+    add_text(&b, OPTION_PROGRAM, program);
+    int error = write_all(to, bytes, finish(&b));
+    for (int i = 0; i < n && !error; i++) {
+        error = write_interface(to, &interfaces[i]);
+    }
+    return error;
+}
+
+size_t pcapng_make_chunk(uint8_t *packet, int interface, int64_t time_us,
+                         pcapng_direction direction, const uint8_t *bytes, size_t size)
 {
     block b = begin(packet, BLOCK_PACKET);
-    add(&b, 0, 4); /* the only interface */
+    add(&b, (uint64_t)interface, 4);
     add(&b, (uint64_t)time_us >> 32, 4);
     add(&b, (uint64_t)time_us & 0xFFFFFFFFu, 4);
     add(&b, size, 4);

@@ -46,13 +46,13 @@ typedef struct pcapng_interface {
 /* ---- writing ---------------------------------------------------------------------------------
  * All return GROBO_OK, or GROBO_ERR_IO with errno set by the C library. */
 
-/* The head of a file: who wrote it, a remark (NULL: none), and its one interface. */
+/* The head of a file: who wrote it, a remark (NULL: none), and its n interfaces. */
 int pcapng_write_head(FILE *to, const char *program, const char *comment,
-                      const pcapng_interface *interface);
+                      const pcapng_interface *interfaces, int n);
 
-/* A chunk of 1..PCAPNG_CHUNK_BYTES bytes; time since 1970 in UTC. */
-size_t pcapng_make_chunk(uint8_t *packet, int64_t time_us, pcapng_direction direction,
-                         const uint8_t *bytes, size_t size);
+/* A chunk of 1..PCAPNG_CHUNK_BYTES bytes of an interface, 0..n-1; time since 1970 in UTC. */
+size_t pcapng_make_chunk(uint8_t *packet, int interface, int64_t time_us,
+                         pcapng_direction direction, const uint8_t *bytes, size_t size);
 
 /* ---- reading -------------------------------------------------------------------------------- */
 

@@ -5,9 +5,12 @@
 #include <event2/util.h>
 
 #include <grobo/files.h>
+#include <grobo/session.h>
 #include <grobo/version.h>
 
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/narrow.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
@@ -69,9 +72,26 @@ static int give_up(app *a, trace *t, int cause)
     return 0;
 }
 
-int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
+static const char between[] = ", "; /* family and device */
+
+static pcapng_interface interface_of(const trace_line *line)
 {
-    pcapng_interface interface = {.link_type = PCAPNG_LINK_USER0};
+    pcapng_interface i = {.link_type = PCAPNG_LINK_USER0};
+    if (line->name) {
+        snprintf(i.name, sizeof i.name, "%s", line->name);
+        snprintf(i.description, sizeof i.description, "%s%s%s", line->family, between,
+                 line->device);
+    } else {
+        snprintf(i.name, sizeof i.name, "%s", line->device);
+        snprintf(i.description, sizeof i.description, "%s", descriptions[line->wiring]);
+    }
+    i.speed_bps = (uint64_t)(line->baud_bps ? line->baud_bps : GROBO_BAUD_DEFAULT_BPS);
+    return i;
+}
+
+int trace_open(trace *t, app *a, const trace_line *lines, int n_lines, int64_t now_us)
+{
+    pcapng_interface interfaces[GROBO_LINES_MAX];
     char comment[PCAPNG_TEXT_BYTES];
     const char *path = app_global(a, GLOBAL_TRACE)->text;
     memset(t, 0, sizeof *t);
@@ -79,8 +99,8 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
         return 0;
     }
     a->traced = true;
-    int n = line->number > 1 ? snprintf(t->path, sizeof t->path, "%s%d", path, line->number)
-                             : snprintf(t->path, sizeof t->path, "%s", path);
+    int n = lines->number > 1 ? snprintf(t->path, sizeof t->path, "%s%d", path, lines->number)
+                              : snprintf(t->path, sizeof t->path, "%s", path);
     if (n < 0 || (size_t)n >= sizeof t->path) {
         return give_up(a, t, ENAMETOOLONG);
     }
@@ -92,11 +112,12 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
     if (!t->file) {
         return give_up(a, t, os_is_folder(t->path) ? EISDIR : errno);
     }
-    snprintf(interface.name, sizeof interface.name, "%s", line->device);
-    snprintf(interface.description, sizeof interface.description, "%s", descriptions[line->wiring]);
-    interface.speed_bps = (uint64_t)(line->baud_bps ? line->baud_bps : GROBO_BAUD_DEFAULT_BPS);
+    for (int i = 0; i < n_lines; i++) {
+        interfaces[i] = interface_of(&lines[i]);
+    }
     describe(a, comment, sizeof comment);
-    if (pcapng_write_head(t->file, "grctl " GROBO_VERSION_STRING, comment, &interface) < 0 ||
+    if (pcapng_write_head(t->file, "grctl " GROBO_VERSION_STRING, comment, interfaces, n_lines) <
+            0 ||
         fflush(t->file) != 0) {
         int cause = errno;
         fclose(t->file);
@@ -107,8 +128,26 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
     return t->queue ? 0 : give_up(a, t, ENOMEM);
 }
 
-void trace_bytes(trace *t, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                 size_t size)
+int trace_open_robot(trace *t, app *a, const trace_line *line, int64_t now_us)
+{
+    static char ports[GROBO_LINES_MAX][GROBO_DEVICE_MAX_BYTES];
+    trace_line lines[GROBO_LINES_MAX];
+    const grobo_robot_def *def = robot_of(a);
+    if (def->n_lines == 0) {
+        return trace_open(t, a, line, 1, now_us);
+    }
+    for (int i = 0; i < def->n_lines; i++) {
+        bool told = narrow_device(def, i, line->device, ports[i], sizeof ports[i]);
+        lines[i] = (trace_line){.name = def->lines[i].name,
+                                .family = def->lines[i].family->name,
+                                .device = told ? ports[i] : line->device,
+                                .baud_bps = (int)def->lines[i].baud_bps};
+    }
+    return trace_open(t, a, lines, def->n_lines, now_us);
+}
+
+void trace_bytes(trace *t, int line, grobo_direction direction, int64_t now_us,
+                 const uint8_t *bytes, size_t size)
 {
     pcapng_direction way = direction == GROBO_DIR_TX ? PCAPNG_OUT : PCAPNG_IN;
     while (t->queue && size > 0) {
@@ -116,7 +155,7 @@ void trace_bytes(trace *t, grobo_direction direction, int64_t now_us, const uint
         size_t n = size < PCAPNG_CHUNK_BYTES ? size : PCAPNG_CHUNK_BYTES;
         /* At once: a program that is killed has its trace, and a watcher behind a pipe sees it. */
         writer_put(t->queue, block,
-                   pcapng_make_chunk(block, now_us + t->to_wall_us, way, bytes, n));
+                   pcapng_make_chunk(block, line, now_us + t->to_wall_us, way, bytes, n));
         bytes += n;
         size -= n;
     }
@@ -149,6 +188,20 @@ int trace_close(trace *t, app *a, int status)
         return status;
     }
     return status == EXIT_DONE ? error : status;
+}
+
+bool trace_family(const pcapng_interface *interface, char *family, size_t capacity,
+                  const char **device)
+{
+    const char *end = strstr(interface->description, between);
+    size_t n = end ? (size_t)(end - interface->description) : 0;
+    if (n == 0 || n >= capacity) {
+        return false;
+    }
+    memcpy(family, interface->description, n);
+    family[n] = '\0';
+    *device = end + strlen(between);
+    return true;
 }
 
 bool trace_wiring(const pcapng_interface *interface, grobo_wiring *wiring)

@@ -45,7 +45,8 @@ static void print_text(const decoder *d, const frame *f, const char *note)
     static char text[WORDS_BYTES];
     words_say(f, d->a->color_out, note, text, sizeof text);
     if (d->timed) {
-        app_print("%10.3f  %-7s  ", ms_of(d, f->time_us), words_side(f->side));
+        app_print("%10.3f  %s%s%-7s  ", ms_of(d, f->time_us), d->line ? d->line : "",
+                  d->line ? ": " : "", words_side(f->side));
     }
     app_print("%s", text);
     if (d->a->verbosity > 0) {
@@ -66,7 +67,9 @@ static void print_json(const decoder *d, const frame *f, bool answer, bool fits,
     json_object_update(line, reply);
     json_decref(words);
     json_decref(reply);
+    app_json_line(d->line);
     app_print_json(line);
+    app_json_line(NULL);
 }
 
 /* Who said which servo it is, has its registers from here on. */
@@ -120,9 +123,8 @@ static void on_settled(void *ctx, const ledger_entry *entry)
 }
 
 /* Who talks on a line of this family: the robot's joints, where its servos are of it. */
-static talk talk_of(const app *a, const char *name)
+static talk talk_of(const grobo_driver *driver, const char *name)
 {
-    const grobo_driver *driver = app_driver(a);
     talk t = {.words = talk_named(name)};
     if (!family_is(driver, talk_family(t.words)->name)) {
         return t;
@@ -137,13 +139,20 @@ static talk talk_of(const app *a, const char *name)
     return t;
 }
 
-void decoder_init(decoder *d, app *a, unsigned wiring, const char *name)
+void decoder_init(decoder *d, app *a, unsigned wiring, const grobo_driver *driver, const char *name)
 {
-    *d = (decoder){.a = a, .talk = talk_of(a, name)};
+    *d = (decoder){.a = a, .talk = talk_of(driver, name)};
     for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
         frames_init(&d->lines[side], &d->talk, (frames_side)side, wiring, on_frame, d);
     }
     ledger_init(&d->asked, 1, on_settled, d);
+}
+
+void decoder_pass(decoder *d, int64_t time_us)
+{
+    for (int i = FRAMES_EITHER; i <= FRAMES_ROBOT; i++) {
+        frames_pass(&d->lines[i], time_us);
+    }
 }
 
 void decoder_feed(decoder *d, frames_side side, int64_t time_us, const uint8_t *bytes, size_t n)
@@ -152,9 +161,7 @@ void decoder_feed(decoder *d, frames_side side, int64_t time_us, const uint8_t *
         d->first_us = time_us;
     }
     d->begun = true;
-    for (int i = FRAMES_EITHER; i <= FRAMES_ROBOT; i++) {
-        frames_pass(&d->lines[i], time_us);
-    }
+    decoder_pass(d, time_us);
     frames_feed(&d->lines[side], time_us, bytes, n);
 }
 
@@ -164,6 +171,18 @@ void decoder_end(decoder *d)
         frames_end(&d->lines[side]);
     }
     ledger_end(&d->asked);
+}
+
+void decoder_add(decoder *d, const decoder *other)
+{
+    d->asked.requests += other->asked.requests;
+    d->count.frames += other->count.frames;
+    d->count.bad_sums += other->count.bad_sums;
+    d->count.cut += other->count.cut;
+    d->count.rubbish_bytes += other->count.rubbish_bytes;
+    d->count.answered += other->count.answered;
+    d->count.unanswered += other->count.unanswered;
+    d->count.unasked += other->count.unasked;
 }
 
 int decoder_status(const decoder *d)

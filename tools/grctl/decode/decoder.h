@@ -10,7 +10,8 @@
 
 typedef struct decoder {
     app *a;
-    frames lines[3]; /* by frames_side */
+    const char *line; /* its name, shown with each frame; NULL: the only one */
+    frames lines[3];  /* by frames_side */
     talk talk;
     ledger asked;
     bool timed;       /* bytes come with their time; it is shown */
@@ -22,11 +23,18 @@ typedef struct decoder {
     } count;
 } decoder;
 
-/* wiring: GROBO_WORDS_BOARD, GROBO_WORDS_BUS or both, of what is believed of a host; name: the
- * series (grobo_words.name). */
-void decoder_init(decoder *d, app *a, unsigned wiring, const char *name);
+/* wiring: GROBO_WORDS_BOARD, GROBO_WORDS_BUS or both, of what is believed of a host; driver: whose
+ * joints may be on the line; name: the series (grobo_words.name). */
+void decoder_init(decoder *d, app *a, unsigned wiring, const grobo_driver *driver,
+                  const char *name);
 
 void decoder_feed(decoder *d, frames_side side, int64_t time_us, const uint8_t *bytes, size_t n);
+
+/* Time passes on a line beside others. */
+void decoder_pass(decoder *d, int64_t time_us);
+
+/* What was seen on another line is counted here too. */
+void decoder_add(decoder *d, const decoder *other);
 
 /* Nothing more comes. */
 void decoder_end(decoder *d);

@@ -24,6 +24,24 @@ static int refuse_length(const replay *r, int64_t at_us)
                     r->path, (double)at_us / 1e6);
 }
 
+/* Whether a chunk is for the robot's line: of a trace of several lines those of its name are.
+ * Negative: who said what is not known; the reason is said. */
+static int is_for(const replay *r, const pcapng_reader *reader, const pcapng_chunk *chunk)
+{
+    if (reader->n_interfaces > 1 && !r->line) {
+        app_fail(r->a, EXIT_USAGE, "ARG",
+                 "%s: a trace of %u lines, and %s has one: name the robot of the trace by --robot",
+                 r->path, reader->n_interfaces, app_model(r->a)->name);
+        return -1;
+    }
+    if (reader->n_interfaces == 1 && r->each) {
+        app_fail(r->a, EXIT_USAGE, "ARG", "%s: a trace of one line: choose it, as by --line %s",
+                 r->path, r->line);
+        return -1;
+    }
+    return reader->n_interfaces == 1 || strcmp(chunk->interface->name, r->line) == 0;
+}
+
 int replay_read(replay *r, replay_fn use, void *ctx)
 {
     static pcapng_reader reader;
@@ -36,8 +54,9 @@ int replay_read(replay *r, replay_fn use, void *ctx)
     }
     pcapng_reader_init(&reader, input_read, &in);
     while (!status && (more = pcapng_read(&reader, &chunk)) > 0) {
-        status = refuse_length(r, chunk.time_us - r->first_us);
-        if (!status) {
+        int its = is_for(r, &reader, &chunk);
+        status = its < 0 ? EXIT_USAGE : refuse_length(r, chunk.time_us - r->first_us);
+        if (!status && its) {
             status = use(ctx, &chunk);
         }
     }

@@ -14,6 +14,8 @@ enum { REPLAY_RECORDED, REPLAY_REPLAYED };
 typedef struct replay {
     app *a;
     const char *path;
+    const char *line; /* of a robot of several lines the one that is replayed; NULL: it has one */
+    bool each;        /* one after the other: the trace must have all */
     grobo_wiring wiring;
     int baud_bps;     /* 0: the trace does not tell */
     int64_t first_us; /* of the trace, by its own clock */

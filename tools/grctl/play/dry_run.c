@@ -86,7 +86,7 @@ static void speak(rehearsal *r, int line)
     uint8_t buf[GROBO_FRAME_MAX_BYTES];
     int sent;
     while ((sent = grobo_robot_line_tx(&r->robot, line, buf, sizeof buf, r->now_us)) > 0) {
-        trace_bytes(&r->trace, GROBO_DIR_TX, r->now_us, buf, (size_t)sent);
+        trace_bytes(&r->trace, line, GROBO_DIR_TX, r->now_us, buf, (size_t)sent);
         print_frame(r, line, buf, sent);
         grobo_sim_rx(&r->sim[line], buf, (size_t)sent, r->now_us);
     }
@@ -98,7 +98,7 @@ static bool turn(rehearsal *r)
     uint8_t buf[GROBO_FRAME_MAX_BYTES];
     for (int line = 0; line < r->n_lines; line++) {
         size_t n = grobo_sim_tx(&r->sim[line], buf, sizeof buf, r->now_us);
-        trace_bytes(&r->trace, GROBO_DIR_RX, r->now_us, buf, n);
+        trace_bytes(&r->trace, line, GROBO_DIR_RX, r->now_us, buf, n);
         if (n) {
             grobo_robot_line_rx(&r->robot, line, buf, n, r->now_us);
         }
@@ -193,7 +193,7 @@ int play_dry_run(playlist *list, app *a)
     grobo_posture_init_pose(&start, app_model(a));
     int status = playlist_prepare(list, a, &start);
     if (!status) {
-        status = trace_open(&r.trace, a, &line, 0);
+        status = trace_open_robot(&r.trace, a, &line, 0);
     }
     if (status) {
         return status;
