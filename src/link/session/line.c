@@ -150,16 +150,17 @@ static int sim_open(session_wire *wire, const char *name)
     return GROBO_OK;
 }
 
-/* The simulated base is its own IMU. */
-static void read_imu(const session_wire *wire, int64_t now_us)
+/* The simulated base is its own IMU. A world whose body reports none is not stepped for it. */
+static void read_imu(const session_wire *wire)
 {
     grobo_imu imu;
 
-    if (wire->line == 0 && wire->sim->config.physics != NULL) {
-        grobo_sim_step(wire->sim, now_us);
-        if (grobo_sim_imu(wire->sim, &imu) == GROBO_OK) {
-            (void)grobo_robot_set_imu(&wire->session->robot, &imu);
-        }
+    if (wire->line != 0 || grobo_sim_imu(wire->sim, &imu) == GROBO_ERR_UNSUPPORTED) {
+        return;
+    }
+    grobo_sim_step(wire->sim, grobo_now_us());
+    if (grobo_sim_imu(wire->sim, &imu) == GROBO_OK) {
+        (void)grobo_robot_set_imu(&wire->session->robot, &imu);
     }
 }
 
@@ -168,8 +169,7 @@ static int sim_take(session_wire *wire, int64_t *until_us)
     uint8_t buf[256];
     size_t got;
 
-    read_imu(wire, grobo_now_us());
-
+    read_imu(wire);
     do {
         /* What comes later was not taken: the engine may not be told of a later time. */
         int64_t now_us = *until_us = grobo_now_us();
