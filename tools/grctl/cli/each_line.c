@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* For a robot of several lines: a command of one line, run for each or for the one it is on. */
 #include <string.h>
 
 #include <grobo/core/lines.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* --line: one line of a robot that has several, as a robot of its own. */
 #include <stdlib.h>
 #include <string.h>
 

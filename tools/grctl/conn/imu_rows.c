@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* How the base stood at each posture of a recorded motion: a table beside it. */
 #include <stdlib.h>
 #include <string.h>
 

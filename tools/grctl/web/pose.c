@@ -99,10 +99,11 @@ bool pose_read_placement(const json_t *p_m, const json_t *rotation, grobo_transf
 
 /* ---- what it is made of ---------------------------------------------------------------------- */
 
-static void matrix_of_rpy(double r[9], const double rpy[3])
+void pose_rotation(double r[9], const double rpy_rad[3])
 {
-    const double cr = cos(rpy[0]), sr = sin(rpy[0]), cp = cos(rpy[1]), sp = sin(rpy[1]);
-    const double cy = cos(rpy[2]), sy = sin(rpy[2]);
+    const double cr = cos(rpy_rad[0]), sr = sin(rpy_rad[0]), cp = cos(rpy_rad[1]),
+                 sp = sin(rpy_rad[1]);
+    const double cy = cos(rpy_rad[2]), sy = sin(rpy_rad[2]);
     const double m[9] = {cp * cy,
                          sr * sp * cy - cr * sy,
                          cr * sp * cy + sr * sy,
@@ -118,7 +119,7 @@ static void matrix_of_rpy(double r[9], const double rpy[3])
 static json_t *link_json(const grobo_robot_link *l)
 {
     double r[9];
-    matrix_of_rpy(r, l->origin_rad);
+    pose_rotation(r, l->origin_rad);
     return json_pack("{s:s,s:i,s:i,s:o,s:o,s:o,s:o,s:n}", "name", l->name, "parent", l->parent,
                      "joint", l->joint, "origin_m", list_json(l->origin_m, 3, METRE_DECIMALS),
                      "rotation", list_json(r, 9, TURN_DECIMALS), "axis",

@@ -29,6 +29,9 @@ json_t *pose_placement_json(const grobo_transform *at);
 /* Of a body; point: the ZMP, or NULL. */
 json_t *pose_stand_json(const grobo_body_stand *stand, const double *zmp_m);
 
+/* The rotation, row by row, about z, then y, then x. */
+void pose_rotation(double r[9], const double rpy_rad[3]);
+
 /* Place and attitude by their lists; what is NULL or missing stays. False: it is none. */
 bool pose_read_placement(const json_t *p_m, const json_t *rotation, grobo_transform *at);
 

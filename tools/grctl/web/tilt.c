@@ -74,23 +74,6 @@ json_t *tilt_json(serve *s)
                      rates, "age_ms", (json_int_t)(age_us / 1000), "fallen", s->tilt.fallen);
 }
 
-/* About z, then y, then x. */
-static void turn(double r[9], double yaw, double pitch, double roll)
-{
-    const double cy = cos(yaw), sy = sin(yaw), cp = cos(pitch), sp = sin(pitch);
-    const double cr = cos(roll), sr = sin(roll);
-    const double all[9] = {cy * cp,
-                           cy * sp * sr - sy * cr,
-                           cy * sp * cr + sy * sr,
-                           sy * cp,
-                           sy * sp * sr + cy * cr,
-                           sy * sp * cr - cy * sr,
-                           -sp,
-                           cp * sr,
-                           cp * cr};
-    memcpy(r, all, sizeof all);
-}
-
 static double lowest_m(const grobo_body_stand *stood, const grobo_transform *links, int n_links)
 {
     double lowest = INFINITY;
@@ -113,7 +96,9 @@ bool tilt_apply(serve *s, const grobo_posture *posture, grobo_body_stand *stood)
     if (!body || !is_known(s, &reading, &age_us)) {
         return false;
     }
-    turn(root.r, atan2(stood->root.r[3], stood->root.r[0]), reading.pitch_rad, reading.roll_rad);
+    const double rpy_rad[3] = {reading.roll_rad, reading.pitch_rad,
+                               atan2(stood->root.r[3], stood->root.r[0])};
+    pose_rotation(root.r, rpy_rad);
     double alike =
         root.r[2] * stood->root.r[2] + root.r[5] * stood->root.r[5] + root.r[8] * stood->root.r[8];
     if (alike > cos(grobo_rad_from_deg(DRAWN_DEG))) {
