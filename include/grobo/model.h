@@ -146,6 +146,14 @@ GROBO_API int grobo_model_joint_of_motor(const grobo_model *model, int motor);
 GROBO_API int grobo_model_motor_of_joint(const grobo_model *model, int joint);
 
 /**
+ * A model's joints in motor order: line by line, on each by the ids of their servos. Postures of
+ * text and .m files are in it.
+ * @param[out] joints room for GROBO_JOINTS_MAX: joints[i] is the i-th
+ * @return how many, or GROBO_ERR_ARG. Thread safe.
+ */
+GROBO_API int grobo_model_motor_order(const grobo_model *model, uint8_t *joints);
+
+/**
  * Joint called name[0..length-1]: its name in any case ("r_knee_p"), its motor ("m12", where no
  * other line has that id) or its joint id ("j3").
  * @return joint 0..n-1, or GROBO_ERR_NOTFOUND. The text is not changed. Thread safe.

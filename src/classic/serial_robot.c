@@ -101,22 +101,6 @@ static int call_stabilizer(const grobo_driver *self, void *ctx, const grobo_post
 
 /* ---- making ------------------------------------------------------------------------------- */
 
-/* Joints in the order of their motors. */
-static void order(struct serial_robot_inside *inside)
-{
-    const grobo_model *model = inside->driver.model;
-
-    for (int n = 0; n < model->n_joints; n++) {
-        int at = n;
-        for (; at > 0 && grobo_model_joint(model, inside->joint_of[at - 1])->motor >
-                             grobo_model_joint(model, n)->motor;
-             at--) {
-            inside->joint_of[at] = inside->joint_of[at - 1];
-        }
-        inside->joint_of[at] = (uint8_t)n;
-    }
-}
-
 static int make_runner(SerialRobot *robot, const char *devname)
 {
     const grobo_robot_config config = {
@@ -189,7 +173,7 @@ int SerialRobot_init(SerialRobot *robot, const char *devname, int n, const grobo
         return -1;
     }
     robot->inside->driver.stabilize = call_stabilizer;
-    order(robot->inside);
+    (void)grobo_model_motor_order(robot->inside->driver.model, robot->inside->joint_of);
     fill(robot);
     if (make_runner(robot, devname) < 0) {
         free(robot->inside);

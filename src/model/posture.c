@@ -341,19 +341,6 @@ static bool read_integer(cursor *c, int32_t limit, int32_t *value)
     return true;
 }
 
-/* The joint whose motor comes after this one in motor order, or -1. */
-static int next_by_motor(const grobo_model *model, int motor)
-{
-    int found = -1;
-    for (int j = 0; j < model->n_joints; j++) {
-        if (grobo_i_joint(model, j)->motor > motor &&
-            (found < 0 || grobo_i_joint(model, j)->motor < grobo_i_joint(model, found)->motor)) {
-            found = j;
-        }
-    }
-    return found;
-}
-
 int grobo_posture_parse(grobo_posture *posture, const grobo_model *model, const char *text,
                         size_t length)
 {
@@ -363,8 +350,8 @@ int grobo_posture_parse(grobo_posture *posture, const grobo_model *model, const 
     cursor c = {text, text + length};
     grobo_posture parsed;
     int32_t number;
-    int n = 0;
-    int motor = 0;
+    uint8_t joints[GROBO_JOINTS_MAX];
+    int n = 0, n_joints = grobo_model_motor_order(model, joints);
 
     (void)grobo_posture_init(&parsed, model->n_joints);
     if (!skip_blanks(&c) || !read_integer(&c, (int32_t)TIME_MAX_MS, &number) || number < 0) {
@@ -375,13 +362,11 @@ int grobo_posture_parse(grobo_posture *posture, const grobo_model *model, const 
         if (!read_integer(&c, INT16_MAX, &number)) {
             return GROBO_ERR_SYNTAX;
         }
-        int joint = next_by_motor(model, motor);
-        if (joint < 0) {
+        if (n == n_joints) {
             return GROBO_ERR_CAP;
         }
-        motor = grobo_i_joint(model, joint)->motor;
-        parsed.angle_rad[joint] = grobo_rad_from_ddeg(number);
-        parsed.set |= GROBO_JOINT_BIT(joint);
+        parsed.angle_rad[joints[n]] = grobo_rad_from_ddeg(number);
+        parsed.set |= GROBO_JOINT_BIT(joints[n]);
     }
     *posture = parsed;
     return n;

@@ -63,7 +63,7 @@ else
             --on-link-lost finish >"$work/played" 2>"$work/said" </dev/null 3>&- &
         play=$!
         echo $play >>"$work/pids"
-        written "$work/said" 'all begin in' && wait_for moves hard && not_stopped stop
+        written "$work/said" 'all begin in' && comes_to_move hard && not_stopped stop
         soft_status=$?
         wait $play
         return $soft_status

@@ -49,6 +49,18 @@ check "the ports of its file" ends_with 1 "^grctl: two-arms: no such file .*usb-
 check "a rate is of one line" ends_with 2 'are for one, as --line left names it' \
     with_arms -b 57600 status
 
+# Line by line, and on each by ids: two ids that are the same hide no joint.
+sed 's/name: L_pan, line: left, id: 1/name: L_pan, line: left, id: 6/' $arms >"$work/arms.yaml"
+check_json "angles in motor order are those of both" \
+    '[round(at["angle_deg"]) for at in lines[0]["joints"]][:3] == [40, 10, 20]
+    and [round(at["angle_deg"]) for at in lines[0]["joints"]][4:7] == [50, 60, 70]' \
+    "$GRCTL" --robot "$work/arms.yaml" -d sim --json pose 10 20 30 40 50 60 70 50
+files_are_whole() {
+    exits 0 "$GRCTL" --robot "$work/arms.yaml" convert "$work/wave.yaml" "$work/wave.m" &&
+        grep -qx '250  0 0 0 57 57 0 0 0' "$work/wave.m"
+}
+check "a file in motor order has all joints" files_are_whole
+
 test_case "line by line"
 each_line() { # PATTERN PATTERN COMMAND...: what is told of the left arm, and of the right one
     left=$1 right=$2
@@ -79,7 +91,7 @@ check "by an id of its line" ends_with 0 'STS3215' with_arms --line left servo-g
 check "an id of both" ends_with 2 'has 2 servos of id 1: name the joint, or the line: --line left' \
     with_arms servo-get 1
 check "an id of none" ends_with 2 'has 0 joints of id 9; name the line' with_arms servo-get 9
-check "nor a motor of both" ends_with 2 "no joint called 'm1'" with_arms move m1 3
+check "nor a motor of both" ends_with 2 "'m1' is L_pan and R_pan, of two lines" with_arms move m1 3
 check "a register is set" ends_with 0 'led' with_arms servo-set R_lift led 1
 check "a line that is not there" ends_with 2 "has no line 'up'; it has left, right" \
     with_arms --line up status

@@ -25,7 +25,7 @@ plays() {
         >"$work/played" 2>"$work/said" </dev/null 3>&- &
     play=$!
     echo $play >>"$work/pids"
-    written "$work/said" 'all begin in' && wait_for moves one && wait_for moves two
+    written "$work/said" 'all begin in' && comes_to_move one && comes_to_move two
 }
 looks() { # HOST: what its robots do is in $work/look
     fleet status --json | grep "\"host\":\"$1\"" >"$work/look" && grep -q '"play": *"' "$work/look"

@@ -66,6 +66,16 @@ fleet() {
     shift
     "$GRCTL" fleet "$fleet_verb" --broker "$broker" "$@"
 }
+# comes_to_move [HOST]: `moves` is true at last; not where the play that is begun has ended before.
+comes_to_move() {
+    wait_for moves_or_is_over "$@" && kill -0 "$play" 2>/dev/null && return
+    echo "the motion ended before it was seen"
+    cat "$work/said"
+    return 1
+}
+moves_or_is_over() {
+    moves "$@" || ! kill -0 "$play" 2>/dev/null
+}
 is_listed() {
     fleet list | grep -q "^$1  *$2"
 }

@@ -54,7 +54,7 @@ plays() {
     "$GRCTL" fleet play greet.pseq --broker "$broker" -s 20 --group one "$@" \
         >"$work/played" 2>"$work/said" </dev/null &
     play=$!
-    written "$work/said" 'all begin in' && wait_for moves
+    written "$work/said" 'all begin in' && comes_to_move
 }
 # looks: at what all do; an answer that came too late is none.
 looks() {

@@ -320,6 +320,7 @@ TEST(model_refuses_null)
     assert_true(isnan(grobo_model_change(NULL, 0, 1)));
     REFUSES(grobo_model_joint_of_motor(NULL, 1));
     REFUSES(grobo_model_motor_of_joint(NULL, 1));
+    REFUSES(grobo_model_motor_order(NULL, NULL));
     REFUSES(grobo_model_find_joint(NULL, text, 4));
     REFUSES(grobo_model_find_joint(&grobo_i_gr001_model, NULL, 4));
     REFUSES(grobo_model_find_joints(NULL, text, 4, &joints));

@@ -339,6 +339,33 @@ TEST(a_line_is_a_time_and_angles_in_motor_order)
     assert_int_equal(p.time_us, 163830000);
 }
 
+/* A servo may have id 0, and one of another line the id of one of this. */
+TEST(motor_order_goes_line_by_line_and_from_id_0)
+{
+    static const grobo_joint joints[] = {
+        {.name = "b", .motor = 2, .line = 1, .mirror = 0, .gear = 1},
+        {.name = "c", .motor = 0, .line = 1, .mirror = 1, .gear = 1},
+        {.name = "d", .motor = 2, .line = 0, .mirror = 2, .gear = 1},
+        {.name = "e", .motor = 0, .line = 0, .mirror = 3, .gear = 1},
+        {.name = "f", .motor = 1, .line = 0, .mirror = 4, .gear = 1},
+    };
+    static const uint8_t order[] = {3, 4, 2, 1, 0};
+    const grobo_model model = {
+        .joint_size = sizeof joints[0], .name = "both", .joints = joints, .n_joints = 5};
+    uint8_t found[GROBO_JOINTS_MAX];
+    grobo_posture p;
+
+    assert_int_equal(grobo_model_motor_order(&model, found), 5);
+    assert_memory_equal(found, order, sizeof order);
+    assert_int_equal(grobo_model_motor_order(NULL, found), GROBO_ERR_ARG);
+    assert_int_equal(grobo_model_motor_order(&model, NULL), GROBO_ERR_ARG);
+    assert_int_equal(grobo_posture_parse(&p, &model, "100 10 20 30 40 50", 18), 5);
+    for (int i = 0; i < 5; i++) {
+        assert_near(p.angle_rad[order[i]], (i + 1) * PI / 180, 1e-12);
+    }
+    assert_int_equal(grobo_posture_parse(&p, &model, "100 1 2 3 4 5 6", 15), GROBO_ERR_CAP);
+}
+
 TEST(a_bad_line_leaves_the_posture_alone)
 {
     static const struct {

@@ -30,7 +30,7 @@ codec='servo/gr001/board servo/rs30x/frame bus/framer servo/rs30x/build servo/rs
 bus='bus/bus bus/queue bus/receive bus/time base/instant'
 sequencer='play/sequencer play/clip play/info'
 names='base/error servo/rs30x/registers play/names base/version robot/reason'
-postures='model/posture model/model model/interpolate model/unit'
+postures='model/posture model/model model/order model/interpolate model/unit'
 robot='servo/driver servo/rs30x/driver robots/gr001 robots/gr001_driver'
 engine='robot/robot robot/turn robot/job robot/play robot/control robot/query robot/request
     robot/slot robot/steps robot/axis robot/trajectories play/progress play/start robot/start

@@ -4,16 +4,12 @@
 bool grobo_i_motor_order(const grobo_model *model, int columns, uint8_t *joints)
 {
     bool by_motor = model != NULL && columns <= model->n_joints;
-    int c = 0;
 
     columns = columns < GROBO_JOINTS_MAX ? columns : GROBO_JOINTS_MAX;
-    for (int motor = 0; by_motor && c < columns && motor <= GROBO_SERVO_ID_MAX; motor++) {
-        int joint = grobo_model_joint_of_motor(model, motor);
-        if (joint >= 0) {
-            joints[c++] = (uint8_t)joint;
-        }
+    if (by_motor) {
+        (void)grobo_model_motor_order(model, joints);
     }
-    for (; c < columns; c++) {
+    for (int c = 0; !by_motor && c < columns; c++) {
         joints[c] = (uint8_t)c;
     }
     return by_motor;

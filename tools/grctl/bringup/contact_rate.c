@@ -8,6 +8,7 @@
 
 #include "tools/grctl/bringup/ask.h"
 #include "tools/grctl/bringup/contact_rate.h"
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/conn/change.h"
 #include "tools/grctl/conn/eeprom.h"
 #include "tools/grctl/conn/family.h"
@@ -121,13 +122,15 @@ static bool is_limp(contact *k, int *error)
 static int try_rate(contact *k, const char *name, const servo_change *there, int old_bps)
 {
     outcome is = {0};
+    char servo[JOINTS_SERVO_BYTES];
     int error;
     bool limp = is_limp(k, &error);
     if (error) {
         return conn_fail_servo(&k->c, error, there->id);
     }
     if (!limp) {
-        contact_note(k, name, NOT_DONE, "the joint holds; first: grctl servo off m%d", there->id);
+        contact_note(k, name, NOT_DONE, "the joint holds; first: grctl servo off %s",
+                     joints_servo_of(k->a, there->id, "m", servo));
         return EXIT_DONE;
     }
     error = change_tune(&k->c, change_bps(there));

@@ -5,6 +5,7 @@
 #include <grobo/core/wheel.h>
 
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/lang/lang.h"
 
 const char *joints_nearest(const grobo_model *model, const char *name, size_t length, bool groups)
@@ -25,9 +26,34 @@ static int an_example(const grobo_model *model)
     return model->n_joints > 3 ? 3 : 0;
 }
 
+/* "m4": the second joint with that motor, on another line than the first; -1: there is none. */
+static int second_of_motor(const grobo_model *model, const char *name, size_t length, int *first)
+{
+    char digits[8];
+    double motor;
+    if (length < 2 || length > sizeof digits || (name[0] != 'm' && name[0] != 'M')) {
+        return -1;
+    }
+    snprintf(digits, sizeof digits, "%.*s", (int)(length - 1), name + 1);
+    *first = cli_read_number(digits, &motor) ? grobo_model_joint_of_motor(model, (int)motor) : -1;
+    for (int j = *first + 1; *first >= 0 && j < model->n_joints; j++) {
+        if (grobo_model_joint(model, j)->motor == (int)motor) {
+            return j;
+        }
+    }
+    return -1;
+}
+
 static int unknown(app *a, const char *what, const char *name, size_t length, bool groups)
 {
     const char *nearest = joints_nearest(app_model(a), name, length, groups);
+    int first, second = second_of_motor(app_model(a), name, length, &first);
+    if (second >= 0) {
+        return app_fail(a, EXIT_USAGE, "NOTFOUND",
+                        "'%.*s' is %s and %s, of two lines: name the joint", (int)length, name,
+                        grobo_model_joint(app_model(a), first)->name,
+                        grobo_model_joint(app_model(a), second)->name);
+    }
     if (nearest) {
         return app_fail(a, EXIT_USAGE, "NOTFOUND", "no %s called '%.*s'; did you mean %s?", what,
                         (int)length, name, nearest);
@@ -44,6 +70,27 @@ static int unknown(app *a, const char *what, const char *name, size_t length, bo
                     "no %s called '%.*s'; joints are named as %s, m%d or j%d%s; see 'grctl joints'",
                     what, (int)length, name, grobo_model_joint(model, joint)->name,
                     grobo_model_joint(model, joint)->motor, joint, known);
+}
+
+const char *joints_servo(const app *a, int joint, const char *prefix, char *buffer)
+{
+    const grobo_joint *is = grobo_model_joint(app_model(a), joint);
+    if (a->on_line || robot_of(a)->n_lines > 0) {
+        snprintf(buffer, JOINTS_SERVO_BYTES, "%s", is->name);
+    } else {
+        snprintf(buffer, JOINTS_SERVO_BYTES, "%s%d", prefix, is->motor);
+    }
+    return buffer;
+}
+
+const char *joints_servo_of(const app *a, int id, const char *prefix, char *buffer)
+{
+    int joint = grobo_model_joint_of_motor(app_model(a), id);
+    if (joint >= 0) {
+        return joints_servo(a, joint, prefix, buffer);
+    }
+    snprintf(buffer, JOINTS_SERVO_BYTES, "%s%d", prefix, id);
+    return buffer;
 }
 
 int joints_parse_all(app *a, int n, const char *const *names, grobo_joint_mask *joints)

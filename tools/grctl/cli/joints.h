@@ -20,6 +20,14 @@ int joints_parse_motion(app *a, const char *list, const grobo_model *model, int 
                         grobo_joint_mask *joints);
 /* One joint alone. Returns the joint, or -1 with *status set and said. */
 int joints_parse_one(app *a, const char *name, size_t length, int *status);
+/*
+ * A joint's servo as a command of a hint names it: its id behind `prefix` ("12", "m12"), or the
+ * joint's name where lines of the robot may have the same ids. The text is the buffer's.
+ */
+enum { JOINTS_SERVO_BYTES = 80 };
+const char *joints_servo(const app *a, int joint, const char *prefix, char *buffer);
+/* The same of a servo of the only line, which may be no joint's. */
+const char *joints_servo_of(const app *a, int id, const char *prefix, char *buffer);
 /* Refuses a posture with an angle outside its limits: says which, returns the exit status, or 0. */
 int joints_check_limits(app *a, const grobo_posture *posture, const char *doing);
 /* An angle as a person gives it: a number in the joint's unit ("50"), or with its unit behind it

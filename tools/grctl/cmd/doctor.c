@@ -7,6 +7,7 @@
 #include <grobo/estop.h>
 
 #include "tools/grctl/bringup/checkup.h"
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/auto_ports.h"
@@ -214,15 +215,15 @@ static void say_setup(patient *p, const char *name, int joint)
 static void say_silent(patient *p, const char *name, int joint, int error)
 {
     const grobo_joint *j = grobo_model_joint(p->model, joint);
-    char fix[FIX_BYTES];
+    char fix[FIX_BYTES], servo[JOINTS_SERVO_BYTES];
     if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
         snprintf(fix, sizeof fix, _("push its cable in; has it another id? grctl%s scan"),
                  app_global(p->k.a, GLOBAL_WIRING)->choice ? " --wiring bus" : "");
         checkup_found(&p->k, name, fix, "%s does not answer", j->name);
     } else if (conn_is_of_reply(error) && break_each_other(p, j->motor)) {
         snprintf(fix, sizeof fix,
-                 _("unplug all servos but one of id %d, and: grctl servo-set %d id NEW --flash"),
-                 j->motor, j->motor);
+                 _("unplug all servos but one of id %d, and: grctl servo-set %s id NEW --flash"),
+                 j->motor, joints_servo(p->k.a, joint, "", servo));
         checkup_found(&p->k, name, fix, "%s answers, but: %s; two servos with id %d?", j->name,
                       app_error_text(error), j->motor);
     } else {
@@ -237,14 +238,16 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
     const grobo_driver *driver = grobo_robot_driver(p->c.robot);
     const grobo_joint *j = grobo_model_joint(p->model, joint);
     bool rs30x = family_is(driver, "rs30x");
-    char fix[FIX_BYTES];
-    snprintf(fix, sizeof fix, _("let it cool down: grctl servo off m%d"), j->motor);
+    char fix[FIX_BYTES], motor[JOINTS_SERVO_BYTES], servo[JOINTS_SERVO_BYTES];
+    joints_servo(p->k.a, joint, "m", motor);
+    joints_servo(p->k.a, joint, "", servo);
+    snprintf(fix, sizeof fix, _("let it cool down: grctl servo off %s"), motor);
     if (s->overheated) { /* it says so until it is told, however cold it is */
         snprintf(
             fix, sizeof fix,
-            _("let it cool down, then: grctl servo off m%d; if it is reported again, switch the "
+            _("let it cool down, then: grctl servo off %s; if it is reported again, switch the "
               "power off and on"),
-            j->motor);
+            motor);
         checkup_found(&p->k, name, fix, "%s has cut its torque for heat (%d C)", j->name,
                       s->temperature_c);
     } else if ((rs30x && (s->flags & GROBO_RS30X_STATUS_HOT)) ||
@@ -252,13 +255,13 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
         checkup_found(&p->k, name, fix, "%s is hot: %d C, at most %d are good for it", j->name,
                       s->temperature_c, driver->limits.temperature_c);
     } else if (rs30x && (s->flags & GROBO_RS30X_STATUS_FLASH_ERROR)) {
-        snprintf(fix, sizeof fix, _("write its settings again: grctl servo-set %d id %d --flash"),
-                 j->motor, j->motor);
+        snprintf(fix, sizeof fix, _("write its settings again: grctl servo-set %s id %d --flash"),
+                 servo, j->motor);
         checkup_found(&p->k, name, fix, "%s lost power while it wrote its flash", j->name);
     } else if (!rs30x && s->flags) {
         const grobo_servo_register *error =
             grobo_servo_register_of(family_servo(driver, j->motor), GROBO_ROLE_ERROR);
-        snprintf(fix, sizeof fix, _("see what: grctl servo-get %d%s%s"), j->motor, error ? " " : "",
+        snprintf(fix, sizeof fix, _("see what: grctl servo-get %s%s%s"), servo, error ? " " : "",
                  error ? error->name : "");
         checkup_found(&p->k, name, fix, "%s reports errors (%02Xh)", j->name, s->flags);
     } else {
@@ -403,10 +406,12 @@ static void check_servos(patient *p)
                       p->high_mv / 1e3);
     }
     if (p->delay_us >= DELAY_WORTH_US) {
+        char servo[JOINTS_SERVO_BYTES];
         checkup_found(&p->k, "delay", NULL,
-                      "each reply waits up to %d us (servo %d); it need not: grctl servo-set %d %s "
+                      "each reply waits up to %d us (servo %d); it need not: grctl servo-set %s %s "
                       "0 --flash",
-                      p->delay_us, p->delayed, p->delayed, p->delay->name);
+                      p->delay_us, p->delayed, joints_servo_of(p->k.a, p->delayed, "", servo),
+                      p->delay->name);
     }
     if (p->answered == p->model->n_joints) {
         checkup_found(&p->k, "servos", NULL, "all %d answer; the warmest has %d C", p->answered,

@@ -212,25 +212,15 @@ static bool all_numbers(const app *a)
     return true;
 }
 
-/* The joint of the i-th motor, by their numbers. */
-static int joint_in_order(const grobo_model *model, int i)
-{
-    int motor = -1;
-    for (; i >= 0 && motor <= GROBO_SERVO_ID_MAX; i--) {
-        do {
-            motor++;
-        } while (motor <= GROBO_SERVO_ID_MAX && grobo_model_joint_of_motor(model, motor) < 0);
-    }
-    return grobo_model_joint_of_motor(model, motor);
-}
-
 /* Angles of all motors, in the order of their numbers, as a line of a .m file has them. */
 static int pose_of_motors(app *a, grobo_posture *target)
 {
+    uint8_t joints[GROBO_JOINTS_MAX];
+    (void)grobo_model_motor_order(app_model(a), joints);
     for (int i = 0; i < a->line.n_arguments; i++) {
         double angle_rad;
-        int joint = joint_in_order(app_model(a), i);
-        if (joint < 0 || !joints_read_angle(app_model(a), joint, a->line.argument[i], &angle_rad)) {
+        int joint = joints[i];
+        if (!joints_read_angle(app_model(a), joint, a->line.argument[i], &angle_rad)) {
             return fail_angle(a, "pose", joint, a->line.argument[i]);
         }
         grobo_posture_set_rad(target, joint, angle_rad);

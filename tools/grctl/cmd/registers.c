@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/change.h"
@@ -298,6 +299,7 @@ static int expect_loose(conn *c, const servo_change *what)
 {
     const grobo_servo_register *reg = grobo_servo_register_of(what->servo, GROBO_ROLE_TORQUE);
     int32_t torque = GROBO_TORQUE_OFF;
+    char servo[JOINTS_SERVO_BYTES];
     bool restarts = change_needs_command(what) && changes_rate(c, what);
     if ((kind_of(c->a, what) != GROBO_WRITE_SETTING && !restarts) || !reg) {
         return EXIT_DONE;
@@ -317,8 +319,9 @@ static int expect_loose(conn *c, const servo_change *what)
     }
     return app_fail(c->a, EXIT_SAFETY, "STATE",
                     "servo-set: servo %d holds, and would %s with another %s; first: grctl servo "
-                    "off m%d",
-                    what->id, restarts ? _("restart limp") : _("jump"), what->reg->name, what->id);
+                    "off %s",
+                    what->id, restarts ? _("restart limp") : _("jump"), what->reg->name,
+                    joints_servo_of(c->a, what->id, "m", servo));
 }
 
 /* Two servos of one id answer together, and nobody could give one of them another. */
@@ -493,15 +496,16 @@ static int compare(conn *c, int id, const grobo_servo_model *servo, const json_t
 static int expect_restorable(conn *c, const restore *r)
 {
     int status = EXIT_DONE;
+    char servo[JOINTS_SERVO_BYTES];
     for (int i = 0; i < r->n && !status; i++) {
         const servo_change *what = &r->change[i];
         status = expect_loose(c, what);
         status = status ? status : expect_free_id(c, what);
         if (!status && what->reg->role == GROBO_ROLE_BAUD) {
             status = app_fail(c->a, EXIT_SAFETY, "UNSUPPORTED",
-                              "servo-set: the file has another rate; first: grctl servo-set %d "
+                              "servo-set: the file has another rate; first: grctl servo-set %s "
                               "baud %d --flash",
-                              what->id, what->value);
+                              joints_servo_of(c->a, what->id, "", servo), what->value);
         }
         if (!status && would_hide(what)) {
             status = app_fail(c->a, EXIT_SAFETY, "UNSUPPORTED",

@@ -7,6 +7,7 @@
 
 #include <grobo/core/unit.h>
 
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/family.h"
@@ -115,16 +116,16 @@ static int fail_trip(conn *c, const char *doing)
 {
     const grobo_trip_info *t = &c->trip;
     const grobo_model *model = conn_model(c);
-    char value[48];
+    char value[48], servo[JOINTS_SERVO_BYTES];
     conn_trip_value(t, value, sizeof value);
     if (t->joint >= 0 && t->joint < model->n_joints && t->trip == GROBO_TRIP_OVERHEATED) {
         return app_fail_trip(
             c->a, t->trip,
             "%s: stopped for safety: %s%s at motor %d (%s); let it cool down, then "
-            "'grctl servo off m%d'; if it is reported again, switch the power off "
+            "'grctl servo off %s'; if it is reported again, switch the power off "
             "and on",
             doing, _(grobo_trip_name(t->trip)), value, grobo_model_joint(model, t->joint)->motor,
-            grobo_model_joint(model, t->joint)->name, grobo_model_joint(model, t->joint)->motor);
+            grobo_model_joint(model, t->joint)->name, joints_servo(c->a, t->joint, "m", servo));
     }
     if (t->joint >= 0 && t->joint < model->n_joints && t->trip == GROBO_TRIP_APART) {
         const grobo_joint *joint = grobo_model_joint(model, t->joint);
@@ -191,10 +192,11 @@ static int fail_reply(conn *c, int error, int id, const char *prefix, const char
 }
 
 /* Of a register with a wrong value. */
-static void setup_of_value(const grobo_driver *driver, int joint, const grobo_setup_fault *fault,
-                           conn_setup *s)
+static void setup_of_value(const conn *c, int joint, const grobo_setup_fault *fault, conn_setup *s)
 {
+    const grobo_driver *driver = grobo_robot_driver(c->robot);
     const int id = grobo_model_joint(driver->model, joint)->motor;
+    char servo[JOINTS_SERVO_BYTES];
     const char *name = fault->reg->name;
     const bool calibrates = grobo_model_joint(driver->model, joint)->calibrated;
     const bool is_min = fault->reg->role == GROBO_ROLE_MIN_POSITION;
@@ -206,7 +208,8 @@ static void setup_of_value(const grobo_driver *driver, int joint, const grobo_se
              fault->low == fault->high ? ""
              : is_min                  ? _(" or less")
                                        : _(" or more"));
-    snprintf(s->fix, sizeof s->fix, _("'grctl servo-set %d %s %d%s'%s"), id, name, wanted,
+    snprintf(s->fix, sizeof s->fix, _("'grctl servo-set %s %s %d%s'%s"),
+             joints_servo(c->a, joint, "", servo), name, wanted,
              family_servo(driver, id)->table->keeps == GROBO_KEEPS_LIMP ? "" : " --flash",
              calibrates && (is_min || is_max) ? _(" or 'grctl calibrate' sets it")
              : (is_min || is_max) && !wheel   ? _(" sets it, or narrow limits_deg")
@@ -238,7 +241,7 @@ bool conn_setup_of(const conn *c, int joint, conn_setup *s)
                  other ? other->name : _("another"), (int)fault->found, servo->name, servo->number);
         snprintf(s->fix, sizeof s->fix, "%s", _("say so in the robot file"));
     } else {
-        setup_of_value(driver, joint, fault, s);
+        setup_of_value(c, joint, fault, s);
     }
     if (fault->more) {
         size_t used = strlen(s->fact);
