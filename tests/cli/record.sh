@@ -100,10 +100,77 @@ check "a lost line is a failure" [ $ended -eq 1 ]
 check "what was recorded is kept then too" [ -s "$work/lost.m" ]
 tell plug in
 
+# killed: nobody could save anything.
+killed() {
+    kill -KILL $record_pid
+    wait $record_pid 2>/dev/null
+    exec 6>&-
+    # Its guard gives the line back.
+    wait_for exits 0 on_robot status m5
+}
+start_record --key -o power.pseq
+turn_elbow -40
+key ' '
+written "$work/err" '^1 kept'
+turn_elbow -60
+key ' '
+written "$work/err" '^2 kept'
+key 'd '
+said_again() {
+    [ "$(grep -c '^2 kept' "$work/err")" -eq 2 ]
+}
+wait_for said_again
+test_case "what was recorded before the power went is there"
+killed
+check "nothing has the name of the recording" test ! -e "$work/power.pseq"
+check "both postures can be read" counts 2 "$work/power.pseq.part.m"
+check "as they were" grep -q ' -400 ' "$work/power.pseq.part.m"
+cp "$work/power.pseq.part.m" "$work/left"
+start_record --key -o power.pseq
+check "the next recording says so" \
+    grep -q '^power.pseq.part.m has what a recording kept' "$work/err"
+key ' q'
+finish
+check "and leaves it" cmp "$work/left" "$work/power.pseq.part.m"
+check "its own is gone when it is saved" test ! -e "$work/power.pseq.part2.m"
+check "it is saved" counts 1 "$work/power.pseq"
+
+# A disk that is full while it is recorded; more is there at the end.
+small_record() {
+    rm -f "$work/keys" "$work/err"
+    mkfifo "$work/keys"
+    mkdir "$work/disk"
+    (cd "$work" && exec unshare -Urm sh -c 'mount -t tmpfs -o size=4k none disk && exec "$@"' sh \
+        "$GRCTL" -d "$robot" --timeout 500 record --key -o disk/full.m <keys >out 2>err) &
+    record_pid=$!
+    exec 6>"$work/keys"
+    written "$work/err" '^\(space\|Ctrl-C\)'
+}
+test_case "a full disk ends no recording"
+if unshare -Urm true 2>/dev/null; then
+    small_record
+    i=0
+    while [ $i -lt 80 ]; do # of more than 80 bytes each
+        i=$((i + 1))
+        key ' '
+        written "$work/err" "^$i kept"
+    done
+    check "it says so" grep -q 'full.m.part.m: cannot write: .*memory alone' "$work/err"
+    check "once" test "$(grep -c 'memory alone' "$work/err")" -eq 1
+    check "and goes on" grep -q '^80 kept' "$work/err"
+    key q
+    finish
+    check "the file that cannot be written is an error" test $ended -eq 3
+    check "it says what is there" grep -q 'full.m.part.m has [1-7][0-9] postures of it' "$work/err"
+else
+    skip "a disk of 4 KiB" "a user namespace of its own is needed"
+fi
+
 start_record --key
 key q
 finish
 test_case "who cannot be recorded says why"
+check "nothing is left" test ! -e "$work/Motion.part.m"
 check "nothing was shown" grep -q 'nothing was recorded' "$work/err"
 check "a name without a format" fails 2 'unknown file type' \
     on_robot record -o wave

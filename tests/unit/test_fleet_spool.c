@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tests/support/test.h"
+#include "tools/grctl/cli/sync.h"
 #include "tools/grctl/fleet/message.h"
 #include "tools/grctl/fleet/spool.h"
 
@@ -37,6 +38,7 @@ static void add(int number)
 
 static int clean(void)
 {
+    sync_end();
     (void)remove(path);
     (void)remove(old);
     return 0;

@@ -15,6 +15,7 @@
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cli/journal.h"
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
@@ -63,6 +64,7 @@ typedef struct recorder {
     play_keys playing; /* its conn is NULL while nothing is played */
     struct event *look, *live;
     grobo_motion *motion;
+    journal kept;            /* the same, on disk as it comes */
     grobo_motion *played;    /* a copy that is or was played; the robot may read it until the end */
     grobo_clip clip;         /* of that */
     grobo_joint_mask joints; /* that are taught: */
@@ -113,6 +115,22 @@ static int keep_tilt(recorder *r, int64_t time_us)
                : GROBO_OK;
 }
 
+static void say_unwritten(const recorder *r, const char *path, int error)
+{
+    if (error) {
+        app_note(r->c.a, "%s: cannot write: %s; what is kept from now on is in memory alone", path,
+                 app_cause_text(error));
+    }
+}
+
+/* A full disk ends no recording: it may have room at the end, or another one may. */
+static void write_down(recorder *r)
+{
+    char path[sizeof r->kept.path];
+    snprintf(path, sizeof path, "%s", r->kept.path);
+    say_unwritten(r, path, journal_add(&r->kept, &r->last, conn_model(&r->c)));
+}
+
 static int keep(recorder *r, grobo_posture *now)
 {
     int64_t now_us = grobo_now_us();
@@ -127,7 +145,13 @@ static int keep(recorder *r, grobo_posture *now)
     r->last = *now;
     r->last_us = now_us;
     int error = keep_tilt(r, now->time_us);
-    return error < 0 ? error : grobo_motion_append(r->motion, now);
+    if (error >= 0) {
+        error = grobo_motion_append(r->motion, now);
+    }
+    if (error >= 0) {
+        write_down(r);
+    }
+    return error;
 }
 
 /* Limp joints are read now. A reply that was lost is no reason to end; *read is false then. */
@@ -180,6 +204,7 @@ static int drop_last(recorder *r)
     if (n > 0) {
         grobo_motion_delete(r->motion, n - 1);
         imu_rows_drop(&r->tilts);
+        journal_drop_last(&r->kept);
     }
     if (n > 1) {
         grobo_motion_get(r->motion, n - 2, &r->last);
@@ -552,7 +577,7 @@ static int try_to_write(app *a)
     return 0;
 }
 
-static int save(recorder *r)
+static int write_file(recorder *r)
 {
     app *a = r->c.a;
     const char *out = app_option(a, OPT_OUT)->text;
@@ -588,6 +613,33 @@ static int save(recorder *r)
                                          : EXIT_DONE;
 }
 
+/* What was written as it came stays where the file could not be written. */
+static int save(recorder *r)
+{
+    char path[sizeof r->kept.path];
+    size_t n = journal_size(&r->kept);
+    int status = write_file(r);
+    snprintf(path, sizeof path, "%s", r->kept.path);
+    journal_end(&r->kept, status != EXIT_DONE);
+    if (status && n > 0) {
+        app_note(r->c.a, "%s has %zu posture%s of it", path, n, n == 1 ? "" : "s");
+    }
+    return status;
+}
+
+/* Where it cannot be, as beside a pipe, what is recorded is in memory until it ends. */
+static void begin_journal(recorder *r)
+{
+    const char *out = app_option(r->c.a, OPT_OUT)->text;
+    const char *target = out ? out : "Motion";
+    say_unwritten(r, r->kept.path, journal_begin(&r->kept, target));
+    if (r->kept.left) {
+        app_note(r->c.a,
+                 "%s.part.m has what a recording kept that did not end: rename or delete it",
+                 target);
+    }
+}
+
 /* Whatever ended it, what was recorded is kept. */
 static int record(recorder *r)
 {
@@ -598,6 +650,7 @@ static int record(recorder *r)
     if (status) {
         return status;
     }
+    begin_journal(r);
     int error = teach(r);
     status = error ? conn_fail(c, error, name_of(r)) : EXIT_DONE;
     imu_close(&r->imu);

@@ -5,6 +5,7 @@
 #include <grobo/core/robot.h>
 
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/sync.h"
 #include "tools/grctl/fleet/agent.h"
 #include "tools/grctl/fleet/orders.h"
 #include "tools/grctl/fleet/say.h"
@@ -391,6 +392,7 @@ int agent_end(agent *g, int status)
     conn_forget(g->tick);
     mqtt_free(g->m);
     say_untaken(g);
+    sync_end();
     orders_free(g);
     for (int i = 0; i < g->n_groups; i++) {
         json_decref(g->groups[i].latch);

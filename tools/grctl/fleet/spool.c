@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/cli/sync.h"
 #include "tools/grctl/fleet/message.h"
 #include "tools/grctl/fleet/spool.h"
 
@@ -30,7 +31,7 @@ bool spool_add(const char *path, const json_t *event)
         ok = rename(path, old) == 0 && ok;
     }
     free(text);
-    return ok;
+    return ok && sync_soon(full ? old : path) == 0;
 }
 
 static void empty_one(const char *path, void (*take)(void *ctx, json_t *event), void *ctx)

@@ -9,7 +9,11 @@
 
 enum { SPOOL_FILE_BYTES = 1 << 17, SPOOL_LINE_BYTES = 1 << 14 };
 
-/* Keeps one in PATH, or in PATH.old when that is full. path: shorter than 1000 bytes. */
+/*
+ * Keeps one in PATH, or in PATH.old when that is full. path: shorter than 1000 bytes. The disk has
+ * it a moment later (tools/grctl/cli/sync.h), sync_end() waits for that. False: it is not kept, or
+ * the disk refused one before.
+ */
 bool spool_add(const char *path, const json_t *event);
 /* Hands over what is kept, the oldest first, and forgets it; what cannot be read is dropped. */
 void spool_empty(const char *path, void (*take)(void *ctx, json_t *event), void *ctx);

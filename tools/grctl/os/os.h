@@ -101,6 +101,14 @@ void os_take_signals(void);
  * has a name, if it has none.
  */
 FILE *os_create(const char *path, bool waits);
+/* The same, but where there is something of that name: NULL with EEXIST. */
+FILE *os_create_new(const char *path);
+/* Ends a file, of which nothing is buffered, at this size; what is written next follows there. */
+int os_cut(FILE *file, long size);
+/* Waits until the disk has what was written to the file. Returns 0 or errno. */
+int os_sync(FILE *file);
+/* The same for the names of the folder of a file, where the system has such a thing. */
+void os_sync_folder(const char *path);
 /* Of which not every system says so when it is opened as a file. */
 bool os_is_folder(const char *path);
 /* The configuration file: 0 the user's, 1 the machine's. False where there is none. */

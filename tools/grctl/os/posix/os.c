@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <langinfo.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -147,6 +148,43 @@ FILE *os_create(const char *path, bool waits)
         errno = cause;
     }
     return file;
+}
+
+FILE *os_create_new(const char *path)
+{
+    int fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    FILE *file = fd >= 0 ? fdopen(fd, "w+b") : NULL;
+    if (fd >= 0 && !file) {
+        int cause = errno;
+        close(fd);
+        errno = cause;
+    }
+    return file;
+}
+
+int os_cut(FILE *file, long size)
+{
+    bool ok = ftruncate(fileno(file), size) == 0 && lseek(fileno(file), size, SEEK_SET) == size;
+    return ok ? 0 : errno;
+}
+
+/* What is no file of a disk cannot be synced, and need not be. */
+int os_sync(FILE *file)
+{
+    return fsync(fileno(file)) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+}
+
+void os_sync_folder(const char *path)
+{
+    char folder[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    int length = slash == path ? 1 : slash ? (int)(slash - path) : 0;
+    snprintf(folder, sizeof folder, "%.*s", length, path);
+    int fd = open(length ? folder : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd >= 0) {
+        (void)fsync(fd);
+        close(fd);
+    }
 }
 
 FILE *os_temporary(void)

@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <timeapi.h>
 
 #include "tools/grctl/os/os.h"
@@ -223,6 +224,33 @@ FILE *os_create(const char *path, bool waits)
 {
     (void)waits;
     return fopen(path, "wb");
+}
+
+FILE *os_create_new(const char *path)
+{
+    int fd =
+        _open(path, _O_RDWR | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT, _S_IREAD | _S_IWRITE);
+    FILE *file = fd >= 0 ? _fdopen(fd, "w+b") : NULL;
+    if (fd >= 0 && !file) {
+        _close(fd);
+    }
+    return file;
+}
+
+int os_cut(FILE *file, long size)
+{
+    bool ok = _chsize(_fileno(file), size) == 0 && _lseek(_fileno(file), size, SEEK_SET) == size;
+    return ok ? 0 : errno;
+}
+
+int os_sync(FILE *file)
+{
+    return _commit(_fileno(file)) == 0 ? 0 : errno;
+}
+
+void os_sync_folder(const char *path)
+{
+    (void)path; /* the file has its name by then */
 }
 
 bool os_takes_bytes(FILE *stream)
