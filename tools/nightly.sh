@@ -42,13 +42,14 @@ stage_of() {
     scan) echo check-scan ;;
     stops) echo "test ONLY=serve_stop STOPS=16" ;;
     memory) echo "test ONLY=memory.sh ALLOCATIONS=all" ;;
+    calls) echo "test ONLY=calls.sh CALLS=all" ;;
     matrix) echo "test ONLY=matrix RING=cli MATRIX=all" ;;
     *) return 1 ;;
     esac
 }
 
 [ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts sequences model soak abi ports deb \
-    wheel roots analyse cockpit api families physics fleet scan stops memory matrix areas
+    wheel roots analyse cockpit api families physics fleet scan stops memory calls matrix areas
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done

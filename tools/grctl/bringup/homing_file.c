@@ -9,6 +9,9 @@
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
 
+/* Of 64 joints a tenth. */
+enum { FILE_BYTES = 1 << 17 };
+
 static int complain(app *a, const char *path, const char *joint, const char *what)
 {
     return app_fail(a, EXIT_FILE, "SYNTAX", "%s: %s: %s", path, joint, lang_text(what));
@@ -89,24 +92,33 @@ static int read_all(app *a, const char *path, const json_t *file, bool any, homi
     return 0;
 }
 
-int homing_read(app *a, const char *path, bool any, homing *all)
+int homing_take(app *a, const char *path, const char *bytes, size_t size, bool any, homing *all)
 {
     json_error_t error;
-    int status = file_refuse_pipe(a, path);
-    if (status) {
-        return status;
-    }
-    json_t *file = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
-    if (!file && (error.line < 1 || os_is_folder(path))) {
-        return app_fail_cause(a, EXIT_FILE, os_is_folder(path) ? EISDIR : errno, "%s", path);
-    }
+    json_t *file = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
     if (!file) {
         return app_fail(a, EXIT_FILE, "SYNTAX", "%s:%d:%d: %s", path, error.line, error.column,
                         error.text);
     }
-    status = json_is_object(file) ? read_all(a, path, file, any, all)
-                                  : complain(a, path, robot_of(a)->name, "is not a calibration");
+    int status = json_is_object(file)
+                     ? read_all(a, path, file, any, all)
+                     : complain(a, path, robot_of(a)->name, "is not a calibration");
     json_decref(file);
+    return status;
+}
+
+int homing_read(app *a, const char *path, bool any, homing *all)
+{
+    int status = file_refuse_pipe(a, path);
+    if (status) {
+        return status;
+    }
+    heap file = file_bytes(path, FILE_BYTES);
+    if (!file.bytes) {
+        return app_fail_cause(a, EXIT_FILE, os_is_folder(path) ? EISDIR : errno, "%s", path);
+    }
+    status = homing_take(a, path, file.bytes, file.size, any, all);
+    free(file.bytes);
     return status;
 }
 

@@ -17,6 +17,9 @@ typedef struct homing {
  */
 int homing_read(app *a, const char *path, bool any, homing *all);
 
+/* The same of what such a file holds; path is for messages. */
+int homing_take(app *a, const char *path, const char *bytes, size_t size, bool any, homing *all);
+
 /* Writes one; NULL: the first NAME-before.json, NAME-before2.json... that is not there. The name
  * goes to `written`. As above. */
 int homing_write(app *a, const char *path, const homing *all, char *written, size_t capacity);
