@@ -11,6 +11,7 @@ extern const grobo_protocol grobo_i_board_protocol;
 extern const grobo_protocol grobo_i_dxl1_protocol;
 extern const grobo_protocol grobo_i_dxl2_protocol;
 extern const grobo_protocol grobo_i_feetech_protocol;
+extern const grobo_protocol grobo_i_feetech_delayed_protocol;
 extern const grobo_protocol grobo_i_ics_protocol;
 extern const grobo_protocol grobo_i_lx16a_protocol;
 extern const grobo_protocol grobo_i_rs30x_protocol;

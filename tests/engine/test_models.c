@@ -28,11 +28,25 @@ static int rs30x_init(grobo_driver *driver, const grobo_model *model)
 static const family rs30x = {"rs30x", &grobo_i_rs30x_table, "RS301CR", rs30x_init, 0.5, 115200,
                              false};
 
+/* The line reckons with a reply as late as the servo sends it, as it leaves the factory; Feetech's
+ * that have no delay are not waited for. */
+static void waits_for_replies(const grobo_servo_model *servo)
+{
+    const grobo_servo_register *delay = grobo_servo_register_of(servo, GROBO_ROLE_RETURN_DELAY);
+    uint32_t bus_us = kit.robot.bus.config.return_delay_us;
+    if (delay != NULL) {
+        double own_us = delay->factory * strtod(delay->unit, NULL);
+        assert_true(bus_us >= own_us);
+        assert_true(strcmp(kit.driver.protocol->name, "Feetech") != 0 || bus_us <= own_us);
+    }
+}
+
 /* A move of ten degrees for each joint, then the state of each. */
 static void moves_and_tells(const family *row)
 {
     const grobo_servo_model *servo = grobo_servo_model_named(row->table, row->servo);
     family_start(&kit, row, &idle, NULL);
+    waits_for_replies(servo);
     int ran = grobo_robot_torque(&kit.robot, GROBO_JOINTS_ALL(FAMILY_JOINTS), GROBO_TORQUE_ON);
     assert_true(ran > 0);
     assert_int_equal(family_wait(&kit, ran), GROBO_OK);
@@ -77,4 +91,23 @@ TEST(each_model_moves_and_tells_its_state)
     }
     printf("%d models moved, %d cannot be joints\n", models, refused);
     assert_true(models >= 60);
+}
+
+static void last_is_sm(family_kit *own)
+{
+    const int last = FAMILY_JOINTS - 1;
+    own->servos[last] = grobo_servo_model_named(&grobo_i_sts_table, "SM8512BL");
+    assert_non_null(own->servos[last]);
+    own->joints[last].servo_model = own->servos[last]->number;
+}
+
+/* One servo that waits makes the wait of its line. */
+TEST(the_slowest_servo_is_waited_for)
+{
+    const family *sts = family_named("sts");
+    assert_non_null(sts);
+    family_start_as(&kit, sts, &idle, NULL, last_is_sm);
+    assert_int_equal(kit.robot.bus.config.return_delay_us, 500);
+    family_start(&kit, sts, &idle, NULL);
+    assert_int_equal(kit.robot.bus.config.return_delay_us, 0);
 }

@@ -100,6 +100,7 @@ static const recipe recipes[] = {
     {"sts-38400", &far_sts, SMALL_JOINTS, 38400, 30000, 80000, false},
     {"hls-20", &far_hls, 20, M1, 7000, 20000, false},
     {"hls-38400", &far_hls, SMALL_JOINTS, 38400, 30000, 80000, false},
+    {"sm-20", &far_sm, 20, M1, 17000, 30000, false},
     {"sm-38400", &far_sm, SMALL_JOINTS, 38400, 30000, 80000, false},
     {"scs-20", &far_scs, 20, M1, 3000, 20000, false},
     {"scs-64", &far_scs, 64, M1, 3000, 60000, false},

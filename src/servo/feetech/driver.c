@@ -86,6 +86,9 @@ int grobo_feetech_driver_init(grobo_driver *driver, const grobo_model *model)
 {
     int result = grobo_i_table_driver(driver, model, &grobo_i_feetech_protocol, &family);
     if (result >= 0) {
+        if (grobo_i_table_delay_us(driver) > grobo_i_feetech_protocol.return_delay_us) {
+            driver->protocol = &grobo_i_feetech_delayed_protocol;
+        }
         driver->goal_energises =
             true; /* measured on an STS3215 (feetech-cli 0.1.8, simulator.py) */
     }

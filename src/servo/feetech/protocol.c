@@ -17,11 +17,19 @@ static void unpack(uint8_t *bytes, size_t n, grobo_packet *packet)
     }
 }
 
-const grobo_protocol grobo_i_feetech_protocol = GROBO_TABLE(
-    grobo_protocol, .name = "Feetech", .measure = grobo_i_dxl1_measure, .unpack = unpack,
-    .reply_to = grobo_i_dxl1_reply_to, .reply_at = grobo_i_dxl1_reply_at,
-    .several = grobo_bus_several, .return_delay_us = 0, /* register 7, as it leaves the factory */
-    .call_us = GROBO_DXL1_CALL_US, .id_min = 0, .id_max = GROBO_DXL1_ID_MAX);
+/* Register 7 in 2 us, as it leaves the factory: 0 of STS and SCS, 250 of SM (the models' files). */
+#define DELAYED_US 500
+
+#define FRAMES_OF(delay_us)                                                                        \
+    GROBO_TABLE(grobo_protocol, .name = "Feetech", .measure = grobo_i_dxl1_measure,                \
+                .unpack = unpack, .reply_to = grobo_i_dxl1_reply_to,                               \
+                .reply_at = grobo_i_dxl1_reply_at, .several = grobo_bus_several,                   \
+                .return_delay_us = (delay_us), .call_us = GROBO_DXL1_CALL_US, .id_min = 0,         \
+                .id_max = GROBO_DXL1_ID_MAX)
+
+const grobo_protocol grobo_i_feetech_protocol = FRAMES_OF(0);
+/* Of robots with a servo that waits before it replies: of 20 replies to one frame that is 10 ms. */
+const grobo_protocol grobo_i_feetech_delayed_protocol = FRAMES_OF(DELAYED_US);
 
 const grobo_protocol *grobo_feetech_protocol(void)
 {

@@ -131,6 +131,10 @@ int32_t grobo_i_table_ticks(const grobo_joint *joint, const grobo_servo_model *s
 /* The coarsest count of a joint's servo. */
 double grobo_i_table_step_rad(const grobo_driver *self);
 
+/* How long the slowest of the joints' servos waits before it replies, as it leaves the factory; 0
+ * where no model has a register for that. */
+uint32_t grobo_i_table_delay_us(const grobo_driver *self);
+
 /* Of grobo_driver; inspect.c */
 grobo_write_kind grobo_i_table_write_kind(const grobo_driver *self, const grobo_register_io *io);
 int grobo_i_table_inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, size_t size,

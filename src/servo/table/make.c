@@ -70,6 +70,20 @@ int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo
     return grobo_driver_check(made);
 }
 
+uint32_t grobo_i_table_delay_us(const grobo_driver *self)
+{
+    uint32_t most_us = 0;
+    for (int j = 0; j < self->model->n_joints; j++) {
+        const grobo_servo_register *delay =
+            grobo_servo_register_of(grobo_i_table_servo(self, j), GROBO_ROLE_RETURN_DELAY);
+        if (delay != NULL) {
+            uint32_t own_us = (uint32_t)(delay->factory * grobo_i_register_unit(delay));
+            most_us = own_us > most_us ? own_us : most_us;
+        }
+    }
+    return most_us;
+}
+
 int grobo_i_table_give(grobo_driver *driver, const grobo_driver *made, int result)
 {
     if (result < 0 || driver == NULL) {

@@ -83,7 +83,8 @@ const grobo_driver *family_driver(const grobo_robot_family *family)
     return init(&driver, &model) < 0 ? NULL : &driver;
 }
 
-/* The family of a driver's servos; behind a board are RS30x. NULL: one of the driver's own. */
+/* The family of a driver's servos; behind a board are RS30x. NULL: one of the driver's own. A
+ * protocol is known by its name: a family may have one that differs in its delay alone. */
 static const grobo_robot_family *family_of_driver(const grobo_driver *driver)
 {
     static const grobo_protocol *known[16]; /* of the families */
@@ -92,7 +93,7 @@ static const grobo_robot_family *family_of_driver(const grobo_driver *driver)
     for (size_t i = 0; grobo_robot_family_at(i) && i < sizeof known / sizeof *known; i++) {
         const grobo_driver *any = known[i] ? NULL : family_driver(grobo_robot_family_at(i));
         known[i] = any ? any->protocol : known[i];
-        if (known[i] == wanted) {
+        if (known[i] && strcmp(known[i]->name, wanted->name) == 0) {
             return grobo_robot_family_at(i);
         }
     }
