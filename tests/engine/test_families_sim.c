@@ -10,6 +10,7 @@
 #include <grobo/core/robot.h>
 #include <grobo/core/sim.h>
 
+#include "src/robot/robot.h"
 #include "src/sim/servo/shaft.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/tables.h"
@@ -540,6 +541,30 @@ TEST_FOR(family, family_next, a_joint_that_turns_back_stops_where_it_is)
                      row->name, t.how, t.ms, t.dps, t.on_deg, t.back_deg, t.done_deg);
         }
     }
+}
+
+/* Where it turns, a servo with ramps stands for a moment, far beside its trajectory; it has lost no
+ * frame. */
+TEST(a_joint_read_while_it_turns_back_is_not_astray)
+{
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 5 * MS};
+    int slow = 0;
+    for (int ms = 100; ms <= 250; ms += 50) {
+        family_start(&kit, family_named("sts"), &config, NULL);
+        assert_int_equal(family_move(&kit, 85, 2000), GROBO_OK);
+        send_fast(-60, ms);
+        send_fast(80, 0);
+        for (int i = 0; i < 250; i++) {
+            family_run(&kit, MS);
+            const grobo_robot_axis *axis = &kit.robot.axes[0];
+            double begun_rad = axis->trajectory.from_rad, off_rad = GROBO_I_OFF_TRAJECTORY_RAD;
+            slow += abs(axis->seen_dps) < GROBO_I_SLOW_DPS && axis->seen_us > axis->told_us &&
+                    fabs(axis->seen_rad - begun_rad) <= off_rad;
+            assert_false(grobo_i_is_stray(axis));
+        }
+    }
+    printf("%d slow\n", slow);
+    assert_true(slow > 0);
 }
 
 /* It is too weak for its way, behind whose end it turns yet: it was read to, and then for its angle
