@@ -32,7 +32,8 @@ moves() {
 }
 stopped() {
     : >"$work/said"
-    fleet play wave.yaml -s 10 --on-link-lost finish >"$work/played" 2>"$work/said" </dev/null 3>&- &
+    fleet play wave.yaml -s 10 --on-link-lost finish \
+        >"$work/played" 2>"$work/said" </dev/null 3>&- &
     play=$!
     { written "$work/said" "all begin in" || { cat "$work/said" "$work/arms.err"; false; }; } &&
         comes_to_move && exits 0 fleet estop &&
