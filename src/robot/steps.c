@@ -357,8 +357,11 @@ static int step_hold_check(grobo_robot *robot)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (grobo_i_has(job->pending, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
+            /* A goal that switched it on was its angle as it left; it may have fallen since. */
+            bool woken = GROBO_I_EXTRA(grobo_i_driver_of(robot, j), goal_energises) &&
+                         grobo_i_axis_is_on(axis);
             bool holds = !grobo_i_has(job->failed, j) && grobo_i_goal_is_told(axis) &&
-                         grobo_i_goal_holds(robot, j);
+                         (woken || grobo_i_goal_holds(robot, j));
             grobo_i_joint_to(axis, holds ? GROBO_I_JOINT_HOLDS : GROBO_I_JOINT_LOOSE);
             bad |= holds ? 0 : GROBO_JOINT_BIT(j);
         }

@@ -102,6 +102,25 @@ TEST(torque_may_be_asked_for_while_it_settles)
     assert_int_equal(weight_torque(GROBO_TORQUE_ON), 0);
 }
 
+/* A limp arm falls on while the frames that switch it on are under way. A servo that a goal
+ * switches on has torque before it is read back, then farther from that goal than one that stood.
+ * Another one gets torque where its goal is its angle; where it fell from that, it stays limp. */
+TEST_EACH(arm, arms, torque_comes_on_while_the_arm_falls)
+{
+    for (int fall_ms = 0; fall_ms < 500; fall_ms += 20) {
+        begin(row);
+        assert_int_equal(weight_torque(GROBO_TORQUE_OFF), 0);
+        weight_run(fall_ms * WEIGHT_MS);
+        int result = weight_torque(GROBO_TORQUE_ON);
+        bool limp = result == GROBO_ERR_MISMATCH && !weight.driver.goal_energises;
+        result = result < 0 ? result : weight_move(LIFT, 0, 1000);
+        if (result < 0 && !limp) {
+            fail_msg("%s: %d ms behind the begin of its fall: %s", row->name, fall_ms,
+                     grobo_error_name(result));
+        }
+    }
+}
+
 /* A program that comes while the arm still sags behind the move of the one before. */
 TEST_EACH(arm, arms, nobody_else_moves_an_arm_that_settles)
 {
