@@ -240,6 +240,9 @@ static int send_chunk(void *ctx, const pcapng_chunk *chunk)
     return p->status;
 }
 
+/* The line has become quiet before the trace begins: it is looked at so often. */
+#define LOOK_US 5000
+
 /*
  * The gate wants to know where the joints are, and torque to have come on safely. Then every
  * frame is sent once, and late replies to what was asked so far are let go by. From then on the
@@ -257,6 +260,9 @@ static int prepare(plan *p)
     }
     if (!error) {
         error = asks_again(p, false);
+    }
+    while (!error && !grobo_robot_is_quiet(p->c.robot)) { /* a joint that did not answer is asked */
+        error = conn_sleep_until(&p->c, grobo_now_us() + LOOK_US);
     }
     if (!error) {
         error = conn_sleep_until(&p->c, grobo_now_us() + GROBO_BUS_HOLD_US);
