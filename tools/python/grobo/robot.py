@@ -268,8 +268,9 @@ class Robot:
     `device`: a serial port, "tcp:HOST:PORT", "sim" (a simulator in this process), or "auto", the
     first port on which a robot answers. `robot`: what it is, see grobo.Description. `exit` says
     what the servos do when it is closed; None leaves them as they are. `owner_timeout`: after so
-    many seconds without a call of this program the exit policy is carried out; 0: never. `events`:
-    how many events are kept, see grobo.aio. `guard`: a process beside this one (the installed
+    many seconds without a call of this program the exit policy is carried out; 0: never.
+    `reply_timeout`: how long a servo's reply is waited for, where a line is slower than its rate
+    says; else as `grctl --timeout` has it. `events`: how many events are kept, see grobo.aio. `guard`: a process beside this one (the installed
     grctl, or $GRCTL_GUARD) that stops the joints when Python is killed or stopped. `realtime`: the
     priority, 1 to 99, of the thread that talks to the robot, before other programs, and `cpus` the
     CPUs that it may run on; `Error` where the system refuses (docs/guide/realtime.md).
@@ -286,6 +287,7 @@ class Robot:
         events: int = 0,
         robot: Union[str, "os.PathLike[str]", Description] = "gr001",
         sense_interval: Optional[float] = None,
+        reply_timeout: Optional[float] = None,
         guard: bool = True,
         realtime: Optional[int] = None,
         cpus: Iterable[int] = (),
@@ -306,6 +308,8 @@ class Robot:
         robot.configure(session)
         if sense_interval is not None:
             robot_config.sense_interval_us = us(sense_interval)
+        if reply_timeout is not None:
+            robot_config.timeout_us = us(reply_timeout)
         robot_config.on_exit = exit or Exit.DEFAULT
         config.skip_exit = exit is None
         config.timeout_us = us(timeout)
