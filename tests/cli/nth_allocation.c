@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* To be loaded before a program's libraries (tests/cli/memory.sh): the FAIL_AT-th allocation of the
- * process fails, and no other. How many there were is written to the file COUNT_TO. glibc alone.
+ * process fails, and no other. How many there were is a line of the file COUNT_TO, behind those of
+ * other processes: the guard has this loaded too. glibc alone.
  * One of ncurses does not: setupterm() crashes where it has no memory for a name, and nobody can
  * help that. */
 #define _GNU_SOURCE
@@ -65,7 +66,7 @@ void *realloc(void *old, size_t size)
 __attribute__((destructor)) static void tell(void)
 {
     const char *path = getenv("COUNT_TO");
-    FILE *file = path != NULL ? fopen(path, "w") : NULL;
+    FILE *file = path != NULL ? fopen(path, "a") : NULL;
     if (file != NULL) {
         (void)fprintf(file, "%ld\n", atomic_load(&count));
         (void)fclose(file);
