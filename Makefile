@@ -277,7 +277,7 @@ format: ## write sources as clang-format 14 does; FILES="src/bus/bus.c" chooses
 	@tools/lint/format.sh --fix $(or $(FILES),$(shell find include src ports tools tests docs -name '*.[ch]'))
 
 # They take longest, of those that mostly wait and of the others: `make test` tells the slowest.
-TEST_FIRST := every_model fleet_stops estop replay json serve paused estop_users robot doctor deaths guide \
+TEST_FIRST := every_model fleet_stops estop replay json serve paused estop_users robot doctor deaths guide_robots \
     robot_files robot_new fleet_leader fleet_strangers standing test_play_line test_runner_motion test_guard \
     python packaging fetch_content meson build_systems
 # The programs and scripts of the chosen rings, as tests/run.sh wants them.

@@ -156,8 +156,8 @@ fi
 
 test_case "the guides"
 
-# tests/cli/guide.sh runs their commands; tests/cli/readme.sh and tests/export/python.sh run the
-# programs of README.md.
+# tests/cli/guide_first_hour.sh runs their commands; tests/cli/readme.sh and
+# tests/export/python.sh run the programs of README.md.
 guide=docs/guide/first-hour.ja.md
 same_program() {
     block README.md "$1" >"$work/english" && block docs/README.ja.md "$1" >"$work/out" &&

@@ -34,7 +34,7 @@ is_run() {
     case $3:$4 in
     *:'<!-- needs '*) ;;
     docs/guide/*:'<!-- run'* | docs/guide/*:'<!-- file '*)
-        grep -q -e "${3%:*}" tests/cli/guide.sh
+        grep -q -e "${3%:*}" tests/cli/guide*.sh
         ;;
     motions/README.md:*:'<!-- run'*) grep -q -e motions/README.md tests/cli/guide.sh ;;
     docs/guide/tour.md:*:'<!-- screen '*) ;;          # tests/cli/tour.sh
@@ -44,7 +44,7 @@ is_run() {
     README.md:*:'<!-- example -->') ;;                # tests/cli/readme.sh
     README.md:*:'<!-- python -->') ;;                 # tests/export/python.sh
     README.md:*:'<!-- commands -->') ;;               # tests/cli/demo.sh, make check-roots
-    docs/README.ja.md:*:'<!-- run -->') ;;            # tests/cli/guide.sh
+    docs/README.ja.md:*:'<!-- run -->') ;;            # tests/cli/guide_first_hour.sh
     docs/README.ja.md:*) [ -n "$4" ] ;;               # tests/cli/japanese.sh: those of README.md
     docs/guide/python.md:* | tools/python/README.md:* | *:'<!-- lerobot -->') ;; # python.sh
     *:'<!-- asyncio -->') ;;                          # here
