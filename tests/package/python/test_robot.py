@@ -250,6 +250,21 @@ class Moving(unittest.TestCase):
             self.robot.move({0: 0.0})  # a number is no name
         self.assertIn("(0)", str(caught.exception))
 
+    def test_nobody_at_any_port_is_told_as_that(self):
+        class Nobody:
+            """The library, where no port has a robot."""
+
+            def __getattr__(self, name, real=robot_module.lib):
+                if name == "grobo_runner_connect":
+                    return lambda runner, time: real.GROBO_ERR_NOTFOUND
+                return getattr(real, name)
+
+        with mock.patch.object(robot_module, "lib", Nobody()):
+            with self.assertRaises(errors.NoSuchName) as caught:
+                grobo.connect(guard=False)
+        self.assertEqual(str(caught.exception), "connect: no robot answers on a serial port: plug its "
+                         "adapter in, or name the port; 'sim' is a simulator")
+
     def test_torque_is_one_of_what_there_is(self):
         for wrong in ("up", "on", 7, None):
             with self.assertRaises(ValueError) as caught:

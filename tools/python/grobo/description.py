@@ -19,6 +19,13 @@ class Description:
 
     `name`: a robot of the library ("gr001", "so101"), or a file where it has a slash or a dot, as
     for grctl --robot.
+
+    >>> arm = Description("so101")
+    >>> arm.joints[:2]
+    ['shoulder_pan', 'shoulder_lift']
+    >>> low, high = arm.limits["gripper"]
+    >>> low < high
+    True
     """
 
     def __init__(self, name: Union[str, "os.PathLike[str]"] = "gr001") -> None:
@@ -35,11 +42,13 @@ class Description:
 
     @property
     def name(self) -> str:
+        """What the command line calls it."""
         name: str = ffi.string(self._c.name).decode()
         return name
 
     @property
     def joints(self) -> List[str]:
+        """Names of joints, in the order that lists of angles have."""
         return [ffi.string(joint.name).decode() for joint in joints_of(self.model)]
 
     @property

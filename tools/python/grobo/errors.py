@@ -17,10 +17,16 @@ class Error(Exception):
     and `unit` is that of the value: for a limit the joint's name and the angle as the caller gave
     it ("rad" or "deg"), for a safety stop the joint and the value in the unit of the reason.
     `limits` are the two limits of an angle that is outside, in the same unit.
+
+    >>> str(error(lib.GROBO_ERR_TIMEOUT, "move", joint="NECK_Y"))
+    'move: no reply in time (NECK_Y)'
+    >>> isinstance(error(lib.GROBO_ERR_TIMEOUT, "move"), TimeoutError)
+    True
     """
 
     code = 0
     unit: typing.Optional[str] = None
+    told: typing.Optional[str] = None  # instead of the library's words, where these say less
     limits: typing.Optional[typing.Tuple[float, float]] = None
 
     def __init__(
@@ -37,7 +43,7 @@ class Error(Exception):
         super().__init__(what, joint, value, reason)
 
     def __str__(self) -> str:
-        text = ffi.string(lib.grobo_error_text(self.code)).decode()
+        text = self.told or ffi.string(lib.grobo_error_text(self.code)).decode()
         about = [str(part) for part in (self.reason, self.joint) if part is not None]
         if self.value is not None:
             value = f"{self.value:.6g}" + (f" {self.unit}" if self.unit else "")

@@ -48,6 +48,7 @@ class Posture(Mapping[str, float]):
 
     @property
     def degrees(self) -> Dict[str, float]:
+        """The same in degrees, by joint name."""
         return {name: math.degrees(angle) for name, angle in self.items()}
 
     @property
@@ -220,6 +221,19 @@ class Motion:
         steps.
 
         All rows have as many angles as `robot` has joints, or without one as each other.
+
+        >>> wave = Motion.of([0, 1, 2], [[0.0, 0.0], [0.5, 0.0], [0.0, 0.0]])
+        >>> wave
+        <Motion of 3 postures, 2 s>
+        >>> [float(at) for at in wave.times]
+        [0.0, 1.0, 2.0]
+        >>> wave.crop(0.5, 1.5).length
+        1.0
+        >>> wave.reverse()[1].angles[0] == wave[1].angles[0]
+        True
+        >>> Motion.of([0, 1], [[0.0]])
+        Traceback (most recent call last):
+        ValueError: 2 times for 1 postures
         """
         if len(times) != len(angles):
             raise ValueError(f"{len(times)} times for {len(angles)} postures")
@@ -239,7 +253,15 @@ class Motion:
         return motion
 
     def append(self, angles: Union[Mapping[str, float], Sequence[float]], time: float) -> None:
-        """Appends a posture that is reached `time` seconds after the last one."""
+        """Appends a posture that is reached `time` seconds after the last one.
+
+        >>> nod = Motion()
+        >>> nod.append({"NECK_Y": 0.2}, 0.5)
+        >>> nod[0]["NECK_Y"], nod[0].time
+        (0.2, 0.5)
+        >>> "R_ELBOW_P" in nod[0]
+        False
+        """
         made = posture(angles, time, self._model, self.joints)
         check(lib.grobo_motion_append(self._c, made), "append")
 
@@ -258,6 +280,7 @@ class Motion:
 
     @property
     def kind(self) -> str:
+        """One of "postures", "steps", "keys" and "frames"."""
         return KINDS[lib.grobo_motion_get_kind(self._c)]
 
     @property
@@ -307,6 +330,7 @@ class Motion:
         return copy
 
     def copy(self) -> "Motion":
+        """Another one with the same postures."""
         made = ffi.new("grobo_motion **")
         check(lib.grobo_motion_dup(self._c, made), "copy")
         copy = Motion(_owned=made[0], _model=self._model)

@@ -70,6 +70,7 @@ class JointStatus:
 
     @property
     def degrees(self) -> Optional[float]:
+        """`angle` in degrees; None where it was not read."""
         return None if self.angle is None else math.degrees(self.angle)
 
 
@@ -203,6 +204,7 @@ class Joint:
 
     @property
     def status(self) -> JointStatus:
+        """What is known of it, without asking: never waits."""
         return self._robot.status().joints[self.name]
 
     @property
@@ -212,6 +214,7 @@ class Joint:
 
     @property
     def deg(self) -> float:
+        """`angle` in degrees."""
         return math.degrees(self.angle)
 
     @property
@@ -240,6 +243,7 @@ class Joint:
             self._robot.move(target, time=time)
 
     def torque(self, state: Union[bool, Torque]) -> None:
+        """Torque of this joint: True or False, or a Torque. As Robot.torque()."""
         self._robot.torque(state, [self.name])
 
 
@@ -335,7 +339,9 @@ class Robot:
                 errors.check(lib.grobo_runner_start(runner), "runner's thread")
                 result = lib.grobo_runner_connect(runner, us(timeout))
                 if device == "auto" and result == lib.GROBO_ERR_NOTFOUND:
-                    raise errors.error(result, "connect", reason=_NO_ADAPTER)
+                    nobody = errors.error(result, "connect")
+                    nobody.told = _NO_ADAPTER
+                    raise nobody
                 errors.check(result, device)
         except BaseException:
             self._runner.close()
