@@ -214,7 +214,7 @@ include tools/baremetal/baremetal.mk
 export GRCTL_PHYSICS ?= off
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean analyse tidy fuzz soak dist bench bench-peers bench-count bench-realtime bench-pump plots captures cross check-cross check-drivers
+.PHONY: clean analyse analyzer fuzz soak dist bench bench-peers bench-count bench-realtime bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-model check-areas check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
@@ -484,16 +484,16 @@ captures: $(BUILD)/grctl ## make the screens of docs/guide/tour.md and the table
 	@GRCTL="$(call whole,$(GRCTL))" TOUR_WRITE=yes sh tests/cli/tour.sh
 	@GRCTL="$(call whole,$(GRCTL))" TOUR_WRITE=yes sh tests/cli/deaths.sh
 
-analyse: ## shellcheck of all scripts, ruff (from PyPI) of all Python
+analyse: ## shellcheck of scripts, ruff and mypy (from PyPI) of Python, tsc (from npm) of the page
 	-@! command -v apt-get >/dev/null || command -v shellcheck >/dev/null || tools/setup.sh --ci
-	-@python3 -m venv $(BUILD)/ruff && $(BUILD)/ruff/bin/pip install -q --disable-pip-version-check ruff
-	@RUFF="$(abspath $(BUILD)/ruff/bin/ruff)" BUILD="$(BUILD)" TEST_LOGS="$(BUILD)/logs/analyse" tests/run.sh tools/lint/analyse.sh
+	-@python3 -m venv $(BUILD)/ruff && $(BUILD)/ruff/bin/pip install -q --disable-pip-version-check ruff mypy cffi mcap
+	-@command -v npm >/dev/null && npm install -s --no-audit --no-fund --prefix $(BUILD)/tsc typescript >/dev/null
+	@RUFF="$(abspath $(BUILD)/ruff/bin/ruff)" MYPY="$(abspath $(BUILD)/ruff/bin/mypy)" \
+	    TSC="$(abspath $(BUILD)/tsc/node_modules/.bin/tsc)" BUILD="$(BUILD)" TEST_LOGS="$(BUILD)/logs/analyse" \
+	    tests/run.sh tools/lint/analyse.sh
 
-tidy: ## clang-tidy over the library and the command; advice, not a gate
-	@status=0; for file in $(CORE_SRCS) $(OTHER_SRCS) $(TOOL_SRCS); do \
-	    $(TIDY) --quiet $$file -- -std=c11 -Iinclude -Iports/$(PORT)/include -I. $(OS_FLAGS) \
-	        2>/dev/null || status=1; \
-	done; exit $$status
+analyzer: ## gcc -fanalyzer and clang-tidy of library, ports and command, but what tools/lint/reviewed has; 20 minutes
+	+@MAKE="$(MAKE)" TIDY="$(TIDY)" sh tools/lint/analyzer.sh $(BUILD)/analyzer
 
 fuzz: ## libFuzzer on each target for FUZZ_S=60 seconds, two at a time; finds stay in build/fuzz
 	@command -v $(FUZZ_CC) >/dev/null || \

@@ -36,6 +36,7 @@ stage_of() {
     cockpit) echo check-cockpit ;;
     api) echo check-api ;;
     analyse) echo analyse ;;
+    analyzer) echo analyzer ;;
     families) echo check-families ;;
     physics) echo check-physics ;;
     fleet) echo check-fleet ;;
@@ -49,7 +50,8 @@ stage_of() {
 }
 
 [ $# -gt 0 ] || set -- san memcheck fuzz map mutants asserts sequences model soak abi ports deb \
-    wheel roots analyse cockpit api families physics fleet scan stops memory calls matrix areas
+    wheel roots analyse analyzer cockpit api families physics fleet scan stops memory calls \
+    matrix areas
 for name in "$@"; do
     stage_of "$name" >/dev/null || { echo "nightly: no stage is called $name" >&2; exit 2; }
 done

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What other programs say of the scripts: shellcheck of the shell's, ruff of Python's. RUFF is its
-# command. What is left out here is left out for the reason beside it; a single place says its own.
+# What other programs say of what is not compiled: shellcheck of the shell's scripts, ruff and mypy
+# of Python, tsc of the page. RUFF, MYPY, TSC are their commands. What is left out here is left out for the reason beside it; a single place says its own.
 . tests/support/tap.sh
 
 # SC2034, SC2154: a file that is sourced has what its readers set, and sets what they read.
@@ -24,5 +24,18 @@ if "${RUFF:-ruff}" --version >/dev/null 2>&1; then
         --select E4,E7,E9,F,B,W,PLE --ignore B905 $programs
 else
     skip "ruff has nothing to say" "ruff is not installed"
+fi
+if "${MYPY:-mypy}" --version >/dev/null 2>&1; then
+    check "mypy has nothing to say of the package" "${MYPY:-mypy}" --strict --cache-dir /dev/null \
+        tools/python/grobo
+else
+    skip "mypy has nothing to say of the package" "mypy is not installed"
+fi
+if "${TSC:-tsc}" --version >/dev/null 2>&1; then
+    check "tsc has nothing to say of the page" "${TSC:-tsc}" --noEmit --allowJs --checkJs \
+        --strict false --target es2022 --module es2022 --moduleResolution bundler \
+        --lib es2022,dom,dom.iterable tests/cockpit/page.d.ts tools/grctl/web/page/*.js
+else
+    skip "tsc has nothing to say of the page" "tsc is not installed"
 fi
 done_testing

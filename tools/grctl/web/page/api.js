@@ -63,6 +63,7 @@ export class Api {
         return this.request('GET', path);
     }
 
+    /** @returns {Promise<any>} what the server answers */
     post(path, body = {}) {
         return this.request('POST', path, body);
     }

@@ -41,6 +41,7 @@ export function stepByKeys(slider, done) {
     });
 }
 
+/** @type {(yes: boolean) => void} */
 let answer = () => {};
 
 /**

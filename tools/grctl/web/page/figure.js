@@ -24,14 +24,15 @@ export function fromHex(hex) {
 
 export class Camera {
     constructor() {
-        Object.assign(this, HOME);
+        this.yaw = HOME.yaw;
+        this.pitch = HOME.pitch;
         this.zoom = 1;
         this.pan = [0, 0, 0];
     }
 
     /**
      * @param low, high the box to be seen whole
-     * @param room { top, bottom } what is covered, as parts of the height
+     * @param room ( top, bottom ) what is covered, as parts of the height
      */
     look(low, high, aspect, room) {
         const middle = m.scale(m.add(low, high), 0.5);
@@ -108,9 +109,9 @@ function band(a, b, width) {
 export class Figure {
     /**
      * @param host the element that holds the canvas and the labels
-     * @param options { flat: never use WebGL, onPick: called with a joint or -1, onTouch: called when
+     * @param options ( flat: never use WebGL, onPick: called with a joint or -1, onTouch: called when
      * there is something to draw, onGrab: called with a point that is pressed, and whether by a finger,
-     * answers what it moves { move, end } or null, above, below: elements that cover the figure }
+     * answers what it moves ( move, end ) or null, above, below: elements that cover the figure )
      */
     constructor(host, options) {
         this.host = host;
@@ -131,6 +132,7 @@ export class Figure {
         old.replaceWith(canvas);
         this.canvas = canvas;
         try {
+            /** @type {any} */
             this.renderer = webgl ? makeGl(canvas) : null;
         } catch (error) {
             console.warn(`figure: WebGL failed: ${error.message}`);
@@ -189,9 +191,9 @@ export class Figure {
     }
 
     /**
-     * @param pose { q: radians by joint (NaN: unknown), root, looks: by joint { colour, tint, shape,
-     * note }, faded, balance: { com, zmp, support, inside }, draft: it is drawn and not the robot,
-     * handles: { link, chosen } of a draft }
+     * @param pose ( q: radians by joint (NaN: unknown), root, looks: by joint ( colour, tint, shape,
+     * note ), faded, balance: ( com, zmp, support, inside ), draft: it is drawn and not the robot,
+     * handles: ( link, chosen ) of a draft )
      */
     setPose(pose, ghost) {
         const key = JSON.stringify([pose.q.map((q) => Math.round(q * 2000)), pose.looks, pose.faded,

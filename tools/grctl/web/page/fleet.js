@@ -81,7 +81,10 @@ class Card {
 
 class View {
     constructor() {
-        Object.assign(this, { api, lang, stopper, t });
+        this.api = api;
+        this.lang = lang;
+        this.stopper = stopper;
+        this.t = t;
         stopper.changed = () => this.schedule();
         this.state = null;
         this.arrived = 0;

@@ -49,7 +49,7 @@ export function fleetStopWords(state, waited, t) {
              text: `${who}: ${t('{0} of {1} robots stand', n.stopped || 0, total)}` };
 }
 
-/** Whether a robot is one that is looked for. @param want { text, group, trouble } */
+/** Whether a robot is one that is looked for. @param want ( text, group, trouble ) */
 export function isWanted(robot, facts, want, level) {
     const words = [robot.host, robot.robot, facts.model, robot.motion, robot.trip, ...facts.groups];
     return want.text.toLowerCase().split(/\s+/).every(

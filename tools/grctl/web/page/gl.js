@@ -138,7 +138,7 @@ class Gl {
     /** What must be seen through the robot: pale where something is before it. */
     marks(scene, camera) {
         const gl = this.gl;
-        for (const [test, k] of [[false, 0.5], [true, 1]]) {
+        for (const { test, k } of [{ test: false, k: 0.5 }, { test: true, k: 1 }]) {
             (test ? gl.enable : gl.disable).call(gl, gl.DEPTH_TEST);
             const pale = (c) => [c[0], c[1], c[2], c[3] * k];
             this.begin(camera);

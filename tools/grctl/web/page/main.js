@@ -21,7 +21,10 @@ const SETTLED_MS = 400;
 
 class App {
     constructor() {
-        Object.assign(this, { api, lang, stopper, t });
+        this.api = api;
+        this.lang = lang;
+        this.stopper = stopper;
+        this.t = t;
         this.lease = new Lease();
         this.state = null;
         this.arrived = 0;
@@ -365,6 +368,7 @@ class App {
         const style = getComputedStyle(document.documentElement);
         const names = ['text', 'quiet', 'grid', 'danger', 'good', 'warn', 'accent', 'part', 'faded',
                        'ghost', 'com', 'zmp', 'on', 'off', 'brake', 'cold', 'card'];
+        /** @type {any} */
         this.css = Object.fromEntries(names.map((n) => [n, style.getPropertyValue(`--${n}`).trim()]));
         this.css.series = [0, 1, 2, 3, 4, 5].map((n) => style.getPropertyValue(`--series${n}`).trim());
         const dark = style.getPropertyValue('--dark').trim() === '1';

@@ -49,7 +49,7 @@ function editLinks(links, was) {
 export class Draft {
     /**
      * @param joints of the robot
-     * @param file { name, etag, keys } as the server told it; null: a new motion
+     * @param file ( name, etag, keys ) as the server told it; null: a new motion
      * @param frames whether the keys are samples of a file of frames, which is to stay one
      */
     constructor(joints, file, frames = false) {

@@ -32,7 +32,7 @@ export class Hands {
         return forward(body, q, pose.root || stand(body, q));
     }
 
-    /** A press at a point of the figure. @returns { move, end } or null: it turns the picture */
+    /** A press at a point of the figure. @returns ( move, end ) or null: it turns the picture */
     grab(x, y, touch) {
         const { figure } = this;
         if (!figure.at) {

@@ -10,11 +10,12 @@ const LEFT = 40; // for the angles
 const DRAG = 4; // pixels before a press is a drag
 
 export class Line {
-    /** @param host #make-track @param hands { choose(id), move(id, ms, done), at(ms) } */
+    /** @param host #make-track @param hands ( choose(id), move(id, ms, done), at(ms) ) */
     constructor(host, t, hands) {
         this.host = host;
         this.t = t;
         this.hands = hands;
+        this.drawnKeys = this.drawnLook = this.drawnOther = null;
         this.canvas = host.querySelector('canvas');
         this.markers = host.querySelector('.markers');
         this.range = host.querySelector('input');
@@ -42,7 +43,7 @@ export class Line {
         return Math.max(0, Math.min(this.span, part * this.span));
     }
 
-    /** @param view { draft, at, look, other, joint, css, theme } */
+    /** @param view ( draft, at, look, other, joint, css, theme ) */
     draw(view) {
         const { draft, at } = view;
         if (!this.dragging) { // a little room behind the last key, to put another there

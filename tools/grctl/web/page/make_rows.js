@@ -4,7 +4,7 @@
 import { degreesOf, element, limitValues, stepByKeys, tremble, valueOf, valueText } from './dom.js';
 
 export class Rows {
-    /** @param make { turnJoint(joint, deg, tag), unset(joint), rest(), app } */
+    /** @param make ( turnJoint(joint, deg, tag), unset(joint), rest(), app ) */
     constructor(list, make) {
         this.list = list;
         this.make = make;

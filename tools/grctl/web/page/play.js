@@ -11,7 +11,7 @@ import { DEG } from './mat.js';
 
 const LIVE = ['approaching', 'playing', 'paused', 'stopping'];
 
-/** The pose of samples at a time, between two of them. @returns { q: radians, root } */
+/** The pose of samples at a time, between two of them. @returns ( q: radians, root ) */
 export function sample(frames, ms, toMatrix) {
     const at = Math.max(0, Math.min(frames.angle_deg.length - 1, ms / 1000 * frames.rate_hz));
     const n = Math.floor(at), m = Math.min(n + 1, frames.angle_deg.length - 1), k = at - n;

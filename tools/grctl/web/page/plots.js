@@ -43,7 +43,7 @@ export class Ring {
 
 /**
  * Least and largest by column of pixels.
- * @returns { low, high } of width columns; NaN where there is nothing
+ * @returns ( low, high ) of width columns; NaN where there is nothing
  */
 export function columns(ring, channel, from, to, width) {
     const low = new Float32Array(width).fill(NaN), high = new Float32Array(width).fill(NaN);
@@ -85,6 +85,7 @@ export class Plots {
         this.chosen = [];
         this.rings = [];
         this.cursor = null;
+        this.onTouch = null;
         this.charts = KINDS.map((kind) => {
             const box = document.createElement('figure'), title = document.createElement('figcaption');
             const canvas = document.createElement('canvas');
@@ -127,7 +128,7 @@ export class Plots {
         this.dirty = true;
     }
 
-    /** @param theme { text, quiet, grid, danger, series: colours } as CSS text */
+    /** @param theme ( text, quiet, grid, danger, series: colours ) as CSS text */
     setTheme(theme) {
         this.theme = theme;
         this.dirty = true;

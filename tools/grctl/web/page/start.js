@@ -24,12 +24,13 @@ export const stopper = new Stopper(api, () => setting('name') || t('Computer'), 
 });
 
 /** When the page was drawn for the first time, or nobody sees it. */
+/** @type {Promise<void>} */
 const painted = new Promise((done) => {
     if (document.hidden) {
         done();
     }
-    new PerformanceObserver((list) => list.getEntriesByName('first-contentful-paint').forEach(done))
-        .observe({ type: 'paint', buffered: true });
+    const look = (list) => list.getEntriesByName('first-contentful-paint').forEach(() => done());
+    new PerformanceObserver(look).observe({ type: 'paint', buffered: true });
     setTimeout(done, PAINT_MS);
 });
 

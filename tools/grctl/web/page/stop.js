@@ -83,7 +83,7 @@ export function count(joints) {
 /**
  * What is known of a stop.
  * @param t translator @param names of the joints
- * @returns { level: 'ok' | 'warn' | 'bad', text }; null: no stop
+ * @returns ( level: 'ok' | 'warn' | 'bad', text ); null: no stop
  */
 export function stopWords(stop, waited, names, t) {
     if (waited > 0) {
