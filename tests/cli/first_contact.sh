@@ -67,6 +67,33 @@ if have_json; then
             {s["name"] for s in lines[0]["steps"]} > {"ping", "models", "latency", "board", "echo"}'
     }
     check "the report as JSON" told
+    # As a real robot's, of which some is otherwise than that of the simulator.
+    test_case "what differs from another report is said"
+    otherwise() {
+        python3 - "$1" "$2" <<'EOF'
+import json, sys
+report = json.load(open(sys.argv[1]))
+servo = report["servos"][3]
+servo["firmware"] += 1
+servo["registers"]["cw_limit"] = servo["registers"].get("cw_limit", 0) - 5
+servo["registers"]["present_position"] = 777
+json.dump(report, open(sys.argv[2], "w"))
+EOF
+    }
+    check "a report that is another" otherwise "$work/told.json" "$work/real.json"
+    compared() {
+        on_robot first-contact --yes -o "$work/compared" --compare "$work/real.json" >"$work/out" \
+            2>"$work/err"
+        [ $? -le 1 ] && grep '^differs' "$work/compared.txt" | grep -v ' verdict: ' >"$work/differs"
+    }
+    check "it is compared" compared
+    check "a firmware" grep -q '^differs  *R_KNEE_P firmware: ' "$work/differs"
+    check "a register that is kept" grep -q '^differs  *R_KNEE_P cw_limit: ' "$work/differs"
+    check "and nothing that is measured" [ "$(wc -l <"$work/differs")" -eq 2 ]
+    check "another robot's" fails 2 'real.json: is of gr001; choose that robot' "$GRCTL" -d sim \
+        --robot so101 first-contact --yes -o "$work/no" --compare "$work/real.json"
+    check "none at all" fails 3 'shy.txt: is no report' on_robot first-contact --yes \
+        -o "$work/no" --compare "$work/shy.txt"
 fi
 stop_sim
 done_testing

@@ -125,9 +125,9 @@ def dynamixel_sdk_layouts(port):
         assert read(line, i, position)[0] == here, name
         packets.action(line, d.BROADCAST_ID)
         line.is_using = False
-        arrives(lambda: abs(read(line, i, position)[0] - there) <= 3, True)
+        arrives(lambda: abs(read(line, i, position)[0] - there) <= 3, True)  # noqa: B023 called at once
         assert packets.reboot(line, i) == (0, 0), name
-        arrives(lambda: packets.read1ByteTxRx(line, i, torque)[:2], (0, 0))
+        arrives(lambda: packets.read1ByteTxRx(line, i, torque)[:2], (0, 0))  # noqa: B023 as well
 
 
 def dynamixel_sdk_1(port):

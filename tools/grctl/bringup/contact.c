@@ -8,6 +8,7 @@
 
 #include "tools/grctl/bringup/ask.h"
 #include "tools/grctl/bringup/contact.h"
+#include "tools/grctl/bringup/contact_compare.h"
 #include "tools/grctl/bringup/contact_rate.h"
 #include "tools/grctl/bringup/scan.h"
 #include "tools/grctl/cli/file.h"
@@ -40,6 +41,9 @@ static int write_report(contact *k)
                             "wiring", app_driver(k->a)->protocol->relay ? "board" : "bus",
                             "baud_bps", (int)conn_baud(k->a), "not_as_assumed", k->n_bad, "steps",
                             k->steps, "servos", k->servos);
+    if (all && k->other) {
+        json_object_set_new(all, "differs", contact_compare(k, k->other));
+    }
     char *text = all ? json_dumps(all, JSON_INDENT(1) | JSON_REAL_PRECISION(12)) : NULL;
     int status = text ? save(k, ".json", text, strlen(text))
                       : app_fail_error(k->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "first-contact");
@@ -350,7 +354,7 @@ static int begin(contact *k, const contact_orders *orders)
     k->joint = orders->joint >= 0 ? orders->joint : app_model(k->a)->n_joints - 1;
     k->steps = json_array();
     k->servos = json_array();
-    return 0;
+    return orders->other ? contact_read_report(k->a, orders->other, &k->other) : 0;
 }
 
 int contact_run(app *a, const contact_orders *orders)
@@ -379,6 +383,7 @@ int contact_run(app *a, const contact_orders *orders)
     int written = k.steps && json_array_size(k.steps) > 0 ? write_report(&k) : 0;
     json_decref(k.steps);
     json_decref(k.servos);
+    json_decref(k.other);
     free(k.text.bytes);
     status = ask_signal() ? EXIT_SIGNAL + ask_signal() : status ? status : written;
     return status ? status : k.n_bad ? EXIT_ROBOT : EXIT_DONE;

@@ -7,8 +7,9 @@
 #include "tools/grctl/cli/app.h"
 
 typedef struct contact_orders {
-    int joint;       /* that moves; -1: the last one */
-    const char *out; /* how the files of the report begin; NULL: first-contact-ROBOT */
+    int joint;         /* that moves; -1: the last one */
+    const char *out;   /* how the files of the report begin; NULL: first-contact-ROBOT */
+    const char *other; /* another report, to be compared with; NULL: none */
 } contact_orders;
 
 /* Returns the exit status: EXIT_ROBOT where something is not as assumed. */

@@ -14,6 +14,7 @@ typedef struct contact {
     char prefix[CONTACT_PATH_BYTES], trace[CONTACT_PATH_BYTES];
     heap text; /* the report */
     json_t *steps, *servos;
+    json_t *other; /* NULL, or a report that this one is compared with */
     int joint, n_bad;
     double before_deg;
     bool was_on;

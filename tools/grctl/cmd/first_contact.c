@@ -5,16 +5,20 @@
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cmd/commands.h"
 
-enum { OPT_OUT };
+enum { OPT_OUT, OPT_COMPARE };
 
 static const cli_option options[] = {
     [OPT_OUT] = OPTION_TEXT("out", 'o', "PREFIX",
                             "prefix of the names of report and traces (first-contact-ROBOT)"),
+    [OPT_COMPARE] = OPTION_TEXT("compare", 0, "REPORT.json",
+                                "say what differs from another report of this robot"),
 };
 
 static int run(app *a)
 {
-    contact_orders orders = {.joint = -1, .out = app_option(a, OPT_OUT)->text};
+    contact_orders orders = {.joint = -1,
+                             .out = app_option(a, OPT_OUT)->text,
+                             .other = app_option(a, OPT_COMPARE)->text};
     int status = 0;
     if (a->line.n_arguments > 0) {
         const char *name = a->line.argument[0];
@@ -43,9 +47,12 @@ const cli_command cmd_first_contact = {
         "\n"
         "It writes PREFIX.txt and PREFIX.json, with what was found and whether it is as assumed,\n"
         "and a trace of each part; please send them to the authors. The exit status is 1 if\n"
-        "something is not as assumed. With --yes it does not ask: answers are lines of standard\n"
-        "input, or no.\n",
-    .example = "  grctl first-contact gripper\n  grctl -d sim --robot so101 first-contact\n",
+        "something is not as assumed. --compare says, and keeps in the report, what differs from\n"
+        "that of another robot of this kind, as of a simulated one: verdicts, models, firmware and\n"
+        "the registers that a servo keeps without power. With --yes it does not ask: answers are\n"
+        "lines of standard input, or no.\n",
+    .example =
+        "  grctl first-contact gripper\n  grctl -d sim --robot so101 --yes first-contact --compare real.json\n",
     COMMAND_OPTIONS(options),
     .run = run,
 };
