@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What other programs say of what is not compiled: shellcheck of the shell's scripts, ruff and mypy
-# of Python, tsc of the page. RUFF, MYPY, TSC are their commands. What is left out here is left out for the reason beside it; a single place says its own.
+# What other programs say of what is not compiled: shellcheck of the shell's scripts, ruff and
+# mypy of Python, tsc of the page. RUFF, MYPY, TSC are their commands. What is left out here is
+# left out for the reason beside it; a single place says its own.
 . tests/support/tap.sh
 
 # SC2034, SC2154: a file that is sourced has what its readers set, and sets what they read.

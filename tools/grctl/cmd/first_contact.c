@@ -48,11 +48,11 @@ const cli_command cmd_first_contact = {
         "It writes PREFIX.txt and PREFIX.json, with what was found and whether it is as assumed,\n"
         "and a trace of each part; please send them to the authors. The exit status is 1 if\n"
         "something is not as assumed. --compare says, and keeps in the report, what differs from\n"
-        "that of another robot of this kind, as of a simulated one: verdicts, models, firmware and\n"
-        "the registers that a servo keeps without power. With --yes it does not ask: answers are\n"
-        "lines of standard input, or no.\n",
-    .example =
-        "  grctl first-contact gripper\n  grctl -d sim --robot so101 --yes first-contact --compare real.json\n",
+        "that of another robot of this kind, as of a simulated one: verdicts, models, firmware\n"
+        "and the registers that a servo keeps without power. With --yes it does not ask: answers\n"
+        "are lines of standard input, or no.\n",
+    .example = "  grctl first-contact gripper\n"
+               "  grctl -d sim --robot so101 --yes first-contact --compare real.json\n",
     COMMAND_OPTIONS(options),
     .run = run,
 };
