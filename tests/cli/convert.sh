@@ -199,6 +199,9 @@ check "frames at a rate, which every Choreonoid reads" both grep -q '^type: Body
 check "--exact keeps the times" both convert --exact "$work/few.pseq" "$work/exact.yaml" \
     --- grep -q 'has_frame_time: true' "$work/exact.yaml"
 check "and says who reads them" grep -q 'by Choreonoid from 2.1 on' "$work/err"
+check "a frame each ten seconds" exits 0 "$GRCTL" convert --rate 0.1 $greet "$work/slow.yaml"
+check "and none more seldom" fails 2 "'0.09' is not a number from 0.1 to 1000" \
+    "$GRCTL" convert --rate 0.09 $greet "$work/slow.yaml"
 check "--exact and --integers" fails 2 'cannot be used together' \
     "$GRCTL" convert --exact --integers $greet "$work/x.m"
 

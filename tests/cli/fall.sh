@@ -7,9 +7,9 @@
 
 start_sim --robot so101 --physics on || { echo "Bail out! the simulator did not start"; exit 1; }
 
-# Torque does not come on while the arm falls.
+# Torque comes on wherever the arm is in its fall.
 raised() {
-    wait_for exits 0 of so101 servo on && exits 0 of so101 move shoulder_lift 0 1500
+    exits 0 of so101 servo on && exits 0 of so101 move shoulder_lift 0 1500
 }
 
 # angle JOINT: where it was read.
