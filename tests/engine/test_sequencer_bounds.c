@@ -193,6 +193,8 @@ TEST(commands_take_their_bounds)
     sample_pump_run(&pump, 500 * MS);
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 1, pump.now_us), 0);
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 1000, pump.now_us), 0);
+    assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 1001, pump.now_us), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 0, pump.now_us), GROBO_ERR_ARG);
     assert_int_equal(grobo_sequencer_seek(&pump.seq, 0, pump.now_us), 0);
     sample_pump_run(&pump, pump.now_us);
     assert_true(fabs(pump.frames[pump.n - 1].posture.angle_rad[0]) < 1e-12);
