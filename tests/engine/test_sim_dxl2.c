@@ -571,3 +571,76 @@ TEST(it_is_as_from_the_factory)
     simkit_run(&chain.kit, 600000);
     assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ID), 1);
 }
+
+/* The requests are the examples of emanual protocol2, which prints a wrong CRC of the second. */
+TEST(its_control_table_is_backed_up)
+{
+    static const char store[] = "FF FF FD 00 01 08 00 20 01 43 54 52 4C 16 F5";
+    static const char restore[] = "FF FF FD 00 01 08 00 20 02 43 54 52 4C 9E F5";
+    static const char done[] = "FF FF FD 00 01 04 00 55 00 A1 0C";
+    enum { STARTUP = 60, POSITION_P = 84, PROFILE = 108, READY = 147, INDIRECT = 168 };
+    chain_start(&chain, model("XC330-T288"), 2, NULL);
+    /* Nothing to restore; not while torque is on. */
+    simkit_ask(&chain.kit, restore, 50000);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_FAILED);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    simkit_ask(&chain.kit, store, 50000);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_FAILED);
+    assert_int_equal(simkit_register(&chain.kit, 0, READY), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 0), 0);
+    /* EEPROM and gains are stored, and the EEPROM comes back with a restart. */
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_RETURN_DELAY, 7), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ACCELERATION, 11), 0);
+    chain_send(&chain, 1, GROBO_DXL2_WRITE, POSITION_P, 0, (const uint8_t *)"\x09\x01", 2);
+    chain_send(&chain, 1, GROBO_DXL2_WRITE, INDIRECT, 0, (const uint8_t *)"\x54\x00", 2);
+    simkit_ask(&chain.kit, store, 50000);
+    simkit_expect(&chain.kit, done);
+    assert_int_equal(simkit_register(&chain.kit, 0, READY), 1);
+    assert_int_equal(simkit_register(&chain.kit, 1, READY), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_RETURN_DELAY, 8), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ACCELERATION, 12), 0);
+    simkit_ask(&chain.kit, restore, 50000);
+    simkit_expect(&chain.kit, done);
+    simkit_run(&chain.kit, 600000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_RETURN_DELAY), 7);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ACCELERATION), 0);
+    assert_int_equal(simkit_register(&chain.kit, 0, READY), 1);
+    /* Registers in RAM come back, and torque is on, where startup says so. */
+    chain_send(&chain, 1, GROBO_DXL2_WRITE, STARTUP, 0, (const uint8_t *)"\x03", 1);
+    assert_int_equal(chain.kit.got[8], 0);
+    chain_send(&chain, 1, GROBO_DXL2_REBOOT, 0, 0, NULL, 0);
+    simkit_run(&chain.kit, 600000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ACCELERATION), 11);
+    assert_int_equal(simkit_register(&chain.kit, 0, POSITION_P), 0x109);
+    chain_send(&chain, 1, GROBO_DXL2_READ, INDIRECT, 2, NULL, 0);
+    assert_int_equal(chain.kit.got[9], POSITION_P);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 1);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_GOAL), 2048);
+    /* Another code, another key, no such instruction. */
+    chain_send(&chain, 2, GROBO_DXL2_BACKUP, 0, 0, (const uint8_t *)"\x03\x43\x54\x52\x4C", 5);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_RANGE);
+    chain_send(&chain, 2, GROBO_DXL2_BACKUP, 0, 0, (const uint8_t *)"\x01\x43\x54\x52\x4D", 5);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_RANGE);
+    chain_start(&chain, model("2XL430-W250"), 1, NULL);
+    simkit_ask(&chain.kit, store, 50000);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_INSTRUCTION);
+}
+
+TEST(a_backup_of_p_has_its_indirect_addresses)
+{
+    static const uint8_t store[] = {1, 0x43, 0x54, 0x52, 0x4C};
+    static const uint8_t restore[] = {2, 0x43, 0x54, 0x52, 0x4C};
+    enum { READY = 878, INDIRECT = 168 };
+    chain_start(&chain, model("PH54-200-S500-R"), 1, NULL);
+    chain_send(&chain, 1, GROBO_DXL2_WRITE, INDIRECT, 0, (const uint8_t *)"\x34\x02", 2);
+    chain_send(&chain, 1, GROBO_DXL2_BACKUP, 0, 0, store, sizeof store);
+    assert_int_equal(chain.kit.got[8], 0);
+    chain_send(&chain, 1, GROBO_DXL2_READ, READY, 1, NULL, 0);
+    assert_int_equal(chain.kit.got[9], 1);
+    chain_send(&chain, 1, GROBO_DXL2_WRITE, INDIRECT, 0, (const uint8_t *)"\x35\x02", 2);
+    assert_int_equal(chain.kit.got[8], 0);
+    chain_send(&chain, 1, GROBO_DXL2_BACKUP, 0, 0, restore, sizeof restore);
+    simkit_run(&chain.kit, 600000);
+    chain_send(&chain, 1, GROBO_DXL2_READ, INDIRECT, 2, NULL, 0);
+    assert_int_equal(chain.kit.got[9], 0x34);
+}

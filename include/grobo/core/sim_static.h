@@ -85,6 +85,9 @@ typedef struct grobo_sim_servo {
     uint8_t cable;  /* grobo_sim_cable */
     bool powered, blocked, stalled, by_hand, reboots_after_save, ramped;
     struct grobo_i_body *body; /* where its shaft is in a world with weight; NULL: in none */
+    uint8_t backup[GROBO_SIM_REGISTER_BYTES]; /* registers when its control table was backed up */
+    uint16_t backup_indirect[GROBO_SIM_INDIRECTS];
+    bool backed_up; /* there is such a backup */
 } grobo_sim_servo;
 
 /** Bytes on a wire, each with the time at which it is over. Private. */

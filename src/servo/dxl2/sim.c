@@ -323,8 +323,10 @@ void grobo_i_dxl2_sim_restart(grobo_sim *sim, int index)
     grobo_i_dxl_boot(sim, index);
     grobo_i_indirect_restart(servo);
     goals_anew(sim, servo);
+    grobo_i_dxl2_sim_start_up(servo);
     servo->heard_us = sim->now_us;
     follow(sim, index);
+    grobo_i_sim_torque(sim, index, GROBO_TORQUE_OFF);
 }
 
 static bool has_mode(const grobo_sim_servo *servo, int32_t mode)

@@ -146,6 +146,16 @@ static void reset(grobo_sim *sim, int index, uint8_t what)
     grobo_i_sim_reboot(sim, index);
 }
 
+static void back_up(grobo_sim *sim, int index, uint8_t what)
+{
+    if (what == GROBO_I_DXL2_STORE) {
+        grobo_i_dxl2_sim_store_backup(&sim->servo[index]);
+    } else {
+        grobo_i_dxl2_sim_restore_backup(&sim->servo[index]);
+        grobo_i_sim_reboot(sim, index);
+    }
+}
+
 /* Whether an address is before the registers in RAM. */
 static bool is_kept(const grobo_sim_servo *servo, int address)
 {
@@ -157,7 +167,7 @@ static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl2_packet *pac
     uint8_t code = packet->instruction;
     bool by_second = packet->id != sim->servo[index].plant.id && packet->id != GROBO_DXL2_ID_ALL;
     bool writes = code == GROBO_DXL2_WRITE || code == GROBO_DXL2_REG_WRITE;
-    bool kept = code == GROBO_DXL2_FACTORY_RESET ||
+    bool kept = code == GROBO_DXL2_FACTORY_RESET || code == GROBO_DXL2_BACKUP ||
                 (writes && is_kept(&sim->servo[index], packet->address));
     if (by_second && kept) { /* not by the secondary id */
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->address);
@@ -178,6 +188,9 @@ static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl2_packet *pac
     }
     if (code == GROBO_DXL2_FACTORY_RESET) { /* when the answer is made, as a restart */
         return judge_reset(packet);
+    }
+    if (code == GROBO_DXL2_BACKUP) { /* likewise */
+        return grobo_i_dxl2_sim_judge_backup(&sim->servo[index], packet);
     }
     return code == GROBO_DXL2_REBOOT ? GROBO_DXL2_DONE : GROBO_DXL2_BAD_INSTRUCTION;
 }
@@ -205,6 +218,8 @@ static void for_one(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
         grobo_i_sim_reboot(sim, index);
     } else if (packet->instruction == GROBO_DXL2_FACTORY_RESET && error == GROBO_DXL2_DONE) {
         reset(sim, index, packet->data[0]);
+    } else if (packet->instruction == GROBO_DXL2_BACKUP && error == GROBO_DXL2_DONE) {
+        back_up(sim, index, packet->data[0]);
     }
 }
 

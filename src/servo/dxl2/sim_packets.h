@@ -3,6 +3,7 @@
 #ifndef GROBO_SERVO_DXL2_SIM_PACKETS_H
 #define GROBO_SERVO_DXL2_SIM_PACKETS_H
 
+#include <grobo/core/dxl2.h>
 #include <grobo/core/sim_static.h>
 
 /* Of grobo_sim_family. */
@@ -25,5 +26,16 @@ uint8_t grobo_i_dxl2_sim_write(grobo_sim *sim, int servo, int address, const uin
 void grobo_i_dxl2_sim_refresh(grobo_sim *sim, int servo);
 /* Its drive mode turns it the other way round. */
 bool grobo_i_dxl2_sim_reverses(const grobo_sim_servo *servo);
+
+/* First byte of a control table backup. */
+enum { GROBO_I_DXL2_STORE = 1, GROBO_I_DXL2_RESTORE = 2 };
+
+/* Control table backup (sim_backup.c): whether it is done; stores or restores the EEPROM; what a
+ * restart does with it, as the register startup says. */
+uint8_t grobo_i_dxl2_sim_judge_backup(const grobo_sim_servo *servo,
+                                      const grobo_dxl2_packet *packet);
+void grobo_i_dxl2_sim_store_backup(grobo_sim_servo *servo);
+void grobo_i_dxl2_sim_restore_backup(grobo_sim_servo *servo);
+void grobo_i_dxl2_sim_start_up(grobo_sim_servo *servo);
 
 #endif

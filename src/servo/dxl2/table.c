@@ -448,6 +448,7 @@ static const grobo_servo_register rows[] = {
     ROW("external_port_data_2", 628, 2, 0, W, NONE, "", 0, 4095, 0, 6),
     ROW("external_port_data_3", 630, 2, 0, W, NONE, "", 0, 4095, 0, 6),
     ROW("external_port_data_4", 632, 2, 0, W, NONE, "", 0, 4095, 0, 6),
+    ROW("backup_ready", 878, 1, 0, R, NONE, "", 0, 1, 0, 15),
     ROW("registered", 890, 1, 0, R, REGISTERED, "", 0, 1, 0, 6),
     ROW("reply_level", 891, 1, 0, W, REPLY_LEVEL, "", 0, 2, 2, 6),
     ROW("hardware_error", 892, 1, 0, R, ERROR, "bits", 0, 255, 0, 6),
