@@ -11,7 +11,7 @@
 work=$(mktemp -d) || exit 1
 sim=
 end() {
-    [ -z "$sim" ] || kill "$sim" 2>/dev/null
+    [ -z "$sim" ] || { kill "$sim" && wait "$sim"; } 2>/dev/null
     rm -rf "$work"
 }
 trap end EXIT

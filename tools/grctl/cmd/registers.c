@@ -68,13 +68,23 @@ static void print_value(const grobo_servo_model *servo, const grobo_servo_regist
     app_print("\n");
 }
 
+/* As the file of its model says it. */
+static const char *access_of(const grobo_servo_register *reg)
+{
+    static const char *const words[] = {"r", "rw", "kept r", "kept rw"};
+    return words[((reg->flags & GROBO_REGISTER_KEPT) != 0) * 2 +
+                 ((reg->flags & GROBO_REGISTER_W) != 0)];
+}
+
 /* Beside the counts what they mean: under a key with its unit, or as a word. */
 static json_t *value_json(const grobo_servo_model *servo, const grobo_servo_register *reg,
                           int32_t value)
 {
     char key[REGISTERS_TEXT_BYTES];
-    json_t *o = json_pack("{s:s,s:i,s:i,s:s}", "name", reg->name, "address", reg->address, "value",
-                          value, "unit", reg->unit);
+    json_t *o =
+        json_pack("{s:s,s:i,s:i,s:s,s:s,s:[i,i]}", "name", reg->name, "address", reg->address,
+                  "value", value, "unit", reg->unit, "access", access_of(reg), "range",
+                  (int)reg->min, (int)reg->max);
     json_t *meaning = registers_json(servo, reg, value);
     registers_key(reg, key, sizeof key);
     if (strcmp(key, reg->name) != 0) {
@@ -458,24 +468,34 @@ static bool would_hide(const servo_change *what)
 
 /* ---- --restore ------------------------------------------------------------------------------- */
 
-/* The registers that differ from a file, in the order in which they are written: the id last, as
- * the servo has another one then. */
+/* The registers that differ from a file, in the order in which they are written (turn_of). */
 typedef struct restore {
     servo_change change[FAMILY_PIECE_BYTES];
     int n;
 } restore;
+
+/* The others are written while the servo answers writes: a write that is not answered is waited for
+ * each time. The id is last, as the servo has another one then. */
+enum { TURNS = 4 };
+static int turn_of(const grobo_servo_register *reg, const json_t *value)
+{
+    bool answers = reg->role == GROBO_ROLE_REPLY_LEVEL && json_integer_value(value) == reg->max;
+    return answers                               ? 0
+           : reg->role == GROBO_ROLE_ID          ? 3
+           : reg->role == GROBO_ROLE_REPLY_LEVEL ? 2
+                                                 : 1;
+}
 
 static int compare(conn *c, int id, const grobo_servo_model *servo, const json_t *registers,
                    restore *r)
 {
     const grobo_servo_register *reg;
     int error = GROBO_OK;
-    for (int ids = 0; ids < 2; ids++) {
+    for (int turn = 0; turn < TURNS; turn++) {
         for (size_t i = 0; !error && (reg = grobo_servo_register_row(servo, i)) != NULL; i++) {
             const json_t *value = json_object_get(registers, reg->name);
             int32_t is;
-            if (!value || (reg->role == GROBO_ROLE_ID) != (ids == 1) ||
-                r->n == FAMILY_PIECE_BYTES) {
+            if (!value || turn_of(reg, value) != turn || r->n == FAMILY_PIECE_BYTES) {
                 continue;
             }
             error = servos_get(c, id, servo, reg, &is);
