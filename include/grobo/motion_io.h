@@ -169,7 +169,8 @@ typedef struct grobo_write_options {
     const grobo_posture *start; /**< what increments count from; NULL: grobo_motion_start() */
     double rate_hz;             /**< to frames: resample at this rate; 0: postures that stand at 25
                                      or more per second one by one, others resampled at
-                                     GROBO_MOTION_RATE_HZ, in the form that every version of
+                                     GROBO_MOTION_RATE_HZ, or at 2 or 4 times it where only
+                                     then the end is on a frame, in the form that every version of
                                      Choreonoid and the original library read */
     int64_t default_us;         /**< for steps without time; 0: GROBO_MOTION_DEFAULT_US */
     grobo_motion_style style;   /**< how key poses are filled when resampled */

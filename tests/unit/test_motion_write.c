@@ -397,10 +397,17 @@ TEST(test_frames_are_resampled)
 
     assert_true(has_diagnostic(list, "resampled", 0, 0));
     assert_false(grobo_motion_has_frame_times(frames));
+    /* At 50 per second it would end at 360 ms. */
+    assert_true(grobo_motion_frame_rate(frames) == 100);
+    assert_int_equal(size, 36);
+    assert_int_equal(grobo_motion_length_us(frames, -1), 350000);
+    assert_true(angle_of(frames, 10, 0) == 1 && angle_of(frames, size - 1, 0) == 2);
+    grobo_motion_free(frames);
+    /* On no frame: 0, 20 ... 340 ms, and one more for the end at 351. */
+    assert_int_equal(grobo_motion_set_time_s(motion, 1, 0.351), 0);
+    frames = converted(motion, GROBO_MOTION_FRAMES, NULL, NULL);
     assert_true(grobo_motion_frame_rate(frames) == GROBO_MOTION_RATE_HZ);
-    /* 0, 20 ... 340 ms, and one more for the end at 350. */
-    assert_int_equal(size, 19);
-    assert_true(angle_of(frames, 5, 0) == 1 && angle_of(frames, size - 1, 0) == 2);
+    assert_int_equal(grobo_motion_size(frames), 19);
     grobo_motion_free(frames);
     grobo_motion_free(motion);
     /* What stands at a rate keeps it. */

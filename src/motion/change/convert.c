@@ -348,6 +348,18 @@ static int resample(conversion *conv, double rate_hz)
     return result < 0 ? result : complete_rows(conv);
 }
 
+/* The lowest rate at which the motion ends on a frame, as those of .m and most others do at one of
+ * these; else the first. */
+static int rate_of_end(const conversion *conv)
+{
+    for (int rate_hz = GROBO_MOTION_RATE_HZ; rate_hz <= 4 * GROBO_MOTION_RATE_HZ; rate_hz *= 2) {
+        if (conv->view.length_us * rate_hz % 1000000 == 0) {
+            return rate_hz;
+        }
+    }
+    return GROBO_MOTION_RATE_HZ;
+}
+
 /*
  * Frames without a rate asked for: those of a motion that has them, or postures that are as close
  * as frames; anything else is resampled, since programs that read frames hold each until the next.
@@ -364,11 +376,12 @@ static int to_frames(conversion *conv)
     if (framed || options->exact || rate_hz >= FRAME_RATE_LEAST_HZ) {
         return frame_by_frame(conv, rate_hz);
     }
-    int result = resample(conv, GROBO_MOTION_RATE_HZ);
+    int even_hz = rate_of_end(conv);
+    int result = resample(conv, even_hz);
     if (result == 0 && conv->to->size > 0) {
         grobo_i_say(conv->list,
                     &(grobo_i_said){options->name, "resampled", 0, 0, GROBO_SEVERITY_NOTE},
-                    "resampled: %d frames per second", GROBO_MOTION_RATE_HZ);
+                    "resampled: %d frames per second", even_hz);
     }
     return result;
 }

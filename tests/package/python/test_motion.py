@@ -42,15 +42,16 @@ class Motions(unittest.TestCase):
         for times, kinds in (
             ([0, 1, 2], ("postures", "keys")),
             ([0.5, 1, 2], ("postures", "keys", "steps")),
+            ([0, 0.5, 1.41], ("postures", "keys")),  # between two frames of 50 per second
         ):
             for kind in kinds:
                 motion = grobo.Motion.of(times, rows, kind)
-                self.assertEqual(motion.length, 2.0)
+                self.assertEqual(motion.length, times[-1])
                 with tempfile.TemporaryDirectory() as folder:
                     for end in ends:
                         motion.save(Path(folder, "copy" + end))
                         copy = grobo.Motion.load(Path(folder, "copy" + end))
-                        self.assertEqual(copy.length, 2.0, (kind, end))
+                        self.assertEqual(copy.length, times[-1], (kind, end))
         for times in ([0, 1, 1], [0, 12, 13], [-1, 0, 1], [0, NAN, 2]):
             with self.assertRaisesRegex(ValueError, r"times\[\d\]"):
                 grobo.Motion.of(times, rows)
