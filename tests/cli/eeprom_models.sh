@@ -38,7 +38,7 @@ order() {
         >"$work/script"
     "$GRCTL" --robot "$work/one.yaml" -y -d sim --trace "$work/trace" shell "$work/script" &&
         "$GRCTL" --robot "$work/one.yaml" decode "$work/trace" |
-        sed -n 's/.*host.* writes\{0,1\} .*\(return_delay\|temperature_limit\|reply_level\).*/\1/p' \
+        grep 'host.* write' | grep -o 'return_delay\|temperature_limit\|reply_level' \
             >"$work/written"
 }
 in_order() {

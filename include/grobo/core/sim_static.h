@@ -26,6 +26,10 @@ GROBO_BEGIN_DECLS
 #ifndef GROBO_SIM_INDIRECTS
 #define GROBO_SIM_INDIRECTS 256
 #endif
+/** Bytes of registers that a servo backs up; one that has more has no backup. Private. */
+#ifndef GROBO_SIM_BACKUP_BYTES
+#define GROBO_SIM_BACKUP_BYTES GROBO_SIM_REGISTER_BYTES
+#endif
 /** Families on one line. Private. */
 #define GROBO_SIM_FAMILIES_MAX 4
 
@@ -85,7 +89,7 @@ typedef struct grobo_sim_servo {
     uint8_t cable;  /* grobo_sim_cable */
     bool powered, blocked, stalled, by_hand, reboots_after_save, ramped;
     struct grobo_i_body *body; /* where its shaft is in a world with weight; NULL: in none */
-    uint8_t backup[GROBO_SIM_REGISTER_BYTES]; /* registers when its control table was backed up */
+    uint8_t backup[GROBO_SIM_BACKUP_BYTES]; /* registers when its control table was backed up */
     uint16_t backup_indirect[GROBO_SIM_INDIRECTS];
     bool backed_up; /* there is such a backup */
 } grobo_sim_servo;

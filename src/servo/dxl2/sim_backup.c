@@ -20,7 +20,8 @@ enum { STARTUP_TORQUE = 1, STARTUP_RAM = 2 };
 static bool has_backup(const grobo_sim_servo *servo)
 {
     uint8_t from = servo->model->fast_firmware;
-    return from > 0 && grobo_i_dxl_get(servo, GROBO_ROLE_FIRMWARE) >= from;
+    return from > 0 && grobo_i_dxl_get(servo, GROBO_ROLE_FIRMWARE) >= from &&
+           grobo_i_dxl_end(servo) <= GROBO_SIM_BACKUP_BYTES;
 }
 
 uint8_t grobo_i_dxl2_sim_judge_backup(const grobo_sim_servo *servo, const grobo_dxl2_packet *packet)

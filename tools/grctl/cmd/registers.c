@@ -81,10 +81,9 @@ static json_t *value_json(const grobo_servo_model *servo, const grobo_servo_regi
                           int32_t value)
 {
     char key[REGISTERS_TEXT_BYTES];
-    json_t *o =
-        json_pack("{s:s,s:i,s:i,s:s,s:s,s:[i,i]}", "name", reg->name, "address", reg->address,
-                  "value", value, "unit", reg->unit, "access", access_of(reg), "range",
-                  (int)reg->min, (int)reg->max);
+    json_t *o = json_pack("{s:s,s:i,s:i,s:s,s:s,s:[i,i]}", "name", reg->name, "address",
+                          reg->address, "value", value, "unit", reg->unit, "access", access_of(reg),
+                          "range", (int)reg->min, (int)reg->max);
     json_t *meaning = registers_json(servo, reg, value);
     registers_key(reg, key, sizeof key);
     if (strcmp(key, reg->name) != 0) {
