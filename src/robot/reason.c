@@ -144,6 +144,13 @@ static void put_trip(writing *w, const grobo_robot *robot)
     }
 }
 
+/* What is always said of a joint: fault_joint is that one, or none. */
+static bool names_joint(int result)
+{
+    return result == GROBO_ERR_LIMIT || result == GROBO_ERR_NAN || result == GROBO_ERR_SPEED ||
+           result == GROBO_ERR_STALE;
+}
+
 int grobo_robot_error_text(const grobo_robot *robot, int result, char *text, size_t room)
 {
     if (robot == NULL || text == NULL || room == 0) {
@@ -153,8 +160,7 @@ int grobo_robot_error_text(const grobo_robot *robot, int result, char *text, siz
 
     put(&w, grobo_error_text(result));
     grobo_i_lock(robot);
-    bool of_joint =
-        (result == GROBO_ERR_LIMIT || result == GROBO_ERR_NAN) && robot->fault_joint >= 0;
+    bool of_joint = names_joint(result) && robot->fault_joint >= 0;
     if (of_joint) {
         put(&w, ": ");
         put_joint(&w, grobo_i_joint(robot->driver->model, robot->fault_joint));

@@ -166,6 +166,27 @@ TEST(a_number_that_is_none_names_its_joint_alone)
     says(grobo_robot_move(&kit.robot, &target), "not a finite number: motor 2 (slide)");
 }
 
+/* A joint that was not read, and one whose servo takes no time that is as long. */
+TEST(a_joint_that_cannot_be_sent_to_is_named)
+{
+    int slow = 0;
+    for (const family *f = family_next(NULL); f != NULL; f = family_next(f)) {
+        const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = 7, .mounted = true};
+        grobo_posture to = posture_of(1, 60);
+
+        family_start_as(&kit, f, &defaults, &sim, turns_none);
+        says(grobo_robot_send(&kit.robot, &to), "no fresh value: motor 2 (slide)");
+        kit.joints[1].max_speed_rad_s = RAD(0.01);
+        assert_int_equal(family_wait(&kit, grobo_robot_torque(&kit.robot, HELD, GROBO_TORQUE_ON)),
+                         0);
+        if (grobo_robot_send(&kit.robot, &to) == GROBO_ERR_SPEED) {
+            says(GROBO_ERR_SPEED, "faster than the servo can move: motor 2 (slide)");
+            slow++;
+        }
+    }
+    assert_true(slow > 0);
+}
+
 TEST(an_error_of_no_joint_is_its_text_alone)
 {
     grobo_posture beyond = posture_of(0, 95);
