@@ -71,7 +71,7 @@ check "replay knows them too" both exits 0 \
     "$GRCTL" --robot so101 replay "$work/line" --- says ' 0 differ, 0 missing, 0 extra'
 check_json "registers in JSON" 'lines[0]["model"] == "STS3215" and lines[0]["registers"] == [
     {"name": "max_position", "address": 11, "value": 3150, "unit": "0.088 deg",
-     "access": "kept rw", "range": [0, 4095], "max_position_deg": 96.9}]' \
+     "access": "kept rw", "range": [-32767, 32767], "max_position_deg": 96.9}]' \
     of so101 --json servo-get 3 max_position
 test_case "a servo may answer nothing but readings"
 check "a servo may answer nothing but readings" both \

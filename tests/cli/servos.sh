@@ -23,7 +23,8 @@ check "servo-set" both exits 0 on_robot servo-set 12 delay 2 --- \
     said '^servo 12: delay 0 (100 us) -> 2 (200 us); lost at power-off without --flash$'
 check "is read back" both exits 0 on_robot servo-get 12 delay --- says '  200 us$'
 check_json "in JSON under its unit" 'lines[0]["registers"] == [
-    {"name": "delay", "address": 7, "value": 2, "unit": "50 us", "delay_us": 200}]' \
+    {"name": "delay", "address": 7, "value": 2, "unit": "50 us",
+     "access": "kept rw", "range": [0, 127], "delay_us": 200}]' \
     on_robot --json servo-get 12 delay
 check "an id that another has" fails 4 'servo-set: a servo with the id 13 is there already' \
     on_robot servo-set 12 id 13
