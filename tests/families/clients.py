@@ -81,7 +81,7 @@ def dynamixel_sdk_indirect(port):
         return [group.getData(i, 634, 4) for i in (1, 2)]
 
     arrives(positions, [2500, 1800])
-    assert group.getData(1, 644, 2) == 120
+    arrives(lambda: (positions(), group.getData(1, 644, 2))[1], 120)  # the supply sags in a move
     assert packets.read4ByteTxRx(line, 1, 116)[0] == 2500
     # Through the secondary id both move, and neither answers.
     for i in (1, 2):
@@ -101,6 +101,8 @@ LAYOUTS = {
     "PH54-200-S500-R": (2020, 6, 512, 564, 580, 4, True),
     "H54-200-S500-RA": (54025, 6, 512, 564, 580, 4, False),
     "H54-200-S500-R": (54024, 6, 562, 596, 611, 4, False),
+    "XW540-T260": (1170, 6, 64, 116, 132, 4, True),
+    "MX-106-2": (321, 6, 64, 116, 132, 4, False),
 }
 
 
@@ -135,10 +137,18 @@ def dynamixel_sdk_1(port):
 
     line, packets = patient(d.PortHandler(port)), d.PacketHandler(1.0)
     assert line.openPort() and line.setBaudRate(1000000)
-    assert [packets.ping(line, i)[:2] for i in (1, 2)] == [(12, 0), (29, 0)]
+    assert [packets.ping(line, i)[:2] for i in (1, 2, 3)] == [(12, 0), (29, 0), (320, 0)]
     assert packets.write2ByteTxRx(line, 1, 30, 1024) == (0, 8)
     assert packets.write2ByteTxRx(line, 1, 30, 700) == (0, 0)
     arrives(lambda: packets.read2ByteTxRx(line, 1, 36)[0], 700)
+    # MX have 4096 counts a turn, and gains.
+    goals = d.GroupSyncWrite(line, packets, 30, 2)
+    for i, goal in ((2, 3000), (3, 1000)):
+        assert packets.write1ByteTxRx(line, i, 28, 40) == (0, 0)
+        assert packets.read1ByteTxRx(line, i, 28) == (40, 0, 0)
+        assert goals.addParam(i, list(goal.to_bytes(2, "little")))
+    assert goals.txPacket() == 0
+    arrives(lambda: [packets.read2ByteTxRx(line, i, 36)[0] for i in (2, 3)], [3000, 1000])
 
 
 def rustypot_x(port):
