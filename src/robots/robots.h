@@ -21,7 +21,4 @@ extern const grobo_robot_def grobo_i_robot_pan_tilt;
 /* The robots that come with the library, NULL behind the last. */
 extern const grobo_robot_def *const grobo_i_robot_defs[];
 
-/* The matrix of roll, pitch, yaw about fixed axes: of a robot file's `origin`. */
-void grobo_i_rotation(double r[9], const double rpy[3]);
-
 #endif

@@ -6,6 +6,7 @@
 
 #include <grobo/robot_file.h>
 
+#include "src/body/body.h"
 #include "src/robots/robots.h"
 
 /* A part's frame in that of the waist, all joints at 0. */
@@ -32,7 +33,7 @@ static void turn(const double r[9], const double v[3], double out[3])
 static void place(const grobo_robot_link *link, const frame *parent, frame *to)
 {
     double own[9], at[3];
-    grobo_i_rotation(own, link->origin_rad);
+    grobo_i_rotation_of_rpy(own, link->origin_rad);
     turn(parent->r, link->origin_m, at);
     for (int i = 0; i < 3; i++) {
         to->p_m[i] = parent->p_m[i] + at[i];

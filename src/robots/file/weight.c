@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* A world in which a robot has weight: its links, as the dynamics want them. */
-#include <math.h>
 #include <string.h>
 
 #include <grobo/core/robot_plant.h>
 
+#include "src/body/body.h"
 #include "src/robots/file/families.h"
 #include "src/robots/robots.h"
 
@@ -16,22 +16,6 @@ bool grobo_robot_def_has_weight(const grobo_robot_def *def)
         }
     }
     return false;
-}
-
-void grobo_i_rotation(double r[9], const double rpy[3])
-{
-    double cr = cos(rpy[0]), sr = sin(rpy[0]), cp = cos(rpy[1]), sp = sin(rpy[1]);
-    double cy = cos(rpy[2]), sy = sin(rpy[2]);
-    const double made[9] = {cy * cp,
-                            cy * sp * sr - sy * cr,
-                            cy * sp * cr + sy * sr,
-                            sy * cp,
-                            sy * sp * sr + cy * cr,
-                            sy * sp * cr - cy * sr,
-                            -sp,
-                            cp * sr,
-                            cp * cr};
-    memcpy(r, made, sizeof made);
 }
 
 /* The servo's own, with what the file says instead. False: the file says nothing. */
@@ -89,7 +73,7 @@ int grobo_robot_def_physics(const grobo_robot_def *def, bool real_time, const gr
         memcpy(to->axis, from->axis, sizeof to->axis);
         memcpy(to->com_m, from->com_m, sizeof to->com_m);
         memcpy(to->inertia_kgm2, from->inertia_kgm2, sizeof to->inertia_kgm2);
-        grobo_i_rotation(to->r, from->origin_rad);
+        grobo_i_rotation_of_rpy(to->r, from->origin_rad);
     }
     const grobo_sim_physics_config config = {GROBO_SIM_PHYSICS_CONFIG_INIT, .links = links,
                                              .n_links = def->n_links, .real_time = real_time};
