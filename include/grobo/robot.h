@@ -241,7 +241,7 @@ GROBO_API bool grobo_robot_is_pending(const grobo_robot *robot, int number);
 GROBO_API void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *info);
 
 /**
- * Joint and value that made the last request fail with LIMIT or NAN; with SPEED or STALE the joint;
+ * Joint and value that made the last request fail with LIMIT or NAN; with SPEED the joint;
  * with STATE the joint that moves though this program sent it nowhere. @return joint or -1.
  */
 GROBO_API int grobo_robot_fault(const grobo_robot *robot, double *value_deg);
@@ -250,7 +250,7 @@ GROBO_API int grobo_robot_fault(const grobo_robot *robot, double *value_deg);
  * Says why a request, its job or a motion failed, for people: grobo_error_text(), and behind it for
  * LIMIT the joint, what was asked for and what it can, in the unit in which people give that joint
  * (core/unit.h; deg/s of a wheel): "outside the joint's limits: motor 12 (elbow), 95.0 deg is not
- * within -90.0 to 90.0 deg"; for NAN, SPEED and STALE the joint; for LATCHED what was measured, and
+ * within -90.0 to 90.0 deg"; for NAN and SPEED the joint; for LATCHED what was measured, and
  * where.
  * @param result of a request, of grobo_runner_wait_job() or the like, asked about before the next
  *   request: joint and value are those of grobo_robot_fault().

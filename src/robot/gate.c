@@ -286,11 +286,10 @@ static int judge_torque(const grobo_robot *robot, const grobo_robot_order *order
 
 /* A raw frame may switch torque on only for joints that were just read to have torque: that changes
  * nothing. Any other joint needs a torque job. */
-static int judge_raw_torque(grobo_robot *robot, grobo_joint_mask on)
+static int judge_raw_torque(const grobo_robot *robot, grobo_joint_mask on)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        robot->fault_joint = j;
         if (grobo_i_has(on, j) && !grobo_i_axis_is_on(axis)) {
             return GROBO_ERR_STATE;
         }
@@ -368,11 +367,10 @@ static int judge_segment(grobo_robot *robot, const grobo_robot_order *order, gro
 
 /* A setting changes what a goal means: a servo that holds would jump. At the second attempt the
  * torque is unknown because of the first. */
-static int judge_setting(grobo_robot *robot, grobo_joint_mask joints, bool again)
+static int judge_setting(const grobo_robot *robot, grobo_joint_mask joints, bool again)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        robot->fault_joint = j;
         if (grobo_i_has(joints, j) &&
             (grobo_i_axis_is_on(axis) || (!axis->torque_known && !again))) {
             return axis->torque_known ? GROBO_ERR_STATE : GROBO_ERR_STALE;

@@ -192,7 +192,6 @@ void grobo_i_queue_step(grobo_robot *robot)
         if (result == GROBO_I_LATER) {
             return;
         }
-        robot->fault_joint = result == GROBO_ERR_STALE ? -1 : robot->fault_joint;
         robot->queued--;
         memmove(&robot->queue[0], &robot->queue[1], robot->queued * sizeof robot->queue[0]);
         if (result == GROBO_OK) {

@@ -147,8 +147,7 @@ static void put_trip(writing *w, const grobo_robot *robot)
 /* What is always said of a joint: fault_joint is that one, or none. */
 static bool names_joint(int result)
 {
-    return result == GROBO_ERR_LIMIT || result == GROBO_ERR_NAN || result == GROBO_ERR_SPEED ||
-           result == GROBO_ERR_STALE;
+    return result == GROBO_ERR_LIMIT || result == GROBO_ERR_NAN || result == GROBO_ERR_SPEED;
 }
 
 int grobo_robot_error_text(const grobo_robot *robot, int result, char *text, size_t room)

@@ -424,7 +424,6 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
         result = GROBO_ERR_ARG;
     }
     if (result >= 0 && until_us < robot->now_us) {
-        robot->fault_joint = -1;
         result = GROBO_ERR_STALE;
     }
     if (result >= 0) {

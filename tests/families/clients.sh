@@ -26,8 +26,8 @@ against() {
 against dynamixel_sdk 1=XL330-M288,2=XL430-W250,3=XM430-W350 dynamixel_sdk_2
 against dynamixel_sdk 1=XM430-W350,2=XM540-W270 dynamixel_sdk_indirect
 against dynamixel_sdk 1=XW540-T260,2=MX-106-2 dynamixel_sdk_indirect
-layouts=1=XL-320,2=XM430-W350,3=MX-28-2,4=PH54-200-S500-R,5=H54-200-S500-RA,6=H54-200-S500-R,7=XW540-T260
-layouts=$layouts,8=MX-106-2
+layouts=1=XL-320,2=XM430-W350,3=MX-28-2,4=PH54-200-S500-R,5=H54-200-S500-RA,6=H54-200-S500-R
+layouts=$layouts,7=XW540-T260,8=MX-106-2
 against dynamixel_sdk "$layouts" dynamixel_sdk_layouts
 against dynamixel_sdk 1=AX-12A,2=MX-28,3=MX-106 dynamixel_sdk_1
 against rustypot 1=XL330-M288,2=XL330-M288,3=XL330-M288 rustypot_x
