@@ -177,6 +177,7 @@ FUZZ_REPLAYS := $(patsubst %.c,$(BUILD)/%$(EXE),$(FUZZ_SRCS))
 FUZZERS := $(patsubst %.c,$(BUILD)/%.fuzzer,$(FUZZ_SRCS))
 BENCHES := $(patsubst %.c,$(BUILD)/%$(EXE),$(BENCH_SRCS))
 PLANT_PIPE := $(BUILD)/tests/physics/plant_pipe$(EXE)
+WEIGHT_TABLE := $(BUILD)/tests/engine/test_sim_weight_table$(EXE)
 EXAMPLES := $(patsubst %.c,$(BUILD)/%$(EXE),$(EXAMPLE_SRCS))
 
 STATIC_LIB := $(BUILD)/libgrobo.a
@@ -337,12 +338,13 @@ FAMILY_CLIENTS := dynamixel-sdk==4.1.0 rustypot==1.13.1 feetech-servo-sdk==1.0.0
     deepdiff draccus tqdm numpy huggingface-hub cffi
 # Its motors and robots alone: the rest of it wants torch.
 FAMILY_LEROBOT := lerobot==0.4.4
-check-physics: all $(PLANT_PIPE) ## simulated servos in front of bodies of MuJoCo (from PyPI)
+check-physics: all $(PLANT_PIPE) $(WEIGHT_TABLE) ## simulated servos in front of bodies of MuJoCo (from PyPI)
 	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
 	    --disable-pip-version-check mujoco numpy cffi || true
 	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
 	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
 	    $(BUILD)/physics/bin/python tests/physics/mujoco_plant.py $(PLANT_PIPE) && \
+	    $(BUILD)/physics/bin/python tests/physics/mujoco_plant.py $(PLANT_PIPE) $(WEIGHT_TABLE) && \
 	    $(BUILD)/physics/bin/python tests/physics/exported.py "$(call whole,$(GRCTL_RUN))" \
 	        $(PLANT_PIPE) gr001 so101 ./tests/physics/hexapod.yaml && \
 	    GRCTL="$(call whole,$(GRCTL_RUN))" PYTHONPATH="$(abspath $(PYTHON_DIR))" \

@@ -175,7 +175,7 @@ int main(int argc, char **argv)
         return print_dynamics(argv[2], (int)strtol(argv[3], NULL, 10));
     }
     n = def->model->n_joints;
-    const grobo_sim_plant plant = {step, &n};
+    const grobo_sim_plant plant = {.step = step, .ctx = &n};
     const grobo_sim_physics_config config = {GROBO_SIM_PHYSICS_CONFIG_INIT, .model = def->model,
                                              .plant = &plant};
     if (grobo_robot_def_sim(def, def->wiring, &setting) < 0 ||

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine and a simulated robot that has weight. */
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include <grobo/core/robot_plant.h>
 #include <grobo/posture.h>
 
 #include "tests/support/test.h"
@@ -124,6 +128,51 @@ static void set_register(int joint, const grobo_servo_register *reg, int32_t val
     }
 }
 
+/* ---- a plant in another process -------------------------------------------------------------- */
+
+static int plant_in, plant_out;
+
+static void whole(bool writes, void *bytes, size_t n)
+{
+    for (size_t at = 0; at < n;) {
+        uint8_t *from = (uint8_t *)bytes + at;
+        ssize_t got = writes ? write(plant_out, from, n - at) : read(plant_in, from, n - at);
+        assert_true(got > 0);
+        at += (size_t)got;
+    }
+}
+
+/* The doubles of tests/physics/plant_pipe.c. */
+static int step_plant(void *ctx, const grobo_sim_drive *drive, double dt_s, grobo_sim_state *state)
+{
+    double out[GROBO_JOINTS_MAX * 6], in[GROBO_JOINTS_MAX * 3];
+    int n = weight.def->model->n_joints;
+    (void)ctx;
+    (void)dt_s;
+    for (int i = 0; i < n; i++) {
+        const double one[] = {drive[i].torque_nm,     drive[i].damping_nms, drive[i].friction_nm,
+                              drive[i].armature_kgm2, state[i].angle_rad,   state[i].speed_rad_s};
+        memcpy(out + 6 * i, one, sizeof one);
+    }
+    whole(true, out, (size_t)n * 6 * sizeof out[0]);
+    whole(false, in, (size_t)n * 3 * sizeof in[0]);
+    for (int i = 0; i < n; i++) {
+        state[i] = (grobo_sim_state){in[3 * i], in[3 * i + 1], in[3 * i + 2]};
+    }
+    return GROBO_OK;
+}
+
+static int make_physics(void)
+{
+    static const grobo_sim_plant plant = {.step = step_plant};
+    const char *pipes = getenv("GROBO_PLANT");
+    if (pipes == NULL) {
+        return grobo_robot_def_physics(weight.def, false, NULL, &weight.physics);
+    }
+    assert_int_equal(sscanf(pipes, "%d,%d", &plant_in, &plant_out), 2);
+    return grobo_robot_def_plant(weight.def, &plant, false, NULL, &weight.physics);
+}
+
 void weight_begin(const char *robot, int gain)
 {
     weight_begin_def(robot_named(robot), gain);
@@ -137,7 +186,7 @@ void weight_begin_def(const grobo_robot_def *def, int gain)
     weight.driver.size = sizeof weight.driver;
     assert_int_equal(grobo_robot_def_driver(weight.def, wiring, &weight.driver), 0);
     assert_int_equal(grobo_robot_def_sim(weight.def, wiring, &weight.setting), 0);
-    assert_int_equal(grobo_robot_def_physics(weight.def, false, NULL, &weight.physics), 0);
+    assert_int_equal(make_physics(), 0);
     weight.setting.config.physics = weight.physics;
     weight.now_us = WEIGHT_S;
     weight.ended = 0;

@@ -2,6 +2,9 @@
 /*
  * The engine and a simulated robot that has weight, in virtual time: an arm that holds itself, at
  * the gains of its servos, and commands that come and leave.
+ *
+ * Environment: GROBO_PLANT="IN,OUT": the links are in another process, behind these descriptors
+ * (tests/physics/mujoco_plant.py).
  */
 #ifndef GROBO_TEST_WEIGHT_KIT_H
 #define GROBO_TEST_WEIGHT_KIT_H
