@@ -6,7 +6,12 @@
 #include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/model/joint.h"
+#include "src/robot/axis.h"
+#include "src/robot/couple.h"
+#include "src/robot/gate.h"
+#include "src/robot/reading.h"
 #include "src/robot/robot.h"
+#include "src/robot/state.h"
 #include "src/robot/wheel.h"
 
 /* The goals of a trajectory are on the wire's grid: this part of its step is no other goal. */

@@ -22,9 +22,16 @@
 #include <math.h>
 
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
 #include "src/robot/blocked.h"
+#include "src/robot/halted.h"
 #include "src/robot/often.h"
+#include "src/robot/query.h"
+#include "src/robot/reading.h"
 #include "src/robot/robot.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
+#include "src/robot/trip.h"
 
 #if !GROBO_DRIVERS_PLAIN
 

@@ -2,6 +2,10 @@
 /* How many motion frames a second leave time to read every joint: the one rule for all callers. */
 #include <grobo/core/robot.h>
 
+#include "src/robot/axis.h"
+#include "src/robot/budget.h"
+#include "src/robot/lines.h"
+#include "src/robot/pace.h"
 #include "src/robot/robot.h"
 
 #define SECOND_US 1000000u

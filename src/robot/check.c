@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Whether the robot is there: the script of a check. Each line of a robot is asked after the one
  * before has answered, and all must answer. */
-#include "src/robot/robot.h"
+#include "src/robot/job.h"
+#include "src/robot/lines.h"
+#include "src/robot/slot.h"
+#include "src/robot/steps.h"
 
 #if GROBO_LINES_MAX > 1
 static int line_of_check(const grobo_robot *robot)

@@ -1,6 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The public controls of a motion that is played. */
-#include "src/robot/robot.h"
+#include "src/robot/axis.h"
+#include "src/robot/couple.h"
+#include "src/robot/job.h"
+#include "src/robot/orders.h"
+#include "src/robot/play.h"
+#include "src/robot/query.h"
+#include "src/robot/queue.h"
+#include "src/robot/stop.h"
+#include "src/robot/turn.h"
 
 /* A clip may break under a command while the key that was sent last is still seconds away. */
 static int controlled(grobo_robot *robot, int result)

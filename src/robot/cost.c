@@ -2,6 +2,7 @@
 /* How long the line is taken by frames: one, a motion's for some joints, a reading of all. Lines of
  * a robot of several have their frames at the same time: a motion takes what it takes on the
  * slowest, while joints are read one after the other. */
+#include "src/robot/budget.h"
 #include "src/robot/robot.h"
 
 uint32_t grobo_i_line_us(const grobo_bus *bus, const grobo_exchange *exchange)

@@ -12,7 +12,9 @@
 #include <math.h>
 
 #include "src/base/instant.h"
+#include "src/robot/couple.h"
 #include "src/robot/robot.h"
+#include "src/robot/state.h"
 
 static const grobo_joint *joint_of(const grobo_robot *robot, int joint)
 {

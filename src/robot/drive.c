@@ -11,7 +11,16 @@
 #include <grobo/core/wheel.h>
 
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
+#include "src/robot/budget.h"
+#include "src/robot/lines.h"
+#include "src/robot/orders.h"
+#include "src/robot/query.h"
+#include "src/robot/robot.h"
+#include "src/robot/slot.h"
 #include "src/robot/speed.h"
+#include "src/robot/stand.h"
+#include "src/robot/turn.h"
 #include "src/robot/wheel.h"
 
 grobo_joint_mask grobo_model_wheels(const grobo_model *model)

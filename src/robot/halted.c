@@ -9,7 +9,14 @@
 #include <stdlib.h>
 
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
+#include "src/robot/halted.h"
+#include "src/robot/orders.h"
+#include "src/robot/reading.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
 #include "src/robot/wheel.h"
 
 /* Where the last reading showed nothing the next one waits so long. */

@@ -4,7 +4,14 @@
 
 #include "src/base/assert.h"
 #include "src/model/joint.h"
+#include "src/robot/axis.h"
+#include "src/robot/job.h"
+#include "src/robot/lines.h"
+#include "src/robot/query.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
+#include "src/robot/state.h"
+#include "src/robot/turn.h"
 
 /* True if a frame waits that carries the joint's next target. */
 static bool next_waits(const grobo_robot *robot, int joint)

@@ -4,7 +4,7 @@
 
 #include <grobo/core/imu.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/query.h"
 
 #define PI 3.14159265358979323846
 /* A reading in single precision may exceed a right angle by so much. */

@@ -4,7 +4,12 @@
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
+#include "src/robot/job.h"
+#include "src/robot/orders.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
+#include "src/robot/state.h"
 
 /* ---- which jobs there are -------------------------------------------------------------------- */
 

@@ -16,7 +16,11 @@
  * waits and has one of its joints.
  */
 #include "src/base/assert.h"
+#include "src/robot/job.h"
+#include "src/robot/orders.h"
+#include "src/robot/queue.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
 
 /* ---- moves, readings, torque on -------------------------------------------------------------- */
 

@@ -8,6 +8,8 @@
  * from its bus as they are due, go nowhere, and time out as any frame does that is not answered. So
  * whatever waits for a joint of it ends as for a servo that is not there.
  */
+#include "src/robot/axis.h"
+#include "src/robot/lines.h"
 #include "src/robot/robot.h"
 
 #if GROBO_LINES_MAX > 1

@@ -4,7 +4,10 @@
  * load explains (blocked.c). A line that has no time for that is read as at rest.
  */
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
+#include "src/robot/budget.h"
 #include "src/robot/often.h"
+#include "src/robot/query.h"
 #include "src/robot/robot.h"
 #include "src/robot/wheel.h"
 

@@ -2,8 +2,19 @@
 /* Orders to motors: targets, halts, holds and torque, put into the frames that wait for the line.
  * Nothing is noted of them here but what waits; gate.c judges them again as they leave. */
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
+#include "src/robot/couple.h"
+#include "src/robot/gate.h"
+#include "src/robot/halted.h"
+#include "src/robot/lines.h"
+#include "src/robot/orders.h"
+#include "src/robot/pace.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
 #include "src/robot/speed.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
+#include "src/robot/trajectories.h"
 #include "src/robot/wheel.h"
 
 /* How the frames of an order go. */

@@ -7,7 +7,12 @@
  * before the next frame has come: a line that needs more is too slow for so many joints. /
  */
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
+#include "src/robot/budget.h"
+#include "src/robot/pace.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
+#include "src/robot/trajectories.h"
 
 /* A reading takes this part more than it should now and then. */
 #define SPARE 16

@@ -6,7 +6,18 @@
 #include <grobo/core/robot.h>
 
 #include "src/base/sized.h"
+#include "src/robot/axis.h"
+#include "src/robot/couple.h"
+#include "src/robot/job.h"
+#include "src/robot/lines.h"
+#include "src/robot/orders.h"
+#include "src/robot/play.h"
+#include "src/robot/query.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
+#include "src/robot/stop.h"
+#include "src/robot/trajectories.h"
+#include "src/robot/trip.h"
 #include "src/robot/wheel.h"
 
 void grobo_i_play_tell(grobo_robot *robot)

@@ -2,7 +2,12 @@
 /* What may be asked of the engine. */
 #include <grobo/core/robot.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/axis.h"
+#include "src/robot/lines.h"
+#include "src/robot/query.h"
+#include "src/robot/slot.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
 
 #if SIZE_MAX <= UINT32_MAX
 void grobo_i_lock(const grobo_robot *robot)

@@ -9,7 +9,11 @@
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"
-#include "src/robot/robot.h"
+#include "src/robot/job.h"
+#include "src/robot/query.h"
+#include "src/robot/queue.h"
+#include "src/robot/steps.h"
+#include "src/robot/stop.h"
 
 /* ---- side by side ---------------------------------------------------------------------------- */
 

@@ -5,7 +5,14 @@
 
 #include "src/base/instant.h"
 #include "src/model/joint.h"
+#include "src/robot/axis.h"
+#include "src/robot/couple.h"
+#include "src/robot/gate.h"
+#include "src/robot/reading.h"
 #include "src/robot/robot.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
+#include "src/robot/weight.h"
 #include "src/robot/wheel.h"
 
 static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)

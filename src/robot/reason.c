@@ -6,6 +6,7 @@
 
 #include <grobo/core/unit.h>
 
+#include "src/robot/query.h"
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
 

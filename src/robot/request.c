@@ -6,8 +6,25 @@
 #include <grobo/core/robot.h>
 
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
+#include "src/robot/couple.h"
+#include "src/robot/gate.h"
+#include "src/robot/job.h"
+#include "src/robot/lines.h"
+#include "src/robot/orders.h"
+#include "src/robot/pace.h"
+#include "src/robot/play.h"
+#include "src/robot/query.h"
+#include "src/robot/queue.h"
+#include "src/robot/request.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
 #include "src/robot/speed.h"
+#include "src/robot/state.h"
+#include "src/robot/steps.h"
+#include "src/robot/stop.h"
+#include "src/robot/trip.h"
+#include "src/robot/turn.h"
 #include "src/robot/wheel.h"
 
 /* May a job of this kind begin now? */

@@ -8,8 +8,16 @@
  * away: the move is over, and does not continue by itself.
  */
 #include "src/base/instant.h"
-#include "src/robot/robot.h"
+#include "src/robot/axis.h"
+#include "src/robot/job.h"
+#include "src/robot/orders.h"
+#include "src/robot/query.h"
+#include "src/robot/segments.h"
+#include "src/robot/slot.h"
 #include "src/robot/speed.h"
+#include "src/robot/state.h"
+#include "src/robot/trajectories.h"
+#include "src/robot/trip.h"
 
 static bool has_stopped(const grobo_robot_axis *axis, int64_t now_us)
 {

@@ -6,9 +6,22 @@
 #include "src/base/instant.h"
 #include "src/bus/time.h"
 #include "src/model/joint.h"
+#include "src/robot/axis.h"
 #include "src/robot/blocked.h"
+#include "src/robot/budget.h"
+#include "src/robot/gate.h"
+#include "src/robot/halted.h"
+#include "src/robot/lines.h"
 #include "src/robot/often.h"
+#include "src/robot/orders.h"
+#include "src/robot/play.h"
+#include "src/robot/query.h"
+#include "src/robot/reading.h"
 #include "src/robot/robot.h"
+#include "src/robot/sense.h"
+#include "src/robot/slot.h"
+#include "src/robot/state.h"
+#include "src/robot/trajectories.h"
 
 /* In free mode a hand has so long to get a joint going, or to turn it back, before it holds. */
 #define GRIP_US 100000

@@ -4,7 +4,9 @@
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/robot/lines.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
 
 /* Slots that only a halt may take: there is always room for what stops the robot. */
 #define SLOTS_TO_HALT 3

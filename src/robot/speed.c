@@ -7,8 +7,13 @@
 
 #include "src/base/angle.h"
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
+#include "src/robot/couple.h"
+#include "src/robot/lines.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
 #include "src/robot/speed.h"
+#include "src/robot/weight.h"
 
 /* ---- numbers and limits ---------------------------------------------------------------------- */
 

@@ -9,7 +9,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "src/robot/axis.h"
+#include "src/robot/reading.h"
 #include "src/robot/robot.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
 #include "src/robot/wheel.h"
 
 #define STANDS_RAD (0.5 * 0.017453292519943295)

@@ -2,7 +2,8 @@
 /* A motion that waits for its start: for who begins several robots together. */
 #include <grobo/core/robot.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/query.h"
+#include "src/robot/turn.h"
 
 int grobo_robot_start_at(grobo_robot *robot, int64_t start_us)
 {

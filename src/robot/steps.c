@@ -11,9 +11,24 @@
 #include <grobo/core/robot.h>
 
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
+#include "src/robot/couple.h"
+#include "src/robot/gate.h"
+#include "src/robot/halted.h"
+#include "src/robot/job.h"
+#include "src/robot/lines.h"
 #include "src/robot/often.h"
+#include "src/robot/orders.h"
+#include "src/robot/play.h"
+#include "src/robot/query.h"
+#include "src/robot/reading.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
 #include "src/robot/speed.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
+#include "src/robot/steps.h"
+#include "src/robot/weight.h"
 #include "src/robot/wheel.h"
 
 /* Rounds of writing again; a line that loses a byte in a hundred needs some. */

@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What ends the engine's own work, and what stops joints that move. */
-#include "src/robot/robot.h"
+#include "src/robot/axis.h"
+#include "src/robot/couple.h"
+#include "src/robot/job.h"
+#include "src/robot/orders.h"
+#include "src/robot/query.h"
+#include "src/robot/slot.h"
+#include "src/robot/stop.h"
 
 void grobo_i_make_way(grobo_robot *robot)
 {

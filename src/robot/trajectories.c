@@ -10,7 +10,11 @@
 #include <math.h>
 
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
 #include "src/robot/robot.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
+#include "src/robot/trajectories.h"
 
 /* A whole segment: a multiple of the wire's unit. */
 static int64_t most_us(const grobo_robot *robot, int joint)

@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Stops for safety. */
 #include "src/base/assert.h"
+#include "src/robot/axis.h"
+#include "src/robot/job.h"
+#include "src/robot/query.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
+#include "src/robot/stop.h"
+#include "src/robot/trip.h"
 #include "src/robot/wheel.h"
 
 static const char *const trip_names[] = {

@@ -6,7 +6,20 @@
 #include <string.h>
 
 #include "src/base/assert.h"
+#include "src/robot/axis.h"
+#include "src/robot/gate.h"
+#include "src/robot/halted.h"
+#include "src/robot/job.h"
+#include "src/robot/lines.h"
+#include "src/robot/play.h"
+#include "src/robot/query.h"
+#include "src/robot/reading.h"
 #include "src/robot/robot.h"
+#include "src/robot/sense.h"
+#include "src/robot/slot.h"
+#include "src/robot/steps.h"
+#include "src/robot/turn.h"
+#include "src/robot/watch.h"
 
 /* A reading that takes several exchanges asks for its next part. @return 1 if there is one. */
 static int read_on(const grobo_robot_slot *before)

@@ -3,8 +3,14 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "src/robot/axis.h"
 #include "src/robot/blocked.h"
+#include "src/robot/couple.h"
+#include "src/robot/query.h"
 #include "src/robot/robot.h"
+#include "src/robot/state.h"
+#include "src/robot/trip.h"
+#include "src/robot/watch.h"
 #include "src/robot/wheel.h"
 
 /* So many readings of a low voltage in a row, of whatever joints: they share a battery. */

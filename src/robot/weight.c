@@ -20,7 +20,11 @@
 #include <stdlib.h>
 
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
 #include "src/robot/robot.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
+#include "src/robot/weight.h"
 
 #define DEG 0.017453292519943295
 /* A smaller error is as much a matter of steps and friction: it is not worth another goal. */

@@ -5,7 +5,10 @@
  * between; what stops it leaves at once, behind a latch as well.
  */
 #include "src/base/instant.h"
+#include "src/robot/axis.h"
 #include "src/robot/often.h"
+#include "src/robot/robot.h"
+#include "src/robot/slot.h"
 #include "src/robot/wheel.h"
 
 #if !GROBO_DRIVERS_PLAIN

@@ -16,7 +16,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "src/robot/axis.h"
+#include "src/robot/reading.h"
 #include "src/robot/robot.h"
+#include "src/robot/slot.h"
+#include "src/robot/state.h"
 
 /* Speeds of an order: what its frame has the joints do. */
 typedef struct grobo_i_speeds {

@@ -5,8 +5,10 @@
 
 #include <grobo/core/robot.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/gate.h"
+#include "src/robot/slot.h"
 #include "src/robot/speed.h"
+#include "src/robot/trip.h"
 #include "tests/support/raw_frames.h"
 #include "tests/support/test.h"
 

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/slot.h"
 #include "tests/support/halt_kit.h"
 #include "tests/support/test.h"
 

@@ -8,7 +8,9 @@
 
 #include <grobo/core/rs30x.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/axis.h"
+#include "src/robot/reading.h"
+#include "src/robot/state.h"
 #include "tests/support/many_joints.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"

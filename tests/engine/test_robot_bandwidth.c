@@ -20,7 +20,7 @@
 
 #include <grobo/core/robot.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/slot.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

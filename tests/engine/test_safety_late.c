@@ -6,7 +6,8 @@
 
 #include <grobo/core/robot.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/slot.h"
+#include "src/robot/trip.h"
 #include "tests/support/raw_frames.h"
 #include "tests/support/test.h"
 

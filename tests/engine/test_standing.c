@@ -6,7 +6,8 @@
 
 #include <grobo/core/robot.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/trip.h"
+#include "src/robot/turn.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"

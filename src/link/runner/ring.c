@@ -16,7 +16,7 @@
 #include "src/base/sized.h"
 #include "src/link/runner/runner.h"
 #include "src/link/session/session.h"
-#include "src/robot/robot.h"
+#include "src/robot/query.h"
 
 typedef struct runner_kept {
     uint64_t number;

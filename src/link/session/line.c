@@ -8,6 +8,7 @@
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
+#include "src/robot/lines.h"
 #include "src/robot/robot.h"
 #include "src/sim/lines.h"
 #include "src/sim/servo/servo.h"

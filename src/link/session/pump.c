@@ -5,7 +5,8 @@
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
-#include "src/robot/robot.h"
+#include "src/robot/lines.h"
+#include "src/robot/query.h"
 
 /* How long to leave a line alone that takes no more bytes; it also tells when it does. */
 #define BUSY_US 1000

@@ -7,6 +7,8 @@
 #include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"
 #include "src/link/session/session.h"
+#include "src/robot/lines.h"
+#include "src/robot/query.h"
 #include "src/robot/robot.h"
 
 /* ---- closing ------------------------------------------------------------------------------ */

@@ -17,7 +17,7 @@
 #include <grobo/core/robot.h>
 
 #include "src/link/session/session.h"
-#include "src/robot/robot.h"
+#include "src/robot/query.h"
 
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_BOOL_LOCK_FREE == 2,
                "a signal handler may use what is lock-free only");
