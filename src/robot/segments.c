@@ -66,11 +66,16 @@ static void give_up(grobo_robot *robot)
 {
     int silent = silent_joint(robot);
     double late_ms = (double)late_us(robot) / 1000.0;
+    grobo_joint_mask cut = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_trajectory_is_short(axis)) {
             grobo_i_axis_cut(axis);
+            cut |= GROBO_JOINT_BIT(j);
         }
+    }
+    if (!GROBO_DRIVERS_PLAIN) { /* one that lost a frame is behind, and on its way yet */
+        grobo_i_halt_owe(robot, cut);
     }
     grobo_i_gate_soften(robot);
     if (grobo_i_is_playing(robot)) {
