@@ -272,7 +272,8 @@ static int trip(int64_t soft_us)
 }
 
 /* The host was away for longer than a motion may be late: it ends, and what moves is halted. Where
- * no frame was due meanwhile, between keys, it goes on: no stop. */
+ * no frame was due meanwhile, between keys, it goes on; and one whose last frame had left has come
+ * to its end: no stops. */
 static int stall(void)
 {
     halt.now_us += AWAY_US;
@@ -280,7 +281,8 @@ static int stall(void)
     bool played = grobo_robot_is_playing(&halt.robot);
     halt_judge(0);
     halt_run(0);
-    return played && !grobo_robot_is_playing(&halt.robot) ? 0 : GROBO_ERR_STATE;
+    bool ended = grobo_robot_play_state(&halt.robot) == GROBO_SEQUENCER_FINISHED;
+    return played && !ended && !grobo_robot_is_playing(&halt.robot) ? 0 : GROBO_ERR_STATE;
 }
 
 /* The motion's file breaks where it is read next. */
@@ -331,10 +333,11 @@ static int ask_stop(stop_kind stop)
 }
 
 /* A motion that pauses is still one: nothing says when its joints stand but the time it takes, by
- * what they were told where a lost frame takes them further. */
+ * what they were told where a lost frame takes them further. One whose pause is refused, as a joint
+ * was read to be moved by others, has failed, and is stopped like any. */
 static bool is_done(const cell *c, int job)
 {
-    if (c->stop == PAUSE) {
+    if (c->stop == PAUSE && grobo_robot_play_state(&halt.robot) != GROBO_SEQUENCER_FAILED) {
         return halt.now_us >= halt.ends_us &&
                grobo_robot_play_state(&halt.robot) == GROBO_SEQUENCER_PAUSED &&
                halt.now_us >= halt.asked_us + GROBO_PLAY_STOP_US + 2 * halt.of->frame_us + 10000;
