@@ -3,6 +3,8 @@
 #ifndef GROBO_ROBOT_AXIS_I_H
 #define GROBO_ROBOT_AXIS_I_H
 
+#include <math.h>
+
 #include <grobo/core/static.h>
 
 #include "src/robot/state.h"
@@ -126,5 +128,10 @@ bool grobo_i_externally_moved(const grobo_robot *robot, grobo_joint_mask joints,
 bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
 /* True if all of these are known to have torque. */
 bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
+
+static inline bool grobo_i_near_rad(double a_rad, double b_rad, double within_rad)
+{
+    return fabs(a_rad - b_rad) <= within_rad;
+}
 
 #endif

@@ -15,6 +15,7 @@
 #include "src/robot/segments.h"
 #include "src/robot/slot.h"
 #include "src/robot/speed.h"
+#include "src/robot/stand.h"
 #include "src/robot/state.h"
 #include "src/robot/trajectories.h"
 #include "src/robot/trip.h"

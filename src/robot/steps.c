@@ -6,7 +6,6 @@
  */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <grobo/core/robot.h>
 
@@ -21,12 +20,8 @@
 #include "src/robot/orders.h"
 #include "src/robot/play.h"
 #include "src/robot/query.h"
-#include "src/robot/reading.h"
-#include "src/robot/robot.h"
-#include "src/robot/slot.h"
 #include "src/robot/speed.h"
 #include "src/robot/stand.h"
-#include "src/robot/state.h"
 #include "src/robot/steps.h"
 #include "src/robot/weight.h"
 #include "src/robot/wheel.h"
@@ -46,11 +41,6 @@
 static grobo_i_chunk chunk_of(const grobo_robot *robot)
 {
     return robot->job->rounds == 0 ? GROBO_I_WHOLE : GROBO_I_SMALL;
-}
-
-static bool near_rad(double a_rad, double b_rad, double within_rad)
-{
-    return fabs(a_rad - b_rad) <= within_rad;
 }
 
 /* Until when rounds do not count: who leaves waits for a servo that was deaf as it began, and an
@@ -647,7 +637,7 @@ static int step_play(grobo_robot *robot)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         double here_rad = grobo_i_axis_commanded(axis, robot->now_us);
-        if (axis->next != 0 && !near_rad(here_rad, axis->next_rad, FAR_RAD)) {
+        if (axis->next != 0 && !grobo_i_near_rad(here_rad, axis->next_rad, FAR_RAD)) {
             job->pending |= GROBO_JOINT_BIT(j);
         }
     }
@@ -733,9 +723,10 @@ static int step_quiet(grobo_robot *robot)
 static bool still_turns(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool trembles =
-        grobo_i_has_target(axis) && !grobo_i_is_stray(axis) && abs(axis->seen_dps) < TREMBLES_DPS &&
-        near_rad(axis->trajectory.to_rad - grobo_i_load(axis), axis->seen_rad, TREMBLES_RAD);
+    bool trembles = grobo_i_has_target(axis) && !grobo_i_is_stray(axis) &&
+                    abs(axis->seen_dps) < TREMBLES_DPS &&
+                    grobo_i_near_rad(axis->trajectory.to_rad - grobo_i_load(axis), axis->seen_rad,
+                                     TREMBLES_RAD);
     return grobo_i_axis_tells_turn(robot, joint) && !trembles &&
            axis->state.torque == GROBO_TORQUE_ON && abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
 }
@@ -748,7 +739,7 @@ static bool arrives(grobo_robot *robot, int joint)
     bool arrives =
         grobo_i_has_target(axis) && !grobo_i_is_stray(axis) && still_turns(robot, joint) &&
         !swings &&
-        near_rad(axis->trajectory.to_rad - grobo_i_load(axis), axis->seen_rad, ARRIVES_RAD);
+        grobo_i_near_rad(axis->trajectory.to_rad - grobo_i_load(axis), axis->seen_rad, ARRIVES_RAD);
     if (arrives) {
         axis->trajectory.to_us = grobo_i_later(axis->trajectory.to_us, robot->now_us + ARRIVES_US);
     }
@@ -784,7 +775,7 @@ static bool is_astray(grobo_robot *robot, int joint)
     const grobo_joint_state *state = &axis->state;
     int64_t left_us = state->goal_time_us - state->time_us;
     bool creeps = (state->valid & GROBO_FIELD_TIME) != 0 && axis->goal_us == axis->angle_us &&
-                  left_us > 0 && !near_rad(state->goal_rad, state->angle_rad, THERE_RAD);
+                  left_us > 0 && !grobo_i_near_rad(state->goal_rad, state->angle_rad, THERE_RAD);
     bool turns = (still_turns(robot, joint) && !grobo_i_swings(robot, joint)) ||
                  creeps_to_its_goal(robot, joint);
     if (state->torque != GROBO_TORQUE_ON ||
