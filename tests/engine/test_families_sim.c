@@ -10,7 +10,9 @@
 #include <grobo/core/robot.h>
 #include <grobo/core/sim.h>
 
-#include "src/robot/robot.h"
+#include "src/robot/axis.h"
+#include "src/robot/reading.h"
+#include "src/robot/state.h"
 #include "src/sim/servo/shaft.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/tables.h"

@@ -7,7 +7,32 @@
 #ifndef GROBO_TEST_AXES_KIT_H
 #define GROBO_TEST_AXES_KIT_H
 
+#include "src/robot/axis.h"
+#include "src/robot/budget.h"
+#include "src/robot/couple.h"
+#include "src/robot/gate.h"
+#include "src/robot/halted.h"
+#include "src/robot/job.h"
+#include "src/robot/lines.h"
+#include "src/robot/orders.h"
+#include "src/robot/pace.h"
+#include "src/robot/query.h"
+#include "src/robot/queue.h"
+#include "src/robot/reading.h"
+#include "src/robot/request.h"
 #include "src/robot/robot.h"
+#include "src/robot/segments.h"
+#include "src/robot/sense.h"
+#include "src/robot/slot.h"
+#include "src/robot/stand.h"
+#include "src/robot/state.h"
+#include "src/robot/steps.h"
+#include "src/robot/stop.h"
+#include "src/robot/trajectories.h"
+#include "src/robot/trip.h"
+#include "src/robot/turn.h"
+#include "src/robot/watch.h"
+#include "src/robot/weight.h"
 #include "tests/support/rig.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
