@@ -33,28 +33,13 @@ double grobo_i_trajectory_at(const grobo_robot_trajectory *trajectory, int64_t n
     return trajectory->from_rad + (trajectory->to_rad - trajectory->from_rad) * part;
 }
 
-/* The set point of a joint that was sent nowhere: beside the angle by the error that carries it. A
- * servo that reports the time of its trajectory, and that this is over, has it at its goal. */
-static double set_point(const grobo_robot_axis *axis)
-{
-    const grobo_joint_state *state = &axis->state;
-    const unsigned both = GROBO_FIELD_GOAL | GROBO_FIELD_TIME;
-    bool known =
-        axis->goal_us == axis->angle_us || /* or nobody else has sent it elsewhere since */
-        (grobo_i_has_target(axis) && !grobo_i_is_stray(axis) && grobo_i_goal_is_told(axis));
-    bool over = (state->valid & both) == both && known && state->time_us >= state->goal_time_us &&
-                grobo_i_axis_is_on(axis);
-    bool carries = fabs(state->goal_rad - state->angle_rad) <= GROBO_I_OFF_TRAJECTORY_RAD;
-    return over && carries ? state->goal_rad : state->angle_rad + grobo_i_load(axis);
-}
-
 double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
 {
     if (grobo_i_is_stray(axis)) {
         const grobo_robot_trajectory own = {axis->state.angle_rad, axis->state.goal_rad,
                                             axis->angle_us, axis->own_until_us};
         return axis->own_until_us > axis->angle_us ? grobo_i_trajectory_at(&own, now_us)
-                                                   : set_point(axis);
+                                                   : axis->state.angle_rad + grobo_i_load(axis);
     }
     int64_t at_us =
         grobo_i_is_in_segments(axis) ? grobo_i_sooner(now_us, axis->told_to_us) : now_us;
@@ -421,7 +406,7 @@ double grobo_i_axis_target(const grobo_robot_axis *axis)
 
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
 {
-    double goal_rad = set_point(axis);
+    double goal_rad = axis->state.angle_rad + grobo_i_load(axis);
     axis->trajectory = (grobo_robot_trajectory){goal_rad, goal_rad, now_us, now_us};
     grobo_i_joint_to(axis, GROBO_I_JOINT_REST);
 }
@@ -512,8 +497,6 @@ bool grobo_i_goal_is_told(const grobo_robot_axis *axis)
 #define SWINGS_DPS 40
 #define SWINGS_RAD (3 * 0.017453292519943295)
 #define SAGS_US 1500000
-/* A mean speed hides that another program moves it: that long at most it is taken to sag. */
-#define SAGS_MEAN_US 230000
 
 double grobo_i_load_most(const grobo_robot *robot, int joint)
 {
@@ -521,16 +504,13 @@ double grobo_i_load_most(const grobo_robot *robot, int joint)
     return pct > 0 ? LOAD_MOST_RAD * pct / 100 : LOAD_MOST_RAD;
 }
 
-/* True of one that is not counted along its trajectory, and was read to turn, or not to. A mean
- * speed shows that of a joint alone that was sent here: others may move it elsewhere between two
- * angles. */
+/* True of one that is not, and tells how it turns. */
 static bool shows_swing(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool mean = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed);
-    bool sent = grobo_i_has_target(axis) && !grobo_i_is_stray(axis);
     return !grobo_i_axis_is_counted(axis) && !grobo_i_is_wheel(robot, joint) &&
-           axis->seen_dps != GROBO_I_NO_SPEED && (sent || !mean);
+           !GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
+           axis->seen_dps != GROBO_I_NO_SPEED;
 }
 
 bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad)
@@ -543,13 +523,9 @@ bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad)
 }
 
 /* True of one that may not rest yet in the goal that it was told, or since then. */
-static bool settles(const grobo_robot *robot, int joint, int64_t since_us)
+static bool settles(const grobo_robot *robot, const grobo_robot_axis *axis, int64_t since_us)
 {
-    const grobo_robot_axis *axis = &robot->axes[joint];
     int64_t from_us = grobo_i_later(axis->told_us, since_us);
-    if (GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed)) {
-        return robot->now_us - from_us <= SAGS_MEAN_US;
-    }
     from_us = grobo_i_has_target(axis) ? grobo_i_later(from_us, axis->trajectory.to_us) : from_us;
     return robot->now_us - from_us <= SAGS_US;
 }
@@ -562,12 +538,10 @@ bool grobo_i_swings(const grobo_robot *robot, int joint)
         return false;
     }
     double left_rad = goal_rad - load_rad - axis->seen_rad;
-    bool mean = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed);
-    bool now = (axis->goal_us == axis->angle_us && !mean) || settles(robot, joint, 0);
+    bool now = axis->goal_us == axis->angle_us || settles(robot, axis, 0);
     bool sinks = now && axis->seen_dps * (goal_rad - axis->seen_rad) < 0;
     return (sinks && fabs(left_rad) <= grobo_i_load_most(robot, joint)) ||
-           (load_rad != 0 && !mean && fabs(left_rad) <= SWINGS_RAD &&
-            abs(axis->seen_dps) <= SWINGS_DPS);
+           (load_rad != 0 && fabs(left_rad) <= SWINGS_RAD && abs(axis->seen_dps) <= SWINGS_DPS);
 }
 
 bool grobo_i_may_sag(const grobo_robot *robot, int joint, int64_t since_us)
@@ -577,7 +551,7 @@ bool grobo_i_may_sag(const grobo_robot *robot, int joint, int64_t since_us)
     return shows_swing(robot, joint) && grobo_i_axis_goal(robot, joint, &goal_rad) &&
            grobo_i_goal_is_told(axis) &&
            fabs(goal_rad - axis->seen_rad) <= grobo_i_load_most(robot, joint) &&
-           settles(robot, joint, since_us);
+           settles(robot, axis, since_us);
 }
 
 /* ---- moving ---------------------------------------------------------------------------------- */

@@ -84,11 +84,6 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
     }
     double here_rad = grobo_i_axis_place(robot, joint);
     double to_rad = axis->trajectory.to_rad - grobo_i_load(axis); /* where it turns to */
-    bool same =
-        fabs(axis->next_rad - axis->trajectory.to_rad) <= grobo_i_same_goal_rad(robot, joint);
-    if (same && grobo_i_hangs_in_goal(robot, joint)) {
-        return axis->next_rad;
-    }
     double rad_s = fmin(grobo_i_axis_speed(robot, joint), grobo_i_speed_limit(robot, joint, soft));
     double most_rad = rad_s * (double)axis->next_time_us / 1e6 / 2;
     if (!GROBO_DRIVERS_PLAIN) { /* a servo with ramps comes to rest no sooner */

@@ -101,8 +101,8 @@ static void look_wheel(grobo_robot *robot, int joint)
 static bool is_on_its_halt(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool rests = GROBO_DRIVERS_PLAIN || (axis->stood_us >= axis->trajectory.to_us &&
-                                         grobo_i_rests(robot, joint) && grobo_i_is_calm(axis));
+    bool rests = GROBO_DRIVERS_PLAIN || grobo_i_axis_is_counted(axis) ||
+                 (axis->stood_us >= axis->trajectory.to_us && grobo_i_rests(robot, joint));
     return rests && grobo_i_goal_is_told(axis) && grobo_i_goal_is_taken(robot, joint) &&
            !is_beside(robot, joint);
 }

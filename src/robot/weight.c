@@ -25,7 +25,6 @@
 #include "src/robot/stand.h"
 #include "src/robot/state.h"
 #include "src/robot/weight.h"
-#include "src/robot/wheel.h"
 
 #define DEG 0.017453292519943295
 /* A smaller error is as much a matter of steps and friction: it is not worth another goal. */
@@ -37,8 +36,6 @@
 #define RESTS_US 300000
 /* A joint that carries and is no faster begins its way at the goal that it has. */
 #define BEGINS_DPS 40
-/* No servo that tells no speed is further from its goal by a weight. */
-#define SAGS_RAD (6 * DEG)
 /* Another program may have given it another goal by then, where nobody looks. */
 #define LATER_US 3000000
 
@@ -83,23 +80,11 @@ void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *g
     axis->load_rad = load_rad;
 }
 
-/* A joint that is no faster, and so far from its goal. Of a servo that tells no speed none is known
- * until it was read twice since its last frame: one so near its goal hangs there, or is there
- * soon. */
-static bool is_calm(const grobo_robot *robot, int joint, double away_rad, int most_dps)
-{
-    const grobo_robot_axis *axis = &robot->axes[joint];
-    bool known = axis->seen_dps != GROBO_I_NO_SPEED;
-    bool near = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
-                fabs(away_rad) <= SAGS_RAD;
-    return known ? abs(axis->seen_dps) <= most_dps : near;
-}
-
 void grobo_i_begin_at_goal(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
     double goal_rad = axis->state.goal_rad;
-    bool slow = is_calm(robot, joint, goal_rad - axis->state.angle_rad, BEGINS_DPS);
+    bool slow = axis->seen_dps != GROBO_I_NO_SPEED && abs(axis->seen_dps) <= BEGINS_DPS;
     bool stands = axis->trajectory.from_us == axis->trajectory.to_us;
     if (!grobo_i_axis_is_counted(axis) && grobo_i_axis_is_on(axis) && slow && stands &&
         grobo_i_goal_is_told(axis) &&
@@ -117,35 +102,11 @@ double grobo_i_goal_near(const grobo_robot_axis *axis, double goal_rad, double h
     return fmin(fmax(goal_rad, low_rad), high_rad);
 }
 
-/* What carries a joint is not known before it stood for long (grobo_i_stands()); its goal is. */
-bool grobo_i_hangs_in_goal(const grobo_robot *robot, int joint)
-{
-    const grobo_robot_axis *axis = &robot->axes[joint];
-    const grobo_robot_trajectory *trajectory = &axis->trajectory;
-    double away_rad = trajectory->to_rad - axis->state.angle_rad;
-    if (grobo_i_axis_is_counted(axis) || grobo_i_is_wheel(robot, joint) ||
-        !grobo_i_has_target(axis) || grobo_i_is_stray(axis) || !grobo_i_axis_is_on(axis) ||
-        axis->goal_us == GROBO_NEVER_US || !grobo_i_goal_is_taken(robot, joint)) {
-        return false;
-    }
-    bool slow = is_calm(robot, joint, away_rad, CALM_DPS);
-    /* It had this goal before: whether the last frame came does not matter. */
-    bool nowhere =
-        fabs(trajectory->to_rad - trajectory->from_rad) <= grobo_i_same_goal_rad(robot, joint);
-    bool rests = grobo_i_goal_is_told(axis) && trajectory->to_us <= robot->now_us &&
-                 !grobo_i_trajectory_is_short(axis) && grobo_i_rests(robot, joint) &&
-                 axis->seen_dps * away_rad <= 0;
-    return slow && (nowhere || rests) && fabs(away_rad) <= grobo_i_load_most(robot, joint);
-}
-
 double grobo_i_goal_to_rest(const grobo_robot *robot, int joint, int64_t rest_us)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double rest_rad = grobo_i_axis_reached(robot, joint, rest_us);
     double load_rad = grobo_i_load_kept(axis), goal_rad;
-    if (grobo_i_hangs_in_goal(robot, joint)) {
-        return axis->trajectory.to_rad;
-    }
     if (load_rad == 0) {
         return rest_rad;
     }

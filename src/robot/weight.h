@@ -12,9 +12,6 @@ void grobo_i_load_take(grobo_robot *robot, int joint, const grobo_joint_state *g
 void grobo_i_begin_at_goal(grobo_robot *robot, int joint);
 /* The goal that has a joint rest where it can by then: it keeps the load. */
 double grobo_i_goal_to_rest(const grobo_robot *robot, int joint, int64_t rest_us);
-/* True of a joint that hangs in the goal of its trajectory, whether or not its load is known: it
- * was sent to no other place, or has come to rest. */
-bool grobo_i_hangs_in_goal(const grobo_robot *robot, int joint);
 /* This goal, drawn in so that its joint rests no further than that from here, and on this side: 1
  * above, -1 below, 0 on either. */
 double grobo_i_goal_near(const grobo_robot_axis *axis, double goal_rad, double here_rad,

@@ -21,10 +21,6 @@
  * one shaft come to rest at one place. These are stopped on a clean line alone: of a lost frame the
  * far side parts two shafts that are one in a robot.
  *
- * Half of the sample is run once more with joints that carry a weight (tests/support/far_weight.c):
- * a halt keeps the error that carries it, one at rest moves by less than 0.5 degrees or two steps,
- * and no weight is taken for a wall.
- *
  * Environment: GROBO_HALT=all runs every moment (make soak); GROBO_HALT_CELL="dxl2 keys stop 200
  * hold clean" one cell, and what the far side saw of it; GROBO_HALT_FAMILY one family.
  */
@@ -54,7 +50,6 @@ enum {
     STREAM_US = 20000,
     FOLLOW_US = 40000,
     TAIL_US = 1500000,
-    SWINGS_US = 600000, /* a joint that carries a weight, behind the time of its trajectory */
     AROUND_MS = 1000,
     STEP_MS = 5
 };
@@ -94,7 +89,6 @@ typedef struct cell {
 
 static struct {
     unsigned long cells, failed, refused, excused;
-    double worst_deg; /* by what a joint came to rest beside where it may */
     int told;
 } sum;
 
@@ -193,8 +187,7 @@ static void set_out(const cell *c)
 {
     halt_begin(halt_robot_of(c->family), FROM_DEG);
     script = (struct script){.way = c->way, .shape = c->shape};
-    double dps = (c->shape == HOLD ? 200 : 110) * (halt_weighs ? 0.5 : 1);
-    script.way_us = (int64_t)((TO_DEG - FROM_DEG) / dps * HALT_S);
+    script.way_us = (int64_t)((TO_DEG - FROM_DEG) / (c->shape == HOLD ? 200 : 110) * HALT_S);
     halt_run(500 * HALT_MS);
     if (c->way == KEYS || c->way == RATE) {
         begin_play(c->way == RATE);
@@ -345,7 +338,7 @@ static int ask_stop(stop_kind stop)
 static bool is_done(const cell *c, int job)
 {
     if (c->stop == PAUSE && grobo_robot_play_state(&halt.robot) != GROBO_SEQUENCER_FAILED) {
-        return halt.now_us >= halt.ends_us + (halt.weighs ? SWINGS_US : 0) &&
+        return halt.now_us >= halt.ends_us &&
                grobo_robot_play_state(&halt.robot) == GROBO_SEQUENCER_PAUSED &&
                halt.now_us >= halt.asked_us + GROBO_PLAY_STOP_US + 2 * halt.of->frame_us + 10000;
     }
@@ -397,10 +390,9 @@ static bool stop_and_judge(const cell *c)
     if (is_done(c, job)) {
         halt_done();
     }
-    halt_run((halt_weighs ? 2000 : 600) * HALT_MS);
+    halt_run(600 * HALT_MS);
     halt_verdict(bound_of(c));
     sum.excused += (unsigned)halt.excused;
-    sum.worst_deg = fmax(sum.worst_deg, halt.worst_deg);
     return halt.fault[0] == '\0';
 }
 
@@ -431,9 +423,8 @@ static int64_t arrival_us(const cell *c)
     int moved = halt.of->driver.model->joints[halt.of->moved].motor - 1;
     for (int i = 0; i < 5000; i++) {
         go_on(halt.now_us + HALT_MS);
-        (void)far_angle(&halt.far, moved, halt.now_us);
-        if (fabs(halt.far.joint[moved].set_deg - TO_DEG) < (halt_weighs ? 4 : 0.5) &&
-            halt.far.joint[moved].set_dps == 0) {
+        if (fabs(far_angle(&halt.far, moved, halt.now_us) - TO_DEG) < 0.5 &&
+            halt.far.joint[moved].dps == 0) {
             return halt.now_us - script.begun_us;
         }
     }
@@ -551,11 +542,6 @@ static bool some(const cell *c, void *ctx)
     return lucky || (c->loss == CLEAN && c->moment_ms % 50 == 0 && abs(c->moment_ms) <= 300);
 }
 
-static bool half(const cell *c, void *ctx)
-{
-    return some(c, ctx) && (c->moment_ms + AROUND_MS) / (2 * STEP_MS) % 2 == 0;
-}
-
 /* Of larger robots and other rates. */
 static bool few(const cell *c, void *ctx)
 {
@@ -590,58 +576,8 @@ static bool is_set(const char *text)
     return text != NULL && *text != '\0';
 }
 
-/* With a weight: cells that are known to break a rule, and by how much at most. KRS and LX-16A
- * tell no speed: one that sinks from the goal of its halt may be one that another program moves,
- * and is halted anew where it is. The others missed a frame, or are XL-320 whose gears stick. */
-static const struct {
-    const char *family;
-    unsigned long cells;
-    double deg;
-} known[] = {{"board", 4, 18}, {"dxl2", 3, 6},  {"sts", 3, 6},     {"scs", 1, 6},
-             {"sm", 2, 6},     {"ics", 66, 36}, {"lx16a", 26, 12}, {"xl320", 3, 6}};
-
-static void judge_family(const char *family, unsigned long failed, double worst_deg)
-{
-    unsigned long cells = 0;
-    double deg = 4;
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        if (strcmp(known[i].family, family) == 0) {
-            cells = known[i].cells;
-            deg = known[i].deg;
-        }
-    }
-    print_message("%s, with weight: %lu broke a rule, %.1f deg at most\n", family, failed,
-                  worst_deg);
-    assert_true(failed <= cells && worst_deg <= deg);
-}
-
-/* Half of the sample, of robots whose joints carry a weight. */
-TEST(stops_of_joints_that_carry_weight_neither_dip_nor_throw)
-{
-    const char *one = getenv("GROBO_HALT_CELL"), *family = getenv("GROBO_HALT_FAMILY");
-    uint32_t seed = 33;
-    halt_weighs = true;
-    memset(&sum, 0, sizeof sum);
-    if (one != NULL) {
-        run_one(one);
-        assert_int_equal(sum.failed, 0);
-    }
-    for (int i = 0; one == NULL && i < HALT_FAMILIES; i++) {
-        if (is_set(family) && strcmp(halt_robot_of(i)->name, family) != 0) {
-            continue;
-        }
-        unsigned long before = sum.failed;
-        sum.worst_deg = 0;
-        run_family(i, half, &seed);
-        judge_family(halt_robot_of(i)->name, sum.failed - before, sum.worst_deg);
-    }
-    print_message("with weight: %lu stops, %lu refused, %lu excused, %lu broke a rule\n", sum.cells,
-                  sum.refused, sum.excused, sum.failed);
-}
-
 TEST(stops_throw_no_joint)
 {
-    halt_weighs = false;
     const char *one = getenv("GROBO_HALT_CELL"), *family = getenv("GROBO_HALT_FAMILY");
     bool all = is_set(getenv("GROBO_HALT"));
     uint32_t seed = 29;
@@ -687,7 +623,6 @@ TEST(stops_that_broke_a_rule_break_none_any_more)
     if (getenv("GROBO_HALT_CELL") != NULL) {
         skip();
     }
-    halt_weighs = false;
     memset(&sum, 0, sizeof sum);
     for (size_t i = 0; i < sizeof cells / sizeof cells[0]; i++) {
         run_one(cells[i]);
