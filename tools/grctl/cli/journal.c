@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A motion that is recorded, on disk posture by posture: what a power cut leaves of it. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Files are synced to the disk by a thread of their own: nobody else waits for it. */
 #include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
