@@ -6,10 +6,19 @@
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
 
-/* Looks at all ids that are missing, at most LOOKS_MAX times; a line is quiet after LISTEN_US
- * without a byte, or twice the worst lateness seen, and is not listened to for longer than
- * LISTEN_MAX_US. What comes later than LATE_MAX_US is no reply. */
-enum { FEW = 4, LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000, LATE_MAX_US = 1000000 };
+/* Looks at all ids that are missing, at most LOOKS_MAX times. A line on which nobody has answered
+ * is quiet after LISTEN_US without a byte; one whose replies are known, after twice the longest
+ * that one took, but LISTEN_KNOWN_US at least: an adapter that holds bytes back did so there too.
+ * None is listened to for longer than LISTEN_MAX_US. What comes later than LATE_MAX_US is no
+ * reply. */
+enum {
+    FEW = 4,
+    LOOKS_MAX = 4,
+    LISTEN_US = 150000,
+    LISTEN_KNOWN_US = 30000,
+    LISTEN_MAX_US = 2000000,
+    LATE_MAX_US = 1000000
+};
 
 scan_identity scan_identity_of(const grobo_driver *driver, const uint8_t *bytes)
 {
@@ -108,7 +117,8 @@ static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const u
 
 static int64_t quiet_at(const scan_pass *p, int64_t since_us)
 {
-    int64_t quiet_us = 2 * p->worst_us > LISTEN_US ? 2 * p->worst_us : LISTEN_US;
+    int64_t least_us = p->worst_us > 0 ? LISTEN_KNOWN_US : LISTEN_US;
+    int64_t quiet_us = 2 * p->worst_us > least_us ? 2 * p->worst_us : least_us;
     return (p->heard_us > since_us ? p->heard_us : since_us) + quiet_us;
 }
 
