@@ -7,7 +7,8 @@
 
 start_sim --robot so101 --physics on || { echo "Bail out! the simulator did not start"; exit 1; }
 
-# Torque comes on wherever the arm is in its fall.
+# Torque comes on wherever the arm is in its fall; the move is another program's, which would refuse
+# an arm that swings yet.
 raised() {
     exits 0 of so101 servo on && exits 0 of so101 move shoulder_lift 0 1500
 }

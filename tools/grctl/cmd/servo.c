@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <grobo/core/robot.h>
@@ -46,6 +48,48 @@ static void print_json(const conn *c, grobo_joint_mask joints)
     app_print_json(json_pack("{s:o}", "joints", list));
 }
 
+/* An arm that fell swings on when its torque comes on, and is read until it rests: the next program
+ * would find it moved by nobody it knows. */
+#define TURNS_DPS 8
+#define RESTS_DEG 0.5
+#define LOOKS_AGAIN_US 80000
+#define LOOKS_UNTIL_US 1500000
+
+/* Where one turns, or has left where it was read before; those places are kept in `before`. */
+static bool swings(const conn *c, grobo_joint_mask joints, double before[GROBO_JOINTS_MAX])
+{
+    bool any = false;
+    for (int j = 0; j < conn_model(c)->n_joints; j++) {
+        grobo_joint_info i;
+        if (!(joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(c->robot, j, &i) < 0 ||
+            !(i.state.valid & GROBO_FIELD_SPEED)) {
+            continue;
+        }
+        double here_deg = grobo_deg_from_rad(i.state.angle_rad);
+        any = any || abs(i.state.speed_dps) >= TURNS_DPS ||
+              fabs(here_deg - before[j]) > RESTS_DEG; /* not of NAN: it was not read before */
+        before[j] = here_deg;
+    }
+    return any;
+}
+
+/* The first look is at what was read to see the torque. A lost reading is another look. */
+static int await_rest(conn *c, grobo_joint_mask joints)
+{
+    int64_t by_us = grobo_now_us() + LOOKS_UNTIL_US;
+    double before[GROBO_JOINTS_MAX];
+    int error = GROBO_OK;
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
+        before[j] = NAN;
+    }
+    while (!error && swings(c, joints, before) && grobo_now_us() < by_us) {
+        error = conn_sleep_until(c, grobo_now_us() + LOOKS_AGAIN_US);
+        error = error ? error : conn_sense(c, joints, GROBO_SENSE_FULL);
+        error = conn_is_of_reply(error) ? GROBO_OK : error;
+    }
+    return error;
+}
+
 static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, const char *word)
 {
     if (mode == GROBO_TORQUE_ON) {
@@ -56,6 +100,9 @@ static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, co
         return app_fail(c->a, EXIT_SAFETY, grobo_error_name(error),
                         "servo: the servos of %s have no brake; on holds, off releases",
                         grobo_robot_driver(c->robot)->model->name);
+    }
+    if (!error && mode == GROBO_TORQUE_ON) {
+        error = await_rest(c, joints);
     }
     if (error) {
         return conn_fail(c, error, "servo");
