@@ -192,6 +192,14 @@ grobo_job_kind grobo_robot_job(const grobo_robot *robot)
     return kind == GROBO_JOB_SETTLE ? GROBO_JOB_NONE : kind;
 }
 
+bool grobo_i_has_to_tell(const grobo_robot *robot)
+{
+    grobo_i_lock(robot);
+    bool has = robot->events_n > 0;
+    grobo_i_unlock(robot);
+    return has;
+}
+
 static bool is_pending(const grobo_robot *robot, int number)
 {
     for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {

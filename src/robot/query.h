@@ -45,6 +45,9 @@ bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_tas
 /* grobo_robot_is_playing() for the engine itself, which is locked. */
 bool grobo_i_is_playing(const grobo_robot *robot);
 
+/* True while there are events that were not told. */
+bool grobo_i_has_to_tell(const grobo_robot *robot);
+
 /* True while joints are being moved, by a job or by the sequencer. */
 bool grobo_i_in_motion(const grobo_robot *robot);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Stops that signal handlers post, to a runner and to a session, with nothing to be had. */
 #include <errno.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdint.h>
 #include <sys/resource.h>
@@ -54,11 +55,14 @@ static void have_handlers(void)
 static void have_descriptors(bool any)
 {
     static struct rlimit before;
+    static bool taken;
     struct rlimit none;
 
-    if (any) {
+    if (any && taken) {
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
-    } else {
+        taken = false;
+    } else if (!any) {
+        taken = true;
         assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
         none = before;
         none.rlim_cur = 1;
@@ -108,12 +112,12 @@ static int on_svc(void *ctx, grobo_runner *from)
     return 0;
 }
 
-static void start(bool threaded)
+static void start_with(bool threaded, const grobo_robot_config *robot)
 {
     const grobo_runner_config config = {
         GROBO_RUNNER_CONFIG_INIT,
         .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
-                                           .baud_bps = 1000000},
+                                           .baud_bps = 1000000, .robot = robot},
         .period_us = 1000, .skip_exit = true, .on_svc = on_svc};
 
     hold_init(&gate);
@@ -124,6 +128,11 @@ static void start(bool threaded)
     runner_come_up();
     assert_int_equal(runner_torque(runner, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
     have_handlers();
+}
+
+static void start(bool threaded)
+{
+    start_with(threaded, NULL);
 }
 
 static void end(void)
@@ -230,7 +239,16 @@ static GROBO_THREAD_FUNC wait_for_rest(void *arg)
     GROBO_THREAD_RETURN;
 }
 
-TEST(nothing_takes_a_descriptor)
+static int have_all_descriptors(void)
+{
+    have_descriptors(true);
+    return 0;
+}
+
+/* They are back however the test ends: those behind it need some. */
+static const test_fixture descriptors_back[] = {{NULL, NULL, have_all_descriptors}};
+
+TEST_WITH(descriptors_back, nothing_takes_a_descriptor)
 {
     grobo_thread other;
     int result = 1;
@@ -253,6 +271,77 @@ TEST(nothing_takes_a_descriptor)
     assert_int_equal(grobo_runner_close(runner, 0), GROBO_OK);
     have_descriptors(true);
     end();
+}
+
+/* What another thread has asked the engine for, and has not woken the loop for yet. */
+static _Thread_local int asks;
+static grobo_robot_host host;
+static hold waking;
+
+/* Of its two requests the loop hears by the second, when that is let go. */
+static void wake_late(void *ctx)
+{
+    if (asks > 1) {
+        hold_here(&waking);
+    }
+    if (asks == 1) {
+        asks = 2;
+    } else {
+        host.wake(ctx);
+    }
+}
+
+static int be_late(void *arg, grobo_runner *from)
+{
+    grobo_robot *robot = grobo_runner_robot(from);
+    grobo_robot_host late = robot->host;
+
+    (void)arg;
+    host = late;
+    late.wake = wake_late;
+    grobo_robot_set_host(robot, &late);
+    return 0;
+}
+
+static GROBO_THREAD_FUNC move_and_stop(void *arg)
+{
+    bool *done = arg;
+
+    asks = 1;
+    *done = runner_move_elbow(runner, 45, 60000000) > 0 &&
+            grobo_robot_stop(grobo_runner_robot(runner), true) == GROBO_OK;
+    GROBO_THREAD_RETURN;
+}
+
+/* The move is over, and the loop, which looks at the robot each period, was not told. */
+TEST(a_wait_is_over_when_the_end_was_told)
+{
+    const grobo_robot_config unread = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_thread waiter, stopper;
+    int waited = 1;
+    bool done = false;
+
+    start_with(true, &unread);
+    assert_int_equal(grobo_runner_call(runner, be_late, NULL), 0);
+    hold_init(&waking);
+    waking.wanted = true;
+    assert_int_equal(grobo_thread_start(&stopper, move_and_stop, &done), GROBO_OK);
+    hold_begin(&waking);
+    hold_begin(&gate);
+    atomic_store(&runner->woken, true); /* the call does not wake it either */
+    assert_int_equal(grobo_thread_start(&waiter, wait_for_rest, &waited), GROBO_OK);
+    while (atomic_load(&runner->calls) == 0) {
+        (void)sched_yield();
+    }
+    hold_end(&gate);
+    assert_int_equal(grobo_thread_join(waiter), GROBO_OK);
+    hold_end(&waking);
+    assert_int_equal(grobo_thread_join(stopper), GROBO_OK);
+    assert_true(done);
+    assert_int_equal(waited, GROBO_ERR_CANCELED);
+    end();
+    hold_deinit(&waking);
 }
 
 /* ---- a session ---------------------------------------------------------------------------- */

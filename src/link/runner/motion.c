@@ -6,6 +6,7 @@
 #include "src/link/runner/runner.h"
 #include "src/link/session/session.h"
 #include "src/motion/store/container.h"
+#include "src/robot/query.h"
 
 /* ---- the whole ---------------------------------------------------------------------------- */
 
@@ -117,28 +118,38 @@ static bool is_moving(grobo_runner *runner)
     return asked || grobo_robot_moving(runner_robot(runner));
 }
 
-/* How the last move ended may be told behind the look that finds it at rest: it looks again. */
+/* On the loop: tells what the engine has to tell. A request of another thread may end a move before
+ * it wakes the loop. @return true if there was something: what is told may ask for more. */
+static bool tell(grobo_runner *runner)
+{
+    if (!grobo_i_has_to_tell(runner_robot(runner))) {
+        return false;
+    }
+    grobo_i_session_enter(runner->session);
+    grobo_robot_step(runner_robot(runner), grobo_i_session_now(runner->session));
+    grobo_i_session_leave(runner->session);
+    return true;
+}
+
+/* How the last move ended is known when that was told. */
 static int await_rest(void *arg, grobo_runner *runner)
 {
-    int *looks = arg;
+    bool *rests = arg;
 
     if (is_moving(runner) || grobo_robot_settling(runner_robot(runner)) ||
-        grobo_robot_job(runner_robot(runner)) != GROBO_JOB_NONE) {
-        *looks = 0;
+        grobo_robot_job(runner_robot(runner)) != GROBO_JOB_NONE || tell(runner)) {
         return CALL_PENDING;
     }
-    if (++*looks < 2) {
-        return CALL_PENDING;
-    }
+    *rests = true;
     RETURN_LOCKED(runner, int, GROBO_ERR_ARG, runner->motion_result);
 }
 
 int grobo_runner_wait(grobo_runner *runner, int64_t timeout_us)
 {
-    int looks = 0;
-    int r = grobo_i_runner_wait(runner, await_rest, &looks, timeout_us);
+    bool rests = false;
+    int r = grobo_i_runner_wait(runner, await_rest, &rests, timeout_us);
 
-    return r == GROBO_ERR_TIMEOUT && looks < 2 ? GROBO_ERR_PENDING : r;
+    return r == GROBO_ERR_TIMEOUT && !rests ? GROBO_ERR_PENDING : r;
 }
 
 /* ---- reading files ------------------------------------------------------------------------ */
