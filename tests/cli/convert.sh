@@ -205,6 +205,21 @@ check "and none more seldom" fails 2 "'0.09' is not a number from 0.1 to 1000" \
 check "--exact and --integers" fails 2 'cannot be used together' \
     "$GRCTL" convert --exact --integers $greet "$work/x.m"
 
+# Two keys 9000 s apart, of which every thousandth of a second is a frame: some gigabytes.
+too_long() {
+    joints=$(seq -s ', ' 0 19)
+    printf 'type: PoseSeq\nname: long\ntargetBody: GR001\nrefs:\n' >"$work/long.pseq"
+    for at in 0 9000; do
+        printf -- '- { time: %s, refer: { type: Pose, joints: [ %s ], q: [ %s ] } }\n' \
+            "$at" "$joints" "$(seq -s ', ' -f "0.%03.0f1234$at" 20)" >>"$work/long.pseq"
+    done
+    fails 3 'frames would be about [0-9.]* GB, more than the 1.1 GB' \
+        "$GRCTL" convert --rate 1000 "$work/long.pseq" "$work/long.yaml" &&
+        [ ! -e "$work/long.yaml" ]
+}
+test_case "a text that nobody could read"
+check "it is refused before it is made" too_long
+
 test_case "reference material"
 
 # Every file to each format; key poses and frames back to what they were.

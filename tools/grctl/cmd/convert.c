@@ -114,6 +114,43 @@ static int refuse_out(app *a, const char *out, grobo_motion_format to)
     return error ? app_fail_error(a, EXIT_FILE, error, "%s", out) : 0;
 }
 
+/* One frame of so many is enough to tell how long the text of all will be. */
+enum { ONE_OF = 1000, FRAMES_FEW = 100 * ONE_OF };
+
+static int count_bytes(void *ctx, const void *bytes, size_t size)
+{
+    (void)bytes;
+    *(double *)ctx += (double)size;
+    return 0;
+}
+
+/* Frames at a rate may be longer than a file that can be read: said before they are made. */
+static int refuse_length(app *a, const grobo_motion *motion, const char *path,
+                         const grobo_write_options *how)
+{
+    grobo_write_options few = *how;
+    few.rate_hz = how->rate_hz > 0 ? how->rate_hz : GROBO_MOTION_RATE_HZ;
+    double frames = few.rate_hz / 1e6 * (double)grobo_motion_length_us(motion, how->default_us);
+    double bytes = 0;
+    grobo_sink sink = {.write = count_bytes, .ctx = &bytes};
+    bool as_they_are = !(how->rate_hz > 0) &&
+                       (how->exact || grobo_motion_get_kind(motion) == GROBO_MOTION_FRAMES);
+    if (how->format != GROBO_FORMAT_YAML || as_they_are || frames < FRAMES_FEW ||
+        app_option(a, OPT_LOSSY)->given) {
+        return 0;
+    }
+    few.rate_hz /= ONE_OF;
+    int error = grobo_motion_write(motion, few.format, &few, &sink, NULL);
+    bytes *= ONE_OF;
+    if (!error && bytes > (double)GROBO_FILE_MAX_BYTES) {
+        return app_fail(a, EXIT_FILE, grobo_error_name(GROBO_ERR_CAP),
+                        "%s: %.0f frames would be about %.1f GB, more than the %.1f GB that can be "
+                        "read; give a lower --rate",
+                        path, frames, bytes / 1e9, (double)GROBO_FILE_MAX_BYTES / 1e9);
+    }
+    return 0; /* whoever writes it says what is wrong */
+}
+
 /* ---- converting ----------------------------------------------------------------------------- */
 
 /* Legs given by link targets that were not solved, in a format without them. */
@@ -238,6 +275,7 @@ static int run(app *a)
         return error;
     }
     error = refuse_links(a, in, motion, &how);
+    error = error ? error : refuse_length(a, motion, out, &how);
     if (!error) {
         error = write_out(a, motion, out, &how, list);
     }
