@@ -133,8 +133,8 @@ static int refuse_length(app *a, const grobo_motion *motion, const char *path,
     double frames = few.rate_hz / 1e6 * (double)grobo_motion_length_us(motion, how->default_us);
     double bytes = 0;
     grobo_sink sink = {.write = count_bytes, .ctx = &bytes};
-    bool as_they_are = !(how->rate_hz > 0) &&
-                       (how->exact || grobo_motion_get_kind(motion) == GROBO_MOTION_FRAMES);
+    bool as_they_are =
+        !(how->rate_hz > 0) && (how->exact || grobo_motion_get_kind(motion) == GROBO_MOTION_FRAMES);
     if (how->format != GROBO_FORMAT_YAML || as_they_are || frames < FRAMES_FEW ||
         app_option(a, OPT_LOSSY)->given) {
         return 0;
