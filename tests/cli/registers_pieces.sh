@@ -15,6 +15,8 @@ describe() {
 describe lx16a LX-16A >"$work/lx.yaml"
 describe ics KRS-3301 >"$work/krs.yaml"
 describe ics KRS-2552RHV >"$work/krs35.yaml"
+printf '%s\n' 'name: t' 'family: ics' 'joints:' \
+    '  - {name: other, id: 9, servo: KRS-3301, limits_deg: [-90, 90]}' >"$work/beside.yaml"
 
 start_told_sim --robot "$work/lx.yaml"
 check "LX: scan" both exits 0 of "$work/lx.yaml" scan --last 4 --- says '^  1  Hiwonder LX .* turn$'
@@ -56,6 +58,30 @@ check "where it is found" both exits 0 of "$work/krs.yaml" scan --all-baud --las
 check "and back" exits 0 of "$work/krs.yaml" -b 625000 servo-set 2 baud 115200
 check "doctor tells no voltage" both exits 0 of "$work/krs.yaml" doctor -v --- \
     says 'do not report their voltage'
+stop_sim
+
+# The servos do not tell which they are: one that no file names is asked for what all of them tell.
+test_case "Kondo KRS that no file names"
+start_told_sim --robot "$work/beside.yaml" --servo 9=KRS-3301,1=KRS-2552RHV,2=KRS-3301
+all_but_the_position() {
+    of "$work/beside.yaml" servo-get "$1" >"$work/told" &&
+        grep -q '^ 49  temperature ' "$work/told" && ! grep present_position "$work/told"
+}
+check "all registers of one with ICS 3.5" all_but_the_position 1
+check "of one with ICS 3.6" all_but_the_position 2
+check "a setting" both exits 0 of "$work/beside.yaml" servo-set 1 stretch 80 --- \
+    said '^servo 1: stretch 60 -> 80, kept$'
+stop_sim
+sed 's/id: 1/id: 2/; /lift/d' "$work/krs.yaml" >"$work/alone.yaml"
+start_told_sim --robot "$work/alone.yaml"
+exits 0 of "$work/alone.yaml" move turn 30 --on-exit hold
+check "of one that holds" fails 4 'servo 2 holds.*no joint of this robot' \
+    of "$work/beside.yaml" servo-set 2 stretch 80
+gives_no_id() {
+    echo "$work/beside.yaml" | "$GRCTL" -d "$robot" --yes setup >"$work/told" 2>&1
+    [ $? -eq 4 ] && grep -q 'setup: servo 2 holds; switch its power off' "$work/told"
+}
+check "which setup gives no id either" gives_no_id
 stop_sim
 check "ICS 3.5 does not tell where it stands" both \
     exits 3 "$GRCTL" robot check "$work/krs35.yaml" --- \

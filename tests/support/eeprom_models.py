@@ -112,9 +112,8 @@ def result(model):
 
 servos = json.loads(run(folder, "robot", "servos", "--json"))["servos"]
 first = {one["family"]: one["model"] for one in reversed(servos) if one["joint"]}
-# KRS with ICS 3.5 do not tell whether they hold, so that nothing is written to them.
 models = [Model(one["family"], one["model"], one["model"] if one["joint"] else first[one["family"]])
-          for one in servos if one["joint"] or one["family"] != "ics"]
+          for one in servos]
 with concurrent.futures.ThreadPoolExecutor(8) as pool:
     results = list(pool.map(result, models))
 for family in first:

@@ -30,6 +30,8 @@ GROBO_BEGIN_DECLS
 #define GROBO_ICS_POSITION_MAX 11500   /**< the largest */
 /** The position that takes the torque. */
 #define GROBO_ICS_FREE 0
+/** Bit of the flags in the EEPROM, set by the servo itself: it has no torque. */
+#define GROBO_ICS_FLAG_FREE 0x02
 
 /** The first three bits of a command. */
 typedef enum grobo_ics_command {

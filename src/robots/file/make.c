@@ -574,13 +574,13 @@ static void refuse_servo(const maker *m, int j)
                    "%s: its servo does not reach these limits", draft->name);
 }
 
-/* Of one whose positions are bare counts, the scale is not known. */
+/* It tells no position, or its positions are bare counts. */
 static const char *why_no_joint(const grobo_servo_model *servo)
 {
     const grobo_servo_register *position = grobo_servo_register_of(servo, GROBO_ROLE_POSITION);
-    return servo->number == 0          ? "%s: %s stands for servos of which the scale is not known"
-           : position->unit[0] == '\0' ? "%s: the scale of a %s is not known"
-                                       : "%s: a %s does not tell where it stands";
+    return position == NULL     ? "%s: a %s does not tell where it stands"
+           : servo->number == 0 ? "%s: %s stands for servos of which the scale is not known"
+                                : "%s: the scale of a %s is not known";
 }
 
 /* Whether its family takes a joint. False: nothing more is to be said of any. */

@@ -778,7 +778,8 @@ int grobo_i_servo_finish(grobo_i_reader *reader, grobo_i_servo_draft *draft)
         end = row->reg.address + row->reg.bytes;
     }
     for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++) {
-        if (had[needed[i]] == 0) {
+        bool wanted = needed[i] != GROBO_ROLE_POSITION || !draft->no_joint;
+        if (wanted && had[needed[i]] == 0) {
             (void)grobo_i_complain(reader, GROBO_ERR_SYNTAX, "missing", draft->place,
                                    "%s: no register has the role '%s'", draft->name,
                                    roles[needed[i]]);

@@ -19,7 +19,7 @@ const grobo_i_item grobo_i_ics_items[] = {
     {44, 1, GROBO_I_ICS_WRITE(TEMPERATURE), 0},
     {48, 1, 0, GROBO_I_ICS_READ(CURRENT)},
     {49, 1, 0, GROBO_I_ICS_READ(TEMPERATURE)},
-    {50, 2, 0, GROBO_I_ICS_READ(POSITION_ITEM)},
+    {GROBO_I_ICS_AT_POSITION, 2, 0, GROBO_I_ICS_READ(POSITION_ITEM)},
     {0, 0, 0, 0},
 };
 

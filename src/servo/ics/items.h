@@ -17,9 +17,10 @@ enum {
     GROBO_I_ICS_AT_MAX = 8,
     GROBO_I_ICS_AT_MIN = 10,
     GROBO_I_ICS_AT_ID = 28,
+    GROBO_I_ICS_AT_POSITION = 50,
     /* Bits of the flags. */
     GROBO_I_ICS_REVERSE = 0x01,
-    GROBO_I_ICS_FREE = 0x02,
+    GROBO_I_ICS_FREE = GROBO_ICS_FLAG_FREE,
     GROBO_I_ICS_ROTATION = 0x10,
     GROBO_I_ICS_SLAVE = 0x80,
     /* Of a reply to a position: with the goal that was sent. */

@@ -23,6 +23,8 @@ enum { EEPROM = GROBO_I_ICS_EEPROM_BYTES, SPEED_FULL = 127, CURRENT_FULL = 63, M
 #define BUSY_US 400000
 /* A servo that is hot has less power until it is cooler: it does not let go. */
 #define NEVER_CUTS_C 1000
+/* A position on the wire has 14 bits. */
+enum { WIRE_MAX = 16383 };
 
 static int32_t rate_of(int32_t code)
 {
@@ -46,6 +48,20 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
 {
     return reversed(servo, grobo_i_dxl_ticks(servo, false, angle_mdeg)) -
            grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
+}
+
+/* It knows where it stands, also where no register tells it (ICS 3.5). */
+static void put_position(grobo_sim_servo *servo, int32_t position)
+{
+    int32_t held = position < 0 ? 0 : position > WIRE_MAX ? WIRE_MAX : position;
+    servo->reg[GROBO_I_ICS_AT_POSITION] = (uint8_t)(held >> 8);
+    servo->reg[GROBO_I_ICS_AT_POSITION + 1] = (uint8_t)held;
+}
+
+static uint16_t position_of(const grobo_sim_servo *servo)
+{
+    const uint8_t *at = &servo->reg[GROBO_I_ICS_AT_POSITION];
+    return (uint16_t)(at[0] << 8 | at[1]);
 }
 
 static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
@@ -96,8 +112,7 @@ static void refresh(grobo_sim *sim, int index)
     grobo_i_dxl_put(servo, GROBO_ROLE_TEMPERATURE, grobo_i_ics_raw_heat(servo->temperature_c));
     grobo_i_dxl_put(servo, GROBO_ROLE_CURRENT,
                     lround(grobo_i_dxl_current_ma(sim, index) / MA_OF_COUNT));
-    grobo_i_dxl_put(servo, GROBO_ROLE_POSITION,
-                    position_at(servo, grobo_i_sim_angle_mdeg(servo, sim->now_us)));
+    put_position(servo, position_at(servo, grobo_i_sim_angle_mdeg(servo, sim->now_us)));
 }
 
 /* ---- restart --------------------------------------------------------------------------------- */
@@ -160,7 +175,7 @@ static void position(grobo_sim *sim, int index, const grobo_ics_packet *packet)
     grobo_sim_servo *servo = &sim->servo[index];
     refresh(sim, index);
     grobo_ics_packet reply = *packet;
-    reply.value = (uint16_t)grobo_i_dxl_get(servo, GROBO_ROLE_POSITION);
+    reply.value = position_of(servo);
     answer(sim, index, reply);
     bool on = packet->value != GROBO_ICS_FREE;
     if (on) {

@@ -33,7 +33,7 @@ static const grobo_servo_register rows[] = {
     ROW("goal_position", 46, 2, 0, W, GOAL, "0.03375 deg", 3500, 11500, 7500, 0),
     ROW("current", 48, 1, 6, R, CURRENT, "100 mA", -63, 63, 0, 0),
     ROW("temperature", 49, 1, 0, R, TEMPERATURE, "", 0, 127, 0, 0),
-    ROW("present_position", 50, 2, 0, R, POSITION, "0.03375 deg", 0, 16383, 0, 0),
+    ROW("present_position", 50, 2, 0, R, POSITION, "0.03375 deg", 0, 16383, 0, 1),
 };
 
 static const grobo_servo_model models[] = {
@@ -55,6 +55,8 @@ static const grobo_servo_model models[] = {
      &grobo_i_ics_table, NULL, 0, 0},
     {"KRS-4034R2HV", 4035, 8000, 270, 7500, 353, 4090, 4000, 11100, 36, GROBO_MODEL_UNVERIFIED,
      &grobo_i_ics_table, NULL, 0, 0},
+    {"KRS-ANY", 0, 8000, 270, 7500, 1, 1, 1, 11100, 35,
+     GROBO_MODEL_NO_JOINT | GROBO_MODEL_UNVERIFIED, &grobo_i_ics_table, NULL, 0, 0},
 };
 
 static const grobo_servo_rate rates[] = {
@@ -64,7 +66,8 @@ static const grobo_servo_rate rates[] = {
 };
 
 static const uint64_t sets[] = {
-    0x1FF,
+    0x3FF,
+    0x1C3,
 };
 
 const grobo_servo_table grobo_i_ics_table = {

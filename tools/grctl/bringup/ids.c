@@ -54,9 +54,8 @@ static int put(conn *c, int id, const grobo_servo_model *servo, const grobo_serv
 /* A servo that holds would jump or restart: it is limp after its power was off. */
 static int expect_limp(conn *c, const found_servo *one)
 {
-    const grobo_servo_register *reg = grobo_servo_register_of(one->servo, GROBO_ROLE_TORQUE);
     int32_t torque = GROBO_TORQUE_OFF;
-    int error = reg ? servos_get(c, one->id, one->servo, reg, &torque) : GROBO_OK;
+    int error = servos_torque(c, one->id, one->servo, &torque);
     if (error && error != GROBO_ERR_UNSUPPORTED) {
         return conn_fail_servo(c, error, one->id);
     }

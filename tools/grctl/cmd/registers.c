@@ -285,20 +285,14 @@ static grobo_write_kind kind_of(const app *a, const servo_change *what)
 }
 
 /* Whether a servo holds; of a joint its reading too, without which the engine refuses a setting. */
-static int read_torque(conn *c, const servo_change *what, const grobo_servo_register *reg,
-                       int32_t *torque)
+static int read_torque(conn *c, const servo_change *what, int32_t *torque)
 {
     int joint = grobo_model_joint_of_motor(conn_model(c), what->id);
-    int error = servos_get(c, what->id, what->servo, reg, torque);
-    bool told = error != GROBO_ERR_UNSUPPORTED;
-    if ((error && told) || joint < 0) {
+    int error = servos_torque(c, what->id, what->servo, torque);
+    if (error || joint < 0) {
         return error;
     }
     error = conn_sense(c, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL);
-    grobo_joint_info i;
-    if (!told && grobo_robot_joint(c->robot, joint, &i) == 0) {
-        *torque = i.state.valid & GROBO_FIELD_TORQUE ? (int32_t)i.state.torque : GROBO_TORQUE_ON;
-    }
     return error == GROBO_ERR_SETUP ? GROBO_OK : error; /* what this may put right */
 }
 
@@ -313,18 +307,18 @@ static int expect_loose(conn *c, const servo_change *what)
     if ((kind_of(c->a, what) != GROBO_WRITE_SETTING && !restarts) || !reg) {
         return EXIT_DONE;
     }
-    int error = read_torque(c, what, reg, &torque);
-    if (error == GROBO_ERR_UNSUPPORTED) {
-        return app_fail(c->a, EXIT_SAFETY, grobo_error_name(error),
-                        "servo-set: servo %d does not tell whether it holds; name it in a robot's "
-                        "file, which can make it limp",
-                        what->id);
-    }
+    int error = read_torque(c, what, &torque);
     if (error) {
         return conn_fail_servo(c, error, what->id);
     }
     if (torque != GROBO_TORQUE_ON) {
         return EXIT_DONE;
+    }
+    if (grobo_model_joint_of_motor(conn_model(c), what->id) < 0) {
+        return app_fail(c->a, EXIT_SAFETY, "STATE",
+                        "servo-set: servo %d holds, and would %s with another %s; it is no joint "
+                        "of this robot: switch its power off and on first",
+                        what->id, restarts ? _("restart limp") : _("jump"), what->reg->name);
     }
     return app_fail(c->a, EXIT_SAFETY, "STATE",
                     "servo-set: servo %d holds, and would %s with another %s; first: grctl servo "

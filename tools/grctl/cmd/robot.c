@@ -269,12 +269,12 @@ static int run_check(app *a, const char *path)
 
 /* ---- servos --------------------------------------------------------------------------------- */
 
-/* Of one whose positions are bare counts, nobody knows what they are worth. */
+/* It tells no position, or bare counts, of which nobody knows what they are worth. */
 static const char *why_no_joint(const grobo_servo_model *servo)
 {
     const grobo_servo_register *position = grobo_servo_register_of(servo, GROBO_ROLE_POSITION);
-    return position->unit[0] == '\0' ? _("  cannot be a joint: its scale is not known")
-                                     : _("  cannot be a joint: it does not tell its position");
+    return position ? _("  cannot be a joint: its scale is not known")
+                    : _("  cannot be a joint: it does not tell its position");
 }
 
 /* What a user should know of a model before it becomes a joint. */

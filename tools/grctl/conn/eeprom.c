@@ -6,6 +6,7 @@
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/conn/eeprom.h"
+#include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/lang/lang.h"
 #include "tools/grctl/os/os.h"
@@ -110,6 +111,14 @@ static int check(app *a, const char *path, const grobo_servo_model *servo, json_
     return 0;
 }
 
+/* What a servo keeps that does not tell its model may be of any of its series. */
+static bool is_of(const grobo_servo_model *servo, const char *model)
+{
+    bool any = family_is_any(servo) && !grobo_servo_register_of(servo, GROBO_ROLE_MODEL);
+    return strcmp(model, servo->name) == 0 ||
+           (any && grobo_servo_model_named(grobo_servo_series(servo), model));
+}
+
 int eeprom_load(app *a, const char *path, const grobo_servo_model *servo, json_t **registers)
 {
     json_error_t error;
@@ -126,7 +135,7 @@ int eeprom_load(app *a, const char *path, const grobo_servo_model *servo, json_t
     json_t *found = json_object_get(all, "registers");
     if (!model || !json_is_object(found)) {
         status = complain(a, path, "registers", N_("it is no file of servo-set or calibrate"));
-    } else if (strcmp(model, servo->name) != 0) {
+    } else if (!is_of(servo, model)) {
         status = app_fail(a, EXIT_SAFETY, "MISMATCH", "%s: it is of a %.40s; the servo is a %s",
                           path, model, servo->name);
     } else {

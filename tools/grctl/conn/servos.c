@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include <grobo/core/ics.h>
+
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/conn/family.h"
 #include "tools/grctl/conn/servos.h"
@@ -29,6 +31,22 @@ int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_serv
     int error = length ? servos_read(c, id, from, length, bytes) : GROBO_ERR_UNSUPPORTED;
     if (!error) {
         *value = grobo_servo_register_get(servo, reg, bytes + (reg->address - from));
+    }
+    return error;
+}
+
+/* No command reads the torque of a KRS, of which its flags tell. */
+int servos_torque(conn *c, int id, const grobo_servo_model *servo, int32_t *torque)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_TORQUE);
+    bool by_flags = grobo_servo_series(servo) == grobo_ics_table();
+    int32_t value = 0;
+    reg = by_flags ? grobo_servo_register_named(servo, "flags") : reg;
+    int error = reg ? servos_get(c, id, servo, reg, &value) : GROBO_ERR_UNSUPPORTED;
+    if (!error) {
+        *torque = !by_flags                       ? value
+                  : (value & GROBO_ICS_FLAG_FREE) ? GROBO_TORQUE_OFF
+                                                  : GROBO_TORQUE_ON;
     }
     return error;
 }

@@ -21,6 +21,9 @@ int servos_model(conn *c, int id, const grobo_servo_model **servo);
 int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
                int32_t *value);
 
+/* Whether a servo holds, a grobo_torque. GROBO_ERR_UNSUPPORTED: it does not tell. As above. */
+int servos_torque(conn *c, int id, const grobo_servo_model *servo, int32_t *torque);
+
 /* Registers of a servo, each taken when it was read. */
 typedef struct servos_visit {
     bool (*wants)(const grobo_servo_register *reg);
