@@ -214,7 +214,7 @@ include tools/baremetal/baremetal.mk
 # Simulated robots of the tests have no weight, but where a test says so.
 export GRCTL_PHYSICS ?= off
 
-.PHONY: help all lib demo cockpit check compile_commands robots servos servo-models messages lint lint-quick format test check-san check-san-cli check-tsan check-memcheck install uninstall
+.PHONY: help all lib demo cockpit check compile_commands robots servos servo-models shelves messages lint lint-quick format test check-san check-san-cli check-tsan check-memcheck install uninstall
 .PHONY: clean analyse analyzer tidy fuzz soak dist bench bench-peers bench-count bench-realtime bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-model check-areas check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
@@ -261,6 +261,9 @@ compile_commands: ## compile_commands.json, for language servers: how each file 
 
 servos: $(SERVOS) ## make the tables of servo models from src/servo/models
 	@tools/servos/make.sh $(SERVOS)
+
+shelves: ## the functions of each shelf of headers, and how many they are
+	@tools/shelves.sh
 
 servo-models: $(SERVOS) ## the table of docs/servo-models.md: models, and their sources
 	@sed '/^|---|---|---|---|---|---|---|---|---|$$/q' docs/servo-models.md >$(BUILD)/servo-models.md

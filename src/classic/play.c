@@ -149,9 +149,8 @@ int SerialRobot_setMotionCount(SerialRobot *robot, int count)
 /* Postures of the present pass that have not left, and those of the passes after it. */
 static int frames_left(const grobo_play_progress *progress)
 {
-    if (progress->steps >= INT_MAX) {
-        return INT_MAX;
-    }
+    /* No overflow: a motion has GROBO_MOTION_FRAMES_MAX frames at most, or as many as its rate
+     * gives in its length. */
     uint64_t left = progress->steps - progress->step +
                     progress->steps * (uint64_t)(progress->passes - progress->pass);
 

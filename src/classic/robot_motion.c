@@ -80,7 +80,7 @@ RobotPosture *RobotMotion_next(RobotMotion *motion)
         return NULL;
     }
     /* Postures may have been deleted since, or a program may have set it. */
-    int at = motion->current >= 0 && motion->current < motion->size ? motion->current : 0;
+    int at = motion->current > 0 && motion->current < motion->size ? motion->current : 0;
     motion->current = (at + (motion->reverse ? motion->size - 1 : 1)) % motion->size;
     return motion->motion[at];
 }

@@ -7,28 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include <grobo/classic/classic.h>
-
-#include "tests/support/test.h"
-#include "tests/support/virtual_clock.h"
-
-static GR001 *g;
-
-static int set_up(void)
-{
-    g = GR001_new("sim");
-    assert_non_null(g);
-    return SerialRobot_connect(g) == 1 ? 0 : -1;
-}
-
-static int tear_down(void)
-{
-    GR001_delete(g);
-    g = NULL;
-    return 0;
-}
-
-static const test_fixture alone[] = {{NULL, set_up, tear_down}};
+#include "tests/support/classic_alone.h"
 
 /* The target that the engine has for a motor, 0.1 degree. */
 static int target_of(int motor)
@@ -39,11 +18,6 @@ static int target_of(int motor)
     (void)grobo_robot_target(grobo_runner_robot(SerialRobot_runner(g)), &target);
     assert_true((target.set & GROBO_JOINT_BIT(joint)) != 0);
     return grobo_ddeg_from_rad(target.angle_rad[joint]);
-}
-
-static void go(void)
-{
-    assert_int_equal(SerialRobot_wait(g, 20000), 0);
 }
 
 static void begin_at_zero(void)

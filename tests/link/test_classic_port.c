@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <grobo/classic/classic.h>
@@ -71,6 +72,34 @@ TEST_WITH(fixture, an_open_port_is_shown)
     assert_int_equal(SerialCom_setDevPort(com, "/nowhere/port"), 0);
     assert_string_equal(com->device, "/nowhere/port");
     assert_int_equal(SerialCom_openPort(com), -1);
+}
+
+TEST_WITH(fixture, a_speed_may_be_a_constant_of_termios)
+{
+    static const struct {
+        speed_t constant;
+        int bps;
+    } rows[] = {
+        {B50, 50},           {B75, 75},           {B110, 110},       {B134, 134},
+        {B150, 150},         {B200, 200},         {B300, 300},       {B600, 600},
+        {B1200, 1200},       {B1800, 1800},       {B2400, 2400},     {B4800, 4800},
+        {B9600, 9600},       {B19200, 19200},     {B38400, 38400},   {B57600, 57600},
+        {B115200, 115200},   {B230400, 230400},   {B460800, 460800}, {B1000000, 1000000},
+        {B2000000, 2000000}, {B4000000, 4000000},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        struct termios by_constant, by_number;
+        SerialCom_closePort(com);
+        com->baudrate = (int)rows[i].constant;
+        assert_true(SerialCom_openPort(com) >= 0);
+        assert_int_equal(tcgetattr(com->handle, &by_constant), 0);
+        assert_int_equal(cfgetospeed(&by_constant), rows[i].constant);
+        SerialCom_closePort(com);
+        com->baudrate = rows[i].bps;
+        assert_true(SerialCom_openPort(com) >= 0);
+        assert_int_equal(tcgetattr(com->handle, &by_number), 0);
+        assert_int_equal(cfgetospeed(&by_number), rows[i].constant);
+    }
 }
 
 TEST_WITH(fixture, bytes_are_written_and_read)

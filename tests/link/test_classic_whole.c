@@ -7,36 +7,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include <grobo/classic/classic.h>
-
+#include "tests/support/classic_alone.h"
 #include "tests/support/folder.h"
-#include "tests/support/test.h"
-#include "tests/support/virtual_clock.h"
 
 enum { MOTORS = 20 };
-
-static GR001 *g;
-
-static int set_up(void)
-{
-    g = GR001_new("sim");
-    assert_non_null(g);
-    return SerialRobot_connect(g) == 1 ? 0 : -1;
-}
-
-static int tear_down(void)
-{
-    GR001_delete(g);
-    g = NULL;
-    return 0;
-}
-
-static const test_fixture alone[] = {{NULL, set_up, tear_down}};
-
-static void go(void)
-{
-    assert_int_equal(SerialRobot_wait(g, 20000), 0);
-}
 
 /* Two degrees from where the motor stands at first, to one side and to the other. */
 static int angle_of(int id)
