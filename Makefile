@@ -365,7 +365,7 @@ balance-table: all ## the table of docs/guide/whole-body.md: COUNT=300 variants,
 	else echo 'balance-table: skipped: MuJoCo cannot be had for this python3'; fi
 
 # For programs that drive bodies: two Pythons, one with MuJoCo, one with the clients.
-check-bodies: all ## programs of others drive bodies of MuJoCo, and what these cost (from PyPI)
+check-bodies: all $(BUILD)/docs/examples/balance$(EXE) ## programs of others drive bodies of MuJoCo, and what these cost (from PyPI)
 	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
 	    --disable-pip-version-check mujoco numpy cffi || true
 	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q \
@@ -376,6 +376,8 @@ check-bodies: all ## programs of others drive bodies of MuJoCo, and what these c
 	    export PYTHONPATH="$(abspath $(PYTHON_DIR))" && \
 	    $(BUILD)/physics/bin/python tests/physics/clients.py "$(call whole,$(GRCTL_RUN))" \
 	        $(BUILD)/families/bin/python && \
+	    $(BUILD)/physics/bin/python tests/physics/lean.py "$(call whole,$(GRCTL_RUN))" \
+	        $(BUILD)/docs/examples/balance$(EXE) && \
 	    $(BUILD)/physics/bin/python tests/physics/cube.py "$(call whole,$(GRCTL_RUN))" && \
 	    $(BUILD)/physics/bin/python tests/physics/cost.py "$(call whole,$(GRCTL_RUN))"; \
 	else echo 'check-bodies: skipped: MuJoCo cannot be had for this python3'; fi

@@ -6,14 +6,25 @@
 #include <grobo/core/runner.h>
 #include <grobo/grobo.h>
 
+#define PERIOD_S 0.02 /* from one line of the IMU to the next: each sends a target */
+#define MOST_RAD 0.3
+
 enum { RIGHT = 4, LEFT = 10 }; /* R_ANKLE_P, L_ANKLE_P */
 
+static double held(double lean_rad)
+{
+    return lean_rad > MOST_RAD ? MOST_RAD : lean_rad < -MOST_RAD ? -MOST_RAD : lean_rad;
+}
+
+/* What is left of a tilt is leant against more and more: a push that stays, ankles that sag. */
 static int lean(const grobo_driver *self, void *ctx, const grobo_imu *imu,
                 const grobo_posture *sensed, grobo_posture *target)
 {
-    double turn = imu ? imu->pitch_rad + 0.1 * imu->rate_rad_s[1] : 0;
-    turn = turn > 0.3 ? 0.3 : turn < -0.3 ? -0.3 : turn;
+    static double lasting; /* of the one robot of this program */
+    double turn = imu ? 0.3 * imu->pitch_rad + 0.04 * imu->rate_rad_s[1] : 0;
     (void)self, (void)ctx, (void)sensed;
+    lasting = held(lasting + (imu ? 2.0 * imu->pitch_rad * PERIOD_S : 0));
+    turn = held(turn + lasting);
     target->angle_rad[RIGHT] += turn;
     target->angle_rad[LEFT] -= turn;
     return GROBO_OK;

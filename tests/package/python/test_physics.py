@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Servos of the library in front of a body of MuJoCo."""
 
+import collections
+import ctypes
 import importlib.util
 import math
 import os
@@ -17,6 +19,7 @@ from grobo import Description, Motion, errors
 HERE = all(importlib.util.find_spec(name) for name in ("mujoco", "numpy"))
 if HERE:
     from grobo import _film
+    from grobo._lib import ffi, lib
     from grobo.physics import Body, Virtual
 needs_mujoco = unittest.skipUnless(HERE, "no MuJoCo (make check-physics gets it from PyPI)")
 
@@ -288,6 +291,72 @@ class Exported(Heads):
         # What it gave is what the servos were told: read again it is there, by and by.
         self.assertGreater(len(seen), 100)
         self.assertLess(sum(abs(was - goal) for was, goal in seen) / len(seen), 0.1)
+
+    def example(self):
+        """The stabilizer of docs/examples/balance.c: a C function."""
+        made = self.folder / "balance.so"
+        source = ('#define main of_the_example\n#include "docs/examples/balance.c"\n'
+                  "extern const void *const leans;\nconst void *const leans = (const void *)lean;\n")
+        subprocess.run([os.environ.get("CC", "cc"), "-x", "c", "-shared", "-fPIC", "-I.", "-Iinclude", "-Iports/posix/include",
+                        "-o", str(made), "-"], input=source, text=True, check=True)
+        self.loaded = ctypes.CDLL(str(made), mode=os.RTLD_LAZY)  # its main() is never called
+        address = ctypes.c_void_p.in_dll(self.loaded, "leans").value
+        return ffi.cast("void *", address)
+
+    def leant(self, force, example):
+        """GR001 is told to stand each 20 ms, as by the example, and pushed for a second. Its IMU
+        tells what was 60 ms ago: two lines that wait."""
+        path = self.folder / "robot.xml"
+        subprocess.run([GRCTL, "robot", "export", "gr001", "--mjcf", "-o", str(path), "--yes"],
+                       check=True)
+
+        class Late(Body):
+            past = collections.deque(maxlen=60)  # a step of 1 ms each
+
+            def _advance(self, *of_a_step):
+                super()._advance(*of_a_step)
+                self.past.append(super().tilt())
+
+            def tilt(self):
+                return self.past[0] if self.past else super().tilt()
+
+        class Leaning(Virtual):
+            def _driver(self):
+                made = super()._driver()
+                made.stabilize_by = ffi.cast(ffi.typeof(made.stabilize_by), example)
+                return made
+
+        body = Late(path, Description("gr001"))
+        robot = Leaning(body, stabilizer=lambda *_: None) if example else Virtual(body)
+        self.addCleanup(robot.close)
+        robot.init()
+        still = ffi.new("grobo_posture *")
+        lib.grobo_posture_init_pose(still, body.robot.model)
+        still.time_us = 40000
+        body.push([force, 0, 0], 1.0, after=1.5)
+        for _ in range(200):
+            self.assertEqual(lib.grobo_robot_send(robot.robot, still), 0)
+            robot.run(0.02)
+        self.assertEqual(robot.trips, [])
+        return body
+
+    def test_the_example_in_c_stands_against_a_push(self):
+        self.assertTrue(self.leant(-1.5, None).fallen)
+        for force in (-1.5, 1.2):
+            body = self.leant(force, self.example())
+            self.assertFalse(body.fallen, force)
+            self.assertLess(math.degrees(body.tilt().angle), 3)
+
+    def test_the_guides_programs_run(self):
+        guide = Path("docs/guide/body.md").read_text()
+        programs = [part.partition("```")[0] for part in guide.split("```python\n")[1:]]
+        subprocess.run([GRCTL, "robot", "export", "gr001", "--mjcf", "-o",
+                        str(self.folder / "gr001.xml")], check=True)
+        said = [subprocess.run([sys.executable, "-c", program], cwd=self.folder, text=True,
+                               capture_output=True, check=True).stdout for program in programs]
+        pushed, leant = said
+        self.assertRegex(pushed, r"^Tilt\(roll=.* False$")
+        self.assertEqual(leant, "False\n")
 
     def test_a_stabilizer_is_judged_and_its_errors_are_told(self):
         def far(tilt, sensed, target):
