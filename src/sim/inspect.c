@@ -4,6 +4,7 @@
 
 #include <grobo/core/sim.h>
 
+#include "src/sim/imu.h"
 #include "src/sim/servo/family.h"
 #include "src/sim/servo/power.h"
 #include "src/sim/servo/registers.h"
@@ -221,4 +222,13 @@ int grobo_sim_imu(const grobo_sim *sim, struct grobo_imu *imu)
     }
     const grobo_sim_physics *physics = sim->config.physics;
     return physics == NULL ? GROBO_ERR_UNSUPPORTED : physics->ops->imu(physics, imu);
+}
+
+int grobo_i_sim_imu_at(grobo_sim *sim, int64_t now_us, grobo_imu *imu)
+{
+    if (grobo_sim_imu(sim, imu) == GROBO_ERR_UNSUPPORTED) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    grobo_sim_step(sim, now_us);
+    return grobo_sim_imu(sim, imu);
 }

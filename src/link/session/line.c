@@ -10,6 +10,7 @@
 #include "src/link/session/session.h"
 #include "src/robot/lines.h"
 #include "src/robot/robot.h"
+#include "src/sim/imu.h"
 #include "src/sim/lines.h"
 #include "src/sim/servo/servo.h"
 
@@ -151,26 +152,15 @@ static int sim_open(session_wire *wire, const char *name)
     return GROBO_OK;
 }
 
-/* The simulated base is its own IMU. A world whose body reports none is not stepped for it. */
-static void read_imu(const session_wire *wire)
-{
-    grobo_imu imu;
-
-    if (wire->line != 0 || grobo_sim_imu(wire->sim, &imu) == GROBO_ERR_UNSUPPORTED) {
-        return;
-    }
-    grobo_sim_step(wire->sim, grobo_now_us());
-    if (grobo_sim_imu(wire->sim, &imu) == GROBO_OK) {
-        (void)grobo_robot_set_imu(&wire->session->robot, &imu);
-    }
-}
-
 static int sim_take(session_wire *wire, int64_t *until_us)
 {
     uint8_t buf[256];
     size_t got;
+    grobo_imu imu;
 
-    read_imu(wire);
+    if (wire->line == 0 && grobo_i_sim_imu_at(wire->sim, grobo_now_us(), &imu) == GROBO_OK) {
+        (void)grobo_robot_set_imu(&wire->session->robot, &imu);
+    }
     do {
         /* What comes later was not taken: the engine may not be told of a later time. */
         int64_t now_us = *until_us = grobo_now_us();

@@ -14,6 +14,7 @@
 #include "src/base/assert.h"
 #include "src/base/memory.h"
 #include "src/base/sized.h"
+#include "src/sim/imu.h"
 #include "src/sim/lines.h"
 #include "src/sim/servo/servo.h"
 
@@ -91,26 +92,16 @@ static int64_t sooner(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* The simulated base is its own IMU. */
-static void read_imu(grobo_virtual *robot)
-{
-    grobo_sim *sim = robot->wire[0].sim;
-    grobo_imu imu;
-    if (sim->config.physics != NULL) {
-        grobo_sim_step(sim, robot->now_us);
-        if (grobo_sim_imu(sim, &imu) == GROBO_OK) {
-            (void)grobo_robot_set_imu(&robot->robot, &imu);
-        }
-    }
-}
-
 /* Does what is due; returns when the next round is. */
 static int64_t turn(grobo_virtual *robot)
 {
     uint8_t bytes[GROBO_FRAME_MAX_BYTES];
     int64_t next_us = GROBO_NEVER_US;
     bool free = true;
-    read_imu(robot);
+    grobo_imu imu;
+    if (grobo_i_sim_imu_at(robot->wire[0].sim, robot->now_us, &imu) == GROBO_OK) {
+        (void)grobo_robot_set_imu(&robot->robot, &imu);
+    }
     for (int i = robot->n_lines - 1; i >= 0; i--) {
         size_t got = grobo_sim_tx(robot->wire[i].sim, bytes, sizeof bytes, robot->now_us);
         if (i > 0) {
