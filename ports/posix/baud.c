@@ -83,11 +83,12 @@ static int apply(int fd, int baud_bps, grobo_os_cause *cause)
     if (tcgetattr(fd, &tio) != 0) {
         return grobo_i_posix_fail(cause, errno, "tcgetattr");
     }
-    if (cfsetispeed(&tio, standard->code) != 0 || cfsetospeed(&tio, standard->code) != 0 ||
-        tcsetattr(fd, TCSANOW, &tio) != 0) {
-        return grobo_i_posix_fail(cause, errno, "set speed");
+    /* A build by headers of glibc 2.42 or later: their constants are refused by an older one. */
+    if (cfsetispeed(&tio, standard->code) != 0 || cfsetospeed(&tio, standard->code) != 0) {
+        return grobo_i_posix_set_custom_baud(fd, baud_bps, cause);
     }
-    return GROBO_OK;
+    return tcsetattr(fd, TCSANOW, &tio) == 0 ? GROBO_OK
+                                             : grobo_i_posix_fail(cause, errno, "set speed");
 }
 
 int grobo_i_posix_get_baud(int fd, grobo_os_cause *cause)
